@@ -1,0 +1,1 @@
+"""Kinematics of contacts: gaps, directions and candidate pairs; no forces."""

@@ -1,0 +1,1 @@
+"""From a CAD file to closed outlines of exact lines and arcs."""

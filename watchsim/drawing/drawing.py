@@ -1,0 +1,34 @@
+"""What does a drawing hold once it is read?"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from watchsim.drawing.findings import Finding
+from watchsim.geometry.loop import Loop
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """Everything read from one file. Lengths are metres, in the coordinates of the drawing.
+
+    `units` is the name the file (or the caller) gave, None when nobody said: lengths are then what they would be in
+    millimetres and a finding of severity "error" says so. `units_from` is "header", "option" or "page" (None when unknown).
+    `layers` lists all visible layers with geometry. `points` are (layer, x, y). `fitted` counts curves turned into arcs and
+    their worst deviation in metres.
+    """
+
+    path: Path
+    format: str
+    units: str | None
+    units_from: str | None
+    loops: tuple[Loop, ...]
+    open_chains: tuple[Loop, ...] = ()
+    points: tuple[tuple[str, float, float], ...] = ()
+    layers: tuple[str, ...] = ()
+    fitted_curves: int = 0
+    fitted_arcs: int = 0
+    fitted_deviation: float = 0.0
+    ignored: dict[str, int] = field(default_factory=dict)
+    findings: tuple[Finding, ...] = ()

@@ -1,0 +1,25 @@
+"""What was wrong with the drawing or the scene?
+
+Findings are collected, never thrown one at a time: a designer mends a drawing once, not once per fault.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One observation. `severity` is "error", "warning" or "notice"; coordinates are millimetres in the drawing."""
+
+    code: str
+    severity: str
+    message: str
+    fix: str = ""
+    layer: str | None = None
+    x_mm: float | None = None
+    y_mm: float | None = None
+
+    def as_dict(self) -> dict[str, object]:
+        names = ("code", "severity", "layer", "x_mm", "y_mm", "message", "fix")
+        return {name: getattr(self, name) for name in names}

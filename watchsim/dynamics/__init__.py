@@ -1,0 +1,1 @@
+"""Forces and impulses at one instant; no time stepping."""

@@ -1,0 +1,1 @@
+"""Points, lines, arcs: exact planar geometry that knows nothing of mechanisms."""

@@ -1,0 +1,114 @@
+"""What is a line, what is an arc?
+
+Both are frozen records in metres and radians with a direction of travel. An outline is a sequence of them
+with the material on the left.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+Point = tuple[float, float]
+TURN = 2.0 * math.pi
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A straight edge from (x0, y0) to (x1, y1), metres."""
+
+    x0: float
+    y0: float
+    x1: float
+    y1: float
+
+    @property
+    def start(self) -> Point:
+        return (self.x0, self.y0)
+
+    @property
+    def end(self) -> Point:
+        return (self.x1, self.y1)
+
+    @property
+    def length(self) -> float:
+        return math.hypot(self.x1 - self.x0, self.y1 - self.y0)
+
+    def reversed(self) -> Line:
+        return Line(self.x1, self.y1, self.x0, self.y0)
+
+    def point(self, fraction: float) -> Point:
+        """The point at `fraction` (0 to 1) of the way."""
+        return (self.x0 + fraction * (self.x1 - self.x0), self.y0 + fraction * (self.y1 - self.y0))
+
+    def tangent(self, fraction: float) -> Point:
+        """Unit direction of travel; the same for every `fraction`."""
+        length = self.length
+        return ((self.x1 - self.x0) / length, (self.y1 - self.y0) / length)
+
+
+@dataclass(frozen=True, slots=True)
+class Arc:
+    """A circular edge: centre (x, y), `radius` in metres, from angle `start_angle` through `sweep` radians.
+
+    A positive sweep runs counter-clockwise; a full circle has `sweep` = ±2π.
+    """
+
+    x: float
+    y: float
+    radius: float
+    start_angle: float
+    sweep: float
+
+    @property
+    def start(self) -> Point:
+        return self.point(0.0)
+
+    @property
+    def end(self) -> Point:
+        return self.point(1.0)
+
+    @property
+    def length(self) -> float:
+        return self.radius * abs(self.sweep)
+
+    @property
+    def is_circle(self) -> bool:
+        return abs(self.sweep) >= TURN * (1.0 - 1e-12)
+
+    def reversed(self) -> Arc:
+        return Arc(self.x, self.y, self.radius, self.start_angle + self.sweep, -self.sweep)
+
+    def point(self, fraction: float) -> Point:
+        """The point at `fraction` (0 to 1) of the way."""
+        angle = self.start_angle + fraction * self.sweep
+        return (self.x + self.radius * math.cos(angle), self.y + self.radius * math.sin(angle))
+
+    def tangent(self, fraction: float) -> Point:
+        """Unit direction of travel at `fraction` of the way."""
+        angle = self.start_angle + fraction * self.sweep
+        side = math.copysign(1.0, self.sweep)
+        return (-side * math.sin(angle), side * math.cos(angle))
+
+
+Edge = Line | Arc
+
+
+def moved(edge: Edge, angle: float, shift: Point) -> Edge:
+    """The edge turned by `angle` (radians) about the origin, then shifted (metres)."""
+    c, s = math.cos(angle), math.sin(angle)
+    dx, dy = shift
+    if isinstance(edge, Line):
+        return Line(
+            c * edge.x0 - s * edge.y0 + dx,
+            s * edge.x0 + c * edge.y0 + dy,
+            c * edge.x1 - s * edge.y1 + dx,
+            s * edge.x1 + c * edge.y1 + dy,
+        )
+    return Arc(
+        c * edge.x - s * edge.y + dx,
+        s * edge.x + c * edge.y + dy,
+        edge.radius,
+        edge.start_angle + angle,
+        edge.sweep,
+    )

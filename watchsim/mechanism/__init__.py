@@ -1,0 +1,1 @@
+"""What the user declares (bodies, forces, contacts) and what the kernels read."""

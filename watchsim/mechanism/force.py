@@ -1,0 +1,61 @@
+"""Which forces act on a body besides contacts?
+
+All act on the body's own coordinate: a pivoted body's angle (N·m, rad) or a sliding body's travel (N, m).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Spring:
+    """-stiffness (q - rest): N·m/rad or N/m."""
+
+    body: str
+    stiffness: float
+    rest: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Torque:
+    """A constant torque (N·m) or force (N) on a body; with `table`, value by linear interpolation over angle or time.
+
+    `over` is "constant", "angle" or "time"; `table` holds (abscissa, value) pairs in SI, ascending.
+    """
+
+    body: str
+    value: float = 0.0
+    over: str = "constant"
+    table: tuple[tuple[float, float], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Damping:
+    """-viscous u - quadratic u|u| - coulomb sgn(u)."""
+
+    body: str
+    viscous: float = 0.0
+    quadratic: float = 0.0
+    coulomb: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Side:
+    """One side of a contact: a body, or one layer of it."""
+
+    body: str
+    layer: str | None = None
+
+    def __str__(self) -> str:
+        return self.body if self.layer is None else f"{self.body}.{self.layer}"
+
+
+@dataclass(frozen=True, slots=True)
+class Contact:
+    """Only what is declared here can touch. Coulomb friction, Poisson restitution normal and tangential."""
+
+    sides: tuple[Side, Side]
+    friction: float = 0.0
+    restitution: float = 0.0
+    tangential_restitution: float = 0.0

@@ -1,0 +1,48 @@
+"""What did the user declare?"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from watchsim.geometry.primitives import Point
+from watchsim.mechanism.body import Body
+from watchsim.mechanism.force import Contact, Damping, Spring, Torque
+
+
+@dataclass(frozen=True, slots=True)
+class Expectation:
+    """A number the scene promises, in the units it was written in."""
+
+    key: str
+    value: float
+    tolerance: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A mechanism in SI units, ready to be compiled. `source` is the TOML mapping it was made from."""
+
+    title: str
+    bodies: tuple[Body, ...]
+    springs: tuple[Spring, ...] = ()
+    torques: tuple[Torque, ...] = ()
+    damping: tuple[Damping, ...] = ()
+    contacts: tuple[Contact, ...] = ()
+    gravity: Point = (0.0, 0.0)
+    duration: float = 1.0
+    record: tuple[tuple[float, float], ...] = ()
+    tolerance: float = 1e-9
+    lift_angle: float | None = None
+    expect: tuple[Expectation, ...] = ()
+    path: Path | None = None
+    source: dict[str, Any] = field(default_factory=dict, repr=False)
+
+    def body(self, name: str) -> Body:
+        """The body of that name; KeyError if there is none."""
+        for body in self.bodies:
+            if body.name == name:
+                return body
+        raise KeyError(name)

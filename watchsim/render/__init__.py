@@ -1,0 +1,1 @@
+"""From a trajectory to pictures: plots, frames, movies."""

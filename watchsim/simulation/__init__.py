@@ -1,0 +1,1 @@
+"""Time: smooth steps, events and the loop that joins them."""

@@ -1,0 +1,45 @@
+"""Why did the loop stop? Each cause carries its sentence."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+
+class Stop(IntEnum):
+    """Cause of a return from the event loop. The first four are handled inside `simulate` and never reach a user."""
+
+    RUNNING = 0
+    SLICE = 1
+    CELL_UNKNOWN = 2
+    BUFFER_FULL = 3
+    DURATION = 4
+    INTERRUPTED = 5
+    TOO_MANY_EVENTS = 6
+    LCP_FAILED = 7
+    STEP_TOO_SMALL = 8
+    NOT_FINITE = 9
+    TOO_MANY_CONTACTS = 10
+
+    @property
+    def sentence(self) -> str:
+        return _SENTENCES[self]
+
+    @property
+    def gave_up(self) -> bool:
+        """True when the solver could not go on (exit status 3)."""
+        return self >= Stop.TOO_MANY_EVENTS
+
+
+_SENTENCES = {
+    Stop.RUNNING: "still running",
+    Stop.SLICE: "a slice of simulated time is done",
+    Stop.CELL_UNKNOWN: "a cell of the configuration space was entered for the first time",
+    Stop.BUFFER_FULL: "the record buffer is full",
+    Stop.DURATION: "the asked duration was simulated",
+    Stop.INTERRUPTED: "interrupted by the user; everything up to here is kept",
+    Stop.TOO_MANY_EVENTS: "too many events at one instant: time does not advance",
+    Stop.LCP_FAILED: "no solution of a complementarity problem was found",
+    Stop.STEP_TOO_SMALL: "the step became too small for the asked tolerance",
+    Stop.NOT_FINITE: "a coordinate or velocity is no longer a finite number",
+    Stop.TOO_MANY_CONTACTS: "more contacts closed at once than there is room for",
+}

@@ -1,0 +1,136 @@
+"""What comes out of a simulation?
+
+A frozen value: rows of time, coordinates, velocities and accelerations, and a table of events. Everything after it
+(beats, plots, movies) is a function of it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import IntEnum
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.mechanism.scene import Scene
+from watchsim.simulation.stops import Stop
+
+Array = NDArray[np.float64]
+
+
+class EventKind(IntEnum):
+    """What happened. IMPACT..HANDOVER name a contact pair; TURN and CROSS name a body with a spring."""
+
+    IMPACT = 1  # approach ended by impulses; impulses and energy lost are given
+    CLOSE = 2  # the contact now rests (its normal force acts)
+    OPEN = 3  # the contact lets go
+    STICK = 4  # sliding ended
+    SLIDE = 5  # sliding began; `value` is the direction, +1 or -1
+    HANDOVER = 6  # the contact left one primitive for its neighbour
+    ACCUMULATION = 7  # a sequence of rebounds was finished by rule; `value` is the time at which it would have ended
+    TURN = 8  # a turning point of a sprung body; `value` is its coordinate
+    CROSS = 9  # a sprung body passes its rest position; `value` is its velocity
+
+
+EVENT_DTYPE = np.dtype(
+    [
+        ("t", "f8"),
+        ("kind", "i4"),
+        ("contact", "i4"),  # row of `Trajectory.pairs`, -1 for TURN and CROSS
+        ("body", "i4"),  # index in scene.bodies for TURN and CROSS, else -1
+        ("impulse_normal", "f8"),  # N·s (between pivoted bodies too: at the contact point)
+        ("impulse_tangential", "f8"),
+        ("energy_lost", "f8"),  # J
+        ("value", "f8"),
+    ]
+)
+
+
+@dataclass(frozen=True)
+class Pair:
+    """The two primitives of a contact, for people: bodies, layers, a word for each primitive and its index in the body."""
+
+    group: int  # index in scene.contacts
+    body_a: str
+    primitive_a: str  # "corner", "arc", "line"
+    index_a: int
+    layer_a: str
+    body_b: str
+    primitive_b: str
+    index_b: int
+    layer_b: str
+
+    def __str__(self) -> str:
+        return (
+            f"{self.body_a}.{self.layer_a} {self.primitive_a} {self.index_a} / "
+            f"{self.body_b}.{self.layer_b} {self.primitive_b} {self.index_b}"
+        )
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """The motion of a scene. Arrays have one row per accepted step (two rows with the same time at an impact).
+
+    t (rows,) s; q, u, a (rows, n) coordinates, velocities, accelerations in SI; `slices[body]` says which columns belong to a body
+    (fixed bodies have none). `energy` holds joules: in_J, stored_J, dissipated {cause: J}, residual_J.
+    `counts` holds events, impacts, steps, lcp_failures and the like; `worst_penetration` is metres.
+    """
+
+    scene: Scene
+    t: Array
+    q: Array
+    u: Array
+    a: Array
+    slices: dict[str, slice]
+    events: NDArray[Any]
+    pairs: tuple[Pair, ...]
+    stop: Stop
+    stop_message: str = ""
+    simulated: float = 0.0
+    wall: float = 0.0
+    compile: float = 0.0
+    method: str = "pfeiffer-glocker"
+    tolerance: float = 1e-9
+    worst_penetration: float = 0.0
+    energy: dict[str, Any] = field(default_factory=dict)
+    counts: dict[str, int] = field(default_factory=dict)
+
+    def at(self, t: float) -> tuple[Array, Array]:
+        """q and u at time `t` (after the impact where one happens at `t`).
+
+        Quintic Hermite interpolation of q, u, a between rows: error of order 6 in the row spacing. Times outside are clamped.
+        """
+        i = int(np.searchsorted(self.t, t, side="right")) - 1
+        i = min(max(i, 0), len(self.t) - 2)
+        h = self.t[i + 1] - self.t[i]
+        if h <= 0.0:
+            return self.q[i + 1].copy(), self.u[i + 1].copy()
+        s = min(max((t - self.t[i]) / h, 0.0), 1.0)
+        return _quintic(s, h, (self.q[i], self.u[i], self.a[i]), (self.q[i + 1], self.u[i + 1], self.a[i + 1]))
+
+    def pose(self, body: str, t: float) -> tuple[float, float, float]:
+        """x, y (m) and angle (rad) of the body's frame at time `t`."""
+        part = self.scene.body(body)
+        if part.motion == "fixed":
+            return (*part.position, part.angle)
+        q = self.at(t)[0][self.slices[body]]
+        if part.motion == "pivot":
+            return (*part.position, float(q[0]))
+        if part.motion == "slide":
+            x, y = part.position
+            return x + q[0] * part.axis[0], y + q[0] * part.axis[1], part.angle
+        return float(q[0]), float(q[1]), float(q[2])
+
+
+def _quintic(s: float, h: float, left: tuple[Array, ...], right: tuple[Array, ...]) -> tuple[Array, Array]:
+    """Value and derivative at fraction `s` of the quintic through (q, u, a) at both ends of an interval of length h."""
+    q0, u0, a0 = left[0], h * left[1], h * h * left[2]
+    q1, u1, a1 = right[0], h * right[1], h * h * right[2]
+    d = q1 - q0
+    c3 = 10.0 * d - 6.0 * u0 - 4.0 * u1 - 1.5 * a0 + 0.5 * a1
+    c4 = -15.0 * d + 8.0 * u0 + 7.0 * u1 + 1.5 * a0 - a1
+    c5 = 6.0 * d - 3.0 * (u0 + u1) - 0.5 * (a0 - a1)
+    q = q0 + s * (u0 + s * (0.5 * a0 + s * (c3 + s * (c4 + s * c5))))
+    u = (u0 + s * (a0 + s * (3.0 * c3 + s * (4.0 * c4 + s * 5.0 * c5)))) / h
+    return q, u
