@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from watchsim.drawing.findings import Finding
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.body import Body
 from watchsim.mechanism.force import Contact, Damping, Spring, Torque
@@ -23,7 +24,11 @@ class Expectation:
 
 @dataclass(frozen=True)
 class Scene:
-    """A mechanism in SI units, ready to be compiled. `source` is the TOML mapping it was made from."""
+    """A mechanism in SI units, ready to be compiled.
+
+    `source` is the TOML mapping it was made from, `path` its file, `findings` what the drawings said besides errors; two
+    scenes are equal when everything else is.
+    """
 
     title: str
     bodies: tuple[Body, ...]
@@ -37,8 +42,9 @@ class Scene:
     tolerance: float = 1e-9
     lift_angle: float | None = None
     expect: tuple[Expectation, ...] = ()
-    path: Path | None = None
-    source: dict[str, Any] = field(default_factory=dict, repr=False)
+    path: Path | None = field(default=None, compare=False)
+    source: dict[str, Any] = field(default_factory=dict, repr=False, compare=False)
+    findings: tuple[Finding, ...] = field(default=(), repr=False, compare=False)
 
     def body(self, name: str) -> Body:
         """The body of that name; KeyError if there is none."""
@@ -46,3 +52,13 @@ class Scene:
             if body.name == name:
                 return body
         raise KeyError(name)
+
+    def set(self, key: str, value: object) -> Scene:
+        """A copy with one key of the scene file changed, everything else checked again.
+
+        `key` is a dotted path such as "torques.0.value", "bodies.lever.position.1"; `value` a text as in the file
+        ("-1.2 µN·m") or a number in SI units. Raises SceneError for an unknown path or a value that does not fit.
+        """
+        from watchsim.mechanism.override import changed
+
+        return changed(self, {key: value})

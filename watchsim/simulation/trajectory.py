@@ -101,13 +101,19 @@ class Trajectory:
 
         Quintic Hermite interpolation of q, u, a between rows: error of order 6 in the row spacing. Times outside are clamped.
         """
-        i = int(np.searchsorted(self.t, t, side="right")) - 1
-        i = min(max(i, 0), len(self.t) - 2)
-        h = self.t[i + 1] - self.t[i]
-        if h <= 0.0:
-            return self.q[i + 1].copy(), self.u[i + 1].copy()
-        s = min(max((t - self.t[i]) / h, 0.0), 1.0)
-        return _quintic(s, h, (self.q[i], self.u[i], self.a[i]), (self.q[i + 1], self.u[i + 1], self.a[i + 1]))
+        q, u = self.sample(np.array([t]))
+        return q[0], u[0]
+
+    def sample(self, times: Array) -> tuple[Array, Array]:
+        """q and u, each (len(times), n), at all those times; as `at`."""
+        i = np.clip(np.searchsorted(self.t, times, side="right") - 1, 0, max(len(self.t) - 2, 0))
+        j = np.minimum(i + 1, len(self.t) - 1)
+        h = (self.t[j] - self.t[i])[:, None]
+        last = h <= 0.0  # two rows of one instant at the very end: take the one after the impact
+        s = np.where(last, 1.0, np.clip((times - self.t[i])[:, None] / np.where(last, 1.0, h), 0.0, 1.0))
+        h = np.where(last, 1.0, h)
+        q, u = _quintic(s, h, (self.q[i], self.u[i], self.a[i]), (self.q[j], self.u[j], self.a[j]))
+        return np.where(last, self.q[j], q), np.where(last, self.u[j], u)
 
     def pose(self, body: str, t: float) -> tuple[float, float, float]:
         """x, y (m) and angle (rad) of the body's frame at time `t`."""
@@ -123,8 +129,8 @@ class Trajectory:
         return float(q[0]), float(q[1]), float(q[2])
 
 
-def _quintic(s: float, h: float, left: tuple[Array, ...], right: tuple[Array, ...]) -> tuple[Array, Array]:
-    """Value and derivative at fraction `s` of the quintic through (q, u, a) at both ends of an interval of length h."""
+def _quintic(s: Array, h: Array, left: tuple[Array, ...], right: tuple[Array, ...]) -> tuple[Array, Array]:
+    """Value and derivative at fractions `s` of the quintics through (q, u, a) at both ends of intervals of length h."""
     q0, u0, a0 = left[0], h * left[1], h * h * left[2]
     q1, u1, a1 = right[0], h * right[1], h * h * right[2]
     d = q1 - q0

@@ -1,0 +1,165 @@
+"""How is an outline drawn with lines, arcs and rounded corners?
+
+A draughtsman's chain: edges one after the other, then every corner that asks for it gets a tangent fillet. Lengths are
+whatever the caller uses (here millimetres), angles radians unless a name says degrees. Material is on the left.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from watchsim.geometry.loop import Loop
+from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point
+
+
+def polar(radius: float, degrees: float, centre: Point = (0.0, 0.0)) -> Point:
+    """The point at `radius` and `degrees` (counter-clockwise from +x) from `centre`."""
+    return (centre[0] + radius * math.cos(math.radians(degrees)), centre[1] + radius * math.sin(math.radians(degrees)))
+
+
+def turned(point: Point, degrees: float) -> Point:
+    """The point turned about the origin."""
+    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    return (c * point[0] - s * point[1], s * point[0] + c * point[1])
+
+
+def along(point: Point, degrees: float, distance: float) -> Point:
+    """The point `distance` away in the direction `degrees`."""
+    return polar(distance, degrees, point)
+
+
+def angle_of(point: Point, centre: Point = (0.0, 0.0)) -> float:
+    """Polar angle of the point about `centre`, degrees."""
+    return math.degrees(math.atan2(point[1] - centre[1], point[0] - centre[0]))
+
+
+def arc_between(start: Point, end: Point, centre: Point, left: bool) -> Arc:
+    """The arc about `centre` from `start` to `end`, counter-clockwise if `left`; both must lie on it."""
+    begin, finish = math.radians(angle_of(start, centre)), math.radians(angle_of(end, centre))
+    sweep = (finish - begin) % TURN if left else -((begin - finish) % TURN)
+    return Arc(*centre, math.dist(centre, start), begin, sweep)
+
+
+def arc_of_radius(start: Point, end: Point, radius: float) -> Arc:
+    """The short arc from `start` to `end`; a positive radius bends to the left, a negative one to the right."""
+    half = math.dist(start, end) / 2.0
+    rise = math.copysign(math.sqrt(radius * radius - half * half), radius)
+    middle = ((start[0] + end[0]) / 2.0, (start[1] + end[1]) / 2.0)
+    along_x, along_y = (end[0] - start[0]) / (2.0 * half), (end[1] - start[1]) / (2.0 * half)
+    return arc_between(start, end, (middle[0] - rise * along_y, middle[1] + rise * along_x), radius > 0.0)
+
+
+def circle(layer: str, centre: Point, radius: float, hole: bool = False) -> Loop:
+    """A full circle as a loop."""
+    return Loop((Arc(*centre, radius, 0.0, -TURN if hole else TURN),), layer, hole=hole)
+
+
+def rounded(corners: Sequence[tuple[float, float, float]]) -> list[Edge]:
+    """The closed polygon through (x, y, fillet radius) with its corners rounded."""
+    points = [(x, y) for x, y, _ in corners]
+    edges: list[Edge] = [Line(*points[i], *points[(i + 1) % len(points)]) for i in range(len(points))]
+    return fillet_chain(edges, [corners[(i + 1) % len(corners)][2] for i in range(len(corners))], closed=True)
+
+
+def fillet_chain(edges: Sequence[Edge], radii: Sequence[float], closed: bool = False) -> list[Edge]:
+    """The chain with a fillet of radii[i] at the end of edges[i]; 0 leaves the corner sharp.
+
+    An open chain needs one radius fewer than edges, a closed one as many.
+    """
+    trimmed, fillets = list(edges), {}
+    for i, radius in enumerate(radii):
+        follower = (i + 1) % len(trimmed)
+        if radius > 0.0 and (closed or follower > 0):
+            trimmed[i], fillets[i], trimmed[follower] = fillet(trimmed[i], trimmed[follower], radius)
+    chain: list[Edge] = []
+    for i, edge in enumerate(trimmed):
+        chain.append(edge)
+        if i in fillets:
+            chain.append(fillets[i])
+    return chain
+
+
+def fillet(first: Edge, second: Edge, radius: float) -> tuple[Edge, Arc, Edge]:
+    """Both edges cut back and the arc of `radius` that joins them tangentially.
+
+    Raises ValueError where no such arc exists. The centre is where the two edges, moved sideways by `radius`, cross.
+    """
+    tx, ty = first.tangent(1.0)
+    ux, uy = second.tangent(0.0)
+    side = math.copysign(1.0, tx * uy - ty * ux)
+    candidates = _crossings(_offset(first, side * radius), _offset(second, side * radius))
+    if not candidates:
+        raise ValueError(f"no fillet of radius {radius} fits at ({first.end[0]:.4f}, {first.end[1]:.4f})")
+    centre = min(candidates, key=lambda point: math.dist(point, first.end))
+    start, end = _foot(first, centre), _foot(second, centre)
+    return _cut(first, first.start, start), arc_between(start, end, centre, side > 0.0), _cut(second, end, second.end)
+
+
+def _offset(edge: Edge, distance: float) -> Edge:
+    """The edge moved to its left by `distance`."""
+    if isinstance(edge, Line):
+        tx, ty = edge.tangent(0.0)
+        dx, dy = -ty * distance, tx * distance
+        return Line(edge.x0 + dx, edge.y0 + dy, edge.x1 + dx, edge.y1 + dy)
+    return Arc(edge.x, edge.y, edge.radius - math.copysign(1.0, edge.sweep) * distance, edge.start_angle, edge.sweep)
+
+
+def _crossings(first: Edge, second: Edge) -> list[Point]:
+    """Points common to the infinite lines and full circles on which the edges lie."""
+    if isinstance(first, Line) and isinstance(second, Line):
+        return _line_line(first, second)
+    if isinstance(first, Line):
+        return _line_circle(first, second)  # type: ignore[arg-type]
+    if isinstance(second, Line):
+        return _line_circle(second, first)
+    return _circle_circle(first, second)
+
+
+def _line_line(first: Line, second: Line) -> list[Point]:
+    tx, ty = first.tangent(0.0)
+    ux, uy = second.tangent(0.0)
+    cross = tx * uy - ty * ux
+    if cross == 0.0:
+        return []
+    s = ((second.x0 - first.x0) * uy - (second.y0 - first.y0) * ux) / cross
+    return [(first.x0 + s * tx, first.y0 + s * ty)]
+
+
+def _line_circle(line: Line, circle: Arc) -> list[Point]:
+    tx, ty = line.tangent(0.0)
+    dx, dy = circle.x - line.x0, circle.y - line.y0
+    middle, height = dx * tx + dy * ty, dy * tx - dx * ty
+    reach = circle.radius**2 - height**2
+    if reach < 0.0:
+        return []
+    return [(line.x0 + s * tx, line.y0 + s * ty) for s in (middle - math.sqrt(reach), middle + math.sqrt(reach))]
+
+
+def _circle_circle(first: Arc, second: Arc) -> list[Point]:
+    dx, dy = second.x - first.x, second.y - first.y
+    distance = math.hypot(dx, dy)
+    if distance == 0.0:
+        return []
+    a = (distance**2 + first.radius**2 - second.radius**2) / (2.0 * distance)
+    reach = first.radius**2 - a * a
+    if reach < 0.0:
+        return []
+    b, ux, uy = math.sqrt(reach), dx / distance, dy / distance
+    return [(first.x + a * ux - s * b * uy, first.y + a * uy + s * b * ux) for s in (1.0, -1.0)]
+
+
+def _foot(edge: Edge, point: Point) -> Point:
+    """The nearest point of the edge's line or circle."""
+    if isinstance(edge, Line):
+        tx, ty = edge.tangent(0.0)
+        s = (point[0] - edge.x0) * tx + (point[1] - edge.y0) * ty
+        return (edge.x0 + s * tx, edge.y0 + s * ty)
+    return polar(edge.radius, angle_of(point, (edge.x, edge.y)), (edge.x, edge.y))
+
+
+def _cut(edge: Edge, start: Point, end: Point) -> Edge:
+    """The part of the edge between two of its points."""
+    if isinstance(edge, Line):
+        return Line(*start, *end)
+    return arc_between(start, end, (edge.x, edge.y), edge.sweep > 0.0)

@@ -1,0 +1,58 @@
+"""How does a trajectory become one file, and one file a trajectory?
+
+An npz archive of plain arrays (nothing is pickled) with a header in JSON. The scene is stored beside it, as text.
+"""
+
+from __future__ import annotations
+
+import json
+import zipfile
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from watchsim.analysis.tables import plain
+from watchsim.mechanism.scene import Scene
+from watchsim.simulation.stops import Stop
+from watchsim.simulation.trajectory import EVENT_DTYPE, Pair, Trajectory
+
+FORMAT = 1
+SCALARS = ("stop_message", "simulated", "wall", "compile", "method", "tolerance", "worst_penetration", "energy", "counts")
+
+
+def write_trajectory(run: Trajectory, path: Path) -> None:
+    """Write `path` (npz): t, q, u, a and events in full precision, and everything else but the scene."""
+    header = {
+        "format": FORMAT,
+        "stop": run.stop.name,
+        "slices": {body: [columns.start, columns.stop] for body, columns in run.slices.items()},
+        "pairs": [asdict(pair) for pair in run.pairs],
+        **{name: getattr(run, name) for name in SCALARS},
+    }
+    text = np.frombuffer(json.dumps(plain(header)).encode(), dtype=np.uint8)
+    np.savez_compressed(path, header=text, t=run.t, q=run.q, u=run.u, a=run.a, events=run.events)
+
+
+def read_trajectory(path: Path, scene: Scene) -> Trajectory:
+    """The trajectory of `scene` kept in `path`; ValueError where the file is damaged or belongs to another scene."""
+    try:
+        with np.load(path, allow_pickle=False) as archive:
+            header: dict[str, Any] = json.loads(archive["header"].tobytes())
+            columns = {name: archive[name] for name in ("t", "q", "u", "a", "events")}
+    except (zipfile.BadZipFile, KeyError, ValueError, EOFError) as error:
+        raise ValueError(f"{path} is damaged or no trajectory of watchsim ({error})") from error
+    if header.get("format") != FORMAT:
+        raise ValueError(f"{path} has format {header.get('format')}; this version reads format {FORMAT}. Run the scene again")
+    slices = {body: slice(*ends) for body, ends in header["slices"].items()}
+    moving = {body.name for body in scene.bodies if body.motion != "fixed"}
+    if set(slices) != moving:
+        raise ValueError(
+            f"{path} holds the motion of {', '.join(sorted(slices)) or 'nothing'}, but in the scene beside it "
+            f"{', '.join(sorted(moving)) or 'nothing'} can move: the two do not belong together"
+        )
+    columns["events"] = columns["events"].astype(EVENT_DTYPE)
+    kept = {name: header[name] for name in SCALARS}
+    pairs = tuple(Pair(**pair) for pair in header["pairs"])
+    return Trajectory(scene=scene, slices=slices, pairs=pairs, stop=Stop[header["stop"]], **columns, **kept)

@@ -1,0 +1,133 @@
+"""What does a run leave on disk, and how is it read back?
+
+A results folder is built beside its destination and moved there when it is complete: it exists whole or not at all, and
+one that is replaced stays untouched until then.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from watchsim.analysis.archive import read_trajectory, write_trajectory
+from watchsim.analysis.tables import json_text, write_events
+from watchsim.simulation.trajectory import Trajectory
+
+SUMMARY, LOCK, TRAJECTORY, EVENTS = "summary.json", "scene.lock.toml", "trajectory.npz", "events.csv"
+OURS = frozenset(
+    (SUMMARY, LOCK, TRAJECTORY, EVENTS)
+    + ("beats.csv", "phases.csv", "plots", "drawings", "movie.mp4", "movie.gif", "report.html", "import.png")
+)
+
+Extra = Mapping[str, str | bytes | Callable[[Path], object]]
+
+
+def check_folder(folder: str | os.PathLike[str], force: bool = False) -> Path:
+    """The folder as an absolute path, if results may be written there; worth asking before a long simulation.
+
+    FileExistsError where it exists and `force` is not set, or where it holds something else than results (never replaced).
+    """
+    target = Path(folder).absolute()
+    if not target.exists():
+        return target
+    if not target.is_dir():
+        raise FileExistsError(f"{folder} is a file; results need a folder of their own")
+    empty = next(target.iterdir(), None) is None
+    if not (empty or (target / SUMMARY).is_file() or (target / TRAJECTORY).is_file()):
+        raise FileExistsError(f"{folder} exists and holds no results of a run; it is left alone. Choose another folder")
+    if not (empty or force):
+        raise FileExistsError(f"{folder} exists already and is left alone. Choose another folder, or replace it with --force")
+    return target
+
+
+def write_results(
+    run: Trajectory,
+    folder: str | os.PathLike[str],
+    summary: Mapping[str, Any] | None = None,
+    scene_lock: str = "",
+    extra: Extra | None = None,
+    force: bool = False,
+) -> Path:
+    """Write a results folder and return its path.
+
+    summary     numbers for summary.json (numpy values welcome; not-a-number becomes null)
+    scene_lock  text of scene.lock.toml; drawings are named relative to the folder
+    extra       more files: relative path -> text, bytes, or a function that writes the file it is given
+    force       replace an existing results folder; files in it that are not ours are kept
+
+    FileExistsError as from `check_folder`; OSError where the disk is full or the place not writable: what was there before
+    is then still there, and nothing else.
+    """
+    target = check_folder(folder, force)
+    scratch = _beside(target, "new")
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        scratch.mkdir()
+        _fill(scratch, run, summary or {}, scene_lock, extra or {})
+        _put(scratch, target)
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise type(error)(error.errno, f"could not write the results to {folder}: {reason}; nothing was changed") from error
+    finally:
+        shutil.rmtree(scratch, ignore_errors=True)
+    return target
+
+
+def read_results(folder: str | os.PathLike[str]) -> Trajectory:
+    """The trajectory of a results folder, with its scene.
+
+    FileNotFoundError where the folder or a file of it is missing, ValueError where one is damaged or does not belong to the
+    others, SceneError where the scene can no longer be loaded.
+    """
+    from watchsim.mechanism.load import load
+
+    place = Path(folder)
+    if not place.is_dir():
+        raise FileNotFoundError(f"{folder}: there is no such results folder")
+    missing = [name for name in (LOCK, TRAJECTORY) if not (place / name).is_file()]
+    if missing:
+        raise FileNotFoundError(f"{folder} is not a results folder of watchsim: {' and '.join(missing)} missing")
+    return read_trajectory(place / TRAJECTORY, load(place / LOCK))
+
+
+def _fill(place: Path, run: Trajectory, summary: Mapping[str, Any], scene_lock: str, extra: Extra) -> None:
+    write_trajectory(run, place / TRAJECTORY)
+    write_events(run, place / EVENTS)
+    (place / SUMMARY).write_text(json_text(summary), encoding="utf-8")
+    (place / LOCK).write_text(scene_lock, encoding="utf-8")
+    for name, content in extra.items():
+        path = place / name
+        if not path.resolve().is_relative_to(place.resolve()):
+            raise ValueError(f"extra file {name!r} would lie outside the results folder")
+        path.parent.mkdir(parents=True, exist_ok=True)
+        if isinstance(content, str):
+            path.write_text(content, encoding="utf-8")
+        elif isinstance(content, bytes):
+            path.write_bytes(content)
+        else:
+            content(path)
+
+
+def _put(scratch: Path, target: Path) -> None:
+    """Exchange the new folder for the old one; the old one comes back if that fails half way."""
+    if not target.exists():
+        scratch.rename(target)
+        return
+    old = _beside(target, "old")
+    target.rename(old)
+    try:
+        scratch.rename(target)
+    except BaseException:
+        old.rename(target)
+        raise
+    for item in old.iterdir():
+        if item.name not in OURS and not (target / item.name).exists():
+            item.rename(target / item.name)
+    shutil.rmtree(old, ignore_errors=True)
+
+
+def _beside(target: Path, word: str) -> Path:
+    return target.with_name(f".{target.name}.{word}-{os.getpid()}")

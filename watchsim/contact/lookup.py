@@ -1,0 +1,94 @@
+"""Which contacts are candidates here? Looked up, never computed: the compiled side of the cells."""
+
+from __future__ import annotations
+
+import math
+
+from watchsim.jit import kernel
+
+UNKNOWN, LISTED, ALL = -1, 0, 1
+MARGIN = 0.5  # a cell's answer holds this share of its size beyond its faces
+REACH = 1 << 16  # cell indices beyond it fall back to all pairs
+
+
+@kernel
+def cell_index(q, size, wrap):
+    """Index of the cell that holds q."""
+    index = math.floor(q / size)
+    return int(index % wrap) if wrap > 0 else int(index)
+
+
+@kernel
+def cell_key(model, p, q):
+    """The key of body pair p's cell at coordinates q; -1 where the indices leave the range of keys."""
+    pair = model.pairs[p]
+    i0 = cell_index(q[pair.c0], pair.size0, pair.wrap0)
+    i1 = cell_index(q[pair.c1], pair.size1, pair.wrap1) if pair.axes > 1 else 0
+    i2 = cell_index(q[pair.c2], pair.size2, pair.wrap2) if pair.axes > 2 else 0
+    if abs(i0) >= REACH or abs(i1) >= REACH or abs(i2) >= REACH:
+        return -1
+    return (((p * 2 * REACH + (i0 + REACH)) * 2 * REACH) + (i1 + REACH)) * 2 * REACH + (i2 + REACH)
+
+
+@kernel
+def find_slot(keys, key):
+    """Slot of `key`, or of the free place where it belongs."""
+    slots = len(keys)
+    # Neighbouring cells differ in one index: spread the three indices by primes. The table's length is a power of two.
+    mixed = (key >> 34) * 7919 + ((key >> 17) & (2 * REACH - 1)) * 104729 + (key & (2 * REACH - 1)) * 31
+    slot = (mixed ^ (mixed >> 15)) & (slots - 1)
+    while keys[slot] != key and keys[slot] != -1:
+        slot = (slot + 1) & (slots - 1)
+    return slot
+
+
+@kernel
+def candidates(model, cells, p, q):
+    """Candidates of body pair p at q: (UNKNOWN | LISTED | ALL, start, count)."""
+    pair = model.pairs[p]
+    if pair.axes > 0:
+        key = cell_key(model, p, q)
+        if key >= 0:
+            slot = find_slot(cells.keys, key)
+            if cells.keys[slot] == -1:
+                return UNKNOWN, 0, 0
+            return LISTED, cells.start[slot], cells.count[slot]
+    return ALL, pair.start, pair.stop - pair.start
+
+
+@kernel
+def candidate(cells, how, place):
+    """The contact at a place of a candidate list."""
+    return cells.entries[place] if how == LISTED else place
+
+
+@kernel
+def _room(q, size):
+    """How far q may move either way before the cell's answer ends."""
+    low = math.floor(q / size) * size
+    return min(q - low, low + size - q) + MARGIN * size
+
+
+@kernel
+def _time_to_leave(room, speed, acceleration):
+    """Time in which no motion with these bounds covers `room`."""
+    if speed == 0.0 and acceleration == 0.0:
+        return math.inf
+    return 2.0 * room / (speed + math.sqrt(speed * speed + 2.0 * acceleration * room))
+
+
+@kernel
+def time_in_cell(model, p, q, u, acceleration):
+    """A time during which body pair p's candidates at q stay complete; acceleration bounds are per coordinate."""
+    pair = model.pairs[p]
+    if pair.axes == 0:
+        return math.inf
+    i = pair.c0
+    time = _time_to_leave(_room(q[i], pair.size0), abs(u[i]), acceleration[i])
+    if pair.axes > 1:
+        i = pair.c1
+        time = min(time, _time_to_leave(_room(q[i], pair.size1), abs(u[i]), acceleration[i]))
+    if pair.axes > 2:
+        i = pair.c2
+        time = min(time, _time_to_leave(_room(q[i], pair.size2), abs(u[i]), acceleration[i]))
+    return time

@@ -1,0 +1,59 @@
+"""Where is every body now, and how fast does it move?"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from watchsim.jit import kernel
+from watchsim.mechanism.model import FIXED, PIVOT, SLIDE, records
+
+POSE = np.dtype(
+    [
+        ("x", "f8"),  # origin of the body's frame
+        ("y", "f8"),
+        ("c", "f8"),  # cosine and sine of its angle
+        ("s", "f8"),
+        ("vx", "f8"),
+        ("vy", "f8"),
+        ("w", "f8"),
+    ]
+)
+
+
+def poses(bodies: int) -> np.recarray:
+    """Room for the poses of that many bodies."""
+    return records(POSE, bodies)
+
+
+@kernel
+def place_body(model, b, q, u, out_pose):
+    """Pose and velocity of body `b` from coordinates q and velocities u."""
+    body = model.bodies[b]
+    i = body.first
+    pose = out_pose[b]
+    angle, pose.x, pose.y = body.angle, body.x, body.y
+    pose.vx, pose.vy, pose.w = 0.0, 0.0, 0.0
+    if body.motion == PIVOT:
+        angle, pose.w = q[i], u[i]
+    elif body.motion == SLIDE:
+        pose.x, pose.y = body.x + q[i] * body.axis_x, body.y + q[i] * body.axis_y
+        pose.vx, pose.vy = u[i] * body.axis_x, u[i] * body.axis_y
+    elif body.motion != FIXED:
+        pose.x, pose.y, angle = q[i], q[i + 1], q[i + 2]
+        pose.vx, pose.vy, pose.w = u[i], u[i + 1], u[i + 2]
+    pose.c, pose.s = math.cos(angle), math.sin(angle)
+
+
+@kernel
+def place(model, q, u, out_pose):
+    """Poses and velocities of all bodies."""
+    for b in range(len(model.bodies)):
+        place_body(model, b, q, u, out_pose)
+
+
+@kernel
+def point_of(pose, x, y):
+    """World position relative to the frame's origin (rx, ry) of the body point (x, y)."""
+    return pose.c * x - pose.s * y, pose.s * x + pose.c * y

@@ -1,0 +1,88 @@
+"""Which generalized forces h(t, q, u) act, apart from contacts?"""
+
+from __future__ import annotations
+
+import math
+
+from watchsim.jit import kernel
+from watchsim.mechanism.model import OVER_TIME
+
+
+@kernel
+def table_value(model, table, x):
+    """Linear interpolation in one table; beyond its ends the end values."""
+    first, last = table.start, table.start + table.count - 1
+    if x <= model.knots[first, 0]:
+        return model.knots[first, 1]
+    if x >= model.knots[last, 0]:
+        return model.knots[last, 1]
+    while last - first > 1:
+        middle = (first + last) // 2
+        if model.knots[middle, 0] <= x:
+            first = middle
+        else:
+            last = middle
+    fraction = (x - model.knots[first, 0]) / (model.knots[last, 0] - model.knots[first, 0])
+    return model.knots[first, 1] + fraction * (model.knots[last, 1] - model.knots[first, 1])
+
+
+@kernel
+def driving_force(model, i, q):
+    """Constant force of coordinate i, plus gravity on an excentric rotor: torque m (r × g) with r turned by q."""
+    coordinate = model.coordinates[i]
+    force = coordinate.force
+    if coordinate.weight_x != 0.0 or coordinate.weight_y != 0.0:
+        force += math.cos(q) * coordinate.weight_y - math.sin(q) * coordinate.weight_x
+    return force
+
+
+@kernel
+def damping_force(model, i, u):
+    """-c u - c2 u|u| of coordinate i."""
+    coordinate = model.coordinates[i]
+    return -u * (coordinate.viscous + coordinate.quadratic * abs(u))
+
+
+@kernel
+def forces(model, t, q, u, out_h):
+    """h for all coordinates: drive, springs, damping."""
+    for i in range(len(model.coordinates)):
+        coordinate = model.coordinates[i]
+        out_h[i] = driving_force(model, i, q[i]) - coordinate.stiffness * (q[i] - coordinate.rest) + damping_force(model, i, u[i])
+    for j in range(len(model.tables)):
+        table = model.tables[j]
+        i = table.coordinate
+        out_h[i] += table_value(model, table, t if table.over == OVER_TIME else q[i])
+
+
+@kernel
+def drive_power(model, t, q, u):
+    """Power of everything that is neither a spring nor damping (motor torques, gravity), W."""
+    power = 0.0
+    for i in range(len(model.coordinates)):
+        power += u[i] * driving_force(model, i, q[i])
+    for j in range(len(model.tables)):
+        table = model.tables[j]
+        i = table.coordinate
+        power += u[i] * table_value(model, table, t if table.over == OVER_TIME else q[i])
+    return power
+
+
+@kernel
+def damping_power(model, u):
+    """Power taken by damping, W; never negative."""
+    power = 0.0
+    for i in range(len(model.coordinates)):
+        power -= u[i] * damping_force(model, i, u[i])
+    return power
+
+
+@kernel
+def stored_energy(model, q, u):
+    """Kinetic energy and energy in springs, J."""
+    energy = 0.0
+    for i in range(len(model.coordinates)):
+        coordinate = model.coordinates[i]
+        stretch = q[i] - coordinate.rest
+        energy += 0.5 * (coordinate.mass * u[i] * u[i] + coordinate.stiffness * stretch * stretch)
+    return energy

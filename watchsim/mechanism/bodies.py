@@ -1,0 +1,110 @@
+"""How is a body of the scene file read?"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from watchsim.drawing.findings import Finding
+from watchsim.geometry.loop import Loop
+from watchsim.geometry.primitives import Point
+from watchsim.mechanism.body import MOTIONS, Body
+from watchsim.mechanism.errors import Faults
+from watchsim.mechanism.outlines import Outlines, read_outlines
+from watchsim.mechanism.schema import BODY
+from watchsim.mechanism.table import NAN, Table, shown
+from watchsim.mechanism.weight import read_inertias
+from watchsim.units import SPEED
+
+REFUSED = ("on", "adjust")
+
+
+def read_bodies(mapping: object, folder: Path, faults: Faults) -> tuple[tuple[Body, ...], tuple[Finding, ...], frozenset[str]]:
+    """All bodies, what their drawings said besides errors, and the names of bodies whose outlines are sound."""
+    if not isinstance(mapping, dict):
+        faults.add("bodies", "write one table per body, such as [bodies.wheel]", shown(mapping))
+        return (), (), frozenset()
+    users = Counter(_drawing_path(entry, folder) for entry in mapping.values())
+    bodies, findings, sound = [], [], set()
+    for name, entry in mapping.items():
+        motion = motion_of(mapping, name)
+        table = Table(entry, f"bodies.{name}", BODY, faults, motion)
+        if "." in name or not name:
+            table.fault("", "a body's name must not be empty or contain a point: paths such as bodies.lever.angle use it")
+        outlines = read_outlines(table, folder)
+        shared = users[_drawing_path(entry, folder)] > 1
+        bodies.append(_body(name, table, motion, outlines, () if shared else outlines.rest))
+        findings.extend(outlines.findings)
+        sound.update([name] if outlines.sound else [])
+    return tuple(bodies), tuple(findings), frozenset(sound)
+
+
+def motion_of(bodies: Mapping[str, Any], name: object) -> str:
+    """The motion a body asks for, "pivot" where it says nothing readable."""
+    entry = bodies.get(name) if isinstance(bodies, Mapping) and isinstance(name, str) else None
+    motion = entry.get("motion", "pivot") if isinstance(entry, Mapping) else "pivot"
+    return motion if motion in MOTIONS else "pivot"
+
+
+def _drawing_path(entry: object, folder: Path) -> Path | None:
+    name = entry.get("drawing") if isinstance(entry, dict) else None
+    return folder / name if isinstance(name, str) else None
+
+
+def _body(name: str, table: Table, motion: str, outlines: Outlines, rest: tuple[Loop, ...]) -> Body:
+    """Everything is read even after a fault, so that all faults of a body are found at once."""
+    table.one_of("motion", MOTIONS, "pivot")
+    for key in REFUSED:
+        if key in table:
+            table.refuse(key)
+    inertias = read_inertias(table, motion, outlines)
+    shift = (-inertias.origin[0], -inertias.origin[1])
+    return Body(
+        name=name,
+        motion=motion,
+        position=table.pair("position"),
+        angle=table.quantity("angle"),
+        velocity=_velocity(table, motion),
+        axis=_axis(table, motion),
+        mass=inertias.mass,
+        inertia=inertias.inertia,
+        centre_of_mass=inertias.centre,
+        loops=_shifted(outlines.loops, shift),
+        decoration=_shifted(rest, shift),
+    )
+
+
+def _shifted(loops: tuple[Loop, ...], shift: Point) -> tuple[Loop, ...]:
+    return tuple(loop.moved(0.0, shift) for loop in loops)
+
+
+def _velocity(table: Table, motion: str) -> tuple[float, ...]:
+    if "spin" in table and motion != "free":
+        table.fault("spin", 'belongs to motion = "free"; here the key is velocity')
+    if motion == "free":
+        velocity = table.point("velocity", table.mapping["velocity"], SPEED) if "velocity" in table else (0.0, 0.0)
+        return (*velocity, table.quantity("spin"))
+    if motion == "fixed":
+        if "velocity" in table:
+            table.fault("velocity", "a fixed body does not move", with_value=True)
+        return ()
+    return (table.quantity("velocity"),)
+
+
+def _axis(table: Table, motion: str) -> Point:
+    """Unit direction of a sliding body."""
+    if motion != "slide":
+        if "axis" in table:
+            table.fault("axis", 'belongs to motion = "slide"')
+        return (1.0, 0.0)
+    if "axis" not in table:
+        table.fault("", "a sliding body needs its direction. Write e.g. axis = [1.0, 0.0]")
+    x, y = table.pair("axis", (NAN, NAN))
+    length = math.hypot(x, y)
+    if length == 0.0:
+        table.fault("axis", "a direction of length zero points nowhere", with_value=True)
+        return (NAN, NAN)
+    return (x / length, y / length)

@@ -1,0 +1,111 @@
+"""How are the contacts of the scene file read?"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from watchsim.mechanism.body import Body
+from watchsim.mechanism.errors import Faults
+from watchsim.mechanism.force import Contact, Side
+from watchsim.mechanism.forces import listed
+from watchsim.mechanism.schema import CONTACT, nearest
+from watchsim.mechanism.table import Table
+
+NOWHERE = Side("")
+
+
+@dataclass(frozen=True, slots=True)
+class Known:
+    """The bodies that may be named, and those whose outlines were read without a fault."""
+
+    bodies: Mapping[str, Body]
+    sound: frozenset[str]
+
+
+def read_contacts(
+    mapping: Mapping[str, Any], bodies: tuple[Body, ...], sound: frozenset[str], faults: Faults
+) -> tuple[Contact, ...]:
+    """All declared contacts; unknown bodies and layers, a body with itself and pairs declared twice are faults."""
+    known = Known({body.name: body for body in bodies}, sound)
+    tables = [Table(one, f"contacts.{i}", CONTACT, faults) for i, one in enumerate(listed(mapping, "contacts", faults))]
+    contacts = tuple(_contact(table, known) for table in tables)
+    for i, table in enumerate(tables):
+        _note_repeated(table, i, contacts, known)
+    return contacts
+
+
+def _contact(table: Table, known: Known) -> Contact:
+    sides = _sides(table, known)
+    friction = table.quantity("friction")
+    if friction < 0.0:
+        table.fault("friction", "a negative friction coefficient would drive the bodies", with_value=True)
+    for key in ("restitution", "tangential_restitution"):
+        value = table.quantity(key)
+        if value < 0.0 or value > 1.0:
+            table.fault(key, "must lie between 0 (no rebound) and 1 (nothing lost)", with_value=True)
+    if 0.0 < table.quantity("tangential_restitution") <= 1.0:
+        table.refuse("tangential_restitution")
+    return Contact(sides, friction, table.quantity("restitution"), 0.0)
+
+
+def _sides(table: Table, known: Known) -> tuple[Side, Side]:
+    names = table.texts("between")
+    if len(names) != 2:
+        if table.mapping:
+            table.fault("between" if "between" in table else "", 'two sides are needed: between = ["wheel.TEETH", "lever.STONES"]')
+        return NOWHERE, NOWHERE
+    first, second = (_side(table, i, name, known) for i, name in enumerate(names))
+    if first.body and first.body == second.body:
+        table.fault("between", f"{first.body} cannot touch itself: a body is rigid", with_value=True)
+    elif first.body and second.body and all(known.bodies[side.body].motion == "fixed" for side in (first, second)):
+        table.fault("between", f"{first.body} and {second.body} are both fixed, so this contact does nothing", with_value=True)
+    return first, second
+
+
+def _side(table: Table, i: int, name: str, known: Known) -> Side:
+    """ "lever" or "lever.STONES"; a layer name may contain points."""
+    body_name, _, layer = name.partition(".")
+    body = known.bodies.get(body_name)
+    key = f"{table.path}.between.{i}"
+    if body is None:
+        table.faults.add(key, f'there is no body "{body_name}". {nearest(body_name, known.bodies)}', f' = "{name}"')
+        return NOWHERE
+    if body_name in known.sound:
+        if not body.loops:
+            table.faults.add(key, f"{body_name} has no outline that could touch: give it a drawing or a shape", f' = "{name}"')
+        elif layer and layer not in body.layers:
+            _note_layer(table, key, body, layer)
+    return Side(body_name, layer or None)
+
+
+def _note_layer(table: Table, key: str, body: Body, layer: str) -> None:
+    shown = f' = "{body.name}.{layer}"'
+    if layer in {loop.layer for loop in body.decoration}:
+        table.faults.add(key, f'layer {layer} is left out by layers under [bodies.{body.name}]: add "{layer}" there', shown)
+        return
+    hint = nearest(layer, body.layers)
+    there = f" Layers of {body.name}: {', '.join(body.layers)}." if hint.startswith("Did") else ""
+    table.faults.add(key, f"{body.name} has no such layer. {hint}{there}", shown)
+
+
+def _note_repeated(table: Table, i: int, contacts: tuple[Contact, ...], known: Known) -> None:
+    """Two declarations for one pair of outlines would make the pair touch twice."""
+    mine = _covered(contacts[i], known)
+    for j in range(i):
+        if mine & _covered(contacts[j], known):
+            table.fault("between", f"contacts.{j} declares this pair already: leave one out", with_value=True)
+            return
+
+
+def _covered(contact: Contact, known: Known) -> set[frozenset[Side]]:
+    first, second = (_layers(side, known) for side in contact.sides)
+    return {frozenset((a, b)) for a in first for b in second}
+
+
+def _layers(side: Side, known: Known) -> tuple[Side, ...]:
+    if not side.body:
+        return ()
+    layers = (side.layer,) if side.layer else known.bodies[side.body].layers
+    return tuple(Side(side.body, layer) for layer in layers)

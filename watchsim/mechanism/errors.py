@@ -1,0 +1,66 @@
+"""What is wrong with a scene, where does it stand, and what mends it?
+
+Faults are collected, never thrown one at a time: a designer mends a scene once, not once per fault.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """One thing that must be mended. `shown` follows the key: the value seen (" = 28800") or the file it names (" -> a.dxf")."""
+
+    key: str
+    message: str
+    shown: str = ""
+    place: str = ""
+
+    def __str__(self) -> str:
+        heading = f"{self.place}  {self.key}{self.shown}".rstrip()
+        return "\n  ".join([heading, *self.message.splitlines()])
+
+
+class SceneError(ValueError):
+    """A scene that cannot be simulated. `faults` holds every fault found; the text lists them all."""
+
+    def __init__(self, faults: tuple[Fault, ...] | list[Fault]) -> None:
+        self.faults = tuple(faults)
+        super().__init__("\n".join(str(fault) for fault in self.faults))
+
+
+@dataclass
+class Faults:
+    """Collects faults; `lines` maps dotted keys to line numbers, `changed` holds keys set from outside the file."""
+
+    file: str = ""
+    lines: Mapping[str, int] = field(default_factory=dict)
+    changed: frozenset[str] = frozenset()
+    found: list[Fault] = field(default_factory=list)
+
+    def add(self, key: str, message: str, shown: str = "") -> None:
+        """Notes one fault at a dotted key such as "bodies.lever.position.1"; the same fault twice counts once."""
+        fault = replace(Fault(key, message, shown), place=self._place(key))
+        if fault not in self.found:
+            self.found.append(fault)
+
+    def raise_any(self) -> None:
+        """SceneError with everything found so far, if there is anything, in the order of the file."""
+        if self.found:
+            raise SceneError(sorted(self.found, key=lambda fault: self._line(fault.key) or 0))
+
+    def _place(self, key: str) -> str:
+        if any(key == changed or key.startswith(changed + ".") for changed in self.changed):
+            return "changed value"
+        line = self._line(key)
+        return f"{self.file}:{line}" if line else self.file
+
+    def _line(self, key: str) -> int | None:
+        """The line of the key itself, else of the nearest table or array that holds it."""
+        while key:
+            if key in self.lines:
+                return self.lines[key]
+            key = key.rpartition(".")[0]
+        return None

@@ -1,0 +1,163 @@
+"""How are springs, torques and damping of the scene file read?"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from watchsim import units
+from watchsim.mechanism.body import Body
+from watchsim.mechanism.errors import Faults
+from watchsim.mechanism.force import Damping, Spring, Torque
+from watchsim.mechanism.schema import DAMPING, SPRING, TORQUE, Keys, nearest
+from watchsim.mechanism.table import NAN, Table, shown
+
+COORDINATE = {"pivot": "inertia", "slide": "mass"}
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One element of [[springs]], [[torques]] or [[damping]] with the body it names (None after a fault)."""
+
+    table: Table
+    body: Body | None
+
+    @property
+    def name(self) -> str:
+        return self.body.name if self.body else ""
+
+    @property
+    def mass(self) -> float:
+        """What the body's coordinate weighs, kg or kg·m²; NaN after a fault."""
+        if self.body is None:
+            return NAN
+        return self.body.inertia if self.body.motion == "pivot" else self.body.mass
+
+
+def read_springs(mapping: Mapping[str, Any], bodies: tuple[Body, ...], faults: Faults) -> tuple[Spring, ...]:
+    entries = _entries(mapping, "springs", SPRING, bodies, faults)
+    return tuple(Spring(entry.name, _stiffness(entry), entry.table.quantity("rest")) for entry in entries)
+
+
+def read_torques(mapping: Mapping[str, Any], bodies: tuple[Body, ...], faults: Faults) -> tuple[Torque, ...]:
+    return tuple(_torque(entry) for entry in _entries(mapping, "torques", TORQUE, bodies, faults))
+
+
+def read_damping(
+    mapping: Mapping[str, Any], bodies: tuple[Body, ...], springs: tuple[Spring, ...], faults: Faults
+) -> tuple[Damping, ...]:
+    return tuple(_damping(entry, springs) for entry in _entries(mapping, "damping", DAMPING, bodies, faults))
+
+
+def listed(mapping: Mapping[str, Any], section: str, faults: Faults) -> list[Any]:
+    """The elements of an array of tables; a single table in its place is a fault."""
+    value = mapping.get(section, [])
+    if isinstance(value, (list, tuple)):
+        return list(value)
+    faults.add(section, f"write [[{section}]] with double brackets: there can be several", shown(value) if value else "")
+    return []
+
+
+def _entries(mapping: Mapping[str, Any], section: str, keys: Keys, bodies: tuple[Body, ...], faults: Faults) -> Iterator[Entry]:
+    known = {body.name: body for body in bodies}
+    for i, element in enumerate(listed(mapping, section, faults)):
+        name = element.get("body") if isinstance(element, dict) else None
+        body = known.get(name) if isinstance(name, str) else None
+        table = Table(element, f"{section}.{i}", keys, faults, body.motion if body else "pivot")
+        _note_body(table, known)
+        yield Entry(table, body)
+
+
+def _note_body(table: Table, known: Mapping[str, Body]) -> None:
+    if not table.mapping:
+        return
+    name = table.needed_text("body", next(iter(known), "balance"))
+    if name and name not in known:
+        table.fault("body", f"there is no such body. {nearest(name, known)}", with_value=True)
+    elif name and known[name].motion not in COORDINATE:
+        table.fault("body", f'acts on a pivoted or a sliding body, and motion of {name} is "{known[name].motion}"', True)
+
+
+def _stiffness(entry: Entry) -> float:
+    """Of a spring given by its stiffness, or by the frequency at which it makes its body swing."""
+    table = entry.table
+    if "stiffness" in table and "frequency" in table:
+        table.fault("frequency", "stiffness and frequency say the same thing: leave one out")
+        return NAN
+    if "frequency" in table:
+        frequency = table.positive("frequency", "it is the frequency of the free oscillation")
+        return entry.mass * (math.tau * frequency) ** 2
+    if "stiffness" not in table and table.mapping:
+        table.fault("", 'a spring needs frequency = "28800 vph" or stiffness = "0.758 µN·m/rad"')
+    return table.positive("stiffness", "a spring pulls back")
+
+
+def _torque(entry: Entry) -> Torque:
+    table = entry.table
+    if "table" not in table:
+        if "value" not in table and table.mapping:
+            table.fault("", 'missing: value = "-1.0 µN·m", or a table over angle or time')
+        if "over" in table:
+            table.fault("over", "belongs to a table; a value is constant")
+        return Torque(entry.name, table.quantity("value"))
+    if "value" in table:
+        table.fault("value", "a torque is either a value or a table: leave one out")
+    sliding = table.motion == "slide"
+    choices = ("travel", "time") if sliding else ("angle", "time")
+    if "over" not in table:
+        table.fault("", f'a table needs over = "{choices[0]}" or over = "time"')
+    over = table.one_of("over", choices, choices[0])
+    abscissa = units.TIME if over == "time" else units.LENGTH if sliding else units.ANGLE
+    return Torque(entry.name, over="time" if over == "time" else "angle", table=_rows(table, abscissa))
+
+
+def _rows(table: Table, abscissa: units.Dimension) -> tuple[tuple[float, float], ...]:
+    """(abscissa, value) pairs with ascending abscissae."""
+    value, ordinate = table.mapping["table"], table.keys["value"].dimension_for(table.motion) or units.TORQUE
+    if not isinstance(value, (list, tuple)) or len(value) < 2:
+        example = f'[["0 {abscissa.usual[1]}", "0 {ordinate.usual[1]}"], ["1 {abscissa.usual[1]}", "1 {ordinate.usual[1]}"]]'
+        table.fault("table", f"a list of at least two pairs is needed here, such as table = {example}", with_value=True)
+        return ()
+    rows = tuple(_row(table, i, row, (abscissa, ordinate)) for i, row in enumerate(value))
+    for i, (before, after) in enumerate(zip(rows, rows[1:], strict=False)):
+        if after[0] <= before[0]:
+            table.fault(f"table.{i + 1}", "its first column must ascend")
+    return rows
+
+
+def _row(table: Table, i: int, row: object, dimensions: tuple[units.Dimension, units.Dimension]) -> tuple[float, float]:
+    if not isinstance(row, (list, tuple)) or len(row) != 2:
+        table.faults.add(f"{table.path}.table.{i}", "two values are needed in each row", shown(row))
+        return (NAN, NAN)
+    x, y = (table.parsed(f"table.{i}.{j}", item, dimensions[j]) for j, item in enumerate(row))
+    return (x, y)
+
+
+def _damping(entry: Entry, springs: tuple[Spring, ...]) -> Damping:
+    table = entry.table
+    if table.mapping and not any(key in table for key in ("q_factor", "viscous", "quadratic", "coulomb")):
+        table.fault("", 'missing: q_factor = 250, viscous = "0.6 nN·m·s/rad" or quadratic = "1 nN·m·s²/rad²"')
+    for key in ("viscous", "quadratic", "coulomb"):
+        if table.quantity(key) < 0.0:
+            table.fault(key, "negative damping would drive the body", with_value=True)
+    if table.quantity("coulomb") > 0.0:
+        table.refuse("coulomb")
+    viscous = _from_quality(entry, springs) if "q_factor" in table else table.quantity("viscous")
+    return Damping(entry.name, viscous, table.quantity("quadratic"))
+
+
+def _from_quality(entry: Entry, springs: tuple[Spring, ...]) -> float:
+    """Viscous damping c = sqrt(k J) / Q of a sprung body."""
+    table = entry.table
+    if "viscous" in table:
+        table.fault("q_factor", "q_factor and viscous say the same thing: leave one out")
+    quality = table.positive("q_factor", "it is the quality factor of the oscillation, about 250 for a balance")
+    stiffness = sum(spring.stiffness for spring in springs if spring.body == entry.name)
+    if entry.body and stiffness == 0.0:
+        table.fault("q_factor", f"{entry.name} has no spring, so it has no quality factor. Add one under [[springs]] or write viscous")
+    product = stiffness * entry.mass
+    return math.sqrt(product) / quality if product > 0.0 and quality > 0.0 else NAN
+
+

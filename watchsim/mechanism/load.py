@@ -1,0 +1,111 @@
+"""How does a scene file become a scene?
+
+Everything is read before anything is refused: one SceneError lists all faults with file, line, key and cure.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from watchsim.mechanism.bodies import read_bodies
+from watchsim.mechanism.contacts import read_contacts
+from watchsim.mechanism.errors import Fault, Faults, SceneError
+from watchsim.mechanism.forces import read_damping, read_springs, read_torques
+from watchsim.mechanism.locate import key_lines
+from watchsim.mechanism.scene import Scene
+from watchsim.mechanism.schema import LOCK, SECTIONS, nearest
+from watchsim.mechanism.settings import read_expectations, read_heading, read_lift_angle, read_run
+from watchsim.mechanism.table import Table
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+
+def load(path: str | Path) -> Scene:
+    """The scene of a TOML file, in SI units. SceneError lists everything that is wrong with it."""
+    path = Path(path)
+    text = _text(path)
+    try:
+        mapping = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        message = f"not valid TOML: {error}. Texts and quantities stand in quotes, plain numbers and lists do not"
+        raise SceneError([Fault("", message, place=str(path))]) from error
+    return from_mapping(mapping, path, Faults(str(path), key_lines(text)))
+
+
+def from_mapping(mapping: dict[str, Any], path: Path | None, faults: Faults | None = None) -> Scene:
+    """The scene of a TOML mapping; `path` is the file it stands for, drawings are looked for beside it."""
+    faults = faults or Faults(str(path) if path else "scene")
+    folder = path.parent if path else Path()
+    _note_sections(mapping, faults)
+    title, gravity = read_heading(mapping, faults)
+    bodies, findings, sound = read_bodies(mapping.get("bodies", {}), folder, faults)
+    springs = read_springs(mapping, bodies, faults)
+    torques = read_torques(mapping, bodies, faults)
+    damping = read_damping(mapping, bodies, springs, faults)
+    contacts = read_contacts(mapping, bodies, sound, faults)
+    duration, record, tolerance = read_run(mapping, faults)
+    lift_angle = read_lift_angle(mapping, faults)
+    expect = read_expectations(mapping, faults)
+    _check_lock(mapping, folder, faults)
+    faults.raise_any()
+    return Scene(
+        title=title or (path.parent.name if path else ""),
+        bodies=bodies,
+        springs=springs,
+        torques=torques,
+        damping=damping,
+        contacts=contacts,
+        gravity=gravity,
+        duration=duration,
+        record=record,
+        tolerance=tolerance,
+        lift_angle=lift_angle,
+        expect=expect,
+        path=path,
+        source=mapping,
+        findings=findings,
+    )
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8-sig")
+    except FileNotFoundError:
+        message = "there is no such scene file"
+    except UnicodeDecodeError as error:
+        message = f"not UTF-8: byte {error.start} is 0x{error.object[error.start]:02x}. Save the file as UTF-8"
+    except OSError as error:
+        message = f"cannot be read: {error.strerror or error}"
+    raise SceneError([Fault("", message, place=str(path))])
+
+
+def _note_sections(mapping: Mapping[str, Any], faults: Faults) -> None:
+    for section in mapping:
+        if section not in SECTIONS:
+            faults.add(section, f"unknown section. {nearest(section, SECTIONS)}")
+    if not mapping.get("bodies"):
+        faults.add("bodies", "a scene needs at least one body, such as [bodies.wheel]")
+
+
+def _check_lock(mapping: Mapping[str, Any], folder: Path, faults: Faults) -> None:
+    """A locked scene promises that its drawings are still the ones that were simulated."""
+    if "lock" not in mapping:
+        return
+    table = Table(mapping["lock"], "lock", LOCK, faults)
+    digests = table.mapping.get("drawings", {})
+    for name, digest in digests.items() if isinstance(digests, dict) else ():
+        path = folder / name
+        if path.is_file() and file_digest(path) != digest:
+            faults.add(f"lock.drawings.{name}", "the drawing was changed after this scene was locked. Load the original scene file")
+
+
+def file_digest(path: Path) -> str:
+    """SHA-256 of the file, hexadecimal."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()

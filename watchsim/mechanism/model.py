@@ -1,0 +1,128 @@
+"""What do the kernels read?
+
+A scene compiled once into flat, read-only record arrays in SI units. Record fields read like the theory
+(`model.primitives[k].radius`) with the compiler on and off.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Records = Any  # a numpy recarray; numba infers the record type
+
+FIXED, PIVOT, SLIDE, FREE = 0, 1, 2, 3
+MOTION_CODE = {"fixed": FIXED, "pivot": PIVOT, "slide": SLIDE, "free": FREE}
+
+CORNER, LINE, ARC = 0, 1, 2
+KIND_WORD = ("corner", "line", "arc")
+
+CONSTANT, OVER_ANGLE, OVER_TIME = 0, 1, 2
+
+BODY = np.dtype(
+    [
+        ("motion", "i8"),
+        ("first", "i8"),  # its first coordinate, -1 when fixed
+        ("x", "f8"),
+        ("y", "f8"),
+        ("angle", "f8"),
+        ("axis_x", "f8"),
+        ("axis_y", "f8"),
+    ]
+)
+
+COORDINATE = np.dtype(
+    [
+        ("mass", "f8"),  # kg or kg·m²
+        ("force", "f8"),  # constant part, N or N·m
+        ("viscous", "f8"),
+        ("quadratic", "f8"),
+        ("stiffness", "f8"),
+        ("rest", "f8"),
+        ("weight_x", "f8"),  # gravity torque on an excentric rotor: cos(q) weight_y - sin(q) weight_x, see forces.py
+        ("weight_y", "f8"),
+        ("scale", "f8"),  # 1 rad, or the scene's size for a length
+        ("rate", "f8"),  # 1/s: scale × rate is the velocity that error control treats as small
+        ("linear", "i8"),  # 1: exact flight is possible (constant force, spring, viscous damping only)
+        ("body", "i8"),
+    ]
+)
+
+TABLE = np.dtype([("coordinate", "i8"), ("over", "i8"), ("start", "i8"), ("count", "i8")])
+
+PRIMITIVE = np.dtype(
+    [
+        ("kind", "i8"),
+        ("body", "i8"),
+        ("x", "f8"),  # corner, arc centre or start of the line, in the body's frame
+        ("y", "f8"),
+        ("tx", "f8"),  # line: direction of travel, material on its left
+        ("ty", "f8"),
+        ("length", "f8"),  # line: its length; corner: the shorter neighbour (turns angles into lengths)
+        ("radius", "f8"),
+        ("side", "f8"),  # arc: +1 convex, -1 concave (material outside)
+        ("e0x", "f8"),  # arc or corner: unit directions that bound the normals, counter-clockwise from e0 to e1
+        ("e0y", "f8"),
+        ("e1x", "f8"),
+        ("e1y", "f8"),
+        ("extent", "i8"),  # NARROW (up to half a turn), WIDE, or FULL circle
+    ]
+)
+NARROW, WIDE, FULL = 0, 1, 2
+
+CONTACT = np.dtype([("a", "i8"), ("b", "i8"), ("group", "i8")])
+LAW = np.dtype([("friction", "f8"), ("restitution", "f8"), ("tangential", "f8")])
+
+BODY_PAIR = np.dtype(
+    [
+        ("a", "i8"),
+        ("b", "i8"),
+        ("start", "i8"),  # its contacts are start..stop of `contacts`
+        ("stop", "i8"),
+        ("axes", "i8"),  # 0: no cells, every pair is a candidate; else the number of cell coordinates
+        ("c0", "i8"),  # cell coordinates and their cell sizes; a pivot's index wraps after `wrap` cells (0: no wrap)
+        ("c1", "i8"),
+        ("c2", "i8"),
+        ("size0", "f8"),
+        ("size1", "f8"),
+        ("size2", "f8"),
+        ("wrap0", "i8"),
+        ("wrap1", "i8"),
+        ("wrap2", "i8"),
+    ]
+)
+
+
+class Model(NamedTuple):
+    """Everything the event loop reads; all arrays read-only."""
+
+    bodies: Records
+    coordinates: Records
+    tables: Records
+    knots: NDArray[np.float64]  # (knots, 2) abscissa, value of all tables
+    primitives: Records
+    contacts: Records
+    laws: Records
+    pairs: Records
+
+
+class Cells(NamedTuple):
+    """Open-addressing table: (pair, cell indices) -> candidate contacts `entries[start : start + count]`."""
+
+    keys: NDArray[np.int64]  # -1: free slot
+    start: NDArray[np.int64]
+    count: NDArray[np.int64]
+    entries: NDArray[np.int64]
+
+
+def records(dtype: np.dtype[Any], rows: int) -> Records:
+    """A zeroed recarray."""
+    return np.zeros(rows, dtype).view(np.recarray)
+
+
+def frozen(array: Any) -> Any:
+    """The same array, read-only."""
+    array.flags.writeable = False
+    return array

@@ -1,0 +1,179 @@
+"""Which outlines does a body have, and where is its pivot in the drawing?"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from pathlib import Path
+
+from watchsim.drawing.drawing import Drawing
+from watchsim.drawing.findings import Finding
+from watchsim.geometry.loop import Loop
+from watchsim.geometry.primitives import Arc, Point
+from watchsim.mechanism.schema import SHAPES, nearest
+from watchsim.mechanism.shapes import shape_loops
+from watchsim.mechanism.table import NAN, UNREADABLE, Table
+
+SAME_POINT = 1e-9  # m; two circles on the pivot layer this close mark one pivot
+
+
+@dataclass(frozen=True)
+class Outlines:
+    """What a drawing or a shape gives a body, in the coordinates of the drawing (metres).
+
+    `loops` can touch, `rest` are closed outlines on layers left out. `pivot` is None when nobody said where it is.
+    `sound` is False after a fault: questions about layers are then not worth asking.
+    """
+
+    loops: tuple[Loop, ...] = ()
+    rest: tuple[Loop, ...] = ()
+    pivot: Point | None = None
+    findings: tuple[Finding, ...] = ()
+    sound: bool = True
+
+    @property
+    def all(self) -> tuple[Loop, ...]:
+        return self.loops + self.rest
+
+
+def read_outlines(table: Table, folder: Path) -> Outlines:
+    """Outlines of one body from its `drawing` (relative to `folder`) or its shape; faults go to the table."""
+    sources = [key for key in ("drawing", *SHAPES) if key in table]
+    for extra in sources[1:]:
+        table.fault(extra, f"a body has one outline: leave out {extra} or {sources[0]}")
+    for key in ("layers", "units", "snap"):
+        if key in table and sources and sources[0] != "drawing":
+            table.fault(key, f"belongs to a drawing; this body is a {sources[0]}")
+    if "drawing" in table:
+        return _from_drawing(table, folder)
+    known = len(table.faults.found)
+    loops = shape_loops(table, sources[0]) if sources else ()
+    return Outlines(loops, pivot=_given_pivot(table), sound=len(table.faults.found) == known)
+
+
+def _from_drawing(table: Table, folder: Path) -> Outlines:
+    drawing = _open(table, folder)
+    if drawing is None:
+        return Outlines(pivot=_given_pivot(table), sound=False)
+    known = len(table.faults.found)
+    pivot = _marked_pivot(table, drawing) if isinstance(table.mapping.get("pivot"), str) else _given_pivot(table)
+    layers = _layers(table, drawing)
+    findings = tuple(_sorted_out(table, drawing, layers))
+    closed = [loop for loop in drawing.loops if loop.closed]
+    loops = tuple(loop for loop in closed if loop.layer in layers)
+    rest = tuple(loop for loop in closed if loop.layer not in layers)
+    return Outlines(loops, rest, pivot, findings, sound=len(table.faults.found) == known)
+
+
+def _open(table: Table, folder: Path) -> Drawing | None:
+    path = folder / table.text("drawing")
+    snap = table.positive("snap", "it is the gap that may be closed") if "snap" in table else 1e-6
+    units = table.text("units") or None
+    if not path.is_file() or math.isnan(snap):
+        if not path.is_file():
+            table.fault("drawing", f"there is no such file{_similar(path)}. Looked for {path}", with_value=True)
+        return None
+    try:
+        stamp = path.stat()
+        return _read(path, units, snap, (stamp.st_mtime_ns, stamp.st_size))
+    except (OSError, ValueError) as error:
+        table.faults.add(f"{table.path}.drawing", f"cannot be read: {error}", _arrow(path))
+        return None
+
+
+@lru_cache(maxsize=64)
+def _read(path: Path, units: str | None, snap: float, _stamp: tuple[int, int]) -> Drawing:
+    """Read once per version of the file: a parameter study loads the same scene thousands of times."""
+    from watchsim.drawing.read import read
+
+    return read(path, units=units, snap=snap)
+
+
+def _similar(path: Path) -> str:
+    """' Did you mean ...?' with the drawings that lie in the folder."""
+    if not path.parent.is_dir():
+        return f", nor the folder {path.parent}"
+    there = sorted(name for name in os.listdir(path.parent) if name.lower().endswith((".dxf", ".svg")))
+    return f'. {nearest(path.name, there)}'.removesuffix(".") if there else ""
+
+
+def _layers(table: Table, drawing: Drawing) -> tuple[str, ...]:
+    """The layers whose closed outlines can touch; every asked layer that is not there is a fault."""
+    closed = dict.fromkeys(loop.layer for loop in drawing.loops if loop.closed)
+    asked = table.texts("layers")
+    if "layers" not in table:
+        asked = tuple(layer for layer in closed if layer != table.mapping.get("pivot"))
+        if not asked and not any(finding.severity == "error" for finding in drawing.findings):
+            table.faults.add(f"{table.path}.drawing", "it holds no closed outline.", _arrow(drawing.path))
+        return asked
+    broken = {finding.layer for finding in drawing.findings if finding.severity == "error"}
+    for i, layer in enumerate(asked):
+        key = f"{table.path}.layers.{i}"
+        if layer not in closed and layer not in drawing.layers:
+            table.faults.add(key, f"the drawing has no such layer. {_there(layer, drawing)}", f' = "{layer}"')
+        elif layer not in closed and layer not in broken:
+            table.faults.add(key, "there is no closed outline on this layer.", _arrow(drawing.path, layer))
+    return asked
+
+
+def _there(layer: str, drawing: Drawing) -> str:
+    return f"{_hint(layer, drawing.layers)}{drawing.path.name} has {', '.join(drawing.layers) or 'no layers with lines'}."
+
+
+def _hint(word: str, known: Iterable[str]) -> str:
+    hint = nearest(word, known)
+    return f"{hint} " if hint.startswith("Did") else ""
+
+
+def _sorted_out(table: Table, drawing: Drawing, layers: tuple[str, ...]) -> Iterator[Finding]:
+    """Notes the drawing's errors that concern this body as faults and hands on everything else."""
+    pivot = table.mapping.get("pivot")
+    for finding in drawing.findings:
+        elsewhere = finding.layer is not None and finding.layer not in layers and ("layers" in table or finding.layer == pivot)
+        if finding.severity == "error" and not elsewhere:
+            text = f"{finding.message.rstrip('.')}. {finding.fix}".strip()
+            table.faults.add(f"{table.path}.drawing", text, _arrow(drawing.path, finding.layer))
+        else:
+            severity = "warning" if finding.severity == "error" else finding.severity
+            yield replace(finding, severity=severity, message=f"{table.path}, {drawing.path.name}: {finding.message}")
+
+
+def _given_pivot(table: Table) -> Point | None:
+    if isinstance(table.mapping.get("pivot"), str):
+        table.fault("pivot", 'without a drawing there is no layer to look for; write pivot = ["0 mm", "0 mm"]', with_value=True)
+        return UNREADABLE
+    return table.pair("pivot") if "pivot" in table else None
+
+
+def _marked_pivot(table: Table, drawing: Drawing) -> Point:
+    """The one point or circle centre on the layer named by `pivot`."""
+    layer = table.text("pivot")
+    marks: list[Point] = []
+    for point in _marks(drawing, layer):
+        if all(math.dist(point, other) > SAME_POINT for other in marks):
+            marks.append(point)
+    if len(marks) == 1:
+        return marks[0]
+    if marks:
+        places = ", ".join(f"({x * 1e3:.3f}, {y * 1e3:.3f})" for x, y in marks[:4])
+        table.fault("pivot", f"{len(marks)} points or circles are on this layer, at {places} mm: leave one", with_value=True)
+    elif layer not in drawing.layers and layer not in {point[0] for point in drawing.points}:
+        table.fault("pivot", f"the drawing has no such layer. {_there(layer, drawing)}", with_value=True)
+    else:
+        table.fault("pivot", "neither a point nor a circle is on this layer", with_value=True)
+    return (NAN, NAN)
+
+
+def _marks(drawing: Drawing, layer: str) -> Iterator[Point]:
+    yield from ((x, y) for name, x, y in drawing.points if name == layer)
+    for loop in drawing.loops:
+        first = loop.edges[0]
+        if loop.layer == layer and len(loop.edges) == 1 and isinstance(first, Arc) and first.is_circle:
+            yield (first.x, first.y)
+
+
+def _arrow(path: Path, layer: str | None = None) -> str:
+    return f" -> {path.name}" + (f", layer {layer}" if layer else "")

@@ -1,0 +1,110 @@
+"""Which keys may a scene file hold, and what is refused for now?"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from watchsim import units
+from watchsim.units import Dimension
+
+SCHEMA = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Key:
+    """What stands behind a key: numbers of a `dimension` (`linear` where the body slides or is free), or none."""
+
+    dimension: Dimension | None = None
+    linear: Dimension | None = None
+
+    def dimension_for(self, motion: str) -> Dimension | None:
+        return self.linear if self.linear and motion in ("slide", "free") else self.dimension
+
+
+Keys = dict[str, Key]
+PLAIN = Key()
+NUMBER = Key(units.NUMBER)
+LENGTH = Key(units.LENGTH)
+ANGLE = Key(units.ANGLE)
+
+SCENE: Keys = {"title": PLAIN, "schema": NUMBER, "gravity": Key(units.ACCELERATION)}
+SHAPES = ("circle", "polygon", "line")
+BODY: Keys = {
+    **{"drawing": PLAIN, "layers": PLAIN, "units": PLAIN, "snap": LENGTH},
+    **{"circle": LENGTH, "polygon": LENGTH, "line": LENGTH},
+    **{"pivot": LENGTH, "position": LENGTH, "motion": PLAIN, "axis": NUMBER, "angle": ANGLE},
+    **{"velocity": Key(units.SPIN, units.SPEED), "spin": Key(units.SPIN)},
+    **{"mass": Key(units.MASS), "inertia": Key(units.INERTIA), "solids": PLAIN},
+    **{"on": PLAIN, "adjust": PLAIN},
+}
+SOLID: Keys = {"layer": PLAIN, "thickness": LENGTH, "density": Key(units.DENSITY)}
+SPRING: Keys = {
+    "body": PLAIN,
+    "frequency": Key(units.FREQUENCY),
+    "stiffness": Key(units.ROTARY_STIFFNESS, units.LINEAR_STIFFNESS),
+    "rest": Key(units.ANGLE, units.LENGTH),
+}
+TORQUE: Keys = {"body": PLAIN, "value": Key(units.TORQUE, units.FORCE), "over": PLAIN, "table": PLAIN}
+DAMPING: Keys = {
+    "body": PLAIN,
+    "q_factor": NUMBER,
+    "viscous": Key(units.ROTARY_VISCOUS, units.LINEAR_VISCOUS),
+    "quadratic": Key(units.ROTARY_QUADRATIC, units.LINEAR_QUADRATIC),
+    "coulomb": Key(units.TORQUE, units.FORCE),
+}
+CONTACT: Keys = {"between": PLAIN, "friction": NUMBER, "restitution": NUMBER, "tangential_restitution": NUMBER}
+RUN: Keys = {"duration": Key(units.TIME), "record": Key(units.TIME), "tolerance": NUMBER}
+TIMEGRAPHER: Keys = {"lift_angle": ANGLE}
+EXPECTATION: Keys = {"value": PLAIN, "tolerance": PLAIN}
+LOCK: Keys = {"versions": PLAIN, "drawings": PLAIN}
+
+TABLES = {"scene": SCENE, "run": RUN, "timegrapher": TIMEGRAPHER, "lock": LOCK}  # [name]
+NAMED = {"bodies": BODY, "expect": EXPECTATION}  # [name.anything]
+LISTED = {"springs": SPRING, "torques": TORQUE, "damping": DAMPING, "contacts": CONTACT}  # [[name]]
+SECTIONS = (*TABLES, *NAMED, *LISTED)
+
+# The one list of what a scene may ask for and the simulation does not do yet.
+UNSUPPORTED = {
+    "on": "a body carried by another one is not simulated yet. Leave the key out and give the position in the movement",
+    "adjust": "turning or shifting one layer of a drawing is not supported yet. Change the drawing and leave the key out",
+    "coulomb": "dry friction in a pivot is not simulated yet. Leave the key out, or use q_factor or viscous",
+    "tangential_restitution": "tangential restitution above 0 is not simulated yet. Leave the key out",
+}
+
+
+def key_at(path: tuple[str, ...]) -> Key | None:
+    """The description of a dotted path such as ("bodies", "lever", "position", "1"); None where no such key exists."""
+    if not path:
+        return None
+    section, rest = path[0], path[1:]
+    if section in TABLES:
+        return TABLES[section].get(rest[0]) if rest else None
+    if len(rest) < 2 or section not in SECTIONS:
+        return None
+    if section in NAMED:
+        if rest[1] == "solids" and len(rest) >= 4:
+            return SOLID.get(rest[3])
+        return NAMED[section].get(rest[1])
+    return LISTED[section].get(rest[1]) if rest[0].isdigit() else None
+
+
+def siblings(path: tuple[str, ...]) -> tuple[str, ...]:
+    """The keys that may stand where the last known table of `path` was entered; for suggestions."""
+    section = path[0] if path else ""
+    if section in TABLES:
+        return tuple(TABLES[section])
+    if section in NAMED:
+        return tuple(SOLID if path[2:3] == ("solids",) and len(path) > 4 else NAMED[section])
+    return tuple(LISTED[section]) if section in LISTED else SECTIONS
+
+
+def nearest(word: str, known: Iterable[str]) -> str:
+    """' Did you mean "drawing"?', or the list of what exists when nothing is near."""
+    words = list(known)
+    match = difflib.get_close_matches(word, words, n=1, cutoff=0.6)
+    folded = [one for one in words if one.casefold() == word.casefold()]
+    if folded or match:
+        return f'Did you mean "{(folded or match)[0]}"?'
+    return f"Known here: {', '.join(words)}." if words else ""

@@ -1,0 +1,104 @@
+"""How are the title, the run, the timegrapher and the expectations of the scene file read?"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from watchsim import units
+from watchsim.geometry.primitives import Point
+from watchsim.mechanism.errors import Faults
+from watchsim.mechanism.scene import Expectation
+from watchsim.mechanism.schema import EXPECTATION, RUN, SCENE, SCHEMA, TIMEGRAPHER
+from watchsim.mechanism.table import Table, shown
+from watchsim.units import Dimension, UnitError, known_unit, parse, split
+
+DURATION = 1.0
+TOLERANCE = 1e-9
+TOLERANCES = (1e-14, 1e-2)
+WATCH_QUANTITIES = {
+    "amplitude": units.ANGLE,
+    "rate": units.RATE,
+    "period": units.TIME,
+    "beat_error": units.TIME,
+    "frequency": units.FREQUENCY,
+}
+
+
+def read_heading(mapping: Mapping[str, Any], faults: Faults) -> tuple[str, Point]:
+    """Title and gravity (m/s²)."""
+    table = Table(mapping.get("scene", {}), "scene", SCENE, faults)
+    schema = table.mapping.get("schema", SCHEMA)
+    if schema != SCHEMA:
+        table.fault("schema", f"this program reads schema {SCHEMA}", with_value=True)
+    return table.text("title"), table.pair("gravity")
+
+
+def read_run(mapping: Mapping[str, Any], faults: Faults) -> tuple[float, tuple[Point, ...], float]:
+    """Duration (s), windows to record (s, s), tolerance."""
+    table = Table(mapping.get("run", {}), "run", RUN, faults)
+    duration = table.positive("duration", "it is how long to simulate") if "duration" in table else DURATION
+    tolerance = table.quantity("tolerance", TOLERANCE)
+    low, high = TOLERANCES
+    if tolerance < low or tolerance > high:
+        table.fault("tolerance", f"must lie between {low:g} and {high:g}; {TOLERANCE:g} is usual", with_value=True)
+    return duration, _windows(table), tolerance
+
+
+def _windows(table: Table) -> tuple[Point, ...]:
+    """One window ["179 s", "180 s"], or a list of them."""
+    value = table.mapping.get("record", [])
+    several = isinstance(value, (list, tuple)) and all(isinstance(item, (list, tuple)) for item in value)
+    rows = list(value) if several else [value]
+    windows = []
+    for i, row in enumerate(rows):
+        path = f"record.{i}" if several else "record"
+        windows.append(table.point(path, row, units.TIME))
+        if windows[-1][0] >= windows[-1][1] or windows[-1][0] < 0.0:
+            table.faults.add(f"{table.path}.{path}", "a window runs from an earlier to a later time, both from 0 s on", shown(row))
+    return tuple(windows)
+
+
+def read_lift_angle(mapping: Mapping[str, Any], faults: Faults) -> float | None:
+    """Radians, None where the scene does not say."""
+    table = Table(mapping.get("timegrapher", {}), "timegrapher", TIMEGRAPHER, faults)
+    if "lift_angle" not in table:
+        return None
+    angle = table.positive("lift_angle", "it is the arc of the balance during which it touches the lever")
+    if angle >= math.tau:
+        table.fault("lift_angle", "must be below a full turn", with_value=True)
+    return angle
+
+
+def read_expectations(mapping: Mapping[str, Any], faults: Faults) -> tuple[Expectation, ...]:
+    entries = mapping.get("expect", {})
+    if not isinstance(entries, dict):
+        faults.add("expect", 'write e.g. "amplitude" = { value = "275°", tolerance = "1°" } below [expect]', shown(entries))
+        return ()
+    found = (_expectation(key, Table(entry, f"expect.{key}", EXPECTATION, faults)) for key, entry in entries.items())
+    return tuple(one for one in found if one)
+
+
+def _expectation(key: str, table: Table) -> Expectation | None:
+    """In the unit of its value; the tolerance may have another unit of the same kind."""
+    missing = [name for name in ("value", "tolerance") if name not in table]
+    for name in missing if table.mapping else ():
+        table.fault("", f'{name} is missing. Write e.g. {{ value = "275°", tolerance = "1°" }}')
+    if missing:
+        return None
+    try:
+        number, unit = split(table.mapping["value"])
+        dimension = WATCH_QUANTITIES.get(key) or Dimension("number", (known_unit(unit).powers,), unit, (unit, unit))
+        parse(table.mapping["value"], dimension)
+    except UnitError as error:
+        table.fault("value", f"{error}.", with_value=True)
+        return None
+    return Expectation(key, float(number), _tolerance(table, unit, dimension), unit)
+
+
+def _tolerance(table: Table, unit: str, dimension: Dimension) -> float:
+    value = table.parsed("tolerance", table.mapping["tolerance"], dimension if unit else units.NUMBER)
+    if value <= 0.0:
+        table.fault("tolerance", "must be above zero", with_value=True)
+    return value / known_unit(unit).factor

@@ -1,0 +1,106 @@
+"""How do frames become a file?
+
+Raw frames are piped into the ffmpeg that comes with imageio-ffmpeg. The file is written beside its destination and moved
+there only when the encoder has ended well, so that a full disk or an interrupt never leaves half a movie.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+from collections.abc import Iterable
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+Pixels = NDArray[np.uint8]
+
+ENDINGS = (".mp4", ".gif")
+COLOURS = 64
+
+
+def check_path(path: str | os.PathLike[str]) -> Path:
+    """The path, if a movie can be written there: ValueError for a wrong ending, OSError where there is no such folder."""
+    target = Path(path)
+    if target.suffix.lower() not in ENDINGS:
+        raise ValueError(f"{target}: the ending decides the format of a movie; use {' or '.join(ENDINGS)}")
+    if not target.parent.is_dir():
+        raise FileNotFoundError(f"{target}: there is no folder {target.parent}; create it first")
+    if target.is_dir():
+        raise IsADirectoryError(f"{target} is a folder; a movie needs the name of a file")
+    return target
+
+
+def encode(frames: Iterable[Pixels], path: Path, size: tuple[int, int], fps: float, palette: Pixels | None = None) -> None:
+    """Write frames, each (height, width, 4) 8-bit RGBA, as MP4 or (with a `palette`, see `shared_palette`) as GIF.
+
+    OSError with the encoder's own words where it fails; the destination then is as it was before.
+    """
+    scratch = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix.lower()}")
+    colours = scratch.with_suffix(".ppm")
+    try:
+        if palette is not None:
+            colours.write_bytes(b"P6 16 16 255\n" + palette.tobytes())
+        _run(_command(scratch, size, fps, None if palette is None else colours), frames, path)
+        os.replace(scratch, path)
+    finally:
+        scratch.unlink(missing_ok=True)
+        colours.unlink(missing_ok=True)
+
+
+def _command(scratch: Path, size: tuple[int, int], fps: float, colours: Path | None) -> list[str]:
+    from imageio_ffmpeg import get_ffmpeg_exe
+
+    source = ["-f", "rawvideo", "-pix_fmt", "rgba", "-s", f"{size[0]}x{size[1]}", "-r", f"{fps:.6f}", "-i", "-"]
+    head = [get_ffmpeg_exe(), "-y", "-nostdin", "-hide_banner", "-loglevel", "error", *source]
+    if colours is not None:
+        reduce = "[0:v][1:v]paletteuse=dither=none:diff_mode=rectangle"
+        return [*head, "-i", str(colours), "-lavfi", reduce, "-loop", "0", str(scratch)]
+    # High definition is BT.709; untagged files show their colours differently from player to player.
+    convert = ["-vf", "scale=out_color_matrix=bt709:out_range=tv,format=yuv420p"]
+    tags = ["-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709"]
+    quality = ["-c:v", "libx264", "-preset", "veryfast", "-crf", "19", "-tune", "animation"]
+    return [*head, "-an", *convert, *quality, *tags, "-movflags", "+faststart", str(scratch)]
+
+
+def _run(command: list[str], frames: Iterable[Pixels], path: Path) -> None:
+    """Feed the encoder; its own session keeps a Ctrl-C meant for us from cutting it off unnoticed."""
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True) as process:
+        assert process.stdin is not None and process.stderr is not None
+        try:
+            for frame in frames:
+                process.stdin.write(np.ascontiguousarray(frame).data)
+            process.stdin.close()
+        except BrokenPipeError:
+            pass  # the encoder died; what it said is told below
+        except BaseException:
+            process.kill()
+            raise
+        words = process.stderr.read().decode(errors="replace").strip()
+        if process.wait() != 0:
+            raise OSError(f"could not write {path}: {_reason(words)}; nothing was changed")
+
+
+def _reason(words: str) -> str:
+    lines = [line.strip() for line in words.splitlines() if line.strip()]
+    telling = [line for line in lines if "No space left" in line or "denied" in line or "File too large" in line]
+    return (telling or lines or ["the encoder stopped without a word"])[0]
+
+
+def shared_palette(samples: Iterable[Pixels]) -> Pixels:
+    """(256, 3): one palette of 64 colours for all frames, the rest repeats.
+
+    Colours count by the root of their area, so that a ruby of a few pixels keeps its red beside a large pale ground.
+    """
+    from PIL import Image
+
+    seen = np.concatenate([sample[..., :3].reshape(-1, 3) for sample in samples])
+    colours, counts = np.unique(seen, axis=0, return_counts=True)
+    weights = np.ceil(np.sqrt(counts)).astype(int)
+    strip = np.repeat(colours, np.minimum(weights, 400), axis=0)
+    image = Image.fromarray(strip[None]).quantize(COLOURS, method=Image.Quantize.MEDIANCUT, kmeans=3)
+    palette = np.array(image.getpalette()[: 3 * COLOURS], dtype=np.uint8).reshape(-1, 3)
+    flat = colours[np.argsort(-counts)][: COLOURS // 4]  # the plain faces, exactly
+    palette[: len(flat)], rest = flat, palette[: len(palette)]
+    return np.resize(np.concatenate((flat, rest)), (256, 3)).astype(np.uint8)

@@ -1,0 +1,176 @@
+"""Where do the words of a frame stand?
+
+A band at the top for title and time, one at the bottom for what every body reads and the scale; the mechanism has the
+rest. What never changes becomes artists of the figure; what changes is written by `Layout.write`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import FancyBboxPatch
+from matplotlib.text import Text
+from matplotlib.transforms import IdentityTransform
+from numpy.typing import NDArray
+
+from watchsim.mechanism.body import Body
+from watchsim.render.lettering import Lettering
+from watchsim.render.palette import BACKGROUND, FAINT, INK, Finish, body_finish
+from watchsim.render.poses import Window, moving, swept
+from watchsim.render.readouts import Clock, clock, reading, scale_bar, speed_text
+from watchsim.render.view import Frame
+from watchsim.simulation.trajectory import Trajectory
+
+Array = NDArray[np.float64]
+Pixels = NDArray[np.uint8]
+
+TITLE, TIME, SMALL = 19.0, 24.0, 15.0  # text sizes in pixels at 1280 × 720
+PAD, GAP = 24.0, 30.0
+BAR = 0.16  # of the width: the longest scale bar
+SMALLEST = 9.0  # pixels; smaller text cannot be read
+
+
+@dataclass(frozen=True)
+class Reading:
+    """A changing number: whose, how it is told, and where its last pixel and its baseline are."""
+
+    body: str
+    text: Callable[[Array], str]
+    right: int
+    baseline: int
+
+
+@dataclass(frozen=True)
+class Layout:
+    """The frame left for the mechanism, and the places of the changing numbers."""
+
+    frame: Frame
+    clock: Clock
+    step: float
+    time: Lettering
+    time_at: tuple[int, int]
+    small: Lettering
+    readings: tuple[Reading, ...]
+
+    def write(self, t: float, frames: dict[str, Array], out_pixels: Pixels) -> None:
+        """Write time and read-outs for the instant `t` and the poses x, y, angle of its bodies."""
+        self.time.write(self.clock.text(t, self.step), *self.time_at, out_pixels)
+        for item in self.readings:
+            self.small.write(item.text(frames[item.body]), item.right, item.baseline, out_pixels)
+
+
+def lay_out(figure: Figure, run: Trajectory, window: Window, speed: float | None, step: float) -> Layout:
+    """Place title, time, speed and read-outs on the figure (one point is one pixel) and say what room is left."""
+    width, height = int(figure.bbox.width), int(figure.bbox.height)
+    unit = _unit(figure)
+    time = Lettering(max(TIME * unit, SMALLEST), INK, BACKGROUND, "bold")
+    small = Lettering(max(SMALL * unit, SMALLEST), INK, BACKGROUND)
+    told = clock(window)
+    baseline = round(height - PAD * unit - 0.75 * TIME * unit)
+    time_width = max(time.width(told.text(t, step)) for t in window)
+    _title(figure, run.scene.title, (PAD * unit, baseline), width - 2.0 * PAD * unit - time_width - GAP * unit)
+    top = height - baseline + 0.35 * TIME * unit
+    if speed is not None:
+        top += 1.3 * small.size
+        _words(figure, speed_text(speed), (width - PAD * unit, height - top + 0.3 * small.size), small.size, FAINT, ha="right")
+    readings, bottom = _readings(figure, run, window, small, unit)
+    frame = Frame(0.0, bottom, width, height - top - bottom)
+    return Layout(frame, told, step, time, (round(width - PAD * unit), baseline), small, readings)
+
+
+def draw_scale(figure: Figure, scale: float) -> None:
+    """A bar of a round length at the lower right; `scale` is in pixels per metre."""
+    width, unit = int(figure.bbox.width), _unit(figure)
+    length, name = scale_bar(BAR * width / scale)
+    right, base = width - PAD * unit, PAD * unit
+    left, tick = right - length * scale, 4.0 * unit
+    line = Line2D(
+        [left, left, left, right, right, right],
+        [base + tick, base - tick, base, base, base - tick, base + tick],
+        color=INK,
+        linewidth=max(1.5 * unit, 1.0),
+        transform=IdentityTransform(),
+    )
+    figure.add_artist(line)
+    _words(figure, name, (0.5 * (left + right), base + 2.0 * tick), max(SMALL * unit, SMALLEST), INK, ha="center")
+
+
+def _unit(figure: Figure) -> float:
+    """Size of everything drawn, relative to a picture of 1280 × 720 pixels."""
+    return min(max(min(figure.bbox.width / 1280.0, figure.bbox.height / 720.0), 0.4), 4.0)
+
+
+def _words(
+    figure: Figure, words: str, place: tuple[float, float], size: float, colour: str, ha: str = "left", weight: str = "normal"
+) -> Text:
+    text = Text(*place, words, color=colour, fontsize=size, ha=ha, weight=weight, transform=IdentityTransform(), parse_math=False)
+    figure.add_artist(text)
+    return text
+
+
+def _width(text: Text) -> float:
+    return float(text.get_window_extent().width)
+
+
+def _title(figure: Figure, title: str, place: tuple[float, float], room: float) -> None:
+    """The scene's title, shortened where it does not fit."""
+    text = _words(figure, title, place, max(TITLE * _unit(figure), SMALLEST), INK, weight="bold")
+    while title and _width(text) > room:
+        title = title[:-1].rstrip(" ,;:-–")
+        text.set_text(f"{title}…" if title else "")
+
+
+def _readings(
+    figure: Figure, run: Trajectory, window: Window, small: Lettering, unit: float
+) -> tuple[tuple[Reading, ...], float]:
+    """Rows of name and value from the bottom left, and the height they take."""
+    line, left, limit = 1.55 * small.size, PAD * unit, figure.bbox.width * (1.0 - BAR) - (PAD + GAP) * unit
+    x, row, cells = left, 0, []
+    for rank, body in enumerate(run.scene.bodies):
+        if body.name not in run.slices:
+            continue
+        tell, ends = reading(body, swept(run, body, window))
+        name = _words(figure, body.name, (0.0, 0.0), small.size, INK)
+        chip = 0.85 * small.size
+        value = max(small.width(text) for text in ends) + 0.2 * small.size
+        taken = 1.5 * chip + _width(name) + 0.6 * small.size + value
+        if x > left and x + taken > limit:
+            x, row = left, row + 1
+        cells.append((body, name, tell, x, row, taken, body_finish(body, rank)))
+        x += taken + GAP * unit
+    readings = []
+    for body, name, tell, x, row, taken, look in cells:
+        base = PAD * unit + (max(cell[4] for cell in cells) - row) * line
+        readings.append(_cell(figure, body, name, tell, (x, base), taken, look, small.size))
+    rows = 1 + max((cell[4] for cell in cells), default=0)
+    return tuple(readings), 1.6 * PAD * unit + rows * line
+
+
+def _cell(
+    figure: Figure,
+    body: Body,
+    name: Text,
+    tell: Callable[[Array], str],
+    place: tuple[float, float],
+    taken: float,
+    look: Finish,
+    size: float,
+) -> Reading:
+    (x, base), chip = (round(place[0]), round(place[1])), 0.85 * size
+    box = FancyBboxPatch(
+        (x, base - 0.05 * size),
+        chip,
+        chip,
+        boxstyle=f"round,pad=0,rounding_size={0.2 * size}",
+        facecolor=look.fill,
+        edgecolor=look.edge,
+        linewidth=max(0.06 * size, 0.7),
+        transform=IdentityTransform(),
+    )
+    figure.add_artist(box)
+    name.set_position((x + 1.5 * chip, base))
+    return Reading(body.name, tell, round(x + taken), base)

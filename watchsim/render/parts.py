@@ -1,0 +1,143 @@
+"""Which shapes are filled to draw a body?
+
+One shape per body and layer, holes left empty wherever they were drawn; an open outline (a plane, a wall) becomes
+ground: a line with hatching on the side of its material.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.path import Path
+from numpy.typing import NDArray
+
+from watchsim.geometry.loop import Loop
+from watchsim.geometry.polyline import polyline
+from watchsim.geometry.primitives import Arc
+from watchsim.mechanism.body import Body
+from watchsim.mechanism.scene import Scene
+from watchsim.render.palette import Finish, finish
+
+Array = NDArray[np.float64]
+
+HATCH_SLANT = 0.7  # tangential lean of a hatch stroke per unit of depth
+
+
+@dataclass(frozen=True)
+class Part:
+    """A shape in its body's frame (m). `faces` is filled, `strokes` (may be None) is only drawn; `area` (m²) orders parts."""
+
+    body: str
+    faces: Path
+    strokes: Path | None
+    area: float
+    finish: Finish
+    ground: bool = False
+
+
+def parts(scene: Scene, deviation: float, spacing: float) -> tuple[Part, ...]:
+    """All shapes of a scene, largest first, so that stones and pins lie on top.
+
+    `deviation` (m) is the largest distance of a chord from its arc, `spacing` (m) that of hatch strokes.
+    """
+    found = [part for rank, body in enumerate(scene.bodies) for part in _of_body(body, rank, deviation, spacing)]
+    return tuple(sorted(found, key=lambda part: -part.area))
+
+
+def loops_of(body: Body) -> tuple[Loop, ...]:
+    """Everything that was drawn of a body, whether it can touch or not."""
+    return tuple(loop for loop in (*body.loops, *body.decoration) if loop.edges)
+
+
+def outline(loops: Iterable[Loop], deviation: float) -> Array:
+    """(n, 2) points of all loops, for extents."""
+    lines = [polyline(loop, deviation) for loop in loops]
+    return np.concatenate(lines) if lines else np.empty((0, 2))
+
+
+def signed_area(points: Array) -> float:
+    """Area inside a closed polyline (m²), positive counter-clockwise."""
+    x, y = points[:, 0] - points[0, 0], points[:, 1] - points[0, 1]
+    return 0.5 * float(np.sum(x[:-1] * y[1:] - x[1:] * y[:-1]))
+
+
+def _of_body(body: Body, rank: int, deviation: float, spacing: float) -> list[Part]:
+    lines = [(loop, polyline(loop, deviation)) for loop in loops_of(body)]
+    outer = [(loop, line) for loop, line in lines if loop.closed and not loop.hole]
+    owners: list[list[Array]] = [[line] for _, line in outer]
+    ground = [(loop, line) for loop, line in lines if not loop.closed]
+    for loop, line in lines:
+        if loop.closed and loop.hole:
+            owner = _owner(line, [points for _, points in outer])
+            if owner is None:
+                ground.append((loop, line))
+            else:
+                owners[owner].append(line)
+    return [*_solids(body, rank, outer, owners), *_grounds(body, rank, ground, spacing)]
+
+
+def _owner(hole: Array, outlines: Sequence[Array]) -> int | None:
+    """The smallest outline around a hole: a bore drawn on a layer of its own still empties the wheel."""
+    around = [i for i, line in enumerate(outlines) if Path(line).contains_point(hole[0])]
+    return min(around, key=lambda i: abs(signed_area(outlines[i])), default=None)
+
+
+def _solids(body: Body, rank: int, outer: list[tuple[Loop, Array]], owners: list[list[Array]]) -> list[Part]:
+    layers = dict.fromkeys(loop.layer for loop, _ in outer)
+    made = []
+    for layer in layers:
+        members = [i for i, (loop, _) in enumerate(outer) if loop.layer == layer]
+        lines = [_oriented(line, hole=k > 0) for i in members for k, line in enumerate(owners[i])]
+        area = max(abs(signed_area(outer[i][1])) for i in members)
+        made.append(Part(body.name, compound(lines), None, area, finish(body, layer, rank)))
+    return made
+
+
+def _oriented(line: Array, hole: bool) -> Array:
+    """Outer outlines counter-clockwise, holes clockwise: the fill is by winding number, so overlapping pieces unite."""
+    return line[::-1] if (signed_area(line) < 0.0) != hole else line
+
+
+def compound(lines: Sequence[Array]) -> Path:
+    """One path of closed polylines."""
+    codes = []
+    for line in lines:
+        code = np.full(len(line), Path.LINETO, dtype=np.uint8)
+        code[0], code[-1] = Path.MOVETO, Path.CLOSEPOLY
+        codes.append(code)
+    return Path(np.concatenate(lines), np.concatenate(codes))
+
+
+def _grounds(body: Body, rank: int, chains: list[tuple[Loop, Array]], spacing: float) -> list[Part]:
+    made = []
+    for loop, line in chains:
+        codes = np.full(len(line), Path.LINETO, dtype=np.uint8)
+        codes[0] = Path.MOVETO
+        look = finish(body, loop.layer, rank)
+        made.append(Part(body.name, Path(line, codes), hatching(line, spacing), math.inf, look, ground=True))
+    return made
+
+
+def hatching(line: Array, spacing: float) -> Path:
+    """Slanted strokes every `spacing` metres along a polyline, on its left, where the material is."""
+    steps = np.diff(line, axis=0)
+    lengths = np.hypot(steps[:, 0], steps[:, 1])
+    along = np.concatenate(([0.0], np.cumsum(lengths)))
+    marks = np.arange(0.5 * spacing, along[-1], spacing)
+    piece = np.clip(np.searchsorted(along, marks, side="right") - 1, 0, len(lengths) - 1)
+    unit = steps[piece] / lengths[piece, None]
+    foot = line[piece] + unit * (marks - along[piece])[:, None]
+    inward = np.column_stack((-unit[:, 1], unit[:, 0])) - HATCH_SLANT * unit
+    strokes = np.stack((foot, foot + 0.8 * spacing * inward), axis=1).reshape(-1, 2)
+    return Path(strokes, np.tile([Path.MOVETO, Path.LINETO], len(marks)).astype(np.uint8))
+
+
+def is_round(body: Body) -> bool:
+    """True where turning the body cannot be seen: nothing but circles about its own origin."""
+    edges = [edge for loop in loops_of(body) for edge in loop.edges]
+    return bool(edges) and all(
+        isinstance(edge, Arc) and math.hypot(edge.x, edge.y) <= 1e-9 * edge.radius for edge in edges
+    )

@@ -1,0 +1,138 @@
+"""Where are the bodies, over any stretch of time?
+
+Everything is asked of the trajectory's interpolation, so a picture may be drawn at any time and in any order.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.mechanism.body import Body
+from watchsim.simulation.trajectory import Trajectory
+
+Array = NDArray[np.float64]
+Window = tuple[float, float]
+
+SWEEP_STEP = math.radians(3.0)  # a chord this long leaves its circle by 0.03 % of the radius
+PATH_SAMPLES = 400
+
+
+def recorded(run: Trajectory) -> tuple[Window, ...]:
+    """The stretches of time (s) for which rows were kept, in order."""
+    first, last = float(run.t[0]), float(run.t[-1])
+    spans = ((max(first, start), min(last, stop)) for start, stop in sorted(run.scene.record))
+    return tuple(span for span in spans if span[1] > span[0]) or ((first, last),)
+
+
+def stretch(run: Trajectory, window: Sequence[float] | None) -> Window:
+    """The window to draw (s): as asked, or all that was recorded.
+
+    ValueError where it is empty, reversed, or holds times that were not recorded.
+    """
+    spans = recorded(run)
+    if window is None:
+        return spans[0][0], spans[-1][1]
+    kept = " and ".join(f"{start:.9g} s to {stop:.9g} s" for start, stop in spans)
+    try:
+        start, stop = (float(value) for value in window)
+    except (TypeError, ValueError):
+        raise ValueError(f"window = {window!r}: give two times in seconds, (from, to), within {kept}") from None
+    if not start < stop:
+        raise ValueError(f"window from {start:.9g} s to {stop:.9g} s is empty; give (from, to) within {kept}")
+    slack = 1e-9 * (stop - start)
+    if not any(low - slack <= start and stop <= high + slack for low, high in spans):
+        raise ValueError(f"window from {start:.9g} s to {stop:.9g} s: only {kept} was recorded")
+    return start, stop
+
+
+def moving(run: Trajectory) -> tuple[Body, ...]:
+    """The bodies that have coordinates, in the scene's order."""
+    return tuple(body for body in run.scene.bodies if body.name in run.slices)
+
+
+def choose(run: Trajectory, names: Sequence[str] | None) -> tuple[Body, ...]:
+    """The moving bodies of those names (default all); ValueError naming the choices where one is unknown or fixed."""
+    bodies = {body.name: body for body in moving(run)}
+    if names is None:
+        return tuple(bodies.values())
+    asked = (names,) if isinstance(names, str) else tuple(names)
+    unknown = [name for name in asked if name not in bodies]
+    if unknown or not asked:
+        wrong = ", ".join(repr(name) for name in unknown) or "none given"
+        raise ValueError(f"bodies: {wrong}; moving bodies of this run: {', '.join(bodies) or 'none'}")
+    return tuple(bodies[name] for name in asked)
+
+
+def poses(run: Trajectory, times: Array) -> dict[str, Array]:
+    """For every body (len(times), 3): x, y (m) and angle (rad) of its frame."""
+    q, _ = run.sample(times)
+    return {body.name: _frames(body, q[:, run.slices.get(body.name, slice(0, 0))]) for body in run.scene.bodies}
+
+
+def _frames(body: Body, q: Array) -> Array:
+    if body.motion == "free":
+        return q
+    frames = np.tile([*body.position, body.angle], (len(q), 1))
+    if body.motion == "pivot":
+        frames[:, 2] = q[:, 0]
+    elif body.motion == "slide":
+        frames[:, :2] += q * np.array(body.axis)
+    return frames
+
+
+def placed(points: Array, frames: Array) -> Array:
+    """(len(frames), n, 2): the body points (n, 2) in the plane, for every pose x, y, angle."""
+    c, s = np.cos(frames[:, 2:3]), np.sin(frames[:, 2:3])
+    x = frames[:, 0:1] + c * points[:, 0] - s * points[:, 1]
+    y = frames[:, 1:2] + s * points[:, 0] + c * points[:, 1]
+    return np.stack((x, y), axis=2)
+
+
+def swept(run: Trajectory, body: Body, window: Window) -> Array:
+    """(m, 3) poses dense enough to tell the room the body takes within the window.
+
+    A pivoted body is turned evenly through the angles it really reaches (at most one turn), others are sampled in time.
+    """
+    inside = run.t[(run.t >= window[0]) & (run.t <= window[1])]
+    thinned = inside[:: max(1, len(inside) // PATH_SAMPLES)]
+    times = np.union1d(np.linspace(*window, PATH_SAMPLES), thinned)
+    frames = poses(run, times)[body.name]
+    if body.motion != "pivot":
+        return frames
+    low, high = float(frames[:, 2].min()), float(frames[:, 2].max())
+    high = min(high, low + 2.0 * math.pi)
+    angles = np.linspace(low, high, 2 + int((high - low) / SWEEP_STEP))
+    return np.column_stack((np.tile(body.position, (len(angles), 1)), angles))
+
+
+def dense(run: Trajectory, window: Window, least: int = 2000) -> tuple[Array, Array, Array]:
+    """t (m,), q and u (m, n) over the window: every row, and points between rows wherever they are far apart.
+
+    At an impact both rows of that instant are kept, so that a jump stays a jump. Stretches that were not recorded are NaN.
+    """
+    start, stop = window
+    inside = np.flatnonzero((run.t > start) & (run.t < stop))
+    times = np.concatenate(([start], run.t[inside], [stop]))
+    gaps = np.diff(times)
+    extra = np.maximum(np.ceil(gaps * (least / (stop - start))).astype(int) - 1, 0)
+    left = np.repeat(np.arange(len(gaps)), extra)
+    rank = np.arange(len(left)) - np.repeat(np.cumsum(extra) - extra, extra) + 1
+    between = times[left] + gaps[left] * rank / (extra[left] + 1)
+    added = np.concatenate(([start], between, [stop]))
+    q, u = run.sample(added)
+    t = np.concatenate((run.t[inside], added))
+    order = np.argsort(t, kind="stable")
+    t, q, u = t[order], np.concatenate((run.q[inside], q))[order], np.concatenate((run.u[inside], u))[order]
+    return t, *_masked(run, t, q, u)
+
+
+def _masked(run: Trajectory, t: Array, q: Array, u: Array) -> tuple[Array, Array]:
+    spans = recorded(run)
+    if len(spans) == 1:
+        return q, u
+    known = np.any([(t >= low) & (t <= high) for low, high in spans], axis=0)
+    return np.where(known[:, None], q, np.nan), np.where(known[:, None], u, np.nan)

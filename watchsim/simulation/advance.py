@@ -1,0 +1,212 @@
+"""How does a simulation go from event to event?
+
+The event loop: one smooth step (an exact flight where nothing couples the moving bodies), the first event in it, the
+step up to that event, and what follows the event. It is left only for a reason that `Stop` names.
+"""
+
+from __future__ import annotations
+
+import math
+
+from watchsim.jit import kernel
+from watchsim.simulation.coupled import motion
+from watchsim.simulation.drift import project_positions, project_velocities
+from watchsim.simulation.free import quarter_period
+from watchsim.simulation.integrator import coupled_step, dense_value
+from watchsim.simulation.keep import keep_row
+from watchsim.simulation.leave import first_leave
+from watchsim.simulation.passages import keep_passages
+from watchsim.simulation.settle import settle
+from watchsim.simulation.state import DAMPING, DRIVE, FLIGHT, FRICTION, N_FLIGHTS, ROOM, SUMS
+from watchsim.simulation.stops import Stop
+from watchsim.simulation.touch import first_touch
+from watchsim.simulation.within import begin_flight, coordinate_within, flight_acceleration
+
+RUNNING, SLICE, CELL_UNKNOWN, BUFFER_FULL = int(Stop.RUNNING), int(Stop.SLICE), int(Stop.CELL_UNKNOWN), int(Stop.BUFFER_FULL)
+DURATION, STEP_TOO_SMALL, NOT_FINITE = int(Stop.DURATION), int(Stop.STEP_TOO_SMALL), int(Stop.NOT_FINITE)
+TOO_MANY_EVENTS = int(Stop.TOO_MANY_EVENTS)
+FLIGHT_ROWS = 16  # a flight is at most this many recorded rows long
+EVENTS_AT_ONCE = 2000
+ROWS_PER_STEP = FLIGHT_ROWS + 8
+EVENTS_PER_STEP = 20 * ROOM
+
+# Gauss-Legendre nodes and weights on [0, 1]: damping losses of a flight of at most a quarter period, to rounding.
+_NODES = (0.019855071751231856, 0.10166676129318664, 0.2372337950418355, 0.4082826787521751)
+_WEIGHTS = (0.05061426814518813, 0.11119051722668724, 0.15685332293894363, 0.18134189168918099)
+
+
+@kernel
+def _row_spacing(model, options, i):
+    """Longest time between rows for coordinate i in flight: its own time scale."""
+    coordinate = model.coordinates[i]
+    spacing = math.inf
+    if coordinate.stiffness > 0.0:
+        spacing = options.row_phase * math.sqrt(coordinate.mass / coordinate.stiffness)
+    if coordinate.viscous > 0.0:
+        spacing = min(spacing, options.row_phase * coordinate.mass / coordinate.viscous)
+    return spacing
+
+
+@kernel
+def _flight_length(model, state, options):
+    """(length, row spacing): of an exact flight now."""
+    length, spacing = options.max_step, math.inf
+    for i in range(len(model.coordinates)):
+        if state.awake[i]:
+            length = min(length, quarter_period(model.coordinates[i]))
+            spacing = min(spacing, _row_spacing(model, options, i))
+    return min(length, FLIGHT_ROWS * spacing), spacing
+
+
+@kernel
+def _can_fly(model, state):
+    """True if no contact is in force between awake bodies and all awake coordinates have exact solutions."""
+    if state.numbers[0] > 0:
+        return False
+    for i in range(len(model.coordinates)):
+        if state.awake[i] and not model.coordinates[i].linear:
+            return False
+    return True
+
+
+@kernel
+def _flight_sums(model, state, step, end):
+    """Work in and damping losses of the first `end` seconds of a flight."""
+    for i in range(len(model.coordinates)):
+        coordinate = model.coordinates[i]
+        if not state.awake[i]:
+            continue
+        state.sums[DRIVE] += coordinate.force * (coordinate_within(model, state, step, i, end)[0] - step.q[i])
+        if coordinate.viscous == 0.0:
+            continue
+        total = 0.0
+        for j in range(4):
+            first = coordinate_within(model, state, step, i, end * _NODES[j])[1]
+            last = coordinate_within(model, state, step, i, end * (1.0 - _NODES[j]))[1]
+            total += _WEIGHTS[j] * (first * first + last * last)
+        state.sums[DAMPING] += coordinate.viscous * end * total
+
+
+@kernel
+def _flight_rows(model, state, end, spacing, scratch, record):
+    """Rows of a flight, evenly spaced, the last one at its end; brings the state there."""
+    step = scratch.step
+    n = len(model.coordinates)
+    rows = 1 if spacing == math.inf else max(1, int(math.ceil(end / spacing)))
+    for row in range(1, rows + 1):
+        tau = end * row / rows if row < rows else end
+        for i in range(n):
+            state.q[i], state.u[i] = coordinate_within(model, state, step, i, tau)
+            state.a[i] = flight_acceleration(model, state, i, state.q[i], state.u[i])
+        keep_row(state, record, step.span[0] + tau, state.q, state.u, state.a)
+
+
+@kernel
+def _accept_coupled(model, state, options, end, scratch):
+    """Bring the state to time `end` of a coupled step: sums, positions and velocities, drift taken back."""
+    step = scratch.step
+    n = len(model.coordinates)
+    for i in range(2 * n + SUMS):
+        value = dense_value(step, i, end) if end < step.span[1] else step.y1[i]
+        scratch.y[i] = value
+        if i < n:
+            state.q[i] = value
+        elif i < 2 * n:
+            state.u[i - n] = value
+    for i in range(SUMS):
+        state.sums[(DRIVE, DAMPING, FRICTION)[i]] += scratch.y[2 * n + i]
+    motion(model, state, options, state.clock[0], scratch.y, scratch)
+    m = state.numbers[0]
+    if m > 0:
+        deepest = project_positions(model, scratch.closed, m, scratch.work, state.q)
+        state.worst[0] = max(state.worst[0], deepest)
+        project_velocities(model, scratch.closed, m, state.mode, scratch.work, state.u)
+    for i in range(n):
+        state.a[i] = scratch.dy[n + i]
+
+
+@kernel
+def _is_finite(state):
+    for i in range(len(state.q)):
+        if not math.isfinite(state.q[i] + state.u[i]):
+            return False
+    return True
+
+
+@kernel
+def _room_left(record):
+    return record.used[0] + ROWS_PER_STEP < len(record.rows) and record.used[1] + EVENTS_PER_STEP < len(record.events)
+
+
+@kernel
+def _smooth_step(model, cells, state, options, end_time, scratch, record):
+    """One smooth step up to its first event; returns (Stop code, event?)."""
+    left = end_time - state.clock[0]
+    flying, spacing, leave = _can_fly(model, state), math.inf, math.inf
+    if flying:
+        length, spacing = _flight_length(model, state, options)
+        begin_flight(model, state, min(length, left), scratch)
+    else:
+        proposed = state.clock[1]
+        if not coupled_step(model, state, options, min(left, options.max_step), scratch):
+            return STEP_TOO_SMALL, False
+        leave = first_leave(model, state, options, scratch)
+    step = scratch.step
+    length = step.span[1]
+    known, touch, contact = first_touch(model, cells, state, options, min(length, leave), scratch)
+    if not known:
+        if not flying:
+            state.clock[1] = proposed
+        return CELL_UNKNOWN, False
+    end = min(length, touch, leave)
+    state.clock[0] = end_time if end == left else step.span[0] + end
+    if flying:
+        state.counts[N_FLIGHTS] += 1
+        _flight_sums(model, state, step, end)
+        _flight_rows(model, state, end, spacing, scratch, record)
+    else:
+        _accept_coupled(model, state, options, end, scratch)
+        keep_row(state, record, state.clock[0], state.q, state.u, state.a)
+    keep_passages(model, state, step, end, record)
+    return RUNNING, contact >= 0 or leave <= length
+
+
+@kernel
+def _settle(model, cells, state, options, scratch, record):
+    """Handle the waiting event; counts events that do not let time advance."""
+    if state.clock[0] == state.clock[2]:
+        if state.numbers[3] > EVENTS_AT_ONCE:
+            return TOO_MANY_EVENTS
+    else:
+        state.numbers[3] = 0
+    code = settle(model, cells, state, options, scratch, record)
+    if code != RUNNING:
+        return code
+    state.numbers[3] += 1
+    state.clock[2] = state.clock[0]
+    keep_passages(model, state, scratch.step, 0.0, record)
+    keep_row(state, record, state.clock[0], state.q, state.u, state.a)
+    return RUNNING
+
+
+@kernel
+def advance(model, cells, state, options, until, scratch, record):
+    """Run to the time until[1] (or return after until[0], the end of a slice); returns a Stop code."""
+    while True:
+        if not _room_left(record):
+            return BUFFER_FULL
+        if state.numbers[2]:
+            code = _settle(model, cells, state, options, scratch, record)
+            if code != RUNNING:
+                return code
+            continue
+        if state.clock[0] >= until[1]:
+            return DURATION
+        if state.clock[0] >= until[0]:
+            return SLICE
+        code, event = _smooth_step(model, cells, state, options, until[1], scratch, record)
+        if code != RUNNING:
+            return code
+        if not _is_finite(state):
+            return NOT_FINITE
+        state.numbers[2] = 1 if event else 0

@@ -1,0 +1,79 @@
+"""Which contacts are closed at this instant?"""
+
+from __future__ import annotations
+
+from watchsim.contact.gaps import extent_margin, normal_gap
+from watchsim.contact.index_sets import OPEN
+from watchsim.contact.kinematics import contact_kinematics
+from watchsim.contact.lookup import UNKNOWN, candidate, candidates
+from watchsim.jit import kernel
+from watchsim.simulation.state import ROOM
+
+
+@kernel
+def insert(ids, count, k):
+    """Insert k into the ascending list ids[:count]; returns the new count (unchanged if k is there)."""
+    place = count
+    while place > 0 and ids[place - 1] > k:
+        place -= 1
+    if place > 0 and ids[place - 1] == k:
+        return count
+    for j in range(count, place, -1):
+        ids[j] = ids[j - 1]
+    ids[place] = k
+    return count + 1
+
+
+@kernel
+def _is_asleep(model, state, b):
+    first = model.bodies[b].first
+    return first < 0 or state.awake[first] == 0
+
+
+@kernel
+def gather(model, cells, state, options, scratch):
+    """Ids of I_C, ascending, into `scratch.closed.ids`: contacts in force and those with a gap of zero.
+
+    Poses must be current. Returns their number, -1 when a cell is unknown, -2 when there are too many.
+    """
+    ids = scratch.closed.ids
+    m = 0
+    for j in range(state.numbers[0] + state.numbers[1]):
+        m = insert(ids, m, state.active[j])
+    for p in range(len(model.pairs)):
+        pair = model.pairs[p]
+        if _is_asleep(model, state, pair.a) and _is_asleep(model, state, pair.b) and state.clock[0] > 0.0:
+            continue
+        how, start, count = candidates(model, cells, p, state.q)
+        if how == UNKNOWN:
+            scratch.unknown[0] = p
+            scratch.at[:] = state.q
+            return -1
+        for place in range(start, start + count):
+            k = candidate(cells, how, place)
+            if state.mode[k] != OPEN:
+                continue
+            gap, _, nx, ny = normal_gap(model, k, scratch.pose)
+            if abs(gap) <= options.gap_close and extent_margin(model, k, scratch.pose, nx, ny) >= -options.extent:
+                if m == ROOM:
+                    return -2
+                m = insert(ids, m, k)
+    return m
+
+
+@kernel
+def refresh(model, m, closed, pose):
+    """Kinematics of the first m contacts of `closed` at the given poses."""
+    for row in range(m):
+        contact_kinematics(model, closed.ids[row], pose, row, closed)
+
+
+@kernel
+def resting(model, m, closed, pose, speed_zero, out_rest):
+    """I_N: the contacts of `closed` that neither approach nor separate, with kinematics, into `out_rest`; returns their number."""
+    r = 0
+    for i in range(m):
+        if abs(closed.kin[i].gN_dot) <= speed_zero:
+            contact_kinematics(model, closed.ids[i], pose, r, out_rest)
+            r += 1
+    return r

@@ -1,0 +1,149 @@
+"""What happens at an impact?
+
+All closed contacts take part. The energy is checked; where the law would gain any, the documented rule applies
+(docs/method.md 2.7); rebounds that would accumulate within `accumulation_time` are ended by an inelastic solution.
+"""
+
+from __future__ import annotations
+
+from watchsim.contact.poses import place
+from watchsim.dynamics.acceleration import accelerate, decide_modes
+from watchsim.dynamics.delassus import contact_velocities
+from watchsim.dynamics.forces import forces
+from watchsim.dynamics.impact import energy_change, impact
+from watchsim.jit import kernel
+from watchsim.simulation.closed import refresh, resting
+from watchsim.simulation.keep import keep_event
+from watchsim.simulation.state import IMPACTS, N_ACCUMULATED, N_ENERGY, N_IMPACTS, N_LCP, N_LCP_FAILED
+
+GAIN = 1e-12  # a rise of kinetic energy beyond this share is a gain, not rounding
+IMPACT_EVENT, ACCUMULATION_EVENT = 1, 7
+
+
+@kernel
+def approaching(m, closed, speed_zero):
+    """True if a closed contact is about to penetrate."""
+    for i in range(m):
+        if closed.kin[i].gN_dot < -speed_zero:
+            return True
+    return False
+
+
+@kernel
+def _kinetic(model, u):
+    total = 0.0
+    for i in range(len(u)):
+        total += 0.5 * model.coordinates[i].mass * u[i] * u[i]
+    return total
+
+
+@kernel
+def _law_restitution(model, m, scratch):
+    for i in range(m):
+        scratch.restitution[i] = model.laws[model.contacts[scratch.closed.ids[i]].group].restitution
+
+
+@kernel
+def _least_restitution(m, scratch):
+    least = 1.0
+    for i in range(m):
+        least = min(least, scratch.restitution[i])
+    return least
+
+
+@kernel
+def _solve(model, state, m, scratch):
+    """One impact with scratch.restitution; on an energy gain again with the smallest restitution, then with none."""
+    for attempt in range(3):
+        state.u[:] = scratch.before
+        state.counts[N_LCP] += 1
+        status = impact(model, scratch.closed, m, scratch.restitution, scratch.work, state.u)
+        if status != 0:
+            state.counts[N_LCP_FAILED] += 1
+            return status
+        if energy_change(m, scratch.work) <= GAIN * _kinetic(model, scratch.before):
+            return 0
+        state.counts[N_ENERGY] += 1
+        least = _least_restitution(m, scratch) if attempt == 0 else 0.0
+        for i in range(m):
+            scratch.restitution[i] = least
+    return 0
+
+
+@kernel
+def _end_time(model, state, m, options, scratch):
+    """Flag the rebounds that would end within `accumulation_time` (restitution 0); returns the latest end, or -1 if there is none."""
+    latest = -1.0
+    closed, work = scratch.closed, scratch.work
+    worth = False
+    for i in range(m):
+        rate = closed.kin[i].gN_dot
+        if scratch.restitution[i] > 0.0 and scratch.impulse[2 * i] > 0.0 and 0.0 < rate <= options.accumulation_speed:
+            worth = True
+    if not worth:
+        return latest
+    r = resting(model, m, closed, scratch.pose, options.speed_zero, scratch.rest)
+    forces(model, state.clock[0], state.q, state.u, work.h)
+    for i in range(2 * r):
+        work.force[i] = 0.0
+    if decide_modes(model, scratch.rest, r, options.speed_zero, work, scratch.trial) != 0:
+        return latest
+    accelerate(model, scratch.rest, r, work, state.a)
+    for i in range(m):
+        rate, share = closed.kin[i].gN_dot, scratch.restitution[i]
+        if not (share > 0.0 and scratch.impulse[2 * i] > 0.0 and 0.0 < rate <= options.accumulation_speed):
+            continue
+        closing = -closed.kin[i].bar_N
+        for k in range(closed.slots[i]):
+            closing -= closed.w_N[i, k] * state.a[closed.coord[i, k]]
+        if closing > 0.0 and share < 1.0:
+            ending = 2.0 * rate / (closing * (1.0 - share))
+            if ending < options.accumulation_time:
+                scratch.restitution[i] = 0.0
+                latest = max(latest, state.clock[0] + ending)
+    return latest
+
+
+@kernel
+def collide(model, state, m, options, scratch, record):
+    """Resolve the impact of the m closed contacts: new velocities, refreshed kinematics, events. Returns the LCP status."""
+    scratch.before[:] = state.u
+    _law_restitution(model, m, scratch)
+    ends = -1.0
+    for _ in range(1 + m):
+        status = _solve(model, state, m, scratch)
+        if status != 0:
+            state.u[:] = scratch.before
+            return status
+        for row in range(2 * m):
+            scratch.impulse[row] = scratch.work.force[row]
+        place(model, state.q, state.u, scratch.pose)
+        refresh(model, m, scratch.closed, scratch.pose)
+        end = _end_time(model, state, m, options, scratch)
+        if end < 0.0:
+            break
+        ends = max(ends, end)
+    _write(model, state, m, scratch, record, ends)
+    return 0
+
+
+@kernel
+def _write(model, state, m, scratch, record, ends):
+    """Events and energy of the impact just solved; by contact, the loss is minus the impulse times the mean rate."""
+    closed = scratch.closed
+    contact_velocities(model, closed, m, scratch.before, scratch.work.b)
+    contact_velocities(model, closed, m, state.u, scratch.rates)
+    for i in range(m):
+        N, T = 2 * i, 2 * i + 1
+        if scratch.impulse[N] <= 0.0:
+            continue
+        lost = -0.5 * scratch.impulse[N] * (scratch.work.b[N] + scratch.rates[N])
+        lost -= 0.5 * scratch.impulse[T] * (scratch.work.b[T] + scratch.rates[T])
+        row = keep_event(state, record, IMPACT_EVENT, closed.ids[i], -1, scratch.work.b[N])
+        event = record.events[row]
+        event.impulse_normal, event.impulse_tangential, event.energy_lost = scratch.impulse[N], scratch.impulse[T], lost
+        state.sums[IMPACTS] += lost
+        state.counts[N_IMPACTS] += 1
+        if ends >= 0.0 and scratch.restitution[i] == 0.0 and model.laws[model.contacts[closed.ids[i]].group].restitution > 0.0:
+            keep_event(state, record, ACCUMULATION_EVENT, closed.ids[i], -1, ends)
+            state.counts[N_ACCUMULATED] += 1

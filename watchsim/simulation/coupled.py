@@ -1,0 +1,66 @@
+"""How do bodies move while contacts couple them?
+
+Right-hand side of the smooth motion in the decided modes, and the monitors that tell when a mode ends: a normal force that
+vanishes, a slip that reverses, a friction force that reaches its cone, a contact that leaves its primitive.
+"""
+
+from __future__ import annotations
+
+from watchsim.contact.index_sets import STICK
+from watchsim.contact.kinematics import contact_kinematics
+from watchsim.contact.poses import place
+from watchsim.dynamics.acceleration import accelerate, solve_mode
+from watchsim.dynamics.forces import damping_power, drive_power, forces
+from watchsim.jit import kernel
+from watchsim.simulation.state import N_EVALUATIONS
+
+MONITORS = 3
+
+
+@kernel
+def monitor(model, state, scratch, options, i, which):
+    """Monitor `which` of active contact i at the state last evaluated; the mode holds while it is positive."""
+    closed, work = scratch.closed, scratch.work
+    k = closed.ids[i]
+    normal = work.force[2 * i]
+    if which == 0:
+        slack = options.force_zero * work.size[2 * i] / work.G[2 * i, 2 * i]
+        return normal + slack
+    if which == 1:
+        friction = model.laws[model.contacts[k].group].friction
+        if friction == 0.0:
+            return 1.0
+        if state.mode[k] == STICK:
+            slack = options.force_zero * (work.size[2 * i] / work.G[2 * i, 2 * i] + abs(normal))
+            return friction * normal - abs(work.force[2 * i + 1]) + slack
+        return state.mode[k] * closed.kin[i].gT_dot + options.speed_zero
+    return closed.kin[i].margin + 2.0 * options.extent
+
+
+@kernel
+def motion(model, state, options, t, y, scratch):
+    """dy/dt of y = (q, u, sums) at time t into `scratch.dy`; lowers `scratch.alarm` to the smallest monitor."""
+    n = len(model.coordinates)
+    q, u = y[:n], y[n : 2 * n]
+    m = state.numbers[0]
+    work, closed, out = scratch.work, scratch.closed, scratch.dy
+    forces(model, t, q, u, work.h)
+    friction = 0.0
+    if m > 0:
+        place(model, q, u, scratch.pose)
+        for i in range(m):
+            contact_kinematics(model, state.active[i], scratch.pose, i, closed)
+        solve_mode(model, closed, m, state.mode, work)
+        for i in range(m):
+            friction -= work.force[2 * i + 1] * closed.kin[i].gT_dot
+            for which in range(MONITORS):
+                scratch.alarm[0] = min(scratch.alarm[0], monitor(model, state, scratch, options, i, which))
+    accelerate(model, closed, m, work, out[n : 2 * n])
+    for i in range(n):
+        if state.awake[i] == 0:
+            out[n + i] = 0.0
+        out[i] = u[i]
+    out[2 * n] = drive_power(model, t, q, u)
+    out[2 * n + 1] = damping_power(model, u)
+    out[2 * n + 2] = friction
+    state.counts[N_EVALUATIONS] += 1

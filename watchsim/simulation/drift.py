@@ -1,0 +1,63 @@
+"""How is drift off the contacts taken back?
+
+Closed contacts are brought to zero gap, and their gap rates (with the slip of sticking ones) to zero, by the smallest
+change in the metric of the mass matrix: dq = -M⁻¹ W (Wᵀ M⁻¹ W)⁺ g.
+"""
+
+from __future__ import annotations
+
+from watchsim.contact.index_sets import STICK
+from watchsim.dynamics.delassus import apply, fill_delassus
+from watchsim.dynamics.linear import solve_small
+from watchsim.jit import kernel
+
+
+@kernel
+def project_positions(model, closed, m, work, out_q):
+    """Close the gaps of the first m contacts; returns the deepest penetration found, m."""
+    deepest, furthest = 0.0, 0.0
+    for i in range(m):
+        deepest = max(deepest, -closed.kin[i].g)
+        furthest = max(furthest, abs(closed.kin[i].g))
+    if furthest == 0.0:
+        return 0.0
+    fill_delassus(model, closed, m, work)
+    for i in range(m):
+        for j in range(m):
+            work.A[i, j] = work.G[2 * i, 2 * j]
+        work.rhs[i] = -closed.kin[i].g
+    solve_small(work.A, work.rhs, m, work.order, work.x)
+    for i in range(m):
+        work.more[2 * i], work.more[2 * i + 1] = work.x[i], 0.0
+    apply(model, closed, m, work.more, out_q)
+    return deepest
+
+
+@kernel
+def project_velocities(model, closed, m, mode, work, out_u):
+    """Make the gap rates of the first m contacts, and the slip of the sticking ones, exactly zero."""
+    fill_delassus(model, closed, m, work)
+    n = 0
+    for i in range(m):
+        work.order[n] = 2 * i
+        work.rhs[n] = -closed.kin[i].gN_dot
+        n += 1
+        if mode[closed.ids[i]] == STICK:
+            work.order[n] = 2 * i + 1
+            work.rhs[n] = -closed.kin[i].gT_dot
+            n += 1
+    for i in range(n):
+        for j in range(n):
+            work.A[i, j] = work.G[work.order[i], work.order[j]]
+    for row in range(2 * m):
+        work.more[row] = 0.0
+    # solve_small permutes `order`: read the rows again in the same sequence afterwards.
+    solve_small(work.A, work.rhs, n, work.order, work.x)
+    n = 0
+    for i in range(m):
+        work.more[2 * i] = work.x[n]
+        n += 1
+        if mode[closed.ids[i]] == STICK:
+            work.more[2 * i + 1] = work.x[n]
+            n += 1
+    apply(model, closed, m, work.more, out_u)

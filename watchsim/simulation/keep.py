@@ -1,0 +1,37 @@
+"""What is written down while the loop runs?"""
+
+from __future__ import annotations
+
+from watchsim.jit import kernel
+from watchsim.simulation.state import N_EVENTS
+
+
+@kernel
+def keep_row(state, record, t, q, u, a):
+    """Append a row unless t lies outside all windows."""
+    inside = False
+    for j in range(len(record.windows)):
+        if record.windows[j, 0] <= t <= record.windows[j, 1]:
+            inside = True
+    if not inside:
+        return
+    row = record.used[0]
+    n = len(q)
+    record.rows[row, 0] = t
+    for i in range(n):
+        record.rows[row, 1 + i] = q[i]
+        record.rows[row, 1 + n + i] = u[i]
+        record.rows[row, 1 + 2 * n + i] = a[i]
+    record.used[0] = row + 1
+
+
+@kernel
+def keep_event(state, record, kind, contact, body, value):
+    """Append an event at the current time and return its row."""
+    row = record.used[1]
+    event = record.events[row]
+    event.t, event.kind, event.contact, event.body, event.value = state.clock[0], kind, contact, body, value
+    event.impulse_normal, event.impulse_tangential, event.energy_lost = 0.0, 0.0, 0.0
+    record.used[1] = row + 1
+    state.counts[N_EVENTS] += 1
+    return row

@@ -1,0 +1,41 @@
+"""Which tolerances decide, and in which units?
+
+All lengths scale with the scene's size, so that a tower clock and a wristwatch are treated alike.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Options(NamedTuple):
+    """Tolerances of a run. Each line: what it is; too large: ...; too small: ..."""
+
+    tolerance: float  # relative error per step of coordinates and velocities. Large: wrong rates; small: slow below 1e-12
+    gap_zero: float  # m: a gap this small is zero to rounding. Large: early contacts; small: below the rounding of positions
+    gap_close: float  # m: gaps this small take part in an impact. Large: merges events; small: splits simultaneous ones
+    extent: float  # m: how far beyond its primitive's end a contact still counts. Large: sticks out; small: slips through joints
+    speed_zero: float  # m/s: slower is zero. Large: freezes slow sliding; small: below the rounding of velocities
+    force_zero: float  # share of a contact's force terms that counts as zero. Large: late detachment; small: rounding decides
+    accumulation_time: float  # s: rebounds that would end sooner are ended by rule. Large: changes timing; small: more impacts
+    accumulation_speed: float  # m/s: faster rebounds are never ended by rule
+    sleep: float  # share of a coordinate's force terms below which its acceleration counts as zero
+    row_phase: float  # rad: spacing of recorded rows in free flight, in phase of the coordinate's own oscillation
+    max_step: float  # s
+
+
+def options_for(size: float, tolerance: float, max_step: float) -> Options:
+    """Options for a scene whose contact outlines are `size` metres across."""
+    return Options(
+        tolerance=tolerance,
+        gap_zero=1e-12 * size,
+        gap_close=2e-10 * size,
+        extent=2e-8 * size,
+        speed_zero=1e-8 * size,
+        force_zero=1e-9,
+        accumulation_time=1e-7,
+        accumulation_speed=0.1 * size,
+        sleep=1e-9,
+        row_phase=0.1,
+        max_step=max_step,
+    )

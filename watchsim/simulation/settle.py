@@ -1,0 +1,131 @@
+"""What follows an event?
+
+At one instant: the closed contacts are gathered, impacts resolved, and the acceleration-level LCP decides which contacts
+stay closed and which of them stick. Velocities and positions are then exact to rounding.
+"""
+
+from __future__ import annotations
+
+from watchsim.contact.index_sets import OPEN, STICK
+from watchsim.contact.poses import place
+from watchsim.dynamics.acceleration import accelerate, decide_modes
+from watchsim.dynamics.forces import forces
+from watchsim.jit import kernel
+from watchsim.simulation.closed import gather, refresh, resting
+from watchsim.simulation.collide import approaching, collide
+from watchsim.simulation.drift import project_positions, project_velocities
+from watchsim.simulation.keep import keep_event
+from watchsim.simulation.sleep import find_sleepers
+from watchsim.simulation.state import N_LCP, N_LCP_FAILED
+from watchsim.simulation.stops import Stop
+
+RUNNING, CELL_UNKNOWN = int(Stop.RUNNING), int(Stop.CELL_UNKNOWN)
+LCP_FAILED, TOO_MANY_CONTACTS, TOO_MANY_EVENTS = int(Stop.LCP_FAILED), int(Stop.TOO_MANY_CONTACTS), int(Stop.TOO_MANY_EVENTS)
+CLOSE_EVENT, OPEN_EVENT, STICK_EVENT, SLIDE_EVENT = 2, 3, 4, 5
+ROUNDS = 16  # impacts in a row at one instant
+
+
+@kernel
+def _keep_change(state, record, k, old):
+    """Write down how contact k's mode changed."""
+    new = state.mode[k]
+    if new == old:
+        return
+    if old == OPEN:
+        keep_event(state, record, CLOSE_EVENT, k, -1, float(new))
+    elif new == OPEN:
+        keep_event(state, record, OPEN_EVENT, k, -1, 0.0)
+    elif new == STICK:
+        keep_event(state, record, STICK_EVENT, k, -1, 0.0)
+    else:
+        keep_event(state, record, SLIDE_EVENT, k, -1, float(new))
+
+
+@kernel
+def _in_force(state, r, scratch):
+    """Keep only the rows of `rest` that are closed, with their forces; returns their number."""
+    rest, force = scratch.rest, scratch.work.force
+    kept = 0
+    for i in range(r):
+        if state.mode[rest.ids[i]] != OPEN:
+            rest.ids[kept] = rest.ids[i]
+            force[2 * kept], force[2 * kept + 1] = force[2 * i], force[2 * i + 1]
+            kept += 1
+    return kept
+
+
+@kernel
+def _list_active(model, state, f, scratch):
+    """Fill `state.active` from the f contacts in force: those of awake bodies first."""
+    rest = scratch.rest
+    awake = 0
+    for i in range(f):
+        if state.awake[rest.coord[i, 0]]:
+            state.active[awake] = rest.ids[i]
+            awake += 1
+    asleep = 0
+    for i in range(f):
+        if not state.awake[rest.coord[i, 0]]:
+            state.active[awake + asleep] = rest.ids[i]
+            asleep += 1
+    state.numbers[0], state.numbers[1] = awake, asleep
+
+
+@kernel
+def settle(model, cells, state, options, scratch, record):
+    """Handle the event that waits at the current state; returns a Stop code, RUNNING when all went well."""
+    place(model, state.q, state.u, scratch.pose)
+    m = gather(model, cells, state, options, scratch)
+    if m < 0:
+        return CELL_UNKNOWN if m == -1 else TOO_MANY_CONTACTS
+    closed, work = scratch.closed, scratch.work
+    refresh(model, m, closed, scratch.pose)
+    rounds = 0
+    while approaching(m, closed, options.speed_zero):
+        if rounds == ROUNDS:
+            return TOO_MANY_EVENTS
+        if collide(model, state, m, options, scratch, record) != 0:
+            return LCP_FAILED
+        rounds += 1
+    r = resting(model, m, closed, scratch.pose, options.speed_zero, scratch.rest)
+    forces(model, state.clock[0], state.q, state.u, work.h)
+    if r > 0:
+        state.counts[N_LCP] += 1
+        if decide_modes(model, scratch.rest, r, options.speed_zero, work, scratch.trial) != 0:
+            state.counts[N_LCP_FAILED] += 1
+            return LCP_FAILED
+    _take(model, state, m, r, scratch, record)
+    f = _in_force(state, r, scratch)
+    refresh(model, f, scratch.rest, scratch.pose)
+    _correct(model, state, f, scratch)
+    accelerate(model, scratch.rest, f, work, state.a)
+    find_sleepers(model, state, options, scratch, f)
+    _list_active(model, state, f, scratch)
+    state.numbers[2] = 0
+    return RUNNING
+
+
+@kernel
+def _take(model, state, m, r, scratch, record):
+    """Replace the modes of the closed contacts by the decided ones (in `scratch.trial` for I_N) and write down changes."""
+    closed, rest = scratch.closed, scratch.rest
+    for i in range(m):
+        k = closed.ids[i]
+        new = OPEN
+        for j in range(r):
+            if rest.ids[j] == k:
+                new = scratch.trial[k]
+        old = state.mode[k]
+        state.mode[k] = new
+        _keep_change(state, record, k, old)
+
+
+@kernel
+def _correct(model, state, f, scratch):
+    """Exact zero gaps and rates for the f contacts in force."""
+    if f == 0:
+        return
+    rest, work = scratch.rest, scratch.work
+    deepest = project_positions(model, rest, f, work, state.q)
+    state.worst[0] = max(state.worst[0], deepest)
+    project_velocities(model, rest, f, state.mode, work, state.u)

@@ -1,0 +1,171 @@
+"""What does the event loop read and write?
+
+`State` is complete: with the model and the options it fixes the future. `Scratch` is room to work in; `Record` what is kept.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.contact.kinematics import Closed, closed_contacts
+from watchsim.contact.poses import poses
+from watchsim.dynamics.delassus import ContactWork, contact_work
+from watchsim.mechanism.model import Model, Records
+from watchsim.simulation.trajectory import EVENT_DTYPE
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+ROOM = 48  # contacts closed at once
+SUMS = 3  # integrated along with the motion: work in, damping, friction
+DRIVE, DAMPING, FRICTION, IMPACTS, CORRECTION = 0, 1, 2, 3, 4  # places in State.sums
+
+# Places in State.counts.
+N_STEPS, N_REJECTED, N_EVALUATIONS, N_FLIGHTS, N_EVENTS, N_IMPACTS, N_LCP, N_LCP_FAILED, N_ACCUMULATED, N_ENERGY, N_GAPS = range(11)
+COUNT_NAMES = (
+    "steps",
+    "rejected_steps",
+    "evaluations",
+    "flights",
+    "events",
+    "impacts",
+    "lcp",
+    "lcp_failures",
+    "accumulations",
+    "energy_rescues",
+    "gap_evaluations",
+)
+
+FLIGHT, COUPLED = 0, 1
+
+
+class State(NamedTuple):
+    """t, q, u, modes, and what else the future depends on."""
+
+    clock: Array  # t, next step's length, time of the last event
+    q: Array
+    u: Array
+    a: Array
+    mode: NDArray[np.int8]  # by permanent number of the contact
+    awake: NDArray[np.int8]  # by coordinate; 0: asleep on its contacts
+    active: Integers  # closed contacts of awake bodies, then those of sleeping ones, each ascending
+    numbers: Integers  # how many awake, how many asleep, 1 if an event waits to be settled, events at this instant
+    side_u: NDArray[np.int8]  # last sign of the velocity of a sprung coordinate
+    side_q: NDArray[np.int8]  # and of its distance from rest
+    sums: Array
+    counts: Integers
+    worst: Array  # deepest penetration met, m
+
+
+class Step(NamedTuple):
+    """One smooth step from (q, u): an exact flight, or a Runge-Kutta step with its continuous extension."""
+
+    kind: Integers  # FLIGHT or COUPLED
+    span: Array  # start time, length
+    q: Array
+    u: Array
+    bound: Array  # bound of each |q''| over the step
+    y0: Array  # q, u, sums
+    y1: Array
+    stages: Array  # (16, 2 n + SUMS)
+    dense: Array  # (7, 2 n + SUMS)
+
+
+class Scratch(NamedTuple):
+    """Room to work in, allocated once."""
+
+    step: Step
+    pose: Any
+    closed: Closed
+    rest: Closed
+    work: ContactWork
+    restitution: Array
+    impulse: Array  # of the last impact, N and T by row
+    rates: Array  # contact rates after it
+    before: Array  # velocities before it
+    q: Array
+    u: Array
+    y: Array
+    dy: Array
+    label: Integers
+    trial: NDArray[np.int8]
+    alarm: Array  # smallest monitor met in the current step
+    unknown: Integers  # body pair whose cell is not known
+    at: Array  # coordinates where it was met
+
+
+class Record(NamedTuple):
+    """Rows (t, q, u, a), events, and the times within which rows are kept."""
+
+    rows: Array
+    events: Records
+    used: Integers  # rows, events
+    windows: Array  # (k, 2)
+
+
+def new_state(model: Model, q: Array, u: Array) -> State:
+    """The state at t = 0 with nothing decided yet."""
+    n = len(model.coordinates)
+    return State(
+        clock=np.zeros(3),
+        q=q.astype(float).copy(),
+        u=u.astype(float).copy(),
+        a=np.zeros(n),
+        mode=np.zeros(len(model.contacts), np.int8),
+        awake=np.ones(n, np.int8),
+        active=np.zeros(ROOM, np.int64),
+        numbers=np.array([0, 0, 1, 0], np.int64),
+        side_u=np.sign(u).astype(np.int8),
+        side_q=np.sign(q - model.coordinates.rest).astype(np.int8),
+        sums=np.zeros(5),
+        counts=np.zeros(len(COUNT_NAMES), np.int64),
+        worst=np.zeros(1),
+    )
+
+
+def new_scratch(model: Model) -> Scratch:
+    """Room to work for one model."""
+    n = len(model.coordinates)
+    width = 2 * n + SUMS
+    step = Step(
+        kind=np.zeros(1, np.int64),
+        span=np.zeros(2),
+        q=np.zeros(n),
+        u=np.zeros(n),
+        bound=np.zeros(n),
+        y0=np.zeros(width),
+        y1=np.zeros(width),
+        stages=np.zeros((16, width)),
+        dense=np.zeros((7, width)),
+    )
+    return Scratch(
+        step=step,
+        pose=poses(len(model.bodies)),
+        closed=closed_contacts(ROOM),
+        rest=closed_contacts(ROOM),
+        work=contact_work(ROOM, n),
+        restitution=np.zeros(ROOM),
+        impulse=np.zeros(2 * ROOM),
+        rates=np.zeros(2 * ROOM),
+        before=np.zeros(n),
+        q=np.zeros(n),
+        u=np.zeros(n),
+        y=np.zeros(width),
+        dy=np.zeros(width),
+        label=np.zeros(n, np.int64),
+        trial=np.zeros(len(model.contacts), np.int8),
+        alarm=np.zeros(1),
+        unknown=np.zeros(1, np.int64),
+        at=np.zeros(n),
+    )
+
+
+def new_record(model: Model, rows: int, events: int, windows: Array) -> Record:
+    """Empty buffers."""
+    n = len(model.coordinates)
+    return Record(
+        np.zeros((rows, 1 + 3 * n)), np.zeros(events, EVENT_DTYPE).view(np.recarray), np.zeros(2, np.int64), windows
+    )

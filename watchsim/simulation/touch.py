@@ -1,0 +1,161 @@
+"""When, within the current step, does an open contact close first? None may be missed.
+
+Safe steps: with a bound B of |g''| over a stretch of time the gap stays above g + g' d - B d²/2, so time may advance to that
+parabola's zero. Near a contact this is Newton's method from the safe side (it converges quadratically and never jumps over
+a root); far from it, one evaluation covers the whole stretch.
+"""
+
+from __future__ import annotations
+
+import math
+
+from watchsim.contact.gaps import extent_margin, normal_gap
+from watchsim.contact.lookup import UNKNOWN, candidate, candidates, time_in_cell
+from watchsim.contact.poses import point_of
+from watchsim.jit import kernel
+from watchsim.mechanism.model import FREE, LINE, PIVOT, SLIDE
+from watchsim.simulation.state import N_GAPS
+from watchsim.simulation.within import body_within
+
+
+@kernel
+def _body_bounds(model, b, length, scratch):
+    """Bounds over the next `length` seconds: (speed, turning rate, acceleration, turning acceleration) of the frame."""
+    body = model.bodies[b]
+    i = body.first
+    bound = scratch.step.bound
+    if body.motion == PIVOT:
+        return 0.0, abs(scratch.u[i]) + bound[i] * length, 0.0, bound[i]
+    if body.motion == SLIDE:
+        return abs(scratch.u[i]) + bound[i] * length, 0.0, bound[i], 0.0
+    if body.motion == FREE:
+        ax, ay = bound[i], bound[i + 1]
+        acceleration = math.sqrt(ax * ax + ay * ay)
+        speed = math.sqrt(scratch.u[i] ** 2 + scratch.u[i + 1] ** 2) + acceleration * length
+        return speed, abs(scratch.u[i + 2]) + bound[i + 2] * length, acceleration, bound[i + 2]
+    return 0.0, 0.0, 0.0, 0.0
+
+
+@kernel
+def _gap_bounds(model, k, length, scratch):
+    """Bounds over the next `length` seconds of |g'| and of the part of |g''| that does not come from B's curvature."""
+    contact = model.contacts[k]
+    a, b = model.primitives[contact.a], model.primitives[contact.b]
+    speed_a, turn_a, push_a, twist_a = _body_bounds(model, a.body, length, scratch)
+    speed_b, turn_b, push_b, twist_b = _body_bounds(model, b.body, length, scratch)
+    pa, pb = scratch.pose[a.body], scratch.pose[b.body]
+    rx, ry = point_of(pa, a.x, a.y)
+    arm_a = math.sqrt(rx * rx + ry * ry)
+    speed = speed_a + turn_a * arm_a + speed_b
+    dx, dy = pa.x + rx - pb.x, pa.y + ry - pb.y
+    arm_b = math.sqrt(dx * dx + dy * dy) + speed * length
+    closing = speed + turn_b * arm_b
+    bend = push_a + twist_a * arm_a + turn_a * turn_a * arm_a
+    bend += push_b + twist_b * arm_b + turn_b * turn_b * arm_b + 2.0 * turn_b * closing
+    return closing, bend
+
+
+@kernel
+def _centre_distance(model, k, pose):
+    """Distance of the two centres of a centre-centre contact; infinite for centre-line."""
+    contact = model.contacts[k]
+    a, b = model.primitives[contact.a], model.primitives[contact.b]
+    if b.kind == LINE:
+        return math.inf
+    pa, pb = pose[a.body], pose[b.body]
+    ax, ay = point_of(pa, a.x, a.y)
+    bx, by = point_of(pb, b.x, b.y)
+    return math.sqrt((pa.x + ax - pb.x - bx) ** 2 + (pa.y + ay - pb.y - by) ** 2)
+
+
+@kernel
+def _safe(room, approach, closing, bend, distance):
+    """A time within which a gap with this much room, closing now at rate `approach`, cannot close."""
+    straight = room / closing
+    if distance < math.inf:
+        # Over this time the centres stay at least half as far apart as now.
+        limit = 0.5 * distance / closing
+        bend += closing * closing / (0.5 * distance) if distance > 0.0 else 0.0
+    else:
+        limit = math.inf
+    root = math.sqrt(approach * approach + 2.0 * bend * room)
+    if approach > 0.0:
+        curved = 2.0 * room / (approach + root)
+    else:
+        curved = (root - approach) / bend if bend > 0.0 else math.inf
+    return max(straight, min(curved, limit))
+
+
+@kernel
+def crossing(model, state, options, k, start, end, scratch):
+    """First time in [start, end) at which open contact k closes inside its primitives; infinity if it does not."""
+    contact = model.contacts[k]
+    body_a, body_b = model.primitives[contact.a].body, model.primitives[contact.b].body
+    body_within(model, state, body_a, start, scratch)
+    body_within(model, state, body_b, start, scratch)
+    closing, bend = _gap_bounds(model, k, end - start, scratch)
+    if closing == 0.0:
+        return math.inf
+    zero = options.gap_zero
+    tau = start
+    outside, clear, first = True, False, True
+    while tau < end:
+        if not first:
+            body_within(model, state, body_a, tau, scratch)
+            body_within(model, state, body_b, tau, scratch)
+        gap, rate, nx, ny = normal_gap(model, k, scratch.pose)
+        state.counts[N_GAPS] += 1
+        # `outside`: on the free side; `clear`: has been further than rounding from it since.
+        if first or not outside:
+            outside, clear = gap >= -zero, False
+        first = False
+        if outside and gap > zero:
+            clear = True
+        elif outside and ((clear and rate < 0.0) or gap < -zero):
+            if extent_margin(model, k, scratch.pose, nx, ny) >= -options.extent:
+                return min(end, tau + gap / -rate) if clear and gap > 0.0 and rate * (end - tau) < -gap else tau
+            outside, clear = gap >= -zero, False
+        if outside:
+            room, approach = (gap if clear else gap + 2.0 * zero), -rate
+        else:
+            room, approach = -gap, rate
+        tau += _safe(room, approach, closing, bend, _centre_distance(model, k, scratch.pose))
+    return math.inf
+
+
+@kernel
+def _at_rest(model, state, b):
+    """True for fixed bodies and bodies asleep."""
+    first = model.bodies[b].first
+    return first < 0 or state.awake[first] == 0
+
+
+@kernel
+def first_touch(model, cells, state, options, end, scratch):
+    """(known, time, contact) of the first closing in [0, end) of the current step; contact -1: none.
+
+    `known` is False when a cell was met that nobody has asked about; the body pair is then in `scratch.unknown`, its coordinates in `scratch.at`.
+    """
+    best, who = end, -1
+    for p in range(len(model.pairs)):
+        pair = model.pairs[p]
+        if _at_rest(model, state, pair.a) and _at_rest(model, state, pair.b):
+            continue
+        tau = 0.0
+        while tau < best:
+            body_within(model, state, pair.a, tau, scratch)
+            body_within(model, state, pair.b, tau, scratch)
+            how, start, count = candidates(model, cells, p, scratch.q)
+            if how == UNKNOWN:
+                scratch.unknown[0] = p
+                scratch.at[:] = scratch.q
+                return False, 0.0, -1
+            until = min(best, tau + time_in_cell(model, p, scratch.q, scratch.u, scratch.step.bound))
+            for place in range(start, start + count):
+                k = candidate(cells, how, place)
+                if state.mode[k] == 0:
+                    root = crossing(model, state, options, k, tau, until, scratch)
+                    if root < until:
+                        best, until, who = root, root, k
+            tau = until
+    return True, best, who
