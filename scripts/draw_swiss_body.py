@@ -8,6 +8,7 @@ entry; left and right are mirror images everywhere but at the pallets.
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 from draw_outline import arc_between, arc_of_radius, circle, fillet_chain, polar
 from draw_swiss_design import Swiss
@@ -62,7 +63,7 @@ def body(design: Swiss) -> Loop:
     """Stem, arms and hub, counter-clockwise from the right end of the stem's top."""
     half = design.stem_half
     entry, exit_ = Slot(design, 1), Slot(design, -1)
-    left_root, right_root = (-STEM_ROOT, 0.22), (STEM_ROOT, 0.22)
+    left_root, right_root = (-STEM_ROOT, 0.24), (STEM_ROOT, 0.24)
     parts: list[tuple[Edge, float]] = [
         (Line(half, NECK, -half, NECK), 0.0),
         (Line(-half, NECK, -half, design.banking_height - 0.45), 1.2),
@@ -82,7 +83,7 @@ def _holder_left(slot: Slot, root: Point) -> list[tuple[Edge, float]]:
     top_out = slot.at(STONE_LENGTH + WALL_END, -WALL_OUT)
     low_out, low_in = slot.at(EXPOSED, -WALL_OUT), slot.at(EXPOSED, slot.width + WALL_IN)
     return [
-        (arc_of_radius(root, top_in, -1.5), 0.25),
+        (arc_of_radius(root, top_in, -1.8), 0.2),
         (Line(*top_in, *top_out), 0.12),
         (Line(*top_out, *low_out), 0.04),
         *_mouth(slot, low_out, low_in),
@@ -93,12 +94,12 @@ def _holder_right(slot: Slot, root: Point) -> list[tuple[Edge, float]]:
     """From the inner end of the exit stone's mouth over its holder to the stem."""
     low_in, low_out = slot.at(EXPOSED, -WALL_IN), slot.at(EXPOSED, slot.width + WALL_OUT)
     top_out = slot.at(STONE_LENGTH + WALL_END, slot.width + WALL_OUT)
-    top_in = slot.at(STONE_LENGTH + WALL_END, 0.0)
+    top_in = slot.at(STONE_LENGTH + WALL_END, -0.5 * WALL_IN)
     return [
         *_mouth(slot, low_in, low_out),
         (Line(*low_out, *top_out), 0.12),
-        (Line(*top_out, *top_in), 0.25),
-        (arc_of_radius(top_in, root, -1.5), 0.3),
+        (Line(*top_out, *top_in), 0.2),
+        (arc_of_radius(top_in, root, -2.6), 0.3),
     ]
 
 
@@ -108,18 +109,18 @@ def _mouth(slot: Slot, first: Point, last: Point) -> list[tuple[Edge, float]]:
     end = STONE_LENGTH + SHELLAC
     chain = [first, slot.at(EXPOSED, near), slot.at(end, near), slot.at(end, far), slot.at(EXPOSED, far), last]
     radii = [0.02, STONE_EDGE, STONE_EDGE, 0.02, 0.04]
-    return [(Line(*a, *b), radius) for (a, b), radius in zip(zip(chain, chain[1:], strict=False), radii, strict=True)]
+    return [(Line(*a, *b), radius) for (a, b), radius in zip(pairwise(chain), radii, strict=True)]
 
 
 def _underside(entry: Slot, exit_: Slot) -> list[tuple[Edge, float]]:
     """From the entry holder under the hub to the exit holder."""
     start = entry.at(EXPOSED, entry.width + WALL_IN)
     end = exit_.at(EXPOSED, -WALL_IN)
-    left, right = polar(HUB_RADIUS, 205.0), polar(HUB_RADIUS, 325.0)
+    left, right = polar(HUB_RADIUS, 210.0), polar(HUB_RADIUS, 325.0)
     return [
         (arc_of_radius(start, left, -0.75), 0.08),
         (arc_between(left, right, (0.0, 0.0), True), 0.08),
-        (arc_of_radius(right, end, -1.2), 0.04),
+        (arc_of_radius(right, end, -1.6), 0.04),
     ]
 
 

@@ -21,7 +21,7 @@ class Swiss:
     """The numbers a designer chooses; everything else is a property."""
 
     tip_radius: float = 2.4  # R, to the toe of a tooth
-    heel_radius: float = 2.465  # to the heel: shares the lift between tooth and stone
+    heel_radius: float = 2.452  # to the heel: shares the lift between tooth and stone
     teeth: int = 15
     tooth_width: float = 4.5  # toe to heel at the wheel's centre
     undercut: float = 24.0  # of the tooth's locking face, from the radius

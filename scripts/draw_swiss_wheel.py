@@ -78,7 +78,7 @@ def concave_back(back: Point) -> tuple[Arc, Point]:
 def window(i: int) -> list[Edge]:
     """One opening between two arms, clockwise."""
     first, last = _arm_sides(i)
-    chain = [
+    chain: list[Edge] = [
         arc_between(last[1], first[1], (0.0, 0.0), False),
         Line(*first[1], *first[0]),
         arc_between(first[0], last[0], (0.0, 0.0), True),

@@ -35,11 +35,12 @@ def kernel(function: Function) -> Function:
         return function
     import numba
 
-    before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(cache_folder())
+    settings: Any = numba.config
+    before, settings.CACHE_DIR = settings.CACHE_DIR, str(cache_folder())  # read while decorating
     try:
-        compiled: Function = numba.njit(cache=True, error_model="numpy", fastmath=False)(function)
+        compiled: Any = numba.njit(cache=True, error_model="numpy", fastmath=False)(function)
     finally:
-        numba.config.CACHE_DIR = before
+        settings.CACHE_DIR = before
     return compiled
 
 

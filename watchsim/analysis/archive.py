@@ -32,7 +32,12 @@ def write_trajectory(run: Trajectory, path: Path) -> None:
         **{name: getattr(run, name) for name in SCALARS},
     }
     text = np.frombuffer(json.dumps(plain(header)).encode(), dtype=np.uint8)
-    np.savez_compressed(path, header=text, t=run.t, q=run.q, u=run.u, a=run.a, events=run.events)
+    arrays = {"header": text, "t": run.t, "q": run.q, "u": run.u, "a": run.a, "events": run.events}
+    # Level 1 takes a third of the time of numpy's own level 6 for a tenth more bytes.
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
+        for name, array in arrays.items():
+            with archive.open(f"{name}.npy", "w", force_zip64=True) as file:
+                np.lib.format.write_array(file, np.ascontiguousarray(array), allow_pickle=False)
 
 
 def read_trajectory(path: Path, scene: Scene) -> Trajectory:

@@ -17,10 +17,8 @@ from watchsim.analysis.tables import json_text, write_events
 from watchsim.simulation.trajectory import Trajectory
 
 SUMMARY, LOCK, TRAJECTORY, EVENTS = "summary.json", "scene.lock.toml", "trajectory.npz", "events.csv"
-OURS = frozenset(
-    (SUMMARY, LOCK, TRAJECTORY, EVENTS)
-    + ("beats.csv", "phases.csv", "plots", "drawings", "movie.mp4", "movie.gif", "report.html", "import.png")
-)
+LATER = ("beats.csv", "phases.csv", "plots", "drawings", "movie.mp4", "movie.gif", "report.html", "import.png")
+OURS = frozenset((SUMMARY, LOCK, TRAJECTORY, EVENTS, *LATER))
 
 Extra = Mapping[str, str | bytes | Callable[[Path], object]]
 
@@ -48,6 +46,7 @@ def write_results(
     folder: str | os.PathLike[str],
     summary: Mapping[str, Any] | None = None,
     scene_lock: str = "",
+    *,
     extra: Extra | None = None,
     force: bool = False,
 ) -> Path:

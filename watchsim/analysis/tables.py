@@ -62,7 +62,9 @@ def write_events(run: Trajectory, path: Path) -> None:
         table = csv.writer(file)
         table.writerow(EVENT_COLUMNS)
         for t, kind, contact, body, normal, tangential, lost, value in run.events.tolist():
-            table.writerow((t, EventKind(kind).name.lower(), *_sides(run, contact, body, names), normal, tangential, lost, value))
+            table.writerow(
+                (t, EventKind(kind).name.lower(), *_sides(run, contact, body, names), normal, tangential, lost, value)
+            )
 
 
 def _sides(run: Trajectory, contact: int, body: int, names: list[str]) -> tuple[object, str, str]:

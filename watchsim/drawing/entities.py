@@ -52,8 +52,9 @@ def arc(record: Record) -> list[Shape]:
 
 
 def radius_of(record: Record) -> float:
+    """Zero is let through: such circles are points left behind by editing, and are reported as pieces of no length."""
     radius = record.number(40)
-    if radius <= 0.0:
+    if radius < 0.0:
         raise DxfError(f"its radius is {radius:g}")
     return radius
 
@@ -133,6 +134,7 @@ def spline(record: Record) -> list[Shape]:
         weights=record.numbers(41),
         points=points_of(record, 10),
         fit_points=points_of(record, 11),
+        tangents=[record.point(12), record.point(13)] if 12 in record.codes and 13 in record.codes else (),
     )
     return [shape]
 

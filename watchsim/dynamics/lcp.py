@@ -22,7 +22,8 @@ ENUMERATED_SIZE = 12  # 2^12 small eliminations: some milliseconds
 # All of these compare numbers of a scaled problem, where coefficients and the largest load are of order one.
 PIVOT = 1e-11  # smaller pivots are rounding errors of a zero
 TIE = 1e-10  # ratios closer than this are equal; 1e-12 sends 1 in 1000 singular problems down a ray
-RESIDUAL = 1e-9  # largest |min(x, y)| of a solution, relative to max(1, |x|)
+RESIDUAL = 1e-9  # a y this much smaller than the terms it is the sum of is zero
+ROUNDING = 1e-13  # so is one this much smaller than the largest x, or than one
 SWEEPS = 3
 
 Array = NDArray[np.float64]
@@ -68,7 +69,7 @@ def solve_lcp(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> int:
     """
     status = lemke(A, b, n, work, out_x)
     if status == OK:
-        if _is_trivial(b, n) or _residual(n, work) <= RESIDUAL:
+        if _is_trivial(b, n) or _is_solution(n, work):
             return OK
         status = INEXACT
     if n <= ENUMERATED_SIZE and enumerate_lcp(A, b, n, work, out_x) == OK:
@@ -99,7 +100,7 @@ def enumerate_lcp(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> in
         for i in range(n):
             work.is_active[i] = (chosen >> i) & 1
         _solve_active(n, work)
-        if _residual(n, work) <= RESIDUAL:
+        if _is_solution(n, work):
             _unscale(n, magnitude, work, out_x)
             return OK
     for i in range(n):
@@ -110,7 +111,7 @@ def enumerate_lcp(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> in
 @kernel
 def _is_trivial(b: Array, n: int) -> bool:
     """True when x = 0 solves the problem."""
-    for i in range(n):
+    for i in range(n):  # noqa: SIM110 - no generators in kernels
         if not b[i] >= 0.0:
             return False
     return True
@@ -197,19 +198,21 @@ def _unscale(n: int, magnitude: float, work: LcpWork, out_x: Array) -> None:
 
 
 @kernel
-def _residual(n: int, work: LcpWork) -> float:
-    """Largest |min(x_i, y_i)| of the scaled trial over max(1, |x|); inf when something is not a number."""
-    worst, largest = 0.0, 1.0
+def _is_solution(n: int, work: LcpWork) -> bool:
+    """True when the scaled trial solves the problem; each y_i is judged by the terms it is the sum of."""
+    floor = 1.0
     for i in range(n):
-        y = work.load[i]
+        floor = max(floor, abs(work.trial[i]))
+    for i in range(n):
+        y, terms = work.load[i], abs(work.load[i])
         for j in range(n):
-            y += work.matrix[i, j] * work.trial[j]
-        natural = abs(min(work.trial[i], y))
-        if not math.isfinite(natural) or not math.isfinite(work.trial[i]):
-            return math.inf
-        worst = max(worst, natural)
-        largest = max(largest, abs(work.trial[i]))
-    return worst / largest
+            term = work.matrix[i, j] * work.trial[j]
+            y += term
+            terms += abs(term)
+        allowed = RESIDUAL * terms + ROUNDING * floor
+        if not math.isfinite(terms) or work.trial[i] < 0.0 or y < -allowed or (work.trial[i] > 0.0 and y > allowed):
+            return False
+    return True
 
 
 @kernel
@@ -303,7 +306,7 @@ def _solve_basis(n: int, work: LcpWork) -> None:
     for row in range(n):
         if n <= work.basis[row] < 2 * n:
             work.is_active[work.basis[row] - n] = 1
-    if _solve_active(n, work) and _residual(n, work) <= RESIDUAL:
+    if _solve_active(n, work) and _is_solution(n, work):
         return
     for row in range(n):
         if n <= work.basis[row] < 2 * n:

@@ -25,6 +25,7 @@ SAMPLES_PER_BREAK = 8  # more where a step spans several pieces of the curve, so
 STRAIGHT = 1e6  # an arc of a radius above this many chords is a line: its rise is below 1.3e-7 of the chord
 GOOD = 0.7  # a step whose deviation lies between GOOD and 1 times the tolerance is taken
 TRIES = 8  # at most so many attempts to reach that band
+NOTHING = 1e-5  # of the tolerance: edges shorter than that are left out
 SHORTEST = 1e-9  # of the parameter range: at a cusp the step shrinks no further
 
 
@@ -56,7 +57,7 @@ def fit_arcs(curve: Curve, breaks: Sequence[float], tolerance: float) -> Fit:
     worst = 0.0
     while here.t < stop:
         there, piece, deviation = _longest_step(curve, here, step, inner, tolerance)
-        edges.extend(piece)
+        edges.extend(edge for edge in piece if edge.length > NOTHING * tolerance)
         worst = max(worst, deviation)
         step = 1.1 * (there.t - here.t)
         here = there
@@ -73,8 +74,8 @@ def _longest_step(curve: Curve, here: _Knot, step: float, breaks: Array, toleran
         # A remainder too small to matter is taken along: no sliver at the end.
         t = stop if here.t + 1.01 * step >= stop else here.t + step
         there = _knot(curve, t, breaks)
-        edges = biarc(here.at, here.tangent, there.at, there.tangent)
-        deviation = _deviation(curve, here, there, edges, breaks)
+        edges = _candidate(here, there, tolerance)
+        deviation = _deviation(curve, here, there, edges, breaks) if edges else math.inf
         tries += 1
         if deviation <= tolerance:
             best = (there, edges, deviation)
@@ -83,9 +84,18 @@ def _longest_step(curve: Curve, here: _Knot, step: float, breaks: Array, toleran
         elif best is not None and tries >= TRIES:
             return best
         if t - here.t <= smallest:
-            return there, [Line(*here.at, *there.at)], _deviation(curve, here, there, [], breaks)
+            chord: Edge = Line(*here.at, *there.at)
+            return there, [chord], _deviation(curve, here, there, [chord], breaks)
         change = (0.9 * tolerance / deviation) ** (1.0 / 3.0) if deviation > 0.0 else 4.0
         step = (t - here.t) * min(max(change, 0.2), 4.0)
+
+
+def _candidate(here: _Knot, there: _Knot, tolerance: float) -> list[Edge]:
+    """A biarc; within a tolerance from end to end also a line: where the curve pauses or turns back it has no tangent."""
+    edges = biarc(here.at, here.tangent, there.at, there.tangent)
+    if not edges and math.dist(here.at, there.at) <= tolerance:
+        return [Line(*here.at, *there.at)]
+    return edges
 
 
 def biarc(p: Point, tangent_p: Point, q: Point, tangent_q: Point) -> list[Edge]:
@@ -103,6 +113,8 @@ def biarc(p: Point, tangent_p: Point, q: Point, tangent_q: Point) -> list[Edge]:
         return []
     d = vv / root
     joint = (0.5 * (p[0] + q[0] + d * ux), 0.5 * (p[1] + q[1] + d * uy))
+    if joint in (p, q):
+        return []
     first = arc_from(p, tangent_p, joint)
     second = arc_from(q, (-tangent_q[0], -tangent_q[1]), joint).reversed()
     return [first, second]
@@ -140,7 +152,7 @@ def _limit_tangent(curve: Curve, t: float, breaks: Array) -> Point:
 
 
 def _deviation(curve: Curve, here: _Knot, there: _Knot, edges: list[Edge], breaks: Array) -> float:
-    """The largest distance between the curve from `here` to `there` and the edges (or, without edges, the chord)."""
+    """The largest distance between the curve from `here` to `there` and one line or the two arcs of a biarc."""
     inside = breaks[np.searchsorted(breaks, here.t, "right") : np.searchsorted(breaks, there.t, "left")]
     stations = np.concatenate(([here.t], inside, [there.t]))
     count = max(SAMPLES // (len(stations) - 1), SAMPLES_PER_BREAK)
@@ -149,8 +161,8 @@ def _deviation(curve: Curve, here: _Knot, there: _Knot, edges: list[Edge], break
     points, _ = curve(t)
     if not np.all(np.isfinite(points)):
         return math.inf
-    if not edges:
-        return float(np.max(_distances(points, Line(*here.at, *there.at))))
+    if len(edges) == 1:
+        return _peak(_distances(points, edges[0]))
     if any(isinstance(edge, Arc) and abs(edge.sweep) > math.pi for edge in edges):
         return math.inf
     (jx, jy), (tx, ty) = edges[0].end, edges[1].tangent(0.0)

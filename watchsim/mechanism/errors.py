@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """One thing that must be mended. `shown` follows the key: the value seen (" = 28800") or the file it names (" -> a.dxf")."""
+    """One thing that must be mended; `shown` follows the key: the value seen (" = 28800") or a file (" -> a.dxf")."""
 
     key: str
     message: str
@@ -20,7 +20,8 @@ class Fault:
 
     def __str__(self) -> str:
         heading = f"{self.place}  {self.key}{self.shown}".rstrip()
-        return "\n  ".join([heading, *self.message.splitlines()])
+        message = self.message if self.message.endswith((".", "?")) else f"{self.message}."
+        return "\n  ".join([heading, *message.splitlines()])
 
 
 class SceneError(ValueError):

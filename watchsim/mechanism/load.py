@@ -6,19 +6,20 @@ Everything is read before anything is refused: one SceneError lists all faults w
 from __future__ import annotations
 
 import hashlib
+import re
 import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from watchsim.mechanism.bodies import read_bodies
-from watchsim.mechanism.contacts import read_contacts
 from watchsim.mechanism.errors import Fault, Faults, SceneError
-from watchsim.mechanism.forces import read_damping, read_springs, read_torques
 from watchsim.mechanism.locate import key_lines
+from watchsim.mechanism.read_bodies import read_bodies
+from watchsim.mechanism.read_contacts import read_contacts
+from watchsim.mechanism.read_forces import read_damping, read_springs, read_torques
+from watchsim.mechanism.read_settings import read_expectations, read_heading, read_lift_angle, read_run
 from watchsim.mechanism.scene import Scene
 from watchsim.mechanism.schema import LOCK, SECTIONS, nearest
-from watchsim.mechanism.settings import read_expectations, read_heading, read_lift_angle, read_run
 from watchsim.mechanism.table import Table
 
 if sys.version_info >= (3, 11):
@@ -34,8 +35,7 @@ def load(path: str | Path) -> Scene:
     try:
         mapping = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        message = f"not valid TOML: {error}. Texts and quantities stand in quotes, plain numbers and lists do not"
-        raise SceneError([Fault("", message, place=str(path))]) from error
+        raise SceneError([_syntax_fault(path, text, str(error))]) from error
     return from_mapping(mapping, path, Faults(str(path), key_lines(text)))
 
 
@@ -86,6 +86,15 @@ def _text(path: Path) -> str:
     raise SceneError([Fault("", message, place=str(path))])
 
 
+def _syntax_fault(path: Path, text: str, complaint: str) -> Fault:
+    """TOML's own complaint, its line moved to where all faults have it."""
+    found = re.search(r" \(at line (\d+), column \d+\)", complaint)
+    line = int(found[1]) if found else len(text.splitlines())
+    what = re.sub(r" \(at .*\)", "", complaint)
+    message = f"not valid TOML: {what}. Texts and quantities stand in quotes; plain numbers, true, false and lists do not"
+    return Fault("", message, place=f"{path}:{line}")
+
+
 def _note_sections(mapping: Mapping[str, Any], faults: Faults) -> None:
     for section in mapping:
         if section not in SECTIONS:
@@ -103,7 +112,9 @@ def _check_lock(mapping: Mapping[str, Any], folder: Path, faults: Faults) -> Non
     for name, digest in digests.items() if isinstance(digests, dict) else ():
         path = folder / name
         if path.is_file() and file_digest(path) != digest:
-            faults.add(f"lock.drawings.{name}", "the drawing was changed after this scene was locked. Load the original scene file")
+            faults.add(
+                f"lock.drawings.{name}", "the drawing was changed after this scene was locked. Load the original scene file"
+            )
 
 
 def file_digest(path: Path) -> str:

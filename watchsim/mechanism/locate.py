@@ -9,7 +9,9 @@ from __future__ import annotations
 import re
 
 _STRING = r'"""(?:\\.|[^\\])*?"""|\'\'\'.*?\'\'\'|"(?:\\.|[^"\\\n])*"|\'[^\'\n]*\''
-_TOKEN = re.compile(rf"(?P<comment>#[^\n]*)|(?P<string>{_STRING})|(?P<newline>\n)|(?P<mark>[\[\]{{}}=,.])|(?P<bare>[^\s\[\]{{}}=,.#\"']+)", re.S)
+_TOKEN = re.compile(
+    rf"(?P<comment>#[^\n]*)|(?P<string>{_STRING})|(?P<newline>\n)|(?P<mark>[\[\]{{}}=,.])|(?P<bare>[^\s\[\]{{}}=,.#\"']+)", re.S
+)
 
 
 def key_lines(text: str) -> dict[str, int]:

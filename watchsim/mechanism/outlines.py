@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-import os
+import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -17,6 +17,7 @@ from watchsim.mechanism.schema import SHAPES, nearest
 from watchsim.mechanism.shapes import shape_loops
 from watchsim.mechanism.table import NAN, UNREADABLE, Table
 
+_SETTING = re.compile(r'(\b[Ss]et \w+ = "[^"]*"(?: \(or "[^"]*"\))?)')  # the reader does not know whose drawing it reads
 SAME_POINT = 1e-9  # m; two circles on the pivot layer this close mark one pivot
 
 
@@ -56,10 +57,11 @@ def read_outlines(table: Table, folder: Path) -> Outlines:
 
 def _from_drawing(table: Table, folder: Path) -> Outlines:
     drawing = _open(table, folder)
-    if drawing is None:
-        return Outlines(pivot=_given_pivot(table), sound=False)
     known = len(table.faults.found)
-    pivot = _marked_pivot(table, drawing) if isinstance(table.mapping.get("pivot"), str) else _given_pivot(table)
+    marked = isinstance(table.mapping.get("pivot"), str)
+    if drawing is None:
+        return Outlines(pivot=UNREADABLE if marked else _given_pivot(table), sound=False)
+    pivot = _marked_pivot(table, drawing) if marked else _given_pivot(table)
     layers = _layers(table, drawing)
     findings = tuple(_sorted_out(table, drawing, layers))
     closed = [loop for loop in drawing.loops if loop.closed]
@@ -69,23 +71,30 @@ def _from_drawing(table: Table, folder: Path) -> Outlines:
 
 
 def _open(table: Table, folder: Path) -> Drawing | None:
-    path = folder / table.text("drawing")
+    name = table.text("drawing")
+    if not name:
+        if table.mapping["drawing"] == "":
+            table.fault("drawing", "the name of a file is needed here", with_value=True)
+        return None
+    path = folder / name
     snap = table.positive("snap", "it is the gap that may be closed") if "snap" in table else 1e-6
     units = table.text("units") or None
     if not path.is_file() or math.isnan(snap):
         if not path.is_file():
-            table.fault("drawing", f"there is no such file{_similar(path)}. Looked for {path}", with_value=True)
+            table.fault("drawing", f"there is no such file{_similar(path)} (looked for {path})", with_value=True)
         return None
     try:
         stamp = path.stat()
-        return _read(path, units, snap, (stamp.st_mtime_ns, stamp.st_size))
-    except (OSError, ValueError) as error:
-        table.faults.add(f"{table.path}.drawing", f"cannot be read: {error}", _arrow(path))
-        return None
+        return cached_drawing(path, units, snap, (stamp.st_mtime_ns, stamp.st_size))
+    except ValueError as error:
+        table.fault("units" if "units" in table else "drawing", str(error), with_value=True)
+    except OSError as error:
+        table.faults.add(f"{table.path}.drawing", f"cannot be read: {error.strerror or error}", _arrow(path))
+    return None
 
 
 @lru_cache(maxsize=64)
-def _read(path: Path, units: str | None, snap: float, _stamp: tuple[int, int]) -> Drawing:
+def cached_drawing(path: Path, units: str | None, snap: float, _stamp: tuple[int, int]) -> Drawing:
     """Read once per version of the file: a parameter study loads the same scene thousands of times."""
     from watchsim.drawing.read import read
 
@@ -96,8 +105,8 @@ def _similar(path: Path) -> str:
     """' Did you mean ...?' with the drawings that lie in the folder."""
     if not path.parent.is_dir():
         return f", nor the folder {path.parent}"
-    there = sorted(name for name in os.listdir(path.parent) if name.lower().endswith((".dxf", ".svg")))
-    return f'. {nearest(path.name, there)}'.removesuffix(".") if there else ""
+    there = sorted(file.name for file in path.parent.iterdir() if file.suffix.lower() in (".dxf", ".svg"))
+    return f". {nearest(path.name, there)}".removesuffix(".") if there else ""
 
 
 def _layers(table: Table, drawing: Drawing) -> tuple[str, ...]:
@@ -129,16 +138,20 @@ def _hint(word: str, known: Iterable[str]) -> str:
 
 
 def _sorted_out(table: Table, drawing: Drawing, layers: tuple[str, ...]) -> Iterator[Finding]:
-    """Notes the drawing's errors that concern this body as faults and hands on everything else."""
+    """Notes the drawing's errors that concern this body as faults and hands on its warnings.
+
+    Where layers were chosen, the others may be as they like; where none were, all must be sound but the pivot's.
+    """
     pivot = table.mapping.get("pivot")
     for finding in drawing.findings:
-        elsewhere = finding.layer is not None and finding.layer not in layers and ("layers" in table or finding.layer == pivot)
-        if finding.severity == "error" and not elsewhere:
-            text = f"{finding.message.rstrip('.')}. {finding.fix}".strip()
+        if finding.layer is not None and finding.layer not in layers and ("layers" in table or finding.layer == pivot):
+            continue
+        if finding.severity == "error":
+            fix = _SETTING.sub(rf"\1 under [{table.path}]", finding.fix)
+            text = f"{finding.message.rstrip('.')}. {fix}".strip()
             table.faults.add(f"{table.path}.drawing", text, _arrow(drawing.path, finding.layer))
         else:
-            severity = "warning" if finding.severity == "error" else finding.severity
-            yield replace(finding, severity=severity, message=f"{table.path}, {drawing.path.name}: {finding.message}")
+            yield replace(finding, message=f"{drawing.path.name}: {finding.message}")
 
 
 def _given_pivot(table: Table) -> Point | None:

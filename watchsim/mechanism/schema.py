@@ -87,7 +87,7 @@ def key_at(path: tuple[str, ...]) -> Key | None:
         if rest[1] == "solids" and len(rest) >= 4:
             return SOLID.get(rest[3])
         return NAMED[section].get(rest[1])
-    return LISTED[section].get(rest[1]) if rest[0].isdigit() else None
+    return LISTED[section].get(rest[1])
 
 
 def siblings(path: tuple[str, ...]) -> tuple[str, ...]:

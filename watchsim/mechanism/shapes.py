@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import pairwise
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import TURN, Arc, Line, Point
@@ -69,7 +70,7 @@ def signed_area(points: Sequence[Point]) -> float:
     """Area of the polygon in m², positive when it runs counter-clockwise."""
     x0, y0 = points[0]
     local = [(x - x0, y - y0) for x, y in points]
-    return 0.5 * sum(a[0] * b[1] - b[0] * a[1] for a, b in zip(local, local[1:], strict=False))
+    return 0.5 * sum(a[0] * b[1] - b[0] * a[1] for a, b in pairwise(local))
 
 
 def first_crossing(points: Sequence[Point]) -> tuple[int, int] | None:

@@ -13,6 +13,7 @@ from typing import Any
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.errors import Faults
 from watchsim.mechanism.schema import UNSUPPORTED, Keys, nearest
+from watchsim.mechanism.toml import value_text
 from watchsim.units import NUMBER, Dimension, UnitError, parse
 
 NAN = math.nan
@@ -21,11 +22,9 @@ UNREADABLE: Point = (NAN, NAN)
 
 def shown(value: object) -> str:
     """' = value' as it stands in the file, shortened."""
-    if isinstance(value, str):
-        text = f'"{value}"'
-    elif isinstance(value, bool):
-        text = "true" if value else "false"
-    else:
+    try:
+        text = value_text(value)
+    except TypeError:
         text = repr(value)
     return f" = {text if len(text) <= 60 else text[:57] + '...'}"
 
@@ -94,10 +93,11 @@ class Table:
         return self.parsed(key, self.mapping[key], self.dimension(key)) if key in self else default
 
     def positive(self, key: str, why: str) -> float:
-        """A quantity that must be above zero."""
+        """A quantity that must be above zero; NaN where it is not."""
         value = self.quantity(key, NAN)
         if value <= 0.0:
             self.fault(key, f"must be above zero: {why}", with_value=True)
+            return NAN
         return value
 
     def pair(self, key: str, default: Point = (0.0, 0.0)) -> Point:
@@ -106,7 +106,9 @@ class Table:
     def point(self, path: str, value: object, dimension: Dimension) -> Point:
         """Two numbers in a list, at `path` below this table."""
         if not isinstance(value, (list, tuple)) or len(value) != 2:
-            self.faults.add(f"{self.path}.{path}", f"two values are needed here, such as {_pair_example(dimension)}", shown(value))
+            self.faults.add(
+                f"{self.path}.{path}", f"two values are needed here, such as {_pair_example(dimension)}", shown(value)
+            )
             return UNREADABLE
         first, second = (self.parsed(f"{path}.{i}", item, dimension) for i, item in enumerate(value))
         return (first, second)
@@ -115,7 +117,7 @@ class Table:
         try:
             return parse(value, dimension)
         except UnitError as error:
-            self.faults.add(f"{self.path}.{path}", f"{error}.", shown(value))
+            self.faults.add(f"{self.path}.{path}", str(error), shown(value))
             return NAN
 
 

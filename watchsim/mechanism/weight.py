@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from watchsim.geometry.loop import Loop
+from watchsim.geometry.mass import mass_properties
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.outlines import Outlines
 from watchsim.mechanism.schema import SOLID
@@ -46,7 +47,7 @@ class Inertias:
 
 def read_inertias(table: Table, motion: str, outlines: Outlines) -> Inertias:
     """Mass and inertia from the keys of a body or from its solids; a moving body without is a fault."""
-    weight = _weight(table, outlines)
+    weight = _weight(table, motion, outlines)
     _note_conflicts(table, motion, outlines)
     origin = outlines.pivot or ((weight.centre if weight else (0.0, 0.0)) if motion == "free" else (0.0, 0.0))
     mass = table.quantity("mass", weight.mass if weight else 0.0)
@@ -57,16 +58,16 @@ def read_inertias(table: Table, motion: str, outlines: Outlines) -> Inertias:
     return inertias
 
 
-def _weight(table: Table, outlines: Outlines) -> Weight | None:
-    """From the solids; else, a uniform plate of the outlines with the mass that was given (or any, for the centre)."""
+def _weight(table: Table, motion: str, outlines: Outlines) -> Weight | None:
+    """From the solids; else, where the motion asks for it, a uniform plate of the outlines with the mass that was given."""
     if "solids" in table:
         return _solids(table, outlines)
     closed = tuple(loop for loop in outlines.loops if loop.closed)
-    if not closed or not outlines.sound:
+    wanted = motion == "free" or (motion == "pivot" and "mass" in table)
+    if not closed or not outlines.sound or not wanted:
         return None
-    plate = plate_weight(closed, 1.0, 1.0)
-    mass = table.quantity("mass") if "mass" in table else 0.0
-    return plate.scaled(mass) if plate.mass > 0.0 else None
+    plate = _plate(table, closed, 1.0, 1.0)
+    return plate.scaled(table.quantity("mass")) if plate else None
 
 
 def _solids(table: Table, outlines: Outlines) -> Weight | None:
@@ -77,8 +78,8 @@ def _solids(table: Table, outlines: Outlines) -> Weight | None:
         density = solid.positive("density", "steel has 7.85 g/cm³") if _has(solid, "density", "7.85 g/cm³") else 0.0
         loops = _layer_loops(solid, outlines)
         if loops and thickness > 0.0 and density > 0.0:
-            part = plate_weight(loops, thickness, density)
-            total = total.joined(part) if total else part
+            part = _plate(solid, loops, thickness, density)
+            total = total.joined(part) if total and part else part or total
     return total
 
 
@@ -100,12 +101,14 @@ def _layer_loops(solid: Table, outlines: Outlines) -> tuple[Loop, ...]:
     return loops
 
 
-def plate_weight(loops: tuple[Loop, ...], thickness: float, density: float) -> Weight:
+def _plate(table: Table, loops: tuple[Loop, ...], thickness: float, density: float) -> Weight | None:
     """Mass properties of a plate with those outlines (holes taken out)."""
-    from watchsim.geometry.mass import mass_properties
-
-    found = mass_properties(loops, thickness, density)
-    return Weight(found.mass, found.centroid, found.inertia)
+    try:
+        found = mass_properties(loops, thickness, density)
+    except ValueError as error:
+        table.fault("", str(error))
+        return None
+    return Weight(found.mass, found.centre, found.inertia_about(found.centre))
 
 
 def _shape_inertia(weight: Weight | None, motion: str, origin: Point) -> float:

@@ -14,10 +14,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from watchsim.render.colours import Palette
+
 Pixels = NDArray[np.uint8]
 
 ENDINGS = (".mp4", ".gif")
-COLOURS = 64
 
 
 def check_path(path: str | os.PathLike[str]) -> Path:
@@ -32,31 +33,28 @@ def check_path(path: str | os.PathLike[str]) -> Path:
     return target
 
 
-def encode(frames: Iterable[Pixels], path: Path, size: tuple[int, int], fps: float, palette: Pixels | None = None) -> None:
-    """Write frames, each (height, width, 4) 8-bit RGBA, as MP4 or (with a `palette`, see `shared_palette`) as GIF.
+def encode(frames: Iterable[Pixels], path: Path, size: tuple[int, int], fps: float, palette: Palette | None = None) -> None:
+    """Write frames, each (height, width, 4) 8-bit RGBA, as MP4 or, with a `palette`, as GIF.
 
     OSError with the encoder's own words where it fails; the destination then is as it was before.
     """
     scratch = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix.lower()}")
-    colours = scratch.with_suffix(".ppm")
+    raw = (np.ascontiguousarray(frame).data for frame in frames) if palette is None else map(palette.indexed, frames)
     try:
-        if palette is not None:
-            colours.write_bytes(b"P6 16 16 255\n" + palette.tobytes())
-        _run(_command(scratch, size, fps, None if palette is None else colours), frames, path)
-        os.replace(scratch, path)
+        _run(_command(scratch, size, fps, palette is not None), raw, path)
+        scratch.replace(path)
     finally:
         scratch.unlink(missing_ok=True)
-        colours.unlink(missing_ok=True)
 
 
-def _command(scratch: Path, size: tuple[int, int], fps: float, colours: Path | None) -> list[str]:
+def _command(scratch: Path, size: tuple[int, int], fps: float, gif: bool) -> list[str]:
     from imageio_ffmpeg import get_ffmpeg_exe
 
-    source = ["-f", "rawvideo", "-pix_fmt", "rgba", "-s", f"{size[0]}x{size[1]}", "-r", f"{fps:.6f}", "-i", "-"]
+    layout = "pal8" if gif else "rgba"
+    source = ["-f", "rawvideo", "-pix_fmt", layout, "-s", f"{size[0]}x{size[1]}", "-r", f"{fps:.6f}", "-i", "-"]
     head = [get_ffmpeg_exe(), "-y", "-nostdin", "-hide_banner", "-loglevel", "error", *source]
-    if colours is not None:
-        reduce = "[0:v][1:v]paletteuse=dither=none:diff_mode=rectangle"
-        return [*head, "-i", str(colours), "-lavfi", reduce, "-loop", "0", str(scratch)]
+    if gif:
+        return [*head, "-loop", "0", str(scratch)]
     # High definition is BT.709; untagged files show their colours differently from player to player.
     convert = ["-vf", "scale=out_color_matrix=bt709:out_range=tv,format=yuv420p"]
     tags = ["-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709"]
@@ -64,13 +62,13 @@ def _command(scratch: Path, size: tuple[int, int], fps: float, colours: Path | N
     return [*head, "-an", *convert, *quality, *tags, "-movflags", "+faststart", str(scratch)]
 
 
-def _run(command: list[str], frames: Iterable[Pixels], path: Path) -> None:
+def _run(command: list[str], frames: Iterable[bytes | memoryview], path: Path) -> None:
     """Feed the encoder; its own session keeps a Ctrl-C meant for us from cutting it off unnoticed."""
     with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True) as process:
         assert process.stdin is not None and process.stderr is not None
         try:
             for frame in frames:
-                process.stdin.write(np.ascontiguousarray(frame).data)
+                process.stdin.write(frame)
             process.stdin.close()
         except BrokenPipeError:
             pass  # the encoder died; what it said is told below
@@ -86,21 +84,3 @@ def _reason(words: str) -> str:
     lines = [line.strip() for line in words.splitlines() if line.strip()]
     telling = [line for line in lines if "No space left" in line or "denied" in line or "File too large" in line]
     return (telling or lines or ["the encoder stopped without a word"])[0]
-
-
-def shared_palette(samples: Iterable[Pixels]) -> Pixels:
-    """(256, 3): one palette of 64 colours for all frames, the rest repeats.
-
-    Colours count by the root of their area, so that a ruby of a few pixels keeps its red beside a large pale ground.
-    """
-    from PIL import Image
-
-    seen = np.concatenate([sample[..., :3].reshape(-1, 3) for sample in samples])
-    colours, counts = np.unique(seen, axis=0, return_counts=True)
-    weights = np.ceil(np.sqrt(counts)).astype(int)
-    strip = np.repeat(colours, np.minimum(weights, 400), axis=0)
-    image = Image.fromarray(strip[None]).quantize(COLOURS, method=Image.Quantize.MEDIANCUT, kmeans=3)
-    palette = np.array(image.getpalette()[: 3 * COLOURS], dtype=np.uint8).reshape(-1, 3)
-    flat = colours[np.argsort(-counts)][: COLOURS // 4]  # the plain faces, exactly
-    palette[: len(flat)], rest = flat, palette[: len(palette)]
-    return np.resize(np.concatenate((flat, rest)), (256, 3)).astype(np.uint8)

@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 
 from watchsim.mechanism.body import Body
 from watchsim.render.lettering import Lettering
-from watchsim.render.palette import BACKGROUND, FAINT, INK, Finish, body_finish
-from watchsim.render.poses import Window, moving, swept
+from watchsim.render.palette import BACKGROUND, FAINT, GRID, INK, Finish, body_finish
+from watchsim.render.poses import Window, sampled
 from watchsim.render.readouts import Clock, clock, reading, scale_bar, speed_text
 from watchsim.render.view import Frame
 from watchsim.simulation.trajectory import Trajectory
@@ -30,6 +30,7 @@ Pixels = NDArray[np.uint8]
 
 TITLE, TIME, SMALL = 19.0, 24.0, 15.0  # text sizes in pixels at 1280 × 720
 PAD, GAP = 24.0, 30.0
+CHIP = 0.85  # of the text size: the side of a coloured square
 BAR = 0.16  # of the width: the longest scale bar
 SMALLEST = 9.0  # pixels; smaller text cannot be read
 
@@ -77,7 +78,7 @@ def lay_out(figure: Figure, run: Trajectory, window: Window, speed: float | None
     if speed is not None:
         top += 1.3 * small.size
         _words(figure, speed_text(speed), (width - PAD * unit, height - top + 0.3 * small.size), small.size, FAINT, ha="right")
-    readings, bottom = _readings(figure, run, window, small, unit)
+    readings, bottom = _readings(figure, run, window, small)
     frame = Frame(0.0, bottom, width, height - top - bottom)
     return Layout(frame, told, step, time, (round(width - PAD * unit), baseline), small, readings)
 
@@ -99,15 +100,22 @@ def draw_scale(figure: Figure, scale: float) -> None:
     _words(figure, name, (0.5 * (left + right), base + 2.0 * tick), max(SMALL * unit, SMALLEST), INK, ha="center")
 
 
+def draw_rules(figure: Figure, frame: Frame) -> None:
+    """Hairlines along the frame, for a picture that cuts bodies off there."""
+    for y in (frame.bottom, frame.bottom + frame.height):
+        ends = [frame.left, frame.left + frame.width]
+        figure.add_artist(Line2D(ends, [y, y], color=GRID, linewidth=max(_unit(figure), 0.7), transform=IdentityTransform()))
+
+
 def _unit(figure: Figure) -> float:
     """Size of everything drawn, relative to a picture of 1280 × 720 pixels."""
     return min(max(min(figure.bbox.width / 1280.0, figure.bbox.height / 720.0), 0.4), 4.0)
 
 
-def _words(
-    figure: Figure, words: str, place: tuple[float, float], size: float, colour: str, ha: str = "left", weight: str = "normal"
-) -> Text:
-    text = Text(*place, words, color=colour, fontsize=size, ha=ha, weight=weight, transform=IdentityTransform(), parse_math=False)
+def _words(figure: Figure, words: str, place: tuple[float, float], size: float, colour: str, **style: str) -> Text:
+    """Text at a place in pixels; `style` may hold `ha` and `weight`."""
+    text = Text(*place, words, color=colour, fontsize=size, transform=IdentityTransform(), parse_math=False)
+    text.set(**style)
     figure.add_artist(text)
     return text
 
@@ -124,53 +132,52 @@ def _title(figure: Figure, title: str, place: tuple[float, float], room: float) 
         text.set_text(f"{title}…" if title else "")
 
 
-def _readings(
-    figure: Figure, run: Trajectory, window: Window, small: Lettering, unit: float
-) -> tuple[tuple[Reading, ...], float]:
+@dataclass(frozen=True)
+class _Cell:
+    """A name and a value on their way to a place: `x` in pixels, `row` from the top of the rows, `taken` pixels wide."""
+
+    body: Body
+    name: Text
+    tell: Callable[[Array], str]
+    look: Finish
+    x: float
+    row: int
+    taken: float
+
+
+def _readings(figure: Figure, run: Trajectory, window: Window, small: Lettering) -> tuple[tuple[Reading, ...], float]:
     """Rows of name and value from the bottom left, and the height they take."""
+    unit = _unit(figure)
     line, left, limit = 1.55 * small.size, PAD * unit, figure.bbox.width * (1.0 - BAR) - (PAD + GAP) * unit
-    x, row, cells = left, 0, []
+    cells: list[_Cell] = []
+    x, row = left, 0
     for rank, body in enumerate(run.scene.bodies):
         if body.name not in run.slices:
             continue
-        tell, ends = reading(body, swept(run, body, window))
+        tell, ends = reading(body, sampled(run, body, window))
         name = _words(figure, body.name, (0.0, 0.0), small.size, INK)
-        chip = 0.85 * small.size
-        value = max(small.width(text) for text in ends) + 0.2 * small.size
-        taken = 1.5 * chip + _width(name) + 0.6 * small.size + value
+        taken = 1.5 * CHIP * small.size + _width(name) + 0.8 * small.size + max(small.width(text) for text in ends)
         if x > left and x + taken > limit:
             x, row = left, row + 1
-        cells.append((body, name, tell, x, row, taken, body_finish(body, rank)))
+        cells.append(_Cell(body, name, tell, body_finish(body, rank), x, row, taken))
         x += taken + GAP * unit
-    readings = []
-    for body, name, tell, x, row, taken, look in cells:
-        base = PAD * unit + (max(cell[4] for cell in cells) - row) * line
-        readings.append(_cell(figure, body, name, tell, (x, base), taken, look, small.size))
-    rows = 1 + max((cell[4] for cell in cells), default=0)
-    return tuple(readings), 1.6 * PAD * unit + rows * line
+    placed = tuple(_place(figure, cell, round(PAD * unit + (row - cell.row) * line), small.size) for cell in cells)
+    return placed, 1.6 * PAD * unit + (row + 1) * line
 
 
-def _cell(
-    figure: Figure,
-    body: Body,
-    name: Text,
-    tell: Callable[[Array], str],
-    place: tuple[float, float],
-    taken: float,
-    look: Finish,
-    size: float,
-) -> Reading:
-    (x, base), chip = (round(place[0]), round(place[1])), 0.85 * size
+def _place(figure: Figure, cell: _Cell, base: int, size: float) -> Reading:
+    """Put a cell's coloured chip and name on the figure, on a baseline `base` pixels above the bottom."""
+    x, chip = round(cell.x), CHIP * size
     box = FancyBboxPatch(
         (x, base - 0.05 * size),
         chip,
         chip,
         boxstyle=f"round,pad=0,rounding_size={0.2 * size}",
-        facecolor=look.fill,
-        edgecolor=look.edge,
+        facecolor=cell.look.fill,
+        edgecolor=cell.look.edge,
         linewidth=max(0.06 * size, 0.7),
         transform=IdentityTransform(),
     )
     figure.add_artist(box)
-    name.set_position((x + 1.5 * chip, base))
-    return Reading(body.name, tell, round(x + taken), base)
+    cell.name.set_position((x + 1.5 * chip, base))
+    return Reading(cell.body.name, cell.tell, round(x + cell.taken), base)

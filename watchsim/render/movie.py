@@ -16,8 +16,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.render.contacts import contact_points
-from watchsim.render.encoder import check_path, encode, shared_palette
+from watchsim.render.colours import shared_palette
+from watchsim.render.contacts import ContactMarks
+from watchsim.render.encoder import check_path, encode
 from watchsim.render.poses import Window, poses, stretch
 from watchsim.render.stage import Stage
 from watchsim.simulation.trajectory import Trajectory
@@ -44,6 +45,7 @@ def movie(
     path: str | os.PathLike[str],
     window: Sequence[float] | None = None,
     speed: float = 1.0,
+    *,
     fps: float | None = None,
     size: tuple[int, int] | None = None,
     contacts: bool = False,
@@ -67,10 +69,10 @@ def movie(
     """
     target = check_path(path)
     gif = target.suffix.lower() == ".gif"
-    span = stretch(run, window)
+    span = stretch(run, window, unbroken=True)
     plan = _plan(span, speed, fps if fps is not None else (GIF_FPS if gif else MP4_FPS), gif)
     pixels = _even(size if size is not None else (GIF_SIZE if gif else MP4_SIZE))
-    stage = Stage(run, pixels, span, zoom, turn, speed, speed / plan.fps)
+    stage = Stage(run, pixels, span, zoom=zoom, turn=turn, speed=speed, step=speed / plan.fps)
     palette = None
     if gif:
         sampled = plan.times[np.unique(np.linspace(0, len(plan.times) - 1, SAMPLES).astype(int))]
@@ -84,6 +86,7 @@ def frame(
     t: float,
     size: tuple[int, int] = MP4_SIZE,
     window: Sequence[float] | None = None,
+    *,
     contacts: bool = False,
     zoom: Sequence[str] | None = None,
     turn: float | None = None,
@@ -92,7 +95,7 @@ def frame(
     span = stretch(run, window)
     if not span[0] <= t <= span[1]:
         raise ValueError(f"t = {t:.9g} s lies outside {span[0]:.9g} s to {span[1]:.9g} s")
-    stage = Stage(run, _checked(size), span, zoom, turn)
+    stage = Stage(run, _checked(size), span, zoom=zoom, turn=turn)
     picture = next(_pictures(stage, run, np.array([float(t)]), contacts, None))
     return np.ascontiguousarray(picture[..., :3])
 
@@ -129,8 +132,9 @@ def _pictures(
 ) -> Iterator[Pixels]:
     """One picture after the other, each in the same memory."""
     where = poses(run, times)
+    marks = ContactMarks(run) if contacts else None
     for k, t in enumerate(times):
         frames = {name: rows[k] for name, rows in where.items()}
-        yield stage.draw(float(t), frames, contact_points(run, float(t), frames) if contacts else None)
+        yield stage.draw(float(t), frames, marks.points(float(t), frames) if marks else None)
         if progress is not None:
             progress(k + 1, len(times))

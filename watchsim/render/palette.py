@@ -30,6 +30,7 @@ STEEL = Finish("#b3bdc8", "#303841", "#35618e")
 RUBY = Finish("#c4234f", "#4a0818", "#b0183c")
 GILT = Finish("#eccf7c", "#6b5112", "#7a5c00")
 BLUED = Finish("#8296b4", "#1f2a3f", "#5b3f94")
+NIGHT = Finish("#65799a", "#1f2a3f", "#44307a")
 COPPER = Finish("#d49a78", "#56301c", "#b5532a")
 PLATE = Finish("#cfcac0", "#55524b", "#6b675e")
 
@@ -45,7 +46,7 @@ _BODIES = (
 )
 _LAYERS = (
     (("bank",), GILT),
-    (("roller", "safety", "balance"), BLUED),
+    (("roller", "balance"), BLUED),
     (("tooth", "teeth", "wheel", "rim"), BRASS),
     ((*_FORKS, "dart", "guard", "horn"), STEEL),
 )
@@ -58,6 +59,8 @@ def finish(body: Body, layer: str, rank: int = 0) -> Finish:
         return RUBY
     if "pin" in sheet and any(word in name for word in ("balance", "roller")):
         return RUBY
+    if "safety" in sheet:
+        return NIGHT  # it lies on the roller and should stand out from it
     return _match(name, _BODIES) or _match(sheet, _LAYERS) or (PLATE if body.motion == "fixed" else OTHERS[rank % len(OTHERS)])
 
 
@@ -66,5 +69,6 @@ def _match(text: str, table: tuple[tuple[tuple[str, ...], Finish], ...]) -> Fini
 
 
 def body_finish(body: Body, rank: int = 0) -> Finish:
-    """The finish that stands for a whole body in read-outs and plots."""
-    return finish(body, "", rank)
+    """The finish that stands for a whole body in read-outs and plots: that of its only layer, or the body's own."""
+    looks = {finish(body, layer, rank) for layer in body.layers}
+    return looks.pop() if len(looks) == 1 else finish(body, "", rank)

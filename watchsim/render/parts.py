@@ -138,6 +138,4 @@ def hatching(line: Array, spacing: float) -> Path:
 def is_round(body: Body) -> bool:
     """True where turning the body cannot be seen: nothing but circles about its own origin."""
     edges = [edge for loop in loops_of(body) for edge in loop.edges]
-    return bool(edges) and all(
-        isinstance(edge, Arc) and math.hypot(edge.x, edge.y) <= 1e-9 * edge.radius for edge in edges
-    )
+    return bool(edges) and all(isinstance(edge, Arc) and math.hypot(edge.x, edge.y) <= 1e-9 * edge.radius for edge in edges)

@@ -1,6 +1,6 @@
 """How do angle and velocity of every body run over time?
 
-    plot_kinematics(run, window=(19.4, 19.75)).savefig("beat.png")
+plot_kinematics(run, window=(19.4, 19.75)).savefig("beat.png")
 """
 
 from __future__ import annotations
@@ -75,11 +75,15 @@ def plot_kinematics(
     FigureCanvasAgg(figure)
     panels = figure.subplots(len(rows), len(asked), sharex=True, squeeze=False)
     looks = _looks(run)
+    t, q, u = dense(run, span)
+    told = clock(span)
     for grid_row, channel in zip(panels, rows, strict=True):
         for axes, quantity in zip(grid_row, asked, strict=True):
+            values = channel.factor * (q if quantity == "angle" else u)[:, channel.columns]
             _panel(axes, channel, quantity, looks[channel.body.name])
-    _curves(run, span, rows, asked, panels, looks)
-    _time_axis(figure, panels, run.scene.title, clock(span), span)
+            _draw(axes, (t - told.base) * told.factor, values, channel, looks[channel.body.name])
+            _limits(axes, values, quantity == "angle" and channel.units is ROTATION[0])
+    _time_axis(figure, panels, run.scene.title, told, span)
     return figure
 
 
@@ -121,23 +125,12 @@ def _panel(axes: Axes, channel: Channel, quantity: str, colour: str) -> None:
     axes.tick_params(colors=INK, labelsize=9)
 
 
-def _curves(
-    run: Trajectory, span: Window, rows: list[Channel], asked: tuple[str, ...], panels: NDArray[np.object_], looks: dict[str, str]
-) -> None:
-    t, q, u = dense(run, span)
-    told = clock(span)
-    x = (t - told.base) * told.factor
-    for grid_row, channel in zip(panels, rows, strict=True):
-        for axes, quantity in zip(grid_row, asked, strict=True):
-            values = channel.factor * (q if quantity == "angle" else u)[:, channel.columns]
-            _draw(axes, x, values, channel, looks[channel.body.name])
-            _limits(axes, values, quantity == "angle" and channel.units is ROTATION[0])
-
-
 def _draw(axes: Axes, x: Array, values: Array, channel: Channel, colour: str) -> None:
     for k in range(values.shape[1]):
         label = channel.legend[k] if channel.legend else None
-        axes.plot(x, values[:, k], color=colour if k == 0 else SECOND_COLOUR, linewidth=1.3, label=label, solid_joinstyle="round")
+        axes.plot(
+            x, values[:, k], color=colour if k == 0 else SECOND_COLOUR, linewidth=1.3, label=label, solid_joinstyle="round"
+        )
     if channel.legend:
         axes.legend(frameon=False, fontsize=9, loc="upper left", ncols=len(channel.legend), borderaxespad=0.2)
 

@@ -22,21 +22,29 @@ PATH_SAMPLES = 400
 
 
 def recorded(run: Trajectory) -> tuple[Window, ...]:
-    """The stretches of time (s) for which rows were kept, in order."""
-    first, last = float(run.t[0]), float(run.t[-1])
-    spans = ((max(first, start), min(last, stop)) for start, stop in sorted(run.scene.record))
-    return tuple(span for span in spans if span[1] > span[0]) or ((first, last),)
+    """The stretches of time (s) for which there are rows, in order."""
+    spans = []
+    for start, stop in sorted(run.scene.record):
+        rows = run.t[(run.t >= start) & (run.t <= stop)]
+        if len(rows) > 1 and rows[-1] > rows[0]:
+            spans.append((float(rows[0]), float(rows[-1])))
+    return tuple(spans) or ((float(run.t[0]), float(run.t[-1])),)
 
 
-def stretch(run: Trajectory, window: Sequence[float] | None) -> Window:
+def stretch(run: Trajectory, window: Sequence[float] | None, unbroken: bool = False) -> Window:
     """The window to draw (s): as asked, or all that was recorded.
 
-    ValueError where it is empty, reversed, or holds times that were not recorded.
+    ValueError where it is empty, reversed, or holds times that were not recorded; with `unbroken` also where nothing was
+    asked and the record has gaps.
     """
     spans = recorded(run)
-    if window is None:
-        return spans[0][0], spans[-1][1]
     kept = " and ".join(f"{start:.9g} s to {stop:.9g} s" for start, stop in spans)
+    if spans[-1][1] <= spans[0][0]:
+        raise ValueError(f"nothing to draw: the run holds only the instant {spans[0][0]:.9g} s")
+    if window is None:
+        if unbroken and len(spans) > 1:
+            raise ValueError(f"{kept} were recorded: choose a window within one of them")
+        return spans[0][0], spans[-1][1]
     try:
         start, stop = (float(value) for value in window)
     except (TypeError, ValueError):
@@ -44,9 +52,16 @@ def stretch(run: Trajectory, window: Sequence[float] | None) -> Window:
     if not start < stop:
         raise ValueError(f"window from {start:.9g} s to {stop:.9g} s is empty; give (from, to) within {kept}")
     slack = 1e-9 * (stop - start)
-    if not any(low - slack <= start and stop <= high + slack for low, high in spans):
-        raise ValueError(f"window from {start:.9g} s to {stop:.9g} s: only {kept} was recorded")
-    return start, stop
+    for low, high in (*spans, *run.scene.record):
+        if low - slack <= start and stop <= high + slack and (clipped := _clipped((start, stop), spans)):
+            return clipped
+    raise ValueError(f"window from {start:.9g} s to {stop:.9g} s: only {kept} was recorded")
+
+
+def _clipped(window: Window, spans: tuple[Window, ...]) -> Window | None:
+    """The part of the window with rows: the first row of a recorded stretch may come a step after its start."""
+    parts = [(max(window[0], low), min(window[1], high)) for low, high in spans]
+    return next((part for part in parts if part[0] < part[1]), None)
 
 
 def moving(run: Trajectory) -> tuple[Body, ...]:
@@ -92,15 +107,19 @@ def placed(points: Array, frames: Array) -> Array:
     return np.stack((x, y), axis=2)
 
 
+def sampled(run: Trajectory, body: Body, window: Window) -> Array:
+    """(m, 3) poses at some hundred instants of the window, rows among them."""
+    inside = run.t[(run.t >= window[0]) & (run.t <= window[1])]
+    thinned = inside[:: max(1, len(inside) // PATH_SAMPLES)]
+    return poses(run, np.union1d(np.linspace(*window, PATH_SAMPLES), thinned))[body.name]
+
+
 def swept(run: Trajectory, body: Body, window: Window) -> Array:
     """(m, 3) poses dense enough to tell the room the body takes within the window.
 
     A pivoted body is turned evenly through the angles it really reaches (at most one turn), others are sampled in time.
     """
-    inside = run.t[(run.t >= window[0]) & (run.t <= window[1])]
-    thinned = inside[:: max(1, len(inside) // PATH_SAMPLES)]
-    times = np.union1d(np.linspace(*window, PATH_SAMPLES), thinned)
-    frames = poses(run, times)[body.name]
+    frames = sampled(run, body, window)
     if body.motion != "pivot":
         return frames
     low, high = float(frames[:, 2].min()), float(frames[:, 2].max())

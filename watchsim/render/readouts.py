@@ -60,7 +60,7 @@ def decimals_for(step: float) -> int:
 
 
 def speed_text(speed: float) -> str:
-    """"1/20 of true speed", "true speed", "2 × true speed"."""
+    """ "1/20 of true speed", "true speed", "2 × true speed"."""
     if math.isclose(speed, 1.0, rel_tol=1e-9):
         return "true speed"
     ratio = Fraction(speed).limit_denominator(100_000)

@@ -13,14 +13,14 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
-from matplotlib.transforms import Affine2D, IdentityTransform, Transform
+from matplotlib.transforms import Affine2D, Bbox, IdentityTransform, Transform
 from numpy.typing import NDArray
 
-from watchsim.render.layout import draw_scale, lay_out
+from watchsim.render.layout import draw_rules, draw_scale, lay_out
 from watchsim.render.palette import BACKGROUND, CONTACT, INK
 from watchsim.render.parts import Part, is_round, parts
 from watchsim.render.poses import Window
-from watchsim.render.view import View, size_of, view
+from watchsim.render.view import size_of, view
 from watchsim.simulation.trajectory import Trajectory
 
 Array = NDArray[np.float64]
@@ -44,6 +44,7 @@ class Stage:
         run: Trajectory,
         size: tuple[int, int],
         window: Window,
+        *,
         zoom: Sequence[str] | None = None,
         turn: float | None = None,
         speed: float | None = None,
@@ -52,9 +53,11 @@ class Stage:
         self._figure = Figure(figsize=((size[0] + 0.5) / DPI, (size[1] + 0.5) / DPI), dpi=DPI, facecolor=BACKGROUND)
         self._canvas = FigureCanvasAgg(self._figure)
         self._unit = min(size[0] / 1280.0, size[1] / 720.0)
-        self._layout = lay_out(self._figure, run, window, speed, step or (window[1] - window[0]) / 200.0)
+        self._layout = lay_out(self._figure, run, window, speed, step or (window[1] - window[0]) / 2000.0)
         self.view = view(run, window, self._layout.frame, zoom, turn)
         draw_scale(self._figure, self.view.scale)
+        if zoom is not None or self.view.follow is not None:
+            draw_rules(self._figure, self._layout.frame)
         self._transforms = {body.name: Affine2D() for body in run.scene.bodies}
         self._patches = self._compose(run)
         self._canvas.draw()
@@ -135,7 +138,10 @@ class Stage:
         return self._own(PathPatch(rings, fill=False, edgecolor=CONTACT, linewidth=width, transform=IdentityTransform()))
 
     def _own(self, patch: PathPatch) -> PathPatch:
+        """The patch, drawn on this figure and only between the bands of words."""
+        room = self._layout.frame
         patch.set_figure(self._figure)
+        patch.set_clip_box(Bbox.from_bounds(room.left, room.bottom, room.width, room.height))
         return patch
 
 
@@ -149,4 +155,5 @@ def pose_matrix(frame: Array) -> Array:
 def _rings(points: Array, radius: float) -> Path:
     """Circles of `radius` pixels around points given in pixels."""
     circle = Path.unit_circle()
-    return Path.make_compound_path(*(Path(circle.vertices * radius + point, circle.codes) for point in points))
+    vertices = radius * np.asarray(circle.vertices)
+    return Path.make_compound_path(*(Path(vertices + point, circle.codes) for point in points))

@@ -118,7 +118,7 @@ def _accept_coupled(model, state, options, end, scratch):
     motion(model, state, options, state.clock[0], scratch.y, scratch)
     m = state.numbers[0]
     if m > 0:
-        deepest = project_positions(model, scratch.closed, m, scratch.work, state.q)
+        deepest = project_positions(model, scratch.closed, m, True, scratch.work, state.q)
         state.worst[0] = max(state.worst[0], deepest)
         project_velocities(model, scratch.closed, m, state.mode, scratch.work, state.u)
     for i in range(n):
@@ -143,11 +143,11 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
     """One smooth step up to its first event; returns (Stop code, event?)."""
     left = end_time - state.clock[0]
     flying, spacing, leave = _can_fly(model, state), math.inf, math.inf
+    proposed = state.clock[1]
     if flying:
         length, spacing = _flight_length(model, state, options)
         begin_flight(model, state, min(length, left), scratch)
     else:
-        proposed = state.clock[1]
         if not coupled_step(model, state, options, min(left, options.max_step), scratch):
             return STEP_TOO_SMALL, False
         leave = first_leave(model, state, options, scratch)
@@ -155,8 +155,7 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
     length = step.span[1]
     known, touch, contact = first_touch(model, cells, state, options, min(length, leave), scratch)
     if not known:
-        if not flying:
-            state.clock[1] = proposed
+        state.clock[1] = proposed
         return CELL_UNKNOWN, False
     end = min(length, touch, leave)
     state.clock[0] = end_time if end == left else step.span[0] + end

@@ -13,19 +13,19 @@ from watchsim.jit import kernel
 
 
 @kernel
-def project_positions(model, closed, m, work, out_q):
-    """Close the gaps of the first m contacts; returns the deepest penetration found, m."""
+def project_positions(model, closed, m, both, work, out_q):
+    """Close the gaps of the first m contacts (only negative ones unless `both`); returns the deepest penetration found, m."""
     deepest, furthest = 0.0, 0.0
     for i in range(m):
         deepest = max(deepest, -closed.kin[i].g)
         furthest = max(furthest, abs(closed.kin[i].g))
-    if furthest == 0.0:
-        return 0.0
+    if furthest == 0.0 or (deepest == 0.0 and not both):
+        return deepest
     fill_delassus(model, closed, m, work)
     for i in range(m):
         for j in range(m):
             work.A[i, j] = work.G[2 * i, 2 * j]
-        work.rhs[i] = -closed.kin[i].g
+        work.rhs[i] = -closed.kin[i].g if both or closed.kin[i].g < 0.0 else 0.0
     solve_small(work.A, work.rhs, m, work.order, work.x)
     for i in range(m):
         work.more[2 * i], work.more[2 * i + 1] = work.x[i], 0.0

@@ -28,7 +28,7 @@ def options_for(size: float, tolerance: float, max_step: float) -> Options:
     """Options for a scene whose contact outlines are `size` metres across."""
     return Options(
         tolerance=tolerance,
-        gap_zero=1e-12 * size,
+        gap_zero=1e-13 * size,
         gap_close=2e-10 * size,
         extent=2e-8 * size,
         speed_zero=1e-8 * size,

@@ -80,6 +80,11 @@ def settle(model, cells, state, options, scratch, record):
         return CELL_UNKNOWN if m == -1 else TOO_MANY_CONTACTS
     closed, work = scratch.closed, scratch.work
     refresh(model, m, closed, scratch.pose)
+    deepest = project_positions(model, closed, m, False, work, state.q)
+    if deepest > 0.0:
+        state.worst[0] = max(state.worst[0], deepest)
+        place(model, state.q, state.u, scratch.pose)
+        refresh(model, m, closed, scratch.pose)
     rounds = 0
     while approaching(m, closed, options.speed_zero):
         if rounds == ROUNDS:
@@ -126,6 +131,6 @@ def _correct(model, state, f, scratch):
     if f == 0:
         return
     rest, work = scratch.rest, scratch.work
-    deepest = project_positions(model, rest, f, work, state.q)
+    deepest = project_positions(model, rest, f, True, work, state.q)
     state.worst[0] = max(state.worst[0], deepest)
     project_velocities(model, rest, f, state.mode, work, state.u)

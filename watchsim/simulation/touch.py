@@ -109,14 +109,14 @@ def crossing(model, state, options, k, start, end, scratch):
         if first or not outside:
             outside, clear = gap >= -zero, False
         first = False
-        if outside and gap > zero:
-            clear = True
+        if outside and (gap > zero or rate > options.speed_zero):
+            clear = True  # a contact that has just rebounded counts as clear: it returns to this gap by falling only
         elif outside and ((clear and rate < 0.0) or gap < -zero):
             if extent_margin(model, k, scratch.pose, nx, ny) >= -options.extent:
                 return min(end, tau + gap / -rate) if clear and gap > 0.0 and rate * (end - tau) < -gap else tau
             outside, clear = gap >= -zero, False
         if outside:
-            room, approach = (gap if clear else gap + 2.0 * zero), -rate
+            room, approach = (max(gap, 0.0) if clear else gap + 2.0 * zero), -rate
         else:
             room, approach = -gap, rate
         tau += _safe(room, approach, closing, bend, _centre_distance(model, k, scratch.pose))

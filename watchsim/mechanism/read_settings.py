@@ -56,7 +56,9 @@ def _windows(table: Table) -> tuple[Point, ...]:
         path = f"record.{i}" if several else "record"
         windows.append(table.point(path, row, units.TIME))
         if windows[-1][0] >= windows[-1][1] or windows[-1][0] < 0.0:
-            table.faults.add(f"{table.path}.{path}", "a window runs from an earlier to a later time, both from 0 s on", shown(row))
+            table.faults.add(
+                f"{table.path}.{path}", "a window runs from an earlier to a later time, both from 0 s on", shown(row)
+            )
     return tuple(windows)
 
 
@@ -89,16 +91,21 @@ def _expectation(key: str, table: Table) -> Expectation | None:
         return None
     try:
         number, unit = split(table.mapping["value"])
-        dimension = WATCH_QUANTITIES.get(key) or Dimension("number", (known_unit(unit).powers,), unit, (unit, unit))
+        dimension = WATCH_QUANTITIES.get(key) or _kind(unit)
         parse(table.mapping["value"], dimension)
     except UnitError as error:
-        table.fault("value", f"{error}.", with_value=True)
+        table.fault("value", str(error), with_value=True)
         return None
     return Expectation(key, float(number), _tolerance(table, unit, dimension), unit)
 
 
+def _kind(unit: str) -> Dimension:
+    """What a quantity nobody knows beforehand must be: whatever its own unit says."""
+    return Dimension(f"value in {unit}", (known_unit(unit).powers,), unit, (unit, unit)) if unit else units.NUMBER
+
+
 def _tolerance(table: Table, unit: str, dimension: Dimension) -> float:
-    value = table.parsed("tolerance", table.mapping["tolerance"], dimension if unit else units.NUMBER)
+    value = table.parsed("tolerance", table.mapping["tolerance"], dimension)
     if value <= 0.0:
         table.fault("tolerance", "must be above zero", with_value=True)
     return value / known_unit(unit).factor

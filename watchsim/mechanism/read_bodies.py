@@ -28,7 +28,9 @@ def read_bodies(mapping: object, folder: Path, faults: Faults) -> tuple[tuple[Bo
         faults.add("bodies", "write one table per body, such as [bodies.wheel]", shown(mapping))
         return (), (), frozenset()
     users = Counter(_drawing_path(entry, folder) for entry in mapping.values())
-    bodies, findings, sound = [], [], set()
+    bodies: list[Body] = []
+    findings: list[Finding] = []
+    sound: set[str] = set()
     for name, entry in mapping.items():
         motion = motion_of(mapping, name)
         table = Table(entry, f"bodies.{name}", BODY, faults, motion)
@@ -39,7 +41,7 @@ def read_bodies(mapping: object, folder: Path, faults: Faults) -> tuple[tuple[Bo
         bodies.append(_body(name, table, motion, outlines, () if shared else outlines.rest))
         findings.extend(outlines.findings)
         sound.update([name] if outlines.sound else [])
-    return tuple(bodies), tuple(findings), frozenset(sound)
+    return tuple(bodies), tuple(dict.fromkeys(findings)), frozenset(sound)
 
 
 def motion_of(bodies: Mapping[str, Any], name: object) -> str:

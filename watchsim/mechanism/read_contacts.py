@@ -9,7 +9,7 @@ from typing import Any
 from watchsim.mechanism.body import Body
 from watchsim.mechanism.errors import Faults
 from watchsim.mechanism.force import Contact, Side
-from watchsim.mechanism.forces import listed
+from watchsim.mechanism.read_forces import listed
 from watchsim.mechanism.schema import CONTACT, nearest
 from watchsim.mechanism.table import Table
 
@@ -54,7 +54,9 @@ def _sides(table: Table, known: Known) -> tuple[Side, Side]:
     names = table.texts("between")
     if len(names) != 2:
         if table.mapping:
-            table.fault("between" if "between" in table else "", 'two sides are needed: between = ["wheel.TEETH", "lever.STONES"]')
+            table.fault(
+                "between" if "between" in table else "", 'two sides are needed: between = ["wheel.TEETH", "lever.STONES"]'
+            )
         return NOWHERE, NOWHERE
     first, second = (_side(table, i, name, known) for i, name in enumerate(names))
     if first.body and first.body == second.body:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 from watchsim import units
@@ -121,7 +122,7 @@ def _rows(table: Table, abscissa: units.Dimension) -> tuple[tuple[float, float],
         table.fault("table", f"a list of at least two pairs is needed here, such as table = {example}", with_value=True)
         return ()
     rows = tuple(_row(table, i, row, (abscissa, ordinate)) for i, row in enumerate(value))
-    for i, (before, after) in enumerate(zip(rows, rows[1:], strict=False)):
+    for i, (before, after) in enumerate(pairwise(rows)):
         if after[0] <= before[0]:
             table.fault(f"table.{i + 1}", "its first column must ascend")
     return rows
@@ -156,8 +157,8 @@ def _from_quality(entry: Entry, springs: tuple[Spring, ...]) -> float:
     quality = table.positive("q_factor", "it is the quality factor of the oscillation, about 250 for a balance")
     stiffness = sum(spring.stiffness for spring in springs if spring.body == entry.name)
     if entry.body and stiffness == 0.0:
-        table.fault("q_factor", f"{entry.name} has no spring, so it has no quality factor. Add one under [[springs]] or write viscous")
+        table.fault(
+            "q_factor", f"{entry.name} has no spring, so it has no quality factor. Add one under [[springs]] or write viscous"
+        )
     product = stiffness * entry.mass
     return math.sqrt(product) / quality if product > 0.0 and quality > 0.0 else NAN
-
-

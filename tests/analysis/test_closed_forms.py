@@ -1,0 +1,71 @@
+"""Does the incline in doubles agree with sixty digits?"""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from mpmath import mpf
+from reference.incline_closed_form import accumulation, first_impact, reference, rolling_begins, settled
+
+from watchsim.analysis.closed_forms import Incline, incline_state
+
+FRICTIONS = ("0.3", "0.13", "0.10", "0.02", "0")
+TIMES = ("0", "0.05", "0.14", "0.15", "0.2", "0.29", "0.3", "0.4", "0.43", "0.44", "0.4418", "0.4418845", "0.5", "1", "1.25", "1.3", "2", "3")
+
+
+def near(got: float, expected: mpf, size: float = 1.0) -> bool:
+    """Equal to 1e-14, relative, or absolute in units of `size` where the value is small."""
+    return abs(got - expected) <= 1e-14 * max(abs(float(expected)), size)
+
+
+@pytest.mark.parametrize("mu", FRICTIONS)
+@pytest.mark.parametrize("t", TIMES)
+def test_state(t: str, mu: str) -> None:
+    truth, got = reference(t, mu), incline_state(Incline(float(mu)), float(t))
+    assert near(got.x, truth.x, 0.1)
+    assert near(-got.angle, truth.theta)
+    assert near(got.v_x, truth.v)
+    assert near(-got.spin, truth.spin, 20.0)
+
+
+@pytest.mark.parametrize("mu", FRICTIONS)
+def test_times(mu: str) -> None:
+    case = Incline(float(mu))
+    assert near(case.first_impact, first_impact())
+    assert near(case.accumulation, accumulation())
+    begins = rolling_begins(settled(mpf(mu)), mpf(mu))
+    if begins == mpf("inf"):
+        assert case.rolling_begins == math.inf
+    else:
+        assert near(case.rolling_begins, begins)
+
+
+def test_published_digits() -> None:
+    state = incline_state(Incline(0.3), 3.0)
+    assert state.x == pytest.approx(10.0939616140729, rel=1e-14)
+    assert state.angle == pytest.approx(-200.180704521549, rel=1e-14)
+    assert state.spin == pytest.approx(-134.208704240992, rel=1e-14)
+    assert Incline(0.13).rolling_begins == pytest.approx(1.250743025464493, rel=1e-15)
+
+
+def test_height_bounces_between_impacts() -> None:
+    case = Incline(0.3)
+    for k in range(1, 12):
+        ground = case.first_impact * (1.0 + 2.0 * 0.5 * (1.0 - 0.5 ** (k - 1)) / 0.5)
+        below, above = incline_state(case, ground - 1e-13), incline_state(case, ground + 1e-13)
+        assert below.y == pytest.approx(case.radius, abs=1e-12)
+        assert above.v_y == pytest.approx(-0.5 * below.v_y, abs=1e-11)
+        top = incline_state(case, ground + above.v_y / case.press)
+        assert top.v_y == pytest.approx(0.0, abs=1e-11)
+        assert top.y - case.radius == pytest.approx(case.drop * 0.25**k, rel=1e-9)
+    assert incline_state(case, 0.6).y == case.radius
+    assert incline_state(case, 0.0).y == case.radius + case.drop
+
+
+def test_without_restitution_one_impact_is_all() -> None:
+    case = Incline(0.3, restitution=0.0)
+    assert case.accumulation == case.first_impact
+    state = incline_state(case, 1.0)
+    assert state.v_x == pytest.approx(case.pull * case.first_impact / 1.5 + case.pull / 1.5 * (1.0 - case.first_impact))
+    assert state.v_x == pytest.approx(-case.radius * state.spin)

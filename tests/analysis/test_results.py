@@ -1,0 +1,185 @@
+"""Is a results folder complete, readable, and never half written?"""
+
+from __future__ import annotations
+
+import csv
+import errno
+import json
+import math
+
+import numpy as np
+import pytest
+from render.fake_runs import watch_run
+
+from watchsim.analysis import results
+from watchsim.analysis.archive import read_trajectory, write_trajectory
+from watchsim.analysis.results import check_folder, read_results, write_results
+from watchsim.analysis.tables import json_text
+
+SUMMARY = {"amplitude_deg": np.float64(270.5), "rate_s_per_d": math.nan, "impacts": np.int64(3), "stop": "DURATION"}
+
+
+@pytest.fixture
+def run():
+    return watch_run()
+
+
+def snapshot(folder):
+    return {path.relative_to(folder): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def test_everything_is_written(run, tmp_path):
+    folder = write_results(run, tmp_path / "out", SUMMARY, 'title = "Größe"\n', extra={"plots/a.txt": "a", "b.bin": b"b"})
+    assert sorted(path.name for path in folder.iterdir()) == [
+        *("b.bin", "events.csv", "plots", "scene.lock.toml", "summary.json", "trajectory.npz")
+    ]
+    assert json.loads((folder / "summary.json").read_text()) == {
+        **{"amplitude_deg": 270.5, "rate_s_per_d": None},
+        **{"impacts": 3, "stop": "DURATION"},
+    }
+    assert (folder / "scene.lock.toml").read_text(encoding="utf-8") == 'title = "Größe"\n'
+    assert [path.name for path in tmp_path.iterdir()] == ["out"]
+
+
+def test_events_in_words(run, tmp_path):
+    folder = write_results(run, tmp_path / "out")
+    turn, impact = csv.DictReader((folder / "events.csv").read_text().splitlines())
+    assert (turn["event"], turn["pair"], turn["bodies"], float(turn["value"])) == ("turn", "", "balance", -5.0)
+    assert float(impact["t_s"]) == 1.0 and impact["event"] == "impact" and impact["pair"] == "0"
+    assert impact["bodies"] == "lever/banking" and impact["primitives"] == "ARMS corner 3 / PINS arc 1"
+    assert [float(impact[name]) for name in ("impulse_N_s", "tangential_impulse_N_s", "energy_lost_J")] == [2e-9, -3e-10, 4e-12]
+
+
+def test_a_trajectory_comes_back_to_the_last_bit(run, tmp_path):
+    write_trajectory(run, tmp_path / "t.npz")
+    back = read_trajectory(tmp_path / "t.npz", run.scene)
+    for name in ("t", "q", "u", "a", "events"):
+        assert np.array_equal(getattr(back, name), getattr(run, name)), name
+        assert getattr(back, name).dtype == getattr(run, name).dtype
+    for name in ("slices", "pairs", "stop", "stop_message", "simulated", "energy", "counts", "tolerance", "method"):
+        assert getattr(back, name) == getattr(run, name), name
+    assert np.array_equal(back.at(0.777)[0], run.at(0.777)[0])
+
+
+def test_an_existing_folder_is_left_alone_without_force(run, tmp_path):
+    folder = write_results(run, tmp_path / "out", {"n": 1})
+    before = snapshot(folder)
+    with pytest.raises(FileExistsError, match="exists already and is left alone"):
+        write_results(run, folder, {"n": 2})
+    with pytest.raises(FileExistsError):
+        check_folder(folder)
+    assert check_folder(folder, force=True) == folder
+    assert snapshot(folder) == before
+
+
+def test_force_replaces_results_but_keeps_other_files(run, tmp_path):
+    folder = write_results(run, tmp_path / "out", {"n": 1}, extra={"plots/old.png": b"old"})
+    (folder / "notes.txt").write_text("mine")
+    write_results(run, folder, {"n": 2}, force=True)
+    assert json.loads((folder / "summary.json").read_text()) == {"n": 2}
+    assert (folder / "notes.txt").read_text() == "mine"
+    assert not (folder / "plots").exists()
+    assert [path.name for path in tmp_path.iterdir()] == ["out"]
+
+
+def test_what_is_no_results_folder_is_never_replaced(run, tmp_path):
+    (tmp_path / "home").mkdir()
+    (tmp_path / "home" / "thesis.txt").write_text("years of work")
+    with pytest.raises(FileExistsError, match="holds no results"):
+        write_results(run, tmp_path / "home", force=True)
+    (tmp_path / "file").write_text("x")
+    with pytest.raises(FileExistsError, match="is a file"):
+        write_results(run, tmp_path / "file", force=True)
+    (tmp_path / "empty").mkdir()
+    assert (write_results(run, tmp_path / "empty") / "summary.json").is_file()
+
+
+def full_disk(*_):
+    raise OSError(errno.ENOSPC, "No space left on device")
+
+
+@pytest.mark.parametrize("writer", ["write_trajectory", "write_events", "json_text"])
+def test_a_full_disk_leaves_everything_as_it_was(run, tmp_path, monkeypatch, writer):
+    folder = write_results(run, tmp_path / "out", {"n": 1})
+    before = snapshot(folder)
+    monkeypatch.setattr(results, writer, full_disk)
+    for target, force in ((folder, True), (tmp_path / "new", False)):
+        with pytest.raises(OSError, match="No space left on device; nothing was changed") as caught:
+            write_results(run, target, {"n": 2}, force=force)
+        assert caught.value.errno == errno.ENOSPC
+    assert snapshot(folder) == before
+    assert [path.name for path in tmp_path.iterdir()] == ["out"]
+
+
+def test_an_interrupt_while_writing_leaves_everything_as_it_was(run, tmp_path):
+    def interrupt(path):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        write_results(run, tmp_path / "out", extra={"movie.mp4": interrupt})
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_old_folder_comes_back_if_the_exchange_fails(run, tmp_path, monkeypatch):
+    folder = write_results(run, tmp_path / "out", {"n": 1})
+    before = snapshot(folder)
+    rename = results.Path.rename
+
+    def failing(self, target):
+        if ".new-" in self.name:
+            raise PermissionError(errno.EACCES, "Permission denied")
+        return rename(self, target)
+
+    monkeypatch.setattr(results.Path, "rename", failing)
+    with pytest.raises(PermissionError, match="nothing was changed"):
+        write_results(run, folder, {"n": 2}, force=True)
+    assert snapshot(folder) == before
+
+
+def test_extra_files_stay_inside(run, tmp_path):
+    with pytest.raises(ValueError, match="outside the results folder"):
+        write_results(run, tmp_path / "out", extra={"../escape.txt": "x"})
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_what_cannot_be_read_says_why(run, tmp_path):
+    with pytest.raises(FileNotFoundError, match="no such results folder"):
+        read_results(tmp_path / "none")
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(FileNotFoundError, match=r"scene.lock.toml and trajectory.npz missing"):
+        read_results(tmp_path / "empty")
+    write_trajectory(run, tmp_path / "t.npz")
+    other = watch_run(bodies=run.scene.bodies[:2]).scene
+    with pytest.raises(ValueError, match="do not belong together"):
+        read_trajectory(tmp_path / "t.npz", other)
+    whole = (tmp_path / "t.npz").read_bytes()
+    for damaged in (whole[: len(whole) // 2], b"", b"hello", whole.replace(b'"format": 1', b'"format": 9')):
+        (tmp_path / "t.npz").write_bytes(damaged)
+        if damaged != whole:
+            with pytest.raises(ValueError, match="damaged"):
+                read_trajectory(tmp_path / "t.npz", run.scene)
+
+
+def test_json_is_strict():
+    assert json.loads(json_text({"a": [np.inf, np.array([1.5, np.nan])], "b": (True, None, "µ")})) == {
+        **{"a": [None, [1.5, None]]},
+        **{"b": [True, None, "µ"]},
+    }
+
+
+def test_results_of_a_scene_file_can_be_read_back(tmp_path):
+    lock = pytest.importorskip("watchsim.mechanism.lock")
+    load = pytest.importorskip("watchsim.mechanism.load")
+    scene_file = tmp_path / "scene.toml"
+    scene_file.write_text(
+        '[scene]\ntitle = "T"\nschema = 1\n[bodies.a]\ncircle = "2 mm"\ninertia = "1 mg·cm²"\n'
+        '[[springs]]\nbody = "a"\nfrequency = "4 Hz"\n[run]\nduration = "2 s"\n',
+        encoding="utf-8",
+    )
+    scene = load.load(scene_file)
+    run = watch_run(**scene.__dict__)
+    alone = type(run)(**{**run.__dict__, "q": run.q[:, :1], "u": run.u[:, :1], "a": run.a[:, :1], "slices": {"a": slice(0, 1)}})
+    folder = write_results(alone, tmp_path / "out", scene_lock=lock.lock_text(scene, tmp_path / "out"))
+    back = read_results(folder)
+    assert back.scene == scene
+    assert np.array_equal(back.q, alone.q)

@@ -1,0 +1,188 @@
+"""Does the complementarity solver find what all complementary bases, tried one by one, say there is?"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from naive.lcp_oracle import residual, solutions
+
+from watchsim.dynamics.lcp import OK, RAY, enumerate_lcp, lcp_work, lemke, solve_lcp
+
+SIZE = 12
+WORK = lcp_work(SIZE)
+Problem = tuple[np.ndarray, np.ndarray]
+Solver = Callable[..., int]
+
+
+def run(A: np.ndarray, b: np.ndarray, solver: Solver = solve_lcp) -> tuple[int, np.ndarray]:
+    """Status and x; the problem stands in the corner of larger arrays full of nan, which nobody may read."""
+    n = len(b)
+    big_A, big_b, x = np.full((SIZE, SIZE), np.nan), np.full(SIZE, np.nan), np.full(SIZE, np.nan)
+    big_A[:n, :n], big_b[:n] = A, b
+    status = solver(big_A, big_b, n, WORK, x)
+    assert np.all(np.isnan(x[n:]))
+    return status, x[:n]
+
+
+def psd(rng: np.random.Generator, n: int) -> Problem:
+    """Positive semidefinite of full rank."""
+    M = rng.normal(size=(n, n))
+    return M @ M.T, rng.normal(size=n)
+
+
+def singular_psd(rng: np.random.Generator, n: int) -> Problem:
+    """Positive semidefinite of lower rank, solvable: redundant contacts without friction."""
+    M = rng.normal(size=(n, rng.integers(1, n + 1)))
+    return M @ M.T, M @ rng.normal(size=M.shape[1])
+
+
+def p_matrix(rng: np.random.Generator, n: int) -> Problem:
+    """Unsymmetric with positive principal minors: exactly one solution for every b."""
+    M, K = rng.normal(size=(n, n)), rng.normal(size=(n, n))
+    return M @ M.T + 0.1 * np.eye(n) + (K - K.T), rng.normal(size=n)
+
+
+def degenerate(rng: np.random.Generator, n: int) -> Problem:
+    """Small integers, a P-matrix by diagonal dominance: ties everywhere."""
+    A = rng.integers(-1, 2, size=(n, n)).astype(float)
+    np.fill_diagonal(A, n)
+    return A, rng.integers(-1, 2, size=n).astype(float)
+
+
+def anything(rng: np.random.Generator, n: int) -> Problem:
+    """No structure: none, one or many solutions."""
+    return rng.normal(size=(n, n)), rng.normal(size=n)
+
+
+def impact_with_friction(rng: np.random.Generator, contacts: int) -> Problem:
+    """Compression of 1 or 2 frictional contacts on 3 coordinates: size 3 or 6, not positive definite, zero diagonals."""
+    contacts = 1 + contacts % 2
+    W = rng.normal(size=(3, 2 * contacts))
+    G, k = W.T @ W, contacts
+    mu, one = np.diag(rng.uniform(0.0, 0.6, k)), np.eye(k)
+    A = np.block(
+        [
+            [G[:k, :k] - G[:k, k:] @ mu, G[:k, k:], 0.0 * one],
+            [G[k:, :k] - G[k:, k:] @ mu, G[k:, k:], one],
+            [2.0 * mu, -one, 0.0 * one],
+        ]
+    )
+    return A, np.concatenate([W.T @ rng.normal(size=3), np.zeros(k)])
+
+
+FAMILIES = (psd, singular_psd, p_matrix, degenerate)
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_solvable_families_are_solved(family: Callable[..., Problem]) -> None:
+    rng = np.random.default_rng(20)
+    for _ in range(1500):
+        A, b = family(rng, rng.integers(1, SIZE + 1))
+        status, x = run(A, b)
+        assert status == OK
+        assert residual(A, b, x) < 1e-12
+        assert np.all(x >= 0.0)
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_lemke_alone_suffices_where_theory_promises(family: Callable[..., Problem]) -> None:
+    rng = np.random.default_rng(21)
+    for _ in range(500):
+        A, b = family(rng, rng.integers(1, 9))
+        status, x = run(A, b, lemke)
+        assert status == OK
+        assert residual(A, b, x) < 1e-12
+
+
+@pytest.mark.parametrize("family", [p_matrix, degenerate])
+def test_the_only_solution_of_a_p_matrix(family: Callable[..., Problem]) -> None:
+    rng = np.random.default_rng(22)
+    for _ in range(200):
+        A, b = family(rng, rng.integers(1, 5))
+        truth = solutions(A, b)
+        status, x = run(A, b)
+        assert status == OK
+        np.testing.assert_allclose(x, truth[0], rtol=1e-10, atol=1e-12)
+        for other in truth[1:]:  # other bases of the same degenerate solution
+            np.testing.assert_allclose(other, truth[0], rtol=1e-9, atol=1e-9)
+
+
+@pytest.mark.parametrize("family", [anything, impact_with_friction])
+def test_finds_a_solution_exactly_when_there_is_one(family: Callable[..., Problem]) -> None:
+    rng = np.random.default_rng(23)
+    unsolvable = 0
+    for _ in range(400):
+        A, b = family(rng, rng.integers(1, 5))
+        truth = solutions(A, b)
+        status, x = run(A, b)
+        assert (status == OK) == bool(truth)
+        if truth:
+            assert min(np.abs(x - other).max() for other in truth) < 1e-7 * max(1.0, x.max())
+        unsolvable += not truth
+    assert family is not anything or unsolvable > 50
+
+
+@pytest.mark.parametrize("family", [*FAMILIES, impact_with_friction])
+def test_units_do_not_matter(family: Callable[..., Problem]) -> None:
+    """Rows, columns and loads multiplied by 1e-12 to 1e12: the same solution in other units."""
+    rng = np.random.default_rng(24)
+    for trial in range(600):
+        A, b = family(rng, rng.integers(1, 9))
+        n = len(b)
+        row, load = 10.0 ** rng.uniform(-12, 12, n), 10.0 ** rng.uniform(-12, 12)
+        column = row if trial % 2 else 10.0 ** rng.uniform(-12, 12, n)
+        plain, _ = run(A, b)
+        status, x = run(row[:, None] * A * column, row * b * load)
+        assert status == plain
+        if status == OK:
+            assert residual(A, b, x * column / load) < 1e-11
+
+
+@pytest.mark.parametrize("family", [psd, p_matrix, anything])
+def test_enumeration_agrees_with_the_oracle(family: Callable[..., Problem]) -> None:
+    rng = np.random.default_rng(25)
+    for _ in range(150):
+        A, b = family(rng, rng.integers(1, 6))
+        status, x = run(A, b, enumerate_lcp)
+        assert (status == OK) == bool(solutions(A, b))
+        assert status != OK or residual(A, b, x) < 1e-9
+
+
+def test_nothing_to_do_gives_exact_zeros() -> None:
+    status, x = run(-np.eye(3), np.array([0.0, 2.0, 1e-300]))
+    assert status == OK
+    assert list(x) == [0.0, 0.0, 0.0]
+
+
+def test_infeasible_ends_in_a_ray_with_zeros() -> None:
+    status, x = run(np.array([[0.0, -1.0], [-1.0, 0.0]]), np.array([-1.0, 1.0]))
+    assert status == RAY
+    assert list(x) == [0.0, 0.0]
+
+
+def test_enumeration_rescues_what_lemke_loses() -> None:
+    """Without structure Lemke may end in a ray although a solution exists."""
+    rng = np.random.default_rng(26)
+    rescued = 0
+    for _ in range(500):
+        A, b = anything(rng, 5)
+        if run(A, b, lemke)[0] != OK and run(A, b)[0] == OK:
+            assert residual(A, b, run(A, b)[1]) < 1e-9
+            rescued += 1
+    assert rescued > 10
+
+
+def test_one_contact_by_hand() -> None:
+    """G = 4 kg^-1, approach 2 m/s: impulse 0.5 N·s."""
+    status, x = run(np.array([[4.0]]), np.array([-2.0]))
+    assert status == OK
+    assert x[0] == 0.5
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+def test_what_is_not_a_number_is_refused(bad: float) -> None:
+    with np.errstate(invalid="ignore"):
+        assert run(np.array([[1.0, 0.0], [0.0, 1.0]]), np.array([bad, -1.0]))[0] != OK
+        assert run(np.array([[bad, 0.0], [0.0, 1.0]]), np.array([-1.0, -1.0]))[0] != OK

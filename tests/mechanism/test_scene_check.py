@@ -1,0 +1,68 @@
+"""Does the check echo what the scene amounts to, in the fixed names?"""
+
+import json
+
+import pytest
+
+from watchsim.mechanism.check import check_report, check_text
+from watchsim.mechanism.load import load
+
+PAIRS = {"declared": 120, "reachable": 17}
+
+
+def test_report(desk):
+    report = check_report(load(desk.scene()), PAIRS)
+    assert set(report) == {"bodies", "theory", "pairs", "statics", "findings"}
+    assert report["bodies"]["lever"] == {
+        "mass_kg": 0.0,
+        "inertia_kg_m2": pytest.approx(3e-12),
+        "position_m": [0.0, 0.009],
+        "coordinates": 1,
+    }
+    assert report["bodies"]["banking"]["coordinates"] == 0
+    assert report["theory"] == {"frequency_hz": pytest.approx(4.0, rel=1e-15), "vph": pytest.approx(28800.0, rel=1e-15)}
+    assert report["pairs"] == PAIRS
+    (finding,) = report["findings"]
+    assert set(finding) == {"code", "severity", "layer", "x_mm", "y_mm", "message", "fix"}
+    json.dumps(report)
+
+
+def test_no_oscillator(desk):
+    report = check_report(load(desk.scene('[bodies.a]\ninertia = "1 g·cm²"\n')), PAIRS)
+    assert report["theory"] == {"frequency_hz": None, "vph": None}
+
+
+def test_overlaps_are_findings(desk, good):
+    report = check_report(load(desk.scene(good.replace('["0 mm", "9 mm"]', '["0 mm", "4 mm"]'))), PAIRS)
+    found = [finding for finding in report["findings"] if finding["code"] == "overlap"]
+    assert [finding["severity"] for finding in found] == ["error"]
+    assert "wheel and lever overlap by" in found[0]["message"]
+
+
+def test_gravity_on_a_body_without_mass_is_mentioned(desk, good):
+    text = good.replace("[scene]", '[scene]\ngravity = ["0 m/s²", "-9.81 m/s²"]').replace(
+        'circle = "0.2 mm"', 'circle = "0.2 mm"\nmass = "1 mg"'
+    )
+    poised = [
+        finding["message"] for finding in check_report(load(desk.scene(text)), PAIRS)["findings"] if finding["code"] == "poised"
+    ]
+    assert [message.split()[0] for message in poised] == ["wheel", "lever"]
+
+
+def test_text_for_people(desk):
+    scene = load(desk.scene())
+    text = check_text(check_report(scene, PAIRS), scene)
+    assert text.startswith("Small lever\n")
+    for part in (
+        "inertia 12 mg·cm²",
+        "10 mm × 10 mm",
+        "turned by -270°",
+        "centre distance wheel - lever: 9 mm",
+        "4 Hz = 28800 vph",
+        "drive on wheel: -1 µN·m",
+        "Q = 250",
+        "contact wheel.TEETH - lever: friction 0.12, restitution 0.2",
+        "120 declared, 17 can ever touch",
+        "warning: wheel.dxf: an edge was drawn twice.",
+    ):
+        assert part in text, part

@@ -1,0 +1,102 @@
+"""Do plots show the numbers of the run, in the units they name?"""
+
+from __future__ import annotations
+
+import math
+
+import matplotlib
+import numpy as np
+import pytest
+from render.fake_runs import disc_run, slide_run, watch_run
+
+from watchsim.render.plots import plot_kinematics
+from watchsim.render.readouts import clock
+
+
+def curves(figure):
+    """(title, y label, x data, y data) of every curve, in reading order."""
+    return [
+        (axes.get_title(loc="left"), axes.get_ylabel(), *line.get_data()) for axes in figure.axes for line in axes.get_lines()
+    ]
+
+
+def test_one_panel_per_moving_body_and_quantity_in_degrees():
+    shown = curves(plot_kinematics(watch_run(), window=(0.2, 0.8)))
+    assert [(title, label) for title, label, _, _ in shown] == [
+        (body, quantity) for body in ("wheel", "lever", "balance") for quantity in ("angle (°)", "angular velocity (°/s)")
+    ]
+    x, angle = shown[4][2:]
+    assert (x[0], x[-1]) == pytest.approx((200.0, 800.0))  # ms
+    assert angle == pytest.approx(np.degrees(5.0 * np.cos(0.025 * x)), abs=1e-6)
+    x, velocity = shown[5][2:]
+    assert velocity == pytest.approx(np.degrees(-125.0 * np.sin(0.025 * x)), abs=1e-3)
+
+
+def test_the_jump_of_an_impact_is_a_jump():
+    _, _, x, velocity = curves(plot_kinematics(watch_run(), ["lever"], ["velocity"], (0.9, 1.1)))[0]
+    jump = np.flatnonzero(np.diff(x) == 0.0)
+    assert len(jump) == 1
+    assert velocity[jump[0] + 1] - velocity[jump[0]] == pytest.approx(math.degrees(4.0))
+
+
+def test_free_and_sliding_bodies_in_millimetres():
+    disc = curves(plot_kinematics(disc_run()))
+    assert [label for _, label, _, _ in disc] == [
+        *("position (mm)", "position (mm)", "velocity (mm/s)", "velocity (mm/s)"),
+        *("angle (°)", "angular velocity (°/s)"),
+    ]
+    pull = 9.81 * math.sin(math.radians(20.0)) / 1.5
+    assert disc[0][3][-1] == pytest.approx(1e3 * 0.5 * pull * 9.0)
+    assert disc[1][3][-1] == pytest.approx(50.0)
+    assert disc[5][3][-1] == pytest.approx(-math.degrees(pull * 3.0 / 0.05))
+    slide = curves(plot_kinematics(slide_run(), quantities="velocity"))
+    assert slide[0][1] == "velocity (mm/s)"
+    assert slide[0][3][0] == pytest.approx(20.0)
+
+
+def test_unknown_names_are_refused_with_the_choices():
+    run = watch_run()
+    with pytest.raises(ValueError, match="'lver'; moving bodies of this run: wheel, lever, balance"):
+        plot_kinematics(run, bodies=["lver"])
+    with pytest.raises(ValueError, match="'speed'; choose from angle, velocity"):
+        plot_kinematics(run, quantities=["angle", "speed"])
+    with pytest.raises(ValueError, match="0 s to 2 s was recorded"):
+        plot_kinematics(run, window=(19.4, 19.75))
+
+
+def test_axes_say_which_time_they_show():
+    run = watch_run()
+    assert plot_kinematics(run).axes[-1].get_xlabel() == "time (s)"
+    assert plot_kinematics(run, window=(0.2, 0.5)).axes[-1].get_xlabel() == "time (ms)"
+    assert plot_kinematics(run, window=(1.4, 1.75)).axes[-1].get_xlabel() == "time after 1.4 s (ms)"
+    assert clock((1.4, 1.4005)).label == "time after 1.4 s (µs)"
+
+
+def test_rounding_noise_of_a_resting_body_is_not_magnified():
+    run = watch_run()
+    run.q[:, 0] = 0.1 + 1e-14 * np.sin(1e3 * run.t)
+    run.u[:, 0] = run.a[:, 0] = 0.0
+    low, high = plot_kinematics(run, ["wheel"], ["angle"]).axes[0].get_ylim()
+    assert high - low > 1e-7
+
+
+def test_figures_save_in_every_format_without_pyplot(tmp_path):
+    figure = plot_kinematics(watch_run(), window=(0.4, 0.75))
+    for ending, start in (("png", b"\x89PNG"), ("svg", b"<?xml"), ("pdf", b"%PDF")):
+        figure.savefig(tmp_path / f"beat.{ending}")
+        assert (tmp_path / f"beat.{ending}").read_bytes().startswith(start)
+    assert not any(name == "matplotlib.pyplot" for name in vars(matplotlib))
+
+
+def test_nothing_is_clipped():
+    figure = plot_kinematics(watch_run(title="A rather long title of a scene with an escapement in it"))
+    figure.canvas.draw()
+    renderer = figure.canvas.get_renderer()
+    whole = figure.bbox
+    texts = [figure.get_suptitle() and figure._suptitle]
+    for axes in figure.axes:
+        texts += [axes.xaxis.label, axes.yaxis.label, axes.title, axes._left_title, *axes.get_yticklabels()]
+    for text in texts:
+        if text.get_text() and text.get_visible():
+            box = text.get_window_extent(renderer)
+            assert box.x0 >= whole.x0 and box.y0 >= whole.y0 and box.x1 <= whole.x1 and box.y1 <= whole.y1, text

@@ -1,0 +1,61 @@
+"""Do the numbers in pictures read as they should?"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from render.fake_runs import slide_run, watch_run
+
+from watchsim.render.poses import poses, sampled
+from watchsim.render.readouts import clock, decimals_for, reading, scale_bar, signed, speed_text
+
+
+@pytest.mark.parametrize(
+    ("speed", "text"),
+    [
+        (1.0, "true speed"),
+        (1 / 20, "1/20 of true speed"),
+        (0.05, "1/20 of true speed"),
+        (2 / 3, "2/3 of true speed"),
+        (0.123456, "0.1235 of true speed"),
+        (1e-7, "1e-07 of true speed"),
+        (2.0, "2 × true speed"),
+    ],
+)
+def test_speed(speed, text):
+    assert speed_text(speed) == text
+
+
+def test_time_in_seconds_or_after_the_start():
+    assert clock((0.0, 10.0)).text(1.2345, 1 / 60) == "1.23 s"
+    assert clock((19.4, 19.75)).text(19.4125, 1 / 1200) == "19.4 s + 12.5 ms"
+    assert clock((0.0, 0.3)).text(0.0125, 1 / 1200) == "12.5 ms"
+
+
+def test_numbers():
+    assert signed(-0.04, 1) == "0.0"
+    assert signed(-1.25, 2) == "−1.25"
+    assert [decimals_for(step) for step in (20.0, 1.0, 0.5, 0.01, 0.0)] == [0, 0, 1, 2, 3]
+
+
+@pytest.mark.parametrize(
+    ("room", "bar"), [(0.0016, (1e-3, "1 mm")), (0.0004, (2e-4, "0.2 mm")), (0.05, (0.05, "50 mm")), (3.1, (2.0, "2 m"))]
+)
+def test_scale_bar_is_round(room, bar):
+    length, name = scale_bar(room)
+    assert (length, name) == (pytest.approx(bar[0]), bar[1])
+
+
+def test_poses_in_words():
+    run = watch_run()
+    balance = run.scene.body("balance")
+    tell, ends = reading(balance, sampled(run, balance, (0.0, 2.0)))
+    assert tell(np.array([0.0, 0.0, np.radians(-123.42)])) == "−123.4°"
+    assert ends == ("−286.5°", "286.5°")
+    lever = run.scene.body("lever")
+    tell, _ = reading(lever, sampled(run, lever, (0.0, 0.9)))
+    assert tell(np.array([0.0, 3e-3, np.radians(5.126)])) == "5.13°"
+    slider = slide_run()
+    body = slider.scene.body("slider")
+    tell, _ = reading(body, sampled(slider, body, (0.0, 1.0)))
+    assert tell(poses(slider, np.array([0.3]))["slider"][0]) == f"{2 * np.sin(3.0):.2f} mm"

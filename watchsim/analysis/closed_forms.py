@@ -1,0 +1,163 @@
+"""Where is a disc that bounces down an incline? The exact answer, by geometric series.
+
+A disc falls from rest onto a plane inclined by `slope`, x along the plane downhill, y along its normal, angle
+counter-clockwise (so rolling downhill turns it negative). One point of contact whose normal and tangential directions are not
+coupled: with approach speed v the impact returns e v, and friction takes at most mu (1+e)(1+1/kappa) v off the slip, else all of it.
+Impact k comes at T_k = T - 2 t1 e^k/(1-e) with speed v1 e^(k-1); T = t1 (1+e)/(1-e) is where they accumulate. Between impacts the slip
+grows by 2 tan(slope) times the next speed, so all impacts but the first take the same multiple of their speed.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Incline:
+    """SI units and radians; `drop` is the gap at the start, `kappa` inertia over mass times radius squared."""
+
+    friction: float
+    restitution: float = 0.5
+    radius: float = 0.05
+    drop: float = 0.1
+    slope: float = math.radians(20.0)
+    gravity: float = 9.81
+    kappa: float = 0.5
+
+    @property
+    def pull(self) -> float:
+        return self.gravity * math.sin(self.slope)
+
+    @property
+    def press(self) -> float:
+        return self.gravity * math.cos(self.slope)
+
+    @property
+    def first_impact(self) -> float:
+        """Time of the first touch, s."""
+        return math.sqrt(2.0 * self.drop / self.press)
+
+    @property
+    def accumulation(self) -> float:
+        """Time at which the bouncing has died out, s."""
+        return self.first_impact * (1.0 + self.restitution) / (1.0 - self.restitution)
+
+    @property
+    def rolling_begins(self) -> float:
+        """Time from which the disc rolls, s; inf where it never does."""
+        decay = self.friction * self.press * (1.0 + 1.0 / self.kappa) - self.pull
+        slip = _slip_left(self)
+        if decay < 0.0:
+            return math.inf
+        return self.accumulation + (slip / decay if slip > 0.0 else 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class DiscState:
+    """Place (m), angle (rad, counter-clockwise) and their rates."""
+
+    x: float
+    y: float
+    angle: float
+    v_x: float
+    v_y: float
+    spin: float
+
+
+def incline_state(case: Incline, t: float) -> DiscState:
+    """The disc at time `t` (s) after its release."""
+    if t >= case.accumulation:
+        return _on_the_plane(case, t)
+    count = _impacts_before(case, t)
+    taken, moment = _friction_sums(case, count, t)
+    y, v_y = _height(case, count, t)
+    share = case.kappa / (1.0 + case.kappa)
+    turn = (1.0 - share) / case.radius
+    return DiscState(
+        x=0.5 * case.pull * t * t - share * moment,
+        y=case.radius + y,
+        angle=-turn * moment,
+        v_x=case.pull * t - share * taken,
+        v_y=v_y,
+        spin=-turn * taken,
+    )
+
+
+def _impact_time(case: Incline, k: int) -> float:
+    e = case.restitution
+    return case.first_impact * (1.0 + 2.0 * e * (1.0 - e ** (k - 1)) / (1.0 - e))
+
+
+def _impacts_before(case: Incline, t: float) -> int:
+    """Number of impacts up to and including time t < accumulation."""
+    if t < case.first_impact:
+        return 0
+    if case.restitution == 0.0:
+        return 1
+    left = (case.accumulation - t) * (1.0 - case.restitution) / (2.0 * case.first_impact)
+    count = max(1, round(math.log(left) / math.log(case.restitution)))
+    while count > 1 and _impact_time(case, count) > t:
+        count -= 1
+    while _impact_time(case, count + 1) <= t:
+        count += 1
+    return count
+
+
+def _multiples(case: Incline) -> tuple[float, float]:
+    """Slip taken over approach speed, at the first impact and at all later ones."""
+    most = case.friction * (1.0 + case.restitution) * (1.0 + 1.0 / case.kappa)
+    return min(math.tan(case.slope), most), min(2.0 * math.tan(case.slope), most)
+
+
+def _friction_sums(case: Incline, count: float, t: float) -> tuple[float, float]:
+    """Sums over the first `count` (may be inf) impacts of the slip taken, and of the slip taken times the time since."""
+    if count == 0:
+        return 0.0, 0.0
+    e, t1 = case.restitution, case.first_impact
+    v1 = case.press * t1
+    first, later = _multiples(case)
+    speeds = v1 * e * (1.0 - e ** (count - 1)) / (1.0 - e)
+    weighted = v1 * e**3 * (1.0 - e ** (2 * (count - 1))) / (1.0 - e * e)
+    since = (t - case.accumulation) * speeds + 2.0 * t1 / (1.0 - e) * weighted
+    return first * v1 + later * speeds, first * v1 * (t - t1) + later * since
+
+
+def _height(case: Incline, count: int, t: float) -> tuple[float, float]:
+    """Gap and its rate after `count` impacts."""
+    if count == 0:
+        return case.drop - 0.5 * case.press * t * t, -case.press * t
+    since = t - _impact_time(case, count)
+    speed = case.press * case.first_impact * case.restitution**count
+    return since * (speed - 0.5 * case.press * since), speed - case.press * since
+
+
+def _slip_left(case: Incline) -> float:
+    """Slip when the bouncing has died out; exactly zero where the last impacts stick."""
+    first, later = _multiples(case)
+    if later == 2.0 * math.tan(case.slope):
+        return 0.0
+    taken, _ = _friction_sums(case, math.inf, case.accumulation)
+    return case.pull * case.accumulation - taken
+
+
+def _on_the_plane(case: Incline, t: float) -> DiscState:
+    """Sliding until the slip is gone, then rolling."""
+    start = case.accumulation
+    taken, moment = _friction_sums(case, math.inf, start)
+    share = case.kappa / (1.0 + case.kappa)
+    turn = (1.0 - share) / case.radius
+    x, angle = 0.5 * case.pull * start * start - share * moment, turn * moment
+    v, spin = case.pull * start - share * taken, turn * taken
+    grip = case.friction * case.press
+    rolling = case.pull / (1.0 + case.kappa)
+    change = max(start, min(t, case.rolling_begins))
+    phases = (
+        (change - start, case.pull - grip, grip / (case.kappa * case.radius)),
+        (t - change, rolling, rolling / case.radius),
+    )
+    for duration, acceleration, spin_up in phases:
+        x += duration * (v + 0.5 * acceleration * duration)
+        angle += duration * (spin + 0.5 * spin_up * duration)
+        v, spin = v + acceleration * duration, spin + spin_up * duration
+    return DiscState(x, case.radius, -angle, v, 0.0, -spin)

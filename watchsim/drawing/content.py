@@ -1,0 +1,35 @@
+"""What comes out of a file before it is chained?
+
+The same for every format: single lines and arcs in metres, each with its layer and the name of the entity that drew it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from watchsim.drawing.findings import Finding
+from watchsim.geometry.primitives import Edge
+
+
+@dataclass(frozen=True, slots=True)
+class Stroke:
+    """One edge (metres) with its layer; `source` names the entity as CAD shows it ("ARC #4F"), for messages."""
+
+    edge: Edge
+    layer: str
+    source: str
+
+
+@dataclass(frozen=True)
+class Content:
+    """Everything a reader found in one file; the fields are those of Drawing."""
+
+    strokes: tuple[Stroke, ...] = ()
+    points: tuple[tuple[str, float, float], ...] = ()
+    units: str | None = None
+    units_from: str | None = None
+    fitted_curves: int = 0
+    fitted_arcs: int = 0
+    fitted_deviation: float = 0.0
+    ignored: dict[str, int] = field(default_factory=dict)
+    findings: tuple[Finding, ...] = ()

@@ -1,0 +1,106 @@
+"""Where are outlines open?
+
+Loose ends are paired with their nearest partner, so that each gap is named once, with both ends.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from watchsim.drawing.content import Stroke
+from watchsim.drawing.findings import Finding
+from watchsim.drawing.nodes import Nodes
+from watchsim.geometry.primitives import Line, Point
+
+STRAY = 0.25  # a single line whose ends are further than this part of its length from anything is no torn outline
+MENDABLE = 1e-4  # metres: up to here a larger snap is proposed
+NEIGHBOURS = 8  # nearest ends considered for each loose end
+
+
+def open_ends(chains: Sequence[Sequence[int]], strokes: Sequence[Stroke], nodes: Nodes) -> list[Finding]:
+    """One finding per gap. `chains` are steps: 2·i travels stroke i forward, 2·i + 1 backward."""
+    loose: list[int] = []
+    for steps in chains:
+        loose += [end for end in (steps[0], steps[-1] ^ 1) if len(nodes.members[nodes.node[end]]) == 1]
+    if not loose:
+        return []
+    near = near_pairs([nodes.ends[end] for end in loose])
+    stray = stray_lines([steps[0] // 2 for steps in chains if len(steps) == 1], loose, near, strokes)
+    pairs = paired(loose, near, stray)
+    return [stray_finding(strokes[number]) for number in stray] + [gap_finding(a, b, strokes, nodes) for a, b in pairs]
+
+
+def near_pairs(points: Sequence[Point]) -> list[tuple[float, int, int]]:
+    """(distance, i, j), nearest first, of every point i and its nearest others j."""
+    from scipy.spatial import KDTree
+
+    count = min(NEIGHBOURS + 1, len(points))
+    if count < 2:
+        return []
+    distances, others = KDTree(points).query(points, k=count)
+    return sorted(
+        (float(d), i, int(j))
+        for i, (row, names) in enumerate(zip(distances, others, strict=True))
+        for d, j in zip(row, names, strict=True)
+        if int(j) != i
+    )
+
+
+def stray_lines(
+    alone: Sequence[int], loose: Sequence[int], near: Sequence[tuple[float, int, int]], strokes: Sequence[Stroke]
+) -> dict[int, None]:
+    """The single lines (numbers of strokes, as an ordered set) far from every other loose end."""
+    ends = set(loose)
+    stray = {number: None for number in alone if isinstance(strokes[number].edge, Line)}
+    for gap, i, j in near:
+        a, b = loose[i] // 2, loose[j] // 2
+        if a in stray and a != b and gap < STRAY * strokes[a].edge.length:
+            del stray[a]
+    return {number: None for number in stray if {2 * number, 2 * number + 1} <= ends}
+
+
+def paired(
+    loose: Sequence[int], near: Sequence[tuple[float, int, int]], stray: dict[int, None]
+) -> list[tuple[int, int]]:
+    """Loose ends in pairs, nearest first; an odd one out is paired with its nearest other end, or -1."""
+    free = {i for i, end in enumerate(loose) if end // 2 not in stray}
+    nearest: dict[int, int] = {}
+    pairs = []
+    for _, i, j in near:
+        nearest.setdefault(i, j)
+        if i in free and j in free:
+            free -= {i, j}
+            pairs.append((loose[i], loose[j]))
+    return pairs + [(loose[i], loose[nearest[i]] if i in nearest else -1) for i in sorted(free)]
+
+
+def stray_finding(stroke: Stroke) -> Finding:
+    x, y = stroke.edge.point(0.5)
+    message = f"{stroke.source} is a single line that touches nothing; it is kept as an open chain"
+    return Finding("stray-line", "warning", message, "Delete it, or put it on another layer.", stroke.layer, 1e3 * x, 1e3 * y)
+
+
+def gap_finding(end: int, partner: int, strokes: Sequence[Stroke], nodes: Nodes) -> Finding:
+    """The open outline with both ends, the gap and the entities."""
+    p = nodes.ends[end]
+    layer = strokes[end // 2].layer
+    if partner < 0:
+        message = f"the outline is open at {shown(p)} mm, {named(end, strokes)}; no other loose end is near"
+        return Finding("open-outline", "error", message, "Close it in CAD.", layer, 1e3 * p[0], 1e3 * p[1])
+    q = nodes.ends[partner]
+    gap = math.dist(p, q)
+    ends = f"{named(end, strokes)} and {named(partner, strokes)}"
+    message = f"the outline is open: {1e6 * gap:.4g} µm between {shown(p)} and {shown(q)} mm, {ends}"
+    fix = "Join them in CAD"
+    if gap <= MENDABLE:
+        fix += f', or set snap = "{math.ceil(1e6 * gap)} µm"'
+    return Finding("open-outline", "error", message, fix + ".", layer, 500.0 * (p[0] + q[0]), 500.0 * (p[1] + q[1]))
+
+
+def shown(p: Point) -> str:
+    return f"({1e3 * p[0]:.6g}, {1e3 * p[1]:.6g})"
+
+
+def named(end: int, strokes: Sequence[Stroke]) -> str:
+    return f"the {'end' if end % 2 else 'start'} of {strokes[end // 2].source}"

@@ -1,0 +1,154 @@
+"""What shall the user know about this drawing?
+
+The same facts twice: as a dictionary with fixed names for programs, and as text for people.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from watchsim.drawing.drawing import Drawing
+from watchsim.drawing.findings import Finding
+from watchsim.geometry.extent import Box, extents, total_length
+from watchsim.geometry.loop import Loop
+from watchsim.geometry.mass import area
+from watchsim.geometry.primitives import Arc
+
+ORDER = ("error", "warning", "notice")
+SHOWN = 12  # findings of one code written out in the text
+
+
+def inspect_report(drawing: Drawing) -> dict[str, object]:
+    """The facts under the names of `watchsim inspect --json`; lengths in mm, areas in mm², deviation in µm."""
+    everything = (*drawing.loops, *drawing.open_chains)
+    lines, arcs = counts(everything)
+    box = extents(everything)
+    return {
+        "file": str(drawing.path),
+        "format": drawing.format,
+        "units": drawing.units,
+        "units_from": drawing.units_from,
+        "extents_mm": [1e3 * side for side in box] if box else None,
+        "layers": {layer: layer_report(drawing, layer) for layer in drawing.layers},
+        "loops": [loop_report(loop) for loop in everything],
+        "points": [{"layer": layer, "x_mm": 1e3 * x, "y_mm": 1e3 * y} for layer, x, y in drawing.points],
+        "fitted": {
+            "curves": drawing.fitted_curves,
+            "arcs": drawing.fitted_arcs,
+            "worst_deviation_um": 1e6 * drawing.fitted_deviation,
+        },
+        "ignored": dict(drawing.ignored),
+        "findings": [finding.as_dict() for finding in drawing.findings],
+        "lines": lines,
+        "arcs": arcs,
+        "length_mm": 1e3 * total_length(everything),
+        "area_mm2": 1e6 * net_area(drawing.loops),
+    }
+
+
+def net_area(loops: Iterable[Loop]) -> float:
+    """Material in m²: outer loops less their holes."""
+    return sum(area(loop) for loop in loops)
+
+
+def counts(loops: Iterable[Loop]) -> tuple[int, int]:
+    """How many lines and how many arcs (a circle is one)."""
+    edges = [edge for loop in loops for edge in loop.edges]
+    arcs = sum(isinstance(edge, Arc) for edge in edges)
+    return len(edges) - arcs, arcs
+
+
+def layer_report(drawing: Drawing, layer: str) -> dict[str, int]:
+    loops = [loop for loop in drawing.loops if loop.layer == layer]
+    chains = [loop for loop in drawing.open_chains if loop.layer == layer]
+    lines, arcs = counts([*loops, *chains])
+    return {"lines": lines, "arcs": arcs, "loops": len(loops), "open_chains": len(chains)}
+
+
+def loop_report(loop: Loop) -> dict[str, object]:
+    lines, arcs = counts([loop])
+    return {
+        "layer": loop.layer,
+        "lines": lines,
+        "arcs": arcs,
+        "area_mm2": 1e6 * abs(area(loop)) if loop.closed else 0.0,
+        "length_mm": 1e3 * loop.length,
+        "closed": loop.closed,
+        "hole": loop.hole,
+    }
+
+
+def inspect_text(drawing: Drawing) -> str:
+    """The same facts in words, the most important first."""
+    everything = (*drawing.loops, *drawing.open_chains)
+    parts = [str(drawing.path), *units_lines(drawing), *size_lines(drawing, extents(everything)), *layer_lines(drawing)]
+    if drawing.fitted_curves:
+        worst = f"{1e6 * drawing.fitted_deviation:.3g} µm"
+        curves = plural(drawing.fitted_curves, "curve")
+        parts.append(f"  {curves} followed by {plural(drawing.fitted_arcs, 'arc')}, nowhere further away than {worst}")
+    if drawing.ignored:
+        parts.append("  not read: " + ", ".join(f"{count} {kind}" for kind, count in drawing.ignored.items()))
+    parts += finding_lines(drawing.findings)
+    return "\n".join(parts)
+
+
+def plural(count: int, noun: str) -> str:
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+
+
+def units_lines(drawing: Drawing) -> list[str]:
+    if drawing.units is None:
+        return ["  units: not stated; lengths are shown as if in mm"]
+    origin = {"header": "as the file says", "option": "as you say", "page": "as the page says"}
+    return [f"  units: {drawing.units}, {origin.get(drawing.units_from or '', 'unknown origin')}"]
+
+
+def size_lines(drawing: Drawing, box: Box | None) -> list[str]:
+    if box is None:
+        return ["  nothing to measure"]
+    width, height = 1e3 * (box[2] - box[0]), 1e3 * (box[3] - box[1])
+    x, y = (f"{1e3 * box[k]:.4g} to {1e3 * box[k + 2]:.4g}" for k in (0, 1))
+    everything = (*drawing.loops, *drawing.open_chains)
+    lines, arcs = counts(everything)
+    return [
+        f"  the part is {max(width, height):.3g} mm across ({width:.4g} × {height:.4g} mm; x {x}, y {y})",
+        f"  {plural(len(drawing.loops), 'closed outline')}, {plural(len(drawing.open_chains), 'open chain')}: "
+        f"{plural(lines, 'line')} and {plural(arcs, 'arc')}, {1e3 * total_length(everything):.5g} mm long, "
+        f"{1e6 * net_area(drawing.loops):.5g} mm² of material",
+    ]
+
+
+def layer_lines(drawing: Drawing) -> list[str]:
+    """One row per layer, aligned."""
+    result = []
+    width = max((len(layer) for layer in drawing.layers), default=0)
+    for layer in drawing.layers:
+        facts = layer_report(drawing, layer)
+        holes = sum(loop.hole for loop in drawing.loops if loop.layer == layer)
+        points = [(x, y) for name, x, y in drawing.points if name == layer]
+        words = [plural(facts["loops"], "outline") + (f" ({plural(holes, 'hole')})" if holes else "")] if facts["loops"] else []
+        words += [plural(facts["open_chains"], "open chain")] if facts["open_chains"] else []
+        words += [plural(facts[f"{kind}s"], kind) for kind in ("line", "arc") if facts[f"{kind}s"]]
+        if len(points) == 1:
+            words.append(f"a point at ({1e3 * points[0][0]:.6g}, {1e3 * points[0][1]:.6g}) mm")
+        elif points:
+            words.append(plural(len(points), "point"))
+        result.append(f"    {layer:<{width}}  {', '.join(words)}")
+    return ["  layers:", *result] if result else []
+
+
+def finding_lines(findings: Iterable[Finding]) -> list[str]:
+    """Findings by severity, numbered as in the picture; many of one kind are cut short with their count."""
+    numbered = sorted(enumerate(findings, 1), key=lambda pair: ORDER.index(pair[1].severity))
+    if not numbered:
+        return ["  nothing to complain about"]
+    result = ["  findings:"]
+    seen: dict[str, int] = {}
+    for number, finding in numbered:
+        seen[finding.code] = seen.get(finding.code, 0) + 1
+        if seen[finding.code] <= SHOWN:
+            where = f" [layer {finding.layer}]" if finding.layer is not None else ""
+            result.append(f"    {number:>3} {finding.severity}, {finding.code}{where}: {finding.message}")
+            result += [f"        {finding.fix}"] if finding.fix else []
+    result += [f"        and {count - SHOWN} more of {code}" for code, count in seen.items() if count > SHOWN]
+    return result

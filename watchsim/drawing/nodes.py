@@ -1,0 +1,119 @@
+"""Which ends of edges are the same point?
+
+First ends that agree to a nanometre are one node; then loose ends are joined to what lies within the snap. Tiny real
+edges thus survive: they hang together before the snap is asked. A grid of cells finds neighbours, so the time
+grows with the number of ends only.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from watchsim.drawing.content import Stroke
+from watchsim.geometry.primitives import Point
+
+TIGHT = 1e-9  # metres: the decimals of a drawing
+CROWD = 16  # neighbours looked at per cell: where more ends crowd within a snap, none can be told from another
+
+
+class Join(NamedTuple):
+    """Two nodes that were `gap` metres apart, at that place, and the strokes that end there."""
+
+    gap: float
+    at: Point
+    strokes: tuple[int, int]
+
+
+class Nodes:
+    """The node of every end. End 2·i is the start of stroke i, 2·i + 1 its end."""
+
+    def __init__(self, strokes: Sequence[Stroke]) -> None:
+        self.ends: list[Point] = [p for stroke in strokes for p in (stroke.edge.start, stroke.edge.end)]
+        self.lengths = [stroke.edge.length for stroke in strokes]
+        self.at: list[Point] = []
+        self.members: list[list[int]] = []
+        self.node: list[int] = []
+        self._collect()
+
+    def _collect(self) -> None:
+        """Each end goes to the nearest node within TIGHT, or makes a new one."""
+        grid = Grid(TIGHT)
+        for end, p in enumerate(self.ends):
+            best, nearest = -1, TIGHT
+            for node in grid.around(p):
+                gap = math.dist(p, self.at[node])
+                if gap <= nearest and self._may_join(end, node, TIGHT):
+                    best, nearest = node, gap
+            if best < 0:
+                best = len(self.at)
+                self.at.append(p)
+                self.members.append([])
+                grid.add(p, best)
+            self.members[best].append(end)
+            self.node.append(best)
+
+    def _may_join(self, end: int, node: int, reach: float) -> bool:
+        """Not both ends of an edge that is itself as short as the reach: it would vanish."""
+        return self.lengths[end // 2] > 3.0 * reach or (end ^ 1) not in self.members[node]
+
+    def snap(self, reach: float, loose_only: bool) -> list[Join]:
+        """Joins loose ends to the nearest node within `reach` metres (`loose_only`: to another loose end), nearest first."""
+        joins = []
+        for gap, a, b in sorted(self._pairs(reach, loose_only)):
+            loose = (len(self.members[a]) == 1) + (len(self.members[b]) == 1)
+            if loose < (2 if loose_only else 1) or not self.members[a] or not self.members[b]:
+                continue
+            if not all(self._may_join(end, a, reach) for end in self.members[b]):
+                continue
+            joins.append(Join(gap, self.at[a], (self.members[a][0] // 2, self.members[b][0] // 2)))
+            self._merge(a, b)
+        return joins
+
+    def _pairs(self, reach: float, loose_only: bool) -> Iterator[tuple[float, int, int]]:
+        grid = Grid(reach)
+        loose = [node for node, members in enumerate(self.members) if len(members) == 1]
+        for node in loose if loose_only else range(len(self.at)):
+            if self.members[node]:
+                grid.add(self.at[node], node)
+        for a in loose:
+            for b in grid.around(self.at[a]):
+                gap = math.dist(self.at[a], self.at[b])
+                if a != b and gap <= reach:
+                    yield gap, min(a, b), max(a, b)
+
+    def _merge(self, a: int, b: int) -> None:
+        for end in self.members[b]:
+            self.node[end] = a
+        self.members[a].extend(self.members[b])
+        self.members[b] = []
+
+    def drop(self, stroke: int) -> None:
+        """Takes both ends of a stroke out."""
+        for end in (2 * stroke, 2 * stroke + 1):
+            self.members[self.node[end]].remove(end)
+
+    def of(self, stroke: int) -> tuple[int, int]:
+        """The nodes of start and end of a stroke."""
+        return self.node[2 * stroke], self.node[2 * stroke + 1]
+
+
+class Grid:
+    """Numbered points by square cells; what lies within one cell width is in the cell of a point or one of its neighbours."""
+
+    def __init__(self, width: float) -> None:
+        self.width = width
+        self.cells: dict[tuple[int, int], list[int]] = {}
+
+    def _cell(self, p: Point) -> tuple[int, int]:
+        return math.floor(p[0] / self.width), math.floor(p[1] / self.width)
+
+    def add(self, p: Point, number: int) -> None:
+        self.cells.setdefault(self._cell(p), []).append(number)
+
+    def around(self, p: Point) -> Iterator[int]:
+        i, j = self._cell(p)
+        for cell in ((i + di, j + dj) for di in (0, -1, 1) for dj in (0, -1, 1)):
+            if cell in self.cells:
+                yield from self.cells[cell][:CROWD]

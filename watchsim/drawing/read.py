@@ -1,0 +1,92 @@
+"""What is in this drawing file?
+
+The one door to all formats: bytes in, a Drawing out. Whatever is wrong with the file is a finding, never an exception.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from watchsim.drawing.chain import chain
+from watchsim.drawing.content import Content
+from watchsim.drawing.drawing import Drawing
+from watchsim.drawing.dxf import read_dxf
+from watchsim.drawing.facets import facets
+from watchsim.drawing.findings import Finding
+from watchsim.geometry.extent import extents
+
+SNAP = 1e-6
+FIT = 1e-7
+
+
+def read(path: Path | str, units: str | None = None, snap: float = SNAP, fit: float = FIT) -> Drawing:
+    """Reads a drawing. `units` overrules what the file says; `snap` and `fit` are in metres.
+
+    Raises ValueError where `units` is no unit of length, or `snap` or `fit` is not positive.
+    """
+    path = Path(path)
+    if not snap > 0.0 or not fit > 0.0:
+        raise ValueError(f"snap and fit must be positive lengths, not {snap:g} m and {fit:g} m")
+    ending = path.suffix.lower().lstrip(".")
+    content = read_content(path, ending, units, fit)
+    chains = chain(content.strokes, snap)
+    findings = [*content.findings, *chains.findings, *facets((*chains.loops, *chains.open_chains))]
+    if not content.strokes and not any(finding.severity == "error" for finding in findings):
+        findings.insert(0, emptiness(content))
+    if content.units is None and content.strokes:
+        findings.insert(0, units_missing((*chains.loops, *chains.open_chains)))
+    return Drawing(
+        path=path,
+        format=ending,
+        units=content.units,
+        units_from=content.units_from,
+        loops=chains.loops,
+        open_chains=chains.open_chains,
+        points=content.points,
+        layers=layer_names(content),
+        fitted_curves=content.fitted_curves,
+        fitted_arcs=content.fitted_arcs,
+        fitted_deviation=content.fitted_deviation,
+        ignored=content.ignored,
+        findings=tuple(findings),
+    )
+
+
+def read_content(path: Path, ending: str, units: str | None, fit: float) -> Content:
+    """What the reader for that ending finds; a file that is not there or cannot be opened is a finding too."""
+    if ending == "svg":
+        return refused("SVG drawings are not read yet", "Save the drawing as DXF.")
+    if ending != "dxf":
+        return refused(f'"{path.name}" does not end in .dxf: this kind of file is not read', "Save the drawing as DXF.")
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        reason = "there is no such file" if isinstance(error, FileNotFoundError) else error.strerror or "it cannot be read"
+        return Content(findings=(Finding("unreadable", "error", f"{path}: {reason}"),))
+    return read_dxf(data, units, fit)
+
+
+def refused(message: str, fix: str) -> Content:
+    return Content(findings=(Finding("format", "error", message, fix),))
+
+
+def layer_names(content: Content) -> tuple[str, ...]:
+    """All layers with geometry, in the order of their first appearance."""
+    return tuple(dict.fromkeys([stroke.layer for stroke in content.strokes] + [layer for layer, _, _ in content.points]))
+
+
+def emptiness(content: Content) -> Finding:
+    """The error for a file that holds no line and no arc: the reasons stand in its other findings."""
+    other = f"; it holds {len(content.points)} points" if content.points else ""
+    if content.ignored:
+        other += "; what it holds is not read: " + ", ".join(f"{count} × {kind}" for kind, count in content.ignored.items())
+    message = f"the drawing holds no line and no arc that is visible in model space{other}"
+    return Finding("empty", "error", message, "Look at hidden layers and at paper space in CAD.")
+
+
+def units_missing(loops: tuple) -> Finding:
+    """The error for a drawing without units, with the sizes it could have."""
+    box = extents(loops) or (0.0, 0.0, 0.0, 0.0)
+    across = 1e3 * max(box[2] - box[0], box[3] - box[1])
+    message = f"the drawing does not say its units; it would be {across:.4g} mm or {25.4 * across:.4g} mm across"
+    return Finding("units-missing", "error", message, 'Set units = "mm" (or "inch").')

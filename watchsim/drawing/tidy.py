@@ -1,0 +1,117 @@
+"""Which edges are not meant?
+
+Edges without length, edges drawn twice, and slits (a line out and back, of no width) are taken out, each with a finding.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from watchsim.drawing.content import Stroke
+from watchsim.drawing.findings import Finding
+from watchsim.drawing.nodes import Nodes
+from watchsim.geometry.primitives import TURN, Arc, Edge, Point
+
+NOTHING = 1e-12  # metres; far below any decimal of a drawing
+SAME = 1e-9  # metres
+
+
+def with_length(strokes: Sequence[Stroke]) -> tuple[list[Stroke], list[Finding]]:
+    """The strokes that are longer than nothing."""
+    kept, findings = [], []
+    for stroke in strokes:
+        if stroke.edge.length > NOTHING:
+            kept.append(stroke)
+        else:
+            findings.append(at_edge("zero-length", f"{stroke.source} has a piece of no length; it was left out", stroke))
+    return kept, findings
+
+
+def at_edge(code: str, message: str, stroke: Stroke) -> Finding:
+    """A notice at the middle of a stroke."""
+    x, y = stroke.edge.point(0.5)
+    return Finding(code, "notice", message, "", stroke.layer, 1e3 * x, 1e3 * y)
+
+
+def unique_circles(strokes: Sequence[Stroke]) -> tuple[list[Stroke], list[Finding]]:
+    """Full circles, each once, starting at angle 0 and counter-clockwise."""
+    seen: dict[tuple[int, int, int], list[Arc]] = {}
+    kept, findings = [], []
+    for stroke in strokes:
+        edge = stroke.edge
+        assert isinstance(edge, Arc)
+        edge = Arc(edge.x, edge.y, edge.radius, 0.0, TURN)
+        key = (round(edge.x / SAME / 4), round(edge.y / SAME / 4), round(edge.radius / SAME / 4))
+        cells = [seen.get((key[0] + i, key[1] + j, key[2] + k), []) for i in (0, 1, -1) for j in (0, 1, -1) for k in (0, 1, -1)]
+        if any(same_circle(edge, other) for cell in cells for other in cell):
+            findings.append(at_edge("duplicate", f"{stroke.source} is drawn twice; one was left out", stroke))
+            continue
+        seen.setdefault(key, []).append(edge)
+        kept.append(Stroke(edge, stroke.layer, stroke.source))
+    return kept, findings
+
+
+def same_circle(a: Arc, b: Arc) -> bool:
+    return max(abs(a.x - b.x), abs(a.y - b.y), abs(a.radius - b.radius)) <= SAME
+
+
+def without_doubles(strokes: Sequence[Stroke], nodes: Nodes, reach: float) -> tuple[set[int], set[int], list[Finding]]:
+    """Numbers of the strokes to keep, of those among them that were drawn more than once, and findings.
+
+    Strokes are the same, forward or reversed, if they join the same nodes with their middles within `reach` metres.
+    """
+    groups: dict[tuple[int, int, bool], list[int]] = {}
+    kept, doubled, findings = set(), set(), []
+    for number, stroke in enumerate(strokes):
+        a, b = nodes.of(number)
+        key = (min(a, b), max(a, b), isinstance(stroke.edge, Arc))
+        others = groups.setdefault(key, [])
+        twin = next((o for o in others if math.dist(middle(strokes[o].edge), middle(stroke.edge)) <= reach), None)
+        if twin is None:
+            others.append(number)
+            kept.add(number)
+            continue
+        nodes.drop(number)
+        doubled.add(twin)
+        by = "itself" if strokes[twin].source == stroke.source else strokes[twin].source
+        findings.append(at_edge("duplicate", f"{stroke.source} repeats an edge of {by}; one was left out", stroke))
+    return kept, doubled, findings
+
+
+def middle(edge: Edge) -> Point:
+    return edge.point(0.5)
+
+
+def without_slits(
+    strokes: Sequence[Stroke], nodes: Nodes, kept: set[int], doubled: set[int]
+) -> tuple[set[int], list[Finding]]:
+    """Takes out runs of doubled strokes that lead from a free tip into an outline: a slit of no width."""
+    findings = []
+    for first in sorted(doubled):
+        for tip in nodes.of(first):
+            run = slit_from(first, tip, nodes, doubled) if first in kept else []
+            for number in run:
+                nodes.drop(number)
+            if run:
+                kept -= set(run)
+                message = f"{strokes[first].source} goes out and back along itself: a slit without width; it was left out"
+                findings.append(at_edge("slit", message, strokes[first]))
+    return kept, findings
+
+
+def slit_from(first: int, tip: int, nodes: Nodes, doubled: set[int]) -> list[int]:
+    """The doubled strokes from a free tip to a branch; empty if it is none."""
+    run: list[int] = []
+    number, node = first, tip
+    if len(nodes.members[tip]) != 1:
+        return []
+    while number in doubled and number not in run:
+        run.append(number)
+        a, b = nodes.of(number)
+        node = b if node == a else a
+        around = nodes.members[node]
+        if len(around) != 2:
+            return run if len(around) > 2 else []
+        number = next((end // 2 for end in around if end // 2 != number), -1)
+    return []

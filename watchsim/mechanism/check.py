@@ -1,0 +1,158 @@
+"""What does a scene amount to before anything is simulated?
+
+Echoes units, sizes, centre distances, mass, inertia and frequency, so that a wrong unit or a slipped digit is seen.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from watchsim.drawing.findings import Finding
+from watchsim.geometry.extent import extents
+from watchsim.mechanism.body import Body
+from watchsim.mechanism.force import Spring
+from watchsim.mechanism.overlap import overlaps
+from watchsim.mechanism.scene import Scene
+from watchsim.units import show, to
+
+DIGITS = 9  # of places: a nanometre still shows at a position of a metre
+LENGTHS, MASSES, INERTIAS = ("mm", "m"), ("mg", "g", "kg"), ("mg·cm²", "g·cm²", "kg·m²")
+COORDINATES = {"fixed": 0, "pivot": 1, "slide": 1, "free": 3}
+
+
+def check_report(scene: Scene, pairs: Mapping[str, int]) -> dict[str, Any]:
+    """What `check --json` prints. `pairs` holds the numbers of primitive pairs "declared" and "reachable"."""
+    hertz = frequency(scene)
+    return {
+        "bodies": {body.name: _body_entry(body) for body in scene.bodies},
+        "theory": {"frequency_hz": hertz, "vph": None if hertz is None else 7200.0 * hertz},
+        "pairs": {"declared": pairs["declared"], "reachable": pairs["reachable"]},
+        "statics": {},
+        "findings": [finding.as_dict() for finding in (*scene.findings, *_overlap_findings(scene), *_poised(scene))],
+    }
+
+
+def frequency(scene: Scene) -> float | None:
+    """Undamped frequency (Hz) of the first sprung body; None where no body has a spring."""
+    if not scene.springs:
+        return None
+    body = scene.body(scene.springs[0].body)
+    stiffness = sum(spring.stiffness for spring in scene.springs if spring.body == body.name)
+    return math.sqrt(stiffness / _moving_mass(body)) / math.tau
+
+
+def check_text(report: Mapping[str, Any], scene: Scene) -> str:
+    """The same for people, in watch units."""
+    parts = [scene.title, *_body_lines(scene), *_distance_lines(scene), *_force_lines(scene), *_contact_lines(scene)]
+    pairs = report["pairs"]
+    parts.append(f"pairs of primitives: {pairs['declared']} declared, {pairs['reachable']} can ever touch")
+    parts += [f"{finding['severity']}: {finding['message']}. {finding['fix']}".rstrip() for finding in report["findings"]]
+    return "\n".join(parts)
+
+
+def _body_entry(body: Body) -> dict[str, Any]:
+    return {
+        "mass_kg": body.mass,
+        "inertia_kg_m2": body.inertia,
+        "position_m": list(body.position),
+        "coordinates": COORDINATES[body.motion],
+    }
+
+
+def _overlap_findings(scene: Scene) -> Iterator[Finding]:
+    for overlap in overlaps(scene):
+        x, y = (1e3 * value for value in overlap.place)
+        yield Finding("overlap", "error", str(overlap), "Move or turn one of them.", x_mm=x, y_mm=y)
+
+
+def _poised(scene: Scene) -> Iterator[Finding]:
+    """Gravity turns a pivoted body only if its mass is known; saying nothing must not pass for poise."""
+    for body in scene.bodies if any(scene.gravity) else ():
+        if body.motion == "pivot" and body.mass == 0.0:
+            message = f"{body.name} has no mass, so gravity does not turn it: it counts as poised"
+            yield Finding("poised", "notice", message, f"Give mass or solids under [bodies.{body.name}] if it is not.")
+
+
+def _moving_mass(body: Body) -> float:
+    return body.mass if body.motion == "slide" else body.inertia
+
+
+def _body_lines(scene: Scene) -> Iterator[str]:
+    width = max(len(body.name) for body in scene.bodies)
+    for body in scene.bodies:
+        yield f"  {body.name:{width}}  {body.motion:5}  " + ", ".join((_place(body), _size(body), *_weights(body)))
+
+
+def _place(body: Body) -> str:
+    x, y = body.position
+    return f"at ({show(x, 'mm', DIGITS)}, {show(y, 'mm', DIGITS)}), turned by {show(body.angle, '°')}"
+
+
+def _size(body: Body) -> str:
+    """Width and height of all outlines as drawn."""
+    box = extents(body.loops)
+    if box is None:
+        return "no outline"
+    return f"{_fitting(box[2] - box[0], LENGTHS)} × {_fitting(box[3] - box[1], LENGTHS)}"
+
+
+def _weights(body: Body) -> Iterator[str]:
+    if body.motion != "fixed" and body.mass > 0.0:
+        yield f"mass {_fitting(body.mass, MASSES)}"
+    if body.motion in ("pivot", "free"):
+        yield f"inertia {_fitting(body.inertia, INERTIAS)}"
+
+
+def _fitting(value: float, units: tuple[str, ...]) -> str:
+    """In the first unit that needs at most four digits before the point."""
+    return show(value, next((unit for unit in units if abs(to(value, unit)) < 1e4), units[-1]), 5)
+
+
+def _distance_lines(scene: Scene) -> Iterator[str]:
+    """Between the pivots of bodies that are declared to touch."""
+    seen = set()
+    for contact in scene.contacts:
+        names = tuple(dict.fromkeys(side.body for side in contact.sides))
+        first, second = (scene.body(name) for name in names)
+        if frozenset(names) not in seen and first.motion == second.motion == "pivot":
+            seen.add(frozenset(names))
+            yield f"  centre distance {names[0]} - {names[1]}: {show(math.dist(first.position, second.position), 'mm', DIGITS)}"
+
+
+def _force_lines(scene: Scene) -> Iterator[str]:
+    for spring in scene.springs:
+        yield f"  spring on {spring.body}: {_spring(scene, spring)}"
+    for torque in scene.torques:
+        unit = "mN" if scene.body(torque.body).motion == "slide" else "µN·m"
+        text = show(torque.value, unit) if not torque.table else f"{len(torque.table)} values over {torque.over}"
+        yield f"  drive on {torque.body}: {text}"
+    for damping in scene.damping:
+        yield f"  damping on {damping.body}: {_damping(scene, damping.body, damping.viscous, damping.quadratic)}"
+
+
+def _spring(scene: Scene, spring: Spring) -> str:
+    body = scene.body(spring.body)
+    linear = body.motion == "slide"
+    hertz = math.sqrt(spring.stiffness / _moving_mass(body)) / math.tau
+    stiffness, rest = show(spring.stiffness, "N/m" if linear else "µN·m/rad"), show(spring.rest, "mm" if linear else "°")
+    return f"{stiffness}, {show(hertz, 'Hz')} = {show(hertz, 'vph')}, at rest at {rest}"
+
+
+def _damping(scene: Scene, name: str, viscous: float, quadratic: float) -> str:
+    body = scene.body(name)
+    linear = body.motion == "slide"
+    parts = [show(viscous, "N·s/m" if linear else "nN·m·s/rad")] if viscous else []
+    stiffness = sum(spring.stiffness for spring in scene.springs if spring.body == name)
+    if viscous and stiffness:
+        parts.append(f"Q = {math.sqrt(stiffness * _moving_mass(body)) / viscous:.6g}")
+    if quadratic:
+        parts.append(show(quadratic, "N·s²/m²" if linear else "nN·m·s²/rad²"))
+    return ", ".join(parts) or "none"
+
+
+def _contact_lines(scene: Scene) -> Iterator[str]:
+    for contact in scene.contacts:
+        first, second = contact.sides
+        yield f"  contact {first} - {second}: friction {contact.friction:g}, restitution {contact.restitution:g}"
