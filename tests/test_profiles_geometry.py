@@ -146,7 +146,7 @@ def test_swiss_wheel_advances_half_a_pitch_per_beat(swiss):
 
 def test_swiss_safety_action_is_clear_in_the_beat_and_holds_outside_it(swiss):
     safety = swiss[2]
-    assert safety.lift_angle == pytest.approx(52.0, abs=1.0)
+    assert safety.lift_angle == pytest.approx(51.2, abs=0.1)
     assert 0.25 < safety.fork_play < 0.5
     assert safety.horn_clearance_mm == pytest.approx(Swiss().horn_clearance, abs=1e-4)
     assert 0.02 < safety.guard_clearance_mm < 0.04

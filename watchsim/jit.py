@@ -27,7 +27,7 @@ _IMPORT = re.compile(r"^\s*from (watchsim(?:\.\w+)*) import", re.MULTILINE)
 
 
 def kernel(function: Function) -> Function:
-    """Compile `function` at its first call and keep the machine code for later processes.
+    """Compile `function` as a part of the entries that call it; from Python use `entry(function)` or `callable_kernel`.
 
     Division by zero gives inf or nan as in numpy; no fast-math, which would make isnan(nan) False.
     """
@@ -35,13 +35,52 @@ def kernel(function: Function) -> Function:
         return function
     import numba
 
-    settings: Any = numba.config
-    before, settings.CACHE_DIR = settings.CACHE_DIR, str(cache_folder())  # read while decorating
-    try:
-        compiled: Any = numba.njit(cache=True, error_model="numpy", fastmath=False)(function)
-    finally:
-        settings.CACHE_DIR = before
+    # No wrapper for calls from Python: unpacking records there would take longer to compile than the kernels themselves.
+    compiled: Function = numba.njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)(function)
     return compiled
+
+
+def entry(function: Function) -> Function:
+    """Compile `function`, to be called from Python or from kernels, at its first call; later processes find the machine code."""
+    if not is_compiled():
+        return function
+    import numba
+
+    before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(cache_folder())
+    try:
+        compiled: Function = numba.njit(cache=True, error_model="numpy", fastmath=False)(function)
+    finally:
+        numba.config.CACHE_DIR = before
+    return compiled
+
+
+def callable_kernel(function: Function) -> Function:
+    """A kernel made callable from Python, for tests and for researchers."""
+    return entry(getattr(function, "py_func", function))
+
+
+def by_reference(record: type, module: str) -> Any:
+    """For kernels: a constructor of a mutable struct with the fields of the NamedTuple class `record`, defined in `module`.
+
+    A tuple of arrays is passed to a compiled function by value, a dozen machine words for each array: with tens of arrays
+    that dominates compile time. A struct is one pointer. Without the compiler the NamedTuple itself serves.
+    """
+    if not is_compiled():
+        return record
+    from numba.core import types
+    from numba.experimental import structref
+
+    def preprocess_fields(_: Any, fields: Any) -> Any:
+        return fields
+
+    body = {"__module__": module, "preprocess_fields": preprocess_fields}
+    struct = type(f"{record.__name__}Type", (types.StructRef,), body)
+    # Numba pickles the type into its cache by name.
+    setattr(sys.modules[module], struct.__name__, struct)
+    structref.register(struct)
+    constructor = type(f"{record.__name__}Ref", (), {"__module__": module})
+    structref.define_constructor(constructor, struct, list(record._fields))  # type: ignore[attr-defined]
+    return constructor
 
 
 def is_compiled() -> bool:

@@ -44,7 +44,7 @@ def watch_scene(**changes: object) -> Scene:
 
 
 def watch_run(duration: float = 2.0, rows: int = 401, **changes: object) -> Trajectory:
-    """Wheel at -2 rad/s, lever 0.1 sin(30 t), balance 5 cos(25 t); the lever is struck at half time: its velocity jumps by 4."""
+    """Wheel at -2 rad/s, lever 0.1 sin(30 t), balance 5 cos(25 t); at half time the lever's velocity jumps by 4."""
     t = np.sort(np.append(np.linspace(0.0, duration, rows), 0.5 * duration))
     after = (t > 0.5 * duration) | (np.arange(len(t)) == np.flatnonzero(t == 0.5 * duration).max())
     since = np.where(after, t - 0.5 * duration, 0.0)

@@ -148,9 +148,9 @@ class _PairGeometry:
         for axis in range(self.pair.axes):
             offset = self.pair[f"c{axis}"] - body.first
             room = (0.5 + MARGIN) * self.pair[f"size{axis}"]
-            if body.motion == PIVOT and offset == 0 or body.motion == FREE and offset == 2:
+            if (body.motion == PIVOT and offset == 0) or (body.motion == FREE and offset == 2):
                 swing += room
-            elif body.motion == SLIDE and offset == 0 or body.motion == FREE and offset in (0, 1):
+            elif (body.motion == SLIDE and offset == 0) or (body.motion == FREE and offset in (0, 1)):
                 shift += room
         return shift, swing
 
@@ -192,5 +192,3 @@ def _geometry(points: Array) -> Any:
     import shapely
 
     return shapely.LineString(points)
-
-

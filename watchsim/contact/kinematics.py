@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from watchsim.contact.gaps import extent_margin
 from watchsim.contact.poses import point_of
-from watchsim.jit import kernel
+from watchsim.jit import by_reference, kernel
 from watchsim.mechanism.model import FREE, LINE, PIVOT, SLIDE, Records, records
 
 KINEMATICS = np.dtype(
@@ -44,6 +44,9 @@ class Closed(NamedTuple):
     coord: NDArray[np.int64]
     w_N: NDArray[np.float64]
     w_T: NDArray[np.float64]
+
+
+ClosedRef = by_reference(Closed, __name__)
 
 
 def closed_contacts(room: int) -> Closed:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from watchsim.jit import kernel
+from watchsim.jit import entry, kernel
 
 UNKNOWN, LISTED, ALL = -1, 0, 1
 MARGIN = 0.5  # a cell's answer holds this share of its size beyond its faces
@@ -18,7 +18,7 @@ def cell_index(q, size, wrap):
     return int(index % wrap) if wrap > 0 else int(index)
 
 
-@kernel
+@entry
 def cell_key(model, p, q):
     """The key of body pair p's cell at coordinates q; -1 where the indices leave the range of keys."""
     pair = model.pairs[p]
@@ -30,7 +30,7 @@ def cell_key(model, p, q):
     return (((p * 2 * REACH + (i0 + REACH)) * 2 * REACH) + (i1 + REACH)) * 2 * REACH + (i2 + REACH)
 
 
-@kernel
+@entry
 def find_slot(keys, key):
     """Slot of `key`, or of the free place where it belongs."""
     slots = len(keys)

@@ -6,16 +6,18 @@ way was meant, so chains end there and a finding names the place.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import replace
+from itertools import groupby
 from typing import NamedTuple
 
 from watchsim.drawing.content import Stroke
 from watchsim.drawing.findings import Finding
 from watchsim.drawing.gaps import open_ends
+from watchsim.drawing.junctions import Junctions, junctions
 from watchsim.drawing.nesting import nested
 from watchsim.drawing.nodes import TIGHT, Join, Nodes
-from watchsim.drawing.tidy import unique_circles, with_length, without_doubles, without_slits
+from watchsim.drawing.tidy import unique_loops, with_length, without_doubles, without_slits
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line, Point
 
@@ -51,77 +53,95 @@ def chain(strokes: Sequence[Stroke], snap: float) -> Chains:
 
 
 def chain_layer(layer: str, strokes: Sequence[Stroke], snap: float) -> Chains:
-    """The same for the strokes of one layer."""
+    """The same for the strokes of one layer. What one entity closes by itself is a loop, whatever else touches it."""
     drawn, findings = with_length(strokes)
-    circles, repeated = unique_circles([s for s in drawn if isinstance(s.edge, Arc) and s.edge.is_circle])
-    pieces = [s for s in drawn if not (isinstance(s.edge, Arc) and s.edge.is_circle)]
+    whole, pieces = closed_runs(drawn)
     nodes = Nodes(pieces)
     kept, doubled, doubles = without_doubles(pieces, nodes, min(TIGHT, snap))
     nodes.snap(snap, loose_only=False)
     joins = nodes.snap(NOTED * snap, loose_only=True)
     kept, slits = without_slits(pieces, nodes, kept, doubled)
-    paths = trace(nodes, kept)
-    closed = [assembled(path, pieces, layer) for path in paths if path.closed]
-    loops = nested([*closed, *(Loop((circle.edge,), layer) for circle in circles)])
-    notes = [*(closed_gap(join, pieces) for join in joins), *branches(nodes, pieces, layer)]
-    notes += open_ends([path.steps for path in paths if not path.closed], pieces, nodes)
-    chains = tuple(assembled(path, pieces, layer) for path in paths if not path.closed)
-    return Chains(tuple(loops), chains, (*findings, *repeated, *doubles, *slits, *notes))
+    meeting = junctions(nodes, pieces)
+    paths = trace(nodes, meeting, kept)
+    closed = [assembled([stroke.edge for stroke in run], layer, True) for run in whole]
+    closed += [assembled(travelled(path, pieces), layer, True) for path in paths if path.closed]
+    sources = [run[0].source for run in whole] + [pieces[path.steps[0] // 2].source for path in paths if path.closed]
+    loops, repeated = unique_loops(closed, sources)
+    notes = [*(closed_gap(join, pieces) for join in joins), *branches(nodes, meeting, pieces)]
+    still_open = [path for path in paths if not path.closed]
+    notes += open_ends([path.steps for path in still_open], meeting.loose, pieces, nodes)
+    chains = tuple(assembled(travelled(path, pieces), layer, False) for path in still_open)
+    return Chains(tuple(nested(loops)), chains, (*findings, *repeated, *doubles, *slits, *notes))
 
 
-def trace(nodes: Nodes, kept: set[int]) -> list[Path]:
-    """All chains, each beginning with its stroke of lowest number if closed, and in that stroke's direction in any case."""
+def closed_runs(strokes: Sequence[Stroke]) -> tuple[list[list[Stroke]], list[Stroke]]:
+    """The runs that close by themselves, and all other strokes."""
+    whole, rest = [], []
+    for _, group in groupby(strokes, key=lambda stroke: stroke.run):
+        run = list(group)
+        joints = zip(run, [*run[1:], run[0]], strict=True)
+        circle = isinstance(run[0].edge, Arc) and run[0].edge.is_circle
+        if circle or (all(math.dist(a.edge.end, b.edge.start) <= TIGHT for a, b in joints) and not folded(run)):
+            whole.append(run)
+        else:
+            rest += run
+    return whole, rest
+
+
+def folded(run: Sequence[Stroke]) -> bool:
+    """Does the run go along one of its edges twice? Then it has slits, which are found by chaining its edges anew."""
+    if len(run) < 3:
+        return len(run) == 2 and all(isinstance(stroke.edge, Line) for stroke in run)
+    middles = {}
+    for stroke in run:
+        x, y = stroke.edge.point(0.5)
+        middles[(round(x / TIGHT), round(y / TIGHT))] = stroke
+    return len(middles) < len(run)
+
+
+def trace(nodes: Nodes, meeting: Junctions, kept: set[int]) -> list[Path]:
+    """All chains, in the direction of their stroke of lowest number; closed ones begin with it."""
     left = dict.fromkeys(sorted(kept))
     paths = []
     for first in list(left):
         if first not in left:
             continue
         del left[first]
-        ahead = follow(nodes, left, 2 * first)
-        closed = meets(nodes, 2 * first, ahead[-1])
-        behind = [] if closed else [step ^ 1 for step in reversed(follow(nodes, left, 2 * first + 1)[1:])]
+        ahead = follow(meeting, left, 2 * first)
+        closed = meeting.partner.get(ahead[-1] ^ 1) == 2 * first
+        behind = [] if closed else [step ^ 1 for step in reversed(follow(meeting, left, 2 * first + 1)[1:])]
         steps = (*behind, *ahead)
+        start, end = nodes.node[steps[0]], nodes.node[steps[-1] ^ 1]
         # A chain that comes back to the branch it left from is a loop that touches another one there.
-        paths.append(Path(steps, closed or start_node(nodes, steps[0]) == end_node(nodes, steps[-1])))
+        paths.append(Path(steps, closed or (start == end and start in meeting.branches)))
     return paths
 
 
-def start_node(nodes: Nodes, step: int) -> int:
-    return nodes.node[step]
-
-
-def end_node(nodes: Nodes, step: int) -> int:
-    return nodes.node[step ^ 1]
-
-
-def meets(nodes: Nodes, first: int, last: int) -> bool:
-    """Has the way come back to its beginning?"""
-    node = end_node(nodes, last)
-    return node == start_node(nodes, first) and len(nodes.members[node]) == 2
-
-
-def follow(nodes: Nodes, left: dict[int, None], step: int) -> list[int]:
-    """The way on from a travelled stroke while exactly two meet; strokes used are taken from `left`."""
+def follow(meeting: Junctions, left: dict[int, None], step: int) -> list[int]:
+    """The way on from a travelled stroke to where it ends or is used up; strokes used are taken from `left`."""
     steps = [step]
     while True:
-        around = nodes.members[end_node(nodes, steps[-1])]
-        following = [end for end in around if end // 2 in left] if len(around) == 2 else []
-        if not following:
+        following = meeting.partner.get(steps[-1] ^ 1)
+        if following is None or following // 2 not in left:
             return steps
-        del left[following[0] // 2]
-        steps.append(following[0])
+        del left[following // 2]
+        steps.append(following)
 
 
-def assembled(path: Path, strokes: Sequence[Stroke], layer: str) -> Loop:
-    """The edges in travel order, lines stretched to meet their neighbours; arcs stay as drawn."""
-    edges = [strokes[step // 2].edge if step % 2 == 0 else strokes[step // 2].edge.reversed() for step in path.steps]
+def travelled(path: Path, strokes: Sequence[Stroke]) -> list[Edge]:
+    """The edges of a path in travel order and direction."""
+    return [strokes[step // 2].edge if step % 2 == 0 else strokes[step // 2].edge.reversed() for step in path.steps]
+
+
+def assembled(edges: list[Edge], layer: str, closed: bool) -> Loop:
+    """A loop of edges in travel order, lines stretched to meet their neighbours; arcs stay as drawn."""
     count = len(edges)
-    for k in range(count if path.closed else count - 1):
+    for k in range(count if closed else count - 1):
         following = (k + 1) % count
-        joint = joint_of(edges[k], edges[following])
         if following != k:
+            joint = joint_of(edges[k], edges[following])
             edges[k], edges[following] = ending_at(edges[k], joint), starting_at(edges[following], joint)
-    return Loop(tuple(edges), layer, path.closed)
+    return Loop(tuple(edges), layer, closed)
 
 
 def joint_of(before: Edge, after: Edge) -> Point:
@@ -135,11 +155,11 @@ def joint_of(before: Edge, after: Edge) -> Point:
 
 
 def ending_at(edge: Edge, p: Point) -> Edge:
-    return replace(edge, x1=p[0], y1=p[1]) if isinstance(edge, Line) else edge
+    return edge if isinstance(edge, Arc) or edge.end == p else Line(edge.x0, edge.y0, *p)
 
 
 def starting_at(edge: Edge, p: Point) -> Edge:
-    return replace(edge, x0=p[0], y0=p[1]) if isinstance(edge, Line) else edge
+    return edge if isinstance(edge, Arc) or edge.start == p else Line(*p, edge.x1, edge.y1)
 
 
 def closed_gap(join: Join, strokes: Sequence[Stroke]) -> Finding:
@@ -150,13 +170,14 @@ def closed_gap(join: Join, strokes: Sequence[Stroke]) -> Finding:
     return Finding("gap-closed", "notice", message, "Join them in CAD.", strokes[join.strokes[0]].layer, 1e3 * x, 1e3 * y)
 
 
-def branches(nodes: Nodes, strokes: Sequence[Stroke], layer: str) -> list[Finding]:
+def branches(nodes: Nodes, meeting: Junctions, strokes: Sequence[Stroke]) -> list[Finding]:
     """An error for each place where more than two edges meet."""
     found = []
-    for (x, y), members in zip(nodes.at, nodes.members, strict=True):
-        if len(members) > 2:
-            names = ", ".join(dict.fromkeys(strokes[end // 2].source for end in members[:8]))
-            message = f"{len(members)} edges meet at ({1e3 * x:.6g}, {1e3 * y:.6g}) mm: {names}; which way does the outline go?"
-            fix = "Leave only two of them there, or put the others on another layer."
-            found.append(Finding("branch", "error", message, fix, layer, 1e3 * x, 1e3 * y))
+    for node, ends in meeting.branches.items():
+        x, y = nodes.at[node]
+        layer = strokes[ends[0] // 2].layer
+        names = ", ".join(dict.fromkeys(strokes[end // 2].source for end in ends[:8]))
+        message = f"{len(ends)} edges meet at ({1e3 * x:.6g}, {1e3 * y:.6g}) mm: {names}; which way does the outline go?"
+        fix = "Leave only two of them there, or put the others on another layer."
+        found.append(Finding("branch", "error", message, fix, layer, 1e3 * x, 1e3 * y))
     return found

@@ -13,11 +13,15 @@ from watchsim.geometry.primitives import Edge
 
 @dataclass(frozen=True, slots=True)
 class Stroke:
-    """One edge (metres) with its layer; `source` names the entity as CAD shows it ("ARC #4F"), for messages."""
+    """One edge (metres) with its layer; `source` names the entity as CAD shows it ("ARC #4F"), for messages.
+
+    Strokes that one entity draws in one go follow each other and share the number `run`.
+    """
 
     edge: Edge
     layer: str
     source: str
+    run: int
 
 
 @dataclass(frozen=True)

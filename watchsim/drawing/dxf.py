@@ -62,6 +62,7 @@ class Gathering:
     hidden: Counter[str] = field(default_factory=Counter)
     tilted: int = 0
     copies: int = 0
+    runs: int = 0
     curves: int = 0
     arcs: int = 0
     deviation: float = 0.0
@@ -125,9 +126,9 @@ class Walker:
         result = []
         paper = 0
         for head, vertices in _grouped(records):
-            if head.text(67).strip() == "1":
-                paper += 1
-            elif head.text(60).strip() == "1":
+            if head.text(67) == "1":
+                paper += head.kind != "VIEWPORT"  # every file with paper space has one
+            elif head.text(60) == "1":
                 self.found.hidden[""] += 1
             else:
                 item = self._item(head, vertices)
@@ -145,13 +146,21 @@ class Walker:
                 return Item(layer, head.name, insert=insert(head, MOST))
             if head.kind == "POLYLINE" and not is_mesh(head):
                 return Item(layer, head.name, tuple(heavyweight(head, vertices)))
+            if head.kind in READERS and vertices:
+                raise DxfError("VERTEX records follow it that belong to no POLYLINE")
             if head.kind in READERS:
+                self._warn_of_radius(head, layer)
                 return Item(layer, head.name, tuple(READERS[head.kind](head)))
         except DxfError as error:
             message = f"{head.name} at {head.place} cannot be read: {error}. It is left out."
             self.found.findings.append(Finding("damaged", "error", message, "Draw it again or purge it in CAD.", layer))
             return None
         return Item(layer, head.name, ignored=head.kind or "(no type)")
+
+    def _warn_of_radius(self, head: Record, layer: str) -> None:
+        if head.kind in ("CIRCLE", "ARC") and head.number(40) < 0.0:
+            message = f"the radius of {head.name} is {head.number(40):g}; it is read without its sign"
+            self.found.findings.append(Finding("negative-radius", "warning", message, "Draw it again.", layer))
 
     def _spelling(self, layer: str) -> str:
         known = self.sections.layers.get(layer.lower())
@@ -169,6 +178,7 @@ class Walker:
             elif item.ignored:
                 self.found.ignored[item.ignored] += 1
             else:
+                self.found.runs += 1
                 for shape in item.shapes:
                     emit(self.found, shape if affine is IDENTITY else shape.mapped(affine), layer, item.source)
 
@@ -243,7 +253,7 @@ def emit(found: Gathering, shape: Shape, layer: str, source: str) -> None:
 
 
 def keep(found: Gathering, edges: Iterable[Edge], layer: str, source: str) -> None:
-    found.strokes.extend(Stroke(edge, layer, source) for edge in edges)
+    found.strokes.extend(Stroke(edge, layer, source, found.runs) for edge in edges)
     if len(found.strokes) > MOST:
         raise TooLarge
 
@@ -264,7 +274,9 @@ def tilted(shape: Straight | Conic | Spline) -> bool:
     """Does the shape leave its plane of constant height by more than a millionth of its size?"""
     if isinstance(shape, Conic):
         return max(abs(shape.u[2]), abs(shape.v[2])) > 1e-6 * max(math.hypot(*shape.u), math.hypot(*shape.v))
-    points = (shape.a, shape.b) if isinstance(shape, Straight) else shape.points
+    if isinstance(shape, Straight):
+        return shape.a[2] != shape.b[2] and abs(shape.a[2] - shape.b[2]) > 1e-6 * math.dist(shape.a, shape.b)
+    points = shape.points
     first = points[0]
     return any(abs(p[2] - first[2]) > 1e-6 * math.dist(p, first) for p in points[1:])
 

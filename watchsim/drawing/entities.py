@@ -53,10 +53,7 @@ def arc(record: Record) -> list[Shape]:
 
 def radius_of(record: Record) -> float:
     """Zero is let through: such circles are points left behind by editing, and are reported as pieces of no length."""
-    radius = record.number(40)
-    if radius < 0.0:
-        raise DxfError(f"its radius is {radius:g}")
-    return radius
+    return abs(record.number(40))
 
 
 def ellipse(record: Record) -> list[Shape]:

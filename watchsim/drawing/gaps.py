@@ -18,11 +18,10 @@ MENDABLE = 1e-4  # metres: up to here a larger snap is proposed
 NEIGHBOURS = 8  # nearest ends considered for each loose end
 
 
-def open_ends(chains: Sequence[Sequence[int]], strokes: Sequence[Stroke], nodes: Nodes) -> list[Finding]:
-    """One finding per gap. `chains` are steps: 2·i travels stroke i forward, 2·i + 1 backward."""
-    loose: list[int] = []
-    for steps in chains:
-        loose += [end for end in (steps[0], steps[-1] ^ 1) if len(nodes.members[nodes.node[end]]) == 1]
+def open_ends(
+    chains: Sequence[Sequence[int]], loose: Sequence[int], strokes: Sequence[Stroke], nodes: Nodes
+) -> list[Finding]:
+    """One finding per gap between `loose` ends. `chains` are steps: 2·i travels stroke i forward, 2·i + 1 backward."""
     if not loose:
         return []
     near = near_pairs([nodes.ends[end] for end in loose])

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.drawing.affine import Vector
+from watchsim.drawing.dense_polygon import polygon_edges
 from watchsim.drawing.shapes import Spline
 from watchsim.drawing.tags import DxfError
 from watchsim.geometry.biarc import Curve, Fit, fit_arcs
@@ -105,6 +106,8 @@ def through(fit_points: Sequence[Vector], tangents: Sequence[Vector]) -> Spline:
 
 def spline_edges(spline: Spline, scale: float, tolerance: float) -> tuple[Fit, bool]:
     """Lines and arcs (metres) along a spline in units of `scale` metres; and whether anything had to be fitted."""
+    if spline.degree == 1:
+        return polygon_edges(scale * np.array([(x, y) for x, y, _ in spline.points]), tolerance)
     edges: list[Edge] = []
     worst, fitted = 0.0, False
     for piece in pieces(spline, scale):
@@ -164,7 +167,7 @@ def straight(piece: Piece) -> Line | None:
     points = piece.points[:, :2] / piece.points[:, 2:]
     chord = points[-1] - points[0]
     length = math.hypot(*chord)
-    if piece.degree > 1 and (length == 0.0 or not clamped(piece)):
+    if length == 0.0 or not clamped(piece):
         return None
     offset = points - points[0]
     across = np.abs(offset[:, 1] * chord[0] - offset[:, 0] * chord[1])
@@ -182,8 +185,6 @@ def clamped(piece: Piece) -> bool:
 
 def circular(piece: Piece) -> Arc | None:
     """The arc, if the whole piece lies on one circle and runs one way along it."""
-    if piece.degree < 2:
-        return None
     points = samples(piece)
     third = len(points) // 3
     centre = circumcentre(points[0], points[third], points[2 * third])

@@ -5,6 +5,9 @@ The one door to all formats: bytes in, a Drawing out. Whatever is wrong with the
 
 from __future__ import annotations
 
+import gc
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from watchsim.drawing.chain import chain
@@ -28,9 +31,10 @@ def read(path: Path | str, units: str | None = None, snap: float = SNAP, fit: fl
     if not snap > 0.0 or not fit > 0.0:
         raise ValueError(f"snap and fit must be positive lengths, not {snap:g} m and {fit:g} m")
     ending = path.suffix.lower().lstrip(".")
-    content = read_content(path, ending, units, fit)
-    chains = chain(content.strokes, snap)
-    findings = [*content.findings, *chains.findings, *facets((*chains.loops, *chains.open_chains))]
+    with collector_paused():
+        content = read_content(path, ending, units, fit)
+        chains = chain(content.strokes, snap)
+        findings = [*content.findings, *chains.findings, *facets((*chains.loops, *chains.open_chains))]
     if not content.strokes and not any(finding.severity == "error" for finding in findings):
         findings.insert(0, emptiness(content))
     if content.units is None and content.strokes:
@@ -50,6 +54,18 @@ def read(path: Path | str, units: str | None = None, snap: float = SNAP, fit: fl
         ignored=content.ignored,
         findings=tuple(findings),
     )
+
+
+@contextmanager
+def collector_paused() -> Iterator[None]:
+    """A drawing is very many small objects and no cycles; Python's collector would walk over them again and again."""
+    was_on = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_on:
+            gc.enable()
 
 
 def read_content(path: Path, ending: str, units: str | None, fit: float) -> Content:

@@ -6,7 +6,6 @@ the list must be whole: every fault says where it is. Binary files are decoded b
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -55,13 +54,14 @@ class Record:
 
     def number(self, code: int, default: float | None = None) -> float:
         """The value of that group, which may stand only once; DxfError where it is missing and has no default."""
-        if code not in self.codes:
-            if default is None:
-                raise DxfError(f"group {code} is missing")
+        found = self.codes.count(code)
+        if found == 1:
+            return as_number(self.values[self.codes.index(code)], code)
+        if found == 0 and default is not None:
             return default
-        if self.codes.count(code) > 1:
-            raise DxfError(f"group {code} stands there {self.codes.count(code)} times; a record boundary seems to be lost")
-        return as_number(self.values[self.codes.index(code)], code)
+        if found == 0:
+            raise DxfError(f"group {code} is missing")
+        raise DxfError(f"group {code} stands there {found} times; a record boundary seems to be lost")
 
     def numbers(self, code: int) -> list[float]:
         return [as_number(value, code) for key, value in self.pairs() if key == code]
@@ -88,7 +88,7 @@ def as_number(value: object, code: int) -> float:
         number = float(value)  # type: ignore[arg-type]
     except (TypeError, ValueError):
         raise DxfError(f'group {code} is "{str(value).strip()[:40]}" where a number belongs') from None
-    if not math.isfinite(number) or abs(number) > LARGEST:
+    if not -LARGEST <= number <= LARGEST:
         raise DxfError(f"group {code} is {number:g}, no sensible number")
     return number
 

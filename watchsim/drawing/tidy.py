@@ -10,8 +10,10 @@ from collections.abc import Sequence
 
 from watchsim.drawing.content import Stroke
 from watchsim.drawing.findings import Finding
-from watchsim.drawing.nodes import Nodes
-from watchsim.geometry.primitives import TURN, Arc, Edge, Point
+from watchsim.drawing.nodes import Grid, Nodes
+from watchsim.geometry.extent import Box, extents
+from watchsim.geometry.loop import Loop
+from watchsim.geometry.primitives import Arc, Edge, Point
 
 NOTHING = 1e-12  # metres; far below any decimal of a drawing
 SAME = 1e-9  # metres
@@ -34,26 +36,43 @@ def at_edge(code: str, message: str, stroke: Stroke) -> Finding:
     return Finding(code, "notice", message, "", stroke.layer, 1e3 * x, 1e3 * y)
 
 
-def unique_circles(strokes: Sequence[Stroke]) -> tuple[list[Stroke], list[Finding]]:
-    """Full circles, each once, starting at angle 0 and counter-clockwise."""
-    seen: dict[tuple[int, int, int], list[Arc]] = {}
-    kept, findings = [], []
-    for stroke in strokes:
-        edge = stroke.edge
-        assert isinstance(edge, Arc)
-        edge = Arc(edge.x, edge.y, edge.radius, 0.0, TURN)
-        key = (round(edge.x / SAME / 4), round(edge.y / SAME / 4), round(edge.radius / SAME / 4))
-        cells = [seen.get((key[0] + i, key[1] + j, key[2] + k), []) for i in (0, 1, -1) for j in (0, 1, -1) for k in (0, 1, -1)]
-        if any(same_circle(edge, other) for cell in cells for other in cell):
-            findings.append(at_edge("duplicate", f"{stroke.source} is drawn twice; one was left out", stroke))
+def unique_loops(loops: Sequence[Loop], sources: Sequence[str]) -> tuple[list[Loop], list[Finding]]:
+    """The closed loops of a layer without those that repeat another one, whatever their direction and starting point."""
+    grid = Grid(SAME)
+    kept: list[Loop] = []
+    boxes: list[Box] = []
+    findings = []
+    for loop, source in zip(loops, sources, strict=True):
+        box = extents([loop]) or (0.0, 0.0, 0.0, 0.0)
+        near = (k for k in grid.around(box[:2]) if math.dist(boxes[k], box) <= 2.0 * SAME)
+        if any(same_loop(kept[k], loop) for k in near):
+            x, y = loop.edges[0].point(0.5)
+            message = f"the outline that begins with {source} is drawn twice; one was left out"
+            findings.append(Finding("duplicate", "notice", message, "", loop.layer, 1e3 * x, 1e3 * y))
             continue
-        seen.setdefault(key, []).append(edge)
-        kept.append(Stroke(edge, stroke.layer, stroke.source))
+        grid.add(box[:2], len(kept))
+        kept.append(loop)
+        boxes.append(box)
     return kept, findings
 
 
-def same_circle(a: Arc, b: Arc) -> bool:
-    return max(abs(a.x - b.x), abs(a.y - b.y), abs(a.radius - b.radius)) <= SAME
+def same_loop(a: Loop, b: Loop) -> bool:
+    """Do both have the same edges? Full circles are compared by centre and radius."""
+    if len(a.edges) != len(b.edges):
+        return False
+    first, second = a.edges[0], b.edges[0]
+    if isinstance(first, Arc) and isinstance(second, Arc) and first.is_circle and second.is_circle:
+        return max(abs(first.x - second.x), abs(first.y - second.y), abs(first.radius - second.radius)) <= SAME
+    grid = Grid(SAME)
+    for k, edge in enumerate(a.edges):
+        grid.add(edge.point(0.5), k)
+    return all(any(same_edge(a.edges[k], edge) for k in grid.around(edge.point(0.5))) for edge in b.edges)
+
+
+def same_edge(a: Edge, b: Edge) -> bool:
+    """The same middle, the same length, both lines or both arcs."""
+    near = math.dist(a.point(0.5), b.point(0.5)) <= SAME and abs(a.length - b.length) <= 4.0 * SAME
+    return near and isinstance(a, Arc) == isinstance(b, Arc)
 
 
 def without_doubles(strokes: Sequence[Stroke], nodes: Nodes, reach: float) -> tuple[set[int], set[int], list[Finding]]:

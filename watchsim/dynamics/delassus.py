@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.dynamics.lcp import LcpWork, lcp_work
-from watchsim.jit import kernel
+from watchsim.jit import by_reference, kernel
 
 Array = NDArray[np.float64]
 
@@ -33,6 +33,9 @@ class ContactWork(NamedTuple):
     order: NDArray[np.int64]
     lcp: LcpWork
     h: Array  # (n,)
+
+
+ContactWorkRef = by_reference(ContactWork, __name__)
 
 
 def contact_work(room: int, coordinates: int) -> ContactWork:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from watchsim.jit import kernel
+from watchsim.jit import entry, kernel
 from watchsim.mechanism.model import OVER_TIME
 
 
@@ -48,7 +48,9 @@ def forces(model, t, q, u, out_h):
     """h for all coordinates: drive, springs, damping."""
     for i in range(len(model.coordinates)):
         coordinate = model.coordinates[i]
-        out_h[i] = driving_force(model, i, q[i]) - coordinate.stiffness * (q[i] - coordinate.rest) + damping_force(model, i, u[i])
+        out_h[i] = (
+            driving_force(model, i, q[i]) - coordinate.stiffness * (q[i] - coordinate.rest) + damping_force(model, i, u[i])
+        )
     for j in range(len(model.tables)):
         table = model.tables[j]
         i = table.coordinate
@@ -77,7 +79,7 @@ def damping_power(model, u):
     return power
 
 
-@kernel
+@entry
 def stored_energy(model, q, u):
     """Kinetic energy and energy in springs, J."""
     energy = 0.0

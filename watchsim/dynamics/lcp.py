@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.jit import kernel
+from watchsim.jit import by_reference, entry, kernel
 
 OK, RAY, MAX_ITER, INEXACT = 0, 1, 2, 3
 
@@ -45,6 +45,9 @@ class LcpWork(NamedTuple):
     trial: Array  # scaled x
 
 
+LcpWorkRef = by_reference(LcpWork, __name__)
+
+
 def lcp_work(size: int) -> LcpWork:
     """Scratch for problems of up to `size` unknowns."""
     return LcpWork(
@@ -61,7 +64,7 @@ def lcp_work(size: int) -> LcpWork:
     )
 
 
-@kernel
+@entry
 def solve_lcp(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> int:
     """Solve the leading n×n problem into out_x[:n]: Lemke, checked, then enumeration up to ENUMERATED_SIZE unknowns.
 
@@ -77,7 +80,7 @@ def solve_lcp(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> int:
     return status
 
 
-@kernel
+@entry
 def lemke(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> int:
     """Lemke's method on the leading n×n problem; out_x[:n] is set when the status is OK (unchecked), else zero."""
     for i in range(n):
@@ -92,7 +95,7 @@ def lemke(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> int:
     return status
 
 
-@kernel
+@entry
 def enumerate_lcp(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> int:
     """Try every set of active indices, the empty one first; OK with out_x[:n], or RAY when none solves the problem."""
     magnitude = _scale(A, b, n, work)

@@ -11,6 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from watchsim.jit import by_reference
+
 Records = Any  # a numpy recarray; numba infers the record type
 
 FIXED, PIVOT, SLIDE, FREE = 0, 1, 2, 3
@@ -108,6 +110,9 @@ class Model(NamedTuple):
     pairs: Records
 
 
+ModelRef = by_reference(Model, __name__)
+
+
 class Cells(NamedTuple):
     """Open-addressing table: (pair, cell indices) -> candidate contacts `entries[start : start + count]`."""
 
@@ -115,6 +120,9 @@ class Cells(NamedTuple):
     start: NDArray[np.int64]
     count: NDArray[np.int64]
     entries: NDArray[np.int64]
+
+
+CellsRef = by_reference(Cells, __name__)
 
 
 def records(dtype: np.dtype[Any], rows: int) -> Records:

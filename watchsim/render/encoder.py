@@ -10,6 +10,7 @@ import os
 import subprocess
 from collections.abc import Iterable
 from pathlib import Path
+from typing import IO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -64,20 +65,28 @@ def _command(scratch: Path, size: tuple[int, int], fps: float, gif: bool) -> lis
 
 def _run(command: list[str], frames: Iterable[bytes | memoryview], path: Path) -> None:
     """Feed the encoder; its own session keeps a Ctrl-C meant for us from cutting it off unnoticed."""
-    with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True) as process:
+    pipe = subprocess.PIPE
+    with subprocess.Popen(command, stdin=pipe, stderr=pipe, bufsize=0, start_new_session=True) as process:
         assert process.stdin is not None and process.stderr is not None
+        broken = False
         try:
             for frame in frames:
-                process.stdin.write(frame)
-            process.stdin.close()
+                _feed(process.stdin, memoryview(frame).cast("B"))
         except BrokenPipeError:
-            pass  # the encoder died; what it said is told below
+            broken = True  # the encoder died; what it said is told below
         except BaseException:
             process.kill()
             raise
-        words = process.stderr.read().decode(errors="replace").strip()
-        if process.wait() != 0:
+        process.stdin.close()
+        words = process.stderr.read().decode(errors="replace")
+        if process.wait() != 0 or broken:
             raise OSError(f"could not write {path}: {_reason(words)}; nothing was changed")
+
+
+def _feed(pipe: IO[bytes], rest: memoryview) -> None:
+    """An unbuffered pipe takes what it can; nothing lingers in a buffer to fail again when the pipe is closed."""
+    while rest:
+        rest = rest[pipe.write(rest) :]
 
 
 def _reason(words: str) -> str:

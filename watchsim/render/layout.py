@@ -74,9 +74,9 @@ def lay_out(figure: Figure, run: Trajectory, window: Window, speed: float | None
     baseline = round(height - PAD * unit - 0.75 * TIME * unit)
     time_width = max(time.width(told.text(t, step)) for t in window)
     _title(figure, run.scene.title, (PAD * unit, baseline), width - 2.0 * PAD * unit - time_width - GAP * unit)
-    top = height - baseline + 0.35 * TIME * unit
+    # The line for the speed is kept free even where no speed is told: a frame drawn alone matches its movie.
+    top = height - baseline + 0.35 * TIME * unit + 1.3 * small.size
     if speed is not None:
-        top += 1.3 * small.size
         _words(figure, speed_text(speed), (width - PAD * unit, height - top + 0.3 * small.size), small.size, FAINT, ha="right")
     readings, bottom = _readings(figure, run, window, small)
     frame = Frame(0.0, bottom, width, height - top - bottom)

@@ -16,9 +16,10 @@ from matplotlib.path import Path
 from matplotlib.transforms import Affine2D, Bbox, IdentityTransform, Transform
 from numpy.typing import NDArray
 
+from watchsim.geometry.primitives import Arc
 from watchsim.render.layout import draw_rules, draw_scale, lay_out
 from watchsim.render.palette import BACKGROUND, CONTACT, INK
-from watchsim.render.parts import Part, is_round, parts
+from watchsim.render.parts import Part, is_round, loops_of, parts
 from watchsim.render.poses import Window
 from watchsim.render.view import size_of, view
 from watchsim.simulation.trajectory import Trajectory
@@ -56,7 +57,8 @@ class Stage:
         self._layout = lay_out(self._figure, run, window, speed, step or (window[1] - window[0]) / 2000.0)
         self.view = view(run, window, self._layout.frame, zoom, turn)
         draw_scale(self._figure, self.view.scale)
-        if zoom is not None or self.view.follow is not None:
+        endless = any(not loop.closed for body in run.scene.bodies for loop in loops_of(body))
+        if zoom is not None or endless or self.view.follow is not None:
             draw_rules(self._figure, self._layout.frame)
         self._transforms = {body.name: Affine2D() for body in run.scene.bodies}
         self._patches = self._compose(run)
@@ -115,8 +117,12 @@ class Stage:
 
     def _spoke(self, run: Trajectory, name: str) -> PathPatch:
         """A radius drawn on a body so round that its turning could not be seen."""
-        reach = 0.5 * size_of(run.scene.body(name))
-        path = Path([(0.0, 0.0), (0.9 * reach, 0.0)])
+        body = run.scene.body(name)
+        bore = max(
+            (edge.radius for loop in loops_of(body) if loop.hole for edge in loop.edges if isinstance(edge, Arc)), default=0.0
+        )
+        reach = 0.5 * size_of(body)
+        path = Path([(bore, 0.0), (bore + 0.9 * (reach - bore), 0.0)])
         width = max(2.0 * self._unit, 1.0)
         return self._own(
             PathPatch(path, fill=False, edgecolor=INK, linewidth=width, capstyle="round", transform=self._transforms[name])

@@ -8,16 +8,21 @@ from __future__ import annotations
 
 import math
 
-from watchsim.jit import kernel
+from watchsim.contact.kinematics import ClosedRef
+from watchsim.dynamics.delassus import ContactWorkRef
+from watchsim.dynamics.lcp import LcpWorkRef
+from watchsim.jit import entry, kernel
+from watchsim.mechanism.model import CellsRef, ModelRef
 from watchsim.simulation.coupled import motion
 from watchsim.simulation.drift import project_positions, project_velocities
 from watchsim.simulation.free import quarter_period
 from watchsim.simulation.integrator import coupled_step, dense_value
 from watchsim.simulation.keep import keep_row
 from watchsim.simulation.leave import first_leave
+from watchsim.simulation.options import OptionsRef
 from watchsim.simulation.passages import keep_passages
 from watchsim.simulation.settle import settle
-from watchsim.simulation.state import DAMPING, DRIVE, FLIGHT, FRICTION, N_FLIGHTS, ROOM, SUMS
+from watchsim.simulation.state import DAMPING, DRIVE, FRICTION, N_FLIGHTS, ROOM, SUMS, RecordRef, ScratchRef, StateRef, StepRef
 from watchsim.simulation.stops import Stop
 from watchsim.simulation.touch import first_touch
 from watchsim.simulation.within import begin_flight, coordinate_within, flight_acceleration
@@ -189,8 +194,8 @@ def _settle(model, cells, state, options, scratch, record):
 
 
 @kernel
-def advance(model, cells, state, options, until, scratch, record):
-    """Run to the time until[1] (or return after until[0], the end of a slice); returns a Stop code."""
+def _loop(model, cells, state, options, until, scratch, record):
+    """From step to step and event to event; see `advance`."""
     while True:
         if not _room_left(record):
             return BUFFER_FULL
@@ -209,3 +214,62 @@ def advance(model, cells, state, options, until, scratch, record):
         if not _is_finite(state):
             return NOT_FINITE
         state.numbers[2] = 1 if event else 0
+
+
+@kernel
+def _by_reference(scratch):
+    """The scratch arrays as nested structs."""
+    work = scratch.work
+    inner = ContactWorkRef(
+        work.G,
+        work.b,
+        work.size,
+        work.force,
+        work.more,
+        work.unit,
+        work.drag,
+        work.tangent,
+        work.A,
+        work.rhs,
+        work.x,
+        work.order,
+        LcpWorkRef(*work.lcp),
+        work.h,
+    )
+    return ScratchRef(
+        StepRef(*scratch.step),
+        scratch.pose,
+        ClosedRef(*scratch.closed),
+        ClosedRef(*scratch.rest),
+        inner,
+        scratch.restitution,
+        scratch.impulse,
+        scratch.rates,
+        scratch.before,
+        scratch.q,
+        scratch.u,
+        scratch.y,
+        scratch.dy,
+        scratch.label,
+        scratch.trial,
+        scratch.alarm,
+        scratch.unknown,
+        scratch.at,
+    )
+
+
+@entry
+def advance(model, cells, state, options, until, scratch, record):
+    """Run to the time until[1] (or return after until[0], the end of a slice); returns a Stop code.
+
+    All arguments but `until` are NamedTuples; `state`, `scratch` and `record` are written to.
+    """
+    return _loop(
+        ModelRef(*model),
+        CellsRef(*cells),
+        StateRef(*state),
+        OptionsRef(*options),
+        until,
+        _by_reference(scratch),
+        RecordRef(*record),
+    )

@@ -10,7 +10,7 @@ import math
 
 from watchsim.jit import kernel
 from watchsim.simulation.coupled import motion
-from watchsim.simulation.dop853 import STAGES, A, C, D, E3, E5
+from watchsim.simulation.dop853 import E3, E5, STAGES, A, C, D
 from watchsim.simulation.state import COUPLED, N_REJECTED, N_STEPS, SUMS
 
 SAFETY, SHRINK, GROW = 0.9, 0.2, 6.0

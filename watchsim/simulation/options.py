@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from watchsim.jit import by_reference
+
 
 class Options(NamedTuple):
     """Tolerances of a run. Each line: what it is; too large: ...; too small: ..."""
@@ -14,7 +16,9 @@ class Options(NamedTuple):
     tolerance: float  # relative error per step of coordinates and velocities. Large: wrong rates; small: slow below 1e-12
     gap_zero: float  # m: a gap this small is zero to rounding. Large: early contacts; small: below the rounding of positions
     gap_close: float  # m: gaps this small take part in an impact. Large: merges events; small: splits simultaneous ones
-    extent: float  # m: how far beyond its primitive's end a contact still counts. Large: sticks out; small: slips through joints
+    extent: (
+        float  # m: how far beyond its primitive's end a contact still counts. Large: sticks out; small: slips through joints
+    )
     speed_zero: float  # m/s: slower is zero. Large: freezes slow sliding; small: below the rounding of velocities
     force_zero: float  # share of a contact's force terms that counts as zero. Large: late detachment; small: rounding decides
     accumulation_time: float  # s: rebounds that would end sooner are ended by rule. Large: changes timing; small: more impacts
@@ -22,6 +26,9 @@ class Options(NamedTuple):
     sleep: float  # share of a coordinate's force terms below which its acceleration counts as zero
     row_phase: float  # rad: spacing of recorded rows in free flight, in phase of the coordinate's own oscillation
     max_step: float  # s
+
+
+OptionsRef = by_reference(Options, __name__)
 
 
 def options_for(size: float, tolerance: float, max_step: float) -> Options:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from watchsim.contact.kinematics import Closed, closed_contacts
 from watchsim.contact.poses import poses
 from watchsim.dynamics.delassus import ContactWork, contact_work
+from watchsim.jit import by_reference
 from watchsim.mechanism.model import Model, Records
 from watchsim.simulation.trajectory import EVENT_DTYPE
 
@@ -24,7 +25,9 @@ SUMS = 3  # integrated along with the motion: work in, damping, friction
 DRIVE, DAMPING, FRICTION, IMPACTS, CORRECTION = 0, 1, 2, 3, 4  # places in State.sums
 
 # Places in State.counts.
-N_STEPS, N_REJECTED, N_EVALUATIONS, N_FLIGHTS, N_EVENTS, N_IMPACTS, N_LCP, N_LCP_FAILED, N_ACCUMULATED, N_ENERGY, N_GAPS = range(11)
+N_STEPS, N_REJECTED, N_EVALUATIONS, N_FLIGHTS, N_EVENTS, N_IMPACTS, N_LCP, N_LCP_FAILED, N_ACCUMULATED, N_ENERGY, N_GAPS = (
+    range(11)
+)
 COUNT_NAMES = (
     "steps",
     "rejected_steps",
@@ -60,6 +63,9 @@ class State(NamedTuple):
     worst: Array  # deepest penetration met, m
 
 
+StateRef = by_reference(State, __name__)
+
+
 class Step(NamedTuple):
     """One smooth step from (q, u): an exact flight, or a Runge-Kutta step with its continuous extension."""
 
@@ -72,6 +78,9 @@ class Step(NamedTuple):
     y1: Array
     stages: Array  # (16, 2 n + SUMS)
     dense: Array  # (7, 2 n + SUMS)
+
+
+StepRef = by_reference(Step, __name__)
 
 
 class Scratch(NamedTuple):
@@ -97,6 +106,9 @@ class Scratch(NamedTuple):
     at: Array  # coordinates where it was met
 
 
+ScratchRef = by_reference(Scratch, __name__)
+
+
 class Record(NamedTuple):
     """Rows (t, q, u, a), events, and the times within which rows are kept."""
 
@@ -104,6 +116,9 @@ class Record(NamedTuple):
     events: Records
     used: Integers  # rows, events
     windows: Array  # (k, 2)
+
+
+RecordRef = by_reference(Record, __name__)
 
 
 def new_state(model: Model, q: Array, u: Array) -> State:
@@ -166,6 +181,4 @@ def new_scratch(model: Model) -> Scratch:
 def new_record(model: Model, rows: int, events: int, windows: Array) -> Record:
     """Empty buffers."""
     n = len(model.coordinates)
-    return Record(
-        np.zeros((rows, 1 + 3 * n)), np.zeros(events, EVENT_DTYPE).view(np.recarray), np.zeros(2, np.int64), windows
-    )
+    return Record(np.zeros((rows, 1 + 3 * n)), np.zeros(events, EVENT_DTYPE).view(np.recarray), np.zeros(2, np.int64), windows)
