@@ -18,6 +18,7 @@ from watchsim.contact.lookup import MARGIN, cell_key, find_slot
 from watchsim.mechanism.model import CORNER, FREE, LINE, PIVOT, SLIDE, WIDE, Cells, Model
 
 Array = NDArray[np.float64]
+POINT = 1e-9  # m; a corner as a line this long, since shapely finds no distance to a line of no length
 ARC_PIECES = 24  # straight pieces that stand for an arc
 AROUND = {1: 12, 2: 3, 3: 1}  # cells asked about together, to each side, by number of axes
 
@@ -175,7 +176,7 @@ def _points(primitive: Any) -> tuple[Array, float]:
     """Points along a primitive (at least two, for shapely) and how far the true curve may lie from the line through them."""
     x, y = primitive.x, primitive.y
     if primitive.kind == CORNER:
-        return np.array([(x, y), (x, y)]), 0.0
+        return np.array([(x, y), (x + POINT, y)]), POINT
     if primitive.kind == LINE:
         end = (x + primitive.length * primitive.tx, y + primitive.length * primitive.ty)
         return np.array([(x, y), end]), 0.0

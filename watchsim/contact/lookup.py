@@ -92,3 +92,17 @@ def time_in_cell(model, p, q, u, acceleration):
         i = pair.c2
         time = min(time, _time_to_leave(_room(q[i], pair.size2), abs(u[i]), acceleration[i]))
     return time
+
+
+@kernel
+def time_through_cells(model, p, u, acceleration, cells):
+    """A time in which body pair p passes at most about `cells` cells along each coordinate."""
+    pair = model.pairs[p]
+    time = math.inf
+    if pair.axes > 0:
+        time = min(time, _time_to_leave(cells * pair.size0, abs(u[pair.c0]), acceleration[pair.c0]))
+    if pair.axes > 1:
+        time = min(time, _time_to_leave(cells * pair.size1, abs(u[pair.c1]), acceleration[pair.c1]))
+    if pair.axes > 2:
+        time = min(time, _time_to_leave(cells * pair.size2, abs(u[pair.c2]), acceleration[pair.c2]))
+    return time

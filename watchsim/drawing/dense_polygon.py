@@ -8,6 +8,7 @@ corners and coarse facets stay lines.
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,7 +27,7 @@ def polygon_edges(points: Array, tolerance: float) -> tuple[Fit, bool]:
     cuts = corners(points, tolerance)
     edges: list[Edge] = []
     worst, fitted = 0.0, False
-    for a, b in zip(cuts, cuts[1:], strict=False):
+    for a, b in pairwise(cuts):
         fit = smooth(points[a : b + 1], tolerance) if b - a >= FEWEST else None
         if fit is None:
             edges.extend(Line(*points[k].tolist(), *points[k + 1].tolist()) for k in range(a, b))

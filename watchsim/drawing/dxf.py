@@ -7,35 +7,22 @@ out without a finding.
 
 from __future__ import annotations
 
-import math
-from collections import Counter
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from watchsim.drawing.affine import IDENTITY, Affine, shifted
-from watchsim.drawing.content import Content, Stroke
+from watchsim.drawing.content import Content
 from watchsim.drawing.dxf_sections import Block, Layer, Sections, divide
 from watchsim.drawing.dxf_units import INSUNITS, named_length
-from watchsim.drawing.ellipse import ellipse_edges
 from watchsim.drawing.entities import READERS, Insert, heavyweight, insert, is_mesh
 from watchsim.drawing.findings import Finding
-from watchsim.drawing.nurbs import spline_edges
-from watchsim.drawing.shapes import Conic, Dot, Shape, Spline, Straight, edge_on, exact_edge
-from watchsim.drawing.tags import DxfError, Record, read_tags
-from watchsim.geometry.primitives import Arc, Edge
+from watchsim.drawing.group_codes import strange_codes
+from watchsim.drawing.left_out import left_out
+from watchsim.drawing.projection import MOST, Gathering, TooLarge, emit
+from watchsim.drawing.shapes import Shape
+from watchsim.drawing.tags import LARGEST, DxfError, Record, read_tags
 
-MOST = 500_000  # strokes and copies of blocks: more is a fault in the file, not a drawing
 DEEPEST = 32  # blocks within blocks
-ROUNDING = 1e-12  # of the coordinates: a fit cannot be better than this
-TEXT_LIKE = frozenset(
-    ("TEXT", "MTEXT", "ATTRIB", "ATTDEF", "DIMENSION", "ARC_DIMENSION", "LARGE_RADIAL_DIMENSION", "LEADER", "MULTILEADER")
-    + ("MLEADER", "TOLERANCE", "VIEWPORT", "HATCH", "IMAGE", "WIPEOUT", "ACAD_TABLE", "RTEXT", "OLE2FRAME", "OLEFRAME")
-)
-KNOWN_BUT_NOT_READ = frozenset(
-    ("3DFACE", "SOLID", "TRACE", "MLINE", "REGION", "BODY", "3DSOLID", "SURFACE", "EXTRUDEDSURFACE", "LOFTEDSURFACE", "MESH")
-    + ("REVOLVEDSURFACE", "SWEPTSURFACE", "PLANESURFACE", "RAY", "XLINE", "SHAPE", "HELIX", "ACAD_PROXY_ENTITY", "LIGHT")
-    + ("SECTION", "UNDERLAY", "PDFUNDERLAY", "DWFUNDERLAY", "DGNUNDERLAY", "SUN", "POINTCLOUD", "GEOPOSITIONMARKER")
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,29 +34,6 @@ class Item:
     shapes: tuple[Shape, ...] = ()
     insert: Insert | None = None
     ignored: str = ""
-
-
-@dataclass
-class Gathering:
-    """What has been found so far; filled in while the file is walked through once."""
-
-    scale: float
-    tolerance: float
-    strokes: list[Stroke] = field(default_factory=list)
-    points: list[tuple[str, float, float]] = field(default_factory=list)
-    findings: list[Finding] = field(default_factory=list)
-    ignored: Counter[str] = field(default_factory=Counter)
-    hidden: Counter[str] = field(default_factory=Counter)
-    tilted: int = 0
-    copies: int = 0
-    runs: int = 0
-    curves: int = 0
-    arcs: int = 0
-    deviation: float = 0.0
-
-
-class TooLarge(Exception):
-    """The drawing unfolds into more than MOST pieces."""
 
 
 def read_dxf(data: bytes, units: str | None, fit: float) -> Content:
@@ -90,10 +54,16 @@ def read_dxf(data: bytes, units: str | None, fit: float) -> Content:
     except TooLarge:
         message = f"the drawing unfolds into more than {MOST} pieces; the rest was not read"
         found.findings.append(Finding("too-large", "error", message, "Look for arrays of blocks with huge counts."))
-    findings = (*notes, *sections.findings, *found.findings, *_summaries(found, sections.layers))
     return Content(
-        *(tuple(found.strokes), tuple(found.points), name, origin),
-        *(found.curves, found.arcs, found.deviation, dict(found.ignored), findings),
+        strokes=tuple(found.strokes),
+        points=tuple(found.points),
+        units=name,
+        units_from=origin,
+        fitted_curves=found.curves,
+        fitted_arcs=found.arcs,
+        fitted_deviation=found.deviation,
+        ignored=dict(found.ignored),
+        findings=(*notes, *sections.findings, *found.findings, *left_out(found, sections.layers)),
     )
 
 
@@ -141,6 +111,8 @@ class Walker:
 
     def _item(self, head: Record, vertices: list[Record]) -> Item | None:
         layer = self._spelling(head.text(8, "0") or "0")
+        for record in (head, *vertices):
+            self._warn_of_codes(record, layer)
         try:
             if head.kind == "INSERT":
                 return Item(layer, head.name, insert=insert(head, MOST))
@@ -161,6 +133,13 @@ class Walker:
         if head.kind in ("CIRCLE", "ARC") and head.number(40) < 0.0:
             message = f"the radius of {head.name} is {head.number(40):g}; it is read without its sign"
             self.found.findings.append(Finding("negative-radius", "warning", message, "Draw it again.", layer))
+
+    def _warn_of_codes(self, record: Record, layer: str) -> None:
+        strange = strange_codes(record)
+        if strange:
+            codes = ", ".join(map(str, strange[:6]))
+            message = f"{record.name} at {record.place} has groups that do not belong there ({codes}): it may be damaged"
+            self.found.findings.append(Finding("strange-group", "warning", message, "Look whether its shape is right.", layer))
 
     def _spelling(self, layer: str) -> str:
         known = self.sections.layers.get(layer.lower())
@@ -197,7 +176,12 @@ class Walker:
             self.found.copies += 1
             if self.found.copies > MOST:
                 raise TooLarge
-            self.walk(self.read_blocks[name], affine.after(placing).after(base), layer, (*path, name))
+            place = affine.after(placing).after(base)
+            if max(abs(number) for column in place for number in column) > LARGEST:
+                message = f"{item.source} puts its block at coordinates beyond any drawing; it is left out"
+                self.found.findings.append(Finding("damaged", "error", message, "", layer))
+                return
+            self.walk(self.read_blocks[name], place, layer, (*path, name))
 
     def _base(self, block: Block) -> Affine:
         try:
@@ -222,89 +206,3 @@ def _grouped(records: Iterable[Record]) -> Iterable[tuple[Record, list[Record]]]
             head, vertices = record, []
     if head is not None:
         yield head, vertices
-
-
-def emit(found: Gathering, shape: Shape, layer: str, source: str) -> None:
-    """Projects one shape in world coordinates to the plane and keeps its edges."""
-    scale = found.scale
-    if isinstance(shape, Dot):
-        found.points.append((layer, scale * shape.at[0], scale * shape.at[1]))
-        return
-    found.tilted += tilted(shape)
-    if isinstance(shape, Spline):
-        fit, fitted = spline_edges(shape, scale, max(found.tolerance, ROUNDING * scale * reach(shape)))
-    elif (edge := exact_edge(shape, scale)) is not None:
-        keep(found, (edge,), layer, source)
-        return
-    elif isinstance(shape, Conic) and not edge_on(shape):
-        fit, fitted = ellipse_edges(shape, scale, max(found.tolerance, ROUNDING * scale * reach(shape))), True
-    else:
-        message = f"{source} is seen edge-on, as a line drawn there and back; it is left out"
-        found.findings.append(_at("edge-on", "warning", message, layer, scale, shape))
-        return
-    if fitted:
-        found.curves += 1
-        found.arcs += sum(isinstance(edge, Arc) for edge in fit.edges)
-        found.deviation = max(found.deviation, fit.deviation)
-        if fit.deviation > max(found.tolerance, ROUNDING * scale * reach(shape)):
-            message = f"{source} could only be followed within {fit.deviation * 1e6:.3g} µm: it has a cusp or a gap"
-            found.findings.append(_at("fit", "warning", message, layer, scale, shape))
-    keep(found, fit.edges, layer, source)
-
-
-def keep(found: Gathering, edges: Iterable[Edge], layer: str, source: str) -> None:
-    found.strokes.extend(Stroke(edge, layer, source, found.runs) for edge in edges)
-    if len(found.strokes) > MOST:
-        raise TooLarge
-
-
-def corner(shape: Straight | Conic | Spline) -> tuple[float, float, float]:
-    """Some point that belongs to the shape."""
-    return shape.a if isinstance(shape, Straight) else shape.centre if isinstance(shape, Conic) else shape.points[0]
-
-
-def reach(shape: Straight | Conic | Spline) -> float:
-    """The largest coordinate that matters for rounding, drawing units."""
-    points = shape.points if isinstance(shape, Spline) else [corner(shape)]
-    size = max(map(abs, (*shape.u, *shape.v))) if isinstance(shape, Conic) else 0.0
-    return size + max(max(abs(x), abs(y)) for x, y, _ in points)
-
-
-def tilted(shape: Straight | Conic | Spline) -> bool:
-    """Does the shape leave its plane of constant height by more than a millionth of its size?"""
-    if isinstance(shape, Conic):
-        return max(abs(shape.u[2]), abs(shape.v[2])) > 1e-6 * max(math.hypot(*shape.u), math.hypot(*shape.v))
-    if isinstance(shape, Straight):
-        return shape.a[2] != shape.b[2] and abs(shape.a[2] - shape.b[2]) > 1e-6 * math.dist(shape.a, shape.b)
-    points = shape.points
-    first = points[0]
-    return any(abs(p[2] - first[2]) > 1e-6 * math.dist(p, first) for p in points[1:])
-
-
-def _at(code: str, severity: str, message: str, layer: str, scale: float, shape: Straight | Conic | Spline) -> Finding:
-    x, y, _ = corner(shape)
-    return Finding(code, severity, message, "", layer, 1e3 * scale * x, 1e3 * scale * y)
-
-
-def _summaries(found: Gathering, layers: dict[str, Layer]) -> list[Finding]:
-    """One finding for each thing that was left out many times."""
-    result = []
-    for layer, count in found.hidden.items():
-        state = layers.get(layer.lower(), Layer(layer))
-        what = f"layer {layer} is {'frozen' if state.frozen else 'off'}: its" if layer else "invisible:"
-        result.append(Finding("layer-off", "notice", f"{what} {count} entities were left out", layer=layer or None))
-    if found.tilted:
-        message = f"{found.tilted} pieces are not parallel to the drawing plane; their projection is used"
-        result.append(Finding("tilted", "warning", message))
-    for kind, count in found.ignored.items():
-        result.append(_ignored(kind, count))
-    return result
-
-
-def _ignored(kind: str, count: int) -> Finding:
-    if kind in TEXT_LIKE:
-        return Finding("ignored", "notice", f"{count} × {kind} not read: it is no outline")
-    if kind in KNOWN_BUT_NOT_READ or kind in ("POLYLINE",):
-        return Finding("ignored", "warning", f"{count} × {kind} not read", "Draw it with lines and arcs where it matters.")
-    message = f"{count} × {kind[:40]} not read: no type of entity known here; the file may be damaged"
-    return Finding("ignored", "warning", message)

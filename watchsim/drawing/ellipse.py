@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +28,7 @@ def ellipse_edges(conic: Conic, scale: float, tolerance: float) -> Fit:
         return centre + c * u + s * v, c * v - s * u
 
     cuts = axis_cuts(conic)
-    fits = [fit_arcs(curve, (a, b), tolerance) for a, b in zip(cuts, cuts[1:], strict=False)]
+    fits = [fit_arcs(curve, (a, b), tolerance) for a, b in pairwise(cuts)]
     return Fit(tuple(edge for fit in fits for edge in fit.edges), max(fit.deviation for fit in fits))
 
 

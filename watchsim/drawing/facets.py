@@ -27,7 +27,7 @@ def runs(loop: Loop) -> list[list[Line]]:
     """The rows of at least FEWEST lines that turn alike."""
     edges: Sequence[Edge] = loop.edges
     if loop.closed:
-        edges = edges[first_break(edges) :] + edges[: first_break(edges)]
+        edges = (*edges[first_break(edges) :], *edges[: first_break(edges)])
     found: list[list[Line]] = []
     row: list[Line] = []
     turn = 0.0

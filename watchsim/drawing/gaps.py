@@ -18,9 +18,7 @@ MENDABLE = 1e-4  # metres: up to here a larger snap is proposed
 NEIGHBOURS = 8  # nearest ends considered for each loose end
 
 
-def open_ends(
-    chains: Sequence[Sequence[int]], loose: Sequence[int], strokes: Sequence[Stroke], nodes: Nodes
-) -> list[Finding]:
+def open_ends(chains: Sequence[Sequence[int]], loose: Sequence[int], strokes: Sequence[Stroke], nodes: Nodes) -> list[Finding]:
     """One finding per gap between `loose` ends. `chains` are steps: 2·i travels stroke i forward, 2·i + 1 backward."""
     if not loose:
         return []
@@ -59,9 +57,7 @@ def stray_lines(
     return {number: None for number in stray if {2 * number, 2 * number + 1} <= ends}
 
 
-def paired(
-    loose: Sequence[int], near: Sequence[tuple[float, int, int]], stray: dict[int, None]
-) -> list[tuple[int, int]]:
+def paired(loose: Sequence[int], near: Sequence[tuple[float, int, int]], stray: dict[int, None]) -> list[tuple[int, int]]:
     """Loose ends in pairs, nearest first; an odd one out is paired with its nearest other end, or -1."""
     free = {i for i, end in enumerate(loose) if end // 2 not in stray}
     nearest: dict[int, int] = {}
@@ -90,11 +86,12 @@ def gap_finding(end: int, partner: int, strokes: Sequence[Stroke], nodes: Nodes)
     q = nodes.ends[partner]
     gap = math.dist(p, q)
     ends = f"{named(end, strokes)} and {named(partner, strokes)}"
-    message = f"the outline is open: {1e6 * gap:.4g} µm between {shown(p)} and {shown(q)} mm, {ends}"
+    width = f"{1e6 * gap:.3g} µm" if gap < 1e-3 else f"{1e3 * gap:.4g} mm"
+    message = f"the outline is open: {width} between {shown(p)} and {shown(q)} mm, {ends}"
     fix = "Join them in CAD"
     if gap <= MENDABLE:
         fix += f', or set snap = "{math.ceil(1e6 * gap)} µm"'
-    return Finding("open-outline", "error", message, fix + ".", layer, 500.0 * (p[0] + q[0]), 500.0 * (p[1] + q[1]))
+    return Finding("open-outline", "error", message, fix + ".", layer, 1e3 * p[0], 1e3 * p[1])
 
 
 def shown(p: Point) -> str:

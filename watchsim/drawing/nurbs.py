@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -23,6 +24,7 @@ from watchsim.geometry.primitives import TURN, Arc, Edge, Line
 Array = NDArray[np.float64]
 HIGHEST_DEGREE = 24  # CAD programs stop at 11; beyond this the basis functions lose their digits
 SAME_KNOT = 1e-10  # of the knots' range
+WEIGHTIEST = 1e9  # times the smallest weight
 ON_CIRCLE = 1e-9  # of the radius: rational circles are exact up to the decimals they are written with
 ON_LINE = 1e-12  # of the length
 
@@ -58,8 +60,8 @@ def spline_from(
         knots, points, weights = uniform(degree, closed, points, weights)
     if len(points) <= degree or len(knots) != len(points) + degree + 1:
         raise DxfError(f"{len(points)} control points and {len(knots)} knots do not make a spline of degree {degree}")
-    if weights and (len(weights) != len(points) or min(weights) <= 0.0):
-        raise DxfError("its weights are not one positive number for each control point")
+    if weights and (len(weights) != len(points) or not 0.0 < max(weights) <= WEIGHTIEST * min(weights)):
+        raise DxfError("its weights are not one positive number of similar size for each control point")
     clean = cleaned(knots)
     if not clean[degree] < clean[len(points)]:
         raise DxfError("its knots do not ascend")
@@ -133,7 +135,7 @@ def pieces(spline: Spline, scale: float) -> list[Piece]:
     cuts = [k for k in range(len(distinct)) if low < distinct[k] < high and count[k] >= degree]
     ends = [int(np.searchsorted(distinct, low)), *cuts, int(np.searchsorted(distinct, high))]
     result = []
-    for a, b in zip(ends, ends[1:], strict=False):
+    for a, b in pairwise(ends):
         last, begin = int(first[a] + count[a] - 1), int(first[b])
         result.append(Piece(degree, knots[last - degree : begin + degree + 1], points[last - degree : begin]))
     return result

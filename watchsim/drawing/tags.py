@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 BINARY_MARK = b"AutoCAD Binary DXF"
-LARGEST = 1e12  # drawing units; larger numbers are damage, and squares of them would lose the small ones
+LARGEST = 1e11  # drawing units; larger numbers are damage, and squares of them would lose the small ones
 _ESCAPE = re.compile(r"\\U\+([0-9A-Fa-f]{4})")
 _CODEPAGE = re.compile(r"\$DWGCODEPAGE\s+3\s+(?:ANSI_|ansi_|dos)?(\d+)")
 
@@ -164,7 +164,7 @@ def _grouped(codes: list[int], values: list[object], fault: str, word: str) -> T
     """Records from code 0 to code 0, up to EOF."""
     step = 2 if word == "line" else 1
     starts = [i for i, code in enumerate(codes) if code == 0]
-    records = []
+    records: list[Record] = []
     for start, stop in zip(starts, [*starts[1:], len(codes)], strict=True):
         kind = str(values[start]).strip().upper()
         if kind == "EOF":

@@ -102,9 +102,7 @@ def middle(edge: Edge) -> Point:
     return edge.point(0.5)
 
 
-def without_slits(
-    strokes: Sequence[Stroke], nodes: Nodes, kept: set[int], doubled: set[int]
-) -> tuple[set[int], list[Finding]]:
+def without_slits(strokes: Sequence[Stroke], nodes: Nodes, kept: set[int], doubled: set[int]) -> tuple[set[int], list[Finding]]:
     """Takes out runs of doubled strokes that lead from a free tip into an outline: a slit of no width."""
     findings = []
     for first in sorted(doubled):

@@ -101,8 +101,8 @@ def _candidate(here: _Knot, there: _Knot, tolerance: float) -> list[Edge]:
 def biarc(p: Point, tangent_p: Point, q: Point, tangent_q: Point) -> list[Edge]:
     """The two arcs (or lines) from p to q with these unit tangents; empty where there is no sensible biarc.
 
-    Both end legs of the control polygon p, p + d·tp, q - d·tq, q have length d and the middle one 2d; with v = q - p, t = tp + tq
-    and u = tp - tq that says d² u² + 2d v·t - v² = 0, whose positive root is written so that nothing cancels.
+    Both end legs of the control polygon p, p + d·tp, q - d·tq, q have length d and the middle one 2d; with v = q - p,
+    t = tp + tq and u = tp - tq that says d² u² + 2d v·t - v² = 0, whose positive root is written so that nothing cancels.
     """
     vx, vy = q[0] - p[0], q[1] - p[1]
     tx, ty = tangent_p[0] + tangent_q[0], tangent_p[1] + tangent_q[1]

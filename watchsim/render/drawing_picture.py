@@ -38,7 +38,7 @@ LISTED = 20  # layers in the legend
 def draw_drawing(drawing: Drawing, png_path: Path | str) -> None:
     """Writes the picture as PNG; OSError where the file cannot be written. It is written whole or not at all."""
     buffer = io.BytesIO()
-    picture(drawing).savefig(buffer, format="png", dpi=DPI)
+    picture(drawing).savefig(buffer, format="png", dpi=DPI, bbox_inches="tight", pad_inches=0.2)
     path = Path(png_path)
     scratch = path.with_name(f".{path.name}.{os.getpid()}")
     try:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 
 from watchsim.contact.kinematics import ClosedRef
+from watchsim.contact.lookup import time_through_cells
 from watchsim.dynamics.delassus import ContactWorkRef
 from watchsim.dynamics.lcp import LcpWorkRef
 from watchsim.jit import entry, kernel
@@ -30,6 +31,7 @@ from watchsim.simulation.within import begin_flight, coordinate_within, flight_a
 RUNNING, SLICE, CELL_UNKNOWN, BUFFER_FULL = int(Stop.RUNNING), int(Stop.SLICE), int(Stop.CELL_UNKNOWN), int(Stop.BUFFER_FULL)
 DURATION, STEP_TOO_SMALL, NOT_FINITE = int(Stop.DURATION), int(Stop.STEP_TOO_SMALL), int(Stop.NOT_FINITE)
 TOO_MANY_EVENTS = int(Stop.TOO_MANY_EVENTS)
+FLIGHT_CELLS = 32
 FLIGHT_ROWS = 16  # a flight is at most this many recorded rows long
 EVENTS_AT_ONCE = 2000
 ROWS_PER_STEP = FLIGHT_ROWS + 8
@@ -152,6 +154,10 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
     if flying:
         length, spacing = _flight_length(model, state, options)
         begin_flight(model, state, min(length, left), scratch)
+        # A long flight would ask about cells far behind the first event.
+        for p in range(len(model.pairs)):
+            length = min(length, time_through_cells(model, p, state.u, scratch.step.bound, FLIGHT_CELLS))
+        scratch.step.span[1] = min(length, left)
     else:
         if not coupled_step(model, state, options, min(left, options.max_step), scratch):
             return STEP_TOO_SMALL, False

@@ -6,6 +6,7 @@ stay closed and which of them stick. Velocities and positions are then exact to 
 
 from __future__ import annotations
 
+from watchsim.contact.gaps import extent_margin, normal_gap
 from watchsim.contact.index_sets import OPEN, STICK
 from watchsim.contact.poses import place
 from watchsim.dynamics.acceleration import accelerate, decide_modes
@@ -75,6 +76,7 @@ def _list_active(model, state, f, scratch):
 def settle(model, cells, state, options, scratch, record):
     """Handle the event that waits at the current state; returns a Stop code, RUNNING when all went well."""
     place(model, state.q, state.u, scratch.pose)
+    _release(model, state, options, scratch, record)
     m = gather(model, cells, state, options, scratch)
     if m < 0:
         return CELL_UNKNOWN if m == -1 else TOO_MANY_CONTACTS
@@ -108,6 +110,24 @@ def settle(model, cells, state, options, scratch, record):
     _list_active(model, state, f, scratch)
     state.numbers[2] = 0
     return RUNNING
+
+
+@kernel
+def _release(model, state, options, scratch, record):
+    """Open the contacts that have left their primitives."""
+    kept, awake = 0, 0
+    for j in range(state.numbers[0] + state.numbers[1]):
+        k = state.active[j]
+        _, _, nx, ny = normal_gap(model, k, scratch.pose)
+        if extent_margin(model, k, scratch.pose, nx, ny) < -1.5 * options.extent:
+            state.mode[k] = OPEN
+            keep_event(state, record, OPEN_EVENT, k, -1, 0.0)
+            continue
+        state.active[kept] = k
+        kept += 1
+        if j < state.numbers[0]:
+            awake += 1
+    state.numbers[0], state.numbers[1] = awake, kept - awake
 
 
 @kernel

@@ -1,0 +1,108 @@
+"""What becomes of a shape in the plane?
+
+Shapes are projected to the drawing plane and turned into lines and arcs in metres: exactly where they are such, else
+by arcs within the tolerance. Everything found on the way is gathered here.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+from watchsim.drawing.content import Stroke
+from watchsim.drawing.ellipse import ellipse_edges
+from watchsim.drawing.findings import Finding
+from watchsim.drawing.nurbs import spline_edges
+from watchsim.drawing.shapes import Conic, Dot, Shape, Spline, Straight, edge_on, exact_edge
+from watchsim.geometry.primitives import Arc, Edge
+
+MOST = 500_000  # strokes and copies of blocks: more is a fault in the file, not a drawing
+ROUNDING = 1e-11  # of the coordinates: a fit cannot be better than this
+
+
+@dataclass
+class Gathering:
+    """What has been found so far; filled in while the file is walked through once."""
+
+    scale: float
+    tolerance: float
+    strokes: list[Stroke] = field(default_factory=list)
+    points: list[tuple[str, float, float]] = field(default_factory=list)
+    findings: list[Finding] = field(default_factory=list)
+    ignored: Counter[str] = field(default_factory=Counter)
+    hidden: Counter[str] = field(default_factory=Counter)
+    tilted: int = 0
+    copies: int = 0
+    runs: int = 0
+    curves: int = 0
+    arcs: int = 0
+    deviation: float = 0.0
+
+
+class TooLarge(Exception):
+    """The drawing unfolds into more than MOST pieces."""
+
+
+def emit(found: Gathering, shape: Shape, layer: str, source: str) -> None:
+    """Projects one shape in world coordinates to the plane and keeps its edges."""
+    scale = found.scale
+    if isinstance(shape, Dot):
+        found.points.append((layer, scale * shape.at[0], scale * shape.at[1]))
+        return
+    found.tilted += tilted(shape)
+    limit = max(found.tolerance, ROUNDING * scale * reach(shape))
+    if isinstance(shape, Spline):
+        fit, fitted = spline_edges(shape, scale, limit)
+    elif (edge := exact_edge(shape, scale)) is not None:
+        keep(found, (edge,), layer, source)
+        return
+    elif isinstance(shape, Conic) and not edge_on(shape):
+        fit, fitted = ellipse_edges(shape, scale, limit), True
+    else:
+        message = f"{source} is seen edge-on, as a line drawn there and back; it is left out"
+        found.findings.append(_at("edge-on", "warning", message, layer, scale, shape))
+        return
+    if fitted:
+        found.curves += 1
+        found.arcs += sum(isinstance(edge, Arc) for edge in fit.edges)
+        found.deviation = max(found.deviation, fit.deviation)
+        if fit.deviation > limit:
+            message = f"{source} could only be followed within {fit.deviation * 1e6:.3g} µm: it has a cusp or a gap"
+            found.findings.append(_at("fit", "warning", message, layer, scale, shape))
+    keep(found, fit.edges, layer, source)
+
+
+def keep(found: Gathering, edges: Iterable[Edge], layer: str, source: str) -> None:
+    found.strokes.extend(Stroke(edge, layer, source, found.runs) for edge in edges)
+    if len(found.strokes) > MOST:
+        raise TooLarge
+
+
+def corner(shape: Straight | Conic | Spline) -> tuple[float, float, float]:
+    """Some point that belongs to the shape."""
+    return shape.a if isinstance(shape, Straight) else shape.centre if isinstance(shape, Conic) else shape.points[0]
+
+
+def reach(shape: Straight | Conic | Spline) -> float:
+    """The largest coordinate that matters for rounding, drawing units."""
+    points = shape.points if isinstance(shape, Spline) else [corner(shape)]
+    size = max(map(abs, (*shape.u, *shape.v))) if isinstance(shape, Conic) else 0.0
+    return size + max(max(abs(x), abs(y)) for x, y, _ in points)
+
+
+def tilted(shape: Straight | Conic | Spline) -> bool:
+    """Does the shape leave its plane of constant height by more than a millionth of its size?"""
+    if isinstance(shape, Conic):
+        return max(abs(shape.u[2]), abs(shape.v[2])) > 1e-6 * max(math.hypot(*shape.u), math.hypot(*shape.v))
+    if isinstance(shape, Straight):
+        return shape.a[2] != shape.b[2] and abs(shape.a[2] - shape.b[2]) > 1e-6 * math.dist(shape.a, shape.b)
+    points = shape.points
+    first = points[0]
+    return any(abs(p[2] - first[2]) > 1e-6 * math.dist(p, first) for p in points[1:])
+
+
+def _at(code: str, severity: str, message: str, layer: str, scale: float, shape: Straight | Conic | Spline) -> Finding:
+    x, y, _ = corner(shape)
+    return Finding(code, severity, message, "", layer, 1e3 * scale * x, 1e3 * scale * y)
