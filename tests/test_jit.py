@@ -53,26 +53,32 @@ def python(code: str, **environment: str) -> str:
 
 
 def test_machine_code_is_kept_and_found(tmp_path: Path) -> None:
-    ask = "from watchsim import jit; print(jit.is_cached(), jit.is_cached('lcp._is_trivial'), jit.is_cached('lcp.none'))"
-    use = "import numpy; from watchsim.dynamics.lcp import _is_trivial; print(_is_trivial(numpy.ones(2), 2))"
+    (tmp_path / "tiny.py").write_text("from watchsim.jit import entry\n@entry\ndef twice(x):\n    return 2 * x\n")
+    use = f"import sys; sys.path.insert(0, {str(tmp_path)!r}); import tiny; print(tiny.twice(4))"
+    ask = "from watchsim import jit; print(jit.is_cached(), jit.is_cached('tiny.twice'), jit.is_cached('tiny.thrice'))"
     cache = {"WATCHSIM_CACHE": str(tmp_path / "new"), "NUMBA_DISABLE_JIT": "0"}
     assert python(ask, **cache) == "False False False"
-    assert python(use, **cache) == "True"
+    assert python(use, **cache) == "8"
     assert python(ask, **cache) == "True True False"
 
 
 def test_plain_python_when_asked(tmp_path: Path) -> None:
     code = (
-        "import sys; from watchsim.jit import is_cached, kernel\n"
+        "import sys; from watchsim.jit import callable_kernel, entry, is_cached, kernel\n"
         "def f(x): return 2 * x\n"
-        "print(kernel(f) is f, is_cached(), 'numba' in sys.modules)"
+        "print(kernel(f) is f, entry(f) is f, callable_kernel(f) is f, is_cached(), 'numba' in sys.modules)"
     )
-    assert python(code, NUMBA_DISABLE_JIT="1", WATCHSIM_CACHE=str(tmp_path / "none")) == "True True False"
+    assert python(code, NUMBA_DISABLE_JIT="1", WATCHSIM_CACHE=str(tmp_path / "none")) == "True True True True False"
     assert not (tmp_path / "none").exists()
 
 
 def test_importing_costs_no_numba() -> None:
     assert python("import sys, watchsim.jit; print('numba' in sys.modules, 'numpy' in sys.modules)") == "False False"
+
+
+def test_a_kernel_can_be_made_callable(tmp_path: Path) -> None:
+    code = "from watchsim.jit import callable_kernel; from watchsim.dynamics.lcp import _power_of_two as f; print(callable_kernel(f)(6.5))"
+    assert python(code, WATCHSIM_CACHE=str(tmp_path), NUMBA_DISABLE_JIT="0") == "8.0"
 
 
 def test_other_numba_users_keep_their_cache_folder(tmp_path: Path) -> None:

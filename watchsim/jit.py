@@ -41,7 +41,7 @@ def kernel(function: Function) -> Function:
 
 
 def entry(function: Function) -> Function:
-    """Compile `function`, to be called from Python or from kernels, at its first call; later processes find the machine code."""
+    """Compile `function`, for Python or for kernels to call, at its first call; later processes find the machine code."""
     if not is_compiled():
         return function
     import numba

@@ -72,6 +72,20 @@ def test_axes_say_which_time_they_show():
     assert clock((1.4, 1.4005)).label == "time after 1.4 s (µs)"
 
 
+@pytest.mark.parametrize("window", [(0.0, 2.0), (0.0, 0.9), (0.3, 0.31), (0.5, 0.5001)])
+def test_tick_labels_tell_the_value_at_the_tick(window):
+    run = watch_run()
+    for scale in (1.0, 0.01, 0.9, 30.0):  # the lever then swings by ±5.7°, ±0.06°, ±5.2°, ±172°
+        run.q[:, 1], run.u[:, 1], run.a[:, 1] = (scale * column[:, 1] for column in (run.q, run.u, run.a))
+        figure = plot_kinematics(run, ["lever"], window=window)
+        figure.canvas.draw()
+        for axes in figure.axes:
+            offset = axes.yaxis.get_major_formatter().get_offset()
+            for label in axes.get_yticklabels() if not offset else ():
+                told = float(label.get_text().replace("−", "-").replace(",", ""))
+                assert told == pytest.approx(label.get_position()[1], abs=1e-9), axes.get_ylabel()
+
+
 def test_rounding_noise_of_a_resting_body_is_not_magnified():
     run = watch_run()
     run.q[:, 0] = 0.1 + 1e-14 * np.sin(1e3 * run.t)

@@ -1,10 +1,11 @@
 """Where is a disc that bounces down an incline? The exact answer, by geometric series.
 
 A disc falls from rest onto a plane inclined by `slope`, x along the plane downhill, y along its normal, angle
-counter-clockwise (so rolling downhill turns it negative). One point of contact whose normal and tangential directions are not
-coupled: with approach speed v the impact returns e v, and friction takes at most mu (1+e)(1+1/kappa) v off the slip, else all of it.
-Impact k comes at T_k = T - 2 t1 e^k/(1-e) with speed v1 e^(k-1); T = t1 (1+e)/(1-e) is where they accumulate. Between impacts the slip
-grows by 2 tan(slope) times the next speed, so all impacts but the first take the same multiple of their speed.
+counter-clockwise (so rolling downhill turns it negative). One point of contact whose normal and tangential directions are
+not coupled: with approach speed v the impact returns e v, and friction takes at most mu (1+e)(1+1/kappa) v off the slip,
+else all of it. Impact k comes at T_k = T - 2 t1 e^k/(1-e) with speed v1 e^(k-1); T = t1 (1+e)/(1-e) is where they
+accumulate. Between impacts the slip grows by 2 tan(slope) times the next speed, so all impacts but the first take the
+same multiple of their speed.
 """
 
 from __future__ import annotations
@@ -134,7 +135,7 @@ def _height(case: Incline, count: int, t: float) -> tuple[float, float]:
 
 def _slip_left(case: Incline) -> float:
     """Slip when the bouncing has died out; exactly zero where the last impacts stick."""
-    first, later = _multiples(case)
+    _, later = _multiples(case)
     if later == 2.0 * math.tan(case.slope):
         return 0.0
     taken, _ = _friction_sums(case, math.inf, case.accumulation)

@@ -97,10 +97,10 @@ class _PairGeometry:
         order = np.lexsort((np.arange(len(contacts)), other_row, mover_row))
         self.sorted_pairs = mover_row[order] * len(self.others) + other_row[order]
         self.sorted_ids = self.pair.start + order
-        self.points = [_points(model.primitives[i]) for i in self.movers]
+        self.points = [primitive_points(model.primitives[i]) for i in self.movers]
         self.reach = np.array([np.hypot(*points.T).max() for points, _ in self.points])
         self.sag = np.array([sag for _, sag in self.points])
-        other_points = [_points(model.primitives[i]) for i in self.others]
+        other_points = [primitive_points(model.primitives[i]) for i in self.others]
         self.other_sag = max((sag for _, sag in other_points), default=0.0)
         self.tree = shapely.STRtree([_geometry(points) for points, _ in other_points])
         self.coordinates = np.concatenate([points for points, _ in self.points])
@@ -134,7 +134,7 @@ class _PairGeometry:
     def _in_other_frame(self, q: Array) -> tuple[Array, Array]:
         """Points of body a's primitives in body b's frame, and how far each primitive may move relative to b in the cell."""
         (ax, ay, angle), (bx, by, turn) = (_pose(self.model, b, q) for b in (self.pair.a, self.pair.b))
-        world = _turned(self.coordinates, angle) + (ax - bx, ay - by)
+        world = _turned(self.coordinates, angle) + np.array((ax - bx, ay - by))
         points = _turned(world, -turn)
         shift_a, swing_a = self._freedom(self.pair.a)
         shift_b, swing_b = self._freedom(self.pair.b)
@@ -172,7 +172,7 @@ def _turned(points: Array, angle: float) -> Array:
     return points @ np.array([[c, s], [-s, c]])
 
 
-def _points(primitive: Any) -> tuple[Array, float]:
+def primitive_points(primitive: Any) -> tuple[Array, float]:
     """Points along a primitive (at least two, for shapely) and how far the true curve may lie from the line through them."""
     x, y = primitive.x, primitive.y
     if primitive.kind == CORNER:

@@ -63,7 +63,7 @@ def closed_contacts(room: int) -> Closed:
 
 @kernel
 def _directions(model, b, row, sign, frame, out_closed):
-    """Append body b's entries of w_N, w_T; frame = (nx, ny, arm_x, arm_y) with the arm from the body's origin to the contact."""
+    """Append body b's entries of w_N, w_T; frame = (nx, ny, arm_x, arm_y), the arm from the body's origin to the contact."""
     body = model.bodies[b]
     nx, ny, rx, ry = frame
     tx, ty = -ny, nx

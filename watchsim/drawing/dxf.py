@@ -18,7 +18,7 @@ from watchsim.drawing.entities import READERS, Insert, heavyweight, insert, is_m
 from watchsim.drawing.findings import Finding
 from watchsim.drawing.group_codes import strange_codes
 from watchsim.drawing.left_out import left_out
-from watchsim.drawing.projection import MOST, Gathering, TooLarge, emit
+from watchsim.drawing.projection import MOST_COPIES, MOST_STROKES, Gathering, TooLarge, emit
 from watchsim.drawing.shapes import Shape
 from watchsim.drawing.tags import LARGEST, DxfError, Record, read_tags
 
@@ -52,7 +52,7 @@ def read_dxf(data: bytes, units: str | None, fit: float) -> Content:
     try:
         walker.walk(walker.items(sections.entities, "model"), IDENTITY, "", ())
     except TooLarge:
-        message = f"the drawing unfolds into more than {MOST} pieces; the rest was not read"
+        message = f"the drawing unfolds into more than {MOST_STROKES} pieces or {MOST_COPIES} copies of blocks; the rest was not read"
         found.findings.append(Finding("too-large", "error", message, "Look for arrays of blocks with huge counts."))
     return Content(
         strokes=tuple(found.strokes),
@@ -115,7 +115,7 @@ class Walker:
             self._warn_of_codes(record, layer)
         try:
             if head.kind == "INSERT":
-                return Item(layer, head.name, insert=insert(head, MOST))
+                return Item(layer, head.name, insert=insert(head, MOST_COPIES))
             if head.kind == "POLYLINE" and not is_mesh(head):
                 return Item(layer, head.name, tuple(heavyweight(head, vertices)))
             if head.kind in READERS and vertices:
@@ -174,7 +174,7 @@ class Walker:
         base = self._base(block)
         for placing in reference.maps:
             self.found.copies += 1
-            if self.found.copies > MOST:
+            if self.found.copies > MOST_COPIES:
                 raise TooLarge
             place = affine.after(placing).after(base)
             if max(abs(number) for column in place for number in column) > LARGEST:

@@ -89,7 +89,7 @@ def _sections(tags: Tags, findings: list[Finding]) -> dict[str, list[Record]]:
 
 
 def _truncated(tags: Tags) -> Finding:
-    whole = next((r for r in reversed(tags.records[:-1]) if r.kind not in ("SECTION", "ENDSEC")), None)
+    whole = next((r for r in reversed(tags.records) if r.kind not in ("SECTION", "ENDSEC")), None)
     last = f"The last whole record is {whole.name}, {whole.place}. " if whole else "Not one record is whole. "
     fix = "Export it again from CAD, or copy it again: the file is incomplete or damaged."
     return Finding("truncated", "error", f"{tags.fault}. {last}What comes after is missing.", fix)

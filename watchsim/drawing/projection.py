@@ -18,7 +18,8 @@ from watchsim.drawing.nurbs import spline_edges
 from watchsim.drawing.shapes import Conic, Dot, Shape, Spline, Straight, edge_on, exact_edge
 from watchsim.geometry.primitives import Arc, Edge
 
-MOST = 500_000  # strokes and copies of blocks: more is a fault in the file, not a drawing
+MOST_STROKES = 500_000  # more is a fault in the file, not a drawing
+MOST_COPIES = 100_000  # of blocks, likewise
 ROUNDING = 1e-11  # of the coordinates: a fit cannot be better than this
 
 
@@ -42,7 +43,7 @@ class Gathering:
 
 
 class TooLarge(Exception):
-    """The drawing unfolds into more than MOST pieces."""
+    """The drawing unfolds into more than MOST_STROKES pieces or MOST_COPIES copies of blocks."""
 
 
 def emit(found: Gathering, shape: Shape, layer: str, source: str) -> None:
@@ -76,7 +77,7 @@ def emit(found: Gathering, shape: Shape, layer: str, source: str) -> None:
 
 def keep(found: Gathering, edges: Iterable[Edge], layer: str, source: str) -> None:
     found.strokes.extend(Stroke(edge, layer, source, found.runs) for edge in edges)
-    if len(found.strokes) > MOST:
+    if len(found.strokes) > MOST_STROKES:
         raise TooLarge
 
 

@@ -75,7 +75,10 @@ class Record:
 
 @dataclass(frozen=True, slots=True)
 class Tags:
-    """All records of a file. `fault` tells what ended the reading early, empty for a whole file; `trash` what follows EOF."""
+    """All whole records of a file.
+
+    `fault` tells what ended the reading early, empty for a whole file; `trash` whether something follows EOF.
+    """
 
     records: tuple[Record, ...]
     fault: str = ""
@@ -164,12 +167,14 @@ def _grouped(codes: list[int], values: list[object], fault: str, word: str) -> T
     """Records from code 0 to code 0, up to EOF."""
     step = 2 if word == "line" else 1
     starts = [i for i, code in enumerate(codes) if code == 0]
+    if not starts:
+        raise DxfError(f"this is no DXF file: {fault or 'it holds no record'}")
     records: list[Record] = []
     for start, stop in zip(starts, [*starts[1:], len(codes)], strict=True):
         kind = str(values[start]).strip().upper()
         if kind == "EOF":
             return Tags(tuple(records), "", bool(fault) or any(str(v).strip() for v in values[start + 1 :]))
         records.append(Record(kind, codes[start + 1 : stop], values[start + 1 : stop], f"{word} {step * start + 1}"))
-    if not records:
-        raise DxfError(f"this is no DXF file: {fault or 'it holds no record'}")
+    if records[-1].kind not in ("ENDSEC", "SECTION"):
+        records.pop()  # it may be cut short
     return Tags(tuple(records), fault or "the file ends without EOF: it is incomplete")

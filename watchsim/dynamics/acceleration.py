@@ -79,7 +79,7 @@ def _equation(work, m, row, line):
 
 @kernel
 def decide_modes(model, closed, m, speed_zero, work, out_mode):
-    """Acceleration-level LCP over I_N (the first m closed contacts): sets their modes, fills `work.force`. Returns the LCP status.
+    """Acceleration-level LCP over I_N, the first m closed contacts: sets modes, fills `work.force`, returns the LCP status.
 
     Contacts whose |g_T_dot| is below `speed_zero` may stick; the others slide as they do.
     """

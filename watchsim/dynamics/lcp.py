@@ -114,7 +114,7 @@ def enumerate_lcp(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> in
 @kernel
 def _is_trivial(b: Array, n: int) -> bool:
     """True when x = 0 solves the problem."""
-    for i in range(n):  # noqa: SIM110 - no generators in kernels
+    for i in range(n):
         if not b[i] >= 0.0:
             return False
     return True

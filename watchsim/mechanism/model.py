@@ -118,7 +118,7 @@ class Cells(NamedTuple):
 
     keys: NDArray[np.int64]  # -1: free slot
     start: NDArray[np.int64]
-    count: NDArray[np.int64]
+    count: NDArray[np.int64]  # type: ignore[assignment]  # hides tuple.count, which nobody needs here
     entries: NDArray[np.int64]
 
 

@@ -143,7 +143,7 @@ def _limits(axes: Axes, values: Array, angle: bool) -> None:
     least = FLAT * max(abs(low), abs(high), 1.0)
     room = max(0.08 * (high - low), 0.5 * least)
     axes.set_ylim(low - room, high + room)
-    steps = [1, 1.8, 3.6, 4.5, 9, 10] if angle and high - low > 120.0 else [1, 2, 2.5, 5, 10]
+    steps = [1, 1.8, 3.6, 4.5, 9, 10] if angle and high - low > 120.0 else [1, 2, 5, 10]
     axes.yaxis.set_major_locator(MaxNLocator(nbins=5, steps=steps))
     if high - low > 10.0:
         axes.yaxis.set_major_formatter(StrMethodFormatter("{x:,.0f}"))

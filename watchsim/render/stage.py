@@ -78,7 +78,8 @@ class Stage:
         for patch in self._patches:
             patch.draw(renderer)
         if contacts is not None and len(contacts):
-            self._marks(contacts @ matrix[:2, :2].T + matrix[:2, 2]).draw(renderer)
+            for patch in self._marks(contacts @ matrix[:2, :2].T + matrix[:2, 2]):
+                patch.draw(renderer)
         pixels = np.asarray(self._canvas.buffer_rgba())
         self._layout.write(t, frames, pixels)
         return pixels
@@ -138,10 +139,14 @@ class Stage:
         look = {"facecolor": BACKGROUND, "edgecolor": INK, "linewidth": max(1.3 * self._unit, 0.8)}
         return [self._own(PathPatch(rings, transform=IdentityTransform(), **look))]
 
-    def _marks(self, points: Array) -> PathPatch:
-        rings = _rings(points, 7.0 * max(self._unit, 0.5))
-        width = max(2.2 * self._unit, 1.2)
-        return self._own(PathPatch(rings, fill=False, edgecolor=CONTACT, linewidth=width, transform=IdentityTransform()))
+    def _marks(self, points: Array) -> list[PathPatch]:
+        """Rings with a pale rim, to be seen on steel, brass and ruby alike."""
+        rings, width = _rings(points, 7.0 * max(self._unit, 0.5)), max(2.4 * self._unit, 1.2)
+        looks = ((BACKGROUND, 2.2 * width), (CONTACT, width))
+        place = IdentityTransform()
+        return [
+            self._own(PathPatch(rings, fill=False, edgecolor=colour, linewidth=line, transform=place)) for colour, line in looks
+        ]
 
     def _own(self, patch: PathPatch) -> PathPatch:
         """The patch, drawn on this figure and only between the bands of words."""

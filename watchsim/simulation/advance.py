@@ -99,7 +99,7 @@ def _flight_rows(model, state, end, spacing, scratch, record):
     """Rows of a flight, evenly spaced, the last one at its end; brings the state there."""
     step = scratch.step
     n = len(model.coordinates)
-    rows = 1 if spacing == math.inf else max(1, int(math.ceil(end / spacing)))
+    rows = 1 if spacing == math.inf else max(1, math.ceil(end / spacing))
     for row in range(1, rows + 1):
         tau = end * row / rows if row < rows else end
         for i in range(n):

@@ -70,7 +70,7 @@ def refresh(model, m, closed, pose):
 
 @kernel
 def resting(model, m, closed, pose, speed_zero, out_rest):
-    """I_N: the contacts of `closed` that neither approach nor separate, with kinematics, into `out_rest`; returns their number."""
+    """I_N: the contacts of `closed` that neither approach nor separate, with kinematics, into `out_rest`; returns how many."""
     r = 0
     for i in range(m):
         if abs(closed.kin[i].gN_dot) <= speed_zero:

@@ -72,7 +72,7 @@ def _solve(model, state, m, scratch):
 
 @kernel
 def _end_time(model, state, m, options, scratch):
-    """Flag the rebounds that would end within `accumulation_time` (restitution 0); returns the latest end, or -1 if there is none."""
+    """Flag the rebounds that would end within `accumulation_time` (restitution 0); returns the latest end, -1 for none."""
     latest = -1.0
     closed, work = scratch.closed, scratch.work
     worth = False

@@ -134,7 +134,8 @@ def _at_rest(model, state, b):
 def first_touch(model, cells, state, options, end, scratch):
     """(known, time, contact) of the first closing in [0, end) of the current step; contact -1: none.
 
-    `known` is False when a cell was met that nobody has asked about; the body pair is then in `scratch.unknown`, its coordinates in `scratch.at`.
+    `known` is False when a cell was met that nobody has asked about; the body pair is then in `scratch.unknown`, its
+    coordinates in `scratch.at`.
     """
     best, who = end, -1
     for p in range(len(model.pairs)):

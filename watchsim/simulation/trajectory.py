@@ -72,8 +72,8 @@ class Pair:
 class Trajectory:
     """The motion of a scene. Arrays have one row per accepted step (two rows with the same time at an impact).
 
-    t (rows,) s; q, u, a (rows, n) coordinates, velocities, accelerations in SI; `slices[body]` says which columns belong to a body
-    (fixed bodies have none). `energy` holds joules: in_J, stored_J, dissipated {cause: J}, residual_J.
+    t (rows,) s; q, u, a (rows, n) coordinates, velocities, accelerations in SI; `slices[body]` says which columns belong
+    to a body (fixed bodies have none). `energy` holds joules: in_J, stored_J, dissipated {cause: J}, residual_J.
     `counts` holds events, impacts, steps, lcp_failures and the like; `worst_penetration` is metres.
     """
 

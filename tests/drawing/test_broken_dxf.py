@@ -1,0 +1,188 @@
+"""Does a broken file give findings, never a traceback and never a drawing with something missing in silence?"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable
+from pathlib import Path
+
+import dxf_text as d
+import pytest
+
+from watchsim.drawing.drawing import Drawing
+from watchsim.drawing.inspect import inspect_report, inspect_text
+from watchsim.drawing.read import read
+
+Reader = Callable[..., Drawing]
+DATA = Path(__file__).resolve().parents[1] / "data"
+
+
+def errors(drawing: Drawing) -> dict[str, str]:
+    return {finding.code: finding.message for finding in drawing.findings if finding.severity == "error"}
+
+
+@pytest.mark.parametrize(
+    ("data", "word"),
+    [
+        (b"", "empty"),
+        (b"\n  \r\n", "empty"),
+        (b"hello world\nthis is a letter\n", "no DXF file"),
+        (bytes(range(256)) * 20, "no DXF file"),
+        (b"AC1027\x00\x01\x02", "DWG"),
+        (b"AutoCAD Binary DXF\r\n\x1a\x00\xff\xff\xff", "no DXF file"),
+        (b"\x89PNG\r\n\x1a\n" + bytes(100), "no DXF file"),
+        (b"<svg></svg>", "no DXF file"),
+    ],
+)
+def test_what_is_no_dxf(read_bytes: Reader, data: bytes, word: str) -> None:
+    drawing = read_bytes(data)
+    assert word in errors(drawing)["unreadable"]
+    assert not drawing.loops
+    assert inspect_report(drawing)["lines"] == 0
+    assert word in inspect_text(drawing)
+
+
+def test_files_that_are_not_there_or_not_read(tmp_path: Path) -> None:
+    assert "no such file" in errors(read(tmp_path / "none.dxf"))["unreadable"]
+    (tmp_path / "folder.dxf").mkdir()
+    assert "unreadable" in errors(read(tmp_path / "folder.dxf"))
+    assert errors(read(tmp_path / "wheel.svg")) == {"format": "SVG drawings are not read yet"}
+    assert "wheel.step" in errors(read(tmp_path / "wheel.step"))["format"]
+    with pytest.raises(ValueError, match="positive"):
+        read(tmp_path / "none.dxf", snap=0.0)
+
+
+@pytest.mark.parametrize("name", ["open_outline", "truncated", "two_faults", "no_units", "lost_boundary", "bad_number"])
+def test_small_files_that_broke_importers(name: str) -> None:
+    expected = {
+        "open_outline": {"open-outline"},
+        "truncated": {"truncated", "open-outline"},
+        "two_faults": {"damaged", "block-missing"},
+        "no_units": {"units-missing"},
+        "lost_boundary": {"damaged", "open-outline"},
+        "bad_number": {"damaged"},
+    }
+    assert set(errors(read(DATA / f"{name}.dxf"))) == expected[name]
+
+
+def test_truncated_files_name_the_last_whole_entity(read_bytes: Reader) -> None:
+    whole = d.dxf(d.line((0, 0), (1, 0), handle="A1") + d.line((1, 0), (1, 1), handle="A2") + d.line((1, 1), (0, 0), handle="A3"))
+    cut = whole[: whole.index(b"A3") + 20]
+    assert "LINE #A2" in errors(read_bytes(cut))["truncated"]
+    for length in range(1, len(whole) - 4, 3):
+        found = errors(read_bytes(whole[:length]))
+        assert found, f"cut after {length} bytes and nothing said"
+
+
+def test_missing_endsec_is_said(read_bytes: Reader) -> None:
+    whole = d.dxf(d.circle(0, 0, 1)).decode()
+    broken = whole[: whole.rindex("0\nENDSEC")] + "0\nEOF\n"
+    assert "ENTITIES has no ENDSEC" in errors(read_bytes(broken.encode()))["truncated"]
+
+
+def test_trash_after_the_end_is_only_a_notice(read_bytes: Reader) -> None:
+    drawing = read_bytes(d.dxf(d.circle(0, 0, 1)) + b"\x1a some remains\n\x00\x01")
+    assert [(finding.code, finding.severity) for finding in drawing.findings] == [("trash", "notice")]
+    assert len(drawing.loops) == 1
+
+
+@pytest.mark.parametrize(
+    ("entity", "word"),
+    [
+        (d.record("CIRCLE", (10, 0.0), (20, 0.0)), "group 40 is missing"),
+        (d.record("CIRCLE", (10, 0.0), (20, 0.0), (40, "one")), 'group 40 is "one"'),
+        (d.record("CIRCLE", (10, 0.0), (20, 0.0), (40, "nan")), "no sensible number"),
+        (d.record("CIRCLE", (10, 1e300), (20, 0.0), (40, 1.0)), "no sensible number"),
+        (d.record("LINE", (10, 0.0), (20, 0.0), (11, 1.0)), "group 21 is missing"),
+        (d.record("LINE", *d.point(10, (0, 0)), *d.point(10, (0, 0)), *d.point(11, (0, 0))), "stands there 2 times"),
+        (d.record("LWPOLYLINE", (90, 3), (10, 0.0), (20, 0.0), (10, 1.0), (20, 1.0)), "announces 3 corners and holds 2"),
+        (d.record("LWPOLYLINE", (10, 0.0), (10, 1.0), (20, 1.0)), "without its y coordinate"),
+        (d.record("LWPOLYLINE", (20, 0.0), (10, 1.0), (20, 1.0)), "does not belong"),
+        (d.record("LWPOLYLINE", (70, 1)), "no corners"),
+        (d.record("ELLIPSE", *d.point(10, (0, 0)), *d.point(11, (0, 0)), (40, 0.5)), "no length"),
+        (d.record("SPLINE", (71, 3)), "neither control points"),
+        (d.insert("B", (0, 0), (41, 0.0)), "nothing would be left"),
+        (d.insert("B", (0, 0), (70, 30000), (71, 30000)), "too many"),
+    ],
+)
+def test_damaged_entities_are_errors_and_the_rest_is_read(read_bytes: Reader, entity: str, word: str) -> None:
+    drawing = read_bytes(d.dxf(d.circle(50, 0, 1) + entity, blocks=d.block("B", d.circle(0, 0, 1))))
+    assert word in errors(drawing)["damaged"]
+    assert len(drawing.loops) == 1
+
+
+def test_blocks_that_multiply_are_stopped(read_bytes: Reader) -> None:
+    levels = "".join(d.block(f"L{k}", d.insert(f"L{k + 1}", (0, 0), (70, 30), (71, 30), (44, 1.0), (45, 1.0))) for k in range(6))
+    drawing = read_bytes(d.dxf(d.insert("L0", (0, 0)), blocks=levels + d.block("L6", "")))
+    assert "too-large" in errors(drawing)
+
+
+def test_strange_groups_are_a_warning(read_bytes: Reader) -> None:
+    drawing = read_bytes(d.dxf(d.circle(0, 0, 1, (43, 2.0))))
+    assert [(finding.code, finding.severity) for finding in drawing.findings] == [("strange-group", "warning")]
+
+
+def test_an_unknown_type_of_entity_is_a_warning(read_bytes: Reader) -> None:
+    drawing = read_bytes(d.dxf(d.circle(0, 0, 1) + d.record("CJRCLE", *d.point(10, (0, 0)), (40, 2.0))))
+    assert drawing.ignored == {"CJRCLE": 1}
+    assert [(finding.code, finding.severity) for finding in drawing.findings] == [("ignored", "warning")]
+
+
+def test_only_hidden_or_only_text_is_empty(read_bytes: Reader) -> None:
+    tables = d.layers(("A", -7, 0))
+    assert "empty" in errors(read_bytes(d.dxf(d.circle(0, 0, 1, layer="A"), tables=tables)))
+    assert "1 × TEXT" in errors(read_bytes(d.dxf(d.record("TEXT", (1, "x")))))["empty"]
+    assert "empty" in errors(read_bytes(d.dxf("")))
+
+
+def clean() -> bytes:
+    """Every entity that is read, all outlines closed, nothing to find."""
+    half = [(0, 0, 1.0), (2, 0, 1.0)]
+    entities = d.polygon([(0, 0), (1, 0), (1, 1)]) + d.circle(9, 0, 1) + d.lwpolyline([(x + 20, y, b) for x, y, b in half], True)
+    entities += d.arc(30, 0, 1, 0, 180) + d.line((29, 0), (31, 0))
+    vertices = "".join(d.record("VERTEX", *d.point(10, p)) for p in ((40, 0), (41, 0), (41, 2)))
+    entities += d.record("POLYLINE", (66, 1), (70, 1)) + vertices + d.record("SEQEND")
+    entities += d.record("ELLIPSE", *d.point(10, (50, 0)), *d.point(11, (2, 1)), (40, 0.5), (41, 0.0), (42, 6.283185307179586))
+    knots = [(40, float(k)) for k in (0, 0, 0, 0, 1, 1, 1, 1)]
+    control = [tag for p in ((60, 0), (62, 3), (64, -1), (60, 0)) for tag in d.point(10, p)]
+    entities += d.record("SPLINE", (70, 8), (71, 3), (72, 8), (73, 4), *knots, *control)
+    entities += d.insert("B", (70, 0), (41, 2.0), (42, 2.0), (50, 30.0))
+    return d.dxf(entities, tables=d.layers(("OFF", -7, 0)), blocks=d.block("B", d.circle(0, 0, 1)))
+
+
+def mutated(data: bytes, rng: random.Random) -> bytes:
+    """One accident: bytes overwritten, a cut, or a line lost, doubled, swapped or replaced."""
+    kind = rng.randrange(6)
+    if kind == 0:
+        changed = bytearray(data)
+        for _ in range(rng.choice((1, 1, 2, 8))):
+            changed[rng.randrange(len(changed))] = rng.randrange(256)
+        return bytes(changed)
+    if kind == 1:
+        return data[: rng.randrange(len(data))]
+    lines = data.split(b"\n")
+    i, j = rng.randrange(len(lines)), rng.randrange(len(lines))
+    if kind == 2:
+        del lines[i]
+    elif kind == 3:
+        lines[i] = rng.choice((b"0", b"-1", b"1e308", b"nan", b"-1e9", b"", b"99999999999", b"INSERT", b"10", b"1e-300", b"3.7"))
+    elif kind == 4:
+        lines[i], lines[j] = lines[j], lines[i]
+    else:
+        lines[i:i] = lines[j : j + rng.randrange(30)]
+    return b"\n".join(lines)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_accidents_never_raise_and_never_lose_in_silence(read_bytes: Reader, seed: int) -> None:
+    rng = random.Random(seed)
+    data = clean()
+    whole = read_bytes(data)
+    assert not whole.findings
+    pieces = len(whole.loops)
+    for _ in range(100):
+        drawing = read_bytes(mutated(data, rng))
+        report = inspect_report(drawing)
+        inspect_text(drawing)
+        assert set(report) >= {"file", "units", "loops", "findings"}
+        assert drawing.findings or len(drawing.loops) >= pieces

@@ -1,0 +1,241 @@
+"""Does every kind of entity become the lines and arcs it draws?"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import dxf_text as d
+import pytest
+
+from watchsim.drawing.drawing import Drawing
+from watchsim.geometry.extent import extents
+from watchsim.geometry.loop import Loop
+from watchsim.geometry.mass import area
+from watchsim.geometry.primitives import TURN, Arc, Line
+
+Reader = Callable[..., Drawing]
+MM = 1e-3
+
+
+def codes(drawing: Drawing) -> list[str]:
+    return [finding.code for finding in drawing.findings]
+
+
+def only_loop(drawing: Drawing) -> Loop:
+    assert not drawing.findings, drawing.findings
+    assert len(drawing.loops) == 1 and not drawing.open_chains
+    return drawing.loops[0]
+
+
+def test_circle_is_one_exact_arc(read_bytes: Reader) -> None:
+    loop = only_loop(read_bytes(d.dxf(d.circle(1.25, -2.5, 0.16))))
+    (edge,) = loop.edges
+    assert edge == Arc(1.25 * MM, -2.5 * MM, 0.16 * MM, 0.0, TURN)
+
+
+def test_lines_and_arc_make_one_loop_counter_clockwise(read_bytes: Reader) -> None:
+    entities = d.line((0, 0), (4, 0)) + d.line((0, 2), (4, 2)) + d.arc(4, 1, 1, 270, 90) + d.line((0, 2), (0, 0))
+    loop = only_loop(read_bytes(d.dxf(entities)))
+    assert area(loop) == pytest.approx((8 + math.pi / 2) * 1e-6, rel=1e-14, abs=0)
+    arcs = [edge for edge in loop.edges if isinstance(edge, Arc)]
+    assert len(arcs) == 1 and arcs[0].radius == 1 * MM and arcs[0].sweep == pytest.approx(math.pi, rel=1e-15)
+    for one, other in zip(loop.edges, [*loop.edges[1:], loop.edges[0]], strict=True):
+        assert one.end == pytest.approx(other.start, abs=1e-18)
+
+
+def test_arc_over_zero_degrees(read_bytes: Reader) -> None:
+    drawing = read_bytes(d.dxf(d.arc(0, 0, 2, 350, 10)))
+    (edge,) = drawing.open_chains[0].edges
+    assert isinstance(edge, Arc)
+    assert edge.sweep == pytest.approx(math.radians(20), rel=1e-14)
+    assert edge.point(0.5) == pytest.approx((2 * MM, 0.0), abs=1e-18)
+
+
+@pytest.mark.parametrize("bulge", [0.25, 1.0, -0.4, 2.5])
+def test_bulge_is_the_tangent_of_a_quarter_of_the_angle(read_bytes: Reader, bulge: float) -> None:
+    drawing = read_bytes(d.dxf(d.lwpolyline([(0, 0, bulge), (1, 1)], closed=False)))
+    (edge,) = drawing.open_chains[0].edges
+    assert isinstance(edge, Arc)
+    assert edge.sweep == pytest.approx(4 * math.atan(bulge), rel=1e-14)
+    assert edge.start == pytest.approx((0, 0), abs=1e-17) and edge.end == pytest.approx((MM, MM), abs=1e-17)
+    rise = math.dist(edge.point(0.5), (0.5 * MM, 0.5 * MM))
+    assert rise == pytest.approx(abs(bulge) * math.sqrt(2) / 2 * MM, rel=1e-13)
+    to_the_right = (edge.point(0.5)[0] - edge.point(0.5)[1]) > 0.0
+    assert to_the_right == (bulge > 0)
+
+
+def test_closed_lwpolyline_and_old_polyline_are_the_same(read_bytes: Reader) -> None:
+    corners = [(0, 0, 0.5), (3, 0, 0), (3, 2, -0.2), (0, 2, 0)]
+    light = only_loop(read_bytes(d.dxf(d.lwpolyline(corners, closed=True))))
+    vertices = "".join(d.record("VERTEX", *d.point(10, (x, y)), (42, b)) for x, y, b in corners)
+    heavy = only_loop(read_bytes(d.dxf(d.record("POLYLINE", (66, 1), (70, 1)) + vertices + d.record("SEQEND"))))
+    assert light.edges == heavy.edges
+    assert len(light.edges) == 4
+
+
+def test_polyline_mesh_is_counted_not_drawn(read_bytes: Reader) -> None:
+    mesh = d.record("POLYLINE", (70, 64)) + d.record("VERTEX", *d.point(10, (0, 0)), (70, 192)) + d.record("SEQEND")
+    drawing = read_bytes(d.dxf(d.circle(0, 0, 1) + mesh))
+    assert drawing.ignored == {"POLYLINE": 1}
+    assert len(drawing.loops) == 1
+
+
+def test_mirrored_extrusion_turns_the_arc_over(read_bytes: Reader) -> None:
+    """With the extrusion (0, 0, -1) the x axis points to the left, by the arbitrary-axis rule."""
+    drawing = read_bytes(d.dxf(d.arc(5, 1, 2, 0, 90, (210, 0.0), (220, 0.0), (230, -1.0))))
+    (edge,) = drawing.open_chains[0].edges
+    assert isinstance(edge, Arc)
+    assert (edge.x, edge.y, edge.radius) == pytest.approx((-5 * MM, 1 * MM, 2 * MM), rel=1e-15)
+    assert edge.start == pytest.approx((-7 * MM, 1 * MM), abs=1e-18)
+    assert edge.end == pytest.approx((-5 * MM, 3 * MM), abs=1e-18)
+
+
+def test_tilted_circle_becomes_an_ellipse(read_bytes: Reader) -> None:
+    """Seen under 60° a circle of 2 mm is an ellipse of 2 mm by 1 mm."""
+    normal = (math.sin(math.pi / 3), 0.0, math.cos(math.pi / 3))
+    drawing = read_bytes(d.dxf(d.circle(0, 0, 2, *zip((210, 220, 230), map(repr, normal), strict=True))))
+    assert codes(drawing) == ["tilted"]
+    assert area(drawing.loops[0]) == pytest.approx(2 * math.pi * 1e-6, rel=1e-4)
+    assert extents(drawing.loops) == pytest.approx((-1 * MM, -2 * MM, 1 * MM, 2 * MM), abs=1.1e-7)
+
+
+def test_ellipse_within_the_tolerance(read_bytes: Reader) -> None:
+    entity = d.record("ELLIPSE", *d.point(10, (1, 2)), *d.point(11, (3, 4)), (40, 0.4), (41, 0.0), (42, repr(TURN)))
+    coarse, fine = (read_bytes(d.dxf(entity), fit=fit) for fit in (1e-6, 1e-9))
+    assert coarse.fitted_curves == fine.fitted_curves == 1
+    assert 0.0 < coarse.fitted_deviation <= 1e-6 and 0.0 < fine.fitted_deviation <= 1e-9
+    assert area(fine.loops[0]) == pytest.approx(math.pi * 5 * 2 * 1e-6, rel=1e-6)
+    assert fine.fitted_arcs > 5 * coarse.fitted_arcs
+
+
+def test_ellipse_with_equal_axes_is_a_circle(read_bytes: Reader) -> None:
+    entity = d.record("ELLIPSE", *d.point(10, (1, 2)), *d.point(11, (0, 4)), (40, 1.0), (41, 0.0), (42, repr(math.pi)))
+    drawing = read_bytes(d.dxf(entity))
+    (edge,) = drawing.open_chains[0].edges
+    assert isinstance(edge, Arc) and drawing.fitted_curves == 0
+    assert edge.start == pytest.approx((1 * MM, 6 * MM), abs=1e-17)
+    assert edge.point(0.5) == pytest.approx((-3 * MM, 2 * MM), abs=1e-17)
+
+
+def test_point(read_bytes: Reader) -> None:
+    drawing = read_bytes(d.dxf(d.circle(0, 0, 1) + d.record("POINT", *d.point(10, (0.5, -0.25)), layer="PIVOT")))
+    assert drawing.points == (("PIVOT", 0.5 * MM, -0.25 * MM),)
+    assert drawing.layers == ("0", "PIVOT")
+
+
+def test_text_is_counted(read_bytes: Reader) -> None:
+    drawing = read_bytes(d.dxf(d.circle(0, 0, 1) + 3 * d.record("TEXT", (1, "15 teeth"))))
+    assert drawing.ignored == {"TEXT": 3}
+    assert [finding.severity for finding in drawing.findings] == ["notice"]
+
+
+def test_block_turned_scaled_mirrored_nested(read_bytes: Reader) -> None:
+    """A quarter disc inside a block inside a block: places by hand, and the arc stays one exact arc."""
+    quarter = d.line((0, 0), (2, 0)) + d.arc(0, 0, 2, 0, 90) + d.line((0, 2), (0, 0))
+    blocks = d.block("Q", quarter, base=(1, 0)) + d.block("OUTER", d.insert("q", (0, 0), (41, -1.0)))
+    drawing = read_bytes(d.dxf(d.insert("OUTER", (10, 20), (41, 3.0), (42, 3.0), (50, 90.0)), blocks=blocks))
+    loop = only_loop(drawing)
+    (edge,) = [edge for edge in loop.edges if isinstance(edge, Arc)]
+    # centre (0, 0) -> minus base (-1, 0) -> mirrored (1, 0) -> times 3 (3, 0) -> turned (0, 3) -> placed (10, 23)
+    assert (edge.x, edge.y, edge.radius) == pytest.approx((10 * MM, 23 * MM, 6 * MM), rel=1e-15)
+    assert area(loop) == pytest.approx(math.pi * 9 * 1e-6, rel=1e-14, abs=0)
+    assert extents([loop]) == pytest.approx((4 * MM, 17 * MM, 10 * MM, 23 * MM), rel=1e-14)
+
+
+def test_array_of_blocks(read_bytes: Reader) -> None:
+    entity = d.insert("B", (0, 0), (70, 3), (71, 2), (44, 5.0), (45, 4.0), (50, 90.0), (43, 0.0))
+    drawing = read_bytes(d.dxf(entity, blocks=d.block("B", d.circle(0, 0, 1))))
+    places = sorted((round(edge.x / MM, 9), round(edge.y / MM, 9)) for loop in drawing.loops for edge in loop.edges)
+    assert places == [(-4, 0), (-4, 5), (-4, 10), (0, 0), (0, 5), (0, 10)]
+
+
+def test_unequal_scale_makes_ellipses_and_keeps_lines(read_bytes: Reader) -> None:
+    content = d.circle(0, 0, 1) + d.lwpolyline([(2, 0), (3, 0), (3, 1)], closed=True)
+    drawing = read_bytes(d.dxf(d.insert("B", (0, 0), (41, 2.0), (42, 0.5)), blocks=d.block("B", content)))
+    assert drawing.fitted_curves == 1
+    areas = sorted(area(loop) for loop in drawing.loops)
+    assert areas[0] == pytest.approx(0.5e-6, rel=1e-13, abs=0)
+    assert areas[1] == pytest.approx(math.pi * 1e-6, rel=2e-4)
+
+
+def test_layer_zero_in_a_block_is_the_layer_of_the_insert(read_bytes: Reader) -> None:
+    blocks = d.block("B", d.circle(0, 0, 1) + d.circle(5, 0, 1, layer="PIN"))
+    drawing = read_bytes(d.dxf(d.insert("B", (0, 0), layer="TEETH"), blocks=blocks))
+    assert sorted(loop.layer for loop in drawing.loops) == ["PIN", "TEETH"]
+
+
+def test_missing_and_self_containing_blocks_are_errors(read_bytes: Reader) -> None:
+    blocks = d.block("A", d.insert("B", (0, 0))) + d.block("B", d.insert("A", (0, 0)) + d.circle(0, 0, 1))
+    drawing = read_bytes(d.dxf(d.insert("A", (0, 0)) + d.insert("NONE", (1, 1)), blocks=blocks))
+    assert sorted(codes(drawing)) == ["block-loop", "block-missing"]
+    assert len(drawing.loops) == 1
+
+
+def test_hidden_layers_are_left_out_and_said(read_bytes: Reader) -> None:
+    tables = d.layers(("Off", -7, 0), ("Cold", 7, 1), ("On", 7, 0))
+    entities = d.circle(0, 0, 1, layer="OFF") + 2 * d.circle(0, 0, 2, layer="cold") + d.circle(0, 0, 3, layer="ON")
+    drawing = read_bytes(d.dxf(entities, tables=tables))
+    assert drawing.layers == ("On",)
+    assert [(finding.code, finding.layer) for finding in drawing.findings] == [("layer-off", "Off"), ("layer-off", "Cold")]
+    assert "2 entities" in drawing.findings[1].message
+
+
+def test_paper_space_is_left_out_and_said(read_bytes: Reader) -> None:
+    drawing = read_bytes(d.dxf(d.circle(0, 0, 1) + d.circle(0, 0, 2, (67, 1)) + d.record("VIEWPORT", (67, 1))))
+    assert len(drawing.loops) == 1
+    assert [finding.code for finding in drawing.findings] == ["paper-space"]
+    assert drawing.findings[0].message.startswith("1 ")
+
+
+@pytest.mark.parametrize(("code", "name", "metres"), [(1, "inch", 0.0254), (4, "mm", 1e-3), (6, "m", 1.0), (13, "µm", 1e-6)])
+def test_units_of_the_header(read_bytes: Reader, code: int, name: str, metres: float) -> None:
+    drawing = read_bytes(d.dxf(d.circle(0, 0, 2), units=code))
+    assert (drawing.units, drawing.units_from) == (name, "header")
+    assert drawing.loops[0].edges[0].radius == 2 * metres  # type: ignore[union-attr]
+
+
+@pytest.mark.parametrize("units", [None, 0])
+def test_unknown_units_are_an_error_with_both_sizes(read_bytes: Reader, units: int | None) -> None:
+    drawing = read_bytes(d.dxf(d.circle(0, 0, 2.15), units=units))
+    assert drawing.units is None and drawing.units_from is None
+    (finding,) = drawing.findings
+    assert (finding.code, finding.severity) == ("units-missing", "error")
+    assert "4.3 mm or 109.2 mm across" in finding.message
+
+
+def test_the_caller_overrules_the_file_with_a_warning(read_bytes: Reader) -> None:
+    drawing = read_bytes(d.dxf(d.circle(0, 0, 1), units=1), units="mm")
+    assert (drawing.units, drawing.units_from, drawing.loops[0].edges[0].radius) == ("mm", "option", 1e-3)  # type: ignore[union-attr]
+    assert codes(drawing) == ["units-overruled"]
+    assert codes(read_bytes(d.dxf(d.circle(0, 0, 1), units=None), units="inch")) == []
+    with pytest.raises(ValueError, match="furlong"):
+        read_bytes(d.dxf(d.circle(0, 0, 1)), units="furlong")
+    with pytest.raises(ValueError, match="not a unit of length"):
+        read_bytes(d.dxf(d.circle(0, 0, 1)), units="kg")
+
+
+def test_binary_file_is_the_same_drawing(read_bytes: Reader, tmp_path: object) -> None:
+    ezdxf = pytest.importorskip("ezdxf")
+    doc = ezdxf.new("R2000", units=4)
+    doc.modelspace().add_lwpolyline([(0, 0, 0.3), (1, 0, 0), (1, 1, 0)], format="xyb", close=True)
+    paths = [f"{tmp_path}/{name}.dxf" for name in ("text", "binary")]
+    doc.saveas(paths[0])
+    doc.saveas(paths[1], fmt="bin")
+    from watchsim.drawing.read import read
+
+    text, binary = (read(path) for path in paths)
+    assert text.loops == binary.loops and len(text.loops) == 1
+    assert binary.units == "mm"
+
+
+def test_line_in_three_dimensions_is_projected_with_a_warning(read_bytes: Reader) -> None:
+    drawing = read_bytes(d.dxf(d.line((0, 0, 0), (3, 0, 4)) + d.line((3, 0), (0, 4)) + d.line((0, 4), (0, 0))))
+    assert codes(drawing) == ["tilted"]
+    assert area(drawing.loops[0]) == pytest.approx(6e-6, rel=1e-14, abs=0)
+
+
+def test_line_directions_do_not_matter(read_bytes: Reader) -> None:
+    loop = only_loop(read_bytes(d.dxf(d.line((1, 0), (0, 0)) + d.line((1, 0), (0, 1)) + d.line((0, 0), (0, 1)))))
+    assert area(loop) == pytest.approx(0.5e-6, rel=1e-14, abs=0)
+    assert all(isinstance(edge, Line) for edge in loop.edges)

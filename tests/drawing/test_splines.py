@@ -1,0 +1,157 @@
+"""Are splines what they are: lines, circles, or curves followed within the tolerance?"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+
+import dxf_text as d
+import numpy as np
+import pytest
+
+from watchsim.drawing.drawing import Drawing
+from watchsim.geometry.loop import Loop
+from watchsim.geometry.mass import area
+from watchsim.geometry.polyline import polyline
+from watchsim.geometry.primitives import TURN, Arc, Line
+
+Reader = Callable[..., Drawing]
+
+
+def spline(
+    degree: int, knots: Sequence[float], points: Sequence[Sequence[float]], weights: Sequence[float] = (), flags: int = 8
+) -> str:
+    tags: list[d.Tag] = [(70, flags), (71, degree), (72, len(knots)), (73, len(points))]
+    tags += [(40, repr(float(knot))) for knot in knots] + [(41, repr(float(w))) for w in weights]
+    for p in points:
+        tags += d.point(10, p)
+    return d.record("SPLINE", *tags)
+
+
+def distance_to(points: np.ndarray, loop: Loop) -> float:
+    """The largest distance of points to the outline, by shapely on dense vertices."""
+    shapely = pytest.importorskip("shapely")
+    outline = shapely.LineString(polyline(loop, 1e-10))
+    return float(np.max(shapely.distance(outline, shapely.points(points))))
+
+
+def test_cubic_against_de_casteljau(read_bytes: Reader) -> None:
+    control = np.array([(0, 0), (1, 3), (4, 3), (5, -1)], dtype=float)
+    drawing = read_bytes(d.dxf(spline(3, (0, 0, 0, 0, 1, 1, 1, 1), control.tolist())))
+    assert drawing.fitted_curves == 1 and 0.0 < drawing.fitted_deviation <= 1e-7
+    t = np.linspace(0, 1, 3001)[:, None]
+    level = [control[k] * np.ones_like(t) for k in range(4)]
+    while len(level) > 1:
+        level = [(1 - t) * a + t * b for a, b in zip(level, level[1:], strict=False)]
+    (chain,) = drawing.open_chains
+    measured = distance_to(1e-3 * level[0], chain)
+    assert measured <= 1.002e-7
+    assert drawing.fitted_deviation == pytest.approx(measured, rel=0.03)
+    for one, other in zip(chain.edges, chain.edges[1:], strict=False):
+        assert math.dist(one.end, other.start) < 1e-16
+        assert math.dist(one.tangent(1.0), other.tangent(0.0)) < 1e-9
+
+
+def test_rational_circle_becomes_one_exact_circle(read_bytes: Reader) -> None:
+    """The usual nine control points, weights 1 and √½, knots doubled."""
+    h = math.sqrt(0.5)
+    square = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)]
+    weights = [1, h, 1, h, 1, h, 1, h, 1]
+    points = [(3 + 2 * x, 1 + 2 * y) for x, y in square]
+    drawing = read_bytes(d.dxf(spline(2, (0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4), points, weights)))
+    ((edge,),) = [loop.edges for loop in drawing.loops]
+    assert isinstance(edge, Arc) and drawing.fitted_curves == 0
+    assert (edge.x, edge.y, edge.radius, abs(edge.sweep)) == pytest.approx((3e-3, 1e-3, 2e-3, TURN), rel=1e-13)
+
+
+def test_straight_spline_is_a_line(read_bytes: Reader) -> None:
+    drawing = read_bytes(d.dxf(spline(2, (5, 5, 5, 9, 9, 9), [(0, 0), (1, 2), (2, 4)])))
+    assert drawing.open_chains[0].edges == (Line(0.0, 0.0, 2e-3, 4e-3),)
+    assert drawing.fitted_curves == 0
+
+
+def test_corner_at_a_repeated_knot_stays_sharp(read_bytes: Reader) -> None:
+    points = [(0, 0), (1, 2), (2, 0), (3, 2), (4, 0)]
+    drawing = read_bytes(d.dxf(spline(2, (0, 0, 0, 1, 1, 2, 2, 2), points)))
+    (chain,) = drawing.open_chains
+    turns = [math.dist(a.tangent(1.0), b.tangent(0.0)) for a, b in zip(chain.edges, chain.edges[1:], strict=False)]
+    assert sorted(turns)[-1] == pytest.approx(2 * 2 / math.sqrt(5), rel=1e-6)
+    assert sorted(turns)[-2] < 1e-9
+    assert any(math.dist(edge.end, (2e-3, 0.0)) < 1e-15 for edge in chain.edges)
+
+
+def test_wrapped_uniform_spline_is_a_closed_smooth_loop(read_bytes: Reader) -> None:
+    """Closed, unclamped: six points around, three repeated."""
+    around = [(math.cos(TURN * k / 6) * (2 + k % 2), math.sin(TURN * k / 6) * (2 + k % 2)) for k in range(6)]
+    drawing = read_bytes(d.dxf(spline(3, range(13), [*around, *around[:3]], flags=11)))
+    (loop,) = drawing.loops
+    assert not drawing.findings
+    # independent: uniform cubic B-spline by its basis matrix, Gauss's area formula
+    matrix = np.array([[-1, 3, -3, 1], [3, -6, 3, 0], [-3, 0, 3, 0], [1, 4, 1, 0]]) / 6.0
+    t = np.linspace(0, 1, 2000, endpoint=False)
+    powers = np.column_stack((t**3, t**2, t, np.ones_like(t)))
+    curve = np.concatenate([powers @ matrix @ np.array([around[(k + j) % 6] for j in range(4)]) for k in range(6)])
+    x, y = 1e-3 * curve.T
+    gauss = 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+    assert area(loop) == pytest.approx(gauss, rel=5e-5, abs=0)
+    assert distance_to(1e-3 * curve, loop) <= 1.002e-7
+    gaps = [math.dist(a.tangent(1.0), b.tangent(0.0)) for a, b in zip(loop.edges, [*loop.edges[1:], loop.edges[0]], strict=True)]
+    assert max(gaps) < 1e-7
+
+
+def test_fit_points_only(read_bytes: Reader) -> None:
+    tags: list[d.Tag] = [(70, 8), (71, 3), (72, 0), (73, 0), (74, 4)]
+    places = [(0, 0), (1, 1), (2, 0), (3, 1)]
+    for p in places:
+        tags += d.point(11, p)
+    drawing = read_bytes(d.dxf(d.record("SPLINE", *tags)))
+    (chain,) = drawing.open_chains
+    assert distance_to(1e-3 * np.array(places, dtype=float), chain) < 1.01e-7
+    assert chain.edges[0].start == pytest.approx((0, 0), abs=1e-15)
+    assert chain.edges[-1].end == pytest.approx((3e-3, 1e-3), abs=1e-15)
+
+
+def test_pause_in_a_spline_does_not_hang(read_bytes: Reader) -> None:
+    """Coincident control points: the curve stands still for a while, then goes on round a corner."""
+    points = [(0, 0), (1, 0), (1, 0), (1, 0), (1, 0), (1, 1), (0, 1)]
+    drawing = read_bytes(d.dxf(spline(3, (0, 0, 0, 0, 1, 2, 3, 4, 4, 4, 4), points)))
+    (chain,) = drawing.open_chains
+    assert drawing.fitted_deviation <= 1.01e-7
+    assert len(chain.edges) < 200
+    assert distance_to(np.array([(1e-3, 0.0)]), chain) < 1e-7
+
+
+def test_polygon_spline_with_invisible_facets_becomes_arcs(read_bytes: Reader) -> None:
+    """A half ellipse as 997 points: facets of a nanometre are a curve; its two corners stay."""
+    t = np.linspace(0, math.pi, 997)
+    points = np.column_stack((0.3 * np.cos(t), 0.2 * np.sin(t)))
+    drawing = read_bytes(d.dxf(spline(1, [0, *range(997), 996], points.tolist()) + d.line((-0.3, 0), (0.3, 0))))
+    (loop,) = drawing.loops
+    assert drawing.fitted_curves == 1 and drawing.fitted_deviation <= 1e-7
+    assert 6 <= drawing.fitted_arcs <= 30
+    assert distance_to(1e-3 * points, loop) <= 1e-7
+    assert not drawing.findings
+
+
+def test_polygon_spline_with_real_corners_stays_lines(read_bytes: Reader) -> None:
+    drawing = read_bytes(d.dxf(spline(1, (0, 0, 1, 2, 3, 3), [(0, 0), (1, 0), (1, 1), (0, 1)])))
+    assert drawing.open_chains[0].edges == (Line(0, 0, 1e-3, 0), Line(1e-3, 0, 1e-3, 1e-3), Line(1e-3, 1e-3, 0, 1e-3))
+
+
+@pytest.mark.parametrize(
+    ("degree", "knots", "weights", "word"),
+    [
+        (3, (0, 0, 0, 1, 1, 1), (), "do not make a spline"),
+        (0, (0, 0, 0, 0, 1, 1, 1, 1), (), "degree is 0"),
+        (3, (0, 0, 0, 0, 1, 1, 0.5, 1), (), "do not ascend"),
+        (3, (0, 0, 0, 0, 0, 0, 0, 0), (), "do not ascend"),
+        (3, (0, 0, 0, 0, 1, 1, 1, 1), (1, 1, 0, 1), "weights"),
+    ],
+)
+def test_impossible_splines_are_errors(
+    read_bytes: Reader, degree: int, knots: Sequence[float], weights: Sequence[float], word: str
+) -> None:
+    drawing = read_bytes(d.dxf(d.circle(9, 9, 1) + spline(degree, knots, [(0, 0), (1, 1), (2, 0), (3, 1)], weights)))
+    (finding,) = drawing.findings
+    assert (finding.code, finding.severity) == ("damaged", "error")
+    assert word in finding.message

@@ -1,0 +1,34 @@
+"""watchsim check SCENE: is everything right, short of simulating?"""
+
+from __future__ import annotations
+
+import argparse
+
+from watchsim.commands.console import BAD_INPUT, FINE, print_json, say
+
+HELP = "everything short of simulating: units, overlap at the start, mass, frequency, what can touch"
+
+
+def options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("scene", metavar="SCENE", help="a scene file (TOML), or the folder that holds scene.toml")
+    parser.add_argument("--json", action="store_true", help="print one JSON object instead of text")
+    parser.add_argument("--png", metavar="FILE", help="where to write a picture of the start position")
+
+
+def run(args: argparse.Namespace) -> int:
+    from watchsim.commands.scenes import load_scene
+    from watchsim.contact.reachable import count_pairs
+    from watchsim.mechanism.check import check_report, check_text
+
+    scene = load_scene(args.scene, overlap=False)
+    report = check_report(scene, count_pairs(scene))
+    if args.png:
+        from watchsim.render.still import still
+
+        still(scene, args.png)
+        say(f"Picture: {args.png}")
+    if args.json:
+        print_json(report)
+    else:
+        print(check_text(report, scene))
+    return BAD_INPUT if any(finding["severity"] == "error" for finding in report["findings"]) else FINE

@@ -1,0 +1,90 @@
+"""How does the tool talk to a terminal?
+
+Results go to stdout. Everything else goes to stderr, and progress is quiet where stderr is no terminal.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from typing import Any
+
+FINE, MISSED, BAD_INPUT, GAVE_UP, INTERRUPTED = 0, 1, 2, 3, 130
+
+
+class InputError(ValueError):
+    """Something the user gave that cannot be used; the text says what, why, and what to do."""
+
+
+def say(words: str) -> None:
+    """A line for people, on stderr."""
+    print(words, file=sys.stderr, flush=True)
+
+
+def print_json(value: Any) -> None:
+    """One JSON value on stdout."""
+    json.dump(value, sys.stdout, indent=1, ensure_ascii=False, allow_nan=False)
+    print(flush=True)
+
+
+class Progress:
+    """One line on a terminal that tells how far something has come and how long it will still take."""
+
+    def __init__(self, words: str) -> None:
+        self._words = words
+        self._start = time.monotonic()
+        self._told = 0.0
+        self._quiet = not sys.stderr.isatty()
+
+    def __call__(self, done: float, whole: float) -> None:
+        now = time.monotonic()
+        if self._quiet or now - self._told < 0.1:
+            return
+        self._told = now
+        elapsed = now - self._start
+        left = elapsed * (whole - done) / done if done > 0.0 else 0.0
+        words = f"\r{self._words}  {done:.4g} of {whole:.4g}   {_clock(elapsed)} elapsed, {_clock(left)} left"
+        print(f"{words:<79}", end="", file=sys.stderr, flush=True)
+
+    def close(self) -> None:
+        if not self._quiet and self._told:
+            print("\r" + " " * 79 + "\r", end="", file=sys.stderr, flush=True)
+
+
+def _clock(seconds: float) -> str:
+    if seconds < 60.0:
+        return f"{seconds:.1f} s"
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes // 60}:{minutes % 60:02d}:{rest:02d}" if minutes >= 60 else f"{minutes}:{rest:02d} min"
+
+
+def announce_compile() -> None:
+    """Say so when the solver has to be compiled first: it is the longest wait a newcomer meets."""
+    from watchsim.jit import is_cached
+
+    if not is_cached("advance.advance"):
+        say("Compiling the solver for this machine: once after installation, about a minute ...")
+
+
+def parse_window(text: str | None) -> tuple[float, float] | None:
+    """"179.4 s:179.75 s" as (from, to) in seconds."""
+    if text is None:
+        return None
+    from watchsim.units import TIME, UnitError, parse
+
+    parts = text.split(":")
+    if len(parts) != 2:
+        raise InputError(f'--window "{text}": write two times with a colon between them, such as "179.4 s:179.75 s".')
+    try:
+        start, end = (parse(part.strip(), TIME) for part in parts)
+    except UnitError as error:
+        raise InputError(f'--window "{text}": {error}') from error
+    if not end > start:
+        raise InputError(f'--window "{text}": the second time must be later than the first.')
+    return start, end
+
+
+def parse_names(text: str | None) -> list[str] | None:
+    """"wheel,lever" as a list."""
+    return [name.strip() for name in text.split(",") if name.strip()] if text else None

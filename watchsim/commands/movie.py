@@ -1,0 +1,68 @@
+"""watchsim movie RUN: an MP4 or a GIF of a finished run."""
+
+from __future__ import annotations
+
+import argparse
+from fractions import Fraction
+from pathlib import Path
+
+from watchsim.commands.console import FINE, InputError, Progress, parse_names, parse_window
+
+HELP = "MP4 or GIF of a results folder, by the file's ending"
+
+
+def options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("run_folder", metavar="RUN", help="a results folder")
+    parser.add_argument("--window", metavar="FROM:TO", help='such as "9.5 s:9.75 s" (default: all that was recorded)')
+    parser.add_argument("--speed", metavar="X", default="1", help="1/20 is slow motion (default %(default)s)")
+    parser.add_argument("--fps", metavar="N", type=float, help="frames per second (default 60, GIF 25)")
+    parser.add_argument("--size", metavar="WxH", help="pixels, such as 1280x720")
+    parser.add_argument("--contacts", action="store_true", help="mark the contacts that are closed")
+    parser.add_argument("--zoom", metavar="NAMES", help="frame only these bodies, with commas between them")
+    parser.add_argument("-o", "--output", metavar="FILE", help="file.mp4 or file.gif (default RUN/movie.mp4)")
+
+
+def run(args: argparse.Namespace) -> int:
+    from watchsim.commands.scenes import read_run
+    from watchsim.render.movie import movie
+
+    speed, size = _speed(args.speed), _size(args.size)
+    window = parse_window(args.window)
+    trajectory = read_run(args.run_folder)
+    target = Path(args.output) if args.output else Path(args.run_folder) / "movie.mp4"
+    progress = Progress("frames:")
+    try:
+        movie(
+            trajectory,
+            target,
+            window,
+            speed,
+            fps=args.fps,
+            size=size,
+            contacts=args.contacts,
+            zoom=parse_names(args.zoom),
+            progress=progress,
+        )
+    finally:
+        progress.close()
+    print(target)
+    return FINE
+
+
+def _speed(text: str) -> float:
+    try:
+        value = float(Fraction(text))
+    except (ValueError, ZeroDivisionError) as error:
+        raise InputError(f"--speed {text}: write a number or a fraction such as 1/20.") from error
+    if not value > 0.0:
+        raise InputError(f"--speed {text}: must be positive.")
+    return value
+
+
+def _size(text: str | None) -> tuple[int, int] | None:
+    if text is None:
+        return None
+    parts = text.lower().split("x")
+    if len(parts) != 2 or not all(part.isdigit() and int(part) > 0 for part in parts):
+        raise InputError(f"--size {text}: write width and height in pixels, such as 1280x720.")
+    return int(parts[0]), int(parts[1])

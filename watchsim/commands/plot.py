@@ -1,0 +1,43 @@
+"""watchsim plot RUN: kinematic plots of a finished run."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from watchsim.commands.console import FINE, InputError, parse_names, parse_window
+
+HELP = "kinematic plots of a results folder"
+FORMATS = ("png", "svg", "pdf")
+
+
+def options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("run_folder", metavar="RUN", help="a results folder")
+    parser.add_argument("--bodies", metavar="NAMES", help="only these bodies, with commas between them")
+    parser.add_argument("--quantities", metavar="NAMES", default="angle,velocity", help="default %(default)s")
+    parser.add_argument("--window", metavar="FROM:TO", help='such as "179.4 s:179.75 s" (default: all that was recorded)')
+    parser.add_argument("--format", metavar="NAMES", default="png", help="png, svg, pdf, with commas (default %(default)s)")
+    parser.add_argument("-o", "--output", metavar="FILE", help="the file, ending optional (default RUN/plots/kinematics)")
+
+
+def run(args: argparse.Namespace) -> int:
+    from watchsim.commands.scenes import read_run
+    from watchsim.render.plots import plot_kinematics
+
+    formats = parse_names(args.format) or []
+    wrong = [name for name in formats if name not in FORMATS]
+    if wrong or not formats:
+        raise InputError(f"--format {args.format}: choose from {', '.join(FORMATS)}.")
+    trajectory = read_run(args.run_folder)
+    quantities = tuple(parse_names(args.quantities) or ())
+    figure = plot_kinematics(trajectory, parse_names(args.bodies), quantities, parse_window(args.window))
+    target = Path(args.output) if args.output else Path(args.run_folder) / "plots" / "kinematics"
+    if target.suffix[1:] in FORMATS:
+        formats = [target.suffix[1:]] if args.format == "png" else formats
+        target = target.with_suffix("")
+    target.parent.mkdir(parents=True, exist_ok=True)
+    for name in formats:
+        path = target.parent / f"{target.name}.{name}"
+        figure.savefig(path)
+        print(path)
+    return FINE

@@ -1,0 +1,38 @@
+"""How does a command get its scene, and a results folder its trajectory?"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from watchsim.commands.console import InputError
+
+if TYPE_CHECKING:
+    from watchsim.mechanism.scene import Scene
+    from watchsim.simulation.trajectory import Trajectory
+
+
+def load_scene(name: str, changes: list[str] | None = None, overlap: bool = True) -> Scene:
+    """The scene of a file or folder with KEY=VALUE changes; SceneError lists all that is wrong, overlaps included."""
+    from watchsim.mechanism.errors import SceneError
+    from watchsim.mechanism.load import load
+    from watchsim.mechanism.overlap import overlap_faults
+    from watchsim.mechanism.override import assignments, changed
+
+    path = Path(name)
+    scene = load(path / "scene.toml" if path.is_dir() else path)
+    if changes:
+        scene = changed(scene, assignments(changes))
+    if overlap and (faults := overlap_faults(scene)):
+        raise SceneError(faults)
+    return scene
+
+
+def read_run(folder: str) -> Trajectory:
+    """The trajectory kept in a results folder."""
+    from watchsim.analysis.results import read_results
+
+    try:
+        return read_results(folder)
+    except (OSError, ValueError, KeyError) as error:
+        raise InputError(f"{folder}: {error}") from error

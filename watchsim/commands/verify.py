@@ -1,0 +1,25 @@
+"""watchsim verify: do the closed-form and published benchmarks come out?"""
+
+from __future__ import annotations
+
+import argparse
+
+from watchsim.commands.console import FINE, MISSED, announce_compile, print_json
+
+HELP = "closed-form and published benchmarks: expected, got, verdict"
+
+
+def options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--json", action="store_true", help="print one JSON list instead of a table")
+
+
+def run(args: argparse.Namespace) -> int:
+    from watchsim.analysis.verify import verify, verify_text
+
+    announce_compile()
+    rows = verify()
+    if args.json:
+        print_json(rows)
+    else:
+        print(verify_text(rows))
+    return FINE if all(row["ok"] for row in rows) else MISSED
