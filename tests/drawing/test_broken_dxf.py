@@ -66,7 +66,9 @@ def test_small_files_that_broke_importers(name: str) -> None:
 
 
 def test_truncated_files_name_the_last_whole_entity(read_bytes: Reader) -> None:
-    whole = d.dxf(d.line((0, 0), (1, 0), handle="A1") + d.line((1, 0), (1, 1), handle="A2") + d.line((1, 1), (0, 0), handle="A3"))
+    whole = d.dxf(
+        d.line((0, 0), (1, 0), handle="A1") + d.line((1, 0), (1, 1), handle="A2") + d.line((1, 1), (0, 0), handle="A3")
+    )
     cut = whole[: whole.index(b"A3") + 20]
     assert "LINE #A2" in errors(read_bytes(cut))["truncated"]
     for length in range(1, len(whole) - 4, 3):
@@ -112,7 +114,9 @@ def test_damaged_entities_are_errors_and_the_rest_is_read(read_bytes: Reader, en
 
 
 def test_blocks_that_multiply_are_stopped(read_bytes: Reader) -> None:
-    levels = "".join(d.block(f"L{k}", d.insert(f"L{k + 1}", (0, 0), (70, 30), (71, 30), (44, 1.0), (45, 1.0))) for k in range(6))
+    levels = "".join(
+        d.block(f"L{k}", d.insert(f"L{k + 1}", (0, 0), (70, 30), (71, 30), (44, 1.0), (45, 1.0))) for k in range(6)
+    )
     drawing = read_bytes(d.dxf(d.insert("L0", (0, 0)), blocks=levels + d.block("L6", "")))
     assert "too-large" in errors(drawing)
 
@@ -138,7 +142,9 @@ def test_only_hidden_or_only_text_is_empty(read_bytes: Reader) -> None:
 def clean() -> bytes:
     """Every entity that is read, all outlines closed, nothing to find."""
     half = [(0, 0, 1.0), (2, 0, 1.0)]
-    entities = d.polygon([(0, 0), (1, 0), (1, 1)]) + d.circle(9, 0, 1) + d.lwpolyline([(x + 20, y, b) for x, y, b in half], True)
+    entities = (
+        d.polygon([(0, 0), (1, 0), (1, 1)]) + d.circle(9, 0, 1) + d.lwpolyline([(x + 20, y, b) for x, y, b in half], True)
+    )
     entities += d.arc(30, 0, 1, 0, 180) + d.line((29, 0), (31, 0))
     vertices = "".join(d.record("VERTEX", *d.point(10, p)) for p in ((40, 0), (41, 0), (41, 2)))
     entities += d.record("POLYLINE", (66, 1), (70, 1)) + vertices + d.record("SEQEND")
@@ -165,7 +171,9 @@ def mutated(data: bytes, rng: random.Random) -> bytes:
     if kind == 2:
         del lines[i]
     elif kind == 3:
-        lines[i] = rng.choice((b"0", b"-1", b"1e308", b"nan", b"-1e9", b"", b"99999999999", b"INSERT", b"10", b"1e-300", b"3.7"))
+        lines[i] = rng.choice(
+            (b"0", b"-1", b"1e308", b"nan", b"-1e9", b"", b"99999999999", b"INSERT", b"10", b"1e-300", b"3.7")
+        )
     elif kind == 4:
         lines[i], lines[j] = lines[j], lines[i]
     else:

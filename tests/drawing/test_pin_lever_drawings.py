@@ -64,7 +64,10 @@ def test_every_layer_is_closed_and_nothing_is_wrong(assembly: Drawing) -> None:
 
 def test_pivots_are_points(assembly: Drawing, facts: dict[str, Any]) -> None:
     places = sorted((1e3 * x, 1e3 * y) for layer, x, y in assembly.points if layer == "PIVOTS")
-    assert places == pytest.approx(sorted(map(tuple, facts["pivots_mm"].values())), abs=1e-6)
+    stated = sorted(facts["pivots_mm"].values())
+    assert len(places) == len(stated) == 3
+    for place, expected in zip(places, stated, strict=True):
+        assert place == pytest.approx(expected, abs=1e-6)
 
 
 def test_wheel_has_fifteen_teeth_of_the_stated_radii(assembly: Drawing, facts: dict[str, Any]) -> None:
@@ -74,7 +77,7 @@ def test_wheel_has_fifteen_teeth_of_the_stated_radii(assembly: Drawing, facts: d
     assert max(reach) == pytest.approx(facts["wheel_tip_radius_mm"], abs=1e-5)
     assert sum(r > facts["wheel_tip_radius_mm"] - 1e-4 for r in reach) == facts["teeth"]
     radii = {round(1e3 * edge.radius, 5) for edge in outline.edges if isinstance(edge, Arc)}
-    assert set(round(r, 5) for r in facts["tooth_arc_radii_mm"]) <= radii
+    assert {round(r, 5) for r in facts["tooth_arc_radii_mm"]} <= radii
 
 
 def test_guard_pin_and_banking(assembly: Drawing, facts: dict[str, Any]) -> None:

@@ -43,6 +43,7 @@ DIFFERENT = {
         )
     },
     ("ezdxf__AC1003_LINE_Example.dxf", "loops"): BRANCHED,
+    ("ezdxf__AC1003_LINE_Example.dxf", "areas"): BRANCHED,
     ("ezdxf__insert_bricscad_level_1.dxf", "loops"): BRANCHED,
 }
 
@@ -69,11 +70,13 @@ def report(name: str) -> tuple[dict[str, Any], dict[str, Any], float, bool]:
 @pytest.mark.parametrize("name", NAMES)
 def test_counts(name: str, request: pytest.FixtureRequest) -> None:
     known_difference(request, name, "counts")
-    found, truth, _, _ = report(name)
+    found, truth, _, curved = report(name)
     kinds = truth["kinds"]
     assert found["fitted"]["curves"] == sum(kinds.get(kind, 0) for kind in CURVES)
     assert found["arcs"] - found["fitted"]["arcs"] == kinds.get("arc", 0) + kinds.get("circle", 0)
-    assert found["lines"] == kinds.get("line", 0)
+    made = found["lines"] - kinds.get("line", 0)
+    # Where a curve changes its bend, one of its arcs may be so flat that it is a line.
+    assert 0 <= made <= found["fitted"]["curves"] if curved else made == 0
     assert {kind: count for kind, count in found["ignored"].items() if kind != "POINT"} == truth["ignored_entities"]
 
 
@@ -120,5 +123,5 @@ def test_drawings_without_geometry_are_errors(name: str) -> None:
 def test_units_are_those_of_the_header(name: str) -> None:
     code = TRUTH[name]["format"]["insunits"]
     found = inspect_report(read(FOLDER / name, fit=1e-5))
-    assert found["units"] == {None: None, "0": None, "1": "inch", "4": "mm", "5": "cm", "6": "m"}[code]
+    assert found["units"] == {None: None, "0": None, "1": "inch", "4": "mm", "5": "cm", "6": "m"}[code and str(code)]
     assert any(finding["code"] == "units-missing" for finding in found["findings"]) == (found["units"] is None)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 
 import dxf_text as d
 import numpy as np
@@ -42,7 +43,7 @@ def test_cubic_against_de_casteljau(read_bytes: Reader) -> None:
     t = np.linspace(0, 1, 3001)[:, None]
     level = [control[k] * np.ones_like(t) for k in range(4)]
     while len(level) > 1:
-        level = [(1 - t) * a + t * b for a, b in zip(level, level[1:], strict=False)]
+        level = [(1 - t) * a + t * b for a, b in pairwise(level)]
     (chain,) = drawing.open_chains
     measured = distance_to(1e-3 * level[0], chain)
     assert measured <= 1.002e-7
@@ -95,7 +96,9 @@ def test_wrapped_uniform_spline_is_a_closed_smooth_loop(read_bytes: Reader) -> N
     gauss = 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
     assert area(loop) == pytest.approx(gauss, rel=5e-5, abs=0)
     assert distance_to(1e-3 * curve, loop) <= 1.002e-7
-    gaps = [math.dist(a.tangent(1.0), b.tangent(0.0)) for a, b in zip(loop.edges, [*loop.edges[1:], loop.edges[0]], strict=True)]
+    gaps = [
+        math.dist(a.tangent(1.0), b.tangent(0.0)) for a, b in zip(loop.edges, [*loop.edges[1:], loop.edges[0]], strict=True)
+    ]
     assert max(gaps) < 1e-7
 
 

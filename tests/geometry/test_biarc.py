@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -65,7 +66,7 @@ def test_quarter_ellipse(tolerance: float) -> None:
 
 def test_number_of_arcs_grows_with_the_cube_root() -> None:
     counts = [len(fit_arcs(ellipse(5e-3, 2e-3), (0.0, math.pi / 2), 1e-6 / 8**k).edges) for k in range(4)]
-    for few, many in zip(counts, counts[1:], strict=False):
+    for few, many in pairwise(counts):
         assert 1.6 < many / few < 2.4
 
 

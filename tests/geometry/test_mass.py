@@ -35,7 +35,9 @@ def test_disc() -> None:
     assert found.area == pytest.approx(math.pi * r**2, rel=TINY, abs=0.0)
     assert found.centroid == pytest.approx((x, y), rel=TINY, abs=0.0)
     assert found.about((x, y)).polar == pytest.approx(math.pi * r**4 / 2, rel=TINY, abs=0.0)
-    assert found.about((0.0, 0.0)).polar == pytest.approx(math.pi * r**4 / 2 + math.pi * r**2 * (x * x + y * y), rel=TINY, abs=0.0)
+    assert found.about((0.0, 0.0)).polar == pytest.approx(
+        math.pi * r**4 / 2 + math.pi * r**2 * (x * x + y * y), rel=TINY, abs=0.0
+    )
 
 
 def test_ring_of_two_circles() -> None:
@@ -119,7 +121,9 @@ def test_huge_radius_keeps_its_digits() -> None:
     width, r = 2e-3, 1e3
     h = math.asin(width / 2 / r)
     arc = Arc(0.0, -r * math.cos(h), r, math.pi / 2 - h, 2 * h)
-    loop = Loop((arc, Line(*arc.end, -width / 2, -1e-3), Line(-width / 2, -1e-3, width / 2, -1e-3), Line(width / 2, -1e-3, *arc.start)))
+    loop = Loop(
+        (arc, Line(*arc.end, -width / 2, -1e-3), Line(-width / 2, -1e-3, width / 2, -1e-3), Line(width / 2, -1e-3, *arc.start))
+    )
     assert area(loop) == pytest.approx(width * 1e-3 + 2.0 / 3.0 * width * (r * (1 - math.cos(h))), rel=1e-9, abs=0.0)
 
 

@@ -16,7 +16,13 @@ from watchsim.geometry.polyline import polyline
 from watchsim.geometry.primitives import TURN, Arc, Line
 
 RING = Loop((Arc(1.0, 2.0, 3.0, 0.7, TURN),))
-KEY = Loop((Arc(0.0, 0.0, 1.0, math.pi / 4, 1.5 * math.pi), Line(*Arc(0, 0, 1, -math.pi / 4, 0).start, 3.0, 0.0), Line(3.0, 0.0, *Arc(0, 0, 1, math.pi / 4, 0).start)))
+KEY = Loop(
+    (
+        Arc(0.0, 0.0, 1.0, math.pi / 4, 1.5 * math.pi),
+        Line(*Arc(0, 0, 1, -math.pi / 4, 0).start, 3.0, 0.0),
+        Line(3.0, 0.0, *Arc(0, 0, 1, math.pi / 4, 0).start),
+    )
+)
 
 
 def test_extents_of_a_circle_and_of_arcs() -> None:

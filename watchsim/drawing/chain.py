@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from watchsim.drawing.content import Stroke
 from watchsim.drawing.findings import Finding
-from watchsim.drawing.gaps import open_ends
+from watchsim.drawing.gaps import open_ends, shown
 from watchsim.drawing.junctions import Junctions, junctions
 from watchsim.drawing.nesting import nested
 from watchsim.drawing.nodes import TIGHT, Join, Nodes
@@ -177,7 +177,7 @@ def branches(nodes: Nodes, meeting: Junctions, strokes: Sequence[Stroke]) -> lis
         x, y = nodes.at[node]
         layer = strokes[ends[0] // 2].layer
         names = ", ".join(dict.fromkeys(strokes[end // 2].source for end in ends[:8]))
-        message = f"{len(ends)} edges meet at ({1e3 * x:.6g}, {1e3 * y:.6g}) mm: {names}; which way does the outline go?"
+        message = f"{len(ends)} edges meet at {shown((x, y))} mm: {names}; which way does the outline go?"
         fix = "Leave only two of them there, or put the others on another layer."
         found.append(Finding("branch", "error", message, fix, layer, 1e3 * x, 1e3 * y))
     return found

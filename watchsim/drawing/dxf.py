@@ -52,7 +52,9 @@ def read_dxf(data: bytes, units: str | None, fit: float) -> Content:
     try:
         walker.walk(walker.items(sections.entities, "model"), IDENTITY, "", ())
     except TooLarge:
-        message = f"the drawing unfolds into more than {MOST_STROKES} pieces or {MOST_COPIES} copies of blocks; the rest was not read"
+        message = (
+            f"the drawing unfolds into more than {MOST_STROKES} pieces or {MOST_COPIES} copies of blocks; the rest was not read"
+        )
         found.findings.append(Finding("too-large", "error", message, "Look for arrays of blocks with huge counts."))
     return Content(
         strokes=tuple(found.strokes),

@@ -58,16 +58,14 @@ def stray_lines(
 
 
 def paired(loose: Sequence[int], near: Sequence[tuple[float, int, int]], stray: dict[int, None]) -> list[tuple[int, int]]:
-    """Loose ends in pairs, nearest first; an odd one out is paired with its nearest other end, or -1."""
+    """Loose ends in pairs, nearest first; an odd one out has the partner -1."""
     free = {i for i, end in enumerate(loose) if end // 2 not in stray}
-    nearest: dict[int, int] = {}
     pairs = []
     for _, i, j in near:
-        nearest.setdefault(i, j)
         if i in free and j in free:
             free -= {i, j}
             pairs.append((loose[i], loose[j]))
-    return pairs + [(loose[i], loose[nearest[i]] if i in nearest else -1) for i in sorted(free)]
+    return pairs + [(loose[i], -1) for i in sorted(free)]
 
 
 def stray_finding(stroke: Stroke) -> Finding:
@@ -81,7 +79,7 @@ def gap_finding(end: int, partner: int, strokes: Sequence[Stroke], nodes: Nodes)
     p = nodes.ends[end]
     layer = strokes[end // 2].layer
     if partner < 0:
-        message = f"the outline is open at {shown(p)} mm, {named(end, strokes)}; no other loose end is near"
+        message = f"the outline is open at {shown(p)} mm, {named(end, strokes)}: nothing meets it there"
         return Finding("open-outline", "error", message, "Close it in CAD.", layer, 1e3 * p[0], 1e3 * p[1])
     q = nodes.ends[partner]
     gap = math.dist(p, q)
@@ -95,7 +93,8 @@ def gap_finding(end: int, partner: int, strokes: Sequence[Stroke], nodes: Nodes)
 
 
 def shown(p: Point) -> str:
-    return f"({1e3 * p[0]:.6g}, {1e3 * p[1]:.6g})"
+    """Coordinates in mm, to the nanometre: rounding noise would only confuse."""
+    return "({:g}, {:g})".format(*(round(1e3 * c, 6) + 0.0 for c in p))
 
 
 def named(end: int, strokes: Sequence[Stroke]) -> str:

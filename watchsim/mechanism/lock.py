@@ -91,7 +91,8 @@ def _drawing_path(path: Path, folder: Path | None) -> str:
 
 def _digests(bodies: dict[str, Any], folder: Path) -> dict[str, str]:
     names = dict.fromkeys(entry["drawing"] for entry in bodies.values() if "drawing" in entry)
-    return {name: file_digest(folder / name) for name in names}
+    # The folder may not exist yet: `..` after it cannot be followed, only resolved in words.
+    return {name: file_digest(Path(os.path.normpath(folder / name))) for name in names}
 
 
 def _si(value: float, unit: str) -> str:

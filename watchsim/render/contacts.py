@@ -6,12 +6,16 @@ to, in the direction of the other side.
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
+from watchsim.geometry.primitives import Point
 from watchsim.mechanism.compile import compile_scene
-from watchsim.mechanism.model import LINE
-from watchsim.render.poses import placed
+from watchsim.mechanism.model import LINE, Records
 from watchsim.simulation.trajectory import EventKind, Trajectory
 
 Array = NDArray[np.float64]
@@ -21,39 +25,60 @@ class ContactMarks:
     """The closed contacts of a run. ValueError where its events number contacts that the scene does not have."""
 
     def __init__(self, run: Trajectory) -> None:
-        self._names = [body.name for body in run.scene.bodies]
-        self._model = compile_scene(run.scene).model
+        names = [body.name for body in run.scene.bodies]
+        model = compile_scene(run.scene).model
         told = run.events[np.isin(run.events["kind"], (EventKind.CLOSE, EventKind.OPEN))]
-        if len(told) and told["contact"].max() >= len(self._model.contacts):
+        if len(told) and told["contact"].max() >= len(model.contacts):
             raise ValueError("contacts cannot be marked: the events of this run do not belong to its scene")
-        self._history = {int(k): told[told["contact"] == k] for k in np.unique(told["contact"])}
+        self._history: dict[int, tuple[Array, NDArray[np.bool_]]] = {}
+        self._sides: dict[int, tuple[_Side, _Side]] = {}
+        for k in map(int, np.unique(told["contact"])):
+            events, contact = told[told["contact"] == k], model.contacts[k]
+            self._history[k] = np.array(events["t"]), events["kind"] == EventKind.CLOSE
+            self._sides[k] = _side(model.primitives[contact.a], names), _side(model.primitives[contact.b], names)
 
     def closed(self, t: float) -> list[int]:
         """The numbers of the contacts that are closed at `t` (s)."""
-        found = []
-        for k, events in self._history.items():
-            last = int(np.searchsorted(events["t"], t, side="right")) - 1
-            if last >= 0 and events["kind"][last] == EventKind.CLOSE:
-                found.append(k)
-        return found
+        last = ((k, int(times.searchsorted(t, side="right")) - 1, closes) for k, (times, closes) in self._history.items())
+        return [k for k, row, closes in last if row >= 0 and closes[row]]
 
     def points(self, t: float, frames: dict[str, Array]) -> Array:
         """(n, 2) points of the contacts closed at `t`, metres, for the poses x, y, angle of that instant."""
-        return np.array([self._point(k, frames) for k in self.closed(t)]).reshape(-1, 2)
-
-    def _point(self, k: int, frames: dict[str, Array]) -> Array:
-        """From the circle's centre towards B's material by its radius, along B's outward normal reversed."""
-        contact = self._model.contacts[k]
-        a, b = self._model.primitives[contact.a], self._model.primitives[contact.b]
-        on_b = frames[self._names[b.body]]
-        centre = _world(frames[self._names[a.body]], a.x, a.y)
-        if b.kind == LINE:
-            outward = _world(on_b, b.ty, -b.tx) - on_b[:2]
-        else:
-            apart = centre - _world(on_b, b.x, b.y)
-            outward = b.side * apart / max(float(np.hypot(*apart)), 1e-300)
-        return centre - a.radius * outward
+        return np.array([_touch(*self._sides[k], frames) for k in self.closed(t)]).reshape(-1, 2)
 
 
-def _world(frame: Array, x: float, y: float) -> Array:
-    return placed(np.array([[x, y]]), frame[None, :])[0, 0]
+@dataclass(frozen=True)
+class _Side:
+    """A primitive in its body's frame: a circle's centre, radius and side; a line has its outward normal instead."""
+
+    body: str
+    x: float
+    y: float
+    radius: float
+    side: float
+    normal: Point | None
+
+
+def _side(primitive: Records, names: list[str]) -> _Side:
+    # Outward normal of a line: the direction of travel turned by -90 degrees.
+    normal = (float(primitive.ty), -float(primitive.tx)) if primitive.kind == LINE else None
+    x, y, radius, side = (float(primitive[name]) for name in ("x", "y", "radius", "side"))
+    return _Side(names[primitive.body], x, y, radius, side, normal)
+
+
+def _touch(a: _Side, b: _Side, frames: dict[str, Array]) -> Point:
+    """From the circle's centre towards B's material by its radius, against B's outward normal."""
+    x, y = _world(frames[a.body], a.x, a.y)
+    bx, by, turn = frames[b.body]
+    if b.normal is not None:
+        nx, ny = _world((0.0, 0.0, turn), *b.normal)
+    else:
+        px, py = _world((bx, by, turn), b.x, b.y)
+        apart = b.side * math.hypot(x - px, y - py) or 1.0
+        nx, ny = (x - px) / apart, (y - py) / apart
+    return x - a.radius * nx, y - a.radius * ny
+
+
+def _world(frame: Sequence[float] | Array, x: float, y: float) -> Point:
+    c, s = math.cos(frame[2]), math.sin(frame[2])
+    return frame[0] + c * x - s * y, frame[1] + s * x + c * y

@@ -15,7 +15,7 @@ from watchsim.contact.poses import poses
 from watchsim.dynamics.delassus import ContactWork, contact_work
 from watchsim.jit import by_reference
 from watchsim.mechanism.model import Model, Records
-from watchsim.simulation.trajectory import EVENT_DTYPE
+from watchsim.simulation.event_kinds import EVENT_DTYPE
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]

@@ -7,44 +7,17 @@ A frozen value: rows of time, coordinates, velocities and accelerations, and a t
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from enum import IntEnum
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.mechanism.scene import Scene
+from watchsim.simulation.event_kinds import EVENT_DTYPE as EVENT_DTYPE
+from watchsim.simulation.event_kinds import EventKind as EventKind
 from watchsim.simulation.stops import Stop
 
 Array = NDArray[np.float64]
-
-
-class EventKind(IntEnum):
-    """What happened. IMPACT..HANDOVER name a contact pair; TURN and CROSS name a body with a spring."""
-
-    IMPACT = 1  # approach ended by impulses; impulses and energy lost are given
-    CLOSE = 2  # the contact now rests (its normal force acts)
-    OPEN = 3  # the contact lets go
-    STICK = 4  # sliding ended
-    SLIDE = 5  # sliding began; `value` is the direction, +1 or -1
-    HANDOVER = 6  # the contact left one primitive for its neighbour
-    ACCUMULATION = 7  # a sequence of rebounds was finished by rule; `value` is the time at which it would have ended
-    TURN = 8  # a turning point of a sprung body; `value` is its coordinate
-    CROSS = 9  # a sprung body passes its rest position; `value` is its velocity
-
-
-EVENT_DTYPE = np.dtype(
-    [
-        ("t", "f8"),
-        ("kind", "i4"),
-        ("contact", "i4"),  # row of `Trajectory.pairs`, -1 for TURN and CROSS
-        ("body", "i4"),  # index in scene.bodies for TURN and CROSS, else -1
-        ("impulse_normal", "f8"),  # N·s (between pivoted bodies too: at the contact point)
-        ("impulse_tangential", "f8"),
-        ("energy_lost", "f8"),  # J
-        ("value", "f8"),
-    ]
-)
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,22 @@
+#!/usr/bin/env bash
+# What is too slow for every change: all tests, the kernels with their index checks on, and the demo from a fresh environment.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+environment=.venv-nightly
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+rm -rf "$environment"
+python3 -m venv "$environment"
+"$environment/bin/pip" install --quiet '.[test]'
+
+echo "== all tests"
+"$environment/bin/pytest" -m "slow or not slow" --durations=20
+
+# numba reads past the end of an array without a word unless asked; machine code with the checks in it is kept apart.
+echo "== kernels with index checks"
+NUMBA_BOUNDSCHECK=1 WATCHSIM_CACHE="$scratch/checked" "$environment/bin/pytest" tests/contact tests/dynamics tests/simulation
+
+echo "== benchmarks and demo"
+"$environment/bin/watchsim" verify
+"$environment/bin/watchsim" demo -o "$scratch/demo"

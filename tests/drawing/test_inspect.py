@@ -1,0 +1,78 @@
+"""Does the report use the fixed names, and does the text say what matters?"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable
+
+import dxf_text as d
+import pytest
+
+from watchsim.drawing.drawing import Drawing
+from watchsim.drawing.inspect import inspect_report, inspect_text
+
+Reader = Callable[..., Drawing]
+
+TOP = (
+    *("file", "format", "units", "units_from", "extents_mm", "layers", "loops", "points", "fitted", "ignored", "findings"),
+    *("lines", "arcs", "length_mm", "area_mm2"),
+)
+
+
+def wheel() -> bytes:
+    ring = d.circle(0, 0, 2.15, layer="TEETH") + d.circle(0, 0, 1, layer="TEETH") + d.line((5, 5), (6, 5), layer="AXES")
+    return d.dxf(ring + d.record("POINT", *d.point(10, (0, 0)), layer="PIVOT") + d.record("TEXT", (1, "x")))
+
+
+def test_fixed_names_and_values(read_bytes: Reader) -> None:
+    report = inspect_report(read_bytes(wheel()))
+    assert tuple(report) == TOP
+    assert json.loads(json.dumps(report)) == report
+    assert report["units"] == "mm" and report["units_from"] == "header" and report["format"] == "dxf"
+    assert report["extents_mm"] == pytest.approx([-2.15, -2.15, 6.0, 5.0])
+    assert report["layers"] == {
+        "TEETH": {"lines": 0, "arcs": 2, "loops": 2, "open_chains": 0},
+        "AXES": {"lines": 1, "arcs": 0, "loops": 0, "open_chains": 1},
+        "PIVOT": {"lines": 0, "arcs": 0, "loops": 0, "open_chains": 0},
+    }
+    loops = report["loops"]
+    assert isinstance(loops, list)
+    assert [set(loop) for loop in loops] == [{"layer", "lines", "arcs", "area_mm2", "length_mm", "closed", "hole"}] * 3
+    assert [(loop["closed"], loop["hole"]) for loop in loops] == [(True, False), (True, True), (False, False)]
+    assert [loop["area_mm2"] for loop in loops] == pytest.approx([math.pi * 2.15**2, math.pi, 0.0], rel=1e-13)
+    assert report["area_mm2"] == pytest.approx(math.pi * (2.15**2 - 1), rel=1e-13)
+    assert report["length_mm"] == pytest.approx(2 * math.pi * 3.15 + 1, rel=1e-13)
+    assert (report["lines"], report["arcs"]) == (1, 2)
+    assert report["points"] == [{"layer": "PIVOT", "x_mm": 0.0, "y_mm": 0.0}]
+    assert report["fitted"] == {"curves": 0, "arcs": 0, "worst_deviation_um": 0.0}
+    assert report["ignored"] == {"TEXT": 1}
+    findings = report["findings"]
+    assert isinstance(findings, list)
+    assert set(findings[0]) == {"code", "severity", "layer", "x_mm", "y_mm", "message", "fix"}
+
+
+def test_text_for_people(read_bytes: Reader) -> None:
+    text = inspect_text(read_bytes(wheel()))
+    assert "units: mm, as the file says" in text
+    assert "the part is 8.15 mm across (8.15 × 7.15 mm" in text
+    assert "TEETH  2 outlines (1 hole), 2 arcs" in text
+    assert "PIVOT  a point at (0, 0) mm" in text
+    assert "not read: 1 TEXT" in text
+    assert "warning, stray-line [layer AXES]" in text
+
+
+def test_text_without_units_and_without_anything(read_bytes: Reader) -> None:
+    text = inspect_text(read_bytes(d.dxf(d.circle(0, 0, 2.15), units=None)))
+    assert "units: not stated" in text and "4.3 mm or 109.2 mm across" in text and 'Set units = "mm"' in text
+    nothing = read_bytes(d.dxf(""))
+    assert "nothing to measure" in inspect_text(nothing)
+    assert inspect_report(nothing)["extents_mm"] is None
+
+
+def test_text_says_when_all_is_well_and_cuts_long_lists(read_bytes: Reader) -> None:
+    assert "nothing to complain about" in inspect_text(read_bytes(d.dxf(d.circle(0, 0, 1))))
+    strays = "".join(d.line((5 * k, 0), (5 * k + 1, 0)) for k in range(30))
+    text = inspect_text(read_bytes(d.dxf(strays)))
+    assert text.count("stray-line [") == 12
+    assert "and 18 more of stray-line" in text

@@ -1,0 +1,72 @@
+"""Does the picture of a drawing show its parts and its faults, and is it written whole or not at all?"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from watchsim.drawing.drawing import Drawing
+from watchsim.drawing.findings import Finding
+from watchsim.geometry.loop import Loop
+from watchsim.geometry.primitives import TURN, Arc, Line
+from watchsim.render.drawing_picture import COLOURS, FAULT, draw_drawing, picture
+
+RING = (Loop((Arc(0, 0, 2e-3, 0, TURN),), "TEETH"), Loop((Arc(0, 0, 1e-3, 0, -TURN),), "TEETH", hole=True))
+FAULTY = Finding("open-outline", "error", "open", "", "TEETH", 2.0, 0.0)
+
+
+def drawing(**changes: object) -> Drawing:
+    facts: dict[str, object] = {
+        "path": Path("$wheel_1$.dxf"),
+        "format": "dxf",
+        "units": "mm",
+        "units_from": "header",
+        "loops": RING,
+        "open_chains": (Loop((Line(0, 0, 1e-3, 3e-3),), "AXES", False),),
+        "points": (("PIVOT", 0.0, 0.0),),
+        "layers": ("TEETH", "AXES", "PIVOT"),
+        "findings": (Finding("ignored", "notice", "text"), FAULTY),
+    }
+    return Drawing(**(facts | changes))  # type: ignore[arg-type]
+
+
+def colour_of(text: str) -> tuple[int, ...]:
+    return tuple(int(text[k : k + 2], 16) for k in (1, 3, 5))
+
+
+def test_picture_file_shows_outline_and_fault(tmp_path: Path) -> None:
+    from PIL import Image
+
+    target = tmp_path / "import.png"
+    draw_drawing(drawing(), target)
+    pixels = np.asarray(Image.open(target).convert("RGB")).reshape(-1, 3)
+    for colour in (COLOURS[0], COLOURS[1], FAULT):
+        near = np.abs(pixels.astype(int) - colour_of(colour)).max(axis=1) < 12
+        assert near.sum() > 50, colour
+    assert [path.name for path in tmp_path.iterdir()] == ["import.png"]
+
+
+def test_circles_carry_the_numbers_of_the_report() -> None:
+    (axes,) = picture(drawing()).axes
+    assert [text.get_text() for text in axes.texts] == ["2"]
+    assert axes.get_aspect() == 1.0
+    assert axes.get_title(loc="left").startswith("$wheel_1$.dxf   4 × 5 mm")
+
+
+def test_findings_at_one_place_share_a_circle() -> None:
+    (axes,) = picture(drawing(findings=(FAULTY,) * 5)).axes
+    assert [text.get_text() for text in axes.texts] == ["1, 2, 3 …"]
+
+
+def test_nothing_to_show_is_still_a_picture(tmp_path: Path) -> None:
+    empty = drawing(loops=(), open_chains=(), points=(), layers=())
+    draw_drawing(empty, tmp_path / "empty.png")
+    assert "nothing to show" in picture(empty).axes[0].get_title(loc="left")
+
+
+def test_a_folder_that_is_not_there_is_an_error_and_leaves_nothing(tmp_path: Path) -> None:
+    with pytest.raises(OSError):
+        draw_drawing(drawing(), tmp_path / "none" / "import.png")
+    assert not list(tmp_path.iterdir())
