@@ -9,3 +9,10 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
+
+
+def pytest_report_header() -> str:
+    """Says which copy of the package is tested: as installed, or a checkout on the path."""
+    import watchsim
+
+    return f"watchsim from {Path(watchsim.__file__).parent}"

@@ -11,7 +11,7 @@ import pytest
 
 from watchsim import jit
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(jit.__file__).resolve().parents[1]  # of the copy under test
 KERNEL = "from watchsim.jit import kernel\nfrom watchsim.inner import K\n"
 
 
@@ -77,7 +77,8 @@ def test_importing_costs_no_numba() -> None:
 
 
 def test_a_kernel_can_be_made_callable(tmp_path: Path) -> None:
-    code = "from watchsim.jit import callable_kernel; from watchsim.dynamics.lcp import _power_of_two as f; print(callable_kernel(f)(6.5))"
+    code = "from watchsim.jit import callable_kernel; from watchsim.dynamics.lcp import _power_of_two as f; "
+    code += "print(callable_kernel(f)(6.5))"
     assert python(code, WATCHSIM_CACHE=str(tmp_path), NUMBA_DISABLE_JIT="0") == "8.0"
 
 

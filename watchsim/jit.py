@@ -23,6 +23,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 PACKAGE = Path(__file__).resolve().parent
 DIGESTS_KEPT = 3
 IN_USE_SECONDS = 3600.0  # another process may be compiling into a folder it has just made
+_KERNELS = re.compile(r"^from watchsim\.jit import .*\b(?:kernel|entry)\b", re.MULTILINE)
 _IMPORT = re.compile(r"^\s*from (watchsim(?:\.\w+)*) import", re.MULTILINE)
 
 
@@ -123,7 +124,7 @@ def source_digest(package: Path) -> str:
 def _reachable_sources(package: Path) -> list[Path]:
     """The files that define kernels and all they import from the package, sorted."""
     texts = {path: path.read_text(encoding="utf-8") for path in package.rglob("*.py")}
-    waiting = [path for path, text in texts.items() if "watchsim.jit import" in text]
+    waiting = [path for path, text in texts.items() if _KERNELS.search(text)]
     reached: set[Path] = set()
     while waiting:
         path = waiting.pop()

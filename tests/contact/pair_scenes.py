@@ -24,7 +24,17 @@ from watchsim.mechanism.scene import Scene
 MOTIONS = ("pivot", "slide", "free", "fixed")
 DEGREES = {"pivot": 1, "slide": 1, "free": 3, "fixed": 0}
 PLACES = {"a": (0.3, -0.2), "b": (-0.1, 0.4)}
-KINDS = ("corner-line", "line-corner", "corner-arc", "arc-corner", "corner-bite", "bite-corner", "arc-line", "line-arc", "arc-arc")
+KINDS = (
+    "corner-line",
+    "line-corner",
+    "corner-arc",
+    "arc-corner",
+    "corner-bite",
+    "bite-corner",
+    "arc-line",
+    "line-arc",
+    "arc-arc",
+)
 
 _place, _kinematics = callable_kernel(place), callable_kernel(contact_kinematics)
 
@@ -53,9 +63,7 @@ def two_bodies(motion_a: str, motion_b: str, scale_b: float = 0.35) -> tuple[Sce
     for name, motion, scale, shift in (("a", motion_a, 1.0, (0.2, 0.1)), ("b", motion_b, scale_b, (0.1, -0.15))):
         axis = (math.cos(0.7), math.sin(0.7)) if name == "a" else (math.cos(2.0), math.sin(2.0))
         angle = 0.0 if motion != "slide" else 0.6
-        bodies.append(
-            Body(name, motion, PLACES[name], angle, axis=axis, mass=1.3, inertia=0.7, loops=(outline(scale, shift),))
-        )
+        bodies.append(Body(name, motion, PLACES[name], angle, axis=axis, mass=1.3, inertia=0.7, loops=(outline(scale, shift),)))
     scene = Scene("two bodies", tuple(bodies), contacts=(Contact((Side("a"), Side("b")), 0.2, 0.5),))
     return scene, compile_scene(scene)
 

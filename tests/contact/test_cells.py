@@ -10,7 +10,18 @@ import shapely
 from pair_scenes import DEGREES, body_pose, outline
 
 from watchsim.contact.cells import CellFinder
-from watchsim.contact.lookup import ALL, LISTED, MARGIN, REACH, UNKNOWN, candidate, candidates, cell_key, find_slot, time_in_cell
+from watchsim.contact.lookup import (
+    ALL,
+    LISTED,
+    MARGIN,
+    REACH,
+    UNKNOWN,
+    candidate,
+    candidates,
+    cell_key,
+    find_slot,
+    time_in_cell,
+)
 from watchsim.geometry.primitives import Arc, moved
 from watchsim.jit import callable_kernel
 from watchsim.mechanism.body import Body
@@ -55,7 +66,9 @@ def curves(scene: Scene, compiled: Compiled, q: np.ndarray) -> list[shapely.Geom
         x, y, angle = body_pose(scene, "ab"[p.body], q)
         if p.kind == ARC:
             edge = next(
-                e for e in scene.bodies[p.body].loops[0].edges if isinstance(e, Arc) and math.dist((e.x, e.y), (p.x, p.y)) < 1e-12
+                e
+                for e in scene.bodies[p.body].loops[0].edges
+                if isinstance(e, Arc) and math.dist((e.x, e.y), (p.x, p.y)) < 1e-12
             )
             points = [moved(edge, angle, (x, y)).point(f) for f in np.linspace(0.0, 1.0, PIECES + 1)]
         else:
@@ -82,7 +95,7 @@ def random_q(scene: Scene, rng: np.random.Generator) -> np.ndarray:
     """Poses in which the bodies are often near one another; angles of several turns."""
     q = []
     for body in scene.bodies:
-        spread = {"pivot": [20.0], "slide": [0.6], "free": [1.0, 1.0, 20.0], "fixed": []}[body.motion]
+        spread = {"pivot": [20.0], "slide": [0.6], "free": [0.5, 0.5, 20.0], "fixed": []}[body.motion]
         q += [rng.uniform(-s, s) for s in spread]
     return np.array(q)
 

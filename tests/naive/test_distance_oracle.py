@@ -50,6 +50,9 @@ def test_pin_in_a_ring() -> None:
 
 def test_order_does_not_matter() -> None:
     pose = (2.3, 0.4, 0.2)
-    one, other = nearest((square(1.0),), STILL, (circle(1.0),), pose, 0.01), nearest((circle(1.0),), pose, (square(1.0),), STILL, 0.01)
+    one, other = (
+        nearest((square(1.0),), STILL, (circle(1.0),), pose, 0.01),
+        nearest((circle(1.0),), pose, (square(1.0),), STILL, 0.01),
+    )
     assert one.gap == pytest.approx(other.gap, abs=1e-12)
     assert one.on_a == pytest.approx(other.on_b)

@@ -1,7 +1,7 @@
 """How does a pendulum swing, and how against a stop at its lowest point? Exact, by elliptic functions (mpmath).
 
-With k = sin(amplitude / 2) and w = sqrt(m g l / J): sin(angle / 2) = k sn(w t + K, k), quarter period K(k) / w, rate 2 w k at the
-bottom. An impact there with restitution e turns k into e k; each return to the stop then takes 2 K(k) / w.
+With k = sin(amplitude / 2) and w = sqrt(m g l / J): sin(angle / 2) = k sn(w t + K, k), quarter period K(k) / w, rate 2 w k at
+the bottom. An impact there with restitution e turns k into e k; each return to the stop then takes 2 K(k) / w.
 """
 
 from __future__ import annotations

@@ -4,7 +4,17 @@ from __future__ import annotations
 
 import pytest
 from mpmath import mp, mpf
-from reference.incline_closed_form import GRAVITY, HEIGHT, RADIUS, RESTITUTION, accumulation, gravity, reference, rolling_begins, settled
+from reference.incline_closed_form import (
+    GRAVITY,
+    HEIGHT,
+    RADIUS,
+    RESTITUTION,
+    accumulation,
+    gravity,
+    reference,
+    rolling_begins,
+    settled,
+)
 from reference.single_impact import single_impact
 
 PUBLISHED = {  # friction 0.3: time, x, angle, spin

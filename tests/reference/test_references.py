@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -42,7 +43,7 @@ def test_pendulum_against_stop() -> None:
     """From one touch to the next with the integrated equation."""
     times = pendulum.touches(4, 1.2, 3.0, 0.6)
     state = integrate(lambda q, _: -9.0 * math.sin(q), (1.2, 0.0), times[0])
-    for left, right in zip(times[:-1], times[1:], strict=True):
+    for left, right in pairwise(times):
         assert state[0] == pytest.approx(0.0, abs=1e-10)
         half = integrate(lambda q, _: -9.0 * math.sin(q), (0.0, -0.6 * state[1]), 0.5 * (right - left))
         assert pendulum.against_stop(0.5 * (left + right), 1.2, 3.0, 0.6) == pytest.approx(tuple(half), abs=1e-10)

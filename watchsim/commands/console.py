@@ -68,7 +68,7 @@ def announce_compile() -> None:
 
 
 def parse_window(text: str | None) -> tuple[float, float] | None:
-    """"179.4 s:179.75 s" as (from, to) in seconds."""
+    """The two times of a text such as "179.4 s:179.75 s", in seconds."""
     if text is None:
         return None
     from watchsim.units import TIME, UnitError, parse
@@ -86,5 +86,5 @@ def parse_window(text: str | None) -> tuple[float, float] | None:
 
 
 def parse_names(text: str | None) -> list[str] | None:
-    """"wheel,lever" as a list."""
+    """The names in a text such as "wheel,lever"."""
     return [name.strip() for name in text.split(",") if name.strip()] if text else None

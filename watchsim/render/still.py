@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from pathlib import Path
 
 import numpy as np
 
@@ -30,4 +31,4 @@ def still(scene: Scene, path: str | os.PathLike[str], size: tuple[int, int] = (1
         pairs=(),
         stop=Stop.DURATION,
     )
-    imageio.imwrite(path, frame(rest, 0.0, size=size))
+    imageio.imwrite(Path(path), frame(rest, 0.0, size=size))

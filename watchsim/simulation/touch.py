@@ -38,7 +38,7 @@ def _body_bounds(model, b, length, scratch):
 
 @kernel
 def _gap_bounds(model, k, length, scratch):
-    """Bounds over the next `length` seconds of |g'| and of the part of |g''| that does not come from B's curvature."""
+    """Bounds over the next `length` seconds: |g'|, |g''| but for B's curvature, and the bodies' relative turning."""
     contact = model.contacts[k]
     a, b = model.primitives[contact.a], model.primitives[contact.b]
     speed_a, turn_a, push_a, twist_a = _body_bounds(model, a.body, length, scratch)
@@ -52,7 +52,7 @@ def _gap_bounds(model, k, length, scratch):
     closing = speed + turn_b * arm_b
     bend = push_a + twist_a * arm_a + turn_a * turn_a * arm_a
     bend += push_b + twist_b * arm_b + turn_b * turn_b * arm_b + 2.0 * turn_b * closing
-    return closing, bend
+    return closing, bend, turn_a + turn_b
 
 
 @kernel
@@ -87,39 +87,60 @@ def _safe(room, approach, closing, bend, distance):
 
 
 @kernel
+def _time_outside(model, k, margin, motion, distance):
+    """A time for which a contact that lies `margin` (negative) outside its primitives stays outside."""
+    contact = model.contacts[k]
+    a, b = model.primitives[contact.a], model.primitives[contact.b]
+    closing, swing = motion
+    scale = max(a.radius, a.length) + b.radius
+    near = 0.5 * distance
+    drift = closing + (swing + closing / near) * scale
+    return min(-margin / drift, near / closing)
+
+
+@kernel
 def crossing(model, state, options, k, start, end, scratch):
     """First time in [start, end) at which open contact k closes inside its primitives; infinity if it does not."""
     contact = model.contacts[k]
     body_a, body_b = model.primitives[contact.a].body, model.primitives[contact.b].body
     body_within(model, state, body_a, start, scratch)
     body_within(model, state, body_b, start, scratch)
-    closing, bend = _gap_bounds(model, k, end - start, scratch)
+    closing, bend, swing = _gap_bounds(model, k, end - start, scratch)
     if closing == 0.0:
         return math.inf
     zero = options.gap_zero
     tau = start
-    outside, clear, first = True, False, True
+    # `outside`: on the free side; `clear`: has been further than rounding from it since.
+    fresh, outside, clear = True, True, False
     while tau < end:
-        if not first:
+        if tau > start:
             body_within(model, state, body_a, tau, scratch)
             body_within(model, state, body_b, tau, scratch)
         gap, rate, nx, ny = normal_gap(model, k, scratch.pose)
+        distance = _centre_distance(model, k, scratch.pose)
         state.counts[N_GAPS] += 1
-        # `outside`: on the free side; `clear`: has been further than rounding from it since.
-        if first or not outside:
+        if fresh or not outside:
             outside, clear = gap >= -zero, False
-        first = False
-        if outside and (gap > zero or rate > options.speed_zero):
+        fresh = False
+        leaving = gap > zero or rate > options.speed_zero
+        if outside and leaving:
             clear = True  # a contact that has just rebounded counts as clear: it returns to this gap by falling only
-        elif outside and ((clear and rate < 0.0) or gap < -zero):
-            if extent_margin(model, k, scratch.pose, nx, ny) >= -options.extent:
-                return min(end, tau + gap / -rate) if clear and gap > 0.0 and rate * (end - tau) < -gap else tau
-            outside, clear = gap >= -zero, False
+        if outside and gap <= zero:
+            # Where a smooth outline goes on, its next piece has no gap either, and closes only when its turn comes.
+            margin = extent_margin(model, k, scratch.pose, nx, ny) + options.extent
+            if margin < 0.0:
+                # At least the time in which the gap cannot pass through its rounding.
+                tau += max(_time_outside(model, k, margin, (closing, swing), distance), zero / closing)
+                fresh = True
+                continue
+        if outside and gap <= zero and ((clear and rate < 0.0) or gap < -zero):
+            return min(end, tau + gap / -rate) if clear and gap > 0.0 and rate * (end - tau) < -gap else tau
         if outside:
-            room, approach = (max(gap, 0.0) if clear else gap + 2.0 * zero), -rate
+            room, approach = (max(gap, 0.0) if leaving else gap + 2.0 * zero), -rate
+            clear = clear and leaving
         else:
             room, approach = -gap, rate
-        tau += _safe(room, approach, closing, bend, _centre_distance(model, k, scratch.pose))
+        tau += _safe(room, approach, closing, bend, distance)
     return math.inf
 
 

@@ -1,0 +1,87 @@
+"""Is what a scene promises judged in its own units, and are slips in keys caught?"""
+
+from __future__ import annotations
+
+import pytest
+
+from watchsim.analysis.expectations import judge, unit_of
+from watchsim.mechanism.scene import Expectation
+
+NUMBERS = {
+    "amplitude_deg": 290.7,
+    "rate_s_per_d": -22.69,
+    "period_s": 0.2500657,
+    "beat_error_ms": 0.0126,
+    "beat_error_ms_error": 0.001,
+    "frequency_hz": 3.99895,
+    "worst_penetration_m": 2e-12,
+    "missed_beats": 0,
+    "lcp_failures": None,
+    "simulated_s": float("nan"),
+    "scene": "Made",
+    "stopped": False,
+    "bodies": {"disc": {"x_m": 10.0939616, "angle_rad": -200.18, "angle_rad_per_s": -134.2, "x_m_per_s": 6.71}},
+    "energy": {"dissipated": {"friction": 8e-6}, "in_J": 3e-5, "residual_relative": 4e-11},
+}
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "tolerance", "unit", "got"),
+    [
+        ("amplitude", 290.73, 0.05, "°", 290.7),
+        ("amplitude", 5.07, 0.01, "rad", 5.07367),
+        ("rate", -22.7, 0.1, "s/d", -22.69),
+        ("rate", -262.6, 0.1, "ppm", -262.616),
+        ("period", 250.0657, 1e-3, "ms", 250.0657),
+        ("beat_error", 0.0126, 1e-6, "ms", 0.0126),
+        ("beat_error", 12.6, 1e-3, "µs", 12.6),
+        ("frequency", 28792.4, 0.1, "vph", 28792.44),
+        ("bodies.disc.x_m", 10093.96, 0.01, "mm", 10093.9616),
+        ("bodies.disc.x_m", 10.0939616, 1e-8, "m", 10.0939616),
+        ("bodies.disc.angle_rad", -200.18, 1e-6, "", -200.18),
+        ("bodies.disc.angle_rad_per_s", -7689.1, 0.1, "°/s", -7689.094),
+        ("bodies.disc.x_m_per_s", 6.71, 1e-9, "m/s", 6.71),
+        ("energy.residual_relative", 0.0, 1e-8, "", 4e-11),
+        ("energy.dissipated.friction", 8.0, 1e-9, "µJ", 8.0),
+        ("energy.in_J", 30.0, 1e-9, "µJ", 30.0),
+        ("worst_penetration_m", 0.0, 1.0, "nm", 0.002),
+        ("missed_beats", 0, 0.5, "", 0),
+        ("beat_error_ms_error", 1.0, 0.01, "µs", 1.0),
+        ("amplitude_deg", 290.7, 0.01, "°", 290.7),
+    ],
+)
+def test_kept(key, value, tolerance, unit, got):
+    entry = judge(Expectation(key, value, tolerance, unit), NUMBERS)
+    assert entry["ok"] is True and entry["got"] == pytest.approx(got, rel=1e-5) and entry["message"] == ""
+    assert (entry["key"], entry["expected"], entry["tolerance"], entry["unit"]) == (key, value, tolerance, unit)
+
+
+def test_missed_by_more_than_the_tolerance():
+    entry = judge(Expectation("amplitude", 290.0, 0.5, "°"), NUMBERS)
+    assert entry["ok"] is False and entry["got"] == pytest.approx(290.7)
+
+
+@pytest.mark.parametrize(
+    ("key", "unit", "message"),
+    [
+        ("amplitud", "°", 'Did you mean "amplitude"?'),
+        ("bodies.disk.x_m", "m", 'Did you mean "bodies.disc.x_m"?'),
+        ("worst_penetration", "m", 'Did you mean "worst_penetration_m"?'),
+        ("zzz", "", "Known are amplitude, rate, period, beat_error, frequency"),
+        ("bodies.disc", "", "is no number of the results"),
+        ("scene", "", "is no number of the results"),
+        ("lcp_failures", "", 'this run gives no "lcp_failures"'),
+        ("simulated_s", "s", 'this run gives no "simulated_s"'),
+        ("bodies.disc.x_m", "°", "is in m, which cannot be compared with °"),
+        ("missed_beats", "m", "is in plain numbers, which cannot be compared with m"),
+    ],
+)
+def test_what_cannot_be_judged_is_not_kept(key, unit, message):
+    entry = judge(Expectation(key, 0.0, 1e9, unit), NUMBERS)
+    assert entry["ok"] is False and entry["got"] is None and message in entry["message"]
+
+
+def test_units_at_the_ends_of_names():
+    assert [
+        unit_of(name) for name in ("rate_s_per_d", "wall_s", "beat_error_ms", "a.x_m_per_s", "impacts", "counts.steps")
+    ] == [*("s/d", "s", "ms", "m/s", "", "")]

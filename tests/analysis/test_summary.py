@@ -1,0 +1,144 @@
+"""Does the summary hold every promised number, and does its text read as a watchmaker expects?"""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+
+import pytest
+from analysis.made_beats import lever_run
+from render.fake_runs import disc_run, slide_run
+
+from watchsim.analysis.energy import energy_shares
+from watchsim.analysis.headlines import expected_text, with_error
+from watchsim.analysis.summary import summary, summary_text, tables
+from watchsim.mechanism.scene import Expectation
+from watchsim.simulation.stops import Stop
+
+PROMISED = (
+    *("scene", "method", "tolerance", "simulated_s", "wall_s", "compile_s", "realtime_factor", "stop", "bodies", "impacts"),
+    *("events", "lcp_failures", "worst_penetration_m", "energy", "amplitude_deg", "amplitude_deg_error", "period_s"),
+    *("period_s_error", "rate_s_per_d", "rate_s_per_d_error", "beat_error_ms", "beat_error_ms_error", "timegrapher"),
+    *("expect", "versions", "missed_beats"),
+)
+LEDGER = {
+    "in_J": 2e-6,
+    "dissipated": {"friction": 5e-7, "damping": 1e-6, "impacts": 4e-7},
+    "stored_J": 1e-7,
+    "residual_J": 1e-16,
+    "residual_relative": 5e-11,
+}
+
+
+def promising(run, *expect):
+    return replace(run, scene=replace(run.scene, expect=expect), energy=LEDGER, wall=0.5, worst_penetration=3e-10)
+
+
+@pytest.mark.parametrize("run", [lever_run(40), lever_run(1), disc_run(), slide_run()], ids=["lever", "short", "disc", "slide"])
+def test_every_promised_name_is_there_and_it_is_json(run):
+    numbers = summary(run)
+    assert set(PROMISED) <= set(numbers)
+    assert set(numbers["energy"]) == set(LEDGER)
+    assert json.loads(json.dumps(numbers, allow_nan=False)) == numbers
+    assert run.scene.title in summary_text(run)
+
+
+def test_numbers_of_a_ticking_watch():
+    run = promising(lever_run(40))
+    numbers = summary(run)
+    assert numbers["amplitude_deg"] == pytest.approx(270.0) and numbers["rate_s_per_d"] == pytest.approx(0.0, abs=1e-6)
+    assert numbers["vph"] == pytest.approx(28800.0) and numbers["frequency_hz"] == pytest.approx(4.0)
+    assert (numbers["missed_beats"], numbers["beats"], numbers["stopped"], numbers["stop"]) == (0, 39, False, "DURATION")
+    assert numbers["realtime_factor"] == pytest.approx(10.0) and numbers["window_s"] == pytest.approx([10.0 / 3.0, 5.0])
+    assert numbers["timegrapher"]["amplitude_deg"] == pytest.approx(289.2, abs=0.5)
+    # Out of a beat: pin, 2 of the impulse, 2 of the lock, banking; 40 beats.
+    assert numbers["impacts"] == 240 and numbers["events_by_kind"]["turn"] == 40
+
+
+def test_final_states():
+    disc = summary(disc_run())["bodies"]["disc"]
+    pull = 9.81 * math.sin(math.radians(20.0)) / 1.5
+    assert disc["x_m"] == pytest.approx(4.5 * pull) and disc["x_m_per_s"] == pytest.approx(3.0 * pull)
+    assert disc["angle_rad"] == pytest.approx(-90.0 * pull) and disc["angle_rad_per_s"] == pytest.approx(-60.0 * pull)
+    assert disc["y_m"] == pytest.approx(0.05) and disc["y_m_per_s"] == pytest.approx(0.0, abs=1e-12)
+    slider = summary(slide_run())["bodies"]["slider"]
+    assert slider["x_m"] == pytest.approx(1e-3 + 2e-3 * math.sin(10.0) * math.sqrt(0.5))
+    assert slider["y_m_per_s"] == pytest.approx(2e-2 * math.cos(10.0) * math.sqrt(0.5)) and slider["angle_rad_per_s"] == 0.0
+    assert summary(disc_run())["bodies"]["plane"]["x_m_per_s"] == 0.0
+
+
+def test_expectations_are_judged():
+    run = promising(
+        lever_run(40),
+        Expectation("amplitude", 270.0, 1.0, "°"),
+        Expectation("rate", 5.0, 1.0, "s/d"),
+        Expectation("rte", 0, 1, ""),
+    )
+    kept, missed, unknown = summary(run)["expect"]
+    assert kept["ok"] and not missed["ok"] and not unknown["ok"] and 'Did you mean "rate"?' in unknown["message"]
+    assert expected_text(kept) == "amplitude = 270° ± 1°, got 270.0°"
+    assert expected_text(unknown).startswith('rte = 0 ± 1, but "rte" is no number of the results.')
+
+
+def test_text_of_a_watch():
+    lines = summary_text(promising(lever_run(40), Expectation("amplitude", 260.0, 1.0, "°"))).splitlines()
+    assert lines[0] == "Made lever"
+    text = "\n".join(lines)
+    for part in (
+        *("amplitude    270.000000° ±", "rate         0.000000 s/d ±", "28800.00 vph, averaged from 3.333 s to 5 s"),
+        *("would show 289° with a lift angle of 52°", "none of 39", "240, 48 per second", "0.3 nm at worst"),
+        *("2 µJ put in, 400 nW: friction 25.0 %, damping 50.0 %, impacts 20.0 %, stored 5.0 %", "closes to 5e-11"),
+        *("10 × real time, 0.5 s", "amplitude = 260° ± 1°, got 270.0°: MISSED"),
+    ):
+        assert part in text, part
+
+
+def test_text_of_a_watch_that_stopped():
+    text = summary_text(promising(lever_run(20, missed=range(10, 20))))
+    assert (
+        "stopped      the escape wheel stands since t = 1.2 s; balance held at −270°" in text or "stands since t = 1.2" in text
+    )
+    assert "10 of 19" in text or "missed beats 9 of 19" in text
+
+
+def test_text_of_other_things():
+    text = summary_text(disc_run())
+    assert "amplitude" not in text and "disc         at (10066" in text.replace("\u2212", "-")
+    assert "below 0.001 nm" in text
+    given_up = replace(lever_run(1), stop=Stop.LCP_FAILED, counts={"lcp_failures": 1})
+    assert "1 complementarity problems had no solution" in summary_text(given_up)
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "text"),
+    [
+        (275.321, 0.1, "275.3° ± 0.1°"),
+        (-4.88, 0.03, "−4.88° ± 0.03°"),
+        (290.732, 0.0007, "290.7320° ± 0.0007°"),
+        (285.2, 2.1, "285° ± 2°"),
+        (1.5, 0.0, "1.500000° ± 0.000000°"),
+        (1.5, 1e-12, "1.500000° ± 0.000001°"),
+        (-1e-9, 0.1, "0.0° ± 0.1°"),
+        (3.0, None, "3.000°"),
+    ],
+)
+def test_numbers_show_what_is_sure(value, error, text):
+    assert with_error(value, error, "°") == text
+
+
+def test_energy_shares_sum_to_one():
+    run = promising(disc_run())
+    assert sum(energy_shares(run).went_to.values()) == pytest.approx(1.0)
+    running_down = replace(run, energy={**LEDGER, "in_J": 0.0, "stored_J": -1.9e-6})
+    shares = energy_shares(running_down)
+    assert shares.supplied == pytest.approx(1.9e-6) and sum(shares.went_to.values()) == pytest.approx(1.0)
+    lifting = replace(run, energy={**LEDGER, "in_J": -1e-6, "stored_J": -2.9e-6})
+    assert energy_shares(lifting).went_to["given back to the drive"] == pytest.approx(1.0 / 2.9)
+    assert energy_shares(replace(run, energy={})).went_to == {}
+
+
+def test_tables_of_a_results_folder():
+    made = tables(lever_run(6))
+    assert set(made) == {"beats.csv", "phases.csv"} and all(text.endswith("\n") for text in made.values())
+    assert tables(disc_run()) == {}

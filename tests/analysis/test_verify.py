@@ -1,0 +1,65 @@
+"""Do all benchmarks come out, and would `verify` notice if one did not?"""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+
+import pytest
+
+from watchsim.analysis.benchmarks import Check, inclines, swings
+from watchsim.analysis.verify import compared, lcp_rows, rows_of, verify_text
+from watchsim.profiles_path import profiles_dir
+
+FIELDS = ["name", "quantity", "expected", "got", "error", "tolerance", "ok", "source"]
+
+
+@pytest.mark.parametrize("benchmark", [*inclines(), *swings()], ids=lambda benchmark: benchmark.name)
+def test_benchmark(benchmark) -> None:
+    rows = rows_of([benchmark])
+    wrong = [row for row in rows if not row["ok"]]
+    assert not wrong, verify_text(wrong)
+    assert len(rows) == len(benchmark.checks)
+
+
+def test_complementarity_solver() -> None:
+    assert all(row["ok"] for row in lcp_rows())
+
+
+def test_a_wrong_number_is_noticed() -> None:
+    """The right run against a shifted expectation."""
+    benchmark = swings()[0]
+    shifted = replace(
+        benchmark, checks=(Check("angle at 2 s [rad]", 1.0 + benchmark.checks[2].expected, benchmark.checks[2].measure),)
+    )
+    (row,) = rows_of([shifted])
+    assert not row["ok"]
+    assert "WRONG" in verify_text([row])
+
+
+def test_a_row_as_promised() -> None:
+    row = compared("a", "b", 2.0, 2.0 + 1e-8, 1e-9, "c")
+    assert list(row) == FIELDS
+    assert row["error"] == pytest.approx(5e-9)
+    assert row["ok"] is False
+    assert compared("a", "b", 0.0, 1e-10, 1e-9, "c")["ok"] is True
+    assert compared("a", "b", 1.0, math.nan, 1e-9, "c")["ok"] is False
+    json.dumps(row)
+
+
+def test_the_table_names_each_benchmark_once_and_counts_the_wrong() -> None:
+    rows = [
+        compared("first", "x", 1.0, 1.0, 0.0, "s"),
+        compared("first", "y", 1.0, 2.0, 0.1, "s"),
+        compared("second", "z", 0.0, 0.0, 0.0, "s"),
+    ]
+    text = verify_text(rows)
+    assert text.count("first") == 1
+    assert text.startswith("first")
+    assert text.endswith("1 of 3 numbers are WRONG.")
+    assert verify_text(rows[:1]).endswith("All 1 numbers agree.")
+
+
+def test_profiles_are_found() -> None:
+    assert (profiles_dir() / "incline" / "scene.toml").is_file()

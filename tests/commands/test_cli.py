@@ -1,0 +1,150 @@
+"""Does the command line keep its names, outputs and exit statuses?"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from watchsim.cli import COMMANDS, main
+
+ROOT = Path(__file__).resolve().parents[2]
+LEVER = ROOT / "profiles" / "bench_lever" / "scene.toml"
+SUMMARY_KEYS = [
+    "scene",
+    "method",
+    "tolerance",
+    "simulated_s",
+    "wall_s",
+    "compile_s",
+    "realtime_factor",
+    "stop",
+    "bodies",
+    "impacts",
+    "events",
+    "lcp_failures",
+    "worst_penetration_m",
+    "energy",
+    "amplitude_deg",
+    "amplitude_deg_error",
+    "period_s",
+    "period_s_error",
+    "rate_s_per_d",
+    "rate_s_per_d_error",
+    "beat_error_ms",
+    "beat_error_ms_error",
+    "expect",
+    "versions",
+]
+
+
+def test_help_names_every_command_and_loads_nothing_heavy() -> None:
+    code = "import sys; from watchsim.cli import parser; print(parser().format_help()); print(sorted(sys.modules))"
+    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert all(f"  {name} " in told for name in COMMANDS)
+    loaded = told.splitlines()[-1]
+    assert not [name for name in ("numpy", "numba", "matplotlib", "shapely", "ezdxf", "scipy") if f"'{name}'" in loaded]
+
+
+def test_inspect_prints_the_fixed_names(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["inspect", str(ROOT / "profiles/bench_lever/wheel.dxf"), "--json"]) == 0
+    seen = json.loads(capsys.readouterr().out)
+    names = "file format units units_from extents_mm layers loops points fitted ignored findings lines arcs length_mm area_mm2"
+    assert set(names.split()) <= set(seen)
+    assert seen["units"] == "mm" and seen["units_from"] == "header"
+    assert seen["lines"] == 45 and seen["arcs"] == 0
+
+
+def test_inspect_writes_a_picture(tmp_path: Path) -> None:
+    picture = tmp_path / "lever.png"
+    assert main(["inspect", str(ROOT / "profiles/swiss_lever/lever.dxf"), "--png", str(picture)]) == 0
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+def test_check_counts_pairs_and_knows_the_frequency(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", str(LEVER), "--json"]) == 0
+    seen = json.loads(capsys.readouterr().out)
+    assert seen["theory"]["frequency_hz"] == pytest.approx(4.0, rel=1e-9)
+    assert 0 < seen["pairs"]["reachable"] < seen["pairs"]["declared"]
+
+
+def test_run_writes_a_results_folder_and_keeps_one_that_exists(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = tmp_path / "out"
+    assert main(["run", str(LEVER), "--duration", "0.4 s", "-o", str(folder), "--json"]) in (0, 1)
+    told = json.loads(capsys.readouterr().out)
+    assert set(SUMMARY_KEYS) <= set(told)
+    assert told["simulated_s"] == 0.4 and told["worst_penetration_m"] < 1e-9
+    assert abs(told["energy"]["residual_relative"]) < 1e-8
+    kept = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    assert kept["impacts"] == told["impacts"] > 20
+    for name in ("scene.lock.toml", "trajectory.npz", "events.csv", "beats.csv", "phases.csv", "plots/kinematics.png"):
+        assert (folder / name).exists(), name
+    before = (folder / "trajectory.npz").read_bytes()
+    assert main(["run", str(LEVER), "--duration", "0.1 s", "-o", str(folder)]) == 2
+    assert "--force" in capsys.readouterr().err
+    assert (folder / "trajectory.npz").read_bytes() == before
+
+
+def test_plot_and_movie_of_a_results_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = tmp_path / "out"
+    main(["run", str(LEVER), "--duration", "0.1 s", "-o", str(folder)])
+    options = ["--bodies", "lever", "--window", "0.055 s:0.07 s", "--format", "png,svg", "-o", str(tmp_path / "beat")]
+    assert main(["plot", str(folder), *options]) == 0
+    assert (tmp_path / "beat.png").exists() and (tmp_path / "beat.svg").exists()
+    film = tmp_path / "beat.gif"
+    assert main(["movie", str(folder), "--window", "0.06 s:0.062 s", "--speed", "1/100", "-o", str(film)]) == 0
+    assert film.read_bytes().startswith(b"GIF8")
+    assert main(["plot", str(folder), "--bodies", "leever"]) == 2
+    assert "lever" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "word"),
+    [
+        (["run", "nowhere.toml"], "nowhere.toml"),
+        (["inspect", "nowhere.dxf"], "nowhere.dxf"),
+        (["check", "nowhere.toml"], "nowhere.toml"),
+        (["plot", "nowhere"], "nowhere"),
+        (["movie", "nowhere", "--speed", "0"], "--speed"),
+        (["run", str(LEVER), "--duration", "5"], "--duration"),
+        (["run", str(LEVER), "--duration", "-5 s"], "--duration"),
+        (["run", str(LEVER), "--tol", "5"], "--tol"),
+        (["run", str(LEVER), "--set", "contacts.0.friction=-1"], "contacts.0.friction"),
+        (["run", str(LEVER), "--set", "contacts.0.frction=1"], "friction"),
+        (["run", str(LEVER), "--set", "bodies.lever.position.1=2.7 mm"], "overlap"),
+        (["inspect", str(LEVER)], "toml"),
+    ],
+)
+def test_bad_input_is_exit_2_with_a_word_and_nothing_written(
+    arguments: list[str], word: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(arguments) == 2
+    told = capsys.readouterr()
+    assert word in told.err + told.out and "Traceback" not in told.err
+    assert not list(tmp_path.iterdir())
+
+
+def test_unknown_command_is_exit_2(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as stopped:
+        main(["tock"])
+    assert stopped.value.code == 2
+    assert "invalid choice" in capsys.readouterr().err
+
+
+def test_interrupt_keeps_what_was_simulated(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    import watchsim.commands.run as command
+
+    class Impatient(command.Progress):
+        def __call__(self, done: float, whole: float) -> None:
+            if done > 0.1:
+                raise KeyboardInterrupt
+
+    monkeypatch.setattr(command, "Progress", Impatient)
+    folder = tmp_path / "out"
+    assert main(["run", str(LEVER), "--duration", "3600 s", "-o", str(folder)]) == 130
+    kept = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    assert 0.1 < kept["simulated_s"] < 3600.0

@@ -1,0 +1,56 @@
+"""Is the package whole when it is installed, and do its papers agree?"""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+
+import watchsim as ws
+
+ROOT = Path(__file__).resolve().parents[1]
+PROFILES = ("bench_lever", "incline", "swiss_lever")
+
+
+def test_profiles_are_found_wherever_the_package_is() -> None:
+    folder = ws.profiles_dir()
+    assert all((folder / name / "scene.toml").is_file() for name in PROFILES)
+
+
+def test_versions_agree() -> None:
+    project = re.search(r'^version = "(.+)"$', (ROOT / "pyproject.toml").read_text(), re.MULTILINE)
+    citation = re.search(r"^version: (.+)$", (ROOT / "CITATION.cff").read_text(), re.MULTILINE)
+    assert project and citation
+    assert project[1] == citation[1] == ws.__version__
+
+
+def test_links_between_the_documents_lead_somewhere() -> None:
+    pages = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+    links = [(page, link) for page in pages for link in re.findall(r"\]\(([^)#:]+)\)", page.read_text(encoding="utf-8"))]
+    assert len(links) > 10
+    assert [f"{page.name}: {link}" for page, link in links if not (page.parent / link).is_file()] == []
+
+
+def test_the_documents_name_the_commands_that_exist() -> None:
+    from watchsim.cli import COMMANDS
+
+    named = re.findall(r"^\| `watchsim (\w+)", (ROOT / "README.md").read_text(encoding="utf-8"), re.MULTILINE)
+    assert tuple(named) == COMMANDS
+
+
+@pytest.mark.slow
+def test_the_wheel_holds_the_package_and_the_profiles(tmp_path: Path) -> None:
+    build = [sys.executable, "-m", "pip", "wheel", str(ROOT), "--no-deps", "--quiet", "--wheel-dir", str(tmp_path)]
+    subprocess.run(build, check=True)
+    (wheel,) = tmp_path.glob("watchsim-*.whl")
+    with zipfile.ZipFile(wheel) as archive:
+        names = set(archive.namelist())
+        for path in (path for path in (ROOT / "profiles").rglob("*") if path.is_file()):
+            assert archive.read(f"watchsim/profiles/{path.relative_to(ROOT / 'profiles').as_posix()}") == path.read_bytes()
+    assert {"watchsim/py.typed", "watchsim/__init__.py", "watchsim/cli.py"} <= names
+    assert not {name.split("/")[0] for name in names} - {"watchsim", f"watchsim-{ws.__version__}.dist-info"}
+    assert any(name.endswith("LICENSE") for name in names)

@@ -1,0 +1,90 @@
+"""Did the run keep what the scene promised?
+
+Keys are watch quantities (amplitude, rate, period, beat_error, frequency) or dotted names of the summary, such as
+"bodies.disc.x_m" or "energy.residual_relative". Units come from the ends of these names.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from watchsim.mechanism.scene import Expectation
+from watchsim.units import known_unit
+
+WATCH_KEYS = {
+    "amplitude": "amplitude_deg",
+    "rate": "rate_s_per_d",
+    "period": "period_s",
+    "beat_error": "beat_error_ms",
+    "frequency": "frequency_hz",
+}
+# Longest first: "_s_per_d" must not pass for "_d".
+ENDINGS = {
+    **{"_rad_per_s": "rad/s", "_m_per_s": "m/s", "_s_per_d": "s/d"},
+    **{"_deg": "°", "_rad": "rad", "_vph": "vph", "_hz": "Hz", "_ms": "ms", "_s": "s", "_m": "m", "_J": "J"},
+}
+ERROR = "_error"
+
+
+def judge(expectation: Expectation, numbers: Mapping[str, Any]) -> dict[str, Any]:
+    """{key, expected, tolerance, got, ok, unit, message}, in the unit of the promise; where `got` is None, `message` says why."""
+    got, message = _found(expectation, numbers)
+    ok = got is not None and abs(got - expectation.value) <= expectation.tolerance
+    return {
+        "key": expectation.key,
+        "expected": expectation.value,
+        "tolerance": expectation.tolerance,
+        "got": got,
+        "ok": ok,
+        "unit": expectation.unit,
+        "message": message,
+    }
+
+
+def unit_of(name: str) -> str:
+    """The unit a dotted name of the summary ends with; "" for plain numbers."""
+    if name.startswith("energy.dissipated."):
+        return "J"
+    last = name.removesuffix(ERROR)
+    return next((unit for ending, unit in ENDINGS.items() if last.endswith(ending)), "")
+
+
+def _found(expectation: Expectation, numbers: Mapping[str, Any]) -> tuple[float | None, str]:
+    """The number in the expectation's unit, or None and what is wrong."""
+    known = dict(_numbers(numbers))
+    name = WATCH_KEYS.get(expectation.key, expectation.key)
+    if name not in known:
+        return None, f'"{expectation.key}" is no number of the results. {_advice(expectation.key, known)}'
+    value = known[name]
+    if value is None:
+        return None, f'this run gives no "{expectation.key}"'
+    source = unit_of(name)
+    if not expectation.unit:
+        return value, ""
+    have, wanted = known_unit(source), known_unit(expectation.unit)
+    if have.powers != wanted.powers:
+        return None, f'"{expectation.key}" is in {source or "plain numbers"}, which cannot be compared with {expectation.unit}'
+    return value * have.factor / wanted.factor, ""
+
+
+def _numbers(mapping: Mapping[str, Any], above: str = "") -> list[tuple[str, float | None]]:
+    """(dotted name, value) of all numbers and of what is null."""
+    found: list[tuple[str, float | None]] = []
+    for key, value in mapping.items():
+        name = f"{above}{key}"
+        if isinstance(value, Mapping):
+            found += _numbers(value, f"{name}.")
+        elif value is None:
+            found.append((name, None))
+        elif isinstance(value, (int, float)):
+            found.append((name, float(value) if math.isfinite(value) else None))
+    return found
+
+
+def _advice(key: str, known: Mapping[str, Any]) -> str:
+    names = [*WATCH_KEYS, *known]
+    near = difflib.get_close_matches(key, names, n=1, cutoff=0.6)
+    return f'Did you mean "{near[0]}"?' if near else f"Known are {', '.join(WATCH_KEYS)} and the names in summary.json."

@@ -1,0 +1,126 @@
+"""What does a watchmaker want to read first?"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from watchsim.analysis.energy import energy_shares
+from watchsim.simulation.trajectory import Trajectory
+
+LABEL = 13
+EXACT = 6  # decimals at most
+AVERAGED = (
+    ("amplitude_deg", "amplitude", "°"),
+    ("rate_s_per_d", "rate", " s/d"),
+    ("beat_error_ms", "beat error", " ms"),
+)
+NO_PENETRATION = 1e-12  # m; less is not worth a digit
+
+
+def headlines(run: Trajectory, numbers: Mapping[str, Any]) -> str:
+    """The headline numbers in watchmakers' units, a line each; `numbers` as from `watchsim.analysis.summary.summary(run)`."""
+    parts = [*_timing(numbers), *_places(run, numbers), *_contacts(numbers), *_energy(run), *_solver(run, numbers)]
+    lines = [f"  {label:{LABEL}}{text}" for label, text in (*parts, *_verdicts(numbers))]
+    return "\n".join([run.scene.title, *lines])
+
+
+def with_error(value: float, error: float | None, unit: str) -> str:
+    """ "275.3° ± 0.1°": as many decimals as the error justifies, three where it is not known; a true minus sign."""
+    decimals = 3 if error is None else _decimals(error)
+    text = _signed(value, decimals) + unit
+    if error is None:
+        return text
+    shown = max(error, 10.0**-EXACT) if error > 0.0 else 0.0
+    return f"{text} ± {shown:.{decimals}f}{unit}"
+
+
+def _decimals(error: float) -> int:
+    """So that the error shows one digit, and never rounds to nothing."""
+    if error <= 0.0:
+        return EXACT
+    return min(max(0, math.ceil(-math.log10(error))), EXACT)
+
+
+def _signed(value: float, decimals: int) -> str:
+    text = f"{value:.{decimals}f}"
+    return f"−{text[1:]}" if text.startswith("-") and float(text) != 0.0 else text.lstrip("-")
+
+
+def _timing(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """Lines of the oscillator; none where there is none."""
+    for name, label, unit in AVERAGED:
+        if numbers[name] is not None:
+            yield label, with_error(numbers[name], numbers[f"{name}_error"], unit)
+    if numbers["vph"] is not None:
+        start, end = numbers["window_s"]
+        yield "frequency", f"{numbers['vph']:.2f} vph, averaged from {start:.4g} s to {end:.4g} s"
+    heard = numbers["timegrapher"]
+    if heard is not None and heard["amplitude_deg"] is not None:
+        yield "timegrapher", f"would show {heard['amplitude_deg']:.0f}° with a lift angle of {heard['lift_angle_deg']:.4g}°"
+    if numbers["missed_beats"] is not None:
+        yield "missed beats", f"{numbers['missed_beats'] or 'none'} of {numbers['beats']}"
+
+
+def _places(run: Trajectory, numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """Where free and sliding bodies have got to."""
+    for body in run.scene.bodies:
+        state = numbers["bodies"].get(body.name)
+        if state is None or body.motion not in ("free", "slide"):
+            continue
+        angle = f", {_signed(math.degrees(state['angle_rad']), 3)}°" if body.motion == "free" else ""
+        yield body.name, f"at ({_signed(1e3 * state['x_m'], 4)}, {_signed(1e3 * state['y_m'], 4)}) mm{angle} at the end"
+
+
+def _contacts(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    per_second = f", {numbers['impacts'] / numbers['simulated_s']:.0f} per second" if numbers["simulated_s"] > 0.0 else ""
+    yield "impacts", f"{numbers['impacts']}{per_second}; {numbers['events']} events"
+    depth = numbers["worst_penetration_m"]
+    yield "penetration", f"{1e9 * depth:.2g} nm at worst" if depth >= NO_PENETRATION else f"below {1e9 * NO_PENETRATION:g} nm"
+
+
+def _energy(run: Trajectory) -> Iterator[tuple[str, str]]:
+    shares = energy_shares(run)
+    if not shares.went_to:
+        return
+    power = f", {_metric(shares.supplied / run.simulated, 'W')}" if run.simulated > 0.0 else ""
+    listed = ", ".join(f"{cause} {100.0 * share:.1f} %" for cause, share in shares.went_to.items() if abs(share) >= 5e-4)
+    yield "energy", f"{_metric(shares.supplied, 'J')} put in{power}: {listed}"
+    yield "", f"the ledger closes to {run.energy.get('residual_relative', 0.0):.1g}"
+
+
+def _metric(value: float, unit: str) -> str:
+    """With the prefix that leaves one to three digits before the point."""
+    power = min(max(3 * math.floor(math.log10(abs(value)) / 3.0), -12), 9) if value else 0
+    prefix = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}[power]
+    return f"{value / 10.0**power:.4g} {prefix}{unit}"
+
+
+def _solver(run: Trajectory, numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    factor = numbers["realtime_factor"]
+    compiling = f" (and {run.compile:.1f} s to compile or load the solver)" if run.compile > 1.0 else ""
+    yield "speed", f"{factor:.3g} × real time, {run.wall:.2g} s{compiling}" if factor else "not measured"
+    failures = numbers["lcp_failures"]
+    if failures:
+        yield "solver", f"{failures} complementarity problems had no solution"
+    yield "end", run.stop_message or run.stop.sentence
+
+
+def _verdicts(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """Whether the watch stands, and expectations."""
+    if numbers["stopped"]:
+        yield "stopped", numbers["stopped_message"]
+    for entry in numbers["expect"]:
+        yield "expected", f"{expected_text(entry)}: {'kept' if entry['ok'] else 'MISSED'}"
+
+
+def expected_text(entry: Mapping[str, Any]) -> str:
+    """ "amplitude = 290.73° ± 0.05°, got 290.732°" from an entry of the summary's `expect`."""
+    unit = entry["unit"] if entry["unit"] in ("", "°") else f" {entry['unit']}"
+    promised = f"{entry['expected']:.12g}{unit} ± {entry['tolerance']:.4g}{unit}"
+    if entry["got"] is None:
+        return f"{entry['key']} = {promised}, but {entry['message']}"
+    # One digit more than the tolerance has.
+    digits = max(4, 2 + math.ceil(math.log10(max(abs(entry["got"]), entry["tolerance"]) / entry["tolerance"])))
+    return f"{entry['key']} = {promised}, got {entry['got']:.{min(digits, 17)}g}{unit}"

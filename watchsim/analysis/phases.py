@@ -1,0 +1,141 @@
+"""What happens between two beats, when, and how far does each part turn meanwhile?
+
+The timeline of a lever-like escapement, read from contact events and the wheel's progress, so that it holds for any shapes:
+
+unlock          from the pin's first touch of the fork until the wheel stands furthest back (draw makes it recoil; a dead-beat
+                wheel waits) and is let go
+catch-up        the wheel runs freely until it touches the next face
+impulse         from there until the last touch before the drop
+drop            the long free run that ends near where the wheel comes to rest
+run to banking  from the lock, the end of the drop, until the lever first meets its banking
+locked          until the next touch of pin and fork
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.analysis.beats import Beats, beats
+from watchsim.analysis.recorded import is_recorded
+from watchsim.analysis.roles import Roles, roles
+from watchsim.analysis.touches import Events, between, contact_events, held, involves
+from watchsim.analysis.wheel import progress
+from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.trajectory import Array, Trajectory
+
+Marks = tuple[float, float, float, float]
+
+TOUCH = (EventKind.IMPACT, EventKind.CLOSE)
+NEAR_REST = 0.1  # of the wheel's advance in the beat: a free run that ends so near to rest may be the drop
+STANDING = 1e-6  # of the same: the wheel has not moved
+
+
+@dataclass(frozen=True, slots=True)
+class Phase:
+    """A stretch of a beat, s; angles at its start and turns during it, rad, of wheel, lever and oscillator.
+
+    `beat` counts the half swings from 1 as in beats.csv.
+    """
+
+    beat: int
+    name: str
+    start: float
+    end: float
+    angles: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    turns: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class _Contacts:
+    """Contact events of the wheel with its progress and the number of contacts that hold after each; touches of the banking."""
+
+    wheel: Events
+    angle: Array
+    held: NDArray[np.int64]
+    banking: Array
+
+
+def phases(run: Trajectory, found: Beats | None = None) -> list[Phase]:
+    """The phases of all beats that were recorded whole; empty where the scene is no lever escapement.
+
+    A beat in which the wheel does not advance, or in which a phase cannot be told, has no rows.
+    """
+    parts = roles(run.scene)
+    if parts.wheel is None or parts.lever is None or parts.oscillator is None:
+        return []
+    found = found or beats(run)
+    contacts = _contacts(run, parts)
+    rows = [phase for i in range(len(found)) for phase in _beat(run, parts, found, contacts, i)]
+    return _with_angles(run, parts, rows)
+
+
+def _contacts(run: Trajectory, parts: Roles) -> _Contacts:
+    assert parts.wheel and parts.lever
+    wheel = contact_events(run, involves(parts.wheel), *TOUCH, EventKind.OPEN)
+    fixed = {body.name for body in run.scene.bodies if body.motion == "fixed"}
+    banking = contact_events(run, between(parts.lever, fixed), *TOUCH)["t"]
+    return _Contacts(wheel, progress(run, parts.wheel, wheel["t"]), held(wheel), banking)
+
+
+def _beat(run: Trajectory, parts: Roles, found: Beats, contacts: _Contacts, i: int) -> Iterator[Phase]:
+    """The phases of beat `i`, without angles."""
+    entry, end = found.tick[i], found.end[i]
+    if not np.isfinite(entry) or not is_recorded(run, np.array([entry, end])).all():
+        return
+    first, last = np.searchsorted(contacts.wheel["t"], (entry, end), side="left")
+    at_entry, at_end = progress(run, parts.wheel or "", np.array([entry, end]))
+    marks = _release_and_lock(contacts, slice(first, last), at_entry, at_end)
+    if marks is None:
+        return
+    unlocked, caught, let_off, lock = marks
+    names = ("unlock", "catch-up", "impulse", "drop")
+    times = (entry, unlocked, caught, let_off, lock)
+    for name, (t0, t1) in zip(names, pairwise(times), strict=True):
+        yield Phase(i + 1, name, float(t0), float(t1))
+    resting = lock
+    for t in contacts.banking[(contacts.banking >= lock) & (contacts.banking <= end)][:1]:
+        yield Phase(i + 1, "run to banking", lock, float(t))
+        resting = float(t)
+    if i + 1 < len(found) and np.isfinite(found.tick[i + 1]):
+        yield Phase(i + 1, "locked", resting, float(found.tick[i + 1]))
+
+
+def _release_and_lock(contacts: _Contacts, own: slice, at_entry: float, at_end: float) -> Marks | None:
+    """Release, first touch after it, last touch before the drop, and lock (s), among the wheel's events `own` of one beat."""
+    times, angle, holding = contacts.wheel["t"][own], contacts.angle[own], contacts.held[own]
+    way = at_end - at_entry
+    if len(times) < 3 or not way > 0.0:
+        return None
+    # Free runs: no contact holds from one event to the next, and time passes.
+    free = (holding[:-1] == 0) & (np.diff(times) > 0.0)
+    dropping = free & (angle[1:] >= at_end - NEAR_REST * way)
+    if not dropping.any():
+        return None
+    drop = int(np.argmax(np.where(dropping, np.diff(angle), -np.inf)))
+    released = int(np.flatnonzero(angle[: drop + 1] <= angle[: drop + 1].min() + STANDING * way)[-1])
+    touching = np.isin(contacts.wheel["kind"][own], TOUCH)
+    caught = np.flatnonzero(touching[released + 1 : drop + 1])
+    if len(caught) == 0:
+        return None
+    return float(times[released]), float(times[released + 1 + caught[0]]), float(times[drop]), float(times[drop + 1])
+
+
+def _with_angles(run: Trajectory, parts: Roles, rows: list[Phase]) -> list[Phase]:
+    """The rows with the angles of wheel, lever and oscillator, without those that end outside what was recorded."""
+    if not rows:
+        return []
+    starts, ends = np.array([row.start for row in rows]), np.array([row.end for row in rows])
+    kept = is_recorded(run, starts) & is_recorded(run, ends)
+    columns = [run.slices[name].start for name in (parts.wheel, parts.lever, parts.oscillator) if name]
+    first, last = run.sample(starts)[0][:, columns], run.sample(ends)[0][:, columns]
+    turns = last - first
+    return [
+        Phase(row.beat, row.name, row.start, row.end, tuple(first[k].tolist()), tuple(turns[k].tolist()))
+        for k, row in enumerate(rows)
+        if kept[k]
+    ]

@@ -1,0 +1,47 @@
+"""Which body is the oscillator, which the escape wheel, which the lever?
+
+Names in a scene are free, so the roles follow from what the bodies do: the oscillator hangs on a spring, the wheel is driven,
+the lever touches both.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from watchsim.mechanism.scene import Scene
+
+
+@dataclass(frozen=True, slots=True)
+class Roles:
+    """Names of bodies; None where a scene has no such part."""
+
+    oscillator: str | None
+    wheel: str | None
+    lever: str | None
+
+
+def roles(scene: Scene) -> Roles:
+    """The first sprung body, the first driven pivoted body besides it, and a moving body in contact with both."""
+    oscillator = scene.springs[0].body if scene.springs else None
+    driven = (torque.body for torque in scene.torques if torque.body != oscillator)
+    wheel = next((name for name in driven if scene.body(name).motion == "pivot"), None)
+    if oscillator is None or wheel is None:
+        return Roles(oscillator, wheel, None)
+    both = partners(scene, oscillator) & partners(scene, wheel) - {oscillator, wheel}
+    moving = (body.name for body in scene.bodies if body.motion == "pivot" and body.name in both)
+    return Roles(oscillator, wheel, next(moving, None))
+
+
+def partners(scene: Scene, name: str) -> set[str]:
+    """The bodies that a declared contact lets touch body `name`."""
+    pairs = [{side.body for side in contact.sides} for contact in scene.contacts]
+    return set().union(*(pair - {name} for pair in pairs if name in pair))
+
+
+def drive_direction(scene: Scene, name: str) -> float:
+    """+1 or -1: the way the torques on body `name` turn it (the mean of a table)."""
+    total = 0.0
+    for torque in scene.torques:
+        if torque.body == name:
+            total += sum(value for _, value in torque.table) / len(torque.table) if torque.table else torque.value
+    return -1.0 if total < 0.0 else 1.0

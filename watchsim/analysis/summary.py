@@ -1,0 +1,130 @@
+"""What are the headline numbers of a run?
+
+One mapping for programs, with the names of summary.json; the text for people and the tables beside it are made from the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict
+from typing import Any
+
+from watchsim.analysis.averages import Averages, averages, last_window
+from watchsim.analysis.beat_tables import beats_csv, phases_csv
+from watchsim.analysis.beats import Beats, beats
+from watchsim.analysis.expectations import judge
+from watchsim.analysis.headlines import headlines
+from watchsim.analysis.roles import roles
+from watchsim.analysis.standstill import standstill
+from watchsim.analysis.tables import plain
+from watchsim.analysis.timegrapher import timegrapher
+from watchsim.analysis.wheel import missed_beats
+from watchsim.mechanism.lock import versions
+from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.trajectory import Trajectory
+
+AVERAGED = ("amplitude_deg", "period_s", "rate_s_per_d", "beat_error_ms")
+LEDGER = {"in_J": 0.0, "dissipated": {}, "stored_J": 0.0, "residual_J": 0.0, "residual_relative": 0.0}
+
+
+def summary(run: Trajectory) -> dict[str, Any]:
+    """The numbers of summary.json and of `run --json`, null for what the run does not give.
+
+    Besides the promised names: `frequency_hz`, `vph`, `window_s` (over which was averaged), `beats` (half swings in all),
+    `missed_beats`, `stopped` and `stopped_message` (the watch no longer ticks), `scene_file`, `stop_message`,
+    `events_by_kind`, `counts`.
+    """
+    numbers: dict[str, Any] = {**_about(run), "bodies": _bodies(run), **_counts(run), **_timing(run)}
+    numbers["expect"] = [judge(expectation, numbers) for expectation in run.scene.expect]
+    numbers["versions"] = versions()
+    clean: dict[str, Any] = plain(numbers)
+    return clean
+
+
+def summary_text(run: Trajectory, numbers: Mapping[str, Any] | None = None) -> str:
+    """The same for people, in watchmakers' units; `numbers` as from `summary(run)` where already at hand."""
+    return headlines(run, summary(run) if numbers is None else numbers)
+
+
+def tables(run: Trajectory) -> dict[str, str]:
+    """The tables of a results folder besides events.csv: name -> text."""
+    if not run.scene.springs:
+        return {}
+    found = beats(run)
+    return {"beats.csv": beats_csv(found), "phases.csv": phases_csv(run, found)}
+
+
+def _about(run: Trajectory) -> dict[str, Any]:
+    return {
+        "scene": run.scene.title,
+        "scene_file": str(run.scene.path) if run.scene.path else None,
+        "method": run.method,
+        "tolerance": run.tolerance,
+        "simulated_s": run.simulated,
+        "wall_s": run.wall,
+        "compile_s": run.compile,
+        "realtime_factor": run.simulated / run.wall if run.wall > 0.0 else None,
+        "stop": run.stop,
+        "stop_message": run.stop_message,
+    }
+
+
+def _bodies(run: Trajectory) -> dict[str, dict[str, float]]:
+    """Pose and velocities of every body in the last row."""
+    return {body.name: _last_state(run, body.name) for body in run.scene.bodies} if len(run.t) else {}
+
+
+def _last_state(run: Trajectory, name: str) -> dict[str, float]:
+    body, t = run.scene.body(name), float(run.t[-1])
+    x, y, angle = run.pose(name, t)
+    u = run.at(t)[1][run.slices[name]].tolist() if body.motion != "fixed" else []
+    along = (u[0] * body.axis[0], u[0] * body.axis[1]) if body.motion == "slide" else (0.0, 0.0)
+    v_x, v_y, spin = {"free": tuple(u), "pivot": (0.0, 0.0, *u), "slide": (*along, 0.0)}.get(body.motion, (0.0, 0.0, 0.0))
+    return {"angle_rad": angle, "x_m": x, "y_m": y, "angle_rad_per_s": spin, "x_m_per_s": v_x, "y_m_per_s": v_y}
+
+
+def _counts(run: Trajectory) -> dict[str, Any]:
+    kinds = {kind.name.lower(): int((run.events["kind"] == kind).sum()) for kind in EventKind}
+    return {
+        "impacts": run.counts.get("impacts", kinds["impact"]),
+        "events": run.counts.get("events", len(run.events)),
+        "lcp_failures": run.counts.get("lcp_failures", 0),
+        "events_by_kind": kinds,
+        "counts": dict(run.counts),
+        "worst_penetration_m": run.worst_penetration,
+        "energy": {**LEDGER, **run.energy},
+    }
+
+
+def _timing(run: Trajectory) -> dict[str, Any]:
+    """Amplitude, period, rate, beat error and what follows from them; null where nothing oscillates."""
+    if not run.scene.springs:
+        nothing = {"beats": 0, "timegrapher": None, "missed_beats": None, "stopped": False, "stopped_message": None}
+        return _timing_of(None) | nothing
+    found = beats(run)
+    window = last_window(run, found.nominal_period)
+    stands = standstill(run, found)
+    return {
+        **_timing_of(averages(found, window)),
+        "beats": len(found),
+        "timegrapher": timegrapher(run, found, window),
+        "missed_beats": _missed(run, found),
+        "stopped": stands is not None,
+        "stopped_message": stands.message if stands else None,
+    }
+
+
+def _timing_of(means: Averages | None) -> dict[str, Any]:
+    values = asdict(means) if means else {}
+    period = values.get("period_s")
+    return {
+        **{key: values.get(key) for name in AVERAGED for key in (name, f"{name}_error")},
+        "frequency_hz": 1.0 / period if period else None,
+        "vph": 7200.0 / period if period else None,
+        "window_s": [means.start_s, means.end_s] if means else None,
+    }
+
+
+def _missed(run: Trajectory, found: Beats) -> int | None:
+    wheel = roles(run.scene).wheel
+    return missed_beats(run, wheel, found) if wheel else None
