@@ -77,7 +77,7 @@ def test_importing_costs_no_numba() -> None:
 
 
 def test_a_kernel_can_be_made_callable(tmp_path: Path) -> None:
-    code = "from watchsim.jit import callable_kernel; from watchsim.dynamics.lcp import _power_of_two as f; "
+    code = "from watchsim.jit import callable_kernel; from watchsim.dynamics.lcp_scaling import _power_of_two as f; "
     code += "print(callable_kernel(f)(6.5))"
     assert python(code, WATCHSIM_CACHE=str(tmp_path), NUMBA_DISABLE_JIT="0") == "8.0"
 

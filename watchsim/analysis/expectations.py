@@ -30,7 +30,7 @@ ERROR = "_error"
 
 
 def judge(expectation: Expectation, numbers: Mapping[str, Any]) -> dict[str, Any]:
-    """{key, expected, tolerance, got, ok, unit, message}, in the unit of the promise; where `got` is None, `message` says why."""
+    """{key, expected, tolerance, got, ok, unit, message}, in the unit of the promise; `message` says why `got` is None."""
     got, message = _found(expectation, numbers)
     ok = got is not None and abs(got - expectation.value) <= expectation.tolerance
     return {

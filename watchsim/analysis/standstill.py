@@ -19,8 +19,7 @@ from watchsim.simulation.trajectory import Trajectory
 HALF_SWINGS = 3  # without any advance of the wheel: the watch stands
 SMALLEST_ADVANCE = 0.01  # rad, for a wheel whose pitch is not known
 STILL = 0.1  # of the advance that counts: less is trembling
-AT_REST = 1e-6  # rad per period
-VISIBLE = 1e-4  # rad
+VISIBLE = 1e-4  # rad; an oscillator that moved less for half a period is held
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,9 +65,10 @@ def _circumstances(run: Trajectory, found: Beats, oscillator: str) -> str:
     if len(run.t) and found.angular:
         column = run.slices[oscillator].start
         angle = f"{math.degrees(run.q[-1, column]):.4g}°".replace("-", "−")
-        if abs(run.u[-1, column]) * found.nominal_period < AT_REST:
-            moved = np.flatnonzero(np.abs(run.q[:, column] - run.q[-1, column]) > VISIBLE)
-            words += f"; {oscillator} held at {angle} since t = {run.t[moved[-1]] if len(moved) else 0.0:.4g} s"
+        moved = np.flatnonzero(np.abs(run.q[:, column] - run.q[-1, column]) > VISIBLE)
+        held_since = float(run.t[moved[-1]]) if len(moved) else 0.0
+        if run.simulated - held_since > 0.5 * found.nominal_period:
+            words += f"; {oscillator} held at {angle} since t = {held_since:.4g} s"
         else:
             words += f"; {oscillator} swinging, now at {angle}"
     if len(found) and found.angular:

@@ -125,7 +125,9 @@ def _mode_of(closed, i, m, work):
     if work.tangent[i] < 0:
         return BACKWARD if closed.kin[i].gT_dot < 0.0 else FORWARD
     slip = _gap_acceleration(work, m, 2 * i + 1)
-    size = ROUNDING * (work.size[2 * i + 1] + abs(work.G[2 * i + 1, 2 * i + 1] * work.force[2 * i + 1]))
+    # lambda_T is the difference of terms as large as the friction cone.
+    terms = abs(work.force[2 * i + 1]) + work.drag[i] * work.force[2 * i]
+    size = ROUNDING * (work.size[2 * i + 1] + work.G[2 * i + 1, 2 * i + 1] * terms)
     if slip > size:
         return FORWARD
     return BACKWARD if slip < -size else STICK

@@ -8,23 +8,19 @@ the data. It knows no mechanics.
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from watchsim.dynamics.lcp_basis import PIVOT, is_solution, solve_active
+from watchsim.dynamics.lcp_scaling import scale, unscale
 from watchsim.jit import by_reference, entry, kernel
 
 OK, RAY, MAX_ITER, INEXACT = 0, 1, 2, 3
 
 ENUMERATED_SIZE = 12  # 2^12 small eliminations: some milliseconds
-# All of these compare numbers of a scaled problem, where coefficients and the largest load are of order one.
-PIVOT = 1e-11  # smaller pivots are rounding errors of a zero
 TIE = 1e-10  # ratios closer than this are equal; 1e-12 sends 1 in 1000 singular problems down a ray
-RESIDUAL = 1e-9  # a y this much smaller than the terms it is the sum of is zero
-ROUNDING = 1e-13  # so is one this much smaller than the largest x, or than one
-SWEEPS = 3
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -72,7 +68,7 @@ def solve_lcp(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> int:
     """
     status = lemke(A, b, n, work, out_x)
     if status == OK:
-        if _is_trivial(b, n) or _is_solution(n, work):
+        if _is_trivial(b, n) or is_solution(n, work):
             return OK
         status = INEXACT
     if n <= ENUMERATED_SIZE and enumerate_lcp(A, b, n, work, out_x) == OK:
@@ -87,24 +83,24 @@ def lemke(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> int:
         out_x[i] = 0.0
     if _is_trivial(b, n):
         return OK
-    magnitude = _scale(A, b, n, work)
+    magnitude = scale(A, b, n, work)
     status = _pivot_to_end(n, work)
     if status == OK:
         _solve_basis(n, work)
-        _unscale(n, magnitude, work, out_x)
+        unscale(n, magnitude, work, out_x)
     return status
 
 
 @entry
 def enumerate_lcp(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> int:
     """Try every set of active indices, the empty one first; OK with out_x[:n], or RAY when none solves the problem."""
-    magnitude = _scale(A, b, n, work)
+    magnitude = scale(A, b, n, work)
     for chosen in range(1 << n):
         for i in range(n):
             work.is_active[i] = (chosen >> i) & 1
-        _solve_active(n, work)
-        if _is_solution(n, work):
-            _unscale(n, magnitude, work, out_x)
+        solve_active(n, work)
+        if is_solution(n, work):
+            unscale(n, magnitude, work, out_x)
             return OK
     for i in range(n):
         out_x[i] = 0.0
@@ -116,104 +112,6 @@ def _is_trivial(b: Array, n: int) -> bool:
     """True when x = 0 solves the problem."""
     for i in range(n):
         if not b[i] >= 0.0:
-            return False
-    return True
-
-
-@kernel
-def _power_of_two(value: float) -> float:
-    """The power of two nearest |value|; 1 for zero and for what is not a number."""
-    if value == 0.0 or not math.isfinite(value):
-        return 1.0
-    mantissa, exponent = math.frexp(value)
-    return math.ldexp(1.0, exponent if abs(mantissa) > 0.75 else exponent - 1)
-
-
-@kernel
-def _scale(A: Array, b: Array, n: int, work: LcpWork) -> float:
-    """Fill the scaled problem R A C, R b / beta; returns beta. x = C x_scaled beta, y = y_scaled beta / R."""
-    _scale_pairs(A, n, work)
-    _balance(A, n, work)
-    largest = 0.0
-    for i in range(n):
-        for j in range(n):
-            work.matrix[i, j] = work.row_scale[i] * A[i, j] * work.column_scale[j]
-        work.load[i] = work.row_scale[i] * b[i]
-        largest = max(largest, abs(work.load[i]))
-    magnitude = _power_of_two(largest)
-    for i in range(n):
-        work.load[i] /= magnitude
-    return magnitude
-
-
-@kernel
-def _scale_pairs(A: Array, n: int, work: LcpWork) -> None:
-    """R = C with unit positive diagonals; a row without one is scaled by its mutual coefficients sqrt|A_ij A_ji|."""
-    s = work.row_scale
-    for i in range(n):
-        s[i] = 1.0 / math.sqrt(A[i, i]) if A[i, i] > 0.0 else 0.0
-        work.column_scale[i] = s[i]
-    for i in range(n):
-        if s[i] == 0.0:
-            largest = _largest_mutual(A, i, n, s)
-            if largest == 0.0:
-                largest = math.sqrt(abs(A[i, i]))
-            work.column_scale[i] = 1.0 / largest if largest > 0.0 else 1.0
-    for i in range(n):  # a diagonal that is small only by cancellation must not blow up its row
-        s[i] = work.column_scale[i] / math.sqrt(max(1.0, work.column_scale[i] * _largest_mutual(A, i, n, work.column_scale)))
-    for i in range(n):
-        s[i] = _power_of_two(s[i])
-        work.column_scale[i] = s[i]
-
-
-@kernel
-def _largest_mutual(A: Array, i: int, n: int, s: Array) -> float:
-    """Largest sqrt|A_ij A_ji| s_j; the mutual coefficient does not change with the units of x and y."""
-    largest = 0.0
-    for j in range(n):
-        if j != i:
-            largest = max(largest, math.sqrt(abs(A[i, j])) * math.sqrt(abs(A[j, i])) * s[j])
-    return largest
-
-
-@kernel
-def _balance(A: Array, n: int, work: LcpWork) -> None:
-    """Make the largest coefficients of row i and of column i alike, keeping R_i C_i (Osborne 1960)."""
-    r, c = work.row_scale, work.column_scale
-    for _ in range(SWEEPS):
-        for i in range(n):
-            row = column = 0.0
-            for j in range(n):
-                if j != i:
-                    row = max(row, abs(A[i, j]) * c[j])
-                    column = max(column, abs(A[j, i]) * r[j])
-            row, column = row * r[i], column * c[i]
-            if row > 0.0 and column > 0.0:
-                factor = _power_of_two(math.sqrt(column / row))
-                r[i] *= factor
-                c[i] /= factor
-
-
-@kernel
-def _unscale(n: int, magnitude: float, work: LcpWork, out_x: Array) -> None:
-    for i in range(n):
-        out_x[i] = work.column_scale[i] * work.trial[i] * magnitude
-
-
-@kernel
-def _is_solution(n: int, work: LcpWork) -> bool:
-    """True when the scaled trial solves the problem; each y_i is judged by the terms it is the sum of."""
-    floor = 1.0
-    for i in range(n):
-        floor = max(floor, abs(work.trial[i]))
-    for i in range(n):
-        y, terms = work.load[i], abs(work.load[i])
-        for j in range(n):
-            term = work.matrix[i, j] * work.trial[j]
-            y += term
-            terms += abs(term)
-        allowed = RESIDUAL * terms + ROUNDING * floor
-        if not math.isfinite(terms) or work.trial[i] < 0.0 or y < -allowed or (work.trial[i] > 0.0 and y > allowed):
             return False
     return True
 
@@ -309,68 +207,8 @@ def _solve_basis(n: int, work: LcpWork) -> None:
     for row in range(n):
         if n <= work.basis[row] < 2 * n:
             work.is_active[work.basis[row] - n] = 1
-    if _solve_active(n, work) and _is_solution(n, work):
+    if solve_active(n, work) and is_solution(n, work):
         return
     for row in range(n):
         if n <= work.basis[row] < 2 * n:
             work.trial[work.basis[row] - n] = max(0.0, work.tableau[row, 2 * n + 1])
-
-
-@kernel
-def _solve_active(n: int, work: LcpWork) -> bool:
-    """Solve A_aa x_a = -b_a for the active indices into trial; False if singular (free unknowns are then left zero)."""
-    S = work.square
-    count = _gather(n, work)
-    regular = True
-    for step in range(count):
-        if not _eliminate(count, step, work):
-            regular = False
-            for m in range(count + 1):
-                S[step, m] = 0.0
-            S[step, step] = 1.0
-    for k in range(count - 1, -1, -1):
-        value = S[k, count]
-        for m in range(k + 1, count):
-            value -= S[k, m] * work.trial[work.order[m]]
-        value /= S[k, k]
-        work.trial[work.order[k]] = 0.0 if -RESIDUAL < value <= 0.0 else value
-    return regular
-
-
-@kernel
-def _gather(n: int, work: LcpWork) -> int:
-    """Copy the active block and its right-hand side into `square`; returns its size."""
-    count = 0
-    for i in range(n):
-        work.trial[i] = 0.0
-        if work.is_active[i]:
-            work.order[count] = i
-            count += 1
-    for k in range(count):
-        for m in range(count):
-            work.square[k, m] = work.matrix[work.order[k], work.order[m]]
-        work.square[k, count] = -work.load[work.order[k]]
-    return count
-
-
-@kernel
-def _eliminate(count: int, step: int, work: LcpWork) -> bool:
-    """One step of Gaussian elimination with complete pivoting; False when only rounding errors are left."""
-    S = work.square
-    row, column = step, step
-    for k in range(step, count):
-        for m in range(step, count):
-            if abs(S[k, m]) > abs(S[row, column]):
-                row, column = k, m
-    if not abs(S[row, column]) > PIVOT:
-        return False
-    for m in range(count + 1):
-        S[step, m], S[row, m] = S[row, m], S[step, m]
-    for k in range(count):
-        S[k, step], S[k, column] = S[k, column], S[k, step]
-    work.order[step], work.order[column] = work.order[column], work.order[step]
-    for k in range(step + 1, count):
-        factor = S[k, step] / S[step, step]
-        for m in range(step, count + 1):
-            S[k, m] -= factor * S[step, m]
-    return True

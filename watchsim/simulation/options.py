@@ -40,7 +40,7 @@ def options_for(size: float, tolerance: float, max_step: float) -> Options:
         extent=2e-8 * size,
         speed_zero=1e-8 * size,
         force_zero=1e-9,
-        accumulation_time=1e-7,
+        accumulation_time=1e-6,
         accumulation_speed=0.1 * size,
         sleep=1e-9,
         row_phase=0.1,

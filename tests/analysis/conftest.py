@@ -1,0 +1,16 @@
+"""Which simulations do several tests look at?"""
+
+from __future__ import annotations
+
+import pytest
+
+from watchsim.mechanism.load import load
+from watchsim.profiles_path import profiles_dir
+from watchsim.simulation.simulate import simulate
+from watchsim.simulation.trajectory import Trajectory
+
+
+@pytest.fixture(scope="session")
+def bench_lever() -> Trajectory:
+    """Three seconds of the bench lever, from its start; a few hundred milliseconds once the solver is compiled."""
+    return simulate(load(profiles_dir() / "bench_lever" / "scene.toml"), duration=3.0)
