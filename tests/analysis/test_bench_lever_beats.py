@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -71,7 +72,7 @@ def test_phases_have_the_angles_of_the_drawing(bench_lever):
         beat = rows[first : first + 6]
         assert sum(math.degrees(row.turns[0]) for row in beat) == pytest.approx(-12.0, abs=0.06)  # half a pitch
         assert abs(sum(math.degrees(row.turns[1]) for row in beat)) == pytest.approx(11.0, abs=1e-6)
-        assert all(a.end == b.start for a, b in zip(beat, beat[1:], strict=False))
+        assert all(a.end == b.start for a, b in pairwise(beat))
     assert max(abs(turn[1]) for turn in degrees["locked"]) < 1e-9
 
 

@@ -37,7 +37,9 @@ def test_coefficients() -> None:
     assert np.array_equal(dop853.A[:n, :n], DOP853.A)
     assert np.array_equal(dop853.A[n, :n], DOP853.B)
     assert dop853.C[n] == 1.0
-    assert np.array_equal(dop853.A[n + 1 : n + 4, : n + 4], np.pad(DOP853.A_EXTRA, ((0, 0), (0, n + 4 - DOP853.A_EXTRA.shape[1]))))
+    assert np.array_equal(
+        dop853.A[n + 1 : n + 4, : n + 4], np.pad(DOP853.A_EXTRA, ((0, 0), (0, n + 4 - DOP853.A_EXTRA.shape[1])))
+    )
     assert np.array_equal(dop853.C[n + 1 : n + 4], DOP853.C_EXTRA)
     assert np.array_equal(dop853.E3, DOP853.E3)
     assert np.array_equal(dop853.E5, DOP853.E5)
@@ -108,11 +110,8 @@ def test_orders(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-9, 1e-12])
 def test_tolerance_is_kept(tolerance: float) -> None:
     done = simulate.simulate(rolling_in_a_bowl(), 3.0, tolerance)
-    for t in (1.0, 2.0, 3.0):
-        q, u = done.at(t)
-        if t == 3.0:
-            assert np.concatenate([q, u]) == pytest.approx(swung(t), abs=100.0 * tolerance + 1e-12)
-    assert done.worst_penetration < 1e-9
+    assert np.concatenate([done.q[-1], done.u[-1]]) == pytest.approx(swung(3.0), abs=100.0 * tolerance + 1e-12)
+    assert done.worst_penetration < 0.1 * tolerance * R
     assert done.energy["residual_relative"] < 100.0 * tolerance + 1e-12
     assert not [event for event in done.events if event["t"] > 0.0]
 

@@ -1,0 +1,47 @@
+"""Does a lever somebody else drew run, and does the tool say why it jams where it jams?
+
+The drawing is a section of a public CAD model; it is read from the folder of shared drawings beside the project.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import watchsim as ws
+from watchsim.simulation.trajectory import EventKind, Trajectory
+
+HERE = Path(__file__).resolve().parent
+DRAWINGS = HERE.parents[2] / "shared" / "drawings" / "pin_lever"
+PITCH = 2.0 * np.pi / 15
+
+pytestmark = pytest.mark.skipif(not DRAWINGS.exists(), reason="the real lever's drawing is not here")
+
+
+def simulated(name: str, duration: float) -> Trajectory:
+    return ws.simulate(ws.load(HERE / name), duration=duration)
+
+
+def advance(run: Trajectory) -> float:
+    """Half pitches by which the wheel has advanced."""
+    return abs(run.q[-1, run.slices["wheel"]][0] - run.q[0, run.slices["wheel"]][0]) / (0.5 * PITCH)
+
+
+def half_swings(run: Trajectory) -> int:
+    return int(np.count_nonzero(run.events["kind"] == EventKind.CROSS))
+
+
+def test_with_the_wheel_moved_away_it_ticks() -> None:
+    run = simulated("scene.toml", 3.0)
+    assert run.stop.name == "DURATION" and run.worst_penetration < 1e-9
+    assert abs(advance(run) - half_swings(run)) <= 1.5
+
+
+@pytest.mark.slow
+def test_it_ticks_for_twenty_seconds() -> None:
+    run = simulated("scene.toml", 20.0)
+    assert run.stop.name == "DURATION" and run.worst_penetration < 1e-9
+    assert abs(advance(run) - half_swings(run)) <= 1.5
+    assert half_swings(run) >= 118
