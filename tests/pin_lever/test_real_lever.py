@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import watchsim as ws
+from watchsim.analysis.summary import summary_text
 from watchsim.simulation.trajectory import EventKind, Trajectory
 
 HERE = Path(__file__).resolve().parent
@@ -31,6 +32,19 @@ def advance(run: Trajectory) -> float:
 
 def half_swings(run: Trajectory) -> int:
     return int(np.count_nonzero(run.events["kind"] == EventKind.CROSS))
+
+
+def test_as_drawn_it_jams_and_the_tool_says_where() -> None:
+    """Negative drop: while the wheel recoils, a corner of the entering stone meets the back of the passing tooth."""
+    run = simulated("scene_as_drawn.toml", 1.5)
+    assert run.stop.name == "DURATION" and advance(run) < 1.0
+    told = ws.summary(run)
+    assert told["stopped"]
+    text = summary_text(run)
+    assert "lever.PALLET_A corner" in text and "wheel.ESCAPE_WHEEL_z-1.30 line" in text
+    last = run.q[-1]
+    assert np.ptp(run.q[run.t > 1.0], axis=0).max() < 1e-9
+    assert 5.0 < abs(np.degrees(last[run.slices["lever"]][0])) < 12.0  # far from its bank: not the lever's normal rest
 
 
 def test_with_the_wheel_moved_away_it_ticks() -> None:

@@ -62,6 +62,23 @@ def test_two_rotors_graze(depth: float, coupled: bool) -> None:
         assert closest - 1e-3 < impacts[0]["t"] < closest
 
 
+@pytest.mark.parametrize("coupled", [False, True])
+@pytest.mark.parametrize("restitution", [0.0, 0.5])
+def test_a_pin_strikes_a_thorn_and_stays_with_it(coupled: bool, restitution: float) -> None:
+    """The pin of a fast rotor catches the flank of another one's thorn and pushes it away: time goes on."""
+    bodies = (
+        Body("thorn", "pivot", (0.0, 0.0), -2.0, (7.0,), inertia=1e-12, loops=(tip(1e-3),)),
+        Body("pin", "pivot", (2.3e-3, 0.0), math.pi + 3.1, (-11.0,), inertia=3e-12, loops=(circle(0.1e-3, (1.5e-3, 0.0)),)),
+    )
+    damping = (Damping("thorn", 0.0, QUADRATIC * 1e-6),) if coupled else ()
+    scene = Scene("catch", bodies, damping=damping, contacts=touching("thorn", "pin", restitution=restitution))
+    done = simulate(scene, 2.0)
+    assert done.stop == Stop.DURATION
+    assert of_kind(done, EventKind.IMPACT)
+    assert done.worst_penetration < 1e-12
+    assert abs(done.energy["residual_J"]) < 1e-10 * 0.5 * (1e-12 * 49.0 + 3e-12 * 121.0)
+
+
 @pytest.mark.parametrize("depth", [-NANOMETRE, NANOMETRE])
 @pytest.mark.parametrize("amplitude", [0.3, 4.0])
 def test_a_swinging_corner_grazes_a_line(depth: float, amplitude: float) -> None:

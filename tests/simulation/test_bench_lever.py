@@ -1,0 +1,110 @@
+"""Does the bench lever tick as three other engines say: every beat, amplitude, period, energy?"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from moving_scenes import profile
+
+from watchsim.simulation.simulate import simulate
+from watchsim.simulation.stops import Stop
+from watchsim.simulation.trajectory import EventKind, Trajectory
+
+HALF_PITCH = math.pi / 15.0
+AMPLITUDE_DEG, PERIOD = 290.73, 0.25006568  # window 13 s to 15 s, an independent Moreau stepping to 5e-7 s
+START_AMPLITUDE_DEG, START_PERIOD = 283.01, 0.25007014  # window 1 s to 3 s
+
+
+def column(done: Trajectory, body: str, times) -> np.ndarray:
+    return done.sample(np.asarray(times))[0][:, done.slices[body]][:, 0]
+
+
+def turns(done: Trajectory, start: float, end: float):
+    """Times and angles of the balance's turning points."""
+    found = done.events[(done.events["kind"] == EventKind.TURN) & (done.events["t"] >= start) & (done.events["t"] <= end)]
+    return found["t"], found["value"]
+
+
+def amplitude_and_period(done: Trajectory, start: float, end: float) -> tuple[float, float]:
+    """Mean amplitude in degrees; mean period from the rising passages of the rest position."""
+    angles = np.degrees(np.abs(turns(done, start, end)[1]))
+    crossings = done.events[(done.events["kind"] == EventKind.CROSS) & (done.events["value"] > 0.0)]["t"]
+    crossings = crossings[(crossings >= start) & (crossings <= end)]
+    return float(angles.mean()), float((crossings[-1] - crossings[0]) / (len(crossings) - 1))
+
+
+def half_pitches(done: Trajectory) -> np.ndarray:
+    """Half pitches the wheel has advanced between successive turning points of the balance."""
+    times = turns(done, 0.0, done.simulated)[0]
+    return -np.diff(column(done, "wheel", times)) / HALF_PITCH
+
+
+def test_one_second() -> None:
+    done = simulate(profile("bench_lever"), 1.0)
+    assert done.stop == Stop.DURATION
+    advance = half_pitches(done)
+    assert len(advance) >= 6
+    assert advance == pytest.approx(np.ones(len(advance)), abs=0.01)
+    assert done.worst_penetration < 1e-9
+    assert done.counts["lcp_failures"] == done.counts["energy_rescues"] == 0
+
+
+def test_energy_ledger() -> None:
+    """Work of the motor = stored + lost in friction, damping and impacts, to 1e-8 of it; nothing is ever gained."""
+    ledger = simulate(profile("bench_lever"), 1.0).energy
+    assert ledger["residual_relative"] < 1e-8
+    total = ledger["stored_J"] + sum(ledger["dissipated"].values())
+    assert abs(ledger["in_J"] - total) < 1e-8 * ledger["in_J"]
+    assert min(ledger["dissipated"].values()) > 0.0
+
+
+def test_no_impact_gains_energy() -> None:
+    done = simulate(profile("bench_lever"), 1.0)
+    impacts = done.events[done.events["kind"] == EventKind.IMPACT]
+    together = [impacts["energy_lost"][impacts["t"] == t].sum() for t in np.unique(impacts["t"])]
+    assert min(together) >= -1e-20
+    assert np.all(impacts["impulse_normal"] > 0.0)
+    assert np.all(np.abs(impacts["impulse_tangential"]) <= 0.15 * impacts["impulse_normal"] * (1.0 + 1e-9))
+    assert np.all(impacts["value"] <= 1e-9)
+
+
+@pytest.fixture(scope="module")
+def minute() -> Trajectory:
+    return simulate(profile("bench_lever"), 60.0, 1e-9)
+
+
+@pytest.mark.slow
+def test_a_minute(minute: Trajectory) -> None:
+    assert minute.stop == Stop.DURATION
+    advance = half_pitches(minute)
+    assert len(advance) >= 478
+    assert advance == pytest.approx(np.ones(len(advance)), abs=0.01)
+    assert minute.worst_penetration < 1e-9
+    assert minute.energy["residual_relative"] < 1e-8
+    assert minute.counts["lcp_failures"] == 0
+
+
+@pytest.mark.slow
+def test_amplitude_and_period(minute: Trajectory) -> None:
+    amplitude, period = amplitude_and_period(minute, 13.0, 15.0)
+    assert amplitude == pytest.approx(AMPLITUDE_DEG, abs=0.05)
+    assert period == pytest.approx(PERIOD, abs=1e-6)
+    amplitude, period = amplitude_and_period(minute, 1.0, 3.0)
+    assert amplitude == pytest.approx(START_AMPLITUDE_DEG, abs=0.1)
+    assert period == pytest.approx(START_PERIOD, abs=2e-6)
+
+
+@pytest.mark.slow
+def test_tolerance_does_not_matter() -> None:
+    """From 1e-8 to 1e-11: less than 1e-3 degrees and 1 ns."""
+    loose, tight = (amplitude_and_period(simulate(profile("bench_lever"), 15.0, tol), 13.0, 15.0) for tol in (1e-8, 1e-11))
+    assert abs(loose[0] - tight[0]) < 1e-3
+    assert abs(loose[1] - tight[1]) < 1e-9
+
+
+@pytest.mark.slow
+def test_speed(minute: Trajectory) -> None:
+    """At least twenty times real time on one core."""
+    assert minute.simulated / minute.wall > 20.0
