@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +31,8 @@ class CellFinder:
         self.seconds = 0.0
         self._pairs = [_PairGeometry(model, p) if model.pairs[p].axes else None for p in range(len(model.pairs))]
         self._known: dict[int, NDArray[np.int64]] = {}
-        self.cells = _table({})
+        self.cells = _empty(64, 256)
+        self._entries = 0
 
     def learn(self, p: int, q: Array) -> Cells:
         """Find the cell of body pair p at q and its neighbours; returns the new table."""
@@ -49,9 +50,26 @@ class CellFinder:
         assert geometry is not None
         for key, found in zip(new, geometry.candidates(list(new.values())), strict=True):
             self._known[key] = found
-        self.cells = _table(self._known)
+            self._insert(key, found)
         self.seconds += time.perf_counter() - start
         return self.cells
+
+    def _insert(self, key: int, found: NDArray[np.int64]) -> None:
+        """Put one cell's answer into the table, which grows so that it is never more than half full."""
+        keys, start, count, entries = self.cells
+        if 2 * len(self._known) > len(keys):
+            grown = _empty(2 * len(keys), 1)
+            for slot in np.flatnonzero(keys >= 0):
+                place = find_slot(grown.keys, keys[slot])
+                grown.keys[place], grown.start[place], grown.count[place] = keys[slot], start[slot], count[slot]
+            keys, start, count = grown.keys, grown.start, grown.count
+        if self._entries + len(found) > len(entries):
+            entries = np.concatenate([entries, np.zeros(len(entries) + len(found), np.int64)])
+        slot = find_slot(keys, key)
+        keys[slot], start[slot], count[slot] = key, self._entries, len(found)
+        entries[self._entries : self._entries + len(found)] = found
+        self._entries += len(found)
+        self.cells = Cells(keys, start, count, entries)
 
     @staticmethod
     def _centre(pair: Any, q: Array, steps: tuple[int, ...]) -> Array:
@@ -63,21 +81,9 @@ class CellFinder:
         return centre
 
 
-def _table(known: dict[int, NDArray[np.int64]]) -> Cells:
-    """The open-addressing table of everything known, at most half full."""
-    slots = 64
-    while slots < 2 * len(known) + 2:
-        slots *= 2
-    keys = np.full(slots, -1, np.int64)
-    start, count = np.zeros(slots, np.int64), np.zeros(slots, np.int64)
-    entries: list[NDArray[np.int64]] = [np.zeros(1, np.int64)]
-    used = 1
-    for key, found in known.items():
-        slot = find_slot(keys, key)
-        keys[slot], start[slot], count[slot] = key, used, len(found)
-        entries.append(found)
-        used += len(found)
-    return Cells(keys, start, count, np.concatenate(entries))
+def _empty(slots: int, entries: int) -> Cells:
+    """An open-addressing table without cells."""
+    return Cells(np.full(slots, -1, np.int64), *(np.zeros(size, np.int64) for size in (slots, slots, entries)))
 
 
 class _PairGeometry:
@@ -104,6 +110,9 @@ class _PairGeometry:
         self.other_sag = max((sag for _, sag in other_points), default=0.0)
         self.tree = shapely.STRtree([_geometry(points) for points, _ in other_points])
         self.coordinates = np.concatenate([points for points, _ in self.points])
+        # Plain values: reading a field of a record array from Python takes a microsecond each time.
+        self.bodies = [_Body(*model.bodies[b]) for b in (self.pair.a, self.pair.b)]
+        self.freedom = [self._freedom(b) for b in (self.pair.a, self.pair.b)]
         self.piece = np.repeat(np.arange(len(self.points)), [len(points) for points, _ in self.points])
 
     def candidates(self, centres: list[Array]) -> list[NDArray[np.int64]]:
@@ -133,11 +142,11 @@ class _PairGeometry:
 
     def _in_other_frame(self, q: Array) -> tuple[Array, Array]:
         """Points of body a's primitives in body b's frame, and how far each primitive may move relative to b in the cell."""
-        (ax, ay, angle), (bx, by, turn) = (_pose(self.model, b, q) for b in (self.pair.a, self.pair.b))
+        (ax, ay, angle), (bx, by, turn) = (_pose(body, q) for body in self.bodies)
         world = _turned(self.coordinates, angle) + np.array((ax - bx, ay - by))
         points = _turned(world, -turn)
-        shift_a, swing_a = self._freedom(self.pair.a)
-        shift_b, swing_b = self._freedom(self.pair.b)
+        shift_a, swing_a = self.freedom[0]
+        shift_b, swing_b = self.freedom[1]
         travel = shift_a + swing_a * self.reach
         arm = np.zeros(len(self.movers))
         np.maximum.at(arm, self.piece, np.hypot(*points.T))
@@ -156,8 +165,19 @@ class _PairGeometry:
         return shift, swing
 
 
-def _pose(model: Model, b: int, q: Array) -> tuple[float, float, float]:
-    body = model.bodies[b]
+class _Body(NamedTuple):
+    """The fields of a body record (model.py)."""
+
+    motion: int
+    first: int
+    x: float
+    y: float
+    angle: float
+    axis_x: float
+    axis_y: float
+
+
+def _pose(body: _Body, q: Array) -> tuple[float, float, float]:
     if body.motion == PIVOT:
         return body.x, body.y, q[body.first]
     if body.motion == SLIDE:
