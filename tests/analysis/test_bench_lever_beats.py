@@ -80,3 +80,12 @@ def test_energy_of_the_run(bench_lever):
     assert bench_lever.energy["residual_relative"] < 1e-8
     wheel = bench_lever.slices["wheel"].start
     assert bench_lever.energy["in_J"] == pytest.approx(6e-6 * abs(bench_lever.q[-1, wheel] - bench_lever.q[0, wheel]), rel=1e-9)
+
+
+def test_a_balance_out_of_beat_by_one_and_a_half_degrees():
+    """(T1 - T2)/2 = 2 asin(offset/amplitude)/w, 0.42 ms here."""
+    scene = load(profiles_dir() / "bench_lever" / "scene.toml").set("springs.0.rest", "1.5°")
+    means = mean_over(simulate(scene, duration=3.0), (2.0, 3.0))
+    expected = 1e3 * 2.0 * math.asin(1.5 / means.amplitude_deg) / (8.0 * math.pi)
+    assert means.beat_error_ms == pytest.approx(expected, rel=0.04)
+    assert means.beat_error_ms_error < 0.01 * expected

@@ -51,15 +51,15 @@ def run(args: argparse.Namespace) -> int:
     check_folder(folder, args.force)
     trajectory = simulate_with_progress(scene, duration, args.tol)
     summary = write(trajectory, folder, args.force, movie=args.movie, gif=args.gif)
+    # What a scene promises, it promises as it is written.
+    as_written = not (args.set or args.duration or args.tol)
     if args.json:
         print_json(summary)
     else:
         from watchsim.analysis.summary import summary_text
 
-        print(summary_text(trajectory))
+        print(summary_text(trajectory, summary if as_written else {**summary, "expect": []}))
         print(f"Results: {folder}")
-    # What a scene promises, it promises as it is written.
-    as_written = not (args.set or args.duration or args.tol)
     return status(trajectory, summary, promised=as_written)
 
 
@@ -129,6 +129,7 @@ def _movie(run: Trajectory, path: Path, speed: float) -> None:
 
 def status(run: Trajectory, summary: dict[str, Any], promised: bool = True) -> int:
     """Exit status of a finished run; says why on stderr where it is not 0. Missed expectations count only if `promised`."""
+    from watchsim.analysis.headlines import expected_text
     from watchsim.simulation.stops import Stop
 
     if run.stop.gave_up:
@@ -139,9 +140,7 @@ def status(run: Trajectory, summary: dict[str, Any], promised: bool = True) -> i
         return INTERRUPTED
     missed = [entry for entry in summary["expect"] if promised and not entry["ok"]]
     for entry in missed:
-        unit = entry.get("unit", "")
-        said = f"got {entry['got']:.9g} {unit}" if entry["got"] is not None else entry.get("message", "got nothing")
-        say(f"Expected {entry['key']} = {entry['expected']:.9g} {unit} ± {entry['tolerance']:.3g}: {said}".rstrip())
+        say(expected_text(entry))
     if summary.get("stopped"):
         say("The watch has stopped ticking.")
     return MISSED if missed or summary.get("stopped") else FINE
