@@ -14,7 +14,6 @@ from watchsim.simulation.trajectory import EventKind, Trajectory
 
 HALF_PITCH = math.pi / 15.0
 AMPLITUDE_DEG, PERIOD = 290.73, 0.25006568  # window 13 s to 15 s, an independent Moreau stepping to 5e-7 s
-START_AMPLITUDE_DEG, START_PERIOD = 283.01, 0.25007014  # window 1 s to 3 s
 
 
 def column(done: Trajectory, body: str, times) -> np.ndarray:
@@ -70,6 +69,16 @@ def test_no_impact_gains_energy() -> None:
     assert np.all(impacts["value"] <= 1e-9)
 
 
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-7, 1e-8, 1e-10, 1e-12])
+def test_any_tolerance_will_do(tolerance: float) -> None:
+    """Some beats; a slip that reverses in one of them must not stop the clock."""
+    done = simulate(profile("bench_lever"), 0.5, tolerance)
+    assert done.stop == Stop.DURATION
+    advance = half_pitches(done)
+    assert len(advance) >= 2
+    assert advance == pytest.approx(np.ones(len(advance)), abs=0.01)
+
+
 @pytest.fixture(scope="module")
 def minute() -> Trajectory:
     return simulate(profile("bench_lever"), 60.0, 1e-9)
@@ -91,15 +100,14 @@ def test_amplitude_and_period(minute: Trajectory) -> None:
     amplitude, period = amplitude_and_period(minute, 13.0, 15.0)
     assert amplitude == pytest.approx(AMPLITUDE_DEG, abs=0.05)
     assert period == pytest.approx(PERIOD, abs=1e-6)
-    amplitude, period = amplitude_and_period(minute, 1.0, 3.0)
-    assert amplitude == pytest.approx(START_AMPLITUDE_DEG, abs=0.1)
-    assert period == pytest.approx(START_PERIOD, abs=2e-6)
 
 
 @pytest.mark.slow
 def test_tolerance_does_not_matter() -> None:
     """From 1e-8 to 1e-11: less than 1e-3 degrees and 1 ns."""
-    loose, tight = (amplitude_and_period(simulate(profile("bench_lever"), 15.0, tol), 13.0, 15.0) for tol in (1e-8, 1e-11))
+    runs = [simulate(profile("bench_lever"), 15.0, tolerance) for tolerance in (1e-8, 1e-11)]
+    assert [run.stop for run in runs] == [Stop.DURATION, Stop.DURATION]
+    loose, tight = (amplitude_and_period(run, 13.0, 15.0) for run in runs)
     assert abs(loose[0] - tight[0]) < 1e-3
     assert abs(loose[1] - tight[1]) < 1e-9
 

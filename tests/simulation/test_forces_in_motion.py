@@ -7,10 +7,10 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from moving_scenes import circle, of_kind, tip, touching
 from reference import pendulum
 from scipy.integrate import solve_ivp
 
-from moving_scenes import circle, of_kind, tip, touching
 from watchsim.mechanism.body import Body
 from watchsim.mechanism.force import Damping, Spring, Torque
 from watchsim.mechanism.scene import Scene

@@ -74,7 +74,7 @@ def with_steps(h: float, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def errors(h: float, monkeypatch: pytest.MonkeyPatch) -> tuple[float, float]:
-    """Error at the end of the run, and in the middle of its last full step by the continuous extension, from exact start values."""
+    """Errors at the end of the run, and inside a step by the continuous extension."""
     with_steps(h, monkeypatch)
     done = simulate.simulate(rolling_in_a_bowl(), 0.9)
     assert done.stop == Stop.DURATION

@@ -15,9 +15,14 @@ from watchsim.mechanism.scene import Scene
 from watchsim.simulation import simulate as simulating
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.trajectory import EventKind
+from watchsim.simulation.trajectory import EventKind, Trajectory
 
 NAMES = ("kind", "contact", "body")
+
+
+def told(done: Trajectory):
+    """All events but the notes on accumulation: whether a rebound of 1e-15 m/s counts as one is a matter of rounding."""
+    return done.events[done.events["kind"] != EventKind.ACCUMULATION]
 
 
 def balance(w: float = 25.0) -> Scene:
@@ -112,13 +117,14 @@ def test_slices_do_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_cells_lose_no_event(monkeypatch: pytest.MonkeyPatch) -> None:
     """Every declared pair tried at every instant instead: the same events."""
+    monkeypatch.setattr(simulating, "natural_step", lambda compiled, duration: 1e-3)
     fast = simulate(profile("bench_lever"), 0.3)
     monkeypatch.setattr(compiling, "FEW_CONTACTS", 10**9)
     slow = simulate(profile("bench_lever"), 0.3)
     assert slow.counts["cells"] == 0 < fast.counts["cells"]
     for name in NAMES:
-        assert np.array_equal(fast.events[name], slow.events[name])
-    assert fast.events["t"] == pytest.approx(slow.events["t"], abs=1e-12)
+        assert np.array_equal(told(fast)[name], told(slow)[name])
+    assert told(fast)["t"] == pytest.approx(told(slow)["t"], abs=1e-10)
     assert fast.q[-1] == pytest.approx(slow.q[-1], abs=1e-11)
 
 
@@ -126,18 +132,19 @@ def test_cells_lose_no_event(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_turned_scene(angle: float) -> None:
     plain, other = simulate(profile("bench_lever"), 0.5), simulate(turned(profile("bench_lever"), angle), 0.5)
     for name in NAMES:
-        assert np.array_equal(plain.events[name], other.events[name])
-    assert other.events["t"] == pytest.approx(plain.events["t"], abs=1e-8)
-    assert other.q[-1] - angle == pytest.approx(plain.q[-1], abs=1e-7)
-    assert other.u[-1] == pytest.approx(plain.u[-1], abs=1e-5)
+        assert np.array_equal(told(plain)[name], told(other)[name])
+    assert told(other)["t"] == pytest.approx(told(plain)["t"], abs=1e-10)
+    assert other.q[-1] - angle == pytest.approx(plain.q[-1], abs=1e-11)
+    assert other.u[-1] == pytest.approx(plain.u[-1], abs=1e-9)
 
 
 def test_mirrored_scene() -> None:
+    """Contacts have other numbers there, so that events of one instant may come in another order."""
     plain, other = simulate(profile("bench_lever"), 0.5), simulate(mirrored(profile("bench_lever")), 0.5)
-    assert np.array_equal(plain.events["kind"], other.events["kind"])
-    assert other.events["t"] == pytest.approx(plain.events["t"], abs=1e-8)
-    assert -other.q[-1] == pytest.approx(plain.q[-1], abs=1e-7)
-    assert -other.u[-1] == pytest.approx(plain.u[-1], abs=1e-5)
+    assert np.array_equal(np.sort(told(plain)["kind"]), np.sort(told(other)["kind"]))
+    assert told(other)["t"] == pytest.approx(told(plain)["t"], abs=1e-10)
+    assert -other.q[-1] == pytest.approx(plain.q[-1], abs=1e-11)
+    assert -other.u[-1] == pytest.approx(plain.u[-1], abs=1e-9)
 
 
 def test_a_sliding_body_between_two_walls() -> None:

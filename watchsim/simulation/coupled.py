@@ -33,8 +33,9 @@ def monitor(model, state, scratch, options, i, which):
         if state.mode[k] == STICK:
             slack = options.force_zero * (work.size[2 * i] / work.G[2 * i, 2 * i] + abs(normal))
             return friction * normal - abs(work.force[2 * i + 1]) + slack
-        # Well inside what `decide_modes` calls no slip, so that a contact that fires here may stick there.
-        return state.mode[k] * closed.kin[i].gT_dot + 0.01 * options.speed_zero
+        # Half of what `decide_modes` calls no slip: a contact that fires here may stick there, and one that turns back
+        # starts a whole `speed_zero` away from firing again.
+        return state.mode[k] * closed.kin[i].gT_dot + 0.5 * options.speed_zero
     return closed.kin[i].margin + 2.0 * options.extent
 
 

@@ -38,7 +38,8 @@ def options_for(size: float, tolerance: float, max_step: float) -> Options:
         gap_zero=1e-13 * size,
         gap_close=2e-10 * size,
         extent=2e-8 * size,
-        speed_zero=1e-8 * size,
+        # Velocities drift off their contacts by about the tolerance within a step.
+        speed_zero=max(1e-8, 20.0 * tolerance) * size,
         force_zero=1e-9,
         accumulation_time=1e-6,
         accumulation_speed=0.1 * size,
