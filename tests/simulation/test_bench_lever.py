@@ -6,8 +6,11 @@ import math
 
 import numpy as np
 import pytest
+import shapely
 from moving_scenes import profile
+from naive.distance_oracle import chords
 
+from watchsim.mechanism.force import Side
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
 from watchsim.simulation.trajectory import EventKind, Trajectory
@@ -65,7 +68,10 @@ def test_no_impact_gains_energy() -> None:
     together = [impacts["energy_lost"][impacts["t"] == t].sum() for t in np.unique(impacts["t"])]
     assert min(together) >= -1e-20
     assert np.all(impacts["impulse_normal"] > 0.0)
-    assert np.all(np.abs(impacts["impulse_tangential"]) <= 0.15 * impacts["impulse_normal"] * (1.0 + 1e-9))
+    # Impulses of 1e-16 N·s come from rates that are rounding themselves: their cones are judged by the largest impulse.
+    rounding = 1e-12 * impacts["impulse_normal"].max()
+    cone = 0.15 * impacts["impulse_normal"] * (1.0 + 1e-9) + rounding
+    assert np.all(np.abs(impacts["impulse_tangential"]) <= cone)
     assert np.all(impacts["value"] <= 1e-9)
 
 
@@ -77,6 +83,28 @@ def test_any_tolerance_will_do(tolerance: float) -> None:
     advance = half_pitches(done)
     assert len(advance) >= 2
     assert advance == pytest.approx(np.ones(len(advance)), abs=0.01)
+
+
+def material(side: Side, pose: tuple[float, float, float]) -> shapely.Geometry:
+    """The outlines of one side of a contact, arcs as inscribed chords of 5 µm."""
+    loops = [loop for loop in profile("bench_lever").body(side.body).loops if side.layer in (None, loop.layer)]
+    return shapely.union_all([shapely.Polygon(chords((loop,), pose, 5e-6)[:, :2]) for loop in loops])
+
+
+@pytest.mark.parametrize("tolerance", [1e-7, 1e-9])
+def test_nothing_runs_through_anything(tolerance: float) -> None:
+    """Bodies as polygons at two thousand instants: no overlap beyond a nanometre of depth, whatever the solver reports."""
+    done = simulate(profile("bench_lever"), 0.5, tolerance)
+    for contact in profile("bench_lever").contacts:
+        placed = [material(side, (0.0, 0.0, 0.0)) for side in contact.sides]
+        for t in np.linspace(0.0, 0.5, 2001):
+            now = []
+            for side, shape in zip(contact.sides, placed, strict=True):
+                x, y, angle = done.pose(side.body, t)
+                c, s = math.cos(angle), math.sin(angle)
+                now.append(shapely.transform(shape, lambda p, a=(x, y, c, s): p @ [[a[2], a[3]], [-a[3], a[2]]] + [a[0], a[1]]))
+            # A nanometre deep, and as wide as the larger part of a face.
+            assert shapely.intersection(*now).area < 1e-9 * 5e-4, (contact, t)
 
 
 @pytest.fixture(scope="module")

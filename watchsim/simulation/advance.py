@@ -178,6 +178,7 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
         _accept_coupled(model, state, options, end, scratch)
         keep_row(state, record, state.clock[0], state.q, state.u, state.a)
     keep_passages(model, state, step, end, record)
+    state.numbers[4] = contact
     return RUNNING, contact >= 0 or leave <= length
 
 

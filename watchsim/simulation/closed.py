@@ -40,6 +40,9 @@ def gather(model, cells, state, options, scratch):
     m = 0
     for j in range(state.numbers[0] + state.numbers[1]):
         m = insert(ids, m, state.active[j])
+    # The contact that has just touched is closed, even where taking back drift has moved its gap since.
+    if state.numbers[4] >= 0:
+        m = insert(ids, m, state.numbers[4])
     for p in range(len(model.pairs)):
         pair = model.pairs[p]
         if _is_asleep(model, state, pair.a) and _is_asleep(model, state, pair.b) and state.clock[0] > 0.0:

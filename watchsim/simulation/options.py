@@ -36,7 +36,7 @@ def options_for(size: float, tolerance: float, max_step: float) -> Options:
     return Options(
         tolerance=tolerance,
         gap_zero=1e-13 * size,
-        gap_close=2e-10 * size,
+        gap_close=max(2e-10, tolerance) * size,
         extent=2e-8 * size,
         # Velocities drift off their contacts by about the tolerance within a step.
         speed_zero=max(1e-8, 20.0 * tolerance) * size,

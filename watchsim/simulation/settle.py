@@ -108,7 +108,7 @@ def settle(model, cells, state, options, scratch, record):
     accelerate(model, scratch.rest, f, work, state.a)
     find_sleepers(model, state, options, scratch, f)
     _list_active(model, state, f, scratch)
-    state.numbers[2] = 0
+    state.numbers[2], state.numbers[4] = 0, -1
     return RUNNING
 
 
