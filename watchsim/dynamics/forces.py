@@ -88,3 +88,17 @@ def stored_energy(model, q, u):
         stretch = q[i] - coordinate.rest
         energy += 0.5 * (coordinate.mass * u[i] * u[i] + coordinate.stiffness * stretch * stretch)
     return energy
+
+
+@kernel
+def next_knot(model, t):
+    """Time of the first knot after t of all tables over time; infinity if there is none. A step must not jump over it."""
+    first = math.inf
+    for j in range(len(model.tables)):
+        table = model.tables[j]
+        if table.over == OVER_TIME:
+            for i in range(table.start, table.start + table.count):
+                if model.knots[i, 0] > t * (1.0 + 1e-15):
+                    first = min(first, model.knots[i, 0])
+                    break
+    return first

@@ -11,6 +11,7 @@ import math
 from watchsim.contact.kinematics import ClosedRef
 from watchsim.contact.lookup import time_through_cells
 from watchsim.dynamics.delassus import ContactWorkRef
+from watchsim.dynamics.forces import next_knot
 from watchsim.dynamics.lcp import LcpWorkRef
 from watchsim.jit import entry, kernel
 from watchsim.mechanism.model import CellsRef, ModelRef
@@ -159,7 +160,9 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
             length = min(length, time_through_cells(model, p, state.u, scratch.step.bound, FLIGHT_CELLS))
         scratch.step.span[1] = min(length, left)
     else:
-        if not coupled_step(model, state, options, min(left, options.max_step), scratch):
+        if not coupled_step(
+            model, state, options, min(left, options.max_step, next_knot(model, state.clock[0]) - state.clock[0]), scratch
+        ):
             return STEP_TOO_SMALL, False
         leave = first_leave(model, state, options, scratch)
     step = scratch.step

@@ -78,7 +78,11 @@ def _end_time(model, state, m, options, scratch):
     worth = False
     for i in range(m):
         rate = closed.kin[i].gN_dot
-        if scratch.restitution[i] > 0.0 and scratch.impulse[2 * i] > 0.0 and 0.0 < rate <= options.accumulation_speed:
+        if (
+            scratch.restitution[i] > 0.0
+            and scratch.impulse[2 * i] > 0.0
+            and options.speed_zero < rate <= options.accumulation_speed
+        ):
             worth = True
     if not worth:
         return latest
@@ -91,7 +95,7 @@ def _end_time(model, state, m, options, scratch):
     accelerate(model, scratch.rest, r, work, state.a)
     for i in range(m):
         rate, share = closed.kin[i].gN_dot, scratch.restitution[i]
-        if not (share > 0.0 and scratch.impulse[2 * i] > 0.0 and 0.0 < rate <= options.accumulation_speed):
+        if not (share > 0.0 and scratch.impulse[2 * i] > 0.0 and options.speed_zero < rate <= options.accumulation_speed):
             continue
         closing = -closed.kin[i].bar_N
         for k in range(closed.slots[i]):

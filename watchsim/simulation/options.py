@@ -26,6 +26,7 @@ class Options(NamedTuple):
     sleep: float  # share of a coordinate's force terms below which its acceleration counts as zero
     row_phase: float  # rad: spacing of recorded rows in free flight, in phase of the coordinate's own oscillation
     max_step: float  # s
+    size: float  # m, the scene's size
 
 
 OptionsRef = by_reference(Options, __name__)
@@ -46,4 +47,5 @@ def options_for(size: float, tolerance: float, max_step: float) -> Options:
         sleep=1e-9,
         row_phase=0.1,
         max_step=max_step,
+        size=size,
     )

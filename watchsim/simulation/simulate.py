@@ -175,7 +175,7 @@ class _Run:
         stored = stored_energy(self.compiled.model, self.state.q, self.state.u) - self.stored_at_start
         dissipated = {"friction": sums[FRICTION], "damping": sums[DAMPING], "impacts": sums[IMPACTS]}
         residual = sums[DRIVE] - stored - sum(dissipated.values())
-        scale = abs(sums[DRIVE]) or abs(self.stored_at_start)
+        scale = max(abs(sums[DRIVE]), abs(stored), sum(dissipated.values()))
         return {
             "in_J": float(sums[DRIVE]),
             "dissipated": {name: float(value) for name, value in dissipated.items()},

@@ -31,10 +31,10 @@ def label_islands(model, closed, m, out_label):
 
 
 @kernel
-def _is_still(model, state, options, size, i, terms):
+def _is_still(model, state, options, i, terms):
     """Coordinate i has no velocity and no acceleration beyond rounding; `terms` is the sum of the forces on it without sign."""
     coordinate = model.coordinates[i]
-    if abs(state.u[i]) * size > options.speed_zero * coordinate.scale:
+    if abs(state.u[i]) * options.size > options.speed_zero * coordinate.scale:
         return False
     return abs(state.a[i]) * coordinate.mass <= options.sleep * terms
 
@@ -47,7 +47,6 @@ def find_sleepers(model, state, options, scratch, m):
     """
     closed, work, label = scratch.rest, scratch.work, scratch.label
     label_islands(model, closed, m, label)
-    size = 1.0e8 * options.speed_zero  # the scene's size, see options.py
     n = len(label)
     for i in range(n):
         state.awake[i] = 0
@@ -60,7 +59,7 @@ def find_sleepers(model, state, options, scratch, m):
             scratch.q[j] += abs(closed.w_N[i, k] * work.force[2 * i]) + abs(closed.w_T[i, k] * work.force[2 * i + 1])
             touched[label[j]] = 1.0
     for i in range(n):
-        if touched[label[i]] == 0.0 or not _is_still(model, state, options, size, i, scratch.q[i]):
+        if touched[label[i]] == 0.0 or not _is_still(model, state, options, i, scratch.q[i]):
             _wake(state, label, label[i])
     for j in range(len(model.tables)):
         if model.tables[j].over == OVER_TIME:

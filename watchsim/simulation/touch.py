@@ -140,7 +140,8 @@ def crossing(model, state, options, k, start, end, scratch):
             clear = clear and leaving
         else:
             room, approach = -gap, rate
-        tau += _safe(room, approach, closing, bend, distance)
+        # Never less than the rounding of time itself.
+        tau += max(_safe(room, approach, closing, bend, distance), 4e-16 * tau)
     return math.inf
 
 
