@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from watchsim.contact.index_sets import STICK
 from watchsim.jit import kernel
 from watchsim.simulation.coupled import MONITORS, monitor, motion
 from watchsim.simulation.integrator import dense_value
@@ -31,6 +32,12 @@ def _root(model, state, options, which, low, high, scratch):
     f_high = monitor(model, state, scratch, options, i, kind)
     if not f_low > 0.0:
         return low
+    # A slip monitor fires a little beyond zero slip; the reversal itself is where the slip vanishes.
+    slack = 0.5 * options.speed_zero if kind == 1 and state.mode[scratch.closed.ids[i]] != STICK else 0.0
+    if f_low <= slack:
+        slack = 0.0
+    f_low -= slack
+    f_high -= slack
     side = 0
     for _ in range(HALVINGS):
         if high - low <= 1e-15 * (scratch.step.span[0] + high):
@@ -41,7 +48,7 @@ def _root(model, state, options, which, low, high, scratch):
             if not low < middle < high:
                 break
         _evaluate(model, state, options, middle, scratch)
-        f = monitor(model, state, scratch, options, i, kind)
+        f = monitor(model, state, scratch, options, i, kind) - slack
         if f <= 0.0:
             high, f_high = middle, f
             if side == 1:
