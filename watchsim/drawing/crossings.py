@@ -77,7 +77,7 @@ def crossings(outlines: Sequence[Outline]) -> list[Finding]:
         found += [overlap_finding(layer, meeting, *ends) for ends in overlapping]
         for p in meeting.points:
             on = any(math.dist(p, end) <= SHALLOW for ends in overlapping for end in ends)
-            if not on and fresh(layer, meeting, p, places) and crosses(layer, meeting, p):
+            if not on and crosses(layer, meeting, p) and fresh(layer, meeting, p, places):
                 found.append(crossing_finding(layer, meeting, p))
         if len(found) >= MOST:
             message = f"more than {MOST} crossings and overlaps; the others were not looked for"
@@ -91,14 +91,17 @@ def all_meetings(layer: Layer) -> tuple[Iterator[Meeting], tuple[Point, ...]]:
     near = near_pairs(table, TIGHT)
     found = meetings(table, near.first, near.second, TIGHT)
     first, second, point = near.first[found.pair], near.second[found.pair], found.point
-    keep = np.ones(len(point), bool)
+    elsewhere = np.ones(len(point), bool)
     for before, after in ((first, second), (second, first)):
         end, start = table.end[before], table.start[after]
         gap = np.hypot(*(end - start).T)
         away = np.minimum(np.hypot(*(point - end).T), np.hypot(*(point - start).T))
-        keep &= ~layer.follows(before, after) | (away > 2.0 * gap + 4.0 * TIGHT)
-    order = np.lexsort((second[keep], first[keep]))
-    first, second, point = first[keep][order], second[keep][order], point[keep][order]
+        elsewhere &= ~layer.follows(before, after) | (away > 2.0 * gap + 4.0 * TIGHT)
+    keep = np.zeros(len(near.first), bool)
+    keep[found.pair[elsewhere]] = True  # then with the joint, from which two edges may run back along each other
+    order = np.flatnonzero(keep[found.pair])
+    order = order[np.argsort(found.pair[order], kind="stable")]
+    first, second, point = first[order], second[order], point[order]
     return grouped(layer, first, second, point), near.crowds
 
 
@@ -160,7 +163,9 @@ def names(layer: Layer, meeting: Meeting) -> str:
 def crossing_finding(layer: Layer, meeting: Meeting, p: Point) -> Finding:
     itself = layer.owner[meeting.first] == layer.owner[meeting.second]
     loop = layer.outlines[int(layer.owner[meeting.first])].loop
-    what = ("the outline crosses itself" if loop.closed else "the open chain crosses itself") if itself else "two outlines cross"
+    what = (
+        ("the outline crosses itself" if loop.closed else "the open chain crosses itself") if itself else "two outlines cross"
+    )
     message = f"{what} at {shown(p)} mm: {names(layer, meeting)}; nobody knows what is inside"
     fix = "Trim them there in CAD" + ("." if itself else ", or put them on different layers.")
     severity = "error" if loop.closed else "warning"

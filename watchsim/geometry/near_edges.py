@@ -19,9 +19,9 @@ from watchsim.geometry.primitives import Arc, Edge, Point
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-FEW = 8  # edges in a cell that is refined no further
+FEW = 24  # edges in a cell that is refined no further
 DEEPEST = 30  # levels: cells of a billionth of the drawing
-GROWTH = 6  # entries per edge; edges that run along each other could be cut into cells for ever
+GROWTH = 64  # entries per edge; edges that run along each other could be cut into cells for ever
 CROWD = 32  # partners looked at for each edge in a cell that could not be refined
 
 
@@ -81,26 +81,30 @@ def near_pairs(table: Table, reach: float) -> Pairs:
         counts = np.diff(np.append(starts, len(edge)))
         last = level == DEEPEST or len(edge) > GROWTH * count or size < 4.0 * reach
         done = np.ones(len(counts), bool) if last else counts <= FEW
-        keys.append(_paired(edge, starts[done], counts[done], count))
+        keys.append(_paired(table, edge, starts[done], counts[done], reach))
         crowds += [tuple((low + (cell[k] + 0.5) * size).tolist()) for k in starts[done & (counts > CROWD)]]  # type: ignore[misc]
         if np.all(done):
             break
         crowded = np.repeat(~done, counts)
         edge, cell = _refined(table, edge[crowded], cell[crowded], low, 0.5 * size, reach)
-    unique = np.unique(np.concatenate(keys))
+    ordered = np.sort(np.concatenate(keys))
+    unique = ordered[np.append(True, ordered[1:] != ordered[:-1])[: len(ordered)]]
     return Pairs(unique // count, unique % count, tuple(crowds))
 
 
-def _paired(edge: Ints, starts: Ints, counts: Ints, total: int) -> Ints:
-    """Keys first · total + second of the pairs within each group; in groups above CROWD each with its next ones only."""
-    keys = []
+def _paired(table: Table, edge: Ints, starts: Ints, counts: Ints, reach: float) -> Ints:
+    """Keys first · n + second of the pairs within each group; in groups above CROWD each with its next ones only."""
+    keys = [np.empty(0, np.int64)]
     last = np.repeat(starts + counts, counts)  # one past the group's end, for each of its members
     member = np.repeat(starts - np.append(0, np.cumsum(counts)[:-1]), counts) + np.arange(int(counts.sum()))
     for step in range(1, int(min(counts.max(initial=0), CROWD + 1))):
         fits = member + step < last
-        first, second = edge[member[fits]], edge[member[fits] + step]
-        keys.append(first * total + second)
-    return np.concatenate(keys) if keys else np.empty(0, np.int64)
+        member, last = member[fits], last[fits]
+        first, second = edge[member], edge[member + step]
+        a, b = table.box[first], table.box[second]
+        near = np.all((a[:, :2] <= b[:, 2:] + reach) & (b[:, :2] <= a[:, 2:] + reach), axis=1)
+        keys.append(first[near] * len(table.box) + second[near])
+    return np.concatenate(keys)
 
 
 def _refined(table: Table, edge: Ints, cell: Ints, low: Floats, size: float, reach: float) -> tuple[Ints, Ints]:
@@ -111,7 +115,10 @@ def _refined(table: Table, edge: Ints, cell: Ints, low: Floats, size: float, rea
     box = table.box[edge]
     inside = np.all((box[:, :2] <= middle + half) & (box[:, 2:] >= middle - half), axis=1)
     edge, cell, middle = edge[inside], cell[inside], middle[inside]
-    passes = np.where(table.arc[edge], _arc_passes(table, edge, middle, half), _line_passes(table, edge, middle, half))
+    arcs = table.arc[edge]
+    passes = np.empty(len(edge), bool)
+    passes[arcs] = _arc_passes(table, edge[arcs], middle[arcs], half)
+    passes[~arcs] = _line_passes(table, edge[~arcs], middle[~arcs], half)
     return edge[passes], cell[passes]
 
 
