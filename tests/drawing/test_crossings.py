@@ -34,7 +34,10 @@ def found_places(outlines: list[list[Edge]], closed: bool = True) -> list[tuple[
 
 
 def polygon(*corners: tuple[float, float]) -> list[Edge]:
-    return [Line(1e-3 * a[0], 1e-3 * a[1], 1e-3 * b[0], 1e-3 * b[1]) for a, b in zip(corners, corners[1:] + corners[:1])]
+    return [
+        Line(1e-3 * a[0], 1e-3 * a[1], 1e-3 * b[0], 1e-3 * b[1])
+        for a, b in zip(corners, corners[1:] + corners[:1], strict=True)
+    ]
 
 
 def circle(x: float, y: float, r: float, start: float = 0.3) -> list[Edge]:

@@ -67,7 +67,7 @@ def by_sampling(a: Edge, b: Edge) -> list[complex]:
 @pytest.mark.parametrize("seed", range(3))
 def test_points_are_those_of_sampling_and_no_pair_is_lost(seed: int) -> None:
     rng = random.Random(seed)
-    edges = [random_edge(rng, rng.choice((0.1, 0.5, 2.0))) for _ in range(45)]
+    edges = [random_edge(rng, rng.choice((0.1, 0.5, 2.0))) for _ in range(80)]
     table = table_of(edges)
     near = near_pairs(table, REACH)
     found = meetings(table, near.first, near.second, REACH)
@@ -81,7 +81,7 @@ def test_points_are_those_of_sampling_and_no_pair_is_lost(seed: int) -> None:
             total += len(expected)
             assert len(got) == len(expected), (i, j)
             assert all(min(abs(z - w) for w in got) < 1e-9 for z in expected)
-    assert total > 100
+    assert total > 50
 
 
 def test_pairs_come_once_and_far_edges_not_at_all() -> None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -130,7 +131,7 @@ def stretches(layer: Layer, meeting: Meeting) -> list[tuple[Point, Point]]:
     by_way = sorted((nearest_fraction(a, p), p) for p in meeting.points)
     if isinstance(a, Arc) and a.is_circle:
         by_way.append((by_way[0][0] + 1.0, by_way[0][1]))
-    pieces = [(p, q, a.point(0.5 * (s + t))) for (s, p), (t, q) in zip(by_way, by_way[1:], strict=False)]
+    pieces = [(p, q, a.point(0.5 * (s + t))) for (s, p), (t, q) in pairwise(by_way)]
     table = table_of([b])
     zero = np.zeros(1, np.int64)
     return [(p, q) for p, q, middle in pieces if within(table, zero, np.array([middle]), TIGHT)[0]]
@@ -166,7 +167,7 @@ def crossing_finding(layer: Layer, meeting: Meeting, p: Point) -> Finding:
     what = (
         ("the outline crosses itself" if loop.closed else "the open chain crosses itself") if itself else "two outlines cross"
     )
-    message = f"{what} at {shown(p)} mm: {names(layer, meeting)}; nobody knows what is inside"
+    message = f"{what} at {shown(p)} mm: {names(layer, meeting)}"
     fix = "Trim them there in CAD" + ("." if itself else ", or put them on different layers.")
     severity = "error" if loop.closed else "warning"
     return Finding("crossing", severity, message, fix, loop.layer, 1e3 * p[0], 1e3 * p[1])

@@ -38,8 +38,8 @@ def meetings(table: Table, first: Ints, second: Ints, reach: float) -> Meetings:
     for a_arc, b_arc, roots in ((False, False, _lines), (False, True, _line_circle), (True, True, _circles)):
         for a, b in ((first, second), (second, first))[: 1 if a_arc == b_arc else 2]:
             chosen = numbers[(table.arc[a] == a_arc) & (table.arc[b] == b_arc)]
-            for found, p in roots(table, a[chosen], b[chosen], reach):
-                some, p = chosen[found], p[found]
+            for found, root in roots(table, a[chosen], b[chosen], reach):
+                some, p = chosen[found], root[found]
                 keep = within(table, a[some], p, reach) & within(table, b[some], p, reach)
                 pairs.append(some[keep])
                 points.append(p[keep])

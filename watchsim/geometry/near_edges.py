@@ -82,7 +82,7 @@ def near_pairs(table: Table, reach: float) -> Pairs:
         last = level == DEEPEST or len(edge) > GROWTH * count or size < 4.0 * reach
         done = np.ones(len(counts), bool) if last else counts <= FEW
         keys.append(_paired(table, edge, starts[done], counts[done], reach))
-        crowds += [tuple((low + (cell[k] + 0.5) * size).tolist()) for k in starts[done & (counts > CROWD)]]  # type: ignore[misc]
+        crowds += [tuple((low + (cell[k] + 0.5) * size).tolist()) for k in starts[done & (counts > CROWD)]]
         if np.all(done):
             break
         crowded = np.repeat(~done, counts)
