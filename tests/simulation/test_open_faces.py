@@ -74,9 +74,7 @@ def test_a_ball_slides_down_a_line_and_off_its_end(tmp_path: Path) -> None:
     q, u = done.at(leaves)
     assert math.hypot(u[0], u[1]) == pytest.approx(speed, rel=1e-6)
     assert q[0] == pytest.approx(BALL * math.sin(slope), abs=1e-8)
-    # From there its centre swings about the end of the line, unless it flies off at once: gravity across the slope must give v²/r.
-    flies = speed * speed / BALL > GRAVITY * math.cos(slope)
-    assert flies
+    assert speed * speed / BALL > GRAVITY * math.cos(slope), "too fast to turn about the end of the line: it flies"
     after = 0.2 - leaves
     q, _ = done.at(0.2)
     assert q[0] == pytest.approx(BALL * math.sin(slope) + speed * math.cos(slope) * after, abs=1e-7)

@@ -42,12 +42,12 @@ class Path(NamedTuple):
     closed: bool
 
 
-def chain(strokes: Sequence[Stroke], snap: float) -> Chains:
-    """The loops and open chains of all layers; `snap` in metres."""
+def chain(strokes: Sequence[Stroke], snap: float, deviation: float = 0.0) -> Chains:
+    """The loops and open chains of all layers; `snap` and the worst `deviation` of fitted curves in metres."""
     layers: dict[str, list[Stroke]] = {}
     for stroke in strokes:
         layers.setdefault(stroke.layer, []).append(stroke)
-    parts = [chain_layer(layer, members, snap) for layer, members in layers.items()]
+    parts = [chain_layer(layer, members, snap, deviation) for layer, members in layers.items()]
     return Chains(
         tuple(loop for part in parts for loop in part.loops),
         tuple(loop for part in parts for loop in part.open_chains),
@@ -55,7 +55,7 @@ def chain(strokes: Sequence[Stroke], snap: float) -> Chains:
     )
 
 
-def chain_layer(layer: str, strokes: Sequence[Stroke], snap: float) -> Chains:
+def chain_layer(layer: str, strokes: Sequence[Stroke], snap: float, deviation: float) -> Chains:
     """The same for the strokes of one layer. What one entity closes by itself is a loop, whatever else touches it."""
     drawn, findings = with_length(strokes)
     whole, pieces = closed_runs(drawn)
@@ -73,7 +73,7 @@ def chain_layer(layer: str, strokes: Sequence[Stroke], snap: float) -> Chains:
     still_open = [path for path in paths if not path.closed]
     notes += open_ends([path.steps for path in still_open], meeting.loose, pieces, nodes)
     chains = [assembled(travelled(path, pieces), layer, False) for path in still_open]
-    notes += crossings([*outlines, *chains])
+    notes += crossings([*outlines, *chains], deviation)
     loops = tuple(nested([outline.loop for outline in outlines]))
     return Chains(loops, tuple(chain.loop for chain in chains), (*findings, *repeated, *doubles, *slits, *notes))
 

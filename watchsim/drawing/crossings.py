@@ -37,8 +37,8 @@ class Meeting(NamedTuple):
 class Layer:
     """All edges of the outlines of one layer in one row."""
 
-    def __init__(self, outlines: Sequence[Outline]) -> None:
-        self.outlines = outlines
+    def __init__(self, outlines: Sequence[Outline], depth: float) -> None:
+        self.outlines, self.depth = outlines, depth
         self.edges: list[Edge] = [edge for outline in outlines for edge in outline.loop.edges]
         self.sources = [source for outline in outlines for source in outline.sources]
         counts = [len(outline.loop.edges) for outline in outlines]
@@ -66,9 +66,12 @@ class Layer:
         return (owner == self.owner[after]) & (following == after) & ~(last & ~self.closed[owner])
 
 
-def crossings(outlines: Sequence[Outline]) -> list[Finding]:
-    """Errors for crossings and warnings for edges on each other, for the outlines of one layer."""
-    layer = Layer(outlines)
+def crossings(outlines: Sequence[Outline], deviation: float = 0.0) -> list[Finding]:
+    """Errors for crossings and warnings for edges on each other, for the outlines of one layer.
+
+    `deviation` in metres is how far edges may lie from what was drawn: a curl of that size comes from following a curve by arcs.
+    """
+    layer = Layer(outlines, max(SHALLOW, 2.0 * deviation))
     found: list[Finding] = []
     places: dict[tuple[int, int], Grid] = {}
     name = outlines[0].loop.layer if outlines else ""
@@ -153,7 +156,7 @@ def crosses(layer: Layer, meeting: Meeting, p: Point) -> bool:
     if not layer.may_cross(first, second)[0]:
         return False
     (a, i), (b, j) = layer.track(meeting.first), layer.track(meeting.second)
-    return passes_through(a, a.position(i, p), b, b.position(j, p), SHALLOW)
+    return passes_through(a, a.position(i, p), b, b.position(j, p), layer.depth)
 
 
 def names(layer: Layer, meeting: Meeting) -> str:

@@ -107,7 +107,7 @@ def passes_through(a: Track, at_a: float, b: Track, at_b: float, depth: float) -
 
 def arrival(a: Track, at_a: float, b: Track, at_b: float, way: float, depth: float, most: float) -> float:
     """The side of a on which b arrives where it has left it by `depth`; 0 where it does not."""
-    step = 4.0 * depth
+    step = STRIDE * depth
     while step < most:
         p = b.at(at_b + way * step)
         if p is None:
