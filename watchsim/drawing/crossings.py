@@ -69,7 +69,7 @@ class Layer:
 def crossings(outlines: Sequence[Outline], deviation: float = 0.0) -> list[Finding]:
     """Errors for crossings and warnings for edges on each other, for the outlines of one layer.
 
-    `deviation` in metres is how far edges may lie from what was drawn: a curl of that size comes from following a curve by arcs.
+    `deviation` in metres is how far edges may lie from what was drawn: a curl of that size comes from the fit.
     """
     layer = Layer(outlines, max(SHALLOW, 2.0 * deviation))
     found: list[Finding] = []

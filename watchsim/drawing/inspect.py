@@ -8,13 +8,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from watchsim.drawing.drawing import Drawing
-from watchsim.drawing.findings import Finding
+from watchsim.drawing.findings import ORDER, Finding
 from watchsim.geometry.extent import Box, extents, total_length
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.mass import area
 from watchsim.geometry.primitives import Arc
 
-ORDER = ("error", "warning", "notice")
 SHOWN = 12  # findings of one code written out in the text
 
 
