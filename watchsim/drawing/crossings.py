@@ -71,10 +71,12 @@ def crossings(outlines: Sequence[Outline], deviation: float = 0.0) -> list[Findi
 
     `deviation` in metres is how far edges may lie from what was drawn: a curl of that size comes from the fit.
     """
+    if sum(len(outline.loop.edges) for outline in outlines) < 2:
+        return []
     layer = Layer(outlines, max(SHALLOW, 2.0 * deviation))
     found: list[Finding] = []
     places: dict[tuple[int, int], Grid] = {}
-    name = outlines[0].loop.layer if outlines else ""
+    name = outlines[0].loop.layer
     meets, crowds = all_meetings(layer)
     for meeting in meets:
         overlapping = stretches(layer, meeting)
