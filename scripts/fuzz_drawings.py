@@ -1,7 +1,7 @@
 """Does any damaged drawing bring the reader down, make it slow or large, or get lost in silence?
 
-Damages small files at random, reads each in a worker process with 1 GB of memory and 10 s of time, and keeps every file that fails.
-Files are numbered: number k of a format is the same damage on every machine, so `--only K` repeats it.
+Damages small files at random, reads each in a worker process with 1 GB of memory and 10 s of time, and keeps every file that
+fails. Files are numbered: number k of a format is the same damage on every machine, so `--only K` repeats it.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """How does the time to read a drawing grow with its size?
 
-Writes drawings of 1 000 to 100 000 edges, measures the whole command `watchsim inspect` in a fresh process (processor time, best
-of a few), fits the exponent, and writes docs/images/reading_speed.png and docs/reading-speed.md.
+Writes drawings of 1 000 to 100 000 edges, measures the whole command `watchsim inspect` in a fresh process (processor time, the
+least of a few runs), fits the exponent, and writes docs/images/reading_speed.png and docs/reading-speed.md.
 """
 
 from __future__ import annotations
@@ -132,8 +132,8 @@ def plot(results: dict[str, np.ndarray], empty: float, path: Path) -> None:
 def table(results: dict[str, np.ndarray], megabytes: dict[str, float], empty: float) -> str:
     head = (
         "# How fast drawings are read\n\n"
-        "Made by `scripts/measure_reading.py`: the whole command `watchsim inspect FILE` in a fresh process, processor time in seconds, the\n"
-        "least of a few runs. Outlines are cut into single entities and shuffled. The exponent is fitted from "
+        "Made by `scripts/measure_reading.py`: the whole command `watchsim inspect FILE` in a fresh process, processor time in\n"
+        "seconds, the least of a few runs. Outlines are cut into single entities and shuffled. The exponent is fitted from "
         f"{FITTED_FROM} edges on, after\nsubtracting the {empty:.2f} s of a drawing of one circle.\n\n"
     )
     sizes = next(iter(results.values()))[:, 0]

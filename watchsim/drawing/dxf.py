@@ -140,7 +140,9 @@ class Walker:
             self._warn_of_codes(record, self._spelling(record.text(8, "0")))
         elif record.kind not in READERS and record.codes.count(8) > 1:
             message = f"{record.name} at {record.place} names two layers: the entity behind it seems to have been swallowed"
-            self.found.findings.append(Finding("damaged", "error", message, "Draw again what is missing there, or export anew."))
+            self.found.findings.append(
+                Finding("damaged", "error", message, "Draw again what is missing there, or export anew.")
+            )
 
     def _warn_of_radius(self, head: Record, layer: str) -> None:
         if head.kind in ("CIRCLE", "ARC") and head.number(40) < 0.0:
