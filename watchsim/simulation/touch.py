@@ -131,14 +131,14 @@ def crossing(model, state, options, k, start, end, scratch):
         leaving = gap > zero or rate > options.speed_zero
         if outside and leaving:
             clear = True  # a contact that has just rebounded counts as clear: it returns to this gap by falling only
-        if outside and gap <= zero:
-            # Where a smooth outline goes on, its next piece has no gap either, and closes only when its turn comes.
-            margin = extent_margin(model, k, scratch.pose, nx, ny) + options.extent
-            if margin < 0.0:
-                # At least the time in which the gap cannot pass through its rounding.
-                tau += max(_time_outside(model, k, margin, (closing, swing), distance), zero / closing)
-                fresh = True
-                continue
+        # Where a smooth outline goes on, its next piece has no gap either, and closes only when its turn comes.
+        margin = extent_margin(model, k, scratch.pose, nx, ny) + options.extent
+        beside = _time_outside(model, k, margin, (closing, swing), distance) if margin < 0.0 else 0.0
+        if outside and gap <= zero and margin < 0.0:
+            # At least the time in which the gap cannot pass through its rounding.
+            tau += max(beside, zero / closing)
+            fresh = True
+            continue
         if outside and gap <= zero and ((clear and rate < 0.0) or gap < -zero):
             return min(end, tau + gap / -rate) if clear and gap > 0.0 and rate * (end - tau) < -gap else tau
         if outside:
@@ -146,8 +146,14 @@ def crossing(model, state, options, k, start, end, scratch):
             clear = clear and leaving
         else:
             room, approach = -gap, rate
+        safe = _safe(room, approach, closing, bend, distance)
+        if beside > safe:
+            # Beside its primitives the gap may pass through zero: which side it is on afterwards is found anew.
+            tau += beside
+            fresh = True
+            continue
         # Never less than the rounding of time itself.
-        tau += max(_safe(room, approach, closing, bend, distance), 4e-16 * tau)
+        tau += max(safe, 4e-16 * tau)
     return math.inf
 
 
