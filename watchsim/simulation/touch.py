@@ -127,7 +127,7 @@ def crossing(model, state, options, k, start, end, scratch):
             clear = True  # a contact that has just rebounded counts as clear: it returns to this gap by falling only
         if outside and gap <= zero:
             # Where a smooth outline goes on, its next piece has no gap either, and closes only when its turn comes.
-            margin = extent_margin(model, k, scratch.pose, nx, ny) + options.extent
+            margin = extent_margin(model, k, scratch.pose) + options.extent
             if margin < 0.0:
                 # At least the time in which the gap cannot pass through its rounding.
                 tau += max(_time_outside(model, k, margin, (closing, swing), distance), zero / closing)
