@@ -152,7 +152,17 @@ def _contacts(scene: Scene, sides: dict[Side, np.ndarray], primitives: Records) 
     if blocks:
         table = np.concatenate(blocks)
         contacts.a, contacts.b, contacts.group = table[:, 0], table[:, 1], table[:, 2]
+        _add_shapes(primitives, contacts)
     return contacts, laws, pairs
+
+
+def _add_shapes(primitives: Records, contacts: Records) -> None:
+    """Curvature of B's curve with A's radius added to it, and the reduced radius of the two."""
+    a, b = primitives[contacts.a], primitives[contacts.b]
+    arcs = b.kind == ARC
+    total = np.where(arcs, b.radius + b.side * a.radius, 1.0)
+    contacts.curvature = np.where(arcs, b.side / total, 0.0)
+    contacts.reduced = np.where(arcs, a.radius * b.radius / total, a.radius)
 
 
 def _touching(primitives: Records, first: np.ndarray, last: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

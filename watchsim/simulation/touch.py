@@ -117,22 +117,22 @@ def crossing(model, state, options, k, start, end, scratch):
     zero = options.gap_zero
     tau = start
     # `outside`: on the free side; `clear`: has been further than rounding from it since.
-    fresh, outside, clear = True, True, False
+    fresh, outside, clear, beside = True, True, False, 0.0
     while tau < end:
         if tau > start:
             body_within(model, state, body_a, tau, scratch)
             body_within(model, state, body_b, tau, scratch)
-        gap, rate, nx, ny = normal_gap(model, k, scratch.pose)
+        gap, rate, _, _ = normal_gap(model, k, scratch.pose)
         distance = _centre_distance(model, k, scratch.pose)
         state.counts[N_GAPS] += 1
         if fresh or not outside:
-            outside, clear = gap >= -zero, False
+            outside, clear = gap >= -zero, beside > 0.0  # what lay beside its primitives was no contact until now
         fresh = False
         leaving = gap > zero or rate > options.speed_zero
         if outside and leaving:
             clear = True  # a contact that has just rebounded counts as clear: it returns to this gap by falling only
         # Where a smooth outline goes on, its next piece has no gap either, and closes only when its turn comes.
-        margin = extent_margin(model, k, scratch.pose, nx, ny) + options.extent
+        margin = extent_margin(model, k, scratch.pose) + options.extent
         beside = _time_outside(model, k, margin, (closing, swing), distance) if margin < 0.0 else 0.0
         if outside and gap <= zero and margin < 0.0:
             # At least the time in which the gap cannot pass through its rounding.
@@ -158,14 +158,19 @@ def crossing(model, state, options, k, start, end, scratch):
 
 
 @kernel
-def _stays_open(model, state, options, k, length, bounds_a, bounds_b, scratch):
-    """True if one look at the current poses shows that contact k cannot close in the next `length` seconds."""
+def _stays_open(model, state, options, k, length, pair_a, bounds_a, bounds_b, scratch):
+    """True if one look at the current poses shows that contact k cannot close in the next `length` seconds.
+
+    `bounds_a` are those of body `pair_a`, `bounds_b` of the other body.
+    """
     gap, rate, _, _ = normal_gap(model, k, scratch.pose)
     state.counts[N_GAPS] += 1
     if abs(gap) <= options.gap_zero:
         return False
     # Behind its primitive a contact must come out before it can close.
     room, approach = (gap, -rate) if gap > 0.0 else (-gap, rate)
+    if model.primitives[model.contacts[k].a].body != pair_a:  # the circle may be on either body of the pair
+        bounds_a, bounds_b = bounds_b, bounds_a
     closing, bend, _ = _gap_bounds(model, k, length, bounds_a, bounds_b, scratch)
     return room > closing * length or _safe(room, approach, closing, bend, _centre_distance(model, k, scratch.pose)) >= length
 
@@ -189,7 +194,7 @@ def _first_of(model, cells, state, options, p, tau, until, scratch):
     doubts = 0
     for place in range(start, start + count):
         k = candidate(cells, how, place)
-        if state.mode[k] == 0 and not _stays_open(model, state, options, k, until - tau, bounds_a, bounds_b, scratch):
+        if state.mode[k] == 0 and not _stays_open(model, state, options, k, until - tau, pair.a, bounds_a, bounds_b, scratch):
             scratch.doubt[doubts] = k
             doubts += 1
     for j in range(doubts):
