@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.contact.lookup import MARGIN, cell_key, find_slot
-from watchsim.mechanism.model import CORNER, FREE, LINE, PIVOT, SLIDE, WIDE, Cells, Model
+from watchsim.mechanism.model import CORNER, FREE, FULL, LINE, PIVOT, SLIDE, Cells, Model
 
 Array = NDArray[np.float64]
 POINT = 1e-9  # m; a corner as a line this long, since shapely finds no distance to a line of no length
@@ -111,7 +111,7 @@ class _PairGeometry:
         self.tree = shapely.STRtree([_geometry(points) for points, _ in other_points])
         self.coordinates = np.concatenate([points for points, _ in self.points])
         # Plain values: reading a field of a record array from Python takes a microsecond each time.
-        self.bodies = [_Body(*model.bodies[b]) for b in (self.pair.a, self.pair.b)]
+        self.bodies = [_Body(*model.bodies[b].tolist()[: len(_Body._fields)]) for b in (self.pair.a, self.pair.b)]
         self.freedom = [self._freedom(b) for b in (self.pair.a, self.pair.b)]
         self.piece = np.repeat(np.arange(len(self.points)), [len(points) for points, _ in self.points])
 
@@ -200,10 +200,9 @@ def primitive_points(primitive: Any) -> tuple[Array, float]:
     if primitive.kind == LINE:
         end = (x + primitive.length * primitive.tx, y + primitive.length * primitive.ty)
         return np.array([(x, y), end]), 0.0
-    first = math.atan2(primitive.e0y, primitive.e0x)
-    sweep = (math.atan2(primitive.e1y, primitive.e1x) - first) % (2.0 * math.pi)
-    if primitive.extent > WIDE or (sweep == 0.0 and primitive.extent == WIDE):
-        sweep = 2.0 * math.pi
+    half = math.pi if primitive.extent == FULL else math.atan2(primitive.half_sin, primitive.half_cos)
+    sweep = 2.0 * half
+    first = math.atan2(primitive.side * primitive.ny, primitive.side * primitive.nx) - half
     angles = first + sweep * np.linspace(0.0, 1.0, ARC_PIECES + 1)
     sag = primitive.radius * (1.0 - math.cos(0.5 * sweep / ARC_PIECES))
     return np.stack([x + primitive.radius * np.cos(angles), y + primitive.radius * np.sin(angles)], axis=1), sag

@@ -90,6 +90,7 @@ def _bodies(scene: Scene) -> tuple[Records, dict[str, slice], np.ndarray, np.nda
     for row, body in zip(rows, scene.bodies, strict=True):
         row.motion = MOTION_CODE[body.motion]
         row.x, row.y, row.angle = *body.position, body.angle
+        row.c, row.s = math.cos(body.angle), math.sin(body.angle)
         row.axis_x, row.axis_y = body.axis
         start = {"fixed": (), "pivot": (body.angle,), "slide": (0.0,), "free": (*body.position, body.angle)}[body.motion]
         row.first = len(q) if start else -1
@@ -151,7 +152,17 @@ def _contacts(scene: Scene, sides: dict[Side, np.ndarray], primitives: Records) 
     if blocks:
         table = np.concatenate(blocks)
         contacts.a, contacts.b, contacts.group = table[:, 0], table[:, 1], table[:, 2]
+        _add_shapes(primitives, contacts)
     return contacts, laws, pairs
+
+
+def _add_shapes(primitives: Records, contacts: Records) -> None:
+    """Curvature of B's curve with A's radius added to it, and the reduced radius of the two."""
+    a, b = primitives[contacts.a], primitives[contacts.b]
+    arcs = b.kind == ARC
+    total = np.where(arcs, b.radius + b.side * a.radius, 1.0)
+    contacts.curvature = np.where(arcs, b.side / total, 0.0)
+    contacts.reduced = np.where(arcs, a.radius * b.radius / total, a.radius)
 
 
 def _touching(primitives: Records, first: np.ndarray, last: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

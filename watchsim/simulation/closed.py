@@ -57,7 +57,7 @@ def gather(model, cells, state, options, scratch):
             if state.mode[k] != OPEN:
                 continue
             gap, _, nx, ny = normal_gap(model, k, scratch.pose)
-            if abs(gap) <= options.gap_close and extent_margin(model, k, scratch.pose, nx, ny) >= -options.extent:
+            if abs(gap) <= options.gap_close and extent_margin(model, k, scratch.pose) >= -options.extent:
                 if m == ROOM:
                     return -2
                 m = insert(ids, m, k)

@@ -119,7 +119,7 @@ def _release(model, state, options, scratch, record):
     for j in range(state.numbers[0] + state.numbers[1]):
         k = state.active[j]
         _, _, nx, ny = normal_gap(model, k, scratch.pose)
-        if extent_margin(model, k, scratch.pose, nx, ny) < -1.5 * options.extent:
+        if extent_margin(model, k, scratch.pose) < -1.5 * options.extent:
             state.mode[k] = OPEN
             keep_event(state, record, OPEN_EVENT, k, -1, 0.0)
             continue
