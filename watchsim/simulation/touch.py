@@ -2,7 +2,7 @@
 
 Safe steps: with a bound B of |g''| over a stretch of time the gap stays above g + g' d - B d²/2, so time may advance to that
 parabola's zero. Near a contact this is Newton's method from the safe side (it converges quadratically and never jumps over
-a root); far from it, one evaluation covers the whole stretch.
+a root); far from it, one evaluation covers the whole stretch. The bounds hold for the motion as computed (path.py).
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from watchsim.contact.lookup import UNKNOWN, candidate, candidates, time_in_cell
 from watchsim.contact.poses import point_of
 from watchsim.jit import kernel
 from watchsim.mechanism.model import FREE, LINE, PIVOT, SLIDE
+from watchsim.simulation.path import body_on_path
 from watchsim.simulation.state import N_GAPS
-from watchsim.simulation.within import body_within
 
 
 @kernel
@@ -37,13 +37,16 @@ def _body_bounds(model, b, length, scratch):
 
 
 @kernel
-def _gap_bounds(model, k, length, scratch):
-    """Bounds over the next `length` seconds: |g'|, |g''| but for B's curvature, and the bodies' relative turning."""
+def _gap_bounds(model, k, motion_a, motion_b, length, pose):
+    """Bounds over the next `length` seconds: |g'|, |g''| but for B's curvature, and the bodies' relative turning.
+
+    `motion_a`, `motion_b`: `_body_bounds` of the bodies that bring the contact's A and B.
+    """
     contact = model.contacts[k]
     a, b = model.primitives[contact.a], model.primitives[contact.b]
-    speed_a, turn_a, push_a, twist_a = _body_bounds(model, a.body, length, scratch)
-    speed_b, turn_b, push_b, twist_b = _body_bounds(model, b.body, length, scratch)
-    pa, pb = scratch.pose[a.body], scratch.pose[b.body]
+    speed_a, turn_a, push_a, twist_a = motion_a
+    speed_b, turn_b, push_b, twist_b = motion_b
+    pa, pb = pose[a.body], pose[b.body]
     rx, ry = point_of(pa, a.x, a.y)
     arm_a = math.sqrt(rx * rx + ry * ry)
     speed = speed_a + turn_a * arm_a + speed_b
@@ -99,24 +102,37 @@ def _time_outside(model, k, margin, motion, distance):
 
 
 @kernel
+def stays_open(model, state, options, k, motion_a, motion_b, length, pose):
+    """True if one look at the current poses shows that open contact k cannot close within `length` seconds."""
+    gap, rate, _, _ = normal_gap(model, k, pose)
+    state.counts[N_GAPS] += 1
+    if gap <= options.gap_zero:
+        return False
+    closing, bend, _ = _gap_bounds(model, k, motion_a, motion_b, length, pose)
+    return closing * length < gap or _safe(gap, -rate, closing, bend, _centre_distance(model, k, pose)) >= length
+
+
+@kernel
 def crossing(model, state, options, k, start, end, scratch):
     """First time in [start, end) at which open contact k closes inside its primitives; infinity if it does not."""
     contact = model.contacts[k]
     body_a, body_b = model.primitives[contact.a].body, model.primitives[contact.b].body
-    body_within(model, state, body_a, start, scratch)
-    body_within(model, state, body_b, start, scratch)
-    closing, bend, swing = _gap_bounds(model, k, end - start, scratch)
+    body_on_path(model, state, body_a, start, scratch)
+    body_on_path(model, state, body_b, start, scratch)
+    length = end - start
+    motion_a, motion_b = _body_bounds(model, body_a, length, scratch), _body_bounds(model, body_b, length, scratch)
+    closing, bend, swing = _gap_bounds(model, k, motion_a, motion_b, length, scratch.pose)
     if closing == 0.0:
         return math.inf
-    zero = options.gap_zero
+    zero, band = options.gap_zero, options.gap_close
     tau = start
     # `outside`: on the free side; `clear`: has been further than rounding from it since.
     fresh, outside, clear = True, True, False
     while tau < end:
         if tau > start:
-            body_within(model, state, body_a, tau, scratch)
-            body_within(model, state, body_b, tau, scratch)
-        gap, rate, nx, ny = normal_gap(model, k, scratch.pose)
+            body_on_path(model, state, body_a, tau, scratch)
+            body_on_path(model, state, body_b, tau, scratch)
+        gap, rate, _, _ = normal_gap(model, k, scratch.pose)
         distance = _centre_distance(model, k, scratch.pose)
         state.counts[N_GAPS] += 1
         if fresh or not outside:
@@ -125,7 +141,9 @@ def crossing(model, state, options, k, start, end, scratch):
         leaving = gap > zero or rate > options.speed_zero
         if outside and leaving:
             clear = True  # a contact that has just rebounded counts as clear: it returns to this gap by falling only
-        if outside and gap <= zero:
+        # Where drift was taken back, positions jumped, and a gap may have closed by it.
+        shallow = not outside and gap >= -band
+        if (outside and gap <= zero) or shallow:
             # Where a smooth outline goes on, its next piece has no gap either, and closes only when its turn comes.
             margin = extent_margin(model, k, scratch.pose) + options.extent
             if margin < 0.0:
@@ -135,13 +153,18 @@ def crossing(model, state, options, k, start, end, scratch):
                 continue
         if outside and gap <= zero and ((clear and rate < 0.0) or gap < -zero):
             return min(end, tau + gap / -rate) if clear and gap > 0.0 and rate * (end - tau) < -gap else tau
+        if shallow and (rate < -options.speed_zero or (rate < 0.0 and gap <= zero - band)):
+            return tau
         if outside:
             room, approach = (max(gap, 0.0) if leaving else gap + 2.0 * zero), -rate
             clear = clear and leaving
         else:
             room, approach = -gap, rate
+        ahead = _safe(room, approach, closing, bend, distance)
+        if shallow:
+            ahead = min(ahead, _safe(gap + band, -rate, closing, bend, distance))
         # Never less than the rounding of time itself.
-        tau += max(_safe(room, approach, closing, bend, distance), 4e-16 * tau)
+        tau += max(ahead, 4e-16 * tau)
     return math.inf
 
 
@@ -166,19 +189,32 @@ def first_touch(model, cells, state, options, end, scratch):
             continue
         tau = 0.0
         while tau < best:
-            body_within(model, state, pair.a, tau, scratch)
-            body_within(model, state, pair.b, tau, scratch)
+            body_on_path(model, state, pair.a, tau, scratch)
+            body_on_path(model, state, pair.b, tau, scratch)
             how, start, count = candidates(model, cells, p, scratch.q)
             if how == UNKNOWN:
                 scratch.unknown[0] = p
                 scratch.at[:] = scratch.q
                 return False, 0.0, -1
             until = min(best, tau + time_in_cell(model, p, scratch.q, scratch.u, scratch.step.bound))
+            length = until - tau
+            first, last = _body_bounds(model, pair.a, length, scratch), _body_bounds(model, pair.b, length, scratch)
+            moved = False
             for place in range(start, start + count):
-                k = candidate(cells, how, place)
-                if state.mode[k] == 0:
-                    root = crossing(model, state, options, k, tau, until, scratch)
-                    if root < until:
-                        best, until, who = root, root, k
+                k = candidate(model, cells, how, place)
+                if state.mode[k] != 0:
+                    continue
+                if moved:
+                    body_on_path(model, state, pair.a, tau, scratch)
+                    body_on_path(model, state, pair.b, tau, scratch)
+                    moved = False
+                a_first = model.primitives[model.contacts[k].a].body == pair.a
+                motion_a, motion_b = (first, last) if a_first else (last, first)
+                if stays_open(model, state, options, k, motion_a, motion_b, length, scratch.pose):
+                    continue
+                root = crossing(model, state, options, k, tau, until, scratch)
+                moved = True
+                if root < until:
+                    best, until, who = root, root, k
             tau = until
     return True, best, who
