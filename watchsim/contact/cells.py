@@ -33,7 +33,7 @@ class CellFinder:
         self.seconds = 0.0
         self.learned = 0  # cells that shapely was asked about
         self._forget()
-        self._pairs = {p: _PairCells(model, p) for p in range(len(model.pairs)) if model.pairs[p].axes}
+        self._pairs = {p: _PairCells(model, p) for p in range(len(model.pairs)) if model.pairs[p].listed}
         for pair in self._pairs.values():
             self._insert(*pair.everything())
 

@@ -59,7 +59,7 @@ def insert_cells(keys, start, count, new_keys, new_start, new_count):
 def candidates(model, cells, p, q):
     """Candidates of body pair p at q: (UNKNOWN | LISTED | ALL, start, count)."""
     pair = model.pairs[p]
-    if pair.axes > 0:
+    if pair.listed:
         key = cell_key(model, p, q)
         if key >= 0:
             slot = find_slot(cells.keys, key)

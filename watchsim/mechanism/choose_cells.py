@@ -49,7 +49,7 @@ def choose_cells(bodies: Records, primitives: Records, contacts: Records, pairs:
             fold = fold if parts * fold <= MOST_PARTS else 1
             parts *= fold
             axes += _axes(bodies[b], travel, reach[b], fold)
-        pair.axes = len(axes)
+        pair.axes, pair.listed = len(axes), 1
         for i, axis in enumerate(axes):
             pair[f"c{i}"], pair[f"size{i}"], pair[f"wrap{i}"], pair[f"fold{i}"] = axis
 

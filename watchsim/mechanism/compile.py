@@ -68,9 +68,12 @@ def compile_scene(scene: Scene, prefilter: bool = True) -> Compiled:
     contacts, laws, pairs = _contacts(scene, sides, primitives)
     coordinates, tables, knots, fastest = _coordinates(scene, slices, size)
     pairs.clearance = CLEARANCE * size
-    near = _near(bodies, primitives, contacts, pairs, prefilter)
-    if prefilter:
-        choose_cells(bodies, primitives, contacts, pairs, near)
+    near = _near(bodies, primitives, contacts, pairs)
+    choose_cells(bodies, primitives, contacts, pairs, near)
+    if not prefilter:
+        # The cells stay, so that time is parted in the same way; only their answers are not used.
+        near = np.arange(len(contacts))
+        pairs.near_start, pairs.near_stop, pairs.listed = pairs.start, pairs.stop, 0
     parts = (bodies, coordinates, tables, knots, primitives, contacts, laws, pairs, near)
     return Compiled(Model(*(frozen(part) for part in parts)), layers, slices, size, q, u, fastest)
 
@@ -252,14 +255,12 @@ def _tables(scene: Scene, slices: dict[str, slice], rows: Records) -> tuple[Reco
     return tables, np.array(knots, float).reshape(len(knots), 2)
 
 
-def _near(bodies: Records, primitives: Records, contacts: Records, pairs: Records, prefilter: bool) -> np.ndarray:
-    """The contacts that can ever touch, by pair of bodies; all of them without `prefilter`."""
+def _near(bodies: Records, primitives: Records, contacts: Records, pairs: Records) -> np.ndarray:
+    """The contacts that can ever touch, by pair of bodies."""
     found = [np.zeros(0, np.int64)]
     count = 0
     for pair in pairs:
-        ids = np.arange(pair.start, pair.stop)
-        if prefilter:
-            ids = ids[reachable(bodies, primitives, contacts, pair)]
+        ids = np.flatnonzero(reachable(bodies, primitives, contacts, pair)) + pair.start
         pair.near_start, pair.near_stop = count, count + len(ids)
         count += len(ids)
         found.append(ids)
