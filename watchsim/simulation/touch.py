@@ -37,16 +37,16 @@ def _body_bounds(model, b, length, scratch):
 
 
 @kernel
-def _gap_bounds(model, k, motion_a, motion_b, length, pose):
+def _gap_bounds(model, k, length, bounds_a, bounds_b, scratch):
     """Bounds over the next `length` seconds: |g'|, |g''| but for B's curvature, and the bodies' relative turning.
 
-    `motion_a`, `motion_b`: `_body_bounds` of the bodies that bring the contact's A and B.
+    `bounds_a` and `bounds_b` are the `_body_bounds` of the two bodies.
     """
     contact = model.contacts[k]
     a, b = model.primitives[contact.a], model.primitives[contact.b]
-    speed_a, turn_a, push_a, twist_a = motion_a
-    speed_b, turn_b, push_b, twist_b = motion_b
-    pa, pb = pose[a.body], pose[b.body]
+    speed_a, turn_a, push_a, twist_a = bounds_a
+    speed_b, turn_b, push_b, twist_b = bounds_b
+    pa, pb = scratch.pose[a.body], scratch.pose[b.body]
     rx, ry = point_of(pa, a.x, a.y)
     arm_a = math.sqrt(rx * rx + ry * ry)
     speed = speed_a + turn_a * arm_a + speed_b
@@ -102,26 +102,16 @@ def _time_outside(model, k, margin, motion, distance):
 
 
 @kernel
-def stays_open(model, state, options, k, motion_a, motion_b, length, pose):
-    """True if one look at the current poses shows that open contact k cannot close within `length` seconds."""
-    gap, rate, _, _ = normal_gap(model, k, pose)
-    state.counts[N_GAPS] += 1
-    if gap <= options.gap_zero:
-        return False
-    closing, bend, _ = _gap_bounds(model, k, motion_a, motion_b, length, pose)
-    return closing * length < gap or _safe(gap, -rate, closing, bend, _centre_distance(model, k, pose)) >= length
-
-
-@kernel
 def crossing(model, state, options, k, start, end, scratch):
-    """First time in [start, end) at which open contact k closes inside its primitives; infinity if it does not."""
+    """First time in [start, end) at which open contact k closes inside its primitives; infinity if it does not.
+
+    The two bodies must stand where they are at `start`.
+    """
     contact = model.contacts[k]
     body_a, body_b = model.primitives[contact.a].body, model.primitives[contact.b].body
-    body_on_path(model, state, body_a, start, scratch)
-    body_on_path(model, state, body_b, start, scratch)
-    length = end - start
-    motion_a, motion_b = _body_bounds(model, body_a, length, scratch), _body_bounds(model, body_b, length, scratch)
-    closing, bend, swing = _gap_bounds(model, k, motion_a, motion_b, length, scratch.pose)
+    bounds_a = _body_bounds(model, body_a, end - start, scratch)
+    bounds_b = _body_bounds(model, body_b, end - start, scratch)
+    closing, bend, swing = _gap_bounds(model, k, end - start, bounds_a, bounds_b, scratch)
     if closing == 0.0:
         return math.inf
     zero, band = options.gap_zero, options.gap_close
@@ -141,16 +131,16 @@ def crossing(model, state, options, k, start, end, scratch):
         leaving = gap > zero or rate > options.speed_zero
         if outside and leaving:
             clear = True  # a contact that has just rebounded counts as clear: it returns to this gap by falling only
-        # Where drift was taken back, positions jumped, and a gap may have closed by it.
+        # Positions jump where drift is taken back: a gap may have closed by that.
         shallow = not outside and gap >= -band
-        if (outside and gap <= zero) or shallow:
-            # Where a smooth outline goes on, its next piece has no gap either, and closes only when its turn comes.
-            margin = extent_margin(model, k, scratch.pose) + options.extent
-            if margin < 0.0:
-                # At least the time in which the gap cannot pass through its rounding.
-                tau += max(_time_outside(model, k, margin, (closing, swing), distance), zero / closing)
-                fresh = True
-                continue
+        # Where a smooth outline goes on, its next piece has no gap either, and closes only when its turn comes.
+        margin = extent_margin(model, k, scratch.pose) + options.extent
+        beside = _time_outside(model, k, margin, (closing, swing), distance) if margin < 0.0 else 0.0
+        if (shallow or (outside and gap <= zero)) and margin < 0.0:
+            # At least the time in which the gap cannot pass through its rounding.
+            tau += max(beside, zero / closing)
+            fresh = True
+            continue
         if outside and gap <= zero and ((clear and rate < 0.0) or gap < -zero):
             return min(end, tau + gap / -rate) if clear and gap > 0.0 and rate * (end - tau) < -gap else tau
         if shallow and (rate < -options.speed_zero or (rate < 0.0 and gap <= zero - band)):
@@ -160,12 +150,61 @@ def crossing(model, state, options, k, start, end, scratch):
             clear = clear and leaving
         else:
             room, approach = -gap, rate
-        ahead = _safe(room, approach, closing, bend, distance)
+        safe = _safe(room, approach, closing, bend, distance)
         if shallow:
-            ahead = min(ahead, _safe(gap + band, -rate, closing, bend, distance))
+            safe = min(safe, _safe(gap + band, -rate, closing, bend, distance))
+        if beside > safe:
+            # Beside its primitives the gap may pass through zero: which side it is on afterwards is found anew.
+            tau += beside
+            fresh = True
+            continue
         # Never less than the rounding of time itself.
-        tau += max(ahead, 4e-16 * tau)
+        tau += max(safe, 4e-16 * tau)
     return math.inf
+
+
+@kernel
+def _stays_open(model, state, options, k, length, bounds_a, bounds_b, scratch):
+    """True if one look at the current poses shows that contact k cannot close in the next `length` seconds."""
+    gap, rate, _, _ = normal_gap(model, k, scratch.pose)
+    state.counts[N_GAPS] += 1
+    if -options.gap_close <= gap <= options.gap_zero:
+        return False
+    # Behind its primitive a contact must come out before it can close.
+    room, approach = (gap, -rate) if gap > 0.0 else (-gap, rate)
+    closing, bend, _ = _gap_bounds(model, k, length, bounds_a, bounds_b, scratch)
+    return room > closing * length or _safe(room, approach, closing, bend, _centre_distance(model, k, scratch.pose)) >= length
+
+
+@kernel
+def _place_pair(model, state, pair, tau, scratch):
+    body_on_path(model, state, pair.a, tau, scratch)
+    body_on_path(model, state, pair.b, tau, scratch)
+
+
+@kernel
+def _first_of(model, cells, state, options, p, tau, until, scratch):
+    """(known, time, contact) of the first closing in [tau, until) among the candidates of pair p in one cell."""
+    pair = model.pairs[p]
+    best, who = until, -1
+    how, start, count = candidates(model, cells, p, scratch.q)
+    if how == UNKNOWN:
+        return False, 0.0, -1
+    bounds_a = _body_bounds(model, pair.a, until - tau, scratch)
+    bounds_b = _body_bounds(model, pair.b, until - tau, scratch)
+    doubts = 0
+    for place in range(start, start + count):
+        k = candidate(model, cells, how, place)
+        if state.mode[k] == 0 and not _stays_open(model, state, options, k, until - tau, bounds_a, bounds_b, scratch):
+            scratch.doubt[doubts] = k
+            doubts += 1
+    for j in range(doubts):
+        if j > 0:
+            _place_pair(model, state, pair, tau, scratch)
+        root = crossing(model, state, options, scratch.doubt[j], tau, best, scratch)
+        if root < best:
+            best, who = root, scratch.doubt[j]
+    return True, best, who
 
 
 @kernel
@@ -189,32 +228,15 @@ def first_touch(model, cells, state, options, end, scratch):
             continue
         tau = 0.0
         while tau < best:
-            body_on_path(model, state, pair.a, tau, scratch)
-            body_on_path(model, state, pair.b, tau, scratch)
-            how, start, count = candidates(model, cells, p, scratch.q)
-            if how == UNKNOWN:
-                scratch.unknown[0] = p
-                scratch.at[:] = scratch.q
-                return False, 0.0, -1
+            _place_pair(model, state, pair, tau, scratch)
+            scratch.at[:] = scratch.q
             until = min(best, tau + time_in_cell(model, p, scratch.q, scratch.u, scratch.step.bound))
-            length = until - tau
-            first, last = _body_bounds(model, pair.a, length, scratch), _body_bounds(model, pair.b, length, scratch)
-            moved = False
-            for place in range(start, start + count):
-                k = candidate(model, cells, how, place)
-                if state.mode[k] != 0:
-                    continue
-                if moved:
-                    body_on_path(model, state, pair.a, tau, scratch)
-                    body_on_path(model, state, pair.b, tau, scratch)
-                    moved = False
-                a_first = model.primitives[model.contacts[k].a].body == pair.a
-                motion_a, motion_b = (first, last) if a_first else (last, first)
-                if stays_open(model, state, options, k, motion_a, motion_b, length, scratch.pose):
-                    continue
-                root = crossing(model, state, options, k, tau, until, scratch)
-                moved = True
-                if root < until:
-                    best, until, who = root, root, k
+            known, root, k = _first_of(model, cells, state, options, p, tau, until, scratch)
+            if not known:
+                scratch.unknown[0] = p
+                return False, 0.0, -1
+            if k >= 0:
+                best, who = root, k
+                break
             tau = until
     return True, best, who
