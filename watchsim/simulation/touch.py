@@ -2,7 +2,7 @@
 
 Safe steps: with a bound B of |g''| over a stretch of time the gap stays above g + g' d - B d²/2, so time may advance to that
 parabola's zero. Near a contact this is Newton's method from the safe side (it converges quadratically and never jumps over
-a root); far from it, one evaluation covers the whole stretch.
+a root); far from it, one evaluation covers the whole stretch. The bounds hold for the motion as computed (path.py).
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from watchsim.contact.lookup import UNKNOWN, candidate, candidates, time_in_cell
 from watchsim.contact.poses import point_of
 from watchsim.jit import kernel
 from watchsim.mechanism.model import FREE, LINE, PIVOT, SLIDE
+from watchsim.simulation.path import body_on_path
 from watchsim.simulation.state import N_GAPS
-from watchsim.simulation.within import body_within
 
 
 @kernel
@@ -114,14 +114,14 @@ def crossing(model, state, options, k, start, end, scratch):
     closing, bend, swing = _gap_bounds(model, k, end - start, bounds_a, bounds_b, scratch)
     if closing == 0.0:
         return math.inf
-    zero = options.gap_zero
+    zero, band = options.gap_zero, options.gap_close
     tau = start
     # `outside`: on the free side; `clear`: has been further than rounding from it since.
     fresh, outside, clear, beside = True, True, False, 0.0
     while tau < end:
         if tau > start:
-            body_within(model, state, body_a, tau, scratch)
-            body_within(model, state, body_b, tau, scratch)
+            body_on_path(model, state, body_a, tau, scratch)
+            body_on_path(model, state, body_b, tau, scratch)
         gap, rate, _, _ = normal_gap(model, k, scratch.pose)
         distance = _centre_distance(model, k, scratch.pose)
         state.counts[N_GAPS] += 1
@@ -131,22 +131,28 @@ def crossing(model, state, options, k, start, end, scratch):
         leaving = gap > zero or rate > options.speed_zero
         if outside and leaving:
             clear = True  # a contact that has just rebounded counts as clear: it returns to this gap by falling only
+        # Positions jump where drift is taken back: a gap may have closed by that.
+        shallow = not outside and gap >= -band
         # Where a smooth outline goes on, its next piece has no gap either, and closes only when its turn comes.
         margin = extent_margin(model, k, scratch.pose) + options.extent
         beside = _time_outside(model, k, margin, (closing, swing), distance) if margin < 0.0 else 0.0
-        if outside and gap <= zero and margin < 0.0:
+        if (shallow or (outside and gap <= zero)) and margin < 0.0:
             # At least the time in which the gap cannot pass through its rounding.
             tau += max(beside, zero / closing)
             fresh = True
             continue
         if outside and gap <= zero and ((clear and rate < 0.0) or gap < -zero):
             return min(end, tau + gap / -rate) if clear and gap > 0.0 and rate * (end - tau) < -gap else tau
+        if shallow and (rate < -options.speed_zero or (rate < 0.0 and gap <= zero - band)):
+            return tau
         if outside:
             room, approach = (max(gap, 0.0) if leaving else gap + 2.0 * zero), -rate
             clear = clear and leaving
         else:
             room, approach = -gap, rate
         safe = _safe(room, approach, closing, bend, distance)
+        if shallow:
+            safe = min(safe, _safe(gap + band, -rate, closing, bend, distance))
         if beside > safe:
             # Beside its primitives the gap may pass through zero: which side it is on afterwards is found anew.
             tau += beside
@@ -165,7 +171,7 @@ def _stays_open(model, state, options, k, length, pair_a, bounds_a, bounds_b, sc
     """
     gap, rate, _, _ = normal_gap(model, k, scratch.pose)
     state.counts[N_GAPS] += 1
-    if abs(gap) <= options.gap_zero:
+    if -options.gap_close <= gap <= options.gap_zero:
         return False
     # Behind its primitive a contact must come out before it can close.
     room, approach = (gap, -rate) if gap > 0.0 else (-gap, rate)
@@ -177,8 +183,8 @@ def _stays_open(model, state, options, k, length, pair_a, bounds_a, bounds_b, sc
 
 @kernel
 def _place_pair(model, state, pair, tau, scratch):
-    body_within(model, state, pair.a, tau, scratch)
-    body_within(model, state, pair.b, tau, scratch)
+    body_on_path(model, state, pair.a, tau, scratch)
+    body_on_path(model, state, pair.b, tau, scratch)
 
 
 @kernel
@@ -193,7 +199,7 @@ def _first_of(model, cells, state, options, p, tau, until, scratch):
     bounds_b = _body_bounds(model, pair.b, until - tau, scratch)
     doubts = 0
     for place in range(start, start + count):
-        k = candidate(cells, how, place)
+        k = candidate(model, cells, how, place)
         if state.mode[k] == 0 and not _stays_open(model, state, options, k, until - tau, pair.a, bounds_a, bounds_b, scratch):
             scratch.doubt[doubts] = k
             doubts += 1
