@@ -14,8 +14,11 @@ from watchsim.contact.lookup import UNKNOWN, candidate, candidates, time_in_cell
 from watchsim.contact.poses import point_of
 from watchsim.jit import kernel
 from watchsim.mechanism.model import FREE, LINE, PIVOT, SLIDE
+from watchsim.simulation.handover import continues_active
 from watchsim.simulation.state import N_GAPS
 from watchsim.simulation.within import body_within
+
+STRIDE = 0.25  # of the extent: steps in which a neighbour of a contact in force is watched until its turn comes
 
 
 @kernel
@@ -116,7 +119,7 @@ def crossing(model, state, options, k, start, end, scratch):
         if tau > start:
             body_within(model, state, body_a, tau, scratch)
             body_within(model, state, body_b, tau, scratch)
-        gap, rate, nx, ny = normal_gap(model, k, scratch.pose)
+        gap, rate, _, _ = normal_gap(model, k, scratch.pose)
         distance = _centre_distance(model, k, scratch.pose)
         state.counts[N_GAPS] += 1
         if fresh or not outside:
@@ -134,6 +137,10 @@ def crossing(model, state, options, k, start, end, scratch):
                 fresh = True
                 continue
         if outside and gap <= zero and ((clear and rate < 0.0) or gap < -zero):
+            if continues_active(model, state, options, k, scratch.pose):
+                tau += STRIDE * options.extent / closing
+                fresh = True
+                continue
             return min(end, tau + gap / -rate) if clear and gap > 0.0 and rate * (end - tau) < -gap else tau
         if outside:
             room, approach = (max(gap, 0.0) if leaving else gap + 2.0 * zero), -rate
