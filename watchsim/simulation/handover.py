@@ -18,7 +18,9 @@ from watchsim.simulation.keep import keep_event
 HANDOVER_EVENT = 6
 LEFT = 1.5  # times the extent beyond the primitive's end: the contact has left it; touching ends at 1, the monitor at 2
 NEAR = 100.0  # times the extent: contact points this close are one
-TURN = 1e-5  # rad. Large: shallow corners count as smooth; small: the turn within the extent on the smallest arcs counts as one
+FAR = 1e4  # times the extent: points further apart than that never are
+TURN = 1e-5  # rad. Large: shallow corners count as smooth; small: drawings that are tangent to a nanometre only get impacts
+SHARP = 1e-2  # rad: no joint that turns by more is smooth
 
 
 @kernel
@@ -33,11 +35,15 @@ def same_contact(model, k, other, options, pose):
     sign = 1.0 if a == c else -1.0
     _, _, nx, ny = normal_gap(model, k, pose)
     _, _, mx, my = normal_gap(model, other, pose)
-    if (nx - sign * mx) ** 2 + (ny - sign * my) ** 2 > TURN * TURN:
+    # One of them may be beyond its joint by some extents, and its normal turned by the curvature of that way.
+    turn = min(TURN + 4.0 * options.extent * max(abs(one.curvature), abs(two.curvature)), SHARP)
+    if (nx - sign * mx) ** 2 + (ny - sign * my) ** 2 > turn * turn:
         return False
     x, y = contact_point(model, k, pose)
     X, Y = contact_point(model, other, pose)
-    return (x - X) ** 2 + (y - Y) ** 2 <= (NEAR * options.extent) ** 2
+    radius = max(model.primitives[one.a].radius, model.primitives[two.a].radius)
+    near = min(NEAR * options.extent + turn * radius, FAR * options.extent)
+    return (x - X) ** 2 + (y - Y) ** 2 <= near * near
 
 
 @kernel
