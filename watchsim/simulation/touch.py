@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from watchsim.contact.gaps import extent_margin, normal_gap
+from watchsim.contact.gaps import extent_margins, normal_gap
 from watchsim.contact.lookup import UNKNOWN, candidate, candidates, time_in_cell
 from watchsim.contact.poses import point_of
 from watchsim.jit import kernel
@@ -93,15 +93,19 @@ def _safe(room, approach, closing, bend, distance):
 
 
 @kernel
-def _time_outside(model, k, margin, motion, distance):
-    """A time for which a contact that lies `margin` (negative) outside its primitives stays outside."""
+def _time_outside(model, k, inside_a, inside_b, motion, distance):
+    """A time for which a contact stays outside its primitives, from how far inside each it is; 0 if it is inside both."""
     contact = model.contacts[k]
     a, b = model.primitives[contact.a], model.primitives[contact.b]
     closing, swing = motion
-    scale = max(a.radius, a.length) + b.radius
     near = 0.5 * distance
-    drift = closing + (swing + closing / near) * scale
-    return min(-margin / drift, near / closing)
+    turn = swing + closing / near  # of the normal in either body, while the centres keep half their distance
+    time = 0.0
+    if inside_a < 0.0:
+        time = -inside_a / (turn * max(a.radius, a.length)) if turn > 0.0 else math.inf
+    if inside_b < 0.0:
+        time = max(time, -inside_b / (closing if b.kind == LINE else turn * b.radius))
+    return min(time, near / closing)
 
 
 @kernel
@@ -135,9 +139,10 @@ def crossing(model, state, options, k, start, end, scratch):
         if outside and leaving:
             clear = True  # a contact that has just rebounded counts as clear: it returns to this gap by falling only
         # Where a smooth outline goes on, its next piece has no gap either, and closes only when its turn comes.
-        margin = extent_margin(model, k, scratch.pose) + options.extent
-        beside = _time_outside(model, k, margin, (closing, swing), distance) if margin < 0.0 else 0.0
-        if outside and gap <= zero and margin < 0.0:
+        inside_a, inside_b = extent_margins(model, k, scratch.pose)
+        inside_a, inside_b = inside_a + options.extent, inside_b + options.extent
+        beside = _time_outside(model, k, inside_a, inside_b, (closing, swing), distance)
+        if outside and gap <= zero and min(inside_a, inside_b) < 0.0:
             # At least the time in which the gap cannot pass through its rounding.
             tau += max(beside, zero / closing)
             fresh = True
@@ -165,15 +170,20 @@ def crossing(model, state, options, k, start, end, scratch):
 
 
 @kernel
-def _stays_open(model, state, options, k, length, bounds_a, bounds_b, scratch):
-    """True if one look at the current poses shows that contact k cannot close in the next `length` seconds."""
+def _stays_open(model, state, options, k, length, first, bounds, scratch):
+    """True if one look at the current poses shows that contact k cannot close in the next `length` seconds.
+
+    `bounds` are the `_body_bounds` of the pair's bodies, of body `first` and of the other one.
+    """
     gap, rate, _, _ = normal_gap(model, k, scratch.pose)
     state.counts[N_GAPS] += 1
     if abs(gap) <= options.gap_zero:
         return False
     # Behind its primitive a contact must come out before it can close.
     room, approach = (gap, -rate) if gap > 0.0 else (-gap, rate)
-    closing, bend, _ = _gap_bounds(model, k, length, bounds_a, bounds_b, scratch)
+    # The circle may be on either body of the pair.
+    here = model.primitives[model.contacts[k].a].body == first
+    closing, bend, _ = _gap_bounds(model, k, length, bounds[0 if here else 1], bounds[1 if here else 0], scratch)
     return room > closing * length or _safe(room, approach, closing, bend, _centre_distance(model, k, scratch.pose)) >= length
 
 
@@ -191,12 +201,11 @@ def _first_of(model, cells, state, options, p, tau, until, scratch):
     how, start, count = candidates(model, cells, p, scratch.q)
     if how == UNKNOWN:
         return False, 0.0, -1
-    bounds_a = _body_bounds(model, pair.a, until - tau, scratch)
-    bounds_b = _body_bounds(model, pair.b, until - tau, scratch)
+    bounds = (_body_bounds(model, pair.a, until - tau, scratch), _body_bounds(model, pair.b, until - tau, scratch))
     doubts = 0
     for place in range(start, start + count):
         k = candidate(cells, how, place)
-        if state.mode[k] == 0 and not _stays_open(model, state, options, k, until - tau, bounds_a, bounds_b, scratch):
+        if state.mode[k] == 0 and not _stays_open(model, state, options, k, until - tau, pair.a, bounds, scratch):
             scratch.doubt[doubts] = k
             doubts += 1
     for j in range(doubts):
