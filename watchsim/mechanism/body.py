@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Point
+from watchsim.mechanism.solid import Solid
 
 MOTIONS = ("pivot", "slide", "free", "fixed")
 
@@ -17,7 +18,8 @@ class Body:
     At the start the frame stands at `position`, turned by `angle`. Coordinates q by motion:
     pivot - the angle itself; slide - the distance travelled along `axis` from `position`; free - x, y, angle; fixed - none.
     `velocity` is the start velocity in the same order (pivot: rad/s; slide: m/s; free: m/s, m/s, rad/s).
-    `centre_of_mass` is in the body frame; it matters only where gravity acts on a pivoted body.
+    `centre_of_mass` is in the body frame; it matters only where gravity acts on a pivoted body. `solids` say where mass and
+    inertia come from, as far as they were not given as numbers.
     """
 
     name: str
@@ -31,6 +33,7 @@ class Body:
     centre_of_mass: Point = (0.0, 0.0)
     loops: tuple[Loop, ...] = ()
     decoration: tuple[Loop, ...] = field(default=())
+    solids: tuple[Solid, ...] = field(default=())
 
     @property
     def layers(self) -> tuple[str, ...]:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.findings import Finding
@@ -25,7 +26,9 @@ SAME_POINT = 1e-9  # m; two circles on the pivot layer this close mark one pivot
 class Outlines:
     """What a drawing or a shape gives a body, in the coordinates of the drawing (metres).
 
-    `loops` can touch, `rest` are closed outlines on layers left out. `pivot` is None when nobody said where it is.
+    `loops` can touch, `rest` are closed outlines on layers left out, `aside` those that solids use as sections and
+    hairsprings, `chains` the open lines. `pivot` is None when nobody said where it is. `errors` are what is wrong on layers
+    left out.
     `sound` is False after a fault: questions about layers are then not worth asking.
     """
 
@@ -34,10 +37,13 @@ class Outlines:
     pivot: Point | None = None
     findings: tuple[Finding, ...] = ()
     sound: bool = True
+    aside: tuple[Loop, ...] = ()
+    chains: tuple[Loop, ...] = ()
+    errors: tuple[Finding, ...] = ()
 
     @property
     def all(self) -> tuple[Loop, ...]:
-        return self.loops + self.rest
+        return self.loops + self.rest + self.aside
 
 
 def read_outlines(table: Table, folder: Path) -> Outlines:
@@ -62,12 +68,28 @@ def _from_drawing(table: Table, folder: Path) -> Outlines:
     if drawing is None:
         return Outlines(pivot=UNREADABLE if marked else _given_pivot(table), sound=False)
     pivot = _marked_pivot(table, drawing) if marked else _given_pivot(table)
-    layers = _layers(table, drawing)
-    findings = tuple(_sorted_out(table, drawing, layers))
+    apart = frozenset(set_apart(table.mapping))
+    layers = _layers(table, drawing, apart)
+    findings = tuple(_sorted_out(table, drawing, layers, apart))
     closed = [loop for loop in drawing.loops if loop.closed]
-    loops = tuple(loop for loop in closed if loop.layer in layers)
-    rest = tuple(loop for loop in closed if loop.layer not in layers)
-    return Outlines(loops, rest, pivot, findings, sound=len(table.faults.found) == known)
+    return Outlines(
+        loops=tuple(loop for loop in closed if loop.layer in layers),
+        rest=tuple(loop for loop in closed if loop.layer not in layers and loop.layer not in apart),
+        pivot=pivot,
+        findings=findings,
+        sound=len(table.faults.found) == known,
+        aside=tuple(loop for loop in closed if loop.layer not in layers and loop.layer in apart),
+        chains=drawing.open_chains,
+        errors=tuple(f for f in drawing.findings if f.severity == "error" and f.layer is not None and f.layer not in layers),
+    )
+
+
+def set_apart(mapping: Mapping[str, Any]) -> Iterator[str]:
+    """The layers that solids name for sections, axes and hairsprings: what is drawn there is no outline that could touch."""
+    solids = mapping.get("solids")
+    for solid in solids if isinstance(solids, (list, tuple)) else ():
+        if isinstance(solid, Mapping) and ("turned" in solid or solid.get("hairspring") is True):
+            yield from (name for name in (solid.get("layer"), solid.get("turned")) if isinstance(name, str))
 
 
 def _open(table: Table, folder: Path) -> Drawing | None:
@@ -109,12 +131,12 @@ def _similar(path: Path) -> str:
     return f". {nearest(path.name, there)}".removesuffix(".") if there else ""
 
 
-def _layers(table: Table, drawing: Drawing) -> tuple[str, ...]:
+def _layers(table: Table, drawing: Drawing, apart: frozenset[str]) -> tuple[str, ...]:
     """The layers whose closed outlines can touch; every asked layer that is not there is a fault."""
     closed = dict.fromkeys(loop.layer for loop in drawing.loops if loop.closed)
     asked = table.texts("layers")
     if "layers" not in table:
-        asked = tuple(layer for layer in closed if layer != table.mapping.get("pivot"))
+        asked = tuple(layer for layer in closed if layer != table.mapping.get("pivot") and layer not in apart)
         if not asked and not any(finding.severity == "error" for finding in drawing.findings):
             table.faults.add(f"{table.path}.drawing", "it holds no closed outline.", _arrow(drawing.path))
         return asked
@@ -137,14 +159,15 @@ def _hint(word: str, known: Iterable[str]) -> str:
     return f"{hint} " if hint.startswith("Did") else ""
 
 
-def _sorted_out(table: Table, drawing: Drawing, layers: tuple[str, ...]) -> Iterator[Finding]:
+def _sorted_out(table: Table, drawing: Drawing, layers: tuple[str, ...], apart: frozenset[str]) -> Iterator[Finding]:
     """Notes the drawing's errors that concern this body as faults and hands on its warnings.
 
-    Where layers were chosen, the others may be as they like; where none were, all must be sound but the pivot's.
+    Where layers were chosen, the others may be as they like; where none were, all must be sound but the pivot's
+    and those of sections, which the solids look at.
     """
-    pivot = table.mapping.get("pivot")
+    excused = (table.mapping.get("pivot"), *apart)
     for finding in drawing.findings:
-        if finding.layer is not None and finding.layer not in layers and ("layers" in table or finding.layer == pivot):
+        if finding.layer is not None and finding.layer not in layers and ("layers" in table or finding.layer in excused):
             continue
         if finding.severity == "error":
             fix = _SETTING.sub(rf"\1 under [{table.path}]", finding.fix)
