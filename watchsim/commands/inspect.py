@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from dataclasses import replace
 
-from watchsim.commands.console import BAD_INPUT, FINE, InputError, print_json, say
+from watchsim.commands.console import BAD_INPUT, FINE, InputError, parse_length, print_json, say
 
 HELP = "read a drawing: units, size, layers, loops, lines, arcs, faults"
 
@@ -24,7 +24,7 @@ def run(args: argparse.Namespace) -> int:
     from watchsim.drawing.inspect import inspect_report, inspect_text
     from watchsim.drawing.read import read
 
-    lengths = {name: _length(name, getattr(args, name)) for name in ("snap", "fit") if getattr(args, name) is not None}
+    lengths = {name: parse_length(name, getattr(args, name)) for name in ("snap", "fit") if getattr(args, name) is not None}
     try:
         drawing = read(args.file, units=args.units, **lengths)
     except ValueError as error:
@@ -41,18 +41,6 @@ def run(args: argparse.Namespace) -> int:
     else:
         print(inspect_text(drawing))
     return BAD_INPUT if not drawing.layers and any(f.severity == "error" for f in drawing.findings) else FINE
-
-
-def _length(name: str, text: str) -> float:
-    from watchsim.units import LENGTH, UnitError, parse
-
-    try:
-        value = parse(text, LENGTH)
-    except UnitError as error:
-        raise InputError(f"--{name} {text}: {error}") from error
-    if not value > 0.0:
-        raise InputError(f"--{name} {text}: must be positive.")
-    return value
 
 
 def _only(drawing, names):  # type: ignore[no-untyped-def]

@@ -7,15 +7,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Any
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.mass import MassProperties, Section, mass_properties, section
 
-if TYPE_CHECKING:
-    from trimesh.path import Path2D
-
 SNAP = 1e-6  # m
+Path2D = Any  # a trimesh.path.Path2D
 
 
 @dataclass(frozen=True)
@@ -62,10 +60,9 @@ class Profile:
         from watchsim.drawing.content import Stroke
         from watchsim.geometry.export import edges_of
 
-        strokes, run = [], 0
+        strokes: list[Stroke] = []
         for number, (layer, edges) in enumerate(edges_of(path, _scale(path, units))):
-            run += 1
-            strokes += [Stroke(edge, layer, f"entity {number}", run) for edge in edges]
+            strokes += [Stroke(edge, layer, f"entity {number}", number) for edge in edges]
         chains = chain(strokes, snap)
         branches = [finding.message for finding in chains.findings if finding.code == "branch"]
         if branches:

@@ -21,6 +21,7 @@ from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line, Point
 
 MM = 1e3
+TIGHT = 1e-13  # m
 FORBIDDEN = str.maketrans(dict.fromkeys('<>/\\":;?*|=`,', "_"))  # in names of layers
 
 
@@ -34,7 +35,7 @@ def dxf_text(loops: Iterable[Loop], points: Iterable[tuple[str, Point]] = (), co
         document.layers.add(_name(layer), true_color=int(colour[1:], 16))
     space = document.modelspace()
     outlines = list(loops)
-    joints = Counter(joint for loop in outlines for joint in set(_joints(loop)))
+    joints = Counter(joint for loop in outlines for joint in _joints(loop))
     for loop in outlines:
         touching = any(joints[joint] > 1 for joint in _joints(loop))
         _add_loop(space, loop, touching)
@@ -69,7 +70,7 @@ def _joints(loop: Loop) -> list[tuple[str, int, int]]:
 def _add_loop(space: Modelspace, loop: Loop, touching: bool) -> None:
     attributes = {"layer": _name(loop.layer)}
     straight = all(isinstance(edge, Line) for edge in loop.edges)
-    if loop.closed and len(loop.edges) > 1 and (touching or (straight and _joined(loop))):
+    if loop.closed and len(loop.edges) > 1 and (touching or straight) and _joined(loop):
         corners = [(MM * edge.start[0], MM * edge.start[1], _bulge(edge)) for edge in loop.edges]
         space.add_lwpolyline(corners, format="xyb", close=True, dxfattribs=attributes)
         return
@@ -82,8 +83,8 @@ def _bulge(edge: Edge) -> float:
 
 
 def _joined(loop: Loop) -> bool:
-    """Does every edge start exactly where the one before ends?"""
-    return all(a.end == b.start for a, b in zip(loop.edges, (*loop.edges[1:], loop.edges[0]), strict=True))
+    """Does every edge start where the one before ends, but for rounding?"""
+    return all(math.dist(a.end, b.start) <= TIGHT for a, b in zip(loop.edges, (*loop.edges[1:], loop.edges[0]), strict=True))
 
 
 def _add_edge(space: Modelspace, edge: Edge, attributes: dict[str, str]) -> None:

@@ -1,8 +1,8 @@
 """How are outlines written as an SVG file?
 
-A page in real millimetres whose user unit is the millimetre, y turned down as SVG has it; one Inkscape layer per layer, in it one path with
-straight lines and circular A commands. Arcs are divided into parts of at most a quarter turn: A gives ends and radius
-only, and the centre of a half turn would be lost in their rounding.
+A page in real millimetres whose user unit is the millimetre, y turned down as SVG has it; one Inkscape layer per layer, in it
+one path with straight lines and circular A commands. Arcs are divided into parts of at most a quarter turn: A gives ends and
+radius only, and the centre of a half turn would be lost in their rounding.
 """
 
 from __future__ import annotations

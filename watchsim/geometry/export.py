@@ -9,6 +9,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
+from typing import cast
 
 import numpy as np
 import trimesh
@@ -53,7 +55,7 @@ def plate(loops: Iterable[Loop], bottom: float, thickness: float, deviation: flo
     ]
     if not parts:
         return None
-    mesh = trimesh.util.concatenate(parts)
+    mesh = _together(parts)
     mesh.apply_translation((0.0, 0.0, MM * bottom))
     return mesh
 
@@ -70,11 +72,10 @@ def revolved(profile: Iterable[Loop], deviation: float) -> trimesh.Trimesh | Non
         for ring in (part.exterior, *part.interiors):
             line = np.asarray(ring.coords)[:, ::-1].copy()  # (radius, height)
             line[:, 0] = np.maximum(line[:, 0], 0.0)
-            clockwise = not ring.is_ccw
-            if ring is part.exterior and not clockwise or ring is not part.exterior and clockwise:
+            if ring.is_ccw == (ring is part.exterior):  # revolve wants outer rings clockwise as seen here
                 line = line[::-1]
             parts.append(trimesh.creation.revolve(line, sections=sections))
-    return trimesh.util.concatenate(parts) if parts else None
+    return _together(parts) if parts else None
 
 
 def laid(mesh: trimesh.Trimesh, foot: Point, direction: Point, height: float) -> trimesh.Trimesh:
@@ -102,12 +103,16 @@ def glb(bodies: Sequence[Placed]) -> bytes:
             mesh.visual = TextureVisuals(material=_material(piece))
             name = f"{body.name}.{piece.name}"
             scene.add_geometry(mesh, node_name=name, geom_name=name, parent_node_name=body.name)
-    return bytes(scene.export(file_type="glb"))
+    return trimesh.exchange.gltf.export_glb(scene)
 
 
 def stl(body: Placed) -> bytes:
     """A binary STL file of all pieces of one body, millimetres, in the body's frame."""
-    return bytes(trimesh.util.concatenate([piece.mesh for piece in body.pieces]).export(file_type="stl"))
+    return trimesh.exchange.stl.export_stl(_together([piece.mesh for piece in body.pieces]))
+
+
+def _together(parts: list[trimesh.Trimesh]) -> trimesh.Trimesh:
+    return cast(trimesh.Trimesh, trimesh.util.concatenate(parts))
 
 
 def _material(piece: Piece) -> PBRMaterial:
@@ -162,7 +167,7 @@ def edges_of(path: Path2D, scale: float) -> list[tuple[str, list[Edge]]]:
         if isinstance(entity, entities.Arc):
             edges = [_arc(corners, bool(entity.closed), number)]
         elif isinstance(entity, entities.Line):
-            edges = [Line(*a, *b) for a, b in zip(corners, corners[1:], strict=False) if a != b]
+            edges = [Line(*a, *b) for a, b in pairwise(corners) if a != b]
         else:
             kind = type(entity).__name__
             raise ValueError(f"entity {number} of the path is a {kind}: only lines and arcs make an outline")

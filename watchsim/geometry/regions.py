@@ -1,7 +1,7 @@
 """Which area do outlines enclose, as polygons?
 
-Solids for other programs and overlap of layers seen from above need plane regions; arcs become chords here. Nothing that is computed
-exactly passes through this file.
+Solids for other programs and overlaps of layers seen from above need plane regions; arcs become chords here. Nothing that
+is computed exactly passes through this file.
 """
 
 from __future__ import annotations

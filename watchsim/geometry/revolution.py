@@ -68,6 +68,12 @@ def upright(loops: Iterable[Loop], foot: Point, direction: Point) -> tuple[Loop,
     return tuple(closed if high > slack else [loop.reflected((0.0, 0.0), (1.0, 0.0)) for loop in closed])
 
 
+def reach(loops: Iterable[Loop], foot: Point, direction: Point) -> float:
+    """The largest radius of the turned part, metres; ValueError as from `turned`."""
+    box = extents(upright(loops, foot, direction))
+    return box[3] if box else 0.0
+
+
 Moments = tuple[float, float, float, float]  # ∫ y, ∫ x y, ∫ x² y, ∫ y³ over an area
 
 

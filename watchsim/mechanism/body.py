@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from watchsim.drawing.profile import Profile
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.solid import Solid
@@ -38,3 +39,9 @@ class Body:
     @property
     def layers(self) -> tuple[str, ...]:
         return tuple(dict.fromkeys(loop.layer for loop in self.loops))
+
+    @property
+    def profile(self) -> Profile:
+        """Everything drawn of it, in its own frame."""
+        drawn = (*self.loops, *self.decoration)
+        return Profile(tuple(loop for loop in drawn if loop.closed), tuple(loop for loop in drawn if not loop.closed))

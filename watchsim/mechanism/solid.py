@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 from watchsim.geometry.hairspring import Spiral
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Point
+from watchsim.geometry.revolution import upright
 
 PLATE, UPRIGHT, LYING, HAIRSPRING = "plate", "upright", "lying", "hairspring"
 
@@ -80,6 +81,10 @@ class Solid:
         (fx, fy), direction = self.axis
         loops = tuple(loop.moved(0.0, shift) for loop in self.loops)
         return replace(self, weight=weight, pivot=pivot, loops=loops, axis=((fx + dx, fy + dy), direction))
+
+    def upright_profile(self) -> tuple[Loop, ...]:
+        """A turned part's half profile with its axis along x, the point of its axis at the origin."""
+        return self.loops if self.kind == UPRIGHT else upright(self.loops, *self.axis)
 
     def copies(self, loops: Iterable[Loop], first: int = 0) -> list[Loop]:
         """The loops at the places `first` to `count` - 1 about the pivot."""
