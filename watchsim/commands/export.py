@@ -32,7 +32,7 @@ def options(parser: argparse.ArgumentParser) -> None:
         "--thickness", metavar="LENGTH", default="0.2 mm", help='of layers whose solids say none (default "%(default)s")'
     )
     parser.add_argument(
-        "--deviation", metavar="LENGTH", default="1 µm", help='of chords from arcs in GLB and STL (default "%(default)s")'
+        "--deviation", metavar="LENGTH", default="0.2 µm", help='of chords from arcs in GLB and STL (default "%(default)s")'
     )
     parser.add_argument("--json", action="store_true", help="print what was written as one JSON object")
     parser.add_argument("--force", action="store_true", help="replace an export that exists")

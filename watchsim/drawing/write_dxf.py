@@ -1,9 +1,9 @@
 """How are outlines written as a DXF file?
 
-Release 2000 in millimetres: circles as CIRCLE, arcs as ARC, outlines of straight lines only as one closed LWPOLYLINE, all
-else as LINE. An arc stays an arc about its own centre; as the bulge of a polyline a flat one would lose digits. Only loops that
-touch another one are polylines with bulges all the same: as single lines nobody could tell which way they go on.
-Numbers are written so that they read back to the last bit, and the same outlines give the same bytes.
+Release 2010 (UTF-8, true colours) in millimetres: circles as CIRCLE, arcs as ARC, outlines of straight lines only as one closed
+LWPOLYLINE, all else as LINE. An arc stays an arc about its own centre; as the bulge of a polyline a flat one would lose digits.
+Only loops that touch another one are polylines with bulges all the same: as single lines nobody could tell which way they go
+on. Numbers are written so that they read back to the last bit, and the same outlines give the same bytes.
 """
 
 from __future__ import annotations
@@ -11,10 +11,10 @@ from __future__ import annotations
 import io
 import math
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 
 import ezdxf
-from ezdxf.document import Drawing as Document
 from ezdxf.layouts import Modelspace
 
 from watchsim.geometry.loop import Loop
@@ -30,28 +30,30 @@ def dxf_text(loops: Iterable[Loop], points: Iterable[tuple[str, Point]] = (), co
 
     Characters that DXF forbids in names of layers become underscores.
     """
-    document = _empty()
-    for layer, colour in (colours or {}).items():
-        document.layers.add(_name(layer), true_color=int(colour[1:], 16))
-    space = document.modelspace()
-    outlines = list(loops)
-    joints = Counter(joint for loop in outlines for joint in _joints(loop))
-    for loop in outlines:
-        touching = any(joints[joint] > 1 for joint in _joints(loop))
-        _add_loop(space, loop, touching)
-    for layer, (x, y) in points:
-        space.add_point((MM * x, MM * y), dxfattribs={"layer": _name(layer)})
     stream = io.StringIO()
-    document.write(stream)
+    with _no_dates():
+        document = ezdxf.new("R2010", units=ezdxf.units.MM)
+        for layer, colour in (colours or {}).items():
+            document.layers.add(_name(layer), true_color=int(colour[1:], 16))
+        space = document.modelspace()
+        outlines = list(loops)
+        joints = Counter(joint for loop in outlines for joint in _joints(loop))
+        for loop in outlines:
+            touching = any(joints[joint] > 1 for joint in _joints(loop))
+            _add_loop(space, loop, touching)
+        for layer, (x, y) in points:
+            space.add_point((MM * x, MM * y), dxfattribs={"layer": _name(layer)})
+        document.write(stream)
     return stream.getvalue()
 
 
-def _empty() -> Document:
-    """A document in millimetres without dates and random identifiers."""
+@contextmanager
+def _no_dates() -> Iterator[None]:
+    """Without dates and random identifiers, which ezdxf writes otherwise."""
     before = ezdxf.options.write_fixed_meta_data_for_testing
     ezdxf.options.write_fixed_meta_data_for_testing = True
     try:
-        return ezdxf.new("R2000", units=ezdxf.units.MM)
+        yield
     finally:
         ezdxf.options.write_fixed_meta_data_for_testing = before
 

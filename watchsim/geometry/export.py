@@ -69,10 +69,10 @@ def revolved(profile: Iterable[Loop], deviation: float) -> trimesh.Trimesh | Non
     sections = chords(Arc(0.0, 0.0, widest, 0.0, TURN), deviation)
     parts = []
     for part in pieces(region(closed, deviation, MM)):
-        for ring in (part.exterior, *part.interiors):
+        for number, ring in enumerate((part.exterior, *part.interiors)):
             line = np.asarray(ring.coords)[:, ::-1].copy()  # (radius, height)
             line[:, 0] = np.maximum(line[:, 0], 0.0)
-            if ring.is_ccw == (ring is part.exterior):  # revolve wants outer rings clockwise as seen here
+            if ring.is_ccw == (number == 0):  # revolve wants outer rings clockwise as seen here
                 line = line[::-1]
             parts.append(trimesh.creation.revolve(line, sections=sections))
     return _together(parts) if parts else None
