@@ -115,9 +115,14 @@ def _solid_lines(body: Body) -> Iterator[str]:
         rows.append(("together", "", whole))
     width, kinds = max(len(row[0]) for row in rows), max(len(row[1]) for row in rows)
     for name, kind, weight in rows:
-        x, y = (show(value, "mm", 5) for value in weight.centre)
+        x, y = (_millimetres(value) for value in weight.centre)
         inertia = _fitting(weight.about((0.0, 0.0)), INERTIAS)
-        yield f"      {name:{width}}  {kind:{kinds}}  {_fitting(weight.mass, MASSES):>12}  {inertia:>16}  centre ({x}, {y})"
+        yield f"      {name:{width}}  {kind:{kinds}}  {_fitting(weight.mass, MASSES):>12}  {inertia:>16}  centre ({x}, {y}) mm"
+
+
+def _millimetres(value: float) -> str:
+    """To the nanometre, so that rounding does not look like a place."""
+    return f"{round(to(value, 'mm'), 6) + 0.0:.6f}".rstrip("0").rstrip(".")
 
 
 def _kind(solid: Solid) -> str:
@@ -136,7 +141,7 @@ def _poise_lines(scene: Scene, body: Body) -> Iterator[str]:
     if body.motion != "pivot" or body.mass == 0.0 or distance <= POISED * (_reach(body) or distance):
         return
     pull = math.hypot(*scene.gravity)
-    what = f"its centre of mass lies {show(distance, 'mm', 4)} beside the pivot"
+    what = f"its centre of mass lies {show(distance, 'mm' if distance >= 0.1e-3 else 'µm', 4)} beside the pivot"
     if pull > 0.0:
         yield f"      {what}: gravity turns it with up to {show(body.mass * distance * pull, 'nN·m')}"
     else:

@@ -10,9 +10,10 @@ from watchsim.mechanism.body import Body
 from watchsim.mechanism.levels import Slab
 from watchsim.mechanism.scene import Scene
 from watchsim.mechanism.solid import HAIRSPRING, LYING, UPRIGHT
-from watchsim.render.palette import BLUED, RUBY, STEEL, Finish, finish
+from watchsim.render.palette import BLUED, BRASS, GILT, PLATE, RUBY, STEEL, Finish, finish
 
 METAL, STONE = 0.55, 0.05  # how metallic the parts look
+METALS = ((12e3, GILT), (8.0e3, BRASS), (5e3, STEEL), (3e3, RUBY))  # kg/m³ from which on: gold, copper alloys, steel, stones
 
 
 def placed_solids(scene: Scene, slabs: tuple[Slab, ...], deviation: float) -> list[Placed]:
@@ -48,11 +49,12 @@ def _pieces(slab: Slab, body: Body, rank: int, deviation: float) -> Iterator[Pie
 
 
 def _finish(slab: Slab, body: Body, rank: int) -> Finish:
-    if slab.solid is not None and slab.solid.kind == HAIRSPRING:
+    """By its density where the scene gives one, else by the words of body and layer as in the plane."""
+    if slab.solid is None:
+        return finish(body, slab.layer, rank)
+    if slab.solid.kind == HAIRSPRING:
         return BLUED
-    if slab.solid is not None and slab.solid.kind == UPRIGHT:
-        return STEEL
-    return finish(body, slab.layer, rank)
+    return next((look for lightest, look in METALS if slab.solid.density >= lightest), PLATE)
 
 
 def _named_apart(pieces: list[Piece]) -> list[Piece]:
