@@ -18,6 +18,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--fit", metavar="LENGTH", help='follow splines and ellipses this closely by arcs (default "0.1 µm")')
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of text")
     parser.add_argument("--png", metavar="FILE", help="where to write the picture (default: none)")
+    parser.add_argument("--centres", action="store_true", help="mark the centres of arcs in the picture")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -34,7 +35,7 @@ def run(args: argparse.Namespace) -> int:
     if args.png:
         from watchsim.render.drawing_picture import draw_drawing
 
-        draw_drawing(drawing, args.png)
+        draw_drawing(drawing, args.png, centres=args.centres)
         say(f"Picture: {args.png}")
     if args.json:
         print_json(inspect_report(drawing))

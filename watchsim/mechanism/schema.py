@@ -32,7 +32,7 @@ ANGLE = Key(units.ANGLE)
 SCENE: Keys = {"title": PLAIN, "schema": NUMBER, "gravity": Key(units.ACCELERATION)}
 SHAPES = ("circle", "polygon", "line")
 BODY: Keys = {
-    **{"drawing": PLAIN, "layers": PLAIN, "units": PLAIN, "snap": LENGTH},
+    **{"drawing": PLAIN, "layers": PLAIN, "units": PLAIN, "snap": LENGTH, "material": LENGTH},
     **{"circle": LENGTH, "polygon": LENGTH, "line": LENGTH},
     **{"pivot": LENGTH, "position": LENGTH, "motion": PLAIN, "axis": NUMBER, "angle": ANGLE},
     **{"velocity": Key(units.SPIN, units.SPEED), "spin": Key(units.SPIN)},
