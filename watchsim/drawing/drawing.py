@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from watchsim.drawing.findings import Finding
+from watchsim.drawing.profile import Profile
 from watchsim.geometry.loop import Loop
 
 
@@ -32,3 +33,8 @@ class Drawing:
     fitted_deviation: float = 0.0
     ignored: dict[str, int] = field(default_factory=dict)
     findings: tuple[Finding, ...] = ()
+
+    @property
+    def profile(self) -> Profile:
+        """All outlines, apart from the file; `drawing.profile.only("TEETH")` is that of one layer."""
+        return Profile(self.loops, self.open_chains)

@@ -12,6 +12,9 @@ from watchsim.drawing.findings import Finding
 from watchsim.drawing.tags import DxfError, Record, Tags
 
 SECTIONS = frozenset(("HEADER", "CLASSES", "TABLES", "BLOCKS", "ENTITIES", "OBJECTS", "THUMBNAILIMAGE", "ACDSDATA"))
+DRAWN = frozenset(
+    ("LINE", "POINT", "CIRCLE", "ARC", "ELLIPSE", "LWPOLYLINE", "SPLINE", "POLYLINE", "VERTEX", "SEQEND", "INSERT", "TEXT")
+)
 FROZEN = 1
 
 
@@ -77,6 +80,8 @@ def _sections(tags: Tags, findings: list[Finding]) -> dict[str, list[Record]]:
             inside = None
         elif inside is None:
             findings.append(_lost(record, "it stands outside all sections"))
+        elif record.kind in DRAWN and name not in ("ENTITIES", "BLOCKS"):
+            findings.append(_lost(record, f"it stands in section {name}, where nothing is drawn"))
         else:
             inside.append(record)
     if tags.fault:
@@ -138,6 +143,8 @@ def _blocks(records: list[Record], findings: list[Finding]) -> dict[str, Block]:
     for record in records:
         if record.kind in ("BLOCK", "ENDBLK"):
             if head is not None:
+                if head.text(2).lower() in blocks:
+                    findings.append(_lost(head, f'block "{head.text(2)}" is there already; the second one is used'))
                 blocks[head.text(2).lower()] = Block(head, tuple(entities))
                 if record.kind == "BLOCK":
                     findings.append(_lost(head, f'block "{head.text(2)}" has no ENDBLK'))

@@ -33,7 +33,7 @@ def read(path: Path | str, units: str | None = None, snap: float = SNAP, fit: fl
     ending = path.suffix.lower().lstrip(".")
     with collector_paused():
         content = read_content(path, ending, units, fit)
-        chains = chain(content.strokes, snap)
+        chains = chain(content.strokes, snap, content.fitted_deviation)
         findings = [*content.findings, *chains.findings, *facets((*chains.loops, *chains.open_chains))]
     if not content.strokes and not any(finding.severity == "error" for finding in findings):
         findings.insert(0, emptiness(content))
