@@ -144,7 +144,6 @@ MISUSES = [
     ('layer = "WEIGHT"\n' + PLATE + "count = 2.5\n", "count", "a whole number from 1 on"),
     ('layer = "WEIGHT"\n' + PLATE + 'count = "two"\n', "count", "does not begin with a number"),
     ('layer = "WEIGHT"\n' + PLATE + "turnd = 1\n", "turnd", 'Did you mean "turned"?'),
-    ('layer = "STRIP"\n' + PLATE, "layer", "it is open. Close it"),
     (STAFF + 'thickness = "1 mm"\n', "thickness", "has its size from its profile"),
     (STAFF + "count = 2\n", "count", "room for one"),
     (STAFF + "hairspring = true\n", "turned", "not both"),
@@ -180,6 +179,13 @@ def test_every_misuse_has_one_fault_with_its_line(balance, solid, key, message):
     assert fault.key == f"bodies.balance.solids.0{'.' if key else ''}{key}"
     assert message in fault.message
     assert ".toml:" in fault.place
+
+
+def test_an_open_outline_has_no_mass(balance):
+    with pytest.raises(SceneError) as caught:
+        loaded(balance, 'layer = "STRIP"\n' + PLATE)
+    (fault,) = caught.value.faults
+    assert "it is open. Close it" in fault.message
 
 
 def test_faults_of_all_solids_come_at_once(balance):
