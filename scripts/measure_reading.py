@@ -132,8 +132,8 @@ def plot(results: dict[str, np.ndarray], empty: float, path: Path) -> None:
 def table(results: dict[str, np.ndarray], megabytes: dict[str, float], empty: float) -> str:
     head = (
         "# How fast drawings are read\n\n"
-        "Made by `scripts/measure_reading.py`: the whole command `watchsim inspect FILE` in a fresh process, processor time in\n"
-        "seconds, the least of a few runs. Outlines are cut into single entities and shuffled. The exponent is fitted from "
+        "Made by `scripts/measure_reading.py`: the whole command `watchsim inspect FILE` in a fresh process, processor time\n"
+        "in seconds, the least of a few runs. Outlines are cut into single entities and shuffled. The exponent is fitted from "
         f"{FITTED_FROM} edges on, after\nsubtracting the {empty:.2f} s of a drawing of one circle.\n\n"
     )
     sizes = next(iter(results.values()))[:, 0]

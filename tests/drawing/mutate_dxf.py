@@ -6,7 +6,8 @@ One accident per file: bytes, numbers, group codes, lines, the nesting of blocks
 from __future__ import annotations
 
 import random
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from pathlib import Path
 
 import dxf_text as d
 
@@ -48,6 +49,9 @@ CODES = (
     b"-5",
 )
 WORDS = (b"INSERT", b"BLOCK", b"ENDBLK", b"SECTION", b"ENDSEC", b"EOF", b"SPLINE", b"VERTEX", b"SEQEND", b"LINE", b"POLYLINE")
+
+
+KINDS = (b"LINE", b"ARC", b"CIRCLE", b"ELLIPSE", b"SPLINE", b"LWPOLYLINE", b"POLYLINE", b"VERTEX", b"INSERT", b"POINT")
 
 
 def samples() -> list[bytes]:
@@ -95,6 +99,35 @@ def entities(data: bytes) -> int:
         elif code == "0" and inside:
             count += value.upper() not in ("VERTEX", "SEQEND", "INSERT")
     return count
+
+
+def lost(data: bytes) -> bool:
+    """Does the name of an entity stand anywhere but after a group code 0?"""
+    lines = [line.strip() for line in data.split(b"\n")]
+    end = lines.index(b"EOF") if b"EOF" in lines else len(lines)
+    begun = sum(code == b"0" and name in KINDS for code, name in zip(lines[:end:2], lines[1:end:2], strict=False))
+    return sum(line in KINDS for line in lines[:end]) > begun
+
+
+def pieces(path: Path) -> int | None:
+    """How many entities and points ezdxf draws, blocks unfolded; None where it gives up."""
+    from ezdxf import recover
+    from ezdxf.entities import Insert
+
+    def count(entities: Iterable[object], depth: int) -> int:
+        total = 0
+        for entity in entities:
+            if isinstance(entity, Insert):
+                copies = entity.multi_insert() if entity.mcount > 1 else [entity]
+                total += sum(count(copy.virtual_entities(), depth + 1) for copy in copies) if depth < 9 else 0
+            else:
+                total += 1
+        return total
+
+    try:
+        return count(recover.readfile(path)[0].modelspace(), 0)
+    except Exception:
+        return None
 
 
 def mutate(rng: random.Random, data: bytes) -> bytes:

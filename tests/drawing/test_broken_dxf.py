@@ -149,6 +149,20 @@ def test_what_a_damaged_boundary_swallows_is_said(read_bytes: Reader) -> None:
     assert "names two layers" in errors(after_text)["damaged"]
 
 
+def test_a_section_that_swallows_its_first_entity_is_said(read_bytes: Reader) -> None:
+    data = d.dxf(d.circle(0, 0, 1) + d.circle(9, 0, 1)).replace(b"ENTITIES\n0\n", b"ENTITIES\n70\n")
+    assert "section ENTITIES begins with groups of something else" in errors(read_bytes(data))["damaged"]
+    block = d.block("B", d.circle(0, 0, 1) + d.circle(5, 0, 1)).replace("0\nCIRCLE", "70\nCIRCLE", 1)
+    messages = [finding.message for finding in read_bytes(d.dxf(d.insert("B", (0, 0)), blocks=block)).findings]
+    assert any("names two layers" in message for message in messages)
+
+
+def test_a_drawing_of_a_few_micrometres_is_told_of(read_bytes: Reader) -> None:
+    drawing = read_bytes(d.dxf(d.circle(0, 0, 0.004)))
+    assert [(finding.code, finding.severity) for finding in drawing.findings] == [("tiny", "warning")]
+    assert not read_bytes(d.dxf(d.circle(0, 0, 0.05))).findings
+
+
 def test_entities_outside_their_sections_are_said(read_bytes: Reader) -> None:
     tables = "0\nSECTION\n2\nTABLES\n" + d.circle(5, 0, 1) + "0\nENDSEC\n"
     assert "stands in section TABLES" in errors(read_bytes(d.dxf(d.circle(0, 0, 1), tables=tables)))["damaged"]

@@ -6,6 +6,7 @@ The one door to all formats: bytes in, a Drawing out. Whatever is wrong with the
 from __future__ import annotations
 
 import gc
+import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -17,9 +18,11 @@ from watchsim.drawing.dxf import read_dxf
 from watchsim.drawing.facets import facets
 from watchsim.drawing.findings import Finding
 from watchsim.geometry.extent import extents
+from watchsim.geometry.loop import Loop
 
 SNAP = 1e-6
 FIT = 1e-7
+SMALLEST = 20.0  # times the snap: the smallest drawing that is believed
 
 
 def read(path: Path | str, units: str | None = None, snap: float = SNAP, fit: float = FIT) -> Drawing:
@@ -39,6 +42,7 @@ def read(path: Path | str, units: str | None = None, snap: float = SNAP, fit: fl
         findings.insert(0, emptiness(content))
     if content.units is None and content.strokes:
         findings.insert(0, units_missing((*chains.loops, *chains.open_chains)))
+    findings += smallness((*chains.loops, *chains.open_chains), snap)
     return Drawing(
         path=path,
         format=ending,
@@ -100,7 +104,17 @@ def emptiness(content: Content) -> Finding:
     return Finding("empty", "error", message, "Look at hidden layers and at paper space in CAD.")
 
 
-def units_missing(loops: tuple) -> Finding:
+def smallness(loops: tuple[Loop, ...], snap: float) -> list[Finding]:
+    """A warning where the whole drawing is hardly larger than what counts as one point: its units are wrong."""
+    box = extents(loops)
+    across = max(box[2] - box[0], box[3] - box[1]) if box else math.inf
+    if across > SMALLEST * snap:
+        return []
+    message = f"the whole drawing is {1e6 * across:.3g} µm across, and ends within {1e6 * snap:.3g} µm are taken for one point"
+    return [Finding("tiny", "warning", message, "Look at the units of the drawing.")]
+
+
+def units_missing(loops: tuple[Loop, ...]) -> Finding:
     """The error for a drawing without units, with the sizes it could have."""
     box = extents(loops) or (0.0, 0.0, 0.0, 0.0)
     across = 1e3 * max(box[2] - box[0], box[3] - box[1])
