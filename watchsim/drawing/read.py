@@ -6,8 +6,10 @@ The one door to all formats: bytes in, a Drawing out. Whatever is wrong with the
 from __future__ import annotations
 
 import gc
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 from watchsim.drawing.chain import chain
@@ -30,9 +32,8 @@ def read(path: Path | str, units: str | None = None, snap: float = SNAP, fit: fl
     path = Path(path)
     if not snap > 0.0 or not fit > 0.0:
         raise ValueError(f"snap and fit must be positive lengths, not {snap:g} m and {fit:g} m")
-    ending = path.suffix.lower().lstrip(".")
     with collector_paused():
-        content = read_content(path, ending, units, fit)
+        form, content = read_content(path, units, fit)
         chains = chain(content.strokes, snap)
         findings = [*content.findings, *chains.findings, *facets((*chains.loops, *chains.open_chains))]
     if not content.strokes and not any(finding.severity == "error" for finding in findings):
@@ -41,7 +42,7 @@ def read(path: Path | str, units: str | None = None, snap: float = SNAP, fit: fl
         findings.insert(0, units_missing((*chains.loops, *chains.open_chains)))
     return Drawing(
         path=path,
-        format=ending,
+        format=form,
         units=content.units,
         units_from=content.units_from,
         loops=chains.loops,
@@ -68,18 +69,38 @@ def collector_paused() -> Iterator[None]:
             gc.enable()
 
 
-def read_content(path: Path, ending: str, units: str | None, fit: float) -> Content:
-    """What the reader for that ending finds; a file that is not there or cannot be opened is a finding too."""
-    if ending == "svg":
-        return refused("SVG drawings are not read yet", "Save the drawing as DXF.")
-    if ending != "dxf":
-        return refused(f'"{path.name}" does not end in .dxf: this kind of file is not read', "Save the drawing as DXF.")
+def read_content(path: Path, units: str | None, fit: float) -> tuple[str, Content]:
+    """The format and what its reader finds; a file that is not there or cannot be opened is a finding too."""
+    ending = path.suffix.lower().lstrip(".")
+    if ending not in ("dxf", "svg", "svgz"):
+        fix = "Save the drawing as DXF or SVG."
+        return ending, refused(f'"{path.name}" ends in neither .dxf nor .svg: this kind of file is not read', fix)
     try:
         data = path.read_bytes()
     except OSError as error:
         reason = "there is no such file" if isinstance(error, FileNotFoundError) else error.strerror or "it cannot be read"
-        return Content(findings=(Finding("unreadable", "error", f"{path}: {reason}"),))
-    return read_dxf(data, units, fit)
+        return ending[:3], Content(findings=(Finding("unreadable", "error", f"{path}: {reason}"),))
+    form = format_of(data, ending[:3])
+    if form == "svg":
+        from watchsim.drawing.svg import read_svg
+
+        content = read_svg(data, units, fit)
+    else:
+        content = read_dxf(data, units, fit)
+    if form != ending[:3]:
+        message = f"the name ends in .{ending} but the file is {form.upper()} inside; it is read as such"
+        content = replace(content, findings=(Finding("format", "warning", message), *content.findings))
+    return form, content
+
+
+def format_of(data: bytes, ending: str) -> str:
+    """ "dxf" or "svg", by the ending unless the content is clearly the other."""
+    head = data[:4096].lstrip(b"\xef\xbb\xbf \t\r\n")
+    if ending == "dxf" and (data[:2] == b"\x1f\x8b" or (head[:1] == b"<" and b"<svg" in head)):
+        return "svg"
+    if ending == "svg" and (head.startswith(b"AutoCAD Binary DXF") or re.match(rb"(?:0|999)\s*\r?\n", head)):
+        return "dxf"
+    return ending
 
 
 def refused(message: str, fix: str) -> Content:
