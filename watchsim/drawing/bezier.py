@@ -21,7 +21,19 @@ from watchsim.geometry.primitives import TURN, Arc
 
 Array = NDArray[np.float64]
 SAMPLES = 16  # per curve; those of a circle have two humps
+SLACK = 0.01  # of the tolerance: curves that meet nearly smoothly may be moved so much
+WIDEST = 1e6  # of the first curve's range of the parameter
+LONGEST = 500  # curves in one chain
+STRAIGHT = 1e-9  # of the squared length: a cubic whose control points lie on a line stays by itself
 CIRCLE_LIKE = 1e-3  # of the radius: a row of curves this near a circle was meant to be one
+
+
+class Chain(NamedTuple):
+    """Some Béziers as one spline; how many they are, and how far (drawing units) a common point of theirs was moved."""
+
+    spline: Spline
+    curves: int
+    moved: float
 
 
 class Circle(NamedTuple):
@@ -35,10 +47,91 @@ def emit_row(found: Gathering, shapes: Sequence[Shape], layer: str, source: str)
     """Keeps the edges of one row of shapes (drawing units); rows of curves on one circle become that circle."""
     for curved, group in groupby(shapes, key=lambda shape: isinstance(shape, Spline)):
         row = list(group)
-        if curved and _round(found, [shape for shape in row if isinstance(shape, Spline)], layer, source):
+        if not curved:
+            for shape in row:
+                emit(found, shape, layer, source)
             continue
-        for shape in row:
-            emit(found, shape, layer, source)
+        curves = [shape for shape in row if isinstance(shape, Spline)]
+        if not _round(found, curves, layer, source):
+            for chain in joined(curves, SLACK * found.tolerance / found.scale):
+                _emit_chain(found, chain, layer, source)
+
+
+def _emit_chain(found: Gathering, chain: Chain, layer: str, source: str) -> None:
+    """Keeps the edges of a chain, what it was moved being part of the deviation."""
+    moved = found.scale * chain.moved
+    tolerance, before, count = found.tolerance, found.deviation, found.curves
+    found.tolerance, found.deviation = tolerance - moved, 0.0
+    emit(found, chain.spline, layer, source)
+    found.tolerance = tolerance
+    if found.curves > count:
+        found.curves = count + chain.curves
+        found.deviation += moved
+    found.deviation = max(before, found.deviation)
+
+
+def joined(row: Sequence[Spline], slack: float) -> list[Chain]:
+    """Béziers that follow each other smoothly as one spline each, so that arcs can run across where they meet.
+
+    Two cubics whose handles at their common point lie on one line are a cubic spline with a double knot there, if their
+    ranges of the parameter are as long as to give both the same speed (G. Farin, Curves and Surfaces for CAGD, ch. 7).
+    The common point is then given by the handles; by that it may move `slack` (drawing units).
+    """
+    chains: list[Chain] = []
+    run: list[Spline] = []
+    spans: list[float] = []
+    moved = 0.0
+    for curve in row:
+        cubic = elevated(curve)
+        ratio, offset = _joint(run[-1], cubic) if run else (0.0, math.inf)
+        span = spans[-1] * ratio if run else 0.0
+        if offset <= slack and 1.0 / WIDEST <= span <= WIDEST and len(run) < LONGEST:
+            run.append(cubic)
+            spans.append(span)
+            moved = max(moved, offset)
+            continue
+        if run:
+            chains.append(Chain(_spline_of(run, spans), len(run), moved))
+        run, spans, moved = [cubic], [1.0], 0.0
+    return [*chains, Chain(_spline_of(run, spans), len(run), moved)] if run else chains
+
+
+def elevated(curve: Spline) -> Spline:
+    """A quadratic Bézier as a cubic one."""
+    if curve.degree != 2:
+        return curve
+    a, b, c = curve.points
+    inner = [(p[0] + 2.0 * (b[0] - p[0]) / 3.0, p[1] + 2.0 * (b[1] - p[1]) / 3.0, 0.0) for p in (a, c)]
+    return Spline(3, [0.0] * 4 + [1.0] * 4, [a, inner[0], inner[1], c])
+
+
+def _joint(first: Spline, second: Spline) -> tuple[float, float]:
+    """How much longer the second handle at the common point is, and how far that point lies from where the handles put it."""
+    (ax, ay, _), (x, y, _), (bx, by, _) = first.points[2], first.points[3], second.points[1]
+    before, after = math.hypot(x - ax, y - ay), math.hypot(bx - x, by - y)
+    if before == 0.0 or after == 0.0 or _is_straight(first) or _is_straight(second):
+        return 0.0, math.inf
+    share = before / (before + after)
+    return after / before, math.hypot(ax + share * (bx - ax) - x, ay + share * (by - ay) - y)
+
+
+def _is_straight(cubic: Spline) -> bool:
+    (x0, y0, _), *others = cubic.points
+    inner = [(x - x0, y - y0) for x, y, _ in others]
+    length = max(math.hypot(x, y) for x, y in inner)
+    ex, ey = max(inner, key=lambda p: math.hypot(*p))
+    return all(abs(ex * y - ey * x) <= STRAIGHT * length * length for x, y in inner)
+
+
+def _spline_of(run: Sequence[Spline], spans: Sequence[float]) -> Spline:
+    if len(run) == 1:
+        return run[0]
+    points = [run[0].points[0]]
+    knots = [0.0] * 4
+    for cubic, span in zip(run, spans, strict=True):
+        points += cubic.points[1:3]
+        knots += [knots[-1] + span] * 2
+    return Spline(3, [*knots, knots[-1], knots[-1]], [*points, run[-1].points[3]])
 
 
 def _round(found: Gathering, row: Sequence[Spline], layer: str, source: str) -> bool:
