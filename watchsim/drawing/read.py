@@ -37,7 +37,7 @@ def read(path: Path | str, units: str | None = None, snap: float = SNAP, fit: fl
         chains = chain(content.strokes, snap)
         findings = [*content.findings, *chains.findings, *facets((*chains.loops, *chains.open_chains))]
     if not content.strokes and not any(finding.severity == "error" for finding in findings):
-        findings.insert(0, emptiness(content))
+        findings.insert(0, emptiness(content, form))
     if content.units is None and content.strokes:
         findings.insert(0, units_missing((*chains.loops, *chains.open_chains)))
     return Drawing(
@@ -112,13 +112,14 @@ def layer_names(content: Content) -> tuple[str, ...]:
     return tuple(dict.fromkeys([stroke.layer for stroke in content.strokes] + [layer for layer, _, _ in content.points]))
 
 
-def emptiness(content: Content) -> Finding:
+def emptiness(content: Content, form: str) -> Finding:
     """The error for a file that holds no line and no arc: the reasons stand in its other findings."""
     other = f"; it holds {len(content.points)} points" if content.points else ""
     if content.ignored:
         other += "; what it holds is not read: " + ", ".join(f"{count} × {kind}" for kind, count in content.ignored.items())
-    message = f"the drawing holds no line and no arc that is visible in model space{other}"
-    return Finding("empty", "error", message, "Look at hidden layers and at paper space in CAD.")
+    message = f"the drawing holds no line and no arc that is visible{other}"
+    place = "text, which must be turned into paths" if form == "svg" else "paper space"
+    return Finding("empty", "error", message, f"Look at hidden layers and at {place}.")
 
 
 def units_missing(loops: tuple) -> Finding:
