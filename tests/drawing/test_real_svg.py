@@ -1,7 +1,7 @@
 """Are the SVG drawings of other people's programs read as an independent reader reads them?
 
-The truth counts y downwards, in pixels of the root's viewport, and in millimetres where the page says its size. It chains all
-layers together, keeps duplicates, and does not count loops that hang on a branch. Where that makes a difference it is said below.
+The truth counts y downwards, in pixels of the root's viewport, and in millimetres where the page says its size. It chains
+all layers together, keeps duplicates, and does not count loops that hang on a branch. Where that makes a difference it is said below.
 """
 
 from __future__ import annotations
@@ -25,7 +25,10 @@ BRANCHED = "the truth leaves out what hangs on a branch, here the same outline d
 DIFFERENT = {
     ("openMEMSdesign__Schrittschaltwerke.svg", "counts"): TWICE,
     ("openMEMSdesign__Schrittschaltwerke.svg", "length"): TWICE,
-    ("openMEMSdesign__Schrittschaltwerke.svg", "loops"): "258 single lines that lie in a row of duplicates are open chains here",
+    (
+        "openMEMSdesign__Schrittschaltwerke.svg",
+        "loops",
+    ): "258 single lines that lie in a row of duplicates are open chains here",
     ("openMEMSdesign__gear.svg", "loops"): "three outlines meet in one point, a branch: here they are loops",
     ("openMEMSdesign__gear.svg", "areas"): "three outlines meet in one point, a branch: here they are loops",
     ("ezdxf__gear.svg", "loops"): "the page's frame is drawn twice, on two layers: two loops here, a branch there",

@@ -69,7 +69,8 @@ def written(path: list[tuple], relative: bool, compact: bool) -> str:
         last = letter
         if kind == "M":
             sx, sy = a
-        x, y = {"H": lambda: (a[0], y), "V": lambda: (x, a[0]), "Z": lambda: (sx, sy)}.get(kind, lambda: tuple(a[-2:]))()
+        x = sx if kind == "Z" else x if kind == "V" else a[0] if kind == "H" else a[-2]
+        y = sy if kind == "Z" else y if kind == "H" else a[-1]
     return text
 
 

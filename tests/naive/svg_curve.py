@@ -16,7 +16,7 @@ Command = tuple  # letter in upper case, then absolute numbers
 def points(commands: list[Command], count: int = 200) -> np.ndarray:
     """Points (n, 2) along all drawn pieces, `count` for each."""
     result: list[complex] = []
-    here = start = 0j
+    here = start = mirror = 0j
     last: Command = ("M",)
     for command in commands:
         kind, a = command[0], command[1:]
@@ -47,7 +47,9 @@ def points(commands: list[Command], count: int = 200) -> np.ndarray:
     return np.array([(p.real, p.imag) for p in result])
 
 
-def arc(p: complex, rx: float, ry: float, degrees: float, large: float, sweep: float, x: float, y: float, count: int) -> list[complex]:
+def arc(
+    p: complex, rx: float, ry: float, degrees: float, large: float, sweep: float, x: float, y: float, count: int
+) -> list[complex]:
     """Of the two ellipses through both points each gives two arcs; the flags choose one of the four."""
     turn = cmath.exp(1j * math.radians(degrees))
 
