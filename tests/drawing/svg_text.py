@@ -47,7 +47,8 @@ def distances(points: np.ndarray, found: list[Edge]) -> np.ndarray:
         else:
             assert isinstance(edge, Line)
             ax, ay, bx, by = (1e3 * v for v in (edge.x0, edge.y0, edge.x1, edge.y1))
-            share = np.clip(((x - ax) * (bx - ax) + (y - ay) * (by - ay)) / ((bx - ax) ** 2 + (by - ay) ** 2), 0.0, 1.0)
+            square = (bx - ax) ** 2 + (by - ay) ** 2 or 1.0  # a line without length is a point
+            share = np.clip(((x - ax) * (bx - ax) + (y - ay) * (by - ay)) / square, 0.0, 1.0)
             apart = np.hypot(x - ax - share * (bx - ax), y - ay - share * (by - ay))
             ends = []
         for ex, ey in ends:

@@ -1,7 +1,7 @@
 """Are the SVG drawings of other people's programs read as an independent reader reads them?
 
 The truth counts y downwards, in pixels of the root's viewport, and in millimetres where the page says its size. It chains
-all layers together, keeps duplicates, and does not count loops that hang on a branch. Where that makes a difference it is said below.
+all layers together, keeps duplicates, and does not count loops that hang on a branch. What differs by that is said below.
 """
 
 from __future__ import annotations

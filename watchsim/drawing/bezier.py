@@ -8,15 +8,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from itertools import groupby
+from itertools import groupby, pairwise
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from watchsim.drawing.affine import Vector
 from watchsim.drawing.findings import Finding
 from watchsim.drawing.projection import ROUNDING, Gathering, emit, keep, reach
-from watchsim.drawing.shapes import Shape, Spline
+from watchsim.drawing.shapes import Shape, Spline, Straight
 from watchsim.geometry.primitives import TURN, Arc
 
 Array = NDArray[np.float64]
@@ -24,7 +25,7 @@ SAMPLES = 16  # per curve; those of a circle have two humps
 SLACK = 0.01  # of the tolerance: curves that meet nearly smoothly may be moved so much
 WIDEST = 1e6  # of the first curve's range of the parameter
 LONGEST = 500  # curves in one chain
-STRAIGHT = 1e-9  # of the squared length: a cubic whose control points lie on a line stays by itself
+STRAIGHT = 1e-9  # of the squared length: by so little the control points of a straight curve may leave its line
 CIRCLE_LIKE = 1e-3  # of the radius: a row of curves this near a circle was meant to be one
 
 
@@ -45,7 +46,8 @@ class Circle(NamedTuple):
 
 def emit_row(found: Gathering, shapes: Sequence[Shape], layer: str, source: str) -> None:
     """Keeps the edges of one row of shapes (drawing units); rows of curves on one circle become that circle."""
-    for curved, group in groupby(shapes, key=lambda shape: isinstance(shape, Spline)):
+    plain = [piece for shape in shapes for piece in (straightened(shape) if isinstance(shape, Spline) else (shape,))]
+    for curved, group in groupby(plain, key=lambda shape: isinstance(shape, Spline)):
         row = list(group)
         if not curved:
             for shape in row:
@@ -68,6 +70,31 @@ def _emit_chain(found: Gathering, chain: Chain, layer: str, source: str) -> None
         found.curves = count + chain.curves
         found.deviation += moved
     found.deviation = max(before, found.deviation)
+
+
+def straightened(curve: Spline) -> Sequence[Shape]:
+    """The lines that a Bézier is if all its control points lie on one, to where it turns back and on; else itself."""
+    if not _is_straight(curve):
+        return (curve,)
+    control = np.array([point[:2] for point in curve.points])
+    along = control @ max(control[1:] - control[0], key=lambda way: float(np.hypot(*way)))
+    # The derivative in powers of t: k = 0 .. n-1 of sums of binomials times differences of the control points.
+    steps, n = np.diff(along), curve.degree - 1
+    powers = [
+        math.comb(n, k) * sum((-1) ** (k - i) * math.comb(k, i) * float(steps[i]) for i in range(k + 1)) for k in range(n + 1)
+    ]
+    size = max(map(abs, powers))
+    roots = np.roots([power if abs(power) > 1e-14 * size else 0.0 for power in reversed(powers)])
+    turns = sorted({float(t.real) for t in roots if t.imag == 0.0 and 0.0 < t.real < 1.0})
+    corners = [curve.points[0], *(_bezier_point(curve, t) for t in turns), curve.points[-1]]
+    return [Straight(a, b) for a, b in pairwise(corners)]
+
+
+def _bezier_point(curve: Spline, t: float) -> Vector:
+    n = curve.degree
+    weights = [math.comb(n, k) * t**k * (1.0 - t) ** (n - k) for k in range(n + 1)]
+    x, y = (sum(weight * point[axis] for weight, point in zip(weights, curve.points, strict=True)) for axis in (0, 1))
+    return (x, y, 0.0)
 
 
 def joined(row: Sequence[Spline], slack: float) -> list[Chain]:
@@ -109,14 +136,14 @@ def _joint(first: Spline, second: Spline) -> tuple[float, float]:
     """How much longer the second handle at the common point is, and how far that point lies from where the handles put it."""
     (ax, ay, _), (x, y, _), (bx, by, _) = first.points[2], first.points[3], second.points[1]
     before, after = math.hypot(x - ax, y - ay), math.hypot(bx - x, by - y)
-    if before == 0.0 or after == 0.0 or _is_straight(first) or _is_straight(second):
+    if before == 0.0 or after == 0.0:
         return 0.0, math.inf
     share = before / (before + after)
     return after / before, math.hypot(ax + share * (bx - ax) - x, ay + share * (by - ay) - y)
 
 
-def _is_straight(cubic: Spline) -> bool:
-    (x0, y0, _), *others = cubic.points
+def _is_straight(curve: Spline) -> bool:
+    (x0, y0, _), *others = curve.points
     inner = [(x - x0, y - y0) for x, y, _ in others]
     length = max(math.hypot(x, y) for x, y in inner)
     ex, ey = max(inner, key=lambda p: math.hypot(*p))
