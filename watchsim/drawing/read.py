@@ -32,17 +32,18 @@ def read(path: Path | str, units: str | None = None, snap: float = SNAP, fit: fl
     path = Path(path)
     if not snap > 0.0 or not fit > 0.0:
         raise ValueError(f"snap and fit must be positive lengths, not {snap:g} m and {fit:g} m")
+    ending = path.suffix.lower().lstrip(".")
     with collector_paused():
-        form, content = read_content(path, units, fit)
+        content = read_content(path, ending, units, fit)
         chains = chain(content.strokes, snap)
         findings = [*content.findings, *chains.findings, *facets((*chains.loops, *chains.open_chains))]
     if not content.strokes and not any(finding.severity == "error" for finding in findings):
-        findings.insert(0, emptiness(content, form))
+        findings.insert(0, emptiness(content))
     if content.units is None and content.strokes:
         findings.insert(0, units_missing((*chains.loops, *chains.open_chains)))
     return Drawing(
         path=path,
-        format=form,
+        format=content.format or ending,
         units=content.units,
         units_from=content.units_from,
         loops=chains.loops,
@@ -69,17 +70,16 @@ def collector_paused() -> Iterator[None]:
             gc.enable()
 
 
-def read_content(path: Path, units: str | None, fit: float) -> tuple[str, Content]:
-    """The format and what its reader finds; a file that is not there or cannot be opened is a finding too."""
-    ending = path.suffix.lower().lstrip(".")
+def read_content(path: Path, ending: str, units: str | None, fit: float) -> Content:
+    """What the reader for that ending and content finds; a file that is not there or cannot be opened is a finding too."""
     if ending not in ("dxf", "svg", "svgz"):
         fix = "Save the drawing as DXF or SVG."
-        return ending, refused(f'"{path.name}" ends in neither .dxf nor .svg: this kind of file is not read', fix)
+        return refused(f'"{path.name}" ends in neither .dxf nor .svg: this kind of file is not read', fix)
     try:
         data = path.read_bytes()
     except OSError as error:
         reason = "there is no such file" if isinstance(error, FileNotFoundError) else error.strerror or "it cannot be read"
-        return ending[:3], Content(findings=(Finding("unreadable", "error", f"{path}: {reason}"),))
+        return Content(findings=(Finding("unreadable", "error", f"{path}: {reason}"),))
     form = format_of(data, ending[:3])
     if form == "svg":
         from watchsim.drawing.svg import read_svg
@@ -90,7 +90,7 @@ def read_content(path: Path, units: str | None, fit: float) -> tuple[str, Conten
     if form != ending[:3]:
         message = f"the name ends in .{ending} but the file is {form.upper()} inside; it is read as such"
         content = replace(content, findings=(Finding("format", "warning", message), *content.findings))
-    return form, content
+    return replace(content, format=form)
 
 
 def format_of(data: bytes, ending: str) -> str:
@@ -112,13 +112,13 @@ def layer_names(content: Content) -> tuple[str, ...]:
     return tuple(dict.fromkeys([stroke.layer for stroke in content.strokes] + [layer for layer, _, _ in content.points]))
 
 
-def emptiness(content: Content, form: str) -> Finding:
+def emptiness(content: Content) -> Finding:
     """The error for a file that holds no line and no arc: the reasons stand in its other findings."""
     other = f"; it holds {len(content.points)} points" if content.points else ""
     if content.ignored:
         other += "; what it holds is not read: " + ", ".join(f"{count} × {kind}" for kind, count in content.ignored.items())
     message = f"the drawing holds no line and no arc that is visible{other}"
-    place = "text, which must be turned into paths" if form == "svg" else "paper space"
+    place = "text, which must be turned into paths" if content.format == "svg" else "paper space"
     return Finding("empty", "error", message, f"Look at hidden layers and at {place}.")
 
 

@@ -7,7 +7,6 @@ is left out without a finding.
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
@@ -16,8 +15,10 @@ from watchsim.drawing.bezier import emit_row
 from watchsim.drawing.content import Content
 from watchsim.drawing.findings import Finding
 from watchsim.drawing.projection import Gathering, TooLarge
+from watchsim.drawing.shapes import Dot
 from watchsim.drawing.svg_layers import Place, inside
-from watchsim.drawing.svg_names import CONTAINERS, MOVING, SILENT, TEXT_LIKE, strange_attributes
+from watchsim.drawing.svg_left_out import BURIED, DRAWN, LeftOut, drawn_within
+from watchsim.drawing.svg_names import CONTAINERS, SILENT
 from watchsim.drawing.svg_page import page_unit, read_page
 from watchsim.drawing.svg_path import PathData
 from watchsim.drawing.svg_shapes import READERS, Measures
@@ -56,7 +57,7 @@ def read_svg(data: bytes, units: str | None, fit: float) -> Content:
     if root is None:
         return Content(findings=tree.findings)
     if root.tag != "svg":
-        what = f"<{root.tag[:40]}>" if root.tag else "another kind of XML"
+        what = f"<{root.tag[:40]}>" if ":" not in root.tag else "another kind of XML"
         return Content(findings=(*tree.findings, Finding("unreadable", "error", f"this is no SVG file: it holds {what}")))
     styles = read_styles(tree.sheets)
     values = styles.of(root)
@@ -80,8 +81,8 @@ def read_svg(data: bytes, units: str | None, fit: float) -> Content:
         fitted_curves=found.curves,
         fitted_arcs=found.arcs,
         fitted_deviation=found.deviation,
-        ignored=dict(found.ignored),
-        findings=(*tree.findings, *styles.findings, *page.findings, *found.findings, *walker.left_out()),
+        ignored=dict(walker.left_out.ignored),
+        findings=(*tree.findings, *styles.findings, *page.findings, *found.findings, *walker.left_out.findings(root)),
     )
 
 
@@ -93,8 +94,7 @@ class Walker:
         self.styles = styles
         self.found = found
         self.visits = 0
-        self.clipped = 0
-        self.strange: Counter[tuple[str, str]] = Counter()
+        self.left_out = LeftOut()
         self.known: dict[tuple[Node, float, float], PathData | SvgError] = {}
         self.values: dict[Node, dict[str, str]] = {}
 
@@ -117,16 +117,17 @@ class Walker:
     def within(self, spot: Spot) -> Iterator[Spot]:
         """Draws the element if it is a shape; the spots of what it holds or uses."""
         node, tag = spot.node, spot.node.tag
-        if not tag or (tag in SILENT and not (tag == "symbol" and spot.uses)):
-            self.found.ignored.update([tag] if tag in MOVING else [])
+        if not (tag == "symbol" and spot.uses) and self.left_out.silent(node):
             return
+        self.left_out.met.add(node)
         if node not in self.values:
             self.values[node] = self.styles.of(node)
         values = self.values[node]
         spot = self.named(spot)
         if values.get("display") == "none" or not conditions_hold(node):
-            self.found.hidden[spot.place.layer] += drawn_within(node)
+            self.left_out.hidden[spot.place.layer] += drawn_within(node)
         elif tag in READERS:
+            self.left_out.ignored.update(BURIED for child in node.children if child.tag in DRAWN)
             self.draw(self.moved(spot, values), values)
         elif tag in CONTAINERS or tag == "symbol":
             spot = self.moved(spot, values)
@@ -134,12 +135,15 @@ class Walker:
             yield from (self.below(spot, child) for child in node.children)
         elif tag == "switch":
             spot = self.moved(spot, values)
-            chosen = (child for child in node.children if child.tag and child.tag not in SILENT and conditions_hold(child))
-            yield from (self.below(spot, child) for child in list(chosen)[:1])
+            known = [child for child in node.children if ":" not in child.tag and child.tag not in SILENT]
+            chosen = [child for child in known if conditions_hold(child)][:1]
+            if not chosen:
+                self.left_out.hidden[spot.place.layer] += drawn_within(node)
+            yield from (self.below(spot, child) for child in chosen)
         elif tag == "use":
             yield from self.used(self.moved(spot, values), values)
         else:
-            self.found.ignored[tag] += 1
+            self.left_out.ignored[tag] += 1
 
     def named(self, spot: Spot) -> Spot:
         """The spot on the layer that the element itself names; only open lines and paths wait for others to close them."""
@@ -154,7 +158,7 @@ class Walker:
     def moved(self, spot: Spot, values: dict[str, str]) -> Spot:
         """The spot after the element's own transformation, with its visibility."""
         visible = {"visible": True, "hidden": False, "collapse": False}.get(values.get("visibility", ""), spot.visible)
-        self.clipped += values.get("clip-path", "none") != "none" or values.get("mask", "none") != "none"
+        self.left_out.clipped += values.get("clip-path", "none") != "none" or values.get("mask", "none") != "none"
         affine = self.turned(spot.affine, placed(values, spot.width, spot.height))
         return replace(spot, affine=affine, visible=visible)
 
@@ -206,8 +210,6 @@ class Walker:
             why = "is nested too deeply" if spot.uses >= DEEPEST_USE else f"shows {target.name}, of which it is a part"
             self.report("use-loop", f"{node.name} {why}; it is left out", layer)
             return
-        for key, count in ((("use", name), 1) for name in strange_attributes("use", node.attributes)):
-            self.strange[key] += count
         m = Measures(values, spot.width, spot.height)
         affine = self.turned(spot.affine, shifted((m.along("x"), m.up("y"), 0.0)))
         size = (values.get("width"), values.get("height")) if target.tag in ("svg", "symbol") else (None, None)
@@ -227,45 +229,22 @@ class Walker:
     def draw(self, spot: Spot, values: dict[str, str]) -> None:
         node, layer = spot.node, spot.place.layer
         if not spot.visible:
-            self.found.hidden[layer] += 1
+            self.left_out.hidden[layer] += 1
             return
         if values is not node.attributes and values.get("d") != node.attributes.get("d"):
             raise SvgError("its shape is given by CSS, which is not read")
-        for name in strange_attributes(node.tag, node.attributes):
-            self.strange[node.tag, name] += 1
         data = self.read(spot)
         if isinstance(data, SvgError):
             raise data
         if data.fault:
             message = f"{node.name} cannot be read to its end: {data.fault}. What stands before is drawn"
             self.report("damaged", message, layer)
+        if not data.rows and not data.fault:
+            self.left_out.sizeless[node.tag] += 1
+        self.left_out.marks += any(isinstance(shape, Dot) for row in data.rows for shape in row.shapes)
         for row in data.rows:
             self.found.runs += 1
             emit_row(self.found, [shape.mapped(spot.affine) for shape in row.shapes], layer, node.name)
-
-    def left_out(self) -> list[Finding]:
-        """One finding for each thing that was left out, however often."""
-        result = []
-        for layer, count in self.found.hidden.items():
-            message = f"{count} hidden elements (display, visibility) were left out"
-            result += [Finding("hidden", "notice", message, layer=layer)] if count else []
-        for kind, count in self.found.ignored.items():
-            known = kind in TEXT_LIKE
-            why = (
-                "it is no outline"
-                if known
-                else "it moves"
-                if kind in MOVING
-                else "no element known here; the file may be damaged"
-            )
-            result.append(Finding("ignored", "notice" if known else "warning", f"{count} × {kind[:40]} not read: {why}"))
-        if self.clipped:
-            message = f"{self.clipped} elements are clipped or masked in the picture; here they are read whole"
-            result.append(Finding("clipped", "warning", message))
-        for (tag, name), count in self.strange.items():
-            message = f'{count} × {tag} with an attribute "{name[:40]}" that it cannot have: the file may be damaged'
-            result.append(Finding("strange-attribute", "warning", message, "Look whether its shape is right."))
-        return result
 
 
 def nested(spot: Spot) -> Iterator[Spot]:
@@ -282,13 +261,3 @@ def conditions_hold(node: Node) -> bool:
         return False
     languages = node.attributes.get("systemLanguage")
     return languages is None or any(word.strip().lower().split("-")[0] == "en" for word in languages.split(","))
-
-
-def drawn_within(node: Node) -> int:
-    """How many elements would be drawn if this one were shown."""
-    count, waiting = 0, [node]
-    while waiting:
-        at = waiting.pop()
-        count += at.tag in READERS or at.tag == "use"
-        waiting += [child for child in at.children if child.tag not in SILENT]
-    return count

@@ -54,6 +54,15 @@ _OWN = {
     "ellipse": frozenset(("cx", "cy", "rx", "ry")),
     "use": frozenset(("x", "y", "width", "height", "href")),
     "g": frozenset(("x", "y", "width", "height")),  # without meaning, and often written
+    "svg": frozenset(
+        (
+            *("x", "y", "width", "height", "viewBox", "preserveAspectRatio", "version", "baseProfile", "zoomAndPan"),
+            *("contentScriptType", "contentStyleType"),
+        )
+    ),
+    "symbol": frozenset(("x", "y", "width", "height", "viewBox", "preserveAspectRatio", "refX", "refY")),
+    "defs": frozenset(),
+    "switch": frozenset(),
 }
 
 

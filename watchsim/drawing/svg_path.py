@@ -17,6 +17,7 @@ from watchsim.drawing.svg_xml import SvgError
 Point = tuple[float, float]
 NUMBERS = {"M": 2, "L": 2, "H": 1, "V": 1, "C": 6, "S": 4, "Q": 4, "T": 2, "A": 7, "Z": 0}
 ULP = 2.0**-52
+NARROWEST = 1e-9  # ratio of the radii of an arc
 _COMMAND = re.compile(r"([MmZzLlHhVvCcSsQqTtAa])([^MmZzLlHhVvCcSsQqTtAa]*)")
 _MORE = re.compile(r"\s*\S")
 _FLAG = re.compile(r"\s*,?\s*([01])")
@@ -163,6 +164,11 @@ def elliptic_arc(p: Point, q: Point, rx: float, ry: float, turn: float, large: b
     """
     if rx == 0.0 or ry == 0.0:
         return Straight((*p, 0.0), (*q, 0.0))
+    big, chord = max(rx, ry), math.hypot(q[0] - p[0], q[1] - p[1])
+    if min(rx, ry) < NARROWEST * big:
+        raise SvgError(f"an arc has radii as different as {rx:g} and {ry:g}")
+    if big < NARROWEST * chord:  # they grow in any case: only their ratio counts
+        rx, ry = rx / big * chord, ry / big * chord
     c, s = (1.0, 0.0) if rx == ry else (math.cos(turn), math.sin(turn))
     # Half the chord and, from its middle, the centre, both on the unit circle that the ellipse is the image of.
     hx, hy = 0.5 * (q[0] - p[0]), 0.5 * (q[1] - p[1])
@@ -173,7 +179,7 @@ def elliptic_arc(p: Point, q: Point, rx: float, ry: float, turn: float, large: b
     if half > 1.0:
         rx, ry, wx, wy, half = rx * half, ry * half, wx / half, wy / half, 1.0
     rise = (1.0 - half) * (1.0 + half)
-    noise = ULP * (4.0 + 2.0 * max(map(abs, (*p, *q))) / math.hypot(hx, hy))
+    noise = ULP * (4.0 + 4.0 * max(map(abs, (*p, *q))) / chord)
     rise = 0.0 if rise <= noise else math.sqrt(rise) / half  # of a semicircle the rounding would become its square root
     side = 1.0 if large != positive else -1.0
     mx, my = -side * rise * wy, side * rise * wx

@@ -20,6 +20,9 @@ DEEPEST = 256  # elements within elements
 MOST_ELEMENTS = 300_000
 MOST_UNPACKED = 64 * 2**20  # bytes in a .svgz
 MOST_UNFOLDED = 16 * 2**20  # bytes that the entities of a file may become
+WORDLESS = frozenset(  # elements that hold no text
+    ("svg", "g", "defs", "symbol", "switch", "use", "path", "rect", "circle", "ellipse", "line", "polyline", "polygon")
+)
 PREDEFINED = frozenset(("amp", "lt", "gt", "apos", "quot"))
 CUT_SHORT = frozenset(
     (
@@ -40,7 +43,7 @@ class SvgError(ValueError):
 
 @dataclass(slots=True, eq=False)
 class Node:
-    """One element. `tag` is its name in SVG; of other vocabularies "prefix:name", or "" where the prefix is declared.
+    """One element. `tag` is its name in SVG; of other vocabularies "prefix:name", or "*:name" where they are declared.
 
     Attribute names are as written, with the prefixes "xlink" and "inkscape" for those two namespaces.
     """
@@ -81,7 +84,7 @@ def read_tree(data: bytes) -> Tree:
         return Tree(None, {}, (), tuple(findings))
     except expat.ExpatError as error:
         findings.append(_fault(error, builder, data))
-    except ValueError as error:  # an encoding that expat cannot use
+    except (ValueError, LookupError) as error:  # an encoding that expat cannot use
         findings.append(Finding("unreadable", "error", f"this is no SVG file ({error})"))
     findings += builder.findings
     sheets = tuple(node.text for node in builder.styles)
@@ -144,7 +147,7 @@ class _Builder:
 
     @property
     def inside(self) -> str:
-        return (self.here.tag or "an element of another kind") if self.here else "svg"
+        return self.here.tag if self.here else "svg"
 
     def parse(self, data: bytes) -> None:
         self.parser = parser = expat.ParserCreate(encoding="utf-8" if _was_recoded(data) else None)
@@ -209,16 +212,20 @@ class _Builder:
 
     def finish(self, _tag: str) -> None:
         assert self.here is not None
-        if self.here.tag:
-            self.last = self.here
+        self.last = self.here
         self.here = self.here.parent
         self.depth -= 1
         self.spaces.pop()
         self.end = self.parser.CurrentByteIndex + 1
 
     def characters(self, text: str) -> None:
-        if self.here is not None and self.here.tag == "style":
+        if self.here is None:
+            return
+        if self.here.tag == "style":
             self.here.text += text
+        elif text.strip() and self.here.tag in WORDLESS:
+            message = f'"{text.strip()[:40]}" stands between the elements near line {self.parser.CurrentLineNumber}'
+            self.findings.append(Finding("stray-text", "warning", f"{message}: the file may be damaged"))
 
 
 def _was_recoded(data: bytes) -> bool:
@@ -233,7 +240,7 @@ def _resolved(tag: str, spaces: dict[str, str]) -> str:
     space = spaces.get(prefix)
     if space in (SVG, ""):
         return local
-    return tag if space is None else ""
+    return tag if space is None else f"*:{local}"
 
 
 def _prefixed(attributes: dict[str, str], spaces: dict[str, str]) -> dict[str, str]:
