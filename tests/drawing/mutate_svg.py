@@ -73,9 +73,7 @@ def every_element() -> bytes:
 width="100mm" height="80mm"
 viewBox="0 0 100 80"
 ><path id="a1"
-d="M1 1L5,1 5-3 Q7 0 9,4 T 5 9
-S3 3 2 9C1 7 0 5 1 1z m40 40 h3v3
-H41 Z"
+d="M1 1L5,1 5-3 Q7 0 9,4 T 5 9 S3 3 2 9C1 7 0 5 1 1z m40 40 h3v3 H41 Z"
 /><path
 d="M60 10a3 3 0 1 0 6 0A3 3 0 10 60 10Z"
 /><rect
@@ -108,8 +106,7 @@ preserveAspectRatio="xMinYMax slice"><defs
 ><path
 d="M1 1H9V9z"
 /></symbol><g id="wheel"
-><circle
-r="7"
+><circle r="7"
 /><circle
 r="6" cx="1"
 /></g></defs><g

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from watchsim.drawing.affine import Affine, shifted
+from watchsim.drawing.affine import IDENTITY, Affine, shifted
 from watchsim.drawing.bezier import emit_row
 from watchsim.drawing.content import Content
 from watchsim.drawing.findings import Finding
@@ -28,7 +28,7 @@ from watchsim.drawing.svg_xml import Node, SvgError, Tree, read_tree
 from watchsim.drawing.tags import LARGEST
 
 DEEPEST_USE = 32  # <use> within <use>
-MOST_VISITS = 300_000  # elements, counted as often as they are used
+MOST_VISITS = 100_000  # to elements that are shown by a <use>
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,10 +102,10 @@ class Walker:
         """In the order of the document, with a stack of its own: no file is too deep for it."""
         waiting = [root]
         while waiting:
-            self.visits += 1
+            spot = waiting.pop()
+            self.visits += spot.uses > 0
             if self.visits > MOST_VISITS:
                 raise TooLarge
-            spot = waiting.pop()
             try:
                 waiting.extend(reversed(list(self.within(spot))))
             except SvgError as error:
@@ -137,8 +137,7 @@ class Walker:
             spot = self.moved(spot, values)
             known = [child for child in node.children if ":" not in child.tag and child.tag not in SILENT]
             chosen = [child for child in known if conditions_hold(child)][:1]
-            if not chosen:
-                self.left_out.hidden[spot.place.layer] += drawn_within(node)
+            self.left_out.hidden[spot.place.layer] += sum(drawn_within(child) for child in known if child not in chosen)
             yield from (self.below(spot, child) for child in chosen)
         elif tag == "use":
             yield from self.used(self.moved(spot, values), values)
@@ -159,12 +158,14 @@ class Walker:
         """The spot after the element's own transformation, with its visibility."""
         visible = {"visible": True, "hidden": False, "collapse": False}.get(values.get("visibility", ""), spot.visible)
         self.left_out.clipped += values.get("clip-path", "none") != "none" or values.get("mask", "none") != "none"
-        affine = self.turned(spot.affine, placed(values, spot.width, spot.height))
-        return replace(spot, affine=affine, visible=visible)
+        inner = placed(values, spot.width, spot.height)
+        if inner is IDENTITY:
+            return spot if visible == spot.visible else replace(spot, visible=visible)
+        return replace(spot, affine=self.turned(spot.affine, inner), visible=visible)
 
     def turned(self, outer: Affine, inner: Affine) -> Affine:
         affine = outer.after(inner)
-        if not max(abs(number) for column in affine for number in column) <= LARGEST:
+        if not max(map(abs, (*affine.ax, *affine.ay, *affine.origin))) <= LARGEST:
             raise SvgError("its transform puts it beyond any drawing")
         if affine.ax[0] * affine.ay[1] == affine.ax[1] * affine.ay[0]:
             raise SvgError("its transform presses it flat")
@@ -206,14 +207,15 @@ class Walker:
             what = f'{node.name} shows "{reference[:60]}", {why}' if reference else f"{node.name} names nothing to show"
             self.report("external" if outside else "use-missing", f"{what}; it is left out", layer)
             return
-        if any(above.node is target for above in nested(spot)) or spot.uses >= DEEPEST_USE:
+        if spot.uses >= DEEPEST_USE or lies_in(spot, target):
             why = "is nested too deeply" if spot.uses >= DEEPEST_USE else f"shows {target.name}, of which it is a part"
             self.report("use-loop", f"{node.name} {why}; it is left out", layer)
             return
         m = Measures(values, spot.width, spot.height)
-        affine = self.turned(spot.affine, shifted((m.along("x"), m.up("y"), 0.0)))
+        x, y = m.along("x"), m.up("y")
+        affine = self.turned(spot.affine, shifted((x, y, 0.0))) if x or y else spot.affine
         size = (values.get("width"), values.get("height")) if target.tag in ("svg", "symbol") else (None, None)
-        yield replace(self.below(spot, target), affine=affine, uses=spot.uses + 1, size=size)
+        yield Spot(target, affine, spot.place, spot.visible, spot.width, spot.height, spot, spot.uses + 1, size)
 
     def read(self, spot: Spot) -> PathData | SvgError:
         """The shapes of an element in its user units, read once."""
@@ -247,12 +249,14 @@ class Walker:
             emit_row(self.found, [shape.mapped(spot.affine) for shape in row.shapes], layer, node.name)
 
 
-def nested(spot: Spot) -> Iterator[Spot]:
-    """The spot and all it lies in."""
+def lies_in(spot: Spot, node: Node) -> bool:
+    """Is the spot part of what this element draws?"""
     at: Spot | None = spot
     while at is not None:
-        yield at
+        if at.node is node:
+            return True
         at = at.above
+    return False
 
 
 def conditions_hold(node: Node) -> bool:

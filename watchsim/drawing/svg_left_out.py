@@ -11,9 +11,10 @@ from watchsim.drawing.svg_shapes import READERS
 from watchsim.drawing.svg_xml import Node
 
 FOREIGN = "element of another vocabulary"
-BURIED = "element inside of a shape"
+BURIED = "element inside of one that holds none"
 DRAWN = frozenset((*READERS, "use"))
 TEMPLATES = frozenset(("clipPath", "mask", "pattern", "marker"))  # what they hold is never drawn
+DEFINED = frozenset(("defs", "symbol"))
 
 
 @dataclass
@@ -32,8 +33,13 @@ class LeftOut:
         if node.tag.startswith("*:"):
             self.ignored.update([FOREIGN] if node.tag[2:] in DRAWN | CONTAINERS or drawn_within(node) else [])
             return True
-        self.ignored.update([node.tag] if node.tag in MOVING else [])
-        return node.tag in SILENT
+        if node.tag not in SILENT:
+            return False
+        if node.tag in MOVING:
+            self.ignored[node.tag] += 1
+        elif node.tag not in TEMPLATES and node.tag not in DEFINED and (count := drawn_within(node)):
+            self.ignored[BURIED] += count
+        return True
 
     def findings(self, root: Node) -> list[Finding]:
         """One finding for each thing, however often."""
@@ -59,7 +65,7 @@ class LeftOut:
         while waiting:
             node, defined = waiting.pop()
             strange.update((node.tag, name) for name in strange_attributes(node.tag, node.attributes))
-            defined = defined or node.tag in ("defs", "symbol")
+            defined = defined or node.tag in DEFINED
             unused += defined and node.tag in DRAWN and node not in self.met
             waiting += [(child, defined) for child in node.children if child.tag not in TEMPLATES]
         result = []

@@ -32,7 +32,6 @@ CUT_SHORT = frozenset(
         expat.errors.codes[expat.errors.XML_ERROR_UNCLOSED_CDATA_SECTION],
     )
 )
-JUNK = expat.errors.codes[expat.errors.XML_ERROR_JUNK_AFTER_DOC_ELEMENT]
 _REFERENCE = re.compile(rb"&([A-Za-z_:][\w.:-]*);")
 _STYLESHEET = re.compile(r"href\s*=\s*[\"']([^\"']*)")
 
@@ -117,7 +116,7 @@ def _fault(error: expat.ExpatError, builder: _Builder, data: bytes) -> Finding:
         what = "it is empty" if not data.strip() else f"{reason} in line {error.lineno}"
         return Finding("unreadable", "error", f"this is no SVG file: {what}")
     last = f"the last whole element is {builder.last.name}" if builder.last else "no element is whole"
-    if error.code == JUNK and b"<" not in data[builder.end :]:
+    if builder.here is None and b"<" not in data[builder.end :]:
         return Finding(
             "trailing", "warning", f"something stands after the end of the drawing in line {error.lineno}; it was not read"
         )
