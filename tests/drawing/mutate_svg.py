@@ -105,7 +105,9 @@ preserveAspectRatio="xMinYMax slice"><defs
 ><symbol id="tooth" viewBox="0 0 10 10"
 ><path
 d="M1 1H9V9z"
-/></symbol><g id="wheel"
+/></symbol><circle id="hub"
+r="5"
+/><g id="wheel"
 ><circle r="7"
 /><circle
 r="6" cx="1"
@@ -121,7 +123,7 @@ width="20" height="10" viewBox="0 0 40 20"
 ><rect
 width="8" height="8"
 /></svg><use
-href="#wheel" x="-20" y="30"
+href="#hub" x="-20" y="30"
 /></svg>""".encode()
 
 
