@@ -67,6 +67,7 @@ class LeftOut:
             strange.update((node.tag, name) for name in strange_attributes(node.tag, node.attributes))
             defined = defined or node.tag in DEFINED
             unused += defined and node.tag in DRAWN and node not in self.met
+            unused += node.tag == "symbol" and "id" not in node.attributes
             waiting += [(child, defined) for child in node.children if child.tag not in TEMPLATES]
         result = []
         for (tag, name), count in strange.items():
