@@ -28,6 +28,7 @@ class Stroke:
 class Content:
     """Everything a reader found in one file; the fields are those of Drawing."""
 
+    format: str = ""
     strokes: tuple[Stroke, ...] = ()
     points: tuple[tuple[str, float, float], ...] = ()
     units: str | None = None

@@ -131,7 +131,7 @@ def _similar(path: Path) -> str:
     """' Did you mean ...?' with the drawings that lie in the folder."""
     if not path.parent.is_dir():
         return f", nor the folder {path.parent}"
-    there = sorted(file.name for file in path.parent.iterdir() if file.suffix.lower() in (".dxf", ".svg"))
+    there = sorted(file.name for file in path.parent.iterdir() if file.suffix.lower() in (".dxf", ".svg", ".svgz"))
     return f". {nearest(path.name, there)}".removesuffix(".") if there else ""
 
 
