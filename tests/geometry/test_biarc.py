@@ -10,7 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from watchsim.geometry.biarc import Curve, Fit, arc_from, biarc, fit_arcs
+from watchsim.geometry.biarc import arc_from, arcs_from, biarc_joints
+from watchsim.geometry.fit import Fit, fit_arcs
 from watchsim.geometry.primitives import Arc, Line
 
 

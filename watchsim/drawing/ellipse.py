@@ -14,6 +14,7 @@ from watchsim.geometry.primitives import Arc, Edge, Line
 from watchsim.geometry.recognise import joined
 
 QUARTER = 0.5 * math.pi
+SLIVER = 0.02  # radians of the parameter
 
 
 def ellipse_edges(conic: Conic, scale: float, tolerance: float) -> Fit:
@@ -31,7 +32,7 @@ def ellipse_edges(conic: Conic, scale: float, tolerance: float) -> Fit:
     worst = 0.0
     quadrant: Fit | None = None
     for low, high in pairwise(cuts):
-        if high - low < QUARTER - 1e-9:
+        if abs(high - low - QUARTER) > 1e-9:
             part = fit_arcs(rational(a, b, low - first, high - first), tolerance)
             edges += [moved(edge, centre) for edge in part.edges]
         else:
@@ -89,15 +90,15 @@ def moved(edge: Edge, by: Array) -> Edge:
 def axis_cuts(conic: Conic) -> tuple[float, list[float]]:
     """The parameter of one half axis; and start, the ends of the axes in between, end.
 
-    The axes lie where |c'(t)| is extreme, at tan 2t = 2 u·v/(u² - v²).
+    The axes lie where |c'(t)| is extreme, at tan 2t = 2 u·v/(u² - v²). No sliver is cut off at start and end.
     """
     (ux, uy, _), (vx, vy, _) = conic.u, conic.v
     first = 0.5 * math.atan2(2.0 * (ux * vx + uy * vy), ux * ux + uy * uy - vx * vx - vy * vy)
     stop = conic.start + conic.sweep
     k = math.ceil((conic.start - first) / QUARTER)
     cuts = [conic.start]
-    while first + k * QUARTER < stop - 1e-9:
-        if first + k * QUARTER > conic.start + 1e-9:
+    while first + k * QUARTER < stop - SLIVER:
+        if first + k * QUARTER > conic.start + SLIVER:
             cuts.append(first + k * QUARTER)
         k += 1
     return first, [*cuts, stop]

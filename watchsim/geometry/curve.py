@@ -53,6 +53,12 @@ class Curve:
         return slopes / np.where(speed > 0.0, speed, 1.0)[:, None]
 
     @cached_property
+    def weighted(self) -> bool:
+        """Is there a weight other than one?"""
+        w = self.homogeneous(np.linspace(self.breaks[0], self.breaks[-1], self.degree * (len(self.breaks) - 1) + 1))[:, 2]
+        return bool(np.any(w != 1.0))
+
+    @cached_property
     def usual_speed(self) -> float:
         """Length over range of the parameter, roughly: of the polygon through the breaks and a few points in between."""
         t = np.unique(np.concatenate((self.breaks, np.linspace(self.breaks[0], self.breaks[-1], 33))))

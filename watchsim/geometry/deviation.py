@@ -22,11 +22,12 @@ TAIL = 0.02  # of the bound: where the higher terms matter more, the interval is
 HALVINGS = 6
 
 
-def deviations(curve: Curve, stations: Array, arcs: ArcChain, halvings: int = 0) -> Array:
+def deviations(curve: Curve, stations: Array, arcs: ArcChain, halvings: int = HALVINGS, beside: bool = True) -> Array:
     """Upper bounds (n,) in metres for the distance between arc i and the curve from stations[i] to stations[i + 1].
 
     The stations must ascend, and no arc may reach a half circle; then no point of either is further from the other. With
-    `halvings` the bounds become sharper where the deviation is far from a cubic.
+    `halvings` the bounds become sharper where the deviation is far from a cubic. Without `beside` only the distance from
+    the whole circle is bounded, which is quicker.
     """
     count = len(arcs.curvatures)
     bounds = np.zeros(count)
@@ -35,7 +36,7 @@ def deviations(curve: Curve, stations: Array, arcs: ArcChain, halvings: int = 0)
     low, high = cuts[:-1], cuts[1:]
     for left in range(halvings, -1, -1):
         owner = np.minimum(np.searchsorted(stations, low, "right") - 1, count - 1)
-        bound, tail = _interval_bounds(curve, low, high, owner, arcs)
+        bound, tail = _interval_bounds(curve, low, high, owner, arcs, beside)
         again = (tail > TAIL * bound) & (bound > 0.25 * np.max(bound)) if left else np.zeros(len(bound), dtype=bool)
         np.maximum.at(bounds, owner[~again], bound[~again])
         if not np.any(again):
@@ -45,31 +46,31 @@ def deviations(curve: Curve, stations: Array, arcs: ArcChain, halvings: int = 0)
     return bounds
 
 
-def _interval_bounds(curve: Curve, low: Array, high: Array, owner: Array, arcs: ArcChain) -> tuple[Array, Array]:
+def _interval_bounds(curve: Curve, low: Array, high: Array, owner: Array, arcs: ArcChain, beside: bool) -> tuple[Array, Array]:
     """For each interval the bound of the distance from its arc, and how much of it the higher terms make up."""
     rank = 2 * curve.degree + 1
     x, transform = _chebyshev(rank)
     t = (0.5 * (low + high))[:, None] + (0.5 * (high - low))[:, None] * x
     h = curve.homogeneous(t.ravel()).reshape(len(low), rank, 3)
     w = h[..., 2]
-    start, end = arcs.starts[owner], arcs.ends[owner]
-    tangent, last = arcs.start_tangents[owner], arcs.end_tangents[owner]
-    k = arcs.curvatures[owner]
+    start, tangent, k = arcs.starts[owner], arcs.start_tangents[owner], arcs.curvatures[owner]
     qx, qy = h[..., 0] - start[:, :1] * w, h[..., 1] - start[:, 1:] * w
     along = qx * tangent[:, :1] + qy * tangent[:, 1:]
     across = qy * tangent[:, :1] - qx * tangent[:, 1:]
-    beyond = (end[:, :1] * w - h[..., 0]) * last[:, :1] + (end[:, 1:] * w - h[..., 1]) * last[:, 1:]
     g = across * w - 0.5 * k[:, None] * (qx * qx + qy * qy)
-    (g_low, g_high, g_tail), (w_low, _, w_tail) = _range(g @ transform), _range(w @ transform)
+    g_low, g_high, g_tail = _range(g @ transform)
+    w_low, _, w_tail = _range(w @ transform) if curve.weighted else (np.ones(len(low)), None, 0.0)
     lightest = w_low - w_tail
     with np.errstate(invalid="ignore", divide="ignore"):
         most = (np.maximum(np.abs(g_low), np.abs(g_high)) + g_tail) / lightest**2
         distance = 2.0 * most / (1.0 + np.sqrt(1.0 - 2.0 * np.abs(k) * most))
-        overshoot = np.zeros(len(low))
-        for projection in (along, beyond):
-            least, _, tail = _range(projection @ transform)
-            overshoot += np.maximum(0.0, tail - least) / lightest
-        bound = distance + overshoot
+        bound = distance
+        if beside:
+            end, last = arcs.ends[owner], arcs.end_tangents[owner]
+            beyond = (end[:, :1] * w - h[..., 0]) * last[:, :1] + (end[:, 1:] * w - h[..., 1]) * last[:, 1:]
+            for projection in (along, beyond):
+                least, _, tail = _range(projection @ transform)
+                bound = bound + np.maximum(0.0, tail - least) / lightest
     return np.where((lightest > 0.0) & np.isfinite(bound), bound, np.inf), g_tail / np.maximum(lightest, 1e-300) ** 2
 
 
@@ -91,7 +92,7 @@ def _range(a: Array) -> tuple[Array, Array, Array]:
     with np.errstate(invalid="ignore", divide="ignore"):
         half = -0.5 * (4.0 * a2 + np.copysign(np.sqrt(16.0 * a2 * a2 - 48.0 * a3 * constant), a2))
         roots = np.stack((half / (12.0 * a3), constant / half, np.full(len(a), -1.0), np.ones(len(a))))
-    # Where there is no root any other place will do: values there cannot exceed the range.
-    x = np.clip(np.nan_to_num(roots, nan=0.0, posinf=1.0, neginf=-1.0), -1.0, 1.0)
+    # Where there is no root inside any other place will do: values there cannot exceed the range.
+    x = np.where(np.abs(roots) <= 1.0, roots, 1.0)
     values = a0 + a1 * x + a2 * (2.0 * x * x - 1.0) + a3 * (4.0 * x * x - 3.0) * x
     return np.min(values, axis=0), np.max(values, axis=0), tail

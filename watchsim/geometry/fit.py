@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from watchsim.geometry.biarc import ArcChain, arcs_from, biarc_joints, crosses, dots
 from watchsim.geometry.curve import Array, Curve
-from watchsim.geometry.deviation import HALVINGS, deviations
+from watchsim.geometry.deviation import deviations
 from watchsim.geometry.primitives import Edge, Line
 from watchsim.geometry.smooth import smooth_parts
 
@@ -34,7 +34,9 @@ ROUNDS = 20  # of distributing the arcs anew
 ATTEMPTS = 5  # with one number of arcs
 SURE = 0.97  # of the number of arcs that seems necessary: fewer are not tried
 HARDEST = 64.0  # tolerances: what a larger deviation counts
-NEWTON = 3
+MANY = 10_000  # arcs: a part that needs more is halved before
+NEWTON = 2
+TRIAL_HALVINGS = 1
 DAMPING = 0.6  # of the correction of the lengths from one distribution to the next
 BALANCE = 0.1  # of the logarithm of two deviations: correction of that of the legs of a biarc
 
@@ -88,7 +90,7 @@ def _follow(curve: Curve, low: float, high: float, tolerance: float, depth: int)
     """The edges and deviations of the part from `low` to `high`, halved where no chain is found."""
     trial = _one_arc(curve, low, high, tolerance) or _fewest(curve, low, high, tolerance)
     if trial is not None:
-        return [(trial.arcs.edges(), float(np.max(deviations(curve, trial.stations, trial.arcs, HALVINGS))))]
+        return [(trial.arcs.edges(), float(np.max(deviations(curve, trial.stations, trial.arcs))))]
     (p, q) = curve.points(np.array([low, high]))
     chord: list[Edge] = [Line(*p.tolist(), *q.tolist())]
     away = _from_chord(curve, low, high)
@@ -113,7 +115,7 @@ def _one_arc(curve: Curve, low: float, high: float, tolerance: float) -> _Trial 
     kink = abs(float(crosses(mirrored, tangents[1:])[0]))
     if not kink <= KINK or not dots(mirrored, tangents[1:])[0] > 0.0:
         return None
-    errors = deviations(curve, nodes, arc, HALVINGS)
+    errors = deviations(curve, nodes, arc)
     return _Trial(nodes, arc, nodes, np.ones(1), np.array([0]), errors) if errors[0] <= tolerance else None
 
 
@@ -124,8 +126,11 @@ def _fewest(curve: Curve, low: float, high: float, tolerance: float) -> _Trial |
     best: _Trial | None = None
     fewest = 10**9
     attempts: Counter[int] = Counter()
-    count = arcs_for(float(load[-1]))
+    count = arcs_for(float(min(load[-1], MANY)))
+    most = 4 * count + 16
     for _ in range(ROUNDS):
+        if count > most:
+            break
         capacity = capacities(count)
         trial = _chain(curve, t, load, capacity, skew)
         attempts[count] += 1
@@ -133,7 +138,7 @@ def _fewest(curve: Curve, low: float, high: float, tolerance: float) -> _Trial |
         needed = arcs_for(float(np.sum(work)))
         t, load = _redistributed(t, load, trial.nodes, work)
         skew = _balanced(trial)
-        if trial.worst <= tolerance:
+        if trial.worst <= tolerance and np.max(deviations(curve, trial.stations, trial.arcs)) <= tolerance:
             best, fewest = trial, count
             count = min(needed, count - 1)
         elif needed > count:
@@ -223,7 +228,7 @@ def _chain(curve: Curve, t: Array, load: Array, capacity: Array, skew: Array) ->
     order = np.argsort(stations, kind="stable")
     corners, ways = np.concatenate((at, joints))[order], np.concatenate((tangents, along))[order]
     arcs = arcs_from(corners[:-1], ways[:-1], corners[1:])
-    errors = deviations(curve, stations[order], arcs, 2)
+    errors = deviations(curve, stations[order], arcs, TRIAL_HALVINGS, beside=False)
     first = np.searchsorted(stations[order], nodes[:-1])
     return _Trial(stations[order], arcs, nodes, ratios, first, errors)
 
@@ -236,7 +241,7 @@ def _tilted(at: Array, halfway: Array, tangents: Array, between: Array) -> Array
     turn_ahead = np.arctan2(crosses(inner, between[1:]), dots(inner, between[1:]))
     with np.errstate(invalid="ignore", divide="ignore"):
         tilt = -(turn_ahead * back - turn_back * ahead) / (6.0 * (back + ahead))
-    tilt = np.clip(np.nan_to_num(tilt), -MOST_TILT, MOST_TILT)
+    tilt = np.clip(np.where(np.isfinite(tilt), tilt, 0.0), -MOST_TILT, MOST_TILT)
     c, s = np.cos(tilt), np.sin(tilt)
     result = tangents.copy()
     result[1:-1] = np.column_stack((c * inner[:, 0] - s * inner[:, 1], s * inner[:, 0] + c * inner[:, 1]))
@@ -245,7 +250,8 @@ def _tilted(at: Array, halfway: Array, tangents: Array, between: Array) -> Array
 
 def _mirrored(chord: Array, tangent: Array) -> Array:
     """The tangent at the other end of an arc."""
-    result: Array = 2.0 * (chord @ tangent) / (chord @ chord) * chord - tangent
+    with np.errstate(invalid="ignore", divide="ignore"):
+        result: Array = 2.0 * (chord @ tangent) / (chord @ chord) * chord - tangent
     return result
 
 
@@ -257,5 +263,5 @@ def _abreast(curve: Curve, joints: Array, along: Array, low: Array, guess: Array
         rise = dots(curve.points(t) - joints, along)
         with np.errstate(invalid="ignore", divide="ignore"):
             step = rise / dots(curve.slopes(t), along)
-        t = np.clip(t - np.nan_to_num(step, nan=0.0, posinf=0.0, neginf=0.0), low + margin, high - margin)
+        t = np.clip(t - np.where(np.isfinite(step), step, 0.0), low + margin, high - margin)
     return t

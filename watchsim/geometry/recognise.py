@@ -14,13 +14,14 @@ import numpy as np
 
 from watchsim.geometry.biarc import ArcChain, arc_from, crosses, dots
 from watchsim.geometry.curve import Array, Curve
-from watchsim.geometry.deviation import HALVINGS, deviations
+from watchsim.geometry.deviation import deviations
 from watchsim.geometry.fit import KINK, Fit
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line
 
 ON_LINE = 1e-9  # of the length
 ROUND = 1e-5  # of the rise of the arc: a spiral whose radius changes by more than some 1e-4 is none
 MEANT = 0.05  # of the tolerance: so far circles may lie apart that were meant as one
+SHORTEST = 20.0  # tolerances: shorter spans go with their neighbours
 CLOSED = 1e-9  # of the length
 
 
@@ -66,8 +67,10 @@ def _classified(curve: Curve, tolerance: float) -> _Spans:
     offset = p - p[:, :1]
     along = np.einsum("nmk,nk->nm", offset, chord)
     across = np.abs(offset[..., 1] * chord[:, :1] - offset[..., 0] * chord[:, 1:])
+    sides = np.diff(p, axis=1)
+    long = np.sum(np.hypot(sides[..., 0], sides[..., 1]), axis=1) > SHORTEST * tolerance
     limit = np.minimum(ON_LINE * length, tolerance) * length
-    straight = (length > 0.0) & np.all(across <= limit[:, None], axis=1) & np.all(np.diff(along, axis=1) > -limit[:, None], axis=1)
+    straight = long & (length > 0.0) & np.all(across <= limit[:, None], axis=1) & np.all(np.diff(along, axis=1) > -limit[:, None], axis=1)
     third = count // 3
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         centres = _circumcentres(p[:, 0], p[:, third], p[:, 2 * third])
@@ -80,7 +83,7 @@ def _classified(curve: Curve, tolerance: float) -> _Spans:
         rise = radii * np.minimum(1.0, np.sum(steps, axis=1) ** 2 / 8.0)
         near = np.max(np.abs(distances - radii[:, None]), axis=1) <= np.minimum(ROUND * rise, MEANT * tolerance)
     one_way = np.all(steps > 0.0, axis=1) | np.all(steps < 0.0, axis=1)
-    return _Spans(p, straight, ~straight & near & one_way & np.isfinite(radii), centres, radii)
+    return _Spans(p, straight, ~straight & long & near & one_way & np.isfinite(radii), centres, radii)
 
 
 def _circumcentres(a: Array, b: Array, c: Array) -> Array:
@@ -97,7 +100,7 @@ def _continues(spans: _Spans, first: int, k: int, tolerance: float) -> bool:
         if not spans.straight[k]:
             return False
         start, corner, end = spans.points[first, 0], spans.points[first, -1], spans.points[k, -1]
-        away = abs(float(np.cross(corner - start, end - start)))
+        away = abs(float(crosses((corner - start)[None], (end - start)[None])[0]))
         return away <= ON_LINE * float(np.dot(end - start, end - start)) and float(np.dot(corner - start, end - corner)) > 0.0
     if spans.round[first]:
         apart = float(np.hypot(*(spans.centres[k] - spans.centres[first]))) + abs(spans.radii[k] - spans.radii[first])
@@ -146,7 +149,7 @@ def whole_circle(curve: Curve, tolerance: float) -> Fit | None:
     ways = side * np.column_stack((-arms[:, 1], arms[:, 0]))
     places = centre + radius * arms
     chain = ArcChain(places[:-1], ways[:-1], places[1:], ways[1:], np.full(len(t) - 1, side / radius))
-    deviation = float(np.max(deviations(curve, t, chain, HALVINGS)))
+    deviation = float(np.max(deviations(curve, t, chain)))
     if deviation > tolerance:
         return None
     return Fit((Arc(float(centre[0]), float(centre[1]), radius, float(angles[0]), side * TURN),), deviation)

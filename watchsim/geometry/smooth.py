@@ -14,6 +14,7 @@ LOOKS = 64  # places at least where the speed is looked at
 SLOW = 0.2  # of the usual speed: a minimum below that is looked at more closely
 NARROWINGS = 45  # by the golden section, to 1e-9 of a step
 GOLDEN = 0.6180339887498949
+SLIVER = 1e-4  # of the range: nothing shorter is cut off
 NEAR = 1e-3  # of a span: so far beside a break its curvature is measured
 JUMP = 4.0  # tolerances: a jump of curvature over one arc's length that is worth an end there
 BEST = 216.0 / 3.0**0.5  # an arc's length is the cube root of BEST times the tolerance over the rate of curvature
@@ -23,7 +24,7 @@ def smooth_parts(curve: Curve, tolerance: float) -> list[float]:
     """The ends of the curve and the parameters in between where it is not smooth, ascending."""
     low, high = float(curve.breaks[0]), float(curve.breaks[-1])
     inside = sorted({*jumps(curve, tolerance), *pauses(curve)})
-    least = 1e-8 * (high - low)
+    least = SLIVER * (high - low)
     cuts = [low]
     for t in inside:
         if t - cuts[-1] > least and high - t > least:
