@@ -15,7 +15,20 @@ from watchsim.drawing.inspect import inspect_report, inspect_text
 Reader = Callable[..., Drawing]
 
 TOP = (
-    *("file", "format", "units", "units_from", "extents_mm", "layers", "loops", "points", "fitted", "drawn", "ignored", "findings"),
+    *(
+        "file",
+        "format",
+        "units",
+        "units_from",
+        "extents_mm",
+        "layers",
+        "loops",
+        "points",
+        "fitted",
+        "drawn",
+        "ignored",
+        "findings",
+    ),
     *("lines", "arcs", "length_mm", "area_mm2"),
 )
 

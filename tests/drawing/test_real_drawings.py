@@ -10,7 +10,7 @@ import json
 import math
 import sys
 from collections import Counter
-from functools import lru_cache
+from functools import cache
 from itertools import product
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -48,7 +48,7 @@ class Case(NamedTuple):
         return [c.area * (1e3 / self.mm) ** 2 for c in self.plain if c.kind in kinds]
 
 
-@lru_cache(maxsize=None)
+@cache
 def case(name: str) -> Case:
     truth = TRUTH[name]
     curved = any(truth["kinds"].get(kind) for kind in CURVES)

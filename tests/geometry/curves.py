@@ -56,7 +56,7 @@ def spiral(r: float, growth: float, turns: float) -> Curve:
 
 
 def least_arcs(curve: Curve, tolerance: float) -> float:
-    """(√3/216/ε)^(1/3) ∫ |κ′|^(1/3) ds: what no chain of arcs can go below when ε is small. κ′ from interpolation, not differences."""
+    """(√3/216/ε)^(1/3) ∫ |κ′|^(1/3) ds: the least for small ε. κ′ from interpolation."""
     total = 0.0
     for low, high in zip(curve.breaks[:-1], curve.breaks[1:], strict=True):
         nodes = 0.5 * (low + high) + 0.5 * (high - low) * np.cos(np.pi * (np.arange(41) + 0.5) / 41)

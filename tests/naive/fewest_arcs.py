@@ -48,9 +48,11 @@ def fewest_arcs(curve: Callable[[Array], Array], t: Array, tolerance: float, til
     step = 1e-5 * float(t[-1] - t[0])
     z = curve(t)
     inner = np.clip(t, t[0] + step, t[-1] - step)
-    slope = curve(inner + step) - curve(inner - step) + (t - inner) / step * (
-        curve(inner + step) - 2.0 * curve(inner) + curve(inner - step)
-    ) * 2.0
+    slope = (
+        curve(inner + step)
+        - curve(inner - step)
+        + (t - inner) / step * (curve(inner + step) - 2.0 * curve(inner) + curve(inner - step)) * 2.0
+    )
     ways = slope / np.abs(slope)
     turned = np.exp(1j * np.asarray(tilts))
     fractions = (np.arange(SAMPLES) + 0.5) / SAMPLES

@@ -48,5 +48,5 @@ class Content:
     fitted_arcs: int = 0
     fitted_deviation: float = 0.0
     ignored: dict[str, int] = field(default_factory=dict)
-    drawn: Drawn = Drawn()
+    drawn: Drawn = field(default_factory=Drawn)
     findings: tuple[Finding, ...] = ()

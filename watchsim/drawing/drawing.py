@@ -32,5 +32,5 @@ class Drawing:
     fitted_arcs: int = 0
     fitted_deviation: float = 0.0
     ignored: dict[str, int] = field(default_factory=dict)
-    drawn: Drawn = Drawn()
+    drawn: Drawn = field(default_factory=Drawn)
     findings: tuple[Finding, ...] = ()

@@ -53,8 +53,8 @@ def arcs_from(starts: Array, tangents: Array, ends: Array) -> ArcChain:
 def biarc_joints(p: Array, tangent_p: Array, q: Array, tangent_q: Array, ratio: Array) -> tuple[Array, Array]:
     """Where the two arcs from p to q (n, 2) with these unit tangents meet, and their tangent there; nan where they cannot.
 
-    The end legs of the control polygon p, p + a·tp, q - b·tq, q have the lengths a and b = `ratio`·a, the middle one a + b; with
-    v = q - p, t = tp + ratio·tq and u = tp - tq that says ratio·a² u² + 2a v·t - v² = 0, whose positive root is written so
+    The end legs of the control polygon p, p + a·tp, q - b·tq, q have the lengths a and b = `ratio`·a, the middle one a + b;
+    with v = q - p, t = tp + ratio·tq and u = tp - tq that says ratio·a² u² + 2a v·t - v² = 0, whose positive root is written so
     that nothing cancels.
     """
     r = ratio[:, None]

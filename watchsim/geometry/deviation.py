@@ -18,7 +18,7 @@ import numpy as np
 from watchsim.geometry.biarc import ArcChain
 from watchsim.geometry.curve import Array, Curve
 
-TAIL = 0.02  # of the bound: where the higher terms matter more, the interval is halved
+SLACK = 0.01  # of the bound: where the higher terms or unequal weights may add more, the interval is halved
 HALVINGS = 6
 
 
@@ -36,8 +36,8 @@ def deviations(curve: Curve, stations: Array, arcs: ArcChain, halvings: int = HA
     low, high = cuts[:-1], cuts[1:]
     for left in range(halvings, -1, -1):
         owner = np.minimum(np.searchsorted(stations, low, "right") - 1, count - 1)
-        bound, tail = _interval_bounds(curve, low, high, owner, arcs, beside)
-        again = (tail > TAIL * bound) & (bound > 0.25 * np.max(bound)) if left else np.zeros(len(bound), dtype=bool)
+        bound, slack = _interval_bounds(curve, low, high, owner, arcs, beside)
+        again = (slack > SLACK * bound) & (bound > 0.25 * np.max(bound)) if left else np.zeros(len(bound), dtype=bool)
         np.maximum.at(bounds, owner[~again], bound[~again])
         if not np.any(again):
             break
@@ -47,7 +47,7 @@ def deviations(curve: Curve, stations: Array, arcs: ArcChain, halvings: int = HA
 
 
 def _interval_bounds(curve: Curve, low: Array, high: Array, owner: Array, arcs: ArcChain, beside: bool) -> tuple[Array, Array]:
-    """For each interval the bound of the distance from its arc, and how much of it the higher terms make up."""
+    """For each interval the bound of the distance from its arc, and by how much it may be too large."""
     rank = 2 * curve.degree + 1
     x, transform = _chebyshev(rank)
     t = (0.5 * (low + high))[:, None] + (0.5 * (high - low))[:, None] * x
@@ -59,8 +59,10 @@ def _interval_bounds(curve: Curve, low: Array, high: Array, owner: Array, arcs: 
     across = qy * tangent[:, :1] - qx * tangent[:, 1:]
     g = across * w - 0.5 * k[:, None] * (qx * qx + qy * qy)
     g_low, g_high, g_tail = _range(g @ transform)
-    w_low, _, w_tail = _range(w @ transform) if curve.weighted else (np.ones(len(low)), None, 0.0)
-    lightest = w_low - w_tail
+    lightest = heaviest = np.ones(len(low))
+    if curve.weighted:
+        w_low, w_high, w_tail = _range(w @ transform)
+        lightest, heaviest = w_low - w_tail, w_high + w_tail
     with np.errstate(invalid="ignore", divide="ignore"):
         most = (np.maximum(np.abs(g_low), np.abs(g_high)) + g_tail) / lightest**2
         distance = 2.0 * most / (1.0 + np.sqrt(1.0 - 2.0 * np.abs(k) * most))
@@ -71,7 +73,8 @@ def _interval_bounds(curve: Curve, low: Array, high: Array, owner: Array, arcs: 
             for projection in (along, beyond):
                 least, _, tail = _range(projection @ transform)
                 bound = bound + np.maximum(0.0, tail - least) / lightest
-    return np.where((lightest > 0.0) & np.isfinite(bound), bound, np.inf), g_tail / np.maximum(lightest, 1e-300) ** 2
+        slack = g_tail / lightest**2 + most * (1.0 - (lightest / heaviest) ** 2)
+    return np.where((lightest > 0.0) & np.isfinite(bound), bound, np.inf), slack
 
 
 @lru_cache(maxsize=64)

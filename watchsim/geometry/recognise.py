@@ -70,7 +70,12 @@ def _classified(curve: Curve, tolerance: float) -> _Spans:
     sides = np.diff(p, axis=1)
     long = np.sum(np.hypot(sides[..., 0], sides[..., 1]), axis=1) > SHORTEST * tolerance
     limit = np.minimum(ON_LINE * length, tolerance) * length
-    straight = long & (length > 0.0) & np.all(across <= limit[:, None], axis=1) & np.all(np.diff(along, axis=1) > -limit[:, None], axis=1)
+    straight = (
+        long
+        & (length > 0.0)
+        & np.all(across <= limit[:, None], axis=1)
+        & np.all(np.diff(along, axis=1) > -limit[:, None], axis=1)
+    )
     third = count // 3
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         centres = _circumcentres(p[:, 0], p[:, third], p[:, 2 * third])
@@ -170,7 +175,7 @@ def joined(edges: Sequence[Edge], spare: float) -> tuple[list[Edge], float]:
 
 
 def _apart(one: Edge, other: Edge) -> float:
-    """How far two arcs' circles are from each other; infinite unless both turn the same way and the rest is less than a turn."""
+    """How far two arcs' circles are from each other; infinite unless both turn one way, in all one turn at most."""
     if not (isinstance(one, Arc) and isinstance(other, Arc)) or one.sweep * other.sweep < 0.0:
         return math.inf
     apart = math.hypot(one.x - other.x, one.y - other.y) + abs(one.radius - other.radius)
