@@ -58,6 +58,7 @@ def read(path: Path | str, units: str | None = None, snap: float = SNAP, fit: fl
         fitted_arcs=content.fitted_arcs,
         fitted_deviation=content.fitted_deviation,
         ignored=content.ignored,
+        drawn=content.drawn,
         findings=tuple(findings),
     )
 

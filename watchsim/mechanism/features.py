@@ -65,7 +65,17 @@ def _arc(edge: Arc, size: float) -> dict[str, float]:
     half = 0.5 * min(abs(edge.sweep), 2.0 * math.pi)
     fan = {"nx": side * c, "ny": side * s, "half_cos": math.cos(half), "half_sin": math.sin(half)}
     extent = FULL if edge.is_circle else PART
-    return {"kind": ARC, "x": edge.x, "y": edge.y, "px": px, "py": py, "radius": edge.radius, "side": side, "extent": extent, **fan}
+    return {
+        "kind": ARC,
+        "x": edge.x,
+        "y": edge.y,
+        "px": px,
+        "py": py,
+        "radius": edge.radius,
+        "side": side,
+        "extent": extent,
+        **fan,
+    }
 
 
 def _middle(edge: Arc, exact: bool) -> tuple[float, float, float, float]:
