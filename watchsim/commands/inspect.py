@@ -5,13 +5,13 @@ from __future__ import annotations
 import argparse
 from dataclasses import replace
 
-from watchsim.commands.console import BAD_INPUT, FINE, InputError, print_json, say
+from watchsim.commands.console import BAD_INPUT, FINE, InputError, parse_length, print_json, say
 
 HELP = "read a drawing: units, size, layers, loops, lines, arcs, faults"
 
 
 def options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", metavar="FILE", help="a DXF drawing")
+    parser.add_argument("file", metavar="FILE", help="a DXF or SVG drawing")
     parser.add_argument("--units", metavar="UNIT", help="read lengths in this unit (mm, inch, ...) whatever the file says")
     parser.add_argument("--layer", metavar="NAMES", help="only these layers, with commas between them")
     parser.add_argument("--snap", metavar="LENGTH", help='join ends that lie this close, such as "2 µm" (default 1 µm)')
@@ -25,7 +25,7 @@ def run(args: argparse.Namespace) -> int:
     from watchsim.drawing.inspect import inspect_report, inspect_text
     from watchsim.drawing.read import read
 
-    lengths = {name: _length(name, getattr(args, name)) for name in ("snap", "fit") if getattr(args, name) is not None}
+    lengths = {name: parse_length(name, getattr(args, name)) for name in ("snap", "fit") if getattr(args, name) is not None}
     try:
         drawing = read(args.file, units=args.units, **lengths)
     except ValueError as error:
@@ -42,18 +42,6 @@ def run(args: argparse.Namespace) -> int:
     else:
         print(inspect_text(drawing))
     return BAD_INPUT if not drawing.layers and any(f.severity == "error" for f in drawing.findings) else FINE
-
-
-def _length(name: str, text: str) -> float:
-    from watchsim.units import LENGTH, UnitError, parse
-
-    try:
-        value = parse(text, LENGTH)
-    except UnitError as error:
-        raise InputError(f"--{name} {text}: {error}") from error
-    if not value > 0.0:
-        raise InputError(f"--{name} {text}: must be positive.")
-    return value
 
 
 def _only(drawing, names):  # type: ignore[no-untyped-def]

@@ -80,27 +80,34 @@ def _inside_fan(p, along, across, reach):
 
 
 @kernel
-def margin_of(contact, a, b, pa, pb, shape):
-    """How far inside both primitives the contact lies, metres; negative outside. `shape` is from `shape_of_contact`."""
+def margins_of(contact, a, b, pa, pb, shape):
+    """How far inside primitive a and inside b the contact lies, metres; negative outside. `shape`: see `shape_of_contact`."""
     _, nx, ny, Q, foot, x, y = shape
     if Q == 0.0:
-        return -b.radius
+        return 0.0, -b.radius
     # The contact lies on A in the direction -n from the circle's centre.
     fx, fy = point_of(pa, a.nx, a.ny)
-    margin = _inside_fan(a, -(nx * fx + ny * fy), abs(nx * fy - ny * fx), max(a.radius, a.length))
+    inside_a = _inside_fan(a, -(nx * fx + ny * fy), abs(nx * fy - ny * fx), max(a.radius, a.length))
     if b.kind == LINE:
         bx, by = point_of(pb, b.x, b.y)
         tx, ty = point_of(pb, b.tx, b.ty)
         way = tx * (x + (pa.x - pb.x) - bx) + ty * (y + (pa.y - pb.y) - by)
-        return min(margin, way, b.length - way)
+        return inside_a, min(way, b.length - way)
     fx, fy = point_of(pb, b.nx, b.ny)
-    return min(margin, _inside_fan(b, nx * fx + ny * fy, abs(foot), b.radius))
+    return inside_a, _inside_fan(b, nx * fx + ny * fy, abs(foot), b.radius)
+
+
+@kernel
+def extent_margins(model, k, pose):
+    """How far inside A's and inside B's primitive contact `k` lies, metres; negative outside."""
+    contact = model.contacts[k]
+    a, b = model.primitives[contact.a], model.primitives[contact.b]
+    pa, pb = pose[a.body], pose[b.body]
+    return margins_of(contact, a, b, pa, pb, shape_of_contact(contact, a, b, pa, pb))
 
 
 @kernel
 def extent_margin(model, k, pose):
     """How far inside both primitives contact `k` lies, metres; negative outside."""
-    contact = model.contacts[k]
-    a, b = model.primitives[contact.a], model.primitives[contact.b]
-    pa, pb = pose[a.body], pose[b.body]
-    return margin_of(contact, a, b, pa, pb, shape_of_contact(contact, a, b, pa, pb))
+    inside_a, inside_b = extent_margins(model, k, pose)
+    return min(inside_a, inside_b)

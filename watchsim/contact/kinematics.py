@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.contact.gaps import margin_of, shape_of_contact
+from watchsim.contact.gaps import margins_of, shape_of_contact
 from watchsim.jit import by_reference, kernel
 from watchsim.mechanism.model import FREE, PIVOT, SLIDE, Records, records
 
@@ -112,7 +112,8 @@ def contact_kinematics(model, k, pose, row, out_closed):
     square_a, square_b = pa.w * pa.w, pb.w * pb.w
     kin.bar_N = (turning + pb.w) * v_t - spin * travel - square_a * (nx * xa + ny * ya) + square_b * (nx * xb + ny * yb)
     kin.bar_T = -(turning + pb.w) * v_n - square_a * (tx * xa + ty * ya) + square_b * (tx * xb + ty * yb)
-    kin.margin = margin_of(contact, a, b, pa, pb, shape)
+    inside_a, inside_b = margins_of(contact, a, b, pa, pb, shape)
+    kin.margin = min(inside_a, inside_b)
     kin.x, kin.y = pa.x + xa, pa.y + ya
     out_closed.ids[row] = k
     out_closed.slots[row] = 0

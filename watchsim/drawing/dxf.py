@@ -65,6 +65,7 @@ def read_dxf(data: bytes, units: str | None, fit: float) -> Content:
         fitted_arcs=found.arcs,
         fitted_deviation=found.deviation,
         ignored=dict(found.ignored),
+        drawn=found.drawn(),
         findings=(*notes, *sections.findings, *found.findings, *left_out(found, sections.layers)),
     )
 

@@ -36,6 +36,7 @@ def inspect_report(drawing: Drawing) -> dict[str, object]:
             "arcs": drawing.fitted_arcs,
             "worst_deviation_um": 1e6 * drawing.fitted_deviation,
         },
+        "drawn": {"kinds": dict(drawing.drawn.kinds), "length_mm": 1e3 * drawing.drawn.length},
         "ignored": dict(drawing.ignored),
         "findings": [finding.as_dict() for finding in drawing.findings],
         "lines": lines,

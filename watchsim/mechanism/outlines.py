@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.findings import Finding
@@ -27,7 +28,9 @@ SAME_POINT = 1e-9  # m; two circles on the pivot layer this close mark one pivot
 class Outlines:
     """What a drawing or a shape gives a body, in the coordinates of the drawing (metres).
 
-    `loops` can touch, `rest` are closed outlines on layers left out. `pivot` is None when nobody said where it is.
+    `loops` can touch, `rest` are closed outlines on layers left out, `aside` those that solids use as sections and
+    hairsprings, `chains` the open lines. `pivot` is None when nobody said where it is. `errors` are what is wrong on layers
+    left out.
     `sound` is False after a fault: questions about layers are then not worth asking.
     """
 
@@ -36,10 +39,13 @@ class Outlines:
     pivot: Point | None = None
     findings: tuple[Finding, ...] = ()
     sound: bool = True
+    aside: tuple[Loop, ...] = ()
+    chains: tuple[Loop, ...] = ()
+    errors: tuple[Finding, ...] = ()
 
     @property
     def all(self) -> tuple[Loop, ...]:
-        return self.loops + self.rest
+        return self.loops + self.rest + self.aside
 
 
 def read_outlines(table: Table, folder: Path) -> Outlines:
@@ -64,14 +70,30 @@ def _from_drawing(table: Table, folder: Path) -> Outlines:
     if drawing is None:
         return Outlines(pivot=UNREADABLE if marked else _given_pivot(table), sound=False)
     pivot = _marked_pivot(table, drawing) if marked else _given_pivot(table)
-    sides = face_layers(table, drawing, table.texts("layers"))
-    layers = _layers(table, drawing, sides)
-    findings = tuple(_sorted_out(table, drawing, layers, sides))
+    apart = frozenset(set_apart(table.mapping))
+    sides = {layer: side for layer, side in face_layers(table, drawing, table.texts("layers")).items() if layer not in apart}
+    layers = _layers(table, drawing, sides, apart)
+    findings = tuple(_sorted_out(table, drawing, layers, sides, apart))
     closed = [loop for loop in drawing.loops if loop.closed]
-    loops = tuple(loop for loop in closed if loop.layer in layers)
-    rest = tuple(loop for loop in closed if loop.layer not in layers)
-    loops += tuple(faces(table, drawing, sides))
-    return Outlines(loops, rest, pivot, findings, sound=len(table.faults.found) == known)
+    touchable = tuple(loop for loop in closed if loop.layer in layers)
+    return Outlines(
+        loops=touchable + tuple(faces(table, drawing, sides)),
+        rest=tuple(loop for loop in closed if loop.layer not in layers and loop.layer not in apart),
+        pivot=pivot,
+        findings=findings,
+        sound=len(table.faults.found) == known,
+        aside=tuple(loop for loop in closed if loop.layer not in layers and loop.layer in apart),
+        chains=drawing.open_chains,
+        errors=tuple(f for f in drawing.findings if f.severity == "error" and f.layer in apart and f.layer not in layers),
+    )
+
+
+def set_apart(mapping: Mapping[str, Any]) -> Iterator[str]:
+    """The layers that solids name for sections, axes and hairsprings: what is drawn there is no outline that could touch."""
+    solids = mapping.get("solids")
+    for solid in solids if isinstance(solids, (list, tuple)) else ():
+        if isinstance(solid, Mapping) and ("turned" in solid or solid.get("hairspring") is True):
+            yield from (name for name in (solid.get("layer"), solid.get("turned")) if isinstance(name, str))
 
 
 def _open(table: Table, folder: Path) -> Drawing | None:
@@ -109,11 +131,11 @@ def _similar(path: Path) -> str:
     """' Did you mean ...?' with the drawings that lie in the folder."""
     if not path.parent.is_dir():
         return f", nor the folder {path.parent}"
-    there = sorted(file.name for file in path.parent.iterdir() if file.suffix.lower() in (".dxf", ".svg"))
+    there = sorted(file.name for file in path.parent.iterdir() if file.suffix.lower() in (".dxf", ".svg", ".svgz"))
     return f". {nearest(path.name, there)}".removesuffix(".") if there else ""
 
 
-def _layers(table: Table, drawing: Drawing, sides: Mapping[str, Side]) -> tuple[str, ...]:
+def _layers(table: Table, drawing: Drawing, sides: Mapping[str, Side], apart: frozenset[str]) -> tuple[str, ...]:
     """The layers that can touch: with closed outlines, or with open chains whose material is known (`sides`).
 
     Every asked layer that is not there is a fault.
@@ -121,7 +143,8 @@ def _layers(table: Table, drawing: Drawing, sides: Mapping[str, Side]) -> tuple[
     closed = dict.fromkeys(loop.layer for loop in drawing.loops if loop.closed)
     asked = table.texts("layers")
     if "layers" not in table:
-        asked = tuple(layer for layer in {**closed, **dict.fromkeys(sides)} if layer != table.mapping.get("pivot"))
+        known = {**closed, **dict.fromkeys(sides)}
+        asked = tuple(layer for layer in known if layer != table.mapping.get("pivot") and layer not in apart)
         if not asked and not any(finding.severity == "error" for finding in drawing.findings):
             hint = f" Its lines are open: say where their material is, {ADVICE}." if drawing.open_chains else ""
             table.faults.add(f"{table.path}.drawing", f"it holds no closed outline.{hint}", _arrow(drawing.path))
@@ -147,15 +170,20 @@ def _hint(word: str, known: Iterable[str]) -> str:
     return f"{hint} " if hint.startswith("Did") else ""
 
 
-def _sorted_out(table: Table, drawing: Drawing, layers: tuple[str, ...], sides: Mapping[str, Side]) -> Iterator[Finding]:
+def _sorted_out(
+    table: Table, drawing: Drawing, layers: tuple[str, ...], sides: Mapping[str, Side], apart: frozenset[str]
+) -> Iterator[Finding]:
     """Notes the drawing's errors that concern this body as faults and hands on its warnings.
 
     Where layers were chosen, the others may be as they like, but outlines that cross are told of; where none were, all must be
-    sound but the pivot's. Open chains are as they should be where the scene says what is behind them.
+    sound but the pivot's. Open chains are as they should be where the scene says what is behind them. Sections, axes and
+    hairsprings are judged by the solids that use them.
     """
     pivot = table.mapping.get("pivot")
     used = {*layers, *_solid_layers(table)}
     for finding in drawing.findings:
+        if finding.layer in apart and finding.layer not in layers:
+            continue
         beside = finding.layer is not None and finding.layer not in used and ("layers" in table or finding.layer == pivot)
         if (beside and finding.code != "crossing") or (finding.layer in sides and finding.code in OPEN):
             continue

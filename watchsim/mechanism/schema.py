@@ -39,7 +39,11 @@ BODY: Keys = {
     **{"mass": Key(units.MASS), "inertia": Key(units.INERTIA), "solids": PLAIN},
     **{"on": PLAIN, "adjust": PLAIN},
 }
-SOLID: Keys = {"layer": PLAIN, "thickness": LENGTH, "density": Key(units.DENSITY)}
+SOLID: Keys = {
+    **{"layer": PLAIN, "thickness": LENGTH, "density": Key(units.DENSITY), "count": NUMBER},
+    **{"turned": LENGTH, "lying": PLAIN},
+    **{"hairspring": PLAIN, "inner": LENGTH, "outer": LENGTH, "turns": NUMBER, "length": LENGTH, "width": LENGTH},
+}
 SPRING: Keys = {
     "body": PLAIN,
     "frequency": Key(units.FREQUENCY),
