@@ -59,14 +59,18 @@ NAMING = (b"1", b"2", b"3", b"8")  # groups that hold names
 
 def samples() -> list[bytes]:
     """Whole files without any finding."""
-    return [marked(every_entity()), marked(nested_blocks()), d.dxf(d.polygon([(0, 0), (4, 0), (4, 3)]) + d.circle(3, 1, 0.5), units=1)]
+    return [
+        marked(every_entity()),
+        marked(nested_blocks()),
+        d.dxf(d.polygon([(0, 0), (4, 0), (4, 3)]) + d.circle(3, 1, 0.5), units=1),
+    ]
 
 
 def marked(data: bytes) -> bytes:
     """With the subclass markers without which the other reader refuses some entities."""
     for kind, marker in ((b"LWPOLYLINE", b"AcDbPolyline"), (b"SPLINE", b"AcDbSpline"), (b"ELLIPSE", b"AcDbEllipse")):
-        data = data.replace(b"0\n%s\n8\n0\n" % kind, b"0\n%s\n8\n0\n100\n%s\n" % (kind, marker))
-    return data
+        data = data.replace(b"0\n%s\n8\n0\n" % kind, b"0\n%s\n100\nAcDbEntity\n8\n0\n100\n%s\n" % (kind, marker))
+    return data.replace(b"HEADER\n", b"HEADER\n9\n$ACADVER\n1\nAC1015\n")
 
 
 def every_entity() -> bytes:

@@ -18,6 +18,7 @@ from watchsim.geometry.primitives import Arc, Edge, Point
 
 NOTHING = 1e-12  # metres; far below any decimal of a drawing
 SAME = 1e-9  # metres
+AT_BRIDGE = 3  # ends that meet where a bridge leaves an outline
 
 
 def with_length(strokes: Sequence[Stroke]) -> tuple[list[Stroke], list[Finding]]:
@@ -77,9 +78,7 @@ def same_edge(a: Edge, b: Edge) -> bool:
     return near and isinstance(a, Arc) == isinstance(b, Arc)
 
 
-def without_doubles(
-    strokes: Sequence[Stroke], nodes: Nodes, reach: float
-) -> tuple[set[int], dict[int, int], list[Finding]]:
+def without_doubles(strokes: Sequence[Stroke], nodes: Nodes, reach: float) -> tuple[set[int], dict[int, int], list[Finding]]:
     """Numbers of the strokes to keep, of those among them that were drawn more than once (with the copy's number), and findings.
 
     Strokes are the same, forward or reversed, if they join the same nodes with their middles within `reach` metres.
@@ -112,7 +111,8 @@ def without_slits(
     strokes: Sequence[Stroke], nodes: Nodes, kept: set[int], doubled: dict[int, int]
 ) -> tuple[set[int], list[Finding]]:
     """Takes out runs of doubled strokes that have no width: from a free tip into an outline, or from an outline to its hole."""
-    bridges = {number for number, copy in doubled.items() if strokes[number].run == strokes[copy].run}
+    rows = unbroken_rows(strokes)
+    bridges = {number for number, copy in doubled.items() if rows[number] == rows[copy]}
     findings = []
     for first in sorted(doubled):
         for tip in nodes.of(first):
@@ -126,16 +126,26 @@ def without_slits(
     return kept, findings
 
 
-def slit_from(first: int, tip: int, nodes: Nodes, doubled: Container[int], bridges: Container[int]) -> list[int]:
-    """The doubled strokes from a free tip to a branch, or from one branch to another one; empty if it is none.
+def unbroken_rows(strokes: Sequence[Stroke]) -> list[int]:
+    """A number for each stroke: the same for strokes that one entity draws without lifting the pen."""
+    rows = [0] * len(strokes)
+    for k in range(1, len(strokes)):
+        before, after = strokes[k - 1], strokes[k]
+        goes_on = before.run == after.run and math.dist(before.edge.end, after.edge.start) <= SAME
+        rows[k] = rows[k - 1] + (not goes_on)
+    return rows
 
-    Only what one entity draws there and back is a bridge between branches (two outlines side by side share an edge, too), and
-    an odd number of ends must be left at both: the outlines are whole without it.
+
+def slit_from(first: int, tip: int, nodes: Nodes, doubled: Container[int], bridges: Container[int]) -> list[int]:
+    """The doubled strokes from a free tip to a branch, or from one outline to another one; empty if it is none.
+
+    Two outlines side by side share an edge, too: only what is drawn there and back without lifting the pen is a bridge, and
+    both its ends must lie on outlines that are whole without it.
     """
     run: list[int] = []
     number, node = first, tip
-    bridge = len(nodes.members[tip]) > 1
-    if bridge and len(nodes.members[tip]) % 2 == 0:
+    bridge = len(nodes.members[tip]) == AT_BRIDGE
+    if len(nodes.members[tip]) != 1 and not bridge:
         return []
     while number in (bridges if bridge else doubled) and number not in run:
         run.append(number)
@@ -143,6 +153,6 @@ def slit_from(first: int, tip: int, nodes: Nodes, doubled: Container[int], bridg
         node = b if node == a else a
         around = nodes.members[node]
         if len(around) != 2:
-            return run if len(around) > 2 and (not bridge or len(around) % 2 == 1) else []
+            return run if len(around) > 2 and (not bridge or len(around) == AT_BRIDGE) else []
         number = next((end // 2 for end in around if end // 2 != number), -1)
     return []
