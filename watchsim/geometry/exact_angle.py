@@ -5,7 +5,6 @@ A point on an arc whose radius is a million times its length keeps all its digit
 
 from __future__ import annotations
 
-import math
 from decimal import Decimal, localcontext
 
 DIGITS = 40
