@@ -19,6 +19,7 @@ _HOMES = {
     "distance": "watchsim.contact.outlines",
     "gap": "watchsim.contact.outlines",
     "kinematics": "watchsim.contact.outlines",
+    "Profile": "watchsim.drawing.profile",
     "simulate": "watchsim.simulation.simulate",
     "Trajectory": "watchsim.simulation.trajectory",
     "EventKind": "watchsim.simulation.trajectory",
@@ -46,6 +47,7 @@ if TYPE_CHECKING:
     from watchsim.contact.outlines import gap as gap
     from watchsim.contact.outlines import kinematics as kinematics
     from watchsim.drawing.drawing import Drawing as Drawing
+    from watchsim.drawing.profile import Profile as Profile
     from watchsim.drawing.read import read as read
     from watchsim.mechanism.errors import SceneError as SceneError
     from watchsim.mechanism.load import load as load

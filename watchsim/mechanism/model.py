@@ -95,7 +95,11 @@ BODY_PAIR = np.dtype(
         ("b", "i8"),
         ("start", "i8"),  # its contacts are start..stop of `contacts`
         ("stop", "i8"),
-        ("axes", "i8"),  # 0: no cells, every pair is a candidate; else the number of cell coordinates
+        ("near_start", "i8"),  # those that can ever touch are near_start..near_stop of `near`
+        ("near_stop", "i8"),
+        ("listed", "i8"),  # 0: all of `near` are candidates in every cell, nothing is asked
+        ("clearance", "f8"),  # m: primitives count as able to touch when they come this close
+        ("axes", "i8"),  # 0: no cells, all of `near` are candidates; else the number of cell coordinates
         ("c0", "i8"),  # cell coordinates and their cell sizes; a pivot's index wraps after `wrap` cells (0: no wrap)
         ("c1", "i8"),
         ("c2", "i8"),
@@ -105,6 +109,9 @@ BODY_PAIR = np.dtype(
         ("wrap0", "i8"),
         ("wrap1", "i8"),
         ("wrap2", "i8"),
+        ("fold0", "i8"),  # by 1/fold of a turn the body's outline comes back onto itself
+        ("fold1", "i8"),
+        ("fold2", "i8"),
     ]
 )
 
@@ -120,6 +127,7 @@ class Model(NamedTuple):
     contacts: Records
     laws: Records
     pairs: Records
+    near: NDArray[np.int64]  # contacts that can ever touch, by pair of bodies
 
 
 ModelRef = by_reference(Model, __name__)

@@ -56,7 +56,7 @@ def gather(model, cells, state, options, scratch):
             scratch.at[:] = state.q
             return -1
         for place in range(start, start + count):
-            k = candidate(cells, how, place)
+            k = candidate(model, cells, how, place)
             if state.mode[k] != OPEN:
                 continue
             gap, _, _, _ = normal_gap(model, k, scratch.pose)

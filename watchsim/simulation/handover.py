@@ -74,7 +74,7 @@ def _successor(model, cells, state, options, k, scratch):
         return -2
     best, deepest = -1, -options.extent
     for slot in range(start, start + count):
-        j = candidate(cells, how, slot)
+        j = candidate(model, cells, how, slot)
         if state.mode[j] != OPEN:
             continue
         gap, _, _, _ = normal_gap(model, j, scratch.pose)
