@@ -182,8 +182,9 @@ def _touching(primitives: Records, first: np.ndarray, last: np.ndarray) -> tuple
     a, b = primitives[both[0]], primitives[both[1]]
     corner, round_ = a.kind == CORNER, (a.kind == ARC) & (a.side > 0.0)
     fits = (b.kind != ARC) | (b.side > 0.0) | (a.radius < b.radius)
-    # Two convex arcs are one contact, not two: the first set's arc plays the circle.
-    twice = round_ & (b.kind == ARC) & (b.side > 0.0) & (np.arange(len(a)) >= len(one[0]))
+    # Two convex arcs are one contact, not two: the rounder one plays the circle, of equal ones the first set's.
+    second = (a.radius > b.radius) | ((a.radius == b.radius) & (np.arange(len(a)) >= len(one[0])))
+    twice = round_ & (b.kind == ARC) & (b.side > 0.0) & second
     keep = (corner | round_) & (b.kind != CORNER) & fits & ~twice
     return both[0][keep], both[1][keep]
 
