@@ -22,7 +22,7 @@ from watchsim.geometry.primitives import Arc, Edge, Line
 from watchsim.mechanism.body import Body
 from watchsim.mechanism.compile import compile_scene
 from watchsim.mechanism.load import load
-from watchsim.mechanism.model import Records
+from watchsim.mechanism.model import ARC, CORNER, Records
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation.simulate import WHOLE_RUN, _Run, simulate
 from watchsim.simulation.stops import Stop
@@ -30,9 +30,9 @@ from watchsim.simulation.trajectory import Trajectory
 
 ROOT = Path(__file__).resolve().parents[1]
 DURATION = 0.5  # s, four beats
-REFINED = (1, 2, 4, 7, 10, 14, 18)  # pieces of each edge
+REFINED = (1, 2, 4, 8, 16, 32, 48)  # pieces of each edge
 REPEATS = 5
-MOST_BRUTE = 2e4  # declared pairs: beyond it brute force is not waited for
+MOST_BRUTE = 1.5e4  # declared pairs: beyond it brute force is not waited for
 Mark = tuple[str, int, int]
 
 
@@ -81,18 +81,29 @@ def touched_primitives(scene: Scene, run: Trajectory) -> list[Records]:
 
 
 def bears(edge: Edge, primitive: Records) -> bool:
-    """The primitive is this edge, or a corner at one of its ends."""
-    return min(math.dist(edge.point(f), (primitive.px, primitive.py)) for f in (0.0, 0.5, 1.0)) < 1e-9
+    """The primitive is this edge, not a corner beside it."""
+    if primitive.kind == CORNER or isinstance(edge, Arc) != (primitive.kind == ARC):
+        return False
+    return math.dist(edge.point(0.5 if isinstance(edge, Arc) else 0.0), (primitive.px, primitive.py)) < 1e-9
 
 
-def few_teeth(scene: Scene, run: Trajectory) -> Scene:
-    """Only the wheel's outlines that are touched."""
-    wheel = scene.body("wheel")
-    number = scene.bodies.index(wheel)
-    met = [primitive for primitive in touched_primitives(scene, run) if primitive.body == number]
-    loops = tuple(loop for loop in wheel.loops if any(bears(edge, p) for edge in loop.edges for p in met))
-    bodies = tuple(dataclasses.replace(body, loops=loops) if body is wheel else body for body in scene.bodies)
-    return dataclasses.replace(scene, bodies=bodies)
+def on_outline(loop: Loop, primitive: Records) -> bool:
+    """The primitive is an edge of this outline, or a corner at one of its ends."""
+    corner = primitive.kind == CORNER
+    return any(
+        math.dist(edge.start, (primitive.px, primitive.py)) < 1e-9 if corner else bears(edge, primitive) for edge in loop.edges
+    )
+
+
+def few_outlines(scene: Scene, run: Trajectory) -> Scene:
+    """Only the outlines that are touched: a few teeth."""
+    met = touched_primitives(scene, run)
+    bodies = []
+    for number, body in enumerate(scene.bodies):
+        mine = [primitive for primitive in met if primitive.body == number]
+        loops = tuple(loop for loop in body.loops if any(on_outline(loop, primitive) for primitive in mine))
+        bodies.append(dataclasses.replace(body, loops=loops))
+    return dataclasses.replace(scene, bodies=tuple(bodies))
 
 
 @dataclasses.dataclass
@@ -138,7 +149,7 @@ def rows(quick: bool) -> list[Row]:
     scene = load(ROOT / "profiles" / "bench_lever" / "scene.toml")
     run = simulate(scene, DURATION)
     whole = touched(scene, run)
-    found = [measure(few_teeth(scene, run))]
+    found = [measure(few_outlines(scene, run))]
     for count in REFINED[: 3 if quick else None]:
         found.append(measure(refined(scene, count, whole)))
         print(found[-1], flush=True)
