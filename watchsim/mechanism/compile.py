@@ -179,13 +179,16 @@ def _touching(primitives: Records, first: np.ndarray, last: np.ndarray) -> tuple
     """All pairs (circle, other) between two sets of primitives that have a gap function."""
     one = np.repeat(first, len(last)), np.tile(last, len(first))
     both = np.concatenate([one[0], one[1]]), np.concatenate([one[1], one[0]])
-    a, b = primitives[both[0]], primitives[both[1]]
-    corner, round_ = a.kind == CORNER, (a.kind == ARC) & (a.side > 0.0)
-    fits = (b.kind != ARC) | (b.side > 0.0) | (a.radius < b.radius)
+    kind, radius, convex = primitives.kind, primitives.radius, primitives.side > 0.0
+    # One number for each pair and property: whole records of all pairs would be a hundred times as many bytes.
+    on_a, on_b = kind[both[0]], kind[both[1]]
+    radius_a, radius_b = radius[both[0]], radius[both[1]]
+    round_, other = (on_a == ARC) & convex[both[0]], convex[both[1]]
+    fits = (on_b != ARC) | other | (radius_a < radius_b)
     # Two convex arcs are one contact, not two: the rounder one plays the circle, of equal ones the first set's.
-    second = (a.radius > b.radius) | ((a.radius == b.radius) & (np.arange(len(a)) >= len(one[0])))
-    twice = round_ & (b.kind == ARC) & (b.side > 0.0) & second
-    keep = (corner | round_) & (b.kind != CORNER) & fits & ~twice
+    second = (radius_a > radius_b) | ((radius_a == radius_b) & (np.arange(len(on_a)) >= len(one[0])))
+    twice = round_ & (on_b == ARC) & other & second
+    keep = ((on_a == CORNER) | round_) & (on_b != CORNER) & fits & ~twice
     return both[0][keep], both[1][keep]
 
 
