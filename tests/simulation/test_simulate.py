@@ -12,7 +12,7 @@ from watchsim.mechanism import compile as compiling
 from watchsim.mechanism.body import Body
 from watchsim.mechanism.force import Spring
 from watchsim.mechanism.scene import Scene
-from watchsim.simulation import simulate as simulating
+from watchsim.simulation import run as simulating
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
 from watchsim.simulation.trajectory import EventKind, Trajectory

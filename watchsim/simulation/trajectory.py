@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation.event_kinds import EVENT_DTYPE as EVENT_DTYPE
 from watchsim.simulation.event_kinds import EventKind as EventKind
+from watchsim.simulation.saved import SavedState
 from watchsim.simulation.stops import Stop
 
 Array = NDArray[np.float64]
@@ -68,6 +69,8 @@ class Trajectory:
     worst_penetration: float = 0.0
     energy: dict[str, Any] = field(default_factory=dict)
     counts: dict[str, int] = field(default_factory=dict)
+    step: float | None = None  # s, of a method with fixed steps
+    end_state: SavedState | None = field(default=None, repr=False, compare=False)  # to go on from, see `simulate`
 
     def at(self, t: float) -> tuple[Array, Array]:
         """q and u at time `t` (after the impact where one happens at `t`).
