@@ -89,9 +89,9 @@ def test_another_scene_is_refused() -> None:
     first = simulate(scene, 0.05)
     with pytest.raises(ValueError, match="another scene"):
         simulate(changed(scene), 0.1, start=first)
-    with pytest.raises(ValueError, match="other settings.*tolerance"):
+    with pytest.raises(ValueError, match=r"other settings.*tolerance"):
         simulate(scene, 0.1, 1e-7, start=first)
     with pytest.raises(ValueError, match="method was pfeiffer-glocker, now moreau"):
         simulate(scene, 0.1, start=first, method="moreau")
-    with pytest.raises(ValueError, match="has reached 0.05 s already"):
+    with pytest.raises(ValueError, match=r"has reached 0\.05 s already"):
         simulate(scene, 0.05, start=first)

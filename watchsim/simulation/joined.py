@@ -20,7 +20,15 @@ def joined(first: Trajectory, rest: Trajectory) -> Trajectory:
         raise ValueError("the first part carries no end state")
     if later is not None:
         later = dataclasses.replace(later, rows=saved.rows + later.rows, events=saved.events + later.events)
-    columns = {name: np.concatenate([getattr(first, name)[: saved.rows], getattr(rest, name)]) for name in ("t", "q", "u", "a")}
-    events = np.concatenate([first.events[: saved.events], rest.events])
-    wall, compile_time = first.wall + rest.wall, first.compile + rest.compile
-    return dataclasses.replace(rest, **columns, events=events, wall=wall, compile=compile_time, end_state=later)
+    cut = saved.rows
+    return dataclasses.replace(
+        rest,
+        t=np.concatenate([first.t[:cut], rest.t]),
+        q=np.concatenate([first.q[:cut], rest.q]),
+        u=np.concatenate([first.u[:cut], rest.u]),
+        a=np.concatenate([first.a[:cut], rest.a]),
+        events=np.concatenate([first.events[: saved.events], rest.events]),
+        wall=first.wall + rest.wall,
+        compile=first.compile + rest.compile,
+        end_state=later,
+    )

@@ -25,6 +25,7 @@ class MoreauRun(Run):
 
     def __init__(self, compiled: Compiled, tolerance: float, longest: float, windows: Any, step: float) -> None:
         super().__init__(compiled, tolerance, longest, windows)
+        self.step = step
         self.pace = np.array([step, max(step, self.options.max_step / ROWS_PER_QUARTER)])
         self.work = moreau_work(compiled.model)
         self.record = new_record(compiled.model, ROWS + ROWS_PER_STEP, EVENTS + EVENTS_PER_STEP, self.record.windows)
@@ -32,8 +33,11 @@ class MoreauRun(Run):
     def arrays(self) -> dict[str, NDArray[Any]]:
         return {**super().arrays(), "memory": self.work.memory, "depth": self.work.depth}
 
+    def _worst_residual(self) -> NDArray[np.float64]:
+        return self.work.worst
+
     def settings(self) -> dict[str, Any]:
-        return {**super().settings(), "step": float(self.pace[0])}
+        return {**super().settings(), "step": self.step}
 
     def _advance(self, until: NDArray[np.float64], record: Any) -> Stop:
         model = self.compiled.model

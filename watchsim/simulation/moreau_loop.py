@@ -125,6 +125,7 @@ def _by_reference(work):
         work.unknown,
         work.at,
         work.sweeps,
+        work.worst,
     )
 
 

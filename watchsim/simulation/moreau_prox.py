@@ -17,7 +17,7 @@ SETTLED = (
 
 @kernel
 def fill_mobility(closed, m, inverse, out_G):
-    """Rates of the m contacts by unit percussions, rows N, T by contact; `inverse` holds one over the mass of each coordinate."""
+    """Rates of the m contacts by unit percussions, rows N, T by contact; `inverse` is one over each coordinate's mass."""
     for row in range(2 * m):
         for column in range(row, 2 * m):
             i, j = row // 2, column // 2
@@ -49,6 +49,25 @@ def push(closed, m, P, inverse, out_u):
         for k in range(closed.slots[i]):
             j = closed.coord[i, k]
             out_u[j] += inverse[j] * (closed.w_N[i, k] * P[2 * i] + closed.w_T[i, k] * P[2 * i + 1])
+
+
+@kernel
+def residual(G, b, low, friction, m, P):
+    """How far P is from its own projected improvement, as a share of the largest percussion or of what would stop the rates."""
+    worst, scale = 0.0, 0.0
+    for row in range(2 * m):
+        if G[row, row] <= 0.0:
+            continue
+        rate = b[row]
+        for column in range(2 * m):
+            rate += G[row, column] * P[column]
+        new = P[row] - rate / G[row, row]
+        bound = friction[row // 2] * P[2 * (row // 2)]
+        new = max(low[row // 2], new) if row % 2 == 0 else min(bound, max(-bound, new))
+        root = G[row, row] ** 0.5
+        worst = max(worst, abs(new - P[row]) * root)
+        scale = max(scale, abs(P[row]) * root, abs(b[row]) / root)
+    return worst / scale if scale > 0.0 else 0.0
 
 
 @kernel

@@ -21,7 +21,7 @@ from watchsim.dynamics.forces import driving_force, table_value
 from watchsim.jit import by_reference, kernel
 from watchsim.mechanism.model import OVER_TIME, Model
 from watchsim.simulation.keep import keep_event
-from watchsim.simulation.moreau_prox import SWEEPS, fill_mobility, push, rates_of, relax
+from watchsim.simulation.moreau_prox import SWEEPS, fill_mobility, push, rates_of, relax, residual
 from watchsim.simulation.state import CORRECTION, DAMPING, DRIVE, FRICTION, IMPACTS, N_IMPACTS, N_LCP, N_LCP_FAILED, ROOM
 
 Array = NDArray[np.float64]
@@ -55,6 +55,7 @@ class MoreauWork(NamedTuple):
     unknown: NDArray[np.int64]
     at: Array
     sweeps: NDArray[np.int64]
+    worst: Array  # residual of the laws
 
 
 MoreauWorkRef = by_reference(MoreauWork, __name__)
@@ -74,6 +75,7 @@ def moreau_work(model: Model) -> MoreauWork:
         G=np.zeros((rows, rows)),
         unknown=np.zeros(1, np.int64),
         sweeps=np.zeros(1, np.int64),
+        worst=np.zeros(1),
         **vectors,
         **by_row,
         **by_contact,
@@ -130,6 +132,7 @@ def _relax(state, m, work):
     work.sweeps[0] += min(sweeps, SWEEPS)
     if sweeps > SWEEPS:
         state.counts[N_LCP_FAILED] += 1
+    work.worst[0] = max(work.worst[0], residual(work.G, work.b, work.low, work.friction, m, work.P))
 
 
 @kernel

@@ -76,6 +76,7 @@ class Run:
     """
 
     method = EVENT_DRIVEN
+    step: float | None = None  # s, where steps are fixed
 
     def __init__(self, compiled: Compiled, tolerance: float, longest: float, windows: Any) -> None:
         model = compiled.model
@@ -98,7 +99,12 @@ class Run:
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Everything the future depends on, besides the model and the settings."""
-        return dict(self.state._asdict())
+        return {**self.state._asdict(), "worst_residual": self._worst_residual()}
+
+    def _worst_residual(self) -> NDArray[np.float64]:
+        """(1,): the worst violation of a complementarity condition so far."""
+        worst: NDArray[np.float64] = self.scratch.work.lcp.worst
+        return worst
 
     def settings(self) -> dict[str, Any]:
         """What must be the same when a saved state is taken up."""
@@ -174,8 +180,10 @@ class Run:
             method=self.method,
             tolerance=self.tolerance,
             worst_penetration=float(self.state.worst[0]),
+            worst_residual=float(self._worst_residual()[0]),
             energy=self._energy(),
             counts=self._counts(),
+            step=self.step,
             end_state=self.saved,
         )
 

@@ -48,7 +48,8 @@ class Trajectory:
 
     t (rows,) s; q, u, a (rows, n) coordinates, velocities, accelerations in SI; `slices[body]` says which columns belong
     to a body (fixed bodies have none). `energy` holds joules: in_J, stored_J, dissipated {cause: J}, residual_J.
-    `counts` holds events, impacts, steps, lcp_failures and the like; `worst_penetration` is metres.
+    `counts` holds events, impacts, steps, lcp_failures and the like; `worst_penetration` is metres;
+    `worst_residual` the worst violation of a complementarity condition, as a share of the problem's largest term.
     """
 
     scene: Scene
@@ -67,6 +68,7 @@ class Trajectory:
     method: str = "pfeiffer-glocker"
     tolerance: float = 1e-9
     worst_penetration: float = 0.0
+    worst_residual: float = 0.0
     energy: dict[str, Any] = field(default_factory=dict)
     counts: dict[str, int] = field(default_factory=dict)
     step: float | None = None  # s, of a method with fixed steps
