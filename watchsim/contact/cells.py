@@ -111,7 +111,7 @@ class _PairGeometry:
         self.tree = shapely.STRtree([_geometry(points) for points, _ in other_points])
         self.coordinates = np.concatenate([points for points, _ in self.points])
         # Plain values: reading a field of a record array from Python takes a microsecond each time.
-        self.bodies = [_Body(*model.bodies[b]) for b in (self.pair.a, self.pair.b)]
+        self.bodies = [_Body(*model.bodies[b].tolist()[: len(_Body._fields)]) for b in (self.pair.a, self.pair.b)]
         self.freedom = [self._freedom(b) for b in (self.pair.a, self.pair.b)]
         self.piece = np.repeat(np.arange(len(self.points)), [len(points) for points, _ in self.points])
 

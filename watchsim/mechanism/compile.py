@@ -90,6 +90,7 @@ def _bodies(scene: Scene) -> tuple[Records, dict[str, slice], np.ndarray, np.nda
     for row, body in zip(rows, scene.bodies, strict=True):
         row.motion = MOTION_CODE[body.motion]
         row.x, row.y, row.angle = *body.position, body.angle
+        row.c, row.s = math.cos(body.angle), math.sin(body.angle)
         row.axis_x, row.axis_y = body.axis
         start = {"fixed": (), "pivot": (body.angle,), "slide": (0.0,), "free": (*body.position, body.angle)}[body.motion]
         row.first = len(q) if start else -1

@@ -32,6 +32,8 @@ BODY = np.dtype(
         ("angle", "f8"),
         ("axis_x", "f8"),
         ("axis_y", "f8"),
+        ("c", "f8"),  # cosine and sine of `angle`
+        ("s", "f8"),
     ]
 )
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 from watchsim.jit import kernel
-from watchsim.simulation.coupled import motion
+from watchsim.simulation.coupled import engage, motion
 from watchsim.simulation.dop853 import E3, E5, STAGES, A, C, D
 from watchsim.simulation.state import COUPLED, N_REJECTED, N_STEPS, SUMS
 
@@ -87,6 +87,7 @@ def coupled_step(model, state, options, longest, scratch):
         step.y0[i], step.y0[n + i] = state.q[i], state.u[i]
     for i in range(SUMS):
         step.y0[2 * n + i] = 0.0
+    engage(model, state, scratch)
     h = min(state.clock[1], longest)
     shrunk = False
     while True:
@@ -106,8 +107,10 @@ def coupled_step(model, state, options, longest, scratch):
         h *= min(1.0, factor) if error < math.inf else SHRINK
     _extend(model, state, options, h, scratch)
     step.span[1] = h
-    # A step cut short by `longest` says nothing against a longer next one.
-    state.clock[1] = min(options.max_step, max(h * (min(1.0, factor) if shrunk else factor), min(state.clock[1], h * GROW)))
+    proposed = h * (min(1.0, factor) if shrunk else factor)
+    if not shrunk:  # a step cut short by `longest` says nothing against a longer next one
+        proposed = max(proposed, min(state.clock[1], h * GROW))
+    state.clock[1] = min(options.max_step, proposed)
     for i in range(n):
         largest = 0.0
         for s in range(STAGES + 4):

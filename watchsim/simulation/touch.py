@@ -37,12 +37,15 @@ def _body_bounds(model, b, length, scratch):
 
 
 @kernel
-def _gap_bounds(model, k, length, scratch):
-    """Bounds over the next `length` seconds: |g'|, |g''| but for B's curvature, and the bodies' relative turning."""
+def _gap_bounds(model, k, length, bounds_a, bounds_b, scratch):
+    """Bounds over the next `length` seconds: |g'|, |g''| but for B's curvature, and the bodies' relative turning.
+
+    `bounds_a` and `bounds_b` are the `_body_bounds` of the two bodies.
+    """
     contact = model.contacts[k]
     a, b = model.primitives[contact.a], model.primitives[contact.b]
-    speed_a, turn_a, push_a, twist_a = _body_bounds(model, a.body, length, scratch)
-    speed_b, turn_b, push_b, twist_b = _body_bounds(model, b.body, length, scratch)
+    speed_a, turn_a, push_a, twist_a = bounds_a
+    speed_b, turn_b, push_b, twist_b = bounds_b
     pa, pb = scratch.pose[a.body], scratch.pose[b.body]
     rx, ry = point_of(pa, a.x, a.y)
     arm_a = math.sqrt(rx * rx + ry * ry)
@@ -100,12 +103,15 @@ def _time_outside(model, k, margin, motion, distance):
 
 @kernel
 def crossing(model, state, options, k, start, end, scratch):
-    """First time in [start, end) at which open contact k closes inside its primitives; infinity if it does not."""
+    """First time in [start, end) at which open contact k closes inside its primitives; infinity if it does not.
+
+    The two bodies must stand where they are at `start`.
+    """
     contact = model.contacts[k]
     body_a, body_b = model.primitives[contact.a].body, model.primitives[contact.b].body
-    body_within(model, state, body_a, start, scratch)
-    body_within(model, state, body_b, start, scratch)
-    closing, bend, swing = _gap_bounds(model, k, end - start, scratch)
+    bounds_a = _body_bounds(model, body_a, end - start, scratch)
+    bounds_b = _body_bounds(model, body_b, end - start, scratch)
+    closing, bend, swing = _gap_bounds(model, k, end - start, bounds_a, bounds_b, scratch)
     if closing == 0.0:
         return math.inf
     zero = options.gap_zero
@@ -125,14 +131,14 @@ def crossing(model, state, options, k, start, end, scratch):
         leaving = gap > zero or rate > options.speed_zero
         if outside and leaving:
             clear = True  # a contact that has just rebounded counts as clear: it returns to this gap by falling only
-        if outside and gap <= zero:
-            # Where a smooth outline goes on, its next piece has no gap either, and closes only when its turn comes.
-            margin = extent_margin(model, k, scratch.pose, nx, ny) + options.extent
-            if margin < 0.0:
-                # At least the time in which the gap cannot pass through its rounding.
-                tau += max(_time_outside(model, k, margin, (closing, swing), distance), zero / closing)
-                fresh = True
-                continue
+        # Where a smooth outline goes on, its next piece has no gap either, and closes only when its turn comes.
+        margin = extent_margin(model, k, scratch.pose, nx, ny) + options.extent
+        beside = _time_outside(model, k, margin, (closing, swing), distance) if margin < 0.0 else 0.0
+        if outside and gap <= zero and margin < 0.0:
+            # At least the time in which the gap cannot pass through its rounding.
+            tau += max(beside, zero / closing)
+            fresh = True
+            continue
         if outside and gap <= zero and ((clear and rate < 0.0) or gap < -zero):
             return min(end, tau + gap / -rate) if clear and gap > 0.0 and rate * (end - tau) < -gap else tau
         if outside:
@@ -140,9 +146,59 @@ def crossing(model, state, options, k, start, end, scratch):
             clear = clear and leaving
         else:
             room, approach = -gap, rate
+        safe = _safe(room, approach, closing, bend, distance)
+        if beside > safe:
+            # Beside its primitives the gap may pass through zero: which side it is on afterwards is found anew.
+            tau += beside
+            fresh = True
+            continue
         # Never less than the rounding of time itself.
-        tau += max(_safe(room, approach, closing, bend, distance), 4e-16 * tau)
+        tau += max(safe, 4e-16 * tau)
     return math.inf
+
+
+@kernel
+def _stays_open(model, state, options, k, length, bounds_a, bounds_b, scratch):
+    """True if one look at the current poses shows that contact k cannot close in the next `length` seconds."""
+    gap, rate, _, _ = normal_gap(model, k, scratch.pose)
+    state.counts[N_GAPS] += 1
+    if abs(gap) <= options.gap_zero:
+        return False
+    # Behind its primitive a contact must come out before it can close.
+    room, approach = (gap, -rate) if gap > 0.0 else (-gap, rate)
+    closing, bend, _ = _gap_bounds(model, k, length, bounds_a, bounds_b, scratch)
+    return room > closing * length or _safe(room, approach, closing, bend, _centre_distance(model, k, scratch.pose)) >= length
+
+
+@kernel
+def _place_pair(model, state, pair, tau, scratch):
+    body_within(model, state, pair.a, tau, scratch)
+    body_within(model, state, pair.b, tau, scratch)
+
+
+@kernel
+def _first_of(model, cells, state, options, p, tau, until, scratch):
+    """(known, time, contact) of the first closing in [tau, until) among the candidates of pair p in one cell."""
+    pair = model.pairs[p]
+    best, who = until, -1
+    how, start, count = candidates(model, cells, p, scratch.q)
+    if how == UNKNOWN:
+        return False, 0.0, -1
+    bounds_a = _body_bounds(model, pair.a, until - tau, scratch)
+    bounds_b = _body_bounds(model, pair.b, until - tau, scratch)
+    doubts = 0
+    for place in range(start, start + count):
+        k = candidate(cells, how, place)
+        if state.mode[k] == 0 and not _stays_open(model, state, options, k, until - tau, bounds_a, bounds_b, scratch):
+            scratch.doubt[doubts] = k
+            doubts += 1
+    for j in range(doubts):
+        if j > 0:
+            _place_pair(model, state, pair, tau, scratch)
+        root = crossing(model, state, options, scratch.doubt[j], tau, best, scratch)
+        if root < best:
+            best, who = root, scratch.doubt[j]
+    return True, best, who
 
 
 @kernel
@@ -166,19 +222,15 @@ def first_touch(model, cells, state, options, end, scratch):
             continue
         tau = 0.0
         while tau < best:
-            body_within(model, state, pair.a, tau, scratch)
-            body_within(model, state, pair.b, tau, scratch)
-            how, start, count = candidates(model, cells, p, scratch.q)
-            if how == UNKNOWN:
-                scratch.unknown[0] = p
-                scratch.at[:] = scratch.q
-                return False, 0.0, -1
+            _place_pair(model, state, pair, tau, scratch)
+            scratch.at[:] = scratch.q
             until = min(best, tau + time_in_cell(model, p, scratch.q, scratch.u, scratch.step.bound))
-            for place in range(start, start + count):
-                k = candidate(cells, how, place)
-                if state.mode[k] == 0:
-                    root = crossing(model, state, options, k, tau, until, scratch)
-                    if root < until:
-                        best, until, who = root, root, k
+            known, root, k = _first_of(model, cells, state, options, p, tau, until, scratch)
+            if not known:
+                scratch.unknown[0] = p
+                return False, 0.0, -1
+            if k >= 0:
+                best, who = root, k
+                break
             tau = until
     return True, best, who
