@@ -122,7 +122,7 @@ def _solved(run: Trajectory, numbers: Mapping[str, Any]) -> str:
     parts = [f"{counts.get('lcp', 0)} complementarity problems, worst residual {run.worst_residual:.1g}"]
     parts += [f"{counts[name]} {words}" for name, words in HELPED if counts.get(name)]
     if numbers["lcp_failures"]:
-        parts.append(f"{numbers['lcp_failures']} WITHOUT a solution")
+        parts.append(f"{numbers['lcp_failures']} complementarity problems had no solution")
     return "; ".join(parts)
 
 
@@ -140,8 +140,10 @@ def _compared(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     yield "error bars", f"against {finer}" + (f": moves {', '.join(moved)}" if moved else "")
     for body, state in numbers["bodies"].items():
         far = max(state["x_m_error"], state["y_m_error"])
-        if far > 0.0 or state["angle_rad_error"] > 0.0:
-            yield "", f"{body} at the end: {_metric(far, 'm')}, {_metric(math.degrees(state['angle_rad_error']), '°')}"
+        errors = ((far, "m"), (math.degrees(state["angle_rad_error"]), "°"))
+        moved = [_metric(error, unit) for error, unit in errors if error > 0.0]
+        if moved:
+            yield "", f"{body} at the end by {' and '.join(moved)}"
 
 
 def _verdicts(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
