@@ -15,7 +15,20 @@ from watchsim.drawing.inspect import inspect_report, inspect_text
 Reader = Callable[..., Drawing]
 
 TOP = (
-    *("file", "format", "units", "units_from", "extents_mm", "layers", "loops", "points", "fitted", "ignored", "findings"),
+    *(
+        "file",
+        "format",
+        "units",
+        "units_from",
+        "extents_mm",
+        "layers",
+        "loops",
+        "points",
+        "fitted",
+        "drawn",
+        "ignored",
+        "findings",
+    ),
     *("lines", "arcs", "length_mm", "area_mm2"),
 )
 
@@ -46,6 +59,7 @@ def test_fixed_names_and_values(read_bytes: Reader) -> None:
     assert (report["lines"], report["arcs"]) == (1, 2)
     assert report["points"] == [{"layer": "PIVOT", "x_mm": 0.0, "y_mm": 0.0}]
     assert report["fitted"] == {"curves": 0, "arcs": 0, "worst_deviation_um": 0.0}
+    assert report["drawn"] == {"kinds": {"circle": 2, "line": 1}, "length_mm": pytest.approx(6.3 * math.pi + 1.0)}
     assert report["ignored"] == {"TEXT": 1}
     findings = report["findings"]
     assert isinstance(findings, list)

@@ -5,6 +5,7 @@ The same for every format: single lines and arcs in metres, each with its layer 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from watchsim.drawing.findings import Finding
@@ -24,10 +25,22 @@ class Stroke:
     run: int
 
 
+@dataclass(frozen=True, slots=True)
+class Drawn:
+    """What the file draws before anything is tidied or fitted: how many of each kind (blocks and polylines unfolded), metres.
+
+    Kinds are line, arc, circle, ellipse, ellipse_arc and spline; what has no length is not counted.
+    """
+
+    kinds: Mapping[str, int] = field(default_factory=dict)
+    length: float = 0.0
+
+
 @dataclass(frozen=True)
 class Content:
     """Everything a reader found in one file; the fields are those of Drawing."""
 
+    format: str = ""
     strokes: tuple[Stroke, ...] = ()
     points: tuple[tuple[str, float, float], ...] = ()
     units: str | None = None
@@ -36,4 +49,5 @@ class Content:
     fitted_arcs: int = 0
     fitted_deviation: float = 0.0
     ignored: dict[str, int] = field(default_factory=dict)
+    drawn: Drawn = field(default_factory=Drawn)
     findings: tuple[Finding, ...] = ()

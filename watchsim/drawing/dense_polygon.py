@@ -13,7 +13,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.geometry.biarc import Fit, fit_arcs
+from watchsim.geometry.curve import Curve
+from watchsim.geometry.fit import Fit, fit_arcs
 from watchsim.geometry.primitives import Edge, Line
 
 Array = NDArray[np.float64]
@@ -64,5 +65,8 @@ def smooth(points: Array, tolerance: float) -> Fit | None:
     swing = float(np.max(np.abs(sides[side, 0] * offset[:, 1] - sides[side, 1] * offset[:, 0]) / lengths[side]))
     if swing > 0.5 * tolerance:
         return None
-    fit = fit_arcs(lambda t: (curve(t), slope(t)), s.tolist(), tolerance - swing)
+    follow = Curve(
+        lambda t: np.column_stack((curve(t), np.ones(len(t)))), lambda t: np.column_stack((slope(t), np.zeros(len(t)))), s, 3
+    )
+    fit = fit_arcs(follow, tolerance - swing)
     return Fit(fit.edges, fit.deviation + swing)

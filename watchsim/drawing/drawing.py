@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from watchsim.drawing.content import Drawn
 from watchsim.drawing.findings import Finding
+from watchsim.drawing.profile import Profile
 from watchsim.geometry.loop import Loop
 
 
@@ -16,7 +18,7 @@ class Drawing:
     `units` is the name the file (or the caller) gave, None when nobody said: lengths are then what they would be in
     millimetres and a finding of severity "error" says so. `units_from` is "header", "option" or "page" (None when unknown).
     `layers` lists all visible layers with geometry. `points` are (layer, x, y). `fitted` counts curves turned into arcs and
-    their worst deviation in metres.
+    a bound of their deviation in metres. `drawn` is what the file holds before doubles are taken out and curves are fitted.
     """
 
     path: Path
@@ -31,4 +33,10 @@ class Drawing:
     fitted_arcs: int = 0
     fitted_deviation: float = 0.0
     ignored: dict[str, int] = field(default_factory=dict)
+    drawn: Drawn = field(default_factory=Drawn)
     findings: tuple[Finding, ...] = ()
+
+    @property
+    def profile(self) -> Profile:
+        """All outlines, apart from the file; `drawing.profile.only("TEETH")` is that of one layer."""
+        return Profile(self.loops, self.open_chains)

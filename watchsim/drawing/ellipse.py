@@ -6,41 +6,99 @@ import math
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from watchsim.drawing.shapes import Conic
-from watchsim.geometry.biarc import Fit, fit_arcs
+from watchsim.geometry.curve import Array, Curve
+from watchsim.geometry.fit import Fit, fit_arcs
+from watchsim.geometry.primitives import Arc, Edge, Line
+from watchsim.geometry.recognise import joined
 
 QUARTER = 0.5 * math.pi
-Array = NDArray[np.float64]
+SLIVER = 0.02  # radians of the parameter
 
 
 def ellipse_edges(conic: Conic, scale: float, tolerance: float) -> Fit:
     """Tangent-continuous arcs (metres) within `tolerance` metres, the same in every quadrant.
 
-    Cut at the ends of the axes: in between the curvature grows or falls throughout, which biarcs follow best.
+    Cut at the ends of the axes: in between the curvature grows or falls throughout. Where the arcs on both sides of such an
+    end belong to one circle they become one arc.
     """
     centre = scale * np.array(conic.centre[:2])
+    first, cuts = axis_cuts(conic)
+    c, s = math.cos(first), math.sin(first)
     u, v = scale * np.array(conic.u[:2]), scale * np.array(conic.v[:2])
+    a, b = c * u + s * v, c * v - s * u  # the half axes
+    edges: list[Edge] = []
+    worst = 0.0
+    quadrant: Fit | None = None
+    for low, high in pairwise(cuts):
+        if abs(high - low - QUARTER) > 1e-9:
+            part = fit_arcs(rational(a, b, low - first, high - first), tolerance)
+            edges += [moved(edge, centre) for edge in part.edges]
+        else:
+            quadrant = part = quadrant or fit_arcs(rational(a, b, 0.0, QUARTER), tolerance)
+            edges += [moved(edge, centre) for edge in in_quadrant(part, a, b, round((low - first) / QUARTER) % 4)]
+        worst = max(worst, part.deviation)
+    edges, shift = joined(edges, tolerance - worst)
+    return Fit(tuple(edges), worst + shift)
 
-    def curve(t: Array) -> tuple[Array, Array]:
-        c, s = np.cos(t)[:, None], np.sin(t)[:, None]
-        return centre + c * u + s * v, c * v - s * u
 
-    cuts = axis_cuts(conic)
-    fits = [fit_arcs(curve, (a, b), tolerance) for a, b in pairwise(cuts)]
-    return Fit(tuple(edge for fit in fits for edge in fit.edges), max(fit.deviation for fit in fits))
+def rational(a: Array, b: Array, low: float, high: float) -> Curve:
+    """a·cos t + b·sin t from `low` to at most a quarter turn later, as a rational parabola in the tangent of half the angle."""
+    from scipy.interpolate import BSpline
+
+    half = 0.5 * (high - low)
+    angles, weights = np.array([low, low + half, high]), np.array([1.0, math.cos(half), 1.0])
+    points = np.cos(angles)[:, None] * a + np.sin(angles)[:, None] * b
+    points[1] /= weights[1]
+    curve = BSpline([0.0] * 3 + [1.0] * 3, np.column_stack((points * weights[:, None], weights)), 2)
+    return Curve(curve, curve.derivative(), np.array([0.0, 1.0]), 2)
 
 
-def axis_cuts(conic: Conic) -> list[float]:
-    """Start, the ends of the axes in between, end: the axes lie where |c'(t)| is extreme, at tan 2t = 2 u·v/(u² - v²)."""
+def in_quadrant(fit: Fit, a: Array, b: Array, number: int) -> list[Edge]:
+    """The edges of the first quadrant mirrored in the axes into quadrant 0 to 3, in travel order."""
+    edges = list(fit.edges)
+    if number in (1, 2):
+        edges = [mirrored(edge, a) for edge in edges]
+    if number in (2, 3):
+        edges = [mirrored(edge, b) for edge in edges]
+    return edges if number in (0, 2) else [edge.reversed() for edge in reversed(edges)]
+
+
+def mirrored(edge: Edge, axis: Array) -> Edge:
+    """The mirror image with the component along `axis` turned round."""
+    nx, ny = axis / math.hypot(*axis)
+
+    def image(x: float, y: float) -> tuple[float, float]:
+        along = 2.0 * (x * nx + y * ny)
+        return float(x - along * nx), float(y - along * ny)
+
+    if isinstance(edge, Line):
+        return Line(*image(*edge.start), *image(*edge.end))
+    x, y = image(edge.x, edge.y)
+    dx, dy = image(math.cos(edge.start_angle), math.sin(edge.start_angle))
+    return Arc(x, y, edge.radius, math.atan2(dy, dx), -edge.sweep)
+
+
+def moved(edge: Edge, by: Array) -> Edge:
+    x, y = float(by[0]), float(by[1])
+    if isinstance(edge, Line):
+        return Line(edge.x0 + x, edge.y0 + y, edge.x1 + x, edge.y1 + y)
+    return Arc(edge.x + x, edge.y + y, edge.radius, edge.start_angle, edge.sweep)
+
+
+def axis_cuts(conic: Conic) -> tuple[float, list[float]]:
+    """The parameter of one half axis; and start, the ends of the axes in between, end.
+
+    The axes lie where |c'(t)| is extreme, at tan 2t = 2 u·v/(u² - v²). No sliver is cut off at start and end.
+    """
     (ux, uy, _), (vx, vy, _) = conic.u, conic.v
     first = 0.5 * math.atan2(2.0 * (ux * vx + uy * vy), ux * ux + uy * uy - vx * vx - vy * vy)
     stop = conic.start + conic.sweep
     k = math.ceil((conic.start - first) / QUARTER)
     cuts = [conic.start]
-    while first + k * QUARTER < stop - 1e-9:
-        if first + k * QUARTER > conic.start + 1e-9:
+    while first + k * QUARTER < stop - SLIVER:
+        if first + k * QUARTER > conic.start + SLIVER:
             cuts.append(first + k * QUARTER)
         k += 1
-    return [*cuts, stop]
+    return first, [*cuts, stop]

@@ -11,12 +11,12 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from watchsim.drawing.content import Stroke
+from watchsim.drawing.content import Drawn, Stroke
 from watchsim.drawing.ellipse import ellipse_edges
 from watchsim.drawing.findings import Finding
 from watchsim.drawing.nurbs import spline_edges
-from watchsim.drawing.shapes import Conic, Dot, Shape, Spline, Straight, edge_on, exact_edge
-from watchsim.geometry.primitives import Arc, Edge
+from watchsim.drawing.shapes import Conic, Dot, Shape, Spline, Straight, edge_on, exact_edge, forward
+from watchsim.geometry.primitives import TURN, Arc, Edge, Line
 
 MOST_STROKES = 500_000  # more is a fault in the file, not a drawing
 MOST_COPIES = 100_000  # of blocks, likewise
@@ -34,12 +34,16 @@ class Gathering:
     findings: list[Finding] = field(default_factory=list)
     ignored: Counter[str] = field(default_factory=Counter)
     hidden: Counter[str] = field(default_factory=Counter)
+    kinds: Counter[str] = field(default_factory=Counter)
     tilted: int = 0
     copies: int = 0
     runs: int = 0
     curves: int = 0
     arcs: int = 0
     deviation: float = 0.0
+
+    def drawn(self) -> Drawn:
+        return Drawn(dict(self.kinds), math.fsum(stroke.edge.length for stroke in self.strokes))
 
 
 class TooLarge(Exception):
@@ -57,14 +61,17 @@ def emit(found: Gathering, shape: Shape, layer: str, source: str) -> None:
     if isinstance(shape, Spline):
         fit, fitted = spline_edges(shape, scale, limit)
     elif (edge := exact_edge(shape, scale)) is not None:
+        if edge.length > 0.0:
+            found.kinds["line" if isinstance(edge, Line) else "circle" if edge.is_circle else "arc"] += 1
         keep(found, (edge,), layer, source)
         return
     elif isinstance(shape, Conic) and not edge_on(shape):
-        fit, fitted = ellipse_edges(shape, scale, limit), True
+        fit, fitted = ellipse_edges(forward(shape), scale, limit), True
     else:
         message = f"{source} is seen edge-on, as a line drawn there and back; it is left out"
         found.findings.append(_at("edge-on", "warning", message, layer, scale, shape))
         return
+    found.kinds[kind_of(shape)] += 1
     if fitted:
         found.curves += 1
         found.arcs += sum(isinstance(edge, Arc) for edge in fit.edges)
@@ -73,6 +80,13 @@ def emit(found: Gathering, shape: Shape, layer: str, source: str) -> None:
             message = f"{source} could only be followed within {fit.deviation * 1e6:.3g} µm: it has a cusp or a gap"
             found.findings.append(_at("fit", "warning", message, layer, scale, shape))
     keep(found, fit.edges, layer, source)
+
+
+def kind_of(shape: Conic | Spline) -> str:
+    """The name of a shape that is followed by arcs."""
+    if isinstance(shape, Spline):
+        return "spline"
+    return "ellipse" if abs(shape.sweep) >= TURN * (1.0 - 1e-12) else "ellipse_arc"
 
 
 def keep(found: Gathering, edges: Iterable[Edge], layer: str, source: str) -> None:

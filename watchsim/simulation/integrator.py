@@ -11,6 +11,7 @@ import math
 from watchsim.jit import kernel
 from watchsim.simulation.coupled import engage, motion
 from watchsim.simulation.dop853 import E3, E5, STAGES, A, C, D
+from watchsim.simulation.path import bound_accelerations
 from watchsim.simulation.state import COUPLED, N_REJECTED, N_STEPS, SUMS
 
 SAFETY, SHRINK, GROW = 0.9, 0.2, 6.0
@@ -111,11 +112,7 @@ def coupled_step(model, state, options, longest, scratch):
     if not shrunk:  # a step cut short by `longest` says nothing against a longer next one
         proposed = max(proposed, min(state.clock[1], h * GROW))
     state.clock[1] = min(options.max_step, proposed)
-    for i in range(n):
-        largest = 0.0
-        for s in range(STAGES + 4):
-            largest = max(largest, abs(step.stages[s, n + i]))
-        step.bound[i] = 2.0 * largest
+    bound_accelerations(step, n)
     state.counts[N_STEPS] += 1
     return True
 

@@ -189,7 +189,8 @@ class Run:
 
     def _counts(self) -> dict[str, int]:
         counts = {name: int(value) for name, value in zip(COUNT_NAMES, self.state.counts, strict=True)}
-        counts["cells"] = len(self.finder._known)
+        counts["cells"] = self.finder.number
+        counts["cells_asked"] = self.finder.learned
         counts["declared_pairs"] = len(self.compiled.model.contacts)
         return counts
 

@@ -23,6 +23,7 @@ def simulate(
     tolerance: float | None = None,
     record: tuple[tuple[float, float], ...] | None = None,
     progress: Progress | None = None,
+    prefilter: bool = True,
     *,
     method: str = EVENT_DRIVEN,
     step: float | None = None,
@@ -32,6 +33,7 @@ def simulate(
 
     record    windows (s) in which rows are kept, default the scene's, else the whole run; events are always kept
     progress  called as progress(simulated, duration) about ten times a second
+    prefilter off: every declared pair of primitives is looked at in every step; slow, the same events
     method    "pfeiffer-glocker" (by events) or "moreau" (fixed steps of `step` seconds, default 10 µs), see docs/method.md
     start     go on from here instead of from the scene's start: a trajectory (the result then holds both parts), or its
               `end_state` (the result holds what follows). The same bits come out as from one run, whatever was cut where.
@@ -43,7 +45,7 @@ def simulate(
     duration = scene.duration if duration is None else float(duration)
     tolerance = scene.tolerance if tolerance is None else float(tolerance)
     _check(duration, tolerance, method, step)
-    compiled = compile_scene(scene)
+    compiled = compile_scene(scene, prefilter)
     windows = record or scene.record or WHOLE_RUN
     if method == MOREAU:
         run: Run = MoreauRun(compiled, tolerance, scene.duration, windows, USUAL_STEP if step is None else float(step))

@@ -2,20 +2,23 @@
 
 Safe steps: with a bound B of |g''| over a stretch of time the gap stays above g + g' d - B d²/2, so time may advance to that
 parabola's zero. Near a contact this is Newton's method from the safe side (it converges quadratically and never jumps over
-a root); far from it, one evaluation covers the whole stretch.
+a root); far from it, one evaluation covers the whole stretch. The bounds hold for the motion as computed (path.py).
 """
 
 from __future__ import annotations
 
 import math
 
-from watchsim.contact.gaps import extent_margin, normal_gap
+from watchsim.contact.gaps import extent_margins, normal_gap
 from watchsim.contact.lookup import UNKNOWN, candidate, candidates, time_in_cell
 from watchsim.contact.poses import point_of
 from watchsim.jit import kernel
 from watchsim.mechanism.model import FREE, LINE, PIVOT, SLIDE
+from watchsim.simulation.handover import continues_active
+from watchsim.simulation.path import body_on_path
 from watchsim.simulation.state import N_GAPS
-from watchsim.simulation.within import body_within
+
+STRIDE = 0.25  # of the extent: steps in which a neighbour of a contact in force is watched until its turn comes
 
 
 @kernel
@@ -90,15 +93,19 @@ def _safe(room, approach, closing, bend, distance):
 
 
 @kernel
-def _time_outside(model, k, margin, motion, distance):
-    """A time for which a contact that lies `margin` (negative) outside its primitives stays outside."""
+def _time_outside(model, k, inside_a, inside_b, motion, distance):
+    """A time for which a contact stays outside its primitives, from how far inside each it is; 0 if it is inside both."""
     contact = model.contacts[k]
     a, b = model.primitives[contact.a], model.primitives[contact.b]
     closing, swing = motion
-    scale = max(a.radius, a.length) + b.radius
     near = 0.5 * distance
-    drift = closing + (swing + closing / near) * scale
-    return min(-margin / drift, near / closing)
+    turn = swing + closing / near  # of the normal in either body, while the centres keep half their distance
+    time = 0.0
+    if inside_a < 0.0:
+        time = -inside_a / (turn * max(a.radius, a.length)) if turn > 0.0 else math.inf
+    if inside_b < 0.0:
+        time = max(time, -inside_b / (closing if b.kind == LINE else turn * b.radius))
+    return min(time, near / closing)
 
 
 @kernel
@@ -114,39 +121,54 @@ def crossing(model, state, options, k, start, end, scratch):
     closing, bend, swing = _gap_bounds(model, k, end - start, bounds_a, bounds_b, scratch)
     if closing == 0.0:
         return math.inf
-    zero = options.gap_zero
+    zero, band = options.gap_zero, options.gap_close
     tau = start
     # `outside`: on the free side; `clear`: has been further than rounding from it since.
-    fresh, outside, clear = True, True, False
+    fresh, outside, clear, beside = True, True, False, 0.0
     while tau < end:
         if tau > start:
-            body_within(model, state, body_a, tau, scratch)
-            body_within(model, state, body_b, tau, scratch)
-        gap, rate, nx, ny = normal_gap(model, k, scratch.pose)
+            body_on_path(model, state, body_a, tau, scratch)
+            body_on_path(model, state, body_b, tau, scratch)
+        gap, rate, _, _ = normal_gap(model, k, scratch.pose)
         distance = _centre_distance(model, k, scratch.pose)
         state.counts[N_GAPS] += 1
         if fresh or not outside:
-            outside, clear = gap >= -zero, False
+            outside, clear = gap >= -zero, beside > 0.0  # what lay beside its primitives was no contact until now
         fresh = False
         leaving = gap > zero or rate > options.speed_zero
         if outside and leaving:
             clear = True  # a contact that has just rebounded counts as clear: it returns to this gap by falling only
+        # Positions jump where drift is taken back: a gap may have closed by that.
+        shallow = not outside and gap >= -band
         # Where a smooth outline goes on, its next piece has no gap either, and closes only when its turn comes.
-        margin = extent_margin(model, k, scratch.pose, nx, ny) + options.extent
-        beside = _time_outside(model, k, margin, (closing, swing), distance) if margin < 0.0 else 0.0
-        if outside and gap <= zero and margin < 0.0:
+        inside_a, inside_b = extent_margins(model, k, scratch.pose)
+        inside_a, inside_b = inside_a + options.extent, inside_b + options.extent
+        beside = _time_outside(model, k, inside_a, inside_b, (closing, swing), distance)
+        if (shallow or (outside and gap <= zero)) and min(inside_a, inside_b) < 0.0:
             # At least the time in which the gap cannot pass through its rounding.
             tau += max(beside, zero / closing)
             fresh = True
             continue
         if outside and gap <= zero and ((clear and rate < 0.0) or gap < -zero):
+            if continues_active(model, state, options, k, scratch.pose):
+                tau += STRIDE * options.extent / closing
+                fresh = True
+                continue
             return min(end, tau + gap / -rate) if clear and gap > 0.0 and rate * (end - tau) < -gap else tau
+        if shallow and (rate < -options.speed_zero or (rate < 0.0 and gap <= zero - band)):
+            if continues_active(model, state, options, k, scratch.pose):
+                tau += STRIDE * options.extent / closing
+                fresh = True
+                continue
+            return tau
         if outside:
             room, approach = (max(gap, 0.0) if leaving else gap + 2.0 * zero), -rate
             clear = clear and leaving
         else:
             room, approach = -gap, rate
         safe = _safe(room, approach, closing, bend, distance)
+        if shallow:
+            safe = min(safe, _safe(gap + band, -rate, closing, bend, distance))
         if beside > safe:
             # Beside its primitives the gap may pass through zero: which side it is on afterwards is found anew.
             tau += beside
@@ -158,22 +180,27 @@ def crossing(model, state, options, k, start, end, scratch):
 
 
 @kernel
-def _stays_open(model, state, options, k, length, bounds_a, bounds_b, scratch):
-    """True if one look at the current poses shows that contact k cannot close in the next `length` seconds."""
+def _stays_open(model, state, options, k, length, first, bounds, scratch):
+    """True if one look at the current poses shows that contact k cannot close in the next `length` seconds.
+
+    `bounds` are the `_body_bounds` of the pair's bodies, of body `first` and of the other one.
+    """
     gap, rate, _, _ = normal_gap(model, k, scratch.pose)
     state.counts[N_GAPS] += 1
-    if abs(gap) <= options.gap_zero:
+    if -options.gap_close <= gap <= options.gap_zero:
         return False
     # Behind its primitive a contact must come out before it can close.
     room, approach = (gap, -rate) if gap > 0.0 else (-gap, rate)
-    closing, bend, _ = _gap_bounds(model, k, length, bounds_a, bounds_b, scratch)
+    # The circle may be on either body of the pair.
+    here = model.primitives[model.contacts[k].a].body == first
+    closing, bend, _ = _gap_bounds(model, k, length, bounds[0 if here else 1], bounds[1 if here else 0], scratch)
     return room > closing * length or _safe(room, approach, closing, bend, _centre_distance(model, k, scratch.pose)) >= length
 
 
 @kernel
 def _place_pair(model, state, pair, tau, scratch):
-    body_within(model, state, pair.a, tau, scratch)
-    body_within(model, state, pair.b, tau, scratch)
+    body_on_path(model, state, pair.a, tau, scratch)
+    body_on_path(model, state, pair.b, tau, scratch)
 
 
 @kernel
@@ -184,12 +211,11 @@ def _first_of(model, cells, state, options, p, tau, until, scratch):
     how, start, count = candidates(model, cells, p, scratch.q)
     if how == UNKNOWN:
         return False, 0.0, -1
-    bounds_a = _body_bounds(model, pair.a, until - tau, scratch)
-    bounds_b = _body_bounds(model, pair.b, until - tau, scratch)
+    bounds = (_body_bounds(model, pair.a, until - tau, scratch), _body_bounds(model, pair.b, until - tau, scratch))
     doubts = 0
     for place in range(start, start + count):
-        k = candidate(cells, how, place)
-        if state.mode[k] == 0 and not _stays_open(model, state, options, k, until - tau, bounds_a, bounds_b, scratch):
+        k = candidate(model, cells, how, place)
+        if state.mode[k] == 0 and not _stays_open(model, state, options, k, until - tau, pair.a, bounds, scratch):
             scratch.doubt[doubts] = k
             doubts += 1
     for j in range(doubts):

@@ -1,0 +1,86 @@
+"""Do circles and straight parts hidden in curves come out as one arc, one line?"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from curves import Curve, spiral, spline
+
+from watchsim.geometry.primitives import TURN, Arc, Line
+from watchsim.geometry.recognise import joined, parts, whole_circle
+
+
+def rational_arc(radius: float, sweep: float, spans: int, decimals: int = 16) -> Curve:
+    """A circular arc as `spans` rational parabolas with doubled knots, control points in metres, rounded in millimetres."""
+    half = sweep / spans / 2.0
+    angles = half * np.arange(2 * spans + 1)
+    far = np.where(np.arange(2 * spans + 1) % 2 == 1, 1.0 / math.cos(half), 1.0)
+    points = radius * far[:, None] * np.column_stack((np.cos(angles), np.sin(angles))) + np.array([3e-3, -1e-3])
+    weights = np.where(np.arange(2 * spans + 1) % 2 == 1, math.cos(half), 1.0)
+    knots = [0, *np.repeat(np.arange(spans + 1), 2).tolist(), spans]
+    return spline(2, knots, np.round(1e3 * points, decimals) / 1e3, weights.tolist())
+
+
+@pytest.mark.parametrize("spans", [3, 4, 5, 7, 12])
+@pytest.mark.parametrize("decimals", [16, 8])
+def test_full_circle_of_any_number_of_spans(spans: int, decimals: int) -> None:
+    (part,) = parts(rational_arc(2e-3, TURN, spans, decimals), 1e-7)
+    assert isinstance(part.edge, Arc) and part.edge.sweep == TURN
+    assert (part.edge.x, part.edge.y, part.edge.radius) == pytest.approx(
+        (3e-3, -1e-3, 2e-3), abs=1e-13 + 10.0 ** -(decimals + 2)
+    )
+
+
+@pytest.mark.parametrize("sweep", [0.3, 1.0, 3.5, 6.0])
+def test_rational_arcs(sweep: float) -> None:
+    (part,) = parts(rational_arc(2e-3, sweep, 3), 1e-7)
+    assert isinstance(part.edge, Arc) and part.edge.sweep == pytest.approx(sweep, rel=1e-9)
+
+
+def test_line_arc_line_in_one_spline() -> None:
+    """A rounded corner as one quadratic spline."""
+    h = math.sqrt(0.5)
+    points = 1e-3 * np.array([(-3, -1), (-1.5, -1), (0, -1), (1, -1), (1, 0), (1, 2), (1, 4)])
+    curve = spline(2, [0, 0, 0, 1, 1, 2, 2, 3, 3, 3], points, [1, 1, 1, h, 1, 1, 1])
+    one, two, three = (part.edge for part in parts(curve, 1e-7))
+    assert one == Line(-3e-3, -1e-3, 0.0, -1e-3) and three == Line(1e-3, 0.0, 1e-3, 4e-3)
+    assert isinstance(two, Arc) and (two.radius, two.sweep) == pytest.approx((1e-3, math.pi / 2), rel=1e-12)
+
+
+def four_cubics(radius: float) -> Curve:
+    k = 0.5522847498307936
+    quarter = [(1, 0), (1, k), (k, 1), (0, 1)]
+    points = [(1, 0)]
+    for turn in range(4):
+        c, s = ((1, 0), (0, 1), (-1, 0), (0, -1))[turn]
+        points += [(c * x - s * y, s * x + c * y) for x, y in quarter[1:]]
+    return spline(3, [0, 0, 0, 0, 1, 1, 1, 2, 2, 2, 3, 3, 3, 4, 4, 4, 4], radius * np.array(points, dtype=float))
+
+
+def test_four_cubics_within_the_tolerance_are_a_circle() -> None:
+    """They bulge by 2.7253e-4 of the radius at most; the best circle halves that."""
+    fit = whole_circle(four_cubics(5e-4), 1e-7)
+    assert fit is not None
+    (edge,) = fit.edges
+    assert isinstance(edge, Arc) and abs(edge.sweep) == TURN
+    assert edge.radius == pytest.approx(5e-4 * (1 + 1.5e-4), rel=1e-4)
+    assert 0.5 * 2.7253e-4 * 5e-4 <= fit.deviation <= 1e-7
+
+
+def test_four_cubics_beyond_the_tolerance_and_spirals_are_none() -> None:
+    assert whole_circle(four_cubics(2e-3), 1e-7) is None
+    assert whole_circle(spiral(2e-3, 1e-5, 1.0), 1e-7) is None
+    assert all(part.edge is None for part in parts(spiral(2e-3, 1e-4, 1.0), 1e-7))
+
+
+def test_joined_makes_one_circle_of_four_quarters() -> None:
+    quarters = [Arc(1e-3, 2e-3, 5e-3, k * math.pi / 2, math.pi / 2) for k in range(4)]
+    edges, moved = joined(quarters, 1e-7)
+    assert edges == [Arc(1e-3, 2e-3, 5e-3, 0.0, TURN)] and moved == 0.0
+
+
+def test_joined_keeps_different_circles() -> None:
+    two = [Arc(0.0, 0.0, 5e-3, 0.0, 1.0), Arc(0.0, 0.0, 5.0001e-3, 1.0, 1.0), Line(0.0, 0.0, 1.0, 0.0)]
+    assert joined(two, 1e-7)[0] == two
