@@ -7,8 +7,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from watchsim.analysis.results import read_results
 from watchsim.cli import COMMANDS, main
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -148,3 +150,36 @@ def test_interrupt_keeps_what_was_simulated(tmp_path: Path, monkeypatch: pytest.
     assert main(["run", str(LEVER), "--duration", "3600 s", "-o", str(folder)]) == 130
     kept = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     assert 0.1 < kept["simulated_s"] < 3600.0
+
+
+def test_a_resumed_run_is_the_run_that_never_stopped(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """0.2 s, then on to 0.4 s in the same folder: rows and events as of 0.4 s at once; another scene is refused."""
+    half, whole = tmp_path / "half", tmp_path / "whole"
+    assert main(["run", str(LEVER), "--duration", "0.2 s", "-o", str(half)]) == 0
+    assert main(["run", str(LEVER), "--set", "torques.0.value=-5 µN·m", "--resume", str(half), "--duration", "0.4 s"]) == 2
+    assert "another scene" in capsys.readouterr().err
+    assert main(["run", str(LEVER), "--resume", str(half), "--duration", "0.4 s"]) == 0
+    assert main(["run", str(LEVER), "--duration", "0.4 s", "-o", str(whole)]) == 0
+    assert (half / "events.csv").read_bytes() == (whole / "events.csv").read_bytes()
+    one, other = (read_results(folder) for folder in (half, whole))
+    assert np.array_equal(one.t, other.t) and np.array_equal(one.q, other.q)
+
+
+def test_moreau_and_error_bars(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Both methods with error bars: each disc end lies as near the closed form as it says."""
+    incline = str(ROOT / "profiles" / "incline")
+    truth = 1.14671466467341916  # x after 1 s, see the scene file
+    for options in (["--method", "moreau", "--step", "100 µs"], []):
+        code = main(
+            ["run", incline, "--duration", "1 s", "--error-bars", "--json", "--force", "-o", str(tmp_path / "r"), *options]
+        )
+        assert code == 0
+        told = json.loads(capsys.readouterr().out)
+        disc = told["bodies"]["disc"]
+        assert told["error_bars"]["complete"] is True
+        assert told["method"] == ("moreau" if options else "pfeiffer-glocker")
+        assert abs(disc["x_m"] - truth) <= 3.0 * disc["x_m_error"] + 1e-12
+        assert disc["x_m_error"] < (1e-4 if options else 1e-9)
+        assert told["worst_complementarity_residual"] < 1e-12
+    assert main(["run", incline, "--step", "1 µs", "-o", str(tmp_path / "s")]) == 2
+    assert "fixed step" in capsys.readouterr().err

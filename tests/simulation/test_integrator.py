@@ -18,10 +18,12 @@ from watchsim.mechanism.body import Body
 from watchsim.mechanism.compile import compile_scene
 from watchsim.mechanism.force import Damping, Torque
 from watchsim.mechanism.scene import Scene
-from watchsim.simulation import dop853, simulate
+from watchsim.simulation import dop853
+from watchsim.simulation import run as running
 from watchsim.simulation.integrator import dense_value
 from watchsim.simulation.options import options_for
-from watchsim.simulation.simulate import _Run
+from watchsim.simulation.run import Run
+from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
 
 R, r, M, G = 1.0, 0.2, 2.0, 9.81
@@ -70,13 +72,13 @@ def with_steps(h: float, monkeypatch: pytest.MonkeyPatch) -> None:
     def loose(size: float, _tolerance: float, _max_step: float):
         return options_for(size, 1e30, h)
 
-    monkeypatch.setattr(simulate, "options_for", loose)
+    monkeypatch.setattr(running, "options_for", loose)
 
 
 def errors(h: float, monkeypatch: pytest.MonkeyPatch) -> tuple[float, float]:
     """Errors at the end of the run, and inside a step by the continuous extension."""
     with_steps(h, monkeypatch)
-    done = simulate.simulate(rolling_in_a_bowl(), 0.9)
+    done = simulate(rolling_in_a_bowl(), 0.9)
     assert done.stop == Stop.DURATION
     assert done.counts["steps"] >= 0.9 / h
     end = np.concatenate([done.q[-1], done.u[-1]])
@@ -84,8 +86,8 @@ def errors(h: float, monkeypatch: pytest.MonkeyPatch) -> tuple[float, float]:
 
 
 def middle_error(h: float) -> float:
-    run = _Run(compile_scene(rolling_in_a_bowl()), 1e-9, 1.0, ((-1.0, 2.0),))
-    while run._advance(np.array([0.4, 0.9]), run.record) != Stop.SLICE:
+    run = Run(compile_scene(rolling_in_a_bowl()), 1e-9, 1.0, ((-1.0, 2.0),))
+    while run._advance(np.array([0.4, 0.9, 1.0]), run.record) != Stop.SLICE:
         run.kept.flush(run.record)
     step = run.scratch.step
     start, length = step.span
@@ -109,7 +111,7 @@ def test_orders(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-9, 1e-12])
 def test_tolerance_is_kept(tolerance: float) -> None:
-    done = simulate.simulate(rolling_in_a_bowl(), 3.0, tolerance)
+    done = simulate(rolling_in_a_bowl(), 3.0, tolerance)
     assert np.concatenate([done.q[-1], done.u[-1]]) == pytest.approx(swung(3.0), abs=100.0 * tolerance + 1e-12)
     assert done.worst_penetration < 0.1 * tolerance * R
     assert done.energy["residual_relative"] < 100.0 * tolerance + 1e-12
@@ -174,7 +176,7 @@ def test_a_corner_sliding_on_a_turning_line() -> None:
     """Two coordinates, friction, both bodies turn: against the one-coordinate equation and scipy."""
     scene = corner_on_turning_line()
     # A start speed of the rotor that keeps the corner on the line.
-    done = simulate.simulate(scene, 0.3, 1e-11)
+    done = simulate(scene, 0.3, 1e-11)
     first = done.u[np.searchsorted(done.t, 0.0, side="right") - 1]
     truth = two_rotors(0.3, 0.0, float(first[1]))
     assert done.stop == Stop.DURATION
@@ -182,5 +184,5 @@ def test_a_corner_sliding_on_a_turning_line() -> None:
     assert done.q[-1][1] == pytest.approx(truth[0], abs=5e-9)
     assert done.u[-1][1] == pytest.approx(truth[1], abs=5e-9)
     assert done.worst_penetration < 1e-9
-    tighter = simulate.simulate(dataclasses.replace(scene, tolerance=1e-13), 0.3)
+    tighter = simulate(dataclasses.replace(scene, tolerance=1e-13), 0.3)
     assert tighter.q[-1] == pytest.approx(done.q[-1], abs=1e-10)

@@ -13,7 +13,7 @@ from watchsim.contact.known import forget
 from watchsim.mechanism.body import Body
 from watchsim.mechanism.force import Spring
 from watchsim.mechanism.scene import Scene
-from watchsim.simulation import simulate as simulating
+from watchsim.simulation import run as simulating
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
 from watchsim.simulation.trajectory import EventKind, Trajectory

@@ -18,8 +18,9 @@ from watchsim.mechanism.scene import Scene
 from watchsim.simulation.stops import Stop
 from watchsim.simulation.trajectory import EVENT_DTYPE, Pair, Trajectory
 
-FORMAT = 1
-SCALARS = ("stop_message", "simulated", "wall", "compile", "method", "tolerance", "worst_penetration", "energy", "counts")
+FORMAT = 2
+SCALARS = ("stop_message", "simulated", "wall", "compile", "method", "tolerance", "step")
+NUMBERS = ("worst_penetration", "worst_residual", "energy", "counts")
 
 
 def write_trajectory(run: Trajectory, path: Path) -> None:
@@ -29,7 +30,7 @@ def write_trajectory(run: Trajectory, path: Path) -> None:
         "stop": run.stop.name,
         "slices": {body: [columns.start, columns.stop] for body, columns in run.slices.items()},
         "pairs": [asdict(pair) for pair in run.pairs],
-        **{name: getattr(run, name) for name in SCALARS},
+        **{name: getattr(run, name) for name in (*SCALARS, *NUMBERS)},
     }
     text = np.frombuffer(json.dumps(plain(header)).encode(), dtype=np.uint8)
     arrays = {"header": text, "t": run.t, "q": run.q, "u": run.u, "a": run.a, "events": run.events}
@@ -58,6 +59,6 @@ def read_trajectory(path: Path, scene: Scene) -> Trajectory:
             f"{', '.join(sorted(moving)) or 'nothing'} can move: the two do not belong together"
         )
     columns["events"] = columns["events"].astype(EVENT_DTYPE)
-    kept = {name: header[name] for name in SCALARS}
+    kept = {name: header[name] for name in (*SCALARS, *NUMBERS)}
     pairs = tuple(Pair(**pair) for pair in header["pairs"])
     return Trajectory(scene=scene, slices=slices, pairs=pairs, stop=Stop[header["stop"]], **columns, **kept)

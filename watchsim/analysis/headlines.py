@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from watchsim.analysis.energy import energy_shares
+from watchsim.simulation.methods import MOREAU
 from watchsim.simulation.trajectory import Trajectory
 
 LABEL = 13
@@ -15,6 +16,13 @@ AVERAGED = (
     ("amplitude_deg", "amplitude", "°"),
     ("rate_s_per_d", "rate", " s/d"),
     ("beat_error_ms", "beat error", " ms"),
+)
+HELPED = (
+    ("lcp_copositive", "solved in copositive form"),
+    ("lcp_enumerated", "solved by enumeration"),
+    ("energy_rescues", "impacts solved again because the law would have gained energy"),
+    ("accumulations", "accumulations ended by rule"),
+    ("jams", "jams resolved by impulses"),
 )
 NO_PENETRATION = 1e-12  # m; less is not worth a digit
 
@@ -101,10 +109,41 @@ def _solver(run: Trajectory, numbers: Mapping[str, Any]) -> Iterator[tuple[str, 
     factor = numbers["realtime_factor"]
     compiling = f" (and {run.compile:.1f} s to compile or load the solver)" if run.compile > 1.0 else ""
     yield "speed", f"{factor:.3g} × real time, {run.wall:.2g} s{compiling}" if factor else "not measured"
-    failures = numbers["lcp_failures"]
-    if failures:
-        yield "solver", f"{failures} complementarity problems had no solution"
+    if run.method == MOREAU and run.step is not None:
+        yield "method", f"Moreau's time stepping, steps of {_metric(run.step, 's')}"
+    yield "solver", _solved(run, numbers)
+    yield from _compared(numbers)
     yield "end", run.stop_message or run.stop.sentence
+
+
+def _solved(run: Trajectory, numbers: Mapping[str, Any]) -> str:
+    """How the complementarity problems came out, and which rules had to help."""
+    counts = run.counts
+    parts = [f"{counts.get('lcp', 0)} complementarity problems, worst residual {run.worst_residual:.1g}"]
+    parts += [f"{counts[name]} {words}" for name, words in HELPED if counts.get(name)]
+    if numbers["lcp_failures"]:
+        parts.append(f"{numbers['lcp_failures']} complementarity problems had no solution")
+    return "; ".join(parts)
+
+
+def _compared(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """What the error bars were compared with."""
+    bars = numbers.get("error_bars")
+    if bars is None:
+        return
+    if not bars["complete"]:
+        yield "error bars", "none: the more exact run did not come to its end"
+        return
+    finer = f"steps of {_metric(bars['step_s'], 's')}" if bars["step_s"] else f"tolerance {bars['tolerance']:.0e}"
+    units = {name: (label, unit) for name, label, unit in AVERAGED}
+    moved = [f"{units[name][0]} by {value:.1g}{units[name][1]}" for name, value in bars["differences"].items() if name in units]
+    yield "error bars", f"against {finer}" + (f": moves {', '.join(moved)}" if moved else "")
+    for body, state in numbers["bodies"].items():
+        far = max(state["x_m_error"], state["y_m_error"])
+        errors = ((far, "m"), (math.degrees(state["angle_rad_error"]), "°"))
+        moved = [_metric(error, unit) for error, unit in errors if error > 0.0]
+        if moved:
+            yield "", f"{body} at the end by {' and '.join(moved)}"
 
 
 def _verdicts(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:

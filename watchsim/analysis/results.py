@@ -6,6 +6,7 @@ one that is replaced stays untouched until then.
 
 from __future__ import annotations
 
+import dataclasses
 import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -13,12 +14,14 @@ from typing import Any
 
 from watchsim.analysis.archive import read_trajectory, write_trajectory
 from watchsim.analysis.folder import write_folder
+from watchsim.analysis.state_file import read_state, write_state
 from watchsim.analysis.tables import json_text, write_events
 from watchsim.simulation.trajectory import Trajectory
 
 SUMMARY, LOCK, TRAJECTORY, EVENTS = "summary.json", "scene.lock.toml", "trajectory.npz", "events.csv"
+STATE = "state.npz"
 LATER = ("beats.csv", "phases.csv", "plots", "drawings", "movie.mp4", "movie.gif", "report.html", "import.png")
-OURS = frozenset((SUMMARY, LOCK, TRAJECTORY, EVENTS, *LATER))
+OURS = frozenset((SUMMARY, LOCK, TRAJECTORY, EVENTS, STATE, *LATER))
 
 Extra = Mapping[str, str | bytes | Callable[[Path], object]]
 
@@ -79,12 +82,17 @@ def read_results(folder: str | os.PathLike[str]) -> Trajectory:
     missing = [name for name in (LOCK, TRAJECTORY) if not (place / name).is_file()]
     if missing:
         raise FileNotFoundError(f"{folder} is not a results folder of watchsim: {' and '.join(missing)} missing")
-    return read_trajectory(place / TRAJECTORY, load(place / LOCK))
+    run = read_trajectory(place / TRAJECTORY, load(place / LOCK))
+    if (place / STATE).is_file():
+        run = dataclasses.replace(run, end_state=read_state(place / STATE))
+    return run
 
 
 def _fill(place: Path, run: Trajectory, summary: Mapping[str, Any], scene_lock: str, extra: Extra) -> None:
     write_trajectory(run, place / TRAJECTORY)
     write_events(run, place / EVENTS)
+    if run.end_state is not None:
+        write_state(run.end_state, place / STATE)
     (place / SUMMARY).write_text(json_text(summary), encoding="utf-8")
     (place / LOCK).write_text(scene_lock, encoding="utf-8")
     for name, content in extra.items():

@@ -32,7 +32,8 @@ def summary(run: Trajectory) -> dict[str, Any]:
 
     Besides the promised names: `frequency_hz`, `vph`, `window_s` (over which was averaged), `beats` (half swings in all),
     `missed_beats`, `stopped` and `stopped_message` (the watch no longer ticks), `scene_file`, `stop_message`,
-    `events_by_kind`, `counts`.
+    `events_by_kind`, `counts`, `step_s` (of a method with fixed steps), `worst_complementarity_residual` (worst violation of
+    a complementarity condition, as a share of the problem's largest term).
     """
     numbers: dict[str, Any] = {**_about(run), "bodies": _bodies(run), **_counts(run), **_timing(run)}
     numbers["expect"] = [judge(expectation, numbers) for expectation in run.scene.expect]
@@ -60,6 +61,7 @@ def _about(run: Trajectory) -> dict[str, Any]:
         "scene_file": str(run.scene.path) if run.scene.path else None,
         "method": run.method,
         "tolerance": run.tolerance,
+        "step_s": run.step,
         "simulated_s": run.simulated,
         "wall_s": run.wall,
         "compile_s": run.compile,
@@ -92,6 +94,7 @@ def _counts(run: Trajectory) -> dict[str, Any]:
         "events_by_kind": kinds,
         "counts": dict(run.counts),
         "worst_penetration_m": run.worst_penetration,
+        "worst_complementarity_residual": run.worst_residual,
         "energy": {**LEDGER, **run.energy},
     }
 

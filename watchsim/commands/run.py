@@ -17,13 +17,13 @@ from watchsim.commands.console import (
     print_json,
     say,
 )
+from watchsim.simulation.methods import EVENT_DRIVEN, METHODS
 
 if TYPE_CHECKING:
     from watchsim.mechanism.scene import Scene
     from watchsim.simulation.trajectory import Trajectory
 
 HELP = "simulate a scene and write a results folder"
-METHODS = ("pfeiffer-glocker",)
 
 
 def options(parser: argparse.ArgumentParser) -> None:
@@ -32,7 +32,10 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--duration", metavar="TIME", help='simulated time, such as "5 s" (default: the scene\'s)')
     parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], help="change a value of the scene")
     parser.add_argument("--tol", metavar="X", type=float, help="relative error per step (default: the scene's, 1e-9)")
-    parser.add_argument("--method", default=METHODS[0], choices=METHODS, help="solver (default %(default)s)")
+    parser.add_argument("--method", choices=METHODS, help=f"solver (default {EVENT_DRIVEN})")
+    parser.add_argument("--step", metavar="TIME", help='step of the method moreau, such as "10 µs" (the default)')
+    parser.add_argument("--resume", metavar="RUN", help="go on from the end of this results folder, up to --duration")
+    parser.add_argument("--error-bars", action="store_true", help="run again more exactly, and say how far the numbers move")
     parser.add_argument("--json", action="store_true", help="print the summary as one JSON object")
     parser.add_argument("--movie", action="store_true", help="write movie.mp4 too: the last beats in slow motion")
     parser.add_argument("--gif", action="store_true", help="write movie.gif too")
@@ -44,15 +47,23 @@ def run(args: argparse.Namespace) -> int:
     from watchsim.commands.scenes import load_scene
 
     scene = load_scene(args.scene, args.set)
-    duration = _duration(args.duration) if args.duration else None
+    duration = _time("--duration", args.duration)
+    step = _time("--step", args.step)
     if args.tol is not None and not 1e-13 <= args.tol <= 1e-2:
         raise InputError(f"--tol {args.tol:g}: must lie between 1e-13 and 1e-2.")
-    folder = Path(args.output) if args.output else Path("results") / _name(scene)
-    check_folder(folder, args.force)
-    trajectory = simulate_with_progress(scene, duration, args.tol)
-    summary = write(trajectory, folder, args.force, movie=args.movie, gif=args.gif)
+    method, start = args.method or EVENT_DRIVEN, None
+    folder = Path(args.output or args.resume or Path("results") / _name(scene))
+    # What is resumed is written whole, with what follows it: nothing is lost where it takes the old one's place.
+    replace = args.force or (args.resume is not None and folder.resolve() == Path(args.resume).resolve())
+    if args.resume:
+        start = _earlier(args.resume, scene)
+        method, step = args.method or start.method, step or start.step
+        args.tol = args.tol or start.tolerance
+    check_folder(folder, replace)
+    trajectory = simulate_with_progress(scene, duration, args.tol, method=method, step=step, start=start)
+    summary = write(trajectory, folder, replace, movie=args.movie, gif=args.gif, error_bars=args.error_bars)
     # What a scene promises, it promises as it is written.
-    as_written = not (args.set or args.duration or args.tol)
+    as_written = not (args.set or args.duration or args.tol or args.step) and method == EVENT_DRIVEN
     if args.json:
         print_json(summary)
     else:
@@ -63,26 +74,35 @@ def run(args: argparse.Namespace) -> int:
     return status(trajectory, summary, promised=as_written)
 
 
-def simulate_with_progress(scene: Scene, duration: float | None, tolerance: float | None) -> Trajectory:
+def simulate_with_progress(
+    scene: Scene,
+    duration: float | None,
+    tolerance: float | None,
+    method: str = EVENT_DRIVEN,
+    step: float | None = None,
+    start: Trajectory | None = None,
+) -> Trajectory:
     """Simulate with a progress line on a terminal; the first run on a machine says that it compiles."""
     from watchsim.simulation.simulate import simulate
 
     announce_compile()
     progress = Progress("simulated s:")
     try:
-        return simulate(scene, duration, tolerance, progress=progress)
+        return simulate(scene, duration, tolerance, progress=progress, method=method, step=step, start=start)
     finally:
         progress.close()
 
 
-def write(run: Trajectory, folder: Path, force: bool, movie: bool = False, gif: bool = False) -> dict[str, Any]:
+def write(
+    run: Trajectory, folder: Path, force: bool, movie: bool = False, gif: bool = False, error_bars: bool = False
+) -> dict[str, Any]:
     """Write the results folder with plots (and movies); returns the summary as written."""
     from watchsim.analysis.results import write_results
     from watchsim.analysis.summary import summary, tables
     from watchsim.analysis.tables import plain
     from watchsim.mechanism.lock import lock_text
 
-    numbers = plain(summary(run))
+    numbers = plain(_with_error_bars(run) if error_bars else summary(run))
     extra: dict[str, Any] = dict(tables(run))
     extra.update(_plots(run))
     if movie:
@@ -91,6 +111,30 @@ def write(run: Trajectory, folder: Path, force: bool, movie: bool = False, gif: 
         extra["movie.gif"] = lambda path: _movie(run, path, speed=1 / 40)
     write_results(run, folder, numbers, lock_text(run.scene, folder.absolute()), extra=extra, force=force)
     return numbers
+
+
+def _with_error_bars(run: Trajectory) -> dict[str, Any]:
+    """The summary with errors from a second, more exact run."""
+    from watchsim.analysis.error_bars import more_exact, with_error_bars
+    from watchsim.analysis.summary import summary
+
+    progress = Progress("once more, more exactly; simulated s:")
+    try:
+        return with_error_bars(summary(run), summary(more_exact(run, progress)))
+    finally:
+        progress.close()
+
+
+def _earlier(folder: str, scene: Scene) -> Trajectory:
+    """The run to go on from, its scene replaced by the one given, which must be the same (see `simulate`)."""
+    import dataclasses
+
+    from watchsim.analysis.results import read_results
+
+    run = read_results(folder)
+    if run.end_state is None:
+        raise InputError(f"--resume {folder}: this results folder holds no state.npz to go on from.")
+    return dataclasses.replace(run, scene=scene)
 
 
 def _plots(run: Trajectory) -> dict[str, Any]:
@@ -146,15 +190,18 @@ def status(run: Trajectory, summary: dict[str, Any], promised: bool = True) -> i
     return MISSED if missed or summary.get("stopped") else FINE
 
 
-def _duration(text: str) -> float:
+def _time(option: str, text: str | None) -> float | None:
+    """A positive time in seconds."""
+    if text is None:
+        return None
     from watchsim.units import TIME, UnitError, parse
 
     try:
         value = parse(text, TIME)
     except UnitError as error:
-        raise InputError(f'--duration "{text}": {error}') from error
+        raise InputError(f'{option} "{text}": {error}') from error
     if not value > 0.0:
-        raise InputError(f'--duration "{text}": must be positive.')
+        raise InputError(f'{option} "{text}": must be positive.')
     return value
 
 

@@ -39,6 +39,7 @@ class LcpWork(NamedTuple):
     square: Array  # elimination of the active block, right-hand side last
     order: Integers  # the unknown of each of its columns
     trial: Array  # scaled x
+    worst: Array  # (1,) worst violation of the conditions in any accepted solution, see `is_solution`
 
 
 LcpWorkRef = by_reference(LcpWork, __name__)
@@ -57,6 +58,7 @@ def lcp_work(size: int) -> LcpWork:
         square=np.zeros((size, size + 1)),
         order=np.zeros(size, np.int64),
         trial=np.zeros(size),
+        worst=np.zeros(1),
     )
 
 

@@ -16,8 +16,11 @@ ROUNDING = 1e-13  # so is one this much smaller than the largest x, or than one
 
 @kernel
 def is_solution(n, work):
-    """True when the scaled trial solves the problem; each y_i is judged by the terms it is the sum of."""
-    floor = 1.0
+    """True when the scaled trial solves the problem; each y_i is judged by the terms it is the sum of.
+
+    `work.worst` keeps the worst violation of an accepted solution, as a share of one or of its largest unknown.
+    """
+    floor, worst = 1.0, 0.0
     for i in range(n):
         floor = max(floor, abs(work.trial[i]))
     for i in range(n):
@@ -29,6 +32,8 @@ def is_solution(n, work):
         allowed = RESIDUAL * terms + ROUNDING * floor
         if not math.isfinite(terms) or work.trial[i] < 0.0 or y < -allowed or (work.trial[i] > 0.0 and y > allowed):
             return False
+        worst = max(worst, -y, abs(y) if work.trial[i] > 0.0 else 0.0)
+    work.worst[0] = max(work.worst[0], worst / floor)
     return True
 
 

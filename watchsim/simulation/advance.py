@@ -31,7 +31,7 @@ from watchsim.simulation.within import begin_flight, coordinate_within, flight_a
 
 RUNNING, SLICE, CELL_UNKNOWN, BUFFER_FULL = int(Stop.RUNNING), int(Stop.SLICE), int(Stop.CELL_UNKNOWN), int(Stop.BUFFER_FULL)
 DURATION, STEP_TOO_SMALL, NOT_FINITE = int(Stop.DURATION), int(Stop.STEP_TOO_SMALL), int(Stop.NOT_FINITE)
-TOO_MANY_EVENTS = int(Stop.TOO_MANY_EVENTS)
+TOO_MANY_EVENTS, LAST_STEP = int(Stop.TOO_MANY_EVENTS), int(Stop.LAST_STEP)
 FLIGHT_CELLS = 32
 FLIGHT_ROWS = 16  # a flight is at most this many recorded rows long
 EVENTS_AT_ONCE = 2000
@@ -186,6 +186,15 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
 
 
 @kernel
+def _reaches(model, state, options, end_time):
+    """True if the next step, taken freely, might come as far as `end_time`."""
+    longest = min(state.clock[1], options.max_step)
+    if _can_fly(model, state):
+        longest, _ = _flight_length(model, state, options)
+    return longest >= end_time - state.clock[0]
+
+
+@kernel
 def _settle(model, cells, state, options, scratch, record):
     """Handle the waiting event; counts events that do not let time advance."""
     if state.clock[0] == state.clock[2]:
@@ -218,6 +227,8 @@ def _loop(model, cells, state, options, until, scratch, record):
             return DURATION
         if state.clock[0] >= until[0]:
             return SLICE
+        if until[2] == 0.0 and _reaches(model, state, options, until[1]):
+            return LAST_STEP
         code, event = _smooth_step(model, cells, state, options, until[1], scratch, record)
         if code != RUNNING:
             return code
@@ -273,6 +284,8 @@ def _by_reference(scratch):
 @entry
 def advance(model, cells, state, options, until, scratch, record):
     """Run to the time until[1] (or return after until[0], the end of a slice); returns a Stop code.
+
+    Before a step that until[1] might cut short it returns once, unless until[2] is set.
 
     All arguments but `until` are NamedTuples; `state`, `scratch` and `record` are written to.
     """

@@ -24,6 +24,8 @@ def monitor(model, state, scratch, options, i, which):
     k = closed.ids[i]
     normal = work.force[2 * i]
     if which == 0:
+        if normal == 0.0 and work.size[2 * i] == 0.0:
+            return 1.0  # nothing acts on this gap: touching bodies that travel together without a force
         slack = options.force_zero * work.size[2 * i] / work.G[2 * i, 2 * i]
         return normal + slack
     if which == 1:

@@ -6,7 +6,7 @@ from enum import IntEnum
 
 
 class Stop(IntEnum):
-    """Cause of a return from the event loop. The first four are handled inside `simulate` and never reach a user."""
+    """Cause of a return from the event loop. RUNNING to BUFFER_FULL and LAST_STEP never reach a user."""
 
     RUNNING = 0
     SLICE = 1
@@ -19,6 +19,7 @@ class Stop(IntEnum):
     STEP_TOO_SMALL = 8
     NOT_FINITE = 9
     TOO_MANY_CONTACTS = 10
+    LAST_STEP = 11
 
     @property
     def sentence(self) -> str:
@@ -27,7 +28,7 @@ class Stop(IntEnum):
     @property
     def gave_up(self) -> bool:
         """True when the solver could not go on (exit status 3)."""
-        return self >= Stop.TOO_MANY_EVENTS
+        return Stop.TOO_MANY_EVENTS <= self <= Stop.TOO_MANY_CONTACTS
 
 
 _SENTENCES = {
@@ -35,6 +36,7 @@ _SENTENCES = {
     Stop.SLICE: "a slice of simulated time is done",
     Stop.CELL_UNKNOWN: "a cell of the configuration space was entered for the first time",
     Stop.BUFFER_FULL: "the record buffer is full",
+    Stop.LAST_STEP: "the next step might reach the end",
     Stop.DURATION: "the asked duration was simulated",
     Stop.INTERRUPTED: "interrupted by the user; everything up to here is kept",
     Stop.TOO_MANY_EVENTS: "too many events at one instant: time does not advance",

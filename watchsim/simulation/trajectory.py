@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation.event_kinds import EVENT_DTYPE as EVENT_DTYPE
 from watchsim.simulation.event_kinds import EventKind as EventKind
+from watchsim.simulation.saved import SavedState
 from watchsim.simulation.stops import Stop
 
 Array = NDArray[np.float64]
@@ -47,7 +48,8 @@ class Trajectory:
 
     t (rows,) s; q, u, a (rows, n) coordinates, velocities, accelerations in SI; `slices[body]` says which columns belong
     to a body (fixed bodies have none). `energy` holds joules: in_J, stored_J, dissipated {cause: J}, residual_J.
-    `counts` holds events, impacts, steps, lcp_failures and the like; `worst_penetration` is metres.
+    `counts` holds events, impacts, steps, lcp_failures and the like; `worst_penetration` is metres;
+    `worst_residual` the worst violation of a complementarity condition, as a share of the problem's largest term.
     """
 
     scene: Scene
@@ -66,8 +68,11 @@ class Trajectory:
     method: str = "pfeiffer-glocker"
     tolerance: float = 1e-9
     worst_penetration: float = 0.0
+    worst_residual: float = 0.0
     energy: dict[str, Any] = field(default_factory=dict)
     counts: dict[str, int] = field(default_factory=dict)
+    step: float | None = None  # s, of a method with fixed steps
+    end_state: SavedState | None = field(default=None, repr=False, compare=False)  # to go on from, see `simulate`
 
     def at(self, t: float) -> tuple[Array, Array]:
         """q and u at time `t` (after the impact where one happens at `t`).

@@ -1,0 +1,139 @@
+"""How fast does Moreau's time stepping come to the event-driven answer? Table, fitted orders and docs/images/convergence.png.
+
+    python scripts/study_convergence.py [--quick] [--picture FILE]
+
+The incline is measured against its closed form, the levers against the event-driven solver at its scene's tolerance.
+"""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from watchsim.analysis.averages import mean_over
+from watchsim.analysis.closed_forms import Incline, incline_state
+from watchsim.mechanism.load import load
+from watchsim.mechanism.scene import Scene
+from watchsim.profiles_path import profiles_dir
+from watchsim.simulation.simulate import simulate
+from watchsim.simulation.trajectory import Trajectory
+
+PICTURE = Path(__file__).resolve().parents[1] / "docs" / "images" / "convergence.png"
+STEPS = (1e-4, 5e-5, 2e-5, 1e-5, 5e-6, 2e-6, 1e-6)
+Errors = Callable[[Trajectory], dict[str, float]]
+
+
+@dataclasses.dataclass(frozen=True)
+class Case:
+    """A scene, how long, the steps, and the errors of a run."""
+
+    name: str
+    scene: Scene
+    duration: float
+    steps: tuple[float, ...]
+    errors: Errors
+
+
+def inclines(steps: tuple[float, ...]) -> list[Case]:
+    """The disc after a second: place along the plane."""
+    out = []
+    for file, mu in (("scene.toml", 0.3), ("scene_mu013.toml", 0.13), ("scene_mu010.toml", 0.10)):
+        truth = incline_state(Incline(mu), 1.0).x
+
+        def errors(run: Trajectory, truth: float = truth) -> dict[str, float]:
+            return {"place, m/m": abs(run.q[-1, 0] / truth - 1.0)}
+
+        out.append(Case(f"incline, friction {mu:g}", load(profiles_dir() / "incline" / file), 1.0, (1e-3, *steps), errors))
+    return out
+
+
+def levers(steps: tuple[float, ...], duration: float) -> list[Case]:
+    """The bench lever without and with restitution, and the Swiss lever: amplitude and period over the last seconds."""
+    bench, swiss = (load(profiles_dir() / name / "scene.toml") for name in ("bench_lever", "swiss_lever"))
+    inelastic = dataclasses.replace(bench, contacts=tuple(dataclasses.replace(c, restitution=0.0) for c in bench.contacts))
+    named = (("bench lever, restitution 0", inelastic), ("bench lever, restitution 0.2", bench), ("Swiss lever", swiss))
+    return [_lever(name, scene, duration, steps) for name, scene in named]
+
+
+def _lever(name: str, scene: Scene, duration: float, steps: tuple[float, ...]) -> Case:
+    scene = dataclasses.replace(scene, record=())
+    window = (0.2 * duration, duration)
+    truth = simulate(scene, duration)
+    exact = mean_over(truth, window)
+
+    def errors(run: Trajectory) -> dict[str, float]:
+        means = mean_over(run, window)
+        return {
+            "amplitude, °": abs((means.amplitude_deg or math.nan) - (exact.amplitude_deg or math.nan)),
+            "period, s": abs((means.period_s or math.nan) - (exact.period_s or math.nan)),
+            "balance at the end, rad": float(np.abs(run.q[-1] - truth.q[-1])[run.slices["balance"]][0]),
+        }
+
+    return Case(name, scene, duration, steps, errors)
+
+
+def study(cases: list[Case]) -> dict[tuple[str, str], tuple[list[float], list[float]]]:
+    """Steps and errors of each quantity of each case; prints them as they come."""
+    found: dict[tuple[str, str], tuple[list[float], list[float]]] = {}
+    for case in cases:
+        for step in case.steps:
+            run = simulate(case.scene, case.duration, method="moreau", step=step)
+            errors = case.errors(run)
+            print(
+                f"{case.name:28} {step:8.0e} s  " + "  ".join(f"{name} {value:.2e}" for name, value in errors.items()),
+                flush=True,
+            )
+            for name, value in errors.items():
+                steps, values = found.setdefault((case.name, name), ([], []))
+                steps.append(step)
+                values.append(value)
+    return found
+
+
+def order(steps: list[float], errors: list[float]) -> float:
+    """Slope of the straight line through the logarithms."""
+    good = np.isfinite(errors) & (np.array(errors) > 0.0)
+    return float(np.polyfit(np.log(np.array(steps)[good]), np.log(np.array(errors)[good]), 1)[0])
+
+
+def picture(found: dict[tuple[str, str], tuple[list[float], list[float]]], path: Path) -> None:
+    """Errors over steps, doubly logarithmic, with a line of slope 1."""
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(1, 2, figsize=(10.0, 4.6), constrained_layout=True)
+    panels = (("place, m/m", "Disc on the incline after 1 s", "relative error of place"),)
+    panels += (("amplitude, °", "Levers: amplitude", "error of amplitude, °"),)
+    for axis, (quantity, title, label) in zip(axes, panels, strict=True):
+        for (case, name), (steps, errors) in found.items():
+            if name == quantity:
+                axis.loglog(steps, errors, "o-", label=f"{case}: order {order(steps, errors):.2f}", markersize=4)
+        low, high = axis.get_xlim()
+        middle = math.sqrt(np.prod(axis.get_ylim()))
+        ends = np.array([low, high])
+        axis.loglog(ends, middle * ends / math.sqrt(low * high), color="0.6", linestyle="--", label="slope 1", zorder=0)
+        axis.set(title=title, xlabel="step, s", ylabel=label)
+        axis.grid(True, which="major", color="0.9")
+        axis.legend(frameon=False, fontsize=8)
+    figure.savefig(path, dpi=120)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--quick", action="store_true", help="three steps, half a second")
+    parser.add_argument("--picture", type=Path, default=PICTURE)
+    args = parser.parse_args()
+    steps = STEPS[:4:2] if args.quick else STEPS
+    found = study([*inclines(steps), *levers(steps[1:], 1.0 if args.quick else 3.0)])
+    print()
+    for (case, name), (sizes, errors) in found.items():
+        print(f"{case:28} {name:24} order {order(sizes, errors):.2f}, at {sizes[-1]:.0e} s {errors[-1]:.1e}")
+    picture(found, args.picture)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,97 @@
+"""Is a saved state complete? Going on from it must give the same bits as never having stopped."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+import pytest
+from moving_scenes import profile
+
+from watchsim.contact.cells import CellFinder
+from watchsim.mechanism.scene import Scene
+from watchsim.simulation.simulate import simulate
+from watchsim.simulation.stops import Stop
+from watchsim.simulation.trajectory import Trajectory
+
+
+def assert_same(one: Trajectory, other: Trajectory) -> None:
+    for name in ("t", "q", "u", "a", "events"):
+        assert np.array_equal(getattr(one, name), getattr(other, name)), name
+    assert one.simulated == other.simulated
+    assert one.energy == other.energy
+    assert one.worst_penetration == other.worst_penetration
+
+
+CASES = [
+    pytest.param("bench_lever", 0.5, (0.2, 0.2003), {}, id="events"),
+    pytest.param("incline", 0.6, (0.1, 0.44), {}, id="bounces"),
+    pytest.param("bench_lever", 0.2, (0.0731,), {"method": "moreau", "step": 2e-5}, id="fixed steps"),
+]
+
+
+@pytest.mark.parametrize("name, end, cuts, options", CASES)
+def test_pieces_and_whole_agree_bit_by_bit(name: str, end: float, cuts: tuple[float, ...], options: dict[str, Any]) -> None:
+    scene = profile(name)
+    whole = simulate(scene, end, **options)
+    parts = simulate(scene, cuts[0], **options)
+    assert parts.t[-1] == cuts[0]
+    for cut in (*cuts[1:], end):
+        parts = simulate(scene, cut, start=parts, **options)
+    assert_same(parts, whole)
+    assert parts.stop == Stop.DURATION
+
+
+def test_from_a_state_only_what_follows_is_told() -> None:
+    scene = profile("bench_lever")
+    whole, first = simulate(scene, 0.4), simulate(scene, 0.2)
+    rest = simulate(scene, 0.4, start=first.end_state)
+    assert np.array_equal(np.concatenate([first.t[: first.end_state.rows], rest.t]), whole.t)
+    assert np.array_equal(rest.q[-1], whole.q[-1])
+
+
+def test_interrupted_and_taken_up_again() -> None:
+    scene = profile("bench_lever")
+
+    def impatient(simulated: float, _: float) -> None:
+        if simulated > 0.15:
+            raise KeyboardInterrupt
+
+    stopped = simulate(scene, 0.5, progress=impatient)
+    assert stopped.stop == Stop.INTERRUPTED
+    assert stopped.simulated < 0.5
+    assert_same(simulate(scene, 0.5, start=stopped), simulate(scene, 0.5))
+
+
+def test_the_order_in_which_cells_are_learned_does_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each cell alone, when it is met, instead of with its neighbours: another table in memory, the same bits."""
+    scene = profile("bench_lever")
+    plain = simulate(scene, 0.3)
+    learned = CellFinder.learn
+
+    def alone(self: CellFinder, p: int, q: np.ndarray) -> Any:
+        monkeypatch.setattr("watchsim.contact.cells.AROUND", {1: 0, 2: 0, 3: 0})
+        return learned(self, p, q)
+
+    monkeypatch.setattr(CellFinder, "learn", alone)
+    other = simulate(scene, 0.3)
+    assert other.counts["cells"] < plain.counts["cells"]
+    assert_same(plain, other)
+
+
+def changed(scene: Scene) -> Scene:
+    return dataclasses.replace(scene, torques=(dataclasses.replace(scene.torques[0], value=-5e-6),))
+
+
+def test_another_scene_is_refused() -> None:
+    scene = profile("bench_lever")
+    first = simulate(scene, 0.05)
+    with pytest.raises(ValueError, match="another scene"):
+        simulate(changed(scene), 0.1, start=first)
+    with pytest.raises(ValueError, match=r"other settings.*tolerance"):
+        simulate(scene, 0.1, 1e-7, start=first)
+    with pytest.raises(ValueError, match="method was pfeiffer-glocker, now moreau"):
+        simulate(scene, 0.1, start=first, method="moreau")
+    with pytest.raises(ValueError, match=r"has reached 0\.05 s already"):
+        simulate(scene, 0.05, start=first)

@@ -1,0 +1,41 @@
+"""How does a saved state become a file, and a file a saved state?"""
+
+from __future__ import annotations
+
+import json
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from watchsim.simulation.saved import SavedState
+
+FORMAT = 1
+
+
+def write_state(state: SavedState, path: Path) -> None:
+    """Write `path` (npz): every array in full precision, a header in JSON; nothing is pickled."""
+    header = {
+        "format": FORMAT,
+        "digest": state.digest,
+        "settings": state.settings,
+        "stored_at_start": state.stored_at_start,
+        "rows": state.rows,
+        "events": state.events,
+    }
+    arrays: dict[str, Any] = {f"state_{name}": array for name, array in state.arrays.items()}
+    np.savez_compressed(path, header=np.frombuffer(json.dumps(header).encode(), dtype=np.uint8), **arrays)
+
+
+def read_state(path: Path) -> SavedState:
+    """The state kept in `path`; ValueError where the file is damaged or of another version."""
+    try:
+        with np.load(path, allow_pickle=False) as archive:
+            header: dict[str, Any] = json.loads(archive["header"].tobytes())
+            arrays = {name.removeprefix("state_"): archive[name] for name in archive.files if name != "header"}
+    except (zipfile.BadZipFile, KeyError, ValueError, EOFError) as error:
+        raise ValueError(f"{path} is damaged or no saved state of watchsim ({error})") from error
+    if header.pop("format", None) != FORMAT:
+        raise ValueError(f"{path} was written by another version of watchsim; run the scene again")
+    return SavedState(arrays=arrays, **header)

@@ -1,0 +1,54 @@
+"""How does Moreau's time stepping run on the same model? The independent twin of the event-driven solver."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.mechanism.compile import Compiled
+from watchsim.simulation.methods import MOREAU
+from watchsim.simulation.moreau_loop import EVENTS_PER_STEP, ROWS_PER_STEP, advance_fixed
+from watchsim.simulation.moreau_step import moreau_work
+from watchsim.simulation.run import EVENTS, ROWS, Run
+from watchsim.simulation.state import CORRECTION, new_record
+from watchsim.simulation.stops import Stop
+
+ROWS_PER_QUARTER = 300  # of the fastest spring's period; of the scene's duration where there is no spring
+
+
+class MoreauRun(Run):
+    """Fixed steps of `step` seconds; impacts, friction and forces once for each."""
+
+    method = MOREAU
+
+    def __init__(self, compiled: Compiled, tolerance: float, longest: float, windows: Any, step: float) -> None:
+        super().__init__(compiled, tolerance, longest, windows)
+        self.step = step
+        self.pace = np.array([step, max(step, self.options.max_step / ROWS_PER_QUARTER)])
+        self.work = moreau_work(compiled.model)
+        self.record = new_record(compiled.model, ROWS + ROWS_PER_STEP, EVENTS + EVENTS_PER_STEP, self.record.windows)
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        return {**super().arrays(), "memory": self.work.memory, "depth": self.work.depth}
+
+    def _worst_residual(self) -> NDArray[np.float64]:
+        return self.work.worst
+
+    def settings(self) -> dict[str, Any]:
+        return {**super().settings(), "step": self.step}
+
+    def _advance(self, until: NDArray[np.float64], record: Any) -> Stop:
+        model = self.compiled.model
+        code = advance_fixed(model, self.finder.cells, self.state, self.options, until, self.pace, self.work, record)
+        return Stop(int(code))
+
+    def _learn(self) -> None:
+        self.finder.learn(int(self.work.unknown[0]), self.work.at.copy())
+
+    def _counts(self) -> dict[str, int]:
+        return {**super()._counts(), "sweeps": int(self.work.sweeps[0])}
+
+    def _dissipated(self) -> dict[str, float]:
+        return {**super()._dissipated(), "stepping": float(self.state.sums[CORRECTION])}

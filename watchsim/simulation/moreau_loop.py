@@ -1,0 +1,156 @@
+"""How does Moreau's time stepping go from step to step?"""
+
+from __future__ import annotations
+
+import math
+
+from watchsim.contact.kinematics import ClosedRef
+from watchsim.jit import entry, kernel
+from watchsim.mechanism.model import CellsRef, ModelRef
+from watchsim.simulation.keep import keep_event, keep_row
+from watchsim.simulation.moreau_step import MoreauWorkRef, act, closed_at_middle, move, stop_approaches
+from watchsim.simulation.options import OptionsRef
+from watchsim.simulation.state import N_STEPS, ROOM, RecordRef, StateRef
+from watchsim.simulation.stops import Stop
+
+SLICE, CELL_UNKNOWN, BUFFER_FULL = int(Stop.SLICE), int(Stop.CELL_UNKNOWN), int(Stop.BUFFER_FULL)
+DURATION, NOT_FINITE, LAST_STEP = int(Stop.DURATION), int(Stop.NOT_FINITE), int(Stop.LAST_STEP)
+RUNNING, TOO_MANY_CONTACTS = int(Stop.RUNNING), int(Stop.TOO_MANY_CONTACTS)
+TURN_EVENT, CROSS_EVENT = 8, 9
+ROWS_PER_STEP, EVENTS_PER_STEP = 3, 2 * ROOM
+CLOSE = 1e-9  # share of a step that is rounding of time
+
+
+@kernel
+def _sign(x):
+    if x > 0.0:
+        return 1
+    return -1 if x < 0.0 else 0
+
+
+@kernel
+def _passages(model, state, h, work, q, u, record):
+    """Turning points and rest passages of sprung bodies within the step that ends at (q, u): the step is a parabola."""
+    start = state.clock[0]
+    for i in range(len(u)):
+        coordinate = model.coordinates[i]
+        if coordinate.stiffness == 0.0:
+            continue
+        bend = (u[i] - work.u[i]) / h
+        side = _sign(u[i])
+        if side != 0 and side != state.side_u[i]:
+            if state.side_u[i] != 0:
+                tau = h * work.u[i] / (work.u[i] - u[i]) if work.u[i] * u[i] < 0.0 else 0.0
+                state.clock[0] = start + tau
+                keep_event(state, record, TURN_EVENT, -1, coordinate.body, state.q[i] + 0.5 * work.u[i] * tau)
+            state.side_u[i] = side
+        before, side = state.q[i] - coordinate.rest, _sign(q[i] - coordinate.rest)
+        if side != 0 and side != state.side_q[i]:
+            if state.side_q[i] != 0:
+                root = math.sqrt(max(0.0, work.u[i] * work.u[i] - 2.0 * bend * before))
+                tau = min(h, max(0.0, -2.0 * before / (work.u[i] + math.copysign(root, work.u[i]))))
+                state.clock[0] = start + tau
+                keep_event(state, record, CROSS_EVENT, -1, coordinate.body, work.u[i] + bend * tau)
+            state.side_q[i] = side
+    state.clock[0] = start
+
+
+@kernel
+def _step(model, cells, state, options, h, whole, work, record):
+    """One step of length h, of which `whole` is the usual one; returns a Stop code."""
+    m = closed_at_middle(model, cells, state, options, h, work)
+    if m < 0:
+        return CELL_UNKNOWN if m == -1 else TOO_MANY_CONTACTS
+    for i in range(m):
+        law = model.laws[model.contacts[work.closed.ids[i]].group]
+        work.friction[i], work.restitution[i] = law.friction, law.restitution
+    jump = stop_approaches(model, state, options, m, work, record)
+    if jump:
+        keep_row(state, record, state.clock[0], state.q, state.u, state.a)
+        keep_row(state, record, state.clock[0], state.q, work.u, state.a)
+    act(model, state, m, h, work, state.u)
+    work.at[:] = state.q
+    move(model, state, options, m, h, work, state.u)
+    for i in range(len(state.u)):
+        if not math.isfinite(state.q[i] + state.u[i]):
+            return NOT_FINITE
+        # `_passages` looks from the start of the step to its end.
+        work.q[i], state.q[i] = state.q[i], work.at[i]
+    _passages(model, state, h, work, work.q, state.u, record)
+    state.q[:] = work.q
+    state.numbers[3] += 1
+    state.clock[0] = state.numbers[3] * whole if h == whole else state.clock[0] + h
+    state.counts[N_STEPS] += 1
+    return RUNNING
+
+
+@entry
+def advance_fixed(model, cells, state, options, until, pace, work, record):
+    """Run to until[1] in steps of pace[0] s, with a row every pace[1] s; otherwise as `advance`."""
+    return _loop(
+        ModelRef(*model),
+        CellsRef(*cells),
+        StateRef(*state),
+        OptionsRef(*options),
+        until,
+        pace,
+        _by_reference(work),
+        RecordRef(*record),
+    )
+
+
+@kernel
+def _by_reference(work):
+    """The scratch arrays as a struct."""
+    return MoreauWorkRef(
+        work.memory,
+        work.depth,
+        work.pose,
+        ClosedRef(*work.closed),
+        work.q,
+        work.u,
+        work.free,
+        work.force,
+        work.damping,
+        work.mass,
+        work.inverse,
+        work.G,
+        work.b,
+        work.rates,
+        work.more,
+        work.P,
+        work.low,
+        work.friction,
+        work.restitution,
+        work.unknown,
+        work.at,
+        work.sweeps,
+        work.worst,
+    )
+
+
+@kernel
+def _loop(model, cells, state, options, until, pace, work, record):
+    while True:
+        if record.used[0] + ROWS_PER_STEP >= len(record.rows) or record.used[1] + EVENTS_PER_STEP >= len(record.events):
+            return BUFFER_FULL
+        if state.numbers[3] == 0 and record.used[0] == 0 and state.clock[0] == 0.0:
+            keep_row(state, record, 0.0, state.q, state.u, state.a)
+        left = until[1] - state.clock[0]
+        if left <= 0.0:
+            return DURATION
+        if state.clock[0] >= until[0] and until[0] < until[1]:
+            return SLICE
+        last = left <= pace[0] * (1.0 + CLOSE)
+        if last and until[2] == 0.0:
+            return LAST_STEP
+        h = pace[0] if left >= pace[0] * (1.0 - CLOSE) else left
+        code = _step(model, cells, state, options, h, pace[0], work, record)
+        if code != RUNNING:
+            return code
+        if last:
+            state.clock[0] = until[1]
+        # Rows at least so often; the last one always.
+        if last or state.clock[0] - state.clock[2] >= pace[1] * (1.0 - CLOSE):
+            state.clock[2] = state.clock[0]
+            keep_row(state, record, state.clock[0], state.q, state.u, state.a)

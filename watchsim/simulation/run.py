@@ -1,0 +1,230 @@
+"""How does a simulation run from Python, whatever the stepping?
+
+The compiled loop is called slice by slice; unknown cells, full buffers, progress and interrupts are dealt with between
+slices. A frozen trajectory is handed back.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.contact.cells import CellFinder
+from watchsim.dynamics.forces import stored_energy
+from watchsim.mechanism.compile import Compiled
+from watchsim.mechanism.model import KIND_WORD
+from watchsim.mechanism.scene import Scene
+from watchsim.simulation.advance import EVENTS_PER_STEP, ROWS_PER_STEP, advance
+from watchsim.simulation.methods import EVENT_DRIVEN
+from watchsim.simulation.options import Options, options_for
+from watchsim.simulation.saved import SavedState, save_state
+from watchsim.simulation.state import (
+    COUNT_NAMES,
+    DAMPING,
+    DRIVE,
+    FRICTION,
+    IMPACTS,
+    State,
+    new_record,
+    new_scratch,
+    new_state,
+)
+from watchsim.simulation.stops import Stop
+from watchsim.simulation.trajectory import EVENT_DTYPE, Pair, Trajectory
+
+Progress = Callable[[float, float], None]  # simulated time, duration
+
+ROWS, EVENTS = 20000, 20000
+SLICE_WALL = 0.1  # s between looks at the clock
+
+
+@dataclass
+class _Kept:
+    """Rows and events flushed so far."""
+
+    rows: list[NDArray[np.float64]] = field(default_factory=list)
+    events: list[NDArray[Any]] = field(default_factory=list)
+
+    def flush(self, record: Any) -> None:
+        rows, events = record.used
+        self.rows.append(record.rows[:rows].copy())
+        self.events.append(record.events[:events].copy())
+        record.used[:] = 0
+
+    def count(self, record: Any) -> tuple[int, int]:
+        """Rows and events kept so far, with those still in the buffer."""
+        rows, events = record.used
+        return sum(map(len, self.rows)) + int(rows), sum(map(len, self.events)) + int(events)
+
+
+def natural_step(compiled: Compiled, longest: float) -> float:
+    """Longest step: a quarter of the fastest spring's period, so that no turning point hides between two others."""
+    return min(longest, 0.5 * math.pi / compiled.fastest) if compiled.fastest else longest
+
+
+class Run:
+    """A run under way: the loop's arrays and what has been kept. By events; see `moreau.MoreauRun` for fixed steps.
+
+    `longest` bounds the step of a scene without springs. It belongs to the scene, not to the asked duration: how far a run
+    is to go must not change a bit of it.
+    """
+
+    method = EVENT_DRIVEN
+    step: float | None = None  # s, where steps are fixed
+
+    def __init__(self, compiled: Compiled, tolerance: float, longest: float, windows: Any) -> None:
+        model = compiled.model
+        self.compiled, self.tolerance = compiled, tolerance
+        self.options: Options = options_for(compiled.size, tolerance, natural_step(compiled, longest))
+        self.state: State = new_state(model, compiled.q, compiled.u)
+        self.state.clock[1] = 1e-3 * self.options.max_step
+        self.finder = CellFinder(model)
+        self.scratch = new_scratch(model)
+        self.record = new_record(model, ROWS + ROWS_PER_STEP, EVENTS + EVENTS_PER_STEP, np.array(windows, float).reshape(-1, 2))
+        self.kept = _Kept()
+        self.stored_at_start = stored_energy(model, self.state.q, self.state.u)
+        self.saved: SavedState | None = None
+
+    def begin_from(self, saved: SavedState) -> None:
+        """Take up a saved state; ValueError where it is not one of this model with these settings."""
+        saved.check(self.compiled, self.settings())
+        saved.restore(self.arrays())
+        self.stored_at_start = saved.stored_at_start
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """Everything the future depends on, besides the model and the settings."""
+        return {**self.state._asdict(), "worst_residual": self._worst_residual()}
+
+    def _worst_residual(self) -> NDArray[np.float64]:
+        """(1,): the worst violation of a complementarity condition so far."""
+        worst: NDArray[np.float64] = self.scratch.work.lcp.worst
+        return worst
+
+    def settings(self) -> dict[str, Any]:
+        """What must be the same when a saved state is taken up."""
+        return {"method": self.method, **{name: float(value) for name, value in self.options._asdict().items()}}
+
+    def save(self) -> SavedState:
+        """The state now."""
+        rows, events = self.kept.count(self.record)
+        return save_state(self.compiled, self.settings(), self.arrays(), self.stored_at_start, rows, events)
+
+    def warm_up(self) -> None:
+        """Load or compile the kernels: a call that returns at once because it has no room to record."""
+        nowhere = new_record(self.compiled.model, 0, 0, self.record.windows)
+        self._advance(np.zeros(3), nowhere)
+
+    def _advance(self, until: NDArray[np.float64], record: Any) -> Stop:
+        code = advance(self.compiled.model, self.finder.cells, self.state, self.options, until, self.scratch, record)
+        return Stop(int(code))
+
+    def _learn(self) -> None:
+        """Look up the cell that the loop has met."""
+        self.finder.learn(int(self.scratch.unknown[0]), self.scratch.at.copy())
+
+    def to_the_end(self, duration: float, progress: Progress | None) -> Stop:
+        """Run until the duration is over or something ends the run for good."""
+        length = duration / 100.0
+        until = np.array([0.0, duration, 0.0])
+        try:
+            while True:
+                start = time.perf_counter()
+                until[0] = min(duration, self.state.clock[0] + length)
+                stop = self._advance(until, self.record)
+                if stop == Stop.CELL_UNKNOWN:
+                    self._learn()
+                elif stop == Stop.BUFFER_FULL:
+                    self.kept.flush(self.record)
+                elif stop == Stop.LAST_STEP:
+                    # The next step is cut short by the end. Who goes on later must go on from here, to take it whole.
+                    self.saved, until[2] = self.save(), 1.0
+                elif stop != Stop.SLICE:
+                    break
+                else:
+                    taken = time.perf_counter() - start
+                    length = min(max(length * SLICE_WALL / max(taken, 1e-4), 1e-9 * duration), 10.0 * length)
+                if progress is not None:
+                    progress(float(self.state.clock[0]), duration)
+        except KeyboardInterrupt:
+            stop = Stop.INTERRUPTED
+        if self.saved is None:
+            self.saved = self.save()
+        self.kept.flush(self.record)
+        return stop
+
+    def trajectory(self, scene: Scene, stop: Stop, wall: float, compile_time: float) -> Trajectory:
+        """Everything kept, as a frozen value."""
+        n = len(self.state.q)
+        rows = np.concatenate(self.kept.rows) if self.kept.rows else np.zeros((0, 1 + 3 * n))
+        events = np.concatenate(self.kept.events) if self.kept.events else np.zeros(0, EVENT_DTYPE)
+        return Trajectory(
+            scene=scene,
+            t=rows[:, 0],
+            q=rows[:, 1 : 1 + n],
+            u=rows[:, 1 + n : 1 + 2 * n],
+            a=rows[:, 1 + 2 * n :],
+            slices=self.compiled.slices,
+            events=events,
+            pairs=pairs_of(self.compiled, scene),
+            stop=stop,
+            stop_message=f"t = {self.state.clock[0]:.9g} s: {stop.sentence}",
+            simulated=float(self.state.clock[0]),
+            wall=wall,
+            compile=compile_time,
+            method=self.method,
+            tolerance=self.tolerance,
+            worst_penetration=float(self.state.worst[0]),
+            worst_residual=float(self._worst_residual()[0]),
+            energy=self._energy(),
+            counts=self._counts(),
+            step=self.step,
+            end_state=self.saved,
+        )
+
+    def _counts(self) -> dict[str, int]:
+        counts = {name: int(value) for name, value in zip(COUNT_NAMES, self.state.counts, strict=True)}
+        counts["cells"] = self.finder.number
+        counts["cells_asked"] = self.finder.learned
+        counts["declared_pairs"] = len(self.compiled.model.contacts)
+        return counts
+
+    def _dissipated(self) -> dict[str, float]:
+        sums = self.state.sums
+        return {"friction": float(sums[FRICTION]), "damping": float(sums[DAMPING]), "impacts": float(sums[IMPACTS])}
+
+    def _energy(self) -> dict[str, Any]:
+        """The ledger: work in = stored + dissipated + residual, J."""
+        sums = self.state.sums
+        stored = stored_energy(self.compiled.model, self.state.q, self.state.u) - self.stored_at_start
+        dissipated = self._dissipated()
+        residual = sums[DRIVE] - stored - sum(dissipated.values())
+        scale = max(abs(sums[DRIVE]), abs(stored), sum(dissipated.values()))
+        return {
+            "in_J": float(sums[DRIVE]),
+            "dissipated": dissipated,
+            "stored_J": float(stored),
+            "residual_J": float(residual),
+            "residual_relative": float(abs(residual) / scale) if scale else 0.0,
+        }
+
+
+def pairs_of(compiled: Compiled, scene: Scene) -> tuple[Pair, ...]:
+    """The contacts of a model in words; row k belongs to contact number k."""
+    model, names = compiled.model, [body.name for body in scene.bodies]
+    bodies = model.primitives.body
+    first = np.zeros(len(names), np.int64)
+    numbers, places = np.unique(bodies, return_index=True)
+    first[numbers] = places
+    # Plain lists: reading a field of a record array takes a microsecond each time.
+    index = (np.arange(len(bodies)) - first[bodies]).tolist()
+    kind = [KIND_WORD[kind] for kind in model.primitives.kind.tolist()]
+    name = [names[body] for body in bodies.tolist()]
+    side = list(zip(name, kind, index, compiled.layers, strict=True))
+    contacts = zip(model.contacts.group.tolist(), model.contacts.a.tolist(), model.contacts.b.tolist(), strict=True)
+    return tuple(Pair(group, *side[a], *side[b]) for group, a, b in contacts)

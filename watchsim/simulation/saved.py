@@ -1,0 +1,70 @@
+"""What is a saved state, and does it belong to this scene?
+
+The state of the loop in full precision, with a digest of the model it was made with and the settings: from it the same
+future follows bit by bit.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.mechanism.compile import Compiled
+
+
+@dataclass(frozen=True)
+class SavedState:
+    """A state to go on from. `rows` and `events` say how many of its run's rows and events lie before it."""
+
+    arrays: dict[str, NDArray[Any]]
+    digest: str  # of the model and its start
+    settings: dict[str, Any]  # method, tolerances, step
+    stored_at_start: float  # J, of the whole run
+    rows: int
+    events: int
+
+    @property
+    def time(self) -> float:
+        """Simulated time it belongs to, s."""
+        return float(self.arrays["clock"][0])
+
+    def check(self, compiled: Compiled, settings: Mapping[str, Any]) -> None:
+        """ValueError where the model or a setting is not the one the state was made with."""
+        if self.digest != model_digest(compiled):
+            raise ValueError(
+                "the saved state belongs to another scene: bodies, outlines, forces, contacts or start values have changed "
+                "since. Go on with the scene as it was (scene.lock.toml in the results folder), or begin anew"
+            )
+        changed = [name for name in {**self.settings, **settings} if self.settings.get(name) != settings.get(name)]
+        if changed:
+            told = "; ".join(f"{name} was {self.settings.get(name)}, now {settings.get(name)}" for name in changed)
+            raise ValueError(f"the saved state was made with other settings ({told}). Use the same ones, or begin anew")
+
+    def restore(self, arrays: Mapping[str, NDArray[Any]]) -> None:
+        """Write the state into `arrays`; ValueError where another version of the package has saved it."""
+        shapes = {name: array.shape for name, array in self.arrays.items()}
+        if shapes != {name: array.shape for name, array in arrays.items()}:
+            raise ValueError("the saved state was written by another version of watchsim; begin anew")
+        for name, array in arrays.items():
+            array[...] = self.arrays[name]
+
+
+def save_state(
+    compiled: Compiled, settings: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]], stored: float, rows: int, events: int
+) -> SavedState:
+    """A copy of the state in `arrays`."""
+    copies = {name: np.array(array) for name, array in arrays.items()}
+    return SavedState(copies, model_digest(compiled), dict(settings), float(stored), rows, events)
+
+
+def model_digest(compiled: Compiled) -> str:
+    """Of every number of the model and of the start."""
+    digest = hashlib.sha256()
+    for part in (*compiled.model, compiled.q, compiled.u):
+        digest.update(repr((part.dtype.descr, part.shape)).encode() + np.ascontiguousarray(part).tobytes())
+    return digest.hexdigest()[:16]
