@@ -55,7 +55,7 @@ def main(folder: Path, target: Path) -> None:
         "truth integrates across them, which is worth 5e-9 of its area.\n\n"
         "Written by `python scripts/make_drawing_table.py FOLDER`. *Drawn* counts what the file holds, blocks and polylines "
         "unfolded, before doubles are taken out and curves are fitted; Δ are the largest relative differences from independent "
-        "readers. Areas are compared where no outline branches and nothing is drawn twice: there the truth counts otherwise.\n\n"
+        "readers. Areas are compared where no outline branches and nothing is double: there the truth counts otherwise.\n\n"
     )
     target.write_text(text + HEAD + "\n".join(row.text for row in rows) + "\n")
     print(summary)
