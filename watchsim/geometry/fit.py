@@ -29,7 +29,8 @@ BEST = math.sqrt(3.0) / 216.0  # largest deviation of the best chain over |κ′
 KINK = 1e-6  # radians between a single arc's and the curve's tangent at its end
 ROUNDS = 20  # of distributing the arcs anew
 ROUNDS_OF_HALVES = 6  # where the whole did not succeed
-ATTEMPTS = 2  # with one number of arcs
+FEW, MOST = 2, 5  # attempts with one number of arcs: more where one arc counts for more
+WEIGHTY = 48  # arcs over attempts
 ENOUGH = 1.04  # times the number of arcs that seems necessary
 SURE = 0.97  # of the number of arcs that seems necessary: fewer are not tried
 NEARLY = 1.1  # tolerances: a quick bound up to that is made sharp
@@ -124,14 +125,18 @@ def _fewest(curve: Curve, low: float, high: float, tolerance: float, rounds: int
             count = min(needed, count - 1)
         elif needed > count:
             count = needed
-        elif attempts[count] >= ATTEMPTS:
+        elif attempts[count] >= enough_attempts(count):
             count += 1
         if count >= fewest:
             count = fewest - 1
         enough = fewest <= ENOUGH * needed or count < SURE * needed or count < 2
-        if best is not None and (enough or attempts[count] >= ATTEMPTS):
+        if best is not None and (enough or attempts[count] >= enough_attempts(count)):
             break
     return best
+
+
+def enough_attempts(count: int) -> int:
+    return min(MOST, max(FEW, WEIGHTY // count))
 
 
 def arcs_for(work: float) -> int:
