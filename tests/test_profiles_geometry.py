@@ -18,6 +18,7 @@ ROOT = Path(__file__).resolve().parents[1]
 PROFILES, SHARED = ROOT / "profiles", ROOT.parent / "shared"
 sys.path.insert(0, str(ROOT / "scripts"))
 
+import draw_balance  # noqa: E402
 import draw_bench_lever  # noqa: E402
 import draw_swiss_lever  # noqa: E402
 from draw_swiss_design import Swiss  # noqa: E402
@@ -48,7 +49,9 @@ def entities(path: Path) -> list[tuple[str, str, list[float]]]:
     return found
 
 
-@pytest.mark.parametrize(("script", "name"), [(draw_bench_lever, "bench_lever"), (draw_swiss_lever, "swiss_lever")])
+@pytest.mark.parametrize(
+    ("script", "name"), [(draw_bench_lever, "bench_lever"), (draw_swiss_lever, "swiss_lever"), (draw_balance, "balance")]
+)
 def test_drawings_in_the_profile_are_what_the_script_draws(script, name, tmp_path):
     script.draw(tmp_path)
     drawn = sorted(tmp_path.glob("*.dxf"))

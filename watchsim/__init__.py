@@ -16,6 +16,7 @@ _HOMES = {
     "SceneError": "watchsim.mechanism.errors",
     "read": "watchsim.drawing.read",
     "Drawing": "watchsim.drawing.drawing",
+    "Profile": "watchsim.drawing.profile",
     "simulate": "watchsim.simulation.simulate",
     "Trajectory": "watchsim.simulation.trajectory",
     "EventKind": "watchsim.simulation.trajectory",
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
     from watchsim.analysis.summary import summary as summary
     from watchsim.analysis.verify import verify as verify
     from watchsim.drawing.drawing import Drawing as Drawing
+    from watchsim.drawing.profile import Profile as Profile
     from watchsim.drawing.read import read as read
     from watchsim.mechanism.errors import SceneError as SceneError
     from watchsim.mechanism.load import load as load

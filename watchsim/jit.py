@@ -37,7 +37,10 @@ def kernel(function: Function) -> Function:
     import numba
 
     # No wrapper for calls from Python: unpacking records there would take longer to compile than the kernels themselves.
-    compiled: Function = numba.njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)(function)
+    options = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+    if (compiler := _part_compiler()) is not None:
+        options["pipeline_class"] = compiler
+    compiled: Function = numba.njit(**options)(function)
     return compiled
 
 
@@ -58,6 +61,62 @@ def entry(function: Function) -> Function:
 def callable_kernel(function: Function) -> Function:
     """A kernel made callable from Python, for tests and for researchers."""
     return entry(getattr(function, "py_func", function))
+
+
+@functools.lru_cache(maxsize=1)
+def _part_compiler() -> type | None:
+    """A compiler for kernels that only entries call, or None where this numba is built differently.
+
+    Numba optimises every function together with all it calls and emits machine code for it: a function ten calls deep goes
+    through that ten times and more, for code that nobody calls. Parts are typed and translated as ever, but optimised and
+    emitted once, with their entry. Halves the time to compile; the machine code of the entry runs as fast.
+    """
+    try:
+        from numba.core.codegen import JITCodeLibrary, JITCPUCodegen
+        from numba.core.compiler import Compiler
+    except ImportError:
+        return None
+    used = ("_raise_if_finalized", "_get_module_for_linking", "_finalize_dynamic_globals", "_ensure_finalized")
+    if JITCPUCodegen._library_class is not JITCodeLibrary or not all(hasattr(JITCodeLibrary, name) for name in used):
+        return None
+
+    class NoEnvironment:
+        """Parts raise no exceptions and print nothing: they need no Python objects at run time."""
+
+        @staticmethod
+        def set_env(*_: Any) -> None:
+            """Nothing to set."""
+
+    class Part(JITCodeLibrary):
+        """The code of one kernel and of all it calls, linked but not emitted."""
+
+        def finalize(self) -> None:
+            self._raise_if_finalized()
+            for library in dict.fromkeys(self._linking_libraries):
+                if hasattr(library, "_reload_init"):  # releases after 0.60
+                    self._reload_init.update(library._reload_init)
+                self._final_module.link_in(library._get_module_for_linking(), preserve=True)
+            self._finalize_dynamic_globals()
+            self._finalized = True
+
+        def get_pointer_to_function(self, name: str) -> int:
+            self._ensure_finalized()
+            return 0
+
+        @property
+        def codegen(self) -> Any:
+            return NoEnvironment
+
+    class PartCompiler(Compiler):
+        """The usual pipeline, into a `Part`."""
+
+        def define_pipelines(self) -> Any:
+            if self.state.library is None:
+                self.state.library = Part(self.state.targetctx.codegen(), self.state.func_id.func_qualname)
+                self.state.library.enable_object_caching()
+            return super().define_pipelines()
+
+    return PartCompiler
 
 
 def by_reference(record: type, module: str) -> Any:

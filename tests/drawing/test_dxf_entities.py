@@ -239,3 +239,14 @@ def test_line_directions_do_not_matter(read_bytes: Reader) -> None:
     loop = only_loop(read_bytes(d.dxf(d.line((1, 0), (0, 0)) + d.line((1, 0), (0, 1)) + d.line((0, 0), (0, 1)))))
     assert area(loop) == pytest.approx(0.5e-6, rel=1e-14, abs=0)
     assert all(isinstance(edge, Line) for edge in loop.edges)
+
+
+@pytest.mark.parametrize("bulge", [-0.3, 0.3, -1.7])
+def test_bulges_to_either_side_become_elliptic_in_unequal_scales(read_bytes: Reader, bulge: float) -> None:
+    """The area grows by both scales, whichever way the bulge turns."""
+    corners = [(3.0, 0.0), (5.0, 0.0), (5.0, 2.0, bulge)]
+    plain = read_bytes(d.dxf(d.lwpolyline(corners, True)))
+    block = d.block("B", d.lwpolyline(corners, True))
+    squashed = read_bytes(d.dxf(d.insert("B", (300, 0), (41, 2.0), (42, 0.5), (50, 20.0)), blocks=block))
+    assert not squashed.findings and len(squashed.loops) == 1
+    assert area(squashed.loops[0]) == pytest.approx(area(plain.loops[0]), rel=1e-4)

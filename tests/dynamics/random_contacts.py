@@ -43,7 +43,7 @@ class Case:
         coordinates, laws, contacts = records(COORDINATE, self.n), records(LAW, self.m), records(CONTACT, self.m)
         coordinates.mass, laws.friction, contacts.group = self.mass, self.mu, np.arange(self.m)
         empty = [records(dtype, 0) for dtype in (BODY, TABLE, PRIMITIVE, BODY_PAIR)]
-        parts = (empty[0], coordinates, empty[1], np.zeros((0, 2)), empty[2], contacts, laws, empty[3])
+        parts = (empty[0], coordinates, empty[1], np.zeros((0, 2)), empty[2], contacts, laws, empty[3], np.zeros(0, np.int64))
         return Model(*(frozen(part) for part in parts))
 
     def _closed(self) -> Closed:

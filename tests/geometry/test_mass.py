@@ -220,3 +220,16 @@ def test_against_fine_polygon(loop: Loop) -> None:
     x, y = (points - points.mean(axis=0)).T
     gauss = 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
     assert area(loop) == pytest.approx(gauss, rel=2e-6, abs=0.0)
+
+
+@settings(deadline=None, max_examples=40)
+@given(outlines(), st.floats(-3.0, 3.0), st.floats(-0.01, 0.01))
+def test_mirror_images_have_the_same_moments(loop: Loop, angle: float, x: float) -> None:
+    """Across any line, with the material still on the left; the image of the image is the outline itself."""
+    line = ((x, -2.0 * x), (math.cos(angle), math.sin(angle)))
+    image = loop.reflected(*line)
+    one, other = section([loop]), section([image])
+    assert other.area == pytest.approx(one.area, rel=1e-11, abs=0.0)
+    assert other.about(other.centroid).polar == pytest.approx(one.about(one.centroid).polar, rel=1e-10, abs=0.0)
+    for edge, back in zip(loop.edges, image.reflected(*line).edges, strict=True):
+        assert back.start == pytest.approx(edge.start, abs=1e-15) and back.end == pytest.approx(edge.end, abs=1e-15)

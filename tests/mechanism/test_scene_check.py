@@ -18,6 +18,8 @@ def test_report(desk):
         "inertia_kg_m2": pytest.approx(3e-12),
         "position_m": [0.0, 0.009],
         "coordinates": 1,
+        "centre_of_mass_m": [0.0, 0.0],
+        "solids": [],
     }
     assert report["bodies"]["banking"]["coordinates"] == 0
     assert report["theory"] == {"frequency_hz": pytest.approx(4.0, rel=1e-15), "vph": pytest.approx(28800.0, rel=1e-15)}

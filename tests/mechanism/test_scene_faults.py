@@ -251,7 +251,7 @@ def test_a_drawing_without_outlines(desk, good):
     chain = Loop((Line(0, 0, 1, 0),), "0", closed=False)
     desk.put(drawing("wheel.dxf", [], open_chains=(chain,), layers=("0",)))
     (fault,) = faults_of(desk, good.replace('layers = ["TEETH"]\npivot = "PIVOT"\n', "").replace("wheel.TEETH", "wheel"))
-    assert fault.message == "it holds no closed outline."
+    assert fault.message.startswith("it holds no closed outline. Its lines are open: say where their material is, material =")
 
 
 def test_several_marks_on_the_pivot_layer(desk, good):

@@ -11,7 +11,8 @@ from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.findings import Finding
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import TURN, Arc, Line
-from watchsim.render.drawing_picture import COLOURS, FAULT, draw_drawing, picture
+from watchsim.render.drawing_picture import COLOURS, draw_drawing, picture
+from watchsim.render.fault_circles import CIRCLED, FAULT
 
 RING = (Loop((Arc(0, 0, 2e-3, 0, TURN),), "TEETH"), Loop((Arc(0, 0, 1e-3, 0, -TURN),), "TEETH", hole=True))
 FAULTY = Finding("open-outline", "error", "open", "", "TEETH", 2.0, 0.0)
@@ -57,7 +58,7 @@ def test_circles_carry_the_numbers_of_the_report() -> None:
 
 def test_findings_at_one_place_share_a_circle() -> None:
     (axes,) = picture(drawing(findings=(FAULTY,) * 5)).axes
-    assert [text.get_text() for text in axes.texts] == ["1, 2, 3 …"]
+    assert [text.get_text() for text in axes.texts] == ["1–5"]
 
 
 def test_nothing_to_show_is_still_a_picture(tmp_path: Path) -> None:
@@ -70,3 +71,21 @@ def test_a_folder_that_is_not_there_is_an_error_and_leaves_nothing(tmp_path: Pat
     with pytest.raises(OSError):
         draw_drawing(drawing(), tmp_path / "none" / "import.png")
     assert not list(tmp_path.iterdir())
+
+
+def test_centres_are_marked_on_request_only() -> None:
+    def dots(centres: bool) -> int:
+        (axes,) = picture(drawing(), centres).axes
+        return sum(line.get_marker() == "o" for line in axes.lines)
+
+    assert dots(True) == dots(False) + 1
+
+
+def test_more_faults_than_circles_is_said() -> None:
+    rows = 15
+    many = tuple(
+        Finding("x", "error", "x", "", "TEETH", -2 + 4 * (k % rows) / rows, -2 + 5 * (k // rows) / rows) for k in range(225)
+    )
+    figure = picture(drawing(findings=many))
+    assert len(figure.axes[0].texts) == CIRCLED
+    assert f"{225 - CIRCLED} more faults" in figure.legends[0].get_title().get_text()

@@ -209,9 +209,9 @@ def test_many_balls_in_a_row_on_the_ground() -> None:
 
 LONG_FLIGHT = """
 from moving_scenes import profile
-from watchsim.mechanism import compile as compiling
+from watchsim.mechanism import choose_cells
 from watchsim.simulation.simulate import simulate
-compiling.FEW_CONTACTS = 10**9
+choose_cells.FEW_CONTACTS = 10**9
 print(simulate(profile("bench_lever"), 0.05).stop.name)
 """
 

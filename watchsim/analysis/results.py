@@ -7,12 +7,12 @@ one that is replaced stays untouched until then.
 from __future__ import annotations
 
 import os
-import shutil
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
 from watchsim.analysis.archive import read_trajectory, write_trajectory
+from watchsim.analysis.folder import write_folder
 from watchsim.analysis.tables import json_text, write_events
 from watchsim.simulation.trajectory import Trajectory
 
@@ -61,17 +61,7 @@ def write_results(
     is then still there, and nothing else.
     """
     target = check_folder(folder, force)
-    scratch = _beside(target, "new")
-    try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        scratch.mkdir()
-        _fill(scratch, run, summary or {}, scene_lock, extra or {})
-        _put(scratch, target)
-    except OSError as error:
-        reason = error.strerror or str(error)
-        raise type(error)(error.errno, f"could not write the results to {folder}: {reason}; nothing was changed") from error
-    finally:
-        shutil.rmtree(scratch, ignore_errors=True)
+    write_folder(target, lambda place: _fill(place, run, summary or {}, scene_lock, extra or {}), OURS, "the results")
     return target
 
 
@@ -108,25 +98,3 @@ def _fill(place: Path, run: Trajectory, summary: Mapping[str, Any], scene_lock: 
             path.write_bytes(content)
         else:
             content(path)
-
-
-def _put(scratch: Path, target: Path) -> None:
-    """Exchange the new folder for the old one; the old one comes back if that fails half way."""
-    if not target.exists():
-        scratch.rename(target)
-        return
-    old = _beside(target, "old")
-    target.rename(old)
-    try:
-        scratch.rename(target)
-    except BaseException:
-        old.rename(target)
-        raise
-    for item in old.iterdir():
-        if item.name not in OURS and not (target / item.name).exists():
-            item.rename(target / item.name)
-    shutil.rmtree(old, ignore_errors=True)
-
-
-def _beside(target: Path, word: str) -> Path:
-    return target.with_name(f".{target.name}.{word}-{os.getpid()}")

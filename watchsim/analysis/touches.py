@@ -43,7 +43,10 @@ def held(events: Events) -> NDArray[np.int64]:
 def holding_at_end(run: Trajectory) -> list[Pair]:
     """The pairs whose contact is in force when the run ends."""
     last: dict[int, bool] = {}
-    for contact, kind in zip(run.events["contact"].tolist(), run.events["kind"].tolist(), strict=True):
+    columns = (run.events[name].tolist() for name in ("contact", "kind", "value"))
+    for contact, kind, value in zip(*columns, strict=True):
         if kind in (EventKind.CLOSE, EventKind.OPEN):
             last[contact] = kind == EventKind.CLOSE
+        elif kind == EventKind.HANDOVER:
+            last[int(value)], last[contact] = False, True
     return [run.pairs[contact] for contact, closed in last.items() if closed]

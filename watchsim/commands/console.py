@@ -88,3 +88,16 @@ def parse_window(text: str | None) -> tuple[float, float] | None:
 def parse_names(text: str | None) -> list[str] | None:
     """The names in a text such as "wheel,lever"."""
     return [name.strip() for name in text.split(",") if name.strip()] if text else None
+
+
+def parse_length(name: str, text: str) -> float:
+    """The metres of the option `--name`; above zero."""
+    from watchsim.units import LENGTH, UnitError, parse
+
+    try:
+        value = parse(text, LENGTH)
+    except UnitError as error:
+        raise InputError(f"--{name} {text}: {error}") from error
+    if not value > 0.0:
+        raise InputError(f"--{name} {text}: must be positive.")
+    return value

@@ -5,26 +5,27 @@ from __future__ import annotations
 import argparse
 from dataclasses import replace
 
-from watchsim.commands.console import BAD_INPUT, FINE, InputError, print_json, say
+from watchsim.commands.console import BAD_INPUT, FINE, InputError, parse_length, print_json, say
 
 HELP = "read a drawing: units, size, layers, loops, lines, arcs, faults"
 
 
 def options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", metavar="FILE", help="a DXF drawing")
+    parser.add_argument("file", metavar="FILE", help="a DXF or SVG drawing")
     parser.add_argument("--units", metavar="UNIT", help="read lengths in this unit (mm, inch, ...) whatever the file says")
     parser.add_argument("--layer", metavar="NAMES", help="only these layers, with commas between them")
     parser.add_argument("--snap", metavar="LENGTH", help='join ends that lie this close, such as "2 µm" (default 1 µm)')
     parser.add_argument("--fit", metavar="LENGTH", help='follow splines and ellipses this closely by arcs (default "0.1 µm")')
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of text")
     parser.add_argument("--png", metavar="FILE", help="where to write the picture (default: none)")
+    parser.add_argument("--centres", action="store_true", help="mark the centres of arcs in the picture")
 
 
 def run(args: argparse.Namespace) -> int:
     from watchsim.drawing.inspect import inspect_report, inspect_text
     from watchsim.drawing.read import read
 
-    lengths = {name: _length(name, getattr(args, name)) for name in ("snap", "fit") if getattr(args, name) is not None}
+    lengths = {name: parse_length(name, getattr(args, name)) for name in ("snap", "fit") if getattr(args, name) is not None}
     try:
         drawing = read(args.file, units=args.units, **lengths)
     except ValueError as error:
@@ -34,25 +35,13 @@ def run(args: argparse.Namespace) -> int:
     if args.png:
         from watchsim.render.drawing_picture import draw_drawing
 
-        draw_drawing(drawing, args.png)
+        draw_drawing(drawing, args.png, centres=args.centres)
         say(f"Picture: {args.png}")
     if args.json:
         print_json(inspect_report(drawing))
     else:
         print(inspect_text(drawing))
     return BAD_INPUT if not drawing.layers and any(f.severity == "error" for f in drawing.findings) else FINE
-
-
-def _length(name: str, text: str) -> float:
-    from watchsim.units import LENGTH, UnitError, parse
-
-    try:
-        value = parse(text, LENGTH)
-    except UnitError as error:
-        raise InputError(f"--{name} {text}: {error}") from error
-    if not value > 0.0:
-        raise InputError(f"--{name} {text}: must be positive.")
-    return value
 
 
 def _only(drawing, names):  # type: ignore[no-untyped-def]

@@ -1,215 +1,148 @@
-"""Which pairs of primitives could touch while two bodies stay in one cell of their configuration space?
+"""Which contacts are candidates in each cell of two bodies' configuration space?
 
-Shapely answers, once per cell: the primitives of one body, in the frame of the other as seen from the middle of the
-cell, against a tree of the other's, within the distance that any point can travel in the cell. The answer errs only on
-the side of too many. Neighbouring cells are asked about together, since they will be entered next.
+Asked for once (pair_search.py), together with the neighbouring cells, which will be entered next. What is found holds as well
+for every part of a turn by which an outline comes back onto itself, and for later runs with the same geometry.
 """
 
 from __future__ import annotations
 
 import itertools
 import math
-from typing import Any, NamedTuple
+import time
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.contact.lookup import MARGIN, cell_key, find_slot
-from watchsim.mechanism.model import CORNER, FREE, LINE, PIVOT, SLIDE, WIDE, Cells, Model
+from watchsim.contact.known import Known, known_cells
+from watchsim.contact.lookup import REACH, insert_cells
+from watchsim.mechanism.alike import AlikeContacts
+from watchsim.mechanism.model import Cells, Model
 
 Array = NDArray[np.float64]
-POINT = 1e-9  # m; a corner as a line this long, since shapely finds no distance to a line of no length
-ARC_PIECES = 24  # straight pieces that stand for an arc
-AROUND = {1: 12, 2: 3, 3: 1}  # cells asked about together, to each side, by number of axes
+Integers = NDArray[np.int64]
+AROUND = {1: 16, 2: 4, 3: 1}  # cells asked about together, to each side, by number of axes
+MOST = 1 << 20  # cells in the table; beyond it everything is forgotten, so that no run fills the memory
 
 
 class CellFinder:
-    """Knows, for one model, the candidate contacts of every cell asked about so far."""
+    """The table of one run: the candidate contacts of every cell that it, or an earlier run, has asked about."""
 
     def __init__(self, model: Model) -> None:
         self.model = model
         self.seconds = 0.0
-        self._pairs = [_PairGeometry(model, p) if model.pairs[p].axes else None for p in range(len(model.pairs))]
-        self._known: dict[int, NDArray[np.int64]] = {}
-        self.cells = _empty(64, 256)
-        self._entries = 0
+        self.learned = 0  # cells that shapely was asked about
+        self._forget()
+        self._pairs = {p: _PairCells(model, p) for p in range(len(model.pairs)) if model.pairs[p].listed}
+        for pair in self._pairs.values():
+            self._insert(*pair.everything())
 
     def learn(self, p: int, q: Array) -> Cells:
         """Find the cell of body pair p at q and its neighbours; returns the new table."""
-        import time
-
         start = time.perf_counter()
-        pair = self.model.pairs[p]
-        new: dict[int, Array] = {}
-        for steps in itertools.product(range(-AROUND[pair.axes], AROUND[pair.axes] + 1), repeat=int(pair.axes)):
-            centre = self._centre(pair, q, steps)
-            key = int(cell_key(self.model, p, centre))
-            if key >= 0 and key not in self._known:
-                new.setdefault(key, centre)
-        geometry = self._pairs[p]
-        assert geometry is not None
-        for key, found in zip(new, geometry.candidates(list(new.values())), strict=True):
-            self._known[key] = found
-            self._insert(key, found)
+        pair = self._pairs[p]
+        before = len(pair.known)
+        if self.number > MOST:
+            self._forget()
+        self._insert(*pair.around(q))
+        self.learned += len(pair.known) - before
         self.seconds += time.perf_counter() - start
         return self.cells
 
-    def _insert(self, key: int, found: NDArray[np.int64]) -> None:
-        """Put one cell's answer into the table, which grows so that it is never more than half full."""
-        keys, start, count, entries = self.cells
-        if 2 * len(self._known) > len(keys):
-            grown = _empty(2 * len(keys), 1)
-            for slot in np.flatnonzero(keys >= 0):
-                place = find_slot(grown.keys, keys[slot])
-                grown.keys[place], grown.start[place], grown.count[place] = keys[slot], start[slot], count[slot]
-            keys, start, count = grown.keys, grown.start, grown.count
+    def _forget(self) -> None:
+        self.number = self._entries = 0
+        self.cells = Cells(np.full(64, -1, np.int64), *(np.zeros(size, np.int64) for size in (64, 64, 256)))
+
+    def _insert(self, keys: Integers, count: Integers, found: Integers) -> None:
+        """Put cells into the table, which doubles so that it is never more than half full."""
+        old = self.cells
+        slots = len(old.keys)
+        while slots < 2 * (self.number + len(keys)):
+            slots *= 2
+        if slots > len(old.keys):
+            taken = old.keys >= 0
+            empty = np.full(slots, -1, np.int64), np.zeros(slots, np.int64), np.zeros(slots, np.int64)
+            insert_cells(*empty, old.keys[taken], old.start[taken], old.count[taken])
+            old = Cells(*empty, old.entries)
+        entries = old.entries
         if self._entries + len(found) > len(entries):
-            entries = np.concatenate([entries, np.zeros(len(entries) + len(found), np.int64)])
-        slot = find_slot(keys, key)
-        keys[slot], start[slot], count[slot] = key, self._entries, len(found)
+            entries = np.concatenate([entries[: self._entries], np.zeros(self._entries + 2 * len(found), np.int64)])
         entries[self._entries : self._entries + len(found)] = found
+        start = self._entries + np.cumsum(count) - count
         self._entries += len(found)
-        self.cells = Cells(keys, start, count, entries)
-
-    @staticmethod
-    def _centre(pair: Any, q: Array, steps: tuple[int, ...]) -> Array:
-        """Coordinates at the centre of the cell that lies `steps` cells from the one of q."""
-        centre = q.copy()
-        for axis, step in enumerate(steps):
-            i, size = pair[f"c{axis}"], pair[f"size{axis}"]
-            centre[i] = (math.floor(q[i] / size) + step + 0.5) * size
-        return centre
+        self.number += int(insert_cells(old.keys, old.start, old.count, keys, start, count))
+        self.cells = Cells(old.keys, old.start, old.count, entries)
 
 
-def _empty(slots: int, entries: int) -> Cells:
-    """An open-addressing table without cells."""
-    return Cells(np.full(slots, -1, np.int64), *(np.zeros(size, np.int64) for size in (slots, slots, entries)))
+class _Axis(NamedTuple):
+    """One cell coordinate; `wrap` cells make a turn (0: a length), in `fold` alike parts."""
+
+    coordinate: int
+    size: float
+    wrap: int
+    fold: int
+
+    @property
+    def part(self) -> int:
+        """Cells after which everything repeats, 0 for a length."""
+        return self.wrap // self.fold if self.wrap else 0
 
 
-class _PairGeometry:
-    """The primitives of one pair of bodies as shapely geometries, and the motion a cell allows."""
+class _PairCells:
+    """The cells of one pair of bodies: indices, keys and symmetries."""
 
     def __init__(self, model: Model, p: int) -> None:
-        import shapely
+        self.model, self.p, self.pair = model, p, model.pairs[p]
+        self.axes = [_Axis(*(self.pair[f"{name}{i}"] for name in ("c", "size", "wrap", "fold"))) for i in range(self.pair.axes)]
+        self.start = int(self.pair.start)
+        near = model.near[self.pair.near_start : self.pair.near_stop]
+        body = [int(model.coordinates[axis.coordinate].body) for axis in self.axes]
+        self._alike = [
+            AlikeContacts(model.primitives, model.contacts, self.pair, near, b) if axis.fold > 1 else None
+            for axis, b in zip(self.axes, body, strict=True)
+        ]
+        loose = [alike.loose for alike in self._alike if alike is not None]
+        self.known: Known = known_cells(model, p, np.concatenate([np.zeros(0, np.int64), *loose]))
 
-        self.model, self.pair = model, model.pairs[p]
-        contacts = model.contacts[self.pair.start : self.pair.stop]
-        bodies = model.primitives.body
-        a_first = bodies[contacts.a] == self.pair.a
-        on_a, on_b = np.where(a_first, contacts.a, contacts.b), np.where(a_first, contacts.b, contacts.a)
-        self.movers, mover_row = np.unique(on_a, return_inverse=True)
-        self.others, other_row = np.unique(on_b, return_inverse=True)
-        # Up to two contacts share a pair of primitives only if two groups name them; each keeps its own table.
-        order = np.lexsort((np.arange(len(contacts)), other_row, mover_row))
-        self.sorted_pairs = mover_row[order] * len(self.others) + other_row[order]
-        self.sorted_ids = self.pair.start + order
-        self.points = [primitive_points(model.primitives[i]) for i in self.movers]
-        self.reach = np.array([np.hypot(*points.T).max() for points, _ in self.points])
-        self.sag = np.array([sag for _, sag in self.points])
-        other_points = [primitive_points(model.primitives[i]) for i in self.others]
-        self.other_sag = max((sag for _, sag in other_points), default=0.0)
-        self.tree = shapely.STRtree([_geometry(points) for points, _ in other_points])
-        self.coordinates = np.concatenate([points for points, _ in self.points])
-        # Plain values: reading a field of a record array from Python takes a microsecond each time.
-        self.bodies = [_Body(*model.bodies[b]) for b in (self.pair.a, self.pair.b)]
-        self.freedom = [self._freedom(b) for b in (self.pair.a, self.pair.b)]
-        self.piece = np.repeat(np.arange(len(self.points)), [len(points) for points, _ in self.points])
+    def everything(self) -> tuple[Integers, Integers, Integers]:
+        """All that is known: keys of cells, numbers of candidates, and these one after another."""
+        return self._everywhere(self.known.cells())
 
-    def candidates(self, centres: list[Array]) -> list[NDArray[np.int64]]:
-        """Candidate contacts of the cells with these centres (coordinate vectors)."""
-        import shapely
+    def around(self, q: Array) -> tuple[Integers, Integers, Integers]:
+        """The same for the cell of q and its neighbours."""
+        steps = itertools.product(range(-AROUND[len(self.axes)], AROUND[len(self.axes)] + 1), repeat=len(self.axes))
+        here = [math.floor(q[axis.coordinate] / axis.size) for axis in self.axes]
+        block = np.array(here) + np.array(list(steps))
+        parts = np.array([axis.part for axis in self.axes])
+        block = block[((np.abs(block) < REACH) | (parts > 0)).all(axis=1)]
+        turns = np.where(parts > 0, block // np.maximum(parts, 1), 0)
+        base = block - turns * parts
+        # Cells of one part lie side by side: they are asked about together.
+        for turn in np.unique(turns, axis=0):
+            self.known.ask(base[(turns == turn).all(axis=1)])
+        cells = list(dict.fromkeys(map(tuple, base.tolist())))
+        return self._everywhere(cells)
 
-        if not centres:
-            return []
-        count = len(self.movers)
-        moved = [self._in_other_frame(q) for q in centres]
-        lines = shapely.linestrings(
-            np.concatenate([points for points, _ in moved]),
-            indices=np.concatenate([self.piece + cell * count for cell in range(len(centres))]),
-        )
-        distance = np.concatenate([travel for _, travel in moved]) + np.tile(self.sag, len(centres)) + self.other_sag
-        found, other = self.tree.query(lines, predicate="dwithin", distance=distance * (1.0 + 1e-9))
-        cell, mover = found // count, found % count
-        return [self._ids(mover[cell == i], other[cell == i]) for i in range(len(centres))]
+    def _everywhere(self, cells: list[tuple[int, ...]]) -> tuple[Integers, Integers, Integers]:
+        """Cells and their candidates in all alike parts of a turn."""
+        if not cells:
+            return (np.zeros(0, np.int64),) * 3
+        count, found = self.known.answers(cells)
+        index = np.array(cells, np.int64)
+        owner = np.repeat(np.arange(len(cells)), count)
+        keys, lists = [], []
+        for turns in itertools.product(*(range(axis.fold) for axis in self.axes)):
+            shift = np.array([turn * axis.part for turn, axis in zip(turns, self.axes, strict=True)])
+            keys.append(self._keys(index + shift))
+            moved = found
+            for alike, turn in zip(self._alike, turns, strict=True):
+                moved = alike.later(moved, turn) if alike is not None and turn else moved
+            lists.append(moved[np.lexsort((moved, owner))] + self.start)
+        return np.concatenate(keys), np.tile(count, len(keys)), np.concatenate(lists)
 
-    def _ids(self, mover: NDArray[np.int64], other: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Contacts between these primitives, ascending."""
-        wanted = mover * len(self.others) + other
-        left = np.searchsorted(self.sorted_pairs, wanted, side="left")
-        right = np.searchsorted(self.sorted_pairs, wanted, side="right")
-        rows = [self.sorted_ids[i:j] for i, j in zip(left, right, strict=True) if j > i]
-        return np.sort(np.concatenate(rows)) if rows else np.zeros(0, np.int64)
-
-    def _in_other_frame(self, q: Array) -> tuple[Array, Array]:
-        """Points of body a's primitives in body b's frame, and how far each primitive may move relative to b in the cell."""
-        (ax, ay, angle), (bx, by, turn) = (_pose(body, q) for body in self.bodies)
-        world = _turned(self.coordinates, angle) + np.array((ax - bx, ay - by))
-        points = _turned(world, -turn)
-        shift_a, swing_a = self.freedom[0]
-        shift_b, swing_b = self.freedom[1]
-        travel = shift_a + swing_a * self.reach
-        arm = np.zeros(len(self.movers))
-        np.maximum.at(arm, self.piece, np.hypot(*points.T))
-        return points, travel + shift_b + swing_b * (arm + travel)
-
-    def _freedom(self, b: int) -> tuple[float, float]:
-        """How far body b's origin may move, and turn, from the cell's centre within the cell and its margin."""
-        body, shift, swing = self.model.bodies[b], 0.0, 0.0
-        for axis in range(self.pair.axes):
-            offset = self.pair[f"c{axis}"] - body.first
-            room = (0.5 + MARGIN) * self.pair[f"size{axis}"]
-            if (body.motion == PIVOT and offset == 0) or (body.motion == FREE and offset == 2):
-                swing += room
-            elif (body.motion == SLIDE and offset == 0) or (body.motion == FREE and offset in (0, 1)):
-                shift += room
-        return shift, swing
-
-
-class _Body(NamedTuple):
-    """The fields of a body record (model.py)."""
-
-    motion: int
-    first: int
-    x: float
-    y: float
-    angle: float
-    axis_x: float
-    axis_y: float
-
-
-def _pose(body: _Body, q: Array) -> tuple[float, float, float]:
-    if body.motion == PIVOT:
-        return body.x, body.y, q[body.first]
-    if body.motion == SLIDE:
-        return body.x + q[body.first] * body.axis_x, body.y + q[body.first] * body.axis_y, body.angle
-    if body.motion == FREE:
-        return q[body.first], q[body.first + 1], q[body.first + 2]
-    return body.x, body.y, body.angle
-
-
-def _turned(points: Array, angle: float) -> Array:
-    c, s = math.cos(angle), math.sin(angle)
-    return points @ np.array([[c, s], [-s, c]])
-
-
-def primitive_points(primitive: Any) -> tuple[Array, float]:
-    """Points along a primitive (at least two, for shapely) and how far the true curve may lie from the line through them."""
-    x, y = primitive.x, primitive.y
-    if primitive.kind == CORNER:
-        return np.array([(x, y), (x + POINT, y)]), POINT
-    if primitive.kind == LINE:
-        end = (x + primitive.length * primitive.tx, y + primitive.length * primitive.ty)
-        return np.array([(x, y), end]), 0.0
-    first = math.atan2(primitive.e0y, primitive.e0x)
-    sweep = (math.atan2(primitive.e1y, primitive.e1x) - first) % (2.0 * math.pi)
-    if primitive.extent > WIDE or (sweep == 0.0 and primitive.extent == WIDE):
-        sweep = 2.0 * math.pi
-    angles = first + sweep * np.linspace(0.0, 1.0, ARC_PIECES + 1)
-    sag = primitive.radius * (1.0 - math.cos(0.5 * sweep / ARC_PIECES))
-    return np.stack([x + primitive.radius * np.cos(angles), y + primitive.radius * np.sin(angles)], axis=1), sag
-
-
-def _geometry(points: Array) -> Any:
-    import shapely
-
-    return shapely.LineString(points)
+    def _keys(self, index: Integers) -> Integers:
+        """The keys of cells, as `lookup.cell_key` makes them."""
+        key = np.full(len(index), self.p, np.int64)
+        for i in range(3):
+            key = key * 2 * REACH + REACH + (index[:, i] if i < len(self.axes) else 0)
+        return key

@@ -1,8 +1,10 @@
 """How open is a contact, and how fast does it close?
 
-Every pair is a circle (a convex arc, or a corner: radius 0) on body A against a line or an arc on body B: two gap
-functions, centre-line and centre-centre, both between points fixed in their bodies. A gap is defined for the whole
-infinite line or full circle; whether the contact lies inside both primitives is a question of its own.
+Every pair is a circle (a convex arc, or a corner: radius 0) on body A against a line or an arc on body B. One gap function
+serves all of them: both sides are given by a point on the outline and the normal there, and A's radius is added to B's curve,
+which leaves a point against one curve of curvature K (docs/method.md 2.2). No centre enters, so nothing is lost where arcs are
+so flat that their centres lie far away. A gap is defined for the whole infinite line or full circle; whether the contact lies
+inside both primitives is a question of its own.
 """
 
 from __future__ import annotations
@@ -11,7 +13,32 @@ import math
 
 from watchsim.contact.poses import point_of
 from watchsim.jit import kernel
-from watchsim.mechanism.model import FULL, LINE, NARROW
+from watchsim.mechanism.model import FULL, LINE
+
+
+@kernel
+def shape_of_contact(contact, a, b, pa, pb):
+    """(gap, nx, ny, Q, foot, arm_x, arm_y) of a contact between primitives a and b at poses pa and pb.
+
+    n: outward normal of B's material. Q = 1 + K gap; 0 where circle and arc are concentric, then n = 0. foot: K times the way
+    from B's point along B's tangent there, over Q: the sine of n's angle from B's normal. arm: from A's origin to the contact.
+    """
+    curvature, radius = contact.curvature, a.radius
+    ax, ay = point_of(pa, a.px, a.py)
+    bx, by = point_of(pb, b.px, b.py)
+    max_, may = point_of(pa, a.nx, a.ny)
+    mbx, mby = point_of(pb, b.nx, b.ny)
+    wx, wy = (pa.x - pb.x) + (ax - bx), (pa.y - pb.y) + (ay - by)
+    # The sum of the two normals: small where the contact is near both points.
+    sx, sy = max_ + mbx, may + mby
+    x, y = wx - radius * sx, wy - radius * sy
+    nx, ny = mbx + curvature * x, mby + curvature * y
+    Q = math.sqrt(nx * nx + ny * ny)
+    gap = (2.0 * (wx * mbx + wy * mby) - radius * (sx * sx + sy * sy) + curvature * (x * x + y * y)) / (1.0 + Q)
+    if Q == 0.0:
+        return gap, 0.0, 0.0, 0.0, 0.0, ax, ay
+    nx, ny = nx / Q, ny / Q
+    return gap, nx, ny, Q, curvature * (mbx * y - mby * x) / Q, ax - radius * (max_ + nx), ay - radius * (may + ny)
 
 
 @kernel
@@ -20,52 +47,67 @@ def normal_gap(model, k, pose):
     contact = model.contacts[k]
     a, b = model.primitives[contact.a], model.primitives[contact.b]
     pa, pb = pose[a.body], pose[b.body]
-    ax, ay = point_of(pa, a.x, a.y)
-    bx, by = point_of(pb, b.x, b.y)
-    dx, dy = (pa.x - pb.x) + (ax - bx), (pa.y - pb.y) + (ay - by)
-    vx = pa.vx - pb.vx - pa.w * ay + pb.w * by
-    vy = pa.vy - pb.vy + pa.w * ax - pb.w * bx
-    if b.kind == LINE:
-        # Outward normal: the direction of travel turned by -90 degrees.
-        nx, ny = point_of(pb, b.ty, -b.tx)
-        gap = nx * dx + ny * dy - a.radius
-        return gap, nx * vx + ny * vy + pb.w * (nx * dy - ny * dx), nx, ny
-    distance = math.sqrt(dx * dx + dy * dy)
-    if distance == 0.0:
-        return -b.side * b.radius - a.radius, 0.0, 0.0, 0.0
-    nx, ny = b.side * dx / distance, b.side * dy / distance
-    return b.side * (distance - b.radius) - a.radius, nx * vx + ny * vy, nx, ny
+    gap, nx, ny, _, _, x, y = shape_of_contact(contact, a, b, pa, pb)
+    # Both materials at the contact point: what moves along the tangent does not change the gap.
+    vx = pa.vx - pb.vx - pa.w * y + pb.w * (y + pa.y - pb.y)
+    vy = pa.vy - pb.vy + pa.w * x - pb.w * (x + pa.x - pb.x)
+    return gap, nx * vx + ny * vy, nx, ny
 
 
 @kernel
-def _inside_fan(p, x, y):
-    """How far the unit direction (x, y), in the body's frame, lies inside the fan of normals e0..e1; sine of the angle."""
+def contact_point(model, k, pose):
+    """The contact point of `k` in the world, on A's circle: (x, y)."""
+    contact = model.contacts[k]
+    a, b = model.primitives[contact.a], model.primitives[contact.b]
+    pa = pose[a.body]
+    _, _, _, _, _, x, y = shape_of_contact(contact, a, b, pa, pose[b.body])
+    return pa.x + x, pa.y + y
+
+
+@kernel
+def _inside_fan(p, along, across, reach):
+    """How far a normal lies inside a primitive's fan: reach × the sine of the angle to the fan's end.
+
+    (along, across) are cosine and size of the sine of its angle from the middle of the fan. More than a right angle from the
+    ends counts as one.
+    """
     if p.extent == FULL:
-        return 1.0
-    first = p.e0x * y - p.e0y * x
-    last = x * p.e1y - y * p.e1x
-    if p.extent == NARROW:
-        # Opposite the fan of a shallow arc both sines are small: say clearly "outside" there.
-        if (p.e0x + p.e1x) * x + (p.e0y + p.e1y) * y < 0.0 and (p.e0x * p.e1x + p.e0y * p.e1y) > -0.5:
-            return -1.0
-        return min(first, last)
-    return max(first, last)
+        return reach
+    sine = p.half_sin * along - p.half_cos * across
+    if p.half_cos * along + p.half_sin * across < 0.0:
+        return math.copysign(reach, sine)
+    return reach * sine
 
 
 @kernel
-def extent_margin(model, k, pose, nx, ny):
-    """How far inside both primitives the contact lies, metres; negative outside. (nx, ny) is the contact's normal."""
+def margins_of(contact, a, b, pa, pb, shape):
+    """How far inside primitive a and inside b the contact lies, metres; negative outside. `shape`: see `shape_of_contact`."""
+    _, nx, ny, Q, foot, x, y = shape
+    if Q == 0.0:
+        return 0.0, -b.radius
+    # The contact lies on A in the direction -n from the circle's centre.
+    fx, fy = point_of(pa, a.nx, a.ny)
+    inside_a = _inside_fan(a, -(nx * fx + ny * fy), abs(nx * fy - ny * fx), max(a.radius, a.length))
+    if b.kind == LINE:
+        bx, by = point_of(pb, b.x, b.y)
+        tx, ty = point_of(pb, b.tx, b.ty)
+        way = tx * (x + (pa.x - pb.x) - bx) + ty * (y + (pa.y - pb.y) - by)
+        return inside_a, min(way, b.length - way)
+    fx, fy = point_of(pb, b.nx, b.ny)
+    return inside_a, _inside_fan(b, nx * fx + ny * fy, abs(foot), b.radius)
+
+
+@kernel
+def extent_margins(model, k, pose):
+    """How far inside A's and inside B's primitive contact `k` lies, metres; negative outside."""
     contact = model.contacts[k]
     a, b = model.primitives[contact.a], model.primitives[contact.b]
     pa, pb = pose[a.body], pose[b.body]
-    # The contact lies on A in the direction -n from the circle's centre.
-    margin = _inside_fan(a, -(pa.c * nx + pa.s * ny), -(-pa.s * nx + pa.c * ny)) * max(a.radius, a.length)
-    if b.kind == LINE:
-        ax, ay = point_of(pa, a.x, a.y)
-        dx, dy = pa.x + ax - pb.x, pa.y + ay - pb.y
-        x, y = pb.c * dx + pb.s * dy - b.x, -pb.s * dx + pb.c * dy - b.y
-        foot = b.tx * x + b.ty * y
-        return min(margin, foot, b.length - foot)
-    side = b.side
-    x, y = side * (pb.c * nx + pb.s * ny), side * (-pb.s * nx + pb.c * ny)
-    return min(margin, _inside_fan(b, x, y) * b.radius)
+    return margins_of(contact, a, b, pa, pb, shape_of_contact(contact, a, b, pa, pb))
+
+
+@kernel
+def extent_margin(model, k, pose):
+    """How far inside both primitives contact `k` lies, metres; negative outside."""
+    inside_a, inside_b = extent_margins(model, k, pose)
+    return min(inside_a, inside_b)

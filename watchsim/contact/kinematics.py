@@ -6,16 +6,14 @@ g_N'' = w_N·u' + w̄_N and g_T'' = w_T·u' + w̄_T, in closed form (docs/method
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.contact.gaps import extent_margin
-from watchsim.contact.poses import point_of
+from watchsim.contact.gaps import margins_of, shape_of_contact
 from watchsim.jit import by_reference, kernel
-from watchsim.mechanism.model import FREE, LINE, PIVOT, SLIDE, Records, records
+from watchsim.mechanism.model import FREE, PIVOT, SLIDE, Records, records
 
 KINEMATICS = np.dtype(
     [
@@ -96,41 +94,28 @@ def contact_kinematics(model, k, pose, row, out_closed):
     contact = model.contacts[k]
     a, b = model.primitives[contact.a], model.primitives[contact.b]
     pa, pb = pose[a.body], pose[b.body]
-    rax, ray = point_of(pa, a.x, a.y)  # O_A to the circle's centre
-    rpx, rpy = point_of(pb, b.x, b.y)  # O_B to B's point
-    dx, dy = (pa.x - pb.x) + (rax - rpx), (pa.y - pb.y) + (ray - rpy)
-    vcx, vcy = pa.vx - pa.w * ray, pa.vy + pa.w * rax
-    vx, vy = vcx - (pb.vx - pb.w * rpy), vcy - (pb.vy + pb.w * rpx)
-    if b.kind == LINE:
-        nx, ny = point_of(pb, b.ty, -b.tx)
-        tx, ty = -ny, nx
-        height = nx * dx + ny * dy
-        gap = height - a.radius
-        turning = pb.w
-        gN_dot = nx * vx + ny * vy + pb.w * (tx * dx + ty * dy)
-        curve = 2.0 * pb.w * (tx * vx + ty * vy) - pb.w * pb.w * height
-    else:
-        distance = math.sqrt(dx * dx + dy * dy)
-        nx, ny = b.side * dx / distance, b.side * dy / distance
-        tx, ty = -ny, nx
-        gap = b.side * (distance - b.radius) - a.radius
-        along = tx * vx + ty * vy
-        turning = b.side * along / distance
-        gN_dot = nx * vx + ny * vy
-        curve = b.side * along * along / distance
-    bar = -pa.w * pa.w * (nx * rax + ny * ray) + pb.w * pb.w * (nx * rpx + ny * rpy)
+    shape = shape_of_contact(contact, a, b, pa, pb)
+    gap, nx, ny, Q, _, xa, ya = shape  # (xa, ya): from A's origin to the contact point
+    tx, ty = -ny, nx
+    xb, yb = xa + pa.x - pb.x, ya + pa.y - pb.y
+    # Velocity of A's material against B's at the contact point.
+    vx, vy = (pa.vx - pa.w * ya) - (pb.vx - pb.w * yb), (pa.vy + pa.w * xa) - (pb.vy + pb.w * xb)
+    v_n, v_t = nx * vx + ny * vy, tx * vx + ty * vy
+    spin = pa.w - pb.w
+    # The normal turns at the rate `turning`; the contact point travels along A's outline at `travel`.
+    turning = pb.w + contact.curvature * (v_t + a.radius * spin) / Q
+    share = a.radius * contact.curvature
+    travel = (spin * (contact.reduced + share * gap) - share * v_t) / Q
     kin = out_closed.kin[row]
-    kin.g, kin.gN_dot, kin.bar_N = gap, gN_dot, bar + curve
-    cx, cy = rax - a.radius * nx, ray - a.radius * ny  # O_A to the contact point
-    bx, by = cx + pa.x - pb.x, cy + pa.y - pb.y  # O_B to it
-    ux, uy = vcx - pb.vx, vcy - pb.vy  # velocity of the centre relative to O_B
-    kin.gT_dot = tx * ux + ty * uy - pa.w * a.radius - pb.w * (nx * bx + ny * by)
-    # w̄_T = d/dt of g_T_dot at constant u, with n' = Ω t, t' = -Ω n and x' = v - r_A Ω t, where n·t = 0.
-    v_n = nx * ux + ny * uy
-    kin.bar_T = -pa.w * pa.w * (tx * rax + ty * ray) - turning * v_n - pb.w * (turning * (tx * bx + ty * by) + v_n)
-    kin.margin = extent_margin(model, k, pose, nx, ny)
-    kin.x, kin.y = pa.x + cx, pa.y + cy
+    kin.g, kin.gN_dot, kin.gT_dot = gap, v_n, v_t
+    # w̄ = d/dt of the rates at constant u: of n' = Ω t, t' = -Ω n, and of the arms of a travelling contact point.
+    square_a, square_b = pa.w * pa.w, pb.w * pb.w
+    kin.bar_N = (turning + pb.w) * v_t - spin * travel - square_a * (nx * xa + ny * ya) + square_b * (nx * xb + ny * yb)
+    kin.bar_T = -(turning + pb.w) * v_n - square_a * (tx * xa + ty * ya) + square_b * (tx * xb + ty * yb)
+    inside_a, inside_b = margins_of(contact, a, b, pa, pb, shape)
+    kin.margin = min(inside_a, inside_b)
+    kin.x, kin.y = pa.x + xa, pa.y + ya
     out_closed.ids[row] = k
     out_closed.slots[row] = 0
-    _directions(model, a.body, row, 1.0, (nx, ny, cx, cy), out_closed)
-    _directions(model, b.body, row, -1.0, (nx, ny, bx, by), out_closed)
+    _directions(model, a.body, row, 1.0, (nx, ny, xa, ya), out_closed)
+    _directions(model, b.body, row, -1.0, (nx, ny, xb, yb), out_closed)

@@ -8,7 +8,7 @@ from watchsim.jit import entry, kernel
 
 UNKNOWN, LISTED, ALL = -1, 0, 1
 MARGIN = 0.5  # a cell's answer holds this share of its size beyond its faces
-REACH = 1 << 16  # cell indices beyond it fall back to all pairs
+REACH = 1 << 16  # cell indices beyond it fall back to all that can touch
 
 
 @kernel
@@ -42,24 +42,37 @@ def find_slot(keys, key):
     return slot
 
 
+@entry
+def insert_cells(keys, start, count, new_keys, new_start, new_count):
+    """Put new cells into the table (keys, start, count), which must have room; returns how many were not there before."""
+    added = 0
+    for i in range(len(new_keys)):
+        slot = find_slot(keys, new_keys[i])
+        if keys[slot] == -1:
+            added += 1
+            keys[slot] = new_keys[i]
+            start[slot], count[slot] = new_start[i], new_count[i]
+    return added
+
+
 @kernel
 def candidates(model, cells, p, q):
     """Candidates of body pair p at q: (UNKNOWN | LISTED | ALL, start, count)."""
     pair = model.pairs[p]
-    if pair.axes > 0:
+    if pair.listed:
         key = cell_key(model, p, q)
         if key >= 0:
             slot = find_slot(cells.keys, key)
             if cells.keys[slot] == -1:
                 return UNKNOWN, 0, 0
             return LISTED, cells.start[slot], cells.count[slot]
-    return ALL, pair.start, pair.stop - pair.start
+    return ALL, pair.near_start, pair.near_stop - pair.near_start
 
 
 @kernel
-def candidate(cells, how, place):
+def candidate(model, cells, how, place):
     """The contact at a place of a candidate list."""
-    return cells.entries[place] if how == LISTED else place
+    return cells.entries[place] if how == LISTED else model.near[place]
 
 
 @kernel

@@ -33,17 +33,16 @@ def place_body(model, b, q, u, out_pose):
     body = model.bodies[b]
     i = body.first
     pose = out_pose[b]
-    angle, pose.x, pose.y = body.angle, body.x, body.y
+    pose.x, pose.y, pose.c, pose.s = body.x, body.y, body.c, body.s
     pose.vx, pose.vy, pose.w = 0.0, 0.0, 0.0
     if body.motion == PIVOT:
-        angle, pose.w = q[i], u[i]
+        pose.c, pose.s, pose.w = math.cos(q[i]), math.sin(q[i]), u[i]
     elif body.motion == SLIDE:
         pose.x, pose.y = body.x + q[i] * body.axis_x, body.y + q[i] * body.axis_y
         pose.vx, pose.vy = u[i] * body.axis_x, u[i] * body.axis_y
     elif body.motion != FIXED:
-        pose.x, pose.y, angle = q[i], q[i + 1], q[i + 2]
+        pose.x, pose.y, pose.c, pose.s = q[i], q[i + 1], math.cos(q[i + 2]), math.sin(q[i + 2])
         pose.vx, pose.vy, pose.w = u[i], u[i + 1], u[i + 2]
-    pose.c, pose.s = math.cos(angle), math.sin(angle)
 
 
 @kernel

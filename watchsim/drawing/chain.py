@@ -8,15 +8,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import groupby
 from typing import NamedTuple
 
 from watchsim.drawing.content import Stroke
+from watchsim.drawing.crossings import crossings
 from watchsim.drawing.findings import Finding
 from watchsim.drawing.gaps import open_ends, shown
 from watchsim.drawing.junctions import Junctions, junctions
 from watchsim.drawing.nesting import nested
 from watchsim.drawing.nodes import TIGHT, Join, Nodes
+from watchsim.drawing.outline import Outline
 from watchsim.drawing.tidy import unique_loops, with_length, without_doubles, without_slits
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line, Point
@@ -39,12 +42,12 @@ class Path(NamedTuple):
     closed: bool
 
 
-def chain(strokes: Sequence[Stroke], snap: float) -> Chains:
-    """The loops and open chains of all layers; `snap` in metres."""
+def chain(strokes: Sequence[Stroke], snap: float, deviation: float = 0.0) -> Chains:
+    """The loops and open chains of all layers; `snap` and the worst `deviation` of fitted curves in metres."""
     layers: dict[str, list[Stroke]] = {}
     for stroke in strokes:
         layers.setdefault(stroke.layer, []).append(stroke)
-    parts = [chain_layer(layer, members, snap) for layer, members in layers.items()]
+    parts = [chain_layer(layer, members, snap, deviation) for layer, members in layers.items()]
     return Chains(
         tuple(loop for part in parts for loop in part.loops),
         tuple(loop for part in parts for loop in part.open_chains),
@@ -52,7 +55,7 @@ def chain(strokes: Sequence[Stroke], snap: float) -> Chains:
     )
 
 
-def chain_layer(layer: str, strokes: Sequence[Stroke], snap: float) -> Chains:
+def chain_layer(layer: str, strokes: Sequence[Stroke], snap: float, deviation: float) -> Chains:
     """The same for the strokes of one layer. What one entity closes by itself is a loop, whatever else touches it."""
     drawn, findings = with_length(strokes)
     whole, pieces = closed_runs(drawn)
@@ -63,15 +66,16 @@ def chain_layer(layer: str, strokes: Sequence[Stroke], snap: float) -> Chains:
     kept, slits = without_slits(pieces, nodes, kept, doubled)
     meeting = junctions(nodes, pieces)
     paths = trace(nodes, meeting, kept)
-    closed = [assembled([stroke.edge for stroke in run], layer, True) for run in whole]
+    closed = [assembled(run, layer, True) for run in whole]
     closed += [assembled(travelled(path, pieces), layer, True) for path in paths if path.closed]
-    sources = [run[0].source for run in whole] + [pieces[path.steps[0] // 2].source for path in paths if path.closed]
-    loops, repeated = unique_loops(closed, sources)
+    outlines, repeated = unique_loops(closed)
     notes = [*(closed_gap(join, pieces) for join in joins), *branches(nodes, meeting, pieces)]
     still_open = [path for path in paths if not path.closed]
     notes += open_ends([path.steps for path in still_open], meeting.loose, pieces, nodes)
-    chains = tuple(assembled(travelled(path, pieces), layer, False) for path in still_open)
-    return Chains(tuple(nested(loops)), chains, (*findings, *repeated, *doubles, *slits, *notes))
+    chains = [assembled(travelled(path, pieces), layer, False) for path in still_open]
+    notes += crossings([*outlines, *chains], deviation)
+    loops = tuple(nested([outline.loop for outline in outlines]))
+    return Chains(loops, tuple(chain.loop for chain in chains), (*findings, *repeated, *doubles, *slits, *notes))
 
 
 def closed_runs(strokes: Sequence[Stroke]) -> tuple[list[list[Stroke]], list[Stroke]]:
@@ -128,20 +132,22 @@ def follow(meeting: Junctions, left: dict[int, None], step: int) -> list[int]:
         steps.append(following)
 
 
-def travelled(path: Path, strokes: Sequence[Stroke]) -> list[Edge]:
-    """The edges of a path in travel order and direction."""
-    return [strokes[step // 2].edge if step % 2 == 0 else strokes[step // 2].edge.reversed() for step in path.steps]
+def travelled(path: Path, strokes: Sequence[Stroke]) -> list[Stroke]:
+    """The strokes of a path in travel order and direction."""
+    forward = ((strokes[step // 2], step % 2 == 0) for step in path.steps)
+    return [stroke if ahead else replace(stroke, edge=stroke.edge.reversed()) for stroke, ahead in forward]
 
 
-def assembled(edges: list[Edge], layer: str, closed: bool) -> Loop:
-    """A loop of edges in travel order, lines stretched to meet their neighbours; arcs stay as drawn."""
+def assembled(strokes: Sequence[Stroke], layer: str, closed: bool) -> Outline:
+    """A loop of strokes in travel order, lines stretched to meet their neighbours; arcs stay as drawn."""
+    edges = [stroke.edge for stroke in strokes]
     count = len(edges)
     for k in range(count if closed else count - 1):
         following = (k + 1) % count
         if following != k:
             joint = joint_of(edges[k], edges[following])
             edges[k], edges[following] = ending_at(edges[k], joint), starting_at(edges[following], joint)
-    return Loop(tuple(edges), layer, closed)
+    return Outline(Loop(tuple(edges), layer, closed), tuple(stroke.source for stroke in strokes))
 
 
 def joint_of(before: Edge, after: Edge) -> Point:

@@ -40,6 +40,7 @@ class Drawn:
 class Content:
     """Everything a reader found in one file; the fields are those of Drawing."""
 
+    format: str = ""
     strokes: tuple[Stroke, ...] = ()
     points: tuple[tuple[str, float, float], ...] = ()
     units: str | None = None

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from watchsim.drawing.content import Drawn
 from watchsim.drawing.findings import Finding
+from watchsim.drawing.profile import Profile
 from watchsim.geometry.loop import Loop
 
 
@@ -34,3 +35,8 @@ class Drawing:
     ignored: dict[str, int] = field(default_factory=dict)
     drawn: Drawn = field(default_factory=Drawn)
     findings: tuple[Finding, ...] = ()
+
+    @property
+    def profile(self) -> Profile:
+        """All outlines, apart from the file; `drawing.profile.only("TEETH")` is that of one layer."""
+        return Profile(self.loops, self.open_chains)

@@ -96,8 +96,11 @@ class Walker:
 
     def items(self, records: Iterable[Record], where: str) -> list[Item]:
         """Every record read, polylines together with their vertices; findings for those that cannot be."""
+        records = list(records)
         result = []
         paper = 0
+        for record in records:
+            self._warn_of_boundary(record)
         for head, vertices in _grouped(records):
             if head.text(67) == "1":
                 paper += head.kind != "VIEWPORT"  # every file with paper space has one
@@ -131,6 +134,16 @@ class Walker:
             self.found.findings.append(Finding("damaged", "error", message, "Draw it again or purge it in CAD.", layer))
             return None
         return Item(layer, head.name, ignored=head.kind or "(no type)")
+
+    def _warn_of_boundary(self, record: Record) -> None:
+        """What is read complains itself; other records may have swallowed an entity behind them."""
+        if record.kind == "SEQEND":
+            self._warn_of_codes(record, self._spelling(record.text(8, "0")))
+        elif record.kind not in READERS and record.codes.count(8) > 1:
+            message = f"{record.name} at {record.place} names two layers: the entity behind it seems to have been swallowed"
+            self.found.findings.append(
+                Finding("damaged", "error", message, "Draw again what is missing there, or export anew.")
+            )
 
     def _warn_of_radius(self, head: Record, layer: str) -> None:
         if head.kind in ("CIRCLE", "ARC") and head.number(40) < 0.0:

@@ -12,6 +12,10 @@ from watchsim.drawing.findings import Finding
 from watchsim.drawing.tags import DxfError, Record, Tags
 
 SECTIONS = frozenset(("HEADER", "CLASSES", "TABLES", "BLOCKS", "ENTITIES", "OBJECTS", "THUMBNAILIMAGE", "ACDSDATA"))
+DRAWN = frozenset(
+    ("LINE", "POINT", "CIRCLE", "ARC", "ELLIPSE", "LWPOLYLINE", "SPLINE", "POLYLINE", "VERTEX", "SEQEND", "INSERT", "TEXT")
+)
+OF_SECTION = frozenset((2, 999))  # groups of the record that begins a section
 FROZEN = 1
 
 
@@ -69,6 +73,8 @@ def _sections(tags: Tags, findings: list[Finding]) -> dict[str, list[Record]]:
             name = record.text(2).upper()
             if name not in SECTIONS:
                 findings.append(_lost(record, f'it begins a section "{name}", which DXF does not have'))
+            elif name in ("TABLES", "BLOCKS", "ENTITIES") and set(record.codes) - OF_SECTION:
+                findings.append(_lost(record, f"section {name} begins with groups of something else: an entity may be lost"))
             inside = parts.setdefault(name, [])
             inside.append(record)
         elif record.kind == "ENDSEC":
@@ -77,6 +83,8 @@ def _sections(tags: Tags, findings: list[Finding]) -> dict[str, list[Record]]:
             inside = None
         elif inside is None:
             findings.append(_lost(record, "it stands outside all sections"))
+        elif record.kind in DRAWN and name not in ("ENTITIES", "BLOCKS"):
+            findings.append(_lost(record, f"it stands in section {name}, where nothing is drawn"))
         else:
             inside.append(record)
     if tags.fault:
@@ -137,7 +145,11 @@ def _blocks(records: list[Record], findings: list[Finding]) -> dict[str, Block]:
     entities: list[Record] = []
     for record in records:
         if record.kind in ("BLOCK", "ENDBLK"):
+            if record.codes.count(8) > 1:
+                findings.append(_lost(record, "it names two layers: the entity behind it seems to have been swallowed"))
             if head is not None:
+                if head.text(2).lower() in blocks:
+                    findings.append(_lost(head, f'block "{head.text(2)}" is there already; the second one is used'))
                 blocks[head.text(2).lower()] = Block(head, tuple(entities))
                 if record.kind == "BLOCK":
                     findings.append(_lost(head, f'block "{head.text(2)}" has no ENDBLK'))

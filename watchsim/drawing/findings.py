@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+ORDER = ("error", "warning", "notice")  # the gravest first
+
 
 @dataclass(frozen=True, slots=True)
 class Finding:

@@ -5,16 +5,15 @@ The same facts twice: as a dictionary with fixed names for programs, and as text
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from watchsim.drawing.drawing import Drawing
-from watchsim.drawing.findings import Finding
+from watchsim.drawing.findings import ORDER, Finding
 from watchsim.geometry.extent import Box, extents, total_length
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.mass import area
-from watchsim.geometry.primitives import Arc
+from watchsim.geometry.primitives import Arc, Point
 
-ORDER = ("error", "warning", "notice")
 SHOWN = 12  # findings of one code written out in the text
 
 
@@ -29,7 +28,7 @@ def inspect_report(drawing: Drawing) -> dict[str, object]:
         "units": drawing.units,
         "units_from": drawing.units_from,
         "extents_mm": [1e3 * side for side in box] if box else None,
-        "layers": {layer: layer_report(drawing, layer) for layer in drawing.layers},
+        "layers": {layer: layer_report(loops, chains) for layer, (loops, chains) in by_layer(drawing).items()},
         "loops": [loop_report(loop) for loop in everything],
         "points": [{"layer": layer, "x_mm": 1e3 * x, "y_mm": 1e3 * y} for layer, x, y in drawing.points],
         "fitted": {
@@ -59,9 +58,16 @@ def counts(loops: Iterable[Loop]) -> tuple[int, int]:
     return len(edges) - arcs, arcs
 
 
-def layer_report(drawing: Drawing, layer: str) -> dict[str, int]:
-    loops = [loop for loop in drawing.loops if loop.layer == layer]
-    chains = [loop for loop in drawing.open_chains if loop.layer == layer]
+def by_layer(drawing: Drawing) -> dict[str, tuple[list[Loop], list[Loop]]]:
+    """Loops and open chains of each layer, all layers in order."""
+    result: dict[str, tuple[list[Loop], list[Loop]]] = {layer: ([], []) for layer in drawing.layers}
+    for k, loops in enumerate((drawing.loops, drawing.open_chains)):
+        for loop in loops:
+            result.setdefault(loop.layer, ([], []))[k].append(loop)
+    return result
+
+
+def layer_report(loops: Sequence[Loop], chains: Sequence[Loop]) -> dict[str, int]:
     lines, arcs = counts([*loops, *chains])
     return {"lines": lines, "arcs": arcs, "loops": len(loops), "open_chains": len(chains)}
 
@@ -123,10 +129,13 @@ def layer_lines(drawing: Drawing) -> list[str]:
     """One row per layer, aligned."""
     result = []
     width = max((len(layer) for layer in drawing.layers), default=0)
-    for layer in drawing.layers:
-        facts = layer_report(drawing, layer)
-        holes = sum(loop.hole for loop in drawing.loops if loop.layer == layer)
-        points = [(x, y) for name, x, y in drawing.points if name == layer]
+    places: dict[str, list[Point]] = {}
+    for name, x, y in drawing.points:
+        places.setdefault(name, []).append((x, y))
+    for layer, (loops, chains) in by_layer(drawing).items():
+        facts = layer_report(loops, chains)
+        holes = sum(loop.hole for loop in loops)
+        points = places.get(layer, [])
         words = [plural(facts["loops"], "outline") + (f" ({plural(holes, 'hole')})" if holes else "")] if facts["loops"] else []
         words += [plural(facts["open_chains"], "open chain")] if facts["open_chains"] else []
         words += [plural(facts[f"{kind}s"], kind) for kind in ("line", "arc") if facts[f"{kind}s"]]

@@ -9,8 +9,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from watchsim.geometry.extent import Box, extents
-from watchsim.geometry.inside import winding
+import numpy as np
+
+from watchsim.geometry.boxes import holding
+from watchsim.geometry.extent import extents
+from watchsim.geometry.inside import Inside
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.mass import area
 
@@ -27,27 +30,26 @@ def nested(loops: Sequence[Loop]) -> list[Loop]:
 
 
 def depths(loops: Sequence[Loop], areas: Sequence[float]) -> list[int]:
-    """In how many others each loop lies, by the middle of its first edge.
-
-    The boxes are swept from left to right: only those that are open at a loop's test point are looked at.
-    """
-    boxes = [extents([loop]) or (0.0, 0.0, 0.0, 0.0) for loop in loops]
+    """In how many others each loop lies, by the middle of its first edge: one more than the smallest loop around it."""
+    if len(loops) < 2:
+        return [0] * len(loops)
+    boxes = np.array([extents([loop]) for loop in loops])
     probes = [loop.edges[0].point(0.5) for loop in loops]
+    size = np.array(areas)
+    inner, outer = holding(boxes, np.array(probes))
+    around = np.all((boxes[outer, :2] <= boxes[inner, :2]) & (boxes[outer, 2:] >= boxes[inner, 2:]), axis=1)
+    keep = around & (size[outer] > size[inner])
+    inner, outer = inner[keep], outer[keep]
+    order = np.lexsort((size[outer], inner))
+    inner, outer = inner[order], outer[order]
+    starts = np.searchsorted(inner, np.arange(len(loops) + 1))
     depth = [0] * len(loops)
-    by_left = sorted(range(len(loops)), key=lambda k: boxes[k][0])
-    active: list[int] = []
-    opened = 0
-    for k in sorted(range(len(loops)), key=lambda k: probes[k][0]):
-        x = probes[k][0]
-        while opened < len(by_left) and boxes[by_left[opened]][0] <= x:
-            active.append(by_left[opened])
-            opened += 1
-        active = [other for other in active if boxes[other][2] >= x]
-        depth[k] = sum(holds(loops, boxes, areas, other, k) and winding(loops[other], probes[k]) != 0 for other in active)
+    insides: dict[int, Inside] = {}
+    for k in np.argsort(-size, kind="stable").tolist():
+        for other in outer[starts[k] : starts[k + 1]].tolist():
+            if other not in insides:
+                insides[other] = Inside(loops[other])
+            if insides[other].winding(probes[k]) != 0:
+                depth[k] = depth[other] + 1
+                break
     return depth
-
-
-def holds(loops: Sequence[Loop], boxes: Sequence[Box], areas: Sequence[float], other: int, k: int) -> bool:
-    """Can loop `other` contain loop `k`: it is larger, and its box reaches around?"""
-    a, b = boxes[other], boxes[k]
-    return other != k and areas[other] > areas[k] and a[0] <= b[0] and a[1] <= b[1] and a[2] >= b[2] and a[3] >= b[3]

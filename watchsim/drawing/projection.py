@@ -15,7 +15,7 @@ from watchsim.drawing.content import Drawn, Stroke
 from watchsim.drawing.ellipse import ellipse_edges
 from watchsim.drawing.findings import Finding
 from watchsim.drawing.nurbs import spline_edges
-from watchsim.drawing.shapes import Conic, Dot, Shape, Spline, Straight, edge_on, exact_edge
+from watchsim.drawing.shapes import Conic, Dot, Shape, Spline, Straight, edge_on, exact_edge, forward
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line
 
 MOST_STROKES = 500_000  # more is a fault in the file, not a drawing
@@ -66,7 +66,7 @@ def emit(found: Gathering, shape: Shape, layer: str, source: str) -> None:
         keep(found, (edge,), layer, source)
         return
     elif isinstance(shape, Conic) and not edge_on(shape):
-        fit, fitted = ellipse_edges(shape, scale, limit), True
+        fit, fitted = ellipse_edges(forward(shape), scale, limit), True
     else:
         message = f"{source} is seen edge-on, as a line drawn there and back; it is left out"
         found.findings.append(_at("edge-on", "warning", message, layer, scale, shape))

@@ -6,8 +6,11 @@ The one door to all formats: bytes in, a Drawing out. Whatever is wrong with the
 from __future__ import annotations
 
 import gc
+import math
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 from watchsim.drawing.chain import chain
@@ -17,9 +20,11 @@ from watchsim.drawing.dxf import read_dxf
 from watchsim.drawing.facets import facets
 from watchsim.drawing.findings import Finding
 from watchsim.geometry.extent import extents
+from watchsim.geometry.loop import Loop
 
 SNAP = 1e-6
 FIT = 1e-7
+SMALLEST = 20.0  # times the snap: the smallest drawing that is believed
 
 
 def read(path: Path | str, units: str | None = None, snap: float = SNAP, fit: float = FIT) -> Drawing:
@@ -33,15 +38,16 @@ def read(path: Path | str, units: str | None = None, snap: float = SNAP, fit: fl
     ending = path.suffix.lower().lstrip(".")
     with collector_paused():
         content = read_content(path, ending, units, fit)
-        chains = chain(content.strokes, snap)
+        chains = chain(content.strokes, snap, content.fitted_deviation)
         findings = [*content.findings, *chains.findings, *facets((*chains.loops, *chains.open_chains))]
     if not content.strokes and not any(finding.severity == "error" for finding in findings):
         findings.insert(0, emptiness(content))
     if content.units is None and content.strokes:
         findings.insert(0, units_missing((*chains.loops, *chains.open_chains)))
+    findings += smallness((*chains.loops, *chains.open_chains), snap)
     return Drawing(
         path=path,
-        format=ending,
+        format=content.format or ending,
         units=content.units,
         units_from=content.units_from,
         loops=chains.loops,
@@ -70,17 +76,36 @@ def collector_paused() -> Iterator[None]:
 
 
 def read_content(path: Path, ending: str, units: str | None, fit: float) -> Content:
-    """What the reader for that ending finds; a file that is not there or cannot be opened is a finding too."""
-    if ending == "svg":
-        return refused("SVG drawings are not read yet", "Save the drawing as DXF.")
-    if ending != "dxf":
-        return refused(f'"{path.name}" does not end in .dxf: this kind of file is not read', "Save the drawing as DXF.")
+    """What the reader for that ending and content finds; a file that is not there or cannot be opened is a finding too."""
+    if ending not in ("dxf", "svg", "svgz"):
+        fix = "Save the drawing as DXF or SVG."
+        return refused(f'"{path.name}" ends in neither .dxf nor .svg: this kind of file is not read', fix)
     try:
         data = path.read_bytes()
     except OSError as error:
         reason = "there is no such file" if isinstance(error, FileNotFoundError) else error.strerror or "it cannot be read"
         return Content(findings=(Finding("unreadable", "error", f"{path}: {reason}"),))
-    return read_dxf(data, units, fit)
+    form = format_of(data, ending[:3])
+    if form == "svg":
+        from watchsim.drawing.svg import read_svg
+
+        content = read_svg(data, units, fit)
+    else:
+        content = read_dxf(data, units, fit)
+    if form != ending[:3]:
+        message = f"the name ends in .{ending} but the file is {form.upper()} inside; it is read as such"
+        content = replace(content, findings=(Finding("format", "warning", message), *content.findings))
+    return replace(content, format=form)
+
+
+def format_of(data: bytes, ending: str) -> str:
+    """ "dxf" or "svg", by the ending unless the content is clearly the other."""
+    head = data[:4096].lstrip(b"\xef\xbb\xbf \t\r\n")
+    if ending == "dxf" and (data[:2] == b"\x1f\x8b" or (head[:1] == b"<" and b"<svg" in head)):
+        return "svg"
+    if ending == "svg" and (head.startswith(b"AutoCAD Binary DXF") or re.match(rb"(?:0|999)\s*\r?\n", head)):
+        return "dxf"
+    return ending
 
 
 def refused(message: str, fix: str) -> Content:
@@ -97,11 +122,22 @@ def emptiness(content: Content) -> Finding:
     other = f"; it holds {len(content.points)} points" if content.points else ""
     if content.ignored:
         other += "; what it holds is not read: " + ", ".join(f"{count} × {kind}" for kind, count in content.ignored.items())
-    message = f"the drawing holds no line and no arc that is visible in model space{other}"
-    return Finding("empty", "error", message, "Look at hidden layers and at paper space in CAD.")
+    message = f"the drawing holds no line and no arc that is visible{other}"
+    place = "text, which must be turned into paths" if content.format == "svg" else "paper space"
+    return Finding("empty", "error", message, f"Look at hidden layers and at {place}.")
 
 
-def units_missing(loops: tuple) -> Finding:
+def smallness(loops: tuple[Loop, ...], snap: float) -> list[Finding]:
+    """A warning where the whole drawing is hardly larger than what counts as one point: its units are wrong."""
+    box = extents(loops)
+    across = max(box[2] - box[0], box[3] - box[1]) if box else math.inf
+    if across > SMALLEST * snap:
+        return []
+    message = f"the whole drawing is {1e6 * across:.3g} µm across, and ends within {1e6 * snap:.3g} µm are taken for one point"
+    return [Finding("tiny", "warning", message, "Look at the units of the drawing.")]
+
+
+def units_missing(loops: tuple[Loop, ...]) -> Finding:
     """The error for a drawing without units, with the sizes it could have."""
     box = extents(loops) or (0.0, 0.0, 0.0, 0.0)
     across = 1e3 * max(box[2] - box[0], box[3] - box[1])

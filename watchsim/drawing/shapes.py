@@ -100,6 +100,14 @@ def exact_edge(shape: Straight | Conic, scale: float) -> Edge | None:
     return Arc(scale * shape.centre[0], scale * shape.centre[1], scale * math.hypot(ux, uy), start, side * shape.sweep)
 
 
+def forward(conic: Conic) -> Conic:
+    """The same curve travelled in the same direction, with a parameter that grows."""
+    if conic.sweep > 0.0:
+        return conic
+    x, y, z = conic.v
+    return Conic(conic.centre, conic.u, (-x, -y, -z), -conic.start, -conic.sweep)
+
+
 def edge_on(conic: Conic) -> bool:
     """Is the ellipse so narrow that it is a line folded back on itself?"""
     (ux, uy, _), (vx, vy, _) = conic.u, conic.v

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from watchsim.drawing.content import Stroke
 from watchsim.drawing.findings import Finding
 from watchsim.drawing.nodes import Grid, Nodes
+from watchsim.drawing.outline import Outline
 from watchsim.geometry.extent import Box, extents
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Edge, Point
@@ -36,22 +37,23 @@ def at_edge(code: str, message: str, stroke: Stroke) -> Finding:
     return Finding(code, "notice", message, "", stroke.layer, 1e3 * x, 1e3 * y)
 
 
-def unique_loops(loops: Sequence[Loop], sources: Sequence[str]) -> tuple[list[Loop], list[Finding]]:
+def unique_loops(outlines: Sequence[Outline]) -> tuple[list[Outline], list[Finding]]:
     """The closed loops of a layer without those that repeat another one, whatever their direction and starting point."""
     grid = Grid(SAME)
-    kept: list[Loop] = []
+    kept: list[Outline] = []
     boxes: list[Box] = []
     findings = []
-    for loop, source in zip(loops, sources, strict=True):
+    for outline in outlines:
+        loop = outline.loop
         box = extents([loop]) or (0.0, 0.0, 0.0, 0.0)
         near = (k for k in grid.around(box[:2]) if math.dist(boxes[k], box) <= 2.0 * SAME)
-        if any(same_loop(kept[k], loop) for k in near):
+        if any(same_loop(kept[k].loop, loop) for k in near):
             x, y = loop.edges[0].point(0.5)
-            message = f"the outline that begins with {source} is drawn twice; one was left out"
+            message = f"the outline that begins with {outline.sources[0]} is drawn twice; one was left out"
             findings.append(Finding("duplicate", "notice", message, "", loop.layer, 1e3 * x, 1e3 * y))
             continue
         grid.add(box[:2], len(kept))
-        kept.append(loop)
+        kept.append(outline)
         boxes.append(box)
     return kept, findings
 

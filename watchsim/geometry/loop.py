@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from watchsim.geometry.primitives import Edge, Point, moved
+from watchsim.geometry.primitives import Edge, Point, moved, reflected
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,3 +34,8 @@ class Loop:
     def moved(self, angle: float, shift: Point) -> Loop:
         """Turned by `angle` (radians) about the origin, then shifted (metres)."""
         return Loop(tuple(moved(edge, angle, shift) for edge in self.edges), self.layer, self.closed, self.hole)
+
+    def reflected(self, foot: Point, direction: Point) -> Loop:
+        """Its image across the line through `foot` along the unit vector `direction`, still with the material on the left."""
+        edges = tuple(reflected(edge, foot, direction).reversed() for edge in reversed(self.edges))
+        return Loop(edges, self.layer, self.closed, self.hole)

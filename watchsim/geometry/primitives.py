@@ -112,3 +112,16 @@ def moved(edge: Edge, angle: float, shift: Point) -> Edge:
         edge.start_angle + angle,
         edge.sweep,
     )
+
+
+def reflected(edge: Edge, foot: Point, direction: Point) -> Edge:
+    """The edge's image across the line through `foot` (metres) along the unit vector `direction`."""
+    (fx, fy), (ux, uy) = foot, direction
+    c, s = ux * ux - uy * uy, 2.0 * ux * uy  # of twice the line's angle
+
+    def image(x: float, y: float) -> Point:
+        return (fx + c * (x - fx) + s * (y - fy), fy + s * (x - fx) - c * (y - fy))
+
+    if isinstance(edge, Line):
+        return Line(*image(edge.x0, edge.y0), *image(edge.x1, edge.y1))
+    return Arc(*image(edge.x, edge.y), edge.radius, 2.0 * math.atan2(uy, ux) - edge.start_angle, -edge.sweep)

@@ -15,9 +15,11 @@ from watchsim.mechanism.body import Body
 from watchsim.mechanism.force import Spring
 from watchsim.mechanism.overlap import overlaps
 from watchsim.mechanism.scene import Scene
+from watchsim.mechanism.solid import HAIRSPRING, LYING, PLATE, UPRIGHT, Solid, total
 from watchsim.units import show, to
 
 DIGITS = 9  # of places: a nanometre still shows at a position of a metre
+POISED = 1e-9  # of a body's size: below that, a centre of mass beside the pivot is rounding
 LENGTHS, MASSES, INERTIAS = ("mm", "m"), ("mg", "g", "kg"), ("mg·cm²", "g·cm²", "kg·m²")
 COORDINATES = {"fixed": 0, "pivot": 1, "slide": 1, "free": 3}
 
@@ -56,8 +58,22 @@ def _body_entry(body: Body) -> dict[str, Any]:
     return {
         "mass_kg": body.mass,
         "inertia_kg_m2": body.inertia,
+        "centre_of_mass_m": list(body.centre_of_mass),
+        "solids": [_solid_entry(solid) for solid in body.solids],
         "position_m": list(body.position),
         "coordinates": COORDINATES[body.motion],
+    }
+
+
+def _solid_entry(solid: Solid) -> dict[str, Any]:
+    """Inertia about the origin of the body's frame, like that of the body."""
+    return {
+        "layer": solid.layer,
+        "kind": solid.kind,
+        "count": solid.count,
+        "mass_kg": solid.weight.mass,
+        "centre_of_mass_m": list(solid.weight.centre),
+        "inertia_kg_m2": solid.weight.about((0.0, 0.0)),
     }
 
 
@@ -83,6 +99,59 @@ def _body_lines(scene: Scene) -> Iterator[str]:
     width = max(len(body.name) for body in scene.bodies)
     for body in scene.bodies:
         yield f"  {body.name:{width}}  {body.motion:5}  " + ", ".join((_place(body), _size(body), *_weights(body)))
+        yield from _solid_lines(body)
+        yield from _poise_lines(scene, body)
+
+
+def _solid_lines(body: Body) -> Iterator[str]:
+    """Every solid with what it adds, and their sum: what a designer checks a wrong density by."""
+    if not body.solids:
+        return
+    rows = [
+        (solid.name + (f" × {solid.count}" if solid.count > 1 else ""), _kind(solid), solid.weight) for solid in body.solids
+    ]
+    whole = total(body.solids)
+    if whole is not None:
+        rows.append(("together", "", whole))
+    width, kinds = max(len(row[0]) for row in rows), max(len(row[1]) for row in rows)
+    for name, kind, weight in rows:
+        x, y = (_millimetres(value) for value in weight.centre)
+        inertia = _fitting(weight.about((0.0, 0.0)), INERTIAS)
+        yield f"      {name:{width}}  {kind:{kinds}}  {_fitting(weight.mass, MASSES):>12}  {inertia:>16}  centre ({x}, {y}) mm"
+
+
+def _millimetres(value: float) -> str:
+    """To the nanometre, so that rounding does not look like a place."""
+    return f"{round(to(value, 'mm'), 6) + 0.0:.6f}".rstrip("0").rstrip(".")
+
+
+def _kind(solid: Solid) -> str:
+    """Of what shape, in words."""
+    return {
+        PLATE: f"plate of {show(solid.thickness, 'mm')}",
+        UPRIGHT: "turned, upright on the pivot",
+        LYING: "turned, lying",
+        HAIRSPRING: "hairspring, one third",
+    }[solid.kind]
+
+
+def _poise_lines(scene: Scene, body: Body) -> Iterator[str]:
+    """What a centre of mass beside the pivot does: gravity turns the body; the pull on the pivot itself moves nothing."""
+    distance = math.hypot(*body.centre_of_mass)
+    if body.motion != "pivot" or body.mass == 0.0 or distance <= POISED * (_reach(body) or distance):
+        return
+    pull = math.hypot(*scene.gravity)
+    what = f"its centre of mass lies {show(distance, 'mm' if distance >= 0.1e-3 else 'µm', 4)} beside the pivot"
+    if pull > 0.0:
+        yield f"      {what}: gravity turns it with up to {show(body.mass * distance * pull, 'nN·m')}"
+    else:
+        yield f"      {what}; the scene has no gravity, so this does nothing"
+
+
+def _reach(body: Body) -> float:
+    """Half the larger side of the box around everything drawn."""
+    box = extents((*body.loops, *body.decoration))
+    return 0.5 * max(box[2] - box[0], box[3] - box[1]) if box else 0.0
 
 
 def _place(body: Body) -> str:

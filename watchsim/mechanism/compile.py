@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from watchsim.mechanism.body import Body
+from watchsim.mechanism.choose_cells import choose_cells
 from watchsim.mechanism.features import features
 from watchsim.mechanism.force import Side, Torque
 from watchsim.mechanism.model import (
@@ -36,11 +37,11 @@ from watchsim.mechanism.model import (
     frozen,
     records,
 )
+from watchsim.mechanism.reachable import reachable
 from watchsim.mechanism.scene import Scene
 
 OVER = {"constant": CONSTANT, "angle": OVER_ANGLE, "time": OVER_TIME}
-FEW_CONTACTS = 24  # with no more declared pairs of primitives than this, a search costs more than it saves
-CELL_SHARE = 0.02  # a cell lets the outermost point of either body travel this share of the larger one's reach
+CLEARANCE = 2e-3  # of the size: a pair that comes this close counts as touching. More than any tolerance of a run
 
 
 @dataclass(frozen=True)
@@ -56,15 +57,24 @@ class Compiled:
     fastest: float  # 1/s, largest natural frequency of a spring, 0 without springs
 
 
-def compile_scene(scene: Scene) -> Compiled:
-    """Flatten a checked scene (SI units). Coordinates follow the order of the bodies."""
+def compile_scene(scene: Scene, prefilter: bool = True) -> Compiled:
+    """Flatten a checked scene (SI units). Coordinates follow the order of the bodies.
+
+    Without `prefilter` every declared pair of primitives is a candidate everywhere.
+    """
     size = scene_size(scene)
     bodies, slices, q, u = _bodies(scene)
     primitives, layers, sides = _primitives(scene, size)
     contacts, laws, pairs = _contacts(scene, sides, primitives)
     coordinates, tables, knots, fastest = _coordinates(scene, slices, size)
-    _choose_cells(scene, bodies, primitives, contacts, pairs)
-    parts = (bodies, coordinates, tables, knots, primitives, contacts, laws, pairs)
+    pairs.clearance = CLEARANCE * size
+    near = _near(bodies, primitives, contacts, pairs)
+    choose_cells(bodies, primitives, contacts, pairs, near)
+    if not prefilter:
+        # The cells stay, so that time is parted in the same way; only their answers are not used.
+        near = np.arange(len(contacts))
+        pairs.near_start, pairs.near_stop, pairs.listed = pairs.start, pairs.stop, 0
+    parts = (bodies, coordinates, tables, knots, primitives, contacts, laws, pairs, near)
     return Compiled(Model(*(frozen(part) for part in parts)), layers, slices, size, q, u, fastest)
 
 
@@ -90,6 +100,7 @@ def _bodies(scene: Scene) -> tuple[Records, dict[str, slice], np.ndarray, np.nda
     for row, body in zip(rows, scene.bodies, strict=True):
         row.motion = MOTION_CODE[body.motion]
         row.x, row.y, row.angle = *body.position, body.angle
+        row.c, row.s = math.cos(body.angle), math.sin(body.angle)
         row.axis_x, row.axis_y = body.axis
         start = {"fixed": (), "pivot": (body.angle,), "slide": (0.0,), "free": (*body.position, body.angle)}[body.motion]
         row.first = len(q) if start else -1
@@ -151,7 +162,17 @@ def _contacts(scene: Scene, sides: dict[Side, np.ndarray], primitives: Records) 
     if blocks:
         table = np.concatenate(blocks)
         contacts.a, contacts.b, contacts.group = table[:, 0], table[:, 1], table[:, 2]
+        _add_shapes(primitives, contacts)
     return contacts, laws, pairs
+
+
+def _add_shapes(primitives: Records, contacts: Records) -> None:
+    """Curvature of B's curve with A's radius added to it, and the reduced radius of the two."""
+    a, b = primitives[contacts.a], primitives[contacts.b]
+    arcs = b.kind == ARC
+    total = np.where(arcs, b.radius + b.side * a.radius, 1.0)
+    contacts.curvature = np.where(arcs, b.side / total, 0.0)
+    contacts.reduced = np.where(arcs, a.radius * b.radius / total, a.radius)
 
 
 def _touching(primitives: Records, first: np.ndarray, last: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -235,30 +256,13 @@ def _tables(scene: Scene, slices: dict[str, slice], rows: Records) -> tuple[Reco
     return tables, np.array(knots, float).reshape(len(knots), 2)
 
 
-def _choose_cells(scene: Scene, bodies: Records, primitives: Records, contacts: Records, pairs: Records) -> None:
-    """Cell coordinates and sizes for each pair of bodies that has enough contacts to need a search."""
+def _near(bodies: Records, primitives: Records, contacts: Records, pairs: Records) -> np.ndarray:
+    """The contacts that can ever touch, by pair of bodies."""
+    found = [np.zeros(0, np.int64)]
+    count = 0
     for pair in pairs:
-        axes: list[tuple[int, float, int]] = []
-        reach = max(
-            (_reach(scene.bodies[b]) for b in (pair.a, pair.b) if bodies[b].motion != MOTION_CODE["fixed"]), default=0.0
-        )
-        for b in (pair.a, pair.b):
-            axes += _cell_axes(bodies[b], CELL_SHARE * reach, _reach(scene.bodies[b]))
-        if pair.stop - pair.start <= FEW_CONTACTS or not 1 <= len(axes) <= 3:
-            continue
-        pair.axes = len(axes)
-        for i, (coordinate, cell, wrap) in enumerate(axes):
-            pair[f"c{i}"], pair[f"size{i}"], pair[f"wrap{i}"] = coordinate, cell, wrap
-
-
-def _cell_axes(body: Records, travel: float, reach: float) -> list[tuple[int, float, int]]:
-    """(coordinate, cell size, wrap) of a body's coordinates such that its points travel about `travel` within a cell."""
-    turn = max(8, math.ceil(2.0 * math.pi * reach / travel)) if reach > 0.0 else 8
-    turning = (2.0 * math.pi / turn, turn)
-    if body.motion == PIVOT:
-        return [(body.first, *turning)]
-    if body.motion == SLIDE:
-        return [(body.first, travel, 0)]
-    if body.motion == FREE:
-        return [(body.first, travel, 0), (body.first + 1, travel, 0), (body.first + 2, *turning)]
-    return []
+        ids = np.flatnonzero(reachable(bodies, primitives, contacts, pair)) + pair.start
+        pair.near_start, pair.near_stop = count, count + len(ids)
+        count += len(ids)
+        found.append(ids)
+    return np.concatenate(found)

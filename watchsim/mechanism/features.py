@@ -6,21 +6,26 @@ Every edge; and every convex corner, as an arc of radius 0 whose fan of normals 
 from __future__ import annotations
 
 import math
+from decimal import Decimal
 
 import numpy as np
 
+from watchsim.geometry.exact_angle import cos_sin
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line, Point
-from watchsim.mechanism.model import ARC, CORNER, FULL, LINE, NARROW, PRIMITIVE, WIDE, Records
+from watchsim.mechanism.model import ARC, CORNER, FULL, LINE, PART, PRIMITIVE, Records
 
-SMALLEST_TURN = 1e-9  # rad; below it two edges join smoothly
-SMALLEST_GAP = 1e-13  # m; wider mismatches at joints are bridged by a line, so that outlines are watertight
+JOINT = 3e-11  # of the scene's size. Large: steps at joints count as smooth; small: rounding makes edges and corners
+FLAT = 8.0  # of the size: for larger radii than that the centre's rounding would show on the outline
 
 
 def features(loop: Loop, body: int, size: float) -> Records:
-    """Primitive records of one outline (metres, body frame). `size` turns the angles of corners into lengths."""
-    edges = _watertight(loop)
-    rows = [_line(edge) if isinstance(edge, Line) else _arc(edge) for edge in edges]
+    """Primitive records of one outline (metres, body frame). `size` turns the angles of corners into lengths.
+
+    Edges shorter than a joint's tolerance have no primitive; their neighbours reach across.
+    """
+    edges = _watertight(loop, JOINT * size)
+    rows = [_line(edge) if isinstance(edge, Line) else _arc(edge, size) for edge in edges]
     count = len(edges)
     for i in range(count if loop.closed else count - 1):
         corner = _corner(edges[i], edges[(i + 1) % count], size)
@@ -34,47 +39,69 @@ def features(loop: Loop, body: int, size: float) -> Records:
     return out
 
 
-def _watertight(loop: Loop) -> list[Edge]:
-    """The edges with a short line wherever one does not start exactly where the last one ends."""
+def _watertight(loop: Loop, joint: float) -> list[Edge]:
+    """The edges with length, and a short line wherever one does not start where the last one ends."""
+    kept = [edge for edge in loop.edges if edge.length > joint]
     edges: list[Edge] = []
-    count = len(loop.edges)
-    for i, edge in enumerate(loop.edges):
+    for i, edge in enumerate(kept):
         edges.append(edge)
-        if i == count - 1 and not loop.closed:
+        if i == len(kept) - 1 and not loop.closed:
             break
-        following = loop.edges[(i + 1) % count]
-        if math.dist(edge.end, following.start) > SMALLEST_GAP:
+        following = kept[(i + 1) % len(kept)]
+        if math.dist(edge.end, following.start) > joint:
             edges.append(Line(*edge.end, *following.start))
     return edges
 
 
 def _line(edge: Line) -> dict[str, float]:
     tx, ty = edge.tangent(0.0)
-    return {"kind": LINE, "x": edge.x0, "y": edge.y0, "tx": tx, "ty": ty, "length": edge.length}
+    point = {"x": edge.x0, "y": edge.y0, "px": edge.x0, "py": edge.y0}
+    return {"kind": LINE, **point, "tx": tx, "ty": ty, "nx": ty, "ny": -tx, "length": edge.length}
+
+
+def _arc(edge: Arc, size: float) -> dict[str, float]:
+    side = 1.0 if edge.sweep > 0.0 else -1.0
+    px, py, c, s = _middle(edge, exact=edge.radius > FLAT * size)
+    half = 0.5 * min(abs(edge.sweep), 2.0 * math.pi)
+    fan = {"nx": side * c, "ny": side * s, "half_cos": math.cos(half), "half_sin": math.sin(half)}
+    extent = FULL if edge.is_circle else PART
+    return {
+        "kind": ARC,
+        "x": edge.x,
+        "y": edge.y,
+        "px": px,
+        "py": py,
+        "radius": edge.radius,
+        "side": side,
+        "extent": extent,
+        **fan,
+    }
+
+
+def _middle(edge: Arc, exact: bool) -> tuple[float, float, float, float]:
+    """Middle of the arc and the direction to it from the centre; `exact`: rounded once, however far the centre is."""
+    if not exact:
+        c, s = _direction(edge.start_angle + 0.5 * edge.sweep)
+        return edge.x + edge.radius * c, edge.y + edge.radius * s, c, s
+    c, s = cos_sin(Decimal(edge.start_angle) + Decimal(edge.sweep) / 2)
+    radius = Decimal(edge.radius)
+    return float(Decimal(edge.x) + radius * c), float(Decimal(edge.y) + radius * s), float(c), float(s)
 
 
 def _direction(angle: float) -> Point:
     return math.cos(angle), math.sin(angle)
 
 
-def _arc(edge: Arc) -> dict[str, float]:
-    first, last = edge.start_angle, edge.start_angle + edge.sweep
-    if edge.sweep < 0.0:
-        first, last = last, first
-    (e0x, e0y), (e1x, e1y) = _direction(first), _direction(last)
-    extent = FULL if edge.is_circle else WIDE if abs(edge.sweep) > math.pi else NARROW
-    side = 1.0 if edge.sweep > 0.0 else -1.0
-    fan = {"e0x": e0x, "e0y": e0y, "e1x": e1x, "e1y": e1y, "extent": extent}
-    return {"kind": ARC, "x": edge.x, "y": edge.y, "radius": edge.radius, "side": side, **fan}
-
-
 def _corner(before: Edge, after: Edge, size: float) -> dict[str, float] | None:
     """The corner between two edges, None where they join smoothly or the material's corner is concave."""
     (ax, ay), (bx, by) = before.tangent(1.0), after.tangent(0.0)
     turn = math.atan2(ax * by - ay * bx, ax * bx + ay * by)
-    if turn < SMALLEST_TURN:
+    # A turn that no contact would notice: normals of a flat arc notice less.
+    flattest = max(size, *(edge.radius for edge in (before, after) if isinstance(edge, Arc)), 0.0)
+    if turn * flattest < JOINT * size:
         return None
-    # Normals are tangents turned by -90 degrees; the fan runs from the one before to the one after.
-    fan = {"e0x": ay, "e0y": -ax, "e1x": by, "e1y": -bx, "extent": NARROW}
+    # Normals are tangents turned by -90 degrees; the fan fills the turn from the one before to the one after.
+    nx, ny = _direction(math.atan2(ay, ax) - 0.5 * math.pi + 0.5 * turn)
+    fan = {"nx": nx, "ny": ny, "half_cos": math.cos(0.5 * turn), "half_sin": math.sin(0.5 * turn), "extent": PART}
     x, y = after.start
-    return {"kind": CORNER, "x": x, "y": y, "length": size, "side": 1.0, **fan}
+    return {"kind": CORNER, "x": x, "y": y, "px": x, "py": y, "length": size, "side": 1.0, **fan}

@@ -19,7 +19,7 @@ from watchsim.mechanism.scene import Scene
 from watchsim.mechanism.schema import SCHEMA
 from watchsim.mechanism.toml import toml_text
 
-PACKAGES = ("watchsim", "numpy", "scipy", "numba", "shapely", "ezdxf", "svgelements", "trimesh")
+PACKAGES = ("watchsim", "numpy", "scipy", "numba", "shapely", "ezdxf", "trimesh")
 HEADER = "# Completed by watchsim: all defaults written out. Loads again to the scene that was simulated.\n\n"
 
 

@@ -32,6 +32,8 @@ BODY = np.dtype(
         ("angle", "f8"),
         ("axis_x", "f8"),
         ("axis_y", "f8"),
+        ("c", "f8"),  # cosine and sine of `angle`
+        ("s", "f8"),
     ]
 )
 
@@ -65,16 +67,26 @@ PRIMITIVE = np.dtype(
         ("length", "f8"),  # line: its length; corner: the shorter neighbour (turns angles into lengths)
         ("radius", "f8"),
         ("side", "f8"),  # arc: +1 convex, -1 concave (material outside)
-        ("e0x", "f8"),  # arc or corner: unit directions that bound the normals, counter-clockwise from e0 to e1
-        ("e0y", "f8"),
-        ("e1x", "f8"),
-        ("e1y", "f8"),
-        ("extent", "i8"),  # NARROW (up to half a turn), WIDE, or FULL circle
+        ("px", "f8"),  # a point on it: the corner, the line's start, the middle of the arc
+        ("py", "f8"),
+        ("nx", "f8"),  # outward unit normal there; of a corner, the middle of its fan of normals
+        ("ny", "f8"),
+        ("half_cos", "f8"),  # arc or corner: cosine and sine of half the angle that its normals fill
+        ("half_sin", "f8"),
+        ("extent", "i8"),  # PART, or FULL circle
     ]
 )
-NARROW, WIDE, FULL = 0, 1, 2
+PART, FULL = 0, 1
 
-CONTACT = np.dtype([("a", "i8"), ("b", "i8"), ("group", "i8")])
+CONTACT = np.dtype(
+    [
+        ("a", "i8"),  # primitive that plays the circle: a convex arc or a corner
+        ("b", "i8"),  # the line or arc that it meets
+        ("group", "i8"),
+        ("curvature", "f8"),  # K of B's curve with A's radius r added: 0 for a line, else s/(R + s r), 1/m
+        ("reduced", "f8"),  # reduced radius r R/(R + s r) of the two, r for a line, m
+    ]
+)
 LAW = np.dtype([("friction", "f8"), ("restitution", "f8"), ("tangential", "f8")])
 
 BODY_PAIR = np.dtype(
@@ -83,7 +95,11 @@ BODY_PAIR = np.dtype(
         ("b", "i8"),
         ("start", "i8"),  # its contacts are start..stop of `contacts`
         ("stop", "i8"),
-        ("axes", "i8"),  # 0: no cells, every pair is a candidate; else the number of cell coordinates
+        ("near_start", "i8"),  # those that can ever touch are near_start..near_stop of `near`
+        ("near_stop", "i8"),
+        ("listed", "i8"),  # 0: all of `near` are candidates in every cell, nothing is asked
+        ("clearance", "f8"),  # m: primitives count as able to touch when they come this close
+        ("axes", "i8"),  # 0: no cells, all of `near` are candidates; else the number of cell coordinates
         ("c0", "i8"),  # cell coordinates and their cell sizes; a pivot's index wraps after `wrap` cells (0: no wrap)
         ("c1", "i8"),
         ("c2", "i8"),
@@ -93,6 +109,9 @@ BODY_PAIR = np.dtype(
         ("wrap0", "i8"),
         ("wrap1", "i8"),
         ("wrap2", "i8"),
+        ("fold0", "i8"),  # by 1/fold of a turn the body's outline comes back onto itself
+        ("fold1", "i8"),
+        ("fold2", "i8"),
     ]
 )
 
@@ -108,6 +127,7 @@ class Model(NamedTuple):
     contacts: Records
     laws: Records
     pairs: Records
+    near: NDArray[np.int64]  # contacts that can ever touch, by pair of bodies
 
 
 ModelRef = by_reference(Model, __name__)

@@ -4,20 +4,23 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.findings import Finding
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Point
+from watchsim.mechanism.material import ADVICE, Side, face_layers, faces
 from watchsim.mechanism.schema import SHAPES, nearest
 from watchsim.mechanism.shapes import shape_loops
 from watchsim.mechanism.table import NAN, UNREADABLE, Table
 
 _SETTING = re.compile(r'(\b[Ss]et \w+ = "[^"]*"(?: \(or "[^"]*"\))?)')  # the reader does not know whose drawing it reads
+OPEN = ("open-outline", "stray-line")  # findings about open chains
 SAME_POINT = 1e-9  # m; two circles on the pivot layer this close mark one pivot
 
 
@@ -25,7 +28,9 @@ SAME_POINT = 1e-9  # m; two circles on the pivot layer this close mark one pivot
 class Outlines:
     """What a drawing or a shape gives a body, in the coordinates of the drawing (metres).
 
-    `loops` can touch, `rest` are closed outlines on layers left out. `pivot` is None when nobody said where it is.
+    `loops` can touch, `rest` are closed outlines on layers left out, `aside` those that solids use as sections and
+    hairsprings, `chains` the open lines. `pivot` is None when nobody said where it is. `errors` are what is wrong on layers
+    left out.
     `sound` is False after a fault: questions about layers are then not worth asking.
     """
 
@@ -34,10 +39,13 @@ class Outlines:
     pivot: Point | None = None
     findings: tuple[Finding, ...] = ()
     sound: bool = True
+    aside: tuple[Loop, ...] = ()
+    chains: tuple[Loop, ...] = ()
+    errors: tuple[Finding, ...] = ()
 
     @property
     def all(self) -> tuple[Loop, ...]:
-        return self.loops + self.rest
+        return self.loops + self.rest + self.aside
 
 
 def read_outlines(table: Table, folder: Path) -> Outlines:
@@ -45,7 +53,7 @@ def read_outlines(table: Table, folder: Path) -> Outlines:
     sources = [key for key in ("drawing", *SHAPES) if key in table]
     for extra in sources[1:]:
         table.fault(extra, f"a body has one outline: leave out {extra} or {sources[0]}")
-    for key in ("layers", "units", "snap"):
+    for key in ("layers", "units", "snap", "material"):
         if key in table and sources and sources[0] != "drawing":
             table.fault(key, f"belongs to a drawing; this body is a {sources[0]}")
     if "drawing" in table:
@@ -62,12 +70,30 @@ def _from_drawing(table: Table, folder: Path) -> Outlines:
     if drawing is None:
         return Outlines(pivot=UNREADABLE if marked else _given_pivot(table), sound=False)
     pivot = _marked_pivot(table, drawing) if marked else _given_pivot(table)
-    layers = _layers(table, drawing)
-    findings = tuple(_sorted_out(table, drawing, layers))
+    apart = frozenset(set_apart(table.mapping))
+    sides = {layer: side for layer, side in face_layers(table, drawing, table.texts("layers")).items() if layer not in apart}
+    layers = _layers(table, drawing, sides, apart)
+    findings = tuple(_sorted_out(table, drawing, layers, sides, apart))
     closed = [loop for loop in drawing.loops if loop.closed]
-    loops = tuple(loop for loop in closed if loop.layer in layers)
-    rest = tuple(loop for loop in closed if loop.layer not in layers)
-    return Outlines(loops, rest, pivot, findings, sound=len(table.faults.found) == known)
+    touchable = tuple(loop for loop in closed if loop.layer in layers)
+    return Outlines(
+        loops=touchable + tuple(faces(table, drawing, sides)),
+        rest=tuple(loop for loop in closed if loop.layer not in layers and loop.layer not in apart),
+        pivot=pivot,
+        findings=findings,
+        sound=len(table.faults.found) == known,
+        aside=tuple(loop for loop in closed if loop.layer not in layers and loop.layer in apart),
+        chains=drawing.open_chains,
+        errors=tuple(f for f in drawing.findings if f.severity == "error" and f.layer in apart and f.layer not in layers),
+    )
+
+
+def set_apart(mapping: Mapping[str, Any]) -> Iterator[str]:
+    """The layers that solids name for sections, axes and hairsprings: what is drawn there is no outline that could touch."""
+    solids = mapping.get("solids")
+    for solid in solids if isinstance(solids, (list, tuple)) else ():
+        if isinstance(solid, Mapping) and ("turned" in solid or solid.get("hairspring") is True):
+            yield from (name for name in (solid.get("layer"), solid.get("turned")) if isinstance(name, str))
 
 
 def _open(table: Table, folder: Path) -> Drawing | None:
@@ -105,26 +131,33 @@ def _similar(path: Path) -> str:
     """' Did you mean ...?' with the drawings that lie in the folder."""
     if not path.parent.is_dir():
         return f", nor the folder {path.parent}"
-    there = sorted(file.name for file in path.parent.iterdir() if file.suffix.lower() in (".dxf", ".svg"))
+    there = sorted(file.name for file in path.parent.iterdir() if file.suffix.lower() in (".dxf", ".svg", ".svgz"))
     return f". {nearest(path.name, there)}".removesuffix(".") if there else ""
 
 
-def _layers(table: Table, drawing: Drawing) -> tuple[str, ...]:
-    """The layers whose closed outlines can touch; every asked layer that is not there is a fault."""
+def _layers(table: Table, drawing: Drawing, sides: Mapping[str, Side], apart: frozenset[str]) -> tuple[str, ...]:
+    """The layers that can touch: with closed outlines, or with open chains whose material is known (`sides`).
+
+    Every asked layer that is not there is a fault.
+    """
     closed = dict.fromkeys(loop.layer for loop in drawing.loops if loop.closed)
     asked = table.texts("layers")
     if "layers" not in table:
-        asked = tuple(layer for layer in closed if layer != table.mapping.get("pivot"))
+        known = {**closed, **dict.fromkeys(sides)}
+        asked = tuple(layer for layer in known if layer != table.mapping.get("pivot") and layer not in apart)
         if not asked and not any(finding.severity == "error" for finding in drawing.findings):
-            table.faults.add(f"{table.path}.drawing", "it holds no closed outline.", _arrow(drawing.path))
+            hint = f" Its lines are open: say where their material is, {ADVICE}." if drawing.open_chains else ""
+            table.faults.add(f"{table.path}.drawing", f"it holds no closed outline.{hint}", _arrow(drawing.path))
         return asked
+    open_ones = {chain.layer for chain in drawing.open_chains}
     broken = {finding.layer for finding in drawing.findings if finding.severity == "error"}
     for i, layer in enumerate(asked):
         key = f"{table.path}.layers.{i}"
         if layer not in closed and layer not in drawing.layers:
             table.faults.add(key, f"the drawing has no such layer. {_there(layer, drawing)}", f' = "{layer}"')
-        elif layer not in closed and layer not in broken:
-            table.faults.add(key, "there is no closed outline on this layer.", _arrow(drawing.path, layer))
+        elif layer not in closed and layer not in broken and layer not in sides:
+            hint = f" Its lines are open: close them, or write {ADVICE}." if layer in open_ones else ""
+            table.faults.add(key, f"there is no closed outline on this layer.{hint}", _arrow(drawing.path, layer))
     return asked
 
 
@@ -137,21 +170,42 @@ def _hint(word: str, known: Iterable[str]) -> str:
     return f"{hint} " if hint.startswith("Did") else ""
 
 
-def _sorted_out(table: Table, drawing: Drawing, layers: tuple[str, ...]) -> Iterator[Finding]:
+def _sorted_out(
+    table: Table, drawing: Drawing, layers: tuple[str, ...], sides: Mapping[str, Side], apart: frozenset[str]
+) -> Iterator[Finding]:
     """Notes the drawing's errors that concern this body as faults and hands on its warnings.
 
-    Where layers were chosen, the others may be as they like; where none were, all must be sound but the pivot's.
+    Where layers were chosen, the others may be as they like, but outlines that cross are told of; where none were, all must be
+    sound but the pivot's. Open chains are as they should be where the scene says what is behind them. Sections, axes and
+    hairsprings are judged by the solids that use them.
     """
     pivot = table.mapping.get("pivot")
+    used = {*layers, *_solid_layers(table)}
     for finding in drawing.findings:
-        if finding.layer is not None and finding.layer not in layers and ("layers" in table or finding.layer == pivot):
+        if finding.layer in apart and finding.layer not in layers:
             continue
-        if finding.severity == "error":
+        beside = finding.layer is not None and finding.layer not in used and ("layers" in table or finding.layer == pivot)
+        if (beside and finding.code != "crossing") or (finding.layer in sides and finding.code in OPEN):
+            continue
+        crossing = (
+            finding.code == "crossing" and finding.layer in used and (finding.severity == "error" or finding.layer in sides)
+        )
+        if crossing or (finding.severity == "error" and not beside):
             fix = _SETTING.sub(rf"\1 under [{table.path}]", finding.fix)
+            fix += f" If it shall stay open: {ADVICE}." if finding.code in OPEN else ""
             text = f"{finding.message.rstrip('.')}. {fix}".strip()
             table.faults.add(f"{table.path}.drawing", text, _arrow(drawing.path, finding.layer))
         else:
-            yield replace(finding, message=f"{drawing.path.name}: {finding.message}")
+            severity = "warning" if finding.severity == "error" else finding.severity
+            yield replace(finding, severity=severity, message=f"{drawing.path.name}: {finding.message}")
+
+
+def _solid_layers(table: Table) -> Iterator[str]:
+    """The layers that give the body its mass."""
+    solids = table.mapping.get("solids")
+    for solid in solids if isinstance(solids, list) else ():
+        if isinstance(solid, dict) and isinstance(solid.get("layer"), str):
+            yield solid["layer"]
 
 
 def _given_pivot(table: Table) -> Point | None:

@@ -16,13 +16,14 @@ from numpy.typing import NDArray
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.polyline import polyline
-from watchsim.geometry.primitives import Line, Point
+from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point
 from watchsim.mechanism.body import Body
 from watchsim.mechanism.errors import Fault
 from watchsim.mechanism.force import Side
 from watchsim.mechanism.locate import key_lines
 from watchsim.mechanism.scene import Scene
 
+Floats = NDArray[np.float64]
 DEVIATION = 0.5e-9  # m, of the polylines; too large: resting contacts are refused; too small: slow
 ALLOWED = 1e-9 + 2.0 * DEVIATION  # m; both outlines may deviate
 
@@ -74,13 +75,13 @@ class _Layer:
 
     side: Side
     region: Any  # a shapely geometry
-    faces: tuple[Line, ...]
+    faces: tuple[Edge, ...]
 
 
 def _layers(body: Body, side: Side) -> Iterator[_Layer]:
     for layer in (side.layer,) if side.layer else body.layers:
         loops = [loop.moved(body.angle, body.position) for loop in body.loops if loop.layer == layer]
-        faces = tuple(edge for loop in loops if not loop.closed for edge in loop.edges if isinstance(edge, Line))
+        faces = tuple(edge for loop in loops if not loop.closed for edge in loop.edges)
         yield _Layer(Side(body.name, layer), _region([loop for loop in loops if loop.closed]), faces)
 
 
@@ -121,15 +122,29 @@ def _regions_depth(a: Any, b: Any) -> tuple[float, Point]:
     return float(depths[worst]), (float(points[worst, 0]), float(points[worst, 1]))
 
 
-def _face_depth(face: Line, region: Any) -> tuple[float, Point]:
-    """How far a region that straddles an open face reaches behind it, counting only what lies within the face's length."""
+def _face_depth(face: Edge, region: Any) -> tuple[float, Point]:
+    """How far a region that straddles an open face reaches behind it, counting only what lies beside the face."""
     import shapely
 
-    if not region.intersects(shapely.LineString([face.start, face.end])):
+    if not region.intersects(shapely.LineString(polyline(Loop((face,), closed=False), DEVIATION))):
         return 0.0, (0.0, 0.0)
     points = shapely.get_coordinates(region)
-    (tx, ty), (x, y) = face.tangent(0.0), points.T - np.array([[face.x0], [face.y0]])
-    along, behind = x * tx + y * ty, tx * y - ty * x
-    behind = np.where((along >= 0.0) & (along <= face.length), behind, -math.inf)
+    beside, behind = _behind_arc(face, points) if isinstance(face, Arc) else _behind_line(face, points)
+    behind = np.where(beside, behind, -math.inf)
     worst = int(np.argmax(behind))
     return max(float(behind[worst]), 0.0), (float(points[worst, 0]), float(points[worst, 1]))
+
+
+def _behind_line(face: Line, points: Floats) -> tuple[NDArray[np.bool_], Floats]:
+    """Which points lie beside the line, and how far each is behind it (m)."""
+    (tx, ty), (x, y) = face.tangent(0.0), points.T - np.array([[face.x0], [face.y0]])
+    along = x * tx + y * ty
+    return (along >= 0.0) & (along <= face.length), tx * y - ty * x
+
+
+def _behind_arc(face: Arc, points: Floats) -> tuple[NDArray[np.bool_], Floats]:
+    """The same for an arc: behind is inside the circle if it runs counter-clockwise, else outside."""
+    x, y = points.T - np.array([[face.x], [face.y]])
+    way = math.copysign(1.0, face.sweep)
+    turn = np.mod(way * (np.arctan2(y, x) - face.start_angle), TURN)
+    return turn <= abs(face.sweep), way * (face.radius - np.hypot(x, y))

@@ -15,6 +15,7 @@ from watchsim.mechanism.body import MOTIONS, Body
 from watchsim.mechanism.errors import Faults
 from watchsim.mechanism.outlines import Outlines, read_outlines
 from watchsim.mechanism.schema import BODY
+from watchsim.mechanism.solid import more_seen
 from watchsim.mechanism.table import NAN, Table, shown
 from watchsim.mechanism.weight import read_inertias
 from watchsim.units import SPEED
@@ -75,7 +76,8 @@ def _body(name: str, table: Table, motion: str, outlines: Outlines, rest: tuple[
         inertia=inertias.inertia,
         centre_of_mass=inertias.centre,
         loops=_shifted(outlines.loops, shift),
-        decoration=_shifted(rest, shift),
+        decoration=(*_shifted(rest, shift), *more_seen(inertias.solids)),
+        solids=inertias.solids,
     )
 
 

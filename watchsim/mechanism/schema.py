@@ -32,14 +32,18 @@ ANGLE = Key(units.ANGLE)
 SCENE: Keys = {"title": PLAIN, "schema": NUMBER, "gravity": Key(units.ACCELERATION)}
 SHAPES = ("circle", "polygon", "line")
 BODY: Keys = {
-    **{"drawing": PLAIN, "layers": PLAIN, "units": PLAIN, "snap": LENGTH},
+    **{"drawing": PLAIN, "layers": PLAIN, "units": PLAIN, "snap": LENGTH, "material": LENGTH},
     **{"circle": LENGTH, "polygon": LENGTH, "line": LENGTH},
     **{"pivot": LENGTH, "position": LENGTH, "motion": PLAIN, "axis": NUMBER, "angle": ANGLE},
     **{"velocity": Key(units.SPIN, units.SPEED), "spin": Key(units.SPIN)},
     **{"mass": Key(units.MASS), "inertia": Key(units.INERTIA), "solids": PLAIN},
     **{"on": PLAIN, "adjust": PLAIN},
 }
-SOLID: Keys = {"layer": PLAIN, "thickness": LENGTH, "density": Key(units.DENSITY)}
+SOLID: Keys = {
+    **{"layer": PLAIN, "thickness": LENGTH, "density": Key(units.DENSITY), "count": NUMBER},
+    **{"turned": LENGTH, "lying": PLAIN},
+    **{"hairspring": PLAIN, "inner": LENGTH, "outer": LENGTH, "turns": NUMBER, "length": LENGTH, "width": LENGTH},
+}
 SPRING: Keys = {
     "body": PLAIN,
     "frequency": Key(units.FREQUENCY),

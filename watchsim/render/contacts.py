@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,14 +28,14 @@ class ContactMarks:
     def __init__(self, run: Trajectory) -> None:
         names = [body.name for body in run.scene.bodies]
         model = compile_scene(run.scene).model
-        told = run.events[np.isin(run.events["kind"], (EventKind.CLOSE, EventKind.OPEN))]
+        told = _told(run.events)
         if len(told) and told["contact"].max() >= len(model.contacts):
             raise ValueError("contacts cannot be marked: the events of this run do not belong to its scene")
         self._history: dict[int, tuple[Array, NDArray[np.bool_]]] = {}
         self._sides: dict[int, tuple[_Side, _Side]] = {}
         for k in map(int, np.unique(told["contact"])):
             events, contact = told[told["contact"] == k], model.contacts[k]
-            self._history[k] = np.array(events["t"]), events["kind"] == EventKind.CLOSE
+            self._history[k] = np.array(events["t"]), events["closes"]
             self._sides[k] = _side(model.primitives[contact.a], names), _side(model.primitives[contact.b], names)
 
     def closed(self, t: float) -> list[int]:
@@ -45,6 +46,17 @@ class ContactMarks:
     def points(self, t: float, frames: dict[str, Array]) -> Array:
         """(n, 2) points of the contacts closed at `t`, metres, for the poses x, y, angle of that instant."""
         return np.array([_touch(*self._sides[k], frames) for k in self.closed(t)]).reshape(-1, 2)
+
+
+def _told(events: NDArray[Any]) -> NDArray[Any]:
+    """(t, contact, closes) of everything that closes or opens a contact; a hand-over does both."""
+    kinds = (EventKind.CLOSE, EventKind.OPEN, EventKind.HANDOVER)
+    rows: list[tuple[float, int, bool]] = []
+    for event in events[np.isin(events["kind"], kinds)]:
+        if event["kind"] == EventKind.HANDOVER:
+            rows.append((event["t"], int(event["value"]), False))
+        rows.append((event["t"], event["contact"], event["kind"] != EventKind.OPEN))
+    return np.array(rows, dtype=[("t", "f8"), ("contact", "i8"), ("closes", "?")])
 
 
 @dataclass(frozen=True)

@@ -9,36 +9,36 @@ from __future__ import annotations
 import io
 import math
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from watchsim.drawing.drawing import Drawing
-from watchsim.drawing.findings import Finding
 from watchsim.geometry.extent import Box, extents
 from watchsim.geometry.polyline import polyline
+from watchsim.geometry.primitives import Arc
+from watchsim.render.fault_circles import FAULT, fault_circles
 from watchsim.render.palette import BACKGROUND, FAINT, GRID, INK
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.legend import Legend
 
 COLOURS = ("#2f5d8a", "#a8780a", "#2e7d57", "#7b4a9e", "#b0562c", "#3f8f98", "#5f6b78", "#96527a", "#6f7f1f", "#8a4b4b")
-FAULT = "#d0021b"
 SIZE = (9.0, 7.2)  # inches
 DPI = 150
 LONGEST, SHORTEST = 16.0, 4.0  # inches of the sides of a slender part's picture
-CIRCLED = 99  # more circles would cover the part
 FINENESS = 3e-5  # of the part's size: chords of arcs stray less than a twentieth of a pixel
 LISTED = 20  # layers in the legend
 
 
-def draw_drawing(drawing: Drawing, png_path: Path | str) -> None:
+def draw_drawing(drawing: Drawing, png_path: Path | str, centres: bool = False) -> None:
     """Writes the picture as PNG; OSError where the file cannot be written. It is written whole or not at all."""
     buffer = io.BytesIO()
-    picture(drawing).savefig(buffer, format="png", dpi=DPI, bbox_inches="tight", pad_inches=0.2)
+    picture(drawing, centres).savefig(buffer, format="png", dpi=DPI, bbox_inches="tight", pad_inches=0.2)
     path = Path(png_path)
     scratch = path.with_name(f".{path.name}.{os.getpid()}")
     try:
@@ -48,8 +48,8 @@ def draw_drawing(drawing: Drawing, png_path: Path | str) -> None:
         scratch.unlink(missing_ok=True)
 
 
-def picture(drawing: Drawing) -> Figure:
-    """The figure, on an Agg canvas."""
+def picture(drawing: Drawing, centres: bool = False) -> Figure:
+    """The figure, on an Agg canvas; with `centres`, dots at the centres of all arcs that lie in the picture."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -60,9 +60,13 @@ def picture(drawing: Drawing) -> Figure:
     _furnish(axes, drawing, box)
     for layer, colour in _coloured(drawing):
         _layer(axes, drawing, layer, colour, FINENESS * max(box[2] - box[0], box[3] - box[1]))
-    _circles(axes, drawing.findings)
-    if drawing.layers:
-        _legend(figure, drawing)
+        if centres:
+            _centres(axes, drawing, layer, colour)
+    legend = _legend(figure, drawing, centres) if drawing.layers else None
+    left = fault_circles(axes, drawing.findings)
+    if left and legend is not None:
+        legend.set_title(f"{left} more faults\nare in the list only")
+        legend.get_title().set_fontsize(9)
     return figure
 
 
@@ -144,33 +148,15 @@ def _codes(count: int) -> np.ndarray:
     return codes
 
 
-def _circles(axes: Axes, findings: Sequence[Finding]) -> None:
-    """Numbered circles at what was found, in the order of the report; places a hair apart share one circle."""
-    from matplotlib.patheffects import withStroke
-
-    (x0, x1), (y0, y1) = axes.get_xlim(), axes.get_ylim()
-    near = 0.012 * max(x1 - x0, y1 - y0)
-    shared: dict[tuple[int, int], list[tuple[int, Finding]]] = {}
-    for number, finding in enumerate(findings, 1):
-        if finding.x_mm is not None and finding.y_mm is not None and len(shared) < CIRCLED:
-            shared.setdefault((round(finding.x_mm / near), round(finding.y_mm / near)), []).append((number, finding))
-    for group in shared.values():
-        x, y = group[0][1].x_mm or 0.0, group[0][1].y_mm or 0.0
-        numbers = [str(number) for number, _ in group]
-        text = ", ".join(numbers[:3]) + (" …" if len(numbers) > 3 else "")
-        axes.plot(x, y, "o", markersize=15, markerfacecolor="none", markeredgecolor=FAULT, markeredgewidth=1.6, zorder=6)
-        axes.annotate(
-            *(text, (x, y), (9, 8), "data", "offset points"),
-            color=FAULT,
-            fontsize=9,
-            fontweight="bold",
-            zorder=7,
-            annotation_clip=False,
-            path_effects=[withStroke(linewidth=3, foreground="white")],
-        )
+def _centres(axes: Axes, drawing: Drawing, layer: str, colour: str) -> None:
+    """A dot at the centre of every arc of the layer."""
+    loops = [loop for loop in (*drawing.loops, *drawing.open_chains) if loop.layer == layer]
+    places = {(1e3 * edge.x, 1e3 * edge.y) for loop in loops for edge in loop.edges if isinstance(edge, Arc)}
+    if places:
+        axes.plot(*zip(*sorted(places), strict=True), "o", color=colour, markersize=2.2, markeredgewidth=0.0, zorder=5)
 
 
-def _legend(figure: Figure, drawing: Drawing) -> None:
+def _legend(figure: Figure, drawing: Drawing, centres: bool) -> Legend:
     """Layer names beside the picture, and what crosses, dashes and circles mean where there are any."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
@@ -184,13 +170,16 @@ def _legend(figure: Figure, drawing: Drawing) -> None:
         rows.append((Line2D([], [], color=FAINT, linestyle=(0, (5, 2)), linewidth=1.1), "open"))
     if drawing.points:
         rows.append((Line2D([], [], color=FAINT, marker="+", linestyle="none", markersize=10), "point"))
+    if centres:
+        rows.append((Line2D([], [], color=FAINT, marker="o", linestyle="none", markersize=3), "centre of an arc"))
     if any(finding.x_mm is not None for finding in drawing.findings):
         ring = Line2D([], [], marker="o", linestyle="none", markersize=10, markerfacecolor="none", markeredgecolor=FAULT)
-        rows.append((ring, "see the findings"))
+        rows.append((ring, "fault: see the list"))
     handles, names = zip(*rows, strict=True)
     legend = figure.legend(handles, names, loc="outside right upper", frameon=False, fontsize=9, labelcolor=INK)
     for text in legend.get_texts():
         text.set_parse_math(False)
+    return legend
 
 
 def _short(name: str) -> str:

@@ -19,7 +19,7 @@ from watchsim.simulation.coupled import motion
 from watchsim.simulation.drift import project_positions, project_velocities
 from watchsim.simulation.free import quarter_period
 from watchsim.simulation.integrator import coupled_step, dense_value
-from watchsim.simulation.keep import keep_row
+from watchsim.simulation.keep import is_kept, keep_row
 from watchsim.simulation.leave import first_leave
 from watchsim.simulation.options import OptionsRef
 from watchsim.simulation.passages import keep_passages
@@ -100,7 +100,7 @@ def _flight_rows(model, state, end, spacing, scratch, record):
     """Rows of a flight, evenly spaced, the last one at its end; brings the state there."""
     step = scratch.step
     n = len(model.coordinates)
-    rows = 1 if spacing == math.inf else max(1, math.ceil(end / spacing))
+    rows = 1 if spacing == math.inf or not is_kept(record, step.span[0], end) else max(1, math.ceil(end / spacing))
     for row in range(1, rows + 1):
         tau = end * row / rows if row < rows else end
         for i in range(n):
@@ -261,6 +261,8 @@ def _by_reference(scratch):
         scratch.y,
         scratch.dy,
         scratch.label,
+        scratch.engaged,
+        scratch.doubt,
         scratch.trial,
         scratch.alarm,
         scratch.unknown,

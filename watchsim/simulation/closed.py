@@ -7,6 +7,7 @@ from watchsim.contact.index_sets import OPEN
 from watchsim.contact.kinematics import contact_kinematics
 from watchsim.contact.lookup import UNKNOWN, candidate, candidates
 from watchsim.jit import kernel
+from watchsim.simulation.handover import continues_active
 from watchsim.simulation.state import ROOM
 
 
@@ -34,6 +35,8 @@ def _is_asleep(model, state, b):
 def gather(model, cells, state, options, scratch):
     """Ids of I_C, ascending, into `scratch.closed.ids`: contacts in force and those with a gap of zero.
 
+    What a contact in force will touch next on the same smooth outline is left out.
+
     Poses must be current. Returns their number, -1 when a cell is unknown, -2 when there are too many.
     """
     ids = scratch.closed.ids
@@ -53,11 +56,13 @@ def gather(model, cells, state, options, scratch):
             scratch.at[:] = state.q
             return -1
         for place in range(start, start + count):
-            k = candidate(cells, how, place)
+            k = candidate(model, cells, how, place)
             if state.mode[k] != OPEN:
                 continue
-            gap, _, nx, ny = normal_gap(model, k, scratch.pose)
-            if abs(gap) <= options.gap_close and extent_margin(model, k, scratch.pose, nx, ny) >= -options.extent:
+            gap, _, _, _ = normal_gap(model, k, scratch.pose)
+            if abs(gap) <= options.gap_close and extent_margin(model, k, scratch.pose) >= -options.extent:
+                if continues_active(model, state, options, k, scratch.pose):
+                    continue
                 if m == ROOM:
                     return -2
                 m = insert(ids, m, k)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from watchsim.contact.index_sets import STICK
 from watchsim.contact.kinematics import contact_kinematics
-from watchsim.contact.poses import place
+from watchsim.contact.poses import place_body
 from watchsim.dynamics.acceleration import accelerate, solve_mode
 from watchsim.dynamics.forces import damping_power, drive_power, forces
 from watchsim.jit import kernel
@@ -40,8 +40,21 @@ def monitor(model, state, scratch, options, i, which):
 
 
 @kernel
+def engage(model, state, scratch):
+    """Find the bodies that the active contacts join, the only ones whose places matter while the modes last."""
+    scratch.engaged[:] = 0
+    for i in range(state.numbers[0]):
+        contact = model.contacts[state.active[i]]
+        scratch.engaged[model.primitives[contact.a].body] = 1
+        scratch.engaged[model.primitives[contact.b].body] = 1
+
+
+@kernel
 def motion(model, state, options, t, y, scratch):
-    """dy/dt of y = (q, u, sums) at time t into `scratch.dy`; lowers `scratch.alarm` to the smallest monitor."""
+    """dy/dt of y = (q, u, sums) at time t into `scratch.dy`; lowers `scratch.alarm` to the smallest monitor.
+
+    `scratch.engaged` must be that of the active contacts.
+    """
     n = len(model.coordinates)
     q, u = y[:n], y[n : 2 * n]
     m = state.numbers[0]
@@ -49,7 +62,9 @@ def motion(model, state, options, t, y, scratch):
     forces(model, t, q, u, work.h)
     friction = 0.0
     if m > 0:
-        place(model, q, u, scratch.pose)
+        for b in range(len(model.bodies)):
+            if scratch.engaged[b]:
+                place_body(model, b, q, u, scratch.pose)
         for i in range(m):
             contact_kinematics(model, state.active[i], scratch.pose, i, closed)
         solve_mode(model, closed, m, state.mode, work)

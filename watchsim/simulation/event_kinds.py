@@ -15,7 +15,7 @@ class EventKind(IntEnum):
     OPEN = 3  # the contact lets go
     STICK = 4  # sliding ended
     SLIDE = 5  # sliding began; `value` is the direction, +1 or -1
-    HANDOVER = 6  # the contact left one primitive for its neighbour
+    HANDOVER = 6  # a contact in force passed from its primitives, contact number `value`, to their neighbours: `contact`
     ACCUMULATION = 7  # a sequence of rebounds was finished by rule; `value` is the time at which it would have ended
     TURN = 8  # a turning point of a sprung body; `value` is its coordinate
     CROSS = 9  # a sprung body passes its rest position; `value` is its velocity

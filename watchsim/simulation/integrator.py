@@ -9,8 +9,9 @@ from __future__ import annotations
 import math
 
 from watchsim.jit import kernel
-from watchsim.simulation.coupled import motion
+from watchsim.simulation.coupled import engage, motion
 from watchsim.simulation.dop853 import E3, E5, STAGES, A, C, D
+from watchsim.simulation.path import bound_accelerations
 from watchsim.simulation.state import COUPLED, N_REJECTED, N_STEPS, SUMS
 
 SAFETY, SHRINK, GROW = 0.9, 0.2, 6.0
@@ -87,6 +88,7 @@ def coupled_step(model, state, options, longest, scratch):
         step.y0[i], step.y0[n + i] = state.q[i], state.u[i]
     for i in range(SUMS):
         step.y0[2 * n + i] = 0.0
+    engage(model, state, scratch)
     h = min(state.clock[1], longest)
     shrunk = False
     while True:
@@ -106,13 +108,11 @@ def coupled_step(model, state, options, longest, scratch):
         h *= min(1.0, factor) if error < math.inf else SHRINK
     _extend(model, state, options, h, scratch)
     step.span[1] = h
-    # A step cut short by `longest` says nothing against a longer next one.
-    state.clock[1] = min(options.max_step, max(h * (min(1.0, factor) if shrunk else factor), min(state.clock[1], h * GROW)))
-    for i in range(n):
-        largest = 0.0
-        for s in range(STAGES + 4):
-            largest = max(largest, abs(step.stages[s, n + i]))
-        step.bound[i] = 2.0 * largest
+    proposed = h * (min(1.0, factor) if shrunk else factor)
+    if not shrunk:  # a step cut short by `longest` says nothing against a longer next one
+        proposed = max(proposed, min(state.clock[1], h * GROW))
+    state.clock[1] = min(options.max_step, proposed)
+    bound_accelerations(step, n)
     state.counts[N_STEPS] += 1
     return True
 

@@ -7,13 +7,18 @@ from watchsim.simulation.state import N_EVENTS
 
 
 @kernel
+def is_kept(record, t, length):
+    """True if rows within `length` seconds after t lie in one of the windows."""
+    for j in range(len(record.windows)):
+        if record.windows[j, 0] <= t + length and t <= record.windows[j, 1]:
+            return True
+    return False
+
+
+@kernel
 def keep_row(state, record, t, q, u, a):
     """Append a row unless t lies outside all windows."""
-    inside = False
-    for j in range(len(record.windows)):
-        if record.windows[j, 0] <= t <= record.windows[j, 1]:
-            inside = True
-    if not inside:
+    if not is_kept(record, t, 0.0):
         return
     row = record.used[0]
     n = len(q)

@@ -8,6 +8,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from watchsim.jit import by_reference
+from watchsim.mechanism.compile import CLEARANCE
+from watchsim.mechanism.features import JOINT
 
 
 class Options(NamedTuple):
@@ -37,8 +39,8 @@ def options_for(size: float, tolerance: float, max_step: float) -> Options:
     return Options(
         tolerance=tolerance,
         gap_zero=1e-13 * size,
-        gap_close=max(2e-10, tolerance) * size,
-        extent=2e-8 * size,
+        gap_close=min(max(2e-10, tolerance), 0.25 * CLEARANCE) * size,
+        extent=4.0 * JOINT * size,
         # Velocities drift off their contacts by about the tolerance within a step.
         speed_zero=max(1e-8, 20.0 * tolerance) * size,
         force_zero=1e-9,

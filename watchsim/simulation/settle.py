@@ -6,7 +6,7 @@ stay closed and which of them stick. Velocities and positions are then exact to 
 
 from __future__ import annotations
 
-from watchsim.contact.gaps import extent_margin, normal_gap
+from watchsim.contact.gaps import extent_margin
 from watchsim.contact.index_sets import OPEN, STICK
 from watchsim.contact.poses import place
 from watchsim.dynamics.acceleration import accelerate, decide_modes
@@ -15,6 +15,7 @@ from watchsim.jit import kernel
 from watchsim.simulation.closed import gather, refresh, resting
 from watchsim.simulation.collide import approaching, collide
 from watchsim.simulation.drift import project_positions, project_velocities
+from watchsim.simulation.handover import LEFT, hand_over
 from watchsim.simulation.keep import keep_event
 from watchsim.simulation.sleep import find_sleepers
 from watchsim.simulation.state import N_LCP, N_LCP_FAILED
@@ -76,6 +77,8 @@ def _list_active(model, state, f, scratch):
 def settle(model, cells, state, options, scratch, record):
     """Handle the event that waits at the current state; returns a Stop code, RUNNING when all went well."""
     place(model, state.q, state.u, scratch.pose)
+    if not hand_over(model, cells, state, options, scratch, record):
+        return CELL_UNKNOWN
     _release(model, state, options, scratch, record)
     m = gather(model, cells, state, options, scratch)
     if m < 0:
@@ -114,12 +117,11 @@ def settle(model, cells, state, options, scratch, record):
 
 @kernel
 def _release(model, state, options, scratch, record):
-    """Open the contacts that have left their primitives."""
+    """Open the contacts that have left their primitives without a successor."""
     kept, awake = 0, 0
     for j in range(state.numbers[0] + state.numbers[1]):
         k = state.active[j]
-        _, _, nx, ny = normal_gap(model, k, scratch.pose)
-        if extent_margin(model, k, scratch.pose, nx, ny) < -1.5 * options.extent:
+        if extent_margin(model, k, scratch.pose) < -LEFT * options.extent:
             state.mode[k] = OPEN
             keep_event(state, record, OPEN_EVENT, k, -1, 0.0)
             continue

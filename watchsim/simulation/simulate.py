@@ -63,10 +63,12 @@ def simulate(
     tolerance: float | None = None,
     record: tuple[tuple[float, float], ...] | None = None,
     progress: Progress | None = None,
+    prefilter: bool = True,
 ) -> Trajectory:
     """Simulate `scene` for `duration` seconds at a relative error `tolerance` per step (both default to the scene's own).
 
     `record` lists the windows (s) in which rows are kept, default the scene's, else the whole run; events are always kept.
+    Without `prefilter` every declared pair of primitives is looked at in every step: slow, the same events.
     `progress(simulated, duration)` is called about ten times a second. KeyboardInterrupt ends the run and keeps what was
     simulated. A solver that cannot go on does not raise: see `Trajectory.stop`.
     """
@@ -77,7 +79,7 @@ def simulate(
         raise ValueError(f"the duration must be a positive number of seconds, not {duration}")
     if not 1e-13 <= tolerance <= 1e-2:
         raise ValueError(f"the tolerance must lie between 1e-13 and 1e-2, not {tolerance}")
-    compiled = compile_scene(scene)
+    compiled = compile_scene(scene, prefilter)
     run = _Run(compiled, tolerance, duration, record or scene.record or WHOLE_RUN)
     ready = time.perf_counter()
     run.warm_up()
@@ -147,7 +149,8 @@ class _Run:
         rows = np.concatenate(self.kept.rows) if self.kept.rows else np.zeros((0, 1 + 3 * n))
         events = np.concatenate(self.kept.events) if self.kept.events else np.zeros(0, EVENT_DTYPE)
         counts = {name: int(value) for name, value in zip(COUNT_NAMES, self.state.counts, strict=True)}
-        counts["cells"] = len(self.finder._known)
+        counts["cells"] = self.finder.number
+        counts["cells_asked"] = self.finder.learned
         counts["declared_pairs"] = len(self.compiled.model.contacts)
         return Trajectory(
             scene=scene,

@@ -101,6 +101,8 @@ class Scratch(NamedTuple):
     y: Array
     dy: Array
     label: Integers
+    engaged: NDArray[np.int8]  # bodies that the active contacts join
+    doubt: Integers  # candidates that may close within a stretch
     trial: NDArray[np.int8]
     alarm: Array  # smallest monitor met in the current step
     unknown: Integers  # body pair whose cell is not known
@@ -172,6 +174,8 @@ def new_scratch(model: Model) -> Scratch:
         y=np.zeros(width),
         dy=np.zeros(width),
         label=np.zeros(n, np.int64),
+        engaged=np.zeros(len(model.bodies), np.int8),
+        doubt=np.zeros(len(model.contacts), np.int64),
         trial=np.zeros(len(model.contacts), np.int8),
         alarm=np.zeros(1),
         unknown=np.zeros(1, np.int64),

@@ -2,20 +2,23 @@
 
 Safe steps: with a bound B of |g''| over a stretch of time the gap stays above g + g' d - B d²/2, so time may advance to that
 parabola's zero. Near a contact this is Newton's method from the safe side (it converges quadratically and never jumps over
-a root); far from it, one evaluation covers the whole stretch.
+a root); far from it, one evaluation covers the whole stretch. The bounds hold for the motion as computed (path.py).
 """
 
 from __future__ import annotations
 
 import math
 
-from watchsim.contact.gaps import extent_margin, normal_gap
+from watchsim.contact.gaps import extent_margins, normal_gap
 from watchsim.contact.lookup import UNKNOWN, candidate, candidates, time_in_cell
 from watchsim.contact.poses import point_of
 from watchsim.jit import kernel
 from watchsim.mechanism.model import FREE, LINE, PIVOT, SLIDE
+from watchsim.simulation.handover import continues_active
+from watchsim.simulation.path import body_on_path
 from watchsim.simulation.state import N_GAPS
-from watchsim.simulation.within import body_within
+
+STRIDE = 0.25  # of the extent: steps in which a neighbour of a contact in force is watched until its turn comes
 
 
 @kernel
@@ -37,12 +40,15 @@ def _body_bounds(model, b, length, scratch):
 
 
 @kernel
-def _gap_bounds(model, k, length, scratch):
-    """Bounds over the next `length` seconds: |g'|, |g''| but for B's curvature, and the bodies' relative turning."""
+def _gap_bounds(model, k, length, bounds_a, bounds_b, scratch):
+    """Bounds over the next `length` seconds: |g'|, |g''| but for B's curvature, and the bodies' relative turning.
+
+    `bounds_a` and `bounds_b` are the `_body_bounds` of the two bodies.
+    """
     contact = model.contacts[k]
     a, b = model.primitives[contact.a], model.primitives[contact.b]
-    speed_a, turn_a, push_a, twist_a = _body_bounds(model, a.body, length, scratch)
-    speed_b, turn_b, push_b, twist_b = _body_bounds(model, b.body, length, scratch)
+    speed_a, turn_a, push_a, twist_a = bounds_a
+    speed_b, turn_b, push_b, twist_b = bounds_b
     pa, pb = scratch.pose[a.body], scratch.pose[b.body]
     rx, ry = point_of(pa, a.x, a.y)
     arm_a = math.sqrt(rx * rx + ry * ry)
@@ -87,62 +93,138 @@ def _safe(room, approach, closing, bend, distance):
 
 
 @kernel
-def _time_outside(model, k, margin, motion, distance):
-    """A time for which a contact that lies `margin` (negative) outside its primitives stays outside."""
+def _time_outside(model, k, inside_a, inside_b, motion, distance):
+    """A time for which a contact stays outside its primitives, from how far inside each it is; 0 if it is inside both."""
     contact = model.contacts[k]
     a, b = model.primitives[contact.a], model.primitives[contact.b]
     closing, swing = motion
-    scale = max(a.radius, a.length) + b.radius
     near = 0.5 * distance
-    drift = closing + (swing + closing / near) * scale
-    return min(-margin / drift, near / closing)
+    turn = swing + closing / near  # of the normal in either body, while the centres keep half their distance
+    time = 0.0
+    if inside_a < 0.0:
+        time = -inside_a / (turn * max(a.radius, a.length)) if turn > 0.0 else math.inf
+    if inside_b < 0.0:
+        time = max(time, -inside_b / (closing if b.kind == LINE else turn * b.radius))
+    return min(time, near / closing)
 
 
 @kernel
 def crossing(model, state, options, k, start, end, scratch):
-    """First time in [start, end) at which open contact k closes inside its primitives; infinity if it does not."""
+    """First time in [start, end) at which open contact k closes inside its primitives; infinity if it does not.
+
+    The two bodies must stand where they are at `start`.
+    """
     contact = model.contacts[k]
     body_a, body_b = model.primitives[contact.a].body, model.primitives[contact.b].body
-    body_within(model, state, body_a, start, scratch)
-    body_within(model, state, body_b, start, scratch)
-    closing, bend, swing = _gap_bounds(model, k, end - start, scratch)
+    bounds_a = _body_bounds(model, body_a, end - start, scratch)
+    bounds_b = _body_bounds(model, body_b, end - start, scratch)
+    closing, bend, swing = _gap_bounds(model, k, end - start, bounds_a, bounds_b, scratch)
     if closing == 0.0:
         return math.inf
-    zero = options.gap_zero
+    zero, band = options.gap_zero, options.gap_close
     tau = start
     # `outside`: on the free side; `clear`: has been further than rounding from it since.
-    fresh, outside, clear = True, True, False
+    fresh, outside, clear, beside = True, True, False, 0.0
     while tau < end:
         if tau > start:
-            body_within(model, state, body_a, tau, scratch)
-            body_within(model, state, body_b, tau, scratch)
-        gap, rate, nx, ny = normal_gap(model, k, scratch.pose)
+            body_on_path(model, state, body_a, tau, scratch)
+            body_on_path(model, state, body_b, tau, scratch)
+        gap, rate, _, _ = normal_gap(model, k, scratch.pose)
         distance = _centre_distance(model, k, scratch.pose)
         state.counts[N_GAPS] += 1
         if fresh or not outside:
-            outside, clear = gap >= -zero, False
+            outside, clear = gap >= -zero, beside > 0.0  # what lay beside its primitives was no contact until now
         fresh = False
         leaving = gap > zero or rate > options.speed_zero
         if outside and leaving:
             clear = True  # a contact that has just rebounded counts as clear: it returns to this gap by falling only
-        if outside and gap <= zero:
-            # Where a smooth outline goes on, its next piece has no gap either, and closes only when its turn comes.
-            margin = extent_margin(model, k, scratch.pose, nx, ny) + options.extent
-            if margin < 0.0:
-                # At least the time in which the gap cannot pass through its rounding.
-                tau += max(_time_outside(model, k, margin, (closing, swing), distance), zero / closing)
+        # Positions jump where drift is taken back: a gap may have closed by that.
+        shallow = not outside and gap >= -band
+        # Where a smooth outline goes on, its next piece has no gap either, and closes only when its turn comes.
+        inside_a, inside_b = extent_margins(model, k, scratch.pose)
+        inside_a, inside_b = inside_a + options.extent, inside_b + options.extent
+        beside = _time_outside(model, k, inside_a, inside_b, (closing, swing), distance)
+        if (shallow or (outside and gap <= zero)) and min(inside_a, inside_b) < 0.0:
+            # At least the time in which the gap cannot pass through its rounding.
+            tau += max(beside, zero / closing)
+            fresh = True
+            continue
+        if outside and gap <= zero and ((clear and rate < 0.0) or gap < -zero):
+            if continues_active(model, state, options, k, scratch.pose):
+                tau += STRIDE * options.extent / closing
                 fresh = True
                 continue
-        if outside and gap <= zero and ((clear and rate < 0.0) or gap < -zero):
             return min(end, tau + gap / -rate) if clear and gap > 0.0 and rate * (end - tau) < -gap else tau
+        if shallow and (rate < -options.speed_zero or (rate < 0.0 and gap <= zero - band)):
+            if continues_active(model, state, options, k, scratch.pose):
+                tau += STRIDE * options.extent / closing
+                fresh = True
+                continue
+            return tau
         if outside:
             room, approach = (max(gap, 0.0) if leaving else gap + 2.0 * zero), -rate
             clear = clear and leaving
         else:
             room, approach = -gap, rate
+        safe = _safe(room, approach, closing, bend, distance)
+        if shallow:
+            safe = min(safe, _safe(gap + band, -rate, closing, bend, distance))
+        if beside > safe:
+            # Beside its primitives the gap may pass through zero: which side it is on afterwards is found anew.
+            tau += beside
+            fresh = True
+            continue
         # Never less than the rounding of time itself.
-        tau += max(_safe(room, approach, closing, bend, distance), 4e-16 * tau)
+        tau += max(safe, 4e-16 * tau)
     return math.inf
+
+
+@kernel
+def _stays_open(model, state, options, k, length, first, bounds, scratch):
+    """True if one look at the current poses shows that contact k cannot close in the next `length` seconds.
+
+    `bounds` are the `_body_bounds` of the pair's bodies, of body `first` and of the other one.
+    """
+    gap, rate, _, _ = normal_gap(model, k, scratch.pose)
+    state.counts[N_GAPS] += 1
+    if -options.gap_close <= gap <= options.gap_zero:
+        return False
+    # Behind its primitive a contact must come out before it can close.
+    room, approach = (gap, -rate) if gap > 0.0 else (-gap, rate)
+    # The circle may be on either body of the pair.
+    here = model.primitives[model.contacts[k].a].body == first
+    closing, bend, _ = _gap_bounds(model, k, length, bounds[0 if here else 1], bounds[1 if here else 0], scratch)
+    return room > closing * length or _safe(room, approach, closing, bend, _centre_distance(model, k, scratch.pose)) >= length
+
+
+@kernel
+def _place_pair(model, state, pair, tau, scratch):
+    body_on_path(model, state, pair.a, tau, scratch)
+    body_on_path(model, state, pair.b, tau, scratch)
+
+
+@kernel
+def _first_of(model, cells, state, options, p, tau, until, scratch):
+    """(known, time, contact) of the first closing in [tau, until) among the candidates of pair p in one cell."""
+    pair = model.pairs[p]
+    best, who = until, -1
+    how, start, count = candidates(model, cells, p, scratch.q)
+    if how == UNKNOWN:
+        return False, 0.0, -1
+    bounds = (_body_bounds(model, pair.a, until - tau, scratch), _body_bounds(model, pair.b, until - tau, scratch))
+    doubts = 0
+    for place in range(start, start + count):
+        k = candidate(model, cells, how, place)
+        if state.mode[k] == 0 and not _stays_open(model, state, options, k, until - tau, pair.a, bounds, scratch):
+            scratch.doubt[doubts] = k
+            doubts += 1
+    for j in range(doubts):
+        if j > 0:
+            _place_pair(model, state, pair, tau, scratch)
+        root = crossing(model, state, options, scratch.doubt[j], tau, best, scratch)
+        if root < best:
+            best, who = root, scratch.doubt[j]
+    return True, best, who
 
 
 @kernel
@@ -166,19 +248,15 @@ def first_touch(model, cells, state, options, end, scratch):
             continue
         tau = 0.0
         while tau < best:
-            body_within(model, state, pair.a, tau, scratch)
-            body_within(model, state, pair.b, tau, scratch)
-            how, start, count = candidates(model, cells, p, scratch.q)
-            if how == UNKNOWN:
-                scratch.unknown[0] = p
-                scratch.at[:] = scratch.q
-                return False, 0.0, -1
+            _place_pair(model, state, pair, tau, scratch)
+            scratch.at[:] = scratch.q
             until = min(best, tau + time_in_cell(model, p, scratch.q, scratch.u, scratch.step.bound))
-            for place in range(start, start + count):
-                k = candidate(cells, how, place)
-                if state.mode[k] == 0:
-                    root = crossing(model, state, options, k, tau, until, scratch)
-                    if root < until:
-                        best, until, who = root, root, k
+            known, root, k = _first_of(model, cells, state, options, p, tau, until, scratch)
+            if not known:
+                scratch.unknown[0] = p
+                return False, 0.0, -1
+            if k >= 0:
+                best, who = root, k
+                break
             tau = until
     return True, best, who

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from watchsim.contact.poses import place_body
 from watchsim.jit import kernel
-from watchsim.mechanism.model import FREE
 from watchsim.simulation.free import acceleration, acceleration_bound, flow
 from watchsim.simulation.integrator import dense_value
 from watchsim.simulation.state import FLIGHT
@@ -36,14 +34,3 @@ def coordinate_within(model, state, step, i, tau):
 def flight_acceleration(model, state, i, q, u):
     """q'' of coordinate i during a flight."""
     return acceleration(model.coordinates[i], q, u) if state.awake[i] else 0.0
-
-
-@kernel
-def body_within(model, state, b, tau, scratch):
-    """Bring body b's coordinates (in scratch.q, scratch.u) and pose to time tau of the step."""
-    body = model.bodies[b]
-    if body.first >= 0:
-        for j in range(3 if body.motion == FREE else 1):
-            i = body.first + j
-            scratch.q[i], scratch.u[i] = coordinate_within(model, state, scratch.step, i, tau)
-    place_body(model, b, scratch.q, scratch.u, scratch.pose)

@@ -1,0 +1,177 @@
+"""How does the time to read a drawing grow with its size?
+
+Writes drawings of 1 000 to 100 000 edges, measures the whole command `watchsim inspect` in a fresh process (processor time, the
+least of a few runs), fits the exponent, and writes docs/images/reading_speed.png and docs/reading-speed.md.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import os
+import random
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[1]
+SIZES = (1000, 3000, 10_000, 30_000, 100_000)
+FITTED_FROM = 10_000  # edges; below, the start of Python is most of the time
+SEED = 1
+
+
+def line(ax: float, ay: float, bx: float, by: float) -> str:
+    return f"0\nLINE\n8\nPART\n10\n{ax!r}\n20\n{ay!r}\n30\n0.0\n11\n{bx!r}\n21\n{by!r}\n31\n0.0\n"
+
+
+def arc(x: float, y: float, radius: float, start: float, end: float) -> str:
+    return f"0\nARC\n8\nPART\n10\n{x!r}\n20\n{y!r}\n30\n0.0\n40\n{radius!r}\n50\n{start!r}\n51\n{end!r}\n"
+
+
+def toothed_wheel(count: int, rng: random.Random) -> Iterator[str]:
+    """One outline of lines, a tooth every two of them, drawn in random order and direction."""
+    radius = 0.02 * count
+    corners = [
+        ((radius + 0.1 * (k % 2)) * math.cos(math.tau * k / count), (radius + 0.1 * (k % 2)) * math.sin(math.tau * k / count))
+        for k in range(count)
+    ]
+    for k in rng.sample(range(count), count):
+        a, b = corners[k], corners[(k + 1) % count]
+        yield line(*a, *b) if rng.random() < 0.5 else line(*b, *a)
+
+
+def scalloped_disc(count: int, rng: random.Random) -> Iterator[str]:
+    """One outline of half circles side by side along a large circle, in random order."""
+    radius = 0.02 * count
+    for k in rng.sample(range(count), count):
+        half = math.pi / count
+        middle, chord = math.tau * (k + 0.5) / count, radius * math.sin(half)
+        foot = radius * math.cos(half)
+        degrees = math.degrees(middle)
+        yield arc(foot * math.cos(middle), foot * math.sin(middle), chord, degrees - 90.0, degrees + 90.0)
+
+
+def plate_of_holes(count: int, rng: random.Random) -> Iterator[str]:
+    """Rounded slots of two lines and two half circles in rows, in a frame, all shuffled."""
+    side = math.ceil(math.sqrt(count / 4))
+    pieces = []
+    for k in range((count - 4) // 4):
+        x, y = 2.0 * (k % side), 2.0 * (k // side)
+        pieces += [line(x, y - 0.3, x + 0.8, y - 0.3), line(x + 0.8, y + 0.3, x, y + 0.3)]
+        pieces += [arc(x + 0.8, y, 0.3, -90.0, 90.0), arc(x, y, 0.3, 90.0, 270.0)]
+    far = 2.0 * side
+    corners = [(-2.0, -2.0), (far, -2.0), (far, far), (-2.0, far)]
+    pieces += [line(*a, *b) for a, b in zip(corners, corners[1:] + corners[:1], strict=True)]
+    rng.shuffle(pieces)
+    yield from pieces
+
+
+def crossing_rings(count: int, rng: random.Random) -> Iterator[str]:
+    """Circles in rows of which every tenth cuts its neighbour: as many faults as a tenth of the circles."""
+    side = math.ceil(math.sqrt(count))
+    for k in rng.sample(range(count), count):
+        x, y = 2.0 * (k % side), 2.0 * (k // side)
+        yield arc(x, y, 1.05 if k % 10 == 0 else 0.9, 0.0, 360.0)
+
+
+DRAWINGS: dict[str, Callable[[int, random.Random], Iterator[str]]] = {
+    "one wheel of lines": toothed_wheel,
+    "one disc of arcs": scalloped_disc,
+    "slots in a plate": plate_of_holes,
+    "circles, some crossing": crossing_rings,
+}
+
+
+def write(path: Path, entities: Iterator[str]) -> None:
+    head = "0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n70\n4\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n"
+    path.write_text(head + "".join(entities) + "0\nENDSEC\n0\nEOF\n")
+
+
+def seconds(path: Path, repeats: int) -> tuple[float, float]:
+    """Processor and wall time of the whole command, the least of several runs."""
+    best = (math.inf, math.inf)
+    for _ in range(repeats):
+        before, start = os.times(), time.perf_counter()
+        subprocess.run(
+            [sys.executable, "-m", "watchsim", "inspect", str(path)], check=True, stdout=subprocess.DEVNULL, cwd=ROOT
+        )
+        after = os.times()
+        used = after.children_user + after.children_system - before.children_user - before.children_system
+        best = min(best[0], used), min(best[1], time.perf_counter() - start)
+    return best
+
+
+def exponent(sizes: np.ndarray, times: np.ndarray) -> float:
+    """The slope of log time over log size, without what an empty drawing takes."""
+    chosen = sizes >= FITTED_FROM
+    return float(np.polyfit(np.log(sizes[chosen]), np.log(times[chosen]), 1)[0])
+
+
+def plot(results: dict[str, np.ndarray], empty: float, path: Path) -> None:
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot as plt
+
+    figure, axes = plt.subplots(figsize=(7.0, 4.4), layout="constrained")
+    for name, rows in results.items():
+        axes.loglog(rows[:, 0], rows[:, 1], "o-", label=f"{name} (n^{exponent(rows[:, 0], rows[:, 1] - empty):.2f})")
+    axes.axhline(empty, color="0.6", linewidth=0.8, linestyle=":")
+    axes.text(SIZES[0], 1.04 * empty, "a drawing of one circle", fontsize=8, color="0.4")
+    axes.set(xlabel="edges", ylabel="processor time of watchsim inspect (s)")
+    axes.grid(True, which="major", color="0.9")
+    axes.legend(frameon=False, fontsize=9)
+    figure.savefig(path, dpi=130)
+
+
+def table(results: dict[str, np.ndarray], megabytes: dict[str, float], empty: float) -> str:
+    head = (
+        "# How fast drawings are read\n\n"
+        "Made by `scripts/measure_reading.py`: the whole command `watchsim inspect FILE` in a fresh process, processor time\n"
+        "in seconds, the least of a few runs. Outlines are cut into single entities and shuffled. The exponent is fitted from "
+        f"{FITTED_FROM} edges on, after\nsubtracting the {empty:.2f} s of a drawing of one circle.\n\n"
+    )
+    sizes = next(iter(results.values()))[:, 0]
+    rows = ["| Edges | " + " | ".join(f"{int(n):,}".replace(",", " ") for n in sizes) + " | largest file | exponent |"]
+    rows.append("|---" * (len(sizes) + 3) + "|")
+    for name, values in results.items():
+        times = " | ".join(f"{t:.2f}" for t in values[:, 1])
+        rows.append(f"| {name} | {times} | {megabytes[name]:.1f} MB | {exponent(sizes, values[:, 1] - empty):.2f} |")
+    return head + "\n".join(rows) + "\n\n![Time against size](images/reading_speed.png)\n"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--repeats", type=int, default=3)
+    parser.add_argument("--largest", type=int, default=SIZES[-1])
+    parser.add_argument("--dry", action="store_true", help="print only, write nothing into docs")
+    args = parser.parse_args()
+    results: dict[str, np.ndarray] = {}
+    megabytes: dict[str, float] = {}
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "drawing.dxf"
+        write(path, iter([arc(0.0, 0.0, 1.0, 0.0, 360.0)]))
+        empty, _ = seconds(path, args.repeats + 2)
+        for name, make in DRAWINGS.items():
+            rows = []
+            for size in (n for n in SIZES if n <= args.largest):
+                write(path, make(size, random.Random(SEED)))
+                used, wall = seconds(path, args.repeats)
+                rows.append((size, used, wall))
+                megabytes[name] = path.stat().st_size / 1e6
+                print(f"{name}: {size} edges, {megabytes[name]:.2f} MB, {used:.2f} s ({wall:.2f} s wall)", flush=True)
+            results[name] = np.array(rows)
+    text = table(results, megabytes, empty)
+    print(text)
+    if not args.dry:
+        plot(results, empty, ROOT / "docs" / "images" / "reading_speed.png")
+        (ROOT / "docs" / "reading-speed.md").write_text(text)
+
+
+if __name__ == "__main__":
+    main()

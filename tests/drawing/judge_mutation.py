@@ -1,0 +1,50 @@
+"""Was a damaged drawing read as it must be: no exception, and nothing missing in silence?"""
+
+from __future__ import annotations
+
+import json
+import traceback
+from pathlib import Path
+from typing import Any
+
+from watchsim.drawing.drawing import Drawing
+from watchsim.drawing.inspect import inspect_report, inspect_text
+from watchsim.drawing.read import FIT, read, read_content
+
+LEFT_OUT = ("layer-off", "paper-space", "edge-on")
+
+
+def amount(drawing: Drawing) -> int:
+    """How much geometry a drawing holds: closed loops count double, so that one torn open is less."""
+    return 2 * len(drawing.loops) + len(drawing.open_chains) + len(drawing.points)
+
+
+def fault(path: Path, whole: Drawing, mutator: Any) -> str:
+    """What is wrong with how the damaged file at `path` is read; empty if all is well.
+
+    `whole` is the drawing before, which had no finding. `mutator` is the module that damaged it; it looks at the file in
+    its own ways, without the package: `entities(data)`, how many stand in the file; `lost(data)`, whether the name of one stands
+    where none begins; `pieces(path)`, how many are drawn by another reader, None where that one gives up.
+
+    All entities must be drawn or told of; without any finding at least as much as before must be there, unless the other reader
+    agrees that the damaged file draws less.
+    """
+    data = path.read_bytes()
+    try:
+        content = read_content(path, path.suffix[1:], None, FIT)
+        drawing = read(path)
+        json.dumps(inspect_report(drawing), allow_nan=False)
+        inspect_text(drawing)
+        runs = {stroke.run for stroke in content.strokes}
+    except Exception:
+        return "exception: " + traceback.format_exc(limit=-3)
+    if not drawing.findings and amount(drawing) < amount(whole) and mutator.pieces(path) != len(runs) + len(content.points):
+        return f"silent loss: {amount(whole)} before, {amount(drawing)} after, and nothing said"
+    drawn = len(runs) + len(content.points) + sum(content.ignored.values())
+    told = any(finding.severity == "error" or finding.code in LEFT_OUT for finding in content.findings)
+    entities = mutator.entities(data)
+    if drawn < entities and not told:
+        return f"silent loss: {entities} entities in the file, {drawn} read, and nothing said"
+    if mutator.lost(data) and not drawing.findings:
+        return "silent loss: an entity begins nowhere, and nothing said"
+    return ""

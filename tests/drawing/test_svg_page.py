@@ -1,0 +1,143 @@
+"""Which unit does an SVG drawing have, and on which layers does it lie?"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+import svg_text as s
+
+from watchsim.drawing.drawing import Drawing
+from watchsim.drawing.inspect import inspect_report
+from watchsim.geometry.extent import extents
+from watchsim.geometry.primitives import Arc
+
+Reader = Callable[..., Drawing]
+SQUARE = '<rect width="4.3" height="4.3"/>'
+
+
+def across(drawing: Drawing) -> float:
+    """Metres."""
+    box = extents(drawing.loops)
+    assert box is not None
+    return box[2] - box[0]
+
+
+@pytest.mark.parametrize(
+    ("page", "units", "size"),
+    [
+        ('width="4.3mm" height="4.3mm" viewBox="0 0 4.3 4.3"', "mm", 4.3e-3),
+        ('width="4.3mm" viewBox="0 0 4.3 4.3"', "mm", 4.3e-3),
+        ('height="4.3mm" viewBox="0 0 4.3 4.3"', "mm", 4.3e-3),
+        ('width="4.3mm" height="100%" viewBox="0 0 4.3 4.3"', "mm", 4.3e-3),
+        ('width="43mm" height="43mm" viewBox="-10 -20 4.3 4.3"', "mm", 43e-3),
+        ('width="4.3cm" height="43mm" viewBox="0 0 4.3 4.3"', "cm", 43e-3),
+        ('width="4.3in" height="4.3in" viewBox="0 0 4.3 4.3"', "inch", 4.3 * 0.0254),
+        ('width="4.3pt" height="4.3pt" viewBox="0 0 4.3 4.3"', "pt", 4.3 * 0.0254 / 72),
+        ('width="4.3pc" height="4.3pc" viewBox="0 0 4.3 4.3"', "pc", 4.3 * 0.0254 / 6),
+        ('width="4.3Q" height="4.3Q" viewBox="0 0 4.3 4.3"', "Q", 4.3e-3 / 4),
+        ('width="4.3px" height="4.3px" viewBox="0 0 4.3 4.3"', "px", 4.3 * 0.0254 / 96),
+        ('width="10mm" height="10mm"', "mm", 4.3 * 0.0254 / 96),
+        ('width="8.6mm" height="43mm" viewBox="0 0 4.3 4.3"', "mm", 8.6e-3),
+        ('width="8.6mm" height="43mm" viewBox="0 0 4.3 4.3" preserveAspectRatio="xMidYMid slice"', "mm", 43e-3),
+    ],
+)
+def test_a_page_with_a_size_says_the_unit(read_svg: Reader, page: str, units: str, size: float) -> None:
+    drawing = read_svg(s.svg(SQUARE, page))
+    assert across(drawing) == pytest.approx(size, rel=1e-14)
+    assert inspect_report(drawing)["units"] == units
+    assert inspect_report(drawing)["units_from"] == "page"
+    assert not drawing.findings
+
+
+def test_millimetres_are_exact(read_svg: Reader) -> None:
+    drawing = read_svg(s.svg('<circle cx="1.7" cy="2.3" r="1.15"/>', 'width="4.3mm" height="4.3mm" viewBox="0 0 4.3 4.3"'))
+    (edge,) = s.edges(drawing)
+    assert isinstance(edge, Arc)
+    assert (edge.x, edge.y, edge.radius) == (1e-3 * 1.7, 1e-3 * -2.3, 1e-3 * 1.15)
+
+
+@pytest.mark.parametrize(
+    "page",
+    ["", 'viewBox="0 0 9 9"', 'width="430" height="430" viewBox="0 0 4.3 4.3"', 'width="100%" height="100%" viewBox="0 0 9 9"'],
+)
+def test_a_page_without_a_unit_has_none_until_it_is_said(read_svg: Reader, page: str) -> None:
+    drawing = read_svg(s.svg(SQUARE, page))
+    assert drawing.units is None
+    assert drawing.units_from is None
+    assert set(s.errors(drawing)) == {"units-missing"}
+    assert "4.3 mm or 109.2 mm" in s.errors(drawing)["units-missing"]
+    for unit, metres in (("mm", 1e-3), ("inch", 0.0254), ("px", 0.0254 / 96)):
+        said = read_svg(s.svg(SQUARE, page), units=unit)
+        assert (said.units, said.units_from) == (unit, "option")
+        assert across(said) == pytest.approx(4.3 * metres, rel=1e-14)
+        assert not said.findings
+
+
+def test_the_caller_overrules_the_page_with_a_warning(read_svg: Reader) -> None:
+    text = s.svg(SQUARE, 'width="43mm" height="43mm" viewBox="0 0 4.3 4.3"')
+    agreed = read_svg(text, units="mm")
+    assert (agreed.units_from, across(agreed), agreed.findings) == ("page", pytest.approx(43e-3), ())
+    overruled = read_svg(text, units="inch")
+    assert across(overruled) == pytest.approx(4.3 * 0.0254)
+    assert "2.54 times as large" in s.codes(overruled)["units-overruled"]
+    with pytest.raises(ValueError, match="furlong"):
+        read_svg(text, units="furlong")
+
+
+@pytest.mark.parametrize(
+    ("page", "word"),
+    [
+        ('width="wide" height="3mm"', "wide"),
+        ('width="3em" height="3mm"', "unit"),
+        ('viewBox="0 0 4"', "viewBox"),
+        ('viewBox="0 0 4 -4"', "viewBox"),
+        ('width="3mm" height="3mm" viewBox="0 0 3 3" preserveAspectRatio="middle"', "middle"),
+    ],
+)
+def test_pages_that_cannot_be_read_are_errors(read_svg: Reader, page: str, word: str) -> None:
+    assert word in s.errors(read_svg(s.svg(SQUARE, page)))["damaged"]
+
+
+def test_pages_of_two_minds_or_without_size_are_told(read_svg: Reader) -> None:
+    mixed = read_svg(s.svg(SQUARE, 'width="43mm" height="43" viewBox="0 0 4.3 4.3"'))
+    assert "one of its sides" in s.codes(mixed)["page"]
+    assert {"page", "empty"} <= set(s.codes(read_svg(s.svg(SQUARE, 'width="0" height="0"'))))
+
+
+LAYER = 'inkscape:groupmode="layer"'
+ROUND = '<circle r="1"/>'
+PIVOT, ONE = '<circle id="PIVOT" r="1"/>', '<circle id="one" r="1"/>'
+
+
+@pytest.mark.parametrize(
+    ("content", "layers"),
+    [
+        (ROUND, ["0"]),
+        (PIVOT, ["PIVOT"]),
+        ('<circle id="circle12-3" r="1"/>', ["0"]),
+        (f'<g id="TEETH">{ROUND}</g>', ["TEETH"]),
+        (f'<g id="g10">{ROUND}</g>', ["0"]),
+        (f'<g id="WHEEL"><g id="TEETH"><g id="g7">{ROUND}</g></g></g>', ["TEETH"]),
+        (f'<g id="WHEEL">{PIVOT}</g>', ["PIVOT"]),
+        (f'<g id="layer1" {LAYER} inkscape:label="TEETH">{ONE}</g>', ["TEETH"]),
+        (f'<g id="layer1" {LAYER}>{ROUND}</g>', ["layer1"]),
+        (f'<g {LAYER} inkscape:label="A"><g {LAYER} inkscape:label="B">{ROUND}</g>{ROUND}</g>', ["B", "A"]),
+        (f'<g {LAYER} inkscape:label="A"><circle inkscape:label="PIVOT" r="1"/></g>', ["PIVOT"]),
+        (f'<g id="Escape_x20_wheel">{ROUND}</g>', ["Escape wheel"]),
+        (f'<g id="a_1_" data-name="a">{ROUND}</g>', ["a"]),
+        ('<line id="EDGE" x2="3"/>', ["0"]),
+        ('<path id="EDGE" d="M1 1h3"/>', ["0"]),
+        ('<path id="CAM" d="M1 1h3v3z"/>', ["CAM"]),
+        (f'<defs>{ONE}</defs><g id="TEETH"><use id="u" href="#one"/></g>', ["TEETH"]),
+        (f'<defs>{ONE}</defs><use href="#one"/>', ["one"]),
+        (f'<defs>{ONE}</defs><use id="PIN" href="#one"/>', ["PIN"]),
+    ],
+)
+def test_layers(read_svg: Reader, content: str, layers: list[str]) -> None:
+    assert list(read_svg(s.svg(content)).layers) == layers
+
+
+def test_outlines_of_single_lines_with_names_of_their_own_close(read_svg: Reader) -> None:
+    lines = '<line id="a" x2="3"/><line id="b" x1="3" x2="3" y2="3"/><path id="c" d="M3 3L0 0"/>'
+    assert len(read_svg(s.svg(lines)).loops) == 1

@@ -1,0 +1,61 @@
+"""Does every layer find a height at which nothing stands in its way?"""
+
+from __future__ import annotations
+
+from itertools import combinations
+from pathlib import Path
+
+import pytest
+
+from watchsim.geometry.regions import region
+from watchsim.mechanism.levels import Slab, slabs
+from watchsim.mechanism.load import load
+
+ROOT = Path(__file__).resolve().parents[2]
+HEAD = '[bodies.wheel]\ncircle = "3 mm"\ninertia = "1 mg·cm²"\n'
+COVER = '[bodies.cover]\ncircle = "1 mm"\nposition = ["1 mm", "0 mm"]\nmotion = "fixed"\n'
+BESIDE = '[bodies.beside]\ncircle = "1 mm"\nposition = ["4.5 mm", "0 mm"]\nmotion = "fixed"\n'
+
+
+def heights(tmp_path: Path, text: str) -> dict[str, Slab]:
+    path = tmp_path / "scene.toml"
+    path.write_text(text, encoding="utf-8")
+    return {slab.body: slab for slab in slabs(load(path), 0.2e-3)}
+
+
+def test_what_covers_lies_above_and_what_stands_beside_does_not(tmp_path: Path) -> None:
+    found = heights(tmp_path, HEAD + COVER + BESIDE)
+    assert found["wheel"].middle == pytest.approx(0.1e-3)
+    assert found["cover"].middle == pytest.approx(0.32e-3)  # a tenth of the thickness of air
+    assert found["beside"].middle == pytest.approx(0.1e-3)
+
+
+def test_what_touches_lies_at_one_height(tmp_path: Path) -> None:
+    contact = '[[contacts]]\nbetween = ["cover", "beside"]\n'
+    found = heights(tmp_path, HEAD + COVER.replace('motion = "fixed"', 'inertia = "1 mg·cm²"') + BESIDE + contact)
+    assert found["cover"].middle == found["beside"].middle != found["wheel"].middle
+
+
+def test_thickness_comes_from_the_scene(tmp_path: Path) -> None:
+    solid = '[[bodies.wheel.solids]]\nthickness = "0.5 mm"\ndensity = "8 g/cm³"\n'
+    found = heights(tmp_path, HEAD + solid + COVER)
+    assert (found["wheel"].thickness, found["wheel"].middle) == pytest.approx((0.5e-3, 0.25e-3))
+    assert found["wheel"].solid is not None and found["cover"].solid is None
+    assert found["cover"].middle == pytest.approx(0.65e-3)
+
+
+def test_no_two_layers_of_the_swiss_lever_share_a_place() -> None:
+    scene = load(ROOT / "profiles/swiss_lever/scene.toml")
+    found = slabs(scene, 0.2e-3)
+    assert len(found) == 9
+    by_name = {(slab.body, slab.layer): slab.middle for slab in found}
+    for contact in scene.contacts:
+        first, second = (by_name[side.body, side.layer] for side in contact.sides)
+        assert first == second
+    for a, b in combinations(found, 2):
+        if a.middle == b.middle:
+            shapes = [
+                region((loop.moved(scene.body(s.body).angle, scene.body(s.body).position) for loop in s.loops), 1e-6)
+                for s in (a, b)
+            ]
+            assert shapes[0].intersection(shapes[1]).area < 1e-3 * min(shape.area for shape in shapes), (a.layer, b.layer)

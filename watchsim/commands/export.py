@@ -1,0 +1,193 @@
+"""watchsim export SCENE: the bodies of a scene for other programs: outlines as DXF and SVG, solids as GLB and STL."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import re
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from watchsim.commands.console import FINE, InputError, parse_length, parse_names, print_json, say
+
+if TYPE_CHECKING:
+    from watchsim.geometry.export import Placed
+    from watchsim.mechanism.body import Body
+    from watchsim.mechanism.levels import Slab
+    from watchsim.mechanism.scene import Scene
+
+HELP = "outlines as DXF and SVG, bodies as GLB and STL"
+FORMATS = ("dxf", "svg", "glb", "stl")
+MANIFEST = "export.json"
+PIVOT = "PIVOT"
+
+
+def options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("scene", metavar="SCENE", help="a scene file (TOML), or the folder that holds scene.toml")
+    parser.add_argument("-o", "--output", metavar="DIR", help="folder for the files (default export/NAME)")
+    parser.add_argument("--format", metavar="NAMES", default=",".join(FORMATS), help="default %(default)s")
+    parser.add_argument("--bodies", metavar="NAMES", help="only these bodies, with commas between them")
+    parser.add_argument(
+        "--thickness", metavar="LENGTH", default="0.2 mm", help='of layers whose solids say none (default "%(default)s")'
+    )
+    parser.add_argument(
+        "--deviation", metavar="LENGTH", default="0.2 µm", help='of chords from arcs in GLB and STL (default "%(default)s")'
+    )
+    parser.add_argument("--json", action="store_true", help="print what was written as one JSON object")
+    parser.add_argument("--force", action="store_true", help="replace an export that exists")
+
+
+def run(args: argparse.Namespace) -> int:
+    from watchsim.analysis.folder import write_folder
+    from watchsim.commands.scenes import load_scene
+
+    formats = parse_names(args.format) or []
+    if not formats or any(name not in FORMATS for name in formats):
+        raise InputError(f"--format {args.format}: choose from {', '.join(FORMATS)}.")
+    thickness, deviation = parse_length("thickness", args.thickness), parse_length("deviation", args.deviation)
+    scene = load_scene(args.scene, overlap=False)
+    bodies = _chosen(scene, parse_names(args.bodies))
+    folder = Path(args.output) if args.output else Path("export") / _name(scene)
+    replaced = _check_folder(folder.absolute(), args.force)
+    contents, manifest = _contents(scene, bodies, formats, thickness, deviation)
+    manifest["files"] = [*contents, MANIFEST]
+    contents[MANIFEST] = (json.dumps(manifest, indent=1, ensure_ascii=False) + "\n").encode()
+
+    def fill(place: Path) -> None:
+        for name, content in contents.items():
+            (place / name).write_bytes(content)
+
+    write_folder(folder.absolute(), fill, replaced, "the export")
+    _tell(manifest, folder, args.json)
+    return FINE
+
+
+def _chosen(scene: Scene, names: list[str] | None) -> tuple[Body, ...]:
+    from watchsim.mechanism.schema import nearest
+
+    known = [body.name for body in scene.bodies]
+    for name in names or ():
+        if name not in known:
+            raise InputError(f'--bodies: the scene has no body "{name}". {nearest(name, known)}')
+    return tuple(body for body in scene.bodies if names is None or body.name in names)
+
+
+def _name(scene: Scene) -> str:
+    if scene.path is None:
+        return "scene"
+    return scene.path.parent.resolve().name if scene.path.name == "scene.toml" else scene.path.stem
+
+
+def _check_folder(target: Path, force: bool) -> frozenset[str]:
+    """The names that an earlier export wrote there; FileExistsError where the folder must be left alone."""
+    if not target.exists():
+        return frozenset()
+    if not target.is_dir():
+        raise FileExistsError(f"{target} is a file; an export needs a folder of its own")
+    if next(target.iterdir(), None) is None:
+        return frozenset()
+    try:
+        files = json.loads((target / MANIFEST).read_text(encoding="utf-8"))["files"]
+    except (OSError, ValueError, KeyError, TypeError):
+        raise FileExistsError(f"{target} exists and holds no export; it is left alone. Choose another folder") from None
+    if not force:
+        raise FileExistsError(f"{target} exists already and is left alone. Choose another folder, or replace it with --force")
+    return frozenset(str(name) for name in files)
+
+
+def _contents(
+    scene: Scene, bodies: Sequence[Body], formats: Sequence[str], thickness: float, deviation: float
+) -> tuple[dict[str, bytes], dict[str, Any]]:
+    """The files by name, and what the manifest tells about them."""
+    from watchsim.geometry.export import glb, stl
+    from watchsim.mechanism.levels import slabs
+
+    found: dict[str, bytes] = {}
+    stems = _stems([body.name for body in bodies])
+    for rank, body in enumerate(scene.bodies):
+        if body.name in stems and (body.loops or body.decoration):
+            for name, text in _drawings(body, rank, formats):
+                found[f"{stems[body.name]}.{name}"] = text.encode()
+    stacked = tuple(slab for slab in slabs(scene, thickness) if slab.body in stems)
+    if "glb" in formats or "stl" in formats:
+        from watchsim.render.solids import placed_solids
+
+        placed: list[Placed] = placed_solids(scene, stacked, deviation)
+        for part in placed:
+            if "glb" in formats:
+                found[f"{stems[part.name]}.glb"] = glb([type(part)(part.name, part.pieces)])
+            if "stl" in formats:
+                found[f"{stems[part.name]}.stl"] = stl(part)
+        if "glb" in formats and placed:
+            found["scene.glb"] = glb(placed)
+    if not found:
+        raise InputError("these bodies have no outlines: there is nothing to export.")
+    return found, _manifest(scene, bodies, stacked, thickness)
+
+
+def _drawings(body: Body, rank: int, formats: Sequence[str]) -> Iterator[tuple[str, str]]:
+    """The outlines of one body in its own frame, the pivot at the origin and marked."""
+    from watchsim.drawing.write_dxf import dxf_text
+    from watchsim.drawing.write_svg import svg_text
+    from watchsim.render.palette import finish
+
+    loops = (*body.loops, *body.decoration)
+    layers = dict.fromkeys(loop.layer for loop in loops)
+    colours = {layer: finish(body, layer, rank).fill for layer in layers}
+    mark = next(name for name in (PIVOT, *(f"{PIVOT}_{k}" for k in range(1, len(layers) + 2))) if name not in layers)
+    points = ((mark, (0.0, 0.0)),)
+    if "dxf" in formats:
+        yield "dxf", dxf_text(loops, points, colours)
+    if "svg" in formats:
+        yield "svg", svg_text(loops, points, colours, body.name)
+
+
+def _stems(names: Sequence[str]) -> dict[str, str]:
+    """File names of bodies: letters, digits, - and _; "scene" is taken."""
+    stems: dict[str, str] = {}
+    taken = {"scene"}
+    for name in names:
+        plain = re.sub(r"[^\w-]", "_", name)
+        stem, k = plain, 1
+        while stem.casefold() in taken:
+            k += 1
+            stem = f"{plain}_{k}"
+        taken.add(stem.casefold())
+        stems[name] = stem
+    return stems
+
+
+def _manifest(scene: Scene, bodies: Sequence[Body], stacked: Sequence[Slab], thickness: float) -> dict[str, Any]:
+    """What was written and what was assumed, for people and for `--force`."""
+    entries: dict[str, list[dict[str, Any]]] = {body.name: [] for body in bodies}
+    for slab in stacked:
+        entry = {"layer": slab.layer, "kind": slab.solid.kind if slab.solid else "plate", "middle_mm": 1e3 * slab.middle}
+        if slab.thickness:
+            entry |= {"thickness_mm": 1e3 * slab.thickness, "thickness_from": "scene" if slab.solid else "default"}
+        entries[slab.body].append(entry)
+    return {
+        "scene": scene.title,
+        "units": {"dxf": "mm", "svg": "mm", "stl": "mm", "glb": "m"},
+        "default_thickness_mm": 1e3 * thickness,
+        "solids": entries,
+    }
+
+
+def _tell(manifest: dict[str, Any], folder: Path, as_json: bool) -> None:
+    assumed = [
+        f"{name}.{entry['layer']}"
+        for name, entries in manifest["solids"].items()
+        for entry in entries
+        if entry.get("thickness_from") == "default"
+    ]
+    bare = [name for name, entries in manifest["solids"].items() if not entries]
+    if assumed:
+        say(f"No thickness in the scene, {manifest['default_thickness_mm']:g} mm taken: {', '.join(assumed)}")
+    if bare:
+        say(f"No closed outline, so no solid: {', '.join(bare)}")
+    if as_json:
+        print_json(manifest)
+        return
+    for name in manifest["files"]:
+        print(folder / name)

@@ -1,0 +1,136 @@
+"""Which edges come near each other?
+
+A tree of square cells is refined, all cells of one level at once, until few edges pass through each cell; only edges that
+share a cell can meet. The work grows with the number of edges, however they are arranged: where very many run together, not
+every pair is given, and it is said where.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.geometry.extent import edge_extents
+from watchsim.geometry.primitives import Arc, Edge, Point
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+FEW = 24  # edges in a cell that is refined no further
+DEEPEST = 30  # levels: cells of a billionth of the drawing
+GROWTH = 64  # entries per edge; edges that run along each other could be cut into cells for ever
+CROWD = 32  # partners looked at for each edge in a cell that could not be refined
+
+
+class Table(NamedTuple):
+    """Edges as columns, metres and radians: ends, boxes (n, 4), and for arcs centre, radius, start angle and sweep."""
+
+    start: Floats
+    end: Floats
+    box: Floats
+    arc: NDArray[np.bool_]
+    centre: Floats
+    radius: Floats
+    start_angle: Floats
+    sweep: Floats
+
+
+class Pairs(NamedTuple):
+    """Numbers of edges that could meet, first < second, and where there were too many edges to give all of them."""
+
+    first: Ints
+    second: Ints
+    crowds: tuple[Point, ...]
+
+
+def table_of(edges: Sequence[Edge]) -> Table:
+    """The edges in columns; what only arcs have is 0 for lines."""
+    nothing = (0.0, 0.0, 0.0, 0.0, 0.0)
+    arcs = [(e.x, e.y, e.radius, e.start_angle, e.sweep) if isinstance(e, Arc) else nothing for e in edges]
+    x, y, radius, angle, sweep = np.array(arcs, dtype=float).reshape(-1, 5).T
+    return Table(
+        start=np.array([edge.start for edge in edges], dtype=float).reshape(-1, 2),
+        end=np.array([edge.end for edge in edges], dtype=float).reshape(-1, 2),
+        box=np.array([edge_extents(edge) for edge in edges], dtype=float).reshape(-1, 4),
+        arc=np.array([isinstance(edge, Arc) for edge in edges], dtype=bool),
+        centre=np.column_stack((x, y)),
+        radius=radius,
+        start_angle=angle,
+        sweep=sweep,
+    )
+
+
+def near_pairs(table: Table, reach: float) -> Pairs:
+    """All pairs of edges that come within `reach` metres of each other, and some more."""
+    count = len(table.box)
+    if count < 2:
+        return Pairs(np.empty(0, np.int64), np.empty(0, np.int64), ())
+    low = table.box[:, :2].min(axis=0)
+    width = float((table.box[:, 2:].max(axis=0) - low).max()) * (1.0 + 1e-12) + reach
+    edge, cell = np.arange(count), np.zeros((count, 2), np.int64)
+    keys: list[Ints] = []
+    crowds: list[Point] = []
+    for level in range(DEEPEST + 1):
+        size = width / 2**level
+        order = np.lexsort((edge, cell[:, 1], cell[:, 0]))
+        edge, cell = edge[order], cell[order]
+        starts = np.flatnonzero(np.append(True, np.any(cell[1:] != cell[:-1], axis=1)))
+        counts = np.diff(np.append(starts, len(edge)))
+        last = level == DEEPEST or len(edge) > GROWTH * count or size < 4.0 * reach
+        done = np.ones(len(counts), bool) if last else counts <= FEW
+        keys.append(_paired(table, edge, starts[done], counts[done], reach))
+        crowds += [tuple((low + (cell[k] + 0.5) * size).tolist()) for k in starts[done & (counts > CROWD)]]
+        if np.all(done):
+            break
+        crowded = np.repeat(~done, counts)
+        edge, cell = _refined(table, edge[crowded], cell[crowded], low, 0.5 * size, reach)
+    ordered = np.sort(np.concatenate(keys))
+    unique = ordered[np.append(True, ordered[1:] != ordered[:-1])[: len(ordered)]]
+    return Pairs(unique // count, unique % count, tuple(crowds))
+
+
+def _paired(table: Table, edge: Ints, starts: Ints, counts: Ints, reach: float) -> Ints:
+    """Keys first · n + second of the pairs within each group; in groups above CROWD each with its next ones only."""
+    keys = [np.empty(0, np.int64)]
+    last = np.repeat(starts + counts, counts)  # one past the group's end, for each of its members
+    member = np.repeat(starts - np.append(0, np.cumsum(counts)[:-1]), counts) + np.arange(int(counts.sum()))
+    for step in range(1, int(min(counts.max(initial=0), CROWD + 1))):
+        fits = member + step < last
+        member, last = member[fits], last[fits]
+        first, second = edge[member], edge[member + step]
+        a, b = table.box[first], table.box[second]
+        near = np.all((a[:, :2] <= b[:, 2:] + reach) & (b[:, :2] <= a[:, 2:] + reach), axis=1)
+        keys.append(first[near] * len(table.box) + second[near])
+    return np.concatenate(keys)
+
+
+def _refined(table: Table, edge: Ints, cell: Ints, low: Floats, size: float, reach: float) -> tuple[Ints, Ints]:
+    """The quarters (of width `size`) of the cells that each edge really passes through, within `reach`."""
+    edge = np.repeat(edge, 4)
+    cell = np.repeat(2 * cell, 4, axis=0) + np.tile(np.array([[0, 0], [0, 1], [1, 0], [1, 1]]), (len(cell), 1))
+    middle, half = low + (cell + 0.5) * size, 0.5 * size + reach
+    box = table.box[edge]
+    inside = np.all((box[:, :2] <= middle + half) & (box[:, 2:] >= middle - half), axis=1)
+    edge, cell, middle = edge[inside], cell[inside], middle[inside]
+    arcs = table.arc[edge]
+    passes = np.empty(len(edge), bool)
+    passes[arcs] = _arc_passes(table, edge[arcs], middle[arcs], half)
+    passes[~arcs] = _line_passes(table, edge[~arcs], middle[~arcs], half)
+    return edge[passes], cell[passes]
+
+
+def _line_passes(table: Table, edge: Ints, middle: Floats, half: float) -> NDArray[np.bool_]:
+    """Does the straight line through the ends cut the square round `middle`?"""
+    along, to = table.end[edge] - table.start[edge], middle - table.start[edge]
+    return np.abs(along[:, 0] * to[:, 1] - along[:, 1] * to[:, 0]) <= half * np.abs(along).sum(axis=1)
+
+
+def _arc_passes(table: Table, edge: Ints, middle: Floats, half: float) -> NDArray[np.bool_]:
+    """Does the whole circle cut the square round `middle`?"""
+    off = np.abs(middle - table.centre[edge])
+    nearest, farthest = np.maximum(off - half, 0.0), off + half
+    radius = table.radius[edge]
+    return (np.hypot(*nearest.T) <= radius) & (np.hypot(*farthest.T) >= radius)

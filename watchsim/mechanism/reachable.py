@@ -1,0 +1,92 @@
+"""Which declared pairs of primitives can ever touch?
+
+A primitive that turns about a pivot stays within a ring, one that slides within a strip. Pairs whose rings and strips keep
+apart never touch, whatever the bodies do; of a free body nothing is known. Errs only on the side of too many.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.mechanism.chords import Chords, chords
+from watchsim.mechanism.model import FIXED, PIVOT, SLIDE, Records
+
+Array = NDArray[np.float64]
+
+
+class _Span(NamedTuple):
+    """Least and largest value over each of some primitives, m."""
+
+    low: Array
+    high: Array
+
+    def of(self, rows: NDArray[np.int64]) -> _Span:
+        return _Span(self.low[rows], self.high[rows])
+
+    def meets(self, other: _Span) -> NDArray[np.bool_]:
+        return np.asarray((self.low <= other.high) & (other.low <= self.high))
+
+
+def reachable(bodies: Records, primitives: Records, contacts: Records, pair: Any) -> NDArray[np.bool_]:
+    """For each contact of one pair of bodies: can its primitives come within the pair's clearance at any pose?"""
+    part = contacts[pair.start : pair.stop]
+    a, b = bodies[pair.a], bodies[pair.b]
+    a_first = primitives.body[part.a] == pair.a
+    on_a, on_b = np.where(a_first, part.a, part.b), np.where(a_first, part.b, part.a)
+    if a.motion != PIVOT and (b.motion == PIVOT or a.motion == FIXED):
+        a, b, on_a, on_b = b, a, on_b, on_a
+    movers, row_a = np.unique(on_a, return_inverse=True)
+    others, row_b = np.unique(on_b, return_inverse=True)
+    one = chords(primitives[movers], 0.5 * pair.clearance)
+    two = chords(primitives[others], 0.5 * pair.clearance)
+    if a.motion == PIVOT and b.motion == PIVOT:
+        ring_a, ring_b = _away(one, one.points, pair.clearance).of(row_a), _away(two, two.points, 0.0).of(row_b)
+        distance = math.hypot(a.x - b.x, a.y - b.y)
+        # Two rings whose centres are this far apart have a point in common.
+        apart = (distance > ring_a.high + ring_b.high) | (ring_a.low > distance + ring_b.high)
+        return np.asarray(~(apart | (ring_b.low > distance + ring_a.high)))
+    if a.motion == PIVOT and b.motion == FIXED:
+        fixed = _away(two, _world(b, two.points) - (a.x, a.y), 0.0)
+        return _away(one, one.points, pair.clearance).of(row_a).meets(fixed.of(row_b))
+    if a.motion == PIVOT and b.motion == SLIDE:
+        strip = _across(two, _world(b, two.points) - (a.x, a.y), b, 0.0)
+        far = _away(one, one.points, pair.clearance).of(row_a).high
+        return _Span(-far, far).meets(strip.of(row_b))
+    if a.motion == SLIDE and (b.motion == FIXED or (b.motion == SLIDE and _parallel(a, b))):
+        strip = _across(one, _world(a, one.points), a, pair.clearance)
+        return strip.of(row_a).meets(_across(two, _world(b, two.points), a, 0.0).of(row_b))
+    return np.ones(len(part), bool)
+
+
+def _world(body: Any, points: Array) -> Array:
+    """Points of a fixed body, or of a sliding one before it slides, in the world."""
+    c, s = math.cos(body.angle), math.sin(body.angle)
+    return np.asarray(points @ np.array([[c, s], [-s, c]]) + (body.x, body.y))
+
+
+def _parallel(a: Any, b: Any) -> bool:
+    """Exactly parallel axes: any other two cross somewhere, however far."""
+    return bool(a.axis_x * b.axis_y == a.axis_y * b.axis_x)
+
+
+def _away(drawn: Chords, points: Array, room: float) -> _Span:
+    """Distances of primitives (their chords at `points`) from the origin, widened by `room`."""
+    far = np.maximum.reduceat(np.hypot(*points.T), drawn.first[:-1])
+    # The piece that begins at each point; the last point of a primitive begins none.
+    step = np.diff(points, axis=0, append=points[-1:])
+    step[drawn.first[1:] - 1] = 0.0
+    square = (step**2).sum(axis=1)
+    share = np.clip(-(points * step).sum(axis=1) / np.where(square > 0.0, square, 1.0), 0.0, 1.0)
+    near = np.minimum.reduceat(np.hypot(*(points + share[:, None] * step).T), drawn.first[:-1])
+    return _Span(np.maximum(0.0, near - drawn.sag - room), far + drawn.sag + room)
+
+
+def _across(drawn: Chords, points: Array, slider: Any, room: float) -> _Span:
+    """Offsets of primitives across the axis of a sliding body, widened by `room`."""
+    offset = points @ np.array([-slider.axis_y, slider.axis_x])
+    low, high = (f.reduceat(offset, drawn.first[:-1]) for f in (np.minimum, np.maximum))
+    return _Span(low - drawn.sag - room, high + drawn.sag + room)
