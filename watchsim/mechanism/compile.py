@@ -177,17 +177,20 @@ def _add_shapes(primitives: Records, contacts: Records) -> None:
 
 def _touching(primitives: Records, first: np.ndarray, last: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """All pairs (circle, other) between two sets of primitives that have a gap function."""
-    one = np.repeat(first, len(last)), np.tile(last, len(first))
-    both = np.concatenate([one[0], one[1]]), np.concatenate([one[1], one[0]])
     kind, radius, convex = primitives.kind, primitives.radius, primitives.side > 0.0
-    # One number for each pair and property: whole records of all pairs would be a hundred times as many bytes.
-    on_a, on_b = kind[both[0]], kind[both[1]]
-    round_, other = (on_a == ARC) & convex[both[0]], convex[both[1]]
-    fits = (on_b != ARC) | other | (radius[both[0]] < radius[both[1]])
+
+    def circles_and_edges(circles: np.ndarray, edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        circles = circles[(kind[circles] == CORNER) | ((kind[circles] == ARC) & convex[circles])]
+        edges = edges[kind[edges] != CORNER]
+        a, b = np.repeat(circles, len(edges)), np.tile(edges, len(circles))
+        fits = (kind[b] != ARC) | convex[b] | (radius[a] < radius[b])
+        return a[fits], b[fits]
+
+    a, b = circles_and_edges(first, last)
+    c, d = circles_and_edges(last, first)
     # Two convex arcs are one contact, not two: the first set's arc plays the circle.
-    twice = round_ & (on_b == ARC) & other & (np.arange(len(on_a)) >= len(one[0]))
-    keep = ((on_a == CORNER) | round_) & (on_b != CORNER) & fits & ~twice
-    return both[0][keep], both[1][keep]
+    once = (kind[c] == CORNER) | (kind[d] != ARC) | ~convex[d]
+    return np.concatenate([a, c[once]]), np.concatenate([b, d[once]])
 
 
 def _coordinates(scene: Scene, slices: dict[str, slice], size: float) -> tuple[Records, Records, np.ndarray, float]:
