@@ -30,7 +30,7 @@ from watchsim.simulation.trajectory import Trajectory
 
 ROOT = Path(__file__).resolve().parents[1]
 DURATION = 0.5  # s, four beats
-REFINED = (1, 2, 4, 8, 16, 32, 48)  # pieces of each edge
+REFINED = (1, 3, 8, 20, 50, 100, 182)  # pieces of each edge
 REPEATS = 5
 MOST_BRUTE = 1.5e4  # declared pairs: beyond it brute force is not waited for
 Mark = tuple[str, int, int]

@@ -177,19 +177,22 @@ def _add_shapes(primitives: Records, contacts: Records) -> None:
 
 def _touching(primitives: Records, first: np.ndarray, last: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """All pairs (circle, other) between two sets of primitives that have a gap function."""
-    one = np.repeat(first, len(last)), np.tile(last, len(first))
-    both = np.concatenate([one[0], one[1]]), np.concatenate([one[1], one[0]])
     kind, radius, convex = primitives.kind, primitives.radius, primitives.side > 0.0
-    # One number for each pair and property: whole records of all pairs would be a hundred times as many bytes.
-    on_a, on_b = kind[both[0]], kind[both[1]]
-    radius_a, radius_b = radius[both[0]], radius[both[1]]
-    round_, other = (on_a == ARC) & convex[both[0]], convex[both[1]]
-    fits = (on_b != ARC) | other | (radius_a < radius_b)
+    def circles_and_edges(circles: np.ndarray, edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        circles = circles[(kind[circles] == CORNER) | ((kind[circles] == ARC) & convex[circles])]
+        edges = edges[kind[edges] != CORNER]
+        a, b = np.repeat(circles, len(edges)), np.tile(edges, len(circles))
+        fits = (kind[b] != ARC) | convex[b] | (radius[a] < radius[b])
+        return a[fits], b[fits]
+
+    def both_round(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+        return (kind[a] == ARC) & (kind[b] == ARC) & convex[b]
+
+    a, b = circles_and_edges(first, last)
+    c, d = circles_and_edges(last, first)
     # Two convex arcs are one contact, not two: the rounder one plays the circle, of equal ones the first set's.
-    second = (radius_a > radius_b) | ((radius_a == radius_b) & (np.arange(len(on_a)) >= len(one[0])))
-    twice = round_ & (on_b == ARC) & other & second
-    keep = ((on_a == CORNER) | round_) & (on_b != CORNER) & fits & ~twice
-    return both[0][keep], both[1][keep]
+    one, two = ~both_round(a, b) | (radius[a] <= radius[b]), ~both_round(c, d) | (radius[c] < radius[d])
+    return np.concatenate([a[one], c[two]]), np.concatenate([b[one], d[two]])
 
 
 def _coordinates(scene: Scene, slices: dict[str, slice], size: float) -> tuple[Records, Records, np.ndarray, float]:

@@ -32,7 +32,7 @@ from watchsim.simulation.within import begin_flight, coordinate_within, flight_a
 RUNNING, SLICE, CELL_UNKNOWN, BUFFER_FULL = int(Stop.RUNNING), int(Stop.SLICE), int(Stop.CELL_UNKNOWN), int(Stop.BUFFER_FULL)
 DURATION, STEP_TOO_SMALL, NOT_FINITE = int(Stop.DURATION), int(Stop.STEP_TOO_SMALL), int(Stop.NOT_FINITE)
 TOO_MANY_EVENTS, LAST_STEP = int(Stop.TOO_MANY_EVENTS), int(Stop.LAST_STEP)
-FLIGHT_CELLS = 32
+FLIGHT_CELLS = 128
 FLIGHT_ROWS = 16  # a flight is at most this many recorded rows long
 EVENTS_AT_ONCE = 2000
 ROWS_PER_STEP = FLIGHT_ROWS + 8
