@@ -12,6 +12,7 @@ from watchsim.contact.poses import place
 from watchsim.dynamics.acceleration import accelerate, decide_modes
 from watchsim.dynamics.forces import forces
 from watchsim.jit import kernel
+from watchsim.simulation.chatter import end_chatter, is_chatter
 from watchsim.simulation.closed import gather, refresh, resting
 from watchsim.simulation.collide import approaching, collide
 from watchsim.simulation.drift import project_positions, project_velocities
@@ -90,6 +91,8 @@ def settle(model, cells, state, options, scratch, record):
         state.worst[0] = max(state.worst[0], deepest)
         place(model, state.q, state.u, scratch.pose)
         refresh(model, m, closed, scratch.pose)
+    if approaching(m, closed, options.speed_zero) and is_chatter(state, m, options, closed):
+        end_chatter(model, state, m, scratch, record)
     rounds = 0
     while approaching(m, closed, options.speed_zero):
         if rounds == ROUNDS:

@@ -1,4 +1,4 @@
-"""Which hard cases of contact have an exact answer, and what is it?
+"""Which motions of many impacts, and of friction that comes and goes, have an exact answer?
 
 Each is a small scene that other codes fail on, with numbers that follow from the law by hand; the derivation stands beside it.
 """
@@ -20,7 +20,7 @@ FORCES = 1e-8  # a contact is kept until its forces fail by more than their roun
 SPEEDS = 1e-9  # m/s; slower is zero in scenes of these sizes, `Options.speed_zero`
 
 
-def hard_cases() -> list[Benchmark]:
+def repeated_impacts() -> list[Benchmark]:
     """All of them."""
     return [pulled_block(), rocking_block(), cradle(0.0), cradle(1e-9), groove()]
 
@@ -63,7 +63,7 @@ def pulled_block(cycles: int = 40) -> Benchmark:
             lambda run: speed * (start + 0.25 * period) - float(run.at(start + 0.25 * period)[0][0]),
         ),
     )
-    source = "m x'' = k (v t - x) - mu N by hand, watchsim/analysis/hard_cases.py"
+    source = "m x'' = k (v t - x) - mu N by hand, watchsim/analysis/repeated_impacts.py"
     return Benchmark("block on a moving belt (stick-slip)", scene, (*checks, *soundness()), source)
 
 
@@ -113,7 +113,7 @@ def rocking_block(impacts: int = 1000) -> Benchmark:
         )
 
     checks = (after(1, 1e-9), after(10, 1e-8), after(100, 1e-8), after(impacts, 1e-5))
-    source = "Housner, Bull. Seismol. Soc. Am. 53 (1963) 403; from Poisson's law with restitution 0 in hard_cases.py"
+    source = "Housner, Bull. Seismol. Soc. Am. 53 (1963) 403; from Poisson's law with restitution 0 in repeated_impacts.py"
     return Benchmark("rocking block, a thousand impacts", scene, (*checks, *soundness(1e-7)), source)
 
 
@@ -150,7 +150,7 @@ def cradle(split: float) -> Benchmark:
     name = "Newton's cradle, touching" if split == 0.0 else f"Newton's cradle, gaps of {1e9 * split:g} nm"
     impacts = Check("impulses", 4.0, lambda run: float(counted(run, EventKind.IMPACT)), 0.0)
     kept = Check("energy residual [J]", 0.0, lambda run: float(run.energy["residual_J"]), 1e-15)
-    return Benchmark(name, scene, (*checks, impacts, kept), "Poisson's law by hand, watchsim/analysis/hard_cases.py")
+    return Benchmark(name, scene, (*checks, impacts, kept), "Poisson's law by hand, watchsim/analysis/repeated_impacts.py")
 
 
 def _last_speed(column: int) -> Measure:
@@ -199,7 +199,7 @@ def groove() -> Benchmark:
         Check("impulses beyond the most there may be", 0.0, lambda run: max(0.0, counted(run, EventKind.IMPACT) - most), 0.0),
     )
     return Benchmark(
-        "disc in a groove, two contacts at once", scene, (*checks, *soundness()), "geometric series, hard_cases.py"
+        "disc in a groove, two contacts at once", scene, (*checks, *soundness()), "geometric series, repeated_impacts.py"
     )
 
 
