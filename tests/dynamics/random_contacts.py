@@ -57,12 +57,12 @@ class Case:
     def impact(self, u: np.ndarray, eps: np.ndarray | None = None) -> tuple[int, np.ndarray, np.ndarray]:
         """Status, velocities after, impulses (2m,) N, T, N, T, ..."""
         after = u.copy()
-        status = _impact(self.model, self.closed, self.m, self.eps if eps is None else eps, self.work, after)
+        status = _impact(self.model, self.closed, self.m, self.eps if eps is None else eps, 0.0, self.work, after)
         return int(status), after, self.work.force[: 2 * self.m].copy()
 
     def energy_change(self) -> float:
         """Of the impact just solved, as the kernel says."""
-        return float(_energy_change(self.m, self.work))
+        return float(_energy_change(self.m, self.work)[0])
 
     def kinetic(self, u: np.ndarray) -> float:
         return 0.5 * float(u @ (self.mass * u))

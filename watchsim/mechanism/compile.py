@@ -31,6 +31,7 @@ from watchsim.mechanism.model import (
     PRIMITIVE,
     SLIDE,
     TABLE,
+    TANGENTIAL_CODE,
     Model,
     Records,
     frozen,
@@ -134,6 +135,7 @@ def _contacts(scene: Scene, sides: dict[Side, np.ndarray], primitives: Records) 
     for group, contact in enumerate(scene.contacts):
         laws[group].friction, laws[group].restitution = contact.friction, contact.restitution
         laws[group].tangential = contact.tangential_restitution
+        laws[group].kind, laws[group].nu = TANGENTIAL_CODE[scene.tangential_law], scene.nu
         first, last = (sides[side] for side in contact.sides)
         a, b = _touching(primitives, first, last)
         block = np.stack([a, b, np.full(len(a), group)], axis=1)
@@ -185,6 +187,7 @@ def _coordinates(scene: Scene, slices: dict[str, slice], size: float) -> tuple[R
         row = rows[_driven(scene, slices, damping.body)]
         row.viscous += damping.viscous
         row.quadratic += damping.quadratic
+        row.coulomb += damping.coulomb
     tables, knots = _tables(scene, slices, rows)
     tabled = {int(table.coordinate) for table in tables}
     for i, row in enumerate(rows):
