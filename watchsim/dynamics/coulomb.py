@@ -1,9 +1,9 @@
 """What do the three complementarity problems with Coulomb friction have in common?
 
-Their matrix. Every friction force lies in an interval from c - L x_N to c - L x_N + l x_N + l_0, where x_N is the normal force
-of its contact: L = mu, l = 2 mu, c = l_0 = 0 for a contact at the acceleration level and in the compression; c = -T, l_0 = 2 T for a
-bearing with dry friction T; other laws of the expansion in impact.py. With x_+ the distance from the lower end, the law turns
-into complementarity with a slip measure (docs/method.md 2.5, 2.6):
+Their matrix. Every friction force lies in an interval from c - L x_N to c - L x_N + l x_N + l_0, where x_N is the normal
+force of its contact: L = mu, l = 2 mu, c = l_0 = 0 for a contact at the acceleration level and in the compression; c = -T,
+l_0 = 2 T for a bearing with dry friction T; the laws of the expansion are in expansion.py. With x_+ the distance from the lower
+end, the law turns into complementarity with a slip measure (docs/method.md 2.5, 2.6):
 
     [ y_N ]   [ G_NN - G_NT L   G_NT   0 ] [ x_N  ]
     [ y_+ ] = [ G_TN - G_TT L   G_TT   1 ] [ x_+  ] + b
@@ -69,7 +69,7 @@ def fill_matrix(work, m, elements):
 
 @kernel
 def fill_rhs(work, m, elements, b):
-    """Right-hand side from the rows `b`: accelerations or velocities with every element at the constant part of its lower end."""
+    """Right-hand side from the rows `b`: accelerations or velocities with each element at the constant part of its lower end."""
     for i in range(m):
         work.rhs[i] = work.unit[i] * b[2 * i]
     for e in range(elements):

@@ -45,7 +45,7 @@ def keep_basis(work, m, elements):
 
 @kernel
 def fill_copositive(work, m, elements):
-    """The problem in `A`, `rhs` with unknowns x_N, beta_+, beta_-, sigma into `B`, `other_rhs`; returns its size m + 3 elements.
+    """The problem in `A`, `rhs` with unknowns x_N, beta_+, beta_-, sigma into `B`, `other_rhs`; returns its size.
 
     The friction force is the middle of its interval plus beta_+ - beta_-, beta_+ + beta_- within half the length, sigma the
     speed of slip.
