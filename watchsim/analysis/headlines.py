@@ -104,6 +104,10 @@ def _solver(run: Trajectory, numbers: Mapping[str, Any]) -> Iterator[tuple[str, 
     failures = numbers["lcp_failures"]
     if failures:
         yield "solver", f"{failures} complementarity problems had no solution"
+    if rescues := numbers["counts"].get("energy_rescues"):
+        yield "impacts", f"{rescues} solved again with less restitution: the law would have gained energy"
+    if jams := numbers["counts"].get("jams"):
+        yield "jams", f"{jams} sliding contacts, which no finite force could hold apart, stopped by impulses (Painlevé)"
     yield "end", run.stop_message or run.stop.sentence
 
 

@@ -155,7 +155,7 @@ def _elements(model, closed, m, bearings, speed_zero, work):
 
 @kernel
 def _load(work, m, bearings):
-    """Accelerations without contact forces, bearings at the lower end of their friction, into `more`; theirs into `b`, `size`."""
+    """Accelerations without contact forces, bearings at the lower end of their friction, into `more`; also theirs in `b`."""
     for p in range(bearings):
         i = work.dry[p]
         work.b[2 * m + p] = work.h[i] * work.inverse[i]

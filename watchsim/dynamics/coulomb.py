@@ -69,7 +69,7 @@ def fill_matrix(work, m, elements):
 
 @kernel
 def fill_rhs(work, m, elements, b):
-    """Right-hand side from the rows `b`: accelerations or velocities with each element at the constant part of its lower end."""
+    """Right-hand side from the rows `b`: accelerations or velocities with each force at the constant part of its lower end."""
     for i in range(m):
         work.rhs[i] = work.unit[i] * b[2 * i]
     for e in range(elements):

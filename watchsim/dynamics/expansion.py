@@ -29,7 +29,7 @@ def interval(law, restitution, normal, tangential):
     returned = restitution * law.tangential * tangential
     least = abs(returned)
     span = max(0.0, mu * back - least)
-    if abs(tangential) <= NO_IMPULSE * mu * normal:
+    if normal <= 0.0 or abs(tangential) <= NO_IMPULSE * mu * normal:
         return 0.5 * mu, mu, span, -0.5 * span, returned
     if tangential > 0.0:
         return 0.0, mu, span, least, returned

@@ -21,9 +21,9 @@ def solve_contacts(work, m, elements):
     """Solve the problem in `work.A`, `work.rhs` into `work.x`; returns (status: OK or why Lemke failed, rung)."""
     n = m + 2 * elements
     status = lemke_checked(work.A, work.rhs, n, work.lcp, work.x)
+    work.note[4] = status
     rung = LEMKE
     if status != OK:
-        work.note[4] = status
         rung = FAILED
         if elements > 0 and _solve_copositive(work, m, elements):
             rung = COPOSITIVE

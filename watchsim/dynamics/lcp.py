@@ -73,9 +73,9 @@ def solve_lcp(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> int:
 
 
 @kernel
-def lemke_checked(A, b, n, work, out_x):
+def lemke_checked(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> int:
     """Lemke's method; OK only if what it ended with solves the problem to rounding, else INEXACT, RAY or MAX_ITER."""
-    status = lemke(A, b, n, work, out_x)
+    status: int = lemke(A, b, n, work, out_x)
     if status == OK and not (_is_trivial(b, n) or is_solution(n, work)):
         return INEXACT
     return status

@@ -72,7 +72,7 @@ def _orthonormalize(vectors, count, n, weight):
 
 @kernel
 def _law(work, m, line, values):
-    """Number `line` of what must not be negative, linear in `values`: m normal forces, then both sides of each friction cone."""
+    """Number `line` of what must not be negative, linear in `values`: normal forces, then both sides of each cone."""
     if line < m:
         return values[line]
     seen = m

@@ -55,9 +55,8 @@ def _contact(table: Table, known: Known) -> Contact:
 def _note_law(table: Table, contact: Contact, law: str) -> None:
     """Not every law gives tangential impulses back."""
     if law == "coulomb":
-        message = (
-            'the law "coulomb" gives no tangential impulse back: write tangential_law = "pg1996" (or "shifted") under [scene]'
-        )
+        cure = 'write tangential_law = "pg1996" (or "shifted") under [scene]'
+        message = f'the law "coulomb" gives no tangential impulse back: {cure}'
         table.fault("tangential_restitution", message, with_value=True)
     elif law == "shifted" and contact.tangential_restitution > contact.restitution:
         message = f'must not be above restitution ({contact.restitution:g}) with tangential_law = "shifted"'

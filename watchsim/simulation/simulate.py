@@ -21,6 +21,7 @@ from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.mechanism.model import KIND_WORD
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation.advance import EVENTS_PER_STEP, ROWS_PER_STEP, advance
+from watchsim.simulation.failure import failure_of
 from watchsim.simulation.options import Options, options_for
 from watchsim.simulation.state import (
     COUNT_NAMES,
@@ -149,6 +150,7 @@ class _Run:
         counts = {name: int(value) for name, value in zip(COUNT_NAMES, self.state.counts, strict=True)}
         counts["cells"] = len(self.finder._known)
         counts["declared_pairs"] = len(self.compiled.model.contacts)
+        pairs = pairs_of(self.compiled, scene)
         return Trajectory(
             scene=scene,
             t=rows[:, 0],
@@ -157,7 +159,7 @@ class _Run:
             a=rows[:, 1 + 2 * n :],
             slices=self.compiled.slices,
             events=events,
-            pairs=pairs_of(self.compiled, scene),
+            pairs=pairs,
             stop=stop,
             stop_message=f"t = {self.state.clock[0]:.9g} s: {stop.sentence}",
             simulated=float(self.state.clock[0]),
@@ -167,6 +169,7 @@ class _Run:
             worst_penetration=float(self.state.worst[0]),
             energy=self._energy(),
             counts=counts,
+            failure=failure_of(self.state, self.scratch, pairs) if stop == Stop.LCP_FAILED else None,
         )
 
     def _energy(self) -> dict[str, Any]:

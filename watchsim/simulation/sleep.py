@@ -42,7 +42,7 @@ def _is_still(model, state, options, i, terms):
 
 @kernel
 def find_sleepers(model, state, options, scratch, m):
-    """Set `state.awake`: a group with a contact or a bearing that holds sleeps if all is still and nothing on it depends on time.
+    """Set `state.awake`: a group with a contact or a bearing that holds sleeps if it is still and nothing depends on time.
 
     The m contacts in force are in `scratch.rest`, their forces in `scratch.work.force`, accelerations in `state.a`.
     """

@@ -47,7 +47,8 @@ class Trajectory:
 
     t (rows,) s; q, u, a (rows, n) coordinates, velocities, accelerations in SI; `slices[body]` says which columns belong
     to a body (fixed bodies have none). `energy` holds joules: in_J, stored_J, dissipated {cause: J}, residual_J.
-    `counts` holds events, impacts, steps, lcp_failures and the like; `worst_penetration` is metres.
+    `counts` holds events, impacts, steps, lcp_failures and the like; `worst_penetration` is metres. `failure` is the
+    complementarity problem on which the solver gave up (see simulation/failure.py), None otherwise.
     """
 
     scene: Scene
@@ -68,6 +69,7 @@ class Trajectory:
     worst_penetration: float = 0.0
     energy: dict[str, Any] = field(default_factory=dict)
     counts: dict[str, int] = field(default_factory=dict)
+    failure: dict[str, Any] | None = field(default=None, repr=False)
 
     def at(self, t: float) -> tuple[Array, Array]:
         """q and u at time `t` (after the impact where one happens at `t`).

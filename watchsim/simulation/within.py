@@ -18,9 +18,9 @@ def begin_flight(model, state, length, scratch):
     step.span[0], step.span[1] = state.clock[0], length
     for i in range(len(model.coordinates)):
         step.q[i], step.u[i] = state.q[i], state.u[i]
-        step.bound[i] = (
-            acceleration_bound(model.coordinates[i], state.grip[i], state.q[i], state.u[i]) if state.awake[i] else 0.0
-        )
+        step.bound[i] = 0.0
+        if state.awake[i]:
+            step.bound[i] = acceleration_bound(model.coordinates[i], state.grip[i], state.q[i], state.u[i])
 
 
 @kernel
