@@ -29,9 +29,9 @@ def draws(law: str, count: int, seed: int) -> int:
         status, after, force = case.impact(u)
         size = max(truth.normal, abs(truth.tangential))
         assert status == 0
-        # A nearly singular G, or a tangential impulse at an end of its interval, costs digits in both computations.
-        condition = np.linalg.cond(G)
-        assert force == pytest.approx([truth.normal, truth.tangential], abs=1e-12 * size * max(1.0, 1e-2 * condition))
+        # The rates before are sums whose terms cancel, and a nearly singular G costs digits in both computations.
+        size += 1e-2 * (np.abs(case.W) @ np.abs(u)).max() / min(G[0, 0], G[1, 1])
+        assert force == pytest.approx([truth.normal, truth.tangential], abs=1e-12 * size * max(1.0, 1e-2 * np.linalg.cond(G)))
         assert after == pytest.approx(u + case.W.T @ force / case.mass, abs=1e-12 * (1.0 + np.abs(after).max()))
         if nu == 0.0:
             assert case.kinetic(after) <= case.kinetic(u) * (1.0 + 1e-12)
@@ -99,11 +99,11 @@ def test_several_contacts_obey_the_law_of_the_expansion(law: str, m: int, n: int
 def test_a_sticking_superball_reverses_slip_and_loses_nothing(law: str) -> None:
     rng = np.random.default_rng(61)
     for _ in range(50):
-        case, u = random_case(rng, 1, 3, mu=10.0, eps=1.0, law=law, tangential=1.0), rng.normal(size=3)
+        case, u = random_case(rng, 1, 3, mu=1e3, eps=1.0, law=law, tangential=1.0), rng.normal(size=3)
         if case.mu[0] * abs(case.G[0, 1]) >= case.G[0, 0] or (case.W @ u)[0] >= 0.0:
             case = Case(case.mass, np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.3]]), case.mu, case.eps, law, tangential=1.0)
             u[1] = -abs(u[1])
         status, after, _ = case.impact(u)
         assert status == 0
-        assert case.W @ after == pytest.approx(-(case.W @ u), abs=1e-12)
-        assert case.kinetic(after) == pytest.approx(case.kinetic(u), rel=1e-13)
+        assert case.W @ after == pytest.approx(-(case.W @ u), abs=1e-11)
+        assert case.kinetic(after) == pytest.approx(case.kinetic(u), rel=1e-11)

@@ -104,7 +104,7 @@ def decide_modes(model, closed, m, speed_zero, work, out_grip, out_mode):
     gap_accelerations(closed, m, work, work.b, work.size)
     elements = _elements(model, closed, m, bearings, speed_zero, work)
     fill_matrix(work, m, elements)
-    _load(work, m, bearings)
+    _load(work, m, elements, bearings)
     fill_rhs(work, m, elements, work.more)
     work.note[0], work.note[1], work.note[2], work.note[3] = m, elements, bearings, LEVEL_ACCELERATION
     status, _ = solve_contacts(work, m, elements)
@@ -154,7 +154,7 @@ def _elements(model, closed, m, bearings, speed_zero, work):
 
 
 @kernel
-def _load(work, m, bearings):
+def _load(work, m, elements, bearings):
     """Accelerations without contact forces, bearings at the lower end of their friction, into `more`; also theirs in `b`."""
     for p in range(bearings):
         i = work.dry[p]
@@ -164,7 +164,7 @@ def _load(work, m, bearings):
         work.more[row] = work.b[row]
         for p in range(bearings):
             # The elements of the bearings are the last ones, in order.
-            work.more[row] += work.G[row, 2 * m + p] * work.shift[work.note[1] - bearings + p]
+            work.more[row] += work.G[row, 2 * m + p] * work.shift[elements - bearings + p]
 
 
 @kernel
