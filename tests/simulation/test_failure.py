@@ -68,4 +68,4 @@ def test_the_run_is_kept_with_the_problem_and_what_to_try(tmp_path) -> None:
     assert failure["what_to_try"]
     assert (folder / "trajectory.npz").is_file()
     assert summary["lcp_failures"] == 1
-    assert summary["stop"] == "lcp_failed"
+    assert summary["stop"] == "LCP_FAILED"

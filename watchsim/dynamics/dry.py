@@ -35,6 +35,16 @@ def add_drag(model, grip, out_h):
 
 
 @kernel
+def drag_power(model, grip, u):
+    """Power the moving bearings take, W. A smooth function of u also beyond a reversal, where the step will end."""
+    power = 0.0
+    for i in range(len(model.coordinates)):
+        if grip[i] == FORWARD or grip[i] == BACKWARD:
+            power += grip[i] * model.coordinates[i].coulomb * u[i]
+    return power
+
+
+@kernel
 def load_on(closed, m, work, i):
     """(force, sum of its terms without sign) of drives and contacts on coordinate i, from `work.h` and `work.force`."""
     load, terms = work.h[i], abs(work.h[i])

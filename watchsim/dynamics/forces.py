@@ -72,10 +72,10 @@ def drive_power(model, t, q, u):
 
 @kernel
 def damping_power(model, u):
-    """Power taken by damping, W; never negative."""
+    """Power taken by viscous and quadratic damping, W; never negative."""
     power = 0.0
     for i in range(len(model.coordinates)):
-        power += abs(u[i]) * model.coordinates[i].coulomb - u[i] * damping_force(model, i, u[i])
+        power -= u[i] * damping_force(model, i, u[i])
     return power
 
 

@@ -11,7 +11,7 @@ from watchsim.contact.index_sets import OPEN, STICK
 from watchsim.contact.kinematics import contact_kinematics
 from watchsim.contact.poses import place
 from watchsim.dynamics.acceleration import accelerate, is_paradox, solve_mode
-from watchsim.dynamics.dry import add_drag, load_on
+from watchsim.dynamics.dry import add_drag, drag_power, load_on
 from watchsim.dynamics.forces import damping_power, drive_power, forces
 from watchsim.jit import kernel
 from watchsim.simulation.state import N_EVALUATIONS
@@ -81,6 +81,6 @@ def motion(model, state, options, t, y, scratch):
             out[n + i] = 0.0
         out[i] = u[i]
     out[2 * n] = drive_power(model, t, q, u)
-    out[2 * n + 1] = damping_power(model, u)
+    out[2 * n + 1] = damping_power(model, u) + drag_power(model, state.grip, u)
     out[2 * n + 2] = friction
     state.counts[N_EVALUATIONS] += 1
