@@ -12,6 +12,7 @@ import argparse
 import dataclasses
 import math
 import time
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -48,7 +49,7 @@ def pieces(edge: Edge, count: int) -> tuple[Edge, ...]:
         sweep = edge.sweep / count
         return tuple(Arc(edge.x, edge.y, edge.radius, edge.start_angle + i * sweep, sweep) for i in range(count))
     ends = [edge.point(i / count) for i in range(count + 1)]
-    return tuple(Line(*a, *b) for a, b in zip(ends, ends[1:], strict=False))
+    return tuple(Line(*a, *b) for a, b in pairwise(ends))
 
 
 def refined(scene: Scene, count: int, whole: set[Mark]) -> Scene:
@@ -164,7 +165,14 @@ def table(found: list[Row]) -> str:
     ]
     for row in found:
         brute = "" if row.brute is None else f"{row.brute:.3f}"
-        cells = (f"{row.declared:,}", f"{row.reachable:,}", f"{row.setup:.3f}", f"{row.learning:.4f}", f"{row.known:.4f}", brute)
+        cells = (
+            f"{row.declared:,}",
+            f"{row.reachable:,}",
+            f"{row.setup:.3f}",
+            f"{row.learning:.4f}",
+            f"{row.known:.4f}",
+            brute,
+        )
         lines.append("| " + " | ".join((*cells, str(row.events))) + " |")
     return "\n".join(lines)
 

@@ -43,7 +43,9 @@ def block(width: float, nose: float, offset: float) -> Loop:
     """A bar with a round nose, `offset` beside its pivot."""
     x, y = offset, -0.3
     arc = Arc(x, y - width, nose, -math.pi, math.pi)
-    return Loop((arc, Line(x + nose, y - width, x + nose, y), Line(x + nose, y, x - nose, y), Line(x - nose, y, x - nose, y - width)))
+    return Loop(
+        (arc, Line(x + nose, y - width, x + nose, y), Line(x + nose, y, x - nose, y), Line(x - nose, y, x - nose, y - width))
+    )
 
 
 def scene_of(teeth: int, spokes: int, bar: tuple[float, float, float], motion: str, distance: float) -> tuple[Scene, Compiled]:

@@ -25,7 +25,9 @@ def wheel(teeth: int, spokes: int = 0, shift: float = 0.0, spoilt: float = 0.0) 
         c, s = math.cos(2.0 * math.pi / teeth), math.sin(2.0 * math.pi / teeth)
         end = (0.8 * c, 0.8 * s)
         edges += [moved(Line(0.8, 0.0, tip, 0.05), angle, (0.0, 0.0)), moved(Line(tip, 0.05, *end), angle, (0.0, 0.0))]
-    holes = [Arc(0.4 * math.cos(a), 0.4 * math.sin(a), 0.1, 0.0, -2.0 * math.pi) for a in np.arange(spokes) * 2.0 * math.pi / spokes]
+    holes = [
+        Arc(0.4 * math.cos(a), 0.4 * math.sin(a), 0.1, 0.0, -2.0 * math.pi) for a in np.arange(spokes) * 2.0 * math.pi / spokes
+    ]
     loops = [Loop(tuple(edges)), *(Loop((hole,), hole=True) for hole in holes)]
     return np.concatenate([features(loop, 0, 1.0) for loop in loops]).view(np.recarray)
 

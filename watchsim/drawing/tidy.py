@@ -79,7 +79,7 @@ def same_edge(a: Edge, b: Edge) -> bool:
 
 
 def without_doubles(strokes: Sequence[Stroke], nodes: Nodes, reach: float) -> tuple[set[int], dict[int, int], list[Finding]]:
-    """Numbers of the strokes to keep, of those among them that were drawn more than once (with the copy's number), and findings.
+    """Numbers of the strokes to keep, of those among them drawn more than once (with the copy's number), and findings.
 
     Strokes are the same, forward or reversed, if they join the same nodes with their middles within `reach` metres.
     """

@@ -32,6 +32,7 @@ from watchsim.mechanism.model import (
     PRIMITIVE,
     SLIDE,
     TABLE,
+    TANGENTIAL_CODE,
     Model,
     Records,
     frozen,
@@ -145,6 +146,7 @@ def _contacts(scene: Scene, sides: dict[Side, np.ndarray], primitives: Records) 
     for group, contact in enumerate(scene.contacts):
         laws[group].friction, laws[group].restitution = contact.friction, contact.restitution
         laws[group].tangential = contact.tangential_restitution
+        laws[group].kind, laws[group].nu = TANGENTIAL_CODE[scene.tangential_law], scene.nu
         first, last = (sides[side] for side in contact.sides)
         a, b = _touching(primitives, first, last)
         block = np.stack([a, b, np.full(len(a), group)], axis=1)
@@ -178,6 +180,7 @@ def _add_shapes(primitives: Records, contacts: Records) -> None:
 def _touching(primitives: Records, first: np.ndarray, last: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """All pairs (circle, other) between two sets of primitives that have a gap function."""
     kind, radius, convex = primitives.kind, primitives.radius, primitives.side > 0.0
+
     def circles_and_edges(circles: np.ndarray, edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         circles = circles[(kind[circles] == CORNER) | ((kind[circles] == ARC) & convex[circles])]
         edges = edges[kind[edges] != CORNER]
@@ -213,6 +216,7 @@ def _coordinates(scene: Scene, slices: dict[str, slice], size: float) -> tuple[R
         row = rows[_driven(scene, slices, damping.body)]
         row.viscous += damping.viscous
         row.quadratic += damping.quadratic
+        row.coulomb += damping.coulomb
     tables, knots = _tables(scene, slices, rows)
     tabled = {int(table.coordinate) for table in tables}
     for i, row in enumerate(rows):

@@ -8,15 +8,15 @@ acceleration times that time squared, some picometres: it is taken away.
 
 from __future__ import annotations
 
+from watchsim.contact.index_sets import OPEN
 from watchsim.contact.poses import place
-from watchsim.dynamics.delassus import apply, contact_velocities, fill_delassus
-from watchsim.dynamics.linear import solve_small
 from watchsim.jit import kernel
 from watchsim.simulation.closed import refresh
+from watchsim.simulation.collide import ACCUMULATION_EVENT, kinetic_energy
+from watchsim.simulation.drift import project_velocities
 from watchsim.simulation.keep import keep_event
 from watchsim.simulation.state import IMPACTS, N_ACCUMULATED
 
-ACCUMULATION_EVENT = 7
 IN_A_ROW = 20  # impacts that have nothing to do with each other do not come so close so often
 
 
@@ -35,21 +35,16 @@ def is_chatter(state, m, options, closed):
 def end_chatter(model, state, m, scratch, record):
     """Bring the gap rates of the m closed contacts to zero by the smallest change of velocities; energy goes to the impacts."""
     closed, work = scratch.closed, scratch.work
-    fill_delassus(model, closed, m, work)
-    contact_velocities(model, closed, m, state.u, work.b)
+    before = kinetic_energy(model, state.u)
     for i in range(m):
-        for j in range(m):
-            work.A[i, j] = work.G[2 * i, 2 * j]
-        work.rhs[i] = -work.b[2 * i]
-    solve_small(work.A, work.rhs, m, work.order, work.x)
-    for i in range(m):
-        work.more[2 * i], work.more[2 * i + 1] = work.x[i], 0.0
-        # Half the rate before, since it is zero after.
-        state.sums[IMPACTS] -= 0.5 * work.x[i] * work.b[2 * i]
-        if work.b[2 * i] < 0.0:
+        scratch.trial[closed.ids[i]] = OPEN
+        if closed.kin[i].gN_dot < 0.0:
             keep_event(state, record, ACCUMULATION_EVENT, closed.ids[i], -1, state.clock[0])
             state.counts[N_ACCUMULATED] += 1
-    apply(model, closed, m, work.more, state.u)
+    for j in range(len(model.coordinates)):
+        work.inverse[j] = 1.0 / model.coordinates[j].mass
+    project_velocities(closed, m, scratch.trial, work, state.u)
+    state.sums[IMPACTS] += before - kinetic_energy(model, state.u)
     state.numbers[5] = 0
     place(model, state.q, state.u, scratch.pose)
     refresh(model, m, closed, scratch.pose)

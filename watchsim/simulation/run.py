@@ -21,6 +21,7 @@ from watchsim.mechanism.compile import Compiled
 from watchsim.mechanism.model import KIND_WORD
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation.advance import EVENTS_PER_STEP, ROWS_PER_STEP, advance
+from watchsim.simulation.failure import failure_of
 from watchsim.simulation.methods import EVENT_DRIVEN
 from watchsim.simulation.options import Options, options_for
 from watchsim.simulation.saved import SavedState, save_state
@@ -161,6 +162,7 @@ class Run:
     def trajectory(self, scene: Scene, stop: Stop, wall: float, compile_time: float) -> Trajectory:
         """Everything kept, as a frozen value."""
         n = len(self.state.q)
+        pairs = pairs_of(self.compiled, scene)
         rows = np.concatenate(self.kept.rows) if self.kept.rows else np.zeros((0, 1 + 3 * n))
         events = np.concatenate(self.kept.events) if self.kept.events else np.zeros(0, EVENT_DTYPE)
         return Trajectory(
@@ -171,7 +173,7 @@ class Run:
             a=rows[:, 1 + 2 * n :],
             slices=self.compiled.slices,
             events=events,
-            pairs=pairs_of(self.compiled, scene),
+            pairs=pairs,
             stop=stop,
             stop_message=f"t = {self.state.clock[0]:.9g} s: {stop.sentence}",
             simulated=float(self.state.clock[0]),
@@ -185,6 +187,7 @@ class Run:
             counts=self._counts(),
             step=self.step,
             end_state=self.saved,
+            failure=failure_of(self.state, self.scratch, pairs) if stop == Stop.LCP_FAILED else None,
         )
 
     def _counts(self) -> dict[str, int]:
