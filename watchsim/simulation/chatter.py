@@ -25,10 +25,8 @@ def may_be_chatter(m, options, scratch):
         hit = scratch.impulse[2 * i] > 0.0
         if hit and scratch.restitution[i] == 1.0:
             return False
-        if rate > options.speed_zero:
-            # One that rebounds has its own rule, which knows when it would end.
-            if hit and scratch.restitution[i] > 0.0:
-                return False
+        # Where only contacts leave that rebound, their own rule knows when that would end.
+        if rate > options.speed_zero and not (hit and scratch.restitution[i] > 0.0):
             found = True
     return found
 
