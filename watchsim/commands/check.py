@@ -17,8 +17,8 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from watchsim.commands.scenes import load_scene
-    from watchsim.mechanism.reachable import count_pairs
     from watchsim.mechanism.check import check_report, check_text
+    from watchsim.mechanism.reachable import count_pairs
 
     scene = load_scene(args.scene, overlap=False)
     report = check_report(scene, count_pairs(scene))
