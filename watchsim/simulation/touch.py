@@ -15,7 +15,7 @@ from watchsim.contact.poses import point_of
 from watchsim.dynamics.linear import copy
 from watchsim.jit import kernel
 from watchsim.mechanism.model import FREE, LINE, PIVOT, SLIDE
-from watchsim.simulation.handover import continues_active
+from watchsim.simulation.handover import continues_active, is_beside_active
 from watchsim.simulation.path import body_on_path
 from watchsim.simulation.state import N_GAPS
 
@@ -216,7 +216,9 @@ def _first_of(model, cells, state, options, p, tau, until, scratch):
     doubts = 0
     for place in range(start, start + count):
         k = candidate(model, cells, how, place)
-        if state.mode[k] == 0 and not _stays_open(model, state, options, k, until - tau, pair.a, bounds, scratch):
+        if state.mode[k] != 0 or is_beside_active(model, state, k):
+            continue
+        if not _stays_open(model, state, options, k, until - tau, pair.a, bounds, scratch):
             scratch.doubt[doubts] = k
             doubts += 1
     for j in range(doubts):
