@@ -55,9 +55,9 @@ def main(folder: Path, target: Path) -> None:
         "holds, blocks and polylines unfolded, and Δ extents, Δ length and Δ areas are the relative differences of just that, "
         "chained by the same rule (`tests/naive/chaining.py`).\n\n"
         "The other columns are what comes out, with doubles and slits taken out, gaps closed and outlines that touch told "
-        "apart. Where as many loops come out as the truth counts, Δ areas out compares these as well. One of them exceeds 1e-9: "
-        "in 125_cycloidal ends miss each other by 0.4 nm at 24 joints; the truth integrates across these gaps, here they are "
-        "closed, which is worth 5e-9 of the area.\n\n"
+        "apart. Where as many loops come out as the truth counts, Δ areas out compares these as well. One of them exceeds "
+        "1e-9: in 125_cycloidal ends miss each other by 0.4 nm at 24 joints; the truth integrates across these gaps, here they "
+        "are closed, which is worth 5e-9 of the area.\n\n"
     )
     target.write_text(text + HEAD + "\n".join(row.text for row in rows) + "\n")
     print(summary)
