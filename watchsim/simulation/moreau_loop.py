@@ -8,7 +8,9 @@ from watchsim.contact.kinematics import ClosedRef
 from watchsim.jit import entry, kernel
 from watchsim.mechanism.model import CellsRef, ModelRef
 from watchsim.simulation.keep import keep_event, keep_row
-from watchsim.simulation.moreau_step import MoreauWorkRef, act, closed_at_middle, move, stop_approaches
+from watchsim.simulation.moreau_impact import stop_approaches
+from watchsim.simulation.moreau_step import act, closed_at_middle, move
+from watchsim.simulation.moreau_work import MoreauWorkRef
 from watchsim.simulation.options import OptionsRef
 from watchsim.simulation.state import N_STEPS, ROOM, RecordRef, StateRef
 from watchsim.simulation.stops import Stop
@@ -61,9 +63,6 @@ def _step(model, cells, state, options, h, whole, work, record):
     m = closed_at_middle(model, cells, state, options, h, work)
     if m < 0:
         return CELL_UNKNOWN if m == -1 else TOO_MANY_CONTACTS
-    for i in range(m):
-        law = model.laws[model.contacts[work.closed.ids[i]].group]
-        work.friction[i], work.restitution[i] = law.friction, law.restitution
     jump = stop_approaches(model, state, options, m, work, record)
     if jump:
         keep_row(state, record, state.clock[0], state.q, state.u, state.a)
@@ -120,8 +119,9 @@ def _by_reference(work):
         work.more,
         work.P,
         work.low,
-        work.friction,
+        work.ends,
         work.restitution,
+        work.dry,
         work.unknown,
         work.at,
         work.sweeps,
