@@ -73,7 +73,7 @@ class Long:
 
 
 def pieces(scene: Scene, duration: float) -> list[Trajectory]:
-    """The run minute by minute, of each what analysis needs: turning points, passages, and where all bodies are at the former."""
+    """The run minute by minute, of each what analysis needs: turning points, passages, and where all bodies are then."""
     kept: list[Trajectory] = []
     start, reached = None, 0.0
     while reached < duration:
@@ -181,8 +181,8 @@ def _one(run: Long) -> list[str]:
         f"- {run.half_swings:,} half swings, {run.missed} missed; {run.cpu:.0f} s of processor time.",
         f"- Amplitude of a minute steady to {STEADY:.0e}°: {steady}. "
         f"Half swings of the last minute lie within {run.spread[-1]:.1e}°.",
-        f"- Energy residual at the end {run.residual[-1]:.1e} J of {run.supplied[-1]:.1e} J put in. Over the second half it changes by "
-        f"{slope:.1e} ± {error:.0e} J a minute, {share:.0e} of the work put in meanwhile.",
+        f"- Energy residual at the end {run.residual[-1]:.1e} J of {run.supplied[-1]:.1e} J put in. Over the second half it "
+        f"changes by {slope:.1e} ± {error:.0e} J a minute, {share:.0e} of the work put in meanwhile.",
         f"- Worst penetration {run.penetration:.1e} m, worst residual of complementarity {run.complementarity:.1e}; {counts}.",
         TABLE,
         *(_line(run, i) for i in sorted({min(minute - 1, last) for minute in TOLD})),

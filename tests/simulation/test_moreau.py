@@ -87,7 +87,7 @@ def test_block_on_an_incline(friction: float, slides: bool) -> None:
 
 
 def test_relaxation_solves_the_laws() -> None:
-    """Random contacts and bearings: percussions above `low`, complementary to the rates, friction in its cone, against the slip."""
+    """Random contacts and bearings: normal percussions complementary to the rates, friction within bounds and against slip."""
     rng = np.random.default_rng(5)
     for _ in range(300):
         m, bearings = int(rng.integers(1, 4)), int(rng.integers(0, 3))

@@ -14,6 +14,7 @@ from watchsim.contact.kinematics import contact_kinematics
 from watchsim.contact.lookup import UNKNOWN, candidate, candidates
 from watchsim.contact.poses import place, point_of
 from watchsim.dynamics.forces import driving_force, table_value
+from watchsim.dynamics.linear import copy
 from watchsim.jit import kernel
 from watchsim.mechanism.model import OVER_TIME
 from watchsim.simulation.moreau_impact import friction_cones, solve_percussions
@@ -37,7 +38,7 @@ def closed_at_middle(model, cells, state, options, h, work):
         how, start, count = candidates(model, cells, p, work.q)
         if how == UNKNOWN:
             work.unknown[0] = p
-            work.at[:] = work.q
+            copy(work.q, work.at)
             return -1
         for place_in_list in range(start, start + count):
             k = candidate(model, cells, how, place_in_list)
@@ -111,7 +112,7 @@ def act(model, state, m, h, work, out_u):
     """Velocities at the end of the step: forces, contacts and dry bearings together, without restitution."""
     closed = work.closed
     _free_velocity(model, state, h, work)
-    out_u[:] = work.free
+    copy(work.free, out_u)
     if m == 0 and len(work.dry) == 0:
         return
     bearings = _begin_percussions(model, m, h, work)
