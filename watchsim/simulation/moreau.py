@@ -31,7 +31,7 @@ class MoreauRun(Run):
         self.record = new_record(compiled.model, ROWS + ROWS_PER_STEP, EVENTS + EVENTS_PER_STEP, self.record.windows)
 
     def arrays(self) -> dict[str, NDArray[Any]]:
-        return {**super().arrays(), "memory": self.work.memory, "depth": self.work.depth}
+        return {**super().arrays(), "memory": self.work.memory, "depth": self.work.depth, "sweeps": self.work.sweeps}
 
     def _worst_residual(self) -> NDArray[np.float64]:
         return self.work.worst

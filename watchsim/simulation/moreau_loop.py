@@ -135,7 +135,8 @@ def _loop(model, cells, state, options, until, pace, work, record):
     while True:
         if record.used[0] + ROWS_PER_STEP >= len(record.rows) or record.used[1] + EVENTS_PER_STEP >= len(record.events):
             return BUFFER_FULL
-        if state.numbers[3] == 0 and record.used[0] == 0 and state.clock[0] == 0.0:
+        if state.numbers[2]:
+            state.numbers[2] = 0
             keep_row(state, record, 0.0, state.q, state.u, state.a)
         left = until[1] - state.clock[0]
         if left <= 0.0:

@@ -18,7 +18,7 @@ Integers = NDArray[np.int64]
 
 
 class MoreauWork(NamedTuple):
-    """Room to work in; `memory` (percussions of the last step by contact) and `depth` belong to the state.
+    """Room to work in; `memory` (percussions of the last step by contact), `depth`, `sweeps` and `worst` belong to the state.
 
     Rows of G, b and P: N, T of each of the m closed contacts, then one for each bearing with dry friction.
     """
