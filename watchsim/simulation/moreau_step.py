@@ -99,7 +99,7 @@ def closed_at_middle(model, cells, state, options, h, work):
             work.at[:] = work.q
             return -1
         for place_in_list in range(start, start + count):
-            k = candidate(cells, how, place_in_list)
+            k = candidate(model, cells, how, place_in_list)
             gap, _, nx, ny = normal_gap(model, k, work.pose)
             if gap > 0.0 or (state.mode[k] == 0 and gap < -_believable(model, options, k, h, work)):
                 continue
