@@ -55,7 +55,7 @@ def main(folder: Path, target: Path) -> None:
         "truth integrates across them, which is worth 5e-9 of its area.\n\n"
         "Written by `python scripts/make_drawing_table.py FOLDER`. *Drawn* counts what the file holds, blocks and polylines "
         "unfolded, before doubles are taken out and curves are fitted; Δ are the largest relative differences from independent "
-        "readers. Areas are compared where no outline branches and nothing is drawn twice: there the truth counts otherwise.\n\n"
+        "readers. Areas are compared where no outline branches and nothing is double: there the truth counts otherwise.\n\n"
     )
     target.write_text(text + HEAD + "\n".join(row.text for row in rows) + "\n")
     print(summary)
@@ -75,15 +75,15 @@ def row_of(name: str, path: Path, truth: dict[str, Any]) -> Row:
     mm, true = in_millimetres(drawing, truth)
     kinds = drawn_kinds(found, drawing.format)
     deltas = (extents_delta(found, true, mm), length_delta(found, true, mm), area_delta(found, true, mm))
-    counted = kinds == {kind: count for kind, count in truth["kinds"].items() if count}
+    counted = kinds == as_drawn(truth["kinds"])
     agrees = counted and all(delta is None or delta <= limit for delta in deltas)
     return Row(name, row_text(short, found, kinds, deltas, notes), agrees, curved)
 
 
 def in_millimetres(drawing: Drawing, truth: dict[str, Any]) -> tuple[float, dict[str, Any]]:
-    """Millimetres per unit of the truth, and the truth; an SVG's is stated in mm besides."""
+    """Millimetres per unit of the truth, and the truth; an SVG's y points down, and where its page has a size mm are stated."""
     if drawing.format == "svg":
-        return 1.0, truth | truth["mm_at_96dpi"] | {"flipped": True}
+        return 1.0, truth | (truth["mm_at_96dpi"] if drawing.units else {}) | {"flipped": True}
     return MM_PER_UNIT[drawing.units], truth
 
 
@@ -93,6 +93,14 @@ def drawn_kinds(found: dict[str, Any], form: str) -> dict[str, int]:
     if form == "dxf":
         kinds["line"] += sum(f["code"] == "zero-length" and f["message"].startswith("LINE") for f in found["findings"])
     return {kind: count for kind, count in kinds.items() if count}
+
+
+def as_drawn(kinds: dict[str, int]) -> dict[str, int]:
+    """The truth's counts; Béziers are splines here."""
+    counts: Counter[str] = Counter()
+    for kind, count in kinds.items():
+        counts["spline" if kind.startswith("bezier") else kind] += count
+    return {kind: count for kind, count in counts.items() if count}
 
 
 def extents_delta(found: dict[str, Any], truth: dict[str, Any], mm: float) -> float | None:

@@ -16,6 +16,9 @@ _HOMES = {
     "SceneError": "watchsim.mechanism.errors",
     "read": "watchsim.drawing.read",
     "Drawing": "watchsim.drawing.drawing",
+    "distance": "watchsim.contact.outlines",
+    "gap": "watchsim.contact.outlines",
+    "kinematics": "watchsim.contact.outlines",
     "Profile": "watchsim.drawing.profile",
     "simulate": "watchsim.simulation.simulate",
     "Trajectory": "watchsim.simulation.trajectory",
@@ -40,6 +43,9 @@ if TYPE_CHECKING:
     from watchsim.analysis.results import write_results as write_results
     from watchsim.analysis.summary import summary as summary
     from watchsim.analysis.verify import verify as verify
+    from watchsim.contact.outlines import distance as distance
+    from watchsim.contact.outlines import gap as gap
+    from watchsim.contact.outlines import kinematics as kinematics
     from watchsim.drawing.drawing import Drawing as Drawing
     from watchsim.drawing.profile import Profile as Profile
     from watchsim.drawing.read import read as read

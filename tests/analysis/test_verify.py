@@ -10,13 +10,16 @@ import pytest
 
 from watchsim.analysis.benchmarks import Check, inclines, swings
 from watchsim.analysis.hard_cases import hard_cases
+from watchsim.analysis.repeated_impacts import repeated_impacts
 from watchsim.analysis.verify import compared, lcp_rows, rows_of, verify_text
 from watchsim.profiles_path import profiles_dir
 
 FIELDS = ["name", "quantity", "expected", "got", "error", "tolerance", "ok", "source"]
 
 
-@pytest.mark.parametrize("benchmark", [*inclines(), *swings(), *hard_cases()], ids=lambda benchmark: benchmark.name)
+@pytest.mark.parametrize(
+    "benchmark", [*inclines(), *swings(), *hard_cases(), *repeated_impacts()], ids=lambda benchmark: benchmark.name
+)
 def test_benchmark(benchmark) -> None:
     rows = rows_of([benchmark])
     wrong = [row for row in rows if not row["ok"]]

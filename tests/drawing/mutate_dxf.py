@@ -6,7 +6,8 @@ One accident per file: bytes, numbers, group codes, lines, the nesting of blocks
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
+from itertools import pairwise
 from pathlib import Path
 
 import dxf_text as d
@@ -53,10 +54,23 @@ WORDS = (b"INSERT", b"BLOCK", b"ENDBLK", b"SECTION", b"ENDSEC", b"EOF", b"SPLINE
 
 KINDS = (b"LINE", b"ARC", b"CIRCLE", b"ELLIPSE", b"SPLINE", b"LWPOLYLINE", b"POLYLINE", b"VERTEX", b"INSERT", b"POINT")
 
+NAMING = (b"1", b"2", b"3", b"8")  # groups that hold names
+
 
 def samples() -> list[bytes]:
     """Whole files without any finding."""
-    return [every_entity(), nested_blocks(), d.dxf(d.polygon([(0, 0), (4, 0), (4, 3)]) + d.circle(3, 1, 0.5), units=1)]
+    return [
+        marked(every_entity()),
+        marked(nested_blocks()),
+        d.dxf(d.polygon([(0, 0), (4, 0), (4, 3)]) + d.circle(3, 1, 0.5), units=1),
+    ]
+
+
+def marked(data: bytes) -> bytes:
+    """With the subclass markers without which the other reader refuses some entities."""
+    for kind, marker in ((b"LWPOLYLINE", b"AcDbPolyline"), (b"SPLINE", b"AcDbSpline"), (b"ELLIPSE", b"AcDbEllipse")):
+        data = data.replace(b"0\n%s\n8\n0\n" % kind, b"0\n%s\n100\nAcDbEntity\n8\n0\n100\n%s\n" % (kind, marker))
+    return data.replace(b"HEADER\n", b"HEADER\n9\n$ACADVER\n1\nAC1015\n")
 
 
 def every_entity() -> bytes:
@@ -102,30 +116,23 @@ def entities(data: bytes) -> int:
 
 
 def lost(data: bytes) -> bool:
-    """Does the name of an entity stand anywhere but after a group code 0?"""
+    """Does the name of an entity stand anywhere but after a group code 0, or as the name of something?"""
     lines = [line.strip() for line in data.split(b"\n")]
     end = lines.index(b"EOF") if b"EOF" in lines else len(lines)
     begun = sum(code == b"0" and name in KINDS for code, name in zip(lines[:end:2], lines[1:end:2], strict=False))
-    return sum(line in KINDS for line in lines[:end]) > begun
+    return sum(line in KINDS and before not in NAMING for before, line in pairwise(lines[:end])) > begun
 
 
-def pieces(path: Path) -> int | None:
-    """How many entities and points ezdxf draws, blocks unfolded; None where it gives up."""
-    from ezdxf import recover
-    from ezdxf.entities import Insert
-
-    def count(entities: Iterable[object], depth: int) -> int:
-        total = 0
-        for entity in entities:
-            if isinstance(entity, Insert):
-                copies = entity.multi_insert() if entity.mcount > 1 else [entity]
-                total += sum(count(copy.virtual_entities(), depth + 1) for copy in copies) if depth < 9 else 0
-            else:
-                total += 1
-        return total
+def length(path: Path) -> float | None:
+    """How much ezdxf draws, in drawing units, blocks unfolded; None where it gives up."""
+    from ezdxf import disassemble, recover
 
     try:
-        return count(recover.readfile(path)[0].modelspace(), 0)
+        space = recover.readfile(path)[0].modelspace()
+        pieces = disassemble.to_primitives(disassemble.recursive_decompose(space))
+        drawn = (piece.path for piece in pieces if piece.path is not None and piece.entity.dxftype() != "POINT")
+        chains = ([*one.flattening(distance=1e-3)] for one in drawn)
+        return sum(p.distance(q) for chain in chains for p, q in pairwise(chain))
     except Exception:
         return None
 
@@ -156,7 +163,8 @@ def line_lost(rng: random.Random, data: bytes) -> bytes:
 
 def line_replaced(rng: random.Random, data: bytes) -> bytes:
     lines = data.split(b"\n")
-    lines[rng.randrange(len(lines))] = rng.choice(NUMBERS + CODES + WORDS)
+    k = rng.randrange(len(lines))
+    lines[k] = rng.choice(NUMBERS + CODES + WORDS if lines[k - 1].strip() == b"0" else NUMBERS + CODES)
     return b"\n".join(lines)
 
 

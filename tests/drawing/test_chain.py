@@ -147,6 +147,20 @@ def test_slit_in_a_polyline(read_bytes: Reader) -> None:
     assert not drawing.open_chains
 
 
+def test_an_outline_bridged_to_its_hole_is_two_loops(read_bytes: Reader) -> None:
+    """A keyhole: programs without holes draw them in one go with the outline."""
+    corners = [(0, 0), (10, 0), (10, 10), (0, 10), (0, 5), (3, 5), (3, 7), (6, 7), (6, 3), (3, 3), (3, 5), (0, 5)]
+    drawing = read_bytes(d.dxf(d.lwpolyline(corners, True)))
+    assert sorted((loop.hole, round(area(loop) * 1e6, 9)) for loop in drawing.loops) == [(False, 100.0), (True, -12.0)]
+    assert not drawing.open_chains and {finding.code for finding in drawing.findings} == {"duplicate", "slit"}
+
+
+def test_rectangles_side_by_side_with_their_border_drawn_twice_are_not_joined(read_bytes: Reader) -> None:
+    right = [(4.0, 0.0), (7.0, 0.0), (7.0, 4.0), (4.0, 4.0)]
+    found = by_code(read_bytes(d.dxf(d.polygon(SQUARE) + d.polygon(right))))
+    assert len(found["branch"]) == 2 and "slit" not in found
+
+
 def test_doubled_open_line_keeps_one(read_bytes: Reader) -> None:
     drawing = read_bytes(d.dxf(2 * (d.line((0, 0), (1, 0)) + d.line((1, 0), (1, 1)))))
     assert len(drawing.open_chains) == 1 and len(drawing.open_chains[0].edges) == 2

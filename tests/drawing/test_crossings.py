@@ -127,6 +127,11 @@ def test_centre_lines_may_cross_what_they_like(read_bytes: Reader) -> None:
     assert {finding.code for finding in drawing.findings} == {"stray-line"}
 
 
+def test_an_end_on_the_middle_of_another_edge_is_no_crossing(read_bytes: Reader) -> None:
+    drawing = read_bytes(d.dxf(d.line((0, 0), (10, 0)) + d.line((5, 0), (5, 3)) + d.line((5, 3), (0, 0))))
+    assert [finding.code for finding in drawing.findings] == ["open-outline"]
+
+
 def test_an_open_chain_that_crosses_itself_is_a_warning(read_bytes: Reader) -> None:
     drawing = read_bytes(d.dxf(d.lwpolyline([(0, 0), (4, 0), (4, 2), (2, 2), (2, -2)], False)))
     (finding,) = of_code(drawing, "crossing")

@@ -56,7 +56,7 @@ def test_a_loss_in_silence_would_be_noticed(tmp_path: Path, monkeypatch: pytest.
     assert not judge_mutation.fault(path, whole, mutate_dxf)
     path.write_bytes(mutate_dxf.samples()[2])
     assert not judge_mutation.fault(path, whole, mutate_dxf), "ezdxf agrees that there is less"
-    monkeypatch.setattr(mutate_dxf, "pieces", lambda _: 9)
+    monkeypatch.setattr(mutate_dxf, "length", lambda _: 9.0)
     assert judge_mutation.fault(path, whole, mutate_dxf).startswith("silent loss: 17 before")
     monkeypatch.setattr(mutate_dxf, "entities", lambda _: 5)
     assert judge_mutation.fault(path, read(path), mutate_dxf).startswith("silent loss: 5 entities in the file, 4 read")

@@ -158,3 +158,39 @@ def test_impossible_splines_are_errors(
     (finding,) = drawing.findings
     assert (finding.code, finding.severity) == ("damaged", "error")
     assert word in finding.message
+
+
+def test_knots_that_differ_by_rounding_are_one_knot(read_bytes: Reader) -> None:
+    """Double knots of a rational circle, written with the noise of a converted file."""
+    h = math.sqrt(0.5)
+    square = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)]
+    knots = (0, 1e-14, 0, 0.25, 0.25 + 2e-13, 0.5, 0.5 - 1e-13, 0.75, 0.75, 1, 1 - 1e-14, 1)
+    drawing = read_bytes(d.dxf(spline(2, knots, square, [1, h, 1, h, 1, h, 1, h, 1])))
+    ((edge,),) = [loop.edges for loop in drawing.loops]
+    assert isinstance(edge, Arc) and abs(edge.sweep) == TURN and drawing.fitted_curves == 0
+
+
+def test_four_cubics_within_the_tolerance_become_one_circle(read_bytes: Reader) -> None:
+    """The usual approximation bulges by 2.7253e-4 of the radius; within half a micrometre that is a circle of 1 mm."""
+    k = 0.5522847498307936
+    around = [(1, 0), (1, k), (k, 1), (0, 1), (-k, 1), (-1, k), (-1, 0), (-1, -k), (-k, -1), (0, -1), (k, -1), (1, -k), (1, 0)]
+    knots = (0, 0, 0, 0, 1, 1, 1, 2, 2, 2, 3, 3, 3, 4, 4, 4, 4)
+    drawing = read_bytes(d.dxf(spline(3, knots, around)), fit=5e-7)
+    ((edge,),) = [loop.edges for loop in drawing.loops]
+    assert isinstance(edge, Arc) and (edge.x, edge.y, edge.radius) == pytest.approx((0, 0, 1e-3), abs=1e-12)
+    assert drawing.fitted_deviation == pytest.approx(2.7253e-7, rel=3e-3)
+    assert len(read_bytes(d.dxf(spline(3, knots, around)), fit=1e-7).loops[0].edges) > 4
+
+
+def test_fit_points_with_tangents_start_and_end_along_them(read_bytes: Reader) -> None:
+    tags: list[d.Tag] = [(70, 8), (71, 3), (72, 0), (73, 0), (74, 3)]
+    for code, p in ((12, (0, 1)), (13, (0, -1)), (11, (0, 0)), (11, (1, 1)), (11, (2, 0))):
+        tags += d.point(code, p)
+    (chain,) = read_bytes(d.dxf(d.record("SPLINE", *tags))).open_chains
+    assert chain.edges[0].tangent(0.0) == pytest.approx((0, 1), abs=1e-9)
+    assert chain.edges[-1].tangent(1.0) == pytest.approx((0, -1), abs=1e-9)
+
+
+def test_spline_of_one_point_is_said(read_bytes: Reader) -> None:
+    drawing = read_bytes(d.dxf(d.circle(0, 0, 1) + spline(3, (0, 0, 0, 0, 1, 1, 1, 1), [(2, 1)] * 4)))
+    assert [finding.code for finding in drawing.findings] == ["zero-length"]

@@ -21,6 +21,7 @@ from watchsim.mechanism.model import (
     LAW,
     PRIMITIVE,
     TABLE,
+    TANGENTIAL_CODE,
     Model,
     frozen,
     records,
@@ -32,7 +33,11 @@ _impact, _energy_change = callable_kernel(impact), callable_kernel(energy_change
 class Case:
     """m contacts on n coordinates: masses, W (2m, n) in the order N, T, N, T, ..., friction and restitution by contact."""
 
-    def __init__(self, mass: np.ndarray, W: np.ndarray, mu: np.ndarray, eps: np.ndarray) -> None:
+    def __init__(
+        self, mass: np.ndarray, W: np.ndarray, mu: np.ndarray, eps: np.ndarray, law: str = "coulomb", **more: Any
+    ) -> None:
+        """`law` with `tangential` (restitution, by contact) and `nu` as in the scene file."""
+        self.law, self.tangential, self.nu = law, np.broadcast_to(more.get("tangential", 0.0), len(mu)), more.get("nu", 0.0)
         self.mass, self.W, self.mu, self.eps = mass, W, mu, eps
         self.m, self.n = len(mu), len(mass)
         self.G = W / mass @ W.T
@@ -42,6 +47,7 @@ class Case:
     def _model(self) -> Model:
         coordinates, laws, contacts = records(COORDINATE, self.n), records(LAW, self.m), records(CONTACT, self.m)
         coordinates.mass, laws.friction, contacts.group = self.mass, self.mu, np.arange(self.m)
+        laws.kind, laws.tangential, laws.nu = TANGENTIAL_CODE[self.law], self.tangential, self.nu
         empty = [records(dtype, 0) for dtype in (BODY, TABLE, PRIMITIVE, BODY_PAIR)]
         parts = (empty[0], coordinates, empty[1], np.zeros((0, 2)), empty[2], contacts, laws, empty[3], np.zeros(0, np.int64))
         return Model(*(frozen(part) for part in parts))
@@ -57,12 +63,12 @@ class Case:
     def impact(self, u: np.ndarray, eps: np.ndarray | None = None) -> tuple[int, np.ndarray, np.ndarray]:
         """Status, velocities after, impulses (2m,) N, T, N, T, ..."""
         after = u.copy()
-        status = _impact(self.model, self.closed, self.m, self.eps if eps is None else eps, self.work, after)
+        status = _impact(self.model, self.closed, self.m, self.eps if eps is None else eps, 0.0, self.work, after)
         return int(status), after, self.work.force[: 2 * self.m].copy()
 
     def energy_change(self) -> float:
         """Of the impact just solved, as the kernel says."""
-        return float(_energy_change(self.m, self.work))
+        return float(_energy_change(self.m, self.work)[0])
 
     def kinetic(self, u: np.ndarray) -> float:
         return 0.5 * float(u @ (self.mass * u))
@@ -73,4 +79,6 @@ def random_case(rng: np.random.Generator, m: int, n: int, **chosen: Any) -> Case
     mass = 10.0 ** rng.uniform(-1.0, 1.0, n)
     mu = chosen.get("mu", rng.uniform(0.0, 0.6, m))
     eps = chosen.get("eps", np.full(m, rng.uniform(0.0, 1.0)))
-    return Case(mass, rng.normal(size=(2 * m, n)), np.broadcast_to(mu, m).astype(float), np.broadcast_to(eps, m).astype(float))
+    mu, eps = np.broadcast_to(mu, m).astype(float), np.broadcast_to(eps, m).astype(float)
+    more = {key: value for key, value in chosen.items() if key not in ("mu", "eps")}
+    return Case(mass, rng.normal(size=(2 * m, n)), mu, eps, **more)

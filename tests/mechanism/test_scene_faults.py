@@ -27,6 +27,9 @@ ONE_FAULT = [
     ('title = "Small lever"', "title = 5", "scene.title", "a text in quotes is needed here."),
     ('title = "Small lever"', "schema = 2", "scene.schema", "this program reads schema 1."),
     ('title = "Small lever"', "gravity = 9.81", "scene.gravity", "two values are needed here"),
+    ('title = "Small lever"', 'tangential_law = "newton"', "scene.tangential_law", "not one of coulomb, pg1996, shifted"),
+    ('title = "Small lever"', "nu = 0.5", "scene.nu", "belongs to tangential_law"),
+    ('title = "Small lever"', 'tangential_law = "pg1996"\nnu = 2', "scene.nu", "must lie between 0 and 1"),
     ("duration =", "duratoin =", "run.duratoin", 'unknown key. Did you mean "duration"?'),
     (
         'drawing = "wheel.dxf"',
@@ -114,12 +117,8 @@ ONE_FAULT = [
     ("q_factor = 250", "q_factor = -3", "damping.0.q_factor", "must be above zero"),
     ("q_factor = 250", 'q_factor = 250\nviscous = "1 nN·m·s/rad"', "damping.0.q_factor", "leave one out"),
     ("q_factor = 250", 'viscous = "-1 nN·m·s/rad"', "damping.0.viscous", "negative damping would drive the body"),
-    (
-        "q_factor = 250",
-        'q_factor = 250\ncoulomb = "0.01 µN·m"',
-        "damping.0.coulomb",
-        "dry friction in a pivot is not simulated yet",
-    ),
+    ("q_factor = 250", 'coulomb = "-1 nN·m"', "damping.0.coulomb", "negative damping would drive the body"),
+    ("q_factor = 250", 'coulomb = "1 nN"', "damping.0.coulomb", "here a torque is needed"),
     ("q_factor = 250", "", "damping.0", "missing: q_factor = 250"),
     ('body = "balance"\nq_factor', 'body = "wheel"\nq_factor', "damping.0.q_factor", "wheel has no spring"),
     (
@@ -137,7 +136,7 @@ ONE_FAULT = [
     ("friction = 0.12", 'friction = "0.1 mm"', "contacts.0.friction", "is a length; here a plain number is needed"),
     ("restitution = 0.2", "restitution = 1.2", "contacts.0.restitution", "must lie between 0 (no rebound) and 1"),
     ("restitution = 0.2", "restitution = -0.2", "contacts.0.restitution", "must lie between"),
-    ("restitution = 0.2", "tangential_restitution = 0.2", "contacts.0.tangential_restitution", "is not simulated yet"),
+    ("restitution = 0.2", "tangential_restitution = 0.2", "contacts.0.tangential_restitution", "gives no tangential impulse"),
     ("restitution = 0.2", "tangential_restitution = 2", "contacts.0.tangential_restitution", "must lie between"),
     ('duration = "180 s"', "duration = 180", "run.duration", 'Write "180 s"'),
     ('duration = "180 s"', 'duration = "-1 s"', "run.duration", "must be above zero"),

@@ -36,7 +36,7 @@ class Drive(NamedTuple):
 
 
 class Motion(NamedTuple):
-    """Cam angle and rate; height, speed and acceleration of the roller; contact force; its normal's angle in the cam's frame."""
+    """Cam angle and rate; height, speed and acceleration of the roller; force; the normal's angle in the cam's frame."""
 
     angle: float
     rate: float

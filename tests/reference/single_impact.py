@@ -1,4 +1,7 @@
-"""What do Poisson's law and Coulomb friction make of one contact? In closed form (method paper 2.10, cases 1 to 3).
+"""What do Poisson's law and friction make of one contact? In closed form (method paper 2.10, cases 1 to 3).
+
+The tangential laws differ only in the interval of the expansion's friction impulse, which cannot make the
+bodies approach again.
 
 Works in any number type: floats, or mpmath numbers where all digits matter.
 """
@@ -18,7 +21,9 @@ class Impact(NamedTuple):
     regime: str
 
 
-def single_impact(G: tuple[Any, Any, Any], v: tuple[Any, Any], mu: Any, eps: Any) -> Impact:
+def single_impact(
+    G: tuple[Any, Any, Any], v: tuple[Any, Any], mu: Any, eps: Any, law: str = "coulomb", eps_t: Any = 0, nu: Any = 0
+) -> Impact:
     """G = (G_n, G_c, G_t), v = (normal, tangential) rates before, v[0] < 0. Needs mu |G_c| < G_n.
 
     Compression ends with the normal rate zero; the expansion returns eps times its normal impulse. In both phases
@@ -28,11 +33,25 @@ def single_impact(G: tuple[Any, Any, Any], v: tuple[Any, Any], mu: Any, eps: Any
     Lam_N, Lam_T, regime = _compression(G, v, mu)
     v_t = v[1] + G_c * Lam_N + G_t * Lam_T
     more_N = eps * Lam_N
-    most = mu * more_N
-    more_T = min(max(-(v_t + G_c * more_N) / G_t, -most), most)
+    low, high = _interval(law, mu * more_N, eps, eps_t, Lam_T)
+    offset = nu * G_t * eps * eps_t * Lam_T if law == "pg1996" else 0
+    more_T = min(max(-(v_t + G_c * more_N - offset) / G_t, low), high)
     normal, tangential = Lam_N + more_N, Lam_T + more_T
     v_n = v[0] + G_n * normal + G_c * tangential
     return Impact(normal, tangential, v_n, v[1] + G_c * normal + G_t * tangential, regime)
+
+
+def _interval(law: str, cone: Any, eps: Any, eps_t: Any, Lam_T: Any) -> tuple[Any, Any]:
+    """Bounds of the friction impulse in the expansion, whose friction cone is `cone`."""
+    if law == "pg1996":
+        least = eps * eps_t * abs(Lam_T)
+        if Lam_T == 0:
+            return -cone / 2, cone / 2
+        return (least, cone) if Lam_T > 0 else (-cone, -least)
+    if law == "shifted":
+        radius = cone * (1 - eps_t / eps) if eps else 0
+        return eps_t * Lam_T - radius, eps_t * Lam_T + radius
+    return -cone, cone
 
 
 def _compression(G: tuple[Any, Any, Any], v: tuple[Any, Any], mu: Any) -> tuple[Any, Any, str]:

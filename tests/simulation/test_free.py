@@ -65,7 +65,7 @@ def test_one_flight(name: str) -> None:
     coordinate = compile_scene(scene_of(o, 0.7, -1.1)).model.coordinates[0]
     natural = math.sqrt(o.inertia / o.stiffness) if o.stiffness else 1.0
     for t in (1e-9, 1e-4, 0.03, 0.3, 1.5):
-        assert _flow(coordinate, 0.7, -1.1, t * natural) == pytest.approx(
+        assert _flow(coordinate, 0, 0.7, -1.1, t * natural) == pytest.approx(
             exact(o, 0.7, -1.1, t * natural), rel=1e-13, abs=3e-14
         )
 
@@ -76,9 +76,9 @@ def test_acceleration_never_exceeds_its_bound(name: str) -> None:
     o = CASES[name]
     coordinate = compile_scene(scene_of(o, 0.7, -1.1)).model.coordinates[0]
     for q0, u0 in ((0.7, -1.1), (0.0, 9.0), (-3.0, 0.0), (0.26, 0.001)):
-        bound = _bound(coordinate, q0, u0)
+        bound = _bound(coordinate, 0, q0, u0)
         for t in np.linspace(0.0, 3.0, 60):
-            q, u = _flow(coordinate, q0, u0, t)
+            q, u = _flow(coordinate, 0, q0, u0, t)
             a = (o.torque - o.viscous * u - o.stiffness * (q - o.rest)) / o.inertia
             assert abs(a) <= bound * (1.0 + 1e-12) + 1e-12
 

@@ -102,7 +102,8 @@ def billiards(count: int, gravity: float = -3.0) -> Scene:
 def backwards(scene: Scene, run: Trajectory) -> Scene:
     """The scene begun where the run ended, with all velocities turned round."""
     bodies = []
-    for body in scene.bodies:
+    for old in scene.bodies:
+        body = old
         if body.motion == "free":
             q, u = run.q[-1][run.slices[body.name]], run.u[-1][run.slices[body.name]]
             velocity = tuple(float(-v) for v in u)
@@ -170,8 +171,19 @@ def test_accumulation_moves_nothing_beyond_the_stated_error(name: str) -> None:
     assert [run.stop for run in runs] == [Stop.DURATION, Stop.DURATION]
     assert runs[0].q[-1] == pytest.approx(runs[1].q[-1], abs=1e-8)
     assert np.abs(runs[0].u[-1]).max() < 1e-9
-    assert all(0 < run.counts["impacts"] < 400 for run in runs)
-    assert all(run.energy["residual_relative"] < 1e-8 for run in runs)
+    assert all(0 < run.counts["impacts"] < 1000 for run in runs)
+    assert all(run.energy["residual_relative"] < 100.0 * run.tolerance for run in runs)
+
+
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-8, 1e-9, 1e-10, 1e-11])
+@pytest.mark.parametrize("angle", [0.1, 0.103, -0.09, 0.2])
+def test_a_block_that_lands_flat_does_not_fall_through(tolerance: float, angle: float) -> None:
+    """The corner that lands comes within its primitives at the very moment at which its gap closes."""
+    scene = dropped_block()
+    block = dataclasses.replace(scene.bodies[0], angle=angle, position=(0.0, 0.0185))
+    done = simulate(dataclasses.replace(scene, bodies=(block, scene.bodies[1])), tolerance=tolerance)
+    assert done.stop == Stop.DURATION
+    assert done.q[-1, 1] == pytest.approx(0.015, abs=1e-8)
 
 
 def dropped_block() -> Scene:

@@ -113,6 +113,8 @@ def _solver(run: Trajectory, numbers: Mapping[str, Any]) -> Iterator[tuple[str, 
         yield "method", f"Moreau's time stepping, steps of {_metric(run.step, 's')}"
     yield "solver", _solved(run, numbers)
     yield from _compared(numbers)
+    if jams := numbers["counts"].get("jams"):
+        yield "jams", f"{jams} sliding contacts, which no finite force could hold apart, stopped by impulses (Painlevé)"
     yield "end", run.stop_message or run.stop.sentence
 
 

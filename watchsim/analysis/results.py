@@ -20,8 +20,9 @@ from watchsim.simulation.trajectory import Trajectory
 
 SUMMARY, LOCK, TRAJECTORY, EVENTS = "summary.json", "scene.lock.toml", "trajectory.npz", "events.csv"
 STATE = "state.npz"
+FAILURE = "lcp_failure.json"  # only where the solver gave up on a complementarity problem
 LATER = ("beats.csv", "phases.csv", "plots", "drawings", "movie.mp4", "movie.gif", "report.html", "import.png")
-OURS = frozenset((SUMMARY, LOCK, TRAJECTORY, EVENTS, STATE, *LATER))
+OURS = frozenset((SUMMARY, LOCK, TRAJECTORY, EVENTS, STATE, FAILURE, *LATER))
 
 Extra = Mapping[str, str | bytes | Callable[[Path], object]]
 
@@ -95,6 +96,8 @@ def _fill(place: Path, run: Trajectory, summary: Mapping[str, Any], scene_lock: 
         write_state(run.end_state, place / STATE)
     (place / SUMMARY).write_text(json_text(summary), encoding="utf-8")
     (place / LOCK).write_text(scene_lock, encoding="utf-8")
+    if run.failure is not None:
+        (place / FAILURE).write_text(json_text(run.failure), encoding="utf-8")
     for name, content in extra.items():
         path = place / name
         if not path.resolve().is_relative_to(place.resolve()):

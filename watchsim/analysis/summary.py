@@ -30,6 +30,9 @@ LEDGER = {"in_J": 0.0, "dissipated": {}, "stored_J": 0.0, "residual_J": 0.0, "re
 def summary(run: Trajectory) -> dict[str, Any]:
     """The numbers of summary.json and of `run --json`, null for what the run does not give.
 
+    `forces_unique` is False where contacts were redundant at some event: motion and energy are unique then, the forces of
+    single contacts are the smallest possible ones.
+
     Besides the promised names: `frequency_hz`, `vph`, `window_s` (over which was averaged), `beats` (half swings in all),
     `missed_beats`, `stopped` and `stopped_message` (the watch no longer ticks), `scene_file`, `stop_message`,
     `events_by_kind`, `counts`, `step_s` (of a method with fixed steps), `worst_complementarity_residual` (worst violation of
@@ -92,6 +95,7 @@ def _counts(run: Trajectory) -> dict[str, Any]:
         "events": run.counts.get("events", len(run.events)),
         "lcp_failures": run.counts.get("lcp_failures", 0),
         "events_by_kind": kinds,
+        "forces_unique": run.counts.get("redundant_sets", 0) == 0,
         "counts": dict(run.counts),
         "worst_penetration_m": run.worst_penetration,
         "worst_complementarity_residual": run.worst_residual,

@@ -9,6 +9,7 @@ import numpy as np
 
 from watchsim.analysis.benchmarks import Benchmark, Check, inclines, swings
 from watchsim.analysis.hard_cases import hard_cases
+from watchsim.analysis.repeated_impacts import repeated_impacts
 from watchsim.dynamics.lcp import OK, lcp_work, solve_lcp
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
@@ -23,7 +24,7 @@ def verify() -> list[Row]:
 
     `error` and `tolerance` are relative to the expected value, absolute where that is zero.
     """
-    return [*incline_rows(), *rows_of(swings()), *rows_of(hard_cases()), *lcp_rows()]
+    return [*incline_rows(), *rows_of([*swings(), *hard_cases(), *repeated_impacts()]), *lcp_rows()]
 
 
 def incline_rows() -> list[Row]:

@@ -17,7 +17,7 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from watchsim.commands.scenes import load_scene
-    from watchsim.contact.reachable import count_pairs
+    from watchsim.mechanism.reachable import count_pairs
     from watchsim.mechanism.check import check_report, check_text
 
     scene = load_scene(args.scene, overlap=False)

@@ -118,11 +118,16 @@ def size_lines(drawing: Drawing, box: Box | None) -> list[str]:
     everything = (*drawing.loops, *drawing.open_chains)
     lines, arcs = counts(everything)
     return [
-        f"  the part is {max(width, height):.3g} mm across ({width:.4g} × {height:.4g} mm; x {x}, y {y})",
+        f"  the part is {three_digits(max(width, height))} mm across ({width:.4g} × {height:.4g} mm; x {x}, y {y})",
         f"  {plural(len(drawing.loops), 'closed outline')}, {plural(len(drawing.open_chains), 'open chain')}: "
         f"{plural(lines, 'line')} and {plural(arcs, 'arc')}, {1e3 * total_length(everything):.5g} mm long, "
         f"{1e6 * net_area(drawing.loops):.5g} mm² of material",
     ]
+
+
+def three_digits(value: float) -> str:
+    """ "4.30", "12.0", "1016": at least three digits, also where they are zero."""
+    return f"{value:.0f}" if value >= 100.0 else f"{value:#.3g}"
 
 
 def layer_lines(drawing: Drawing) -> list[str]:

@@ -18,7 +18,7 @@ from watchsim.drawing.shapes import Spline
 from watchsim.drawing.tags import DxfError
 from watchsim.geometry.curve import Curve
 from watchsim.geometry.fit import Fit, fit_arcs
-from watchsim.geometry.primitives import Edge
+from watchsim.geometry.primitives import Edge, Line
 from watchsim.geometry.recognise import Part, joined, parts, whole_circle
 
 Array = NDArray[np.float64]
@@ -93,8 +93,11 @@ def through(fit_points: Sequence[Vector], tangents: Sequence[Vector]) -> Spline:
 
 def spline_edges(spline: Spline, scale: float, tolerance: float) -> tuple[Fit, bool]:
     """Lines and arcs (metres) along a spline in units of `scale` metres; and whether anything had to be fitted."""
+    plane = scale * np.array([(x, y) for x, y, _ in spline.points])
+    if np.all(plane == plane[0]):
+        return Fit((Line(*plane[0].tolist(), *plane[0].tolist()),), 0.0), False  # of no length: the reader will say so
     if spline.degree == 1:
-        return polygon_edges(scale * np.array([(x, y) for x, y, _ in spline.points]), tolerance)
+        return polygon_edges(plane, tolerance)
     edges: list[Edge] = []
     worst, fitted = 0.0, False
     for curve in pieces(spline, scale):

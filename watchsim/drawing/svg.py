@@ -81,6 +81,7 @@ def read_svg(data: bytes, units: str | None, fit: float) -> Content:
         fitted_curves=found.curves,
         fitted_arcs=found.arcs,
         fitted_deviation=found.deviation,
+        drawn=found.drawn(),
         ignored=dict(walker.left_out.ignored),
         findings=(*tree.findings, *styles.findings, *page.findings, *found.findings, *walker.left_out.findings(root)),
     )

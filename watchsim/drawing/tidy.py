@@ -6,7 +6,7 @@ Edges without length, edges drawn twice, and slits (a line out and back, of no w
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 
 from watchsim.drawing.content import Stroke
 from watchsim.drawing.findings import Finding
@@ -18,6 +18,7 @@ from watchsim.geometry.primitives import Arc, Edge, Point
 
 NOTHING = 1e-12  # metres; far below any decimal of a drawing
 SAME = 1e-9  # metres
+AT_BRIDGE = 3  # ends that meet where a bridge leaves an outline
 
 
 def with_length(strokes: Sequence[Stroke]) -> tuple[list[Stroke], list[Finding]]:
@@ -77,13 +78,15 @@ def same_edge(a: Edge, b: Edge) -> bool:
     return near and isinstance(a, Arc) == isinstance(b, Arc)
 
 
-def without_doubles(strokes: Sequence[Stroke], nodes: Nodes, reach: float) -> tuple[set[int], set[int], list[Finding]]:
-    """Numbers of the strokes to keep, of those among them that were drawn more than once, and findings.
+def without_doubles(strokes: Sequence[Stroke], nodes: Nodes, reach: float) -> tuple[set[int], dict[int, int], list[Finding]]:
+    """Numbers of the strokes to keep, of those among them drawn more than once (with the copy's number), and findings.
 
     Strokes are the same, forward or reversed, if they join the same nodes with their middles within `reach` metres.
     """
     groups: dict[tuple[int, int, bool], list[int]] = {}
-    kept, doubled, findings = set(), set(), []
+    kept: set[int] = set()
+    doubled: dict[int, int] = {}
+    findings = []
     for number, stroke in enumerate(strokes):
         a, b = nodes.of(number)
         key = (min(a, b), max(a, b), isinstance(stroke.edge, Arc))
@@ -94,7 +97,7 @@ def without_doubles(strokes: Sequence[Stroke], nodes: Nodes, reach: float) -> tu
             kept.add(number)
             continue
         nodes.drop(number)
-        doubled.add(twin)
+        doubled[twin] = number
         by = "itself" if strokes[twin].source == stroke.source else strokes[twin].source
         findings.append(at_edge("duplicate", f"{stroke.source} repeats an edge of {by}; one was left out", stroke))
     return kept, doubled, findings
@@ -104,12 +107,16 @@ def middle(edge: Edge) -> Point:
     return edge.point(0.5)
 
 
-def without_slits(strokes: Sequence[Stroke], nodes: Nodes, kept: set[int], doubled: set[int]) -> tuple[set[int], list[Finding]]:
-    """Takes out runs of doubled strokes that lead from a free tip into an outline: a slit of no width."""
+def without_slits(
+    strokes: Sequence[Stroke], nodes: Nodes, kept: set[int], doubled: dict[int, int]
+) -> tuple[set[int], list[Finding]]:
+    """Takes out runs of doubled strokes that have no width: from a free tip into an outline, or from an outline to its hole."""
+    rows = unbroken_rows(strokes)
+    bridges = {number for number, copy in doubled.items() if rows[number] == rows[copy]}
     findings = []
     for first in sorted(doubled):
         for tip in nodes.of(first):
-            run = slit_from(first, tip, nodes, doubled) if first in kept else []
+            run = slit_from(first, tip, nodes, doubled, bridges) if first in kept else []
             for number in run:
                 nodes.drop(number)
             if run:
@@ -119,18 +126,33 @@ def without_slits(strokes: Sequence[Stroke], nodes: Nodes, kept: set[int], doubl
     return kept, findings
 
 
-def slit_from(first: int, tip: int, nodes: Nodes, doubled: set[int]) -> list[int]:
-    """The doubled strokes from a free tip to a branch; empty if it is none."""
+def unbroken_rows(strokes: Sequence[Stroke]) -> list[int]:
+    """A number for each stroke: the same for strokes that one entity draws without lifting the pen."""
+    rows = [0] * len(strokes)
+    for k in range(1, len(strokes)):
+        before, after = strokes[k - 1], strokes[k]
+        goes_on = before.run == after.run and math.dist(before.edge.end, after.edge.start) <= SAME
+        rows[k] = rows[k - 1] + (not goes_on)
+    return rows
+
+
+def slit_from(first: int, tip: int, nodes: Nodes, doubled: Container[int], bridges: Container[int]) -> list[int]:
+    """The doubled strokes from a free tip to a branch, or from one outline to another one; empty if it is none.
+
+    Two outlines side by side share an edge, too: only what is drawn there and back without lifting the pen is a bridge, and
+    both its ends must lie on outlines that are whole without it.
+    """
     run: list[int] = []
     number, node = first, tip
-    if len(nodes.members[tip]) != 1:
+    bridge = len(nodes.members[tip]) == AT_BRIDGE
+    if len(nodes.members[tip]) != 1 and not bridge:
         return []
-    while number in doubled and number not in run:
+    while number in (bridges if bridge else doubled) and number not in run:
         run.append(number)
         a, b = nodes.of(number)
         node = b if node == a else a
         around = nodes.members[node]
         if len(around) != 2:
-            return run if len(around) > 2 else []
+            return run if len(around) > 2 and (not bridge or len(around) == AT_BRIDGE) else []
         number = next((end // 2 for end in around if end // 2 != number), -1)
     return []

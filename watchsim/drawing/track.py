@@ -97,6 +97,9 @@ def nearest_fraction(edge: Edge, p: Point) -> float:
 
 def passes_through(a: Track, at_a: float, b: Track, at_b: float, depth: float) -> bool:
     """Does chain b, which meets a at these positions, go over to the other side by more than `depth` metres each way?"""
+    for track, at in ((a, at_a), (b, at_b)):
+        if not track.closed and min(at, track.length - at) <= depth:
+            return False  # what ends there crosses nothing
     most = min(a.length, b.length) / 2.0
     if a is b:
         apart = abs(at_a - at_b)

@@ -1,23 +1,27 @@
 """What are the contact forces and accelerations now?
 
-Inside a mode an equality system; at an event the acceleration-level LCP, which decides detachment and stick-slip
-(Pfeiffer & Glocker 1996, ch. 5; docs/method.md 2.4, 2.5).
+Inside a mode an equality system; at an event the acceleration-level LCP, which decides detachment and stick-slip of contacts
+and of bearings with dry friction (Pfeiffer & Glocker 1996, ch. 5; docs/method.md 2.4, 2.5).
 """
 
 from __future__ import annotations
 
 from watchsim.contact.index_sets import BACKWARD, FORWARD, OPEN, STICK
-from watchsim.dynamics.coulomb import fill_matrix, fill_rhs, read_forces
-from watchsim.dynamics.delassus import apply, fill_delassus
-from watchsim.dynamics.lcp import solve_lcp
-from watchsim.dynamics.linear import solve_small
+from watchsim.dynamics.coulomb import add_element, fill_matrix, fill_rhs, read_forces
+from watchsim.dynamics.delassus import apply, fill_bearings, fill_delassus
+from watchsim.dynamics.ladder import solve_contacts
+from watchsim.dynamics.linear import solve_small, unit_scale
+from watchsim.dynamics.redundant import smallest_forces
 from watchsim.jit import kernel
 
 ROUNDING = 1e-10  # accelerations below this share of the terms they are the sum of count as zero
+PAINLEVE = 1e-9  # share of G_N below which pressing on a sliding contact no longer pushes its bodies apart
+NO_FORCE = 10  # status of `decide_modes`: a sliding contact would need an infinite force
+LEVEL_ACCELERATION = 1
 
 
 @kernel
-def gap_accelerations(model, closed, m, work, out_b, out_size):
+def gap_accelerations(closed, m, work, out_b, out_size):
     """b = Wᵀ M⁻¹ h + w̄ for the first m contacts, and the sum of its terms' magnitudes."""
     for i in range(m):
         kin = closed.kin[i]
@@ -25,7 +29,7 @@ def gap_accelerations(model, closed, m, work, out_b, out_size):
         size_N, size_T = abs(kin.bar_N), abs(kin.bar_T)
         for k in range(closed.slots[i]):
             j = closed.coord[i, k]
-            free = work.h[j] / model.coordinates[j].mass
+            free = work.h[j] * work.inverse[j]
             normal += closed.w_N[i, k] * free
             tangential += closed.w_T[i, k] * free
             size_N += abs(closed.w_N[i, k] * free)
@@ -35,36 +39,45 @@ def gap_accelerations(model, closed, m, work, out_b, out_size):
 
 
 @kernel
-def accelerate(model, closed, m, work, out_a):
-    """u' = M⁻¹ (h + W lambda) from `work.h` and `work.force`."""
-    for j in range(len(model.coordinates)):
-        out_a[j] = work.h[j] / model.coordinates[j].mass
-    apply(model, closed, m, work.force, out_a)
+def accelerate(closed, m, work, out_a):
+    """u' = M⁻¹ (h + W lambda) from `work.h` and `work.force`; 0 where dry friction holds."""
+    for j in range(len(out_a)):
+        out_a[j] = work.h[j] * work.inverse[j]
+    apply(closed, m, work.force, work.inverse, out_a)
 
 
 @kernel
 def solve_mode(model, closed, m, mode, work):
-    """Forces of the first m contacts in their decided modes; `work.h` is given. Fills `work.force`, `work.b`, `work.size`."""
-    fill_delassus(model, closed, m, work)
-    gap_accelerations(model, closed, m, work, work.b, work.size)
+    """Forces of the first m contacts in their decided modes; `work.h`, `work.inverse` are given.
+
+    Fills `work.force`, `work.b`, `work.size`, `work.G`; True if the forces are unique.
+    """
+    fill_delassus(closed, m, work)
+    gap_accelerations(closed, m, work, work.b, work.size)
     n = m
     for i in range(m):
         state = mode[closed.ids[i]]
         friction = model.laws[model.contacts[closed.ids[i]].group].friction
         work.tangent[i] = -1
+        work.width[i] = friction
         work.drag[i] = 0.0 if state == STICK else friction * state
+        work.scale[i] = unit_scale(work.G[2 * i, 2 * i])
         if state == STICK and friction > 0.0:
             work.tangent[i] = n
+            work.scale[n] = unit_scale(work.G[2 * i + 1, 2 * i + 1])
             n += 1
     for i in range(m):
         _equation(work, m, 2 * i, i)
         if work.tangent[i] >= 0:
             _equation(work, m, 2 * i + 1, work.tangent[i])
-    solve_small(work.A, work.rhs, n, work.order, work.x)
+    rank = solve_small(work.A, work.rhs, n, work.scale, work.order, work.x)
+    if rank < n:
+        smallest_forces(m, n, rank, work)
     for i in range(m):
         work.force[2 * i] = work.x[i]
         t = work.tangent[i]
         work.force[2 * i + 1] = work.x[t] if t >= 0 else -work.drag[i] * work.x[i]
+    return rank == n
 
 
 @kernel
@@ -78,56 +91,136 @@ def _equation(work, m, row, line):
 
 
 @kernel
-def decide_modes(model, closed, m, speed_zero, work, out_mode):
-    """Acceleration-level LCP over I_N, the first m closed contacts: sets modes, fills `work.force`, returns the LCP status.
+def decide_modes(model, closed, m, speed_zero, work, out_grip, out_mode):
+    """Acceleration-level LCP over I_N, the first m closed contacts, and the bearings whose grip is STICK; returns its status.
 
-    Contacts whose |g_T_dot| is below `speed_zero` may stick; the others slide as they do.
+    Contacts whose |g_T_dot| is below `speed_zero` may stick; the others slide as they do. Sets modes and grips, fills
+    `work.force`, `work.inverse` and adds to `work.h` the dry friction of the bearings that begin to move. NO_FORCE, or the
+    status of the LCP: no finite force keeps the bodies apart (Painlevé's paradox, if a contact slides).
     """
-    fill_delassus(model, closed, m, work)
-    gap_accelerations(model, closed, m, work, work.b, work.size)
-    tangents = 0
+    bearings = _begin(model, out_grip, work)
+    fill_delassus(closed, m, work)
+    fill_bearings(closed, m, bearings, work)
+    gap_accelerations(closed, m, work, work.b, work.size)
+    elements = _elements(model, closed, m, bearings, speed_zero, work)
+    fill_matrix(work, m, elements)
+    _load(work, m, elements, bearings)
+    fill_rhs(work, m, elements, work.more)
+    work.note[0], work.note[1], work.note[2], work.note[3] = m, elements, bearings, LEVEL_ACCELERATION
+    status, _ = solve_contacts(work, m, elements)
+    if status != 0:
+        return status
+    read_forces(work, m, elements, work.force)
+    for i in range(m):
+        if work.x[i] > 0.0 and is_paradox(work, m, i):
+            return NO_FORCE
+    for i in range(m):
+        out_mode[closed.ids[i]] = _mode_of(closed, i, m, bearings, work)
+    for i in range(m):
+        if out_mode[closed.ids[i]] == OPEN:
+            work.force[2 * i], work.force[2 * i + 1] = 0.0, 0.0
+    _decide_grips(model, m, bearings, work, out_grip)
+    return 0
+
+
+@kernel
+def _begin(model, grip, work):
+    """Every coordinate may move; lists the bearings that might hold and returns their number."""
+    bearings = 0
+    for i in range(len(model.coordinates)):
+        work.inverse[i] = 1.0 / model.coordinates[i].mass
+        if grip[i] == STICK:
+            work.dry[bearings] = i
+            bearings += 1
+    return bearings
+
+
+@kernel
+def _elements(model, closed, m, bearings, speed_zero, work):
+    """The contacts that may stick, then the bearings; returns how many."""
+    elements = 0
     for i in range(m):
         friction = model.laws[model.contacts[closed.ids[i]].group].friction
         slip = closed.kin[i].gT_dot
         work.tangent[i] = -1
         work.drag[i] = friction if slip > 0.0 else -friction
         if friction > 0.0 and abs(slip) <= speed_zero:
-            work.tangent[i], work.drag[i] = tangents, friction
-            tangents += 1
-    n = fill_matrix(work, m, tangents)
-    fill_rhs(work, m, tangents, work.b)
-    status = solve_lcp(work.A, work.rhs, n, work.lcp, work.x)
-    if status != 0:
-        return status
-    read_forces(work, m, work.force)
-    for i in range(m):
-        out_mode[closed.ids[i]] = _mode_of(closed, i, m, work)
-    for i in range(m):
-        if out_mode[closed.ids[i]] == OPEN:
-            work.force[2 * i], work.force[2 * i + 1] = 0.0, 0.0
-    return 0
+            work.tangent[i], work.drag[i] = elements, friction
+            elements = add_element(work, i, elements, (2.0 * friction, 0.0, 0.0))
+    for p in range(bearings):
+        dry = model.coordinates[work.dry[p]].coulomb
+        elements = add_element(work, m + p, elements, (0.0, 2.0 * dry, -dry))
+    return elements
 
 
 @kernel
-def _gap_acceleration(work, m, row):
+def _load(work, m, elements, bearings):
+    """Accelerations without contact forces, bearings at the lower end of their friction, into `more`; also theirs in `b`."""
+    for p in range(bearings):
+        i = work.dry[p]
+        work.b[2 * m + p] = work.h[i] * work.inverse[i]
+        work.size[2 * m + p] = abs(work.b[2 * m + p])
+    for row in range(2 * m + bearings):
+        work.more[row] = work.b[row]
+        for p in range(bearings):
+            # The elements of the bearings are the last ones, in order.
+            work.more[row] += work.G[row, 2 * m + p] * work.shift[elements - bearings + p]
+
+
+@kernel
+def is_paradox(work, m, i):
+    """True if contact i, all by itself, slides such that a normal force on it pulls its bodies together, or nearly so.
+
+    Works with the G and drag of `solve_mode` and `decide_modes`.
+    """
+    own = work.G[2 * i, 2 * i]
+    if work.tangent[i] >= 0 or own == 0.0:
+        return False
+    if own - work.drag[i] * work.G[2 * i, 2 * i + 1] > PAINLEVE * own:
+        return False
+    for j in range(m):
+        if j != i and (work.G[2 * i, 2 * j] != 0.0 or work.G[2 * i, 2 * j + 1] != 0.0 or work.G[2 * i + 1, 2 * j] != 0.0):
+            return False
+    return True
+
+
+@kernel
+def _row_acceleration(work, rows, row):
     """g'' of row `row` under the forces just found."""
     total = work.b[row]
-    for j in range(2 * m):
+    for j in range(rows):
         total += work.G[row, j] * work.force[j]
     return total
 
 
 @kernel
-def _mode_of(closed, i, m, work):
+def _mode_of(closed, i, m, bearings, work):
     """The mode of contact i after the LCP."""
-    if work.x[i] <= 0.0 and _gap_acceleration(work, m, 2 * i) > ROUNDING * work.size[2 * i]:
+    rows = 2 * m + bearings
+    if work.x[i] <= 0.0 and _row_acceleration(work, rows, 2 * i) > ROUNDING * work.size[2 * i]:
         return OPEN
     if work.tangent[i] < 0:
         return BACKWARD if closed.kin[i].gT_dot < 0.0 else FORWARD
-    slip = _gap_acceleration(work, m, 2 * i + 1)
+    slip = _row_acceleration(work, rows, 2 * i + 1)
     # lambda_T is the difference of terms as large as the friction cone.
     terms = abs(work.force[2 * i + 1]) + work.drag[i] * work.force[2 * i]
     size = ROUNDING * (work.size[2 * i + 1] + work.G[2 * i + 1, 2 * i + 1] * terms)
     if slip > size:
         return FORWARD
     return BACKWARD if slip < -size else STICK
+
+
+@kernel
+def _decide_grips(model, m, bearings, work, out_grip):
+    """The grips of the bearings that stood; those held get no inverse mass, those that begin to move their friction."""
+    rows = 2 * m + bearings
+    for p in range(bearings):
+        i, row = work.dry[p], 2 * m + p
+        moves = _row_acceleration(work, rows, row)
+        terms = work.size[row] + work.inverse[i] * model.coordinates[i].coulomb
+        if abs(moves) > ROUNDING * terms:
+            out_grip[i] = FORWARD if moves > 0.0 else BACKWARD
+            work.h[i] -= out_grip[i] * model.coordinates[i].coulomb
+    for p in range(bearings):
+        if out_grip[work.dry[p]] == STICK:
+            work.inverse[work.dry[p]] = 0.0

@@ -10,65 +10,105 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from watchsim.contact.index_sets import STICK
 from watchsim.dynamics.lcp import LcpWork, lcp_work
 from watchsim.jit import by_reference, kernel
 
 Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
 
 
 class ContactWork(NamedTuple):
-    """Scratch of the contact problems, allocated once for `room` contacts and n coordinates."""
+    """Scratch of the contact problems, allocated once for `room` contacts and n coordinates.
 
-    G: Array  # (2 room, 2 room)
-    b: Array  # (2 room,) accelerations or velocities of the gaps without contact forces
-    size: Array  # (2 room,) the same with all terms taken positive: the scale of rounding
-    force: Array  # (2 room,) lambda or Lambda
-    more: Array  # (2 room,) a second set: impulses of the expansion
-    unit: Array  # (room,) scale that gives G a unit diagonal
-    drag: Array  # (room,) friction coefficient times direction
-    tangent: NDArray[np.int64]  # (room,) row of the contact's tangential unknowns, -1: none
+    Rows of G: N, T of each of the m contacts, then one for each bearing that dry friction might hold. A block is such a contact
+    or bearing. An element is a bounded force: the friction of one block.
+    """
+
+    G: Array  # (rows, rows)
+    b: Array  # (rows,) accelerations or velocities of the gaps without contact forces
+    size: Array  # (rows,) the same with all terms taken positive: the scale of rounding
+    force: Array  # (rows,) lambda or Lambda
+    more: Array  # (rows,) a second set: impulses of the expansion
+    inverse: Array  # (n,) 1/mass, 0 where dry friction holds the coordinate
+    unit: Array  # (blocks,) scale that gives G a unit diagonal
+    drag: Array  # (room,) friction per normal force at the lower end of the interval
+    tangent: Integers  # (room,) element of the contact, -1: none
+    block: Integers  # (blocks,) by element
+    dry: Integers  # (n,) coordinate of each bearing that might hold
+    width: Array  # (blocks,) length of an element's interval per normal force
+    span: Array  # (blocks,) constant part of its length
+    shift: Array  # (blocks,) constant part of its lower end
     A: Array
     rhs: Array
     x: Array
-    order: NDArray[np.int64]
+    B: Array  # the same problem in its copositive form
+    other_rhs: Array
+    other_x: Array
+    scale: Array
+    order: Integers
     lcp: LcpWork
     h: Array  # (n,)
+    rungs: Integers  # problems solved since last asked, by Rung; the last one counts those without a solution
+    note: Integers  # of the last problem: contacts, elements, bearings, level, status of Lemke
 
 
 ContactWorkRef = by_reference(ContactWork, __name__)
 
+RUNGS = 4
+
 
 def contact_work(room: int, coordinates: int) -> ContactWork:
     """Room for that many closed contacts."""
-    two, three = 2 * room, 3 * room
+    rows, blocks = 2 * room + coordinates, room + coordinates
+    side = room + 3 * blocks
     return ContactWork(
-        np.zeros((two, two)),
-        np.zeros(two),
-        np.zeros(two),
-        np.zeros(two),
-        np.zeros(two),
-        np.zeros(room),
-        np.zeros(room),
-        np.zeros(room, np.int64),
-        np.zeros((three, three)),
-        np.zeros(three),
-        np.zeros(three),
-        np.zeros(three, np.int64),
-        lcp_work(three),
-        np.zeros(coordinates),
+        G=np.zeros((rows, rows)),
+        b=np.zeros(rows),
+        size=np.zeros(rows),
+        force=np.zeros(rows),
+        more=np.zeros(rows),
+        inverse=np.zeros(coordinates),
+        unit=np.zeros(blocks),
+        drag=np.zeros(room),
+        tangent=np.zeros(room, np.int64),
+        block=np.zeros(blocks, np.int64),
+        dry=np.zeros(coordinates, np.int64),
+        width=np.zeros(blocks),
+        span=np.zeros(blocks),
+        shift=np.zeros(blocks),
+        A=np.zeros((side, side)),
+        rhs=np.zeros(side),
+        x=np.zeros(side),
+        B=np.zeros((side, side)),
+        other_rhs=np.zeros(side),
+        other_x=np.zeros(side),
+        scale=np.zeros(side),
+        order=np.zeros(side, np.int64),
+        lcp=lcp_work(side),
+        h=np.zeros(coordinates),
+        rungs=np.zeros(RUNGS, np.int64),
+        note=np.zeros(5, np.int64),
     )
 
 
 @kernel
-def fill_delassus(model, closed, m, work):
-    """G of the first m closed contacts, and the scale of each."""
+def fill_inverse(model, grip, out_inverse):
+    """1/mass of each coordinate; 0 for those that `grip` says dry friction holds."""
+    for i in range(len(model.coordinates)):
+        out_inverse[i] = 0.0 if grip[i] == STICK else 1.0 / model.coordinates[i].mass
+
+
+@kernel
+def fill_delassus(closed, m, work):
+    """G of the first m closed contacts."""
     for i in range(m):
         for j in range(i, m):
             nn, nt, tn, tt = 0.0, 0.0, 0.0, 0.0
             for k in range(closed.slots[i]):
                 for q in range(closed.slots[j]):
                     if closed.coord[i, k] == closed.coord[j, q]:
-                        inverse = 1.0 / model.coordinates[closed.coord[i, k]].mass
+                        inverse = work.inverse[closed.coord[i, k]]
                         nn += closed.w_N[i, k] * closed.w_N[j, q] * inverse
                         nt += closed.w_N[i, k] * closed.w_T[j, q] * inverse
                         tn += closed.w_T[i, k] * closed.w_N[j, q] * inverse
@@ -80,17 +120,33 @@ def fill_delassus(model, closed, m, work):
 
 
 @kernel
-def apply(model, closed, m, force, out_change):
+def fill_bearings(closed, m, bearings, work):
+    """The rows and columns of G, after those of the contacts, for the bearings listed in `dry`."""
+    for p in range(bearings):
+        row, i = 2 * m + p, work.dry[p]
+        for column in range(2 * m + bearings):
+            work.G[row, column], work.G[column, row] = 0.0, 0.0
+        work.G[row, row] = work.inverse[i]
+        for j in range(m):
+            for k in range(closed.slots[j]):
+                if closed.coord[j, k] == i:
+                    N, T = closed.w_N[j, k] * work.inverse[i], closed.w_T[j, k] * work.inverse[i]
+                    work.G[row, 2 * j], work.G[2 * j, row] = N, N
+                    work.G[row, 2 * j + 1], work.G[2 * j + 1, row] = T, T
+
+
+@kernel
+def apply(closed, m, force, inverse, out_change):
     """Add M⁻¹ W force to `out_change`: accelerations from forces, velocity jumps from impulses."""
     for i in range(m):
         for k in range(closed.slots[i]):
             j = closed.coord[i, k]
             push = closed.w_N[i, k] * force[2 * i] + closed.w_T[i, k] * force[2 * i + 1]
-            out_change[j] += push / model.coordinates[j].mass
+            out_change[j] += push * inverse[j]
 
 
 @kernel
-def contact_velocities(model, closed, m, u, out_rates):
+def contact_velocities(closed, m, u, out_rates):
     """Rates w_N·u and w_T·u of the closed contacts."""
     for i in range(m):
         normal, tangential = 0.0, 0.0

@@ -38,7 +38,7 @@ def driving_force(model, i, q):
 
 @kernel
 def damping_force(model, i, u):
-    """-c u - c2 u|u| of coordinate i."""
+    """-c u - c2 u|u| of coordinate i; dry friction is in dry.py."""
     coordinate = model.coordinates[i]
     return -u * (coordinate.viscous + coordinate.quadratic * abs(u))
 
@@ -72,7 +72,7 @@ def drive_power(model, t, q, u):
 
 @kernel
 def damping_power(model, u):
-    """Power taken by damping, W; never negative."""
+    """Power taken by viscous and quadratic damping, W; never negative."""
     power = 0.0
     for i in range(len(model.coordinates)):
         power -= u[i] * damping_force(model, i, u[i])

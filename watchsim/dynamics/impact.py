@@ -1,87 +1,124 @@
 """What are the velocities after an impact?
 
 Two phases over all closed contacts at once: compression ends when no contact approaches any more; expansion gives back
-at least the share eps_N of each compression impulse (Poisson). Coulomb friction acts in both, on impulses
-(Pfeiffer & Glocker 1996, ch. 8; docs/method.md 2.6, law `coulomb`).
+at least the share eps_N of each compression impulse (Poisson). Friction acts in both, on impulses: Coulomb's law in the
+compression, the scene's tangential law in the expansion (Pfeiffer & Glocker 1996, ch. 8; docs/method.md 2.6, docs/laws.md).
 """
 
 from __future__ import annotations
 
-from watchsim.dynamics.coulomb import fill_matrix, fill_rhs, read_forces
+from watchsim.dynamics.coulomb import add_element, element_row, fill_matrix, fill_rhs, read_forces
 from watchsim.dynamics.delassus import apply, contact_velocities, fill_delassus
-from watchsim.dynamics.lcp import solve_lcp
+from watchsim.dynamics.expansion import interval
+from watchsim.dynamics.ladder import LEMKE, keep_basis, solve_contacts
 from watchsim.jit import kernel
 
+LEVEL_COMPRESSION, LEVEL_EXPANSION = 2, 3
+NUDGE = 1e-6  # approach, as a share of the slip, by which the force of a jammed contact is made to act
+
 
 @kernel
-def _prepare(model, closed, m, work):
-    """Tangential unknowns wherever there is friction; returns their number."""
-    tangents = 0
+def _law(model, closed, i):
+    return model.laws[model.contacts[closed.ids[i]].group]
+
+
+@kernel
+def _begin(model, closed, m, work):
+    """Coulomb friction within ± mu Lambda_N for every contact that has any; returns the number of elements."""
+    for j in range(len(model.coordinates)):
+        work.inverse[j] = 1.0 / model.coordinates[j].mass
+    elements = 0
     for i in range(m):
-        work.drag[i] = model.laws[model.contacts[closed.ids[i]].group].friction
+        work.drag[i] = _law(model, closed, i).friction
         work.tangent[i] = -1
         if work.drag[i] > 0.0:
-            work.tangent[i] = tangents
-            tangents += 1
-    return tangents
+            work.tangent[i] = elements
+            elements = add_element(work, i, elements, (2.0 * work.drag[i], 0.0, 0.0))
+    return elements
 
 
 @kernel
-def _compress(model, closed, m, u, work):
-    """Impulses of the compression into `work.force`; rates before it are in `work.b`. Returns the LCP status."""
-    fill_delassus(model, closed, m, work)
-    contact_velocities(model, closed, m, u, work.b)
-    tangents = _prepare(model, closed, m, work)
-    n = fill_matrix(work, m, tangents)
-    fill_rhs(work, m, tangents, work.b)
-    status = solve_lcp(work.A, work.rhs, n, work.lcp, work.x)
-    read_forces(work, m, work.force)
-    return status
+def _compress(model, closed, m, u, jam, work):
+    """Impulses of the compression into `work.force`; rates before it are in `work.b`. Returns (LCP status, elements)."""
+    elements = _begin(model, closed, m, work)
+    fill_delassus(closed, m, work)
+    contact_velocities(closed, m, u, work.b)
+    fill_matrix(work, m, elements)
+    fill_rhs(work, m, elements, work.b)
+    nudged = _nudge(m, jam, work)
+    work.note[0], work.note[1], work.note[2], work.note[3] = m, elements, 0, LEVEL_COMPRESSION
+    status, rung = solve_contacts(work, m, elements)
+    if status == 0 and nudged and rung == LEMKE:
+        fill_rhs(work, m, elements, work.b)
+        keep_basis(work, m, elements)
+    read_forces(work, m, elements, work.force)
+    return status, elements
 
 
 @kernel
-def _expand(m, restitution, work):
+def _nudge(m, jam, work):
+    """Let the contacts that slide at a standstill of their gap (|rate| <= `jam`) approach a little; True if there are any.
+
+    The impulses of a jam do not vanish with the speed of approach; which contacts carry them is found this way.
+    """
+    found = False
+    for i in range(m):
+        slip = abs(work.b[2 * i + 1])
+        if work.tangent[i] >= 0 and abs(work.b[2 * i]) <= jam and slip > jam:
+            work.rhs[i] -= NUDGE * slip * work.unit[i]
+            found = True
+    return found
+
+
+@kernel
+def _expand(model, closed, m, restitution, elements, work):
     """Impulses of the expansion into `work.more`. Returns the LCP status.
 
-    Shifted unknowns: Lambda_NP = Lambda_NE - eps Lambda_NC, and Lambda_TE = Lambda_V - mu (eps Lambda_NC + Lambda_NP), with the
-    friction interval 2 mu (eps Lambda_NC + Lambda_NP).
+    Unknowns: Lambda_NP = Lambda_NE - eps Lambda_NC and the distance of Lambda_TE from the lower end of its interval.
     """
-    tangents = 0
     for i in range(m):
-        returned = restitution[i] * work.force[2 * i]
-        work.more[2 * i], work.more[2 * i + 1] = returned, 0.0
-        if work.tangent[i] >= 0:
-            work.more[2 * i + 1] = -work.drag[i] * returned
-            tangents += 1
+        normal, tangential = work.force[2 * i], work.force[2 * i + 1]
+        work.more[2 * i], work.more[2 * i + 1] = restitution[i] * normal, 0.0
+        e = work.tangent[i]
+        if e >= 0:
+            law = _law(model, closed, i)
+            low, width, span, shift, returned = interval(law, restitution[i], normal, tangential)
+            work.drag[i], work.more[2 * i + 1] = low, shift
+            add_element(work, i, e, (width, span, shift))
+            work.other_x[i] = law.nu * returned
+        else:
+            work.other_x[i] = 0.0
     for row in range(2 * m):
         total = work.b[row]
         for j in range(2 * m):
             total += work.G[row, j] * (work.force[j] + work.more[j])
         work.size[row] = total
-    n = fill_matrix(work, m, tangents)
-    fill_rhs(work, m, tangents, work.size)
-    for i in range(m):
-        t = work.tangent[i]
-        if t >= 0:
-            work.rhs[m + tangents + t] = 2.0 * work.drag[i] * work.more[2 * i] / work.unit[i]
-    status = solve_lcp(work.A, work.rhs, n, work.lcp, work.x)
+    for e in range(elements):
+        row = element_row(work, m, e)
+        for i in range(m):
+            work.size[row] -= work.G[row, 2 * i + 1] * work.other_x[i]
+    fill_matrix(work, m, elements)
+    fill_rhs(work, m, elements, work.size)
+    work.note[3] = LEVEL_EXPANSION
+    status, _ = solve_contacts(work, m, elements)
     for i in range(m):
         extra = work.unit[i] * work.x[i]
         work.more[2 * i] += extra
-        t = work.tangent[i]
-        if t >= 0:
-            work.more[2 * i + 1] += work.unit[i] * work.x[m + t] - work.drag[i] * extra
+        e = work.tangent[i]
+        if e >= 0:
+            work.more[2 * i + 1] += work.unit[i] * work.x[m + e] - work.drag[i] * extra
     return status
 
 
 @kernel
-def impact(model, closed, m, restitution, work, out_u):
+def impact(model, closed, m, restitution, jam, work, out_u):
     """Two-phase impact of the first m closed contacts; `out_u` holds the velocities before and gets those after.
 
-    `restitution[i]` is eps_N of row i. Total impulses N, T are left in `work.force`, rates before the impact in `work.b`.
-    Returns the LCP status (0: solved); the velocities are changed only then.
+    `restitution[i]` is eps_N of row i. With `jam` > 0 (m/s) contacts that slide while their gap stands still, to that
+    speed, are jammed: the impulses that stop them are found although nothing approaches. Total impulses N, T are left in
+    `work.force`, rates before the impact in `work.b`. Returns the LCP status (0: solved); the velocities are changed only then.
     """
-    status = _compress(model, closed, m, out_u, work)
+    status, elements = _compress(model, closed, m, out_u, jam, work)
     if status != 0:
         return status
     returns = False
@@ -89,22 +126,26 @@ def impact(model, closed, m, restitution, work, out_u):
         if restitution[i] > 0.0 and work.force[2 * i] > 0.0:
             returns = True
     if returns:
-        status = _expand(m, restitution, work)
+        status = _expand(model, closed, m, restitution, elements, work)
         if status != 0:
             return status
         for row in range(2 * m):
             work.force[row] += work.more[row]
-    apply(model, closed, m, work.force, out_u)
+    apply(closed, m, work.force, work.inverse, out_u)
     return 0
 
 
 @kernel
 def energy_change(m, work):
-    """T after minus T before of the impact just solved: Lambda·(rates before + half of G Lambda), J."""
-    change = 0.0
+    """(T after minus T before of the impact just solved, sum of its terms without sign), J.
+
+    Lambda·(rates before + half of G Lambda).
+    """
+    change, terms = 0.0, 0.0
     for row in range(2 * m):
         jump = 0.0
         for j in range(2 * m):
             jump += work.G[row, j] * work.force[j]
         change += work.force[row] * (work.b[row] + 0.5 * jump)
-    return change
+        terms += abs(work.force[row]) * (abs(work.b[row]) + 0.5 * abs(jump))
+    return change, terms

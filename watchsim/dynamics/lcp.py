@@ -68,13 +68,18 @@ def solve_lcp(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> int:
 
     OK: out_x solves the problem to rounding. RAY, MAX_ITER, INEXACT: why Lemke failed, and enumeration found nothing.
     """
-    status = lemke(A, b, n, work, out_x)
-    if status == OK:
-        if _is_trivial(b, n) or is_solution(n, work):
-            return OK
-        status = INEXACT
-    if n <= ENUMERATED_SIZE and enumerate_lcp(A, b, n, work, out_x) == OK:
+    status = lemke_checked(A, b, n, work, out_x)
+    if status != OK and n <= ENUMERATED_SIZE and enumerate_lcp(A, b, n, work, out_x) == OK:
         return OK
+    return status
+
+
+@kernel
+def lemke_checked(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> int:
+    """Lemke's method; OK only if what it ended with solves the problem to rounding, else INEXACT, RAY or MAX_ITER."""
+    status: int = lemke(A, b, n, work, out_x)
+    if status == OK and not (_is_trivial(b, n) or is_solution(n, work)):
+        return INEXACT
     return status
 
 

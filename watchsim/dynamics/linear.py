@@ -8,6 +8,12 @@ RANK = 1e-11  # pivots below this share of the first one count as zero: the cont
 
 
 @kernel
+def unit_scale(own):
+    """The scale that makes the diagonal entry `own` one; 1 for zero."""
+    return 1.0 / own**0.5 if own > 0.0 else 1.0
+
+
+@kernel
 def _largest(A, k, n):
     """Row and column of the largest entry of A[k:n, k:n]."""
     row, column, best = k, k, -1.0
@@ -19,13 +25,17 @@ def _largest(A, k, n):
 
 
 @kernel
-def solve_small(A, b, n, order, out_x):
+def solve_small(A, b, n, scale, order, out_x):
     """Solve A x = b (leading n × n block, both overwritten) by complete pivoting; returns the rank.
 
-    Beyond the rank the unknowns are 0: one solution of a consistent singular system. `order` is scratch for n integers.
+    `scale` (n,) makes the diagonal of scale_i A_ij scale_j one where it can. Beyond the rank the unknowns are 0: one
+    solution of a consistent singular system. `order` gets the unknown of each column of the triangle left in A.
     """
-    for j in range(n):
-        order[j] = j
+    for i in range(n):
+        order[i] = i
+        b[i] *= scale[i]
+        for j in range(n):
+            A[i, j] *= scale[i] * scale[j]
     rank, first = n, 0.0
     for k in range(n):
         row, column, best = _largest(A, k, n)
@@ -55,4 +65,23 @@ def solve_small(A, b, n, order, out_x):
         for j in range(k + 1, rank):
             total -= A[k, j] * out_x[order[j]]
         out_x[order[k]] = total / A[k, k]
+    for k in range(n):
+        out_x[k] *= scale[k]
     return rank
+
+
+@kernel
+def null_vectors(A, n, rank, scale, order, out_rows):
+    """After `solve_small`: what may be added to x, one vector in each of the first n - rank rows of `out_rows`."""
+    for v in range(n - rank):
+        row = out_rows[v]
+        for j in range(n):
+            row[j] = 0.0
+        row[order[rank + v]] = 1.0
+        for k in range(rank - 1, -1, -1):
+            total = -A[k, rank + v]
+            for j in range(k + 1, rank):
+                total -= A[k, j] * row[order[j]]
+            row[order[k]] = total / A[k, k]
+        for j in range(n):
+            row[j] *= scale[j]

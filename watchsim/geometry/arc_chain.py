@@ -20,7 +20,6 @@ ALONE, BOTH_ENDS, ONE_END, INSIDE = 0.69, 1.38, 1.75, 2.0
 MOST_TILT = 0.1  # radians, of the tangent at a joint
 HARDEST = 64.0  # tolerances: what a larger deviation counts
 NEWTON = 2  # steps; the first guess is good
-TRIAL_HALVINGS = 1  # of intervals, for a quick bound
 BALANCE = 0.1  # of the logarithm of two deviations: correction of that of the legs of a biarc
 
 
@@ -77,7 +76,7 @@ def lay_chain(curve: Curve, t: Array, load: Array, capacity: Array, skew: Array)
     order = np.argsort(stations, kind="stable")
     corners, ways = np.concatenate((at, joints))[order], np.concatenate((tangents, along))[order]
     arcs = arcs_from(corners[:-1], ways[:-1], corners[1:])
-    errors = deviations(curve, stations[order], arcs, TRIAL_HALVINGS, beside=False)
+    errors = deviations(curve, stations[order], arcs, halvings=0, beside=False)
     first = np.searchsorted(stations[order], nodes[:-1])
     return Trial(stations[order], arcs, nodes, ratios, first, errors)
 

@@ -42,7 +42,7 @@ class Curve:
         return (dh[:, :2] - h[:, :2] * (dh[:, 2:] / h[:, 2:])) / h[:, 2:]
 
     def tangents(self, t: Array, low: float, high: float) -> Array:
-        """Unit tangents (n, 2) of the part from `low` to `high`; where it pauses, the direction just ahead (at its end: behind)."""
+        """Unit tangents (n, 2) of the part from `low` to `high`; where it pauses, the direction beside."""
         slopes = self.slopes(t)
         speed = np.hypot(slopes[:, 0], slopes[:, 1])
         still = speed <= PAUSE * self.usual_speed

@@ -2,11 +2,11 @@
 
 The deviation e of a tangent-continuous chain of arcs from a curve obeys e″ = k - κ: k is constant on each arc, κ the curvature
 of the curve. So the best chain is the best uniform approximation by quadratic splines with free knots. Where κ′ hardly
-changes that leaves e = κ′ h³ B₃(s/h) / 6, the third Bernoulli polynomial, on arcs of length h, and |e| ≤ √3/216 |κ′| h³; hence no
-chain within ε has fewer arcs than (√3/216 / ε)^(1/3) ∫ |κ′|^(1/3) ds, for small ε. Biarcs that take the tangents of the curve
-where they meet it (D. S. Meek, D. J. Walton, Approximating smooth planar curves by arc splines, J. Comput. Appl. Math. 59,
-1995) leave 2/81 |κ′| h³ and need 1.45 times as many. Here their tangents are turned by -κ′h²/12, the slope of the Bernoulli
-polynomial, and the lengths are corrected step by step until all deviations are alike.
+changes that leaves e = κ′ h³ B₃(s/h) / 6, the third Bernoulli polynomial, on arcs of length h, and |e| ≤ √3/216 |κ′| h³.
+Hence no chain within ε has fewer arcs than (√3/216 / ε)^(1/3) ∫ |κ′|^(1/3) ds, for small ε. Biarcs that take the tangents of
+the curve where they meet it (D. S. Meek, D. J. Walton, Approximating smooth planar curves by arc splines, J. Comput. Appl.
+Math. 59, 1995) leave 2/81 |κ′| h³ and need 1.45 times as many. Here their tangents are turned by -κ′h²/12, the slope of the
+Bernoulli polynomial, and the lengths are corrected step by step until all deviations are alike.
 """
 
 from __future__ import annotations
@@ -28,11 +28,16 @@ from watchsim.geometry.smooth import smooth_parts
 BEST = math.sqrt(3.0) / 216.0  # largest deviation of the best chain over |κ′| h³
 KINK = 1e-6  # radians between a single arc's and the curve's tangent at its end
 ROUNDS = 20  # of distributing the arcs anew
-ATTEMPTS = 5  # with one number of arcs
+ROUNDS_OF_HALVES = 6  # where the whole did not succeed
+FEW, MOST = 2, 5  # attempts with one number of arcs: more where one arc counts for more
+WEIGHTY = 48  # arcs over attempts
+ENOUGH = 1.04  # times the number of arcs that seems necessary
 SURE = 0.97  # of the number of arcs that seems necessary: fewer are not tried
+NEARLY = 1.1  # tolerances: a quick bound up to that is made sharp
 MANY = 10_000  # arcs: a part that needs more is halved before
 DAMPING = 0.6  # of the correction of the lengths from one distribution to the next
 
+STILL = 1e-12  # of the whole: a step of no length
 DEEPEST = 40  # halvings where nothing helps: at a cusp
 NOTHING = 1e-5  # of the tolerance: edges shorter than that are left out
 
@@ -61,9 +66,11 @@ def fit_arcs(curve: Curve, tolerance: float) -> Fit:
 
 def _follow(curve: Curve, low: float, high: float, tolerance: float, depth: int) -> list[tuple[list[Edge], float]]:
     """The edges and deviations of the part from `low` to `high`, halved where no chain is found."""
-    trial = _one_arc(curve, low, high, tolerance) or _fewest(curve, low, high, tolerance)
+    trial = _one_arc(curve, low, high, tolerance) or _fewest(
+        curve, low, high, tolerance, ROUNDS if depth == 0 else ROUNDS_OF_HALVES
+    )
     if trial is not None:
-        return [(trial.arcs.edges(), float(np.max(deviations(curve, trial.stations, trial.arcs))))]
+        return [(trial.arcs.edges(), trial.worst)]
     (p, q) = curve.points(np.array([low, high]))
     chord: list[Edge] = [Line(*p.tolist(), *q.tolist())]
     away = _from_chord(curve, low, high)
@@ -92,7 +99,7 @@ def _one_arc(curve: Curve, low: float, high: float, tolerance: float) -> Trial |
     return Trial(nodes, arc, nodes, np.ones(1), np.array([0]), errors) if errors[0] <= tolerance else None
 
 
-def _fewest(curve: Curve, low: float, high: float, tolerance: float) -> Trial | None:
+def _fewest(curve: Curve, low: float, high: float, tolerance: float, rounds: int) -> Trial | None:
     """The chain with the fewest arcs that was found within the tolerance."""
     t, load = _demand(curve, low, high, tolerance)
     skew = np.array([[low, high], [0.0, 0.0]])
@@ -101,7 +108,7 @@ def _fewest(curve: Curve, low: float, high: float, tolerance: float) -> Trial | 
     attempts: Counter[int] = Counter()
     count = arcs_for(float(min(load[-1], MANY)))
     most = 4 * count + 16
-    for _ in range(ROUNDS):
+    for _ in range(rounds):
         if count > most:
             break
         capacity = capacities(count)
@@ -111,18 +118,25 @@ def _fewest(curve: Curve, low: float, high: float, tolerance: float) -> Trial | 
         needed = arcs_for(float(np.sum(work)))
         t, load = _redistributed(t, load, trial.nodes, work)
         skew = balanced(trial)
-        if trial.worst <= tolerance and np.max(deviations(curve, trial.stations, trial.arcs)) <= tolerance:
+        if trial.worst <= NEARLY * tolerance:
+            trial = trial._replace(errors=deviations(curve, trial.stations, trial.arcs))
+        if trial.worst <= tolerance:
             best, fewest = trial, count
             count = min(needed, count - 1)
         elif needed > count:
             count = needed
-        elif attempts[count] >= ATTEMPTS:
+        elif attempts[count] >= enough_attempts(count):
             count += 1
         if count >= fewest:
             count = fewest - 1
-        if best is not None and (attempts[count] >= ATTEMPTS or count < SURE * needed or count < 2):
+        enough = fewest <= ENOUGH * needed or count < SURE * needed or count < 2
+        if best is not None and (enough or attempts[count] >= enough_attempts(count)):
             break
     return best
+
+
+def enough_attempts(count: int) -> int:
+    return min(MOST, max(FEW, WEIGHTY // count))
 
 
 def arcs_for(work: float) -> int:
@@ -139,7 +153,8 @@ def _demand(curve: Curve, low: float, high: float, tolerance: float) -> tuple[Ar
     each = max(4, math.ceil(48 / (len(breaks) - 1)))
     t = np.append((breaks[:-1, None] + np.diff(breaks)[:, None] * np.arange(each) / each).ravel(), high)
     points, tangents = curve.points(t), curve.tangents(t, low, high)
-    length = np.maximum(np.hypot(*np.diff(points, axis=0).T), 1e-300)
+    length = np.hypot(*np.diff(points, axis=0).T)
+    length = np.maximum(length, STILL * np.sum(length) + NOTHING * tolerance)
     turn = np.arctan2(crosses(tangents[:-1], tangents[1:]), dots(tangents[:-1], tangents[1:]))
     curvature = turn / length
     change = np.abs(np.diff(curvature)) / (0.5 * (length[:-1] + length[1:]))

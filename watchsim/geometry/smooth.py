@@ -14,6 +14,8 @@ LOOKS = 64  # places at least where the speed is looked at
 SLOW = 0.2  # of the usual speed: a minimum below that is looked at more closely
 NARROWINGS = 45  # by the golden section, to 1e-9 of a step
 GOLDEN = 0.6180339887498949
+STILL = 1e-12  # of the whole: a step of no length
+LITTLE = 1e-30  # 1/m: no change of curvature
 SLIVER = 1e-4  # of the range: nothing shorter is cut off
 NEAR = 1e-3  # of a span: so far beside a break its curvature is measured
 JUMP = 4.0  # tolerances: a jump of curvature over one arc's length that is worth an end there
@@ -42,8 +44,9 @@ def jumps(curve: Curve, tolerance: float) -> list[float]:
     after = bend(curve, breaks[:-1] + near, breaks[:-1] + 2.0 * near)
     before = bend(curve, breaks[1:] - 2.0 * near, breaks[1:] - near)
     sides = np.diff(curve.points(breaks), axis=0)
-    length = np.maximum(np.hypot(sides[:, 0], sides[:, 1]), 1e-300)
-    reach = np.minimum(length, np.cbrt(BEST * tolerance * length / np.maximum(np.abs(before - after), 1e-300)))
+    length = np.hypot(sides[:, 0], sides[:, 1])
+    length = np.maximum(length, STILL * np.sum(length) + STILL * tolerance)
+    reach = np.minimum(length, np.cbrt(BEST * tolerance * length / np.maximum(np.abs(before - after), LITTLE)))
     worth = np.abs(after[1:] - before[:-1]) * np.minimum(reach[1:], reach[:-1]) ** 2
     return [float(t) for t in breaks[1:-1][worth > JUMP * tolerance]]
 
@@ -54,7 +57,8 @@ def bend(curve: Curve, t: Array, later: Array) -> Array:
     a, b = curve.slopes(t), curve.slopes(later)
     length = np.hypot(chord[:, 0], chord[:, 1])
     turn = np.arctan2(crosses(a, b), dots(a, b))
-    return np.where(length > 0.0, turn / np.maximum(length, 1e-300), 0.0)
+    moving = length > STILL * np.sum(length)
+    return np.where(moving, turn / np.where(moving, length, 1.0), 0.0)
 
 
 def pauses(curve: Curve) -> list[float]:

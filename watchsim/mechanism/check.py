@@ -12,7 +12,7 @@ from typing import Any
 from watchsim.drawing.findings import Finding
 from watchsim.geometry.extent import extents
 from watchsim.mechanism.body import Body
-from watchsim.mechanism.force import Spring
+from watchsim.mechanism.force import Damping, Spring
 from watchsim.mechanism.overlap import overlaps
 from watchsim.mechanism.scene import Scene
 from watchsim.mechanism.solid import HAIRSPRING, LYING, PLATE, UPRIGHT, Solid, total
@@ -198,7 +198,7 @@ def _force_lines(scene: Scene) -> Iterator[str]:
         text = show(torque.value, unit) if not torque.table else f"{len(torque.table)} values over {torque.over}"
         yield f"  drive on {torque.body}: {text}"
     for damping in scene.damping:
-        yield f"  damping on {damping.body}: {_damping(scene, damping.body, damping.viscous, damping.quadratic)}"
+        yield f"  damping on {damping.body}: {_damping(scene, damping)}"
 
 
 def _spring(scene: Scene, spring: Spring) -> str:
@@ -209,19 +209,24 @@ def _spring(scene: Scene, spring: Spring) -> str:
     return f"{stiffness}, {show(hertz, 'Hz')} = {show(hertz, 'vph')}, at rest at {rest}"
 
 
-def _damping(scene: Scene, name: str, viscous: float, quadratic: float) -> str:
-    body = scene.body(name)
+def _damping(scene: Scene, damping: Damping) -> str:
+    body, viscous, quadratic = scene.body(damping.body), damping.viscous, damping.quadratic
     linear = body.motion == "slide"
     parts = [show(viscous, "N·s/m" if linear else "nN·m·s/rad")] if viscous else []
-    stiffness = sum(spring.stiffness for spring in scene.springs if spring.body == name)
+    stiffness = sum(spring.stiffness for spring in scene.springs if spring.body == body.name)
     if viscous and stiffness:
         parts.append(f"Q = {math.sqrt(stiffness * _moving_mass(body)) / viscous:.6g}")
     if quadratic:
         parts.append(show(quadratic, "N·s²/m²" if linear else "nN·m·s²/rad²"))
+    if damping.coulomb:
+        parts.append(f"dry friction {show(damping.coulomb, 'mN' if linear else 'nN·m')}")
     return ", ".join(parts) or "none"
 
 
 def _contact_lines(scene: Scene) -> Iterator[str]:
     for contact in scene.contacts:
         first, second = contact.sides
-        yield f"  contact {first} - {second}: friction {contact.friction:g}, restitution {contact.restitution:g}"
+        text = f"friction {contact.friction:g}, restitution {contact.restitution:g}"
+        if contact.tangential_restitution:
+            text += f", tangential {contact.tangential_restitution:g} ({scene.tangential_law})"
+        yield f"  contact {first} - {second}: {text}"

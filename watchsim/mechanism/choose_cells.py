@@ -14,10 +14,12 @@ from numpy.typing import NDArray
 
 from watchsim.mechanism.alike import AlikeContacts
 from watchsim.mechanism.chords import chords
-from watchsim.mechanism.model import FREE, PIVOT, SLIDE, Records
+from watchsim.mechanism.model import ARC, CORNER, FREE, FULL, PIVOT, SLIDE, Records
 
 FEW_CONTACTS = 24  # with no more reachable pairs of primitives than this, a search costs more than it saves
-CELL_SHARE = 0.02  # a cell lets the outermost point of either body travel this share of the larger one's reach
+# A cell lets the outermost point of either body travel this share of the larger one's reach: the first where outlines are made
+# of pieces as short as that, so that few of them fit into it, else the second.
+FINEST_SHARE, CELL_SHARE = 0.005, 0.02
 FEWEST = 8  # cells in a turn
 MOST_PARTS = 1024  # a symmetry with more parts is not worth the table
 
@@ -41,7 +43,9 @@ def choose_cells(bodies: Records, primitives: Records, contacts: Records, pairs:
         used = np.unique(np.concatenate([contacts.a[ids], contacts.b[ids]]))
         mine = {b: primitives[used[primitives.body[used] == b]] for b in moving}
         reach = {b: float(np.hypot(*chords(rows, pair.clearance).points.T).max(initial=0.0)) for b, rows in mine.items()}
-        travel = CELL_SHARE * max(reach.values()) or pair.clearance
+        piece = _typical_length(primitives[used])
+        largest = max(reach.values())
+        travel = min(max(FINEST_SHARE * largest, piece), CELL_SHARE * largest) or pair.clearance
         axes: list[_Axis] = []
         parts = 1
         for b in moving:
@@ -52,6 +56,13 @@ def choose_cells(bodies: Records, primitives: Records, contacts: Records, pairs:
         pair.axes, pair.listed = len(axes), 1
         for i, axis in enumerate(axes):
             pair[f"c{i}"], pair[f"size{i}"], pair[f"wrap{i}"], pair[f"fold{i}"] = axis
+
+
+def _typical_length(rows: Records) -> float:
+    """Median length of the lines and arcs among some primitives, m; 0 without any."""
+    half = np.where(rows.extent == FULL, np.pi, np.arctan2(rows.half_sin, rows.half_cos))
+    lengths = np.where(rows.kind == ARC, 2.0 * half * rows.radius, rows.length)[rows.kind != CORNER]
+    return float(np.median(lengths)) if len(lengths) else 0.0
 
 
 def _axes(body: Any, travel: float, reach: float, fold: int) -> list[_Axis]:

@@ -27,7 +27,7 @@ class Chords(NamedTuple):
 
 
 def chords(primitives: Records, sag: float) -> Chords:
-    """Chords of all `primitives`: one point for a corner, two for a line, for an arc as many as keep it within about `sag` m."""
+    """Chords of all `primitives`: one point for a corner, two for a line, for an arc as many as keep within about `sag` m."""
     arc, line = primitives.kind == ARC, primitives.kind == LINE
     half = np.where(primitives.extent == FULL, np.pi, np.arctan2(primitives.half_sin, primitives.half_cos))
     # Sagitta of an arc of half angle h: 2 R sin²(h/2).

@@ -32,6 +32,7 @@ from watchsim.mechanism.model import (
     PRIMITIVE,
     SLIDE,
     TABLE,
+    TANGENTIAL_CODE,
     Model,
     Records,
     frozen,
@@ -145,6 +146,7 @@ def _contacts(scene: Scene, sides: dict[Side, np.ndarray], primitives: Records) 
     for group, contact in enumerate(scene.contacts):
         laws[group].friction, laws[group].restitution = contact.friction, contact.restitution
         laws[group].tangential = contact.tangential_restitution
+        laws[group].kind, laws[group].nu = TANGENTIAL_CODE[scene.tangential_law], scene.nu
         first, last = (sides[side] for side in contact.sides)
         a, b = _touching(primitives, first, last)
         block = np.stack([a, b, np.full(len(a), group)], axis=1)
@@ -177,15 +179,23 @@ def _add_shapes(primitives: Records, contacts: Records) -> None:
 
 def _touching(primitives: Records, first: np.ndarray, last: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """All pairs (circle, other) between two sets of primitives that have a gap function."""
-    one = np.repeat(first, len(last)), np.tile(last, len(first))
-    both = np.concatenate([one[0], one[1]]), np.concatenate([one[1], one[0]])
-    a, b = primitives[both[0]], primitives[both[1]]
-    corner, round_ = a.kind == CORNER, (a.kind == ARC) & (a.side > 0.0)
-    fits = (b.kind != ARC) | (b.side > 0.0) | (a.radius < b.radius)
-    # Two convex arcs are one contact, not two: the first set's arc plays the circle.
-    twice = round_ & (b.kind == ARC) & (b.side > 0.0) & (np.arange(len(a)) >= len(one[0]))
-    keep = (corner | round_) & (b.kind != CORNER) & fits & ~twice
-    return both[0][keep], both[1][keep]
+    kind, radius, convex = primitives.kind, primitives.radius, primitives.side > 0.0
+
+    def circles_and_edges(circles: np.ndarray, edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        circles = circles[(kind[circles] == CORNER) | ((kind[circles] == ARC) & convex[circles])]
+        edges = edges[kind[edges] != CORNER]
+        a, b = np.repeat(circles, len(edges)), np.tile(edges, len(circles))
+        fits = (kind[b] != ARC) | convex[b] | (radius[a] < radius[b])
+        return a[fits], b[fits]
+
+    def both_round(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+        return (kind[a] == ARC) & (kind[b] == ARC) & convex[b]
+
+    a, b = circles_and_edges(first, last)
+    c, d = circles_and_edges(last, first)
+    # Two convex arcs are one contact, not two: the rounder one plays the circle, of equal ones the first set's.
+    one, two = ~both_round(a, b) | (radius[a] <= radius[b]), ~both_round(c, d) | (radius[c] < radius[d])
+    return np.concatenate([a[one], c[two]]), np.concatenate([b[one], d[two]])
 
 
 def _coordinates(scene: Scene, slices: dict[str, slice], size: float) -> tuple[Records, Records, np.ndarray, float]:
@@ -206,6 +216,7 @@ def _coordinates(scene: Scene, slices: dict[str, slice], size: float) -> tuple[R
         row = rows[_driven(scene, slices, damping.body)]
         row.viscous += damping.viscous
         row.quadratic += damping.quadratic
+        row.coulomb += damping.coulomb
     tables, knots = _tables(scene, slices, rows)
     tabled = {int(table.coordinate) for table in tables}
     for i, row in enumerate(rows):

@@ -61,7 +61,7 @@ def _line(edge: Line) -> dict[str, float]:
 
 def _arc(edge: Arc, size: float) -> dict[str, float]:
     side = 1.0 if edge.sweep > 0.0 else -1.0
-    px, py, c, s = _middle(edge, exact=edge.radius > FLAT * size)
+    px, py, c, s = middle(edge, exact=edge.radius > FLAT * size)
     half = 0.5 * min(abs(edge.sweep), 2.0 * math.pi)
     fan = {"nx": side * c, "ny": side * s, "half_cos": math.cos(half), "half_sin": math.sin(half)}
     extent = FULL if edge.is_circle else PART
@@ -78,14 +78,14 @@ def _arc(edge: Arc, size: float) -> dict[str, float]:
     }
 
 
-def _middle(edge: Arc, exact: bool) -> tuple[float, float, float, float]:
+def middle(edge: Arc, exact: bool) -> tuple[float, float, float, float]:
     """Middle of the arc and the direction to it from the centre; `exact`: rounded once, however far the centre is."""
     if not exact:
         c, s = _direction(edge.start_angle + 0.5 * edge.sweep)
         return edge.x + edge.radius * c, edge.y + edge.radius * s, c, s
-    c, s = cos_sin(Decimal(edge.start_angle) + Decimal(edge.sweep) / 2)
-    radius = Decimal(edge.radius)
-    return float(Decimal(edge.x) + radius * c), float(Decimal(edge.y) + radius * s), float(c), float(s)
+    cosine, sine = cos_sin(Decimal(edge.start_angle) + Decimal(edge.sweep) / 2)
+    x, y, radius = Decimal(edge.x), Decimal(edge.y), Decimal(edge.radius)
+    return float(x + radius * cosine), float(y + radius * sine), float(cosine), float(sine)
 
 
 def _direction(angle: float) -> Point:

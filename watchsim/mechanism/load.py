@@ -44,25 +44,27 @@ def from_mapping(mapping: dict[str, Any], path: Path | None, faults: Faults | No
     faults = faults or Faults(str(path) if path else "scene")
     folder = path.parent if path else Path()
     _note_sections(mapping, faults)
-    title, gravity = read_heading(mapping, faults)
+    heading = read_heading(mapping, faults)
     bodies, findings, sound = read_bodies(mapping.get("bodies", {}), folder, faults)
     springs = read_springs(mapping, bodies, faults)
     torques = read_torques(mapping, bodies, faults)
     damping = read_damping(mapping, bodies, springs, faults)
-    contacts = read_contacts(mapping, bodies, sound, faults)
+    contacts = read_contacts(mapping, bodies, sound, heading.tangential_law, faults)
     duration, record, tolerance = read_run(mapping, faults)
     lift_angle = read_lift_angle(mapping, faults)
     expect = read_expectations(mapping, faults)
     _check_lock(mapping, folder, faults)
     faults.raise_any()
     return Scene(
-        title=title or (path.parent.name if path else ""),
+        title=heading.title or (path.parent.name if path else ""),
         bodies=bodies,
         springs=springs,
         torques=torques,
         damping=damping,
         contacts=contacts,
-        gravity=gravity,
+        gravity=heading.gravity,
+        tangential_law=heading.tangential_law,
+        nu=heading.nu,
         duration=duration,
         record=record,
         tolerance=tolerance,

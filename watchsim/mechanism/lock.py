@@ -48,7 +48,8 @@ def versions() -> dict[str, str]:
 
 
 def _heading(source: dict[str, Any], scene: Scene) -> dict[str, Any]:
-    defaults = {"title": scene.title, "schema": SCHEMA, "gravity": _pair(scene.gravity, "m/s²")}
+    defaults: dict[str, Any] = {"title": scene.title, "schema": SCHEMA, "gravity": _pair(scene.gravity, "m/s²")}
+    defaults["tangential_law"] = scene.tangential_law
     return {**defaults, **source.get("scene", {})}
 
 

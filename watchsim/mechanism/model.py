@@ -42,6 +42,7 @@ COORDINATE = np.dtype(
         ("mass", "f8"),  # kg or kg·m²
         ("force", "f8"),  # constant part, N or N·m
         ("viscous", "f8"),
+        ("coulomb", "f8"),  # dry friction of the bearing, N or N·m
         ("quadratic", "f8"),
         ("stiffness", "f8"),
         ("rest", "f8"),
@@ -49,7 +50,7 @@ COORDINATE = np.dtype(
         ("weight_y", "f8"),
         ("scale", "f8"),  # 1 rad, or the scene's size for a length
         ("rate", "f8"),  # 1/s: scale × rate is the velocity that error control treats as small
-        ("linear", "i8"),  # 1: exact flight is possible (constant force, spring, viscous damping only)
+        ("linear", "i8"),  # 1: exact flight is possible (constant force, spring, viscous and dry damping only)
         ("body", "i8"),
     ]
 )
@@ -87,7 +88,17 @@ CONTACT = np.dtype(
         ("reduced", "f8"),  # reduced radius r R/(R + s r) of the two, r for a line, m
     ]
 )
-LAW = np.dtype([("friction", "f8"), ("restitution", "f8"), ("tangential", "f8")])
+COULOMB, PG1996, SHIFTED = 0, 1, 2
+TANGENTIAL_CODE = {"coulomb": COULOMB, "pg1996": PG1996, "shifted": SHIFTED}
+LAW = np.dtype(
+    [
+        ("friction", "f8"),
+        ("restitution", "f8"),
+        ("tangential", "f8"),  # tangential restitution
+        ("kind", "i8"),  # which tangential law of the expansion
+        ("nu", "f8"),  # of pg1996
+    ]
+)
 
 BODY_PAIR = np.dtype(
     [

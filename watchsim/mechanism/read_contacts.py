@@ -18,17 +18,18 @@ NOWHERE = Side("")
 
 @dataclass(frozen=True, slots=True)
 class Known:
-    """The bodies that may be named, and those whose outlines were read without a fault."""
+    """The bodies that may be named, those whose outlines were read without a fault, and the tangential law of the scene."""
 
     bodies: Mapping[str, Body]
     sound: frozenset[str]
+    law: str
 
 
 def read_contacts(
-    mapping: Mapping[str, Any], bodies: tuple[Body, ...], sound: frozenset[str], faults: Faults
+    mapping: Mapping[str, Any], bodies: tuple[Body, ...], sound: frozenset[str], law: str, faults: Faults
 ) -> tuple[Contact, ...]:
     """All declared contacts; unknown bodies and layers, a body with itself and pairs declared twice are faults."""
-    known = Known({body.name: body for body in bodies}, sound)
+    known = Known({body.name: body for body in bodies}, sound, law)
     tables = [Table(one, f"contacts.{i}", CONTACT, faults) for i, one in enumerate(listed(mapping, "contacts", faults))]
     contacts = tuple(_contact(table, known) for table in tables)
     for i, table in enumerate(tables):
@@ -45,9 +46,21 @@ def _contact(table: Table, known: Known) -> Contact:
         value = table.quantity(key)
         if value < 0.0 or value > 1.0:
             table.fault(key, "must lie between 0 (no rebound) and 1 (nothing lost)", with_value=True)
-    if 0.0 < table.quantity("tangential_restitution") <= 1.0:
-        table.refuse("tangential_restitution")
-    return Contact(sides, friction, table.quantity("restitution"), 0.0)
+    contact = Contact(sides, friction, table.quantity("restitution"), table.quantity("tangential_restitution"))
+    if 0.0 < contact.tangential_restitution <= 1.0:
+        _note_law(table, contact, known.law)
+    return contact
+
+
+def _note_law(table: Table, contact: Contact, law: str) -> None:
+    """Not every law gives tangential impulses back."""
+    if law == "coulomb":
+        cure = 'write tangential_law = "pg1996" (or "shifted") under [scene]'
+        message = f'the law "coulomb" gives no tangential impulse back: {cure}'
+        table.fault("tangential_restitution", message, with_value=True)
+    elif law == "shifted" and contact.tangential_restitution > contact.restitution:
+        message = f'must not be above restitution ({contact.restitution:g}) with tangential_law = "shifted"'
+        table.fault("tangential_restitution", message, with_value=True)
 
 
 def _sides(table: Table, known: Known) -> tuple[Side, Side]:

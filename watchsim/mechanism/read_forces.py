@@ -139,14 +139,13 @@ def _row(table: Table, i: int, row: object, dimensions: tuple[units.Dimension, u
 def _damping(entry: Entry, springs: tuple[Spring, ...]) -> Damping:
     table = entry.table
     if table.mapping and not any(key in table for key in ("q_factor", "viscous", "quadratic", "coulomb")):
-        table.fault("", 'missing: q_factor = 250, viscous = "0.6 nN·m·s/rad" or quadratic = "1 nN·m·s²/rad²"')
+        choices = 'q_factor = 250, viscous = "0.6 nN·m·s/rad", quadratic = "1 nN·m·s²/rad²" or coulomb = "10 nN·m"'
+        table.fault("", f"missing: {choices}")
     for key in ("viscous", "quadratic", "coulomb"):
         if table.quantity(key) < 0.0:
             table.fault(key, "negative damping would drive the body", with_value=True)
-    if table.quantity("coulomb") > 0.0:
-        table.refuse("coulomb")
     viscous = _from_quality(entry, springs) if "q_factor" in table else table.quantity("viscous")
-    return Damping(entry.name, viscous, table.quantity("quadratic"))
+    return Damping(entry.name, viscous, table.quantity("quadratic"), table.quantity("coulomb"))
 
 
 def _from_quality(entry: Entry, springs: tuple[Spring, ...]) -> float:

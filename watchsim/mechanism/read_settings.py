@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 from watchsim import units
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.errors import Faults
+from watchsim.mechanism.model import TANGENTIAL_CODE
 from watchsim.mechanism.scene import Expectation
 from watchsim.mechanism.schema import EXPECTATION, RUN, SCENE, SCHEMA, TIMEGRAPHER
 from watchsim.mechanism.table import Table, shown
@@ -26,13 +28,27 @@ WATCH_QUANTITIES = {
 }
 
 
-def read_heading(mapping: Mapping[str, Any], faults: Faults) -> tuple[str, Point]:
-    """Title and gravity (m/s²)."""
+@dataclass(frozen=True, slots=True)
+class Heading:
+    """Title, gravity (m/s²) and the tangential law of impacts with its nu."""
+
+    title: str
+    gravity: Point
+    tangential_law: str
+    nu: float
+
+
+def read_heading(mapping: Mapping[str, Any], faults: Faults) -> Heading:
     table = Table(mapping.get("scene", {}), "scene", SCENE, faults)
     schema = table.mapping.get("schema", SCHEMA)
     if schema != SCHEMA:
         table.fault("schema", f"this program reads schema {SCHEMA}", with_value=True)
-    return table.text("title"), table.pair("gravity")
+    law, nu = table.one_of("tangential_law", tuple(TANGENTIAL_CODE), "coulomb"), table.quantity("nu")
+    if nu < 0.0 or nu > 1.0:
+        table.fault("nu", "must lie between 0 and 1", with_value=True)
+    elif nu > 0.0 and law != "pg1996":
+        table.fault("nu", f'belongs to tangential_law = "pg1996"; the law here is {law}. Leave it out', with_value=True)
+    return Heading(table.text("title"), table.pair("gravity"), law, nu)
 
 
 def read_run(mapping: Mapping[str, Any], faults: Faults) -> tuple[float, tuple[Point, ...], float]:

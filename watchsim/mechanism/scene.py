@@ -26,6 +26,8 @@ class Expectation:
 class Scene:
     """A mechanism in SI units, ready to be compiled.
 
+    `tangential_law` ("coulomb", "pg1996" or "shifted") says what friction does in the expansion of impacts, `nu` belongs to
+    pg1996 (docs/laws.md).
     `source` is the TOML mapping it was made from, `path` its file, `findings` what the drawings said besides errors; two
     scenes are equal when everything else is.
     """
@@ -37,6 +39,8 @@ class Scene:
     damping: tuple[Damping, ...] = ()
     contacts: tuple[Contact, ...] = ()
     gravity: Point = (0.0, 0.0)
+    tangential_law: str = "coulomb"
+    nu: float = 0.0
     duration: float = 1.0
     record: tuple[tuple[float, float], ...] = ()
     tolerance: float = 1e-9

@@ -29,7 +29,10 @@ NUMBER = Key(units.NUMBER)
 LENGTH = Key(units.LENGTH)
 ANGLE = Key(units.ANGLE)
 
-SCENE: Keys = {"title": PLAIN, "schema": NUMBER, "gravity": Key(units.ACCELERATION)}
+SCENE: Keys = {
+    **{"title": PLAIN, "schema": NUMBER, "gravity": Key(units.ACCELERATION)},
+    **{"tangential_law": PLAIN, "nu": NUMBER},
+}
 SHAPES = ("circle", "polygon", "line")
 BODY: Keys = {
     **{"drawing": PLAIN, "layers": PLAIN, "units": PLAIN, "snap": LENGTH, "material": LENGTH},
@@ -73,8 +76,6 @@ SECTIONS = (*TABLES, *NAMED, *LISTED)
 UNSUPPORTED = {
     "on": "a body carried by another one is not simulated yet. Leave the key out and give the position in the movement",
     "adjust": "turning or shifting one layer of a drawing is not supported yet. Change the drawing and leave the key out",
-    "coulomb": "dry friction in a pivot is not simulated yet. Leave the key out, or use q_factor or viscous",
-    "tangential_restitution": "tangential restitution above 0 is not simulated yet. Leave the key out",
 }
 
 

@@ -20,13 +20,13 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 FAULT = "#d0021b"
-CIRCLED = 120  # more circles would cover the part
+CIRCLED = 80  # more circles would cover the part
 RADIUS = 6.5  # of a circle
 CLOSE = 6.0  # faults this close share a circle
 LETTER, LINE = 5.9, 9.5  # width of a digit and height of a number
 REACHES = (10.5, 21.0, 35.0)  # from the centre of a circle to the near side of its number
 WAYS = 12
-GROUPS = 4  # numbers or ranges of numbers written at one circle
+GROUPS = 2  # numbers or ranges of numbers written at one circle
 
 Box = tuple[float, float, float, float]
 

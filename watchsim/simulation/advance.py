@@ -10,7 +10,7 @@ import math
 
 from watchsim.contact.kinematics import ClosedRef
 from watchsim.contact.lookup import time_through_cells
-from watchsim.dynamics.delassus import ContactWorkRef
+from watchsim.dynamics.delassus import ContactWorkRef, fill_inverse
 from watchsim.dynamics.forces import next_knot
 from watchsim.dynamics.lcp import LcpWorkRef
 from watchsim.jit import entry, kernel
@@ -20,7 +20,7 @@ from watchsim.simulation.drift import project_positions, project_velocities
 from watchsim.simulation.free import quarter_period
 from watchsim.simulation.integrator import coupled_step, dense_value
 from watchsim.simulation.keep import is_kept, keep_row
-from watchsim.simulation.leave import first_leave
+from watchsim.simulation.leave import first_leave, first_turn
 from watchsim.simulation.options import OptionsRef
 from watchsim.simulation.passages import keep_passages
 from watchsim.simulation.settle import settle
@@ -32,7 +32,7 @@ from watchsim.simulation.within import begin_flight, coordinate_within, flight_a
 RUNNING, SLICE, CELL_UNKNOWN, BUFFER_FULL = int(Stop.RUNNING), int(Stop.SLICE), int(Stop.CELL_UNKNOWN), int(Stop.BUFFER_FULL)
 DURATION, STEP_TOO_SMALL, NOT_FINITE = int(Stop.DURATION), int(Stop.STEP_TOO_SMALL), int(Stop.NOT_FINITE)
 TOO_MANY_EVENTS, LAST_STEP = int(Stop.TOO_MANY_EVENTS), int(Stop.LAST_STEP)
-FLIGHT_CELLS = 32
+FLIGHT_CELLS = 128
 FLIGHT_ROWS = 16  # a flight is at most this many recorded rows long
 EVENTS_AT_ONCE = 2000
 ROWS_PER_STEP = FLIGHT_ROWS + 8
@@ -85,6 +85,8 @@ def _flight_sums(model, state, step, end):
         if not state.awake[i]:
             continue
         state.sums[DRIVE] += coordinate.force * (coordinate_within(model, state, step, i, end)[0] - step.q[i])
+        if coordinate.coulomb > 0.0:
+            state.sums[DAMPING] += coordinate.coulomb * abs(coordinate_within(model, state, step, i, end)[0] - step.q[i])
         if coordinate.viscous == 0.0:
             continue
         total = 0.0
@@ -126,9 +128,9 @@ def _accept_coupled(model, state, options, end, scratch):
     motion(model, state, options, state.clock[0], scratch.y, scratch)
     m = state.numbers[0]
     if m > 0:
-        deepest = project_positions(model, scratch.closed, m, True, scratch.work, state.q)
+        deepest = project_positions(scratch.closed, m, True, scratch.work, state.q)
         state.worst[0] = max(state.worst[0], deepest)
-        project_velocities(model, scratch.closed, m, state.mode, scratch.work, state.u)
+        project_velocities(scratch.closed, m, state.mode, scratch.work, state.u)
     for i in range(n):
         state.a[i] = scratch.dy[n + i]
 
@@ -159,6 +161,7 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
         for p in range(len(model.pairs)):
             length = min(length, time_through_cells(model, p, state.u, scratch.step.bound, FLIGHT_CELLS))
         scratch.step.span[1] = min(length, left)
+        leave = first_turn(model, state)
     else:
         if not coupled_step(
             model, state, options, min(left, options.max_step, next_knot(model, state.clock[0]) - state.clock[0]), scratch
@@ -215,6 +218,7 @@ def _settle(model, cells, state, options, scratch, record):
 @kernel
 def _loop(model, cells, state, options, until, scratch, record):
     """From step to step and event to event; see `advance`."""
+    fill_inverse(model, state.grip, scratch.work.inverse)
     while True:
         if not _room_left(record):
             return BUFFER_FULL
@@ -247,15 +251,27 @@ def _by_reference(scratch):
         work.size,
         work.force,
         work.more,
+        work.inverse,
         work.unit,
         work.drag,
         work.tangent,
+        work.block,
+        work.dry,
+        work.width,
+        work.span,
+        work.shift,
         work.A,
         work.rhs,
         work.x,
+        work.B,
+        work.other_rhs,
+        work.other_x,
+        work.scale,
         work.order,
         LcpWorkRef(*work.lcp),
         work.h,
+        work.rungs,
+        work.note,
     )
     return ScratchRef(
         StepRef(*scratch.step),
@@ -274,7 +290,9 @@ def _by_reference(scratch):
         scratch.label,
         scratch.engaged,
         scratch.doubt,
+        scratch.codes,
         scratch.trial,
+        scratch.grip,
         scratch.alarm,
         scratch.unknown,
         scratch.at,

@@ -9,15 +9,17 @@ from __future__ import annotations
 from watchsim.contact.poses import place
 from watchsim.dynamics.acceleration import accelerate, decide_modes
 from watchsim.dynamics.delassus import contact_velocities
+from watchsim.dynamics.dry import add_drag, set_grips
 from watchsim.dynamics.forces import forces
 from watchsim.dynamics.impact import energy_change, impact
 from watchsim.jit import kernel
 from watchsim.simulation.closed import refresh, resting
 from watchsim.simulation.keep import keep_event
-from watchsim.simulation.state import IMPACTS, N_ACCUMULATED, N_ENERGY, N_IMPACTS, N_LCP, N_LCP_FAILED
+from watchsim.simulation.state import IMPACTS, N_ACCUMULATED, N_ENERGY, N_IMPACTS, N_JAMS, N_LCP, N_LCP_FAILED, N_LEMKE
 
 GAIN = 1e-12  # a rise of kinetic energy beyond this share is a gain, not rounding
-IMPACT_EVENT, ACCUMULATION_EVENT = 1, 7
+ENERGY_GAINED = 11  # status: even without restitution an impact would gain energy, so its solution is wrong
+IMPACT_EVENT, ACCUMULATION_EVENT, JAM_EVENT = 1, 7, 10
 
 
 @kernel
@@ -30,7 +32,8 @@ def approaching(m, closed, speed_zero):
 
 
 @kernel
-def _kinetic(model, u):
+def kinetic_energy(model, u):
+    """J."""
     total = 0.0
     for i in range(len(u)):
         total += 0.5 * model.coordinates[i].mass * u[i] * u[i]
@@ -52,22 +55,37 @@ def _least_restitution(m, scratch):
 
 
 @kernel
-def _solve(model, state, m, scratch):
+def count_rungs(state, work):
+    """Add the problems solved since last asked to the state's counts."""
+    for rung in range(3):
+        state.counts[N_LEMKE + rung] += work.rungs[rung]
+        state.counts[N_LCP] += work.rungs[rung]
+        work.rungs[rung] = 0
+    state.counts[N_LCP] += work.rungs[3]
+    work.rungs[3] = 0
+
+
+@kernel
+def _solve(model, state, m, jam, scratch):
     """One impact with scratch.restitution; on an energy gain again with the smallest restitution, then with none."""
+    kinetic = kinetic_energy(model, scratch.before)
     for attempt in range(3):
         state.u[:] = scratch.before
-        state.counts[N_LCP] += 1
-        status = impact(model, scratch.closed, m, scratch.restitution, scratch.work, state.u)
+        status = impact(model, scratch.closed, m, scratch.restitution, jam, scratch.work, state.u)
+        count_rungs(state, scratch.work)
         if status != 0:
             state.counts[N_LCP_FAILED] += 1
             return status
-        if energy_change(m, scratch.work) <= GAIN * _kinetic(model, scratch.before):
+        change, terms = energy_change(m, scratch.work)
+        if change <= GAIN * kinetic:
             return 0
+        if attempt == 2:
+            return 0 if change <= GAIN * terms else ENERGY_GAINED
         state.counts[N_ENERGY] += 1
         least = _least_restitution(m, scratch) if attempt == 0 else 0.0
         for i in range(m):
             scratch.restitution[i] = least
-    return 0
+    return ENERGY_GAINED
 
 
 @kernel
@@ -88,11 +106,15 @@ def _end_time(model, state, m, options, scratch):
         return latest
     r = resting(model, m, closed, scratch.pose, options.speed_zero, scratch.rest)
     forces(model, state.clock[0], state.q, state.u, work.h)
+    set_grips(model, state.u, options.speed_zero, options.size, scratch.grip)
+    add_drag(model, scratch.grip, work.h)
     for i in range(2 * r):
         work.force[i] = 0.0
-    if decide_modes(model, scratch.rest, r, options.speed_zero, work, scratch.trial) != 0:
+    status = decide_modes(model, scratch.rest, r, options.speed_zero, work, scratch.grip, scratch.trial)
+    count_rungs(state, work)
+    if status != 0:
         return latest
-    accelerate(model, scratch.rest, r, work, state.a)
+    accelerate(scratch.rest, r, work, state.a)
     for i in range(m):
         rate, share = closed.kin[i].gN_dot, scratch.restitution[i]
         if not (share > 0.0 and scratch.impulse[2 * i] > 0.0 and options.speed_zero < rate <= options.accumulation_speed):
@@ -109,13 +131,16 @@ def _end_time(model, state, m, options, scratch):
 
 
 @kernel
-def collide(model, state, m, options, scratch, record):
-    """Resolve the impact of the m closed contacts: new velocities, refreshed kinematics, events. Returns the LCP status."""
+def collide(model, state, m, options, jam, scratch, record):
+    """Resolve the impact of the m closed contacts: new velocities, refreshed kinematics, events. Returns the LCP status.
+
+    `jam` (m/s) is positive where nothing approaches, but a sliding contact needs an infinite force (Painlevé).
+    """
     scratch.before[:] = state.u
     _law_restitution(model, m, scratch)
     ends = -1.0
     for _ in range(1 + m):
-        status = _solve(model, state, m, scratch)
+        status = _solve(model, state, m, jam, scratch)
         if status != 0:
             state.u[:] = scratch.before
             return status
@@ -127,16 +152,16 @@ def collide(model, state, m, options, scratch, record):
         if end < 0.0:
             break
         ends = max(ends, end)
-    _write(model, state, m, scratch, record, ends)
+    _write(model, state, m, jam, scratch, record, ends)
     return 0
 
 
 @kernel
-def _write(model, state, m, scratch, record, ends):
+def _write(model, state, m, jam, scratch, record, ends):
     """Events and energy of the impact just solved; by contact, the loss is minus the impulse times the mean rate."""
     closed = scratch.closed
-    contact_velocities(model, closed, m, scratch.before, scratch.work.b)
-    contact_velocities(model, closed, m, state.u, scratch.rates)
+    contact_velocities(closed, m, scratch.before, scratch.work.b)
+    contact_velocities(closed, m, state.u, scratch.rates)
     for i in range(m):
         N, T = 2 * i, 2 * i + 1
         if scratch.impulse[N] <= 0.0:
@@ -148,6 +173,9 @@ def _write(model, state, m, scratch, record, ends):
         event.impulse_normal, event.impulse_tangential, event.energy_lost = scratch.impulse[N], scratch.impulse[T], lost
         state.sums[IMPACTS] += lost
         state.counts[N_IMPACTS] += 1
+        if jam > 0.0 and abs(scratch.work.b[N]) <= jam < abs(scratch.work.b[T]):
+            keep_event(state, record, JAM_EVENT, closed.ids[i], -1, scratch.work.b[T])
+            state.counts[N_JAMS] += 1
         if ends >= 0.0 and scratch.restitution[i] == 0.0 and model.laws[model.contacts[closed.ids[i]].group].restitution > 0.0:
             keep_event(state, record, ACCUMULATION_EVENT, closed.ids[i], -1, ends)
             state.counts[N_ACCUMULATED] += 1

@@ -1,20 +1,34 @@
 """How do bodies move while contacts couple them?
 
 Right-hand side of the smooth motion in the decided modes, and the monitors that tell when a mode ends: a normal force that
-vanishes, a slip that reverses, a friction force that reaches its cone, a contact that leaves its primitive.
+vanishes, a slip that reverses, a friction force that reaches its cone, a contact that leaves its primitive, a contact that
+comes near Painlevé's paradox, a bearing with dry friction that stops or breaks loose.
 """
 
 from __future__ import annotations
 
-from watchsim.contact.index_sets import STICK
+from watchsim.contact.index_sets import OPEN, STICK
 from watchsim.contact.kinematics import contact_kinematics
 from watchsim.contact.poses import place_body
-from watchsim.dynamics.acceleration import accelerate, solve_mode
+from watchsim.dynamics.acceleration import accelerate, is_paradox, solve_mode
+from watchsim.dynamics.dry import add_drag, drag_power, load_on
 from watchsim.dynamics.forces import damping_power, drive_power, forces
 from watchsim.jit import kernel
 from watchsim.simulation.state import N_EVALUATIONS
 
-MONITORS = 3
+MONITORS = 4
+
+
+@kernel
+def bearing_monitor(model, state, scratch, options, j):
+    """Of coordinate j at the state last evaluated; its grip holds while it is positive."""
+    coordinate = model.coordinates[j]
+    if state.grip[j] == OPEN or state.awake[j] == 0:
+        return 1.0
+    if state.grip[j] == STICK:
+        load, terms = load_on(scratch.closed, state.numbers[0], scratch.work, j)
+        return coordinate.coulomb - abs(load) + options.force_zero * terms
+    return state.grip[j] * scratch.y[len(model.coordinates) + j] + 0.5 * options.speed_zero / options.size * coordinate.scale
 
 
 @kernel
@@ -38,6 +52,8 @@ def monitor(model, state, scratch, options, i, which):
         # Half of what `decide_modes` calls no slip: a contact that fires here may stick there, and one that turns back
         # starts a whole `speed_zero` away from firing again.
         return state.mode[k] * closed.kin[i].gT_dot + 0.5 * options.speed_zero
+    if which == 3:
+        return -1.0 if is_paradox(work, state.numbers[0], i) else 1.0
     return closed.kin[i].margin + 2.0 * options.extent
 
 
@@ -62,6 +78,7 @@ def motion(model, state, options, t, y, scratch):
     m = state.numbers[0]
     work, closed, out = scratch.work, scratch.closed, scratch.dy
     forces(model, t, q, u, work.h)
+    add_drag(model, state.grip, work.h)
     friction = 0.0
     if m > 0:
         for b in range(len(model.bodies)):
@@ -74,12 +91,13 @@ def motion(model, state, options, t, y, scratch):
             friction -= work.force[2 * i + 1] * closed.kin[i].gT_dot
             for which in range(MONITORS):
                 scratch.alarm[0] = min(scratch.alarm[0], monitor(model, state, scratch, options, i, which))
-    accelerate(model, closed, m, work, out[n : 2 * n])
+    accelerate(closed, m, work, out[n : 2 * n])
     for i in range(n):
+        scratch.alarm[0] = min(scratch.alarm[0], bearing_monitor(model, state, scratch, options, i))
         if state.awake[i] == 0:
             out[n + i] = 0.0
         out[i] = u[i]
     out[2 * n] = drive_power(model, t, q, u)
-    out[2 * n + 1] = damping_power(model, u)
+    out[2 * n + 1] = damping_power(model, u) + drag_power(model, state.grip, u)
     out[2 * n + 2] = friction
     state.counts[N_EVALUATIONS] += 1

@@ -8,7 +8,7 @@ import numpy as np
 
 
 class EventKind(IntEnum):
-    """What happened. IMPACT..HANDOVER name a contact pair; TURN and CROSS name a body with a spring."""
+    """What happened. IMPACT..ACCUMULATION and JAM name a contact pair; TURN and CROSS name a body with a spring."""
 
     IMPACT = 1  # approach ended by impulses; impulses and energy lost are given
     CLOSE = 2  # the contact now rests (its normal force acts)
@@ -19,6 +19,7 @@ class EventKind(IntEnum):
     ACCUMULATION = 7  # a sequence of rebounds was finished by rule; `value` is the time at which it would have ended
     TURN = 8  # a turning point of a sprung body; `value` is its coordinate
     CROSS = 9  # a sprung body passes its rest position; `value` is its velocity
+    JAM = 10  # a sliding contact that no finite force could hold apart was stopped by impulses (Painlevé); `value` is its slip
 
 
 EVENT_DTYPE = np.dtype(

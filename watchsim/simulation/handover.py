@@ -113,5 +113,5 @@ def _follow(model, state, scratch):
     m = state.numbers[0]
     for i in range(m):
         contact_kinematics(model, state.active[i], scratch.pose, i, scratch.closed)
-    project_velocities(model, scratch.closed, m, state.mode, scratch.work, state.u)
+    project_velocities(scratch.closed, m, state.mode, scratch.work, state.u)
     place(model, state.q, state.u, scratch.pose)

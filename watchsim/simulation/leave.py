@@ -6,11 +6,32 @@ import math
 
 from watchsim.contact.index_sets import STICK
 from watchsim.jit import kernel
-from watchsim.simulation.coupled import MONITORS, monitor, motion
+from watchsim.simulation.coupled import MONITORS, bearing_monitor, monitor, motion
+from watchsim.simulation.free import turning_time
 from watchsim.simulation.integrator import dense_value
 
 SAMPLES = 8
 HALVINGS = 60
+KINDS = 4  # codes KINDS i + kind; from i = number of contacts on, the bearings of the coordinates
+
+
+@kernel
+def _monitor(model, state, options, code, scratch):
+    i, m = code // KINDS, state.numbers[0]
+    if i >= m:
+        return bearing_monitor(model, state, scratch, options, i - m)
+    return monitor(model, state, scratch, options, i, code % KINDS)
+
+
+@kernel
+def _slack(model, state, options, code, scratch):
+    """How far beyond zero velocity the monitors of slips and of moving bearings fire; the reversal is where it vanishes."""
+    i, m = code // KINDS, state.numbers[0]
+    if i >= m:
+        if state.grip[i - m] == STICK:
+            return 0.0
+        return 0.5 * options.speed_zero / options.size * model.coordinates[i - m].scale
+    return 0.5 * options.speed_zero if code % KINDS == 1 and state.mode[scratch.closed.ids[i]] != STICK else 0.0
 
 
 @kernel
@@ -24,16 +45,14 @@ def _evaluate(model, state, options, tau, scratch):
 
 @kernel
 def _root(model, state, options, which, low, high, scratch):
-    """Time at which one monitor (4 i + kind) passes zero between low (positive) and high (not positive): Illinois' method."""
-    i, kind = which // 4, which % 4
+    """Time at which one monitor passes zero between low (positive) and high (not positive): Illinois' method."""
     _evaluate(model, state, options, low, scratch)
-    f_low = monitor(model, state, scratch, options, i, kind)
+    f_low = _monitor(model, state, options, which, scratch)
     _evaluate(model, state, options, high, scratch)
-    f_high = monitor(model, state, scratch, options, i, kind)
+    f_high = _monitor(model, state, options, which, scratch)
     if not f_low > 0.0:
         return low
-    # A slip monitor fires a little beyond zero slip; the reversal itself is where the slip vanishes.
-    slack = 0.5 * options.speed_zero if kind == 1 and state.mode[scratch.closed.ids[i]] != STICK else 0.0
+    slack = _slack(model, state, options, which, scratch)
     if f_low <= slack:
         slack = 0.0
     f_low -= slack
@@ -48,7 +67,7 @@ def _root(model, state, options, which, low, high, scratch):
             if not low < middle < high:
                 break
         _evaluate(model, state, options, middle, scratch)
-        f = monitor(model, state, scratch, options, i, kind) - slack
+        f = _monitor(model, state, options, which, scratch) - slack
         if f <= 0.0:
             high, f_high = middle, f
             if side == 1:
@@ -87,15 +106,23 @@ def _earliest(model, state, options, before, tau, scratch):
     if tau == 0.0:
         return 0.0
     fired = 0
-    m = state.numbers[0]
-    for i in range(m):
-        for kind in range(MONITORS):
-            if monitor(model, state, scratch, options, i, kind) <= 0.0:
-                scratch.closed.slots[fired + m] = 4 * i + kind
+    m, codes = state.numbers[0], scratch.codes
+    for i in range(m + len(model.coordinates)):
+        for kind in range(MONITORS if i < m else 1):
+            if _monitor(model, state, options, KINDS * i + kind, scratch) <= 0.0:
+                codes[fired] = KINDS * i + kind
                 fired += 1
-                if fired + m == len(scratch.closed.slots):
-                    break
     best = tau
     for j in range(fired):
-        best = min(best, _root(model, state, options, scratch.closed.slots[m + j], before, best, scratch))
+        best = min(best, _root(model, state, options, codes[j], before, best, scratch))
     return best
+
+
+@kernel
+def first_turn(model, state):
+    """First time in an exact flight at which a bearing with dry friction comes to a stop; infinity if none does."""
+    first = math.inf
+    for i in range(len(model.coordinates)):
+        if state.awake[i] and model.coordinates[i].coulomb > 0.0:
+            first = min(first, turning_time(model.coordinates[i], state.grip[i], state.q[i], state.u[i]))
+    return first

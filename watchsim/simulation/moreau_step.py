@@ -100,10 +100,10 @@ def closed_at_middle(model, cells, state, options, h, work):
             return -1
         for place_in_list in range(start, start + count):
             k = candidate(model, cells, how, place_in_list)
-            gap, _, nx, ny = normal_gap(model, k, work.pose)
+            gap, _, _, _ = normal_gap(model, k, work.pose)
             if gap > 0.0 or (state.mode[k] == 0 and gap < -_believable(model, options, k, h, work)):
                 continue
-            if extent_margin(model, k, work.pose, nx, ny) >= -options.extent:
+            if extent_margin(model, k, work.pose) >= -options.extent:
                 if m == ROOM:
                     return -2
                 contact_kinematics(model, k, work.pose, m, work.closed)

@@ -75,7 +75,7 @@ def body_on_path(model, state, b, tau, scratch):
             if state.awake[i] == 0:
                 scratch.q[i], scratch.u[i] = state.q[i], 0.0
             elif step.kind[0] == FLIGHT:
-                scratch.q[i], scratch.u[i] = flow(model.coordinates[i], step.q[i], step.u[i], tau)
+                scratch.q[i], scratch.u[i] = flow(model.coordinates[i], state.grip[i], step.q[i], step.u[i], tau)
             else:
                 scratch.q[i], scratch.u[i] = _polynomial(step, i, tau)
     place_body(model, b, scratch.q, scratch.u, scratch.pose)

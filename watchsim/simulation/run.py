@@ -21,6 +21,7 @@ from watchsim.mechanism.compile import Compiled
 from watchsim.mechanism.model import KIND_WORD
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation.advance import EVENTS_PER_STEP, ROWS_PER_STEP, advance
+from watchsim.simulation.failure import failure_of
 from watchsim.simulation.methods import EVENT_DRIVEN
 from watchsim.simulation.options import Options, options_for
 from watchsim.simulation.saved import SavedState, save_state
@@ -161,6 +162,7 @@ class Run:
     def trajectory(self, scene: Scene, stop: Stop, wall: float, compile_time: float) -> Trajectory:
         """Everything kept, as a frozen value."""
         n = len(self.state.q)
+        pairs = pairs_of(self.compiled, scene)
         rows = np.concatenate(self.kept.rows) if self.kept.rows else np.zeros((0, 1 + 3 * n))
         events = np.concatenate(self.kept.events) if self.kept.events else np.zeros(0, EVENT_DTYPE)
         return Trajectory(
@@ -171,7 +173,7 @@ class Run:
             a=rows[:, 1 + 2 * n :],
             slices=self.compiled.slices,
             events=events,
-            pairs=pairs_of(self.compiled, scene),
+            pairs=pairs,
             stop=stop,
             stop_message=f"t = {self.state.clock[0]:.9g} s: {stop.sentence}",
             simulated=float(self.state.clock[0]),
@@ -185,6 +187,7 @@ class Run:
             counts=self._counts(),
             step=self.step,
             end_state=self.saved,
+            failure=failure_of(self.state, self.scratch, pairs) if stop == Stop.LCP_FAILED else None,
         )
 
     def _counts(self) -> dict[str, int]:
@@ -217,21 +220,14 @@ class Run:
 def pairs_of(compiled: Compiled, scene: Scene) -> tuple[Pair, ...]:
     """The contacts of a model in words; row k belongs to contact number k."""
     model, names = compiled.model, [body.name for body in scene.bodies]
-    first = {int(b): i for i, b in reversed(list(enumerate(model.primitives.body)))}
-    out = []
-    for contact in model.contacts:
-        a, b = model.primitives[contact.a], model.primitives[contact.b]
-        out.append(
-            Pair(
-                group=int(contact.group),
-                body_a=names[a.body],
-                primitive_a=KIND_WORD[a.kind],
-                index_a=int(contact.a) - first[int(a.body)],
-                layer_a=compiled.layers[contact.a],
-                body_b=names[b.body],
-                primitive_b=KIND_WORD[b.kind],
-                index_b=int(contact.b) - first[int(b.body)],
-                layer_b=compiled.layers[contact.b],
-            )
-        )
-    return tuple(out)
+    bodies = model.primitives.body
+    first = np.zeros(len(names), np.int64)
+    numbers, places = np.unique(bodies, return_index=True)
+    first[numbers] = places
+    # Plain lists: reading a field of a record array takes a microsecond each time.
+    index = (np.arange(len(bodies)) - first[bodies]).tolist()
+    kind = [KIND_WORD[kind] for kind in model.primitives.kind.tolist()]
+    name = [names[body] for body in bodies.tolist()]
+    side = list(zip(name, kind, index, compiled.layers, strict=True))
+    contacts = zip(model.contacts.group.tolist(), model.contacts.a.tolist(), model.contacts.b.tolist(), strict=True)
+    return tuple(Pair(group, *side[a], *side[b]) for group, a, b in contacts)

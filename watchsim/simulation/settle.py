@@ -9,16 +9,19 @@ from __future__ import annotations
 from watchsim.contact.gaps import extent_margin
 from watchsim.contact.index_sets import OPEN, STICK
 from watchsim.contact.poses import place
-from watchsim.dynamics.acceleration import accelerate, decide_modes
+from watchsim.dynamics.acceleration import accelerate, decide_modes, solve_mode
+from watchsim.dynamics.delassus import fill_inverse
+from watchsim.dynamics.dry import add_drag, set_grips, stop_held
 from watchsim.dynamics.forces import forces
 from watchsim.jit import kernel
+from watchsim.simulation.chatter import end_chatter, is_chatter
 from watchsim.simulation.closed import gather, refresh, resting
-from watchsim.simulation.collide import approaching, collide
+from watchsim.simulation.collide import approaching, collide, count_rungs
 from watchsim.simulation.drift import project_positions, project_velocities
 from watchsim.simulation.handover import LEFT, hand_over
 from watchsim.simulation.keep import keep_event
 from watchsim.simulation.sleep import find_sleepers
-from watchsim.simulation.state import N_LCP, N_LCP_FAILED
+from watchsim.simulation.state import N_LCP_FAILED, N_REDUNDANT
 from watchsim.simulation.stops import Stop
 
 RUNNING, CELL_UNKNOWN = int(Stop.RUNNING), int(Stop.CELL_UNKNOWN)
@@ -45,13 +48,12 @@ def _keep_change(state, record, k, old):
 
 @kernel
 def _in_force(state, r, scratch):
-    """Keep only the rows of `rest` that are closed, with their forces; returns their number."""
-    rest, force = scratch.rest, scratch.work.force
+    """Keep only the rows of `rest` that are closed; returns their number."""
+    rest = scratch.rest
     kept = 0
     for i in range(r):
         if state.mode[rest.ids[i]] != OPEN:
             rest.ids[kept] = rest.ids[i]
-            force[2 * kept], force[2 * kept + 1] = force[2 * i], force[2 * i + 1]
             kept += 1
     return kept
 
@@ -85,34 +87,79 @@ def settle(model, cells, state, options, scratch, record):
         return CELL_UNKNOWN if m == -1 else TOO_MANY_CONTACTS
     closed, work = scratch.closed, scratch.work
     refresh(model, m, closed, scratch.pose)
-    deepest = project_positions(model, closed, m, False, work, state.q)
+    deepest = project_positions(closed, m, False, work, state.q)
     if deepest > 0.0:
         state.worst[0] = max(state.worst[0], deepest)
         place(model, state.q, state.u, scratch.pose)
         refresh(model, m, closed, scratch.pose)
-    rounds = 0
-    while approaching(m, closed, options.speed_zero):
-        if rounds == ROUNDS:
-            return TOO_MANY_EVENTS
-        if collide(model, state, m, options, scratch, record) != 0:
-            return LCP_FAILED
-        rounds += 1
-    r = resting(model, m, closed, scratch.pose, options.speed_zero, scratch.rest)
-    forces(model, state.clock[0], state.q, state.u, work.h)
-    if r > 0:
-        state.counts[N_LCP] += 1
-        if decide_modes(model, scratch.rest, r, options.speed_zero, work, scratch.trial) != 0:
-            state.counts[N_LCP_FAILED] += 1
-            return LCP_FAILED
+    if approaching(m, closed, options.speed_zero) and is_chatter(state, m, options, closed):
+        end_chatter(model, state, m, scratch, record)
+    stop, r = _resolve(model, state, m, options, scratch, record)
+    if stop != RUNNING:
+        return stop
     _take(model, state, m, r, scratch, record)
     f = _in_force(state, r, scratch)
     refresh(model, f, scratch.rest, scratch.pose)
     _correct(model, state, f, scratch)
-    accelerate(model, scratch.rest, f, work, state.a)
+    if f > 0 and not solve_mode(model, scratch.rest, f, state.mode, work):
+        state.counts[N_REDUNDANT] += 1
+    accelerate(scratch.rest, f, work, state.a)
     find_sleepers(model, state, options, scratch, f)
     _list_active(model, state, f, scratch)
     state.numbers[2], state.numbers[4] = 0, -1
     return RUNNING
+
+
+@kernel
+def _resolve(model, state, m, options, scratch, record):
+    """Impacts until nothing approaches, then the modes; returns (Stop code, number of contacts in I_N).
+
+    Where no finite forces exist although nothing approaches, sliding contacts are jammed (Painlevé): their impulses are
+    found, and the modes asked for again.
+    """
+    jam = 0.0
+    for _ in range(ROUNDS):
+        if jam > 0.0 or approaching(m, scratch.closed, options.speed_zero):
+            if collide(model, state, m, options, jam, scratch, record) != 0:
+                return LCP_FAILED, 0
+            jam = 0.0
+            continue
+        r, status = _decide(model, state, m, options, scratch)
+        if status == 0:
+            return RUNNING, r
+        if not _slides(r, options.speed_zero, scratch.rest):
+            state.counts[N_LCP_FAILED] += 1
+            return LCP_FAILED, 0
+        jam = options.speed_zero
+    return TOO_MANY_EVENTS, 0
+
+
+@kernel
+def _decide(model, state, m, options, scratch):
+    """Modes of the contacts in I_N and grips of the bearings; (number of contacts in I_N, status)."""
+    work = scratch.work
+    r = resting(model, m, scratch.closed, scratch.pose, options.speed_zero, scratch.rest)
+    forces(model, state.clock[0], state.q, state.u, work.h)
+    standing = set_grips(model, state.u, options.speed_zero, options.size, state.grip)
+    add_drag(model, state.grip, work.h)
+    status = 0
+    if r > 0 or standing > 0:
+        status = decide_modes(model, scratch.rest, r, options.speed_zero, work, state.grip, scratch.trial)
+        count_rungs(state, work)
+    else:
+        fill_inverse(model, state.grip, work.inverse)
+    if status == 0:
+        stop_held(model, state.grip, state.u)
+    return r, status
+
+
+@kernel
+def _slides(r, speed_zero, rest):
+    """True if one of the r contacts in I_N slides."""
+    for i in range(r):
+        if abs(rest.kin[i].gT_dot) > speed_zero:
+            return True
+    return False
 
 
 @kernel
@@ -153,6 +200,6 @@ def _correct(model, state, f, scratch):
     if f == 0:
         return
     rest, work = scratch.rest, scratch.work
-    deepest = project_positions(model, rest, f, True, work, state.q)
+    deepest = project_positions(rest, f, True, work, state.q)
     state.worst[0] = max(state.worst[0], deepest)
-    project_velocities(model, rest, f, state.mode, work, state.u)
+    project_velocities(rest, f, state.mode, work, state.u)

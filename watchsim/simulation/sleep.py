@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from watchsim.contact.index_sets import STICK
 from watchsim.jit import kernel
 from watchsim.mechanism.model import FREE, OVER_TIME
 
@@ -41,7 +42,7 @@ def _is_still(model, state, options, i, terms):
 
 @kernel
 def find_sleepers(model, state, options, scratch, m):
-    """Set `state.awake`: a group with a contact sleeps if all its coordinates are still and nothing on it depends on time.
+    """Set `state.awake`: a group with a contact or a bearing that holds sleeps if it is still and nothing depends on time.
 
     The m contacts in force are in `scratch.rest`, their forces in `scratch.work.force`, accelerations in `state.a`.
     """
@@ -58,6 +59,9 @@ def find_sleepers(model, state, options, scratch, m):
             j = closed.coord[i, k]
             scratch.q[j] += abs(closed.w_N[i, k] * work.force[2 * i]) + abs(closed.w_T[i, k] * work.force[2 * i + 1])
             touched[label[j]] = 1.0
+    for i in range(n):
+        if state.grip[i] == STICK:
+            touched[label[i]] = 1.0
     for i in range(n):
         if touched[label[i]] == 0.0 or not _is_still(model, state, options, i, scratch.q[i]):
             _wake(state, label, label[i])

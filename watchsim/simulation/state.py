@@ -28,6 +28,7 @@ DRIVE, DAMPING, FRICTION, IMPACTS, CORRECTION = 0, 1, 2, 3, 4  # places in State
 N_STEPS, N_REJECTED, N_EVALUATIONS, N_FLIGHTS, N_EVENTS, N_IMPACTS, N_LCP, N_LCP_FAILED, N_ACCUMULATED, N_ENERGY, N_GAPS = (
     range(11)
 )
+N_LEMKE, N_COPOSITIVE, N_ENUMERATED, N_JAMS, N_REDUNDANT = range(11, 16)
 COUNT_NAMES = (
     "steps",
     "rejected_steps",
@@ -40,6 +41,11 @@ COUNT_NAMES = (
     "accumulations",
     "energy_rescues",
     "gap_evaluations",
+    "lcp_lemke",
+    "lcp_copositive",
+    "lcp_enumerated",
+    "jams",
+    "redundant_sets",
 )
 
 FLIGHT, COUPLED = 0, 1
@@ -53,9 +59,11 @@ class State(NamedTuple):
     u: Array
     a: Array
     mode: NDArray[np.int8]  # by permanent number of the contact
+    grip: NDArray[np.int8]  # by coordinate: what dry friction in its bearing does, see dynamics/dry.py
     awake: NDArray[np.int8]  # by coordinate; 0: asleep on its contacts
     active: Integers  # closed contacts of awake bodies, then those of sleeping ones, each ascending
-    # How many awake, how many asleep, 1 if an event waits, events at this instant, the contact that touched or -1.
+    # How many awake, how many asleep, 1 if an event waits, events at this instant, the contact that touched or -1,
+    # how many impacts have followed each other within `accumulation_time`.
     numbers: Integers
     side_u: NDArray[np.int8]  # last sign of the velocity of a sprung coordinate
     side_q: NDArray[np.int8]  # and of its distance from rest
@@ -103,7 +111,9 @@ class Scratch(NamedTuple):
     label: Integers
     engaged: NDArray[np.int8]  # bodies that the active contacts join
     doubt: Integers  # candidates that may close within a stretch
+    codes: Integers  # monitors that fired
     trial: NDArray[np.int8]
+    grip: NDArray[np.int8]
     alarm: Array  # smallest monitor met in the current step
     unknown: Integers  # body pair whose cell is not known
     at: Array  # coordinates where it was met
@@ -133,9 +143,10 @@ def new_state(model: Model, q: Array, u: Array) -> State:
         u=u.astype(float).copy(),
         a=np.zeros(n),
         mode=np.zeros(len(model.contacts), np.int8),
+        grip=np.zeros(n, np.int8),
         awake=np.ones(n, np.int8),
         active=np.zeros(ROOM, np.int64),
-        numbers=np.array([0, 0, 1, 0, -1], np.int64),
+        numbers=np.array([0, 0, 1, 0, -1, 0], np.int64),
         side_u=np.sign(u).astype(np.int8),
         side_q=np.sign(q - model.coordinates.rest).astype(np.int8),
         sums=np.zeros(5),
@@ -176,7 +187,9 @@ def new_scratch(model: Model) -> Scratch:
         label=np.zeros(n, np.int64),
         engaged=np.zeros(len(model.bodies), np.int8),
         doubt=np.zeros(len(model.contacts), np.int64),
+        codes=np.zeros(4 * ROOM + n, np.int64),
         trial=np.zeros(len(model.contacts), np.int8),
+        grip=np.zeros(n, np.int8),
         alarm=np.zeros(1),
         unknown=np.zeros(1, np.int64),
         at=np.zeros(n),

@@ -40,7 +40,10 @@ _SENTENCES = {
     Stop.DURATION: "the asked duration was simulated",
     Stop.INTERRUPTED: "interrupted by the user; everything up to here is kept",
     Stop.TOO_MANY_EVENTS: "too many events at one instant: time does not advance",
-    Stop.LCP_FAILED: "no solution of a complementarity problem was found",
+    Stop.LCP_FAILED: (
+        "no solution of a complementarity problem was found; lcp_failure.json holds it. Less friction or restitution at the "
+        "contacts it names, or a tighter tolerance, may help"
+    ),
     Stop.STEP_TOO_SMALL: "the step became too small for the asked tolerance",
     Stop.NOT_FINITE: "a coordinate or velocity is no longer a finite number",
     Stop.TOO_MANY_CONTACTS: "more contacts closed at once than there is room for",

@@ -50,6 +50,7 @@ class Trajectory:
     to a body (fixed bodies have none). `energy` holds joules: in_J, stored_J, dissipated {cause: J}, residual_J.
     `counts` holds events, impacts, steps, lcp_failures and the like; `worst_penetration` is metres;
     `worst_residual` the worst violation of a complementarity condition, as a share of the problem's largest term.
+    `failure` is the complementarity problem on which the solver gave up (see simulation/failure.py), None otherwise.
     """
 
     scene: Scene
@@ -73,6 +74,7 @@ class Trajectory:
     counts: dict[str, int] = field(default_factory=dict)
     step: float | None = None  # s, of a method with fixed steps
     end_state: SavedState | None = field(default=None, repr=False, compare=False)  # to go on from, see `simulate`
+    failure: dict[str, Any] | None = field(default=None, repr=False)
 
     def at(self, t: float) -> tuple[Array, Array]:
         """q and u at time `t` (after the impact where one happens at `t`).

@@ -16,7 +16,9 @@ def begin_flight(model, state, length, scratch):
     step.span[0], step.span[1] = state.clock[0], length
     for i in range(len(model.coordinates)):
         step.q[i], step.u[i] = state.q[i], state.u[i]
-        step.bound[i] = acceleration_bound(model.coordinates[i], state.q[i], state.u[i]) if state.awake[i] else 0.0
+        step.bound[i] = 0.0
+        if state.awake[i]:
+            step.bound[i] = acceleration_bound(model.coordinates[i], state.grip[i], state.q[i], state.u[i])
 
 
 @kernel
@@ -25,7 +27,7 @@ def coordinate_within(model, state, step, i, tau):
     if step.kind[0] == FLIGHT:
         if state.awake[i] == 0:
             return step.q[i], 0.0
-        return flow(model.coordinates[i], step.q[i], step.u[i], tau)
+        return flow(model.coordinates[i], state.grip[i], step.q[i], step.u[i], tau)
     n = len(model.coordinates)
     return dense_value(step, i, tau), dense_value(step, n + i, tau)
 
@@ -33,4 +35,4 @@ def coordinate_within(model, state, step, i, tau):
 @kernel
 def flight_acceleration(model, state, i, q, u):
     """q'' of coordinate i during a flight."""
-    return acceleration(model.coordinates[i], q, u) if state.awake[i] else 0.0
+    return acceleration(model.coordinates[i], state.grip[i], q, u) if state.awake[i] else 0.0

@@ -1,0 +1,141 @@
+"""Are distances, gaps and kinematics of two outlines those of the drawn material?"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from naive.distance_oracle import nearest
+from pair_scenes import outline
+
+import watchsim
+from watchsim.contact.outlines import distance, gap, kinematics
+from watchsim.geometry.loop import Loop
+from watchsim.geometry.primitives import Arc, Line
+
+SPACING = 0.01
+BIG, SMALL = outline(1.0, (0.2, 0.1)), outline(0.35, (0.1, -0.15))
+HERE = (0.0, 0.0, 0.0)
+
+
+def block(width: float, height: float) -> Loop:
+    x, y = 0.5 * width, 0.5 * height
+    corners = ((-x, -y), (x, -y), (x, y), (-x, y))
+    return Loop(tuple(Line(*a, *b) for a, b in zip(corners, corners[1:] + corners[:1], strict=True)))
+
+
+def disc(radius: float, hole: bool = False) -> Loop:
+    return Loop((Arc(0.0, 0.0, radius, 0.3, math.tau * (-1.0 if hole else 1.0)),), hole=hole)
+
+
+def ring(outer: float, inner: float) -> tuple[Loop, Loop]:
+    return disc(outer), disc(inner, hole=True)
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "pose", "truth"),
+    [
+        (disc(1.0), disc(0.5), (2.0, 0.0, 0.0), 0.5),
+        (disc(1.0), disc(0.5), (0.9, 1.2, 7.0), 0.0),
+        (disc(1.0), disc(0.5), (1.2, 0.0, 0.0), -0.3),
+        (disc(1.0), disc(0.5), HERE, -0.5),
+        (block(2.0, 2.0), block(1.0, 1.0), (2.0, 0.3, 0.0), 0.5),
+        (block(2.0, 2.0), block(1.0, 1.0), (2.0, 2.0, 0.0), math.hypot(0.5, 0.5)),
+        (block(2.0, 2.0), block(2.0, 2.0), (1.0 + math.sqrt(2.0), 0.0, 0.25 * math.pi), 0.0),
+        (block(2.0, 2.0), block(1.0, 1.0), (1.4, 0.0, 0.0), -0.1),
+        (block(4.0, 0.5), block(0.5, 4.0), HERE, -0.25),
+        (ring(2.0, 1.0), disc(0.4), (0.5, 0.0, 1.0), 0.1),
+        (ring(2.0, 1.0), disc(0.4), (0.7, 0.0, 1.0), -0.1),
+        (ring(2.0, 1.0), disc(1.0), HERE, 0.0),
+        (ring(2.0, 1.0), disc(0.2), (1.6, 0.0, 0.0), -0.5),
+        (Loop((Line(-1.0, 0.0, 1.0, 0.0),), closed=False), disc(0.5), (1.3, 0.4, 0.0), 0.0),
+        (Loop((Line(-1.0, 0.0, 1.0, 0.0),), closed=False), disc(0.5), (0.0, 0.7, 0.0), 0.2),
+    ],
+)
+def test_distances_known_in_advance(a: object, b: Loop, pose: tuple[float, float, float], truth: float) -> None:
+    found = distance(a, HERE, b, pose)  # type: ignore[arg-type]
+    assert found.value == pytest.approx(truth, abs=1e-12)
+    assert math.dist(found.on_a, found.on_b) == pytest.approx(abs(truth), abs=1e-9)
+    swapped = distance(b, pose, a, HERE)  # type: ignore[arg-type]
+    assert swapped.value == pytest.approx(found.value, abs=1e-12)
+
+
+def test_distances_against_dense_sampling() -> None:
+    """Apart to the sampling's error; overlapping never shallower than the deepest sample, and hardly deeper."""
+    rng = np.random.default_rng(4)
+    apart = within = 0
+    for _ in range(150):
+        one, other = ((*rng.uniform(-0.6, 0.6, 2), rng.uniform(-9.0, 9.0)) for _ in range(2))
+        found = distance(BIG, one, SMALL, other)
+        truth = nearest((BIG,), one, (SMALL,), other, SPACING)
+        assert (found.value > 0.0) == (truth.gap > 0.0)
+        if truth.gap > 0.02:
+            assert found.value == pytest.approx(truth.gap, abs=SPACING**2 / (2.0 * truth.gap) + SPACING**2)
+            assert math.dist(found.on_a, found.on_b) == pytest.approx(found.value, abs=1e-14)
+            apart += 1
+        elif truth.gap < 0.0:
+            assert truth.gap - 0.5 * SPACING < found.value < truth.gap + SPACING**2 / 0.3  # sagittas of chords
+            within += 1
+    assert apart > 20
+    assert within > 20
+
+
+def test_the_smallest_gap_of_contacts_is_the_distance() -> None:
+    """Apart, and unless a corner is nearest to a corner."""
+    rng = np.random.default_rng(6)
+    agreed = 0
+    for _ in range(200):
+        one, other = ((*rng.uniform(-0.9, 0.9, 2), rng.uniform(-9.0, 9.0)) for _ in range(2))
+        found = distance(BIG, one, SMALL, other)
+        if found.value <= 0.0:
+            continue
+        rows = gap(BIG, one, SMALL, other)
+        contacts = rows[(rows["margin"] >= 0.0) & (rows["g"] > 0.0)]
+        nearest_one = contacts[np.argmin(contacts["g"])] if len(contacts) else None
+        if nearest_one is None or nearest_one["g"] > found.value + 1e-12:
+            corners = [edge.start for edge in SMALL.edges] + [edge.start for edge in BIG.edges]
+            assert corners  # a corner was nearest to a corner: there is no gap function for that
+            continue
+        assert nearest_one["g"] == pytest.approx(found.value, abs=1e-14)
+        points = found.on_a, found.on_b
+        assert min(math.dist(nearest_one["point"], p) for p in points) < 1e-12
+        assert nearest_one["n"] @ np.subtract(*points) == pytest.approx(found.value, abs=1e-14)
+        agreed += 1
+    assert agreed > 40
+
+
+def test_rows_name_the_primitives_in_the_order_of_the_outline() -> None:
+    rows = gap(disc(1.0), HERE, block(2.0, 2.0), (0.0, 3.0, 0.0))
+    assert set(rows["kind_a"]) == {"arc"}
+    assert sorted(zip(rows["kind_b"].tolist(), rows["index_b"].tolist(), strict=True)) == [
+        *(("corner", i) for i in range(4, 8)),
+        *(("line", i) for i in range(4)),
+    ]
+    bottom = rows[(rows["kind_b"] == "line") & (rows["index_b"] == 0)][0]
+    assert bottom["g"] == pytest.approx(1.0)
+    assert bottom["n"] == pytest.approx((0.0, -1.0))
+    assert bottom["point"] == pytest.approx((0.0, 1.0))
+    assert bottom["margin"] == pytest.approx(1.0)
+
+
+def test_kinematics_add_up() -> None:
+    """A disc that rolls along a bar: no gap rate, no slip; its point against the bar accelerates by v²/r."""
+    velocity = (0.6, 0.0, -0.6 / 0.5)
+    row = kinematics(disc(0.5), (0.1, 1.5, 2.0), velocity, block(4.0, 2.0), HERE, HERE)
+    top = row[(row["kind_b"] == "line") & (row["index_b"] == 2)][0]
+    assert top["g"] == pytest.approx(0.0, abs=1e-15)
+    assert top["g_N_dot"] == pytest.approx(0.0, abs=1e-15)
+    assert top["g_T_dot"] == pytest.approx(0.0, abs=1e-15)
+    assert top["w_N"] @ (*velocity, *HERE) == pytest.approx(top["g_N_dot"], abs=1e-15)
+    assert top["w_N"] == pytest.approx((0.0, 1.0, 0.0, 0.0, -1.0, -0.1), abs=1e-15)
+    assert top["w_T"] == pytest.approx((-1.0, 0.0, -0.5, 1.0, 0.0, -1.0), abs=1e-15)
+
+
+def test_the_package_offers_them() -> None:
+    assert (watchsim.distance, watchsim.gap, watchsim.kinematics) == (distance, gap, kinematics)
+
+
+def test_an_outline_without_edges_is_refused() -> None:
+    with pytest.raises(ValueError, match="no edges"):
+        distance(Loop(()), HERE, disc(1.0), HERE)

@@ -1,0 +1,129 @@
+"""Is each rung of the ladder right by itself, and together do they find a solution exactly when there is one?"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from naive.lcp_oracle import residual, solutions
+from random_contacts import random_case
+
+from watchsim.dynamics.coulomb import add_element, fill_matrix, fill_rhs
+from watchsim.dynamics.delassus import ContactWork, contact_work
+from watchsim.dynamics.ladder import COPOSITIVE, FAILED, LEMKE, _solve_copositive, enumerate_modes, solve_contacts
+from watchsim.jit import callable_kernel
+
+_add, _fill, _load, _solve, _copositive, _enumerate = (
+    callable_kernel(kernel)
+    for kernel in (add_element, fill_matrix, fill_rhs, solve_contacts, _solve_copositive, enumerate_modes)
+)
+
+
+def compression(rng: np.random.Generator, m: int, n: int, friction: float) -> tuple[ContactWork, int, np.ndarray, np.ndarray]:
+    """Room with the compression of m frictional contacts on n coordinates in it; its size, matrix and right-hand side."""
+    case = random_case(rng, m, n, mu=rng.uniform(0.0, friction, m))
+    return filled(case.G, case.W @ rng.normal(size=n), case.mu)
+
+
+def filled(G: np.ndarray, b: np.ndarray, mu: np.ndarray) -> tuple[ContactWork, int, np.ndarray, np.ndarray]:
+    m = len(mu)
+    work = contact_work(m, 1)
+    work.G[: 2 * m, : 2 * m], work.drag[:m] = G, mu
+    for i in range(m):
+        _add(work, i, i, (2.0 * mu[i], 0.0, 0.0))
+    size = _fill(work, m, m)
+    _load(work, m, m, b)
+    return work, size, work.A[:size, :size].copy(), work.rhs[:size].copy()
+
+
+def check_against_the_oracle(count: int, seed: int) -> tuple[int, int]:
+    """Solved when and only when all complementary bases say there is a solution; returns (unsolvable, not by Lemke)."""
+    rng = np.random.default_rng(seed)
+    unsolvable = lower = 0
+    for trial in range(count):
+        m = 1 + trial % 2
+        work, size, A, b = compression(rng, m, 1 + trial % 4, 3.0)
+        status, rung = _solve(work, m, m)
+        truth = solutions(A, b)
+        if status == 0:
+            assert residual(A, b, work.x[:size]) < 1e-9
+            lower += rung != LEMKE
+        else:
+            assert rung == FAILED
+            assert not truth
+            unsolvable += 1
+    return unsolvable, lower
+
+
+def test_a_solution_is_found_exactly_when_there_is_one() -> None:
+    unsolvable, lower = check_against_the_oracle(2000, 71)
+    assert unsolvable == 0  # an impact always has a solution
+    assert lower > 0
+
+
+@pytest.mark.slow
+def test_a_solution_is_found_exactly_when_there_is_one_many_times() -> None:
+    check_against_the_oracle(100_000, 72)
+
+
+@pytest.mark.parametrize("m", [1, 2, 3])
+def test_the_copositive_form_alone_solves_impacts(m: int) -> None:
+    rng = np.random.default_rng(80 + m)
+    solved = 0
+    for _ in range(300):
+        work, size, A, b = compression(rng, m, 3, 1.5)
+        if _copositive(work, m, m):
+            solved += 1
+            assert residual(A, b, work.x[:size]) < 1e-9
+    assert solved >= 285
+
+
+@pytest.mark.parametrize("m", [1, 2, 3])
+def test_enumeration_alone_solves_impacts(m: int) -> None:
+    rng = np.random.default_rng(90 + m)
+    for _ in range(60):
+        work, size, A, b = compression(rng, m, 3, 1.5)
+        assert _enumerate(work, m, m)
+        assert residual(A, b, work.x[:size]) < 1e-9
+
+
+def test_a_jammed_rotor_needs_the_second_rung() -> None:
+    """One rotor on a stop, friction above |a/b|: the first form can end on a ray, the copositive one does not."""
+    rng = np.random.default_rng(95)
+    rungs = np.zeros(4, int)
+    for _ in range(3000):
+        a, b = rng.normal(size=2)
+        mu = rng.uniform(0.0, 3.0)
+        arms = np.array([a, b])
+        work, size, A, rhs = filled(np.outer(arms, arms), arms * -np.sign(a) * rng.uniform(0.1, 1.0), np.array([mu]))
+        status, rung = _solve(work, 1, 1)
+        assert status == 0
+        assert residual(A, rhs, work.x[:size]) < 1e-9
+        rungs[rung] += 1
+        if rung != LEMKE:
+            assert mu * abs(b) > abs(a)
+    assert rungs[COPOSITIVE] > 0
+    assert rungs[FAILED] == 0
+
+
+@pytest.mark.parametrize("decades", [1e-12, 1e12])
+def test_badly_scaled_contacts(decades: float) -> None:
+    """One body a million million times lighter: the same problem in other units, and still the right answer."""
+    rng = np.random.default_rng(99)
+    for _ in range(200):
+        case = random_case(rng, 2, 3)
+        unit = np.repeat([1.0, decades**0.5], 2)
+        rates = case.W @ rng.normal(size=3)
+        plain = filled(case.G, rates, case.mu)
+        scaled = filled(case.G * np.outer(unit, unit), rates * unit, case.mu)
+        assert _solve(plain[0], 2, 2)[0] == _solve(scaled[0], 2, 2)[0] == 0
+        np.testing.assert_allclose(scaled[0].x[:2], plain[0].x[:2], rtol=1e-9, atol=1e-11)
+
+
+def test_more_contacts_than_coordinates_are_solved_quickly() -> None:
+    """Twelve contacts on three coordinates, as between parts that touch all along: no hang, and the laws hold."""
+    rng = np.random.default_rng(101)
+    for _ in range(20):
+        work, size, A, b = compression(rng, 12, 3, 0.5)
+        status, _ = _solve(work, 12, 12)
+        if status == 0:
+            assert residual(A, b, work.x[:size]) < 1e-8

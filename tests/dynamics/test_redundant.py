@@ -1,0 +1,104 @@
+"""Are accelerations right and forces the smallest possible where contacts are redundant?"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from random_contacts import Case
+
+from watchsim.contact.index_sets import STICK
+from watchsim.dynamics.acceleration import accelerate, decide_modes, solve_mode
+from watchsim.jit import callable_kernel
+
+_solve, _accelerate, _decide = (callable_kernel(kernel) for kernel in (solve_mode, accelerate, decide_modes))
+
+
+def resting(case: Case, h: np.ndarray, sticks: bool = True) -> tuple[bool, np.ndarray, np.ndarray]:
+    """Forces unique?, forces, accelerations of the case with all contacts closed, at rest, under the generalized forces h."""
+    case.work.h[:], case.work.inverse[:] = h, 1.0 / case.mass
+    case.closed.kin.bar_N[:], case.closed.kin.bar_T[:] = 0.0, 0.0
+    unique = _solve(case.model, case.closed, case.m, np.full(case.m, STICK if sticks else 1, np.int8), case.work)
+    a = np.zeros(case.n)
+    _accelerate(case.closed, case.m, case.work, a)
+    return bool(unique), case.work.force[: 2 * case.m].copy(), a
+
+
+def smallest(case: Case, h: np.ndarray) -> np.ndarray:
+    """Of all forces under which no gap accelerates, those with the least sum of squares: numpy's pseudoinverse."""
+    W = case.W
+    return np.linalg.lstsq(W / case.mass @ W.T, -W @ (h / case.mass), rcond=1e-10)[0]
+
+
+def test_one_rotor_against_the_frame() -> None:
+    """Two forces for one coordinate: both act through their lever arms, the smallest in proportion to these."""
+    case = Case(np.array([0.3]), np.array([[1.5], [0.4]]), np.array([0.5]), np.zeros(1))
+    unique, force, a = resting(case, np.array([-2.0]))
+    assert not unique
+    assert a == pytest.approx([0.0], abs=1e-14)
+    assert force == pytest.approx(2.0 * np.array([1.5, 0.4]) / (1.5**2 + 0.4**2), rel=1e-13)
+
+
+def test_a_table_on_four_legs() -> None:
+    """Without friction in the plane: four normals, two coordinates; a symmetric load is shared alike."""
+    places = np.array([-1.5, -0.5, 0.5, 1.5])
+    W = np.zeros((8, 2))
+    W[::2, 0], W[::2, 1] = 1.0, places
+    case = Case(np.array([2.0, 0.7]), W, np.zeros(4), np.zeros(4))
+    unique, force, a = resting(case, np.array([-8.0, 0.0]))
+    assert not unique
+    assert a == pytest.approx([0.0, 0.0], abs=1e-14)
+    assert force[::2] == pytest.approx(np.full(4, 2.0), rel=1e-13)
+    # Loaded far to one side the smallest forces would pull at the other end: there they must vanish.
+    _, force, a = resting(case, np.array([-8.0, -10.0]))
+    assert a == pytest.approx([0.0, 0.0], abs=1e-13)
+    assert np.all(force[::2] >= -1e-12)
+    assert force[::2].sum() == pytest.approx(8.0, rel=1e-12)
+    assert force[::2] @ places == pytest.approx(10.0, rel=1e-12)
+    # On three legs one would still pull; on two the sum and the moment leave no choice.
+    assert force[::2] == pytest.approx([0.0, 0.0, 2.0, 6.0], abs=1e-9)
+
+
+def test_random_redundant_sets_have_the_smallest_forces() -> None:
+    """Three sticking contacts on three coordinates: six forces. Where the smallest obey the laws they are found."""
+    rng = np.random.default_rng(111)
+    found = 0
+    for _ in range(300):
+        mass, mu = 10.0 ** rng.uniform(-2.0, 2.0, 3), rng.uniform(0.3, 2.0, 3)
+        case = Case(mass, rng.normal(size=(6, 3)), mu, np.zeros(3))
+        h = -case.W[::2].T @ rng.uniform(0.5, 1.0, 3)
+        unique, force, a = resting(case, h)
+        truth = smallest(case, h)
+        assert not unique
+        assert a == pytest.approx(np.zeros(3), abs=1e-9 * np.abs(h / mass).max())
+        if np.all(truth[::2] > 1e-6) and np.all(np.abs(truth[1::2]) < mu * truth[::2]):
+            assert force == pytest.approx(truth, rel=1e-7, abs=1e-8)
+            found += 1
+        elif np.all(force[::2] >= -1e-9) and np.all(np.abs(force[1::2]) <= mu * force[::2] + 1e-9):
+            assert np.linalg.norm(force) >= np.linalg.norm(truth) * (1.0 - 1e-9)
+    assert found > 20
+
+
+def test_a_lever_on_its_banking_with_a_tooth_that_sticks() -> None:
+    """Wheel presses lever, lever presses the stop: two coordinates, four forces; both stand still, no force pulls."""
+    arms = np.array([[3.0, -2.0], [0.5, 1.0], [0.0, 2.5], [0.0, 0.3]])  # tooth N, T; stop N, T
+    case = Case(np.array([5e-12, 3e-12]), arms * 1e-3, np.array([0.15, 0.15]), np.zeros(2))
+    h = np.array([-1e-6, 0.0])
+    unique, force, a = resting(case, h)
+    assert not unique
+    assert a == pytest.approx([0.0, 0.0], abs=1e-9 * np.abs(h / case.mass).max())
+    assert case.W.T @ force == pytest.approx(-h, abs=1e-12 * np.abs(h).max())
+    assert np.all(force[::2] > 0.0)
+    assert np.all(np.abs(force[1::2]) <= case.mu * force[::2] * (1.0 + 1e-9))
+    mode, grip = np.zeros(2, np.int8), np.zeros(2, np.int8)
+    assert _decide(case.model, case.closed, 2, 1e-9, case.work, grip, mode) == 0
+    assert list(mode) == [STICK, STICK]
+
+
+def test_bodies_a_million_million_times_apart_keep_all_their_forces() -> None:
+    """Two contacts that share nothing, one on a body of 1 kg, one on a body of 1e-12 kg: neither is taken for redundant."""
+    W = np.array([[1.0, 0.0], [0.0, 0.0], [0.0, 1.0], [0.0, 0.0]])
+    case = Case(np.array([1.0, 1e-12]), W, np.zeros(2), np.zeros(2))
+    unique, force, a = resting(case, np.array([-9.81, -9.81e-12]))
+    assert unique
+    assert force[::2] == pytest.approx([9.81, 9.81e-12], rel=1e-13)
+    assert a == pytest.approx([0.0, 0.0], abs=1e-14)

@@ -1,0 +1,160 @@
+"""Does dry friction in a bearing hold, break loose and take energy as Coulomb's law says, in flight and with contacts?"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+from moving_scenes import circle, ground, profile, tip, touching
+from mpmath import mp, mpf
+
+from watchsim.jit import callable_kernel
+from watchsim.mechanism.body import Body
+from watchsim.mechanism.compile import compile_scene
+from watchsim.mechanism.force import Contact, Damping, Side, Spring, Torque
+from watchsim.mechanism.scene import Scene
+from watchsim.simulation.free import turning_time
+from watchsim.simulation.simulate import simulate
+from watchsim.simulation.stops import Stop
+from watchsim.simulation.trajectory import EventKind
+
+_turning_time = callable_kernel(turning_time)
+
+
+def rotor(inertia: float = 2.0, stiffness: float = 50.0, viscous: float = 0.0, torque: float = 0.0, **start: float) -> Scene:
+    """A sprung rotor with 3 N·m of dry friction."""
+    body = Body("rotor", "pivot", angle=start.get("angle", 0.0), velocity=(start.get("rate", 0.0),), inertia=inertia)
+    springs = (Spring("rotor", stiffness),) if stiffness else ()
+    return Scene(
+        "rotor",
+        (body,),
+        springs=springs,
+        torques=(Torque("rotor", torque),),
+        damping=(Damping("rotor", viscous, 0.0, 3.0),),
+        duration=start.get("duration", 5.0),
+    )
+
+
+@pytest.mark.parametrize("viscous", [0.0, 1.5, 20.0, 31.0, 300.0])
+@pytest.mark.parametrize("stiffness", [0.0, 50.0])
+def test_the_turning_time_is_where_the_velocity_vanishes(stiffness: float, viscous: float) -> None:
+    """Against the matrix exponential with 50 digits: zero there, and of one sign before."""
+    coordinate = compile_scene(rotor(stiffness=stiffness, viscous=viscous)).model.coordinates[0]
+    found = 0
+    for q, u in ((1.0, 2.0), (-1.0, 2.0), (0.3, -5.0), (2.0, -0.1)):
+        grip = int(math.copysign(1.0, u))
+        turn = _turning_time(coordinate, grip, q, u)
+        with mp.workdps(50):
+            k, c, m, push = mpf(stiffness) / 2, mpf(viscous) / 2, 2, mpf(-3.0 * grip) / 2
+            system = mp.matrix([[0, 1, 0], [-k, -c, push], [0, 0, 0]])
+            speed = [float((mp.expm(system * mpf(t), method="taylor") * mp.matrix([q, u, 1]))[1]) for t in _samples(turn)]
+        assert m == 2
+        assert np.all(np.array(speed[:-1]) * grip > 0.0)
+        if turn < math.inf:
+            found += 1
+            assert abs(speed[-1]) < 1e-13 * abs(u)
+    assert found > 0
+
+
+def _samples(turn: float) -> np.ndarray:
+    return np.linspace(0.0, turn if turn < math.inf else 3.0, 12)
+
+
+def test_it_stays_inside_the_dead_zone_and_moves_outside_it() -> None:
+    """3 N·m hold against 50 N·m/rad up to 0.06 rad."""
+    inside, outside = (simulate(rotor(angle=angle)) for angle in (0.0599, 0.0601))
+    assert np.all(inside.q == 0.0599)
+    assert np.all(inside.u == 0.0)
+    assert np.abs(outside.u).max() > 0.0
+    assert outside.q[-1, 0] == pytest.approx(0.12 - 0.0601, rel=1e-12)
+
+
+def test_viscous_and_dry_friction_together_against_a_sum_of_half_swings() -> None:
+    """Each half swing decays about its own middle: x -> -(x - s) e^(-d T/2) + s with s = T/k towards the side it comes from."""
+    run = simulate(rotor(viscous=1.0, angle=2.0, duration=20.0))
+    decay, shift = 0.5 * 1.0 / 2.0, 3.0 / 50.0
+    half = math.pi / math.sqrt(50.0 / 2.0 - decay**2)
+    x, turns = 2.0, []
+    while abs(x) > shift:
+        middle = math.copysign(shift, x)
+        x = middle - (x - middle) * math.exp(-decay * half)
+        turns.append(x)
+    events = run.events[run.events["kind"] == EventKind.TURN]
+    assert len(turns) - 1 == len(events)
+    assert events["value"] == pytest.approx(turns[:-1], abs=1e-12)
+    assert events["t"] == pytest.approx(half * np.arange(1, len(turns)), rel=1e-13)
+    assert run.q[-1, 0] == pytest.approx(turns[-1], abs=1e-12)
+    assert run.u[-1, 0] == 0.0
+    assert run.energy["residual_relative"] < 1e-12
+
+
+def test_a_rotor_without_spring_runs_out() -> None:
+    """w/a after the start, after w²/(2a), and never again."""
+    run = simulate(rotor(stiffness=0.0, rate=4.0))
+    assert run.q[-1, 0] == pytest.approx(0.5 * 4.0**2 / 1.5, rel=1e-13)
+    assert run.u[-1, 0] == 0.0
+    assert run.energy["dissipated"]["damping"] == pytest.approx(0.5 * 2.0 * 4.0**2, rel=1e-13)
+
+
+def test_a_drive_below_the_friction_moves_nothing_and_one_above_does() -> None:
+    weak, strong = (simulate(rotor(stiffness=0.0, torque=torque, duration=1.0)) for torque in (2.999, 3.5))
+    assert np.all(weak.q == 0.0)
+    assert strong.q[-1, 0] == pytest.approx(0.5 * 0.5 / 2.0, rel=1e-12)
+
+
+def driven(torque: float) -> Scene:
+    """A wheel presses the arm of a rotor with dry friction against nothing but that friction."""
+    wheel = Body("wheel", inertia=1.0, loops=(tip(0.1),))
+    arm = Body("arm", position=(0.0, 0.3), inertia=2.0, loops=(circle(0.05, (0.095, -0.245)),))
+    return Scene(
+        "driven",
+        (wheel, arm),
+        torques=(Torque("wheel", torque),),
+        damping=(Damping("arm", coulomb=1.0),),
+        contacts=touching("wheel", "arm"),
+        duration=3.0,
+    )
+
+
+def test_a_held_arm_stops_what_runs_into_it_unless_pushed_too_hard() -> None:
+    """An impact is stronger than any friction: the arm is knocked on, then its friction stops both."""
+    run = simulate(driven(0.05))
+    assert run.stop == Stop.DURATION
+    assert np.any(run.events["kind"] == EventKind.IMPACT)
+    assert run.u[-1] == pytest.approx([0.0, 0.0], abs=1e-12)
+    assert run.energy["dissipated"]["damping"] > 0.0
+    hard = simulate(driven(5.0))
+    assert abs(hard.q[-1, 1] - hard.q[0, 1]) > 1e-3
+    assert hard.energy["residual_relative"] < 1e-8
+
+
+def test_a_slider_with_dry_friction_is_pushed_at_the_right_force() -> None:
+    """A free disc leans on a slider with twice its own mass's pull together: below the friction both stay."""
+    slider = Body("slider", "slide", (0.0, 0.0), mass=1.0, loops=(circle(0.02, (0.0, 0.02)),))
+    ball = Body("ball", "free", (-0.04, 0.02), mass=1.0, inertia=2e-4, loops=(circle(0.02),))
+    contacts = (Contact((Side("slider"), Side("ball"))), Contact((Side("ball"), Side("ground"))))
+    for friction, way in ((2.1, 0.0), (1.9, 0.5 * 0.05)):
+        scene = Scene(
+            "push",
+            (slider, ball, ground()),
+            damping=(Damping("slider", coulomb=friction),),
+            contacts=contacts,
+            gravity=(1.0, -9.81),
+            duration=1.0,
+        )
+        run = simulate(scene)
+        assert run.q[-1, 0] == pytest.approx(way, abs=1e-12)
+
+
+def test_a_watch_with_dry_bearings_keeps_its_ledger() -> None:
+    """A hundredth of the wheel's torque at every pivot: more is taken than without, and the account still closes."""
+    scene = profile("bench_lever")
+    dry = tuple(Damping(body.name, coulomb=2e-9) for body in scene.bodies if body.motion == "pivot")
+    run = simulate(dataclasses.replace(scene, damping=(*scene.damping, *dry)), 1.0)
+    plain = simulate(scene, 1.0)
+    assert run.stop == Stop.DURATION
+    assert run.energy["residual_relative"] < 1e-8
+    assert run.energy["dissipated"]["damping"] > plain.energy["dissipated"]["damping"]
+    assert run.counts["lcp_failures"] == 0
