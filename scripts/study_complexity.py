@@ -25,7 +25,8 @@ from watchsim.mechanism.compile import compile_scene
 from watchsim.mechanism.load import load
 from watchsim.mechanism.model import ARC, CORNER, Records
 from watchsim.mechanism.scene import Scene
-from watchsim.simulation.simulate import WHOLE_RUN, _Run, simulate
+from watchsim.simulation.run import Run
+from watchsim.simulation.simulate import WHOLE_RUN, simulate
 from watchsim.simulation.stops import Stop
 from watchsim.simulation.trajectory import Trajectory
 
@@ -120,10 +121,10 @@ class Row:
     events: int
 
 
-def loop_time(scene: Scene, prefilter: bool) -> tuple[float, float, _Run]:
+def loop_time(scene: Scene, prefilter: bool) -> tuple[float, float, Run]:
     """Processor times: to get ready (s), and of the event loop (s per simulated second)."""
     start = time.process_time()
-    run = _Run(compile_scene(scene, prefilter), scene.tolerance, DURATION, WHOLE_RUN)
+    run = Run(compile_scene(scene, prefilter), scene.tolerance, DURATION, WHOLE_RUN)
     ready = time.process_time()
     run.warm_up()
     begin = time.process_time()
@@ -201,19 +202,21 @@ def plot(found: list[Row], path: Path) -> None:
 
 PAGE = """# Input complexity and computing time
 
-How much does a simulation slow down when more is declared than it needs? The bench lever for {duration:g} s ({beats} beats): first with only
-the teeth that are touched in that time, then with all teeth, then with every edge on which nothing slides cut into ever more
-pieces, so that the motion is the same. Written by `scripts/study_complexity.py`; processor time of one core, for one simulated second
-(the event loop, the search for candidates included), events recorded.
+How much does a simulation slow down when more is declared than it needs? The bench lever for {duration:g} s
+({beats} beats): first with only the teeth that are touched in that time, then with all teeth, then with every edge on
+which nothing slides cut into ever more pieces, so that the motion is the same. Written by `scripts/study_complexity.py`;
+processor time of one core, for one simulated second (the event loop, the search for candidates included), events
+recorded.
 
 ![Time per simulated second over declared pairs](images/complexity.png)
 
 {table}
 
-From {low:,} to {high:,} declared pairs the time of later runs grows by a factor of {growth:.2f}. Brute force looks at every declared pair in
-every step and has the same events to the last bit; it is not waited for beyond {most:,} pairs. *First run* asks shapely about each cell of the
-configuration space it enters; *later runs* of the same geometry, such as a sweep over torques or friction, ask nothing. *Getting
-ready* is the flattening of the scene and what can be found out in advance (what can ever touch, symmetries), once for each run.
+From {low:,} to {high:,} declared pairs the time of later runs grows by a factor of {growth:.2f}. Brute force looks at
+every declared pair in every step and has the same events to the last bit; it is not waited for beyond {most:,} pairs.
+*First run* asks shapely about each cell of the configuration space it enters; *later runs* of the same geometry, such as
+a sweep over torques or friction, ask nothing. *Getting ready* is the flattening of the scene and what can be found out in
+advance (what can ever touch, symmetries), once for each run.
 """
 
 
