@@ -18,5 +18,6 @@ echo "== kernels with index checks"
 NUMBA_BOUNDSCHECK=1 WATCHSIM_CACHE="$scratch/checked" "$environment/bin/pytest" tests/contact tests/dynamics tests/simulation
 
 echo "== benchmarks and demo"
-"$environment/bin/watchsim" verify
+"$environment/bin/watchsim" verify --slow
+"$environment/bin/python" scripts/measure_grid.py "$scratch/grid.csv"
 "$environment/bin/watchsim" demo -o "$scratch/demo"
