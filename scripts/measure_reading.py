@@ -172,8 +172,8 @@ def curves_text(repeats: int) -> str:
         each = (used[1] - used[0]) / (CURVES[1] - CURVES[0])
         drawing, bytes_each = read(path), path.stat().st_size / CURVES[1]
     return (
-        f"{CURVED}\n\nA spline or Bézier that is neither straight nor round takes longer, since the fewest arcs within 0.1 µm of "
-        f"it are\nlooked for: {1e3 * each:.1f} ms each for cubics of any shape some millimetres long, which become "
+        f"{CURVED}\n\nA spline or Bézier that is neither straight nor round takes longer, since the fewest arcs within 0.1 µm "
+        f"of it are\nlooked for: {1e3 * each:.1f} ms each for cubics of any shape some millimetres long, which become "
         f"{drawing.fitted_arcs / drawing.fitted_curves:.0f} arcs each ({CURVES[0]} of them: {used[0]:.2f} s,\n{CURVES[1]}: "
         f"{used[1]:.2f} s). A file of {1e-6 * bytes_each * 1000:.1f} MB with 1000 such curves and nothing else thus takes "
         f"{each * 1000:.0f} s.\n"
