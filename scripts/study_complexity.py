@@ -24,8 +24,10 @@ from watchsim.mechanism.body import Body
 from watchsim.mechanism.compile import compile_scene
 from watchsim.mechanism.load import load
 from watchsim.mechanism.model import ARC, CORNER, Records
+from watchsim.mechanism.recording import Recording
 from watchsim.mechanism.scene import Scene
-from watchsim.simulation.simulate import WHOLE_RUN, _Run, simulate
+from watchsim.simulation.run import Run
+from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
 from watchsim.simulation.trajectory import Trajectory
 
@@ -120,10 +122,10 @@ class Row:
     events: int
 
 
-def loop_time(scene: Scene, prefilter: bool) -> tuple[float, float, _Run]:
+def loop_time(scene: Scene, prefilter: bool) -> tuple[float, float, Run]:
     """Processor times: to get ready (s), and of the event loop (s per simulated second)."""
     start = time.process_time()
-    run = _Run(compile_scene(scene, prefilter), scene.tolerance, DURATION, WHOLE_RUN)
+    run = Run(scene, compile_scene(scene, prefilter), scene.tolerance, Recording())
     ready = time.process_time()
     run.warm_up()
     begin = time.process_time()
@@ -137,11 +139,11 @@ def measure(scene: Scene) -> Row:
     forget()
     setup, learning, run = loop_time(scene, True)
     known = min(loop_time(scene, True)[1] for _ in range(REPEATS))
-    model, events = run.compiled.model, np.concatenate(run.kept.events)
+    model, events = run.compiled.model, run.trajectory(Stop.DURATION, 0.0, 0.0).events
     brute = None
     if len(model.contacts) <= MOST_BRUTE:
         _, brute, slow = loop_time(scene, False)
-        assert events.tobytes() == np.concatenate(slow.kept.events).tobytes()
+        assert events.tobytes() == slow.trajectory(Stop.DURATION, 0.0, 0.0).events.tobytes()
     return Row(len(model.contacts), len(model.near), setup, learning, known, brute, len(events))
 
 
