@@ -14,8 +14,10 @@ import math
 import time
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from watchsim.contact.known import forget
 from watchsim.geometry.loop import Loop
@@ -24,7 +26,7 @@ from watchsim.mechanism.body import Body
 from watchsim.mechanism.compile import compile_scene
 from watchsim.mechanism.load import load
 from watchsim.mechanism.model import ARC, CORNER, Records
-from watchsim.mechanism.recording import Recording
+from watchsim.mechanism.recording import EVERYTHING
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation.run import Run
 from watchsim.simulation.simulate import simulate
@@ -125,7 +127,7 @@ class Row:
 def loop_time(scene: Scene, prefilter: bool) -> tuple[float, float, Run]:
     """Processor times: to get ready (s), and of the event loop (s per simulated second)."""
     start = time.process_time()
-    run = Run(scene, compile_scene(scene, prefilter), scene.tolerance, Recording())
+    run = Run(scene, compile_scene(scene, prefilter), scene.tolerance, EVERYTHING)
     ready = time.process_time()
     run.warm_up()
     begin = time.process_time()
@@ -134,16 +136,20 @@ def loop_time(scene: Scene, prefilter: bool) -> tuple[float, float, Run]:
     return ready - start, (time.process_time() - begin) / DURATION, run
 
 
+def events_of(run: Run) -> NDArray[Any]:
+    return run.trajectory(Stop.DURATION, 0.0, 0.0).events
+
+
 def measure(scene: Scene) -> Row:
     """All times of one scene; the events with and without the prefilter must be the same to the last bit."""
     forget()
     setup, learning, run = loop_time(scene, True)
     known = min(loop_time(scene, True)[1] for _ in range(REPEATS))
-    model, events = run.compiled.model, run.trajectory(Stop.DURATION, 0.0, 0.0).events
+    model, events = run.compiled.model, events_of(run)
     brute = None
     if len(model.contacts) <= MOST_BRUTE:
         _, brute, slow = loop_time(scene, False)
-        assert events.tobytes() == slow.trajectory(Stop.DURATION, 0.0, 0.0).events.tobytes()
+        assert events.tobytes() == events_of(slow).tobytes()
     return Row(len(model.contacts), len(model.near), setup, learning, known, brute, len(events))
 
 
@@ -203,19 +209,21 @@ def plot(found: list[Row], path: Path) -> None:
 
 PAGE = """# Input complexity and computing time
 
-How much does a simulation slow down when more is declared than it needs? The bench lever for {duration:g} s ({beats} beats): first with only
-the teeth that are touched in that time, then with all teeth, then with every edge on which nothing slides cut into ever more
-pieces, so that the motion is the same. Written by `scripts/study_complexity.py`; processor time of one core, for one simulated second
-(the event loop, the search for candidates included), events recorded.
+How much does a simulation slow down when more is declared than it needs? The bench lever for {duration:g} s
+({beats} beats): first with only the teeth that are touched in that time, then with all teeth, then with every edge on
+which nothing slides cut into ever more pieces, so that the motion is the same. Written by `scripts/study_complexity.py`;
+processor time of one core, for one simulated second (the event loop, the search for candidates included), events
+recorded.
 
 ![Time per simulated second over declared pairs](images/complexity.png)
 
 {table}
 
-From {low:,} to {high:,} declared pairs the time of later runs grows by a factor of {growth:.2f}. Brute force looks at every declared pair in
-every step and has the same events to the last bit; it is not waited for beyond {most:,} pairs. *First run* asks shapely about each cell of the
-configuration space it enters; *later runs* of the same geometry, such as a sweep over torques or friction, ask nothing. *Getting
-ready* is the flattening of the scene and what can be found out in advance (what can ever touch, symmetries), once for each run.
+From {low:,} to {high:,} declared pairs the time of later runs grows by a factor of {growth:.2f}. Brute force looks at
+every declared pair in every step and has the same events to the last bit; it is not waited for beyond {most:,} pairs.
+*First run* asks shapely about each cell of the configuration space it enters; *later runs* of the same geometry, such as
+a sweep over torques or friction, ask nothing. *Getting ready* is the flattening of the scene and what can be found out in
+advance (what can ever touch, symmetries), once for each run.
 """
 
 

@@ -33,7 +33,7 @@ class CellFinder:
         self.seconds = 0.0
         self.learned = 0  # cells that shapely was asked about
         self._forget()
-        self._pairs = {p: _PairCells(model, p) for p in range(len(model.pairs)) if model.pairs[p].listed}
+        self._pairs = {p: PairCells(model, p) for p in range(len(model.pairs)) if model.pairs[p].listed}
         for pair in self._pairs.values():
             self._insert(*pair.everything())
 
@@ -88,7 +88,7 @@ class _Axis(NamedTuple):
         return self.wrap // self.fold if self.wrap else 0
 
 
-class _PairCells:
+class PairCells:
     """The cells of one pair of bodies: indices, keys and symmetries."""
 
     def __init__(self, model: Model, p: int) -> None:
@@ -122,6 +122,15 @@ class _PairCells:
             self.known.ask(base[(turns == turn).all(axis=1)])
         cells = list(dict.fromkeys(map(tuple, base.tolist())))
         return self._everywhere(cells)
+
+    def here(self, q: Array) -> Integers:
+        """The candidates in the cell of q alone."""
+        keys, count, found = self.around(q)
+        index = [math.floor(q[axis.coordinate] / axis.size) for axis in self.axes]
+        key = self._keys(np.array([[i % axis.wrap if axis.wrap else i for i, axis in zip(index, self.axes, strict=True)]]))[0]
+        place = int(np.flatnonzero(keys == key)[0])
+        start = int(count[:place].sum())
+        return found[start : start + count[place]]
 
     def _everywhere(self, cells: list[tuple[int, ...]]) -> tuple[Integers, Integers, Integers]:
         """Cells and their candidates in all alike parts of a turn."""

@@ -5,10 +5,13 @@ from __future__ import annotations
 import math
 
 from watchsim.contact.kinematics import ClosedRef
-from watchsim.jit import entry, kernel
+from watchsim.dynamics.linear import copy
+from watchsim.jit import entry, inlined, kernel
 from watchsim.mechanism.model import CellsRef, ModelRef
 from watchsim.simulation.keep import keep_event, keep_row
-from watchsim.simulation.moreau_step import MoreauWorkRef, act, closed_at_middle, move, stop_approaches
+from watchsim.simulation.moreau_impact import stop_approaches
+from watchsim.simulation.moreau_step import act, closed_at_middle, move
+from watchsim.simulation.moreau_work import MoreauWorkRef
 from watchsim.simulation.options import OptionsRef
 from watchsim.simulation.state import N_STEPS, ROOM, RecordRef, StateRef
 from watchsim.simulation.stops import Stop
@@ -61,15 +64,12 @@ def _step(model, cells, state, options, h, whole, work, record):
     m = closed_at_middle(model, cells, state, options, h, work)
     if m < 0:
         return CELL_UNKNOWN if m == -1 else TOO_MANY_CONTACTS
-    for i in range(m):
-        law = model.laws[model.contacts[work.closed.ids[i]].group]
-        work.friction[i], work.restitution[i] = law.friction, law.restitution
     jump = stop_approaches(model, state, options, m, work, record)
     if jump:
         keep_row(state, record, state.clock[0], state.q, state.u, state.a)
         keep_row(state, record, state.clock[0], state.q, work.u, state.a)
     act(model, state, m, h, work, state.u)
-    work.at[:] = state.q
+    copy(state.q, work.at)
     move(model, state, options, m, h, work, state.u)
     for i in range(len(state.u)):
         if not math.isfinite(state.q[i] + state.u[i]):
@@ -77,7 +77,7 @@ def _step(model, cells, state, options, h, whole, work, record):
         # `_passages` looks from the start of the step to its end.
         work.q[i], state.q[i] = state.q[i], work.at[i]
     _passages(model, state, h, work, work.q, state.u, record)
-    state.q[:] = work.q
+    copy(work.q, state.q)
     state.numbers[3] += 1
     state.clock[0] = state.numbers[3] * whole if h == whole else state.clock[0] + h
     state.counts[N_STEPS] += 1
@@ -99,7 +99,7 @@ def advance_fixed(model, cells, state, options, until, pace, work, record):
     )
 
 
-@kernel
+@inlined
 def _by_reference(work):
     """The scratch arrays as a struct."""
     return MoreauWorkRef(
@@ -120,8 +120,9 @@ def _by_reference(work):
         work.more,
         work.P,
         work.low,
-        work.friction,
+        work.ends,
         work.restitution,
+        work.dry,
         work.unknown,
         work.at,
         work.sweeps,
@@ -134,7 +135,8 @@ def _loop(model, cells, state, options, until, pace, work, record):
     while True:
         if record.used[0] + ROWS_PER_STEP >= len(record.rows) or record.used[1] + EVENTS_PER_STEP >= len(record.events):
             return BUFFER_FULL
-        if state.numbers[3] == 0 and record.used[0] == 0 and state.clock[0] == 0.0:
+        if state.numbers[2]:
+            state.numbers[2] = 0
             keep_row(state, record, 0.0, state.q, state.u, state.a)
         left = until[1] - state.clock[0]
         if left <= 0.0:

@@ -12,9 +12,10 @@ import math
 from watchsim.contact.gaps import extent_margins, normal_gap
 from watchsim.contact.lookup import UNKNOWN, candidate, candidates, time_in_cell
 from watchsim.contact.poses import point_of
+from watchsim.dynamics.linear import copy
 from watchsim.jit import kernel
 from watchsim.mechanism.model import FREE, LINE, PIVOT, SLIDE
-from watchsim.simulation.handover import continues_active
+from watchsim.simulation.handover import continues_active, is_beside_active
 from watchsim.simulation.path import body_on_path
 from watchsim.simulation.state import N_GAPS
 
@@ -215,7 +216,9 @@ def _first_of(model, cells, state, options, p, tau, until, scratch):
     doubts = 0
     for place in range(start, start + count):
         k = candidate(model, cells, how, place)
-        if state.mode[k] == 0 and not _stays_open(model, state, options, k, until - tau, pair.a, bounds, scratch):
+        if state.mode[k] != 0 or is_beside_active(model, state, k):
+            continue
+        if not _stays_open(model, state, options, k, until - tau, pair.a, bounds, scratch):
             scratch.doubt[doubts] = k
             doubts += 1
     for j in range(doubts):
@@ -249,7 +252,7 @@ def first_touch(model, cells, state, options, end, scratch):
         tau = 0.0
         while tau < best:
             _place_pair(model, state, pair, tau, scratch)
-            scratch.at[:] = scratch.q
+            copy(scratch.q, scratch.at)
             until = min(best, tau + time_in_cell(model, p, scratch.q, scratch.u, scratch.step.bound))
             known, root, k = _first_of(model, cells, state, options, p, tau, until, scratch)
             if not known:
