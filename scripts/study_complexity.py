@@ -29,13 +29,9 @@ from watchsim.mechanism.model import ARC, CORNER, Records
 from watchsim.mechanism.recording import EVERYTHING
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation.run import Run
-<<<<<<< HEAD
 from watchsim.simulation.saved import SavedState
-from watchsim.simulation.simulate import WHOLE_RUN, simulate
-from watchsim.simulation.state import N_GAPS
-=======
 from watchsim.simulation.simulate import simulate
->>>>>>> bench
+from watchsim.simulation.state import N_GAPS
 from watchsim.simulation.stops import Stop
 from watchsim.simulation.trajectory import Trajectory
 
@@ -148,11 +144,7 @@ class TimedRun(Run):
 def loop_time(scene: Scene, prefilter: bool, duration: float = DURATION) -> tuple[float, float, TimedRun]:
     """Processor times: to get ready and to save the end state (s), and of the event loop (s per simulated second)."""
     start = time.process_time()
-<<<<<<< HEAD
-    run = TimedRun(compile_scene(scene, prefilter), scene.tolerance, duration, WHOLE_RUN)
-=======
-    run = Run(scene, compile_scene(scene, prefilter), scene.tolerance, EVERYTHING)
->>>>>>> bench
+    run = TimedRun(scene, compile_scene(scene, prefilter), scene.tolerance, EVERYTHING)
     ready = time.process_time()
     run.warm_up()
     begin = time.process_time()
@@ -162,21 +154,16 @@ def loop_time(scene: Scene, prefilter: bool, duration: float = DURATION) -> tupl
     return ready - start + run.saving, spent / duration, run
 
 
-<<<<<<< HEAD
-def measure(scene: Scene, whole_turn: bool) -> Row:
-=======
 def events_of(run: Run) -> NDArray[Any]:
     return run.trajectory(Stop.DURATION, 0.0, 0.0).events
 
 
-def measure(scene: Scene) -> Row:
->>>>>>> bench
+def measure(scene: Scene, whole_turn: bool) -> Row:
     """All times of one scene; the events with and without the prefilter must be the same to the last bit."""
     forget()
     setup, learning, run = loop_time(scene, True)
     known = min(loop_time(scene, True)[1] for _ in range(REPEATS))
-<<<<<<< HEAD
-    model, events = run.compiled.model, np.concatenate(run.kept.events)
+    model, events = run.compiled.model, events_of(run)
     turn = None
     if whole_turn:
         loop_time(scene, True, TURN)
@@ -188,14 +175,6 @@ def measure(scene: Scene) -> Row:
         assert events.tobytes() == np.concatenate(brutes[0][2].kept.events).tobytes()
     gaps = int(loop_time(scene, True)[2].state.counts[N_GAPS])
     return Row(len(model.contacts), len(model.near), setup, learning, known, turn, brute, len(events), gaps)
-=======
-    model, events = run.compiled.model, events_of(run)
-    brute = None
-    if len(model.contacts) <= MOST_BRUTE:
-        _, brute, slow = loop_time(scene, False)
-        assert events.tobytes() == events_of(slow).tobytes()
-    return Row(len(model.contacts), len(model.near), setup, learning, known, brute, len(events))
->>>>>>> bench
 
 
 def rows(quick: bool) -> list[Row]:
