@@ -14,8 +14,10 @@ import math
 import time
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from watchsim.contact.known import forget
 from watchsim.geometry.loop import Loop
@@ -24,10 +26,11 @@ from watchsim.mechanism.body import Body
 from watchsim.mechanism.compile import compile_scene
 from watchsim.mechanism.load import load
 from watchsim.mechanism.model import ARC, CORNER, Records
+from watchsim.mechanism.recording import EVERYTHING
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation.run import Run
 from watchsim.simulation.saved import SavedState
-from watchsim.simulation.simulate import WHOLE_RUN, simulate
+from watchsim.simulation.simulate import simulate
 from watchsim.simulation.state import N_GAPS
 from watchsim.simulation.stops import Stop
 from watchsim.simulation.trajectory import Trajectory
@@ -141,7 +144,7 @@ class TimedRun(Run):
 def loop_time(scene: Scene, prefilter: bool, duration: float = DURATION) -> tuple[float, float, TimedRun]:
     """Processor times: to get ready and to save the end state (s), and of the event loop (s per simulated second)."""
     start = time.process_time()
-    run = TimedRun(compile_scene(scene, prefilter), scene.tolerance, duration, WHOLE_RUN)
+    run = TimedRun(scene, compile_scene(scene, prefilter), scene.tolerance, EVERYTHING)
     ready = time.process_time()
     run.warm_up()
     begin = time.process_time()
@@ -151,12 +154,16 @@ def loop_time(scene: Scene, prefilter: bool, duration: float = DURATION) -> tupl
     return ready - start + run.saving, spent / duration, run
 
 
+def events_of(run: Run) -> NDArray[Any]:
+    return run.trajectory(Stop.DURATION, 0.0, 0.0).events
+
+
 def measure(scene: Scene, whole_turn: bool) -> Row:
     """All times of one scene; the events with and without the prefilter must be the same to the last bit."""
     forget()
     setup, learning, run = loop_time(scene, True)
     known = min(loop_time(scene, True)[1] for _ in range(REPEATS))
-    model, events = run.compiled.model, np.concatenate(run.kept.events)
+    model, events = run.compiled.model, events_of(run)
     turn = None
     if whole_turn:
         loop_time(scene, True, TURN)

@@ -127,6 +127,8 @@ def _primitives(scene: Scene, size: float) -> tuple[Records, tuple[str, ...], di
             found = [features(loop, names.index(side.body), size) for loop in body.loops if loop.layer == layer]
             start = len(layers)
             for block in found:
+                for side_of in ("before", "after"):
+                    block[side_of][block[side_of] >= 0] += len(layers)
                 blocks.append(block)
                 layers.extend([layer] * len(block))
             of_layer[side.body, layer] = np.arange(start, len(layers))

@@ -8,9 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.mechanism.compile import Compiled
+from watchsim.mechanism.recording import Recording
+from watchsim.mechanism.scene import Scene
 from watchsim.simulation.methods import MOREAU
 from watchsim.simulation.moreau_loop import EVENTS_PER_STEP, ROWS_PER_STEP, advance_fixed
-from watchsim.simulation.moreau_step import moreau_work
+from watchsim.simulation.moreau_work import moreau_work
 from watchsim.simulation.run import EVENTS, ROWS, Run
 from watchsim.simulation.state import CORRECTION, new_record
 from watchsim.simulation.stops import Stop
@@ -23,15 +25,15 @@ class MoreauRun(Run):
 
     method = MOREAU
 
-    def __init__(self, compiled: Compiled, tolerance: float, longest: float, windows: Any, step: float) -> None:
-        super().__init__(compiled, tolerance, longest, windows)
+    def __init__(self, scene: Scene, compiled: Compiled, tolerance: float, recording: Recording, step: float) -> None:
+        super().__init__(scene, compiled, tolerance, recording)
         self.step = step
         self.pace = np.array([step, max(step, self.options.max_step / ROWS_PER_QUARTER)])
         self.work = moreau_work(compiled.model)
         self.record = new_record(compiled.model, ROWS + ROWS_PER_STEP, EVENTS + EVENTS_PER_STEP, self.record.windows)
 
     def arrays(self) -> dict[str, NDArray[Any]]:
-        return {**super().arrays(), "memory": self.work.memory, "depth": self.work.depth}
+        return {**super().arrays(), "memory": self.work.memory, "depth": self.work.depth, "sweeps": self.work.sweeps}
 
     def _worst_residual(self) -> NDArray[np.float64]:
         return self.work.worst
