@@ -164,7 +164,7 @@ levers against the event-driven solver (levers over {levers:g} s, after the firs
 ![errors over step](images/{picture})
 
 *Order* is the slope of the straight line through the logarithms of step and error. Which step an impact falls into is a
-matter of chance, so that errors scatter about the line.
+matter of chance, so that errors scatter about the line. *stops*: with that step the balance does not unlock the lever.
 
 | case | error of | {steps} | order |
 |---|---|{rules}---:|"""
@@ -178,7 +178,7 @@ def page(found: Found, steps: tuple[float, ...], seconds: float) -> str:
     lines = [head]
     for (case, name), (sizes, errors) in found.items():
         told = dict(zip(sizes, errors, strict=True))
-        cells = " | ".join(f"{told[step]:.1e}" for step in steps)
+        cells = " | ".join(f"{told[step]:.1e}" if math.isfinite(told[step]) else "stops" for step in steps)
         lines.append(f"| {case} | {name} | {cells} | {order(sizes, errors):.2f} |")
     return "\n".join(lines) + "\n"
 
