@@ -102,12 +102,13 @@ def _body(body: Body, found: list[Surface], drive: Drive | None, units: float, m
     scale = mass * units**2
     spring = ""
     if drive:
-        spring = (
-            f'stiffness="{drive.stiffness * scale!r}" springref="{drive.rest!r}" damping="{drive.viscous * scale!r}"'
-        )
-    joints = f"<joint name={quoteattr(name + '.angle')} type=\"hinge\" axis=\"0 0 1\" {spring}/>"
+        spring = f'stiffness="{drive.stiffness * scale!r}" springref="{drive.rest!r}" damping="{drive.viscous * scale!r}"'
+    joints = f'<joint name={quoteattr(name + ".angle")} type="hinge" axis="0 0 1" {spring}/>'
     if body.motion == "free":
-        slides = (f'<joint name={quoteattr(f"{name}.{k}")} type="slide" axis="{axis}"/>' for k, axis in (("x", "1 0 0"), ("y", "0 1 0")))
+        slides = (
+            f'<joint name={quoteattr(f"{name}.{k}")} type="slide" axis="{axis}"/>'
+            for k, axis in (("x", "1 0 0"), ("y", "0 1 0"))
+        )
         joints = "".join(slides) + joints
     return f"{head}{joints}{inertial}{geoms}</body>"
 

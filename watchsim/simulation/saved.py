@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -21,14 +21,18 @@ ASKED = ("method", "step", "tolerance")
 
 @dataclass(frozen=True)
 class SavedState:
-    """A state to go on from. `rows` and `events` say how many of its run's rows and events lie before it."""
+    """A state to go on from. `rows` and `events` say how many of its run's kept rows and events lie before it.
+
+    `tally` holds the sums over all events before it (see simulation/tally.py).
+    """
 
     arrays: dict[str, NDArray[Any]]
     digest: str  # of the model and its start
     settings: dict[str, Any]  # method, tolerances, step
     stored_at_start: float  # J, of the whole run
-    rows: int
-    events: int
+    tally: dict[str, NDArray[Any]] = field(default_factory=dict)
+    rows: int = 0
+    events: int = 0
 
     @property
     def time(self) -> float:
@@ -59,11 +63,15 @@ class SavedState:
 
 
 def save_state(
-    compiled: Compiled, settings: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]], stored: float, rows: int, events: int
+    compiled: Compiled,
+    settings: Mapping[str, Any],
+    arrays: Mapping[str, NDArray[Any]],
+    stored: float,
+    tally: dict[str, NDArray[Any]],
 ) -> SavedState:
     """A copy of the state in `arrays`."""
     copies = {name: np.array(array) for name, array in arrays.items()}
-    return SavedState(copies, model_digest(compiled), dict(settings), float(stored), rows, events)
+    return SavedState(copies, model_digest(compiled), dict(settings), float(stored), tally)
 
 
 def model_digest(compiled: Compiled) -> str:
