@@ -16,6 +16,8 @@ from numpy.typing import NDArray
 
 from watchsim.mechanism.compile import Compiled
 
+ASKED = ("method", "step", "tolerance")
+
 
 @dataclass(frozen=True)
 class SavedState:
@@ -45,6 +47,8 @@ class SavedState:
                 "since. Go on with the scene as it was (scene.lock.toml in the results folder), or begin anew"
             )
         changed = [name for name in {**self.settings, **settings} if self.settings.get(name) != settings.get(name)]
+        # The other tolerances follow from these.
+        changed = [name for name in changed if name in ASKED] or changed
         if changed:
             told = "; ".join(f"{name} was {self.settings.get(name)}, now {settings.get(name)}" for name in changed)
             raise ValueError(f"the saved state was made with other settings ({told}). Use the same ones, or begin anew")
