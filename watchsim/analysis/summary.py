@@ -21,6 +21,7 @@ from watchsim.analysis.timegrapher import timegrapher
 from watchsim.analysis.wheel import missed_beats
 from watchsim.mechanism.lock import versions
 from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.frames import speeds
 from watchsim.simulation.trajectory import Trajectory
 
 AVERAGED = ("amplitude_deg", "period_s", "rate_s_per_d", "beat_error_ms")
@@ -75,16 +76,15 @@ def _about(run: Trajectory) -> dict[str, Any]:
 
 
 def _bodies(run: Trajectory) -> dict[str, dict[str, float]]:
-    """Pose and velocities of every body in the last row."""
+    """Pose and velocities of every body in the movement in the last row."""
     return {body.name: _last_state(run, body.name) for body in run.scene.bodies} if len(run.t) else {}
 
 
 def _last_state(run: Trajectory, name: str) -> dict[str, float]:
-    body, t = run.scene.body(name), float(run.t[-1])
+    t = float(run.t[-1])
+    q, u = run.at(t)
     x, y, angle = run.pose(name, t)
-    u = run.at(t)[1][run.slices[name]].tolist() if body.motion != "fixed" else []
-    along = (u[0] * body.axis[0], u[0] * body.axis[1]) if body.motion == "slide" else (0.0, 0.0)
-    v_x, v_y, spin = {"free": tuple(u), "pivot": (0.0, 0.0, *u), "slide": (*along, 0.0)}.get(body.motion, (0.0, 0.0, 0.0))
+    v_x, v_y, spin = speeds(run.scene, run.slices, q[None], u[None])[name][0].tolist()
     return {"angle_rad": angle, "x_m": x, "y_m": y, "angle_rad_per_s": spin, "x_m_per_s": v_x, "y_m_per_s": v_y}
 
 

@@ -75,9 +75,10 @@ class CellFinder:
 
 
 class _Axis(NamedTuple):
-    """One cell coordinate; `wrap` cells make a turn (0: a length), in `fold` alike parts."""
+    """One cell coordinate, less coordinate `on` (-1: nothing); `wrap` cells make a turn (0: a length) of `fold` alike parts."""
 
     coordinate: int
+    on: int
     size: float
     wrap: int
     fold: int
@@ -93,7 +94,9 @@ class _PairCells:
 
     def __init__(self, model: Model, p: int) -> None:
         self.model, self.p, self.pair = model, p, model.pairs[p]
-        self.axes = [_Axis(*(self.pair[f"{name}{i}"] for name in ("c", "size", "wrap", "fold"))) for i in range(self.pair.axes)]
+        self.axes = [
+            _Axis(*(self.pair[f"{name}{i}"] for name in ("c", "on", "size", "wrap", "fold"))) for i in range(self.pair.axes)
+        ]
         self.start = int(self.pair.start)
         near = model.near[self.pair.near_start : self.pair.near_stop]
         body = [int(model.coordinates[axis.coordinate].body) for axis in self.axes]
@@ -111,7 +114,7 @@ class _PairCells:
     def around(self, q: Array) -> tuple[Integers, Integers, Integers]:
         """The same for the cell of q and its neighbours."""
         steps = itertools.product(range(-AROUND[len(self.axes)], AROUND[len(self.axes)] + 1), repeat=len(self.axes))
-        here = [math.floor(q[axis.coordinate] / axis.size) for axis in self.axes]
+        here = [math.floor((q[axis.coordinate] - (q[axis.on] if axis.on >= 0 else 0.0)) / axis.size) for axis in self.axes]
         block = np.array(here) + np.array(list(steps))
         parts = np.array([axis.part for axis in self.axes])
         block = block[((np.abs(block) < REACH) | (parts > 0)).all(axis=1)]

@@ -27,7 +27,7 @@ KINEMATICS = np.dtype(
         ("y", "f8"),
     ]
 )
-SLOTS = 6  # a contact moves at most two free bodies
+SLOTS = 8  # a contact moves at most two bodies, each carried by a free one
 
 
 class Closed(NamedTuple):
@@ -61,7 +61,10 @@ def closed_contacts(room: int) -> Closed:
 
 @kernel
 def _directions(model, b, row, sign, frame, out_closed):
-    """Append body b's entries of w_N, w_T; frame = (nx, ny, arm_x, arm_y), the arm from the body's origin to the contact."""
+    """Append body b's entries of w_N, w_T; frame = (nx, ny, arm_x, arm_y), the arm from the body's origin to the contact.
+
+    For a carrier the arm ends at the pivot of the body that it carries: turning it, it shifts that body and turns it not.
+    """
     body = model.bodies[b]
     nx, ny, rx, ry = frame
     tx, ty = -ny, nx
@@ -112,6 +115,11 @@ def contact_kinematics(model, k, pose, row, out_closed):
     square_a, square_b = pa.w * pa.w, pb.w * pb.w
     kin.bar_N = (turning + pb.w) * v_t - spin * travel - square_a * (nx * xa + ny * ya) + square_b * (nx * xb + ny * yb)
     kin.bar_T = -(turning + pb.w) * v_n - square_a * (tx * xa + ty * ya) + square_b * (tx * xb + ty * yb)
+    carrier_a, carrier_b = model.bodies[a.body].carrier, model.bodies[b.body].carrier
+    if carrier_a >= 0 or carrier_b >= 0:
+        ax, ay = pa.ax - pb.ax, pa.ay - pb.ay
+        kin.bar_N += nx * ax + ny * ay
+        kin.bar_T += tx * ax + ty * ay
     inside_a, inside_b = margins_of(contact, a, b, pa, pb, shape)
     kin.margin = min(inside_a, inside_b)
     kin.x, kin.y = pa.x + xa, pa.y + ya
@@ -119,3 +127,7 @@ def contact_kinematics(model, k, pose, row, out_closed):
     out_closed.slots[row] = 0
     _directions(model, a.body, row, 1.0, (nx, ny, xa, ya), out_closed)
     _directions(model, b.body, row, -1.0, (nx, ny, xb, yb), out_closed)
+    if carrier_a >= 0:
+        _directions(model, carrier_a, row, 1.0, (nx, ny, pa.rx, pa.ry), out_closed)
+    if carrier_b >= 0:
+        _directions(model, carrier_b, row, -1.0, (nx, ny, pb.rx, pb.ry), out_closed)

@@ -18,13 +18,25 @@ def cell_index(q, size, wrap):
     return int(index % wrap) if wrap > 0 else int(index)
 
 
+@kernel
+def along(value, coordinate, on):
+    """The value of a cell coordinate from those of all coordinates; `on` is taken away from it, -1: nothing."""
+    return value[coordinate] - value[on] if on >= 0 else value[coordinate]
+
+
+@kernel
+def _most(bound, coordinate, on):
+    """The same for bounds, which add up."""
+    return bound[coordinate] + bound[on] if on >= 0 else bound[coordinate]
+
+
 @entry
 def cell_key(model, p, q):
     """The key of body pair p's cell at coordinates q; -1 where the indices leave the range of keys."""
     pair = model.pairs[p]
-    i0 = cell_index(q[pair.c0], pair.size0, pair.wrap0)
-    i1 = cell_index(q[pair.c1], pair.size1, pair.wrap1) if pair.axes > 1 else 0
-    i2 = cell_index(q[pair.c2], pair.size2, pair.wrap2) if pair.axes > 2 else 0
+    i0 = cell_index(along(q, pair.c0, pair.on0), pair.size0, pair.wrap0)
+    i1 = cell_index(along(q, pair.c1, pair.on1), pair.size1, pair.wrap1) if pair.axes > 1 else 0
+    i2 = cell_index(along(q, pair.c2, pair.on2), pair.size2, pair.wrap2) if pair.axes > 2 else 0
     if abs(i0) >= REACH or abs(i1) >= REACH or abs(i2) >= REACH:
         return -1
     return (((p * 2 * REACH + (i0 + REACH)) * 2 * REACH) + (i1 + REACH)) * 2 * REACH + (i2 + REACH)
@@ -91,19 +103,28 @@ def _time_to_leave(room, speed, acceleration):
 
 
 @kernel
+def _time_through(u, acceleration, coordinate, on, way):
+    """Time in which one cell coordinate does not cover that way."""
+    return _time_to_leave(way, abs(along(u, coordinate, on)), _most(acceleration, coordinate, on))
+
+
+@kernel
+def _time_on_axis(q, u, acceleration, coordinate, on, size):
+    """Time during which the answer of the cell holds as far as one cell coordinate goes."""
+    return _time_through(u, acceleration, coordinate, on, _room(along(q, coordinate, on), size))
+
+
+@kernel
 def time_in_cell(model, p, q, u, acceleration):
     """A time during which body pair p's candidates at q stay complete; acceleration bounds are per coordinate."""
     pair = model.pairs[p]
     if pair.axes == 0:
         return math.inf
-    i = pair.c0
-    time = _time_to_leave(_room(q[i], pair.size0), abs(u[i]), acceleration[i])
+    time = _time_on_axis(q, u, acceleration, pair.c0, pair.on0, pair.size0)
     if pair.axes > 1:
-        i = pair.c1
-        time = min(time, _time_to_leave(_room(q[i], pair.size1), abs(u[i]), acceleration[i]))
+        time = min(time, _time_on_axis(q, u, acceleration, pair.c1, pair.on1, pair.size1))
     if pair.axes > 2:
-        i = pair.c2
-        time = min(time, _time_to_leave(_room(q[i], pair.size2), abs(u[i]), acceleration[i]))
+        time = min(time, _time_on_axis(q, u, acceleration, pair.c2, pair.on2, pair.size2))
     return time
 
 
@@ -113,9 +134,9 @@ def time_through_cells(model, p, u, acceleration, cells):
     pair = model.pairs[p]
     time = math.inf
     if pair.axes > 0:
-        time = min(time, _time_to_leave(cells * pair.size0, abs(u[pair.c0]), acceleration[pair.c0]))
+        time = min(time, _time_through(u, acceleration, pair.c0, pair.on0, cells * pair.size0))
     if pair.axes > 1:
-        time = min(time, _time_to_leave(cells * pair.size1, abs(u[pair.c1]), acceleration[pair.c1]))
+        time = min(time, _time_through(u, acceleration, pair.c1, pair.on1, cells * pair.size1))
     if pair.axes > 2:
-        time = min(time, _time_to_leave(cells * pair.size2, abs(u[pair.c2]), acceleration[pair.c2]))
+        time = min(time, _time_through(u, acceleration, pair.c2, pair.on2, cells * pair.size2))
     return time

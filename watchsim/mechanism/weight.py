@@ -44,7 +44,7 @@ def read_inertias(table: Table, motion: str, outlines: Outlines) -> Inertias:
 def _uniform_plate(table: Table, motion: str, outlines: Outlines) -> Weight | None:
     """Where the motion asks for it, a uniform plate of the outlines with the mass that was given."""
     closed = tuple(loop for loop in outlines.loops if loop.closed)
-    wanted = motion == "free" or (motion == "pivot" and "mass" in table)
+    wanted = motion == "free" or ("mass" in table and (motion == "pivot" or (motion == "fixed" and "on" in table)))
     if not closed or not outlines.sound or not wanted:
         return None
     try:

@@ -19,7 +19,7 @@ def still(scene: Scene, path: str | os.PathLike[str], size: tuple[int, int] = (1
     import imageio.v3 as imageio
 
     compiled = compile_scene(scene)
-    q = np.stack([compiled.q, compiled.q])
+    q = compiled.relative(np.stack([compiled.q, compiled.q]))
     rest = Trajectory(
         scene=scene,
         t=np.array([0.0, 1.0]),

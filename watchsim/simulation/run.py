@@ -37,7 +37,7 @@ from watchsim.simulation.state import (
     new_state,
 )
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.trajectory import EVENT_DTYPE, Pair, Trajectory
+from watchsim.simulation.trajectory import EVENT_DTYPE, EventKind, Pair, Trajectory
 
 Progress = Callable[[float, float], None]  # simulated time, duration
 
@@ -162,17 +162,18 @@ class Run:
     def trajectory(self, scene: Scene, stop: Stop, wall: float, compile_time: float) -> Trajectory:
         """Everything kept, as a frozen value."""
         n = len(self.state.q)
-        pairs = pairs_of(self.compiled, scene)
+        compiled = self.compiled
+        pairs = pairs_of(compiled)
         rows = np.concatenate(self.kept.rows) if self.kept.rows else np.zeros((0, 1 + 3 * n))
         events = np.concatenate(self.kept.events) if self.kept.events else np.zeros(0, EVENT_DTYPE)
         return Trajectory(
             scene=scene,
             t=rows[:, 0],
-            q=rows[:, 1 : 1 + n],
-            u=rows[:, 1 + n : 1 + 2 * n],
-            a=rows[:, 1 + 2 * n :],
-            slices=self.compiled.slices,
-            events=events,
+            q=compiled.relative(rows[:, 1 : 1 + n]),
+            u=compiled.relative(rows[:, 1 + n : 1 + 2 * n], rates=True),
+            a=compiled.relative(rows[:, 1 + 2 * n :], rates=True),
+            slices=compiled.slices,
+            events=_as_told(events, compiled),
             pairs=pairs,
             stop=stop,
             stop_message=f"t = {self.state.clock[0]:.9g} s: {stop.sentence}",
@@ -217,17 +218,21 @@ class Run:
         }
 
 
-def pairs_of(compiled: Compiled, scene: Scene) -> tuple[Pair, ...]:
+def _as_told(events: NDArray[Any], compiled: Compiled) -> NDArray[Any]:
+    """The events, angles of turning points told as the scene tells them."""
+    for own, _, angle in compiled.against:
+        turns = (events["kind"] == EventKind.TURN) & (events["body"] == compiled.model.coordinates[own].body)
+        events["value"][turns] -= angle
+    return events
+
+
+def pairs_of(compiled: Compiled) -> tuple[Pair, ...]:
     """The contacts of a model in words; row k belongs to contact number k."""
-    model, names = compiled.model, [body.name for body in scene.bodies]
-    bodies = model.primitives.body
-    first = np.zeros(len(names), np.int64)
-    numbers, places = np.unique(bodies, return_index=True)
-    first[numbers] = places
+    model, owners = compiled.model, compiled.owners
+    first = {name: owners.index(name) for name in dict.fromkeys(owners)}
+    index = [number - first[name] for number, name in enumerate(owners)]
     # Plain lists: reading a field of a record array takes a microsecond each time.
-    index = (np.arange(len(bodies)) - first[bodies]).tolist()
     kind = [KIND_WORD[kind] for kind in model.primitives.kind.tolist()]
-    name = [names[body] for body in bodies.tolist()]
-    side = list(zip(name, kind, index, compiled.layers, strict=True))
+    side = list(zip(owners, kind, index, compiled.layers, strict=True))
     contacts = zip(model.contacts.group.tolist(), model.contacts.a.tolist(), model.contacts.b.tolist(), strict=True)
     return tuple(Pair(group, *side[a], *side[b]) for group, a, b in contacts)

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation.event_kinds import EVENT_DTYPE as EVENT_DTYPE
 from watchsim.simulation.event_kinds import EventKind as EventKind
+from watchsim.simulation.frames import frames
 from watchsim.simulation.saved import SavedState
 from watchsim.simulation.stops import Stop
 
@@ -47,7 +48,8 @@ class Trajectory:
     """The motion of a scene. Arrays have one row per accepted step (two rows with the same time at an impact).
 
     t (rows,) s; q, u, a (rows, n) coordinates, velocities, accelerations in SI; `slices[body]` says which columns belong
-    to a body (fixed bodies have none). `energy` holds joules: in_J, stored_J, dissipated {cause: J}, residual_J.
+    to a body (fixed bodies have none). Those of a carried body are relative to its carrier; `pose` is in the movement.
+    `energy` holds joules: in_J, stored_J, dissipated {cause: J}, residual_J.
     `counts` holds events, impacts, steps, lcp_failures and the like; `worst_penetration` is metres;
     `worst_residual` the worst violation of a complementarity condition, as a share of the problem's largest term.
     `failure` is the complementarity problem on which the solver gave up (see simulation/failure.py), None otherwise.
@@ -96,17 +98,9 @@ class Trajectory:
         return np.where(last, self.q[j], q), np.where(last, self.u[j], u)
 
     def pose(self, body: str, t: float) -> tuple[float, float, float]:
-        """x, y (m) and angle (rad) of the body's frame at time `t`."""
-        part = self.scene.body(body)
-        if part.motion == "fixed":
-            return (*part.position, part.angle)
-        q = self.at(t)[0][self.slices[body]]
-        if part.motion == "pivot":
-            return (*part.position, float(q[0]))
-        if part.motion == "slide":
-            x, y = part.position
-            return x + q[0] * part.axis[0], y + q[0] * part.axis[1], part.angle
-        return float(q[0]), float(q[1]), float(q[2])
+        """x, y (m) and angle (rad) of the body's frame in the movement at time `t`."""
+        x, y, angle = frames(self.scene, self.slices, self.at(t)[0][None])[body][0].tolist()
+        return x, y, angle
 
 
 def _quintic(s: Array, h: Array, left: tuple[Array, ...], right: tuple[Array, ...]) -> tuple[Array, Array]:
