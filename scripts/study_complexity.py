@@ -201,19 +201,21 @@ def plot(found: list[Row], path: Path) -> None:
 
 PAGE = """# Input complexity and computing time
 
-How much does a simulation slow down when more is declared than it needs? The bench lever for {duration:g} s ({beats} beats): first with only
-the teeth that are touched in that time, then with all teeth, then with every edge on which nothing slides cut into ever more
-pieces, so that the motion is the same. Written by `scripts/study_complexity.py`; processor time of one core, for one simulated second
-(the event loop, the search for candidates included), events recorded.
+How much does a simulation slow down when more is declared than it needs? The bench lever for {duration:g} s
+({beats} beats): first with only the teeth that are touched in that time, then with all teeth, then with every edge on
+which nothing slides cut into ever more pieces, so that the motion is the same. Written by `scripts/study_complexity.py`;
+processor time of one core, for one simulated second (the event loop, the search for candidates included), events
+recorded.
 
 ![Time per simulated second over declared pairs](images/complexity.png)
 
 {table}
 
-From {low:,} to {high:,} declared pairs the time of later runs grows by a factor of {growth:.2f}. Brute force looks at every declared pair in
-every step and has the same events to the last bit; it is not waited for beyond {most:,} pairs. *First run* asks shapely about each cell of the
-configuration space it enters; *later runs* of the same geometry, such as a sweep over torques or friction, ask nothing. *Getting
-ready* is the flattening of the scene and what can be found out in advance (what can ever touch, symmetries), once for each run.
+From {low:,} to {high:,} declared pairs the time of later runs grows by a factor of {growth:.2f}. Brute force looks at
+every declared pair in every step and has the same events to the last bit; it is not waited for beyond {most:,} pairs.
+*First run* asks shapely about each cell of the configuration space it enters; *later runs* of the same geometry, such as
+a sweep over torques or friction, ask nothing. *Getting ready* is the flattening of the scene and what can be found out in
+advance (what can ever touch, symmetries), once for each run.
 """
 
 

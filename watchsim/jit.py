@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import functools
 import hashlib
+import inspect
 import os
 import platform
 import re
@@ -30,14 +31,15 @@ _IMPORT = re.compile(r"^\s*from (watchsim(?:\.\w+)*) import", re.MULTILINE)
 def kernel(function: Function) -> Function:
     """Compile `function` as a part of the entries that call it; from Python use `entry(function)` or `callable_kernel`.
 
-    Division by zero gives inf or nan as in numpy; no fast-math, which would make isnan(nan) False.
+    Division by zero gives inf or nan as in numpy; no fast-math, which would make isnan(nan) False. Parts own no memory and
+    count no references: the entry's caller holds all arrays.
     """
     if not is_compiled():
         return function
     import numba
 
     # No wrapper for calls from Python: unpacking records there would take longer to compile than the kernels themselves.
-    options = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+    options = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True, "_nrt": False}
     if (compiler := _part_compiler()) is not None:
         options["pipeline_class"] = compiler
     compiled: Function = numba.njit(**options)(function)
@@ -119,28 +121,85 @@ def _part_compiler() -> type | None:
     return PartCompiler
 
 
+def inlined(function: Function) -> Function:
+    """Compile `function` into the body of whoever calls it: what it makes by reference lives as long as its caller runs."""
+    if not is_compiled():
+        return function
+    import numba
+
+    compiled: Function = numba.njit(inline="always", error_model="numpy")(function)
+    return compiled
+
+
 def by_reference(record: type, module: str) -> Any:
-    """For kernels: a constructor of a mutable struct with the fields of the NamedTuple class `record`, defined in `module`.
+    """For kernels: a constructor of a struct with the fields of the NamedTuple class `record`, defined in `module`.
 
     A tuple of arrays is passed to a compiled function by value, a dozen machine words for each array: with tens of arrays
-    that dominates compile time. A struct is one pointer. Without the compiler the NamedTuple itself serves.
+    that dominates compile time. This struct is one pointer, into the stack frame of the function that makes it: make it in
+    an entry (or `inlined` there) and only hand it down. Nothing counts references to what it holds: counting took two thirds
+    of the whole time. Without the compiler the NamedTuple itself serves.
     """
     if not is_compiled():
         return record
     from numba.core import types
-    from numba.experimental import structref
 
-    def preprocess_fields(_: Any, fields: Any) -> Any:
-        return fields
+    def __init__(self: Any, held: tuple[Any, ...]) -> None:
+        self.held = held
+        types.Type.__init__(self, name=f"{record.__name__}{held}")
 
-    body = {"__module__": module, "preprocess_fields": preprocess_fields}
-    struct = type(f"{record.__name__}Type", (types.StructRef,), body)
+    body = {"__module__": module, "__init__": __init__, "names": record._fields}  # type: ignore[attr-defined]
+    struct = type(f"{record.__name__}Type", (types.Type,), body)
     # Numba pickles the type into its cache by name.
     setattr(sys.modules[module], struct.__name__, struct)
-    structref.register(struct)
     constructor = type(f"{record.__name__}Ref", (), {"__module__": module})
-    structref.define_constructor(constructor, struct, list(record._fields))  # type: ignore[attr-defined]
+    _define_reference(struct, constructor)
     return constructor
+
+
+def _define_reference(struct: Any, constructor: type) -> None:
+    """Teach numba the type `struct`: how it is laid out, how `constructor` makes one, and how its fields are read."""
+    from llvmlite import ir
+    from numba.core import cgutils, types
+    from numba.core.imputils import impl_ret_borrowed, lower_builtin, lower_getattr_generic
+    from numba.core.typing.templates import AttributeTemplate, infer_getattr
+    from numba.extending import models, register_model, type_callable
+
+    @register_model(struct)
+    class Pointer(models.PrimitiveModel):
+        """A pointer to the fields, one after another."""
+
+        def __init__(self, manager: Any, reference: Any) -> None:
+            fields = ir.LiteralStructType([manager.lookup(field).get_value_type() for field in reference.held])
+            super().__init__(manager, reference, fields.as_pointer())
+
+    @type_callable(constructor)
+    def type_constructor(_: Any) -> Any:
+        def typer(*held: Any) -> Any:
+            return struct(held)
+
+        names = [inspect.Parameter(name, inspect.Parameter.POSITIONAL_OR_KEYWORD) for name in struct.names]
+        typer.__signature__ = inspect.Signature(names)  # type: ignore[attr-defined]
+        return typer
+
+    @lower_builtin(constructor, types.VarArg(types.Any))
+    def construct(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        pointer = cgutils.alloca_once(builder, context.get_value_type(signature.return_type).pointee)
+        for i, value in enumerate(values):
+            builder.store(value, cgutils.gep_inbounds(builder, pointer, 0, i))
+        return pointer
+
+    @infer_getattr
+    class Fields(AttributeTemplate):
+        key = struct
+
+        def generic_resolve(self, reference: Any, name: str) -> Any:
+            return reference.held[struct.names.index(name)] if name in struct.names else None
+
+    @lower_getattr_generic(struct)
+    def read(context: Any, builder: Any, reference: Any, pointer: Any, name: str) -> Any:
+        i = struct.names.index(name)
+        value = builder.load(cgutils.gep_inbounds(builder, pointer, 0, i))
+        return impl_ret_borrowed(context, builder, reference.held[i], value)
 
 
 def is_compiled() -> bool:

@@ -70,7 +70,12 @@ def test_check_counts_pairs_and_knows_the_frequency(capsys: pytest.CaptureFixtur
     assert main(["check", str(LEVER), "--json"]) == 0
     seen = json.loads(capsys.readouterr().out)
     assert seen["theory"]["frequency_hz"] == pytest.approx(4.0, rel=1e-9)
-    assert 0 < seen["pairs"]["reachable"] < seen["pairs"]["declared"]
+    assert 0 < seen["pairs"]["typical"] < seen["pairs"]["reachable"] < seen["pairs"]["declared"]
+    assert [entry["bodies"] for entry in seen["pairs"]["between"]] == [
+        ["wheel", "lever"],
+        ["lever", "balance"],
+        ["lever", "banking"],
+    ]
 
 
 def test_run_writes_a_results_folder_and_keeps_one_that_exists(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -6,8 +6,9 @@ import pytest
 
 from watchsim.mechanism.check import check_report, check_text
 from watchsim.mechanism.load import load
+from watchsim.mechanism.pair_count import PairCount
 
-PAIRS = {"declared": 120, "reachable": 17}
+PAIRS = (PairCount(("wheel", "lever"), 120, 17, 3, 5, 2),)
 
 
 def test_report(desk):
@@ -23,7 +24,11 @@ def test_report(desk):
     }
     assert report["bodies"]["banking"]["coordinates"] == 0
     assert report["theory"] == {"frequency_hz": pytest.approx(4.0, rel=1e-15), "vph": pytest.approx(28800.0, rel=1e-15)}
-    assert report["pairs"] == PAIRS
+    assert {name: report["pairs"][name] for name in ("declared", "reachable", "typical")} == {
+        "declared": 120,
+        "reachable": 17,
+        "typical": 3,
+    }
     (finding,) = report["findings"]
     assert set(finding) == {"code", "severity", "layer", "x_mm", "y_mm", "message", "fix"}
     json.dumps(report)
@@ -64,7 +69,7 @@ def test_text_for_people(desk):
         "drive on wheel: -1 µN·m",
         "Q = 250",
         "contact wheel.TEETH - lever: friction 0.12, restitution 0.2",
-        "120 declared, 17 can ever touch",
+        "wheel - lever            120               17                      3",
         "warning: wheel.dxf: an edge was drawn twice.",
     ):
         assert part in text, part

@@ -12,20 +12,25 @@ HELP = "everything short of simulating: units, overlap at the start, mass, frequ
 def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("scene", metavar="SCENE", help="a scene file (TOML), or the folder that holds scene.toml")
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of text")
-    parser.add_argument("--png", metavar="FILE", help="where to write a picture of the start position")
+    parser.add_argument(
+        "--png", metavar="FILE", help="where to write a picture of the start position, what can ever touch in colour"
+    )
 
 
 def run(args: argparse.Namespace) -> int:
     from watchsim.commands.scenes import load_scene
-    from watchsim.mechanism.reachable import count_pairs
+    from watchsim.contact.counts import modelled_pairs
     from watchsim.mechanism.check import check_report, check_text
+    from watchsim.mechanism.compile import compile_scene
 
     scene = load_scene(args.scene, overlap=False)
-    report = check_report(scene, count_pairs(scene))
+    compiled = compile_scene(scene)
+    pairs = modelled_pairs(compiled, [body.name for body in scene.bodies])
+    report = check_report(scene, pairs.counts)
     if args.png:
         from watchsim.render.still import still
 
-        still(scene, args.png)
+        still(scene, args.png, compiled, pairs)
         say(f"Picture: {args.png}")
     if args.json:
         print_json(report)

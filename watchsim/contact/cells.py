@@ -33,7 +33,7 @@ class CellFinder:
         self.seconds = 0.0
         self.learned = 0  # cells that shapely was asked about
         self._forget()
-        self._pairs = {p: _PairCells(model, p) for p in range(len(model.pairs)) if model.pairs[p].listed}
+        self._pairs = {p: PairCells(model, p) for p in range(len(model.pairs)) if model.pairs[p].listed}
         for pair in self._pairs.values():
             self._insert(*pair.everything())
 
@@ -83,13 +83,17 @@ class _Axis(NamedTuple):
     wrap: int
     fold: int
 
+    def cell_of(self, q: Array) -> int:
+        """In which cell along it q lies, not wrapped."""
+        return math.floor((q[self.coordinate] - (q[self.on] if self.on >= 0 else 0.0)) / self.size)
+
     @property
     def part(self) -> int:
         """Cells after which everything repeats, 0 for a length."""
         return self.wrap // self.fold if self.wrap else 0
 
 
-class _PairCells:
+class PairCells:
     """The cells of one pair of bodies: indices, keys and symmetries."""
 
     def __init__(self, model: Model, p: int) -> None:
@@ -114,7 +118,7 @@ class _PairCells:
     def around(self, q: Array) -> tuple[Integers, Integers, Integers]:
         """The same for the cell of q and its neighbours."""
         steps = itertools.product(range(-AROUND[len(self.axes)], AROUND[len(self.axes)] + 1), repeat=len(self.axes))
-        here = [math.floor((q[axis.coordinate] - (q[axis.on] if axis.on >= 0 else 0.0)) / axis.size) for axis in self.axes]
+        here = [axis.cell_of(q) for axis in self.axes]
         block = np.array(here) + np.array(list(steps))
         parts = np.array([axis.part for axis in self.axes])
         block = block[((np.abs(block) < REACH) | (parts > 0)).all(axis=1)]
@@ -125,6 +129,15 @@ class _PairCells:
             self.known.ask(base[(turns == turn).all(axis=1)])
         cells = list(dict.fromkeys(map(tuple, base.tolist())))
         return self._everywhere(cells)
+
+    def here(self, q: Array) -> Integers:
+        """The candidates in the cell of q alone."""
+        keys, count, found = self.around(q)
+        index = [axis.cell_of(q) for axis in self.axes]
+        key = self._keys(np.array([[i % axis.wrap if axis.wrap else i for i, axis in zip(index, self.axes, strict=True)]]))[0]
+        place = int(np.flatnonzero(keys == key)[0])
+        start = int(count[:place].sum())
+        return found[start : start + count[place]]
 
     def _everywhere(self, cells: list[tuple[int, ...]]) -> tuple[Integers, Integers, Integers]:
         """Cells and their candidates in all alike parts of a turn."""

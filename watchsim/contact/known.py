@@ -50,7 +50,7 @@ class Known:
             if not new:
                 return
             count, found = self._search.candidates(index[new])
-            parts = np.split(found.astype(np.int32), np.cumsum(count)[:-1])
+            parts = np.split(found.astype(np.int64), np.cumsum(count)[:-1])
             self._found.update(zip(map(tuple, index[new].tolist()), parts, strict=True))
 
     def answers(self, cells: list[Cell]) -> tuple[Integers, Integers]:

@@ -6,7 +6,7 @@ Echoes units, sizes, centre distances, mass, inertia and frequency, so that a wr
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from watchsim.drawing.findings import Finding
@@ -15,6 +15,7 @@ from watchsim.mechanism.body import Body
 from watchsim.mechanism.carry import at_start, is_still
 from watchsim.mechanism.force import Damping, Spring
 from watchsim.mechanism.overlap import overlaps
+from watchsim.mechanism.pair_count import PairCount, pair_lines, pairs_entry
 from watchsim.mechanism.scene import Scene
 from watchsim.mechanism.solid import HAIRSPRING, LYING, PLATE, UPRIGHT, Solid, total
 from watchsim.units import show, to
@@ -25,13 +26,13 @@ LENGTHS, MASSES, INERTIAS = ("mm", "m"), ("mg", "g", "kg"), ("mg·cm²", "g·cm�
 COORDINATES = {"fixed": 0, "pivot": 1, "slide": 1, "free": 3}
 
 
-def check_report(scene: Scene, pairs: Mapping[str, int]) -> dict[str, Any]:
-    """What `check --json` prints. `pairs` holds the numbers of primitive pairs "declared" and "reachable"."""
+def check_report(scene: Scene, pairs: Sequence[PairCount]) -> dict[str, Any]:
+    """What `check --json` prints; `pairs` holds the numbers of each pair of bodies that may touch."""
     hertz = frequency(scene)
     return {
         "bodies": {body.name: _body_entry(body) for body in scene.bodies},
         "theory": {"frequency_hz": hertz, "vph": None if hertz is None else 7200.0 * hertz},
-        "pairs": {"declared": pairs["declared"], "reachable": pairs["reachable"]},
+        "pairs": pairs_entry(pairs),
         "statics": {},
         "findings": [
             finding.as_dict() for finding in (*scene.findings, *_overlap_findings(scene), *_poised(scene), *_weightless(scene))
@@ -51,8 +52,7 @@ def frequency(scene: Scene) -> float | None:
 def check_text(report: Mapping[str, Any], scene: Scene) -> str:
     """The same for people, in watch units."""
     parts = [scene.title, *_body_lines(scene), *_distance_lines(scene), *_force_lines(scene), *_contact_lines(scene)]
-    pairs = report["pairs"]
-    parts.append(f"pairs of primitives: {pairs['declared']} declared, {pairs['reachable']} can ever touch")
+    parts += pair_lines(report["pairs"])
     parts += [f"{finding['severity']}: {finding['message']}. {finding['fix']}".rstrip() for finding in report["findings"]]
     return "\n".join(parts)
 

@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.mechanism.chords import Chords, chords
 from watchsim.mechanism.cell_frame import seen_from
+from watchsim.mechanism.chords import Chords, chords
 from watchsim.mechanism.model import FIXED, PIVOT, SLIDE, Records
 
 Array = NDArray[np.float64]

@@ -6,7 +6,7 @@ rest. What never changes becomes artists of the figure; what changes is written 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -100,6 +100,24 @@ def draw_scale(figure: Figure, scale: float) -> None:
     )
     figure.add_artist(line)
     _words(figure, name, (0.5 * (left + right), base + 2.0 * tick), max(SMALL * unit, SMALLEST), INK, ha="center")
+
+
+def draw_key(figure: Figure, entries: Sequence[tuple[str, str]]) -> None:
+    """Strokes in their colours with what they mean, side by side in the line below the title."""
+    unit = _unit(figure)
+    size, x = max(SMALL * unit, SMALLEST), PAD * unit
+    base = figure.bbox.height - (PAD + 0.75 * TIME + 0.35 * TIME) * unit - size
+    for colour, meaning in entries:
+        stroke = Line2D(
+            *([x, x + 1.6 * size], [base + 0.35 * size] * 2),
+            color=colour,
+            linewidth=max(3.0 * unit, 1.5),
+            solid_capstyle="round",
+            transform=IdentityTransform(),
+        )
+        figure.add_artist(stroke)
+        text = _words(figure, meaning, (x + 2.2 * size, base), size, INK)
+        x += 2.2 * size + _width(text) + GAP * unit
 
 
 def draw_rules(figure: Figure, frame: Frame) -> None:

@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 
 from watchsim.geometry.primitives import Arc
 from watchsim.mechanism.carry import at_start, is_still
-from watchsim.render.layout import draw_rules, draw_scale, lay_out
+from watchsim.render.edges import Edges, edge_paths
+from watchsim.render.layout import draw_key, draw_rules, draw_scale, lay_out
 from watchsim.render.palette import BACKGROUND, CONTACT, INK
 from watchsim.render.parts import Part, is_round, loops_of, parts
 from watchsim.render.poses import Window
@@ -31,6 +32,7 @@ Pixels = NDArray[np.uint8]
 DPI = 72.0  # one point is one pixel
 CHORD = 0.05  # pixels that a chord may stray from its arc
 HATCH = 13.0  # pixels between hatch strokes
+PICKED = 3.0  # pixels: width of picked edges
 SHADOW = (2.0, -3.0)  # pixels
 SHADE = (0.13, 0.14, 0.16, 0.13)
 
@@ -38,7 +40,8 @@ SHADE = (0.13, 0.14, 0.16, 0.13)
 class Stage:
     """Draws a run at any instant of a window, always in the same frame.
 
-    `size` is (width, height) in pixels; `speed` and `step` (s between frames) are only told, not used.
+    `size` is (width, height) in pixels; `speed` and `step` (s between frames) are only told, not used. `picked` edges are
+    drawn over everything, with a key below the title.
     """
 
     def __init__(
@@ -51,6 +54,7 @@ class Stage:
         turn: float | None = None,
         speed: float | None = None,
         step: float | None = None,
+        picked: Sequence[Edges] = (),
     ) -> None:
         self._figure = Figure(figsize=((size[0] + 0.5) / DPI, (size[1] + 0.5) / DPI), dpi=DPI, facecolor=BACKGROUND)
         self._canvas = FigureCanvasAgg(self._figure)
@@ -62,7 +66,8 @@ class Stage:
         if zoom is not None or endless or self.view.follow is not None:
             draw_rules(self._figure, self._layout.frame)
         self._transforms = {body.name: Affine2D() for body in run.scene.bodies}
-        self._patches = self._compose(run)
+        self._patches = [*self._compose(run), *(patch for edges in picked for patch in self._picked(run, edges))]
+        draw_key(self._figure, [(edges.colour, edges.meaning) for edges in picked])
         self._canvas.draw()
         self._background = self._canvas.copy_from_bbox(self._figure.bbox)
 
@@ -113,6 +118,16 @@ class Stage:
             return [self._own(PathPatch(part.faces, facecolor=part.finish.fill, linewidth=thin, **edge))]
         strokes = [] if part.strokes is None else [PathPatch(part.strokes, fill=False, linewidth=0.8 * thin, alpha=0.7, **edge)]
         return [self._own(patch) for patch in (*strokes, PathPatch(part.faces, fill=False, linewidth=1.8 * thin, **edge))]
+
+    def _picked(self, run: Trajectory, edges: Edges) -> list[PathPatch]:
+        """Edges in colour, on top of their bodies."""
+        look = {"fill": False, "edgecolor": edges.colour, "linewidth": max(PICKED * self._unit, 1.5), "capstyle": "round"}
+        made = []
+        for number, path in edge_paths(edges, CHORD / self.view.scale).items():
+            body = run.scene.bodies[number]
+            place = Affine2D(self.view.matrix(self.view.centre) @ pose_matrix(np.array([*body.position, body.angle])))
+            made.append(self._own(PathPatch(path, transform=self._transforms.get(body.name, place), **look)))
+        return made
 
     def _shadow(self, part: Part) -> PathPatch:
         shift = Affine2D().translate(SHADOW[0] * self._unit, SHADOW[1] * self._unit)

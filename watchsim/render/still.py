@@ -1,4 +1,4 @@
-"""What does a scene look like at its start?"""
+"""What does a scene look like at its start, and what of it can touch?"""
 
 from __future__ import annotations
 
@@ -7,28 +7,40 @@ from pathlib import Path
 
 import numpy as np
 
-from watchsim.mechanism.compile import compile_scene
+from watchsim.contact.counts import ModelledPairs
+from watchsim.mechanism.compile import Compiled
 from watchsim.mechanism.scene import Scene
-from watchsim.render.movie import frame
+from watchsim.render.edges import Edges
+from watchsim.render.poses import poses
+from watchsim.render.stage import Stage
 from watchsim.simulation.stops import Stop
 from watchsim.simulation.trajectory import EVENT_DTYPE, Trajectory
 
+SIZE = (1280, 720)
+REACHABLE, CANDIDATE = "#1971c2", "#f76707"
 
-def still(scene: Scene, path: str | os.PathLike[str], size: tuple[int, int] = (1280, 720)) -> None:
-    """Write a picture (PNG or what else imageio knows) of the bodies where the scene puts them at t = 0."""
+
+def still(scene: Scene, path: str | os.PathLike[str], compiled: Compiled, pairs: ModelledPairs) -> None:
+    """Write a picture (PNG or what else imageio knows) of the bodies where the scene puts them at t = 0.
+
+    Edges that can ever touch another body are in colour, those of which a pair is a candidate at the start in another.
+    """
     import imageio.v3 as imageio
 
-    compiled = compile_scene(scene)
-    q = compiled.relative(np.stack([compiled.q, compiled.q]))
-    rest = Trajectory(
-        scene=scene,
-        t=np.array([0.0, 1.0]),
-        q=q,
-        u=np.zeros_like(q),
-        a=np.zeros_like(q),
-        slices=compiled.slices,
-        events=np.zeros(0, EVENT_DTYPE),
-        pairs=(),
-        stop=Stop.DURATION,
+    model = compiled.model
+    picked = (
+        Edges(model, np.setdiff1d(pairs.reachable, pairs.candidates), REACHABLE, "can ever touch"),
+        Edges(model, pairs.candidates, CANDIDATE, "candidate at the start"),
     )
-    imageio.imwrite(Path(path), frame(rest, 0.0, size=size))
+    run = _at_rest(scene, compiled)
+    stage = Stage(run, SIZE, (0.0, 1.0), picked=picked)
+    frames = {name: rows[0] for name, rows in poses(run, np.zeros(1)).items()}
+    imageio.imwrite(Path(path), stage.draw(0.0, frames)[..., :3])
+
+
+def _at_rest(scene: Scene, compiled: Compiled) -> Trajectory:
+    """A run in which nothing moves."""
+    q = compiled.relative(np.stack([compiled.q, compiled.q]))
+    rest = np.zeros_like(q)
+    events = np.zeros(0, EVENT_DTYPE)
+    return Trajectory(scene, np.array([0.0, 1.0]), q, rest, rest, compiled.slices, events, (), Stop.DURATION)

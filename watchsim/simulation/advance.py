@@ -13,7 +13,7 @@ from watchsim.contact.lookup import time_through_cells
 from watchsim.dynamics.delassus import ContactWorkRef, fill_inverse
 from watchsim.dynamics.forces import next_knot
 from watchsim.dynamics.lcp import LcpWorkRef
-from watchsim.jit import entry, kernel
+from watchsim.jit import entry, inlined, kernel
 from watchsim.mechanism.model import CellsRef, ModelRef
 from watchsim.simulation.coupled import motion
 from watchsim.simulation.drift import project_positions, project_velocities
@@ -241,7 +241,7 @@ def _loop(model, cells, state, options, until, scratch, record):
         state.numbers[2] = 1 if event else 0
 
 
-@kernel
+@inlined
 def _by_reference(scratch):
     """The scratch arrays as nested structs."""
     work = scratch.work

@@ -6,6 +6,7 @@ from watchsim.contact.gaps import extent_margin, normal_gap
 from watchsim.contact.index_sets import OPEN
 from watchsim.contact.kinematics import contact_kinematics
 from watchsim.contact.lookup import UNKNOWN, candidate, candidates
+from watchsim.dynamics.linear import copy
 from watchsim.jit import kernel
 from watchsim.simulation.handover import continues_active
 from watchsim.simulation.sleep import is_at_rest
@@ -48,7 +49,7 @@ def gather(model, cells, state, options, scratch):
         how, start, count = candidates(model, cells, p, state.q)
         if how == UNKNOWN:
             scratch.unknown[0] = p
-            scratch.at[:] = state.q
+            copy(state.q, scratch.at)
             return -1
         for place in range(start, start + count):
             k = candidate(model, cells, how, place)

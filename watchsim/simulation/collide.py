@@ -12,6 +12,7 @@ from watchsim.dynamics.delassus import contact_velocities
 from watchsim.dynamics.dry import add_drag, set_grips
 from watchsim.dynamics.forces import forces
 from watchsim.dynamics.impact import energy_change, impact
+from watchsim.dynamics.linear import copy
 from watchsim.jit import kernel
 from watchsim.simulation.closed import refresh, resting
 from watchsim.simulation.keep import keep_event
@@ -70,7 +71,7 @@ def _solve(model, state, m, jam, scratch):
     """One impact with scratch.restitution; on an energy gain again with the smallest restitution, then with none."""
     kinetic = kinetic_energy(model, scratch.before)
     for attempt in range(3):
-        state.u[:] = scratch.before
+        copy(scratch.before, state.u)
         status = impact(model, scratch.closed, m, scratch.restitution, jam, scratch.work, state.u)
         count_rungs(state, scratch.work)
         if status != 0:
@@ -136,13 +137,13 @@ def collide(model, state, m, options, jam, scratch, record):
 
     `jam` (m/s) is positive where nothing approaches, but a sliding contact needs an infinite force (Painlevé).
     """
-    scratch.before[:] = state.u
+    copy(state.u, scratch.before)
     _law_restitution(model, m, scratch)
     ends = -1.0
     for _ in range(1 + m):
         status = _solve(model, state, m, jam, scratch)
         if status != 0:
-            state.u[:] = scratch.before
+            copy(scratch.before, state.u)
             return status
         for row in range(2 * m):
             scratch.impulse[row] = scratch.work.force[row]

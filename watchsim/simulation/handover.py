@@ -11,6 +11,7 @@ from watchsim.contact.index_sets import OPEN
 from watchsim.contact.kinematics import contact_kinematics
 from watchsim.contact.lookup import UNKNOWN, candidate, candidates
 from watchsim.contact.poses import place
+from watchsim.dynamics.linear import copy
 from watchsim.jit import kernel
 from watchsim.simulation.drift import project_velocities
 from watchsim.simulation.keep import keep_event
@@ -70,7 +71,7 @@ def _successor(model, cells, state, options, k, scratch):
     how, start, count = candidates(model, cells, p, state.q)
     if how == UNKNOWN:
         scratch.unknown[0] = p
-        scratch.at[:] = state.q
+        copy(state.q, scratch.at)
         return -2
     best, deepest = -1, -options.extent
     for slot in range(start, start + count):

@@ -6,7 +6,8 @@ import math
 
 from watchsim.contact.kinematics import ClosedRef
 from watchsim.contact.lookup import along
-from watchsim.jit import entry, kernel
+from watchsim.dynamics.linear import copy
+from watchsim.jit import entry, inlined, kernel
 from watchsim.mechanism.model import CellsRef, ModelRef
 from watchsim.simulation.keep import keep_event, keep_row
 from watchsim.simulation.moreau_step import MoreauWorkRef, act, closed_at_middle, move, stop_approaches
@@ -82,7 +83,7 @@ def _step(model, cells, state, options, h, whole, work, record):
         keep_row(state, record, state.clock[0], state.q, state.u, state.a)
         keep_row(state, record, state.clock[0], state.q, work.u, state.a)
     act(model, state, m, h, work, state.u)
-    work.at[:] = state.q
+    copy(state.q, work.at)
     move(model, state, options, m, h, work, state.u)
     for i in range(len(state.u)):
         if not math.isfinite(state.q[i] + state.u[i]):
@@ -90,7 +91,7 @@ def _step(model, cells, state, options, h, whole, work, record):
         # `_passages` looks from the start of the step to its end.
         work.q[i], state.q[i] = state.q[i], work.at[i]
     _passages(model, state, h, work, work.q, state.u, record)
-    state.q[:] = work.q
+    copy(work.q, state.q)
     state.numbers[3] += 1
     state.clock[0] = state.numbers[3] * whole if h == whole else state.clock[0] + h
     state.counts[N_STEPS] += 1
@@ -112,7 +113,7 @@ def advance_fixed(model, cells, state, options, until, pace, work, record):
     )
 
 
-@kernel
+@inlined
 def _by_reference(work):
     """The scratch arrays as a struct."""
     return MoreauWorkRef(

@@ -18,6 +18,7 @@ from watchsim.contact.kinematics import Closed, closed_contacts, contact_kinemat
 from watchsim.contact.lookup import UNKNOWN, candidate, candidates
 from watchsim.contact.poses import place, point_of, poses
 from watchsim.dynamics.forces import driving_force, joint_damping, joint_energy, stretch, table_force
+from watchsim.dynamics.linear import copy
 from watchsim.jit import by_reference, kernel
 from watchsim.mechanism.model import Model
 from watchsim.simulation.keep import keep_event
@@ -97,7 +98,7 @@ def closed_at_middle(model, cells, state, options, h, work):
         how, start, count = candidates(model, cells, p, work.q)
         if how == UNKNOWN:
             work.unknown[0] = p
-            work.at[:] = work.q
+            copy(work.q, work.at)
             return -1
         for place_in_list in range(start, start + count):
             k = candidate(model, cells, how, place_in_list)
@@ -140,7 +141,7 @@ def _relax(state, m, work):
 def stop_approaches(model, state, options, m, work, record):
     """Impacts at the start of the step, into `work.u`; True if any is fast enough to be written down."""
     closed = work.closed
-    work.u[:] = state.u
+    copy(state.u, work.u)
     rates_of(closed, m, work.u, work.b)
     fastest = 0.0
     for i in range(m):
@@ -152,9 +153,9 @@ def stop_approaches(model, state, options, m, work, record):
     fill_mobility(closed, m, work.inverse, work.G)
     for i in range(m):
         work.low[i], work.P[2 * i], work.P[2 * i + 1] = 0.0, 0.0, 0.0
-    work.rates[:] = work.b
+    copy(work.b, work.rates)
     _relax(state, m, work)
-    work.more[:] = work.P
+    copy(work.P, work.more)
     for row in range(2 * m):
         for column in range(2 * m):
             work.b[row] += work.G[row, column] * work.P[column]
@@ -225,7 +226,7 @@ def act(model, state, m, h, work, out_u):
     """Velocities at the end of the step: forces and contacts together, without restitution."""
     closed = work.closed
     _free_velocity(model, state, h, work)
-    out_u[:] = work.free
+    copy(work.free, out_u)
     if m == 0:
         return
     fill_mobility(closed, m, work.inverse, work.G)

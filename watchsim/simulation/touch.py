@@ -12,6 +12,7 @@ import math
 from watchsim.contact.gaps import extent_margins, normal_gap
 from watchsim.contact.lookup import UNKNOWN, candidate, candidates, time_in_cell
 from watchsim.contact.poses import point_of
+from watchsim.dynamics.linear import copy
 from watchsim.jit import kernel
 from watchsim.mechanism.model import FREE, LINE, PIVOT, SLIDE
 from watchsim.simulation.handover import continues_active
@@ -254,7 +255,7 @@ def first_touch(model, cells, state, options, end, scratch):
         tau = 0.0
         while tau < best:
             _place_pair(model, state, pair, tau, scratch)
-            scratch.at[:] = scratch.q
+            copy(scratch.q, scratch.at)
             until = min(best, tau + time_in_cell(model, p, scratch.q, scratch.u, scratch.step.bound))
             known, root, k = _first_of(model, cells, state, options, p, tau, until, scratch)
             if not known:
