@@ -25,7 +25,8 @@ from watchsim.mechanism.compile import compile_scene
 from watchsim.mechanism.load import load
 from watchsim.mechanism.model import ARC, CORNER, Records
 from watchsim.mechanism.scene import Scene
-from watchsim.simulation.simulate import WHOLE_RUN, _Run, simulate
+from watchsim.simulation.run import Run
+from watchsim.simulation.simulate import WHOLE_RUN, simulate
 from watchsim.simulation.stops import Stop
 from watchsim.simulation.trajectory import Trajectory
 
@@ -120,10 +121,10 @@ class Row:
     events: int
 
 
-def loop_time(scene: Scene, prefilter: bool) -> tuple[float, float, _Run]:
+def loop_time(scene: Scene, prefilter: bool) -> tuple[float, float, Run]:
     """Processor times: to get ready (s), and of the event loop (s per simulated second)."""
     start = time.process_time()
-    run = _Run(compile_scene(scene, prefilter), scene.tolerance, DURATION, WHOLE_RUN)
+    run = Run(compile_scene(scene, prefilter), scene.tolerance, DURATION, WHOLE_RUN)
     ready = time.process_time()
     run.warm_up()
     begin = time.process_time()

@@ -31,6 +31,11 @@ def test_everything_of_a_scene(tmp_path: Path, capsys: pytest.CaptureFixture[str
         assert not again.findings and again.points == (("PIVOT", 0.0, 0.0),)
         one, other = section(body.loops).about((0.0, 0.0)), section(again.loops).about((0.0, 0.0))
         assert (other.area, other.polar) == pytest.approx((one.area, one.polar), rel=1e-12, abs=0.0)
+        page = ws.read(folder / f"{name}.svg")  # its origin is a corner of the page; the pivot is marked by a circle
+        assert not page.findings and (page.units, page.units_from) == ("mm", "page")
+        (mark,) = (loop.edges[0] for loop in page.loops if loop.layer == "PIVOT")
+        drawn = section(loop for loop in page.loops if loop.layer != "PIVOT").about((mark.x, mark.y))
+        assert (drawn.area, drawn.polar) == pytest.approx((one.area, one.polar), rel=1e-12, abs=0.0)
         solid = trimesh.load(folder / f"{name}.stl")
         assert solid.volume == pytest.approx(1e9 * one.area * 0.2e-3, rel=2e-3)
     whole = trimesh.load(folder / "scene.glb")

@@ -8,12 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from watchsim.drawing.drawing import Drawing
-from watchsim.drawing.dxf_units import named_length
 from watchsim.drawing.inspect import inspect_report, inspect_text
 from watchsim.drawing.read import FIT, read, read_content
+from watchsim.drawing.svg_page import page_unit
 from watchsim.geometry.extent import total_length
-
-LEFT_OUT = ("layer-off", "paper-space", "edge-on")
 
 
 def amount(drawing: Drawing) -> int:
@@ -23,7 +21,7 @@ def amount(drawing: Drawing) -> int:
 
 def agreed(drawing: Drawing, length: float | None) -> bool:
     """Does the other reader draw as much, by its coarser chords?"""
-    scale = named_length(drawing.units)[1] if drawing.units else 1e-3
+    scale = page_unit(drawing.units)[1] if drawing.units else 1e-3
     found = total_length((*drawing.loops, *drawing.open_chains)) / scale
     return length is not None and abs(found - length) <= 1e-2 * max(found, length)
 
@@ -33,7 +31,8 @@ def fault(path: Path, whole: Drawing, mutator: Any) -> str:
 
     `whole` is the drawing before, which had no finding. `mutator` is the module that damaged it; it looks at files without the
     package: `entities(data)`, how many stand in the file; `lost(data)`, whether the name of one stands where none begins;
-    `length(path)`, how much another reader draws (drawing units), None where that one gives up.
+    `length(path)`, how much another reader draws (drawing units), None where that one gives up; `TOLD`, the codes of findings
+    that account for entities which are not drawn.
 
     All entities must be drawn or told of; without any finding at least as much as before must be there, unless the other reader
     agrees that the damaged file draws less.
@@ -50,7 +49,7 @@ def fault(path: Path, whole: Drawing, mutator: Any) -> str:
     if not drawing.findings and amount(drawing) < amount(whole) and not agreed(drawing, mutator.length(path)):
         return f"silent loss: {amount(whole)} before, {amount(drawing)} after, and nothing said"
     drawn = len(runs) + len(content.points) + sum(content.ignored.values())
-    told = any(finding.severity == "error" or finding.code in LEFT_OUT for finding in content.findings)
+    told = any(finding.severity == "error" or finding.code in mutator.TOLD for finding in content.findings)
     entities = mutator.entities(data)
     if drawn < entities and not told:
         return f"silent loss: {entities} entities in the file, {drawn} read, and nothing said"

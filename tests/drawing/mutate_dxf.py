@@ -13,6 +13,7 @@ from pathlib import Path
 import dxf_text as d
 
 ENDING = "dxf"
+TOLD = ("layer-off", "paper-space", "edge-on")  # findings that account for entities not drawn
 NUMBERS = (
     b"0",
     b"-1",
@@ -103,7 +104,7 @@ def nested_blocks() -> bytes:
 
 def entities(data: bytes) -> int:
     """How many entities stand in model space by a plain look at the lines; blocks are not unfolded."""
-    lines = [line.strip() for line in data.decode("latin-1").split("\n")]
+    lines = [line.strip().decode("latin-1") for line in data.splitlines()]
     inside, count = False, 0
     for code, value, following in zip(lines[::2], lines[1::2], [*lines[3::2], ""], strict=False):
         if code == "0" and value.upper() in ("SECTION", "ENDSEC"):
@@ -116,15 +117,49 @@ def entities(data: bytes) -> int:
 
 
 def lost(data: bytes) -> bool:
-    """Does the name of an entity stand anywhere but after a group code 0, or as the name of something?"""
-    lines = [line.strip() for line in data.split(b"\n")]
+    """Does the name of an entity stand anywhere but after a group code 0, or as the name of something, in what is drawn?"""
+    lines = [line.strip() for line in without_unused_blocks(data).splitlines()]
     end = lines.index(b"EOF") if b"EOF" in lines else len(lines)
     begun = sum(code == b"0" and name in KINDS for code, name in zip(lines[:end:2], lines[1:end:2], strict=False))
     return sum(line in KINDS and before not in NAMING for before, line in pairwise(lines[:end])) > begun
 
 
 def length(path: Path) -> float | None:
-    """How much ezdxf draws, in drawing units, blocks unfolded; None where it gives up."""
+    """How much ezdxf draws, in drawing units, blocks unfolded; None where it gives up even on what is drawn alone."""
+    found = drawn_length(path)
+    if found is None:
+        alone = path.with_name("drawn.dxf")
+        alone.write_bytes(without_unused_blocks(path.read_bytes()))
+        found = drawn_length(alone)
+    return found
+
+
+def without_unused_blocks(data: bytes) -> bytes:
+    """The file without the blocks that nothing in model space inserts: their damage is none of the drawing's."""
+    lines = data.splitlines()
+    starts = [k for k in range(0, len(lines) - 1, 2) if lines[k].strip() == b"0"]
+    records = [(lines[a + 1].strip(), lines[a:b]) for a, b in zip(starts, [*starts[1:], len(lines)], strict=True)]
+    inside = b""
+    uses: dict[bytes, set[bytes]] = {b"": set()}
+    homes = []
+    for kind, record in records:
+        name = next((record[k + 1].strip() for k in range(2, len(record) - 1, 2) if record[k].strip() == b"2"), b"")
+        inside = name if kind == b"BLOCK" else inside
+        homes.append(inside)
+        if kind == b"INSERT":
+            uses.setdefault(inside, set()).add(name)
+        inside = b"" if kind == b"ENDBLK" else inside
+    used, new = {b""}, {b""}
+    while new:
+        new = set().union(*(uses.get(name, set()) for name in new)) - used
+        used |= new
+    kept = lines[: starts[0]] if starts else lines
+    for home, (_, record) in zip(homes, records, strict=True):
+        kept = [*kept, *record] if home in used else kept
+    return b"\n".join(kept)
+
+
+def drawn_length(path: Path) -> float | None:
     from ezdxf import disassemble, recover
 
     try:

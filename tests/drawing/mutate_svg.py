@@ -7,9 +7,17 @@ from __future__ import annotations
 
 import random
 import re
+import sys
+import xml.etree.ElementTree as ET
 from collections.abc import Callable
+from pathlib import Path
+from xml.parsers.expat import ExpatError
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "naive"))
+import svg_length
 
 ENDING = "svg"
+TOLD = ("hidden", "unused", "zero-size", "page", "edge-on")  # findings that account for elements not drawn
 NUMBERS = (
     b"0",
     b"-1",
@@ -149,6 +157,41 @@ d="M 100 100 l 50 0 0 30 z"
 ><circle id="pivot" cx="50" cy="60"
 r="4"
 /></g></svg>""".encode()
+
+
+def entities(data: bytes) -> int:
+    """How many pieces are drawn by a plain look at the elements: of a path each part; what is used counts once."""
+    try:
+        return sum(map(pieces, svg_length.tree(data).iter()))
+    except (ExpatError, ValueError, LookupError):
+        return 0
+
+
+def pieces(element: ET.Element) -> int:
+    kind = svg_length.local(element)
+    if kind != "path":
+        return kind in svg_length.DRAWN
+    rows = re.findall(r"[Mm]([^Mm]*)", element.get("d", ""))
+    return sum(re.search(r"[ZzLlHhVvCcSsQqTtAa]", row) is not None for row in rows)
+
+
+def lost(data: bytes) -> bool:
+    """Is the file no XML, or does a drawn element stand where it is text?"""
+    try:
+        root = svg_length.tree(data)
+    except (ExpatError, ValueError, LookupError):
+        return True
+    begun = sum(svg_length.local(element) in svg_length.DRAWN for element in root.iter())
+    plain = re.sub(rb"<!--.*?-->", b"", data, flags=re.DOTALL)
+    return len(re.findall(rb"<(?:%s)\b" % "|".join(svg_length.DRAWN).encode(), plain)) > begun
+
+
+def length(path: Path) -> float | None:
+    """How much `tests/naive/svg_length.py` draws, in units of the page; None where it gives up."""
+    try:
+        return svg_length.length(path.read_bytes())
+    except Exception:
+        return None
 
 
 def mutate(rng: random.Random, data: bytes) -> bytes:

@@ -171,3 +171,25 @@ def test_entities_outside_their_sections_are_said(read_bytes: Reader) -> None:
 def test_a_block_that_is_there_twice_is_said(read_bytes: Reader) -> None:
     blocks = d.block("B", d.circle(0, 0, 1)) + d.block("b", "")
     assert 'block "b" is there already' in errors(read_bytes(d.dxf(d.insert("B", (0, 0)), blocks=blocks)))["damaged"]
+
+
+def test_entities_after_the_end_are_an_error(read_bytes: Reader) -> None:
+    """Two files in one, or an EOF gone astray: what is drawn behind it must not get lost in silence."""
+    drawing = read_bytes(d.dxf(d.circle(0, 0, 1)) + d.line((0, 0), (1, 0)).encode() + d.circle(5, 0, 1).encode())
+    assert "2 entities (LINE)" in errors(drawing)["trash"]
+    assert len(drawing.loops) == 1
+
+
+def test_polylines_of_one_corner_are_told(read_bytes: Reader) -> None:
+    drawing = read_bytes(d.dxf(d.circle(0, 0, 1) + d.lwpolyline([(3, 4)], False)))
+    (finding,) = drawing.findings
+    assert finding.code == "zero-length" and finding.message.startswith("LWPOLYLINE")
+    assert (finding.x_mm, finding.y_mm) == pytest.approx((3.0, 4.0))
+
+
+@pytest.mark.parametrize(("tag", "word"), [((70, 0), "0 columns"), ((71, -3), "-3 rows"), ((66, 1), "attributes")])
+def test_inserts_with_something_amiss_are_told(read_bytes: Reader, tag: d.Tag, word: str) -> None:
+    drawing = read_bytes(d.dxf(d.insert("B", (0, 0), tag), blocks=d.block("B", d.circle(0, 0, 1))))
+    (finding,) = drawing.findings
+    assert (finding.code, finding.severity) == ("strange-group", "warning") and word in finding.message
+    assert len(drawing.loops) == 1

@@ -6,19 +6,26 @@
 from __future__ import annotations
 
 import random
+from collections.abc import Callable
 from pathlib import Path
+from types import ModuleType
 
 import judge_mutation
 import mutate_dxf
+import mutate_svg
 import pytest
 
 from watchsim.drawing.read import read
 
+Accident = Callable[[random.Random, bytes], bytes]
+MUTATORS = [mutate_dxf, mutate_svg]
+ACCIDENTS = [(mutator, accident) for mutator in MUTATORS for accident in mutator.ACCIDENTS]
 
-def judged(folder: Path, seeds: range) -> list[str]:
-    path = folder / "drawing.dxf"
+
+def judged(folder: Path, mutator: ModuleType, seeds: range) -> list[str]:
+    path = folder / f"drawing.{mutator.ENDING}"
     wholes = []
-    for sample in mutate_dxf.samples():
+    for sample in mutator.samples():
         path.write_bytes(sample)
         wholes.append(read(path))
         assert not wholes[-1].findings
@@ -26,26 +33,42 @@ def judged(folder: Path, seeds: range) -> list[str]:
     for seed in seeds:
         rng = random.Random(seed)
         k = rng.randrange(len(wholes))
-        data = mutate_dxf.mutate(rng, mutate_dxf.samples()[k])
+        data = mutator.mutate(rng, mutator.samples()[k])
         path.write_bytes(data)
-        faults.append(judge_mutation.fault(path, wholes[k], mutate_dxf))
+        faults.append(judge_mutation.fault(path, wholes[k], mutator))
     return faults
 
 
-def test_tens_of_accidents(tmp_path: Path) -> None:
-    assert not any(judged(tmp_path, range(60)))
+@pytest.mark.parametrize("mutator", MUTATORS, ids=lambda mutator: mutator.ENDING)
+def test_tens_of_accidents(tmp_path: Path, mutator: ModuleType) -> None:
+    assert not any(judged(tmp_path, mutator, range(60)))
 
 
 @pytest.mark.slow
-def test_hundreds_of_accidents(tmp_path: Path) -> None:
-    assert not any(judged(tmp_path, range(1000, 1800)))
+@pytest.mark.parametrize("mutator", MUTATORS, ids=lambda mutator: mutator.ENDING)
+def test_hundreds_of_accidents(tmp_path: Path, mutator: ModuleType) -> None:
+    assert not any(judged(tmp_path, mutator, range(1000, 1800)))
 
 
-@pytest.mark.parametrize("accident", mutate_dxf.ACCIDENTS, ids=lambda accident: accident.__name__)
-def test_every_kind_of_accident_changes_the_file(accident: object) -> None:
-    data = mutate_dxf.every_entity()
-    changed = [accident(random.Random(seed), data) != data for seed in range(20)]  # type: ignore[operator]
-    assert sum(changed) > 8
+@pytest.mark.parametrize(
+    ("mutator", "accident"),
+    [(m, a) for m in MUTATORS for a in m.ACCIDENTS],
+    ids=lambda one: one.__name__.removeprefix("mutate_"),
+)
+def test_every_kind_of_accident_changes_the_file(
+    mutator: ModuleType, accident: Callable[[random.Random, bytes], bytes]
+) -> None:
+    data = mutator.samples()[0]
+    assert sum(accident(random.Random(seed), data) != data for seed in range(20)) > 8
+
+
+@pytest.mark.parametrize("mutator", MUTATORS, ids=lambda mutator: mutator.ENDING)
+def test_both_readers_agree_on_the_whole_files(tmp_path: Path, mutator: ModuleType) -> None:
+    path = tmp_path / f"drawing.{mutator.ENDING}"
+    for sample in mutator.samples():
+        path.write_bytes(sample)
+        assert judge_mutation.agreed(read(path), mutator.length(path))
+        assert not judge_mutation.agreed(read(path), 0.9 * (mutator.length(path) or 0.0))
 
 
 def test_a_loss_in_silence_would_be_noticed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -73,3 +96,18 @@ def test_an_exception_would_be_noticed(tmp_path: Path, monkeypatch: pytest.Monke
     whole = read(path)
     monkeypatch.setattr(judge_mutation, "inspect_text", broken)
     assert judge_mutation.fault(path, whole, mutate_dxf).startswith("exception:")
+
+
+def test_a_loss_in_silence_would_be_noticed_in_svg(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "drawing.svg"
+    path.write_bytes(mutate_svg.every_element())
+    whole = read(path)
+    assert mutate_svg.entities(mutate_svg.every_element()) == 10
+    path.write_bytes(mutate_svg.layered().replace(b'width="10" height="12"', b'width="20" height="12"'))
+    assert not judge_mutation.fault(path, whole, mutate_svg), "the plain reading agrees that there is less"
+    monkeypatch.setattr(mutate_svg, "length", lambda _: 9.0)
+    assert judge_mutation.fault(path, whole, mutate_svg).startswith("silent loss: 18 before")
+    monkeypatch.setattr(mutate_svg, "entities", lambda _: 5)
+    assert judge_mutation.fault(path, read(path), mutate_svg).startswith("silent loss: 5 entities in the file, 3 read")
+    assert mutate_svg.lost(b"<svg><text><![CDATA[<rect width='4'/>]]></text></svg>") and mutate_svg.lost(b"<svg><g></svg>")
+    assert not any(map(mutate_svg.lost, mutate_svg.samples()))

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from made_outlines import parts
-from test_write_dxf import compare
+from same_outlines import compare
 from trimesh.path import Path2D, entities
 
 import watchsim as ws

@@ -9,56 +9,21 @@ import ezdxf
 import pytest
 from hypothesis import HealthCheck, given, settings
 from made_outlines import parts
+from same_outlines import compare, same_edge
 
 from watchsim.drawing.read import read
 from watchsim.drawing.write_dxf import dxf_text
-from watchsim.geometry.extent import extents
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.mass import section
 from watchsim.geometry.primitives import TURN, Arc, Line
 
 ROOT = Path(__file__).resolve().parents[2]
-TINY = 1e-12
 
 
 def read_back(text: str, folder: Path):
     path = folder / "again.dxf"
     path.write_text(text, encoding="utf-8")
     return read(path)
-
-
-def same_edges(one: Loop, other: Loop, size: float) -> bool:
-    """The same lines and arcs in the same order, begun anywhere, within 1e-12 of `size`."""
-    slack = TINY * size
-    count = len(one.edges)
-    return count == len(other.edges) and any(
-        all(same_edge(one.edges[i], other.edges[(i + shift) % count], slack) for i in range(count)) for shift in range(count)
-    )
-
-
-def same_edge(a: Line | Arc, b: Line | Arc, slack: float) -> bool:
-    if type(a) is not type(b):
-        return False
-    if isinstance(a, Line):
-        return math.dist(a.start, b.start) <= slack and math.dist(a.end, b.end) <= slack
-    if a.is_circle and b.is_circle:
-        return math.dist((a.x, a.y), (b.x, b.y)) <= slack and abs(a.radius - b.radius) <= slack and a.sweep * b.sweep > 0.0
-    ends = math.dist(a.start, b.start) <= slack * 4 and math.dist(a.end, b.end) <= slack * 4
-    # Relative to the arc's own size: a flat arc of a few millimetres may have a radius of a metre.
-    own = TINY * max(a.radius, slack / TINY)
-    return ends and math.dist((a.x, a.y), (b.x, b.y)) <= own and abs(a.radius - b.radius) <= own
-
-
-def compare(before: tuple[Loop, ...], after: tuple[Loop, ...]) -> None:
-    box = extents(before)
-    assert box is not None and len(before) == len(after)
-    size = max(map(abs, box))
-    for loop in before:
-        twins = [other for other in after if other.layer == loop.layer and same_edges(loop, other, size)]
-        assert len(twins) == 1, loop
-        assert (twins[0].hole, twins[0].closed) == (loop.hole, loop.closed)
-    one, other = section(before), section(after).about(section(before).origin)
-    assert (other.area, other.polar) == pytest.approx((one.area, one.polar), rel=TINY, abs=0.0)
 
 
 @settings(deadline=None, max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])

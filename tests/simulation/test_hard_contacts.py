@@ -164,7 +164,7 @@ def test_bodies_that_touch_without_a_force_travel_on_together() -> None:
     assert done.q[-1] == pytest.approx([0.3, 0.3], rel=1e-14)
 
 
-@pytest.mark.parametrize("name", ["rocking", "groove"])
+@pytest.mark.parametrize("name", ["rocking", "rocking slowly", "groove"])
 def test_accumulation_moves_nothing_beyond_the_stated_error(name: str) -> None:
     """A disc thrown into a groove, a block dropped on a corner: with restitution the end does not depend on the tolerance."""
     runs = [simulate(SETTLING[name](), tolerance=tolerance) for tolerance in (1e-9, 1e-12)]
@@ -172,7 +172,7 @@ def test_accumulation_moves_nothing_beyond_the_stated_error(name: str) -> None:
     assert runs[0].q[-1] == pytest.approx(runs[1].q[-1], abs=1e-8)
     assert np.abs(runs[0].u[-1]).max() < 1e-9
     assert all(0 < run.counts["impacts"] < 1000 for run in runs)
-    assert all(run.energy["residual_relative"] < 100.0 * run.tolerance for run in runs)
+    assert all(run.energy["residual_relative"] < 200.0 * run.tolerance for run in runs)
 
 
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-8, 1e-9, 1e-10, 1e-11])
@@ -207,4 +207,11 @@ def disc_in_groove() -> Scene:
     )
 
 
-SETTLING = {"rocking": dropped_block, "groove": disc_in_groove}
+def slowly_rocking() -> Scene:
+    """Weak gravity: the corners rise by less than the rounding of their gaps long before a rebound takes a microsecond."""
+    scene = dropped_block()
+    block = dataclasses.replace(scene.bodies[0], velocity=(0.0, 0.0, 0.02))
+    return dataclasses.replace(scene, bodies=(block, scene.bodies[1]), gravity=(0.0, -0.01), duration=32.0)
+
+
+SETTLING = {"rocking": dropped_block, "rocking slowly": slowly_rocking, "groove": disc_in_groove}

@@ -13,7 +13,7 @@ from reference import incline_closed_form as closed_form
 from watchsim.jit import callable_kernel
 from watchsim.mechanism.body import Body
 from watchsim.mechanism.scene import Scene
-from watchsim.simulation.moreau_prox import SWEEPS, relax
+from watchsim.simulation.moreau_prox import relax
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
 from watchsim.simulation.trajectory import EventKind, Trajectory
@@ -87,22 +87,27 @@ def test_block_on_an_incline(friction: float, slides: bool) -> None:
 
 
 def test_relaxation_solves_the_laws() -> None:
-    """Random contacts: percussions above `low`, complementary to the rates, friction in its cone and against the slip."""
+    """Random contacts and bearings: normal percussions complementary to the rates, friction within bounds and against slip."""
     rng = np.random.default_rng(5)
     for _ in range(300):
-        m = int(rng.integers(1, 4))
-        W = rng.normal(size=(8, 2 * m))
-        G, b = W.T @ W, rng.normal(size=2 * m)
-        low, friction = np.maximum(0.0, rng.normal(size=m)), np.full(m, 0.3)
-        P = np.zeros(2 * m)
-        assert _relax(G, b, low, friction, m, P) <= SWEEPS
+        m, bearings = int(rng.integers(1, 4)), int(rng.integers(0, 3))
+        rows = 2 * m + bearings
+        W = rng.normal(size=(8, rows))
+        G, b = W.T @ W, rng.normal(size=rows)
+        low, ends = np.maximum(0.0, rng.normal(size=m)), np.zeros((m + bearings, 4))
+        ends[:m, 1], ends[:m, 3], ends[m:, 0], ends[m:, 2] = -0.3, 0.3, -0.2, 0.2
+        P = np.zeros(rows)
+        _, settled = _relax(G, b, low, ends, m, bearings, P)
+        assert settled
         rate = b + G @ P
-        normal, tangential = P[0::2], P[1::2]
-        assert np.abs(np.minimum(normal - low, rate[0::2])).max() < 1e-9
-        assert np.all(np.abs(tangential) <= 0.3 * normal + 1e-12)
-        slip = rate[1::2]
-        assert np.abs(slip * (0.3 * normal - np.abs(tangential))).max() < 1e-9
-        assert np.all(slip * tangential <= 1e-9)
+        normal = P[0 : 2 * m : 2]
+        assert np.abs(np.minimum(normal - low, rate[0 : 2 * m : 2])).max() < 1e-9
+        held = np.concatenate([P[1 : 2 * m : 2], P[2 * m :]])
+        slip = np.concatenate([rate[1 : 2 * m : 2], rate[2 * m :]])
+        most = np.concatenate([0.3 * normal, np.full(bearings, 0.2)])
+        assert np.all(np.abs(held) <= most + 1e-12)
+        assert np.abs(slip * (most - np.abs(held))).max() < 1e-9
+        assert np.all(slip * held <= 1e-9)
 
 
 def test_bad_arguments_are_refused() -> None:

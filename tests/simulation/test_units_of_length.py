@@ -14,6 +14,7 @@ from watchsim.mechanism.body import Body
 from watchsim.mechanism.force import Damping
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation.simulate import simulate
+from watchsim.simulation.trajectory import EventKind
 
 
 def _edge(edge: Edge, k: float) -> Edge:
@@ -62,7 +63,14 @@ def test_the_incline_in_micrometres(k: float) -> None:
     plain, scaled = (simulate(scene) for scene in (profile("incline"), in_units(profile("incline"), k)))
     assert len(plain.events) == len(scaled.events)
     assert list(plain.events["kind"]) == list(scaled.events["kind"])
-    assert scaled.events["t"] == pytest.approx(plain.events["t"], rel=1e-12)
+    # A gap is the difference of lengths as large as the disc and known to their rounding; an impact at speed v comes that
+    # length over v earlier or later. Powers of two, which change no rounding, change no bit.
+    height = plain.q[-1, 1]
+    speed = np.abs(plain.events["value"][plain.events["kind"] == EventKind.IMPACT]).min()
+    allowed = 0.0 if k == 2.0**20 else 2.0 * np.spacing(height) / speed
+    assert np.abs(scaled.events["t"] - plain.events["t"]).max() <= allowed
+    fast = (plain.events["kind"] == EventKind.IMPACT) & (plain.events["value"] < -1e-3)
+    assert scaled.events["t"][fast] == pytest.approx(plain.events["t"][fast], rel=1e-12)
     unit = np.array([k, k, 1.0])
     assert scaled.q[-1] / unit == pytest.approx(plain.q[-1], rel=1e-12)
     assert scaled.u[-1] / unit == pytest.approx(plain.u[-1], rel=1e-12, abs=1e-13)

@@ -92,6 +92,20 @@ def _directions(model, b, row, sign, frame, out_closed):
 
 
 @kernel
+def _add_carriers(model, body_a, body_b, row, normal, pose, out_closed):
+    """What the carriers of the two bodies add: their coordinates, and how they make the bodies' origins accelerate."""
+    nx, ny = normal
+    kin = out_closed.kin[row]
+    for side in range(2):
+        b, sign = (body_a, 1.0) if side == 0 else (body_b, -1.0)
+        if model.bodies[b].carrier >= 0:
+            p = pose[b]
+            kin.bar_N += sign * (nx * p.ax + ny * p.ay)
+            kin.bar_T += sign * (nx * p.ay - ny * p.ax)
+            _directions(model, model.bodies[b].carrier, row, sign, (nx, ny, p.rx, p.ry), out_closed)
+
+
+@kernel
 def contact_kinematics(model, k, pose, row, out_closed):
     """Fill row `row` with everything about contact `k` at the given poses."""
     contact = model.contacts[k]
@@ -115,11 +129,6 @@ def contact_kinematics(model, k, pose, row, out_closed):
     square_a, square_b = pa.w * pa.w, pb.w * pb.w
     kin.bar_N = (turning + pb.w) * v_t - spin * travel - square_a * (nx * xa + ny * ya) + square_b * (nx * xb + ny * yb)
     kin.bar_T = -(turning + pb.w) * v_n - square_a * (tx * xa + ty * ya) + square_b * (tx * xb + ty * yb)
-    carrier_a, carrier_b = model.bodies[a.body].carrier, model.bodies[b.body].carrier
-    if carrier_a >= 0 or carrier_b >= 0:
-        ax, ay = pa.ax - pb.ax, pa.ay - pb.ay
-        kin.bar_N += nx * ax + ny * ay
-        kin.bar_T += tx * ax + ty * ay
     inside_a, inside_b = margins_of(contact, a, b, pa, pb, shape)
     kin.margin = min(inside_a, inside_b)
     kin.x, kin.y = pa.x + xa, pa.y + ya
@@ -127,7 +136,5 @@ def contact_kinematics(model, k, pose, row, out_closed):
     out_closed.slots[row] = 0
     _directions(model, a.body, row, 1.0, (nx, ny, xa, ya), out_closed)
     _directions(model, b.body, row, -1.0, (nx, ny, xb, yb), out_closed)
-    if carrier_a >= 0:
-        _directions(model, carrier_a, row, 1.0, (nx, ny, pa.rx, pa.ry), out_closed)
-    if carrier_b >= 0:
-        _directions(model, carrier_b, row, -1.0, (nx, ny, pb.rx, pb.ry), out_closed)
+    if model.bodies[a.body].carrier >= 0 or model.bodies[b.body].carrier >= 0:
+        _add_carriers(model, a.body, b.body, row, (nx, ny), pose, out_closed)

@@ -66,6 +66,7 @@ def _emit_chain(found: Gathering, chain: Chain, layer: str, source: str) -> None
     found.tolerance, found.deviation = tolerance - moved, 0.0
     emit(found, chain.spline, layer, source)
     found.tolerance = tolerance
+    found.kinds["spline"] += chain.curves - 1
     if found.curves > count:
         found.curves = count + chain.curves
         found.deviation += moved
@@ -171,6 +172,7 @@ def _round(found: Gathering, row: Sequence[Spline], layer: str, source: str) -> 
     limit = max(found.tolerance, ROUNDING * found.scale * max(map(reach, row)))
     if circle.deviation <= limit:
         keep(found, (circle.arc,), layer, source)
+        found.kinds["spline"] += len(row)
         found.curves += len(row)
         found.arcs += 1
         found.deviation = max(found.deviation, circle.deviation)

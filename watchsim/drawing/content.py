@@ -29,7 +29,7 @@ class Stroke:
 class Drawn:
     """What the file draws before anything is tidied or fitted: how many of each kind (blocks and polylines unfolded), metres.
 
-    Kinds are line, arc, circle, ellipse, ellipse_arc and spline; what has no length is not counted.
+    Kinds are line, arc, circle, ellipse, ellipse_arc and spline (also each Bézier); what has no length is not counted.
     """
 
     kinds: Mapping[str, int] = field(default_factory=dict)

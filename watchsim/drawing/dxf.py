@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import zip_longest
 
 from watchsim.drawing.affine import IDENTITY, Affine, shifted
 from watchsim.drawing.content import Content
@@ -99,8 +100,9 @@ class Walker:
         records = list(records)
         result = []
         paper = 0
-        for record in records:
+        for record, following in zip_longest(records, records[1:]):
             self._warn_of_boundary(record)
+            self._warn_of_attributes(record, following)
         for head, vertices in _grouped(records):
             if head.text(67) == "1":
                 paper += head.kind != "VIEWPORT"  # every file with paper space has one
@@ -121,6 +123,7 @@ class Walker:
             self._warn_of_codes(record, layer)
         try:
             if head.kind == "INSERT":
+                self._warn_of_copies(head, layer)
                 return Item(layer, head.name, insert=insert(head, MOST_COPIES))
             if head.kind == "POLYLINE" and not is_mesh(head):
                 return Item(layer, head.name, tuple(heavyweight(head, vertices)))
@@ -144,6 +147,22 @@ class Walker:
             self.found.findings.append(
                 Finding("damaged", "error", message, "Draw again what is missing there, or export anew.")
             )
+
+    def _warn_of_attributes(self, record: Record, following: Record | None) -> None:
+        if (
+            record.kind == "INSERT"
+            and record.text(66, "0") not in ("0", "")
+            and (following is None or following.kind != "ATTRIB")
+        ):
+            message = f"{record.name} at {record.place} announces attributes (group 66) and none follow: it may be damaged"
+            fix = "Look whether it is all there."
+            self.found.findings.append(Finding("strange-group", "warning", message, fix, self._spelling(record.text(8, "0"))))
+
+    def _warn_of_copies(self, head: Record, layer: str) -> None:
+        for code, what in ((70, "columns"), (71, "rows")):
+            if head.integer(code, 1) < 1:
+                message = f"{head.name} has {head.integer(code)} {what} (group {code}); one is read"
+                self.found.findings.append(Finding("strange-group", "warning", message, "Insert it again.", layer))
 
     def _warn_of_radius(self, head: Record, layer: str) -> None:
         if head.kind in ("CIRCLE", "ARC") and head.number(40) < 0.0:

@@ -91,7 +91,10 @@ def _sections(tags: Tags, findings: list[Finding]) -> dict[str, list[Record]]:
         findings.append(_truncated(tags))
     elif inside is not None:
         findings.append(_unclosed(name, inside))
-    if tags.trash:
+    if lost := [kind for kind in tags.beyond if kind in DRAWN]:
+        message = f"the file ends (EOF) and goes on after its end with {len(lost)} entities ({lost[0]}); these were not read"
+        findings.append(Finding("trash", "error", message, "Export it again from CAD: it is damaged or two files in one."))
+    elif tags.trash:
         findings.append(Finding("trash", "notice", "what follows after EOF was not read"))
     return parts
 

@@ -109,10 +109,11 @@ def is_mesh(record: Record) -> bool:
 
 
 def traced(corners: list[tuple[Vector, float]], closed: bool, plane: Affine) -> list[Shape]:
-    """The segments from corner to corner; a corner's bulge belongs to the segment that leaves it."""
+    """The segments from corner to corner; a corner's bulge belongs to the segment that leaves it. One corner alone gives a
+    segment without length, so that it is not left out in silence."""
     if not corners:
         raise DxfError("it has no corners")
-    following = [*corners[1:], corners[0]] if closed else corners[1:]
+    following = [*corners[1:], corners[0]] if closed or len(corners) == 1 else corners[1:]
     pairs = zip(corners, following, strict=False)
     if closed and len(corners) == 2 and corners[0][1] == corners[1][1] == 0.0:
         pairs = zip(corners[:1], following[:1], strict=True)  # there and back along one line

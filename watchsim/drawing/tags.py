@@ -77,12 +77,14 @@ class Record:
 class Tags:
     """All whole records of a file.
 
-    `fault` tells what ended the reading early, empty for a whole file; `trash` whether something follows EOF.
+    `fault` tells what ended the reading early, empty for a whole file; `trash` whether something follows EOF, and `beyond` the
+    types of the records among it.
     """
 
     records: tuple[Record, ...]
     fault: str = ""
     trash: bool = False
+    beyond: tuple[str, ...] = ()
 
 
 def as_number(value: object, code: int) -> float:
@@ -173,7 +175,8 @@ def _grouped(codes: list[int], values: list[object], fault: str, word: str) -> T
     for start, stop in zip(starts, [*starts[1:], len(codes)], strict=True):
         kind = str(values[start]).strip().upper()
         if kind == "EOF":
-            return Tags(tuple(records), "", bool(fault) or any(str(v).strip() for v in values[start + 1 :]))
+            beyond = tuple(str(values[at]).strip().upper() for at in starts if at > start)
+            return Tags(tuple(records), "", bool(fault) or any(str(v).strip() for v in values[start + 1 :]), beyond)
         records.append(Record(kind, codes[start + 1 : stop], values[start + 1 : stop], f"{word} {step * start + 1}"))
     if records[-1].kind not in ("ENDSEC", "SECTION"):
         records.pop()  # it may be cut short

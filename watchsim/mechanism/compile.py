@@ -151,6 +151,8 @@ def _primitives(
                 loops = [loop.moved(ride.angle, ride.place) for loop in loops]
             start = len(layers)
             for block in (features(loop, ride.part_of, size) for loop in loops):
+                for side_of in ("before", "after"):
+                    block[side_of][block[side_of] >= 0] += len(layers)
                 blocks.append(block)
                 layers.extend([layer] * len(block))
                 owners.extend([side.body] * len(block))

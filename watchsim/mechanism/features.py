@@ -28,12 +28,20 @@ def features(loop: Loop, body: int, size: float) -> Records:
     rows = [_line(edge) if isinstance(edge, Line) else _arc(edge, size) for edge in edges]
     count = len(edges)
     for i in range(count if loop.closed else count - 1):
-        corner = _corner(edges[i], edges[(i + 1) % count], size)
-        if corner is not None:
-            rows.append(corner)
+        j = (i + 1) % count
+        turn = _turn(edges[i], edges[j], size)
+        if turn > 0.0:
+            corner = len(rows)
+            rows.append(_corner(edges[i], edges[j], turn, size))
+            if _parts_from_corner(edges[i]):
+                rows[i]["after"], rows[corner]["before"] = corner, i
+            if _parts_from_corner(edges[j]):
+                rows[corner]["after"], rows[j]["before"] = j, corner
+        elif turn == 0.0 and i != j and not (_is_hollow(edges[i]) or _is_hollow(edges[j])):
+            rows[i]["after"], rows[j]["before"] = j, i
     out = np.zeros(len(rows), PRIMITIVE).view(np.recarray)
     for row, values in zip(out, rows, strict=True):
-        row.body = body
+        row.body, row.before, row.after = body, -1, -1
         for name, value in values.items():
             setattr(row, name, value)
     return out
@@ -92,14 +100,27 @@ def _direction(angle: float) -> Point:
     return math.cos(angle), math.sin(angle)
 
 
-def _corner(before: Edge, after: Edge, size: float) -> dict[str, float] | None:
-    """The corner between two edges, None where they join smoothly or the material's corner is concave."""
+def _turn(before: Edge, after: Edge, size: float) -> float:
+    """The angle by which the outline turns between two edges, positive at convex corners; 0 where they join smoothly."""
     (ax, ay), (bx, by) = before.tangent(1.0), after.tangent(0.0)
     turn = math.atan2(ax * by - ay * bx, ax * bx + ay * by)
     # A turn that no contact would notice: normals of a flat arc notice less.
     flattest = max(size, *(edge.radius for edge in (before, after) if isinstance(edge, Arc)), 0.0)
-    if turn * flattest < JOINT * size:
-        return None
+    return turn if abs(turn) * flattest >= JOINT * size else 0.0
+
+
+def _is_hollow(edge: Edge) -> bool:
+    return isinstance(edge, Arc) and edge.sweep < 0.0
+
+
+def _parts_from_corner(edge: Edge) -> bool:
+    """True if what touches the corner at the edge's end never touches the edge as well: always but in hollows of over half a turn."""
+    return not (isinstance(edge, Arc) and edge.sweep < -math.pi)
+
+
+def _corner(before: Edge, after: Edge, turn: float, size: float) -> dict[str, float]:
+    """The corner between two edges, at which the outline turns by `turn`."""
+    ax, ay = before.tangent(1.0)
     # Normals are tangents turned by -90 degrees; the fan fills the turn from the one before to the one after.
     nx, ny = _direction(math.atan2(ay, ax) - 0.5 * math.pi + 0.5 * turn)
     fan = {"nx": nx, "ny": ny, "half_cos": math.cos(0.5 * turn), "half_sin": math.sin(0.5 * turn), "extent": PART}

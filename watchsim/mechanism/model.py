@@ -99,6 +99,10 @@ PRIMITIVE = np.dtype(
         ("half_cos", "f8"),  # arc or corner: cosine and sine of half the angle that its normals fill
         ("half_sin", "f8"),
         ("extent", "i8"),  # PART, or FULL circle
+        # Neighbours on the outline, where a body that touches one from outside cannot touch the other: at corners, and where
+        # lines and convex arcs join smoothly. -1: none.
+        ("before", "i8"),
+        ("after", "i8"),
     ]
 )
 PART, FULL = 0, 1

@@ -1,9 +1,8 @@
 """When do impacts that alternate between contacts come to their end?
 
 A block that rocks from corner to corner, or a disc between two flanks, makes infinitely many impacts in a finite time, also
-without restitution: no single contact rebounds, so the rule for rebounds (collide.py) does not see it. Where many impacts in
-a row follow each other within `accumulation_time`, all slow, what is left of the motion off the contacts is about the
-acceleration times that time squared, some picometres: it is taken away.
+without restitution: no single contact rebounds, so the rule for rebounds (collide.py) does not see it. A contact that the
+others' impulses lift by less than `gap_close`, the distance at which contacts count as closed, is not lifted at all.
 """
 
 from __future__ import annotations
@@ -12,39 +11,56 @@ from watchsim.contact.index_sets import OPEN
 from watchsim.contact.poses import place
 from watchsim.jit import kernel
 from watchsim.simulation.closed import refresh
-from watchsim.simulation.collide import ACCUMULATION_EVENT, kinetic_energy
 from watchsim.simulation.drift import project_velocities
-from watchsim.simulation.keep import keep_event
-from watchsim.simulation.state import IMPACTS, N_ACCUMULATED
 
-IN_A_ROW = 20  # impacts that have nothing to do with each other do not come so close so often
+
+@kernel
+def may_be_chatter(m, options, scratch):
+    """True if after an impact some contact is slowly leaving, and none of those that were hit keeps all its energy."""
+    found = False
+    for i in range(m):
+        rate = scratch.closed.kin[i].gN_dot
+        if rate > options.accumulation_speed:
+            return False
+        hit = scratch.impulse[2 * i] > 0.0
+        if hit and scratch.restitution[i] == 1.0:
+            return False
+        # Where only contacts leave that rebound, their own rule knows when that would end.
+        if rate > options.speed_zero and not (hit and scratch.restitution[i] > 0.0):
+            found = True
+    return found
+
+
+@kernel
+def return_time(closed, i, a):
+    """Time after which contact i, leaving at its rate under the accelerations a, is closed again; -1 if it is not, s."""
+    closing = -closed.kin[i].bar_N
+    for k in range(closed.slots[i]):
+        closing -= closed.w_N[i, k] * a[closed.coord[i, k]]
+    return 2.0 * closed.kin[i].gN_dot / closing if closing > 0.0 else -1.0
 
 
 @kernel
 def is_chatter(state, m, options, closed):
-    """Count an impact that is about to happen; True if it is one of many in a row, and all contacts are slow."""
-    soon = state.clock[0] - state.clock[2] < options.accumulation_time
-    state.numbers[5] = state.numbers[5] + 1 if soon else 0
+    """True if no contact that leaves comes further than `gap_close` before it is back; accelerations are in `state.a`."""
     for i in range(m):
-        if abs(closed.kin[i].gN_dot) > options.accumulation_speed:
+        rate = closed.kin[i].gN_dot
+        if rate <= options.speed_zero:
+            continue
+        back = return_time(closed, i, state.a)
+        # It rises on a parabola, to a quarter of the way it would go at its first speed.
+        if back < 0.0 or 0.25 * rate * back > options.gap_close:
             return False
-    return state.numbers[5] >= IN_A_ROW
+    return True
 
 
 @kernel
-def end_chatter(model, state, m, scratch, record):
-    """Bring the gap rates of the m closed contacts to zero by the smallest change of velocities; energy goes to the impacts."""
-    closed, work = scratch.closed, scratch.work
-    before = kinetic_energy(model, state.u)
+def end_chatter(model, state, m, scratch):
+    """Bring the gap rates of the m closed contacts to zero by the smallest change of velocities: it only takes energy."""
     for i in range(m):
-        scratch.trial[closed.ids[i]] = OPEN
-        if closed.kin[i].gN_dot < 0.0:
-            keep_event(state, record, ACCUMULATION_EVENT, closed.ids[i], -1, state.clock[0])
-            state.counts[N_ACCUMULATED] += 1
+        scratch.trial[scratch.closed.ids[i]] = OPEN
     for j in range(len(model.coordinates)):
-        work.inverse[j] = 1.0 / model.coordinates[j].mass
-    project_velocities(closed, m, scratch.trial, work, state.u)
-    state.sums[IMPACTS] += before - kinetic_energy(model, state.u)
-    state.numbers[5] = 0
+        scratch.work.inverse[j] = 1.0 / model.coordinates[j].mass
+    project_velocities(scratch.closed, m, scratch.trial, scratch.work, state.u)
     place(model, state.q, state.u, scratch.pose)
-    refresh(model, m, closed, scratch.pose)
+    refresh(model, m, scratch.closed, scratch.pose)

@@ -1,7 +1,8 @@
 """What happens at an impact?
 
 All closed contacts take part. The energy is checked; where the law would gain any, the documented rule applies
-(docs/method.md 2.7); rebounds that would accumulate within `accumulation_time` are ended by an inelastic solution.
+(docs/method.md 2.7); rebounds that would accumulate within `accumulation_time` are ended by an inelastic solution, and so
+is chatter between contacts (chatter.py).
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from watchsim.dynamics.forces import forces
 from watchsim.dynamics.impact import energy_change, impact
 from watchsim.dynamics.linear import copy
 from watchsim.jit import kernel
+from watchsim.simulation.chatter import end_chatter, is_chatter, may_be_chatter, return_time
 from watchsim.simulation.closed import refresh, resting
 from watchsim.simulation.keep import keep_event
 from watchsim.simulation.state import IMPACTS, N_ACCUMULATED, N_ENERGY, N_IMPACTS, N_JAMS, N_LCP, N_LCP_FAILED, N_LEMKE
@@ -90,22 +92,17 @@ def _solve(model, state, m, jam, scratch):
 
 
 @kernel
-def _end_time(model, state, m, options, scratch):
-    """Flag the rebounds that would end within `accumulation_time` (restitution 0); returns the latest end, -1 for none."""
-    latest = -1.0
-    closed, work = scratch.closed, scratch.work
-    worth = False
-    for i in range(m):
-        rate = closed.kin[i].gN_dot
-        if (
-            scratch.restitution[i] > 0.0
-            and scratch.impulse[2 * i] > 0.0
-            and options.speed_zero < rate <= options.accumulation_speed
-        ):
-            worth = True
-    if not worth:
-        return latest
-    r = resting(model, m, closed, scratch.pose, options.speed_zero, scratch.rest)
+def _rebounds(i, options, scratch):
+    """True if contact i leaves the impact on its own restitution, and slowly."""
+    rate, share = scratch.closed.kin[i].gN_dot, scratch.restitution[i]
+    return 0.0 < share < 1.0 and scratch.impulse[2 * i] > 0.0 and options.speed_zero < rate <= options.accumulation_speed
+
+
+@kernel
+def _accelerations(model, state, m, options, scratch):
+    """Accelerations after the impact into `state.a`; False if there are none."""
+    work = scratch.work
+    r = resting(model, m, scratch.closed, scratch.pose, options.speed_zero, scratch.rest)
     forces(model, state.clock[0], state.q, state.u, work.h)
     set_grips(model, state.u, options.speed_zero, options.size, scratch.grip)
     add_drag(model, scratch.grip, work.h)
@@ -114,20 +111,27 @@ def _end_time(model, state, m, options, scratch):
     status = decide_modes(model, scratch.rest, r, options.speed_zero, work, scratch.grip, scratch.trial)
     count_rungs(state, work)
     if status != 0:
-        return latest
+        return False
     accelerate(scratch.rest, r, work, state.a)
+    return True
+
+
+@kernel
+def _end_rebounds(model, state, m, options, scratch):
+    """Flag the rebounds that would end within `accumulation_time` (restitution 0); returns the latest end, -1 for none."""
+    latest, worth = -1.0, False
     for i in range(m):
-        rate, share = closed.kin[i].gN_dot, scratch.restitution[i]
-        if not (share > 0.0 and scratch.impulse[2 * i] > 0.0 and options.speed_zero < rate <= options.accumulation_speed):
+        worth = worth or _rebounds(i, options, scratch)
+    if not worth or not _accelerations(model, state, m, options, scratch):
+        return latest
+    for i in range(m):
+        if not _rebounds(i, options, scratch):
             continue
-        closing = -closed.kin[i].bar_N
-        for k in range(closed.slots[i]):
-            closing -= closed.w_N[i, k] * state.a[closed.coord[i, k]]
-        if closing > 0.0 and share < 1.0:
-            ending = 2.0 * rate / (closing * (1.0 - share))
-            if ending < options.accumulation_time:
-                scratch.restitution[i] = 0.0
-                latest = max(latest, state.clock[0] + ending)
+        back = return_time(scratch.closed, i, state.a)
+        ending = back / (1.0 - scratch.restitution[i])
+        if 0.0 < ending < options.accumulation_time:
+            scratch.restitution[i] = 0.0
+            latest = max(latest, state.clock[0] + ending)
     return latest
 
 
@@ -149,12 +153,28 @@ def collide(model, state, m, options, jam, scratch, record):
             scratch.impulse[row] = scratch.work.force[row]
         place(model, state.q, state.u, scratch.pose)
         refresh(model, m, scratch.closed, scratch.pose)
-        end = _end_time(model, state, m, options, scratch)
+        end = _end_rebounds(model, state, m, options, scratch)
         if end < 0.0:
             break
         ends = max(ends, end)
     _write(model, state, m, jam, scratch, record, ends)
+    slow = jam == 0.0 and may_be_chatter(m, options, scratch) and _accelerations(model, state, m, options, scratch)
+    if slow and is_chatter(state, m, options, scratch.closed):
+        _still(model, state, m, options, scratch, record)
     return 0
+
+
+@kernel
+def _still(model, state, m, options, scratch, record):
+    """End the chatter of the m closed contacts; its energy goes to the impacts."""
+    before = kinetic_energy(model, state.u)
+    for i in range(m):
+        if scratch.closed.kin[i].gN_dot > options.speed_zero:
+            back = state.clock[0] + return_time(scratch.closed, i, state.a)
+            keep_event(state, record, ACCUMULATION_EVENT, scratch.closed.ids[i], -1, back)
+            state.counts[N_ACCUMULATED] += 1
+    end_chatter(model, state, m, scratch)
+    state.sums[IMPACTS] += before - kinetic_energy(model, state.u)
 
 
 @kernel

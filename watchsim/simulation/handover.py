@@ -48,6 +48,31 @@ def same_contact(model, k, other, options, pose):
 
 
 @kernel
+def is_beside_active(model, state, k):
+    """True if open contact k is beside a contact in force that excludes it: one primitive the same, the others neighbours.
+
+    What touches an outline from outside near a convex corner, or near a smooth joint of lines and convex arcs, does so in
+    one point. The contact in force ends, with an event, before its neighbour can begin.
+    """
+    one = model.contacts[k]
+    for j in range(state.numbers[0]):
+        two = model.contacts[state.active[j]]
+        if one.a == two.a:
+            mine, its = one.b, two.b
+        elif one.b == two.b:
+            mine, its = one.a, two.a
+        elif one.a == two.b:
+            mine, its = one.b, two.a
+        elif one.b == two.a:
+            mine, its = one.a, two.b
+        else:
+            continue
+        if model.primitives[mine].before == its or model.primitives[mine].after == its:
+            return True
+    return False
+
+
+@kernel
 def continues_active(model, state, options, k, pose):
     """True if open contact k is a contact in force, seen from a neighbouring primitive."""
     for j in range(state.numbers[0] + state.numbers[1]):

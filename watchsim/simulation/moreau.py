@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from watchsim.mechanism.compile import Compiled
 from watchsim.simulation.methods import MOREAU
 from watchsim.simulation.moreau_loop import EVENTS_PER_STEP, ROWS_PER_STEP, advance_fixed
-from watchsim.simulation.moreau_step import moreau_work
+from watchsim.simulation.moreau_work import moreau_work
 from watchsim.simulation.run import EVENTS, ROWS, Run
 from watchsim.simulation.state import CORRECTION, new_record
 from watchsim.simulation.stops import Stop
@@ -31,7 +31,7 @@ class MoreauRun(Run):
         self.record = new_record(compiled.model, ROWS + ROWS_PER_STEP, EVENTS + EVENTS_PER_STEP, self.record.windows)
 
     def arrays(self) -> dict[str, NDArray[Any]]:
-        return {**super().arrays(), "memory": self.work.memory, "depth": self.work.depth}
+        return {**super().arrays(), "memory": self.work.memory, "depth": self.work.depth, "sweeps": self.work.sweeps}
 
     def _worst_residual(self) -> NDArray[np.float64]:
         return self.work.worst

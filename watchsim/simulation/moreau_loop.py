@@ -10,7 +10,9 @@ from watchsim.dynamics.linear import copy
 from watchsim.jit import entry, inlined, kernel
 from watchsim.mechanism.model import CellsRef, ModelRef
 from watchsim.simulation.keep import keep_event, keep_row
-from watchsim.simulation.moreau_step import MoreauWorkRef, act, closed_at_middle, move, stop_approaches
+from watchsim.simulation.moreau_impact import stop_approaches
+from watchsim.simulation.moreau_step import act, closed_at_middle, move
+from watchsim.simulation.moreau_work import MoreauWorkRef
 from watchsim.simulation.options import OptionsRef
 from watchsim.simulation.state import N_STEPS, ROOM, RecordRef, StateRef
 from watchsim.simulation.stops import Stop
@@ -75,9 +77,6 @@ def _step(model, cells, state, options, h, whole, work, record):
     m = closed_at_middle(model, cells, state, options, h, work)
     if m < 0:
         return CELL_UNKNOWN if m == -1 else TOO_MANY_CONTACTS
-    for i in range(m):
-        law = model.laws[model.contacts[work.closed.ids[i]].group]
-        work.friction[i], work.restitution[i] = law.friction, law.restitution
     jump = stop_approaches(model, state, options, m, work, record)
     if jump:
         keep_row(state, record, state.clock[0], state.q, state.u, state.a)
@@ -135,8 +134,9 @@ def _by_reference(work):
         work.more,
         work.P,
         work.low,
-        work.friction,
+        work.ends,
         work.restitution,
+        work.dry,
         work.unknown,
         work.at,
         work.sweeps,
@@ -149,7 +149,8 @@ def _loop(model, cells, state, options, until, pace, work, record):
     while True:
         if record.used[0] + ROWS_PER_STEP >= len(record.rows) or record.used[1] + EVENTS_PER_STEP >= len(record.events):
             return BUFFER_FULL
-        if state.numbers[3] == 0 and record.used[0] == 0 and state.clock[0] == 0.0:
+        if state.numbers[2]:
+            state.numbers[2] = 0
             keep_row(state, record, 0.0, state.q, state.u, state.a)
         left = until[1] - state.clock[0]
         if left <= 0.0:

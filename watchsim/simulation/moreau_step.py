@@ -8,80 +8,19 @@ restitution; then penetration is taken back a little at a time, without touching
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
-
-import numpy as np
-from numpy.typing import NDArray
 
 from watchsim.contact.gaps import extent_margin, normal_gap
-from watchsim.contact.kinematics import Closed, closed_contacts, contact_kinematics
+from watchsim.contact.kinematics import contact_kinematics
 from watchsim.contact.lookup import UNKNOWN, candidate, candidates
-from watchsim.contact.poses import place, point_of, poses
+from watchsim.contact.poses import place, point_of
 from watchsim.dynamics.forces import driving_force, joint_damping, joint_energy, stretch, table_force
 from watchsim.dynamics.linear import copy
-from watchsim.jit import by_reference, kernel
-from watchsim.mechanism.model import Model
-from watchsim.simulation.keep import keep_event
-from watchsim.simulation.moreau_prox import SWEEPS, fill_mobility, push, rates_of, relax, residual
-from watchsim.simulation.state import CORRECTION, DAMPING, DRIVE, FRICTION, IMPACTS, N_IMPACTS, N_LCP, N_LCP_FAILED, ROOM
+from watchsim.jit import kernel
+from watchsim.simulation.moreau_impact import friction_cones, solve_percussions
+from watchsim.simulation.moreau_prox import cone, fill_mobility, push, rates_of, relax
+from watchsim.simulation.state import CORRECTION, DAMPING, DRIVE, FRICTION, ROOM
 
-Array = NDArray[np.float64]
-
-IMPACT_EVENT = 1
 TAKEN_BACK = 0.2  # share of a penetration beyond `slop` taken back in a step
-
-
-class MoreauWork(NamedTuple):
-    """Room to work in; `memory` (percussions of the last step by contact) and `depth` belong to the state."""
-
-    memory: Array  # (contacts, 2)
-    depth: Array  # deepest penetration of the last step, m
-    pose: object
-    closed: Closed
-    q: Array  # at the middle of the step
-    u: Array  # after the impacts, before the forces
-    free: Array  # with the forces, without contacts
-    force: Array  # drives and gravity at the middle
-    damping: Array
-    joint: Array  # torque of the damping between a carried body and its carrier
-    mass: Array
-    inverse: Array
-    G: Array
-    b: Array
-    rates: Array
-    more: Array
-    P: Array
-    low: Array
-    friction: Array
-    restitution: Array
-    unknown: NDArray[np.int64]
-    at: Array
-    sweeps: NDArray[np.int64]
-    worst: Array  # residual of the laws
-
-
-MoreauWorkRef = by_reference(MoreauWork, __name__)
-
-
-def moreau_work(model: Model) -> MoreauWork:
-    """Room for one model."""
-    n, rows = len(model.coordinates), 2 * ROOM
-    vectors = {name: np.zeros(n) for name in ("q", "u", "free", "force", "damping", "joint", "mass", "inverse", "at")}
-    by_row = {name: np.zeros(rows) for name in ("b", "rates", "more", "P")}
-    by_contact = {name: np.zeros(ROOM) for name in ("low", "friction", "restitution")}
-    return MoreauWork(
-        memory=np.zeros((len(model.contacts), 2)),
-        depth=np.zeros(1),
-        pose=poses(len(model.bodies)),
-        closed=closed_contacts(ROOM),
-        G=np.zeros((rows, rows)),
-        unknown=np.zeros(1, np.int64),
-        sweeps=np.zeros(1, np.int64),
-        worst=np.zeros(1),
-        **vectors,
-        **by_row,
-        **by_contact,
-    )
 
 
 @kernel
@@ -128,66 +67,6 @@ def _believable(model, options, k, h, work):
 
 
 @kernel
-def _relax(state, m, work):
-    sweeps = relax(work.G, work.b, work.low, work.friction, m, work.P)
-    state.counts[N_LCP] += 1
-    work.sweeps[0] += min(sweeps, SWEEPS)
-    if sweeps > SWEEPS:
-        state.counts[N_LCP_FAILED] += 1
-    work.worst[0] = max(work.worst[0], residual(work.G, work.b, work.low, work.friction, m, work.P))
-
-
-@kernel
-def stop_approaches(model, state, options, m, work, record):
-    """Impacts at the start of the step, into `work.u`; True if any is fast enough to be written down."""
-    closed = work.closed
-    copy(state.u, work.u)
-    rates_of(closed, m, work.u, work.b)
-    fastest = 0.0
-    for i in range(m):
-        fastest = max(fastest, -work.b[2 * i])
-    if fastest == 0.0:
-        return False
-    for i in range(len(work.u)):
-        work.inverse[i] = 1.0 / model.coordinates[i].mass
-    fill_mobility(closed, m, work.inverse, work.G)
-    for i in range(m):
-        work.low[i], work.P[2 * i], work.P[2 * i + 1] = 0.0, 0.0, 0.0
-    copy(work.b, work.rates)
-    _relax(state, m, work)
-    copy(work.P, work.more)
-    for row in range(2 * m):
-        for column in range(2 * m):
-            work.b[row] += work.G[row, column] * work.P[column]
-    for i in range(m):
-        work.low[i] = work.restitution[i] * work.P[2 * i]
-        work.P[2 * i], work.P[2 * i + 1] = work.low[i], 0.0
-    _relax(state, m, work)
-    for row in range(2 * m):
-        work.P[row] += work.more[row]
-    push(closed, m, work.P, work.inverse, work.u)
-    rates_of(closed, m, work.u, work.b)
-    return _write_impacts(state, options, m, work, record)
-
-
-@kernel
-def _write_impacts(state, options, m, work, record):
-    """Energy of the impacts, and events of those that are faster than creeping into contact."""
-    written = False
-    for i in range(m):
-        N, T = 2 * i, 2 * i + 1
-        lost = -0.5 * (work.P[N] * (work.rates[N] + work.b[N]) + work.P[T] * (work.rates[T] + work.b[T]))
-        state.sums[IMPACTS] += lost
-        if work.P[N] > 0.0 and work.rates[N] < -options.accumulation_speed:
-            row = keep_event(state, record, IMPACT_EVENT, work.closed.ids[i], -1, work.rates[N])
-            event = record.events[row]
-            event.impulse_normal, event.impulse_tangential, event.energy_lost = work.P[N], work.P[T], lost
-            state.counts[N_IMPACTS] += 1
-            written = True
-    return written
-
-
-@kernel
 def _free_velocity(model, state, h, work):
     """Velocities after the step without contacts: springs and damping at its middle, drives at the middle's place."""
     for i in range(len(work.u)):
@@ -222,27 +101,44 @@ def _free_velocity(model, state, h, work):
 
 
 @kernel
+def _begin_percussions(model, m, h, work):
+    """The laws of contacts and bearings in this step, and a first guess; returns the number of bearings."""
+    closed, bearings = work.closed, len(work.dry)
+    fill_mobility(closed, m, work.dry, bearings, work.inverse, work.G)
+    rates_of(closed, m, work.free, work.b)
+    friction_cones(model, m, work)
+    for i in range(m):
+        # Last step's percussions are a good guess at this one's.
+        work.P[2 * i], work.P[2 * i + 1] = work.memory[closed.ids[i], 0], work.memory[closed.ids[i], 1]
+    for k in range(bearings):
+        j = work.dry[k]
+        most = h * model.coordinates[j].coulomb
+        work.ends[m + k, 0], work.ends[m + k, 1], work.ends[m + k, 2], work.ends[m + k, 3] = -most, 0.0, most, 0.0
+        work.b[2 * m + k] = work.free[j]
+        work.P[2 * m + k] = -math.copysign(most, work.u[j]) if work.u[j] != 0.0 else 0.0
+    return bearings
+
+
+@kernel
 def act(model, state, m, h, work, out_u):
-    """Velocities at the end of the step: forces and contacts together, without restitution."""
+    """Velocities at the end of the step: forces, contacts and dry bearings together, without restitution."""
     closed = work.closed
     _free_velocity(model, state, h, work)
     copy(work.free, out_u)
-    if m == 0:
+    if m == 0 and len(work.dry) == 0:
         return
-    fill_mobility(closed, m, work.inverse, work.G)
-    rates_of(closed, m, work.free, work.b)
-    for i in range(m):
-        work.low[i] = 0.0
-        # Last step's percussions are a good guess at this one's.
-        work.P[2 * i], work.P[2 * i + 1] = work.memory[closed.ids[i], 0], work.memory[closed.ids[i], 1]
-    _relax(state, m, work)
-    push(closed, m, work.P, work.inverse, out_u)
+    bearings = _begin_percussions(model, m, h, work)
+    solve_percussions(state, m, bearings, work)
+    push(closed, m, work.dry, bearings, work.P, work.inverse, out_u)
     rates_of(closed, m, work.u, work.b)
     rates_of(closed, m, out_u, work.rates)
     for i in range(m):
         N, T = 2 * i, 2 * i + 1
         state.sums[CORRECTION] -= 0.5 * work.P[N] * (work.b[N] + work.rates[N])
         state.sums[FRICTION] -= 0.5 * work.P[T] * (work.b[T] + work.rates[T])
+    for k in range(bearings):
+        j = work.dry[k]
+        state.sums[DAMPING] -= 0.5 * work.P[2 * m + k] * (work.u[j] + out_u[j])
 
 
 @kernel
@@ -286,12 +182,13 @@ def _take_back(state, options, m, work):
         depth = -work.closed.kin[i].g
         work.depth[0] = max(work.depth[0], depth)
         work.b[2 * i], work.b[2 * i + 1] = -TAKEN_BACK * max(0.0, depth - slop), 0.0
-        work.low[i], work.more[i] = 0.0, 0.0
+        work.low[i] = 0.0
+        cone(work.ends, i, 0.0)
         any_deep = any_deep or depth > slop
     state.worst[0] = max(state.worst[0], work.depth[0])
     if not any_deep:
         return
     for i in range(m):
         work.P[2 * i], work.P[2 * i + 1] = 0.0, 0.0
-    relax(work.G, work.b, work.low, work.more, m, work.P)
-    push(work.closed, m, work.P, work.inverse, state.q)
+    relax(work.G, work.b, work.low, work.ends, m, 0, work.P)
+    push(work.closed, m, work.dry, 0, work.P, work.inverse, state.q)

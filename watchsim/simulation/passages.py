@@ -69,35 +69,31 @@ def keep_passages(model, state, step, end, record):
 
     The state's q and u are those at the end; `end` 0 means a jump of velocity at one instant.
     """
-    for i in range(len(model.coordinates)):
-        coordinate = model.coordinates[i]
-        if coordinate.stiffness != 0.0:
-            _keep_of(model, state, step, (i, -1, coordinate.rest), end, record)
-    for j in range(len(model.joints)):
-        joint = model.joints[j]
-        if joint.stiffness != 0.0:
-            _keep_of(model, state, step, (joint.coordinate, joint.on, joint.rest), end, record)
-
-
-@kernel
-def _keep_of(model, state, step, spring, end, record):
-    """The same for one spring: (coordinate, coordinate of the carrier or -1, rest)."""
-    now = state.clock[0]
-    i, on, rest = spring
-    body = model.coordinates[i].body
-    side = _sign(along(state.u, i, on))
-    if side != 0 and side != state.side_u[i]:
-        if state.side_u[i] != 0:
-            tau = _root(model, state, step, spring, True, end) if end > 0.0 else 0.0
-            q = _seen(model, state, step, i, on, tau)[0] if end > 0.0 else along(state.q, i, on)
-            state.clock[0] = now - end + tau
-            keep_event(state, record, TURN_EVENT, -1, body, q)
-        state.side_u[i] = side
-    side = _sign(along(state.q, i, on) - rest)
-    if side != 0 and side != state.side_q[i]:
-        if state.side_q[i] != 0 and end > 0.0:
-            tau = _root(model, state, step, spring, False, end)
-            state.clock[0] = now - end + tau
-            keep_event(state, record, CROSS_EVENT, -1, body, _seen(model, state, step, i, on, tau)[1])
-        state.side_q[i] = side
-    state.clock[0] = now
+    now, n = state.clock[0], len(model.coordinates)
+    for spring in range(n + len(model.joints)):
+        if spring < n:
+            if model.coordinates[spring].stiffness == 0.0:
+                continue
+            i, on, rest = spring, -1, model.coordinates[spring].rest
+        else:
+            joint = model.joints[spring - n]
+            if joint.stiffness == 0.0:
+                continue
+            i, on, rest = joint.coordinate, joint.on, joint.rest
+        side = _sign(along(state.u, i, on))
+        if side != 0 and side != state.side_u[i]:
+            if state.side_u[i] != 0:
+                tau = _root(model, state, step, (i, on, rest), True, end) if end > 0.0 else 0.0
+                q = _seen(model, state, step, i, on, tau)[0] if end > 0.0 else along(state.q, i, on)
+                state.clock[0] = now - end + tau
+                keep_event(state, record, TURN_EVENT, -1, model.coordinates[i].body, q)
+            state.side_u[i] = side
+        side = _sign(along(state.q, i, on) - rest)
+        if side != 0 and side != state.side_q[i]:
+            if state.side_q[i] != 0 and end > 0.0:
+                tau = _root(model, state, step, (i, on, rest), False, end)
+                state.clock[0] = now - end + tau
+                speed = _seen(model, state, step, i, on, tau)[1]
+                keep_event(state, record, CROSS_EVENT, -1, model.coordinates[i].body, speed)
+            state.side_q[i] = side
+        state.clock[0] = now

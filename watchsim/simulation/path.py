@@ -68,18 +68,12 @@ def _polynomial(step, i, tau):
 @kernel
 def body_on_path(model, state, b, tau, scratch):
     """Bring body b's coordinates (in scratch.q, scratch.u) and pose to time tau of the step; u is exactly q'."""
-    body = model.bodies[b]
-    if body.carrier >= 0:
-        _coordinates_on_path(model, state, model.bodies[body.carrier], tau, scratch)
-    _coordinates_on_path(model, state, body, tau, scratch)
-    place_body(model, b, scratch.q, scratch.u, scratch.pose)
-
-
-@kernel
-def _coordinates_on_path(model, state, body, tau, scratch):
-    """The coordinates of one body and their velocities at time tau, into scratch.q and scratch.u."""
-    step = scratch.step
-    if body.first >= 0:
+    step, part = scratch.step, b
+    while part >= 0:  # the body, then its carrier
+        body = model.bodies[part]
+        part = body.carrier
+        if body.first < 0:
+            continue
         for j in range(3 if body.motion == FREE else 1):
             i = body.first + j
             if state.awake[i] == 0:
@@ -88,3 +82,4 @@ def _coordinates_on_path(model, state, body, tau, scratch):
                 scratch.q[i], scratch.u[i] = flow(model.coordinates[i], state.grip[i], step.q[i], step.u[i], tau)
             else:
                 scratch.q[i], scratch.u[i] = _polynomial(step, i, tau)
+    place_body(model, b, scratch.q, scratch.u, scratch.pose)

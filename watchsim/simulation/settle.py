@@ -14,7 +14,6 @@ from watchsim.dynamics.delassus import fill_inverse
 from watchsim.dynamics.dry import add_drag, set_grips, stop_held
 from watchsim.dynamics.forces import forces
 from watchsim.jit import kernel
-from watchsim.simulation.chatter import end_chatter, is_chatter
 from watchsim.simulation.closed import gather, refresh, resting
 from watchsim.simulation.collide import approaching, collide, count_rungs
 from watchsim.simulation.drift import project_positions, project_velocities
@@ -92,8 +91,6 @@ def settle(model, cells, state, options, scratch, record):
         state.worst[0] = max(state.worst[0], deepest)
         place(model, state.q, state.u, scratch.pose)
         refresh(model, m, closed, scratch.pose)
-    if approaching(m, closed, options.speed_zero) and is_chatter(state, m, options, closed):
-        end_chatter(model, state, m, scratch, record)
     stop, r = _resolve(model, state, m, options, scratch, record)
     if stop != RUNNING:
         return stop

@@ -62,9 +62,9 @@ class State(NamedTuple):
     grip: NDArray[np.int8]  # by coordinate: what dry friction in its bearing does, see dynamics/dry.py
     awake: NDArray[np.int8]  # by coordinate; 0: asleep on its contacts
     active: Integers  # closed contacts of awake bodies, then those of sleeping ones, each ascending
-    # How many awake, how many asleep, 1 if an event waits, events at this instant, the contact that touched or -1,
-    # how many impacts have followed each other within `accumulation_time`.
-    numbers: Integers
+    numbers: (
+        Integers  # how many awake, how many asleep, 1 if an event waits, events at this instant, the contact that touched or -1
+    )
     side_u: NDArray[np.int8]  # last sign of the velocity of a sprung coordinate
     side_q: NDArray[np.int8]  # and of its distance from rest
     sums: Array
@@ -149,7 +149,7 @@ def new_state(model: Model, q: Array, u: Array) -> State:
         grip=np.zeros(n, np.int8),
         awake=np.ones(n, np.int8),
         active=np.zeros(ROOM, np.int64),
-        numbers=np.array([0, 0, 1, 0, -1, 0], np.int64),
+        numbers=np.array([0, 0, 1, 0, -1], np.int64),
         side_u=np.sign(speed).astype(np.int8),
         side_q=np.sign(q - rest).astype(np.int8),
         sums=np.zeros(5),

@@ -15,7 +15,7 @@ from watchsim.contact.poses import point_of
 from watchsim.dynamics.linear import copy
 from watchsim.jit import kernel
 from watchsim.mechanism.model import FREE, LINE, PIVOT, SLIDE
-from watchsim.simulation.handover import continues_active
+from watchsim.simulation.handover import continues_active, is_beside_active
 from watchsim.simulation.path import body_on_path
 from watchsim.simulation.sleep import is_at_rest
 from watchsim.simulation.state import N_GAPS
@@ -27,12 +27,12 @@ STRIDE = 0.25  # of the extent: steps in which a neighbour of a contact in force
 def _body_bounds(model, b, length, scratch):
     """Bounds over the next `length` seconds: (speed, turning rate, acceleration, turning acceleration) of the frame."""
     body = model.bodies[b]
-    if body.carrier >= 0:
-        speed, turn, push, twist = _own_bounds(model.bodies[body.carrier], length, scratch)
-        arm = math.sqrt(body.x * body.x + body.y * body.y)
-        _, own_turn, _, own_twist = _own_bounds(body, length, scratch)
-        return speed + turn * arm, own_turn, push + twist * arm + turn * turn * arm, own_twist
-    return _own_bounds(body, length, scratch)
+    own = _own_bounds(body, length, scratch)
+    if body.carrier < 0:
+        return own
+    speed, turn, push, twist = _own_bounds(model.bodies[body.carrier], length, scratch)
+    arm = math.sqrt(body.x * body.x + body.y * body.y)
+    return speed + turn * arm, own[1], push + twist * arm + turn * turn * arm, own[3]
 
 
 @kernel
@@ -122,6 +122,28 @@ def _time_outside(model, k, inside_a, inside_b, motion, distance):
 
 
 @kernel
+def _is_due(gap, rate, outside, clear, options):
+    """True if a gap that comes from outside has closed, or one that lies within the rounding behind it goes on closing."""
+    zero, band = options.gap_zero, options.gap_close
+    if outside:
+        return gap <= zero and ((clear and rate < 0.0) or gap < -zero)
+    return gap >= -band and (rate < -options.speed_zero or (rate < 0.0 and gap <= zero - band))
+
+
+@kernel
+def _time_to_zero(gap, rate, outside, bounds, options):
+    """A time within which a gap, now at some distance from zero, is not due. `bounds`: closing, bend, distance."""
+    closing, bend, distance = bounds
+    if not outside:
+        safe = _safe(-gap, rate, closing, bend, distance)
+        if gap >= -options.gap_close:
+            safe = min(safe, _safe(gap + options.gap_close, -rate, closing, bend, distance))
+        return safe
+    leaving = gap > options.gap_zero or rate > options.speed_zero
+    return _safe(max(gap, 0.0) if leaving else gap + 2.0 * options.gap_zero, -rate, closing, bend, distance)
+
+
+@kernel
 def crossing(model, state, options, k, start, end, scratch):
     """First time in [start, end) at which open contact k closes inside its primitives; infinity if it does not.
 
@@ -134,7 +156,7 @@ def crossing(model, state, options, k, start, end, scratch):
     closing, bend, swing = _gap_bounds(model, k, end - start, bounds_a, bounds_b, scratch)
     if closing == 0.0:
         return math.inf
-    zero, band = options.gap_zero, options.gap_close
+    zero = options.gap_zero
     tau = start
     # `outside`: on the free side; `clear`: has been further than rounding from it since.
     fresh, outside, clear, beside = True, True, False, 0.0
@@ -149,46 +171,30 @@ def crossing(model, state, options, k, start, end, scratch):
             outside, clear = gap >= -zero, beside > 0.0  # what lay beside its primitives was no contact until now
         fresh = False
         leaving = gap > zero or rate > options.speed_zero
-        if outside and leaving:
-            clear = True  # a contact that has just rebounded counts as clear: it returns to this gap by falling only
-        # Positions jump where drift is taken back: a gap may have closed by that.
-        shallow = not outside and gap >= -band
-        # Where a smooth outline goes on, its next piece has no gap either, and closes only when its turn comes.
+        clear = clear or (outside and leaving)  # a contact that has just rebounded returns to this gap by falling only
         inside_a, inside_b = extent_margins(model, k, scratch.pose)
         inside_a, inside_b = inside_a + options.extent, inside_b + options.extent
         beside = _time_outside(model, k, inside_a, inside_b, (closing, swing), distance)
-        if (shallow or (outside and gap <= zero)) and min(inside_a, inside_b) < 0.0:
+        # Positions jump where drift is taken back: a gap may have closed by that.
+        near = gap <= zero if outside else gap >= -options.gap_close
+        if near and min(inside_a, inside_b) < 0.0:
             # At least the time in which the gap cannot pass through its rounding.
             tau += max(beside, zero / closing)
             fresh = True
-            continue
-        if outside and gap <= zero and ((clear and rate < 0.0) or gap < -zero):
-            if continues_active(model, state, options, k, scratch.pose):
-                tau += STRIDE * options.extent / closing
-                fresh = True
-                continue
-            return min(end, tau + gap / -rate) if clear and gap > 0.0 and rate * (end - tau) < -gap else tau
-        if shallow and (rate < -options.speed_zero or (rate < 0.0 and gap <= zero - band)):
-            if continues_active(model, state, options, k, scratch.pose):
-                tau += STRIDE * options.extent / closing
-                fresh = True
-                continue
-            return tau
-        if outside:
-            room, approach = (max(gap, 0.0) if leaving else gap + 2.0 * zero), -rate
-            clear = clear and leaving
-        else:
-            room, approach = -gap, rate
-        safe = _safe(room, approach, closing, bend, distance)
-        if shallow:
-            safe = min(safe, _safe(gap + band, -rate, closing, bend, distance))
-        if beside > safe:
-            # Beside its primitives the gap may pass through zero: which side it is on afterwards is found anew.
-            tau += beside
+        elif _is_due(gap, rate, outside, clear, options):
+            # Where a smooth outline goes on, its next piece has no gap either, and closes only when its turn comes.
+            if not continues_active(model, state, options, k, scratch.pose):
+                soon = outside and clear and gap > 0.0 and rate * (end - tau) < -gap
+                return min(end, tau + gap / -rate) if soon else tau
+            tau += STRIDE * options.extent / closing
             fresh = True
-            continue
-        # Never less than the rounding of time itself.
-        tau += max(safe, 4e-16 * tau)
+        else:
+            clear = clear and leaving if outside else clear
+            safe = _time_to_zero(gap, rate, outside, (closing, bend, distance), options)
+            # Beside its primitives the gap may pass through zero: which side it is on afterwards is found anew.
+            fresh = beside > safe
+            # Never less than the rounding of time itself.
+            tau += beside if fresh else max(safe, 4e-16 * tau)
     return math.inf
 
 
@@ -228,7 +234,9 @@ def _first_of(model, cells, state, options, p, tau, until, scratch):
     doubts = 0
     for place in range(start, start + count):
         k = candidate(model, cells, how, place)
-        if state.mode[k] == 0 and not _stays_open(model, state, options, k, until - tau, pair.a, bounds, scratch):
+        if state.mode[k] != 0 or is_beside_active(model, state, k):
+            continue
+        if not _stays_open(model, state, options, k, until - tau, pair.a, bounds, scratch):
             scratch.doubt[doubts] = k
             doubts += 1
     for j in range(doubts):

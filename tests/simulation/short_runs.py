@@ -1,0 +1,80 @@
+"""Which short runs reach every part of the solver? Run as a program, it writes what they come to:
+
+python short_runs.py FILE.npz NAME ...
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from moving_scenes import profile
+
+from watchsim.analysis.benchmarks import Benchmark
+from watchsim.analysis.hard_cases import dry_balance, painleve_rods, pins_on_rollers, superball, wedges
+from watchsim.analysis.repeated_impacts import cradle, groove, pulled_block, rocking_block
+from watchsim.mechanism.force import Damping
+from watchsim.mechanism.scene import Scene
+from watchsim.simulation.simulate import simulate
+from watchsim.simulation.state import COUNT_NAMES
+from watchsim.simulation.trajectory import Trajectory
+
+Short = tuple[Scene, float, dict[str, Any]]  # the scene, how long, how
+NUMBERS = ("t", "q", "u", "a")
+
+
+def _of(case: Callable[[], Benchmark] | Benchmark, duration: float) -> Short:
+    scene = (case if isinstance(case, Benchmark) else case()).scene
+    return dataclasses.replace(scene, record=()), min(duration, scene.duration), {}
+
+
+def dry_lever() -> Scene:
+    """The bench lever with a little dry friction in every bearing."""
+    scene = profile("bench_lever")
+    dry = tuple(Damping(body.name, coulomb=2e-9) for body in scene.bodies if body.motion == "pivot")
+    return dataclasses.replace(scene, damping=(*scene.damping, *dry))
+
+
+def short_runs() -> dict[str, Short]:
+    """By name: one or two seconds of plain Python each."""
+    runs: dict[str, Short] = {
+        "incline": (profile("incline"), 0.6, {}),
+        "bench_lever": (profile("bench_lever"), 0.05, {}),
+        "bench_lever, two beats": (profile("bench_lever"), 0.3, {}),
+        "swiss_lever, two beats": (profile("swiss_lever"), 0.3, {}),
+        "dry bench_lever, two beats": (dry_lever(), 0.3, {}),
+        "bench_lever by Moreau": (profile("bench_lever"), 0.08, {"method": "moreau", "step": 1e-4}),
+        "dry bench_lever by Moreau": (dry_lever(), 0.08, {"method": "moreau", "step": 1e-4}),
+        "superball": _of(superball, 1.2),
+        "dry balance": _of(dry_balance, 3.0),
+        "stick-slip": _of(pulled_block, 3.0),
+        "rocking block": _of(rocking_block, 0.5),
+        "cradle": _of(cradle(0.0), 1.0),
+        "groove": _of(groove, 0.5),
+    }
+    for name, cases in (("Painlevé", painleve_rods()), ("pin on roller", pins_on_rollers()), ("wedge", wedges())):
+        runs |= {f"{name} {i}": _of(case, 0.3) for i, case in enumerate(cases)}
+    return runs
+
+
+def told(run: Trajectory) -> dict[str, np.ndarray]:
+    """Rows, events, sums and counts as arrays; how many cells were asked for depends on the runs before."""
+    energy = [run.energy["in_J"], run.energy["stored_J"], *run.energy["dissipated"].values()]
+    out = {name: getattr(run, name) for name in NUMBERS}
+    out |= {"events": run.events, "energy": np.array(energy), "counts": np.array([run.counts[name] for name in COUNT_NAMES])}
+    return out
+
+
+def write(path: Path, names: list[str]) -> None:
+    """What the named runs tell, as NAME/WHAT."""
+    runs = short_runs()
+    done = {name: told(simulate(runs[name][0], runs[name][1], **runs[name][2])) for name in names}
+    np.savez(path, **{f"{name}/{what}": value for name, values in done.items() for what, value in values.items()})
+
+
+if __name__ == "__main__":
+    write(Path(sys.argv[1]), sys.argv[2:])

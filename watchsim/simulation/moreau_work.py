@@ -1,0 +1,78 @@
+"""What does Moreau's time stepping keep from step to step, and where does it work?"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.contact.kinematics import Closed, closed_contacts
+from watchsim.contact.poses import poses
+from watchsim.jit import by_reference
+from watchsim.mechanism.model import Model
+from watchsim.simulation.state import ROOM
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+
+class MoreauWork(NamedTuple):
+    """Room to work in; `memory` (percussions of the last step by contact), `depth`, `sweeps` and `worst` belong to the state.
+
+    Rows of G, b and P: N, T of each of the m closed contacts, then one for each bearing with dry friction.
+    """
+
+    memory: Array  # (contacts, 2)
+    depth: Array  # deepest penetration of the last step, m
+    pose: object
+    closed: Closed
+    q: Array  # at the middle of the step
+    u: Array  # after the impacts, before the forces
+    free: Array  # with the forces, without contacts
+    force: Array  # drives and gravity at the middle
+    damping: Array
+    joint: Array  # torque of the damping between a carried body and its carrier
+    mass: Array
+    inverse: Array
+    G: Array
+    b: Array
+    rates: Array
+    more: Array
+    P: Array
+    low: Array  # least normal percussion, by contact
+    ends: Array  # (contacts + bearings, 4): see `moreau_prox`
+    restitution: Array
+    dry: Integers  # coordinate of each bearing with dry friction
+    unknown: Integers
+    at: Array
+    sweeps: Integers
+    worst: Array  # residual of the laws
+
+
+MoreauWorkRef = by_reference(MoreauWork, __name__)
+
+
+def moreau_work(model: Model) -> MoreauWork:
+    """Room for one model."""
+    n = len(model.coordinates)
+    dry = np.flatnonzero(model.coordinates.coulomb > 0.0)
+    rows = 2 * ROOM + len(dry)
+    vectors = {name: np.zeros(n) for name in ("q", "u", "free", "force", "damping", "joint", "mass", "inverse", "at")}
+    by_row = {name: np.zeros(rows) for name in ("b", "rates", "more", "P")}
+    return MoreauWork(
+        memory=np.zeros((len(model.contacts), 2)),
+        depth=np.zeros(1),
+        pose=poses(len(model.bodies)),
+        closed=closed_contacts(ROOM),
+        G=np.zeros((rows, rows)),
+        low=np.zeros(ROOM),
+        ends=np.zeros((ROOM + len(dry), 4)),
+        restitution=np.zeros(ROOM),
+        dry=dry,
+        unknown=np.zeros(1, np.int64),
+        sweeps=np.zeros(1, np.int64),
+        worst=np.zeros(1),
+        **vectors,
+        **by_row,
+    )
