@@ -199,8 +199,8 @@ def _not_poised(body: Body, weighed: Weighed) -> str:
     off = 1e6 * math.hypot(*weighed.moment) / weighed.mass
     return (
         f"its centre of mass lies {off:.4g} µm beside its pivot. A carried body must be poised: its pull would change the mass "
-        "matrix with its angle, which is not simulated. Balance it with another entry of solids, or leave mass and solids out, "
-        "write its inertia, and let the carrier's inertia hold its mass at the pivot"
+        "matrix with its angle, which is not simulated. Balance it with another entry of solids, or write mass and "
+        "inertia instead: then it counts as poised"
     )
 
 

@@ -98,7 +98,7 @@ def _poised(scene: Scene) -> Iterator[Finding]:
 def _weightless(scene: Scene) -> Iterator[Finding]:
     """A carrier must swing what it carries; saying nothing must not pass for no mass."""
     for body in scene.bodies:
-        if body.on is not None and body.mass == 0.0 and not is_still(scene, scene.body(body.on)):
+        if body.on is not None and body.motion == "pivot" and body.mass == 0.0 and not is_still(scene, scene.body(body.on)):
             message = f"{body.name} has no mass, so it adds nothing to what {body.on} weighs"
             cure = f"Give mass or solids under [bodies.{body.name}] unless the inertia of {body.on} holds it already."
             yield Finding("weightless", "notice", message, cure)
