@@ -1,7 +1,8 @@
 """Does any damaged drawing bring the reader down, make it slow or large, or get lost in silence?
 
 Damages small files at random, reads each in a worker process with 1 GB of memory and 10 s, and keeps every file that
-fails. Files are numbered: number k of a format is the same damage on every machine, so `--only K` repeats it.
+fails. Files are numbered: number k of a format is the same damage on every machine, so `--only K` repeats it. `--page LOG ...`
+writes docs/broken-drawings.md from what such runs have printed.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 import argparse
 import importlib
 import random
+import re
 import resource
 import select
 import signal
@@ -54,6 +56,42 @@ def work(name: str) -> None:
             print(judge.fault(path, whole[choice], mutator).replace("\n", " | "), flush=True)
 
 
+PAGE = """# Broken drawings
+
+What happens to a drawing that is damaged? `scripts/fuzz_drawings.py` damages small whole drawings at random, one to three
+accidents a file, and reads each in a process of its own with 1 GB of memory and {seconds:g} s of processor time:
+
+- bytes overwritten, the end cut off, lines lost, swapped or doubled, numbers replaced (`1e308`, `nan`, nothing, `1,5`);
+- DXF: group codes changed, other words after code 0, INSERTs that show another block, perhaps the one they stand in;
+- SVG: names and letters changed, fragments put in (half comments, `CDATA`, entities, open tags), tags moved to other places.
+
+A file fails that brings a traceback, more time or more memory than that, or a loss in silence: every entity that a plain
+look at the file finds must be drawn or told of, and without any finding no less than before may be there, unless an
+independent reader (for DXF ezdxf, for SVG `tests/naive/svg_length.py`) draws as little.
+
+| Files | Failures | Slowest |
+|---|---|---|
+{rows}
+
+The slowest time is on the clock, on a machine busy with other work, and counts reading the file twice, its report and the
+independent reader. A file is made and judged again by its number: `python scripts/fuzz_drawings.py --format dxf --only 2286`.
+"""
+SUMMARY = re.compile(r"(\d+) (\w+) files from number (\d+): (.*); [\d.]+ s, the slowest ([\d.]+) s \(number (\d+)\)")
+
+
+def page(logs: list[Path]) -> str:
+    """The page from the last lines of runs; ValueError where one is not complete."""
+    rows = []
+    for log in logs:
+        found = SUMMARY.search(log.read_text())
+        if found is None:
+            raise ValueError(f"{log} holds no complete run")
+        count, form, first, failures, slowest, number = found.groups()
+        numbers = f"{int(first)} to {int(first) + int(count) - 1}"
+        rows.append(f"| {count} {form.upper()}, numbers {numbers} | {failures} | {slowest} s (number {number}) |")
+    return PAGE.format(seconds=SECONDS, rows="\n".join(rows))
+
+
 class Worker:
     """A process that reads damaged files; begun anew when it dies or hangs."""
 
@@ -95,8 +133,12 @@ def main() -> None:
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--only", type=int, help="write this one file and judge it")
     parser.add_argument("-o", "--output", type=Path, default=Path("results/fuzz"), help="where files that fail are kept")
+    parser.add_argument("--page", type=Path, nargs="+", metavar="LOG", help="write the page from the output of runs")
     parser.add_argument("--work", help=argparse.SUPPRESS)
     args = parser.parse_args()
+    if args.page:
+        (ROOT / "docs" / "broken-drawings.md").write_text(page(args.page))
+        return
     if args.work:
         work(args.work)
         return

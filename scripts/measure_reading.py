@@ -72,11 +72,11 @@ def plate_of_holes(count: int, rng: random.Random) -> Iterator[str]:
 
 
 def crossing_rings(count: int, rng: random.Random) -> Iterator[str]:
-    """Circles in rows of which every tenth cuts its neighbour: as many faults as a tenth of the circles."""
+    """Circles in rows of which every tenth cuts its neighbour on the right: as many faults as a tenth of the circles."""
     side = math.ceil(math.sqrt(count))
     for k in rng.sample(range(count), count):
-        x, y = 2.0 * (k % side), 2.0 * (k // side)
-        yield arc(x, y, 1.05 if k % 10 == 0 else 0.9, 0.0, 360.0)
+        x, y = 2.0 * (k % side) + 0.3 * (k % 10 == 0), 2.0 * (k // side)
+        yield arc(x, y, 0.9, 0.0, 360.0)
 
 
 DRAWINGS: dict[str, Callable[[int, random.Random], Iterator[str]]] = {

@@ -31,7 +31,7 @@ def test_numbers_are_si(scene):
     assert scene.set("contacts.0.friction", 0.3).contacts[0].friction == 0.3
     assert scene.set("contacts.0.restitution", np.int64(0)).contacts[0].restitution == 0.0
     assert scene.set("bodies.lever.position", (1e-3, 0.01)).body("lever").position == (1e-3, 0.01)
-    assert scene.set("run.record", [(0.0, 1.0), (2.0, 3.0)]).record == ((0.0, 1.0), (2.0, 3.0))
+    assert scene.set("run.record", [(0.0, 1.0), (2.0, 3.0)]).record.windows == ((0.0, 1.0), (2.0, 3.0))
     assert scene.set("bodies.balance.velocity", 3.5).body("balance").velocity == (3.5,)
 
 

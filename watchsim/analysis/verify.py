@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
 from watchsim.analysis.benchmarks import Benchmark, Check, inclines, swings
+from watchsim.analysis.compared import Row, compared
 from watchsim.analysis.hard_cases import hard_cases
 from watchsim.analysis.repeated_impacts import repeated_impacts
+from watchsim.analysis.woodpecker.rows import woodpecker_rows
 from watchsim.dynamics.lcp import OK, lcp_work, solve_lcp
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
 from watchsim.simulation.trajectory import Trajectory
 
-Row = dict[str, Any]
 LCP_PROBLEMS, LCP_SIZE = 1000, 9
 
 
@@ -24,7 +24,7 @@ def verify() -> list[Row]:
 
     `error` and `tolerance` are relative to the expected value, absolute where that is zero.
     """
-    return [*incline_rows(), *rows_of([*swings(), *hard_cases(), *repeated_impacts()]), *lcp_rows()]
+    return [*incline_rows(), *rows_of([*swings(), *hard_cases(), *repeated_impacts()]), *woodpecker_rows(), *lcp_rows()]
 
 
 def incline_rows() -> list[Row]:
@@ -45,21 +45,6 @@ def _row(name: str, source: str, check: Check, run: Trajectory) -> Row:
     """A run that gave up before the end proves nothing: nan."""
     got = check.measure(run) if run.stop == Stop.DURATION else math.nan
     return compared(name, check.quantity, check.expected, got, check.tolerance, source)
-
-
-def compared(name: str, quantity: str, expected: float, got: float, tolerance: float, source: str) -> Row:
-    """One row, with its error and verdict."""
-    error = abs(got - expected) / (abs(expected) if expected else 1.0)
-    return {
-        "name": name,
-        "quantity": quantity,
-        "expected": expected,
-        "got": got,
-        "error": error,
-        "tolerance": tolerance,
-        "ok": bool(error <= tolerance),
-        "source": source,
-    }
 
 
 def lcp_rows() -> list[Row]:

@@ -29,6 +29,13 @@ HELP = "simulate a scene and write a results folder"
 def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("scene", metavar="SCENE", help="a scene file (TOML), or the folder that holds scene.toml")
     parser.add_argument("-o", "--output", metavar="DIR", help="results folder (default results/NAME)")
+    parser.add_argument(
+        "--record",
+        metavar="WHAT",
+        action="append",
+        default=[],
+        help='what to keep: all, events, statistics, "every 10", or a window "179 s:180 s"; may be given several times',
+    )
     parser.add_argument("--duration", metavar="TIME", help='simulated time, such as "5 s" (default: the scene\'s)')
     parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], help="change a value of the scene")
     parser.add_argument("--tol", metavar="X", type=float, help="relative error per step (default: the scene's, 1e-9)")
@@ -47,6 +54,8 @@ def run(args: argparse.Namespace) -> int:
     from watchsim.commands.scenes import load_scene
 
     scene = load_scene(args.scene, args.set)
+    if args.record:
+        scene = scene.set("run.record", [_record(what) for what in args.record])
     duration = _time("--duration", args.duration)
     step = _time("--step", args.step)
     if args.tol is not None and not 1e-13 <= args.tol <= 1e-2:
@@ -188,6 +197,12 @@ def status(run: Trajectory, summary: dict[str, Any], promised: bool = True) -> i
     if summary.get("stopped"):
         say("The watch has stopped ticking.")
     return MISSED if missed or summary.get("stopped") else FINE
+
+
+def _record(what: str) -> object:
+    """A window as the scene file has it, or the word."""
+    first, colon, second = what.partition(":")
+    return [first.strip(), second.strip()] if colon else what
 
 
 def _time(option: str, text: str | None) -> float | None:

@@ -20,7 +20,7 @@ from watchsim.mechanism.model import ARC, CORNER, FULL, SLIDE, Records
 FEW_CONTACTS = 24  # with no more reachable pairs of primitives than this, a search costs more than it saves
 # A cell lets the outermost point of either body travel this share of the larger one's reach: the first where outlines are made
 # of pieces as short as that, so that few of them fit into it, else the second.
-FINEST_SHARE, CELL_SHARE = 0.005, 0.02
+FINEST_SHARE, CELL_SHARE = 0.01, 0.02
 FEWEST = 8  # cells in a turn
 MOST_PARTS = 1024  # a symmetry with more parts is not worth the table
 

@@ -66,7 +66,8 @@ def overlap_faults(scene: Scene) -> list[Fault]:
         key = f"bodies.{moving}.position"
         line = lines.get(key) or lines.get(f"bodies.{moving}")
         place = f"{scene.path or 'scene'}:{line}" if line else str(scene.path or "scene")
-        faults.append(Fault(key, str(overlap), place=place))
+        shown = f"`watchsim check {scene.path} --png FILE` shows where" if scene.path else "`watchsim check` shows where"
+        faults.append(Fault(key, f"{overlap}. Move or turn one of them; {shown}", place=place))
     return faults
 
 

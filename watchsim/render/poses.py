@@ -25,7 +25,7 @@ PATH_SAMPLES = 400
 def recorded(run: Trajectory) -> tuple[Window, ...]:
     """The stretches of time (s) for which there are rows, in order."""
     spans = []
-    for start, stop in sorted(run.scene.record):
+    for start, stop in run.spans:
         rows = run.t[(run.t >= start) & (run.t <= stop)]
         if len(rows) > 1 and rows[-1] > rows[0]:
             spans.append((float(rows[0]), float(rows[-1])))
@@ -53,7 +53,7 @@ def stretch(run: Trajectory, window: Sequence[float] | None, unbroken: bool = Fa
     if not start < stop:
         raise ValueError(f"window from {start:.9g} s to {stop:.9g} s is empty; give (from, to) within {kept}")
     slack = 1e-9 * (stop - start)
-    for low, high in (*spans, *run.scene.record):
+    for low, high in (*spans, *run.spans):
         if low - slack <= start and stop <= high + slack and (clipped := _clipped((start, stop), spans)):
             return clipped
     raise ValueError(f"window from {start:.9g} s to {stop:.9g} s: only {kept} was recorded")

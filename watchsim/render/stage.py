@@ -71,10 +71,10 @@ class Stage:
         self._canvas.draw()
         self._background = self._canvas.copy_from_bbox(self._figure.bbox)
 
-    def draw(self, t: float, frames: dict[str, Array], contacts: Array | None = None) -> Pixels:
+    def draw(self, t: float, frames: dict[str, Array], contacts: Array | None = None, mark: str = CONTACT) -> Pixels:
         """The picture (height, width, 4) of the instant `t`; the next call overwrites it.
 
-        `frames` gives every body's pose x, y, angle; `contacts` (n, 2) points to mark, in metres.
+        `frames` gives every body's pose x, y, angle; `contacts` (n, 2) points to mark, in metres, in the colour `mark`.
         """
         self._canvas.restore_region(self._background)
         renderer = self._canvas.get_renderer()
@@ -84,7 +84,7 @@ class Stage:
         for patch in self._patches:
             patch.draw(renderer)
         if contacts is not None and len(contacts):
-            for patch in self._marks(contacts @ matrix[:2, :2].T + matrix[:2, 2]):
+            for patch in self._marks(contacts @ matrix[:2, :2].T + matrix[:2, 2], mark):
                 patch.draw(renderer)
         pixels = np.asarray(self._canvas.buffer_rgba())
         self._layout.write(t, frames, pixels)
@@ -162,10 +162,10 @@ class Stage:
         names = [body.name for body in pivoted if body.on is not None]
         return patches + [self._own(PathPatch(moved, transform=self._transforms[name], **look)) for name in names]
 
-    def _marks(self, points: Array) -> list[PathPatch]:
+    def _marks(self, points: Array, mark: str) -> list[PathPatch]:
         """Rings with a pale rim, to be seen on steel, brass and ruby alike."""
         rings, width = _rings(points, 7.0 * max(self._unit, 0.5)), max(2.4 * self._unit, 1.2)
-        looks = ((BACKGROUND, 2.2 * width), (CONTACT, width))
+        looks = ((BACKGROUND, 2.2 * width), (mark, width))
         place = IdentityTransform()
         return [
             self._own(PathPatch(rings, fill=False, edgecolor=colour, linewidth=line, transform=place)) for colour, line in looks

@@ -56,7 +56,7 @@ def gather(model, cells, state, options, scratch):
             if state.mode[k] != OPEN:
                 continue
             gap, _, _, _ = normal_gap(model, k, scratch.pose)
-            if abs(gap) <= options.gap_close and extent_margin(model, k, scratch.pose) >= -options.extent:
+            if -options.behind <= gap <= options.gap_close and extent_margin(model, k, scratch.pose) >= -options.extent:
                 if continues_active(model, state, options, k, scratch.pose):
                     continue
                 if m == ROOM:

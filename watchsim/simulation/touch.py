@@ -124,7 +124,7 @@ def _time_outside(model, k, inside_a, inside_b, motion, distance):
 @kernel
 def _is_due(gap, rate, outside, clear, options):
     """True if a gap that comes from outside has closed, or one that lies within the rounding behind it goes on closing."""
-    zero, band = options.gap_zero, options.gap_close
+    zero, band = options.gap_zero, options.behind
     if outside:
         return gap <= zero and ((clear and rate < 0.0) or gap < -zero)
     return gap >= -band and (rate < -options.speed_zero or (rate < 0.0 and gap <= zero - band))
@@ -136,8 +136,8 @@ def _time_to_zero(gap, rate, outside, bounds, options):
     closing, bend, distance = bounds
     if not outside:
         safe = _safe(-gap, rate, closing, bend, distance)
-        if gap >= -options.gap_close:
-            safe = min(safe, _safe(gap + options.gap_close, -rate, closing, bend, distance))
+        if gap >= -options.behind:
+            safe = min(safe, _safe(gap + options.behind, -rate, closing, bend, distance))
         return safe
     leaving = gap > options.gap_zero or rate > options.speed_zero
     return _safe(max(gap, 0.0) if leaving else gap + 2.0 * options.gap_zero, -rate, closing, bend, distance)
@@ -176,7 +176,7 @@ def crossing(model, state, options, k, start, end, scratch):
         inside_a, inside_b = inside_a + options.extent, inside_b + options.extent
         beside = _time_outside(model, k, inside_a, inside_b, (closing, swing), distance)
         # Positions jump where drift is taken back: a gap may have closed by that.
-        near = gap <= zero if outside else gap >= -options.gap_close
+        near = gap <= zero if outside else gap >= -options.behind
         if near and min(inside_a, inside_b) < 0.0:
             # At least the time in which the gap cannot pass through its rounding.
             tau += max(beside, zero / closing)
@@ -206,7 +206,7 @@ def _stays_open(model, state, options, k, length, first, bounds, scratch):
     """
     gap, rate, _, _ = normal_gap(model, k, scratch.pose)
     state.counts[N_GAPS] += 1
-    if -options.gap_close <= gap <= options.gap_zero:
+    if -options.behind <= gap <= options.gap_zero:
         return False
     # Behind its primitive a contact must come out before it can close.
     room, approach = (gap, -rate) if gap > 0.0 else (-gap, rate)

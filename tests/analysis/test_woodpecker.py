@@ -1,0 +1,74 @@
+"""Does the woodpecker toy come out?"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from watchsim.analysis.woodpecker.cycle import find_cycle
+from watchsim.analysis.woodpecker.motion import moments, phase_of
+from watchsim.analysis.woodpecker.rows import woodpecker_rows
+from watchsim.analysis.woodpecker.toy import LOWER, UPPER, Toy, modal, start
+from watchsim.contact.index_sets import BACKWARD, OPEN
+
+
+def test_rows() -> None:
+    wrong = [row for row in woodpecker_rows() if not row["ok"]]
+    assert not wrong
+
+
+def test_modal_coordinates_are_the_toys() -> None:
+    """Unit masses and one spring: the energies of q and of its modal coordinates are the same."""
+    toy = Toy()
+    model, rng = modal(toy), np.random.default_rng(3)
+    e, v = rng.normal(size=3), rng.normal(size=3)
+    q, u = model.basis @ e, model.basis @ v
+    assert u @ toy.mass @ u == pytest.approx(v @ v, rel=1e-12)
+    assert toy.stiffness * (q[1] - q[2]) ** 2 == pytest.approx(e @ (model.spring * e), rel=1e-12)
+    assert toy.load @ q == pytest.approx(model.load @ e, rel=1e-12)
+
+
+def test_energy_only_falls() -> None:
+    """From event to event kinetic energy, spring and height lose what friction and impacts take; a free flight loses nothing."""
+    toy = Toy()
+    model = modal(toy)
+    seen = list(moments(model, *start(toy, model), 0.3))
+
+    def energy(q: np.ndarray, u: np.ndarray) -> float:
+        return 0.5 * u @ toy.mass @ u + 0.5 * toy.stiffness * (q[1] - q[2]) ** 2 - toy.load @ q
+
+    before = [energy(seen[k].q, seen[k].before) - energy(seen[k - 1].q, seen[k - 1].u) for k in range(1, len(seen))]
+    jumps = [energy(one.q, one.u) - energy(one.q, one.before) for one in seen]
+    assert max(before) < 1e-12
+    assert max(jumps) < 1e-15
+    free = [k for k in range(1, len(seen)) if seen[k - 1].mode == (OPEN, OPEN, OPEN)]
+    assert len(free) > 5
+    assert max(abs(before[k - 1]) for k in free) < 1e-13
+
+
+def test_the_flow_of_a_mode_keeps_its_contact_closed() -> None:
+    model = modal(Toy())
+    phase = phase_of(model, np.array([OPEN, BACKWARD, OPEN]), [LOWER])
+    N = model.contacts.W[2 * LOWER]
+    assert np.abs(N @ phase.flow[3:6]).max() < 1e-9 * np.abs(phase.flow[3:6]).max() * np.abs(N).max()
+    assert {contact for _, contact in phase.causes} == {0, LOWER, UPPER}
+
+
+def test_without_friction_the_sleeve_falls() -> None:
+    """It is friction that stops the sleeve: with none it falls and never sticks."""
+    toy = Toy(friction=0.0)
+    model = modal(toy)
+    slipping = list(moments(model, *start(toy, model), 0.1))
+    fall = -0.3411 * 0.1 - 0.5 * 9.81 * 0.1**2
+    assert slipping[-1].q[0] < 0.5 * fall
+    assert not any(2 in moment.mode for moment in slipping)
+
+
+def test_the_cycle_does_not_depend_on_where_it_is_looked_for() -> None:
+    cycle = find_cycle(Toy())
+    assert cycle.period == pytest.approx(0.1459760651, abs=1e-9)
+    model = modal(Toy())
+    q, u = cycle.events[0].q, cycle.events[0].u * 1.005
+    later = [one for one in moments(model, model.into(q), model.into(u), 20.0 * cycle.period) if one.cause == "slip"]
+    # Each peck takes away a sixth of the distance: 0.84^20.
+    assert abs(later[-1].u[2] - cycle.events[0].u[2]) < 0.1 * abs(u[2] - cycle.events[0].u[2])

@@ -1,0 +1,1 @@
+"""Does the woodpecker toy come out?"""
