@@ -42,7 +42,7 @@ def closed_at_middle(model, cells, state, options, h, work):
         for place_in_list in range(start, start + count):
             k = candidate(model, cells, how, place_in_list)
             gap, _, _, _ = normal_gap(model, k, work.pose)
-            if gap > 0.0 or (state.mode[k] == 0 and gap < -_believable(model, options, k, h, work)):
+            if gap > options.gap_close or (state.mode[k] == 0 and gap < -_believable(model, options, k, h, work)):
                 continue
             if extent_margin(model, k, work.pose) >= -options.extent:
                 if m == ROOM:

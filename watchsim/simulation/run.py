@@ -24,6 +24,7 @@ from watchsim.mechanism.recording import Recording
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation.advance import EVENTS_PER_STEP, ROWS_PER_STEP, advance
 from watchsim.simulation.failure import failure_of
+from watchsim.simulation.interrupts import held_interrupts
 from watchsim.simulation.kept import Kept, tail_length
 from watchsim.simulation.methods import EVENT_DRIVEN
 from watchsim.simulation.options import Options, options_for
@@ -128,33 +129,40 @@ class Run:
 
     def to_the_end(self, duration: float, progress: Progress | None) -> Stop:
         """Run until the duration is over or something ends the run for good."""
-        length = duration / 100.0
-        until = np.array([0.0, duration, 0.0])
         try:
-            while True:
-                start = time.perf_counter()
-                until[0] = min(duration, self.state.clock[0] + length)
-                stop = self._advance(until, self.record)
-                if stop == Stop.CELL_UNKNOWN:
-                    self._learn()
-                elif stop == Stop.BUFFER_FULL:
-                    self.flush()
-                elif stop == Stop.LAST_STEP:
-                    # The next step is cut short by the end. Who goes on later must go on from here, to take it whole.
-                    self.saved, until[2] = self.save(), 1.0
-                elif stop != Stop.SLICE:
-                    break
-                else:
-                    taken = time.perf_counter() - start
-                    length = min(max(length * SLICE_WALL / max(taken, 1e-4), 1e-9 * duration), 10.0 * length)
-                if progress is not None:
-                    progress(float(self.state.clock[0]), duration)
+            with held_interrupts() as interrupted:
+                stop = self._slices(duration, progress, interrupted)
         except KeyboardInterrupt:
             stop = Stop.INTERRUPTED
         if self.saved is None:
             self.saved = self.save()
         self.flush()
         return stop
+
+    def _slices(self, duration: float, progress: Progress | None, interrupted: Callable[[], bool]) -> Stop:
+        """Slice after slice of about `SLICE_WALL`, with what has to be done between them."""
+        length = duration / 100.0
+        until = np.array([0.0, duration, 0.0])
+        while True:
+            start = time.perf_counter()
+            until[0] = min(duration, self.state.clock[0] + length)
+            stop = self._advance(until, self.record)
+            if stop == Stop.CELL_UNKNOWN:
+                self._learn()
+            elif stop == Stop.BUFFER_FULL:
+                self.flush()
+            elif stop == Stop.LAST_STEP:
+                # The next step is cut short by the end. Who goes on later must go on from here, to take it whole.
+                self.saved, until[2] = self.save(), 1.0
+            elif stop != Stop.SLICE:
+                return stop
+            else:
+                taken = time.perf_counter() - start
+                length = min(max(length * SLICE_WALL / max(taken, 1e-4), 1e-9 * duration), 10.0 * length)
+            if progress is not None:
+                progress(float(self.state.clock[0]), duration)
+            if interrupted():
+                return Stop.INTERRUPTED
 
     def _all_kept(self, parts: int | None = None) -> tuple[NDArray[np.float64], NDArray[Any]]:
         """Rows and events of the first `parts` flushes, default all."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from watchsim.analysis.woodpecker.toy import Array, Modal
 from watchsim.jit import callable_kernel
-from watchsim.simulation.moreau_prox import SWEEPS, relax
+from watchsim.simulation.moreau_prox import relax
 
 _relax = callable_kernel(relax)
 
@@ -20,7 +20,9 @@ def percussions(G: Array, rates: Array, low: Array, friction: Array) -> Array:
     m = len(low)
     P = np.zeros(2 * m)
     P[::2] = low
-    if _relax(G, rates, low, friction, m, P) > SWEEPS:
+    ends = np.outer(friction, (0.0, -1.0, 0.0, 1.0))  # Coulomb's law, see moreau_prox
+    _, settled = _relax(G, rates, low, ends, m, 0, P)
+    if not settled:
         raise RuntimeError("the relaxation of the woodpecker has not settled")
     return P
 
