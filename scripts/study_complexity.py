@@ -172,7 +172,7 @@ def measure(scene: Scene, whole_turn: bool) -> Row:
     if len(model.contacts) <= MOST_BRUTE:
         brutes = [loop_time(scene, False) for _ in range(3)]
         brute = min(spent for _, spent, _ in brutes)
-        assert events.tobytes() == np.concatenate(brutes[0][2].kept.events).tobytes()
+        assert events.tobytes() == events_of(brutes[0][2]).tobytes()
     gaps = int(loop_time(scene, True)[2].state.counts[N_GAPS])
     return Row(len(model.contacts), len(model.near), setup, learning, known, turn, brute, len(events), gaps)
 

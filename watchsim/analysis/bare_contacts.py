@@ -1,7 +1,7 @@
 """Which contacts can be given without any geometry? Directions, masses and laws alone.
 
-`impact`, `decide_modes` and `solve_mode` read nothing else, so that random problems and models with their own coordinates can be
-put to them.
+`impact`, `decide_modes` and `solve_mode` read nothing else, so that random problems and models with their own coordinates
+can be put to them.
 """
 
 from __future__ import annotations

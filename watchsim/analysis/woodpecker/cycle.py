@@ -1,7 +1,7 @@
 """Which motion of the woodpecker toy repeats itself?
 
-While the lower edge sticks only the bird moves, and the edge breaks loose at one tilt of the bird: what the toy does next depends
-on one number, the bird's rate there. A cycle is a fixed point of the map from that number to the one a peck later.
+While the lower edge sticks only the bird moves, and the edge breaks loose at one tilt of the bird: what the toy does next
+depends on one number, the bird's rate there. A cycle is a fixed point of the map from that number to the one a peck later.
 """
 
 from __future__ import annotations

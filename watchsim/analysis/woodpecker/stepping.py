@@ -20,8 +20,7 @@ def percussions(G: Array, rates: Array, low: Array, friction: Array) -> Array:
     m = len(low)
     P = np.zeros(2 * m)
     P[::2] = low
-    ends = np.zeros((m, 4))
-    ends[:, 1], ends[:, 3] = -friction, friction
+    ends = np.outer(friction, (0.0, -1.0, 0.0, 1.0))  # Coulomb's law, see moreau_prox
     _, settled = _relax(G, rates, low, ends, m, 0, P)
     if not settled:
         raise RuntimeError("the relaxation of the woodpecker has not settled")

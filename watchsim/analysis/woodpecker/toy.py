@@ -95,12 +95,11 @@ class Modal:
 
     def force(self, e: Array) -> Array:
         """Weight and spring at e."""
-        return self.load - self.spring * e
+        return np.asarray(self.load - self.spring * e, float)
 
     def into(self, vector: Array) -> Array:
         """Modal coordinates of (y, tilt of the sleeve, tilt of the bird)."""
-        modal: Array = np.linalg.solve(self.basis, vector)
-        return modal
+        return np.asarray(np.linalg.solve(self.basis, vector), np.float64)
 
 
 def modal(toy: Toy) -> Modal:
