@@ -1,7 +1,8 @@
 """Does any damaged drawing bring the reader down, make it slow or large, or get lost in silence?
 
 Damages small files at random, reads each in a worker process with 1 GB of memory and 10 s, and keeps every file that
-fails. Files are numbered: number k of a format is the same damage on every machine, so `--only K` repeats it.
+fails. Files are numbered: number k of a format is the same damage on every machine, so `--only K` repeats it. `--page LOG ...`
+writes docs/broken-drawings.md from what such runs have printed.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 import argparse
 import importlib
 import random
+import re
 import resource
 import select
 import signal
@@ -36,7 +38,7 @@ def damaged(mutator: Any, number: int) -> tuple[int, bytes]:
 
 
 def work(name: str) -> None:
-    """Reads numbers from stdin, one a line, and answers each with one line: empty, or what went wrong."""
+    """Reads numbers from stdin, one a line, and answers each with a line: processor time, tab, what went wrong if anything."""
     mutator = importlib.import_module(name)
     judge = importlib.import_module("judge_mutation")
     reader = importlib.import_module("watchsim.drawing.read")
@@ -51,7 +53,32 @@ def work(name: str) -> None:
             choice, data = damaged(mutator, int(line))
             path.write_bytes(data)
             signal.setitimer(signal.ITIMER_PROF, SECONDS)  # ends the process
-            print(judge.fault(path, whole[choice], mutator).replace("\n", " | "), flush=True)
+            before = time.process_time()
+            fault = judge.fault(path, whole[choice], mutator).replace("\n", " | ")
+            print(f"{time.process_time() - before:.3f}\t{fault}", flush=True)
+
+
+PAGE = """# Broken drawings
+
+What happens to a drawing that is damaged? `scripts/fuzz_drawings.py` damages small whole drawings at random, one to three
+accidents a file, and reads each in a process of its own with 1 GB of memory and {seconds:g} s of processor time:
+
+- bytes overwritten, the end cut off, lines lost, swapped or doubled, numbers replaced (`1e308`, `nan`, nothing, `1,5`);
+- DXF: group codes changed, other words after code 0, INSERTs that show another block, perhaps the one they stand in;
+- SVG: names and letters changed, fragments put in (half comments, `CDATA`, entities, open tags), tags moved to other places.
+
+A file fails that brings a traceback, more time or more memory than that, or a loss in silence: every entity that a plain
+look at the file finds must be drawn or told of, and without any finding no less than before may be there, unless an
+independent reader (for DXF ezdxf, for SVG `tests/naive/svg_length.py`) draws as little.
+
+| Files | Failures | Slowest |
+|---|---|---|
+{rows}
+
+The slowest file is the one that took longest in that run; its processor time counts reading it twice, its report and the
+independent reader. A file is made and judged again by its number: `python scripts/fuzz_drawings.py --format dxf --only 2286`.
+"""
+SUMMARY = re.compile(r"(\d+) (\w+) files from number (\d+): (.*); [\d.]+ s, the slowest ([\d.]+) s \(number (\d+)\)")
 
 
 class Worker:
@@ -67,25 +94,44 @@ class Worker:
         environment = {"OPENBLAS_NUM_THREADS": "1", "PATH": "/usr/bin:/bin"}
         return subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=environment)
 
-    def ask(self, number: int) -> str:
+    def ask(self, number: int) -> tuple[float, str]:
+        """Seconds of processor time, and what went wrong, empty if nothing."""
         assert self.process.stdin is not None and self.process.stdout is not None
         self.process.stdin.write(f"{number}\n")
         self.process.stdin.flush()
         ready, _, _ = select.select([self.process.stdout], [], [], PATIENCE * SECONDS)
         answer = self.process.stdout.readline() if ready else ""
         if answer.endswith("\n"):
-            return answer.strip()
+            used, _, fault = answer.strip().partition("\t")
+            return float(used), fault
         if not ready:
             self.process.kill()
         status = self.process.wait()
         self.process = self._start()
         slow = not ready or status == -signal.SIGPROF
-        return f"more than {SECONDS:g} s" if slow else f"the process died with status {status}"
+        return SECONDS, f"more than {SECONDS:g} s" if slow else f"the process died with status {status}"
 
     def close(self) -> None:
         assert self.process.stdin is not None
         self.process.stdin.close()
         self.process.wait()
+
+
+def page(logs: list[Path]) -> str:
+    """The page from the last lines of runs, whose slowest files are read once more; ValueError where one is not complete."""
+    rows = []
+    for log in logs:
+        found = SUMMARY.search(log.read_text())
+        if found is None:
+            raise ValueError(f"{log} holds no complete run")
+        count, form, first, failures, _, number = found.groups()
+        worker = Worker(f"mutate_{form}")
+        worker.ask(int(number))  # the first answer pays for the imports
+        used, _ = worker.ask(int(number))
+        worker.close()
+        numbers = f"{int(first)} to {int(first) + int(count) - 1}"
+        rows.append(f"| {count} {form.upper()}, numbers {numbers} | {failures} | {used:.1f} s (number {number}) |")
+    return PAGE.format(seconds=SECONDS, rows="\n".join(rows))
 
 
 def main() -> None:
@@ -95,8 +141,12 @@ def main() -> None:
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--only", type=int, help="write this one file and judge it")
     parser.add_argument("-o", "--output", type=Path, default=Path("results/fuzz"), help="where files that fail are kept")
+    parser.add_argument("--page", type=Path, nargs="+", metavar="LOG", help="write the page from the output of runs")
     parser.add_argument("--work", help=argparse.SUPPRESS)
     args = parser.parse_args()
+    if args.page:
+        (ROOT / "docs" / "broken-drawings.md").write_text(page(args.page))
+        return
     if args.work:
         work(args.work)
         return
@@ -108,9 +158,8 @@ def main() -> None:
     slowest, start = (0.0, -1), time.perf_counter()
     worker.ask(numbers[0])  # the first answer pays for the imports
     for number in numbers:
-        begun = time.perf_counter()
-        answer = worker.ask(number)
-        slowest = max(slowest, (time.perf_counter() - begun, number))
+        used, answer = worker.ask(number)
+        slowest = max(slowest, (used, number))
         if answer or args.only is not None:
             args.output.mkdir(parents=True, exist_ok=True)
             (args.output / f"{number}.{args.format}").write_bytes(damaged(mutator, number)[1])

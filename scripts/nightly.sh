@@ -17,6 +17,12 @@ echo "== all tests"
 echo "== kernels with index checks"
 NUMBA_BOUNDSCHECK=1 WATCHSIM_CACHE="$scratch/checked" "$environment/bin/pytest" tests/contact tests/dynamics tests/simulation
 
+echo "== an hour of each lever, a locked day, and the other method"
+mkdir -p "$scratch/images"
+"$environment/bin/python" scripts/measure_long_runs.py --page "$scratch/long-runs.md"
+"$environment/bin/python" scripts/study_convergence.py --quick --page "$scratch/convergence.md"
+cat "$scratch/long-runs.md" "$scratch/convergence.md"
+
 echo "== benchmarks and demo"
 "$environment/bin/watchsim" verify --slow
 "$environment/bin/python" scripts/measure_grid.py "$scratch/grid.csv"

@@ -14,8 +14,10 @@ import math
 import time
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from watchsim.contact.known import forget
 from watchsim.geometry.loop import Loop
@@ -24,16 +26,20 @@ from watchsim.mechanism.body import Body
 from watchsim.mechanism.compile import compile_scene
 from watchsim.mechanism.load import load
 from watchsim.mechanism.model import ARC, CORNER, Records
+from watchsim.mechanism.recording import EVERYTHING
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation.run import Run
-from watchsim.simulation.simulate import WHOLE_RUN, simulate
+from watchsim.simulation.saved import SavedState
+from watchsim.simulation.simulate import simulate
+from watchsim.simulation.state import N_GAPS
 from watchsim.simulation.stops import Stop
 from watchsim.simulation.trajectory import Trajectory
 
 ROOT = Path(__file__).resolve().parents[1]
 DURATION = 0.5  # s, four beats
+TURN = 3.75  # s, a turn of the escape wheel: every tooth has its turn
 REFINED = (1, 3, 8, 20, 50, 100, 182)  # pieces of each edge
-REPEATS = 5
+REPEATS = 15
 MOST_BRUTE = 1.5e4  # declared pairs: beyond it brute force is not waited for
 Mark = tuple[str, int, int]
 
@@ -110,40 +116,65 @@ def few_outlines(scene: Scene, run: Trajectory) -> Scene:
 
 @dataclasses.dataclass
 class Row:
-    """One measured scene; times are of the processor, s per simulated second."""
+    """One measured scene; times are of the processor, s per simulated second where nothing else is said."""
 
     declared: int
     reachable: int
-    setup: float  # s, once
+    setup: float  # s, once: flattening, what can be found out in advance, the end state
     learning: float  # a first run, which asks for its cells
     known: float  # later runs
+    turn: float | None  # later runs of a whole turn of the wheel
     brute: float | None
     events: int
+    gaps: int  # gap functions evaluated in a later run
 
 
-def loop_time(scene: Scene, prefilter: bool) -> tuple[float, float, Run]:
-    """Processor times: to get ready (s), and of the event loop (s per simulated second)."""
+class TimedRun(Run):
+    """A run that knows how long its end state took to save, which it does once, however long it is."""
+
+    saving = 0.0
+
+    def save(self) -> SavedState:
+        start = time.process_time()
+        saved = super().save()
+        self.saving += time.process_time() - start
+        return saved
+
+
+def loop_time(scene: Scene, prefilter: bool, duration: float = DURATION) -> tuple[float, float, TimedRun]:
+    """Processor times: to get ready and to save the end state (s), and of the event loop (s per simulated second)."""
     start = time.process_time()
-    run = Run(compile_scene(scene, prefilter), scene.tolerance, DURATION, WHOLE_RUN)
+    run = TimedRun(scene, compile_scene(scene, prefilter), scene.tolerance, EVERYTHING)
     ready = time.process_time()
     run.warm_up()
     begin = time.process_time()
-    stop = run.to_the_end(DURATION, None)
+    stop = run.to_the_end(duration, None)
     assert stop == Stop.DURATION, stop
-    return ready - start, (time.process_time() - begin) / DURATION, run
+    spent = time.process_time() - begin - run.saving
+    return ready - start + run.saving, spent / duration, run
 
 
-def measure(scene: Scene) -> Row:
+def events_of(run: Run) -> NDArray[Any]:
+    return run.trajectory(Stop.DURATION, 0.0, 0.0).events
+
+
+def measure(scene: Scene, whole_turn: bool) -> Row:
     """All times of one scene; the events with and without the prefilter must be the same to the last bit."""
     forget()
     setup, learning, run = loop_time(scene, True)
     known = min(loop_time(scene, True)[1] for _ in range(REPEATS))
-    model, events = run.compiled.model, np.concatenate(run.kept.events)
+    model, events = run.compiled.model, events_of(run)
+    turn = None
+    if whole_turn:
+        loop_time(scene, True, TURN)
+        turn = min(loop_time(scene, True, TURN)[1] for _ in range(REPEATS // 3))
     brute = None
     if len(model.contacts) <= MOST_BRUTE:
-        _, brute, slow = loop_time(scene, False)
-        assert events.tobytes() == np.concatenate(slow.kept.events).tobytes()
-    return Row(len(model.contacts), len(model.near), setup, learning, known, brute, len(events))
+        brutes = [loop_time(scene, False) for _ in range(3)]
+        brute = min(spent for _, spent, _ in brutes)
+        assert events.tobytes() == events_of(brutes[0][2]).tobytes()
+    gaps = int(loop_time(scene, True)[2].state.counts[N_GAPS])
+    return Row(len(model.contacts), len(model.near), setup, learning, known, turn, brute, len(events), gaps)
 
 
 def rows(quick: bool) -> list[Row]:
@@ -151,30 +182,24 @@ def rows(quick: bool) -> list[Row]:
     scene = load(ROOT / "profiles" / "bench_lever" / "scene.toml")
     run = simulate(scene, DURATION)
     whole = touched(scene, run)
-    found = [measure(few_outlines(scene, run))]
+    found = [measure(few_outlines(scene, run), False)]
     for count in REFINED[: 3 if quick else None]:
-        found.append(measure(refined(scene, count, whole)))
+        found.append(measure(refined(scene, count, whole), True))
         print(found[-1], flush=True)
     return found
 
 
 def table(found: list[Row]) -> str:
-    """The measured numbers in Markdown."""
+    """The measured numbers in Markdown, times in milliseconds."""
     lines = [
-        "| Declared pairs | that can ever touch | getting ready, s | first run | later runs | brute force | events |",
-        "|---:|---:|---:|---:|---:|---:|---:|",
+        "| Declared pairs | that can ever touch | getting ready, ms | first run | later runs | a turn of the wheel "
+        "| brute force | gaps evaluated | events |",
+        "|---:|---:|---:|---:|---:|---:|---:|---:|---:|",
     ]
     for row in found:
-        brute = "" if row.brute is None else f"{row.brute:.3f}"
-        cells = (
-            f"{row.declared:,}",
-            f"{row.reachable:,}",
-            f"{row.setup:.3f}",
-            f"{row.learning:.4f}",
-            f"{row.known:.4f}",
-            brute,
-        )
-        lines.append("| " + " | ".join((*cells, str(row.events))) + " |")
+        counts = (f"{row.declared:,}", f"{row.reachable:,}", f"{1e3 * row.setup:.0f}")
+        times = ("" if t is None else f"{1e3 * t:.2f}" for t in (row.learning, row.known, row.turn, row.brute))
+        lines.append("| " + " | ".join((*counts, *times, f"{row.gaps:,}", str(row.events))) + " |")
     return "\n".join(lines)
 
 
@@ -190,7 +215,9 @@ def plot(found: list[Row], path: Path) -> None:
     brute = [(row.declared, row.brute) for row in found if row.brute is not None]
     axes.loglog(*zip(*brute, strict=True), "s-", color="#b5452c", label="brute force: every pair in every step")
     axes.loglog(x, [row.learning for row in found], "o--", color="#6f8fb3", label="prefilter, first run of a geometry")
-    axes.loglog(x, [row.known for row in found], "o-", color="#1f4e79", label="prefilter, later runs")
+    axes.loglog(x, [row.known for row in found], "o-", color="#1f4e79", label="prefilter, later runs: four beats")
+    turn = [(row.declared, row.turn) for row in found if row.turn is not None]
+    axes.loglog(*zip(*turn, strict=True), "x:", color="#1f4e79", label="the same, a whole turn of the wheel")
     axes.set_xlabel("declared pairs of primitives")
     axes.set_ylabel("processor time per simulated second, s")
     axes.grid(True, which="major", color="0.88", linewidth=0.8)
@@ -205,18 +232,20 @@ PAGE = """# Input complexity and computing time
 How much does a simulation slow down when more is declared than it needs? The bench lever for {duration:g} s
 ({beats} beats): first with only the teeth that are touched in that time, then with all teeth, then with every edge on
 which nothing slides cut into ever more pieces, so that the motion is the same. Written by `scripts/study_complexity.py`;
-processor time of one core, for one simulated second (the event loop, the search for candidates included), events
-recorded.
+processor time of one core in milliseconds for one simulated second (the event loop, the search for candidates included),
+events recorded.
 
 ![Time per simulated second over declared pairs](images/complexity.png)
 
 {table}
 
-From {low:,} to {high:,} declared pairs the time of later runs grows by a factor of {growth:.2f}. Brute force looks at
-every declared pair in every step and has the same events to the last bit; it is not waited for beyond {most:,} pairs.
+From {low:,} to {high:,} declared pairs the time of later runs grows by a factor of {growth:.2f}; over a whole turn of
+the wheel ({turn:g} s, all teeth) by {turn_growth:.2f} from {second:,} pairs on. Brute force looks at every declared pair
+in every step and has the same events to the last bit; it is not waited for beyond {most:,} pairs.
+
 *First run* asks shapely about each cell of the configuration space it enters; *later runs* of the same geometry, such as
-a sweep over torques or friction, ask nothing. *Getting ready* is the flattening of the scene and what can be found out in
-advance (what can ever touch, symmetries), once for each run.
+a sweep over torques or friction, ask nothing. *Getting ready* is done once, however long the run: the flattening of the
+scene, what can be found out in advance (what can ever touch, symmetries), and the digest of the model in the end state.
 """
 
 
@@ -237,6 +266,9 @@ def main() -> None:
         low=found[0].declared,
         high=found[-1].declared,
         growth=growth,
+        turn=TURN,
+        turn_growth=(found[-1].turn or 0.0) / (found[1].turn or 1.0),
+        second=found[1].declared,
         most=int(MOST_BRUTE),
     )
     (ROOT / "docs" / "complexity.md").write_text(text, encoding="utf-8")

@@ -12,7 +12,7 @@ import sys
 from watchsim import __version__
 from watchsim.commands.console import BAD_INPUT, INTERRUPTED, InputError, say
 
-COMMANDS = ("demo", "inspect", "check", "run", "plot", "movie", "verify", "export")
+COMMANDS = ("demo", "inspect", "check", "run", "plot", "movie", "verify", "bench", "export")
 
 
 def parser() -> argparse.ArgumentParser:

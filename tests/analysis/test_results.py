@@ -161,7 +161,7 @@ def test_what_cannot_be_read_says_why(run, tmp_path, monkeypatch):
     monkeypatch.setattr(archive, "FORMAT", 9)
     write_trajectory(run, tmp_path / "t.npz")
     monkeypatch.undo()
-    with pytest.raises(ValueError, match="has format 9; this version reads format 2"):
+    with pytest.raises(ValueError, match="has format 9; this version reads format 3"):
         read_trajectory(tmp_path / "t.npz", run.scene)
 
 

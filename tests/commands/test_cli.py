@@ -7,6 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import imageio.v3 as imageio
 import numpy as np
 import pytest
 
@@ -76,6 +77,24 @@ def test_check_counts_pairs_and_knows_the_frequency(capsys: pytest.CaptureFixtur
         ["lever", "balance"],
         ["lever", "banking"],
     ]
+
+
+def test_an_overlap_at_the_start_is_an_error_with_a_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for drawing in LEVER.parent.glob("*.dxf"):
+        (tmp_path / drawing.name).write_bytes(drawing.read_bytes())
+    scene, pictures = tmp_path / "scene.toml", [tmp_path / "apart.png", tmp_path / "overlap.png"]
+    text = LEVER.read_text(encoding="utf-8")
+    scene.write_text(text, encoding="utf-8")
+    assert main(["check", str(scene), "--png", str(pictures[0])]) == 0
+    scene.write_text(text.replace('"2.886751346 mm"', '"2.8 mm"'), encoding="utf-8")
+    assert main(["run", str(scene), "-o", str(tmp_path / "out")]) == 2
+    told = capsys.readouterr().err
+    assert "wheel and lever overlap by" in told and f"watchsim check {scene} --png" in told
+    assert main(["check", str(scene), "--png", str(pictures[1])]) == 2
+    red = [
+        np.count_nonzero(np.abs(imageio.imread(picture).astype(int) - (208, 2, 27)).max(axis=2) < 30) for picture in pictures
+    ]
+    assert red[0] == 0 and red[1] > 30
 
 
 def test_run_writes_a_results_folder_and_keeps_one_that_exists(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -53,6 +53,6 @@ def fault(path: Path, whole: Drawing, mutator: Any) -> str:
     entities = mutator.entities(data)
     if drawn < entities and not told:
         return f"silent loss: {entities} entities in the file, {drawn} read, and nothing said"
-    if mutator.lost(data) and not drawing.findings:
+    if not drawing.findings and mutator.lost(data):
         return "silent loss: an entity begins nowhere, and nothing said"
     return ""

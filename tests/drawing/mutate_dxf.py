@@ -138,6 +138,8 @@ def without_unused_blocks(data: bytes) -> bytes:
     """The file without the blocks that nothing in model space inserts: their damage is none of the drawing's."""
     lines = data.splitlines()
     starts = [k for k in range(0, len(lines) - 1, 2) if lines[k].strip() == b"0"]
+    if not starts:
+        return data
     records = [(lines[a + 1].strip(), lines[a:b]) for a, b in zip(starts, [*starts[1:], len(lines)], strict=True)]
     inside = b""
     uses: dict[bytes, set[bytes]] = {b"": set()}
@@ -153,7 +155,7 @@ def without_unused_blocks(data: bytes) -> bytes:
     while new:
         new = set().union(*(uses.get(name, set()) for name in new)) - used
         used |= new
-    kept = lines[: starts[0]] if starts else lines
+    kept = lines[: starts[0]]
     for home, (_, record) in zip(homes, records, strict=True):
         kept = [*kept, *record] if home in used else kept
     return b"\n".join(kept)

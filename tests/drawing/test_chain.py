@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import random
-import time
+import sys
 from collections.abc import Callable
 
 import dxf_text as d
@@ -262,27 +262,23 @@ def star(count: int) -> list[Stroke]:
     return [Stroke(Line(0, 0, math.cos(angle * k), math.sin(angle * k)), "0", "LINE", k) for k in range(count)]
 
 
+def calls(work: Callable[[], object]) -> int:
+    """How many functions are called: the same on every machine, however busy."""
+    count = 0
+
+    def counted(_frame: object, event: str, _argument: object) -> None:
+        nonlocal count
+        count += event in ("call", "c_call")
+
+    sys.setprofile(counted)
+    try:
+        work()
+    finally:
+        sys.setprofile(None)
+    return count
+
+
 @pytest.mark.parametrize("make", [ring, star])
-def test_time_grows_with_the_number_of_edges(make: Callable[[int], list[Stroke]]) -> None:
-    def seconds(count: int) -> float:
-        strokes = make(count)
-        start = time.process_time()
-        chain(strokes, 1e-6)
-        return time.process_time() - start
-
-    few, many = min(seconds(1000) for _ in range(3)), min(seconds(8000) for _ in range(2))
-    assert many < 8 * 3 * few
-
-
-def test_ten_thousand_lines_are_quick(tmp_path: object) -> None:
-    from pathlib import Path
-
-    from watchsim.drawing.read import read
-
-    path = Path(str(tmp_path)) / "many.dxf"
-    rim = [((10 + k % 2) * math.cos(TURN * k / 10000), (10 + k % 2) * math.sin(TURN * k / 10000)) for k in range(10000)]
-    path.write_bytes(d.dxf(d.polygon(rim)))
-    start = time.process_time()
-    drawing = read(path)
-    assert time.process_time() - start < 1.5
-    assert len(drawing.loops) == 1 and len(drawing.loops[0].edges) == 10000
+def test_work_grows_with_the_number_of_edges(make: Callable[[int], list[Stroke]]) -> None:
+    few, many = make(500), make(4000)
+    assert calls(lambda: chain(many, 1e-6)) < 8 * 1.2 * calls(lambda: chain(few, 1e-6))

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import dxf_text as d
 import pytest
+import svg_text as s
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -133,6 +134,42 @@ def test_a_block_turned_and_mirrored_by_its_insert_is_the_same(
         found_area, found_polar, _ = facts(read(path))
     assert found_area == pytest.approx(1.5**2 * area, rel=SAME, abs=0)
     assert found_polar == pytest.approx(1.5**4 * polar, rel=SAME, abs=0)
+
+
+def as_path(corners: list[Corner]) -> str:
+    """SVG counts y downwards, so that a turn to the left is one to the right there."""
+    words = [f"M {corners[0][0].real!r} {-corners[0][0].imag!r}"]
+    for (a, bulge), (b, _) in zip(corners, [*corners[1:], corners[0]], strict=True):
+        radius = abs(b - a) * (1 + bulge * bulge) / (4 * abs(bulge)) if bulge else 0.0
+        arc = f"A {radius!r} {radius!r} 0 0 {int(bulge < 0.0)}" if bulge else "L"
+        words.append(f"{arc} {b.real!r} {-b.imag!r}")
+    return " ".join([*words, "Z"])
+
+
+@settings(deadline=None, max_examples=60)
+@given(outlines(), st.floats(-180.0, 180.0), st.floats(0.1, 20.0), st.booleans())
+def test_an_svg_path_turned_mirrored_and_scaled_by_its_transform_is_the_same(
+    outer: list[Corner], degrees: float, scale: float, mirrored: bool
+) -> None:
+    inner: list[Corner] = [
+        (complex(-0.1, -0.02), 0.0),
+        (complex(0.1, -0.02), 0.9),
+        (complex(0.1, 0.02), 0.0),
+        (-0.1 + 0.02j, 0.9),
+    ]
+    area, polar, centroid = facts(read_text(as_polyline(outer) + as_polyline(inner)))
+    placed = f"translate(3 2) rotate({degrees!r}) scale({scale!r} {-scale if mirrored else scale!r})"
+    page = 'width="100mm" height="100mm" viewBox="0 0 100 100"'
+    text = s.svg(f'<g transform="{placed}"><path d="{as_path(outer)} {as_path(inner)}"/></g>', page)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "outline.svg"
+        path.write_text(text)
+        found_area, found_polar, found_centroid = facts(read(path))
+    turned = scale * cmath.exp(-1j * math.radians(degrees)) * (centroid.conjugate() if mirrored else centroid)
+    assert found_area == pytest.approx(scale**2 * area, rel=SAME, abs=0)
+    assert found_polar == pytest.approx(scale**4 * polar, rel=SAME, abs=0)
+    where = turned + complex(3.0, -2.0)
+    assert abs(found_centroid - where) <= SAME * (abs(where) + 3.0 * scale)
 
 
 @settings(deadline=None, max_examples=40)

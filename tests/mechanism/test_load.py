@@ -7,6 +7,7 @@ from made_scenes import drawing, square
 
 from watchsim.mechanism.force import Side
 from watchsim.mechanism.load import load
+from watchsim.mechanism.recording import Recording
 from watchsim.mechanism.scene import Expectation
 
 
@@ -23,7 +24,7 @@ def test_all_values_arrive_in_si(desk):
     assert scene.damping[0].viscous == pytest.approx(1.2e-9 * 8.0 * math.pi / 250, rel=1e-15)
     assert scene.contacts[0].sides == (Side("wheel", "TEETH"), Side("lever"))
     assert (scene.contacts[0].friction, scene.contacts[0].restitution) == (0.12, 0.2)
-    assert (scene.duration, scene.record, scene.tolerance) == (180.0, ((179.0, 180.0),), 1e-8)
+    assert (scene.duration, scene.record, scene.tolerance) == (180.0, Recording(((179.0, 180.0),)), 1e-8)
     assert scene.lift_angle == pytest.approx(math.radians(52))
     amplitude, impacts = scene.expect
     assert amplitude == Expectation("amplitude", 275.0, pytest.approx(math.degrees(0.02)), "°")

@@ -89,7 +89,8 @@ def test_faults_name_bodies_layers_depth_and_place(desk, good):
     line = 1 + text.split("\n").index('inertia = "0.05 mg·cm²"')
     heading = f"{desk.folder}/scene.toml:{line - 4}  bodies.wheel.position\n"
     assert str(fault).startswith(heading + "  wheel and lever overlap by 0.1 mm at the start, at (")
-    assert str(fault).endswith("4.9) mm (layers TEETH and polygon).")
+    assert "4.9) mm (layers TEETH and polygon). Move or turn one of them" in str(fault)
+    assert f"watchsim check {desk.folder}/scene.toml --png" in str(fault)
 
 
 def test_only_declared_pairs_are_looked_at(desk, good):

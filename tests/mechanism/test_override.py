@@ -31,7 +31,7 @@ def test_numbers_are_si(scene):
     assert scene.set("contacts.0.friction", 0.3).contacts[0].friction == 0.3
     assert scene.set("contacts.0.restitution", np.int64(0)).contacts[0].restitution == 0.0
     assert scene.set("bodies.lever.position", (1e-3, 0.01)).body("lever").position == (1e-3, 0.01)
-    assert scene.set("run.record", [(0.0, 1.0), (2.0, 3.0)]).record == ((0.0, 1.0), (2.0, 3.0))
+    assert scene.set("run.record", [(0.0, 1.0), (2.0, 3.0)]).record.windows == ((0.0, 1.0), (2.0, 3.0))
     assert scene.set("bodies.balance.velocity", 3.5).body("balance").velocity == (3.5,)
 
 
@@ -102,7 +102,8 @@ REFUSED = [
     ("contacts.0.friction", True, "true or false"),
     ("bodies.wheel.inertia", 0.0, "has no inertia"),
     ("bodies.wheel.drawing", "none.dxf", "there is no such file"),
-    ("bodies.wheel.on", "lever", "is not simulated yet"),
+    ("bodies.wheel.on", "fork", "there is no such body"),
+    ("bodies.wheel.adjust", "lever", "is not supported yet"),
 ]
 
 

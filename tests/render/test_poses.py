@@ -99,7 +99,7 @@ def test_gaps_in_the_record_are_neither_drawn_nor_allowed():
     full = watch_run()
     keep = (full.t <= 0.5) | (full.t >= 1.501)
     cut = {name: getattr(full, name)[keep] for name in ("t", "q", "u", "a")}
-    run = replace(full, scene=replace(full.scene, record=((0.0, 0.5), (1.5, 2.0))), **cut)
+    run = replace(full, spans=((0.0, 0.5), (1.5, 2.0)), **cut)
     assert recorded(run) == ((0.0, 0.5), (pytest.approx(1.505), 2.0))
     assert stretch(run, (1.5, 2.0)) == (pytest.approx(1.505), 2.0)  # asked as it was declared: the first row comes later
     with pytest.raises(ValueError, match=r"0 s to 0\.5 s and 1\.505 s to 2 s"):

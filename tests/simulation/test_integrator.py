@@ -17,6 +17,7 @@ from watchsim.jit import callable_kernel
 from watchsim.mechanism.body import Body
 from watchsim.mechanism.compile import compile_scene
 from watchsim.mechanism.force import Damping, Torque
+from watchsim.mechanism.recording import Recording
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation import dop853
 from watchsim.simulation import run as running
@@ -86,9 +87,10 @@ def errors(h: float, monkeypatch: pytest.MonkeyPatch) -> tuple[float, float]:
 
 
 def middle_error(h: float) -> float:
-    run = Run(compile_scene(rolling_in_a_bowl()), 1e-9, 1.0, ((-1.0, 2.0),))
+    scene = dataclasses.replace(rolling_in_a_bowl(), duration=1.0)
+    run = Run(scene, compile_scene(scene), 1e-9, Recording())
     while run._advance(np.array([0.4, 0.9, 1.0]), run.record) != Stop.SLICE:
-        run.kept.flush(run.record)
+        run.flush()
     step = run.scratch.step
     start, length = step.span
     assert length == pytest.approx(h)

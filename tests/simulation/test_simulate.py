@@ -12,6 +12,7 @@ from moving_scenes import box, circle, ground, mirrored, of_kind, profile, touch
 from watchsim.contact.known import forget
 from watchsim.mechanism.body import Body
 from watchsim.mechanism.force import Spring
+from watchsim.mechanism.recording import Recording
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation import run as simulating
 from watchsim.simulation.simulate import simulate
@@ -47,7 +48,7 @@ def test_record_windows() -> None:
 
 
 def test_scene_says_duration_window_and_tolerance() -> None:
-    scene = Scene("balance", balance().bodies, balance().springs, duration=0.5, record=((0.4, 0.5),), tolerance=1e-6)
+    scene = Scene("balance", balance().bodies, balance().springs, duration=0.5, record=Recording(((0.4, 0.5),)), tolerance=1e-6)
     done = simulate(scene)
     assert (done.simulated, done.tolerance) == (0.5, 1e-6)
     assert done.t.min() >= 0.4

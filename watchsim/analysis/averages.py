@@ -12,12 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from watchsim.analysis.beats import DAY, Beats, beats
+from watchsim.simulation.half_swings import unevenness
+from watchsim.simulation.kept import USUAL_PERIODS, USUAL_WINDOW
 from watchsim.simulation.trajectory import Array, Trajectory
 
 Window = tuple[float, float]
 
-USUAL_WINDOW = 2.0  # s
-USUAL_PERIODS = 8  # where that is longer
 FEWEST_PERIODS = 3
 
 
@@ -105,5 +105,4 @@ def _rate(nominal: float, period: float | None, error: float | None) -> tuple[fl
 
 def _unevenness(found: Beats) -> Array:
     """(T1 - T2)/2 in ms with the sign of the direction of swing, so that chance does not add up to a beat error."""
-    difference = 500.0 * np.diff(found.half_period_s, prepend=np.nan)
-    return difference * np.sign(found.end_at - found.start_at)
+    return 500.0 * unevenness(found.mark) * np.sign(found.end_at - found.start_at)

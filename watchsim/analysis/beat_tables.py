@@ -31,7 +31,7 @@ def beats_csv(found: Beats) -> str:
     scale = math.degrees(1.0) if found.angular else 1.0
     turn, amplitude = scale * found.end_at, scale * found.amplitude
     columns = (found.t, found.tick, found.end, turn, amplitude, found.period_s, found.rate_s_per_d, found.beat_error_ms)
-    return _text(header, ([i + 1, *row] for i, row in enumerate(np.column_stack(columns).tolist())))
+    return _text(header, ([found.before + i + 1, *row] for i, row in enumerate(np.column_stack(columns).tolist())))
 
 
 def phases_csv(run: Trajectory, found: Beats) -> str:

@@ -9,18 +9,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from watchsim.analysis.recorded import nominal_period
 from watchsim.analysis.ticks import ticks
 from watchsim.analysis.touches import Events
+from watchsim.mechanism.recording import STATISTICS
 from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.half_swings import half_swings, since_two_before, unevenness
 from watchsim.simulation.trajectory import Array, Trajectory
 
-Indices = NDArray[np.int64]
-
 DAY = 86400.0
-FEWEST_TURNS = 3
 HEARD = 0.8  # share of the half swings that must have a tick, for the ticks to be what the beat error is measured by
 
 
@@ -33,6 +31,7 @@ class Beats:
     start_at, end_at  the coordinate there, rad (m where `angular` is False)
     tick        first noise, s: the impulse pin meets the fork; nan where nothing was heard
     period_s    from the passage two half swings ago to this one, s
+    before      half swings of the run before the first one here, where not all events were kept
     """
 
     body: str
@@ -45,6 +44,7 @@ class Beats:
     end_at: Array
     tick: Array
     period_s: Array
+    before: int = 0
 
     def __len__(self) -> int:
         return len(self.t)
@@ -65,15 +65,19 @@ class Beats:
         return DAY * (self.nominal_period / self.period_s - 1.0)
 
     @property
+    def mark(self) -> Array:
+        """What the beat error is measured by, s: the ticks where they are heard, else the passages."""
+        return self.tick if len(self) and np.isfinite(self.tick).mean() >= HEARD else self.t
+
+    @property
     def half_period_s(self) -> Array:
-        """From the beat before to this one: from tick to tick where ticks are heard, else from passage to passage."""
-        mark = self.tick if len(self) and np.isfinite(self.tick).mean() >= HEARD else self.t
-        return np.diff(mark, prepend=np.nan)
+        """From the beat before to this one, mark to mark."""
+        return np.diff(self.mark, prepend=np.nan)
 
     @property
     def beat_error_ms(self) -> Array:
         """|T1 - T2|/2 of the two half periods that end with this beat, ms."""
-        return 500.0 * np.abs(np.diff(self.half_period_s, prepend=np.nan))
+        return 500.0 * np.abs(unevenness(self.mark))
 
 
 def beats(run: Trajectory, body: str | None = None) -> Beats:
@@ -84,11 +88,12 @@ def beats(run: Trajectory, body: str | None = None) -> Beats:
     name = _sprung(run, body)
     period, angular = nominal_period(run, name), run.scene.body(name).motion == "pivot"
     index = [one.name for one in run.scene.bodies].index(name)
-    own = run.events[run.events["body"] == index]
+    own = _unbroken(run)
+    own = own[own["body"] == index]
     crossings, turns = own[own["kind"] == EventKind.CROSS], own[own["kind"] == EventKind.TURN]
-    complete, before, after = _half_swings(crossings, turns)
+    complete, before, after = half_swings(crossings, turns)
     t, start, end = crossings["t"], turns["t"][before], turns["t"][after]
-    periods = t - np.concatenate([np.full(2, np.nan), t])[: len(t)]
+    counted = run.sums.get("half_swings", len(complete)) if run.keep == STATISTICS and body is None else len(complete)
     return Beats(
         name,
         angular,
@@ -99,8 +104,16 @@ def beats(run: Trajectory, body: str | None = None) -> Beats:
         start_at=turns["value"][before],
         end_at=turns["value"][after],
         tick=ticks(run, name, start, end, 0.5 * period),
-        period_s=periods[complete],
+        period_s=since_two_before(t)[complete],
+        before=max(0, counted - len(complete)),
     )
+
+
+def _unbroken(run: Trajectory) -> Events:
+    """The events; where a recording has gaps, those after the last of them."""
+    if run.keep != STATISTICS or not run.spans:
+        return run.events
+    return run.events[run.events["t"] >= run.spans[-1][0]]
 
 
 def _sprung(run: Trajectory, body: str | None) -> str:
@@ -109,23 +122,3 @@ def _sprung(run: Trajectory, body: str | None) -> str:
     if not run.scene.springs:
         raise ValueError("no body of this scene has a spring, so nothing beats")
     return run.scene.springs[0].body
-
-
-def _half_swings(crossings: Events, turns: Events) -> tuple[Indices, Indices, Indices]:
-    """Rows of the passages that have a turning point on both sides, and the rows of these turning points.
-
-    An oscillator that knocks turns more than once between two passages: of these turning points the outermost counts.
-    """
-    nothing = np.zeros(0, np.int64)
-    if len(turns) < FEWEST_TURNS or len(crossings) == 0:
-        return nothing, nothing, nothing
-    heading = np.sign(crossings["value"])
-    side = np.concatenate([-heading[:1], heading])  # on which side of the rest position it is before the first passage, ...
-    interval = np.searchsorted(crossings["t"], turns["t"], side="right")
-    outermost = np.full(len(side), -1)
-    reach = side[interval] * turns["value"]
-    for i, k in enumerate(interval):
-        if outermost[k] < 0 or reach[i] > reach[outermost[k]]:
-            outermost[k] = i
-    complete = np.flatnonzero((outermost[:-1] >= 0) & (outermost[1:] >= 0))
-    return complete, outermost[complete], outermost[complete + 1]

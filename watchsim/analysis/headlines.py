@@ -18,13 +18,16 @@ AVERAGED = (
     ("beat_error_ms", "beat error", " ms"),
 )
 HELPED = (
-    ("lcp_copositive", "solved in copositive form"),
-    ("lcp_enumerated", "solved by enumeration"),
-    ("energy_rescues", "impacts solved again because the law would have gained energy"),
-    ("accumulations", "accumulations ended by rule"),
-    ("jams", "jams resolved by impulses"),
+    ("lcp_copositive", "by the second way (copositive form)"),
+    ("lcp_enumerated", "by trying all cases"),
+)
+RULES = (
+    ("accumulations", "{} rows of ever smaller rebounds ended at once"),
+    ("energy_rescues", "{} impacts solved again with less restitution, which would have gained energy"),
+    ("jams", "{} jams: sliding contacts that no finite force could hold apart, stopped by impulses (Painlevé)"),
 )
 NO_PENETRATION = 1e-12  # m; less is not worth a digit
+PLAIN = 1e-6  # errors below are written with an exponent
 
 
 def headlines(run: Trajectory, numbers: Mapping[str, Any]) -> str:
@@ -85,7 +88,8 @@ def _contacts(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     per_second = f", {numbers['impacts'] / numbers['simulated_s']:.0f} per second" if numbers["simulated_s"] > 0.0 else ""
     yield "impacts", f"{numbers['impacts']}{per_second}; {numbers['events']} events"
     depth = numbers["worst_penetration_m"]
-    yield "penetration", f"{1e9 * depth:.2g} nm at worst" if depth >= NO_PENETRATION else f"below {1e9 * NO_PENETRATION:g} nm"
+    deep = f"by up to {_metric(depth, 'm', 2)}" if depth >= NO_PENETRATION else f"by less than {1e9 * NO_PENETRATION:g} nm"
+    yield "penetration", f"bodies overlapped {deep}"
 
 
 def _energy(run: Trajectory) -> Iterator[tuple[str, str]]:
@@ -95,14 +99,22 @@ def _energy(run: Trajectory) -> Iterator[tuple[str, str]]:
     power = f", {_metric(shares.supplied / run.simulated, 'W')}" if run.simulated > 0.0 else ""
     listed = ", ".join(f"{cause} {100.0 * share:.1f} %" for cause, share in shares.went_to.items() if abs(share) >= 5e-4)
     yield "energy", f"{_metric(shares.supplied, 'J')} put in{power}: {listed}"
-    yield "", f"the ledger closes to {run.energy.get('residual_relative', 0.0):.1g}"
+    yield "", f"the account closes to {run.energy.get('residual_relative', 0.0):.1g} of it"
 
 
-def _metric(value: float, unit: str) -> str:
+def _metric(value: float, unit: str, digits: int = 4) -> str:
     """With the prefix that leaves one to three digits before the point."""
     power = min(max(3 * math.floor(math.log10(abs(value)) / 3.0), -12), 9) if value else 0
     prefix = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}[power]
-    return f"{value / 10.0**power:.4g} {prefix}{unit}"
+    shown = float(f"{value / 10.0**power:.{digits}g}")
+    return f"{shown:.12g} {prefix}{unit}"
+
+
+def _error(value: float, unit: str) -> str:
+    """An error with one digit; a length with a prefix."""
+    if unit == "m":
+        return _metric(value, unit, 1)
+    return f"{value:.{_decimals(value)}f}{unit}" if value >= PLAIN or value == 0.0 else f"{value:.0e}{unit}"
 
 
 def _solver(run: Trajectory, numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
@@ -112,24 +124,25 @@ def _solver(run: Trajectory, numbers: Mapping[str, Any]) -> Iterator[tuple[str, 
     if run.method == MOREAU and run.step is not None:
         yield "method", f"Moreau's time stepping, steps of {_metric(run.step, 's')}"
     yield "solver", _solved(run, numbers)
+    for name, words in RULES:
+        if count := numbers["counts"].get(name):
+            yield "", words.format(count)
     yield from _compared(numbers)
-    if jams := numbers["counts"].get("jams"):
-        yield "jams", f"{jams} sliding contacts, which no finite force could hold apart, stopped by impulses (Painlevé)"
     yield "end", run.stop_message or run.stop.sentence
 
 
 def _solved(run: Trajectory, numbers: Mapping[str, Any]) -> str:
-    """How the complementarity problems came out, and which rules had to help."""
+    """How the complementarity problems came out."""
     counts = run.counts
-    parts = [f"{counts.get('lcp', 0)} complementarity problems, worst residual {run.worst_residual:.1g}"]
+    parts = [f"{counts.get('lcp', 0)} contact problems, each solved to {run.worst_residual:.1g} or better"]
     parts += [f"{counts[name]} {words}" for name, words in HELPED if counts.get(name)]
     if numbers["lcp_failures"]:
-        parts.append(f"{numbers['lcp_failures']} complementarity problems had no solution")
+        parts.append(f"{numbers['lcp_failures']} had no solution")
     return "; ".join(parts)
 
 
 def _compared(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """What the error bars were compared with."""
+    """How far the numbers of a more exact run lie away: the error of the computation, whether or not the watch has settled."""
     bars = numbers.get("error_bars")
     if bars is None:
         return
@@ -137,15 +150,19 @@ def _compared(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         yield "error bars", "none: the more exact run did not come to its end"
         return
     finer = f"steps of {_metric(bars['step_s'], 's')}" if bars["step_s"] else f"tolerance {bars['tolerance']:.0e}"
+    yield "error bars", f"of the computation, from a second run with {finer}:"
     units = {name: (label, unit) for name, label, unit in AVERAGED}
-    moved = [f"{units[name][0]} by {value:.1g}{units[name][1]}" for name, value in bars["differences"].items() if name in units]
-    yield "error bars", f"against {finer}" + (f": moves {', '.join(moved)}" if moved else "")
+    moved = [
+        f"{units[name][0]} ± {_error(value, units[name][1])}" for name, value in bars["differences"].items() if name in units
+    ]
+    if moved:
+        yield "", ", ".join(moved)
     for body, state in numbers["bodies"].items():
         far = max(state["x_m_error"], state["y_m_error"])
         errors = ((far, "m"), (math.degrees(state["angle_rad_error"]), "°"))
-        moved = [_metric(error, unit) for error, unit in errors if error > 0.0]
+        moved = [f"± {_error(error, unit)}" for error, unit in errors if error > 0.0]
         if moved:
-            yield "", f"{body} at the end by {' and '.join(moved)}"
+            yield "", f"{body} at the end {' and '.join(moved)}"
 
 
 def _verdicts(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:

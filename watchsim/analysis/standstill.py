@@ -50,7 +50,7 @@ def standstill(run: Trajectory, found: Beats) -> Standstill | None:
         if last - first >= least:
             return None
         earlier = np.flatnonzero(np.abs(progress(run, parts.wheel, run.t) - last) > STILL * least)
-        since = float(run.t[earlier[-1]]) if len(earlier) else 0.0
+        since = float(run.t[earlier[-1]]) if len(earlier) else float(run.t[0])
     else:
         crossings = run.events["t"][run.events["kind"] == EventKind.CROSS]
         since = float(crossings[-1]) if len(crossings) else 0.0

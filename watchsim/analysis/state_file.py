@@ -11,7 +11,7 @@ import numpy as np
 
 from watchsim.simulation.saved import SavedState
 
-FORMAT = 1
+FORMAT = 2
 
 
 def write_state(state: SavedState, path: Path) -> None:
@@ -25,6 +25,7 @@ def write_state(state: SavedState, path: Path) -> None:
         "events": state.events,
     }
     arrays: dict[str, Any] = {f"state_{name}": array for name, array in state.arrays.items()}
+    arrays.update({f"tally_{name}": array for name, array in state.tally.items()})
     np.savez_compressed(path, header=np.frombuffer(json.dumps(header).encode(), dtype=np.uint8), **arrays)
 
 
@@ -33,9 +34,13 @@ def read_state(path: Path) -> SavedState:
     try:
         with np.load(path, allow_pickle=False) as archive:
             header: dict[str, Any] = json.loads(archive["header"].tobytes())
-            arrays = {name.removeprefix("state_"): archive[name] for name in archive.files if name != "header"}
+            arrays = {name: archive[name] for name in archive.files if name != "header"}
     except (zipfile.BadZipFile, KeyError, ValueError, EOFError) as error:
         raise ValueError(f"{path} is damaged or no saved state of watchsim ({error})") from error
     if header.pop("format", None) != FORMAT:
         raise ValueError(f"{path} was written by another version of watchsim; run the scene again")
-    return SavedState(arrays=arrays, **header)
+    return SavedState(arrays=_of(arrays, "state_"), tally=_of(arrays, "tally_"), **header)
+
+
+def _of(arrays: dict[str, Any], prefix: str) -> dict[str, Any]:
+    return {name.removeprefix(prefix): array for name, array in arrays.items() if name.startswith(prefix)}

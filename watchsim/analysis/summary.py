@@ -9,6 +9,9 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from watchsim.analysis.averages import Averages, averages, last_window
 from watchsim.analysis.beat_tables import beats_csv, phases_csv
 from watchsim.analysis.beats import Beats, beats
@@ -19,8 +22,10 @@ from watchsim.analysis.standstill import standstill
 from watchsim.analysis.tables import plain
 from watchsim.analysis.timegrapher import timegrapher
 from watchsim.analysis.wheel import missed_beats
+from watchsim.analysis.whole_run import whole_run
 from watchsim.mechanism.lock import versions
 from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.frames import frames, speeds
 from watchsim.simulation.trajectory import Trajectory
 
 AVERAGED = ("amplitude_deg", "period_s", "rate_s_per_d", "beat_error_ms")
@@ -34,6 +39,7 @@ def summary(run: Trajectory) -> dict[str, Any]:
     single contacts are the smallest possible ones.
 
     Besides the promised names: `frequency_hz`, `vph`, `window_s` (over which was averaged), `beats` (half swings in all),
+    `whole_run` (mean, spread and extremes over all of them, see analysis/whole_run.py), `kept` (all, events or statistics),
     `missed_beats`, `stopped` and `stopped_message` (the watch no longer ticks), `scene_file`, `stop_message`,
     `events_by_kind`, `counts`, `step_s` (of a method with fixed steps), `worst_complementarity_residual` (worst violation of
     a complementarity condition, as a share of the problem's largest term).
@@ -69,27 +75,28 @@ def _about(run: Trajectory) -> dict[str, Any]:
         "wall_s": run.wall,
         "compile_s": run.compile,
         "realtime_factor": run.simulated / run.wall if run.wall > 0.0 else None,
+        "kept": run.keep,
         "stop": run.stop,
         "stop_message": run.stop_message,
     }
 
 
 def _bodies(run: Trajectory) -> dict[str, dict[str, float]]:
-    """Pose and velocities of every body in the last row."""
-    return {body.name: _last_state(run, body.name) for body in run.scene.bodies} if len(run.t) else {}
+    """Pose and velocities of every body in the movement at the end."""
+    if not len(run.end_q):
+        return {}
+    places = frames(run.scene, run.slices, run.end_q[None])
+    rates = speeds(run.scene, run.slices, run.end_q[None], run.end_u[None])
+    return {body.name: _state(places[body.name][0], rates[body.name][0]) for body in run.scene.bodies}
 
 
-def _last_state(run: Trajectory, name: str) -> dict[str, float]:
-    body, t = run.scene.body(name), float(run.t[-1])
-    x, y, angle = run.pose(name, t)
-    u = run.at(t)[1][run.slices[name]].tolist() if body.motion != "fixed" else []
-    along = (u[0] * body.axis[0], u[0] * body.axis[1]) if body.motion == "slide" else (0.0, 0.0)
-    v_x, v_y, spin = {"free": tuple(u), "pivot": (0.0, 0.0, *u), "slide": (*along, 0.0)}.get(body.motion, (0.0, 0.0, 0.0))
+def _state(place: NDArray[np.float64], rate: NDArray[np.float64]) -> dict[str, float]:
+    (x, y, angle), (v_x, v_y, spin) = place.tolist(), rate.tolist()
     return {"angle_rad": angle, "x_m": x, "y_m": y, "angle_rad_per_s": spin, "x_m_per_s": v_x, "y_m_per_s": v_y}
 
 
 def _counts(run: Trajectory) -> dict[str, Any]:
-    kinds = {kind.name.lower(): int((run.events["kind"] == kind).sum()) for kind in EventKind}
+    kinds = run.sums.get("events_by_kind") or {kind.name.lower(): int((run.events["kind"] == kind).sum()) for kind in EventKind}
     return {
         "impacts": run.counts.get("impacts", kinds["impact"]),
         "events": run.counts.get("events", len(run.events)),
@@ -106,14 +113,22 @@ def _counts(run: Trajectory) -> dict[str, Any]:
 def _timing(run: Trajectory) -> dict[str, Any]:
     """Amplitude, period, rate, beat error and what follows from them; null where nothing oscillates."""
     if not run.scene.springs:
-        nothing = {"beats": 0, "timegrapher": None, "missed_beats": None, "stopped": False, "stopped_message": None}
+        nothing = {
+            "beats": 0,
+            "whole_run": None,
+            "timegrapher": None,
+            "missed_beats": None,
+            "stopped": False,
+            "stopped_message": None,
+        }
         return _timing_of(None) | nothing
     found = beats(run)
     window = last_window(run, found.nominal_period)
     stands = standstill(run, found)
     return {
         **_timing_of(averages(found, window)),
-        "beats": len(found),
+        "beats": found.before + len(found),
+        "whole_run": whole_run(run, found),
         "timegrapher": timegrapher(run, found, window),
         "missed_beats": _missed(run, found),
         "stopped": stands is not None,

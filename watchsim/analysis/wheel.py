@@ -38,7 +38,7 @@ def advance(run: Trajectory, wheel: str, found: Beats) -> Advance | None:
     whole = pitch(run.scene, wheel)
     if whole is None or len(found) == 0:
         return None
-    times, half_swings = np.append(found.start[:1], found.end), np.arange(len(found) + 1.0)
+    times, half_swings = np.append(found.start[:1], found.end), found.before + np.arange(len(found) + 1.0)
     kept = is_recorded(run, times)
     if not kept.any():
         return None

@@ -75,7 +75,5 @@ def build(scene: Scene, step: float, setup: Setup) -> Box2DWorld:
     for body in bodies(scene):
         if body.motion != "fixed":
             heavy = HEAVY if body.motion == "pivot" else body.mass
-            parts[body.name].massData = Box2D.b2MassData(
-                mass=heavy * mass, center=(0.0, 0.0), I=body.inertia * mass * units**2
-            )
+            parts[body.name].massData = Box2D.b2MassData(mass=heavy * mass, center=(0.0, 0.0), I=body.inertia * mass * units**2)
     return Box2DWorld(world, parts, drives(scene), step, setup, mass)

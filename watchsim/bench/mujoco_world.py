@@ -13,7 +13,7 @@ from xml.sax.saxutils import quoteattr
 
 from watchsim.bench.convex import Circle
 from watchsim.bench.parts import Drive, Surface, bodies, drives, surfaces
-from watchsim.bench.world import HEAVY, Setup
+from watchsim.bench.world import Setup
 from watchsim.mechanism.body import Body
 from watchsim.mechanism.scene import Scene
 
@@ -61,6 +61,7 @@ def build(scene: Scene, step: float, setup: Setup) -> MujocoWorld:
 <option timestep="{step!r}" gravity="{scene.gravity[0] * units!r} {scene.gravity[1] * units!r} 0" cone="pyramidal" impratio="1">
 <flag refsafe="disable"/></option>
 <asset>{meshes}</asset><worldbody>{trees}</worldbody><contact>{_pairs(found, step, setup.ring)}</contact></mujoco>"""
+    mujoco.set_mju_user_warning(_silent)  # it would write a file into the current folder
     model = mujoco.MjModel.from_xml_string(text)
     world = MujocoWorld(mujoco, model, scene, units)
     for name, drive in acting.items():
@@ -68,10 +69,21 @@ def build(scene: Scene, step: float, setup: Setup) -> MujocoWorld:
     return world
 
 
+def _silent(_message: str) -> None:
+    """An instability shows in the numbers."""
+
+
 def _corner(surface: Surface) -> tuple[float, ...]:
     if isinstance(surface.piece, Circle):
         return (*surface.piece.centre, surface.piece.radius)
     return tuple(c for point in surface.piece for c in point)
+
+
+def _reach(body: Body, found: list[Surface], units: float) -> float:
+    """Distance of the farthest corner from the body's origin, in length units."""
+    own = [surface.piece for surface in found if surface.body == body.name]
+    far = [math.hypot(*p.centre) + p.radius if isinstance(p, Circle) else max(math.hypot(*c) for c in p) for p in own]
+    return units * max(far, default=1.0)
 
 
 def _mesh(number: int, surface: Surface, units: float, size: float) -> str:
@@ -97,17 +109,19 @@ def _body(body: Body, found: list[Surface], drive: Drive | None, units: float, m
     if body.motion == "fixed":
         return f"{head}{geoms}</body>"
     name, inertia = body.name, body.inertia * mass * units**2
-    weight = mass * (HEAVY if body.motion == "pivot" else body.mass)
+    # Contacts are made as stiff as the masses suggest, so a pivoted body gets one that goes with its inertia.
+    weight = inertia / _reach(body, found, units) ** 2 if body.motion == "pivot" else mass * body.mass
     inertial = f'<inertial pos="0 0 0" mass="{weight!r}" diaginertia="{inertia!r} {inertia!r} {inertia!r}"/>'
     scale = mass * units**2
     spring = ""
     if drive:
-        spring = (
-            f'stiffness="{drive.stiffness * scale!r}" springref="{drive.rest!r}" damping="{drive.viscous * scale!r}"'
-        )
-    joints = f"<joint name={quoteattr(name + '.angle')} type=\"hinge\" axis=\"0 0 1\" {spring}/>"
+        spring = f'stiffness="{drive.stiffness * scale!r}" springref="{drive.rest!r}" damping="{drive.viscous * scale!r}"'
+    joints = f'<joint name={quoteattr(name + ".angle")} type="hinge" axis="0 0 1" {spring}/>'
     if body.motion == "free":
-        slides = (f'<joint name={quoteattr(f"{name}.{k}")} type="slide" axis="{axis}"/>' for k, axis in (("x", "1 0 0"), ("y", "0 1 0")))
+        slides = (
+            f'<joint name={quoteattr(f"{name}.{k}")} type="slide" axis="{axis}"/>'
+            for k, axis in (("x", "1 0 0"), ("y", "0 1 0"))
+        )
         joints = "".join(slides) + joints
     return f"{head}{joints}{inertial}{geoms}</body>"
 

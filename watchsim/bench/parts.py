@@ -18,7 +18,7 @@ MOTIONS = ("pivot", "free", "fixed")
 
 @dataclass(frozen=True, slots=True)
 class Surface:
-    """One convex piece of a body's outline in the body's frame, m. Surfaces meet where one's `own` bit is in the other's `meets`."""
+    """One convex piece of a body's outline, in its frame, m. Two meet where one's `own` bit is in the other's `meets`."""
 
     body: str
     piece: Piece

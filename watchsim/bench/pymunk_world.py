@@ -19,7 +19,9 @@ class PymunkWorld:
 
     def __init__(self, space: Any, parts: dict[str, Any], acting: list[Drive], step: float, units: float) -> None:
         self.space, self.parts, self.step, self.units = space, parts, step, units
-        self.acting = [(parts[d.body], d.torque * units**2, d.stiffness * units**2, d.rest, d.viscous * units**2) for d in acting]
+        self.acting = [
+            (parts[d.body], d.torque * units**2, d.stiffness * units**2, d.rest, d.viscous * units**2) for d in acting
+        ]
 
     def advance(self, steps: int) -> None:
         space, step = self.space, self.step

@@ -30,7 +30,8 @@ def run(args: argparse.Namespace) -> int:
     if args.png:
         from watchsim.render.still import still
 
-        still(scene, args.png, compiled, pairs)
+        places = [(1e-3 * f["x_mm"], 1e-3 * f["y_mm"]) for f in report["findings"] if f["code"] == "overlap"]
+        still(scene, args.png, compiled, pairs, places)
         say(f"Picture: {args.png}")
     if args.json:
         print_json(report)

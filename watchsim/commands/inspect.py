@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from watchsim.commands.console import BAD_INPUT, FINE, InputError, parse_length, print_json, say
+
+if TYPE_CHECKING:
+    from watchsim.drawing.drawing import Drawing
 
 HELP = "read a drawing: units, size, layers, loops, lines, arcs, faults"
 
@@ -44,7 +48,7 @@ def run(args: argparse.Namespace) -> int:
     return BAD_INPUT if not drawing.layers and any(f.severity == "error" for f in drawing.findings) else FINE
 
 
-def _only(drawing, names):  # type: ignore[no-untyped-def]
+def _only(drawing: Drawing, names: list[str]) -> Drawing:
     """The drawing with only these layers."""
     unknown = [name for name in names if name not in drawing.layers]
     if unknown:

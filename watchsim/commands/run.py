@@ -29,6 +29,13 @@ HELP = "simulate a scene and write a results folder"
 def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("scene", metavar="SCENE", help="a scene file (TOML), or the folder that holds scene.toml")
     parser.add_argument("-o", "--output", metavar="DIR", help="results folder (default results/NAME)")
+    parser.add_argument(
+        "--record",
+        metavar="WHAT",
+        action="append",
+        default=[],
+        help='what to keep: all, events, statistics, "every 10", or a window "179 s:180 s"; may be given several times',
+    )
     parser.add_argument("--duration", metavar="TIME", help='simulated time, such as "5 s" (default: the scene\'s)')
     parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], help="change a value of the scene")
     parser.add_argument("--tol", metavar="X", type=float, help="relative error per step (default: the scene's, 1e-9)")
@@ -39,6 +46,8 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--json", action="store_true", help="print the summary as one JSON object")
     parser.add_argument("--movie", action="store_true", help="write movie.mp4 too: the last beats in slow motion")
     parser.add_argument("--gif", action="store_true", help="write movie.gif too")
+    parser.add_argument("--no-plots", action="store_true", help="write no plots, which take most of the time of a short run")
+    parser.add_argument("--profile", action="store_true", help="count what was done, and say where the time went")
     parser.add_argument("--force", action="store_true", help="replace a results folder that exists")
 
 
@@ -47,6 +56,8 @@ def run(args: argparse.Namespace) -> int:
     from watchsim.commands.scenes import load_scene
 
     scene = load_scene(args.scene, args.set)
+    if args.record:
+        scene = scene.set("run.record", [_record(what) for what in args.record])
     duration = _time("--duration", args.duration)
     step = _time("--step", args.step)
     if args.tol is not None and not 1e-13 <= args.tol <= 1e-2:
@@ -61,7 +72,16 @@ def run(args: argparse.Namespace) -> int:
         args.tol = args.tol or start.tolerance
     check_folder(folder, replace)
     trajectory = simulate_with_progress(scene, duration, args.tol, method=method, step=step, start=start)
-    summary = write(trajectory, folder, replace, movie=args.movie, gif=args.gif, error_bars=args.error_bars)
+    summary = write(
+        trajectory,
+        folder,
+        replace,
+        movie=args.movie,
+        gif=args.gif,
+        error_bars=args.error_bars,
+        plots=not args.no_plots,
+        profile=args.profile,
+    )
     # What a scene promises, it promises as it is written.
     as_written = not (args.set or args.duration or args.tol or args.step) and method == EVENT_DRIVEN
     if args.json:
@@ -70,6 +90,10 @@ def run(args: argparse.Namespace) -> int:
         from watchsim.analysis.summary import summary_text
 
         print(summary_text(trajectory, summary if as_written else {**summary, "expect": []}))
+        if args.profile:
+            from watchsim.bench.profile import profile_text
+
+            print(profile_text(summary["profile"]))
         print(f"Results: {folder}")
     return status(trajectory, summary, promised=as_written)
 
@@ -94,7 +118,14 @@ def simulate_with_progress(
 
 
 def write(
-    run: Trajectory, folder: Path, force: bool, movie: bool = False, gif: bool = False, error_bars: bool = False
+    run: Trajectory,
+    folder: Path,
+    force: bool,
+    movie: bool = False,
+    gif: bool = False,
+    error_bars: bool = False,
+    plots: bool = True,
+    profile: bool = False,
 ) -> dict[str, Any]:
     """Write the results folder with plots (and movies); returns the summary as written."""
     from watchsim.analysis.results import write_results
@@ -103,8 +134,13 @@ def write(
     from watchsim.mechanism.lock import lock_text
 
     numbers = plain(_with_error_bars(run) if error_bars else summary(run))
+    if profile:
+        from watchsim.bench.profile import profile_of
+
+        numbers["profile"] = plain(profile_of(run))
     extra: dict[str, Any] = dict(tables(run))
-    extra.update(_plots(run))
+    if plots:
+        extra.update(_plots(run))
     if movie:
         extra["movie.mp4"] = lambda path: _movie(run, path, speed=1 / 20)
     if gif:
@@ -188,6 +224,12 @@ def status(run: Trajectory, summary: dict[str, Any], promised: bool = True) -> i
     if summary.get("stopped"):
         say("The watch has stopped ticking.")
     return MISSED if missed or summary.get("stopped") else FINE
+
+
+def _record(what: str) -> object:
+    """A window as the scene file has it, or the word."""
+    first, colon, second = what.partition(":")
+    return [first.strip(), second.strip()] if colon else what
 
 
 def _time(option: str, text: str | None) -> float | None:

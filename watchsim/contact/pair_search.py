@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from watchsim.contact.cell_motion import CellMotion, turned
 from watchsim.contact.lookup import MARGIN
 from watchsim.contact.loose import LooseContacts
+from watchsim.contact.regions import Regions
 from watchsim.mechanism.chords import Chords, chords
 from watchsim.mechanism.model import Model
 
@@ -29,7 +30,8 @@ class PairSearch:
     def __init__(self, model: Model, p: int, loose: Integers) -> None:
         """`loose`: primitives of either body that do not share the symmetry of its cells."""
         pair = model.pairs[p]
-        self._motion, self._clearance = CellMotion(pair), float(pair.clearance)
+        self._motion, self._clearance = CellMotion(model.bodies, pair), float(pair.clearance)
+        self._regions = Regions(model, p)
         ids = model.near[pair.near_start : pair.near_stop]
         contacts, bodies = model.contacts[ids], model.primitives.body
         a_first = bodies[contacts.a] == pair.a
@@ -43,12 +45,12 @@ class PairSearch:
             if only.any()
         ]
         alike = ~(loose_a | loose_b)
-        sides = [(model.bodies[pair.a], on_a[alike]), (model.bodies[pair.b], on_b[alike])]
+        sides = [(int(pair.a), on_a[alike]), (int(pair.b), on_b[alike])]
         # The side with fewer primitives is moved, the other one stays in the tree.
         sides.sort(key=lambda side: len(np.unique(side[1])))
         self._set_shapes(model, sides, local[alike])
 
-    def _set_shapes(self, model: Model, sides: list[tuple[Any, Integers]], local: Integers) -> None:
+    def _set_shapes(self, model: Model, sides: list[tuple[int, Integers]], local: Integers) -> None:
         """The primitives of the contacts `local`; `sides`: the body that is moved and the other, and their primitives."""
         import shapely
 
@@ -101,7 +103,9 @@ class PairSearch:
         left = np.searchsorted(self._wanted, wanted, side="left")
         several = np.searchsorted(self._wanted, wanted, side="right") - left
         nth = np.arange(several.sum()) - np.repeat(np.cumsum(several) - several, several)
-        return np.repeat(cell, several), self._local[np.repeat(left, several) + nth]
+        cell, local = np.repeat(cell, several), self._local[np.repeat(left, several) + nth]
+        possible = self._regions.possible(cell, local, at, room)
+        return cell[possible], local[possible]
 
     def _in_block(self, centre: Array, room: Array) -> tuple[Integers, Integers]:
         """Pairs (row of mover, row of other) that could touch within `room` of `centre` along each axis."""

@@ -144,6 +144,7 @@ def layer_lines(drawing: Drawing) -> list[str]:
         words = [plural(facts["loops"], "outline") + (f" ({plural(holes, 'hole')})" if holes else "")] if facts["loops"] else []
         words += [plural(facts["open_chains"], "open chain")] if facts["open_chains"] else []
         words += [plural(facts[f"{kind}s"], kind) for kind in ("line", "arc") if facts[f"{kind}s"]]
+        words += [f"{1e6 * net_area(loops):.5g} mm²"] if loops else []
         if len(points) == 1:
             words.append(f"a point at ({1e3 * points[0][0]:.6g}, {1e3 * points[0][1]:.6g}) mm")
         elif points:

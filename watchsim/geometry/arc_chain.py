@@ -6,6 +6,7 @@ the deviation swings evenly (see fit).
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +14,7 @@ from numpy.typing import NDArray
 
 from watchsim.geometry.biarc import ArcChain, arcs_from, biarc_joints, crosses, dots
 from watchsim.geometry.curve import Array, Curve
-from watchsim.geometry.deviation import deviations
+from watchsim.geometry.deviation import glances
 
 # Arcs of the best chain whose work the pieces do. At its ends the chain has the tangent of the curve, which costs some.
 ALONE, BOTH_ENDS, ONE_END, INSIDE = 0.69, 1.38, 1.75, 2.0
@@ -24,7 +25,7 @@ BALANCE = 0.1  # of the logarithm of two deviations: correction of that of the l
 
 
 class Trial(NamedTuple):
-    """Arcs between the stations (parameters) and bounds of their deviations; pieces between the nodes, their first arcs."""
+    """Arcs between the stations (parameters) and their deviations; pieces between the nodes, their first arcs."""
 
     stations: Array
     arcs: ArcChain
@@ -43,6 +44,7 @@ class Trial(NamedTuple):
         return np.add.reduceat(strain, self.first) / np.diff(np.append(self.first, len(strain)))
 
 
+@lru_cache(maxsize=1024)
 def capacities(count: int) -> Array:
     """How the pieces of a chain of `count` arcs share the work of the best chain: single arcs at the ends, else biarcs."""
     if count == 2:
@@ -76,7 +78,7 @@ def lay_chain(curve: Curve, t: Array, load: Array, capacity: Array, skew: Array)
     order = np.argsort(stations, kind="stable")
     corners, ways = np.concatenate((at, joints))[order], np.concatenate((tangents, along))[order]
     arcs = arcs_from(corners[:-1], ways[:-1], corners[1:])
-    errors = deviations(curve, stations[order], arcs, halvings=0, beside=False)
+    errors = glances(curve, stations[order], arcs)
     first = np.searchsorted(stations[order], nodes[:-1])
     return Trial(stations[order], arcs, nodes, ratios, first, errors)
 

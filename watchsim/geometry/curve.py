@@ -34,11 +34,14 @@ class Curve:
     def points(self, t: Array) -> Array:
         """Points (n, 2), metres."""
         h = self.homogeneous(t)
-        return h[:, :2] / h[:, 2:]
+        return h[:, :2] / h[:, 2:] if self.weighted else h[:, :2]
 
     def slopes(self, t: Array) -> Array:
         """Derivatives (n, 2) of the points, by the quotient rule."""
-        h, dh = self.homogeneous(t), self.derivative(t)
+        dh = self.derivative(t)
+        if not self.weighted:
+            return dh[:, :2]
+        h = self.homogeneous(t)
         return (dh[:, :2] - h[:, :2] * (dh[:, 2:] / h[:, 2:])) / h[:, 2:]
 
     def tangents(self, t: Array, low: float, high: float) -> Array:

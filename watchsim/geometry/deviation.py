@@ -20,23 +20,34 @@ from watchsim.geometry.curve import Array, Curve
 
 SLACK = 0.01  # of the bound: where the higher terms or unequal weights may add more, the interval is halved
 HALVINGS = 6
+GLANCES = 0.5 - 0.5 * np.cos(np.pi * (np.arange(6) + 0.5) / 6.0)  # places along an arc, denser towards its ends
 
 
-def deviations(curve: Curve, stations: Array, arcs: ArcChain, halvings: int = HALVINGS, beside: bool = True) -> Array:
+def glances(curve: Curve, stations: Array, arcs: ArcChain) -> Array:
+    """About the same as `deviations`, quickly: the largest (n,) of a few samples, some per cent too small at worst."""
+    t = stations[:-1, None] + np.diff(stations)[:, None] * GLANCES
+    q = curve.points(t.ravel()).reshape(*t.shape, 2) - arcs.starts[:, None]
+    x, y, tangent, k = q[..., 0], q[..., 1], arcs.start_tangents, arcs.curvatures[:, None]
+    g = np.abs(y * tangent[:, :1] - x * tangent[:, 1:] - 0.5 * k * (x * x + y * y))
+    with np.errstate(invalid="ignore"):
+        most = np.max(2.0 * g / (1.0 + np.sqrt(1.0 - 2.0 * np.abs(k) * g)), axis=1)
+    return np.where(np.isfinite(most), most, np.inf)
+
+
+def deviations(curve: Curve, stations: Array, arcs: ArcChain) -> Array:
     """Upper bounds (n,) in metres for the distance between arc i and the curve from stations[i] to stations[i + 1].
 
-    The stations must ascend, and no arc may reach a half circle; then no point of either is further from the other. With
-    `halvings` the bounds become sharper where the deviation is far from a cubic. Without `beside` only the distance from
-    the whole circle is bounded, which is quicker.
+    The stations must ascend, and no arc may reach a half circle; then no point of either is further from the other. Intervals
+    are halved where the deviation is far from a cubic.
     """
     count = len(arcs.curvatures)
     bounds = np.zeros(count)
     inner = curve.between(float(stations[0]), float(stations[-1]))
     cuts = np.union1d(stations, inner) if len(inner) else stations
     low, high = cuts[:-1], cuts[1:]
-    for left in range(halvings, -1, -1):
+    for left in range(HALVINGS, -1, -1):
         owner = np.minimum(np.searchsorted(stations, low, "right") - 1, count - 1)
-        bound, slack = _interval_bounds(curve, low, high, owner, arcs, beside)
+        bound, slack = _interval_bounds(curve, low, high, owner, arcs)
         again = (slack > SLACK * bound) & (bound > 0.25 * np.max(bound)) if left else np.zeros(len(bound), dtype=bool)
         np.maximum.at(bounds, owner[~again], bound[~again])
         if not np.any(again):
@@ -46,7 +57,7 @@ def deviations(curve: Curve, stations: Array, arcs: ArcChain, halvings: int = HA
     return bounds
 
 
-def _interval_bounds(curve: Curve, low: Array, high: Array, owner: Array, arcs: ArcChain, beside: bool) -> tuple[Array, Array]:
+def _interval_bounds(curve: Curve, low: Array, high: Array, owner: Array, arcs: ArcChain) -> tuple[Array, Array]:
     """For each interval the bound of the distance from its arc, and by how much it may be too large."""
     rank = 2 * curve.degree + 1
     x, transform = _chebyshev(rank)
@@ -66,13 +77,12 @@ def _interval_bounds(curve: Curve, low: Array, high: Array, owner: Array, arcs: 
     with np.errstate(invalid="ignore", divide="ignore"):
         most = (np.maximum(np.abs(g_low), np.abs(g_high)) + g_tail) / lightest**2
         distance = 2.0 * most / (1.0 + np.sqrt(1.0 - 2.0 * np.abs(k) * most))
+        end, last = arcs.ends[owner], arcs.end_tangents[owner]
+        beyond = (end[:, :1] * w - h[..., 0]) * last[:, :1] + (end[:, 1:] * w - h[..., 1]) * last[:, 1:]
         bound = distance
-        if beside:
-            end, last = arcs.ends[owner], arcs.end_tangents[owner]
-            beyond = (end[:, :1] * w - h[..., 0]) * last[:, :1] + (end[:, 1:] * w - h[..., 1]) * last[:, 1:]
-            for projection in (along, beyond):
-                least, _, tail = _range(projection @ transform)
-                bound = bound + np.maximum(0.0, tail - least) / lightest
+        for projection in (along, beyond):
+            least, _, tail = _range(projection @ transform)
+            bound = bound + np.maximum(0.0, tail - least) / lightest
         slack = g_tail / lightest**2 + most * (1.0 - (lightest / heaviest) ** 2)
     return np.where((lightest > 0.0) & np.isfinite(bound), bound, np.inf), slack
 

@@ -33,7 +33,6 @@ FEW, MOST = 2, 5  # attempts with one number of arcs: more where one arc counts 
 WEIGHTY = 48  # arcs over attempts
 ENOUGH = 1.04  # times the number of arcs that seems necessary
 SURE = 0.97  # of the number of arcs that seems necessary: fewer are not tried
-NEARLY = 1.1  # tolerances: a quick bound up to that is made sharp
 MANY = 10_000  # arcs: a part that needs more is halved before
 DAMPING = 0.6  # of the correction of the lengths from one distribution to the next
 
@@ -118,7 +117,7 @@ def _fewest(curve: Curve, low: float, high: float, tolerance: float, rounds: int
         needed = arcs_for(float(np.sum(work)))
         t, load = _redistributed(t, load, trial.nodes, work)
         skew = balanced(trial)
-        if trial.worst <= NEARLY * tolerance:
+        if trial.worst <= tolerance:
             trial = trial._replace(errors=deviations(curve, trial.stations, trial.arcs))
         if trial.worst <= tolerance:
             best, fewest = trial, count

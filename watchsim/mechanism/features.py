@@ -114,7 +114,7 @@ def _is_hollow(edge: Edge) -> bool:
 
 
 def _parts_from_corner(edge: Edge) -> bool:
-    """True if what touches the corner at the edge's end never touches the edge as well: always but in hollows of over half a turn."""
+    """True if what touches the corner at the edge's end never touches the edge too: all but hollows of over half a turn."""
     return not (isinstance(edge, Arc) and edge.sweep < -math.pi)
 
 

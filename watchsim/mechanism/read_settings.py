@@ -11,6 +11,8 @@ from watchsim import units
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.errors import Faults
 from watchsim.mechanism.model import TANGENTIAL_CODE
+from watchsim.mechanism.read_record import read_record
+from watchsim.mechanism.recording import Recording
 from watchsim.mechanism.scene import Expectation
 from watchsim.mechanism.schema import EXPECTATION, RUN, SCENE, SCHEMA, TIMEGRAPHER
 from watchsim.mechanism.table import Table, shown
@@ -51,31 +53,15 @@ def read_heading(mapping: Mapping[str, Any], faults: Faults) -> Heading:
     return Heading(table.text("title"), table.pair("gravity"), law, nu)
 
 
-def read_run(mapping: Mapping[str, Any], faults: Faults) -> tuple[float, tuple[Point, ...], float]:
-    """Duration (s), windows to record (s, s), tolerance."""
+def read_run(mapping: Mapping[str, Any], faults: Faults) -> tuple[float, Recording, float]:
+    """Duration (s), what to keep, tolerance."""
     table = Table(mapping.get("run", {}), "run", RUN, faults)
     duration = table.positive("duration", "it is how long to simulate") if "duration" in table else DURATION
     tolerance = table.quantity("tolerance", TOLERANCE)
     low, high = TOLERANCES
     if tolerance < low or tolerance > high:
         table.fault("tolerance", f"must lie between {low:g} and {high:g}; {TOLERANCE:g} is usual", with_value=True)
-    return duration, _windows(table), tolerance
-
-
-def _windows(table: Table) -> tuple[Point, ...]:
-    """One window ["179 s", "180 s"], or a list of them."""
-    value = table.mapping.get("record", [])
-    several = isinstance(value, (list, tuple)) and all(isinstance(item, (list, tuple)) for item in value)
-    rows = list(value) if several else [value]
-    windows = []
-    for i, row in enumerate(rows):
-        path = f"record.{i}" if several else "record"
-        windows.append(table.point(path, row, units.TIME))
-        if windows[-1][0] >= windows[-1][1] or windows[-1][0] < 0.0:
-            table.faults.add(
-                f"{table.path}.{path}", "a window runs from an earlier to a later time, both from 0 s on", shown(row)
-            )
-    return tuple(windows)
+    return duration, read_record(table), tolerance
 
 
 def read_lift_angle(mapping: Mapping[str, Any], faults: Faults) -> float | None:

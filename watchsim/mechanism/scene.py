@@ -10,6 +10,7 @@ from watchsim.drawing.findings import Finding
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.body import Body
 from watchsim.mechanism.force import Contact, Damping, Spring, Torque
+from watchsim.mechanism.recording import EVERYTHING, Recording
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +43,7 @@ class Scene:
     tangential_law: str = "coulomb"
     nu: float = 0.0
     duration: float = 1.0
-    record: tuple[tuple[float, float], ...] = ()
+    record: Recording = EVERYTHING
     tolerance: float = 1e-9
     lift_angle: float | None = None
     expect: tuple[Expectation, ...] = ()

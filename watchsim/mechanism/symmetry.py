@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.mechanism.chords import chords
-from watchsim.mechanism.model import Records
+from watchsim.mechanism.model import CORNER, Records
 
 Array = NDArray[np.float64]
 
@@ -95,5 +95,9 @@ def _mismatch(primitives: Records, ends: tuple[Array, Array], image: NDArray[np.
     apart.append(np.hypot(*(middle @ turn - middle[image]).T) * (primitives.extent == 0))
     centre = np.stack([primitives.x, primitives.y], axis=1)
     apart.append(np.hypot(*(centre @ turn - centre[image]).T) * (primitives.extent > 0))
+    # Of a corner, the fan of its normals as well, as a length.
+    fan = np.arctan2(primitives.half_sin, primitives.half_cos)
+    turned = np.hypot(*(normal @ turn - normal[image]).T) + np.abs(fan - fan[image])
+    apart.append(turned * primitives.length * (primitives.kind == CORNER))
     total = np.sum(apart, axis=0) + np.where(primitives.extent > 0, 0.0, swing) + 2.0 * np.abs(primitives.radius - other.radius)
     return np.asarray(total)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.mechanism.body import Body
+from watchsim.simulation.frames import frames as body_frames
 from watchsim.simulation.trajectory import Trajectory
 
 Array = NDArray[np.float64]
@@ -24,7 +25,7 @@ PATH_SAMPLES = 400
 def recorded(run: Trajectory) -> tuple[Window, ...]:
     """The stretches of time (s) for which there are rows, in order."""
     spans = []
-    for start, stop in sorted(run.scene.record):
+    for start, stop in run.spans:
         rows = run.t[(run.t >= start) & (run.t <= stop)]
         if len(rows) > 1 and rows[-1] > rows[0]:
             spans.append((float(rows[0]), float(rows[-1])))
@@ -52,7 +53,7 @@ def stretch(run: Trajectory, window: Sequence[float] | None, unbroken: bool = Fa
     if not start < stop:
         raise ValueError(f"window from {start:.9g} s to {stop:.9g} s is empty; give (from, to) within {kept}")
     slack = 1e-9 * (stop - start)
-    for low, high in (*spans, *run.scene.record):
+    for low, high in (*spans, *run.spans):
         if low - slack <= start and stop <= high + slack and (clipped := _clipped((start, stop), spans)):
             return clipped
     raise ValueError(f"window from {start:.9g} s to {stop:.9g} s: only {kept} was recorded")
@@ -85,18 +86,7 @@ def choose(run: Trajectory, names: Sequence[str] | None) -> tuple[Body, ...]:
 def poses(run: Trajectory, times: Array) -> dict[str, Array]:
     """For every body (len(times), 3): x, y (m) and angle (rad) of its frame."""
     q, _ = run.sample(times)
-    return {body.name: _frames(body, q[:, run.slices.get(body.name, slice(0, 0))]) for body in run.scene.bodies}
-
-
-def _frames(body: Body, q: Array) -> Array:
-    if body.motion == "free":
-        return q
-    frames = np.tile([*body.position, body.angle], (len(q), 1))
-    if body.motion == "pivot":
-        frames[:, 2] = q[:, 0]
-    elif body.motion == "slide":
-        frames[:, :2] += q * np.array(body.axis)
-    return frames
+    return body_frames(run.scene, run.slices, q)
 
 
 def placed(points: Array, frames: Array) -> Array:
@@ -120,7 +110,7 @@ def swept(run: Trajectory, body: Body, window: Window) -> Array:
     A pivoted body is turned evenly through the angles it really reaches (at most one turn), others are sampled in time.
     """
     frames = sampled(run, body, window)
-    if body.motion != "pivot":
+    if body.motion != "pivot" or body.on is not None:
         return frames
     low, high = float(frames[:, 2].min()), float(frames[:, 2].max())
     high = min(high, low + 2.0 * math.pi)

@@ -17,6 +17,7 @@ from matplotlib.transforms import Affine2D, Bbox, IdentityTransform, Transform
 from numpy.typing import NDArray
 
 from watchsim.geometry.primitives import Arc
+from watchsim.mechanism.carry import at_start, is_still
 from watchsim.render.edges import Edges, edge_paths
 from watchsim.render.layout import draw_key, draw_rules, draw_scale, lay_out
 from watchsim.render.palette import BACKGROUND, CONTACT, INK
@@ -70,10 +71,10 @@ class Stage:
         self._canvas.draw()
         self._background = self._canvas.copy_from_bbox(self._figure.bbox)
 
-    def draw(self, t: float, frames: dict[str, Array], contacts: Array | None = None) -> Pixels:
+    def draw(self, t: float, frames: dict[str, Array], contacts: Array | None = None, mark: str = CONTACT) -> Pixels:
         """The picture (height, width, 4) of the instant `t`; the next call overwrites it.
 
-        `frames` gives every body's pose x, y, angle; `contacts` (n, 2) points to mark, in metres.
+        `frames` gives every body's pose x, y, angle; `contacts` (n, 2) points to mark, in metres, in the colour `mark`.
         """
         self._canvas.restore_region(self._background)
         renderer = self._canvas.get_renderer()
@@ -83,7 +84,7 @@ class Stage:
         for patch in self._patches:
             patch.draw(renderer)
         if contacts is not None and len(contacts):
-            for patch in self._marks(contacts @ matrix[:2, :2].T + matrix[:2, 2]):
+            for patch in self._marks(contacts @ matrix[:2, :2].T + matrix[:2, 2], mark):
                 patch.draw(renderer)
         pixels = np.asarray(self._canvas.buffer_rgba())
         self._layout.write(t, frames, pixels)
@@ -92,8 +93,9 @@ class Stage:
     def _compose(self, run: Trajectory) -> list[PathPatch]:
         """Patches to draw in every frame, in order; those that never move go to the figure itself."""
         shapes = parts(run.scene, CHORD / self.view.scale, HATCH * self._unit / self.view.scale)
-        still = {body.name for body in run.scene.bodies if body.motion == "fixed" and self.view.follow is None}
-        frames = {body.name: np.array([*body.position, body.angle]) for body in run.scene.bodies}
+        start = at_start(run.scene).bodies
+        still = {body.name for body in run.scene.bodies if is_still(run.scene, body) and self.view.follow is None}
+        frames = {body.name: np.array([*body.position, body.angle]) for body in start}
         for body in still:
             self._transforms.pop(body)
         live: list[PathPatch] = []
@@ -145,19 +147,25 @@ class Stage:
         )
 
     def _pivots(self, run: Trajectory) -> list[PathPatch]:
-        """A small ring at every pivot."""
-        places = [body.position for body in run.scene.bodies if body.motion == "pivot"]
-        if not places or self.view.follow is not None:
+        """A small ring at every pivot; those on carriers move with them."""
+        pivoted = [body for body in run.scene.bodies if body.motion == "pivot"]
+        if not pivoted or self.view.follow is not None:
             return []
-        matrix = self.view.matrix(self.view.centre)
-        rings = _rings(np.array(places) @ matrix[:2, :2].T + matrix[:2, 2], 3.2 * max(self._unit, 0.5))
+        radius, matrix = 3.2 * max(self._unit, 0.5), self.view.matrix(self.view.centre)
         look = {"facecolor": BACKGROUND, "edgecolor": INK, "linewidth": max(1.3 * self._unit, 0.8)}
-        return [self._own(PathPatch(rings, transform=IdentityTransform(), **look))]
+        places = [body.position for body in pivoted if body.on is None]
+        patches = []
+        if places:
+            rings = _rings(np.array(places) @ matrix[:2, :2].T + matrix[:2, 2], radius)
+            patches.append(self._own(PathPatch(rings, transform=IdentityTransform(), **look)))
+        moved = _rings(np.zeros((1, 2)), radius / self.view.scale)
+        names = [body.name for body in pivoted if body.on is not None]
+        return patches + [self._own(PathPatch(moved, transform=self._transforms[name], **look)) for name in names]
 
-    def _marks(self, points: Array) -> list[PathPatch]:
+    def _marks(self, points: Array, mark: str) -> list[PathPatch]:
         """Rings with a pale rim, to be seen on steel, brass and ruby alike."""
         rings, width = _rings(points, 7.0 * max(self._unit, 0.5)), max(2.4 * self._unit, 1.2)
-        looks = ((BACKGROUND, 2.2 * width), (CONTACT, width))
+        looks = ((BACKGROUND, 2.2 * width), (mark, width))
         place = IdentityTransform()
         return [
             self._own(PathPatch(rings, fill=False, edgecolor=colour, linewidth=line, transform=place)) for colour, line in looks

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
 from watchsim.contact.counts import ModelledPairs
+from watchsim.geometry.primitives import Point
 from watchsim.mechanism.compile import Compiled
 from watchsim.mechanism.scene import Scene
 from watchsim.render.edges import Edges
+from watchsim.render.fault_circles import FAULT
 from watchsim.render.poses import poses
 from watchsim.render.stage import Stage
 from watchsim.simulation.stops import Stop
@@ -20,27 +23,32 @@ SIZE = (1280, 720)
 REACHABLE, CANDIDATE = "#1971c2", "#f76707"
 
 
-def still(scene: Scene, path: str | os.PathLike[str], compiled: Compiled, pairs: ModelledPairs) -> None:
+def still(
+    scene: Scene, path: str | os.PathLike[str], compiled: Compiled, pairs: ModelledPairs, overlaps: Sequence[Point] = ()
+) -> None:
     """Write a picture (PNG or what else imageio knows) of the bodies where the scene puts them at t = 0.
 
-    Edges that can ever touch another body are in colour, those of which a pair is a candidate at the start in another.
+    Edges that can ever touch another body are in colour, those of which a pair is a candidate at the start in another; rings
+    mark the places (m) where bodies overlap.
     """
     import imageio.v3 as imageio
 
     model = compiled.model
-    picked = (
+    picked: tuple[Edges, ...] = (
         Edges(model, np.setdiff1d(pairs.reachable, pairs.candidates), REACHABLE, "can ever touch"),
         Edges(model, pairs.candidates, CANDIDATE, "candidate at the start"),
     )
+    if overlaps:
+        picked = (*picked, Edges(model, np.zeros(0, np.int64), FAULT, "bodies overlap"))
     run = _at_rest(scene, compiled)
     stage = Stage(run, SIZE, (0.0, 1.0), picked=picked)
     frames = {name: rows[0] for name, rows in poses(run, np.zeros(1)).items()}
-    imageio.imwrite(Path(path), stage.draw(0.0, frames)[..., :3])
+    imageio.imwrite(Path(path), stage.draw(0.0, frames, np.array(overlaps).reshape(-1, 2), FAULT)[..., :3])
 
 
 def _at_rest(scene: Scene, compiled: Compiled) -> Trajectory:
     """A run in which nothing moves."""
-    q = np.stack([compiled.q, compiled.q])
+    q = compiled.relative(np.stack([compiled.q, compiled.q]))
     rest = np.zeros_like(q)
     events = np.zeros(0, EVENT_DTYPE)
     return Trajectory(scene, np.array([0.0, 1.0]), q, rest, rest, compiled.slices, events, (), Stop.DURATION)

@@ -21,8 +21,9 @@ from watchsim.simulation.free import quarter_period
 from watchsim.simulation.integrator import coupled_step, dense_value
 from watchsim.simulation.keep import is_kept, keep_row
 from watchsim.simulation.leave import first_leave, first_turn
-from watchsim.simulation.options import OptionsRef
+from watchsim.simulation.options import FINEST_ROWS, OptionsRef
 from watchsim.simulation.passages import keep_passages
+from watchsim.simulation.rows import keep_inner_rows
 from watchsim.simulation.settle import settle
 from watchsim.simulation.state import DAMPING, DRIVE, FRICTION, N_FLIGHTS, ROOM, SUMS, RecordRef, ScratchRef, StateRef, StepRef
 from watchsim.simulation.stops import Stop
@@ -33,9 +34,9 @@ RUNNING, SLICE, CELL_UNKNOWN, BUFFER_FULL = int(Stop.RUNNING), int(Stop.SLICE), 
 DURATION, STEP_TOO_SMALL, NOT_FINITE = int(Stop.DURATION), int(Stop.STEP_TOO_SMALL), int(Stop.NOT_FINITE)
 TOO_MANY_EVENTS, LAST_STEP = int(Stop.TOO_MANY_EVENTS), int(Stop.LAST_STEP)
 FLIGHT_CELLS = 128
-FLIGHT_ROWS = 16  # a flight is at most this many recorded rows long
+FLIGHT_PHASE = 1.6  # rad of the fastest coordinate's own time scale: the longest flight
 EVENTS_AT_ONCE = 2000
-ROWS_PER_STEP = FLIGHT_ROWS + 8
+ROWS_PER_STEP = math.ceil(FLIGHT_PHASE / FINEST_ROWS) + 8
 EVENTS_PER_STEP = 20 * ROOM
 
 # Gauss-Legendre nodes and weights on [0, 1]: damping losses of a flight of at most a quarter period, to rounding.
@@ -63,7 +64,7 @@ def _flight_length(model, state, options):
         if state.awake[i]:
             length = min(length, quarter_period(model.coordinates[i]))
             spacing = min(spacing, _row_spacing(model, options, i))
-    return min(length, FLIGHT_ROWS * spacing), spacing
+    return min(length, FLIGHT_PHASE / options.row_phase * spacing), spacing
 
 
 @kernel
@@ -182,6 +183,7 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
         _flight_rows(model, state, end, spacing, scratch, record)
     else:
         _accept_coupled(model, state, options, end, scratch)
+        keep_inner_rows(model, options, end, scratch, record)
         keep_row(state, record, state.clock[0], state.q, state.u, state.a)
     keep_passages(model, state, step, end, record)
     state.numbers[4] = contact

@@ -9,6 +9,7 @@ from watchsim.contact.lookup import UNKNOWN, candidate, candidates
 from watchsim.dynamics.linear import copy
 from watchsim.jit import kernel
 from watchsim.simulation.handover import continues_active
+from watchsim.simulation.sleep import is_at_rest
 from watchsim.simulation.state import ROOM
 
 
@@ -24,12 +25,6 @@ def insert(ids, count, k):
         ids[j] = ids[j - 1]
     ids[place] = k
     return count + 1
-
-
-@kernel
-def _is_asleep(model, state, b):
-    first = model.bodies[b].first
-    return first < 0 or state.awake[first] == 0
 
 
 @kernel
@@ -49,7 +44,7 @@ def gather(model, cells, state, options, scratch):
         m = insert(ids, m, state.numbers[4])
     for p in range(len(model.pairs)):
         pair = model.pairs[p]
-        if _is_asleep(model, state, pair.a) and _is_asleep(model, state, pair.b) and state.clock[0] > 0.0:
+        if is_at_rest(model, state, pair.a) and is_at_rest(model, state, pair.b) and state.clock[0] > 0.0:
             continue
         how, start, count = candidates(model, cells, p, state.q)
         if how == UNKNOWN:
@@ -61,7 +56,7 @@ def gather(model, cells, state, options, scratch):
             if state.mode[k] != OPEN:
                 continue
             gap, _, _, _ = normal_gap(model, k, scratch.pose)
-            if abs(gap) <= options.gap_close and extent_margin(model, k, scratch.pose) >= -options.extent:
+            if -options.behind <= gap <= options.gap_close and extent_margin(model, k, scratch.pose) >= -options.extent:
                 if continues_active(model, state, options, k, scratch.pose):
                     continue
                 if m == ROOM:

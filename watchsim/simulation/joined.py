@@ -5,7 +5,9 @@ from __future__ import annotations
 import dataclasses
 
 import numpy as np
+from numpy.typing import NDArray
 
+from watchsim.mechanism.recording import ALL, STATISTICS, Window
 from watchsim.simulation.trajectory import Trajectory
 
 
@@ -21,7 +23,7 @@ def joined(first: Trajectory, rest: Trajectory) -> Trajectory:
     if later is not None:
         later = dataclasses.replace(later, rows=saved.rows + later.rows, events=saved.events + later.events)
     cut = saved.rows
-    return dataclasses.replace(
+    whole = dataclasses.replace(
         rest,
         t=np.concatenate([first.t[:cut], rest.t]),
         q=np.concatenate([first.q[:cut], rest.q]),
@@ -32,3 +34,23 @@ def joined(first: Trajectory, rest: Trajectory) -> Trajectory:
         compile=first.compile + rest.compile,
         end_state=later,
     )
+    return whole if rest.keep == ALL else _without_old_tail(whole)
+
+
+def _without_old_tail(run: Trajectory) -> Trajectory:
+    """Without the last seconds of the first part, where only those of the whole are kept."""
+    rows = _within(run.t, run.spans)
+    events = _within(run.events["t"], run.spans) | (run.keep != STATISTICS)
+    saved = run.end_state
+    if saved is not None:
+        saved = dataclasses.replace(saved, rows=int(rows[: saved.rows].sum()), events=int(events[: saved.events].sum()))
+    return dataclasses.replace(
+        run, t=run.t[rows], q=run.q[rows], u=run.u[rows], a=run.a[rows], events=run.events[events], end_state=saved
+    )
+
+
+def _within(times: NDArray[np.float64], spans: tuple[Window, ...]) -> NDArray[np.bool_]:
+    inside = np.zeros(len(times), bool)
+    for start, end in spans:
+        inside |= (times >= start) & (times <= end)
+    return inside

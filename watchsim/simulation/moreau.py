@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.mechanism.compile import Compiled
+from watchsim.mechanism.recording import Recording
+from watchsim.mechanism.scene import Scene
 from watchsim.simulation.methods import MOREAU
 from watchsim.simulation.moreau_loop import EVENTS_PER_STEP, ROWS_PER_STEP, advance_fixed
 from watchsim.simulation.moreau_work import moreau_work
@@ -23,8 +25,8 @@ class MoreauRun(Run):
 
     method = MOREAU
 
-    def __init__(self, compiled: Compiled, tolerance: float, longest: float, windows: Any, step: float) -> None:
-        super().__init__(compiled, tolerance, longest, windows)
+    def __init__(self, scene: Scene, compiled: Compiled, tolerance: float, recording: Recording, step: float) -> None:
+        super().__init__(scene, compiled, tolerance, recording)
         self.step = step
         self.pace = np.array([step, max(step, self.options.max_step / ROWS_PER_QUARTER)])
         self.work = moreau_work(compiled.model)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -16,17 +16,23 @@ from numpy.typing import NDArray
 
 from watchsim.mechanism.compile import Compiled
 
+ASKED = ("method", "step", "tolerance")
+
 
 @dataclass(frozen=True)
 class SavedState:
-    """A state to go on from. `rows` and `events` say how many of its run's rows and events lie before it."""
+    """A state to go on from. `rows` and `events` say how many of its run's kept rows and events lie before it.
+
+    `tally` holds the sums over all events before it (see simulation/tally.py).
+    """
 
     arrays: dict[str, NDArray[Any]]
     digest: str  # of the model and its start
     settings: dict[str, Any]  # method, tolerances, step
     stored_at_start: float  # J, of the whole run
-    rows: int
-    events: int
+    tally: dict[str, NDArray[Any]] = field(default_factory=dict)
+    rows: int = 0
+    events: int = 0
 
     @property
     def time(self) -> float:
@@ -41,6 +47,8 @@ class SavedState:
                 "since. Go on with the scene as it was (scene.lock.toml in the results folder), or begin anew"
             )
         changed = [name for name in {**self.settings, **settings} if self.settings.get(name) != settings.get(name)]
+        # The other tolerances follow from these.
+        changed = [name for name in changed if name in ASKED] or changed
         if changed:
             told = "; ".join(f"{name} was {self.settings.get(name)}, now {settings.get(name)}" for name in changed)
             raise ValueError(f"the saved state was made with other settings ({told}). Use the same ones, or begin anew")
@@ -55,11 +63,15 @@ class SavedState:
 
 
 def save_state(
-    compiled: Compiled, settings: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]], stored: float, rows: int, events: int
+    compiled: Compiled,
+    settings: Mapping[str, Any],
+    arrays: Mapping[str, NDArray[Any]],
+    stored: float,
+    tally: dict[str, NDArray[Any]],
 ) -> SavedState:
     """A copy of the state in `arrays`."""
     copies = {name: np.array(array) for name, array in arrays.items()}
-    return SavedState(copies, model_digest(compiled), dict(settings), float(stored), rows, events)
+    return SavedState(copies, model_digest(compiled), dict(settings), float(stored), tally)
 
 
 def model_digest(compiled: Compiled) -> str:

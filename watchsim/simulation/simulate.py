@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Iterable
 
 from watchsim.mechanism.compile import compile_scene
+from watchsim.mechanism.recording import Recording, Window, as_recording
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation.joined import joined
 from watchsim.simulation.methods import EVENT_DRIVEN, METHODS, MOREAU, USUAL_STEP
@@ -14,14 +16,12 @@ from watchsim.simulation.run import Progress, Run
 from watchsim.simulation.saved import SavedState
 from watchsim.simulation.trajectory import Trajectory
 
-WHOLE_RUN = ((-math.inf, math.inf),)
-
 
 def simulate(
     scene: Scene,
     duration: float | None = None,
     tolerance: float | None = None,
-    record: tuple[tuple[float, float], ...] | None = None,
+    record: Recording | str | Iterable[Window] | None = None,
     progress: Progress | None = None,
     prefilter: bool = True,
     *,
@@ -31,7 +31,7 @@ def simulate(
 ) -> Trajectory:
     """Simulate `scene` from 0 to `duration` (s) at a relative error `tolerance` per step (both default to the scene's own).
 
-    record    windows (s) in which rows are kept, default the scene's, else the whole run; events are always kept
+    record    what is kept: windows (s) of rows, "events", "statistics" or a `Recording`; default the scene's, else everything
     progress  called as progress(simulated, duration) about ten times a second
     prefilter off: every declared pair of primitives is looked at in every step; slow, the same events
     method    "pfeiffer-glocker" (by events) or "moreau" (fixed steps of `step` seconds, default 10 µs), see docs/method.md
@@ -46,11 +46,11 @@ def simulate(
     tolerance = scene.tolerance if tolerance is None else float(tolerance)
     _check(duration, tolerance, method, step)
     compiled = compile_scene(scene, prefilter)
-    windows = record or scene.record or WHOLE_RUN
+    recording = as_recording(record) or scene.record
     if method == MOREAU:
-        run: Run = MoreauRun(compiled, tolerance, scene.duration, windows, USUAL_STEP if step is None else float(step))
+        run: Run = MoreauRun(scene, compiled, tolerance, recording, USUAL_STEP if step is None else float(step))
     else:
-        run = Run(compiled, tolerance, scene.duration, windows)
+        run = Run(scene, compiled, tolerance, recording)
     if start is not None:
         _take_up(run, start, duration)
     ready = time.perf_counter()
@@ -58,7 +58,7 @@ def simulate(
     warm = time.perf_counter()
     stop = run.to_the_end(duration, progress)
     wall = time.perf_counter() - warm + ready - begun
-    made = run.trajectory(scene, stop, wall, compile_time=warm - ready)
+    made = run.trajectory(stop, wall, compile_time=warm - ready)
     if isinstance(start, Trajectory):
         return joined(start, made)
     return made

@@ -17,6 +17,7 @@ from watchsim.jit import kernel
 from watchsim.mechanism.model import FREE, LINE, PIVOT, SLIDE
 from watchsim.simulation.handover import continues_active, is_beside_active
 from watchsim.simulation.path import body_on_path
+from watchsim.simulation.sleep import is_at_rest
 from watchsim.simulation.state import N_GAPS
 
 STRIDE = 0.25  # of the extent: steps in which a neighbour of a contact in force is watched until its turn comes
@@ -26,6 +27,17 @@ STRIDE = 0.25  # of the extent: steps in which a neighbour of a contact in force
 def _body_bounds(model, b, length, scratch):
     """Bounds over the next `length` seconds: (speed, turning rate, acceleration, turning acceleration) of the frame."""
     body = model.bodies[b]
+    own = _own_bounds(body, length, scratch)
+    if body.carrier < 0:
+        return own
+    speed, turn, push, twist = _own_bounds(model.bodies[body.carrier], length, scratch)
+    arm = math.sqrt(body.x * body.x + body.y * body.y)
+    return speed + turn * arm, own[1], push + twist * arm + turn * turn * arm, own[3]
+
+
+@kernel
+def _own_bounds(body, length, scratch):
+    """The same from the body's own coordinates alone."""
     i = body.first
     bound = scratch.step.bound
     if body.motion == PIVOT:
@@ -112,7 +124,7 @@ def _time_outside(model, k, inside_a, inside_b, motion, distance):
 @kernel
 def _is_due(gap, rate, outside, clear, options):
     """True if a gap that comes from outside has closed, or one that lies within the rounding behind it goes on closing."""
-    zero, band = options.gap_zero, options.gap_close
+    zero, band = options.gap_zero, options.behind
     if outside:
         return gap <= zero and ((clear and rate < 0.0) or gap < -zero)
     return gap >= -band and (rate < -options.speed_zero or (rate < 0.0 and gap <= zero - band))
@@ -124,8 +136,8 @@ def _time_to_zero(gap, rate, outside, bounds, options):
     closing, bend, distance = bounds
     if not outside:
         safe = _safe(-gap, rate, closing, bend, distance)
-        if gap >= -options.gap_close:
-            safe = min(safe, _safe(gap + options.gap_close, -rate, closing, bend, distance))
+        if gap >= -options.behind:
+            safe = min(safe, _safe(gap + options.behind, -rate, closing, bend, distance))
         return safe
     leaving = gap > options.gap_zero or rate > options.speed_zero
     return _safe(max(gap, 0.0) if leaving else gap + 2.0 * options.gap_zero, -rate, closing, bend, distance)
@@ -164,7 +176,7 @@ def crossing(model, state, options, k, start, end, scratch):
         inside_a, inside_b = inside_a + options.extent, inside_b + options.extent
         beside = _time_outside(model, k, inside_a, inside_b, (closing, swing), distance)
         # Positions jump where drift is taken back: a gap may have closed by that.
-        near = gap <= zero if outside else gap >= -options.gap_close
+        near = gap <= zero if outside else gap >= -options.behind
         if near and min(inside_a, inside_b) < 0.0:
             # At least the time in which the gap cannot pass through its rounding.
             tau += max(beside, zero / closing)
@@ -194,7 +206,7 @@ def _stays_open(model, state, options, k, length, first, bounds, scratch):
     """
     gap, rate, _, _ = normal_gap(model, k, scratch.pose)
     state.counts[N_GAPS] += 1
-    if -options.gap_close <= gap <= options.gap_zero:
+    if -options.behind <= gap <= options.gap_zero:
         return False
     # Behind its primitive a contact must come out before it can close.
     room, approach = (gap, -rate) if gap > 0.0 else (-gap, rate)
@@ -237,13 +249,6 @@ def _first_of(model, cells, state, options, p, tau, until, scratch):
 
 
 @kernel
-def _at_rest(model, state, b):
-    """True for fixed bodies and bodies asleep."""
-    first = model.bodies[b].first
-    return first < 0 or state.awake[first] == 0
-
-
-@kernel
 def first_touch(model, cells, state, options, end, scratch):
     """(known, time, contact) of the first closing in [0, end) of the current step; contact -1: none.
 
@@ -253,7 +258,7 @@ def first_touch(model, cells, state, options, end, scratch):
     best, who = end, -1
     for p in range(len(model.pairs)):
         pair = model.pairs[p]
-        if _at_rest(model, state, pair.a) and _at_rest(model, state, pair.b):
+        if is_at_rest(model, state, pair.a) and is_at_rest(model, state, pair.b):
             continue
         tau = 0.0
         while tau < best:

@@ -7,18 +7,23 @@ A frozen value: rows of time, coordinates, velocities and accelerations, and a t
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from watchsim.mechanism.recording import ALL, Window
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation.event_kinds import EVENT_DTYPE as EVENT_DTYPE
 from watchsim.simulation.event_kinds import EventKind as EventKind
+from watchsim.simulation.frames import frames
 from watchsim.simulation.saved import SavedState
 from watchsim.simulation.stops import Stop
 
 Array = NDArray[np.float64]
+
+NOISE = 0.5  # tolerances: by so much positions at rows may be off, each for itself
 
 
 @dataclass(frozen=True)
@@ -47,9 +52,12 @@ class Trajectory:
     """The motion of a scene. Arrays have one row per accepted step (two rows with the same time at an impact).
 
     t (rows,) s; q, u, a (rows, n) coordinates, velocities, accelerations in SI; `slices[body]` says which columns belong
-    to a body (fixed bodies have none). `energy` holds joules: in_J, stored_J, dissipated {cause: J}, residual_J.
+    to a body (fixed bodies have none). Those of a carried body are relative to its carrier; `pose` is in the movement.
+    `energy` holds joules: in_J, stored_J, dissipated {cause: J}, residual_J.
     `counts` holds events, impacts, steps, lcp_failures and the like; `worst_penetration` is metres;
     `worst_residual` the worst violation of a complementarity condition, as a share of the problem's largest term.
+    `keep` and `spans` say what was kept (see mechanism/recording.py): `spans` the stretches of time (s) with rows, () for a
+    run that was made by hand. `sums` holds sums over all events of the whole run, kept or not (see simulation/tally.py).
     `failure` is the complementarity problem on which the solver gave up (see simulation/failure.py), None otherwise.
     """
 
@@ -73,13 +81,24 @@ class Trajectory:
     energy: dict[str, Any] = field(default_factory=dict)
     counts: dict[str, int] = field(default_factory=dict)
     step: float | None = None  # s, of a method with fixed steps
+    end_q: Array = field(default_factory=lambda: np.zeros(0))  # at `simulated`, whether rows are kept there or not
+    end_u: Array = field(default_factory=lambda: np.zeros(0))
+    keep: str = ALL
+    spans: tuple[Window, ...] = ()
+    sums: dict[str, Any] = field(default_factory=dict)
     end_state: SavedState | None = field(default=None, repr=False, compare=False)  # to go on from, see `simulate`
     failure: dict[str, Any] | None = field(default=None, repr=False)
+
+    @cached_property
+    def _noise(self) -> Array:
+        """(n,): how exact each coordinate is at its rows."""
+        return NOISE * self.tolerance * np.max(np.abs(self.q), axis=0, initial=0.0)
 
     def at(self, t: float) -> tuple[Array, Array]:
         """q and u at time `t` (after the impact where one happens at `t`).
 
-        Quintic Hermite interpolation of q, u, a between rows: error of order 6 in the row spacing. Times outside are clamped.
+        Positions by the quintics through q, u, a of two rows; velocities by the cubics through u, a, with what is missing to
+        the way between the rows where that is more than the error of positions. Times outside are clamped.
         """
         q, u = self.sample(np.array([t]))
         return q[0], u[0]
@@ -92,25 +111,25 @@ class Trajectory:
         last = h <= 0.0  # two rows of one instant at the very end: take the one after the impact
         s = np.where(last, 1.0, np.clip((times - self.t[i])[:, None] / np.where(last, 1.0, h), 0.0, 1.0))
         h = np.where(last, 1.0, h)
-        q, u = _quintic(s, h, (self.q[i], self.u[i], self.a[i]), (self.q[j], self.u[j], self.a[j]))
+        q, u = _between(s, h, (self.q[i], self.u[i], self.a[i]), (self.q[j], self.u[j], self.a[j]), self._noise)
         return np.where(last, self.q[j], q), np.where(last, self.u[j], u)
 
     def pose(self, body: str, t: float) -> tuple[float, float, float]:
-        """x, y (m) and angle (rad) of the body's frame at time `t`."""
-        part = self.scene.body(body)
-        if part.motion == "fixed":
-            return (*part.position, part.angle)
-        q = self.at(t)[0][self.slices[body]]
-        if part.motion == "pivot":
-            return (*part.position, float(q[0]))
-        if part.motion == "slide":
-            x, y = part.position
-            return x + q[0] * part.axis[0], y + q[0] * part.axis[1], part.angle
-        return float(q[0]), float(q[1]), float(q[2])
+        """x, y (m) and angle (rad) of the body's frame in the movement at time `t`."""
+        return self.pose_of(body, self.at(t)[0] if self.slices else np.zeros(0))
+
+    def pose_of(self, body: str, coordinates: Array) -> tuple[float, float, float]:
+        """The same where all coordinates are given."""
+        x, y, angle = frames(self.scene, self.slices, coordinates[None])[body][0].tolist()
+        return x, y, angle
 
 
-def _quintic(s: Array, h: Array, left: tuple[Array, ...], right: tuple[Array, ...]) -> tuple[Array, Array]:
-    """Value and derivative at fractions `s` of the quintics through (q, u, a) at both ends of intervals of length h."""
+def _between(s: Array, h: Array, left: tuple[Array, ...], right: tuple[Array, ...], noise: Array) -> tuple[Array, Array]:
+    """q and u at fractions `s` of intervals of length h with (q, u, a) at both ends; `noise` is the error of q.
+
+    The derivative of the quintic in q is the cubic in u and a bump, which makes up for the way that the cubic misses. Over a
+    short time an error of q of the size of the tolerance would make much of it; rows are close enough for the cubic there.
+    """
     q0, u0, a0 = left[0], h * left[1], h * h * left[2]
     q1, u1, a1 = right[0], h * right[1], h * h * right[2]
     d = q1 - q0
@@ -118,5 +137,7 @@ def _quintic(s: Array, h: Array, left: tuple[Array, ...], right: tuple[Array, ..
     c4 = -15.0 * d + 8.0 * u0 + 7.0 * u1 + 1.5 * a0 - a1
     c5 = 6.0 * d - 3.0 * (u0 + u1) - 0.5 * (a0 - a1)
     q = q0 + s * (u0 + s * (0.5 * a0 + s * (c3 + s * (c4 + s * c5))))
-    u = (u0 + s * (a0 + s * (3.0 * c3 + s * (4.0 * c4 + s * 5.0 * c5)))) / h
-    return q, u
+    cubic = u0 + s * (a0 + s * (3.0 * (u1 - u0) - 2.0 * a0 - a1 + s * (2.0 * (u0 - u1) + a0 + a1)))
+    missed = d - 0.5 * (u0 + u1) - (a0 - a1) / 12.0
+    bump = 30.0 * np.where(np.abs(missed) > noise, missed, 0.0) * (s * (1.0 - s)) ** 2
+    return q, (cubic + bump) / h

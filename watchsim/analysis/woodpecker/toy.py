@@ -95,7 +95,7 @@ class Modal:
 
     def force(self, e: Array) -> Array:
         """Weight and spring at e."""
-        return self.load - self.spring * e
+        return np.asarray(self.load - self.spring * e, float)
 
     def into(self, vector: Array) -> Array:
         """Modal coordinates of (y, tilt of the sleeve, tilt of the bird)."""

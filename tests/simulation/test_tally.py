@@ -1,0 +1,113 @@
+"""Can sums replace the record: the same numbers, however little is kept and however the run is cut?"""
+
+from __future__ import annotations
+
+import functools
+
+import numpy as np
+import pytest
+from moving_scenes import profile
+
+from watchsim.analysis.beats import beats
+from watchsim.analysis.summary import summary
+from watchsim.mechanism.recording import EVERYTHING, Recording
+from watchsim.simulation import run as running
+from watchsim.simulation.simulate import simulate
+from watchsim.simulation.tally import Tally
+from watchsim.simulation.trajectory import Trajectory
+
+DURATION = 6.0
+CLOCKS = ("wall_s", "compile_s", "realtime_factor")
+OTHERWISE = (*CLOCKS, "kept", "counts")  # counts: how many cells were asked about depends on the runs before
+
+
+@functools.cache
+def whole() -> Trajectory:
+    return simulate(profile("swiss_lever"), DURATION)
+
+
+def small_buffers(patch: pytest.MonkeyPatch) -> None:
+    """So that they are emptied many times."""
+    patch.setattr(running, "ROWS", 600)
+    patch.setattr(running, "EVENTS", 300)
+
+
+def test_sums_are_those_of_the_beats() -> None:
+    found, sums = beats(whole()), whole().sums
+    assert sums["half_swings"] == len(found) == 46
+    assert sums["ticks"] == np.isfinite(found.tick).sum()
+    uneven = np.diff(np.diff(found.t, prepend=np.nan), prepend=np.nan) * np.sign(found.end_at - found.start_at)
+    for name, values in (("amplitude", found.amplitude), ("period", found.period_s), ("uneven_passages", uneven)):
+        known, told = values[np.isfinite(values)], sums[name]
+        assert (told["number"], told["least"], told["largest"]) == (len(known), known.min(), known.max())
+        assert told["mean"] == pytest.approx(known.mean(), rel=1e-13, abs=1e-18)
+        assert told["squares"] == pytest.approx(((known - known.mean()) ** 2).sum(), rel=1e-9)
+    kinds = whole().events["kind"]
+    assert sums["events_by_kind"]["impact"] == (kinds == 1).sum() > 1000
+
+
+@pytest.mark.parametrize("parts", [2, 7, 100])
+def test_sums_do_not_depend_on_how_events_are_handed_over(parts: int) -> None:
+    tally = Tally(whole().scene, whole().pairs)
+    for part in np.array_split(whole().events, parts):
+        tally.fold(part)
+    assert same(tally.finished(), whole().sums)
+
+
+def same(one: object, two: object) -> bool:
+    """Equal, numbers to rounding."""
+    if isinstance(one, dict) and isinstance(two, dict):
+        return one.keys() == two.keys() and all(same(one[name], two[name]) for name in one)
+    return one == pytest.approx(two, rel=1e-10, abs=1e-18)
+
+
+@pytest.mark.parametrize("record", ["statistics", "events", Recording(((1.0, 1.5),), "statistics")])
+def test_all_headline_numbers_survive(record: str | Recording, monkeypatch: pytest.MonkeyPatch) -> None:
+    small_buffers(monkeypatch)
+    done = simulate(profile("swiss_lever"), DURATION, record=record)
+    one, two = summary(whole()), summary(done)
+    assert one["missed_beats"] == 0
+    assert same(one.pop("whole_run"), two.pop("whole_run"))
+    for name in OTHERWISE:
+        one.pop(name), two.pop(name)
+    assert one == two
+    assert done.t[-1] == DURATION
+    assert len(done.t) < 0.7 * len(whole().t)
+
+
+def test_only_what_was_asked_for_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    small_buffers(monkeypatch)
+    scene, full = profile("swiss_lever"), whole()
+    statistics = simulate(scene, DURATION, record=Recording(((1.0, 1.5),), "statistics"))
+    tail = (DURATION - 3.0, DURATION)
+    assert statistics.spans == ((1.0, 1.5), tail)
+    inside = ((full.t >= 1.0) & (full.t <= 1.5)) | (full.t >= tail[0])
+    assert np.array_equal(statistics.t, full.t[inside])
+    assert np.array_equal(statistics.q, full.q[inside])
+    times = full.events["t"]
+    assert np.array_equal(statistics.events, full.events[((times >= 1.0) & (times <= 1.5)) | (times >= tail[0])])
+    events = simulate(scene, DURATION, record="events")
+    assert np.array_equal(events.events, full.events)
+    assert np.array_equal(events.t, full.t[full.t >= tail[0]])
+    thinned = simulate(scene, DURATION, record=Recording(stride=7))
+    assert np.array_equal(thinned.q, full.q[::7])
+    assert np.array_equal(thinned.events, full.events)
+    assert np.array_equal(thinned.end_q, full.q[-1])
+
+
+def test_a_run_that_goes_on_keeps_the_sums_of_both_parts() -> None:
+    scene = profile("swiss_lever")
+    first = simulate(scene, 4.0, record="statistics")
+    both = simulate(scene, DURATION, record="statistics", start=first)
+    at_once = simulate(scene, DURATION, record="statistics")
+    assert same(both.sums, at_once.sums)
+    assert both.t.tolist() == at_once.t.tolist()
+    assert both.events.tobytes() == at_once.events.tobytes()
+    assert (both.end_state.rows, both.end_state.events) == (at_once.end_state.rows, at_once.end_state.events)
+
+
+@pytest.mark.parametrize("bad", ["statistic", "", ((2.0, 1.0),)])
+def test_what_cannot_be_kept_is_refused(bad: object) -> None:
+    with pytest.raises(ValueError, match=r"there are all, events, statistics|a window runs from"):
+        simulate(profile("incline"), 0.1, record=bad)
+    assert EVERYTHING.row_windows[0][1] == np.inf

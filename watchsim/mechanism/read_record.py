@@ -1,0 +1,61 @@
+"""How is it read what to keep of a run?
+
+`record` is one of these or a list of them: a window ["179 s", "180 s"], "all", "events", "statistics", "every 10".
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from watchsim import units
+from watchsim.mechanism.recording import ALL, EVERY, KEPT, Recording, Window
+from watchsim.mechanism.schema import nearest
+from watchsim.mechanism.table import Table, shown
+
+
+def read_record(table: Table, key: str = "record") -> Recording:
+    """What the key says; everything where it is absent, and where it cannot be read (the fault is noted)."""
+    value = table.mapping.get(key, [])
+    items = _items(value)
+    windows: list[Window] = []
+    keep, stride = ALL, 1
+    for i, item in enumerate(items):
+        path = key if items == [value] else f"{key}.{i}"
+        if not _is_word(item):
+            windows += _window(table, path, item)
+        elif item in KEPT:
+            keep = item
+        else:
+            stride = _stride(table, path, item)
+    return Recording(tuple(windows), keep, stride)
+
+
+def _items(value: Any) -> list[Any]:
+    """The parts of the value; two times in a list are one window."""
+    if not isinstance(value, (list, tuple)):
+        return [value]
+    is_window = len(value) > 0 and not any(isinstance(item, (list, tuple)) or _is_word(item) for item in value)
+    return [value] if is_window else list(value)
+
+
+def _is_word(item: object) -> bool:
+    return isinstance(item, str) and item[:1].isalpha()
+
+
+def _window(table: Table, path: str, item: object) -> list[Window]:
+    start, end = table.point(path, item, units.TIME)
+    if start >= end or start < 0.0:
+        table.faults.add(f"{table.path}.{path}", "a window runs from an earlier to a later time, both from 0 s on", shown(item))
+        return []
+    return [(start, end)] if start < end else []  # what could not be read is no window
+
+
+def _stride(table: Table, path: str, item: str) -> int:
+    word, _, number = item.partition(" ")
+    if word == EVERY and number.strip().isdecimal() and int(number) > 0:
+        return int(number)
+    advice = f'write "{EVERY} 10" for each tenth row' if word == EVERY else nearest(item, KEPT)
+    table.faults.add(
+        f"{table.path}.{path}", f'no window, none of {", ".join(KEPT)} and not "{EVERY} 10": {advice}', shown(item)
+    )
+    return 1
