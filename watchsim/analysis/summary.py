@@ -79,13 +79,15 @@ def _about(run: Trajectory) -> dict[str, Any]:
 
 def _bodies(run: Trajectory) -> dict[str, dict[str, float]]:
     """Pose and velocities of every body at the end."""
-    return {body.name: _last_state(run, body.name) for body in run.scene.bodies} if len(run.end_q) else {}
+    return {body.name: _last_state(run, body.name) for body in run.scene.bodies} if run.end else {}
 
 
 def _last_state(run: Trajectory, name: str) -> dict[str, float]:
     body = run.scene.body(name)
-    x, y, angle = run.pose_of(name, run.end_q)
-    u = run.end_u[run.slices[name]].tolist() if body.motion != "fixed" else []
+    assert run.end is not None
+    q, rates = run.end
+    x, y, angle = run.pose_of(name, q)
+    u = rates[run.slices[name]].tolist() if body.motion != "fixed" else []
     along = (u[0] * body.axis[0], u[0] * body.axis[1]) if body.motion == "slide" else (0.0, 0.0)
     v_x, v_y, spin = {"free": tuple(u), "pivot": (0.0, 0.0, *u), "slide": (*along, 0.0)}.get(body.motion, (0.0, 0.0, 0.0))
     return {"angle_rad": angle, "x_m": x, "y_m": y, "angle_rad_per_s": spin, "x_m_per_s": v_x, "y_m_per_s": v_y}
