@@ -22,10 +22,11 @@ sys.path.insert(0, str(ROOT))
 from watchsim.contact.known import forget  # noqa: E402
 from watchsim.mechanism.compile import compile_scene  # noqa: E402
 from watchsim.mechanism.load import load  # noqa: E402
+from watchsim.mechanism.recording import EVERYTHING  # noqa: E402
 from watchsim.mechanism.scene import Scene  # noqa: E402
 from watchsim.simulation.run import Run  # noqa: E402
-from watchsim.simulation.simulate import WHOLE_RUN  # noqa: E402
 from watchsim.simulation.state import N_GAPS  # noqa: E402
+from watchsim.simulation.stops import Stop  # noqa: E402
 
 
 @dataclass
@@ -50,7 +51,7 @@ class Watch:
 def simulated(scene: Scene, seconds: float, prefilter: bool) -> Watch:
     """A run to its end."""
     forget()
-    run = Run(compile_scene(scene, prefilter), scene.tolerance, seconds, WHOLE_RUN)
+    run = Run(scene, compile_scene(scene, prefilter), scene.tolerance, EVERYTHING)
     run.warm_up()
     watch = Watch(run, run.compiled.slices["wheel"].start)
     run.to_the_end(seconds, watch.look)
@@ -76,7 +77,7 @@ def main() -> int:
         told("what follows", shapely - first_shapely, total - first)
     brute = simulated(scene, seconds, False)
     told("brute force", 0.0, brute.spent()[0])
-    events = [np.concatenate(run.kept.events) for run in (watch.run, brute.run)]
+    events = [run.trajectory(Stop.DURATION, 0.0, 0.0).events for run in (watch.run, brute.run)]
     same = events[0].tobytes() == events[1].tobytes()
     same &= all(np.array_equal(a, b) for a, b in zip(watch.run.state[:4], brute.run.state[:4], strict=True))
     gaps = [int(run.state.counts[N_GAPS]) for run in (watch.run, brute.run)]

@@ -9,16 +9,21 @@ from dataclasses import replace
 import pytest
 
 from watchsim.analysis.benchmarks import Check, inclines, swings
+from watchsim.analysis.compared import compared
+from watchsim.analysis.edge_cases import edge_cases
 from watchsim.analysis.hard_cases import hard_cases
+from watchsim.analysis.random_problems import random_rows
 from watchsim.analysis.repeated_impacts import repeated_impacts
-from watchsim.analysis.verify import compared, lcp_rows, rows_of, verify_text
+from watchsim.analysis.verify import rows_of, verify_text
 from watchsim.profiles_path import profiles_dir
 
 FIELDS = ["name", "quantity", "expected", "got", "error", "tolerance", "ok", "source"]
 
 
 @pytest.mark.parametrize(
-    "benchmark", [*inclines(), *swings(), *hard_cases(), *repeated_impacts()], ids=lambda benchmark: benchmark.name
+    "benchmark",
+    [*inclines(), *swings(), *hard_cases(), *repeated_impacts(), *edge_cases()],
+    ids=lambda benchmark: benchmark.name,
 )
 def test_benchmark(benchmark) -> None:
     rows = rows_of([benchmark])
@@ -27,8 +32,8 @@ def test_benchmark(benchmark) -> None:
     assert len(rows) == len(benchmark.checks)
 
 
-def test_complementarity_solver() -> None:
-    assert all(row["ok"] for row in lcp_rows())
+def test_random_problems() -> None:
+    assert all(row["ok"] for row in random_rows(300))
 
 
 def test_a_wrong_number_is_noticed() -> None:

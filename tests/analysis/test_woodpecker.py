@@ -29,7 +29,7 @@ def test_modal_coordinates_are_the_toys() -> None:
 
 
 def test_energy_only_falls() -> None:
-    """From event to event kinetic energy, spring and height lose what friction and impacts take; a free flight loses nothing."""
+    """From event to event the energy falls by what friction and impacts take; a free flight loses nothing."""
     toy = Toy()
     model = modal(toy)
     seen = list(moments(model, *start(toy, model), 0.3))

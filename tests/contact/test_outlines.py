@@ -12,7 +12,7 @@ from pair_scenes import outline
 import watchsim
 from watchsim.contact.outlines import distance, gap, kinematics
 from watchsim.geometry.loop import Loop
-from watchsim.geometry.primitives import Arc, Line
+from watchsim.geometry.primitives import Arc, Edge, Line
 
 SPACING = 0.01
 BIG, SMALL = outline(1.0, (0.2, 0.1)), outline(0.35, (0.1, -0.15))
@@ -139,3 +139,50 @@ def test_the_package_offers_them() -> None:
 def test_an_outline_without_edges_is_refused() -> None:
     with pytest.raises(ValueError, match="no edges"):
         distance(Loop(()), HERE, disc(1.0), HERE)
+
+
+def test_edges_without_length_change_nothing() -> None:
+    """Points and arcs of no length, or of less than the drawing's rounding, between and beside the edges of an outline."""
+    edges: list[Edge] = []
+    for edge in BIG.edges:
+        x, y = edge.start
+        edges += [Line(x, y, x, y), Line(x, y, x + 1e-16, y), Arc(x - 1e-13, y, 1e-13, 0.0, 1e-3), edge]
+    spoilt, pose = Loop(tuple(edges)), (0.9, 0.2, 2.0)
+    assert distance(spoilt, HERE, SMALL, pose).value == pytest.approx(distance(BIG, HERE, SMALL, pose).value, abs=1e-14)
+    rows, clean = gap(spoilt, HERE, SMALL, pose), gap(BIG, HERE, SMALL, pose)
+    assert len(rows) == len(clean)
+    for field in ("g", "n", "point", "margin"):
+        assert rows[field] == pytest.approx(clean[field], abs=1e-12)
+
+
+def test_concentric_circles_have_a_gap() -> None:
+    """A ball in the middle of a ring is equally far from it all round; a hair beside the middle it has a side."""
+    inside = gap(disc(0.4), HERE, ring(2.0, 1.0), HERE)
+    assert np.isfinite(inside["g"]).all() and np.abs(inside["g"]).min() == pytest.approx(0.6, abs=2e-16)
+    beside = gap(disc(0.4), (1e-12, 0.0, 0.0), ring(2.0, 1.0), HERE)
+    row = beside[np.argmin(np.abs(beside["g"]))]
+    assert row["margin"] >= 0.0 and row["g"] == pytest.approx(0.6 - 1e-12, abs=3e-16)
+    assert row["n"] == pytest.approx((-1.0, 0.0), abs=1e-3)
+
+
+def test_flat_on_flat_is_two_corners_on_a_line() -> None:
+    """The two lower corners of a block on a table, gaps and margins to rounding; nothing else is as near."""
+    table, box = block(4.0, 1.0), block(1.0, 1.0)
+    rows = gap(box, (0.3, 1.0, 0.0), table, HERE)
+    near = rows[(rows["margin"] >= -1e-15) & (np.abs(rows["g"]) < 1e-9)]
+    assert sorted(near["point"][:, 0]) == pytest.approx([-0.2, 0.8], abs=1e-15)
+    assert set(near["kind_a"]) == {"corner"} and set(near["kind_b"]) == {"line"}
+
+
+def test_corner_on_corner_is_met_by_an_edge_first() -> None:
+    """Wherever two corners come together, the smallest gap inside primitives is their distance, or that of an edge."""
+    rng = np.random.default_rng(4)
+    for _ in range(200):
+        turn, off = rng.uniform(-math.pi, math.pi), rng.normal(size=2) * 10.0 ** rng.uniform(-12, -2)
+        corner = np.array([0.5, 0.5]) @ np.array([[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]])
+        pose = (0.5 + off[0] - corner[0], 0.5 + off[1] - corner[1], turn)
+        apart = distance(block(1.0, 1.0), HERE, block(1.0, 1.0), pose).value
+        rows = gap(block(1.0, 1.0), HERE, block(1.0, 1.0), pose)
+        real = rows[(rows["margin"] >= -1e-12)]
+        if apart > 1e-10 and len(real) and real["g"].min() > 0.0:
+            assert real["g"].min() >= apart - 1e-13

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import dataclasses
+import os
+import signal
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -99,6 +102,24 @@ def test_interrupted_and_taken_up_again() -> None:
     assert stopped.stop == Stop.INTERRUPTED
     assert stopped.simulated < 0.5
     assert_same(simulate(scene, 0.5, start=stopped), simulate(scene, 0.5))
+
+
+def ctrl_c(after: float) -> None:
+    """As from the keyboard, while the loop runs."""
+    threading.Timer(after, os.kill, (os.getpid(), signal.SIGINT)).start()
+
+
+@pytest.mark.parametrize("options", [{}, {"method": "moreau", "step": 1e-4}], ids=["events", "fixed steps"])
+def test_ctrl_c_at_any_moment_loses_nothing(options: dict[str, Any]) -> None:
+    """Wherever it comes: what was kept is whole, and going on gives the bits of a run that was never stopped."""
+    scene = profile("bench_lever")
+    simulate(scene, 0.01, **options)
+    ctrl_c(0.3)
+    stopped = simulate(scene, 1e4, **options)
+    assert stopped.stop == Stop.INTERRUPTED
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    end = stopped.simulated + 0.05
+    assert_same(simulate(scene, end, start=stopped, **options), simulate(scene, end, **options))
 
 
 def test_the_order_in_which_cells_are_learned_does_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:

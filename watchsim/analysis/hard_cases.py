@@ -6,11 +6,11 @@ Each is small enough that its answer follows from momentum, energy or statics al
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 from watchsim.analysis.benchmarks import Benchmark, Check, Measure
+from watchsim.analysis.simple_shapes import circle, ground, polygon, shaped
 from watchsim.geometry.loop import Loop
-from watchsim.geometry.primitives import TURN, Arc, Line, Point
+from watchsim.geometry.primitives import Line
 from watchsim.mechanism.body import Body
 from watchsim.mechanism.force import Contact, Damping, Side, Spring, Torque
 from watchsim.mechanism.scene import Scene
@@ -34,10 +34,10 @@ def superball(radius: float = 0.02, drop: float = 0.1, speed: float = 0.4, spin:
     """
     kappa = 0.5
     disc = Body("disc", "free", (0.0, radius + drop), velocity=(speed, 0.0, spin), mass=1.0, inertia=kappa * radius**2)
-    disc = _with(disc, Loop((Arc(0.0, 0.0, radius, 0.0, TURN),)))
+    disc = shaped(disc, circle(radius))
     contact = Contact((Side("disc"), Side("ground")), 1.0, 1.0, 1.0)
     scene = Scene(
-        "superball", (disc, _ground()), contacts=(contact,), gravity=(0.0, -GRAVITY), duration=1.2, tangential_law="pg1996"
+        "superball", (disc, ground()), contacts=(contact,), gravity=(0.0, -GRAVITY), duration=1.2, tangential_law="pg1996"
     )
     push = -2.0 * (speed + radius * spin) * kappa / (1.0 + kappa)
     speeds, spins = (speed, speed + push), (spin, spin + push / (kappa * radius))
@@ -89,14 +89,14 @@ def dry_balance(friction: float = 2e-7, stiffness: float = 7.58e-7, angle: float
 
 def friction_angle(slope: float = 0.3, side: float = 0.1) -> list[Benchmark]:
     """A block on an incline with friction just above, at and just below tan(slope): it stays for 1000 s, or slides."""
-    loop = _polygon((-side, -side), (side, -side), (side, side), (-side, side))
+    loop = polygon((-side, -side), (side, -side), (side, side), (-side, side))
     gravity = (GRAVITY * math.sin(slope), -GRAVITY * math.cos(slope))
     cases = []
     for word, share in (("above", 1.0 + 1e-6), ("at", 1.0), ("below", 1.0 - 1e-6)):
         mu = share * math.tan(slope)
-        block = _with(Body("block", "free", (0.0, side), mass=1.0, inertia=2.0 / 3.0 * side**2), loop)
+        block = shaped(Body("block", "free", (0.0, side), mass=1.0, inertia=2.0 / 3.0 * side**2), loop)
         contact = Contact((Side("block"), Side("ground")), mu)
-        scene = Scene("block", (block, _ground()), contacts=(contact,), gravity=gravity, duration=1000.0)
+        scene = Scene("block", (block, ground()), contacts=(contact,), gravity=gravity, duration=1000.0)
         pull = GRAVITY * math.cos(slope) * math.tan(slope) * 1e-6 if word == "below" else 0.0
         t = scene.duration if word != "below" else 100.0
         # The difference of two accelerations a million times larger than it is.
@@ -139,10 +139,10 @@ def painleve_rods(half: float = 0.1, friction: float = 1.6, speed: float = 2.0) 
 
 def _rod(half: float, friction: float, speed: float, angle: float) -> Scene:
     """The tip slides towards -x with the rod's middle to its right; a needle with the mass of a uniform rod."""
-    loop = _polygon((-half, 0.0), (half, -0.01 * half), (half, 0.01 * half))
+    loop = polygon((-half, 0.0), (half, -0.01 * half), (half, 0.01 * half))
     rod = Body("rod", "free", (0.0, half * math.sin(angle)), angle, (-speed, 0.0, 0.0), mass=1.0, inertia=half**2 / 3.0)
     contact = Contact((Side("rod"), Side("ground")), friction)
-    return Scene("rod", (_with(rod, loop), _ground()), contacts=(contact,), gravity=(0.0, -GRAVITY), duration=1e-4)
+    return Scene("rod", (shaped(rod, loop), ground()), contacts=(contact,), gravity=(0.0, -GRAVITY), duration=1e-4)
 
 
 def _tip_speed(half: float) -> Measure:
@@ -163,11 +163,11 @@ def pins_on_rollers(friction: float = 0.2, radius: float = 2e-3, arm: float = 3e
     inertia = 1e-10
     cases = []
     for word, angle in (("below", limit - NEAR), ("above", limit + 0.1)):
-        pin = _with(
+        pin = shaped(
             Body("arm", "pivot", (radius + arm * math.cos(angle), arm * math.sin(angle)), angle, inertia=2e-11),
-            _polygon((-arm, 0.0), (-0.5 * arm, -0.02 * arm), (-0.5 * arm, 0.02 * arm)),
+            polygon((-arm, 0.0), (-0.5 * arm, -0.02 * arm), (-0.5 * arm, 0.02 * arm)),
         )
-        roller = _with(Body("roller", velocity=(spin,), inertia=inertia), Loop((Arc(0.0, 0.0, radius, 0.0, TURN),)))
+        roller = shaped(Body("roller", velocity=(spin,), inertia=inertia), circle(radius))
         jams = angle < limit
         force = 0.0 if jams else press / (arm * (math.sin(angle) - friction * math.cos(angle)))
         t = 1e-3
@@ -199,7 +199,7 @@ def wedges(half_angle: float = 0.2, size: float = 0.05, speed: float = 1.0, rest
     s, c = math.sin(half_angle), math.cos(half_angle)
     width = size * s / c
     top, depth = (width * 1.5, 0.5 * size), -0.5 * size
-    loop = _polygon((-0.5 * width, depth), (0.5 * width, depth), top, (-top[0], top[1]))
+    loop = polygon((-0.5 * width, depth), (0.5 * width, depth), top, (-top[0], top[1]))
     reach = 10.0 * size
     # The walls go through the wedge's sides; material outside.
     right = (0.5 * width - 2.0 * size * s, depth - 2.0 * size * c), (0.5 * width + reach * s, depth + reach * c)
@@ -209,7 +209,7 @@ def wedges(half_angle: float = 0.2, size: float = 0.05, speed: float = 1.0, rest
     )
     cases = []
     for word, share in (("above", 1.0 + NEAR), ("below", 0.5)):
-        wedge = _with(Body("wedge", "free", velocity=(0.0, -speed, 0.0), mass=0.1, inertia=1e-4), loop)
+        wedge = shaped(Body("wedge", "free", velocity=(0.0, -speed, 0.0), mass=0.1, inertia=1e-4), loop)
         contact = Contact((Side("wedge"), Side("slot")), share * math.tan(half_angle), restitution)
         slot = Body("slot", "fixed", loops=walls)
         scene = Scene("wedge", (wedge, slot), contacts=(contact,), duration=1e-3)
@@ -224,19 +224,6 @@ def wedges(half_angle: float = 0.2, size: float = 0.05, speed: float = 1.0, rest
         name = f"wedge in a slot, friction {word} the limit"
         cases.append(Benchmark(name, scene, tuple(checks), "statics of the friction cone"))
     return cases
-
-
-def _polygon(*points: Point) -> Loop:
-    return Loop(tuple(Line(*a, *b) for a, b in zip(points, points[1:] + points[:1], strict=True)))
-
-
-def _ground(length: float = 1e4) -> Body:
-    """A fixed plane along x with material below."""
-    return Body("ground", "fixed", loops=(Loop((Line(length, 0.0, -length, 0.0),), closed=False),))
-
-
-def _with(body: Body, *loops: Loop) -> Body:
-    return replace(body, loops=loops)
 
 
 def _coordinate(column: int, t: float) -> Measure:

@@ -8,8 +8,9 @@ from __future__ import annotations
 import math
 
 from watchsim.analysis.benchmarks import BETWEEN_ROWS, Benchmark, Check, Measure, counted, picked, soundness
+from watchsim.analysis.simple_shapes import box, circle, ground
 from watchsim.geometry.loop import Loop
-from watchsim.geometry.primitives import TURN, Arc, Line, Point
+from watchsim.geometry.primitives import TURN, Arc, Line
 from watchsim.mechanism.body import Body
 from watchsim.mechanism.force import Contact, Side, Spring, Torque
 from watchsim.mechanism.scene import Scene
@@ -92,11 +93,11 @@ def rocking_block(impacts: int = 1000) -> Benchmark:
         velocity=(spin * half_height, spin * half_width, -spin),
         mass=mass,
         inertia=inertia,
-        loops=(_box(half_width, half_height),),
+        loops=(box(half_width, half_height),),
     )
     scene = Scene(
         "rocking block",
-        (block, _ground()),
+        (block, ground(1.0)),
         contacts=(Contact((Side("block"), Side("ground")), friction=1.0),),
         gravity=(0.0, -GRAVITY),
         duration=rocking_time(half_width, half_height, spin, ratio, impacts),
@@ -138,7 +139,7 @@ def cradle(split: float) -> Benchmark:
     count, radius, mass = 5, 5e-3, 0.05
     places = [i * (2.0 * radius + split) for i in range(count)]
     places[0] -= 1e-3
-    disc = Loop((Arc(0.0, 0.0, radius, 0.0, TURN),))
+    disc = circle(radius)
     balls = tuple(
         Body(f"ball{i}", "slide", position=(x, 0.0), velocity=(1.0 if i == 0 else 0.0,), mass=mass, loops=(disc,))
         for i, x in enumerate(places)
@@ -174,7 +175,7 @@ def groove() -> Benchmark:
         position=(0.0, bottom + drop),
         mass=0.01,
         inertia=0.5 * 0.01 * radius**2,
-        loops=(Loop((Arc(0.0, 0.0, radius, 0.0, TURN),)),),
+        loops=(circle(radius),),
     )
     scene = Scene(
         "disc in a groove",
@@ -201,16 +202,3 @@ def groove() -> Benchmark:
     return Benchmark(
         "disc in a groove, two contacts at once", scene, (*checks, *soundness()), "geometric series, repeated_impacts.py"
     )
-
-
-def _box(half_width: float, half_height: float) -> Loop:
-    corners = ((-half_width, -half_height), (half_width, -half_height), (half_width, half_height), (-half_width, half_height))
-    return _polygon(corners)
-
-
-def _polygon(corners: tuple[Point, ...]) -> Loop:
-    return Loop(tuple(Line(*a, *b) for a, b in zip(corners, corners[1:] + corners[:1], strict=True)))
-
-
-def _ground(length: float = 1.0) -> Body:
-    return Body("ground", "fixed", loops=(Loop((Line(length, 0.0, -length, 0.0),), closed=False),))

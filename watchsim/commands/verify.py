@@ -10,6 +10,7 @@ HELP = "closed-form and published benchmarks: expected, got, verdict"
 
 
 def options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--slow", action="store_true", help="also a hundred thousand random problems and the finest steps")
     parser.add_argument("--json", action="store_true", help="print one JSON list instead of a table")
 
 
@@ -17,7 +18,7 @@ def run(args: argparse.Namespace) -> int:
     from watchsim.analysis.verify import verify, verify_text
 
     announce_compile()
-    rows = verify()
+    rows = verify(args.slow)
     if args.json:
         print_json(rows)
     else:

@@ -28,7 +28,7 @@ ORDER = (
 # The published run: Siconos, Moreau's time stepping with steps of 2e-5 s, examples/mechanics/Woodpecker/Woodpecker.ref.
 PUBLISHED_TIME, PUBLISHED_STEP = 0.29998, 2e-5
 PUBLISHED = {"height of the sleeve [m]": -0.04134818676833654, "tilt of the bird [rad]": -0.3409339755504301}
-STEPS = (5e-5, 5e-6)
+STEPS, SLOW_STEPS = (5e-5, 5e-6), (5e-5, 5e-6, 5e-7)
 FASTEST = 250.0  # rad/s: what a step too early or late at each of the impacts does to the tilt of the bird after a peck
 
 

@@ -20,8 +20,9 @@ def percussions(G: Array, rates: Array, low: Array, friction: Array) -> Array:
     m = len(low)
     P = np.zeros(2 * m)
     P[::2] = low
-    ends = np.stack([0.0 * friction, -friction, 0.0 * friction, friction], axis=1)
-    if not _relax(G, rates, low, ends, m, 0, P)[1]:
+    ends = np.outer(friction, (0.0, -1.0, 0.0, 1.0))  # Coulomb's law, see moreau_prox
+    _, settled = _relax(G, rates, low, ends, m, 0, P)
+    if not settled:
         raise RuntimeError("the relaxation of the woodpecker has not settled")
     return P
 

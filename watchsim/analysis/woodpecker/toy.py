@@ -99,8 +99,7 @@ class Modal:
 
     def into(self, vector: Array) -> Array:
         """Modal coordinates of (y, tilt of the sleeve, tilt of the bird)."""
-        modal: Array = np.linalg.solve(self.basis, vector)
-        return modal
+        return np.asarray(np.linalg.solve(self.basis, vector), np.float64)
 
 
 def modal(toy: Toy) -> Modal:
