@@ -83,10 +83,10 @@ def _about(run: Trajectory) -> dict[str, Any]:
 
 def _bodies(run: Trajectory) -> dict[str, dict[str, float]]:
     """Pose and velocities of every body in the movement at the end."""
-    if not len(run.end_q):
+    if run.end is None:
         return {}
-    places = frames(run.scene, run.slices, run.end_q[None])
-    rates = speeds(run.scene, run.slices, run.end_q[None], run.end_u[None])
+    q, u = run.end
+    places, rates = frames(run.scene, run.slices, q[None]), speeds(run.scene, run.slices, q[None], u[None])
     return {body.name: _state(places[body.name][0], rates[body.name][0]) for body in run.scene.bodies}
 
 

@@ -118,6 +118,13 @@ class Trajectory:
         """x, y (m) and angle (rad) of the body's frame in the movement at time `t`."""
         return self.pose_of(body, self.at(t)[0] if self.slices else np.zeros(0))
 
+    @property
+    def end(self) -> tuple[Array, Array] | None:
+        """q and u at `simulated`, whether rows were kept there or not; None for a run that was made by hand without rows."""
+        if len(self.end_q):
+            return self.end_q, self.end_u
+        return (self.q[-1], self.u[-1]) if len(self.t) else None
+
     def pose_of(self, body: str, coordinates: Array) -> tuple[float, float, float]:
         """The same where all coordinates are given."""
         x, y, angle = frames(self.scene, self.slices, coordinates[None])[body][0].tolist()
