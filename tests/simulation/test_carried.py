@@ -317,3 +317,14 @@ def test_time_of_a_driven_carriage() -> None:
     assert done.counts["steps"] == 0
     assert done.q[-1, 0] - 0.3 == pytest.approx(0.5 * 1e-6 / JOINED * 0.04, rel=1e-12)
     assert done.q[-1, 0] + done.q[-1, 1] == pytest.approx(2.3, abs=1e-12)
+
+
+def test_the_example_beats_as_the_bench_lever_at_rest() -> None:
+    """profiles/carriage: the same impacts and swings, while all of it is carried round."""
+    plain, carried = bench(1.0), simulate(profile("carriage"), 1.0)
+    kinds = [EventKind.IMPACT, EventKind.TURN, EventKind.CROSS]
+    ours, theirs = (run.events[np.isin(run.events["kind"], kinds)] for run in (carried, plain))
+    assert ours["kind"].tolist() == theirs["kind"].tolist()
+    assert ours["t"] == pytest.approx(theirs["t"], abs=1e-5)
+    assert carried.pose("carriage", 1.0)[2] == pytest.approx(math.radians(6.0), abs=1e-3)
+    assert carried.pose("lever", 1.0)[0] == pytest.approx(4.6e-3 * math.sin(carried.pose("carriage", 1.0)[2]), abs=1e-12)
