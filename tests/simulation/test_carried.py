@@ -320,9 +320,9 @@ def test_time_of_a_driven_carriage() -> None:
 
 
 def test_the_example_beats_as_the_bench_lever_at_rest() -> None:
-    """profiles/carriage: the same impacts and swings, while all of it is carried round."""
+    """profiles/carriage: the same swings, while all of it is carried round; its inertia is finite, so not the same bits."""
     plain, carried = bench(1.0), simulate(profile("carriage"), 1.0)
-    kinds = [EventKind.IMPACT, EventKind.TURN, EventKind.CROSS]
+    kinds = [EventKind.TURN, EventKind.CROSS]
     ours, theirs = (run.events[np.isin(run.events["kind"], kinds)] for run in (carried, plain))
     assert ours["kind"].tolist() == theirs["kind"].tolist()
     assert ours["t"] == pytest.approx(theirs["t"], abs=1e-5)
