@@ -38,7 +38,7 @@ def damaged(mutator: Any, number: int) -> tuple[int, bytes]:
 
 
 def work(name: str) -> None:
-    """Reads numbers from stdin, one a line, and answers each with one line: empty, or what went wrong."""
+    """Reads numbers from stdin, one a line, and answers each with a line: processor time, tab, what went wrong if anything."""
     mutator = importlib.import_module(name)
     judge = importlib.import_module("judge_mutation")
     reader = importlib.import_module("watchsim.drawing.read")
@@ -53,7 +53,9 @@ def work(name: str) -> None:
             choice, data = damaged(mutator, int(line))
             path.write_bytes(data)
             signal.setitimer(signal.ITIMER_PROF, SECONDS)  # ends the process
-            print(judge.fault(path, whole[choice], mutator).replace("\n", " | "), flush=True)
+            before = time.process_time()
+            fault = judge.fault(path, whole[choice], mutator).replace("\n", " | ")
+            print(f"{time.process_time() - before:.3f}\t{fault}", flush=True)
 
 
 PAGE = """# Broken drawings
@@ -73,23 +75,10 @@ independent reader (for DXF ezdxf, for SVG `tests/naive/svg_length.py`) draws as
 |---|---|---|
 {rows}
 
-The slowest time is on the clock, on a machine busy with other work, and counts reading the file twice, its report and the
+The slowest file is the one that took longest in that run; its processor time counts reading it twice, its report and the
 independent reader. A file is made and judged again by its number: `python scripts/fuzz_drawings.py --format dxf --only 2286`.
 """
 SUMMARY = re.compile(r"(\d+) (\w+) files from number (\d+): (.*); [\d.]+ s, the slowest ([\d.]+) s \(number (\d+)\)")
-
-
-def page(logs: list[Path]) -> str:
-    """The page from the last lines of runs; ValueError where one is not complete."""
-    rows = []
-    for log in logs:
-        found = SUMMARY.search(log.read_text())
-        if found is None:
-            raise ValueError(f"{log} holds no complete run")
-        count, form, first, failures, slowest, number = found.groups()
-        numbers = f"{int(first)} to {int(first) + int(count) - 1}"
-        rows.append(f"| {count} {form.upper()}, numbers {numbers} | {failures} | {slowest} s (number {number}) |")
-    return PAGE.format(seconds=SECONDS, rows="\n".join(rows))
 
 
 class Worker:
@@ -105,25 +94,44 @@ class Worker:
         environment = {"OPENBLAS_NUM_THREADS": "1", "PATH": "/usr/bin:/bin"}
         return subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=environment)
 
-    def ask(self, number: int) -> str:
+    def ask(self, number: int) -> tuple[float, str]:
+        """Seconds of processor time, and what went wrong, empty if nothing."""
         assert self.process.stdin is not None and self.process.stdout is not None
         self.process.stdin.write(f"{number}\n")
         self.process.stdin.flush()
         ready, _, _ = select.select([self.process.stdout], [], [], PATIENCE * SECONDS)
         answer = self.process.stdout.readline() if ready else ""
         if answer.endswith("\n"):
-            return answer.strip()
+            used, _, fault = answer.strip().partition("\t")
+            return float(used), fault
         if not ready:
             self.process.kill()
         status = self.process.wait()
         self.process = self._start()
         slow = not ready or status == -signal.SIGPROF
-        return f"more than {SECONDS:g} s" if slow else f"the process died with status {status}"
+        return SECONDS, f"more than {SECONDS:g} s" if slow else f"the process died with status {status}"
 
     def close(self) -> None:
         assert self.process.stdin is not None
         self.process.stdin.close()
         self.process.wait()
+
+
+def page(logs: list[Path]) -> str:
+    """The page from the last lines of runs, whose slowest files are read once more; ValueError where one is not complete."""
+    rows = []
+    for log in logs:
+        found = SUMMARY.search(log.read_text())
+        if found is None:
+            raise ValueError(f"{log} holds no complete run")
+        count, form, first, failures, _, number = found.groups()
+        worker = Worker(f"mutate_{form}")
+        worker.ask(int(number))  # the first answer pays for the imports
+        used, _ = worker.ask(int(number))
+        worker.close()
+        numbers = f"{int(first)} to {int(first) + int(count) - 1}"
+        rows.append(f"| {count} {form.upper()}, numbers {numbers} | {failures} | {used:.1f} s (number {number}) |")
+    return PAGE.format(seconds=SECONDS, rows="\n".join(rows))
 
 
 def main() -> None:
@@ -150,9 +158,8 @@ def main() -> None:
     slowest, start = (0.0, -1), time.perf_counter()
     worker.ask(numbers[0])  # the first answer pays for the imports
     for number in numbers:
-        begun = time.perf_counter()
-        answer = worker.ask(number)
-        slowest = max(slowest, (time.perf_counter() - begun, number))
+        used, answer = worker.ask(number)
+        slowest = max(slowest, (used, number))
         if answer or args.only is not None:
             args.output.mkdir(parents=True, exist_ok=True)
             (args.output / f"{number}.{args.format}").write_bytes(damaged(mutator, number)[1])

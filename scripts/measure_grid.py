@@ -61,11 +61,16 @@ def main() -> None:
         raise SystemExit(__doc__)
     scene = ws.load(ROOT / "profiles" / "bench_lever" / "scene.toml")
     values = np.linspace(0.0, 1.0, STEPS)
-    rows = [measure(scene, float(eps), float(mu)) for eps in values for mu in values]
+    rows: list[dict[str, object]] = []
     with Path(sys.argv[1]).open("w", newline="", encoding="utf-8") as file:
-        table = csv.DictWriter(file, rows[0], lineterminator="\n")
-        table.writeheader()
-        table.writerows(rows)
+        for eps in values:
+            for mu in values:
+                rows.append(measure(scene, float(eps), float(mu)))
+                if len(rows) == 1:
+                    table = csv.DictWriter(file, rows[0], lineterminator="\n")
+                    table.writeheader()
+                table.writerow(rows[-1])
+                file.flush()
     bad = [row for row in rows if not row["sound"]]
     print(f"{len(rows)} runs, {len(bad)} unsound")
     for row in bad:

@@ -102,7 +102,7 @@ def test_no_touching_pair_is_lost(name: str) -> None:
         assert how == LISTED and k in ids
         met.append(k)
     kinds = {(int(p.kind), int(o.kind)) for p, o in (sides(compiled, k) for k in met)}
-    assert len(met) > 20 and (len(kinds) >= 3 or "free" not in name)
+    assert len(met) > 20 and (len(kinds) >= 2 or "free" not in name)
     # The lists are worth having: far shorter than all pairs.
     lengths = [len(listed(compiled, finder.learn(0, q), q)[1]) for q in (random_q(scene, rng) for _ in range(25))]
     assert np.mean(lengths) < 0.1 * len(compiled.model.contacts)

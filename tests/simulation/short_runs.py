@@ -18,6 +18,7 @@ from watchsim.analysis.benchmarks import Benchmark
 from watchsim.analysis.hard_cases import dry_balance, painleve_rods, pins_on_rollers, superball, wedges
 from watchsim.analysis.repeated_impacts import cradle, groove, pulled_block, rocking_block
 from watchsim.mechanism.force import Damping
+from watchsim.mechanism.recording import EVERYTHING
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.state import COUNT_NAMES
@@ -29,7 +30,7 @@ NUMBERS = ("t", "q", "u", "a")
 
 def _of(case: Callable[[], Benchmark] | Benchmark, duration: float) -> Short:
     scene = (case if isinstance(case, Benchmark) else case()).scene
-    return dataclasses.replace(scene, record=()), min(duration, scene.duration), {}
+    return dataclasses.replace(scene, record=EVERYTHING), min(duration, scene.duration), {}
 
 
 def dry_lever() -> Scene:

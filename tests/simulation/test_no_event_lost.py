@@ -15,6 +15,7 @@ import shapely
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.polyline import polyline
 from watchsim.geometry.primitives import Arc, Line
+from watchsim.mechanism import choose_cells
 from watchsim.mechanism.body import Body
 from watchsim.mechanism.force import Contact, Side
 from watchsim.mechanism.scene import Scene
@@ -22,6 +23,13 @@ from watchsim.simulation.simulate import simulate
 from watchsim.simulation.trajectory import EventKind
 
 DURATION, FINER = 1.0, 1000
+CELLED = (
+    ("pivot", "fixed"),
+    ("pivot", "pivot"),
+    ("slide", "pivot"),
+    pytest.param(("slide", "slide"), marks=pytest.mark.slow),
+    pytest.param(("free", "fixed"), marks=pytest.mark.slow),
+)
 CHORD = 5e-5  # how far the chords of an arc may stray, of outlines a metre across
 
 
@@ -108,3 +116,22 @@ def test_the_first_touch_is_the_one_that_brute_force_sees(motions: tuple[str, st
             there = np.array([told])
             assert shapely.distance(outlines(a, there, gravity), outlines(b, there, gravity))[0] < 2.0 * CHORD
         met, missed = met + (told < math.inf), missed + (told == math.inf)
+
+
+@pytest.mark.parametrize("motions", CELLED)
+def test_cells_change_no_bit_of_random_collisions(motions: tuple[str, str], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Cells are used however few contacts there are; without them every pair is looked at in every step."""
+    monkeypatch.setattr(choose_cells, "FEW_CONTACTS", 0)
+    rng = np.random.default_rng(sum(map(ord, "".join(motions))) + 1)
+    events = compared = 0
+    while compared < 8 or events < 20:
+        a, b = (random_body(name, motion, rng) for name, motion in zip("ab", motions, strict=True))
+        gravity, start = (0.0, float(rng.choice([0.0, -3.0]))), np.zeros(1)
+        if shapely.distance(outlines(a, start, gravity), outlines(b, start, gravity))[0] < 1e-3:
+            continue
+        scene = Scene("flight", (a, b), contacts=(Contact((Side("a"), Side("b")), 0.1, 0.5),), gravity=gravity)
+        runs = [simulate(scene, DURATION, prefilter=prefilter) for prefilter in (True, False)]
+        assert runs[0].events.tobytes() == runs[1].events.tobytes()
+        assert np.array_equal(runs[0].q, runs[1].q)
+        assert runs[0].counts["gap_evaluations"] <= runs[1].counts["gap_evaluations"]
+        compared, events = compared + 1, events + len(runs[0].events)

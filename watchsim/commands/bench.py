@@ -31,7 +31,7 @@ def run(args: argparse.Namespace) -> int:
     for engine in missing_engines():
         say(f"{engine} is not installed and left out. To compare with it: pip install 'watchsim[bench]'")
     rows, references = measured(args.quick, args.scene, say)
-    _write(Path(args.output), rows, references)
+    write(Path(args.output), rows, references)
     if args.json:
         print_json(rows)
     else:
@@ -64,7 +64,8 @@ def measured(
     return rows, references
 
 
-def _write(folder: Path, rows: list[dict[str, Any]], references: list[dict[str, Any]]) -> None:
+def write(folder: Path, rows: list[dict[str, Any]], references: list[dict[str, Any]]) -> None:
+    """bench.json, bench.md and bench.png."""
     from watchsim.analysis.tables import json_text
     from watchsim.bench.report import table
     from watchsim.render.speed import plot_speed

@@ -47,6 +47,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--movie", action="store_true", help="write movie.mp4 too: the last beats in slow motion")
     parser.add_argument("--gif", action="store_true", help="write movie.gif too")
     parser.add_argument("--no-plots", action="store_true", help="write no plots, which take most of the time of a short run")
+    parser.add_argument("--profile", action="store_true", help="count what was done, and say where the time went")
     parser.add_argument("--force", action="store_true", help="replace a results folder that exists")
 
 
@@ -79,6 +80,7 @@ def run(args: argparse.Namespace) -> int:
         gif=args.gif,
         error_bars=args.error_bars,
         plots=not args.no_plots,
+        profile=args.profile,
     )
     # What a scene promises, it promises as it is written.
     as_written = not (args.set or args.duration or args.tol or args.step) and method == EVENT_DRIVEN
@@ -88,6 +90,10 @@ def run(args: argparse.Namespace) -> int:
         from watchsim.analysis.summary import summary_text
 
         print(summary_text(trajectory, summary if as_written else {**summary, "expect": []}))
+        if args.profile:
+            from watchsim.bench.profile import profile_text
+
+            print(profile_text(summary["profile"]))
         print(f"Results: {folder}")
     return status(trajectory, summary, promised=as_written)
 
@@ -119,6 +125,7 @@ def write(
     gif: bool = False,
     error_bars: bool = False,
     plots: bool = True,
+    profile: bool = False,
 ) -> dict[str, Any]:
     """Write the results folder with plots (and movies); returns the summary as written."""
     from watchsim.analysis.results import write_results
@@ -127,6 +134,10 @@ def write(
     from watchsim.mechanism.lock import lock_text
 
     numbers = plain(_with_error_bars(run) if error_bars else summary(run))
+    if profile:
+        from watchsim.bench.profile import profile_of
+
+        numbers["profile"] = plain(profile_of(run))
     extra: dict[str, Any] = dict(tables(run))
     if plots:
         extra.update(_plots(run))

@@ -7,6 +7,8 @@ is chatter between contacts (chatter.py).
 
 from __future__ import annotations
 
+import math
+
 from watchsim.contact.poses import place
 from watchsim.dynamics.acceleration import accelerate, decide_modes
 from watchsim.dynamics.delassus import contact_velocities
@@ -22,6 +24,7 @@ from watchsim.simulation.state import IMPACTS, N_ACCUMULATED, N_ENERGY, N_IMPACT
 
 GAIN = 1e-12  # a rise of kinetic energy beyond this share is a gain, not rounding
 ENERGY_GAINED = 11  # status: even without restitution an impact would gain energy, so its solution is wrong
+HIDDEN = 20.0  # times `gap_zero`: lower rebounds are rounding
 IMPACT_EVENT, ACCUMULATION_EVENT, JAM_EVENT = 1, 7, 10
 
 
@@ -95,7 +98,7 @@ def _solve(model, state, m, jam, scratch):
 def _rebounds(i, options, scratch):
     """True if contact i leaves the impact on its own restitution, and slowly."""
     rate, share = scratch.closed.kin[i].gN_dot, scratch.restitution[i]
-    return 0.0 < share < 1.0 and scratch.impulse[2 * i] > 0.0 and options.speed_zero < rate <= options.accumulation_speed
+    return share > 0.0 and scratch.impulse[2 * i] > 0.0 and options.speed_zero < rate <= options.accumulation_speed
 
 
 @kernel
@@ -127,11 +130,15 @@ def _end_rebounds(model, state, m, options, scratch):
     for i in range(m):
         if not _rebounds(i, options, scratch):
             continue
-        back = return_time(scratch.closed, i, state.a)
-        ending = back / (1.0 - scratch.restitution[i])
-        if 0.0 < ending < options.accumulation_time:
+        back, share = return_time(scratch.closed, i, state.a), scratch.restitution[i]
+        if back <= 0.0:
+            continue
+        ending = back / (1.0 - share) if share < 1.0 else math.inf
+        # A rebound that rises by no more than rounding is none, whatever its restitution: it would go on by rounding alone.
+        hidden = 0.25 * scratch.closed.kin[i].gN_dot * back <= HIDDEN * options.gap_zero
+        if ending < options.accumulation_time or hidden:
             scratch.restitution[i] = 0.0
-            latest = max(latest, state.clock[0] + ending)
+            latest = max(latest, state.clock[0] + (ending if share < 1.0 else back))
     return latest
 
 

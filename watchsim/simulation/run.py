@@ -141,7 +141,7 @@ class Run:
 
     def _slices(self, duration: float, progress: Progress | None, interrupted: Callable[[], bool]) -> Stop:
         """Slice after slice of about `SLICE_WALL`, with what has to be done between them."""
-        length = duration / 100.0
+        length = 1e-5 * duration  # grows tenfold at most: a long slice would be deaf
         until = np.array([0.0, duration, 0.0])
         while True:
             start = time.perf_counter()

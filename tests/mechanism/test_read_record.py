@@ -1,0 +1,62 @@
+"""Is it read rightly what to keep of a run?"""
+
+import pytest
+
+from watchsim.mechanism.errors import Faults
+from watchsim.mechanism.read_record import read_record
+from watchsim.mechanism.recording import Recording, as_recording
+from watchsim.mechanism.schema import RUN
+from watchsim.mechanism.table import Table
+
+WINDOWS = ((179.0, 180.0), (1.0, 2.0))
+
+
+def read(value: object) -> tuple[Recording, list[str]]:
+    faults = Faults("scene.toml")
+    found = read_record(Table({"record": value}, "run", RUN, faults))
+    try:
+        faults.raise_any()
+    except ValueError as error:
+        return found, str(error).splitlines()
+    return found, []
+
+
+@pytest.mark.parametrize(
+    ("value", "expected"),
+    [
+        ([], Recording()),
+        ("all", Recording()),
+        ("statistics", Recording(keep="statistics")),
+        ("every 10", Recording(stride=10)),
+        (["179 s", "180 s"], Recording(WINDOWS[:1])),
+        ([["179 s", "180 s"], ["1 s", "2000 ms"]], Recording(WINDOWS)),
+        (["statistics", ["179 s", "180 s"]], Recording(WINDOWS[:1], "statistics")),
+        (["events", "every 3"], Recording((), "events", 3)),
+    ],
+)
+def test_words_and_windows(value: object, expected: Recording) -> None:
+    assert read(value) == (expected, [])
+
+
+@pytest.mark.parametrize(
+    ("value", "key", "said"),
+    [
+        ("statistic", "run.record", 'Did you mean "statistics"?'),
+        ("every", "run.record", 'write "every 10"'),
+        ("every 0", "run.record", 'write "every 10"'),
+        (["statistics", ["2 s", "1 s"]], "run.record.1", "from an earlier to a later time"),
+        (["1 s"], "run.record", "two values are needed"),
+        (["179", "180 s"], "run.record.0", "needs a unit"),
+        (7, "run.record", "two values are needed"),
+    ],
+)
+def test_what_cannot_be_read(value: object, key: str, said: str) -> None:
+    text = " ".join(read(value)[1])
+    assert key in text
+    assert said in text
+
+
+def test_in_python() -> None:
+    assert as_recording("events") == Recording(keep="events")
+    assert as_recording([(1, 2)]) == Recording(((1.0, 2.0),))
+    assert as_recording(None) is None
