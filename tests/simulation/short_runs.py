@@ -25,7 +25,7 @@ from watchsim.simulation.state import COUNT_NAMES
 from watchsim.simulation.trajectory import Trajectory
 
 Short = tuple[Scene, float, dict[str, Any]]  # the scene, how long, how
-NUMBERS = ("t", "q", "u", "a")
+WORK = ("steps", "rejected_steps", "evaluations", "gap_evaluations", "flights")
 
 
 def _of(case: Callable[[], Benchmark] | Benchmark, duration: float) -> Short:
@@ -63,11 +63,11 @@ def short_runs() -> dict[str, Short]:
 
 
 def told(run: Trajectory) -> dict[str, np.ndarray]:
-    """Rows, events, sums and counts as arrays; how many cells were asked for depends on the runs before."""
+    """End state, events, sums and counts as arrays; how much work it was (steps, rows) may hang on the last bit of a power."""
     energy = [run.energy["in_J"], run.energy["stored_J"], *run.energy["dissipated"].values()]
-    out = {name: getattr(run, name) for name in NUMBERS}
-    out |= {"events": run.events, "energy": np.array(energy), "counts": np.array([run.counts[name] for name in COUNT_NAMES])}
-    return out
+    met = [run.counts[name] for name in COUNT_NAMES if name not in WORK]
+    out = {"q": run.end_q, "u": run.end_u, "events": run.events}
+    return out | {"energy": np.array(energy), "counts": np.array(met)}
 
 
 def write(path: Path, names: list[str]) -> None:
