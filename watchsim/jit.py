@@ -56,9 +56,32 @@ def entry(function: Function) -> Function:
     before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(cache_folder())
     try:
         compiled: Function = numba.njit(cache=True, error_model="numpy", fastmath=False)(function)
+        _load_lightly(compiled)
     finally:
         numba.config.CACHE_DIR = before
     return compiled
+
+
+def _load_lightly(compiled: Any) -> None:
+    """Load machine code from the cache without what only the compiler needs, unless this numba is built differently.
+
+    Numba first imports every function it could compile, half of scipy among it: four times the time that the loading takes.
+    A function that is not in the cache is compiled as ever: the compiler asks for all this itself.
+    """
+    cache = getattr(compiled, "_cache", None)
+    try:
+        from numba.core.runtime import rtsys
+    except ImportError:
+        return
+    if not all(hasattr(cache, name) for name in ("_load_overload", "_guard_against_spurious_io_errors")):
+        return
+
+    def load_overload(signature: Any, target: Any) -> Any:
+        rtsys.initialize(target)  # the counter of references, which wrappers for calls from Python use
+        with cache._guard_against_spurious_io_errors():  # type: ignore[union-attr]
+            return cache._load_overload(signature, target)  # type: ignore[union-attr]
+
+    cache.load_overload = load_overload  # type: ignore[union-attr]
 
 
 def callable_kernel(function: Function) -> Function:
