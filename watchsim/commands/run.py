@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import functools
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -175,14 +176,15 @@ def _earlier(folder: str, scene: Scene) -> Trajectory:
 
 def _plots(run: Trajectory) -> dict[str, Any]:
     """Kinematic plots: all that was recorded, and the last beats."""
-    from watchsim.render.plots import plot_kinematics
+    from watchsim.render.plots import Kinematics, write_png
 
     if len(run.t) < 2:
         return {}
     windows = {"plots/kinematics.png": None, "plots/last_beats.png": last_beats(run)}
+    shown = functools.cache(lambda: Kinematics(run))
 
     def plot(window: tuple[float, float] | None) -> Any:
-        return lambda path: plot_kinematics(run, window=window).savefig(path)
+        return lambda path: write_png(shown().show(window), path)
 
     return {name: plot(window) for name, window in windows.items()}
 
