@@ -78,15 +78,15 @@ def test_machine_code_is_kept_and_found(tmp_path: Path) -> None:
 
 def test_kept_code_is_loaded_without_the_compiler_which_still_works_afterwards(tmp_path: Path) -> None:
     kernels = "@entry\ndef total(x):\n    s = x[0]\n    for y in x[1:]:\n        s += y\n    return s\n"
-    kernels += "@entry\ndef square(x):\n    return np.dot(x, x)\n"
+    kernels += "@entry\ndef square(x):\n    return np.dot(x, x)\n@entry\ndef both(x):\n    return total(x) + square(x)\n"
     (tmp_path / "tiny.py").write_text(f"import numpy as np\nfrom watchsim.jit import entry\n{kernels}")
     head = f"import sys; sys.path.insert(0, {str(tmp_path)!r}); import numpy, tiny; x = numpy.arange(4.0); "
     cache = {"WATCHSIM_CACHE": str(tmp_path / "new"), "NUMBA_DISABLE_JIT": "0"}
     assert python(f"{head}print(tiny.total(x))", **cache) == "6.0"
     ask = "print(tiny.total(x), sum(tiny.total.stats.cache_hits.values()), 'numba.np.arraymath' in sys.modules)"
     assert python(head + ask, **cache) == "6.0 1 False"
-    compiled = "print(tiny.total(x), tiny.square(x), tiny.total(x.astype(int)), tiny.total(x))"
-    assert python(head + compiled, **cache) == "6.0 14.0 6 6.0"
+    compiled = "print(tiny.total(x), tiny.both(x), tiny.square(x), tiny.total(x.astype(int)), tiny.total(x))"
+    assert python(head + compiled, **cache) == "6.0 20.0 14.0 6 6.0"
 
 
 def test_plain_python_when_asked(tmp_path: Path) -> None:

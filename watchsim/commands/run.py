@@ -47,7 +47,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--json", action="store_true", help="print the summary as one JSON object")
     parser.add_argument("--movie", action="store_true", help="write movie.mp4 too: the last beats in slow motion")
     parser.add_argument("--gif", action="store_true", help="write movie.gif too")
-    parser.add_argument("--no-plots", action="store_true", help="write no plots, which take most of the time of a short run")
+    parser.add_argument("--no-plots", action="store_true", help="write no plots, which take a third of the time of a short run")
     parser.add_argument("--profile", action="store_true", help="count what was done, and say where the time went")
     parser.add_argument("--force", action="store_true", help="replace a results folder that exists")
 
