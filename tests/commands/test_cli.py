@@ -207,3 +207,11 @@ def test_moreau_and_error_bars(tmp_path: Path, capsys: pytest.CaptureFixture[str
         assert told["worst_complementarity_residual"] < 1e-12
     assert main(["run", incline, "--step", "1 µs", "-o", str(tmp_path / "s")]) == 2
     assert "fixed step" in capsys.readouterr().err
+
+
+def test_a_process_ends_with_the_status_of_its_command(tmp_path):
+    def status(*words: str) -> int:
+        return subprocess.run([sys.executable, "-m", "watchsim", *words], cwd=ROOT, capture_output=True, check=False).returncode
+
+    assert status("--version") == 0
+    assert status("check", str(tmp_path / "nowhere")) == 2
