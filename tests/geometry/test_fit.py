@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from curves import Curve, involute, least_arcs, quarter_ellipse, smooth, spiral, spline
+from curves import Known, involute, least_arcs, quarter_ellipse, smooth, spiral, spline
 
 from watchsim.geometry.fit import Fit, fit_arcs
 from watchsim.geometry.primitives import Arc, Line
@@ -27,7 +27,7 @@ CURVES = {
 }
 
 
-def true_distance(curve: Curve, fit: Fit, low: float, high: float) -> float:
+def true_distance(curve: Known, fit: Fit, low: float, high: float) -> float:
     """Brute force: the largest of the distances of dense curve points to the nearest edge, ends of edges respected."""
     points = curve.points(np.linspace(low, high, 6001))
     nearest = np.full(len(points), np.inf)

@@ -6,10 +6,16 @@ import math
 
 import numpy as np
 import pytest
-from curves import Curve, spiral, spline
+from curves import spiral, spline
 
+from watchsim.geometry.curve import Curve
 from watchsim.geometry.primitives import TURN, Arc, Line
-from watchsim.geometry.recognise import joined, parts, whole_circle
+from watchsim.geometry.recognise import Part, joined, parts_of, whole_circle
+
+
+def parts(curve: Curve, tolerance: float) -> list[Part]:
+    (result,) = parts_of([curve], [tolerance])
+    return result
 
 
 def rational_arc(radius: float, sweep: float, spans: int, decimals: int = 16) -> Curve:
