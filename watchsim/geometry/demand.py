@@ -20,7 +20,7 @@ FEWEST = 4  # of these in each span
 STILL = 1e-12  # of the whole: a step of no length
 SHORT = 1e-5  # of the tolerance, likewise
 EVEN = 0.05  # of the demand is shared by length, for where the curvature does not seem to change
-DAMPING = 0.6  # of the correction of the lengths from one distribution to the next
+DAMPING = 0.5  # of the correction of the lengths from one distribution to the next
 LEAST_WORK = 1e-3  # of a piece
 
 

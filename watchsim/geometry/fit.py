@@ -28,7 +28,7 @@ from watchsim.geometry.smooth import smooth_parts
 KINK = 1e-6  # radians between a single arc's and the curve's tangent at its end
 ROUNDS = 20  # of distributing the arcs anew
 ROUNDS_OF_HALVES = 6  # where the whole did not succeed
-AT_ONCE = 256  # curves: so many that single steps cost little, so few that the numbers stay near the processor
+AT_ONCE = 512  # curves: so many that single steps cost little, so few that the numbers stay near the processor
 DEEPEST = 40  # halvings where nothing helps: at a cusp
 NOTHING = 1e-5  # of the tolerance: edges shorter than that are left out
 LOOKS = 33  # places in each span that show its extent
