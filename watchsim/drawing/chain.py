@@ -144,7 +144,7 @@ def assembled(strokes: Sequence[Stroke], layer: str, closed: bool) -> Outline:
     count = len(edges)
     for k in range(count if closed else count - 1):
         following = (k + 1) % count
-        if following != k:
+        if following != k and not (isinstance(edges[k], Arc) and isinstance(edges[following], Arc)):
             joint = joint_of(edges[k], edges[following])
             edges[k], edges[following] = ending_at(edges[k], joint), starting_at(edges[following], joint)
     return Outline(Loop(tuple(edges), layer, closed), tuple(stroke.source for stroke in strokes))
