@@ -75,9 +75,10 @@ def binomials(degree: int) -> Array:
 
 def bernstein_sum(scaled: Array, u: Array) -> Array:
     """The polynomials of coefficients times binomials, (degree + 1, …), at u (…) from 0 to 1."""
-    v, power, total = 1.0 - u, u, scaled[0]
+    v, power, total = 1.0 - u, u, np.asarray(scaled[0])
     for k in range(1, len(scaled)):
-        total = total * v + scaled[k] * power
+        total = np.multiply(total, v, out=total if k > 1 else None)
+        total += scaled[k] * power
         if k + 1 < len(scaled):
             power = power * u
-    return np.broadcast_to(total, np.broadcast_shapes(np.shape(total), np.shape(u)))
+    return np.broadcast_to(total, np.broadcast_shapes(total.shape, u.shape))

@@ -30,7 +30,14 @@ def glances(bundle: Bundle, low: Array, high: Array, arcs: ArcChain) -> Array:
     span, start = bundle.locate(low)
     x, y = bundle.at(span, start[:, None] + (high - low)[:, None] * GLANCES) - arcs.starts[source].T[:, :, None]
     tangent, k = arcs.start_tangents[source], arcs.curvatures[source][:, None]
-    g = np.max(np.abs(y * tangent[:, :1] - x * tangent[:, 1:] - 0.5 * k * (x * x + y * y)), axis=1)
+    square = x * x  # in place from here: new memory would take longer than the arithmetic
+    square += y * y
+    square *= 0.5 * k
+    y *= tangent[:, :1]
+    x *= tangent[:, 1:]
+    y -= x
+    y -= square
+    g = np.max(np.abs(y, out=y), axis=1)
     with np.errstate(invalid="ignore"):
         most = 2.0 * g / (1.0 + np.sqrt(1.0 - 2.0 * np.abs(k[:, 0]) * g))
     result = np.zeros(len(arcs.curvatures))
