@@ -101,11 +101,11 @@ class Nodes:
 
 
 class Grid:
-    """Numbered points by square cells of twice the reach: what lies within the reach of a point is in one to four of them."""
+    """Numbered points by square cells of four times the reach: what is within reach of a point lies in one to four of them."""
 
     def __init__(self, reach: float) -> None:
         self.reach = reach
-        self.scale = 0.5 / reach
+        self.scale = 0.25 / reach
         self.cells: dict[tuple[int, int], list[int]] = {}
 
     def add(self, p: Point, number: int) -> None:
