@@ -39,6 +39,7 @@ class Bundle:
         # Coefficients come first, then x, y and the weight if there is one, then the spans.
         columns = np.moveaxis(control, (1, 2), (0, 1))[:, : 3 if self.weighted else 2]
         self._scaled = np.ascontiguousarray(columns * binomials(self.degree)[:, None, None])
+        self.corners = control[..., :2] / control[..., 2:]  # control points (spans, degree + 1, 2), metres
         self._slopes = np.ascontiguousarray(self.degree * np.diff(columns, axis=0) * binomials(self.degree - 1)[:, None, None])
 
     def __len__(self) -> int:

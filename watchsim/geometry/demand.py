@@ -55,7 +55,8 @@ def corrected(demand: Demand, nodes: Array, work: Array) -> Demand:
     steps = np.diff(np.interp(places, *demand))
     piece = np.minimum(np.searchsorted(nodes, places[:-1], "right") - 1, len(work) - 1)
     before = np.bincount(piece, steps, len(work))
-    factor = np.where(np.isnan(work), 1.0, (np.maximum(work, LEAST_WORK) / before) ** DAMPING)
+    known = (before > 0.0) & ~np.isnan(work)
+    factor = (np.where(known, np.maximum(work, LEAST_WORK), 1.0) / np.where(known, before, 1.0)) ** DAMPING
     return Demand(places, np.append(0.0, np.cumsum(steps * factor[piece])))
 
 

@@ -81,7 +81,8 @@ def _classified(bundle: Bundle, tolerance: Array) -> _Spans:
     chord = p[:, -1] - p[:, 0]
     length = np.hypot(chord[:, 0], chord[:, 1])
     offset = p - p[:, :1]
-    along = np.einsum("nmk,nk->nm", offset, chord)
+    # Where the control points ascend along the chord the curve does, too.
+    along = np.einsum("nmk,nk->nm", bundle.corners - p[:, :1], chord)
     across = np.abs(offset[..., 1] * chord[:, :1] - offset[..., 0] * chord[:, 1:])
     sides = np.diff(p, axis=1)
     long = np.sum(np.hypot(sides[..., 0], sides[..., 1]), axis=1) > SHORTEST * tolerance
