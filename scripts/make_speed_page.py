@@ -16,12 +16,17 @@ from pathlib import Path
 from typing import Any
 
 from watchsim.bench.growth import Study, studies
+from watchsim.bench.profile import profile_of, profile_text
 from watchsim.bench.report import table
 from watchsim.commands.bench import measured, write
+from watchsim.mechanism.load import load
+from watchsim.profiles_path import profiles_dir
 from watchsim.render.speed import plot_speed
+from watchsim.simulation.simulate import simulate
 
 ROOT = Path(__file__).resolve().parents[1]
 OWN = "pfeiffer-glocker"
+PROFILED = ("bench_lever", "swiss_lever")
 
 PAGE = """# Speed against error
 
@@ -43,6 +48,13 @@ need not come to the same amplitude.
 ## All figures
 
 {table}
+
+## Where the time goes
+
+Each count times the cost of one kernel by itself, beside the time of the stepping (`watchsim run --profile`): how far from the
+floor.
+
+{profiles}
 
 ## How the time grows
 
@@ -72,6 +84,12 @@ def ratios(rows: list[dict[str, Any]]) -> str:
             )
             lines.append("| " + " | ".join((*cells, f"{best['error_amplitude_deg']:.2g}°", f"{other / time:.0f}")) + " |")
     return "\n".join(lines)
+
+
+def profiled(name: str) -> str:
+    """The profile of ten seconds of a lever."""
+    run = simulate(load(profiles_dir() / name / "scene.toml"), 10.0, record="statistics")
+    return f"`{name}`:\n\n```\n{profile_text(profile_of(run))}\n```"
 
 
 def growth(found: list[Study]) -> str:
@@ -105,6 +123,7 @@ def main() -> int:
         machine=f"{platform.machine()}, Python {platform.python_version()}",
         ratios=ratios(rows),
         table=table(rows, references).rstrip(),
+        profiles="\n\n".join(profiled(name) for name in PROFILED),
         growth=growth(studies()),
     )
     (ROOT / "docs" / "speed.md").write_text(text, encoding="utf-8")

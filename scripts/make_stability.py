@@ -44,23 +44,23 @@ def table(rows: list[dict[str, Any]]) -> list[str]:
 
 
 def margins(rows: list[dict[str, Any]], path: Path) -> None:
-    """Error of every number over what it may be, by case."""
+    """Error of every number as a share of what it may be, by case."""
     import matplotlib.pyplot as plt
 
     names = list(dict.fromkeys(row["name"] for row in rows))
-    figure, axis = plt.subplots(figsize=(9.0, 0.19 * len(names) + 1.2), constrained_layout=True)
-    floor = 1e-17
+    figure, axis = plt.subplots(figsize=(9.0, 0.19 * len(names) + 1.0), constrained_layout=True)
+    exact, worst = 1e-11, 10.0
     for row in rows:
-        y = names.index(row["name"])
-        axis.plot(max(row["error"], floor), y, "o", color=BLUE if row["ok"] else RED, markersize=4, alpha=0.7)
-    for y, name in enumerate(names):
-        allowed = [row["tolerance"] for row in rows if row["name"] == name and row["tolerance"] > 0.0]
-        if allowed:
-            axis.plot(max(allowed), y, "|", color=GREY, markersize=8)
+        share = row["error"] / row["tolerance"] if row["tolerance"] > 0.0 else (0.0 if row["ok"] else worst)
+        colour = RED if not row["ok"] else GREY if share == 0.0 else BLUE
+        place = min(max(share, exact), worst)
+        axis.plot(place, names.index(row["name"]), "o", color=colour, markersize=4, alpha=0.7)
+    axis.axvline(1.0, color=RED, linewidth=1.0)
     axis.set_xscale("log")
     axis.set_yticks(range(len(names)), names, fontsize=7)
     axis.set_ylim(len(names) - 0.4, -0.6)
-    axis.set_xlabel("error (relative; absolute where zero is expected; exact ones at the left edge); | the largest one allowed")
+    axis.set_xlabel("error over the error allowed; grey: exact", fontsize=8)
+    axis.tick_params(axis="x", labelsize=8)
     axis.grid(True, axis="x", color="0.92")
     for side in ("top", "right"):
         axis.spines[side].set_visible(False)
@@ -107,7 +107,8 @@ def grid_text(grid: list[dict[str, str]]) -> list[str]:
     more = {key: sum(int(row[key]) for row in grid) for key in counts}
     lines = [
         f"{len(grid)} runs of `profiles/bench_lever` for a second each, every contact with the same restitution and friction",
-        "from 0 to 1 (`scripts/measure_grid.py`). A cross marks a run that gave up, lost track of its energy, or gained any.",
+        "from 0 to 1 (`scripts/measure_grid.py`). A cross would mark a run that gave up, lost track of its energy, or gained",
+        "any. White: without any loss in its contacts the train only rattles, and there is no beat with an amplitude.",
         "",
         "![amplitude and impacts over restitution and friction](images/stability_grid.png)",
         "",

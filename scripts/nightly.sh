@@ -24,5 +24,6 @@ mkdir -p "$scratch/images"
 cat "$scratch/long-runs.md" "$scratch/convergence.md"
 
 echo "== benchmarks and demo"
-"$environment/bin/watchsim" verify
+"$environment/bin/watchsim" verify --slow
+"$environment/bin/python" scripts/measure_grid.py "$scratch/grid.csv"
 "$environment/bin/watchsim" demo -o "$scratch/demo"

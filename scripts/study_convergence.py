@@ -20,6 +20,7 @@ from watchsim.analysis.hard_cases import dry_balance
 from watchsim.analysis.repeated_impacts import pulled_block
 from watchsim.mechanism.force import Damping
 from watchsim.mechanism.load import load
+from watchsim.mechanism.recording import EVERYTHING
 from watchsim.mechanism.scene import Scene
 from watchsim.profiles_path import profiles_dir
 from watchsim.simulation.simulate import simulate
@@ -81,7 +82,7 @@ def sticking(steps: tuple[float, ...]) -> list[Case]:
 
 
 def _at_the_end(name: str, scene: Scene, duration: float, steps: tuple[float, ...]) -> Case:
-    scene = dataclasses.replace(scene, record=())
+    scene = dataclasses.replace(scene, record=EVERYTHING)
     truth = simulate(scene, duration)
     size = np.abs(truth.q).max()
 
@@ -92,7 +93,7 @@ def _at_the_end(name: str, scene: Scene, duration: float, steps: tuple[float, ..
 
 
 def _lever(name: str, scene: Scene, duration: float, steps: tuple[float, ...]) -> Case:
-    scene = dataclasses.replace(scene, record=())
+    scene = dataclasses.replace(scene, record=EVERYTHING)
     times = np.linspace(0.0, duration, INSTANTS)
     truth = simulate(scene, duration)
     exact = truth.sample(times)[0]

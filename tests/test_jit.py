@@ -12,7 +12,12 @@ import pytest
 from watchsim import jit
 
 ROOT = Path(jit.__file__).resolve().parents[1]  # of the copy under test
-KERNEL = "from watchsim.jit import kernel\nfrom watchsim.inner import K\n"
+KERNEL = """from watchsim import whole
+from watchsim.jit import kernel
+from watchsim.inner import K
+def show():
+    from watchsim.plots import K
+"""
 
 
 @pytest.fixture
@@ -26,11 +31,20 @@ def package(tmp_path: Path) -> Path:
     (folder / "inner.py").write_text("from watchsim.deep.names import K\n")
     (folder / "deep" / "names.py").write_text("K = 1\n")
     (folder / "plots.py").write_text("K = 2\n")
+    (folder / "whole.py").write_text("K = 3\n")
     return folder
 
 
 @pytest.mark.parametrize(
-    ("name", "matters"), [("outer.py", True), ("inner.py", True), ("deep/names.py", True), ("plots.py", False)]
+    ("name", "matters"),
+    [
+        ("outer.py", True),
+        ("inner.py", True),
+        ("deep/names.py", True),
+        ("whole.py", True),
+        ("__init__.py", False),
+        ("plots.py", False),
+    ],
 )
 def test_digest_follows_what_kernels_reach(package: Path, name: str, matters: bool) -> None:
     before = jit.source_digest(package)

@@ -25,7 +25,8 @@ PACKAGE = Path(__file__).resolve().parent
 DIGESTS_KEPT = 3
 IN_USE_SECONDS = 3600.0  # another process may be compiling into a folder it has just made
 _KERNELS = re.compile(r"^from watchsim\.jit import .*\b(?:kernel|entry)\b", re.MULTILINE)
-_IMPORT = re.compile(r"^\s*from (watchsim(?:\.\w+)*) import", re.MULTILINE)
+# At the top of a file: what a function imports for itself, no kernel reaches.
+_IMPORT = re.compile(r"^from (watchsim(?:\.\w+)*) import \(?([\w, ]*)", re.MULTILINE)
 
 
 def kernel(function: Function) -> Function:
@@ -253,11 +254,14 @@ def _reachable_sources(package: Path) -> list[Path]:
 
 
 def _imported(package: Path, text: str) -> Iterable[Path]:
-    """The files that `from watchsim.x.y import` may mean: y.py or y/__init__.py."""
-    for name in _IMPORT.findall(text):
+    """The files that `from watchsim.x import y` may mean: x.py or x/__init__.py; of the package itself, y.py."""
+    for name, wanted in _IMPORT.findall(text):
         stem = package.joinpath(*name.split(".")[1:])
-        yield stem.with_suffix(".py") if stem != package else package / "__init__.py"
-        yield stem / "__init__.py"
+        if stem == package:
+            yield from (package / f"{each.strip()}.py" for each in wanted.split(","))
+        else:
+            yield stem.with_suffix(".py")
+            yield stem / "__init__.py"
 
 
 def _user_folder() -> Path:

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
+from carried_scenes import places
 from numpy.typing import NDArray
 from pair_scenes import body_pose
 
@@ -30,7 +31,7 @@ class Looks(NamedTuple):
 
 def looks(scene: Scene, compiled: Compiled, q: Array) -> Looks:
     """Gaps and margins of all contacts at q."""
-    poses = np.array([body_pose(scene, body.name, q) for body in scene.bodies])
+    poses = _poses(scene, compiled, q)
     a = compiled.model.primitives[compiled.model.contacts.a]
     b = compiled.model.primitives[compiled.model.contacts.b]
     centre, start = _world(poses[a.body], a.x, a.y), _world(poses[b.body], b.x, b.y)
@@ -47,6 +48,14 @@ def looks(scene: Scene, compiled: Compiled, q: Array) -> Looks:
     )
     on_b = np.where(line, np.minimum(along.real, b.length - along.real), _within(b, normal, turn_b))
     return Looks(gap, np.minimum(_within(a, -normal, turn_a), on_b))
+
+
+def _poses(scene: Scene, compiled: Compiled, q: Array) -> Array:
+    """x, y, angle of every body."""
+    if any(body.on is not None for body in scene.bodies):
+        where = places(scene, compiled, q)
+        return np.array([where[body.name] for body in scene.bodies])
+    return np.array([body_pose(scene, body.name, q) for body in scene.bodies])
 
 
 def touches(scene: Scene, compiled: Compiled, rng: np.random.Generator, poses: Iterator[Array]) -> Iterator[tuple[int, Array]]:

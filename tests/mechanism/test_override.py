@@ -102,7 +102,8 @@ REFUSED = [
     ("contacts.0.friction", True, "true or false"),
     ("bodies.wheel.inertia", 0.0, "has no inertia"),
     ("bodies.wheel.drawing", "none.dxf", "there is no such file"),
-    ("bodies.wheel.on", "lever", "is not simulated yet"),
+    ("bodies.wheel.on", "fork", "there is no such body"),
+    ("bodies.wheel.adjust", "lever", "is not supported yet"),
 ]
 
 

@@ -58,7 +58,7 @@ ONE_FAULT = [
         'pivot = "PIVOT"',
         'pivot = "PIVOT"\non = "carriage"',
         "bodies.wheel.on",
-        "a body carried by another one is not simulated yet",
+        "there is no such body. Known here: lever, balance, banking",
     ),
     ('pivot = "PIVOT"', 'pivot = "PIVOT"\nadjust = {}', "bodies.wheel.adjust", "turning or shifting one layer"),
     ('pivot = "PIVOT"', 'pivot = "PIVOT"\ncircle = "1 mm"', "bodies.wheel.circle", "one outline: leave out circle or drawing"),

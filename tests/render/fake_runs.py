@@ -77,7 +77,8 @@ def disc_run(duration: float = 3.0) -> Trajectory:
     u = np.column_stack((pull * t, zero, -pull * t / 0.05))
     a = np.column_stack((zero + pull, zero, zero - pull / 0.05))
     scene = Scene("Disc on an incline", (disc, plane), gravity=down)
-    return Trajectory(scene, t, q, u, a, {"disc": slice(0, 3)}, np.zeros(0, EVENT_DTYPE), (), Stop.DURATION, simulated=duration)
+    end = {"simulated": duration, "end_q": q[-1], "end_u": u[-1]}
+    return Trajectory(scene, t, q, u, a, {"disc": slice(0, 3)}, np.zeros(0, EVENT_DTYPE), (), Stop.DURATION, **end)
 
 
 def slide_run() -> Trajectory:
@@ -89,4 +90,5 @@ def slide_run() -> Trajectory:
     t = np.linspace(0.0, 1.0, 301)
     q, u, a = (2 * MM * f[:, None] for f in (np.sin(10 * t), 10 * np.cos(10 * t), -100 * np.sin(10 * t)))
     scene = Scene("A slider", (slider, wall))
-    return Trajectory(scene, t, q, u, a, {"slider": slice(0, 1)}, np.zeros(0, EVENT_DTYPE), (), Stop.DURATION, simulated=1.0)
+    end = {"simulated": 1.0, "end_q": q[-1], "end_u": u[-1]}
+    return Trajectory(scene, t, q, u, a, {"slider": slice(0, 1)}, np.zeros(0, EVENT_DTYPE), (), Stop.DURATION, **end)

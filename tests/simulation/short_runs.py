@@ -18,18 +18,19 @@ from watchsim.analysis.benchmarks import Benchmark
 from watchsim.analysis.hard_cases import dry_balance, painleve_rods, pins_on_rollers, superball, wedges
 from watchsim.analysis.repeated_impacts import cradle, groove, pulled_block, rocking_block
 from watchsim.mechanism.force import Damping
+from watchsim.mechanism.recording import EVERYTHING
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.state import COUNT_NAMES
 from watchsim.simulation.trajectory import Trajectory
 
 Short = tuple[Scene, float, dict[str, Any]]  # the scene, how long, how
-NUMBERS = ("t", "q", "u", "a")
+WORK = ("steps", "rejected_steps", "evaluations", "gap_evaluations", "flights")
 
 
 def _of(case: Callable[[], Benchmark] | Benchmark, duration: float) -> Short:
     scene = (case if isinstance(case, Benchmark) else case()).scene
-    return dataclasses.replace(scene, record=()), min(duration, scene.duration), {}
+    return dataclasses.replace(scene, record=EVERYTHING), min(duration, scene.duration), {}
 
 
 def dry_lever() -> Scene:
@@ -62,11 +63,11 @@ def short_runs() -> dict[str, Short]:
 
 
 def told(run: Trajectory) -> dict[str, np.ndarray]:
-    """Rows, events, sums and counts as arrays; how many cells were asked for depends on the runs before."""
+    """End state, events, sums and counts as arrays; how much work it was (steps, rows) may hang on the last bit of a power."""
     energy = [run.energy["in_J"], run.energy["stored_J"], *run.energy["dissipated"].values()]
-    out = {name: getattr(run, name) for name in NUMBERS}
-    out |= {"events": run.events, "energy": np.array(energy), "counts": np.array([run.counts[name] for name in COUNT_NAMES])}
-    return out
+    met = [run.counts[name] for name in COUNT_NAMES if name not in WORK]
+    out = {"q": run.end_q, "u": run.end_u, "events": run.events}
+    return out | {"energy": np.array(energy), "counts": np.array(met)}
 
 
 def write(path: Path, names: list[str]) -> None:

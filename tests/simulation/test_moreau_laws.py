@@ -6,6 +6,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+import short_runs
 from moving_scenes import box, circle, ground, profile, touching
 from test_dry_bearings import driven, rotor
 
@@ -142,3 +143,16 @@ def test_what_would_gain_energy_is_thrown_back_less(
     assert run.counts["energy_rescues"] == exact.counts["energy_rescues"] == 1
     assert run.energy["dissipated"]["impacts"] > 0.0
     assert run.u[-1] == pytest.approx(exact.u[-1], rel=1e-8, abs=1e-9)
+
+
+@pytest.mark.parametrize("name", ["superball", "Painlevé 1", "Painlevé 2", "pin on roller 1", "wedge 1", "cradle", "groove"])
+def test_hard_cases_at_first_order(name: str) -> None:
+    """Impacts of several contacts, accumulating ones, jams: the mean difference is below five steps' share of the way."""
+    scene, duration, _ = short_runs.short_runs()[name]
+    times = np.linspace(0.0, duration, 1001)
+    exact = simulate(scene, duration).sample(times)[0]
+    way = np.abs(exact - exact[0]).max()
+    for count in (500, 5000):
+        run = simulate(scene, duration, method="moreau", step=duration / count)
+        assert run.counts["lcp_failures"] == 0
+        assert np.abs(run.sample(times)[0] - exact).mean() < 5.0 * way / count

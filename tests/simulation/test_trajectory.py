@@ -22,7 +22,8 @@ SLICES = {"rotor": slice(0, 1), "slider": slice(1, 2), "puck": slice(2, 5)}
 
 
 def made(t: np.ndarray, q: np.ndarray, u: np.ndarray, a: np.ndarray) -> Trajectory:
-    return Trajectory(Scene("made", BODIES), t, q, u, a, SLICES, np.zeros(0, EVENT_DTYPE), (), Stop.DURATION)
+    """Rows that are exact to rounding, as the tolerance says."""
+    return Trajectory(Scene("made", BODIES), t, q, u, a, SLICES, np.zeros(0, EVENT_DTYPE), (), Stop.DURATION, tolerance=1e-16)
 
 
 def wave(spacing: float) -> Trajectory:

@@ -16,6 +16,7 @@ from watchsim.simulation.simulate import simulate
 
 ROOT = Path(jit.__file__).resolve().parents[1]  # of the copy under test
 TESTS = Path(__file__).resolve().parents[1]
+ROUNDING = 1e-9  # share of the largest number of a column
 FEW = ("incline", "bench_lever", "superball", "Painlevé 1", "wedge 0")
 
 
@@ -33,12 +34,22 @@ def uncompiled(names: tuple[str, ...], path: Path) -> dict[str, np.ndarray]:
 @pytest.mark.parametrize(
     "names", [FEW, pytest.param(tuple(short_runs.short_runs()), marks=pytest.mark.slow)], ids=["few", "all"]
 )
-def test_not_a_bit_differs_without_the_compiler(names: tuple[str, ...], tmp_path: Path) -> None:
-    """Rows, events, energies and counts of runs that reach every part of the solver."""
+def test_the_same_within_rounding_without_the_compiler(names: tuple[str, ...], tmp_path: Path) -> None:
+    """End, events, energies and counts of runs that reach every part of the solver: the same decisions, the same numbers."""
     plain = uncompiled(names, tmp_path / "plain.npz")
     runs = short_runs.short_runs()
     for name in names:
         scene, duration, how = runs[name]
         for what, value in short_runs.told(simulate(scene, duration, **how)).items():
-            other = plain[f"{name}/{what}"]
-            assert value.shape == other.shape and value.tobytes() == other.tobytes(), (name, what)
+            assert_alike(value, plain[f"{name}/{what}"], f"{name}, {what}")
+
+
+def assert_alike(value: np.ndarray, other: np.ndarray, which: str) -> None:
+    """Whole numbers the same, others to rounding of the largest in the column."""
+    assert value.shape == other.shape, which
+    for column in value.dtype.names or ("",):
+        one, two = (array[column] if column else array for array in (value, other))
+        if one.dtype.kind != "f":
+            assert np.array_equal(one, two), (which, column)
+        elif one.size:
+            assert np.all(np.abs(one - two) <= ROUNDING * np.abs(one).max(axis=0)), (which, column)

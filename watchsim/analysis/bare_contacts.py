@@ -23,6 +23,7 @@ from watchsim.mechanism.model import (
     BODY_PAIR,
     CONTACT,
     COORDINATE,
+    JOINT,
     LAW,
     PRIMITIVE,
     TABLE,
@@ -59,9 +60,11 @@ class BareContacts:
         coordinates, laws, contacts = records(COORDINATE, self.n), records(LAW, self.m), records(CONTACT, self.m)
         coordinates.mass, laws.friction, contacts.group = self.mass, self.mu, np.arange(self.m)
         laws.kind, laws.tangential, laws.nu = TANGENTIAL_CODE[self.law], self.tangential, self.nu
-        empty = [records(dtype, 0) for dtype in (BODY, TABLE, PRIMITIVE, BODY_PAIR)]
-        parts = (empty[0], coordinates, empty[1], np.zeros((0, 2)), empty[2], contacts, laws, empty[3], np.zeros(0, np.int64))
-        return Model(*(frozen(part) for part in parts))
+        none = {"bodies": BODY, "joints": JOINT, "tables": TABLE, "primitives": PRIMITIVE, "pairs": BODY_PAIR}
+        parts = {name: records(dtype, 0) for name, dtype in none.items()}
+        parts |= {"coordinates": coordinates, "contacts": contacts, "laws": laws}
+        parts |= {"knots": np.zeros((0, 2)), "near": np.zeros(0, np.int64)}
+        return Model(**{name: frozen(part) for name, part in parts.items()})
 
     def take(self, contacts: list[int]) -> None:
         """Let only these contacts take part, in this order."""

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from watchsim.analysis.benchmarks import BETWEEN_ROWS, Benchmark, Check, Measure, counted, picked, soundness
+from watchsim.analysis.benchmarks import Benchmark, Check, Measure, counted, picked, soundness
 from watchsim.analysis.simple_shapes import box, circle, ground
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import TURN, Arc, Line
@@ -17,7 +17,6 @@ from watchsim.mechanism.scene import Scene
 from watchsim.simulation.event_kinds import EventKind
 
 GRAVITY = 9.81
-FORCES = 1e-8  # a contact is kept until its forces fail by more than their rounding, `Options.force_zero`
 SPEEDS = 1e-9  # m/s; slower is zero in scenes of these sizes, `Options.speed_zero`
 
 
@@ -50,14 +49,14 @@ def pulled_block(cycles: int = 40) -> Benchmark:
         torques=(Torque("block", over="time", table=ramp), Torque("pad", -press)),
         contacts=(Contact((Side("pad"), Side("block")), friction),),
         duration=end,
-        tolerance=1e-11,
+        tolerance=1e-12,
     )
     middle = start + (cycles - 0.5) * period
     checks = (
-        Check("slipping begins [s]", start, lambda run: picked(run, EventKind.SLIDE, "t", 1), FORCES),
+        Check("slipping begins [s]", start, lambda run: picked(run, EventKind.SLIDE, "t", 1)),
         Check(f"way after {cycles} periods [m]", speed * cycles * period, lambda run: float(run.q[-1, 0])),
         Check("speed then [m/s]", 0.0, lambda run: float(run.u[-1, 0]), SPEEDS),
-        Check("fastest slip [m/s]", 2.0 * speed, lambda run: float(run.at(middle)[1][0]), BETWEEN_ROWS),
+        Check("fastest slip [m/s]", 2.0 * speed, lambda run: float(run.at(middle)[1][0])),
         Check(
             "stretch of the spring half a period later [m]",
             speed * (start + 0.25 * period) - _slipped(speed, w, 0.25 * period),

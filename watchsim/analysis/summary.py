@@ -9,6 +9,9 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from watchsim.analysis.averages import Averages, averages, last_window
 from watchsim.analysis.beat_tables import beats_csv, phases_csv
 from watchsim.analysis.beats import Beats, beats
@@ -22,6 +25,7 @@ from watchsim.analysis.wheel import missed_beats
 from watchsim.analysis.whole_run import whole_run
 from watchsim.mechanism.lock import versions
 from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.frames import frames, speeds
 from watchsim.simulation.trajectory import Trajectory
 
 AVERAGED = ("amplitude_deg", "period_s", "rate_s_per_d", "beat_error_ms")
@@ -78,16 +82,16 @@ def _about(run: Trajectory) -> dict[str, Any]:
 
 
 def _bodies(run: Trajectory) -> dict[str, dict[str, float]]:
-    """Pose and velocities of every body at the end."""
-    return {body.name: _last_state(run, body.name) for body in run.scene.bodies} if len(run.end_q) else {}
+    """Pose and velocities of every body in the movement at the end."""
+    if run.end is None:
+        return {}
+    q, u = run.end
+    places, rates = frames(run.scene, run.slices, q[None]), speeds(run.scene, run.slices, q[None], u[None])
+    return {body.name: _state(places[body.name][0], rates[body.name][0]) for body in run.scene.bodies}
 
 
-def _last_state(run: Trajectory, name: str) -> dict[str, float]:
-    body = run.scene.body(name)
-    x, y, angle = run.pose_of(name, run.end_q)
-    u = run.end_u[run.slices[name]].tolist() if body.motion != "fixed" else []
-    along = (u[0] * body.axis[0], u[0] * body.axis[1]) if body.motion == "slide" else (0.0, 0.0)
-    v_x, v_y, spin = {"free": tuple(u), "pivot": (0.0, 0.0, *u), "slide": (*along, 0.0)}.get(body.motion, (0.0, 0.0, 0.0))
+def _state(place: NDArray[np.float64], rate: NDArray[np.float64]) -> dict[str, float]:
+    (x, y, angle), (v_x, v_y, spin) = place.tolist(), rate.tolist()
     return {"angle_rad": angle, "x_m": x, "y_m": y, "angle_rad_per_s": spin, "x_m_per_s": v_x, "y_m_per_s": v_y}
 
 

@@ -8,20 +8,33 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.mechanism.model import FREE, PIVOT, SLIDE
+from watchsim.mechanism.cell_frame import seen_from
+from watchsim.mechanism.model import FIXED, FREE, PIVOT, SLIDE, Records
 
 Array = NDArray[np.float64]
 
 
 class CellMotion:
-    """The cell coordinates of one pair of bodies, read from its record (model.py)."""
+    """The cell coordinates of one pair of bodies, read from its record (model.py), and the frame they are told in."""
 
-    def __init__(self, pair: Any) -> None:
+    def __init__(self, bodies: Records, pair: Any) -> None:
         self.coordinates = [int(pair[f"c{i}"]) for i in range(pair.axes)]
         self.sizes = np.array([float(pair[f"size{i}"]) for i in range(pair.axes)])
+        self.on = [int(pair[f"on{i}"]) for i in range(pair.axes)]
+        self._seen = {int(b): seen_from(bodies, int(b), int(pair.frame)) for b in (pair.a, pair.b)}
+        self._carrier = {b: bodies[body.carrier] for b, body in self._seen.items() if body.carrier >= 0}
 
-    def pose(self, body: Any, at: Array) -> tuple[Array, Array, Array]:
-        """Places x, y (m) and angles (rad) of a body at cell coordinates `at`, (places, axes)."""
+    def pose(self, b: int, at: Array) -> tuple[Array, Array, Array]:
+        """Places x, y (m) and angles (rad) of body b at cell coordinates `at`, (places, axes)."""
+        body = self._seen[int(b)]
+        if int(b) not in self._carrier:
+            return self._own(body, at)
+        x, y, angle = self._own(self._carrier[int(b)], at)
+        c, s = np.cos(angle), np.sin(angle)
+        return x + c * body.x - s * body.y, y + s * body.x + c * body.y, self._own(body, at)[2]
+
+    def _own(self, body: Any, at: Array) -> tuple[Array, Array, Array]:
+        """The same for a body that nothing carries."""
         value = {coordinate: at[:, axis] for axis, coordinate in enumerate(self.coordinates)}
         x, y, angle = (np.full(len(at), v) for v in (body.x, body.y, body.angle))
         if body.motion == PIVOT:
@@ -32,14 +45,22 @@ class CellMotion:
             x, y, angle = (value[body.first + i] for i in range(3))
         return x, y, angle
 
-    def freedom(self, body: Any, room: Array) -> tuple[float, float]:
-        """How far (m) a body's origin may move and (rad) the body turn when each cell coordinate changes by up to `room`."""
+    def freedom(self, b: int, room: Array) -> tuple[float, float]:
+        """How far (m) body b's origin may move and (rad) the body turn when each cell coordinate changes by up to `room`."""
+        body = self._seen[int(b)]
+        shift, turn = self._own_freedom(body, room)
+        if int(b) in self._carrier:
+            more, swing = self._own_freedom(self._carrier[int(b)], room)
+            shift += more + swing * math.hypot(body.x, body.y)
+        return shift, turn
+
+    def _own_freedom(self, body: Any, room: Array) -> tuple[float, float]:
         value = dict(zip(self.coordinates, room.tolist(), strict=True))
+        if body.motion == FIXED:
+            return 0.0, 0.0
         if body.motion == FREE:
             return math.hypot(value[body.first], value[body.first + 1]), value[body.first + 2]
-        if body.motion == PIVOT:
-            return 0.0, value[body.first]
-        return (value[body.first], 0.0) if body.motion == SLIDE else (0.0, 0.0)
+        return (0.0, value[body.first]) if body.motion == PIVOT else (value[body.first], 0.0)
 
 
 def turned(points: Array, angle: Array) -> Array:

@@ -75,12 +75,17 @@ class CellFinder:
 
 
 class _Axis(NamedTuple):
-    """One cell coordinate; `wrap` cells make a turn (0: a length), in `fold` alike parts."""
+    """One cell coordinate, less coordinate `on` (-1: nothing); `wrap` cells make a turn (0: a length) of `fold` alike parts."""
 
     coordinate: int
+    on: int
     size: float
     wrap: int
     fold: int
+
+    def cell_of(self, q: Array) -> int:
+        """In which cell along it q lies, not wrapped."""
+        return math.floor((q[self.coordinate] - (q[self.on] if self.on >= 0 else 0.0)) / self.size)
 
     @property
     def part(self) -> int:
@@ -93,7 +98,9 @@ class PairCells:
 
     def __init__(self, model: Model, p: int) -> None:
         self.model, self.p, self.pair = model, p, model.pairs[p]
-        self.axes = [_Axis(*(self.pair[f"{name}{i}"] for name in ("c", "size", "wrap", "fold"))) for i in range(self.pair.axes)]
+        self.axes = [
+            _Axis(*(self.pair[f"{name}{i}"] for name in ("c", "on", "size", "wrap", "fold"))) for i in range(self.pair.axes)
+        ]
         self.start = int(self.pair.start)
         near = model.near[self.pair.near_start : self.pair.near_stop]
         body = [int(model.coordinates[axis.coordinate].body) for axis in self.axes]
@@ -111,7 +118,7 @@ class PairCells:
     def around(self, q: Array) -> tuple[Integers, Integers, Integers]:
         """The same for the cell of q and its neighbours."""
         steps = itertools.product(range(-AROUND[len(self.axes)], AROUND[len(self.axes)] + 1), repeat=len(self.axes))
-        here = [math.floor(q[axis.coordinate] / axis.size) for axis in self.axes]
+        here = [axis.cell_of(q) for axis in self.axes]
         block = np.array(here) + np.array(list(steps))
         parts = np.array([axis.part for axis in self.axes])
         block = block[((np.abs(block) < REACH) | (parts > 0)).all(axis=1)]
@@ -126,7 +133,7 @@ class PairCells:
     def here(self, q: Array) -> Integers:
         """The candidates in the cell of q alone."""
         keys, count, found = self.around(q)
-        index = [math.floor(q[axis.coordinate] / axis.size) for axis in self.axes]
+        index = [axis.cell_of(q) for axis in self.axes]
         key = self._keys(np.array([[i % axis.wrap if axis.wrap else i for i, axis in zip(index, self.axes, strict=True)]]))[0]
         place = int(np.flatnonzero(keys == key)[0])
         start = int(count[:place].sum())

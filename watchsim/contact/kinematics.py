@@ -27,7 +27,7 @@ KINEMATICS = np.dtype(
         ("y", "f8"),
     ]
 )
-SLOTS = 6  # a contact moves at most two free bodies
+SLOTS = 8  # a contact moves at most two bodies, each carried by a free one
 
 
 class Closed(NamedTuple):
@@ -61,7 +61,10 @@ def closed_contacts(room: int) -> Closed:
 
 @kernel
 def _directions(model, b, row, sign, frame, out_closed):
-    """Append body b's entries of w_N, w_T; frame = (nx, ny, arm_x, arm_y), the arm from the body's origin to the contact."""
+    """Append body b's entries of w_N, w_T; frame = (nx, ny, arm_x, arm_y), the arm from the body's origin to the contact.
+
+    For a carrier the arm ends at the pivot of the body that it carries: turning it, it shifts that body and turns it not.
+    """
     body = model.bodies[b]
     nx, ny, rx, ry = frame
     tx, ty = -ny, nx
@@ -86,6 +89,20 @@ def _directions(model, b, row, sign, frame, out_closed):
         out_closed.w_T[row, j] = sign * (rx * ty - ry * tx)
         j += 1
     out_closed.slots[row] = j
+
+
+@kernel
+def _add_carriers(model, body_a, body_b, row, normal, pose, out_closed):
+    """What the carriers of the two bodies add: their coordinates, and how they make the bodies' origins accelerate."""
+    nx, ny = normal
+    kin = out_closed.kin[row]
+    for side in range(2):
+        b, sign = (body_a, 1.0) if side == 0 else (body_b, -1.0)
+        if model.bodies[b].carrier >= 0:
+            p = pose[b]
+            kin.bar_N += sign * (nx * p.ax + ny * p.ay)
+            kin.bar_T += sign * (nx * p.ay - ny * p.ax)
+            _directions(model, model.bodies[b].carrier, row, sign, (nx, ny, p.rx, p.ry), out_closed)
 
 
 @kernel
@@ -119,3 +136,5 @@ def contact_kinematics(model, k, pose, row, out_closed):
     out_closed.slots[row] = 0
     _directions(model, a.body, row, 1.0, (nx, ny, xa, ya), out_closed)
     _directions(model, b.body, row, -1.0, (nx, ny, xb, yb), out_closed)
+    if model.bodies[a.body].carrier >= 0 or model.bodies[b.body].carrier >= 0:
+        _add_carriers(model, a.body, b.body, row, (nx, ny), pose, out_closed)

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.contact.pair_search import PairSearch
+from watchsim.mechanism.cell_frame import seen_from
 from watchsim.mechanism.model import FIXED, PIVOT, SLIDE, Model
 
 Integers = NDArray[np.int64]
@@ -83,19 +84,24 @@ def forget() -> None:
 def _digest(model: Model, p: int) -> bytes:
     """Of everything that the candidates of body pair p depend on, with numbers counted from the pair's own first ones."""
     pair = model.pairs[p]
-    bodies = [model.bodies[b] for b in (pair.a, pair.b)]
-    origin = min(int(body.first) for body in bodies if body.motion != FIXED)
+    axes = [int(pair[f"{name}{i}"]) for name in ("c", "on") for i in range(pair.axes)]
+    used = sorted(set(axes) - {-1})
+    place = {FIXED: ("x", "y", "angle"), PIVOT: ("x", "y"), SLIDE: ("x", "y", "angle", "axis_x", "axis_y")}
     digest = hashlib.blake2b(digest_size=20)
-    for body in bodies:
-        place = {FIXED: ("x", "y", "angle"), PIVOT: ("x", "y"), SLIDE: ("x", "y", "angle", "axis_x", "axis_y")}
-        digest.update(repr((int(body.motion), [float(body[name]) for name in place.get(int(body.motion), ())])).encode())
+    for b in (pair.a, pair.b):
+        body = seen_from(model.bodies, int(b), int(pair.frame))
+        for part in (body, model.bodies[body.carrier]) if body.carrier >= 0 else (body,):
+            where = [float(part[name]) for name in place.get(int(part.motion), ())]
+            first = used.index(int(part.first)) if part.first in used else -1
+            digest.update(repr((int(part.motion), first, bool(part.carrier >= 0), where)).encode())
     cells = [float(pair[f"{name}{i}"]) for i in range(pair.axes) for name in ("size", "wrap", "fold")]
-    axes = [int(pair[f"c{i}"]) - origin for i in range(pair.axes)]
-    digest.update(repr((cells, axes, float(pair.clearance))).encode())
+    digest.update(repr((cells, [used.index(axis) if axis >= 0 else -1 for axis in axes], float(pair.clearance))).encode())
     contacts = model.contacts[pair.start : pair.stop]
-    used, rows = np.unique(np.concatenate([contacts.a, contacts.b]), return_inverse=True)
-    mine = model.primitives[used]
+    present, rows = np.unique(np.concatenate([contacts.a, contacts.b]), return_inverse=True)
+    mine = model.primitives[present]
     for name in mine.dtype.names:
+        if name in ("before", "after"):  # numbers in the whole model, which say nothing about places
+            continue
         digest.update(np.ascontiguousarray(mine.body == pair.a if name == "body" else mine[name]).tobytes())
     near = model.near[pair.near_start : pair.near_stop] - pair.start
     for numbers in (rows, np.asarray(contacts.group), near):

@@ -18,13 +18,22 @@ def cell_index(q, size, wrap):
     return int(index % wrap) if wrap > 0 else int(index)
 
 
+@kernel
+def along(value, coordinate, on):
+    """The value of a cell coordinate from those of all coordinates; `on` is taken away from it, -1: nothing."""
+    return value[coordinate] - value[on] if on >= 0 else value[coordinate]
+
+
 @entry
 def cell_key(model, p, q):
     """The key of body pair p's cell at coordinates q; -1 where the indices leave the range of keys."""
     pair = model.pairs[p]
-    i0 = cell_index(q[pair.c0], pair.size0, pair.wrap0)
-    i1 = cell_index(q[pair.c1], pair.size1, pair.wrap1) if pair.axes > 1 else 0
-    i2 = cell_index(q[pair.c2], pair.size2, pair.wrap2) if pair.axes > 2 else 0
+    x0, x1, x2 = q[pair.c0], q[pair.c1], q[pair.c2]
+    if pair.frame >= 0:
+        x0, x1 = along(q, pair.c0, pair.on0), along(q, pair.c1, pair.on1)
+    i0 = cell_index(x0, pair.size0, pair.wrap0)
+    i1 = cell_index(x1, pair.size1, pair.wrap1) if pair.axes > 1 else 0
+    i2 = cell_index(x2, pair.size2, pair.wrap2) if pair.axes > 2 else 0
     if abs(i0) >= REACH or abs(i1) >= REACH or abs(i2) >= REACH:
         return -1
     return (((p * 2 * REACH + (i0 + REACH)) * 2 * REACH) + (i1 + REACH)) * 2 * REACH + (i2 + REACH)
@@ -96,6 +105,8 @@ def time_in_cell(model, p, q, u, acceleration):
     pair = model.pairs[p]
     if pair.axes == 0:
         return math.inf
+    if pair.frame >= 0:
+        return _time_in_relative_cell(pair, q, u, acceleration)
     i = pair.c0
     time = _time_to_leave(_room(q[i], pair.size0), abs(u[i]), acceleration[i])
     if pair.axes > 1:
@@ -108,14 +119,33 @@ def time_in_cell(model, p, q, u, acceleration):
 
 
 @kernel
+def _time_in_relative_cell(pair, q, u, acceleration):
+    """The same seen from a carrier, on which at most two angles count."""
+    time = math.inf
+    for axis in range(pair.axes):
+        i, on, size = (pair.c0, pair.on0, pair.size0) if axis == 0 else (pair.c1, pair.on1, pair.size1)
+        bound = acceleration[i] + (acceleration[on] if on >= 0 else 0.0)
+        time = min(time, _time_to_leave(_room(along(q, i, on), size), abs(along(u, i, on)), bound))
+    return time
+
+
+@kernel
 def time_through_cells(model, p, u, acceleration, cells):
     """A time in which body pair p passes at most about `cells` cells along each coordinate."""
     pair = model.pairs[p]
     time = math.inf
     if pair.axes > 0:
-        time = min(time, _time_to_leave(cells * pair.size0, abs(u[pair.c0]), acceleration[pair.c0]))
+        time = min(time, _time_through(pair, u, acceleration, pair.c0, pair.on0, cells * pair.size0))
     if pair.axes > 1:
-        time = min(time, _time_to_leave(cells * pair.size1, abs(u[pair.c1]), acceleration[pair.c1]))
+        time = min(time, _time_through(pair, u, acceleration, pair.c1, pair.on1, cells * pair.size1))
     if pair.axes > 2:
-        time = min(time, _time_to_leave(cells * pair.size2, abs(u[pair.c2]), acceleration[pair.c2]))
+        time = min(time, _time_through(pair, u, acceleration, pair.c2, pair.on2, cells * pair.size2))
     return time
+
+
+@kernel
+def _time_through(pair, u, acceleration, i, on, way):
+    """Time in which one cell coordinate does not cover that way."""
+    if pair.frame >= 0 and on >= 0:
+        return _time_to_leave(way, abs(u[i] - u[on]), acceleration[i] + acceleration[on])
+    return _time_to_leave(way, abs(u[i]), acceleration[i])

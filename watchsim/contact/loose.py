@@ -22,7 +22,7 @@ class LooseContacts:
     def __init__(self, model: Model, p: int, ids: Integers, loose: Integers, partner: Integers) -> None:
         """`loose`, `partner`: the two primitives of each contact."""
         pair, self._ids = model.pairs[p], ids
-        self._motion, self._clearance = CellMotion(pair), float(pair.clearance)
+        self._motion, self._clearance = CellMotion(model.bodies, pair), float(pair.clearance)
         rings, self._ring = np.unique(loose, return_inverse=True)
         partners, self._partner = np.unique(partner, return_inverse=True)
         drawn = chords(model.primitives[rings], self._clearance)
@@ -30,7 +30,7 @@ class LooseContacts:
         self._drawn = chords(model.primitives[partners], self._clearance)
         self._reach = np.maximum.reduceat(np.hypot(*self._drawn.points.T), self._drawn.first[:-1]) + self._drawn.sag
         bodies = model.primitives.body
-        self._turning, self._other = model.bodies[bodies[rings[0]]], model.bodies[bodies[partners[0]]]
+        self._turning, self._other = int(bodies[rings[0]]), int(bodies[partners[0]])
 
     def candidates(self, at: Array, room: Array) -> tuple[Integers, Integers]:
         """(places, contacts) that could touch when cell coordinates are within `room` of `at`, (places, axes)."""

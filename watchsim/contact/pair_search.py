@@ -30,7 +30,7 @@ class PairSearch:
     def __init__(self, model: Model, p: int, loose: Integers) -> None:
         """`loose`: primitives of either body that do not share the symmetry of its cells."""
         pair = model.pairs[p]
-        self._motion, self._clearance = CellMotion(pair), float(pair.clearance)
+        self._motion, self._clearance = CellMotion(model.bodies, pair), float(pair.clearance)
         self._regions = Regions(model, p)
         ids = model.near[pair.near_start : pair.near_stop]
         contacts, bodies = model.contacts[ids], model.primitives.body
@@ -45,12 +45,12 @@ class PairSearch:
             if only.any()
         ]
         alike = ~(loose_a | loose_b)
-        sides = [(model.bodies[pair.a], on_a[alike]), (model.bodies[pair.b], on_b[alike])]
+        sides = [(int(pair.a), on_a[alike]), (int(pair.b), on_b[alike])]
         # The side with fewer primitives is moved, the other one stays in the tree.
         sides.sort(key=lambda side: len(np.unique(side[1])))
         self._set_shapes(model, sides, local[alike])
 
-    def _set_shapes(self, model: Model, sides: list[tuple[Any, Integers]], local: Integers) -> None:
+    def _set_shapes(self, model: Model, sides: list[tuple[int, Integers]], local: Integers) -> None:
         """The primitives of the contacts `local`; `sides`: the body that is moved and the other, and their primitives."""
         import shapely
 

@@ -18,6 +18,10 @@ POSE = np.dtype(
         ("vx", "f8"),
         ("vy", "f8"),
         ("w", "f8"),
+        ("rx", "f8"),  # of a carried body: from its carrier's origin to its own,
+        ("ry", "f8"),
+        ("ax", "f8"),  # and how its origin accelerates while no velocity changes; else always 0
+        ("ay", "f8"),
     ]
 )
 
@@ -25,6 +29,26 @@ POSE = np.dtype(
 def poses(bodies: int) -> np.recarray:
     """Room for the poses of that many bodies."""
     return records(POSE, bodies)
+
+
+@kernel
+def _ride(carrier, body, q, u, pose):
+    """Origin of a carried body: the point (body.x, body.y) of its carrier's frame."""
+    i = carrier.first
+    if carrier.motion == SLIDE:
+        pose.rx, pose.ry = carrier.c * body.x - carrier.s * body.y, carrier.s * body.x + carrier.c * body.y
+        pose.x, pose.y = carrier.x + q[i] * carrier.axis_x + pose.rx, carrier.y + q[i] * carrier.axis_y + pose.ry
+        pose.vx, pose.vy = u[i] * carrier.axis_x, u[i] * carrier.axis_y
+        return
+    turn = i if carrier.motion == PIVOT else i + 2
+    c, s, w = math.cos(q[turn]), math.sin(q[turn]), u[turn]
+    pose.rx, pose.ry = c * body.x - s * body.y, s * body.x + c * body.y
+    pose.x, pose.y = carrier.x + pose.rx, carrier.y + pose.ry
+    pose.vx, pose.vy = -w * pose.ry, w * pose.rx
+    pose.ax, pose.ay = -w * w * pose.rx, -w * w * pose.ry
+    if carrier.motion != PIVOT:
+        pose.x, pose.y = q[i] + pose.rx, q[i + 1] + pose.ry
+        pose.vx, pose.vy = pose.vx + u[i], pose.vy + u[i + 1]
 
 
 @kernel
@@ -37,6 +61,8 @@ def place_body(model, b, q, u, out_pose):
     pose.vx, pose.vy, pose.w = 0.0, 0.0, 0.0
     if body.motion == PIVOT:
         pose.c, pose.s, pose.w = math.cos(q[i]), math.sin(q[i]), u[i]
+        if body.carrier >= 0:
+            _ride(model.bodies[body.carrier], body, q, u, pose)
     elif body.motion == SLIDE:
         pose.x, pose.y = body.x + q[i] * body.axis_x, body.y + q[i] * body.axis_y
         pose.vx, pose.vy = u[i] * body.axis_x, u[i] * body.axis_y

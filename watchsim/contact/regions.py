@@ -25,8 +25,8 @@ class Regions:
 
     def __init__(self, model: Model, p: int) -> None:
         pair = model.pairs[p]
-        self._motion, self._clearance = CellMotion(pair), float(pair.clearance)
-        self._bodies = (model.bodies[pair.a], model.bodies[pair.b])
+        self._motion, self._clearance = CellMotion(model.bodies, pair), float(pair.clearance)
+        self._bodies = (int(pair.a), int(pair.b))
         contacts = model.contacts[pair.start : pair.stop]
         self._circle, self._met = model.primitives[contacts.a], model.primitives[contacts.b]
         self._circle_first = np.asarray(self._circle.body == pair.a)
@@ -43,7 +43,7 @@ class Regions:
             keep[rows] = self._possible(bodies, place[rows], contact[rows], at, room)
         return keep
 
-    def _possible(self, bodies: tuple[Any, Any], place: Integers, contact: Integers, at: Array, room: Array) -> Any:
+    def _possible(self, bodies: tuple[int, int], place: Integers, contact: Integers, at: Array, room: Array) -> Any:
         """The same for contacts whose circle is on the first of `bodies`."""
         (ax, ay, turn_a), (bx, by, turn_b) = (tuple(v[place] for v in self._motion.pose(body, at)) for body in bodies)
         (shift_a, swing_a), (shift_b, swing_b) = (self._motion.freedom(body, room) for body in bodies)

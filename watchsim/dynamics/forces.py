@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from watchsim.contact.lookup import along
 from watchsim.jit import entry, kernel
 from watchsim.mechanism.model import OVER_TIME
 
@@ -44,17 +45,43 @@ def damping_force(model, i, u):
 
 
 @kernel
+def stretch(joint, q):
+    """How far the spring between a carried body and its carrier is wound, rad."""
+    return q[joint.coordinate] - q[joint.on] - joint.rest
+
+
+@kernel
+def joint_damping(joint, u):
+    """-c w - c2 w|w| with the turning rate w of a carried body against its carrier."""
+    w = u[joint.coordinate] - u[joint.on]
+    return -w * (joint.viscous + joint.quadratic * abs(w))
+
+
+@kernel
+def table_force(model, j, t, q):
+    """What table j gives at time t and coordinates q."""
+    table = model.tables[j]
+    return table_value(model, table, t if table.over == OVER_TIME else along(q, table.coordinate, table.on))
+
+
+@kernel
 def forces(model, t, q, u, out_h):
-    """h for all coordinates: drive, springs, damping."""
+    """h for all coordinates: drive, springs, damping. What acts at the pivot of a carried body acts back on its carrier."""
     for i in range(len(model.coordinates)):
         coordinate = model.coordinates[i]
         out_h[i] = (
             driving_force(model, i, q[i]) - coordinate.stiffness * (q[i] - coordinate.rest) + damping_force(model, i, u[i])
         )
+    for j in range(len(model.joints)):
+        joint = model.joints[j]
+        torque = joint.force - joint.stiffness * stretch(joint, q) + joint_damping(joint, u)
+        out_h[joint.coordinate] += torque
+        out_h[joint.on] -= torque
     for j in range(len(model.tables)):
-        table = model.tables[j]
-        i = table.coordinate
-        out_h[i] += table_value(model, table, t if table.over == OVER_TIME else q[i])
+        table, force = model.tables[j], table_force(model, j, t, q)
+        out_h[table.coordinate] += force
+        if table.on >= 0:
+            out_h[table.on] -= force
 
 
 @kernel
@@ -63,10 +90,12 @@ def drive_power(model, t, q, u):
     power = 0.0
     for i in range(len(model.coordinates)):
         power += u[i] * driving_force(model, i, q[i])
+    for j in range(len(model.joints)):
+        joint = model.joints[j]
+        power += (u[joint.coordinate] - u[joint.on]) * joint.force
     for j in range(len(model.tables)):
         table = model.tables[j]
-        i = table.coordinate
-        power += u[i] * table_value(model, table, t if table.over == OVER_TIME else q[i])
+        power += along(u, table.coordinate, table.on) * table_force(model, j, t, q)
     return power
 
 
@@ -76,7 +105,20 @@ def damping_power(model, u):
     power = 0.0
     for i in range(len(model.coordinates)):
         power -= u[i] * damping_force(model, i, u[i])
+    for j in range(len(model.joints)):
+        joint = model.joints[j]
+        power -= (u[joint.coordinate] - u[joint.on]) * joint_damping(joint, u)
     return power
+
+
+@kernel
+def joint_energy(model, q):
+    """Energy in the springs between carried bodies and their carriers, J."""
+    energy = 0.0
+    for j in range(len(model.joints)):
+        joint = model.joints[j]
+        energy += 0.5 * joint.stiffness * stretch(joint, q) ** 2
+    return energy
 
 
 @entry
@@ -85,9 +127,9 @@ def stored_energy(model, q, u):
     energy = 0.0
     for i in range(len(model.coordinates)):
         coordinate = model.coordinates[i]
-        stretch = q[i] - coordinate.rest
-        energy += 0.5 * (coordinate.mass * u[i] * u[i] + coordinate.stiffness * stretch * stretch)
-    return energy
+        way = q[i] - coordinate.rest
+        energy += 0.5 * (coordinate.mass * u[i] * u[i] + coordinate.stiffness * way * way)
+    return energy + joint_energy(model, q)
 
 
 @kernel

@@ -12,6 +12,7 @@ from typing import Any
 from watchsim.drawing.findings import Finding
 from watchsim.geometry.extent import extents
 from watchsim.mechanism.body import Body
+from watchsim.mechanism.carry import at_start, is_still
 from watchsim.mechanism.force import Damping, Spring
 from watchsim.mechanism.overlap import overlaps
 from watchsim.mechanism.pair_count import PairCount, pair_lines, pairs_entry
@@ -33,7 +34,9 @@ def check_report(scene: Scene, pairs: Sequence[PairCount]) -> dict[str, Any]:
         "theory": {"frequency_hz": hertz, "vph": None if hertz is None else 7200.0 * hertz},
         "pairs": pairs_entry(pairs),
         "statics": {},
-        "findings": [finding.as_dict() for finding in (*scene.findings, *_overlap_findings(scene), *_poised(scene))],
+        "findings": [
+            finding.as_dict() for finding in (*scene.findings, *_overlap_findings(scene), *_poised(scene), *_weightless(scene))
+        ],
     }
 
 
@@ -62,6 +65,7 @@ def _body_entry(body: Body) -> dict[str, Any]:
         "solids": [_solid_entry(solid) for solid in body.solids],
         "position_m": list(body.position),
         "coordinates": COORDINATES[body.motion],
+        **({"on": body.on} if body.on is not None else {}),
     }
 
 
@@ -89,6 +93,15 @@ def _poised(scene: Scene) -> Iterator[Finding]:
         if body.motion == "pivot" and body.mass == 0.0:
             message = f"{body.name} has no mass, so gravity does not turn it: it counts as poised"
             yield Finding("poised", "notice", message, f"Give mass or solids under [bodies.{body.name}] if it is not.")
+
+
+def _weightless(scene: Scene) -> Iterator[Finding]:
+    """A carrier must swing what it carries; saying nothing must not pass for no mass."""
+    for body in scene.bodies:
+        if body.on is not None and body.motion == "pivot" and body.mass == 0.0 and not is_still(scene, scene.body(body.on)):
+            message = f"{body.name} has no mass, so it adds nothing to what {body.on} weighs"
+            cure = f"Give mass or solids under [bodies.{body.name}] unless the inertia of {body.on} holds it already."
+            yield Finding("weightless", "notice", message, cure)
 
 
 def _moving_mass(body: Body) -> float:
@@ -156,7 +169,8 @@ def _reach(body: Body) -> float:
 
 def _place(body: Body) -> str:
     x, y = body.position
-    return f"at ({show(x, 'mm', DIGITS)}, {show(y, 'mm', DIGITS)}), turned by {show(body.angle, '°')}"
+    on = f"on {body.on} " if body.on is not None else ""
+    return f"{on}at ({show(x, 'mm', DIGITS)}, {show(y, 'mm', DIGITS)}), turned by {show(body.angle, '°')}"
 
 
 def _size(body: Body) -> str:
@@ -181,10 +195,10 @@ def _fitting(value: float, units: tuple[str, ...]) -> str:
 
 def _distance_lines(scene: Scene) -> Iterator[str]:
     """Between the pivots of bodies that are declared to touch."""
-    seen = set()
+    seen, start = set(), at_start(scene)
     for contact in scene.contacts:
         names = tuple(dict.fromkeys(side.body for side in contact.sides))
-        first, second = (scene.body(name) for name in names)
+        first, second = (start.body(name) for name in names)
         if frozenset(names) not in seen and first.motion == second.motion == "pivot":
             seen.add(frozenset(names))
             yield f"  centre distance {names[0]} - {names[1]}: {show(math.dist(first.position, second.position), 'mm', DIGITS)}"

@@ -7,14 +7,15 @@ each such part, so that they can be shared (symmetry.py).
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.mechanism.alike import AlikeContacts
+from watchsim.mechanism.cell_frame import TRAVEL, Axis, axes_of, seen_from
 from watchsim.mechanism.chords import chords
-from watchsim.mechanism.model import ARC, CORNER, FREE, FULL, PIVOT, SLIDE, Records
+from watchsim.mechanism.model import ARC, CORNER, FULL, SLIDE, Records
 
 FEW_CONTACTS = 24  # with no more reachable pairs of primitives than this, a search costs more than it saves
 # A cell lets the outermost point of either body travel this share of the larger one's reach: the first where outlines are made
@@ -24,10 +25,11 @@ FEWEST = 8  # cells in a turn
 MOST_PARTS = 1024  # a symmetry with more parts is not worth the table
 
 
-class _Axis(NamedTuple):
-    """One cell coordinate: its number, the size of a cell, cells in a turn (0: it is a length), alike parts of a turn."""
+class _Cells(NamedTuple):
+    """One cell coordinate: its number, what is taken away, the size of a cell, cells in a turn (0: a length), alike parts."""
 
-    coordinate: int
+    c: int
+    on: int
     size: float
     wrap: int
     fold: int
@@ -37,25 +39,29 @@ def choose_cells(bodies: Records, primitives: Records, contacts: Records, pairs:
     """Fill in the cell coordinates of each pair of bodies that has enough reachable contacts to need a search."""
     for pair in pairs:
         ids = near[pair.near_start : pair.near_stop]
-        moving = [b for b in (pair.a, pair.b) if bodies[b].motion in (PIVOT, SLIDE, FREE)]
-        if len(ids) <= FEW_CONTACTS or not 1 <= sum(3 if bodies[b].motion == FREE else 1 for b in moving) <= 3:
+        axes = {b: axes_of(bodies, b, pair.frame) for b in (int(pair.a), int(pair.b))}
+        if len(ids) <= FEW_CONTACTS or not 1 <= sum(map(len, axes.values())) <= 3:
             continue
+        moving = [b for b in axes if axes[b]]
         used = np.unique(np.concatenate([contacts.a[ids], contacts.b[ids]]))
         mine = {b: primitives[used[primitives.body[used] == b]] for b in moving}
         reach = {b: float(np.hypot(*chords(rows, pair.clearance).points.T).max(initial=0.0)) for b, rows in mine.items()}
         piece = _typical_length(primitives[used])
         largest = max(reach.values())
         travel = min(max(FINEST_SHARE * largest, piece), CELL_SHARE * largest) or pair.clearance
-        axes: list[_Axis] = []
+        cells: list[_Cells] = []
         parts = 1
         for b in moving:
-            fold = 1 if bodies[b].motion == SLIDE else AlikeContacts(primitives, contacts, pair, ids, b).fold
+            slides = seen_from(bodies, b, pair.frame).motion == SLIDE
+            fold = 1 if slides else AlikeContacts(primitives, contacts, pair, ids, b).fold
             fold = fold if parts * fold <= MOST_PARTS else 1
             parts *= fold
-            axes += _axes(bodies[b], travel, reach[b], fold)
-        pair.axes, pair.listed = len(axes), 1
-        for i, axis in enumerate(axes):
-            pair[f"c{i}"], pair[f"size{i}"], pair[f"wrap{i}"], pair[f"fold{i}"] = axis
+            # Only a body's own angle, the last of its axes, brings its outline back onto itself.
+            cells += [_cells(axis, travel, reach[b], fold if axis is axes[b][-1] else 1) for axis in axes[b]]
+        pair.axes, pair.listed = len(cells), 1
+        for i, axis in enumerate(cells):
+            for name, value in axis._asdict().items():
+                pair[f"{name}{i}"] = value
 
 
 def _typical_length(rows: Records) -> float:
@@ -65,13 +71,10 @@ def _typical_length(rows: Records) -> float:
     return float(np.median(lengths)) if len(lengths) else 0.0
 
 
-def _axes(body: Any, travel: float, reach: float, fold: int) -> list[_Axis]:
-    """A body's coordinates, with cells in which its points travel about `travel` metres."""
-    cells = max(FEWEST, 2.0 * math.pi * reach / travel)
+def _cells(axis: Axis, travel: float, reach: float, fold: int) -> _Cells:
+    """Cells in which the points of a body within `reach` of its origin travel about `travel` metres."""
+    if axis.kind == TRAVEL:
+        return _Cells(axis.coordinate, axis.on, travel, 0, 1)
+    cells = max(FEWEST, 2.0 * math.pi * (axis.arm + reach) / travel)
     turn = fold * math.ceil(cells / fold)
-    turning = (2.0 * math.pi / turn, turn, fold)
-    if body.motion == PIVOT:
-        return [_Axis(body.first, *turning)]
-    if body.motion == SLIDE:
-        return [_Axis(body.first, travel, 0, 1)]
-    return [_Axis(body.first, travel, 0, 1), _Axis(body.first + 1, travel, 0, 1), _Axis(body.first + 2, *turning)]
+    return _Cells(axis.coordinate, axis.on, 2.0 * math.pi / turn, turn, fold)

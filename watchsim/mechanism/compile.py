@@ -12,26 +12,21 @@ from dataclasses import dataclass
 import numpy as np
 
 from watchsim.mechanism.body import Body
+from watchsim.mechanism.carry import Ride, rides
+from watchsim.mechanism.cell_frame import angle_of, choose_frames
 from watchsim.mechanism.choose_cells import choose_cells
 from watchsim.mechanism.features import features
-from watchsim.mechanism.force import Side, Torque
+from watchsim.mechanism.force import Side
+from watchsim.mechanism.forced import forced_coordinates
 from watchsim.mechanism.model import (
     ARC,
     BODY,
     BODY_PAIR,
-    CONSTANT,
     CONTACT,
-    COORDINATE,
     CORNER,
-    FREE,
     LAW,
     MOTION_CODE,
-    OVER_ANGLE,
-    OVER_TIME,
-    PIVOT,
     PRIMITIVE,
-    SLIDE,
-    TABLE,
     TANGENTIAL_CODE,
     Model,
     Records,
@@ -41,7 +36,6 @@ from watchsim.mechanism.model import (
 from watchsim.mechanism.reachable import reachable
 from watchsim.mechanism.scene import Scene
 
-OVER = {"constant": CONSTANT, "angle": OVER_ANGLE, "time": OVER_TIME}
 CLEARANCE = 2e-3  # of the size: a pair that comes this close counts as touching. More than any tolerance of a run
 
 
@@ -51,11 +45,20 @@ class Compiled:
 
     model: Model
     layers: tuple[str, ...]  # of each primitive
+    owners: tuple[str, ...]  # the body of the scene that each primitive was drawn for
     slices: dict[str, slice]  # coordinates of each body
     size: float  # m, the reach of the largest moving body
     q: np.ndarray
     u: np.ndarray
     fastest: float  # 1/s, largest natural frequency of a spring, 0 without springs
+    against: tuple[tuple[int, int, float], ...] = ()  # coordinates told relative to a carrier: (own, carrier's or -1, angle)
+
+    def relative(self, q: np.ndarray, rates: bool = False) -> np.ndarray:
+        """Rows of coordinates, or of their `rates`, as the scene tells them: carried bodies relative to their carriers."""
+        out = np.array(q) if self.against else q
+        for own, on, angle in self.against:
+            out[:, own] -= (q[:, on] if on >= 0 else 0.0) + (0.0 if rates else angle)
+        return out
 
 
 def compile_scene(scene: Scene, prefilter: bool = True) -> Compiled:
@@ -64,19 +67,31 @@ def compile_scene(scene: Scene, prefilter: bool = True) -> Compiled:
     Without `prefilter` every declared pair of primitives is a candidate everywhere.
     """
     size = scene_size(scene)
-    bodies, slices, q, u = _bodies(scene)
-    primitives, layers, sides = _primitives(scene, size)
-    contacts, laws, pairs = _contacts(scene, sides, primitives)
-    coordinates, tables, knots, fastest = _coordinates(scene, slices, size)
+    hung = rides(scene.bodies)
+    bodies, slices, q, u = _bodies(scene, hung)
+    primitives, layers, owners, sides = _primitives(scene, hung, size)
+    contacts, laws, pairs = _contacts(scene, hung, sides, primitives)
+    forced = forced_coordinates(scene, hung, slices, size)
     pairs.clearance = CLEARANCE * size
+    choose_frames(bodies, pairs)
     near = _near(bodies, primitives, contacts, pairs)
     choose_cells(bodies, primitives, contacts, pairs, near)
     if not prefilter:
         # The cells stay, so that time is parted in the same way; only their answers are not used.
         near = np.arange(len(contacts))
         pairs.near_start, pairs.near_stop, pairs.listed = pairs.start, pairs.stop, 0
-    parts = (bodies, coordinates, tables, knots, primitives, contacts, laws, pairs, near)
-    return Compiled(Model(*(frozen(part) for part in parts)), layers, slices, size, q, u, fastest)
+    parts = (bodies, *forced.parts, primitives, contacts, laws, pairs, near)
+    model = Model(*(frozen(part) for part in parts))
+    return Compiled(model, layers, owners, slices, size, q, u, forced.fastest, _against(hung, bodies))
+
+
+def _against(hung: tuple[Ride, ...], bodies: Records) -> tuple[tuple[int, int, float], ...]:
+    """The angles that the scene tells relative to a carrier."""
+    return tuple(
+        (int(bodies[i].first), angle_of(bodies[ride.turns_with]) if ride.turns_with >= 0 else -1, ride.angle)
+        for i, ride in enumerate(hung)
+        if bodies[i].first >= 0 and (ride.turns_with >= 0 or ride.angle != 0.0)
+    )
 
 
 def scene_size(scene: Scene) -> float:
@@ -93,54 +108,66 @@ def _reach(body: Body) -> float:
     return far
 
 
-def _bodies(scene: Scene) -> tuple[Records, dict[str, slice], np.ndarray, np.ndarray]:
+def _bodies(scene: Scene, hung: tuple[Ride, ...]) -> tuple[Records, dict[str, slice], np.ndarray, np.ndarray]:
     rows = records(BODY, len(scene.bodies))
     slices: dict[str, slice] = {}
     q: list[float] = []
     u: list[float] = []
-    for row, body in zip(rows, scene.bodies, strict=True):
-        row.motion = MOTION_CODE[body.motion]
-        row.x, row.y, row.angle = *body.position, body.angle
-        row.c, row.s = math.cos(body.angle), math.sin(body.angle)
+    for row, body, ride in zip(rows, scene.bodies, hung, strict=True):
+        row.motion, row.carrier = MOTION_CODE[body.motion], ride.host if body.motion == "pivot" else -1
+        row.x, row.y, row.angle = *ride.place, ride.start
+        row.c, row.s = math.cos(row.angle), math.sin(row.angle)
         row.axis_x, row.axis_y = body.axis
-        start = {"fixed": (), "pivot": (body.angle,), "slide": (0.0,), "free": (*body.position, body.angle)}[body.motion]
+        start = {"fixed": (), "pivot": (ride.start,), "slide": (0.0,), "free": (*body.position, body.angle)}[body.motion]
         row.first = len(q) if start else -1
         if start:
             slices[body.name] = slice(len(q), len(q) + len(start))
         q.extend(start)
-        u.extend(body.velocity if body.velocity else (0.0,) * len(start))
+        velocity = (ride.spin,) if body.motion == "pivot" else body.velocity
+        u.extend(velocity if velocity else (0.0,) * len(start))
     return rows, slices, np.array(q, float), np.array(u[: len(q)], float)
 
 
-def _primitives(scene: Scene, size: float) -> tuple[Records, tuple[str, ...], dict[Side, np.ndarray]]:
-    """All primitives that a contact names, their layers, and for each side of a contact the numbers of its primitives."""
+def _primitives(
+    scene: Scene, hung: tuple[Ride, ...], size: float
+) -> tuple[Records, tuple[str, ...], tuple[str, ...], dict[Side, np.ndarray]]:
+    """All primitives that a contact names, their layers, their bodies, and by side of a contact the numbers of its primitives.
+
+    Outlines of a part that is rigid with a moving body become outlines of that one.
+    """
     asked = list(dict.fromkeys(side for contact in scene.contacts for side in contact.sides))
     names = [body.name for body in scene.bodies]
     blocks: list[Records] = []
     layers: list[str] = []
+    owners: list[str] = []
     of_layer: dict[tuple[str, str], np.ndarray] = {}
     for side in asked:
-        body = scene.body(side.body)
+        body, ride = scene.body(side.body), hung[names.index(side.body)]
         for layer in body.layers if side.layer is None else (side.layer,):
             if (side.body, layer) in of_layer:
                 continue
-            found = [features(loop, names.index(side.body), size) for loop in body.loops if loop.layer == layer]
+            loops = [loop for loop in body.loops if loop.layer == layer]
+            if ride.host == ride.part_of:
+                loops = [loop.moved(ride.angle, ride.place) for loop in loops]
             start = len(layers)
-            for block in found:
+            for block in (features(loop, ride.part_of, size) for loop in loops):
                 for side_of in ("before", "after"):
                     block[side_of][block[side_of] >= 0] += len(layers)
                 blocks.append(block)
                 layers.extend([layer] * len(block))
+                owners.extend([side.body] * len(block))
             of_layer[side.body, layer] = np.arange(start, len(layers))
     sides = {}
     for side in asked:
         chosen = scene.body(side.body).layers if side.layer is None else (side.layer,)
         sides[side] = np.concatenate([of_layer[side.body, layer] for layer in chosen] or [np.zeros(0, int)]).astype(int)
     rows = np.concatenate(blocks).view(np.recarray) if blocks else records(PRIMITIVE, 0)
-    return rows, tuple(layers), sides
+    return rows, tuple(layers), tuple(owners), sides
 
 
-def _contacts(scene: Scene, sides: dict[Side, np.ndarray], primitives: Records) -> tuple[Records, Records, Records]:
+def _contacts(
+    scene: Scene, hung: tuple[Ride, ...], sides: dict[Side, np.ndarray], primitives: Records
+) -> tuple[Records, Records, Records]:
     """Every declared pair (circle on A, line or arc on B), grouped by pair of bodies; the laws; the pairs of bodies."""
     laws = records(LAW, len(scene.contacts))
     found: dict[tuple[int, int], list[np.ndarray]] = {}
@@ -152,7 +179,7 @@ def _contacts(scene: Scene, sides: dict[Side, np.ndarray], primitives: Records) 
         first, last = (sides[side] for side in contact.sides)
         a, b = _touching(primitives, first, last)
         block = np.stack([a, b, np.full(len(a), group)], axis=1)
-        i, j = (names.index(side.body) for side in contact.sides)
+        i, j = (hung[names.index(side.body)].part_of for side in contact.sides)
         found.setdefault((min(i, j), max(i, j)), []).append(block)
     pairs = records(BODY_PAIR, len(found))
     blocks = []
@@ -198,75 +225,6 @@ def _touching(primitives: Records, first: np.ndarray, last: np.ndarray) -> tuple
     # Two convex arcs are one contact, not two: the rounder one plays the circle, of equal ones the first set's.
     one, two = ~both_round(a, b) | (radius[a] <= radius[b]), ~both_round(c, d) | (radius[c] < radius[d])
     return np.concatenate([a[one], c[two]]), np.concatenate([b[one], d[two]])
-
-
-def _coordinates(scene: Scene, slices: dict[str, slice], size: float) -> tuple[Records, Records, np.ndarray, float]:
-    """Coordinates with their forces; force tables and their knots; the largest natural frequency."""
-    count = sum(part.stop - part.start for part in slices.values())
-    rows = records(COORDINATE, count)
-    numbers = {body.name: i for i, body in enumerate(scene.bodies)}
-    for body in scene.bodies:
-        if body.name in slices:
-            _inertias(scene, body, numbers[body.name], rows[slices[body.name]], size)
-    for spring in scene.springs:
-        row = rows[_driven(scene, slices, spring.body)]
-        # Several springs on one coordinate add up to one: stiffnesses add, rests average.
-        total = row.stiffness + spring.stiffness
-        row.rest = (row.stiffness * row.rest + spring.stiffness * spring.rest) / total
-        row.stiffness = total
-    for damping in scene.damping:
-        row = rows[_driven(scene, slices, damping.body)]
-        row.viscous += damping.viscous
-        row.quadratic += damping.quadratic
-        row.coulomb += damping.coulomb
-    tables, knots = _tables(scene, slices, rows)
-    tabled = {int(table.coordinate) for table in tables}
-    for i, row in enumerate(rows):
-        row.linear = row.quadratic == 0.0 and row.weight_x == 0.0 and row.weight_y == 0.0 and i not in tabled
-    fastest = float(np.sqrt(np.max(rows.stiffness / rows.mass, initial=0.0)))
-    pushed = float(np.sqrt(np.max(np.abs(rows.force) / (rows.mass * rows.scale), initial=0.0)))
-    rows.rate = fastest or pushed or 1.0
-    return rows, tables, knots, fastest
-
-
-def _driven(scene: Scene, slices: dict[str, slice], name: str) -> int:
-    """The coordinate on which a body's spring, torque or damping acts: its angle, or a sliding body's travel."""
-    part = slices[name]
-    return part.stop - 1 if scene.body(name).motion == "free" else part.start
-
-
-def _inertias(scene: Scene, body: Body, number: int, rows: Records, size: float) -> None:
-    """Masses, scales and gravity of one body's coordinates."""
-    gx, gy = scene.gravity
-    rows.body = number
-    motion = MOTION_CODE[body.motion]
-    if motion == PIVOT:
-        cx, cy = body.centre_of_mass
-        rows.mass, rows.scale = body.inertia, 1.0
-        rows.weight_x, rows.weight_y = body.mass * (cx * gx + cy * gy), body.mass * (cx * gy - cy * gx)
-    elif motion == SLIDE:
-        rows.mass, rows.scale = body.mass, size
-        rows.force = body.mass * (gx * body.axis[0] + gy * body.axis[1])
-    elif motion == FREE:
-        rows.mass, rows.scale = (body.mass, body.mass, body.inertia), (size, size, 1.0)
-        rows.force = (body.mass * gx, body.mass * gy, 0.0)
-
-
-def _tables(scene: Scene, slices: dict[str, slice], rows: Records) -> tuple[Records, np.ndarray]:
-    """Constant torques go into the coordinates, the others into tables."""
-    tabled: list[Torque] = []
-    for torque in scene.torques:
-        if torque.over == "constant":
-            rows[_driven(scene, slices, torque.body)].force += torque.value
-        else:
-            tabled.append(torque)
-    tables = records(TABLE, len(tabled))
-    knots: list[tuple[float, float]] = []
-    for row, torque in zip(tables, tabled, strict=True):
-        row.coordinate, row.over = _driven(scene, slices, torque.body), OVER[torque.over]
-        row.start, row.count = len(knots), len(torque.table)
-        knots.extend(torque.table)
-    return tables, np.array(knots, float).reshape(len(knots), 2)
 
 
 def _near(bodies: Records, primitives: Records, contacts: Records, pairs: Records) -> np.ndarray:

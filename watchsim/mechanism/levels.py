@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.revolution import reach
 from watchsim.mechanism.body import Body
+from watchsim.mechanism.carry import at_start
 from watchsim.mechanism.scene import Scene
 from watchsim.mechanism.solid import HAIRSPRING, LYING, PLATE, UPRIGHT, Solid
 
@@ -89,9 +90,9 @@ def _heights(scene: Scene, flat: Sequence[Slab]) -> list[float]:
     """The middle of each slab, by the number of the level it finds free."""
     from watchsim.geometry.regions import region  # shapely is slow to load, and `check` has no need of it
 
-    regions = []
+    regions, start = [], at_start(scene)
     for slab in flat:
-        body = scene.body(slab.body)
+        body = start.body(slab.body)
         regions.append(region((loop.moved(body.angle, body.position) for loop in slab.loops), DEVIATION))
     groups = _joined(_groups(scene, flat), flat, regions)
     levels: list[list[int]] = []

@@ -15,6 +15,7 @@ from typing import Any
 from watchsim.mechanism.errors import Fault, Faults, SceneError
 from watchsim.mechanism.locate import key_lines
 from watchsim.mechanism.read_bodies import read_bodies
+from watchsim.mechanism.read_carriers import note_carriers
 from watchsim.mechanism.read_contacts import read_contacts
 from watchsim.mechanism.read_forces import read_damping, read_springs, read_torques
 from watchsim.mechanism.read_settings import read_expectations, read_heading, read_lift_angle, read_run
@@ -50,6 +51,7 @@ def from_mapping(mapping: dict[str, Any], path: Path | None, faults: Faults | No
     torques = read_torques(mapping, bodies, faults)
     damping = read_damping(mapping, bodies, springs, faults)
     contacts = read_contacts(mapping, bodies, sound, heading.tangential_law, faults)
+    note_carriers(bodies, damping, contacts, faults)
     duration, record, tolerance = read_run(mapping, faults)
     lift_angle = read_lift_angle(mapping, faults)
     expect = read_expectations(mapping, faults)

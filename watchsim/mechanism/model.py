@@ -34,6 +34,7 @@ BODY = np.dtype(
         ("axis_y", "f8"),
         ("c", "f8"),  # cosine and sine of `angle`
         ("s", "f8"),
+        ("carrier", "i8"),  # the moving body in whose frame (x, y) lies, -1: the movement
     ]
 )
 
@@ -55,7 +56,30 @@ COORDINATE = np.dtype(
     ]
 )
 
-TABLE = np.dtype([("coordinate", "i8"), ("over", "i8"), ("start", "i8"), ("count", "i8")])
+# What acts at the pivot of a body that is carried by a turning one: on its coordinate, and back on that of its carrier.
+# Angles are differences of the two; the fields of `coordinate` itself are then zero.
+JOINT = np.dtype(
+    [
+        ("coordinate", "i8"),
+        ("on", "i8"),  # the carrier's angle
+        ("force", "f8"),
+        ("viscous", "f8"),
+        ("quadratic", "f8"),
+        ("coulomb", "f8"),  # always 0
+        ("stiffness", "f8"),
+        ("rest", "f8"),
+    ]
+)
+
+TABLE = np.dtype(
+    [
+        ("coordinate", "i8"),
+        ("over", "i8"),
+        ("start", "i8"),
+        ("count", "i8"),
+        ("on", "i8"),  # the carrier's angle, as of a joint; -1: none
+    ]
+)
 
 PRIMITIVE = np.dtype(
     [
@@ -118,6 +142,9 @@ BODY_PAIR = np.dtype(
         ("c0", "i8"),  # cell coordinates and their cell sizes; a pivot's index wraps after `wrap` cells (0: no wrap)
         ("c1", "i8"),
         ("c2", "i8"),
+        ("on0", "i8"),  # the cell coordinate is c less this coordinate, -1: none
+        ("on1", "i8"),
+        ("on2", "i8"),
         ("size0", "f8"),
         ("size1", "f8"),
         ("size2", "f8"),
@@ -127,6 +154,7 @@ BODY_PAIR = np.dtype(
         ("fold0", "i8"),  # by 1/fold of a turn the body's outline comes back onto itself
         ("fold1", "i8"),
         ("fold2", "i8"),
+        ("frame", "i8"),  # the body that carries both, in whose frame the cells are told, -1: the movement
     ]
 )
 
@@ -136,6 +164,7 @@ class Model(NamedTuple):
 
     bodies: Records
     coordinates: Records
+    joints: Records
     tables: Records
     knots: NDArray[np.float64]  # (knots, 2) abscissa, value of all tables
     primitives: Records

@@ -18,6 +18,7 @@ from watchsim.geometry.loop import Loop
 from watchsim.geometry.polyline import polyline
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point
 from watchsim.mechanism.body import Body
+from watchsim.mechanism.carry import at_start
 from watchsim.mechanism.errors import Fault
 from watchsim.mechanism.force import Side
 from watchsim.mechanism.locate import key_lines
@@ -46,7 +47,7 @@ class Overlap:
 
 def overlaps(scene: Scene) -> list[Overlap]:
     """The deepest overlap of every declared contact whose outlines overlap by more than about a nanometre at the start."""
-    found = []
+    found, scene = [], at_start(scene)
     for i, contact in enumerate(scene.contacts):
         sides = [list(_layers(scene.body(side.body), side)) for side in contact.sides]
         pairs = ((a, b) for a in sides[0] for b in sides[1])
@@ -61,7 +62,7 @@ def overlap_faults(scene: Scene) -> list[Fault]:
     lines = key_lines(scene.path.read_text(encoding="utf-8-sig")) if scene.path and scene.path.is_file() else {}
     faults = []
     for overlap in overlaps(scene):
-        moving = next(side.body for side in overlap.sides if scene.body(side.body).motion != "fixed")
+        moving = next((side.body for side in overlap.sides if scene.body(side.body).motion != "fixed"), overlap.sides[0].body)
         key = f"bodies.{moving}.position"
         line = lines.get(key) or lines.get(f"bodies.{moving}")
         place = f"{scene.path or 'scene'}:{line}" if line else str(scene.path or "scene")

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from watchsim.mechanism.cell_frame import seen_from
 from watchsim.mechanism.chords import Chords, chords
 from watchsim.mechanism.model import FIXED, PIVOT, SLIDE, Records
 
@@ -34,7 +35,9 @@ class _Span(NamedTuple):
 def reachable(bodies: Records, primitives: Records, contacts: Records, pair: Any) -> NDArray[np.bool_]:
     """For each contact of one pair of bodies: can its primitives come within the pair's clearance at any pose?"""
     part = contacts[pair.start : pair.stop]
-    a, b = bodies[pair.a], bodies[pair.b]
+    a, b = (seen_from(bodies, int(number), int(pair.frame)) for number in (pair.a, pair.b))
+    if any(body.carrier >= 0 and bodies[body.carrier].motion != PIVOT for body in (a, b)):
+        return np.ones(len(part), bool)
     a_first = primitives.body[part.a] == pair.a
     on_a, on_b = np.where(a_first, part.a, part.b), np.where(a_first, part.b, part.a)
     if a.motion != PIVOT and (b.motion == PIVOT or a.motion == FIXED):
@@ -43,23 +46,39 @@ def reachable(bodies: Records, primitives: Records, contacts: Records, pair: Any
     others, row_b = np.unique(on_b, return_inverse=True)
     one = chords(primitives[movers], 0.5 * pair.clearance)
     two = chords(primitives[others], 0.5 * pair.clearance)
+    centre_a, centre_b = _centre(bodies, a), _centre(bodies, b)
     if a.motion == PIVOT and b.motion == PIVOT:
-        ring_a, ring_b = _away(one, one.points, pair.clearance).of(row_a), _away(two, two.points, 0.0).of(row_b)
-        distance = math.hypot(a.x - b.x, a.y - b.y)
+        ring_a, ring_b = _ring(a, one, pair.clearance).of(row_a), _ring(b, two, 0.0).of(row_b)
+        distance = math.dist(centre_a, centre_b)
         # Two rings whose centres are this far apart have a point in common.
         apart = (distance > ring_a.high + ring_b.high) | (ring_a.low > distance + ring_b.high)
         return np.asarray(~(apart | (ring_b.low > distance + ring_a.high)))
     if a.motion == PIVOT and b.motion == FIXED:
-        fixed = _away(two, _world(b, two.points) - (a.x, a.y), 0.0)
-        return _away(one, one.points, pair.clearance).of(row_a).meets(fixed.of(row_b))
+        fixed = _away(two, _world(b, two.points) - centre_a, 0.0)
+        return _ring(a, one, pair.clearance).of(row_a).meets(fixed.of(row_b))
     if a.motion == PIVOT and b.motion == SLIDE:
-        strip = _across(two, _world(b, two.points) - (a.x, a.y), b, 0.0)
-        far = _away(one, one.points, pair.clearance).of(row_a).high
+        strip = _across(two, _world(b, two.points) - centre_a, b, 0.0)
+        far = _ring(a, one, pair.clearance).of(row_a).high
         return _Span(-far, far).meets(strip.of(row_b))
     if a.motion == SLIDE and (b.motion == FIXED or (b.motion == SLIDE and _parallel(a, b))):
         strip = _across(one, _world(a, one.points), a, pair.clearance)
         return strip.of(row_a).meets(_across(two, _world(b, two.points), a, 0.0).of(row_b))
     return np.ones(len(part), bool)
+
+
+def _centre(bodies: Records, body: Any) -> tuple[float, float]:
+    """About which point a pivoted body, or its carrier, turns."""
+    turning = bodies[body.carrier] if body.carrier >= 0 else body
+    return float(turning.x), float(turning.y)
+
+
+def _ring(body: Any, drawn: Chords, room: float) -> _Span:
+    """Distances of a pivoted body's primitives from that point, widened by `room`, at any angles."""
+    own = _away(drawn, drawn.points, room)
+    if body.carrier < 0:
+        return own
+    arm = math.hypot(body.x, body.y)
+    return _Span(np.maximum(0.0, np.maximum(arm - own.high, own.low - arm)), arm + own.high)
 
 
 def _world(body: Any, points: Array) -> Array:

@@ -14,13 +14,13 @@ from watchsim.geometry.primitives import Point
 from watchsim.mechanism.body import MOTIONS, Body
 from watchsim.mechanism.errors import Faults
 from watchsim.mechanism.outlines import Outlines, read_outlines
-from watchsim.mechanism.schema import BODY
+from watchsim.mechanism.schema import BODY, nearest
 from watchsim.mechanism.solid import more_seen
 from watchsim.mechanism.table import NAN, Table, shown
 from watchsim.mechanism.weight import read_inertias
 from watchsim.units import SPEED
 
-REFUSED = ("on", "adjust")
+REFUSED = ("adjust",)
 
 
 def read_bodies(mapping: object, folder: Path, faults: Faults) -> tuple[tuple[Body, ...], tuple[Finding, ...], frozenset[str]]:
@@ -39,7 +39,7 @@ def read_bodies(mapping: object, folder: Path, faults: Faults) -> tuple[tuple[Bo
             table.fault("", "a body's name must not be empty or contain a point: paths such as bodies.lever.angle use it")
         outlines = read_outlines(table, folder)
         shared = users[_drawing_path(entry, folder)] > 1
-        bodies.append(_body(name, table, motion, outlines, () if shared else outlines.rest))
+        bodies.append(_body(name, table, motion, outlines, () if shared else outlines.rest, _carrier(table, name, mapping)))
         findings.extend(outlines.findings)
         sound.update([name] if outlines.sound else [])
     return tuple(bodies), tuple(dict.fromkeys(findings)), frozenset(sound)
@@ -57,7 +57,7 @@ def _drawing_path(entry: object, folder: Path) -> Path | None:
     return folder / name if isinstance(name, str) else None
 
 
-def _body(name: str, table: Table, motion: str, outlines: Outlines, rest: tuple[Loop, ...]) -> Body:
+def _body(name: str, table: Table, motion: str, outlines: Outlines, rest: tuple[Loop, ...], on: str | None) -> Body:
     """Everything is read even after a fault, so that all faults of a body are found at once."""
     table.one_of("motion", MOTIONS, "pivot")
     for key in REFUSED:
@@ -78,7 +78,22 @@ def _body(name: str, table: Table, motion: str, outlines: Outlines, rest: tuple[
         loops=_shifted(outlines.loops, shift),
         decoration=(*_shifted(rest, shift), *more_seen(inertias.solids)),
         solids=inertias.solids,
+        on=on,
     )
+
+
+def _carrier(table: Table, name: str, bodies: Mapping[str, Any]) -> str | None:
+    """The name of the body that carries this one; None without, or where there is no such body."""
+    if "on" not in table:
+        return None
+    on = table.text("on")
+    if on in bodies and on != name:
+        return on
+    if on:
+        others = [other for other in bodies if other != name]
+        complaint = "a body cannot carry itself" if on == name else f"there is no such body. {nearest(on, others)}"
+        table.fault("on", complaint, with_value=True)
+    return None
 
 
 def _shifted(loops: tuple[Loop, ...], shift: Point) -> tuple[Loop, ...]:

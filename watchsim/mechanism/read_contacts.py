@@ -74,9 +74,13 @@ def _sides(table: Table, known: Known) -> tuple[Side, Side]:
     first, second = (_side(table, i, name, known) for i, name in enumerate(names))
     if first.body and first.body == second.body:
         table.fault("between", f"{first.body} cannot touch itself: a body is rigid", with_value=True)
-    elif first.body and second.body and all(known.bodies[side.body].motion == "fixed" for side in (first, second)):
+    elif first.body and second.body and all(_is_fixed(known.bodies[side.body]) for side in (first, second)):
         table.fault("between", f"{first.body} and {second.body} are both fixed, so this contact does nothing", with_value=True)
     return first, second
+
+
+def _is_fixed(body: Body) -> bool:
+    return body.motion == "fixed" and body.on is None
 
 
 def _side(table: Table, i: int, name: str, known: Known) -> Side:

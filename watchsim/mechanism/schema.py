@@ -74,7 +74,6 @@ SECTIONS = (*TABLES, *NAMED, *LISTED)
 
 # The one list of what a scene may ask for and the simulation does not do yet.
 UNSUPPORTED = {
-    "on": "a body carried by another one is not simulated yet. Leave the key out and give the position in the movement",
     "adjust": "turning or shifting one layer of a drawing is not supported yet. Change the drawing and leave the key out",
 }
 

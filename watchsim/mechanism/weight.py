@@ -44,7 +44,10 @@ def read_inertias(table: Table, motion: str, outlines: Outlines) -> Inertias:
 def _uniform_plate(table: Table, motion: str, outlines: Outlines) -> Weight | None:
     """Where the motion asks for it, a uniform plate of the outlines with the mass that was given."""
     closed = tuple(loop for loop in outlines.loops if loop.closed)
-    wanted = motion == "free" or (motion == "pivot" and "mass" in table)
+    carried = "on" in table
+    # Of a carried body whose inertia is written, the outline is not the whole: it counts as poised.
+    by_outline = (motion == "pivot" and not (carried and "inertia" in table)) or (motion == "fixed" and carried)
+    wanted = motion == "free" or ("mass" in table and by_outline)
     if not closed or not outlines.sound or not wanted:
         return None
     try:

@@ -37,9 +37,10 @@ SMALLEST = 9.0  # pixels; smaller text cannot be read
 
 @dataclass(frozen=True)
 class Reading:
-    """A changing number: whose, how it is told, and where its last pixel and its baseline are."""
+    """A changing number: whose, against which carrier, how it is told, and where its last pixel and its baseline are."""
 
     body: str
+    on: str | None
     text: Callable[[Array], str]
     right: int
     baseline: int
@@ -61,7 +62,8 @@ class Layout:
         """Write time and read-outs for the instant `t` and the poses x, y, angle of its bodies."""
         self.time.write(self.clock.text(t, self.step), *self.time_at, out_pixels)
         for item in self.readings:
-            self.small.write(item.text(frames[item.body]), item.right, item.baseline, out_pixels)
+            own = frames[item.body] if item.on is None else frames[item.body] - frames[item.on]
+            self.small.write(item.text(own), item.right, item.baseline, out_pixels)
 
 
 def lay_out(figure: Figure, run: Trajectory, window: Window, speed: float | None, step: float) -> Layout:
@@ -172,7 +174,7 @@ def _readings(figure: Figure, run: Trajectory, window: Window, small: Lettering)
     for rank, body in enumerate(run.scene.bodies):
         if body.name not in run.slices:
             continue
-        tell, ends = reading(body, sampled(run, body, window))
+        tell, ends = reading(body, _told(run, body, window))
         name = _words(figure, body.name, (0.0, 0.0), small.size, INK)
         taken = 1.5 * CHIP * small.size + _width(name) + 0.8 * small.size + max(small.width(text) for text in ends)
         if x > left and x + taken > limit:
@@ -181,6 +183,12 @@ def _readings(figure: Figure, run: Trajectory, window: Window, small: Lettering)
         x += taken + GAP * unit
     placed = tuple(_place(figure, cell, round(PAD * unit + (row - cell.row) * line), small.size) for cell in cells)
     return placed, 1.6 * PAD * unit + (row + 1) * line
+
+
+def _told(run: Trajectory, body: Body, window: Window) -> Array:
+    """The body's poses as its reading tells them: a carried one against its carrier."""
+    own = sampled(run, body, window)
+    return own if body.on is None else own - sampled(run, run.scene.body(body.on), window)
 
 
 def _place(figure: Figure, cell: _Cell, base: int, size: float) -> Reading:
@@ -198,4 +206,4 @@ def _place(figure: Figure, cell: _Cell, base: int, size: float) -> Reading:
     )
     figure.add_artist(box)
     cell.name.set_position((x + 1.5 * chip, base))
-    return Reading(cell.body.name, cell.tell, round(x + cell.taken), base)
+    return Reading(cell.body.name, cell.body.on, cell.tell, round(x + cell.taken), base)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.mechanism.body import Body
+from watchsim.simulation.frames import frames as body_frames
 from watchsim.simulation.trajectory import Trajectory
 
 Array = NDArray[np.float64]
@@ -85,18 +86,7 @@ def choose(run: Trajectory, names: Sequence[str] | None) -> tuple[Body, ...]:
 def poses(run: Trajectory, times: Array) -> dict[str, Array]:
     """For every body (len(times), 3): x, y (m) and angle (rad) of its frame."""
     q, _ = run.sample(times)
-    return {body.name: _frames(body, q[:, run.slices.get(body.name, slice(0, 0))]) for body in run.scene.bodies}
-
-
-def _frames(body: Body, q: Array) -> Array:
-    if body.motion == "free":
-        return q
-    frames = np.tile([*body.position, body.angle], (len(q), 1))
-    if body.motion == "pivot":
-        frames[:, 2] = q[:, 0]
-    elif body.motion == "slide":
-        frames[:, :2] += q * np.array(body.axis)
-    return frames
+    return body_frames(run.scene, run.slices, q)
 
 
 def placed(points: Array, frames: Array) -> Array:
@@ -120,7 +110,7 @@ def swept(run: Trajectory, body: Body, window: Window) -> Array:
     A pivoted body is turned evenly through the angles it really reaches (at most one turn), others are sampled in time.
     """
     frames = sampled(run, body, window)
-    if body.motion != "pivot":
+    if body.motion != "pivot" or body.on is not None:
         return frames
     low, high = float(frames[:, 2].min()), float(frames[:, 2].max())
     high = min(high, low + 2.0 * math.pi)

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from watchsim.geometry.export import Piece, Placed, laid, plate, revolved, turned_about
 from watchsim.geometry.primitives import TURN
 from watchsim.mechanism.body import Body
+from watchsim.mechanism.carry import at_start
 from watchsim.mechanism.levels import Slab
 from watchsim.mechanism.scene import Scene
 from watchsim.mechanism.solid import HAIRSPRING, LYING, UPRIGHT
@@ -19,7 +20,7 @@ METALS = ((12e3, GILT), (8.0e3, BRASS), (5e3, STEEL), (3e3, RUBY))  # kg/m³ fro
 def placed_solids(scene: Scene, slabs: tuple[Slab, ...], deviation: float) -> list[Placed]:
     """The solids of every body that has any, in its frame, with its pose at the start; chords within `deviation` metres."""
     found = []
-    for rank, body in enumerate(scene.bodies):
+    for rank, body in enumerate(at_start(scene).bodies):
         pieces = [piece for slab in slabs if slab.body == body.name for piece in _pieces(slab, body, rank, deviation)]
         if pieces:
             found.append(Placed(body.name, _named_apart(pieces), body.position, body.angle))

@@ -17,6 +17,7 @@ from matplotlib.transforms import Affine2D, Bbox, IdentityTransform, Transform
 from numpy.typing import NDArray
 
 from watchsim.geometry.primitives import Arc
+from watchsim.mechanism.carry import at_start, is_still
 from watchsim.render.edges import Edges, edge_paths
 from watchsim.render.layout import draw_key, draw_rules, draw_scale, lay_out
 from watchsim.render.palette import BACKGROUND, CONTACT, INK
@@ -92,8 +93,9 @@ class Stage:
     def _compose(self, run: Trajectory) -> list[PathPatch]:
         """Patches to draw in every frame, in order; those that never move go to the figure itself."""
         shapes = parts(run.scene, CHORD / self.view.scale, HATCH * self._unit / self.view.scale)
-        still = {body.name for body in run.scene.bodies if body.motion == "fixed" and self.view.follow is None}
-        frames = {body.name: np.array([*body.position, body.angle]) for body in run.scene.bodies}
+        start = at_start(run.scene).bodies
+        still = {body.name for body in run.scene.bodies if is_still(run.scene, body) and self.view.follow is None}
+        frames = {body.name: np.array([*body.position, body.angle]) for body in start}
         for body in still:
             self._transforms.pop(body)
         live: list[PathPatch] = []
@@ -145,14 +147,20 @@ class Stage:
         )
 
     def _pivots(self, run: Trajectory) -> list[PathPatch]:
-        """A small ring at every pivot."""
-        places = [body.position for body in run.scene.bodies if body.motion == "pivot"]
-        if not places or self.view.follow is not None:
+        """A small ring at every pivot; those on carriers move with them."""
+        pivoted = [body for body in run.scene.bodies if body.motion == "pivot"]
+        if not pivoted or self.view.follow is not None:
             return []
-        matrix = self.view.matrix(self.view.centre)
-        rings = _rings(np.array(places) @ matrix[:2, :2].T + matrix[:2, 2], 3.2 * max(self._unit, 0.5))
+        radius, matrix = 3.2 * max(self._unit, 0.5), self.view.matrix(self.view.centre)
         look = {"facecolor": BACKGROUND, "edgecolor": INK, "linewidth": max(1.3 * self._unit, 0.8)}
-        return [self._own(PathPatch(rings, transform=IdentityTransform(), **look))]
+        places = [body.position for body in pivoted if body.on is None]
+        patches = []
+        if places:
+            rings = _rings(np.array(places) @ matrix[:2, :2].T + matrix[:2, 2], radius)
+            patches.append(self._own(PathPatch(rings, transform=IdentityTransform(), **look)))
+        moved = _rings(np.zeros((1, 2)), radius / self.view.scale)
+        names = [body.name for body in pivoted if body.on is not None]
+        return patches + [self._own(PathPatch(moved, transform=self._transforms[name], **look)) for name in names]
 
     def _marks(self, points: Array, mark: str) -> list[PathPatch]:
         """Rings with a pale rim, to be seen on steel, brass and ruby alike."""

@@ -48,7 +48,7 @@ def still(
 
 def _at_rest(scene: Scene, compiled: Compiled) -> Trajectory:
     """A run in which nothing moves."""
-    q = np.stack([compiled.q, compiled.q])
+    q = compiled.relative(np.stack([compiled.q, compiled.q]))
     rest = np.zeros_like(q)
     events = np.zeros(0, EVENT_DTYPE)
     return Trajectory(scene, np.array([0.0, 1.0]), q, rest, rest, compiled.slices, events, (), Stop.DURATION)

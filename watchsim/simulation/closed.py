@@ -9,6 +9,7 @@ from watchsim.contact.lookup import UNKNOWN, candidate, candidates
 from watchsim.dynamics.linear import copy
 from watchsim.jit import kernel
 from watchsim.simulation.handover import continues_active
+from watchsim.simulation.sleep import is_at_rest
 from watchsim.simulation.state import ROOM
 
 
@@ -24,12 +25,6 @@ def insert(ids, count, k):
         ids[j] = ids[j - 1]
     ids[place] = k
     return count + 1
-
-
-@kernel
-def _is_asleep(model, state, b):
-    first = model.bodies[b].first
-    return first < 0 or state.awake[first] == 0
 
 
 @kernel
@@ -49,7 +44,7 @@ def gather(model, cells, state, options, scratch):
         m = insert(ids, m, state.numbers[4])
     for p in range(len(model.pairs)):
         pair = model.pairs[p]
-        if _is_asleep(model, state, pair.a) and _is_asleep(model, state, pair.b) and state.clock[0] > 0.0:
+        if is_at_rest(model, state, pair.a) and is_at_rest(model, state, pair.b) and state.clock[0] > 0.0:
             continue
         how, start, count = candidates(model, cells, p, state.q)
         if how == UNKNOWN:

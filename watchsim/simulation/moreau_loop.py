@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from watchsim.contact.kinematics import ClosedRef
+from watchsim.contact.lookup import along
 from watchsim.dynamics.linear import copy
 from watchsim.jit import entry, inlined, kernel
 from watchsim.mechanism.model import CellsRef, ModelRef
@@ -34,27 +35,39 @@ def _sign(x):
 @kernel
 def _passages(model, state, h, work, q, u, record):
     """Turning points and rest passages of sprung bodies within the step that ends at (q, u): the step is a parabola."""
-    start = state.clock[0]
     for i in range(len(u)):
         coordinate = model.coordinates[i]
-        if coordinate.stiffness == 0.0:
-            continue
-        bend = (u[i] - work.u[i]) / h
-        side = _sign(u[i])
-        if side != 0 and side != state.side_u[i]:
-            if state.side_u[i] != 0:
-                tau = h * work.u[i] / (work.u[i] - u[i]) if work.u[i] * u[i] < 0.0 else 0.0
-                state.clock[0] = start + tau
-                keep_event(state, record, TURN_EVENT, -1, coordinate.body, state.q[i] + 0.5 * work.u[i] * tau)
-            state.side_u[i] = side
-        before, side = state.q[i] - coordinate.rest, _sign(q[i] - coordinate.rest)
-        if side != 0 and side != state.side_q[i]:
-            if state.side_q[i] != 0:
-                root = math.sqrt(max(0.0, work.u[i] * work.u[i] - 2.0 * bend * before))
-                tau = min(h, max(0.0, -2.0 * before / (work.u[i] + math.copysign(root, work.u[i]))))
-                state.clock[0] = start + tau
-                keep_event(state, record, CROSS_EVENT, -1, coordinate.body, work.u[i] + bend * tau)
-            state.side_q[i] = side
+        if coordinate.stiffness != 0.0:
+            _keep_of(model, state, h, (i, -1, coordinate.rest), (state.q, work.u, q, u), record)
+    for j in range(len(model.joints)):
+        joint = model.joints[j]
+        if joint.stiffness != 0.0:
+            _keep_of(model, state, h, (joint.coordinate, joint.on, joint.rest), (state.q, work.u, q, u), record)
+
+
+@kernel
+def _keep_of(model, state, h, spring, ends, record):
+    """The same for one spring, (coordinate, coordinate of the carrier or -1, rest); `ends`: q and u before and after."""
+    start = state.clock[0]
+    i, on, rest = spring
+    body = model.coordinates[i].body
+    before, fast, after, last = along(ends[0], i, on), along(ends[1], i, on), along(ends[2], i, on), along(ends[3], i, on)
+    bend = (last - fast) / h
+    side = _sign(last)
+    if side != 0 and side != state.side_u[i]:
+        if state.side_u[i] != 0:
+            tau = h * fast / (fast - last) if fast * last < 0.0 else 0.0
+            state.clock[0] = start + tau
+            keep_event(state, record, TURN_EVENT, -1, body, before + 0.5 * fast * tau)
+        state.side_u[i] = side
+    way, side = before - rest, _sign(after - rest)
+    if side != 0 and side != state.side_q[i]:
+        if state.side_q[i] != 0:
+            root = math.sqrt(max(0.0, fast * fast - 2.0 * bend * way))
+            tau = min(h, max(0.0, -2.0 * way / (fast + math.copysign(root, fast))))
+            state.clock[0] = start + tau
+            keep_event(state, record, CROSS_EVENT, -1, body, fast + bend * tau)
+        state.side_q[i] = side
     state.clock[0] = start
 
 
@@ -112,6 +125,7 @@ def _by_reference(work):
         work.free,
         work.force,
         work.damping,
+        work.joint,
         work.mass,
         work.inverse,
         work.G,

@@ -13,10 +13,9 @@ from watchsim.contact.gaps import extent_margin, normal_gap
 from watchsim.contact.kinematics import contact_kinematics
 from watchsim.contact.lookup import UNKNOWN, candidate, candidates
 from watchsim.contact.poses import place, point_of
-from watchsim.dynamics.forces import driving_force, table_value
+from watchsim.dynamics.forces import driving_force, joint_damping, joint_energy, stretch, table_force
 from watchsim.dynamics.linear import copy
 from watchsim.jit import kernel
-from watchsim.mechanism.model import OVER_TIME
 from watchsim.simulation.moreau_impact import friction_cones, solve_percussions
 from watchsim.simulation.moreau_prox import cone, fill_mobility, push, rates_of, relax
 from watchsim.simulation.state import CORRECTION, DAMPING, DRIVE, FRICTION, ROOM
@@ -75,10 +74,14 @@ def _free_velocity(model, state, h, work):
         work.force[i] = driving_force(model, i, work.q[i])
         work.damping[i] = coordinate.viscous + coordinate.quadratic * abs(work.u[i])
     for j in range(len(model.tables)):
-        table = model.tables[j]
-        i = table.coordinate
-        at = state.clock[0] + 0.5 * h if table.over == OVER_TIME else work.q[i]
-        work.force[i] += table_value(model, table, at)
+        table, force = model.tables[j], table_force(model, j, state.clock[0] + 0.5 * h, work.q)
+        work.force[table.coordinate] += force
+        if table.on >= 0:
+            work.force[table.on] -= force
+    for j in range(len(model.joints)):
+        joint = model.joints[j]
+        work.force[joint.coordinate] += joint.force
+        work.force[joint.on] -= joint.force
     for i in range(len(work.u)):
         coordinate = model.coordinates[i]
         change = 0.5 * h * work.damping[i] + 0.25 * h * h * coordinate.stiffness
@@ -86,6 +89,15 @@ def _free_velocity(model, state, h, work):
         work.inverse[i] = 1.0 / work.mass[i]
         pull = work.force[i] - coordinate.stiffness * (state.q[i] - coordinate.rest)
         work.free[i] = ((coordinate.mass - change) * work.u[i] + h * pull) * work.inverse[i]
+    # Two coordinates at once would fill the matrix: what acts between them is taken at the middle as the last step foresees it.
+    for i in range(len(work.u)):
+        work.at[i] = work.u[i] + 0.5 * h * state.a[i]
+    for j in range(len(model.joints)):
+        joint = model.joints[j]
+        work.joint[j] = joint_damping(joint, work.at)
+        torque = work.joint[j] - joint.stiffness * stretch(joint, work.q)
+        work.free[joint.coordinate] += h * torque * work.inverse[joint.coordinate]
+        work.free[joint.on] -= h * torque * work.inverse[joint.on]
 
 
 @kernel
@@ -140,7 +152,15 @@ def move(model, state, options, m, h, work, u):
         state.sums[DAMPING] += h * work.damping[i] * mean * mean
         state.a[i] = (u[i] - work.u[i]) / h
         work.free[i] = coordinate.stiffness * (state.q[i] - coordinate.rest) ** 2
+    for j in range(len(model.joints)):
+        joint = model.joints[j]
+        way = 0.5 * h * (work.u[joint.coordinate] + u[joint.coordinate] - work.u[joint.on] - u[joint.on])
+        state.sums[DAMPING] -= work.joint[j] * way
+        spent = joint.stiffness * way * (stretch(joint, state.q) - 0.5 * way - stretch(joint, work.q))
+        state.sums[CORRECTION] -= spent
+    wound = joint_energy(model, state.q)
     _take_back(state, options, m, work)
+    state.sums[CORRECTION] -= joint_energy(model, state.q) - wound
     for i in range(len(u)):
         coordinate = model.coordinates[i]
         after = coordinate.stiffness * (state.q[i] - coordinate.rest) ** 2

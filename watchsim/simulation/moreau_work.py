@@ -32,6 +32,7 @@ class MoreauWork(NamedTuple):
     free: Array  # with the forces, without contacts
     force: Array  # drives and gravity at the middle
     damping: Array
+    joint: Array  # torque of the damping between a carried body and its carrier
     mass: Array
     inverse: Array
     G: Array
@@ -57,7 +58,7 @@ def moreau_work(model: Model) -> MoreauWork:
     n = len(model.coordinates)
     dry = np.flatnonzero(model.coordinates.coulomb > 0.0)
     rows = 2 * ROOM + len(dry)
-    vectors = {name: np.zeros(n) for name in ("q", "u", "free", "force", "damping", "mass", "inverse", "at")}
+    vectors = {name: np.zeros(n) for name in ("q", "u", "free", "force", "damping", "joint", "mass", "inverse", "at")}
     by_row = {name: np.zeros(rows) for name in ("b", "rates", "more", "P")}
     return MoreauWork(
         memory=np.zeros((len(model.contacts), 2)),

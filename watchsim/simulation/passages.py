@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from watchsim.contact.lookup import along
 from watchsim.jit import kernel
 from watchsim.simulation.keep import keep_event
 from watchsim.simulation.within import coordinate_within
@@ -11,16 +12,27 @@ HALVINGS = 100
 
 
 @kernel
-def _value(model, state, step, i, turn, tau):
+def _seen(model, state, step, i, on, tau):
+    """Coordinate i and its velocity at time tau of the step; against coordinate `on` if that is not -1."""
     q, u = coordinate_within(model, state, step, i, tau)
-    return u if turn else q - model.coordinates[i].rest
+    if on >= 0:
+        there, speed = coordinate_within(model, state, step, on, tau)
+        return q - there, u - speed
+    return q, u
 
 
 @kernel
-def _root(model, state, step, i, turn, end):
+def _value(model, state, step, spring, turn, tau):
+    i, on, rest = spring
+    q, u = _seen(model, state, step, i, on, tau)
+    return u if turn else q - rest
+
+
+@kernel
+def _root(model, state, step, spring, turn, end):
     """Time in [0, end] at which the velocity (turn) or the distance from rest changes sign: Illinois' method."""
     low, high = 0.0, end
-    f_low, f_high = _value(model, state, step, i, turn, low), _value(model, state, step, i, turn, high)
+    f_low, f_high = _value(model, state, step, spring, turn, low), _value(model, state, step, spring, turn, high)
     if f_low == 0.0 or f_low * f_high > 0.0:
         return low
     side = 0
@@ -28,7 +40,7 @@ def _root(model, state, step, i, turn, end):
         middle = (low * f_high - high * f_low) / (f_high - f_low)
         if not low < middle < high or high - low <= 1e-16 * (step.span[0] + high):
             break
-        f = _value(model, state, step, i, turn, middle)
+        f = _value(model, state, step, spring, turn, middle)
         if f * f_high > 0.0:
             high, f_high = middle, f
             if side == 1:
@@ -57,24 +69,31 @@ def keep_passages(model, state, step, end, record):
 
     The state's q and u are those at the end; `end` 0 means a jump of velocity at one instant.
     """
-    now = state.clock[0]
-    for i in range(len(model.coordinates)):
-        coordinate = model.coordinates[i]
-        if coordinate.stiffness == 0.0:
-            continue
-        side = _sign(state.u[i])
+    now, n = state.clock[0], len(model.coordinates)
+    for spring in range(n + len(model.joints)):
+        if spring < n:
+            if model.coordinates[spring].stiffness == 0.0:
+                continue
+            i, on, rest = spring, -1, model.coordinates[spring].rest
+        else:
+            joint = model.joints[spring - n]
+            if joint.stiffness == 0.0:
+                continue
+            i, on, rest = joint.coordinate, joint.on, joint.rest
+        side = _sign(along(state.u, i, on))
         if side != 0 and side != state.side_u[i]:
             if state.side_u[i] != 0:
-                tau = _root(model, state, step, i, True, end) if end > 0.0 else 0.0
-                q = coordinate_within(model, state, step, i, tau)[0] if end > 0.0 else state.q[i]
+                tau = _root(model, state, step, (i, on, rest), True, end) if end > 0.0 else 0.0
+                q = _seen(model, state, step, i, on, tau)[0] if end > 0.0 else along(state.q, i, on)
                 state.clock[0] = now - end + tau
-                keep_event(state, record, TURN_EVENT, -1, coordinate.body, q)
+                keep_event(state, record, TURN_EVENT, -1, model.coordinates[i].body, q)
             state.side_u[i] = side
-        side = _sign(state.q[i] - coordinate.rest)
+        side = _sign(along(state.q, i, on) - rest)
         if side != 0 and side != state.side_q[i]:
             if state.side_q[i] != 0 and end > 0.0:
-                tau = _root(model, state, step, i, False, end)
+                tau = _root(model, state, step, (i, on, rest), False, end)
                 state.clock[0] = now - end + tau
-                keep_event(state, record, CROSS_EVENT, -1, coordinate.body, coordinate_within(model, state, step, i, tau)[1])
+                speed = _seen(model, state, step, i, on, tau)[1]
+                keep_event(state, record, CROSS_EVENT, -1, model.coordinates[i].body, speed)
             state.side_q[i] = side
         state.clock[0] = now

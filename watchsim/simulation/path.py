@@ -68,8 +68,12 @@ def _polynomial(step, i, tau):
 @kernel
 def body_on_path(model, state, b, tau, scratch):
     """Bring body b's coordinates (in scratch.q, scratch.u) and pose to time tau of the step; u is exactly q'."""
-    body, step = model.bodies[b], scratch.step
-    if body.first >= 0:
+    step, part = scratch.step, b
+    while part >= 0:  # the body, then its carrier
+        body = model.bodies[part]
+        part = body.carrier
+        if body.first < 0:
+            continue
         for j in range(3 if body.motion == FREE else 1):
             i = body.first + j
             if state.awake[i] == 0:

@@ -42,7 +42,7 @@ from watchsim.simulation.state import (
 )
 from watchsim.simulation.stops import Stop
 from watchsim.simulation.tally import Tally
-from watchsim.simulation.trajectory import EVENT_DTYPE, Pair, Trajectory
+from watchsim.simulation.trajectory import EVENT_DTYPE, EventKind, Pair, Trajectory
 
 Progress = Callable[[float, float], None]  # simulated time, duration
 
@@ -73,7 +73,7 @@ class Run:
         self.state.clock[1] = 1e-3 * self.options.max_step
         self.finder = CellFinder(model)
         self.scratch = new_scratch(model)
-        self.pairs = pairs_of(compiled, scene)
+        self.pairs = pairs_of(compiled)
         self.kept, self.tally = Kept(recording, tail_length(frequency(scene))), Tally(scene, self.pairs)
         windows = np.array(self.kept.windows, float).reshape(-1, 2)
         self.record = new_record(model, ROWS + ROWS_PER_STEP, EVENTS + EVENTS_PER_STEP, windows)
@@ -141,7 +141,7 @@ class Run:
 
     def _slices(self, duration: float, progress: Progress | None, interrupted: Callable[[], bool]) -> Stop:
         """Slice after slice of about `SLICE_WALL`, with what has to be done between them."""
-        length = duration / 100.0
+        length = 1e-5 * duration  # grows tenfold at most: a long slice would be deaf
         until = np.array([0.0, duration, 0.0])
         while True:
             start = time.perf_counter()
@@ -173,17 +173,18 @@ class Run:
     def trajectory(self, stop: Stop, wall: float, compile_time: float) -> Trajectory:
         """Everything kept, as a frozen value."""
         n = len(self.state.q)
+        compiled = self.compiled
         rows, events = self._all_kept()
         before = [len(part) for part in self._all_kept(self._parts_before)]
         saved = None if self.saved is None else dataclasses.replace(self.saved, rows=before[0], events=before[1])
         return Trajectory(
             scene=self.scene,
             t=rows[:, 0],
-            q=rows[:, 1 : 1 + n],
-            u=rows[:, 1 + n : 1 + 2 * n],
-            a=rows[:, 1 + 2 * n :],
-            slices=self.compiled.slices,
-            events=events,
+            q=compiled.relative(rows[:, 1 : 1 + n]),
+            u=compiled.relative(rows[:, 1 + n : 1 + 2 * n], rates=True),
+            a=compiled.relative(rows[:, 1 + 2 * n :], rates=True),
+            slices=compiled.slices,
+            events=_as_told(events, compiled),
             pairs=self.pairs,
             stop=stop,
             stop_message=f"t = {self.state.clock[0]:.9g} s: {stop.sentence}",
@@ -197,8 +198,8 @@ class Run:
             energy=self._energy(),
             counts=self._counts(),
             step=self.step,
-            end_q=self.state.q.copy(),
-            end_u=self.state.u.copy(),
+            end_q=compiled.relative(self.state.q[None])[0].copy(),
+            end_u=compiled.relative(self.state.u[None], rates=True)[0].copy(),
             keep=self.kept.recording.keep,
             spans=self.kept.spans(float(self.state.clock[0])),
             sums=self.tally.finished(),
@@ -233,17 +234,22 @@ class Run:
         }
 
 
-def pairs_of(compiled: Compiled, scene: Scene) -> tuple[Pair, ...]:
+def _as_told(events: NDArray[Any], compiled: Compiled) -> NDArray[Any]:
+    """The events, angles of turning points told as the scene tells them."""
+    told = [(compiled.model.coordinates[own].body, angle) for own, _, angle in compiled.against if angle != 0.0]
+    events = events.copy() if told else events
+    for body, angle in told:
+        events["value"][(events["kind"] == EventKind.TURN) & (events["body"] == body)] -= angle
+    return events
+
+
+def pairs_of(compiled: Compiled) -> tuple[Pair, ...]:
     """The contacts of a model in words; row k belongs to contact number k."""
-    model, names = compiled.model, [body.name for body in scene.bodies]
-    bodies = model.primitives.body
-    first = np.zeros(len(names), np.int64)
-    numbers, places = np.unique(bodies, return_index=True)
-    first[numbers] = places
+    model, owners = compiled.model, compiled.owners
+    first = {name: owners.index(name) for name in dict.fromkeys(owners)}
+    index = [number - first[name] for number, name in enumerate(owners)]
     # Plain lists: reading a field of a record array takes a microsecond each time.
-    index = (np.arange(len(bodies)) - first[bodies]).tolist()
     kind = [KIND_WORD[kind] for kind in model.primitives.kind.tolist()]
-    name = [names[body] for body in bodies.tolist()]
-    side = list(zip(name, kind, index, compiled.layers, strict=True))
+    side = list(zip(owners, kind, index, compiled.layers, strict=True))
     contacts = zip(model.contacts.group.tolist(), model.contacts.a.tolist(), model.contacts.b.tolist(), strict=True)
     return tuple(Pair(group, *side[a], *side[b]) for group, a, b in contacts)

@@ -18,7 +18,7 @@ def _join(label, i, j):
 
 @kernel
 def label_islands(model, closed, m, out_label):
-    """Number the groups of coordinates that the first m contacts couple."""
+    """Number the groups of coordinates that the first m contacts, and what acts at pivots of carried bodies, couple."""
     for i in range(len(out_label)):
         out_label[i] = i
     for b in range(len(model.bodies)):
@@ -26,6 +26,8 @@ def label_islands(model, closed, m, out_label):
         if body.motion == FREE:
             _join(out_label, body.first, body.first + 1)
             _join(out_label, body.first, body.first + 2)
+    for j in range(len(model.joints)):
+        _join(out_label, model.joints[j].coordinate, model.joints[j].on)
     for i in range(m):
         for k in range(1, closed.slots[i]):
             _join(out_label, closed.coord[i, 0], closed.coord[i, k])
@@ -71,6 +73,15 @@ def find_sleepers(model, state, options, scratch, m):
     for i in range(n):
         if state.awake[i] == 0:
             state.u[i], state.a[i] = 0.0, 0.0
+
+
+@kernel
+def is_at_rest(model, state, b):
+    """True for fixed bodies and bodies asleep whose carrier, if any, is asleep as well."""
+    body = model.bodies[b]
+    if body.first >= 0 and state.awake[body.first]:
+        return False
+    return body.carrier < 0 or state.awake[model.bodies[body.carrier].first] == 0
 
 
 @kernel

@@ -137,6 +137,9 @@ RecordRef = by_reference(Record, __name__)
 def new_state(model: Model, q: Array, u: Array) -> State:
     """The state at t = 0 with nothing decided yet."""
     n = len(model.coordinates)
+    rest, speed, joints = model.coordinates.rest.copy(), u.astype(float).copy(), model.joints
+    rest[joints.coordinate] = joints.rest + q[joints.on]
+    speed[joints.coordinate] -= u[joints.on]
     return State(
         clock=np.zeros(3),
         q=q.astype(float).copy(),
@@ -147,8 +150,8 @@ def new_state(model: Model, q: Array, u: Array) -> State:
         awake=np.ones(n, np.int8),
         active=np.zeros(ROOM, np.int64),
         numbers=np.array([0, 0, 1, 0, -1], np.int64),
-        side_u=np.sign(u).astype(np.int8),
-        side_q=np.sign(q - model.coordinates.rest).astype(np.int8),
+        side_u=np.sign(speed).astype(np.int8),
+        side_q=np.sign(q - rest).astype(np.int8),
         sums=np.zeros(5),
         counts=np.zeros(len(COUNT_NAMES), np.int64),
         worst=np.zeros(1),

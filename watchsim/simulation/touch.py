@@ -17,6 +17,7 @@ from watchsim.jit import kernel
 from watchsim.mechanism.model import FREE, LINE, PIVOT, SLIDE
 from watchsim.simulation.handover import continues_active, is_beside_active
 from watchsim.simulation.path import body_on_path
+from watchsim.simulation.sleep import is_at_rest
 from watchsim.simulation.state import N_GAPS
 
 STRIDE = 0.25  # of the extent: steps in which a neighbour of a contact in force is watched until its turn comes
@@ -26,6 +27,17 @@ STRIDE = 0.25  # of the extent: steps in which a neighbour of a contact in force
 def _body_bounds(model, b, length, scratch):
     """Bounds over the next `length` seconds: (speed, turning rate, acceleration, turning acceleration) of the frame."""
     body = model.bodies[b]
+    own = _own_bounds(body, length, scratch)
+    if body.carrier < 0:
+        return own
+    speed, turn, push, twist = _own_bounds(model.bodies[body.carrier], length, scratch)
+    arm = math.sqrt(body.x * body.x + body.y * body.y)
+    return speed + turn * arm, own[1], push + twist * arm + turn * turn * arm, own[3]
+
+
+@kernel
+def _own_bounds(body, length, scratch):
+    """The same from the body's own coordinates alone."""
     i = body.first
     bound = scratch.step.bound
     if body.motion == PIVOT:
@@ -237,13 +249,6 @@ def _first_of(model, cells, state, options, p, tau, until, scratch):
 
 
 @kernel
-def _at_rest(model, state, b):
-    """True for fixed bodies and bodies asleep."""
-    first = model.bodies[b].first
-    return first < 0 or state.awake[first] == 0
-
-
-@kernel
 def first_touch(model, cells, state, options, end, scratch):
     """(known, time, contact) of the first closing in [0, end) of the current step; contact -1: none.
 
@@ -253,7 +258,7 @@ def first_touch(model, cells, state, options, end, scratch):
     best, who = end, -1
     for p in range(len(model.pairs)):
         pair = model.pairs[p]
-        if _at_rest(model, state, pair.a) and _at_rest(model, state, pair.b):
+        if is_at_rest(model, state, pair.a) and is_at_rest(model, state, pair.b):
             continue
         tau = 0.0
         while tau < best:

@@ -17,6 +17,7 @@ from watchsim.mechanism.recording import ALL, Window
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation.event_kinds import EVENT_DTYPE as EVENT_DTYPE
 from watchsim.simulation.event_kinds import EventKind as EventKind
+from watchsim.simulation.frames import frames
 from watchsim.simulation.saved import SavedState
 from watchsim.simulation.stops import Stop
 
@@ -51,7 +52,8 @@ class Trajectory:
     """The motion of a scene. Arrays have one row per accepted step (two rows with the same time at an impact).
 
     t (rows,) s; q, u, a (rows, n) coordinates, velocities, accelerations in SI; `slices[body]` says which columns belong
-    to a body (fixed bodies have none). `energy` holds joules: in_J, stored_J, dissipated {cause: J}, residual_J.
+    to a body (fixed bodies have none). Those of a carried body are relative to its carrier; `pose` is in the movement.
+    `energy` holds joules: in_J, stored_J, dissipated {cause: J}, residual_J.
     `counts` holds events, impacts, steps, lcp_failures and the like; `worst_penetration` is metres;
     `worst_residual` the worst violation of a complementarity condition, as a share of the problem's largest term.
     `keep` and `spans` say what was kept (see mechanism/recording.py): `spans` the stretches of time (s) with rows, () for a
@@ -113,21 +115,20 @@ class Trajectory:
         return np.where(last, self.q[j], q), np.where(last, self.u[j], u)
 
     def pose(self, body: str, t: float) -> tuple[float, float, float]:
-        """x, y (m) and angle (rad) of the body's frame at time `t`."""
-        return self.pose_of(body, self.at(t)[0] if body in self.slices else np.zeros(0))
+        """x, y (m) and angle (rad) of the body's frame in the movement at time `t`."""
+        return self.pose_of(body, self.at(t)[0] if self.slices else np.zeros(0))
+
+    @property
+    def end(self) -> tuple[Array, Array] | None:
+        """q and u at `simulated`, whether rows were kept there or not; None for a run that was made by hand without rows."""
+        if len(self.end_q):
+            return self.end_q, self.end_u
+        return (self.q[-1], self.u[-1]) if len(self.t) else None
 
     def pose_of(self, body: str, coordinates: Array) -> tuple[float, float, float]:
         """The same where all coordinates are given."""
-        part = self.scene.body(body)
-        if part.motion == "fixed":
-            return (*part.position, part.angle)
-        q = coordinates[self.slices[body]]
-        if part.motion == "pivot":
-            return (*part.position, float(q[0]))
-        if part.motion == "slide":
-            x, y = part.position
-            return x + q[0] * part.axis[0], y + q[0] * part.axis[1], part.angle
-        return float(q[0]), float(q[1]), float(q[2])
+        x, y, angle = frames(self.scene, self.slices, coordinates[None])[body][0].tolist()
+        return x, y, angle
 
 
 def _between(s: Array, h: Array, left: tuple[Array, ...], right: tuple[Array, ...], noise: Array) -> tuple[Array, Array]:

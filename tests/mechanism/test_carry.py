@@ -1,0 +1,186 @@
+"""Is what carries what resolved as told, weighed right, and refused by name where it could not be simulated exactly?"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from watchsim.mechanism.body import Body
+from watchsim.mechanism.carry import at_start, is_still, rides, start_poses, weigh
+from watchsim.mechanism.check import check_report, check_text
+from watchsim.mechanism.compile import compile_scene
+from watchsim.mechanism.errors import SceneError
+from watchsim.mechanism.force import Damping, Spring
+from watchsim.mechanism.load import load
+from watchsim.mechanism.lock import lock_text
+from watchsim.mechanism.scene import Scene
+
+CARRIAGE = """
+[scene]
+title = "carriage"
+gravity = ["0 m/s²", "-9.81 m/s²"]
+
+[bodies.balance]
+on = "carriage"
+position = ["3 mm", "0 mm"]
+angle = "20°"
+velocity = "90 °/s"
+mass = "40 mg"
+inertia = "12 mg·cm²"
+
+[bodies.carriage]
+position = ["1 mm", "2 mm"]
+angle = "90°"
+velocity = "10 °/s"
+inertia = "30 mg·cm²"
+
+[bodies.banking]
+on = "carriage"
+motion = "fixed"
+position = ["0 mm", "4 mm"]
+circle = "0.5 mm"
+mass = "2 mg"
+"""
+
+
+def read(tmp_path, text: str) -> Scene:
+    path = tmp_path / "scene.toml"
+    path.write_text(text, encoding="utf-8")
+    return load(path)
+
+
+def faults(tmp_path, text: str) -> dict[str, str]:
+    with pytest.raises(SceneError) as caught:
+        read(tmp_path, text)
+    return {fault.key: fault.message for fault in caught.value.faults}
+
+
+def test_a_carried_body_starts_where_its_carrier_holds_it(tmp_path) -> None:
+    scene = read(tmp_path, CARRIAGE)
+    poses = start_poses(scene)
+    assert poses["balance"] == pytest.approx((1e-3, 5e-3, math.radians(110.0)))
+    assert poses["banking"] == pytest.approx((-3e-3, 2e-3, math.radians(90.0)))
+    assert [body.position for body in at_start(scene).bodies] == [poses[b.name][:2] for b in scene.bodies]
+    compiled = compile_scene(scene)
+    assert compiled.q == pytest.approx(np.radians([110.0, 90.0]))
+    assert compiled.u == pytest.approx(np.radians([100.0, 10.0]))
+    assert compiled.relative(compiled.q[None])[0] == pytest.approx(np.radians([20.0, 90.0]))
+    assert is_still(scene, scene.body("banking")) is False
+
+
+def test_a_carrier_weighs_what_it_carries(tmp_path) -> None:
+    """A mass at the pivot of the balance; the fixed disc whole, by Steiner; gravity pulls at their common first moment."""
+    scene = read(tmp_path, CARRIAGE)
+    disc = 0.5 * 2e-6 * 0.5e-3**2 + 2e-6 * 4e-3**2
+    row = compile_scene(scene).model.coordinates
+    assert row.mass == pytest.approx([12e-10, 30e-10 + 40e-6 * 9e-6 + disc], rel=1e-12)
+    weighed = weigh(scene.bodies, rides(scene.bodies))[1]
+    assert weighed.mass == pytest.approx(42e-6)
+    assert weighed.moment == pytest.approx((40e-6 * 3e-3, 2e-6 * 4e-3))
+    # cos q weight_y - sin q weight_x is the torque of that moment's weight.
+    q = math.radians(90.0)
+    arm = weighed.moment[0] * math.cos(q) - weighed.moment[1] * math.sin(q)
+    assert math.cos(q) * row.weight_y[1] - math.sin(q) * row.weight_x[1] == pytest.approx(-9.81 * arm)
+    assert row.weight_x[0] == row.weight_y[0] == 0.0
+
+
+def test_fixed_carriers_only_move_the_start(tmp_path) -> None:
+    """On a plate that cannot move, nothing is a joint; rests and angles are told against the plate all the same."""
+    text = CARRIAGE.replace('velocity = "10 °/s"\ninertia = "30 mg·cm²"', 'motion = "fixed"')
+    text += (
+        '\n[[springs]]\nbody = "balance"\nfrequency = "4 Hz"\nrest = "5°"\n[[damping]]\nbody = "balance"\ncoulomb = "1 nN·m"\n'
+    )
+    scene = read(tmp_path, text)
+    compiled = compile_scene(scene)
+    assert len(compiled.model.joints) == 0 and compiled.model.bodies.carrier.tolist() == [-1, -1, -1]
+    assert compiled.model.coordinates.rest == pytest.approx([math.radians(95.0)])
+    assert compiled.relative(compiled.q[None])[0] == pytest.approx([math.radians(20.0)])
+
+
+def test_chains_that_are_exact() -> None:
+    """A hub fixed on a carriage, one coaxial with it, and what they carry."""
+    carriage = Body("carriage", "pivot", (1.0, 2.0), 0.5, (3.0,), inertia=1.0)
+    hub = Body("hub", "fixed", (0.2, 0.0), 0.4, on="carriage")
+    wheel = Body("wheel", "pivot", (0.0, 0.1), 0.3, (1.0,), inertia=1.0, on="hub")
+    ring = Body("ring", "pivot", (0.0, 0.0), 0.1, (2.0,), inertia=1.0, on="carriage")
+    planet = Body("planet", "pivot", (0.5, 0.0), 0.2, (1.0,), inertia=1.0, on="ring")
+    found = rides((planet, wheel, hub, ring, carriage))
+    assert (found[2].part_of, found[2].host) == (4, 4)
+    assert (found[1].host, found[1].turns_with, found[1].angle) == (4, 4, 0.4)
+    assert found[1].place == pytest.approx((0.2 - 0.1 * math.sin(0.4), 0.1 * math.cos(0.4)))
+    assert (found[1].start, found[1].spin) == pytest.approx((1.2, 4.0))
+    assert (found[3].host, found[3].place, found[3].turns_with) == (-1, (1.0, 2.0), 4)
+    assert (found[0].host, found[0].turns_with, found[0].spin) == (3, 3, 6.0)
+
+
+REFUSED = [
+    ('on = "carriag"', "bodies.balance.on", 'no such body. Did you mean "carriage"'),
+    ('on = "balance"', "bodies.balance.on", "cannot carry itself"),
+    ('on = "carriage"\nmotion = "slide"\naxis = [1.0, 0.0]', "bodies.balance.on", "pivoted or fixed there"),
+    ('on = "carriage"\nmotion = "free"', "bodies.balance.on", "pivoted or fixed there"),
+]
+
+
+@pytest.mark.parametrize(("line", "key", "message"), REFUSED)
+def test_what_is_refused_by_name(tmp_path, line: str, key: str, message: str) -> None:
+    text = CARRIAGE.replace('on = "carriage"', line, 1)
+    if "free" in line:
+        text = text.replace('velocity = "90 °/s"\n', "")
+    if "slide" in line:
+        text = text.replace('velocity = "90 °/s"\n', "")
+    assert message in faults(tmp_path, text)[key]
+
+
+def test_a_chain_of_two_turning_carriers_is_refused(tmp_path) -> None:
+    text = CARRIAGE + '\n[bodies.wheel]\non = "balance"\nposition = ["1 mm", "0 mm"]\ninertia = "1 mg·cm²"\n'
+    assert "carried by carriage and turns on it" in faults(tmp_path, text)["bodies.wheel.on"]
+    assert "would carry itself" in str(faults(tmp_path, CARRIAGE.replace('angle = "90°"', 'angle = "90°"\non = "balance"')))
+
+
+def test_a_body_that_is_not_poised_is_refused(tmp_path) -> None:
+    text = CARRIAGE.replace(
+        'mass = "40 mg"\ninertia = "12 mg·cm²"',
+        'mass = "40 mg"\npolygon = [["0 mm", "0 mm"], ["1 mm", "0 mm"], ["0 mm", "1 mm"]]',
+    )
+    assert "471.4 µm beside its pivot" in faults(tmp_path, text)["bodies.balance.on"]
+    fixed = text.replace('velocity = "10 °/s"\ninertia = "30 mg·cm²"', 'motion = "fixed"')
+    assert read(tmp_path, fixed).body("balance").mass == pytest.approx(40e-6)
+
+
+def test_a_free_carrier_must_balance(tmp_path) -> None:
+    text = CARRIAGE.replace('velocity = "10 °/s"\ninertia', 'motion = "free"\nmass = "100 mg"\ninertia')
+    assert "moves to (0.8451, 0.05634) mm" in faults(tmp_path, text)["bodies.carriage"]
+
+
+def test_dry_friction_and_idle_contacts_are_refused(tmp_path) -> None:
+    text = CARRIAGE.replace('inertia = "30 mg·cm²"', 'inertia = "30 mg·cm²"\ncircle = "5 mm"')
+    text += '\n[[damping]]\nbody = "balance"\ncoulomb = "1 nN·m"\n[[contacts]]\nbetween = ["banking", "carriage"]\n'
+    found = faults(tmp_path, text)
+    assert "dry friction between balance and a carrier that turns" in found["damping.0.coulomb"]
+    assert "rigid with each other" in found["contacts.0.between"]
+    with pytest.raises(ValueError, match="dry friction"):
+        bodies = (Body("c", inertia=1.0), Body("b", inertia=1.0, on="c"))
+        compile_scene(Scene("dry", bodies, damping=(Damping("b", coulomb=1.0),)))
+
+
+def test_springs_join_two_coordinates() -> None:
+    """The joint holds what acts between the two; neither flies alone, and the fastest swing is that of both."""
+    bodies = (Body("c", inertia=3.0), Body("b", inertia=1.0, on="c"), Body("loose", inertia=1.0, on="c"))
+    compiled = compile_scene(Scene("joint", bodies, springs=(Spring("b", 2.0, 0.3),)))
+    joint = compiled.model.joints[0]
+    assert (joint.coordinate, joint.on, joint.stiffness, joint.rest) == (1, 0, 2.0, 0.3)
+    assert compiled.model.coordinates.linear.tolist() == [0, 0, 1]
+    assert compiled.fastest == pytest.approx(math.sqrt(2.0 * (1.0 + 1.0 / 3.0)))
+
+
+def test_check_tells_the_carrier_and_what_has_no_mass(tmp_path) -> None:
+    text = CARRIAGE.replace('mass = "40 mg"\n', "")
+    scene = read(tmp_path, text)
+    report = check_report(scene, [])
+    notices = [finding["message"] for finding in report["findings"] if finding["code"] == "weightless"]
+    assert notices == ["balance has no mass, so it adds nothing to what carriage weighs"]
+    assert report["bodies"]["balance"]["on"] == "carriage"
+    assert "on carriage at (3 mm, 0 mm)" in check_text(report, scene)
+    assert read(tmp_path, lock_text(scene, tmp_path)) == scene
