@@ -9,27 +9,17 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from watchsim.geometry.biarc import ArcChain, arcs_from, biarc_joints, crosses, dots
 from watchsim.geometry.bundle import Bundle, Numbers
 from watchsim.geometry.curve import Array
 from watchsim.geometry.deviation import glances
+from watchsim.geometry.layout import Demand, Layout, laid_out, shares
 
-# Arcs of the best chain whose work the pieces do. At its ends the chain has the tangent of the curve, which costs some.
-ALONE, BOTH_ENDS, ONE_END, INSIDE = 0.69, 1.38, 1.75, 2.0
-LOST_EVEN, LOST_ODD = 0.62, 0.56  # so many arcs less than it has does a whole chain
 MOST_TILT = 0.1  # radians, of the tangent at a joint
 HARDEST = 64.0  # tolerances: what a larger deviation counts
 NEWTON = 2  # steps; the first guess is good
 BALANCE = 0.1  # of the logarithm of two deviations: correction of that of the legs of a biarc
-
-
-class Demand(NamedTuple):
-    """Ascending places (n,) of curves and how many arcs (n,) the best chains need up to each; both skip 1 between curves."""
-
-    places: Array
-    load: Array
 
 
 class Legs(NamedTuple):
@@ -37,21 +27,6 @@ class Legs(NamedTuple):
 
     places: Array
     logarithms: Array
-
-
-class Layout(NamedTuple):
-    """The pieces of some chains: their chains' numbers, what work they do; which of them are single arcs, first or last."""
-
-    chain: Numbers
-    capacity: Array
-    single: NDArray[np.bool_]
-    first: Numbers  # piece of each chain
-    last: Numbers
-
-    @property
-    def start(self) -> Numbers:
-        """The numbers of the nodes where the pieces start; they end at the next."""
-        return np.arange(len(self.chain)) + self.chain
 
 
 class Trial(NamedTuple):
@@ -92,68 +67,49 @@ class Trial(NamedTuple):
         return Legs(places, logarithms)
 
 
-def arcs_for(work: Array) -> Numbers:
-    """The smallest numbers of arcs that can do the work of so many arcs of the best chain."""
-    count = np.maximum(2, np.ceil(work + LOST_ODD)).astype(np.intp)
-    return count + ((count % 2 == 0) & (count - LOST_EVEN < work))
-
-
-def laid_out(counts: Numbers) -> Layout:
-    """The pieces of chains of so many arcs (two or more): single arcs at the ends, else biarcs."""
-    pieces = np.where(counts == 2, 1, counts // 2 + 1)
-    last = np.cumsum(pieces) - 1
-    first = last - pieces + 1
-    capacity = np.full(int(np.sum(pieces)), INSIDE)
-    capacity[first] = ALONE
-    capacity[last] = np.where(counts % 2 == 1, ONE_END, np.where(counts == 2, BOTH_ENDS, ALONE))
-    return Layout(np.repeat(np.arange(len(counts)), pieces), capacity, capacity == ALONE, first, last)
-
-
 def lay_chains(bundle: Bundle, demand: Demand, begin: Array, end: Array, counts: Numbers, legs: Legs) -> Trial:
     """So many arcs from place `begin` to `end` of each curve, distributed so that each gets its share of the load."""
     layout = laid_out(counts)
-    nodes, load = _shares(demand, begin, end, layout)
-    legs = _legs_at(0.5 * (nodes[layout.start] + nodes[layout.start + 1]), legs, begin, end, layout)
-    ratios = np.exp(legs.logarithms)
-    reached = load[layout.start] + (load[layout.start + 1] - load[layout.start]) / (1.0 + ratios)
-    middles = np.interp(reached, demand.load, demand.places)
+    nodes, load = shares(demand, begin, end, layout)
     start, pairs = layout.start, np.flatnonzero(~layout.single)
-    both = np.concatenate((nodes, middles))
-    points, directions = bundle.points(both), bundle.tangents(both)
-    at, tangents = points[: len(nodes)], directions[: len(nodes)].copy()
-    _tilt(tangents, at, points[len(nodes) :], directions[len(nodes) :], layout)
-    one, other = layout.first[layout.single[layout.first]], layout.last[layout.single[layout.last]]
-    tangents[start[one] + 1] = _mirrored(at[start[one] + 1] - at[start[one]], tangents[start[one]])
-    tangents[start[other]] = _mirrored(at[start[other] + 1] - at[start[other]], tangents[start[other] + 1])
+    legs = _legs_at(0.5 * (nodes[start] + nodes[start + 1]), legs, begin, end, layout)
+    ratios = np.exp(legs.logarithms)
+    reached = load[start] + (load[start + 1] - load[start]) / (1.0 + ratios)
+    middles = np.interp(reached, demand.load, demand.places)
+    at, tangents = _at_nodes(bundle, nodes, middles, layout)
     p = start[pairs]
     joints, along = biarc_joints(at[p], tangents[p], at[p + 1], tangents[p + 1], ratios[pairs])
     between = _abreast(bundle, joints, along, nodes[p], middles[pairs], nodes[p + 1])
     first = np.cumsum(2 - layout.single) - (2 - layout.single)
     second = first[pairs] + 1
-    size = len(layout.chain) + len(pairs)
-    low, high, chain = np.empty(size), np.empty(size), np.empty(size, dtype=np.intp)
-    starts, ways, ends = np.empty((size, 2)), np.empty((size, 2)), np.empty((size, 2))
-    low[first], starts[first], ways[first], chain[first] = nodes[start], at[start], tangents[start], layout.chain
-    high[first], ends[first] = nodes[start + 1], at[start + 1]
-    low[second], starts[second], ways[second], chain[second] = between, joints, along, layout.chain[pairs]
-    high[second], ends[second] = high[second - 1], ends[second - 1]
-    high[second - 1], ends[second - 1] = between, joints
+    low, high = _in_order(nodes[:, None], between[:, None], start, first, second)
+    starts, ends = _in_order(at, joints, start, first, second)
+    ways, _ = _in_order(tangents, along, start, first, second)
+    low, high, chain = low[:, 0], high[:, 0], np.repeat(layout.chain, 2 - layout.single)
     arcs = arcs_from(starts, ways, ends)
     return Trial(low, high, arcs, chain, glances(bundle, low, high, arcs), layout, nodes, legs, first)
 
 
-def _shares(demand: Demand, begin: Array, end: Array, layout: Layout) -> tuple[Array, Array]:
-    """The places of the nodes, and the load there."""
-    low, high = np.interp(begin, *demand), np.interp(end, *demand)
-    done = np.append(0.0, np.cumsum(layout.capacity))
-    unit = ((high - low) / (done[layout.last + 1] - done[layout.first]))[layout.chain]
-    load = np.empty(len(layout.chain) + len(begin))
-    start = layout.start
-    load[start] = low[layout.chain] + unit * (done[:-1] - done[layout.first][layout.chain])
-    load[start[layout.last] + 1] = high
-    nodes = np.interp(load, demand.load, demand.places)
-    nodes[start[layout.first]], nodes[start[layout.last] + 1] = begin, end
-    return nodes, load
+def _in_order(nodes: Array, joints: Array, start: Numbers, first: Numbers, second: Numbers) -> tuple[Array, Array]:
+    """What holds where the arcs start and where they end, from what holds at nodes and joints; second arcs start at joints."""
+    size = (len(first) + len(second), nodes.shape[1])
+    starts, ends = np.empty(size), np.empty(size)
+    starts[first], ends[first] = nodes[start], nodes[start + 1]
+    ends[second] = ends[second - 1]
+    starts[second] = ends[second - 1] = joints
+    return starts, ends
+
+
+def _at_nodes(bundle: Bundle, nodes: Array, middles: Array, layout: Layout) -> tuple[Array, Array]:
+    """Points and unit tangents (nodes, 2): the curve's tangents, tilted, or those that a single arc has."""
+    both = np.concatenate((nodes, middles))
+    points, directions = bundle.points(both), bundle.tangents(both)
+    at, tangents, start = points[: len(nodes)], directions[: len(nodes)].copy(), layout.start
+    _tilt(tangents, at, points[len(nodes) :], directions[len(nodes) :], layout)
+    one, other = start[layout.first[layout.single[layout.first]]], start[layout.last[layout.single[layout.last]]]
+    tangents[one + 1] = _mirrored(at[one + 1] - at[one], tangents[one])
+    tangents[other] = _mirrored(at[other + 1] - at[other], tangents[other + 1])
+    return at, tangents
 
 
 def _legs_at(places: Array, legs: Legs, begin: Array, end: Array, layout: Layout) -> Legs:

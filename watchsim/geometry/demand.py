@@ -9,10 +9,10 @@ import math
 
 import numpy as np
 
-from watchsim.geometry.arc_chain import Demand
 from watchsim.geometry.biarc import crosses, dots
 from watchsim.geometry.bundle import Bundle, Numbers
 from watchsim.geometry.curve import Array
+from watchsim.geometry.layout import Demand
 
 BEST = math.sqrt(3.0) / 216.0  # largest deviation of the best chain over |κ′| h³
 STEPS = 48  # in which the change of curvature is measured, along each curve at least

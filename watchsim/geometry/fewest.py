@@ -12,12 +12,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.geometry.arc_chain import Legs, Trial, arcs_for, lay_chains
+from watchsim.geometry.arc_chain import Legs, Trial, lay_chains
 from watchsim.geometry.biarc import ArcChain
 from watchsim.geometry.bundle import Bundle
 from watchsim.geometry.curve import Array
 from watchsim.geometry.demand import corrected, first_demand, of_chosen
 from watchsim.geometry.deviation import deviations
+from watchsim.geometry.layout import arcs_for
 
 FEW, MOST = 2, 5  # attempts with one number of arcs: more where one arc counts for more
 WEIGHTY = 48  # arcs over attempts
