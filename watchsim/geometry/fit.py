@@ -52,15 +52,14 @@ def fit_arcs(curve: Curve, tolerance: float) -> Fit:
 
 def fit_all(curves: Sequence[Curve], tolerances: Sequence[float]) -> list[Fit]:
     """The same for many curves, much faster than one by one."""
-    result = [Fit((), 0.0)] * len(curves)
+    parts: list[list[Curve]] = [[] for _ in curves]
     for chosen in batches(curves):
-        limits = [tolerances[k] for k in chosen]
-        parts = smooth_parts([curves[k] for k in chosen], np.array(limits))
-        each = [limit for row, limit in zip(parts, limits, strict=True) for _ in row]
-        fits = iter(_follow([part for row in parts for part in row], np.array(each), 0))
-        for k, row in zip(chosen, parts, strict=True):
-            result[k] = _end_to_end([next(fits) for _ in row])
-    return result
+        smooth = smooth_parts([curves[k] for k in chosen], np.array([tolerances[k] for k in chosen]))
+        for k, row in zip(chosen, smooth, strict=True):
+            parts[k] = row
+    each = np.array([limit for row, limit in zip(parts, tolerances, strict=True) for _ in row])
+    fits = iter(_follow([part for row in parts for part in row], each, 0))
+    return [_end_to_end([next(fits) for _ in row]) for row in parts]
 
 
 def batches(curves: Sequence[Curve]) -> Iterator[list[int]]:
@@ -74,30 +73,42 @@ def batches(curves: Sequence[Curve]) -> Iterator[list[int]]:
 
 
 def _follow(curves: Sequence[Curve], tolerance: Array, depth: int) -> list[Fit]:
-    """Arcs along smooth curves of one degree, which are halved where no chain is found."""
-    bundle = Bundle(curves)
-    found = _one_arc_each(bundle, tolerance)
-    rest = [k for k, chain in enumerate(found) if chain is None]
-    if rest:
-        several = fewest(Bundle([curves[k] for k in rest]), tolerance[rest], ROUNDS if depth == 0 else ROUNDS_OF_HALVES)
-        for k, chain in zip(rest, several, strict=True):
-            found[k] = chain
-    result = _fits(found, tolerance)
+    """Arcs along smooth curves, which are halved where no chain is found."""
+    result: list[Fit] = [Fit((), 0.0)] * len(curves)
     missing = []
-    for k in (k for k in rest if found[k] is None):
-        away = _extent(curves[k])
-        if away <= tolerance[k] or depth >= DEEPEST:
-            (x0, y0), (x1, y1) = curves[k].ends.tolist()
-            chord = Line(x0, y0, x1, y1)
-            result[k] = Fit((chord,) if chord.length > NOTHING * tolerance[k] else (), away)
-        else:
-            missing.append(k)
+    for chosen in batches(curves):
+        found = _chains([curves[k] for k in chosen], tolerance[chosen], ROUNDS if depth == 0 else ROUNDS_OF_HALVES)
+        for k, chain, fit in zip(chosen, found, _fits(found, tolerance[chosen]), strict=True):
+            result[k] = fit
+            if chain is None:
+                away = _extent(curves[k])
+                if away <= tolerance[k] or depth >= DEEPEST:
+                    result[k] = _chord(curves[k], away, float(tolerance[k]))
+                else:
+                    missing.append(k)
     if missing:
         halves = [half for k in missing for half in curves[k].split(0.5 * len(curves[k].control))]
         fits = iter(_follow(halves, np.repeat(tolerance[missing], 2), depth + 1))
         for k in missing:
             result[k] = _end_to_end((next(fits), next(fits)))
     return result
+
+
+def _chains(curves: Sequence[Curve], tolerance: Array, rounds: int) -> list[Found | None]:
+    """One arc or the fewest along each of some curves of one degree; None where none are found."""
+    found = _one_arc_each(Bundle(curves), tolerance)
+    rest = [k for k, chain in enumerate(found) if chain is None]
+    if rest:
+        for k, chain in zip(rest, fewest(Bundle([curves[k] for k in rest]), tolerance[rest], rounds), strict=True):
+            found[k] = chain
+    return found
+
+
+def _chord(curve: Curve, away: float, tolerance: float) -> Fit:
+    """The line from end to end of a short curve that is at most `away` from it."""
+    (x0, y0), (x1, y1) = curve.ends.tolist()
+    chord = Line(x0, y0, x1, y1)
+    return Fit((chord,) if chord.length > NOTHING * tolerance else (), away)
 
 
 def _end_to_end(fits: Sequence[Fit]) -> Fit:
