@@ -136,8 +136,11 @@ def plot(results: dict[str, np.ndarray], empty: float, path: Path) -> None:
     for name, rows in results.items():
         axes.loglog(rows[:, 0], rows[:, 1], "o-", label=f"{name} (n^{exponent(rows[:, 0], rows[:, 1] - empty):.2f})")
     axes.axhline(empty, color="0.6", linewidth=0.8, linestyle=":")
-    axes.text(SIZES[0], 1.04 * empty, "a drawing of one circle", fontsize=8, color="0.4")
+    axes.text(SIZES[-1], 1.04 * empty, "a drawing of one circle", fontsize=8, color="0.4", ha="right")
     axes.set(xlabel="edges", ylabel="processor time of watchsim inspect (s)")
+    axes.xaxis.set_major_formatter(lambda n, _: f"{n:,.0f}".replace(",", " "))
+    axes.set_yticks([0.2, 0.5, 1, 2, 5], labels=["0.2", "0.5", "1", "2", "5"])
+    axes.set_yticks([], minor=True)
     axes.grid(True, which="major", color="0.9")
     axes.legend(frameon=False, fontsize=9)
     figure.savefig(path, dpi=130)
