@@ -20,6 +20,8 @@ from watchsim.commands.console import (
 from watchsim.simulation.methods import EVENT_DRIVEN, METHODS
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from watchsim.mechanism.scene import Scene
     from watchsim.simulation.trajectory import Trajectory
 
@@ -60,6 +62,7 @@ def run(args: argparse.Namespace) -> int:
         scene = scene.set("run.record", [_record(what) for what in args.record])
     duration = _time("--duration", args.duration)
     step = _time("--step", args.step)
+    _check_windows(scene, scene.duration if duration is None else duration, asked=bool(args.record))
     if args.tol is not None and not 1e-13 <= args.tol <= 1e-2:
         raise InputError(f"--tol {args.tol:g}: must lie between 1e-13 and 1e-2.")
     method, start = args.method or EVENT_DRIVEN, None
@@ -138,13 +141,12 @@ def write(
         from watchsim.bench.profile import profile_of
 
         numbers["profile"] = plain(profile_of(run))
-    extra: dict[str, Any] = dict(tables(run))
-    if plots:
-        extra.update(_plots(run))
+    pictures: dict[str, Callable[[Path], object]] = _plots(run) if plots else {}
     if movie:
-        extra["movie.mp4"] = lambda path: _movie(run, path, speed=1 / 20)
+        pictures["movie.mp4"] = lambda path: _movie(run, path, speed=1 / 20)
     if gif:
-        extra["movie.gif"] = lambda path: _movie(run, path, speed=1 / 40)
+        pictures["movie.gif"] = lambda path: _movie(run, path, speed=1 / 40)
+    extra: dict[str, Any] = {**tables(run), **{name: _drawn(draw) for name, draw in pictures.items()}}
     write_results(run, folder, numbers, lock_text(run.scene, folder.absolute()), extra=extra, force=force)
     return numbers
 
@@ -173,7 +175,20 @@ def _earlier(folder: str, scene: Scene) -> Trajectory:
     return dataclasses.replace(run, scene=scene)
 
 
-def _plots(run: Trajectory) -> dict[str, Any]:
+def _drawn(draw: Callable[[Path], object]) -> Callable[[Path], None]:
+    """The same, but a picture that cannot be drawn costs a line, not the run."""
+
+    def attempt(path: Path) -> None:
+        try:
+            draw(path)
+        except Exception as error:
+            path.unlink(missing_ok=True)
+            say(f"{path.name} could not be drawn: {error}")
+
+    return attempt
+
+
+def _plots(run: Trajectory) -> dict[str, Callable[[Path], object]]:
     """Kinematic plots: all that was recorded, and the last beats."""
     from watchsim.render.plots import plot_kinematics
 
@@ -188,10 +203,11 @@ def _plots(run: Trajectory) -> dict[str, Any]:
 
 
 def last_beats(run: Trajectory, share: float = 1.5) -> tuple[float, float]:
-    """The last one and a half oscillations, or the last tenth where nothing oscillates."""
+    """The last one and a half oscillations, or the last tenth where nothing oscillates, of the last stretch recorded."""
     from watchsim.mechanism.check import frequency
+    from watchsim.render.poses import recorded
 
-    start, end = float(run.t[0]), float(run.t[-1])
+    start, end = recorded(run)[-1]
     hertz = frequency(run.scene)
     length = share / hertz if hertz else 0.1 * (end - start)
     return max(start, end - length), end
@@ -224,6 +240,16 @@ def status(run: Trajectory, summary: dict[str, Any], promised: bool = True) -> i
     if summary.get("stopped"):
         say("The watch has stopped ticking.")
     return MISSED if missed or summary.get("stopped") else FINE
+
+
+def _check_windows(scene: Scene, duration: float, asked: bool) -> None:
+    """A window that the run never enters: refused where it was asked for, else said."""
+    late = [window for window in scene.record.windows if window[0] >= duration]
+    for start, end in late:
+        words = f"the run ends at {duration:g} s, so that nothing can be recorded from {start:g} s to {end:g} s"
+        if asked:
+            raise InputError(f"--record: {words}. Choose another window or a longer --duration.")
+        say(f"Note: {words} (the scene's run.record). --record all keeps everything.")
 
 
 def _record(what: str) -> object:
