@@ -207,3 +207,53 @@ def test_moreau_and_error_bars(tmp_path: Path, capsys: pytest.CaptureFixture[str
         assert told["worst_complementarity_residual"] < 1e-12
     assert main(["run", incline, "--step", "1 µs", "-o", str(tmp_path / "s")]) == 2
     assert "fixed step" in capsys.readouterr().err
+
+
+def test_expectations_of_another_run_are_not_judged(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    incline = str(ROOT / "profiles" / "incline")
+    assert main(["run", incline, "--duration", "1 s", "--no-plots", "-o", str(tmp_path / "short")]) == 0
+    assert "± 1e-08 m: not checked: --duration made this another run" in capsys.readouterr().out
+    entries = json.loads((tmp_path / "short" / "summary.json").read_text(encoding="utf-8"))["expect"]
+    assert entries and all(entry["ok"] is None for entry in entries)
+    assert main(["run", incline, "--duration", "3 s", "--no-plots", "-o", str(tmp_path / "own")]) == 0
+    entries = json.loads((tmp_path / "own" / "summary.json").read_text(encoding="utf-8"))["expect"]
+    assert entries and all(entry["ok"] is True for entry in entries)
+
+
+@pytest.mark.parametrize("command", ["inspect", "check"])
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("", "is a folder"),
+        ("in.dxf", "must end in .png"),
+        ("x.txt", "must end in .png"),
+        ("none/x.png", "there is no folder"),
+        ("same.png", "is the input itself"),
+    ],
+)
+def test_a_picture_goes_nowhere_else(
+    command: str, name: str, words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Neither over the input, by its own or another name, nor into a file of another kind."""
+    source = tmp_path / "in.dxf"
+    source.write_bytes(before := (LEVER.parent / "wheel.dxf").read_bytes())
+    (tmp_path / "same.png").symlink_to(source)
+    assert main([command, str(source), "--png", str(tmp_path / name)]) == 2
+    told = capsys.readouterr().err
+    assert words in told and "Errno" not in told
+    assert source.read_bytes() == before and sorted(path.name for path in tmp_path.iterdir()) == ["in.dxf", "same.png"]
+
+
+@pytest.mark.parametrize("command", [["bench", "--quick", "--scene", "incline"], ["verify"]])
+def test_an_interrupt_is_no_result(
+    command: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from watchsim.simulation.run import Run
+
+    def stopped(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Run, "_slices", stopped)
+    monkeypatch.chdir(tmp_path)
+    assert main(command) == 130
+    assert capsys.readouterr().out == "" and not list(tmp_path.iterdir())

@@ -170,13 +170,16 @@ def _verdicts(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     if numbers["stopped"]:
         yield "stopped", numbers["stopped_message"]
     for entry in numbers["expect"]:
-        yield "expected", f"{expected_text(entry)}: {'kept' if entry['ok'] else 'MISSED'}"
+        verdict = entry["message"] if entry["ok"] is None else "kept" if entry["ok"] else "MISSED"
+        yield "expected", f"{expected_text(entry)}: {verdict}"
 
 
 def expected_text(entry: Mapping[str, Any]) -> str:
     """ "amplitude = 290.73° ± 0.05°, got 290.732°" from an entry of the summary's `expect`."""
     unit = entry["unit"] if entry["unit"] in ("", "°") else f" {entry['unit']}"
     promised = f"{entry['expected']:.12g}{unit} ± {entry['tolerance']:.4g}{unit}"
+    if entry["ok"] is None:
+        return f"{entry['key']} = {promised}"
     if entry["got"] is None:
         return f"{entry['key']} = {promised}, but {entry['message']}"
     # One digit more than the tolerance has.
