@@ -257,3 +257,33 @@ def test_an_interrupt_is_no_result(
     monkeypatch.chdir(tmp_path)
     assert main(command) == 130
     assert capsys.readouterr().out == "" and not list(tmp_path.iterdir())
+
+
+def test_what_is_no_drawing_gets_advice_and_no_measures(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    picture = tmp_path / "photo.dxf"
+    picture.write_bytes(b"\x89PNG\r\n\x1a\n")
+    cases = ((picture, "Save the drawing as DXF"), (tmp_path, "is a folder"), (tmp_path / "none.dxf", "there is no such file"))
+    for path, words in cases:
+        assert main(["inspect", str(path)]) == 2
+        told = capsys.readouterr().out
+        assert words in told and "units" not in told and "measure" not in told
+
+
+def test_inspect_succeeds_where_there_is_something_to_read(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    opened = tmp_path / "open.svg"
+    opened.write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="9mm" height="9mm" viewBox="0 0 9 9"><path d="M1 1H5V5"/></svg>'
+    )
+    assert main(["inspect", str(opened), "--json"]) == 0
+    assert [finding["severity"] for finding in json.loads(capsys.readouterr().out)["findings"]] == ["error"]
+
+
+def test_a_body_without_weight_is_named_where_the_solver_gives_up(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    light = ["--set", "bodies.lever.inertia=1e-30 kg·m²"]
+    assert main(["run", str(LEVER), "--duration", "0.1 s", "--no-plots", *light, "-o", str(tmp_path / "r")]) == 3
+    assert "The inertia of lever, 1e-30 kg·m², is 1e+21 times smaller" in capsys.readouterr().err
+
+
+def test_a_missing_folder_is_named_once(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["plot", "nothere"]) == 2
+    assert capsys.readouterr().err == "nothere: there is no such results folder\n"

@@ -41,10 +41,23 @@ def test_statistics_with_a_window(tmp_path) -> None:
     assert told["whole_run"]["beats"] == few["whole_run"]["beats"] + 8
 
 
-@pytest.mark.parametrize("what", ["statistic", "2 s:1 s", "1:2"])
-def test_what_cannot_be_kept(what: str, capsys, tmp_path) -> None:
+@pytest.mark.parametrize(
+    ("what", "words"),
+    [
+        ("statistic", 'write all, events, statistics, "every 10", or a window such as "179 s:180 s"'),
+        ("0.5 s", "or a window such as"),
+        ("every 0", "or a window such as"),
+        ("2 s:1 s", "the second time must be later"),
+        ("1:2", "a bare number needs a unit"),
+        ("1 s:2 s:3 s", "write two times"),
+    ],
+)
+def test_what_cannot_be_kept(what: str, words: str, capsys, tmp_path) -> None:
     assert main(["run", SCENE, "--record", what, "-o", str(tmp_path / "x")]) == BAD_INPUT
-    assert "run.record" in capsys.readouterr().err
+    told = capsys.readouterr().err
+    assert f'--record "{what}": ' in told and words in told
+    assert main(["run", SCENE, "--record", "all", "--record", "events", "-o", str(tmp_path / "x")]) == BAD_INPUT
+    assert "all and events exclude each other" in capsys.readouterr().err
 
 
 def test_windows_of_any_kind_cost_no_run(capsys, tmp_path) -> None:

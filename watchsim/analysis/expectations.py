@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from watchsim.mechanism.scene import Expectation
+from watchsim.mechanism.schema import ALIKE
 from watchsim.units import known_unit
 
 WATCH_KEYS = {
@@ -102,5 +103,5 @@ def _numbers(mapping: Mapping[str, Any], above: str = "") -> list[tuple[str, flo
 
 def _advice(key: str, known: Mapping[str, Any]) -> str:
     names = [*WATCH_KEYS, *known]
-    near = difflib.get_close_matches(key, names, n=1, cutoff=0.6)
+    near = difflib.get_close_matches(key, names, n=1, cutoff=ALIKE)
     return f'Did you mean "{near[0]}"?' if near else f"Known are {', '.join(WATCH_KEYS)} and the names in summary.json."

@@ -68,21 +68,21 @@ def announce_compile() -> None:
         say("Compiling the solver for this machine: once after installation, about a minute ...")
 
 
-def parse_window(text: str | None) -> tuple[float, float] | None:
-    """The two times of a text such as "179.4 s:179.75 s", in seconds."""
+def parse_window(text: str | None, option: str = "--window") -> tuple[float, float] | None:
+    """The two times of a text such as "179.4 s:179.75 s", in seconds; `option` is what it was given with."""
     if text is None:
         return None
     from watchsim.units import TIME, UnitError, parse
 
     parts = text.split(":")
     if len(parts) != 2:
-        raise InputError(f'--window "{text}": write two times with a colon between them, such as "179.4 s:179.75 s".')
+        raise InputError(f'{option} "{text}": write two times with a colon between them, such as "179.4 s:179.75 s".')
     try:
         start, end = (parse(part.strip(), TIME) for part in parts)
     except UnitError as error:
-        raise InputError(f'--window "{text}": {error}') from error
+        raise InputError(f'{option} "{text}": {error}') from error
     if not end > start:
-        raise InputError(f'--window "{text}": the second time must be later than the first.')
+        raise InputError(f'{option} "{text}": the second time must be later than the first.')
     return start, end
 
 

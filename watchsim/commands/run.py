@@ -14,6 +14,7 @@ from watchsim.commands.console import (
     InputError,
     Progress,
     announce_compile,
+    parse_window,
     print_json,
     say,
 )
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from watchsim.simulation.trajectory import Trajectory
 
 HELP = "simulate a scene and write a results folder"
+FAR = 1e8  # a balance has a thousand times the inertia of a lever
 
 
 def options(parser: argparse.ArgumentParser) -> None:
@@ -239,6 +241,8 @@ def status(run: Trajectory, summary: dict[str, Any]) -> int:
 
     if run.stop.gave_up:
         say(f"The solver gave up: {run.stop_message}. What was simulated up to there is kept.")
+        if hint := _unlike(run.scene):
+            say(hint)
         return GAVE_UP
     if run.stop == Stop.INTERRUPTED:
         say(f"Stopped at {run.stop_message}.")
@@ -249,6 +253,15 @@ def status(run: Trajectory, summary: dict[str, Any]) -> int:
     if summary.get("stopped"):
         say("The watch has stopped ticking.")
     return MISSED if missed or summary.get("stopped") else FINE
+
+
+def _unlike(scene: Scene) -> str:
+    """Words about a pivoted body that is so much lighter than another that a slip is likely; "" where there is none."""
+    turning = sorted((body.inertia, body.name) for body in scene.bodies if body.motion == "pivot")
+    if not turning or turning[-1][0] < FAR * turning[0][0]:
+        return ""
+    (least, light), (most, heavy) = turning[0], turning[-1]
+    return f"The inertia of {light}, {least:.3g} kg·m², is {most / least:.1g} times smaller than that of {heavy}: is it meant?"
 
 
 def _check_windows(scene: Scene, duration: float, asked: bool) -> None:
@@ -262,9 +275,16 @@ def _check_windows(scene: Scene, duration: float, asked: bool) -> None:
 
 
 def _record(what: str) -> object:
-    """A window as the scene file has it, or the word."""
-    first, colon, second = what.partition(":")
-    return [first.strip(), second.strip()] if colon else what
+    """A window as the scene file has it, or the word; InputError where it is neither."""
+    from watchsim.mechanism.recording import EVERY, KEPT
+
+    if ":" in what:
+        parse_window(what, "--record")
+        return [time.strip() for time in what.split(":")]
+    word, _, number = what.partition(" ")
+    if what in KEPT or (word == EVERY and number.strip().isdecimal() and int(number) > 0):
+        return what
+    raise InputError(f'--record "{what}": write {", ".join(KEPT)}, "{EVERY} 10", or a window such as "179 s:180 s".')
 
 
 def _time(option: str, text: str | None) -> float | None:

@@ -39,4 +39,5 @@ def read_run(folder: str) -> Trajectory:
     try:
         return read_results(folder)
     except (OSError, ValueError, KeyError) as error:
-        raise InputError(f"{folder}: {error}") from error
+        told = str(error)
+        raise InputError(told if told.startswith(folder) else f"{folder}: {told}") from error

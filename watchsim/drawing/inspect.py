@@ -88,7 +88,9 @@ def loop_report(loop: Loop) -> dict[str, object]:
 def inspect_text(drawing: Drawing) -> str:
     """The same facts in words, the most important first."""
     everything = (*drawing.loops, *drawing.open_chains)
-    parts = [str(drawing.path), *units_lines(drawing), *size_lines(drawing, extents(everything)), *layer_lines(drawing)]
+    parts = [str(drawing.path)]
+    if drawing.layers or drawing.units:
+        parts += [*units_lines(drawing), *size_lines(drawing, extents(everything)), *layer_lines(drawing)]
     if drawing.fitted_curves:
         worst = f"{1e6 * drawing.fitted_deviation:.3g} µm"
         curves = plural(drawing.fitted_curves, "curve")
