@@ -26,7 +26,7 @@ RULES = (
     ("energy_rescues", "{} impacts solved again with less restitution, which would have gained energy"),
     ("jams", "{} jams: sliding contacts that no finite force could hold apart, stopped by impulses (Painlevé)"),
 )
-NO_PENETRATION = 1e-12  # m; less is not worth a digit
+NO_PENETRATION = 1e-12  # m; less is not worth a digit, neither of depths nor of errors
 PLAIN = 1e-6  # errors below are written with an exponent
 
 
@@ -113,7 +113,7 @@ def _metric(value: float, unit: str, digits: int = 4) -> str:
 def _error(value: float, unit: str) -> str:
     """An error with one digit; a length with a prefix."""
     if unit == "m":
-        return _metric(value, unit, 1)
+        return _metric(max(value, NO_PENETRATION), unit, 1)
     return f"{value:.{_decimals(value)}f}{unit}" if value >= PLAIN or value == 0.0 else f"{value:.0e}{unit}"
 
 

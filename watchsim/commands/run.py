@@ -140,6 +140,10 @@ def write(
     `changed` holds the options by which the run is another than the scene's own: its expectations are then not judged.
     """
     from watchsim.analysis.expectations import not_judged
+    from watchsim.simulation.stops import Stop
+
+    if run.stop == Stop.INTERRUPTED:
+        say("Interrupted: writing what was simulated; a second Ctrl-C gives it up ...")
     from watchsim.analysis.results import write_results
     from watchsim.analysis.summary import summary, tables
     from watchsim.analysis.tables import plain
