@@ -113,6 +113,8 @@ def parse(value: object, dimension: Dimension) -> float:
 
     Raises UnitError for a missing, unknown or unfitting unit and for what is not a finite number.
     """
+    if dimension is NUMBER and (isinstance(value, bool) or not isinstance(value, (str, Real))):
+        raise UnitError(f"a plain number is needed here, not {_kind(value)}")
     number, unit_text = split(value)
     unit = known_unit(unit_text, dimension)
     if dimension is not NUMBER and not unit_text:

@@ -55,6 +55,7 @@ def test_a_row_as_promised() -> None:
     assert compared("a", "b", 0.0, 1e-10, 1e-9, "c")["ok"] is True
     assert compared("a", "b", 1.0, math.nan, 1e-9, "c")["ok"] is False
     json.dumps(row)
+    assert str(compared("a", "b", -0.0, -0.0, 1e-9, "c")["expected"]) == "0.0"
 
 
 def test_the_table_names_each_benchmark_once_and_counts_the_wrong() -> None:

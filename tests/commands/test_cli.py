@@ -215,3 +215,83 @@ def test_a_process_ends_with_the_status_of_its_command(tmp_path):
 
     assert status("--version") == 0
     assert status("check", str(tmp_path / "nowhere")) == 2
+
+
+def test_expectations_of_another_run_are_not_judged(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    incline = str(ROOT / "profiles" / "incline")
+    assert main(["run", incline, "--duration", "1 s", "--no-plots", "-o", str(tmp_path / "short")]) == 0
+    assert "± 1e-08 m: not checked: --duration made this another run" in capsys.readouterr().out
+    entries = json.loads((tmp_path / "short" / "summary.json").read_text(encoding="utf-8"))["expect"]
+    assert entries and all(entry["ok"] is None for entry in entries)
+    assert main(["run", incline, "--duration", "3 s", "--no-plots", "-o", str(tmp_path / "own")]) == 0
+    entries = json.loads((tmp_path / "own" / "summary.json").read_text(encoding="utf-8"))["expect"]
+    assert entries and all(entry["ok"] is True for entry in entries)
+
+
+@pytest.mark.parametrize("command", ["inspect", "check"])
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("", "is a folder"),
+        ("in.dxf", "must end in .png"),
+        ("x.txt", "must end in .png"),
+        ("none/x.png", "there is no folder"),
+        ("same.png", "is the input itself"),
+    ],
+)
+def test_a_picture_goes_nowhere_else(
+    command: str, name: str, words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Neither over the input, by its own or another name, nor into a file of another kind."""
+    source = tmp_path / "in.dxf"
+    source.write_bytes(before := (LEVER.parent / "wheel.dxf").read_bytes())
+    (tmp_path / "same.png").symlink_to(source)
+    assert main([command, str(source), "--png", str(tmp_path / name)]) == 2
+    told = capsys.readouterr().err
+    assert words in told and "Errno" not in told
+    assert source.read_bytes() == before and sorted(path.name for path in tmp_path.iterdir()) == ["in.dxf", "same.png"]
+
+
+@pytest.mark.parametrize("command", [["bench", "--quick", "--scene", "incline"], ["verify"]])
+def test_an_interrupt_is_no_result(
+    command: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from watchsim.simulation.run import Run
+
+    def stopped(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Run, "_slices", stopped)
+    monkeypatch.chdir(tmp_path)
+    assert main(command) == 130
+    assert capsys.readouterr().out == "" and not list(tmp_path.iterdir())
+
+
+def test_what_is_no_drawing_gets_advice_and_no_measures(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    picture = tmp_path / "photo.dxf"
+    picture.write_bytes(b"\x89PNG\r\n\x1a\n")
+    cases = ((picture, "Save the drawing as DXF"), (tmp_path, "is a folder"), (tmp_path / "none.dxf", "there is no such file"))
+    for path, words in cases:
+        assert main(["inspect", str(path)]) == 2
+        told = capsys.readouterr().out
+        assert words in told and "units" not in told and "measure" not in told
+
+
+def test_inspect_succeeds_where_there_is_something_to_read(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    opened = tmp_path / "open.svg"
+    opened.write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="9mm" height="9mm" viewBox="0 0 9 9"><path d="M1 1H5V5"/></svg>'
+    )
+    assert main(["inspect", str(opened), "--json"]) == 0
+    assert [finding["severity"] for finding in json.loads(capsys.readouterr().out)["findings"]] == ["error"]
+
+
+def test_a_body_without_weight_is_named_where_the_solver_gives_up(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    light = ["--set", "bodies.lever.inertia=1e-30 kg·m²"]
+    assert main(["run", str(LEVER), "--duration", "0.1 s", "--no-plots", *light, "-o", str(tmp_path / "r")]) == 3
+    assert "The inertia of lever, 1e-30 kg·m², is 1e+21 times smaller" in capsys.readouterr().err
+
+
+def test_a_missing_folder_is_named_once(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["plot", "nothere"]) == 2
+    assert capsys.readouterr().err == "nothere: there is no such results folder\n"

@@ -8,8 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from watchsim.analysis.results import read_results
 from watchsim.cli import main
 from watchsim.commands.console import BAD_INPUT, FINE
+from watchsim.commands.run import last_beats
 from watchsim.profiles_path import profiles_dir
 
 SCENE = str(profiles_dir() / "bench_lever")
@@ -30,7 +32,7 @@ def test_statistics_with_a_window(tmp_path) -> None:
     with np.load(tmp_path / "few" / "trajectory.npz") as kept:
         inside = (kept["t"] >= 1.0) & (kept["t"] <= 1.5)
         assert inside.sum() > 100
-        assert np.all(inside | (kept["t"] >= 2.0))
+        assert np.sum(~inside & (kept["t"] < 2.0)) <= 3  # those next to the window and to the last seconds
     # The locked scene says what was kept, and the folder can be gone on from.
     assert '"statistics"' in (tmp_path / "few" / "scene.lock.toml").read_text(encoding="utf-8")
     more = ["run", str(tmp_path / "few" / "scene.lock.toml"), "--resume", str(tmp_path / "few"), "--duration", "6 s"]
@@ -39,7 +41,49 @@ def test_statistics_with_a_window(tmp_path) -> None:
     assert told["whole_run"]["beats"] == few["whole_run"]["beats"] + 8
 
 
-@pytest.mark.parametrize("what", ["statistic", "2 s:1 s", "1:2"])
-def test_what_cannot_be_kept(what: str, capsys, tmp_path) -> None:
+@pytest.mark.parametrize(
+    ("what", "words"),
+    [
+        ("statistic", 'write all, events, statistics, "every 10", or a window such as "179 s:180 s"'),
+        ("0.5 s", "or a window such as"),
+        ("every 0", "or a window such as"),
+        ("2 s:1 s", "the second time must be later"),
+        ("1:2", "a bare number needs a unit"),
+        ("1 s:2 s:3 s", "write two times"),
+    ],
+)
+def test_what_cannot_be_kept(what: str, words: str, capsys, tmp_path) -> None:
     assert main(["run", SCENE, "--record", what, "-o", str(tmp_path / "x")]) == BAD_INPUT
-    assert "run.record" in capsys.readouterr().err
+    told = capsys.readouterr().err
+    assert f'--record "{what}": ' in told and words in told
+    assert main(["run", SCENE, "--record", "all", "--record", "events", "-o", str(tmp_path / "x")]) == BAD_INPUT
+    assert "all and events exclude each other" in capsys.readouterr().err
+
+
+def test_windows_of_any_kind_cost_no_run(capsys, tmp_path) -> None:
+    """Two windows, one between two rows, and one after the end."""
+    run = ["run", SCENE, "--duration", "0.5 s"]
+    two = ["--record", "0.1 s:0.2 s", "--record", "0.3 s:0.4 s", "-o", str(tmp_path / "two")]
+    assert main([*run, *two]) == FINE
+    assert {path.name for path in (tmp_path / "two" / "plots").iterdir()} == {"kinematics.png", "last_beats.png"}
+    assert last_beats(read_results(tmp_path / "two")) == (pytest.approx(0.3), pytest.approx(0.4))
+    assert main([*run, "--record", "0.21 s:0.2101 s", "-o", str(tmp_path / "short")]) == FINE
+    kept = read_results(tmp_path / "short").t
+    assert len(kept) < 30 and kept[0] <= 0.21 and kept[-1] >= 0.2101
+    capsys.readouterr()
+    assert main([*run, "--record", "5 s:6 s", "-o", str(tmp_path / "late")]) == BAD_INPUT
+    assert "the run ends at 0.5 s" in capsys.readouterr().err
+    assert not (tmp_path / "late").exists()
+    assert main([*run, "--set", 'run.record=["5 s", "6 s"]', "-o", str(tmp_path / "none")]) == FINE
+    assert "the run ends at 0.5 s" in capsys.readouterr().err
+    assert json.loads((tmp_path / "none" / "summary.json").read_text(encoding="utf-8"))["impacts"] > 0
+
+
+def test_a_plot_that_fails_costs_a_line_only(capsys, tmp_path, monkeypatch) -> None:
+    def fail(*_: object, **__: object) -> None:
+        raise RuntimeError("no ink")
+
+    monkeypatch.setattr("watchsim.render.plots.plot_kinematics", fail)
+    assert main(["run", SCENE, "--duration", "0.1 s", "-o", str(tmp_path / "r")]) == FINE
+    assert "kinematics.png could not be drawn: no ink" in capsys.readouterr().err
+    assert (tmp_path / "r" / "trajectory.npz").is_file() and not list((tmp_path / "r" / "plots").iterdir())

@@ -44,7 +44,7 @@ def test_what_is_no_dxf(read_bytes: Reader, data: bytes, word: str) -> None:
 def test_files_that_are_not_there_or_not_read(tmp_path: Path) -> None:
     assert "no such file" in errors(read(tmp_path / "none.dxf"))["unreadable"]
     (tmp_path / "folder.dxf").mkdir()
-    assert "unreadable" in errors(read(tmp_path / "folder.dxf"))
+    assert "is a folder" in errors(read(tmp_path / "folder.dxf"))["unreadable"]
     assert "no such file" in errors(read(tmp_path / "wheel.svg"))["unreadable"]
     assert "wheel.step" in errors(read(tmp_path / "wheel.step"))["format"]
     with pytest.raises(ValueError, match="positive"):

@@ -45,9 +45,12 @@ def test_words_and_windows(value: object, expected: Recording) -> None:
         ("every", "run.record", 'write "every 10"'),
         ("every 0", "run.record", 'write "every 10"'),
         (["statistics", ["2 s", "1 s"]], "run.record.1", "from an earlier to a later time"),
-        (["1 s"], "run.record", "two values are needed"),
+        (["1 s"], "run.record", 'a window is two times, such as ["179 s", "180 s"]'),
+        (["all", "statistics"], "run.record", "all and statistics exclude each other"),
+        (["every 2", "every 3"], "run.record", "only one of every 2, every 3 can hold"),
         (["179", "180 s"], "run.record.0", "needs a unit"),
-        (7, "run.record", "two values are needed"),
+        (7, "run.record", "a window is two times"),
+        ("0.5 s", "run.record", "a window is two times"),
     ],
 )
 def test_what_cannot_be_read(value: object, key: str, said: str) -> None:

@@ -37,6 +37,7 @@ ONE_FAULT = [
         "bodies.wheel.drawing",
         'there is no such file. Did you mean "wheel.dxf"?',
     ),
+    ('drawing = "wheel.dxf"', 'drawing = "nope.dxf"', "bodies.wheel.drawing", "there is no such file. Known here: "),
     ('drawing = "wheel.dxf"', 'drawing = ""', "bodies.wheel.drawing", "the name of a file is needed"),
     ('drawing = "wheel.dxf"', "drawing = 3", "bodies.wheel.drawing", "a text in quotes"),
     (
@@ -65,6 +66,8 @@ ONE_FAULT = [
     (WHEEL_INERTIA, "", "bodies.wheel", "the body can move (pivot) but has no inertia"),
     (WHEEL_INERTIA, 'inertia = "0 mg·cm²"\n', "bodies.wheel.inertia", "the body can move (pivot) but has no inertia"),
     (WHEEL_INERTIA, 'inertia = "-1 mg·cm²"\n', "bodies.wheel.inertia", "must not be negative"),
+    (WHEEL_INERTIA, 'inerti = "0.05 mg·cm²"\n', "bodies.wheel.inerti", 'unknown key. Did you mean "inertia"?'),
+    ("restitution = 0.2", "restitution = true", "contacts.0.restitution", "a plain number is needed here, not true or false"),
     (WHEEL_INERTIA, "inertia = 5e-12\n", "bodies.wheel.inertia", "a bare number needs a unit here"),
     (WHEEL_INERTIA, 'inertia = "nan mg·cm²"\n', "bodies.wheel.inertia", "does not begin with a number"),
     (WHEEL_INERTIA, SOLID.replace('density = "7.85 g/cm³"\n', ""), "bodies.wheel.solids.0", "density is missing"),

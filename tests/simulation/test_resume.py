@@ -145,7 +145,11 @@ def test_another_scene_is_refused() -> None:
         simulate(changed(scene), 0.1, start=first)
     with pytest.raises(ValueError, match=r"other settings.*tolerance"):
         simulate(scene, 0.1, 1e-7, start=first)
-    with pytest.raises(ValueError, match="method was pfeiffer-glocker, now moreau"):
+    assert first.end_state is not None
+    older = dataclasses.replace(first.end_state, settings={**first.end_state.settings, "force_zero": 1e-9})
+    with pytest.raises(ValueError, match=r"another version of watchsim \(force_zero was 1e-09, now .*begin anew"):
+        simulate(scene, 0.1, start=older)
+    with pytest.raises(ValueError, match=r"\(method was pfeiffer-glocker, now moreau\)"):
         simulate(scene, 0.1, start=first, method="moreau")
     with pytest.raises(ValueError, match=r"has reached 0\.05 s already"):
         simulate(scene, 0.05, start=first)

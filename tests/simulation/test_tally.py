@@ -12,6 +12,7 @@ from watchsim.analysis.beats import beats
 from watchsim.analysis.summary import summary
 from watchsim.mechanism.recording import EVERYTHING, Recording
 from watchsim.simulation import run as running
+from watchsim.simulation.run import ROWS
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.tally import Tally
 from watchsim.simulation.trajectory import Trajectory
@@ -75,24 +76,54 @@ def test_all_headline_numbers_survive(record: str | Recording, monkeypatch: pyte
     assert len(done.t) < 0.7 * len(whole().t)
 
 
+def with_neighbours(rows: np.ndarray) -> np.ndarray:
+    """These rows, the one before the first and the one after the last."""
+    first, last = np.flatnonzero(rows)[[0, -1]]
+    return (np.arange(len(rows)) >= first - 1) & (np.arange(len(rows)) <= last + 1)
+
+
 def test_only_what_was_asked_for_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     small_buffers(monkeypatch)
     scene, full = profile("swiss_lever"), whole()
     statistics = simulate(scene, DURATION, record=Recording(((1.0, 1.5),), "statistics"))
     tail = (DURATION - 3.0, DURATION)
     assert statistics.spans == ((1.0, 1.5), tail)
-    inside = ((full.t >= 1.0) & (full.t <= 1.5)) | (full.t >= tail[0])
+    inside = with_neighbours((full.t >= 1.0) & (full.t <= 1.5)) | with_neighbours(full.t >= tail[0])
     assert np.array_equal(statistics.t, full.t[inside])
     assert np.array_equal(statistics.q, full.q[inside])
     times = full.events["t"]
     assert np.array_equal(statistics.events, full.events[((times >= 1.0) & (times <= 1.5)) | (times >= tail[0])])
     events = simulate(scene, DURATION, record="events")
     assert np.array_equal(events.events, full.events)
-    assert np.array_equal(events.t, full.t[full.t >= tail[0]])
+    assert np.array_equal(events.t, full.t[with_neighbours(full.t >= tail[0])])
     thinned = simulate(scene, DURATION, record=Recording(stride=7))
     assert np.array_equal(thinned.q, full.q[::7])
     assert np.array_equal(thinned.events, full.events)
     assert np.array_equal(thinned.end_q, full.q[-1])
+
+
+@pytest.mark.parametrize("rows", [ROWS, 1])
+def test_a_window_without_a_row_keeps_its_neighbours(rows: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Motion within the shortest windows, and at the ends of others, is that of the whole run, whatever the buffers' size."""
+    monkeypatch.setattr(running, "ROWS", rows)
+    full = whole()
+    gap = int(np.argmax(np.diff(full.t)))
+    short = tuple(full.t[gap] + np.array([0.4, 0.5]) * (full.t[gap + 1] - full.t[gap]))
+    done = simulate(profile("swiss_lever"), DURATION, record=[short, (5.0, 5.25), (7.0, 8.0)])
+    assert done.spans == (short, (5.0, 5.25)) or done.spans == ((5.0, 5.25), short)
+    assert {full.t[gap], full.t[gap + 1]} <= set(done.t.tolist())
+    times = np.concatenate([np.linspace(*short, 5), np.linspace(5.0, 5.25, 100)])
+    for one, other in zip(done.sample(times), full.sample(times), strict=True):
+        assert np.array_equal(one, other)
+
+
+def test_a_resumed_run_keeps_the_same_windows() -> None:
+    record = Recording(((0.5, 0.6), (1.2, 1.3)), "statistics")
+    scene = profile("swiss_lever")
+    first = simulate(scene, 4.0, record=record)
+    both, at_once = simulate(scene, DURATION, record=record, start=first), simulate(scene, DURATION, record=record)
+    assert both.t.tolist() == at_once.t.tolist()
+    assert both.end_state.rows == at_once.end_state.rows
 
 
 def test_a_run_that_goes_on_keeps_the_sums_of_both_parts() -> None:

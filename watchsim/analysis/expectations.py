@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import difflib
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from watchsim.mechanism.scene import Expectation
+from watchsim.mechanism.schema import ALIKE
 from watchsim.units import known_unit
 
 WATCH_KEYS = {
@@ -44,6 +45,11 @@ def judge(expectation: Expectation, numbers: Mapping[str, Any]) -> dict[str, Any
     }
 
 
+def not_judged(entry: Mapping[str, Any], changed: Sequence[str]) -> dict[str, Any]:
+    """An entry of `judge` without a verdict (`ok` is null): options made the run another than the scene's own."""
+    return {**entry, "ok": None, "message": f"not checked: {' and '.join(changed)} made this another run than the scene's own"}
+
+
 def unit_of(name: str) -> str:
     """The unit a dotted name of the summary ends with; "" for plain numbers."""
     if name.startswith("energy.dissipated."):
@@ -52,22 +58,33 @@ def unit_of(name: str) -> str:
     return next((unit for ending, unit in ENDINGS.items() if last.endswith(ending)), "")
 
 
+def mistake(expectation: Expectation, numbers: Mapping[str, Any]) -> str:
+    """What is wrong with the key or the unit, whatever the run; "" for nothing. What is null may hold numbers later."""
+    name = _name(expectation)
+    known = dict(_numbers(numbers))
+    if name not in known and not any(name.startswith(f"{whole}.") for whole, value in known.items() if value is None):
+        return f'"{expectation.key}" is no number of the results. {_advice(expectation.key, known)}'
+    source = unit_of(name)
+    if expectation.unit and known_unit(source).powers != known_unit(expectation.unit).powers:
+        return f'"{expectation.key}" is in {source or "plain numbers"}, which cannot be compared with {expectation.unit}'
+    return ""
+
+
+def _name(expectation: Expectation) -> str:
+    return WATCH_KEYS.get(expectation.key, expectation.key)
+
+
 def _found(expectation: Expectation, numbers: Mapping[str, Any]) -> tuple[float | None, str]:
     """The number in the expectation's unit, or None and what is wrong."""
-    known = dict(_numbers(numbers))
-    name = WATCH_KEYS.get(expectation.key, expectation.key)
-    if name not in known:
-        return None, f'"{expectation.key}" is no number of the results. {_advice(expectation.key, known)}'
-    value = known[name]
+    if message := mistake(expectation, numbers):
+        return None, message
+    name = _name(expectation)
+    value = dict(_numbers(numbers)).get(name)
     if value is None:
         return None, f'this run gives no "{expectation.key}"'
-    source = unit_of(name)
     if not expectation.unit:
         return value, ""
-    have, wanted = known_unit(source), known_unit(expectation.unit)
-    if have.powers != wanted.powers:
-        return None, f'"{expectation.key}" is in {source or "plain numbers"}, which cannot be compared with {expectation.unit}'
-    return value * have.factor / wanted.factor, ""
+    return value * known_unit(unit_of(name)).factor / known_unit(expectation.unit).factor, ""
 
 
 def _numbers(mapping: Mapping[str, Any], above: str = "") -> list[tuple[str, float | None]]:
@@ -86,5 +103,5 @@ def _numbers(mapping: Mapping[str, Any], above: str = "") -> list[tuple[str, flo
 
 def _advice(key: str, known: Mapping[str, Any]) -> str:
     names = [*WATCH_KEYS, *known]
-    near = difflib.get_close_matches(key, names, n=1, cutoff=0.6)
+    near = difflib.get_close_matches(key, names, n=1, cutoff=ALIKE)
     return f'Did you mean "{near[0]}"?' if near else f"Known are {', '.join(WATCH_KEYS)} and the names in summary.json."

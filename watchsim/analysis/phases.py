@@ -66,7 +66,7 @@ def phases(run: Trajectory, found: Beats | None = None) -> list[Phase]:
     A beat in which the wheel does not advance, or in which a phase cannot be told, has no rows.
     """
     parts = roles(run.scene)
-    if parts.wheel is None or parts.lever is None or parts.oscillator is None:
+    if parts.wheel is None or parts.lever is None or parts.oscillator is None or len(run.t) == 0:
         return []
     found = found or beats(run)
     contacts = _contacts(run, parts)

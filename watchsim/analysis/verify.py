@@ -36,6 +36,8 @@ def rows_of(benchmarks: list[Benchmark]) -> list[Row]:
     rows = []
     for benchmark in benchmarks:
         run = simulate(benchmark.scene)
+        if run.stop == Stop.INTERRUPTED:
+            raise KeyboardInterrupt
         rows += [_row(benchmark.name, benchmark.source, check, run) for check in benchmark.checks]
     return rows
 

@@ -63,6 +63,8 @@ def _own_run(scenario: Scenario, method: str, setting: float, duration: float) -
     begun = time.process_time()
     stop = run.to_the_end(duration, None)
     taken = time.process_time() - begun
+    if stop == Stop.INTERRUPTED:
+        raise KeyboardInterrupt  # half a run is no result
     return run.trajectory(stop, taken, 0.0), taken
 
 

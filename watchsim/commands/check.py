@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from watchsim.commands.console import BAD_INPUT, FINE, print_json, say
+from watchsim.commands.console import BAD_INPUT, FINE, check_picture, print_json, say
 
 HELP = "everything short of simulating: units, overlap at the start, mass, frequency, what can touch"
 
@@ -23,6 +23,8 @@ def run(args: argparse.Namespace) -> int:
     from watchsim.mechanism.check import check_report, check_text
     from watchsim.mechanism.compile import compile_scene
 
+    if args.png:
+        check_picture(args.png, args.scene)
     scene = load_scene(args.scene, overlap=False)
     compiled = compile_scene(scene)
     pairs = modelled_pairs(compiled, [body.name for body in scene.bodies])

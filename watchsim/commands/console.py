@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import sys
 import time
+from pathlib import Path
 from typing import Any
 
 FINE, MISSED, BAD_INPUT, GAVE_UP, INTERRUPTED = 0, 1, 2, 3, 130
@@ -67,22 +68,35 @@ def announce_compile() -> None:
         say("Compiling the solver for this machine: once after installation, about a minute ...")
 
 
-def parse_window(text: str | None) -> tuple[float, float] | None:
-    """The two times of a text such as "179.4 s:179.75 s", in seconds."""
+def parse_window(text: str | None, option: str = "--window") -> tuple[float, float] | None:
+    """The two times of a text such as "179.4 s:179.75 s", in seconds; `option` is what it was given with."""
     if text is None:
         return None
     from watchsim.units import TIME, UnitError, parse
 
     parts = text.split(":")
     if len(parts) != 2:
-        raise InputError(f'--window "{text}": write two times with a colon between them, such as "179.4 s:179.75 s".')
+        raise InputError(f'{option} "{text}": write two times with a colon between them, such as "179.4 s:179.75 s".')
     try:
         start, end = (parse(part.strip(), TIME) for part in parts)
     except UnitError as error:
-        raise InputError(f'--window "{text}": {error}') from error
+        raise InputError(f'{option} "{text}": {error}') from error
     if not end > start:
-        raise InputError(f'--window "{text}": the second time must be later than the first.')
+        raise InputError(f'{option} "{text}": the second time must be later than the first.')
     return start, end
+
+
+def check_picture(target: str, source: str) -> None:
+    """InputError unless --png names a file that a picture may be written to, which is not the input's."""
+    path = Path(target)
+    if path.is_dir():
+        raise InputError(f"--png {target}: is a folder; a picture needs the name of a file in it, such as picture.png.")
+    if path.suffix.lower() != ".png":
+        raise InputError(f"--png {target}: the picture is a PNG, so its name must end in .png.")
+    if path.resolve() == Path(source).resolve():
+        raise InputError(f"--png {target}: is the input itself, which would be lost. Choose another name.")
+    if not path.parent.is_dir():
+        raise InputError(f"--png {target}: there is no folder {path.parent}; create it first.")
 
 
 def parse_names(text: str | None) -> list[str] | None:

@@ -36,11 +36,11 @@ def run(args: argparse.Namespace) -> int:
     print(f"\n2. A Swiss lever, read from DXF drawings, ticks for {DURATION:g} s", flush=True)
     scene = load_scene(str(profiles_dir() / "swiss_lever"))
     trajectory = simulate_with_progress(scene, DURATION, None)
-    summary = write(trajectory, folder, args.force, movie=True, gif=True)
+    summary = write(trajectory, folder, args.force, movie=True, gif=True, changed=["--duration"])
     print(summary_text(trajectory, {**summary, "expect": []}), flush=True)
     print(f"\nPlots, movie.mp4, movie.gif and all numbers: {folder}")
     print(f"Done in {time.monotonic() - start:.0f} s.")
-    code = status(trajectory, summary, promised=False)
+    code = status(trajectory, summary)
     return code if code != FINE else FINE if all(row["ok"] for row in rows) else MISSED
 
 
@@ -50,8 +50,11 @@ def _incline_picture(folder: Path) -> Path:
     from watchsim.profiles_path import profiles_dir
     from watchsim.render.plots import plot_kinematics
     from watchsim.simulation.simulate import simulate
+    from watchsim.simulation.stops import Stop
 
     run = simulate(load_scene(str(profiles_dir() / "incline")))
+    if run.stop == Stop.INTERRUPTED:
+        raise KeyboardInterrupt
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / "incline.png"
     plot_kinematics(run).savefig(path)

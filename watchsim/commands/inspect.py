@@ -1,4 +1,8 @@
-"""watchsim inspect FILE: what does this drawing hold, and what is wrong with it?"""
+"""watchsim inspect FILE: what does this drawing hold, and what is wrong with it?
+
+Exit status 0: the drawing was read, whatever faults are listed (`watchsim check` of a scene that uses it judges them); 2: there
+was nothing that could be read.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +10,7 @@ import argparse
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from watchsim.commands.console import BAD_INPUT, FINE, InputError, parse_length, print_json, say
+from watchsim.commands.console import BAD_INPUT, FINE, InputError, check_picture, parse_length, print_json, say
 
 if TYPE_CHECKING:
     from watchsim.drawing.drawing import Drawing
@@ -29,6 +33,8 @@ def run(args: argparse.Namespace) -> int:
     from watchsim.drawing.inspect import inspect_report, inspect_text
     from watchsim.drawing.read import read
 
+    if args.png:
+        check_picture(args.png, args.file)
     lengths = {name: parse_length(name, getattr(args, name)) for name in ("snap", "fit") if getattr(args, name) is not None}
     try:
         drawing = read(args.file, units=args.units, **lengths)

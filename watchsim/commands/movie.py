@@ -6,7 +6,7 @@ import argparse
 from fractions import Fraction
 from pathlib import Path
 
-from watchsim.commands.console import FINE, InputError, Progress, parse_names, parse_window
+from watchsim.commands.console import FINE, InputError, Progress, parse_names, parse_window, say
 
 HELP = "MP4 or GIF of a results folder, by the file's ending"
 
@@ -27,6 +27,8 @@ def run(args: argparse.Namespace) -> int:
     from watchsim.render.movie import movie
 
     speed, size = _speed(args.speed), _size(args.size)
+    if size and any(side % 2 for side in size):
+        say(f"Note: sides of a movie are even numbers of pixels; {args.size} is rounded up.")
     window = parse_window(args.window)
     trajectory = read_run(args.run_folder)
     target = Path(args.output) if args.output else Path(args.run_folder) / "movie.mp4"

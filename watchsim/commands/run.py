@@ -15,16 +15,20 @@ from watchsim.commands.console import (
     InputError,
     Progress,
     announce_compile,
+    parse_window,
     print_json,
     say,
 )
 from watchsim.simulation.methods import EVENT_DRIVEN, METHODS
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
     from watchsim.mechanism.scene import Scene
     from watchsim.simulation.trajectory import Trajectory
 
 HELP = "simulate a scene and write a results folder"
+FAR = 1e8  # a balance has a thousand times the inertia of a lever
 
 
 def options(parser: argparse.ArgumentParser) -> None:
@@ -61,6 +65,7 @@ def run(args: argparse.Namespace) -> int:
         scene = scene.set("run.record", [_record(what) for what in args.record])
     duration = _time("--duration", args.duration)
     step = _time("--step", args.step)
+    _check_windows(scene, scene.duration if duration is None else duration, asked=bool(args.record))
     if args.tol is not None and not 1e-13 <= args.tol <= 1e-2:
         raise InputError(f"--tol {args.tol:g}: must lie between 1e-13 and 1e-2.")
     method, start = args.method or EVENT_DRIVEN, None
@@ -72,6 +77,9 @@ def run(args: argparse.Namespace) -> int:
         method, step = args.method or start.method, step or start.step
         args.tol = args.tol or start.tolerance
     check_folder(folder, replace)
+    # What a scene promises, it promises as it is written.
+    given = {"--set": args.set, "--duration": duration not in (None, scene.duration), "--tol": args.tol, "--step": args.step}
+    changed = [name for name, value in (*given.items(), ("--method", method != EVENT_DRIVEN)) if value]
     trajectory = simulate_with_progress(scene, duration, args.tol, method=method, step=step, start=start)
     summary = write(
         trajectory,
@@ -82,21 +90,20 @@ def run(args: argparse.Namespace) -> int:
         error_bars=args.error_bars,
         plots=not args.no_plots,
         profile=args.profile,
+        changed=changed,
     )
-    # What a scene promises, it promises as it is written.
-    as_written = not (args.set or args.duration or args.tol or args.step) and method == EVENT_DRIVEN
     if args.json:
         print_json(summary)
     else:
         from watchsim.analysis.summary import summary_text
 
-        print(summary_text(trajectory, summary if as_written else {**summary, "expect": []}))
+        print(summary_text(trajectory, summary))
         if args.profile:
             from watchsim.bench.profile import profile_text
 
             print(profile_text(summary["profile"]))
         print(f"Results: {folder}")
-    return status(trajectory, summary, promised=as_written)
+    return status(trajectory, summary)
 
 
 def simulate_with_progress(
@@ -127,25 +134,35 @@ def write(
     error_bars: bool = False,
     plots: bool = True,
     profile: bool = False,
+    changed: Sequence[str] = (),
 ) -> dict[str, Any]:
-    """Write the results folder with plots (and movies); returns the summary as written."""
+    """Write the results folder with plots (and movies); returns the summary as written.
+
+    `changed` holds the options by which the run is another than the scene's own: its expectations are then not judged.
+    """
+    from watchsim.analysis.expectations import not_judged
+    from watchsim.simulation.stops import Stop
+
+    if run.stop == Stop.INTERRUPTED:
+        say("Interrupted: writing what was simulated; a second Ctrl-C gives it up ...")
     from watchsim.analysis.results import write_results
     from watchsim.analysis.summary import summary, tables
     from watchsim.analysis.tables import plain
     from watchsim.mechanism.lock import lock_text
 
     numbers = plain(_with_error_bars(run) if error_bars else summary(run))
+    if changed:
+        numbers["expect"] = [not_judged(entry, changed) for entry in numbers["expect"]]
     if profile:
         from watchsim.bench.profile import profile_of
 
         numbers["profile"] = plain(profile_of(run))
-    extra: dict[str, Any] = dict(tables(run))
-    if plots:
-        extra.update(_plots(run))
+    pictures: dict[str, Callable[[Path], object]] = _plots(run) if plots else {}
     if movie:
-        extra["movie.mp4"] = lambda path: _movie(run, path, speed=1 / 20)
+        pictures["movie.mp4"] = lambda path: _movie(run, path, speed=1 / 20)
     if gif:
-        extra["movie.gif"] = lambda path: _movie(run, path, speed=1 / 40)
+        pictures["movie.gif"] = lambda path: _movie(run, path, speed=1 / 40)
+    extra: dict[str, Any] = {**tables(run), **{name: _drawn(draw) for name, draw in pictures.items()}}
     write_results(run, folder, numbers, lock_text(run.scene, folder.absolute()), extra=extra, force=force)
     return numbers
 
@@ -174,7 +191,20 @@ def _earlier(folder: str, scene: Scene) -> Trajectory:
     return dataclasses.replace(run, scene=scene)
 
 
-def _plots(run: Trajectory) -> dict[str, Any]:
+def _drawn(draw: Callable[[Path], object]) -> Callable[[Path], None]:
+    """The same, but a picture that cannot be drawn costs a line, not the run."""
+
+    def attempt(path: Path) -> None:
+        try:
+            draw(path)
+        except Exception as error:
+            path.unlink(missing_ok=True)
+            say(f"{path.name} could not be drawn: {error}")
+
+    return attempt
+
+
+def _plots(run: Trajectory) -> dict[str, Callable[[Path], object]]:
     """Kinematic plots: all that was recorded, and the last beats."""
     from watchsim.render.plots import Kinematics, write_png
 
@@ -190,10 +220,11 @@ def _plots(run: Trajectory) -> dict[str, Any]:
 
 
 def last_beats(run: Trajectory, share: float = 1.5) -> tuple[float, float]:
-    """The last one and a half oscillations, or the last tenth where nothing oscillates."""
+    """The last one and a half oscillations, or the last tenth where nothing oscillates, of the last stretch recorded."""
     from watchsim.mechanism.check import frequency
+    from watchsim.render.poses import recorded
 
-    start, end = float(run.t[0]), float(run.t[-1])
+    start, end = recorded(run)[-1]
     hertz = frequency(run.scene)
     length = share / hertz if hertz else 0.1 * (end - start)
     return max(start, end - length), end
@@ -209,18 +240,20 @@ def _movie(run: Trajectory, path: Path, speed: float) -> None:
         progress.close()
 
 
-def status(run: Trajectory, summary: dict[str, Any], promised: bool = True) -> int:
-    """Exit status of a finished run; says why on stderr where it is not 0. Missed expectations count only if `promised`."""
+def status(run: Trajectory, summary: dict[str, Any]) -> int:
+    """Exit status of a finished run; says why on stderr where it is not 0."""
     from watchsim.analysis.headlines import expected_text
     from watchsim.simulation.stops import Stop
 
     if run.stop.gave_up:
         say(f"The solver gave up: {run.stop_message}. What was simulated up to there is kept.")
+        if hint := _unlike(run.scene):
+            say(hint)
         return GAVE_UP
     if run.stop == Stop.INTERRUPTED:
         say(f"Stopped at {run.stop_message}.")
         return INTERRUPTED
-    missed = [entry for entry in summary["expect"] if promised and not entry["ok"]]
+    missed = [entry for entry in summary["expect"] if entry["ok"] is False]
     for entry in missed:
         say(expected_text(entry))
     if summary.get("stopped"):
@@ -228,10 +261,36 @@ def status(run: Trajectory, summary: dict[str, Any], promised: bool = True) -> i
     return MISSED if missed or summary.get("stopped") else FINE
 
 
+def _unlike(scene: Scene) -> str:
+    """Words about a pivoted body that is so much lighter than another that a slip is likely; "" where there is none."""
+    turning = sorted((body.inertia, body.name) for body in scene.bodies if body.motion == "pivot")
+    if not turning or turning[-1][0] < FAR * turning[0][0]:
+        return ""
+    (least, light), (most, heavy) = turning[0], turning[-1]
+    return f"The inertia of {light}, {least:.3g} kg·m², is {most / least:.1g} times smaller than that of {heavy}: is it meant?"
+
+
+def _check_windows(scene: Scene, duration: float, asked: bool) -> None:
+    """A window that the run never enters: refused where it was asked for, else said."""
+    late = [window for window in scene.record.windows if window[0] >= duration]
+    for start, end in late:
+        words = f"the run ends at {duration:g} s, so that nothing can be recorded from {start:g} s to {end:g} s"
+        if asked:
+            raise InputError(f"--record: {words}. Choose another window or a longer --duration.")
+        say(f"Note: {words} (the scene's run.record). --record all keeps everything.")
+
+
 def _record(what: str) -> object:
-    """A window as the scene file has it, or the word."""
-    first, colon, second = what.partition(":")
-    return [first.strip(), second.strip()] if colon else what
+    """A window as the scene file has it, or the word; InputError where it is neither."""
+    from watchsim.mechanism.recording import EVERY, KEPT
+
+    if ":" in what:
+        parse_window(what, "--record")
+        return [time.strip() for time in what.split(":")]
+    word, _, number = what.partition(" ")
+    if what in KEPT or (word == EVERY and number.strip().isdecimal() and int(number) > 0):
+        return what
+    raise InputError(f'--record "{what}": write {", ".join(KEPT)}, "{EVERY} 10", or a window such as "179 s:180 s".')
 
 
 def _time(option: str, text: str | None) -> float | None:

@@ -13,7 +13,10 @@ if TYPE_CHECKING:
 
 
 def load_scene(name: str, changes: list[str] | None = None, overlap: bool = True) -> Scene:
-    """The scene of a file or folder with KEY=VALUE changes; SceneError lists all that is wrong, overlaps included."""
+    """The scene of a file or folder with KEY=VALUE changes; SceneError lists all that is wrong, expectations that no run can
+    answer and overlaps included.
+    """
+    from watchsim.analysis.promised import expectation_faults
     from watchsim.mechanism.errors import SceneError
     from watchsim.mechanism.load import load
     from watchsim.mechanism.overlap import overlap_faults
@@ -23,7 +26,8 @@ def load_scene(name: str, changes: list[str] | None = None, overlap: bool = True
     scene = load(path / "scene.toml" if path.is_dir() else path)
     if changes:
         scene = changed(scene, assignments(changes))
-    if overlap and (faults := overlap_faults(scene)):
+    faults = [*(overlap_faults(scene) if overlap else ()), *expectation_faults(scene)]
+    if faults:
         raise SceneError(faults)
     return scene
 
@@ -35,4 +39,5 @@ def read_run(folder: str) -> Trajectory:
     try:
         return read_results(folder)
     except (OSError, ValueError, KeyError) as error:
-        raise InputError(f"{folder}: {error}") from error
+        told = str(error)
+        raise InputError(told if told.startswith(folder) else f"{folder}: {told}") from error

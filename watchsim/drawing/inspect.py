@@ -15,6 +15,7 @@ from watchsim.geometry.mass import area
 from watchsim.geometry.primitives import Arc, Point
 
 SHOWN = 12  # findings of one code written out in the text
+NOTHING = 1e-12  # m; deviations below are those of floating point
 
 
 def inspect_report(drawing: Drawing) -> dict[str, object]:
@@ -88,9 +89,12 @@ def loop_report(loop: Loop) -> dict[str, object]:
 def inspect_text(drawing: Drawing) -> str:
     """The same facts in words, the most important first."""
     everything = (*drawing.loops, *drawing.open_chains)
-    parts = [str(drawing.path), *units_lines(drawing), *size_lines(drawing, extents(everything)), *layer_lines(drawing)]
+    parts = [str(drawing.path)]
+    if drawing.layers or drawing.units:
+        parts += [*units_lines(drawing), *size_lines(drawing, extents(everything)), *layer_lines(drawing)]
     if drawing.fitted_curves:
-        worst = f"{1e6 * drawing.fitted_deviation:.3g} µm"
+        deviation = drawing.fitted_deviation
+        worst = f"{1e6 * deviation:.3g} µm" if deviation > NOTHING else f"{1e12 * NOTHING:g} pm"
         curves = plural(drawing.fitted_curves, "curve")
         parts.append(f"  {curves} followed by {plural(drawing.fitted_arcs, 'arc')}, nowhere further away than {worst}")
     if drawing.ignored:

@@ -77,6 +77,8 @@ def collector_paused() -> Iterator[None]:
 
 def read_content(path: Path, ending: str, units: str | None, fit: float) -> Content:
     """What the reader for that ending and content finds; a file that is not there or cannot be opened is a finding too."""
+    if path.is_dir():
+        return Content(findings=(Finding("unreadable", "error", f"{path} is a folder", "Name one of the drawings in it."),))
     if ending not in ("dxf", "svg", "svgz"):
         fix = "Save the drawing as DXF or SVG."
         return refused(f'"{path.name}" ends in neither .dxf nor .svg: this kind of file is not read', fix)

@@ -45,15 +45,15 @@ class LeftOut:
         """One finding for each thing, however often."""
         result = []
         for layer, count in self.hidden.items():
-            message = f"{count} hidden elements (display, visibility, conditions) were left out"
+            message = f"hidden elements (display, visibility, conditions) left out: {count}"
             result += [Finding("hidden", "notice", message, layer=layer)] if count else []
         result += [_ignored(kind, count) for kind, count in self.ignored.items()]
         for kind, count in self.sizeless.items():
             result.append(Finding("zero-size", "notice", f"{count} × {kind} of no size, of which nothing is drawn"))
         if self.marks:
-            result.append(Finding("point", "notice", f"{self.marks} circles of radius 0 are read as points"))
+            result.append(Finding("point", "notice", f"circles of radius 0, read as points: {self.marks}"))
         if self.clipped:
-            message = f"{self.clipped} elements are clipped or masked in the picture; here they are read whole"
+            message = f"elements clipped or masked in the picture, here read whole: {self.clipped}"
             result.append(Finding("clipped", "warning", message))
         return [*result, *self._of_the_whole(root)]
 
@@ -74,7 +74,7 @@ class LeftOut:
             message = f'{count} × {tag} with an attribute "{name[:40]}" that it cannot have: the file may be damaged'
             result.append(Finding("strange-attribute", "warning", message, "Look whether its shape is right."))
         if unused:
-            message = f"{unused} elements are defined and nowhere used; they are not drawn"
+            message = f"elements defined and nowhere used, which are not drawn: {unused}"
             result.append(Finding("unused", "notice", message))
         return result
 

@@ -137,7 +137,8 @@ def _text_pairs(text: str) -> tuple[list[int], list[object], str, str]:
     except ValueError:
         at = 2 * len(codes)
         if not codes:
-            raise DxfError(f'this is no DXF file: it begins with "{_printable(lines[0])}"') from None
+            told = f'this is no DXF file: it begins with "{_printable(lines[0])}"'
+            raise DxfError(f"{told}. Save the drawing as DXF in CAD; another ending does not make it one") from None
         return codes, values, f'line {at + 1} reads "{_printable(lines[at])}" where a group code belongs', "line"
     return codes, values, "", "line"
 

@@ -18,7 +18,7 @@ def read_record(table: Table, key: str = "record") -> Recording:
     value = table.mapping.get(key, [])
     items = _items(value)
     windows: list[Window] = []
-    keep, stride = ALL, 1
+    keep, stride, words = ALL, 1, [item for item in items if _is_word(item)]
     for i, item in enumerate(items):
         path = key if items == [value] else f"{key}.{i}"
         if not _is_word(item):
@@ -27,6 +27,11 @@ def read_record(table: Table, key: str = "record") -> Recording:
             keep = item
         else:
             stride = _stride(table, path, item)
+    kinds = [word for word in words if word in KEPT]
+    if len(set(kinds)) > 1:
+        table.fault(key, f"{' and '.join(kinds)} exclude each other: choose one", with_value=True)
+    elif len(words) - len(kinds) > 1:
+        table.fault(key, f"only one of {', '.join(word for word in words if word not in KEPT)} can hold", with_value=True)
     return Recording(tuple(windows), keep, stride)
 
 
@@ -43,6 +48,9 @@ def _is_word(item: object) -> bool:
 
 
 def _window(table: Table, path: str, item: object) -> list[Window]:
+    if not isinstance(item, (list, tuple)) or len(item) != 2:
+        table.faults.add(f"{table.path}.{path}", 'a window is two times, such as ["179 s", "180 s"]', shown(item))
+        return []
     start, end = table.point(path, item, units.TIME)
     if start >= end or start < 0.0:
         table.faults.add(f"{table.path}.{path}", "a window runs from an earlier to a later time, both from 0 s on", shown(item))

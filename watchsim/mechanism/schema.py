@@ -10,6 +10,7 @@ from watchsim import units
 from watchsim.units import Dimension
 
 SCHEMA = 1
+ALIKE = 0.7  # share of letters two words have in common; "bodys" is "bodies", "nonsense" is not "scene"
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,7 +108,7 @@ def siblings(path: tuple[str, ...]) -> tuple[str, ...]:
 def nearest(word: str, known: Iterable[str]) -> str:
     """' Did you mean "drawing"?', or the list of what exists when nothing is near."""
     words = list(known)
-    match = difflib.get_close_matches(word, words, n=1, cutoff=0.6)
+    match = difflib.get_close_matches(word, words, n=1, cutoff=ALIKE)
     folded = [one for one in words if one.casefold() == word.casefold()]
     if folded or match:
         return f'Did you mean "{(folded or match)[0]}"?'

@@ -8,6 +8,7 @@ from watchsim.geometry.mass import mass_properties
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.outlines import Outlines
 from watchsim.mechanism.read_solids import read_solids
+from watchsim.mechanism.schema import nearest
 from watchsim.mechanism.solid import Solid, Weight, total
 from watchsim.mechanism.table import Table
 
@@ -72,13 +73,15 @@ def _note_conflicts(table: Table, motion: str, outlines: Outlines) -> None:
 
 
 def _note_massless(table: Table, motion: str, inertias: Inertias, outlines: Outlines) -> None:
-    """A moving body that nothing holds back has no acceleration; a fault only where no other fault is the reason."""
+    """A moving body that nothing holds back has no acceleration; a fault only where no other fault, such as a slip in the key,
+    is the reason."""
     needs = {"pivot": ("inertia",), "slide": ("mass",), "free": ("mass", "inertia")}.get(motion, ())
+    slips = {nearest(name, table.keys) for name in table.mapping if name not in table.keys}
     promised = bool(table.mapping.get("solids")) or ("mass" in table and (outlines.loops or not outlines.sound))
     for key, value, example in (("mass", inertias.mass, "1 mg"), ("inertia", inertias.inertia, "0.05 mg·cm²")):
         if key in table and value < 0.0:
             table.fault(key, "must not be negative", with_value=True)
-        elif key in needs and value == 0.0 and (key in table or not promised):
+        elif key in needs and value == 0.0 and (key in table or not promised) and nearest(key, (key,)) not in slips:
             why = f"the body can move ({motion}) but has no {key}"
             advice = f'Write {key} = "{example}" or give thickness and density in [[{table.path}.solids]]'
             table.fault(key if key in table else "", f"{why}. {advice}", with_value=key in table)

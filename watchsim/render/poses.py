@@ -23,13 +23,12 @@ PATH_SAMPLES = 400
 
 
 def recorded(run: Trajectory) -> tuple[Window, ...]:
-    """The stretches of time (s) for which there are rows, in order."""
-    spans = []
-    for start, stop in run.spans:
-        rows = run.t[(run.t >= start) & (run.t <= stop)]
-        if len(rows) > 1 and rows[-1] > rows[0]:
-            spans.append((float(rows[0]), float(rows[-1])))
-    return tuple(spans) or ((float(run.t[0]), float(run.t[-1])),)
+    """The stretches of time (s) in which the motion is known, in order; ValueError where no rows were kept."""
+    if len(run.t) == 0:
+        raise ValueError("nothing to draw: no row of this run was kept (see --record)")
+    first, last = float(run.t[0]), float(run.t[-1])
+    spans = [(max(start, first), min(stop, last)) for start, stop in run.spans]
+    return tuple((start, stop) for start, stop in spans if start < stop) or ((first, last),)
 
 
 def stretch(run: Trajectory, window: Sequence[float] | None, unbroken: bool = False) -> Window:
@@ -53,16 +52,10 @@ def stretch(run: Trajectory, window: Sequence[float] | None, unbroken: bool = Fa
     if not start < stop:
         raise ValueError(f"window from {start:.9g} s to {stop:.9g} s is empty; give (from, to) within {kept}")
     slack = 1e-9 * (stop - start)
-    for low, high in (*spans, *run.spans):
-        if low - slack <= start and stop <= high + slack and (clipped := _clipped((start, stop), spans)):
-            return clipped
+    for low, high in spans:
+        if low - slack <= start and stop <= high + slack:
+            return max(start, low), min(stop, high)
     raise ValueError(f"window from {start:.9g} s to {stop:.9g} s: only {kept} was recorded")
-
-
-def _clipped(window: Window, spans: tuple[Window, ...]) -> Window | None:
-    """The part of the window with rows: the first row of a recorded stretch may come a step after its start."""
-    parts = [(max(window[0], low), min(window[1], high)) for low, high in spans]
-    return next((part for part in parts if part[0] < part[1]), None)
 
 
 def moving(run: Trajectory) -> tuple[Body, ...]:

@@ -15,6 +15,7 @@ from watchsim.render.poses import Window
 
 Array = NDArray[np.float64]
 
+ROUND = 1  # decimals of a window's length to which the time before it is told
 SHORT = 1.0  # s; a shorter window is told in milliseconds from its start
 
 
@@ -44,8 +45,12 @@ def clock(window: Window) -> Clock:
     duration = stop - start
     if duration >= SHORT:
         return Clock(0.0, 1.0, "s")
-    base = 0.0 if start == 0.0 or stop < SHORT else start
-    return Clock(base, 1e6, "µs") if duration < 1e-3 and (base == start) else Clock(base, 1e3, "ms")
+    if start != 0.0 and stop < SHORT:
+        return Clock(0.0, 1e3, "ms")
+    # A round number just before the start: "3.4 s", not "3.40000046 s".
+    decimals = ROUND - math.floor(math.log10(duration))
+    base = math.floor(start * 10.0**decimals + 1e-6) / 10.0**decimals
+    return Clock(base, 1e6, "µs") if duration < 1e-3 else Clock(base, 1e3, "ms")
 
 
 def signed(value: float, decimals: int) -> str:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import dataclasses
 
 import numpy as np
-from numpy.typing import NDArray
 
-from watchsim.mechanism.recording import ALL, STATISTICS, Window
+from watchsim.mechanism.recording import ALL, STATISTICS
+from watchsim.simulation.kept import stretch_rows, within
 from watchsim.simulation.trajectory import Trajectory
 
 
@@ -39,18 +39,11 @@ def joined(first: Trajectory, rest: Trajectory) -> Trajectory:
 
 def _without_old_tail(run: Trajectory) -> Trajectory:
     """Without the last seconds of the first part, where only those of the whole are kept."""
-    rows = _within(run.t, run.spans)
-    events = _within(run.events["t"], run.spans) | (run.keep != STATISTICS)
+    rows = stretch_rows(run.t, run.spans)
+    events = within(run.events["t"], run.spans) | (run.keep != STATISTICS)
     saved = run.end_state
     if saved is not None:
         saved = dataclasses.replace(saved, rows=int(rows[: saved.rows].sum()), events=int(events[: saved.events].sum()))
     return dataclasses.replace(
         run, t=run.t[rows], q=run.q[rows], u=run.u[rows], a=run.a[rows], events=run.events[events], end_state=saved
     )
-
-
-def _within(times: NDArray[np.float64], spans: tuple[Window, ...]) -> NDArray[np.bool_]:
-    inside = np.zeros(len(times), bool)
-    for start, end in spans:
-        inside |= (times >= start) & (times <= end)
-    return inside

@@ -1,6 +1,8 @@
 """Which rows and events stay when the buffers are emptied?
 
 Those within the windows asked for, and where a recording has a tail, those of the last seconds of the run, whenever it ends.
+Of rows also the one before and the one after each of these stretches, so that the motion is known up to its very ends, however
+short it is.
 """
 
 from __future__ import annotations
@@ -29,6 +31,7 @@ class Kept:
         self._events: list[tuple[NDArray[Any], Bits]] = []
         self._trimmed = 0  # parts that hold nothing of the tail any more
         self._met = 0  # rows met within the windows
+        self._last = (0, np.nan, True)  # the last row met: part, time (s), whether within a window
 
     @property
     def windows(self) -> tuple[Window, ...]:
@@ -42,30 +45,43 @@ class Kept:
 
     def flush(self, rows: Array, events: NDArray[Any]) -> None:
         """Keep copies of what is wanted of the next rows and events, and forget earlier ones that were only of the tail."""
-        row_stays, event_stays = self._stays(rows), np.ones(len(events), bool)
+        row_stays, event_stays = self._stays(rows[:, 0]), np.ones(len(events), bool)
         if self.recording.keep == STATISTICS:
-            event_stays = _within(events["t"], self.recording.windows)
+            event_stays = within(events["t"], self.recording.windows)
         if self.recording.keep == ALL:
-            rows, row_stays = rows[row_stays], row_stays[row_stays]
+            # What comes next decides about the last row.
+            waits = row_stays | (np.arange(len(rows)) == len(rows) - 1)
+            rows, row_stays = rows[waits], row_stays[waits]
         self._rows.append((rows.copy(), row_stays))
         self._events.append((events.copy(), event_stays))
         if self.recording.has_tail and len(rows):
             self._forget(float(rows[-1, 0]) - self.tail)
 
-    def _stays(self, rows: Array) -> Bits:
-        """Rows within the windows, each so many-th."""
-        inside = _within(rows[:, 0], self.recording.row_windows)
+    def _stays(self, times: Array) -> Bits:
+        """Rows within the windows, each so many-th, and those next to a window."""
+        windows = self.recording.row_windows
+        inside = within(times, windows)
+        stays = inside.copy()
         if self.recording.stride > 1:
             number = self._met + np.cumsum(inside) - 1
             self._met += int(inside.sum())
-            inside &= number % self.recording.stride == 0
-        return inside
+            stays &= number % self.recording.stride == 0
+        if len(times):
+            part, last, last_inside = self._last
+            across = _across(np.append(last, times), windows)
+            stays |= ~inside & (across | np.append(across[1:], False))
+            if across[0] and not last_inside:
+                self._rows[part][1][-1] = True
+            self._last = len(self._rows), float(times[-1]), bool(inside[-1])
+        return stays
 
     def _forget(self, before: float) -> None:
-        """Leave only what stays for good of the parts that lie before that time (s)."""
-        while self._trimmed < len(self._rows):
-            rows, events = self._rows[self._trimmed][0], self._events[self._trimmed][0]
-            if max(np.max(rows[:, 0], initial=-np.inf), np.max(events["t"], initial=-np.inf)) >= before:
+        """Leave only what stays for good of the parts that lie before that time (s), but for the last of them."""
+        while self._trimmed + 1 < len(self._rows):
+            for rows, _ in self._rows[self._trimmed : self._trimmed + 2]:
+                if not len(rows) or rows[-1, 0] >= before:
+                    return
+            if np.max(self._events[self._trimmed][0]["t"], initial=-np.inf) >= before:
                 return
             for kept in (self._rows, self._events):
                 part, stays = kept[self._trimmed]
@@ -75,9 +91,16 @@ class Kept:
     def closed(self, end: float, parts: int | None = None) -> tuple[Array | None, NDArray[Any] | None]:
         """All that is kept of a run that ends at `end` (s), from the first `parts` flushes (default all); None for nothing."""
         since = end - self.tail if self.recording.has_tail else np.inf
-        rows = [part[stays | (part[:, 0] >= since)] for part, stays in self._rows[:parts]]
+        if not self._rows[:parts]:
+            return None, None
+        rows, row_stays = (np.concatenate(arrays) for arrays in zip(*self._rows, strict=True))
+        first = int(np.searchsorted(rows[:, 0], since))
+        row_stays[first:] = True
+        if 0 < first < len(rows) and rows[first, 0] > since:
+            row_stays[first - 1] = True
+        row_stays[sum(len(part) for part, _ in self._rows[:parts]) :] = False
         events = [part[stays | (part["t"] >= since)] for part, stays in self._events[:parts]]
-        return np.concatenate(rows) if rows else None, np.concatenate(events) if events else None
+        return rows[row_stays], np.concatenate(events)
 
     def spans(self, end: float) -> tuple[Window, ...]:
         """The stretches of time whose rows are kept."""
@@ -87,7 +110,24 @@ class Kept:
         return tuple((start, stop) for start, stop in _joined(ends) if start < stop)
 
 
-def _within(times: Array, windows: tuple[Window, ...]) -> Bits:
+def stretch_rows(times: Array, spans: tuple[Window, ...]) -> Bits:
+    """Which rows lie within one of the stretches or next to it."""
+    if len(times) == 0:
+        return np.zeros(0, bool)
+    across = _across(times, spans)
+    return within(times, spans) | np.append(across, False) | np.append(False, across)
+
+
+def _across(times: Array, windows: tuple[Window, ...]) -> Bits:
+    """(len(times) - 1,): whether some of a window lies between one row and the next."""
+    across = np.zeros(len(times) - 1, bool)
+    for start, end in windows:
+        across |= (times[:-1] < end) & (times[1:] > start)
+    return across
+
+
+def within(times: Array, windows: tuple[Window, ...]) -> Bits:
+    """Which times lie within one of the windows."""
     inside = np.zeros(len(times), bool)
     for start, end in windows:
         inside |= (times >= start) & (times <= end)

@@ -76,7 +76,8 @@ class Run:
         self.scratch = new_scratch(model)
         self.pairs = pairs_of(compiled)
         self.kept, self.tally = Kept(recording, tail_length(frequency(scene))), Tally(scene, self.pairs)
-        windows = np.array(self.kept.windows, float).reshape(-1, 2)
+        # A step wider, for the rows next to a window.
+        windows = np.array(self.kept.windows, float).reshape(-1, 2) + self.options.max_step * np.array([-1.0, 1.0])
         self.record = new_record(model, ROWS + ROWS_PER_STEP, EVENTS + EVENTS_PER_CONTACT * room_for(model), windows)
         self.stored_at_start = stored_energy(model, self.state.q, self.state.u)
         self.saved: SavedState | None = None

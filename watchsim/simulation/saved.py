@@ -47,11 +47,14 @@ class SavedState:
                 "since. Go on with the scene as it was (scene.lock.toml in the results folder), or begin anew"
             )
         changed = [name for name in {**self.settings, **settings} if self.settings.get(name) != settings.get(name)]
-        # The other tolerances follow from these.
-        changed = [name for name in changed if name in ASKED] or changed
-        if changed:
-            told = "; ".join(f"{name} was {self.settings.get(name)}, now {settings.get(name)}" for name in changed)
-            raise ValueError(f"the saved state was made with other settings ({told}). Use the same ones, or begin anew")
+        if not changed:
+            return
+        asked = [name for name in ASKED if name in changed]
+        told = "; ".join(f"{name} was {self.settings.get(name)}, now {settings.get(name)}" for name in asked[:1] or changed)
+        if not asked:
+            # They follow from what is asked and from the scene, both of which are the same.
+            raise ValueError(f"the saved state was written by another version of watchsim ({told}); begin anew")
+        raise ValueError(f"the saved state was made with other settings ({told}). Use the same ones, or begin anew")
 
     def restore(self, arrays: Mapping[str, NDArray[Any]]) -> None:
         """Write the state into `arrays`; ValueError where another version of the package has saved it."""

@@ -14,22 +14,24 @@ from watchsim.simulation.methods import EVENT_DRIVEN, METHODS, MOREAU, USUAL_STE
 from watchsim.simulation.run import Progress, Run
 from watchsim.simulation.saved import SavedState
 from watchsim.simulation.trajectory import Trajectory
+from watchsim.units import TIME, UnitError, parse
 
 
 def simulate(
     scene: Scene,
-    duration: float | None = None,
+    duration: float | str | None = None,
     tolerance: float | None = None,
     record: Recording | str | Iterable[Window] | None = None,
     progress: Progress | None = None,
     prefilter: bool = True,
     *,
     method: str = EVENT_DRIVEN,
-    step: float | None = None,
+    step: float | str | None = None,
     start: Trajectory | SavedState | None = None,
 ) -> Trajectory:
-    """Simulate `scene` from 0 to `duration` (s) at a relative error `tolerance` per step (both default to the scene's own).
+    """Simulate `scene` from 0 to `duration` at a relative error `tolerance` per step (both default to the scene's own).
 
+    duration  seconds, or a text with its unit such as "5 s"; so is `step`
     record    what is kept: windows (s) of rows, "events", "statistics" or a `Recording`; default the scene's, else everything
     progress  called as progress(simulated, duration) about ten times a second
     prefilter off: every declared pair of primitives is looked at in every step; slow, the same events
@@ -41,7 +43,8 @@ def simulate(
     `Trajectory.stop`. ValueError for a bad argument, and for a `start` of another scene or other settings.
     """
     begun = time.perf_counter()
-    duration = scene.duration if duration is None else float(duration)
+    duration = scene.duration if duration is None else _seconds("duration", duration)
+    step = None if step is None else _seconds("step", step)
     tolerance = scene.tolerance if tolerance is None else float(tolerance)
     _check(duration, tolerance, method, step)
     compiled = compile_scene(scene, prefilter)
@@ -63,6 +66,14 @@ def simulate(
     if isinstance(start, Trajectory):
         return joined(start, made)
     return made
+
+
+def _seconds(name: str, value: float | str) -> float:
+    """A number of seconds, or a text with a unit of time."""
+    try:
+        return parse(value, TIME) if isinstance(value, str) else float(value)
+    except UnitError as error:
+        raise ValueError(f"{name}: {error}") from error
 
 
 def _check(duration: float, tolerance: float, method: str, step: float | None) -> None:

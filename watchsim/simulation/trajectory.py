@@ -104,7 +104,9 @@ class Trajectory:
         return q[0], u[0]
 
     def sample(self, times: Array) -> tuple[Array, Array]:
-        """q and u, each (len(times), n), at all those times; as `at`."""
+        """q and u, each (len(times), n), at all those times; as `at`. ValueError where no row was kept."""
+        if len(self.t) == 0:
+            raise ValueError("no row of this run was kept, so where its bodies were is not known")
         i = np.clip(np.searchsorted(self.t, times, side="right") - 1, 0, max(len(self.t) - 2, 0))
         j = np.minimum(i + 1, len(self.t) - 1)
         h = (self.t[j] - self.t[i])[:, None]

@@ -1,0 +1,59 @@
+"""Are slips in [expect] told before a run, and is no number refused that a run does give?"""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+
+import pytest
+
+from watchsim.analysis.promised import expectation_faults
+from watchsim.analysis.summary import summary
+from watchsim.cli import main
+from watchsim.commands.console import BAD_INPUT
+from watchsim.mechanism.load import load
+from watchsim.mechanism.scene import Expectation
+from watchsim.profiles_path import profiles_dir
+from watchsim.simulation.simulate import simulate
+
+SCENE = profiles_dir() / "bench_lever" / "scene.toml"
+
+
+def names(numbers: dict[str, object], above: str = "") -> list[str]:
+    """Dotted names of all plain numbers."""
+    found = []
+    for key, value in numbers.items():
+        if isinstance(value, dict):
+            found += names(value, f"{above}{key}.")
+        elif isinstance(value, (int, float)):
+            found.append(f"{above}{key}")
+    return found
+
+
+@pytest.mark.parametrize("method", ["pfeiffer-glocker", "moreau"])
+def test_every_number_of_a_run_may_be_promised(method: str) -> None:
+    scene = load(SCENE)
+    numbers = summary(simulate(scene, 1.0, method=method))
+    promised = tuple(Expectation(name, 0.0, 1.0, "") for name in names(numbers))
+    assert len(promised) > 80 and {"timegrapher.amplitude_deg", "energy.dissipated.friction"} <= {one.key for one in promised}
+    assert expectation_faults(dataclasses.replace(scene, expect=promised)) == []
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ('"amplitud" = { value = "275°", tolerance = "1°" }', 'Did you mean "amplitude"?'),
+        ('"bodies.lever.x_m" = { value = "275°", tolerance = "1°" }', "is in m, which cannot be compared with °"),
+    ],
+)
+def test_a_slip_is_told_before_the_run(line: str, message: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for drawing in SCENE.parent.glob("*.dxf"):
+        (tmp_path / drawing.name).write_bytes(drawing.read_bytes())
+    text = f"{SCENE.read_text(encoding='utf-8')}\n{line}\n"
+    number = next(i for i, one in enumerate(text.splitlines(), 1) if one == line)
+    (tmp_path / "scene.toml").write_text(text, encoding="utf-8")
+    for command in (["check", str(tmp_path)], ["run", str(tmp_path), "-o", str(tmp_path / "out")]):
+        assert main(command) == BAD_INPUT
+        told = capsys.readouterr().err
+        assert message in told and f"scene.toml:{number}" in told
+    assert not (tmp_path / "out").exists()
