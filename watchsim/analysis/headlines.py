@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from watchsim.analysis.energy import energy_shares
+from watchsim.mechanism.roles import keeps_time
 from watchsim.simulation.methods import MOREAU
 from watchsim.simulation.trajectory import Trajectory
 
@@ -75,10 +76,14 @@ def _timing(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
 
 
 def _places(run: Trajectory, numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """Where free and sliding bodies have got to."""
+    """Where free and sliding bodies have got to, and pivoted ones where nothing keeps time."""
     for body in run.scene.bodies:
         state = numbers["bodies"].get(body.name)
-        if state is None or body.motion not in ("free", "slide"):
+        if state is None or body.motion == "fixed":
+            continue
+        if body.motion == "pivot":
+            if not keeps_time(run.scene):
+                yield body.name, f"at {_signed(math.degrees(state['angle_rad']), 3)}° at the end"
             continue
         angle = f", {_signed(math.degrees(state['angle_rad']), 3)}°" if body.motion == "free" else ""
         yield body.name, f"at ({_signed(1e3 * state['x_m'], 4)}, {_signed(1e3 * state['y_m'], 4)}) mm{angle} at the end"

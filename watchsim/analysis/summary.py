@@ -17,13 +17,13 @@ from watchsim.analysis.beat_tables import beats_csv, phases_csv
 from watchsim.analysis.beats import Beats, beats
 from watchsim.analysis.expectations import judge
 from watchsim.analysis.headlines import headlines
-from watchsim.analysis.roles import roles
 from watchsim.analysis.standstill import standstill
 from watchsim.analysis.tables import plain
 from watchsim.analysis.timegrapher import timegrapher
 from watchsim.analysis.wheel import missed_beats
 from watchsim.analysis.whole_run import whole_run
 from watchsim.mechanism.lock import versions
+from watchsim.mechanism.roles import keeps_time, roles
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.frames import frames, speeds
 from watchsim.simulation.trajectory import Trajectory
@@ -149,4 +149,4 @@ def _timing_of(means: Averages | None) -> dict[str, Any]:
 
 def _missed(run: Trajectory, found: Beats) -> int | None:
     wheel = roles(run.scene).wheel
-    return missed_beats(run, wheel, found) if wheel else None
+    return missed_beats(run, wheel, found) if wheel and keeps_time(run.scene) else None

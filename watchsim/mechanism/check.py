@@ -16,6 +16,7 @@ from watchsim.mechanism.carry import at_start, is_still
 from watchsim.mechanism.force import Damping, Spring
 from watchsim.mechanism.overlap import overlaps
 from watchsim.mechanism.pair_count import PairCount, pair_lines, pairs_entry
+from watchsim.mechanism.roles import keeps_time
 from watchsim.mechanism.scene import Scene
 from watchsim.mechanism.solid import HAIRSPRING, LYING, PLATE, UPRIGHT, Solid, total
 from watchsim.units import show, to
@@ -220,7 +221,8 @@ def _spring(scene: Scene, spring: Spring) -> str:
     linear = body.motion == "slide"
     hertz = math.sqrt(spring.stiffness / _moving_mass(body)) / math.tau
     stiffness, rest = show(spring.stiffness, "N/m" if linear else "µN·m/rad"), show(spring.rest, "mm" if linear else "°")
-    return f"{stiffness}, {show(hertz, 'Hz')} = {show(hertz, 'vph')}, at rest at {rest}"
+    beats = f" = {show(hertz, 'vph')}" if keeps_time(scene) else " while it touches nothing"
+    return f"{stiffness}, {show(hertz, 'Hz')}{beats}, at rest at {rest}"
 
 
 def _damping(scene: Scene, damping: Damping) -> str:
