@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.mechanism.body import Body
-from watchsim.render.palette import FAINT, GRID, INK, OTHERS, Finish, body_finish
-from watchsim.render.poses import Window, choose, dense, moving, stretch
+from watchsim.render.palette import FAINT, GRID, INK, looks
+from watchsim.render.poses import Window, choose, dense, stretch
 from watchsim.render.readouts import Clock, clock
 from watchsim.simulation.trajectory import Trajectory
 
@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 QUANTITIES = ("angle", "velocity")
 PANEL = (6.0, 2.1)  # inches
 FLAT = 1e-6  # a range smaller than this part of the value (or of 1 unit) is shown as flat, not magnified
-SECOND_COLOUR = FAINT  # of the y component beside x
+STYLES = ("-", "--")  # of x and y
 
 
 @dataclass(frozen=True)
@@ -74,14 +74,14 @@ def plot_kinematics(
     figure = Figure(figsize=(PANEL[0] * len(asked), PANEL[1] * len(rows) + 1.0), dpi=150, layout="constrained")
     FigureCanvasAgg(figure)
     panels = figure.subplots(len(rows), len(asked), sharex=True, squeeze=False)
-    looks = _looks(run)
+    colours = {name: look.line for name, look in looks(run.scene).items()}
     t, q, u = dense(run, span)
     told = clock(span)
     for grid_row, channel in zip(panels, rows, strict=True):
         for axes, quantity in zip(grid_row, asked, strict=True):
             values = channel.factor * (q if quantity == "angle" else u)[:, channel.columns]
-            _panel(axes, channel, quantity, looks[channel.body.name])
-            _draw(axes, (t - told.base) * told.factor, values, channel, looks[channel.body.name])
+            _panel(axes, channel, quantity, colours[channel.body.name])
+            _draw(axes, (t - told.base) * told.factor, values, channel, colours[channel.body.name])
             _limits(axes, values, quantity == "angle" and channel.units is ROTATION[0])
     _time_axis(figure, panels, run.scene.title, told, span)
     return figure
@@ -106,15 +106,6 @@ def _channels(run: Trajectory, body: Body) -> list[Channel]:
     return [Channel(body, (first,), 180.0 / math.pi, *ROTATION)]
 
 
-def _looks(run: Trajectory) -> dict[str, str]:
-    """A colour for every moving body, no two alike while there are enough."""
-    used: list[Finish] = []
-    for rank, body in enumerate(moving(run)):
-        look = body_finish(body, rank)
-        used.append(next((other for other in (look, *OTHERS) if other not in used), look))
-    return {body.name: look.line for body, look in zip(moving(run), used, strict=True)}
-
-
 def _panel(axes: Axes, channel: Channel, quantity: str, colour: str) -> None:
     axes.set_ylabel(f"{channel.names[quantity]} ({channel.units[quantity]})", color=INK)
     axes.set_title(channel.body.name, loc="left", fontsize=10, color=colour, weight="bold", pad=4)
@@ -128,9 +119,7 @@ def _panel(axes: Axes, channel: Channel, quantity: str, colour: str) -> None:
 def _draw(axes: Axes, x: Array, values: Array, channel: Channel, colour: str) -> None:
     for k in range(values.shape[1]):
         label = channel.legend[k] if channel.legend else None
-        axes.plot(
-            x, values[:, k], color=colour if k == 0 else SECOND_COLOUR, linewidth=1.3, label=label, solid_joinstyle="round"
-        )
+        axes.plot(x, values[:, k], STYLES[k], color=colour, linewidth=1.3, label=label, solid_joinstyle="round")
     if channel.legend:
         axes.legend(frameon=False, fontsize=9, loc="upper left", ncols=len(channel.legend), borderaxespad=0.2)
 
@@ -143,8 +132,10 @@ def _limits(axes: Axes, values: Array, angle: bool) -> None:
     least = FLAT * max(abs(low), abs(high), 1.0)
     room = max(0.08 * (high - low), 0.5 * least)
     axes.set_ylim(low - room, high + room)
-    steps = [1, 1.8, 3.6, 4.5, 9, 10] if angle and high - low > 120.0 else [1, 2, 5, 10]
-    axes.yaxis.set_major_locator(MaxNLocator(nbins=5, steps=steps))
+    if angle and high - low > 60.0:
+        axes.yaxis.set_major_locator(MaxNLocator(nbins=9, steps=[1, 1.5, 1.8, 3, 3.6, 4.5, 6, 9, 10]))
+    else:
+        axes.yaxis.set_major_locator(MaxNLocator(nbins=5, steps=[1, 2, 5, 10]))
     if high - low > 10.0:
         axes.yaxis.set_major_formatter(StrMethodFormatter("{x:,.0f}"))
     else:
