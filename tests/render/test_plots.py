@@ -128,7 +128,7 @@ def test_a_full_swing_has_ticks_at_quarter_turns(amplitude):
     panel = plot_kinematics(scaled, bodies=["balance"], quantities=["angle"]).axes[0]
     low, high = panel.get_ylim()
     assert [tick for tick in panel.get_yticks() if low <= tick <= high] == [
-        tick for tick in range(-270, 360, 90) if low <= tick <= high
+        tick for tick in range(-720, 721, 90) if low <= tick <= high
     ]
 
 
