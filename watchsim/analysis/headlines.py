@@ -23,7 +23,7 @@ HELPED = (
     ("lcp_enumerated", "by trying all cases"),
 )
 RULES = (
-    ("accumulations", "{} rows of ever smaller rebounds ended at once"),
+    ("accumulations", "bounces that died out in ever smaller rebounds: {}"),
     ("energy_rescues", "{} impacts solved again with less restitution, which would have gained energy"),
     ("jams", "{} jams: sliding contacts that no finite force could hold apart, stopped by impulses (Painlevé)"),
 )

@@ -53,6 +53,8 @@ def frequency(scene: Scene) -> float | None:
 def check_text(report: Mapping[str, Any], scene: Scene) -> str:
     """The same for people, in watch units."""
     parts = [scene.title, *_body_lines(scene), *_distance_lines(scene), *_force_lines(scene), *_contact_lines(scene)]
+    if scene.contacts and all(finding["code"] != "overlap" for finding in report["findings"]):
+        parts.append("  nothing overlaps at the start, among all pairs that may touch")
     parts += pair_lines(report["pairs"])
     parts += [f"{finding['severity']}: {finding['message']}. {finding['fix']}".rstrip() for finding in report["findings"]]
     return "\n".join(parts)
