@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from watchsim.analysis.doubts import UNSOLVED
 from watchsim.analysis.energy import energy_shares
 from watchsim.mechanism.roles import keeps_time
 from watchsim.simulation.methods import MOREAU
@@ -40,6 +41,8 @@ def headlines(run: Trajectory, numbers: Mapping[str, Any]) -> str:
 
 def with_error(value: float, error: float | None, unit: str) -> str:
     """ "275.3° ± 0.1°": as many decimals as the error justifies, three where it is not known; a true minus sign."""
+    if error is not None and max(abs(value), error) < 10.0**-EXACT:
+        return f"below {10.0**-EXACT:.{EXACT}f}{unit}" if error > 0.0 or value else f"0{unit}"
     decimals = 3 if error is None else _decimals(error)
     text = _signed(value, decimals) + unit
     if error is None:
@@ -68,6 +71,7 @@ def _timing(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     if numbers["vph"] is not None:
         start, end = numbers["window_s"]
         yield "frequency", f"{numbers['vph']:.2f} vph, averaged from {start:.4g} s to {end:.4g} s"
+        yield "", "± tells how much the beats of that time scatter and drift"
     heard = numbers["timegrapher"]
     if heard is not None and heard["amplitude_deg"] is not None:
         yield "timegrapher", f"would show {heard['amplitude_deg']:.0f}° with a lift angle of {heard['lift_angle_deg']:.4g}°"
@@ -103,8 +107,16 @@ def _energy(run: Trajectory) -> Iterator[tuple[str, str]]:
         return
     power = f", {_metric(shares.supplied / run.simulated, 'W')}" if run.simulated > 0.0 else ""
     listed = ", ".join(f"{cause} {100.0 * share:.1f} %" for cause, share in shares.went_to.items() if abs(share) >= 5e-4)
-    yield "energy", f"{_metric(shares.supplied, 'J')} put in{power}: {listed}"
+    yield "energy", f"{_metric(shares.supplied, 'J')} {_source(run)}{power}: {listed}"
     yield "", f"the account closes to {run.energy.get('residual_relative', 0.0):.1g} of it"
+
+
+def _source(run: Trajectory) -> str:
+    """Where the energy came from: a drive or weight, or what springs and moving bodies held."""
+    driven, drained = run.energy.get("in_J", 0.0) > 0.0, run.energy.get("stored_J", 0.0) < 0.0
+    if driven and drained:
+        return "put in or taken from what was stored"
+    return "put in" if driven else "taken from what was stored at the start"
 
 
 def _metric(value: float, unit: str, digits: int = 4) -> str:
@@ -139,7 +151,13 @@ def _solver(run: Trajectory, numbers: Mapping[str, Any]) -> Iterator[tuple[str, 
 def _solved(run: Trajectory, numbers: Mapping[str, Any]) -> str:
     """How the complementarity problems came out."""
     counts = run.counts
-    parts = [f"{counts.get('lcp', 0)} contact problems, each solved to {run.worst_residual:.1g} or better"]
+    count = counts.get("lcp", 0)
+    if not count and not numbers["lcp_failures"]:
+        return "there was no contact problem to solve"
+    solved = f"each solved to {run.worst_residual:.1g} or better"
+    if run.worst_residual > UNSOLVED:
+        solved = f"the worst left with a residual of {run.worst_residual:.2g}"
+    parts = [f"{count} contact {'problem' if count == 1 else 'problems'}, {solved}"]
     parts += [f"{counts[name]} {words}" for name, words in HELPED if counts.get(name)]
     if numbers["lcp_failures"]:
         parts.append(f"{numbers['lcp_failures']} had no solution")
@@ -171,7 +189,9 @@ def _compared(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
 
 
 def _verdicts(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """Whether the watch stands, and expectations."""
+    """What is to be doubted, whether the watch stands, and expectations."""
+    for warning in numbers.get("warnings", ()):
+        yield "WARNING", warning
     if numbers["stopped"]:
         yield "stopped", numbers["stopped_message"]
     for entry in numbers["expect"]:

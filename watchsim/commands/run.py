@@ -87,6 +87,8 @@ def run(args: argparse.Namespace) -> int:
     as_written = not (args.set or args.duration or args.tol or args.step) and method == EVENT_DRIVEN
     if args.json:
         print_json(summary)
+        for warning in summary["warnings"]:
+            say(f"Warning: {warning}.")
     else:
         from watchsim.analysis.summary import summary_text
 
