@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from watchsim.mechanism.scene import Scene
     from watchsim.simulation.trajectory import Trajectory
 
-HELP = "simulate a scene and write a results folder"
 FAR = 1e8  # a balance has a thousand times the inertia of a lever
+HELP = "simulate a scene and write a results folder"
 
 
 def options(parser: argparse.ArgumentParser) -> None:

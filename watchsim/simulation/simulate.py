@@ -51,7 +51,7 @@ def simulate(
     compiled = compile_scene(scene, prefilter)
     recording = as_recording(record) or scene.record
     if method == MOREAU:
-        run: Run = MoreauRun(scene, compiled, tolerance, recording, USUAL_STEP if step is None else step)
+        run: Run = MoreauRun(scene, compiled, tolerance, recording, USUAL_STEP if step is None else float(step))
     else:
         run = Run(scene, compiled, tolerance, recording)
     if start is not None:
