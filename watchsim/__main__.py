@@ -2,6 +2,6 @@
 
 import sys
 
-from watchsim.cli import main
+from watchsim.cli import process
 
-sys.exit(main())
+sys.exit(process())

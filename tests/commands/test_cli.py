@@ -209,6 +209,14 @@ def test_moreau_and_error_bars(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert "fixed step" in capsys.readouterr().err
 
 
+def test_a_process_ends_with_the_status_of_its_command(tmp_path):
+    def status(*words: str) -> int:
+        return subprocess.run([sys.executable, "-m", "watchsim", *words], cwd=ROOT, capture_output=True, check=False).returncode
+
+    assert status("--version") == 0
+    assert status("check", str(tmp_path / "nowhere")) == 2
+
+
 def test_expectations_of_another_run_are_not_judged(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     incline = str(ROOT / "profiles" / "incline")
     assert main(["run", incline, "--duration", "1 s", "--no-plots", "-o", str(tmp_path / "short")]) == 0

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from curves import Curve, involute, least_arcs, quarter_ellipse, smooth, spiral, spline
+from curves import Known, involute, least_arcs, quarter_ellipse, smooth, spiral, spline
 
-from watchsim.geometry.fit import Fit, fit_arcs
+from watchsim.geometry.fit import Fit, fit_all, fit_arcs
 from watchsim.geometry.primitives import Arc, Line
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "naive"))
@@ -27,7 +27,7 @@ CURVES = {
 }
 
 
-def true_distance(curve: Curve, fit: Fit, low: float, high: float) -> float:
+def true_distance(curve: Known, fit: Fit, low: float, high: float) -> float:
     """Brute force: the largest of the distances of dense curve points to the nearest edge, ends of edges respected."""
     points = curve.points(np.linspace(low, high, 6001))
     nearest = np.full(len(points), np.inf)
@@ -86,6 +86,24 @@ def test_number_of_arcs_grows_with_the_cube_root(name: str) -> None:
     assert slope == pytest.approx(-1.0 / 3.0, rel=0.05)
     least = least_arcs(CURVES[name], float(tolerances[-1]))
     assert 0.99 * least <= counts[-1] <= 1.12 * least
+
+
+def test_many_curves_at_once_are_followed_like_each_alone() -> None:
+    """Of several degrees, with and without weights and cusps, with different tolerances."""
+    rng = np.random.default_rng(3)
+    curves = [*CURVES.values(), spiral(2e-3, 1e-2, 1.5), involute(1e-3, 0.0, 1.0)]
+    for _ in range(25):
+        points = 1e-3 * rng.uniform(-1.0, 1.0, (4, 2))
+        curves.append(spline(3, [0] * 4 + [1] * 4, points))
+        curves.append(spline(3, [0] * 4 + [1] * 4, points, rng.uniform(0.2, 5.0, 4).tolist()))
+        curves.append(spline(3, [0] * 4 + [1] * 4, points[[0, 0, 2, 3]]))
+        curves.append(spline(2, [0] * 3 + [1] * 3, points[:3]))
+    tolerances = (1e-7 * 10.0 ** rng.uniform(-1.0, 1.0, len(curves))).tolist()
+    for curve, tolerance, fit in zip(curves, tolerances, fit_all(curves, tolerances), strict=True):
+        # Places beside others are rounded otherwise, which may just tip the scales.
+        assert abs(len(fit.edges) - len(fit_arcs(curve, tolerance).edges)) <= 1
+        measured = true_distance(curve, fit, float(curve.breaks[0]), float(curve.breaks[-1]))
+        assert measured <= fit.deviation * (1.0 + 1e-6) + 1e-15 and fit.deviation <= tolerance
 
 
 def test_involute_from_its_cusp() -> None:

@@ -9,8 +9,9 @@ import random
 import numpy as np
 import pytest
 
+from watchsim.geometry.edge_table import table_of
 from watchsim.geometry.meetings import meetings
-from watchsim.geometry.near_edges import near_pairs, table_of
+from watchsim.geometry.near_edges import near_pairs
 from watchsim.geometry.primitives import Arc, Edge, Line
 
 REACH = 1e-9

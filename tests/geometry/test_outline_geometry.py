@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from watchsim.geometry.edge_table import table_of
 from watchsim.geometry.extent import edge_extents, extents, total_length
 from watchsim.geometry.inside import winding
 from watchsim.geometry.loop import Loop
@@ -96,3 +97,16 @@ def test_loops_turn_and_reverse() -> None:
     back = KEY.reversed()
     assert [edge.start for edge in back.edges] == [edge.end for edge in reversed(KEY.edges)]
     assert back.reversed().edges[0].start == pytest.approx(KEY.edges[0].start)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_columns_of_many_edges_are_those_of_each(seed: int) -> None:
+    rows = np.random.default_rng(seed).uniform(-6.28, 6.28, (200, 5)).tolist()
+    edges = [Arc(x, y, abs(r), angle, sweep) if r > -3.0 else Line(x, y, angle, sweep) for x, y, r, angle, sweep in rows]
+    edges += [Arc(0.0, 0.0, 1.0, k * math.pi / 2, math.copysign(TURN, k - 2)) for k in range(-3, 4)]
+    table = table_of(edges)
+    assert table.box == pytest.approx(np.array([edge_extents(edge) for edge in edges]), abs=1e-14)
+    assert table.start == pytest.approx(np.array([edge.start for edge in edges]), abs=1e-14)
+    assert table.end == pytest.approx(np.array([edge.end for edge in edges]), abs=1e-14)
+    low, high = table.box[:, :2].min(axis=0), table.box[:, 2:].max(axis=0)
+    assert extents([Loop(tuple(edges), "", False)]) == pytest.approx((*low, *high), abs=1e-14)

@@ -6,10 +6,17 @@ import math
 
 import numpy as np
 import pytest
-from curves import Curve, spiral, spline
+from curves import spiral, spline
 
+from watchsim.geometry.curve import Curve
+from watchsim.geometry.fit import fit_arcs
 from watchsim.geometry.primitives import TURN, Arc, Line
-from watchsim.geometry.recognise import joined, parts, whole_circle
+from watchsim.geometry.recognise import Part, joined, parts_of, whole_circle
+
+
+def parts(curve: Curve, tolerance: float) -> list[Part]:
+    (result,) = parts_of([curve], [tolerance])
+    return result
 
 
 def rational_arc(radius: float, sweep: float, spans: int, decimals: int = 16) -> Curve:
@@ -84,3 +91,14 @@ def test_joined_makes_one_circle_of_four_quarters() -> None:
 def test_joined_keeps_different_circles() -> None:
     two = [Arc(0.0, 0.0, 5e-3, 0.0, 1.0), Arc(0.0, 0.0, 5.0001e-3, 1.0, 1.0), Line(0.0, 0.0, 1.0, 0.0)]
     assert joined(two, 1e-7)[0] == two
+
+
+def test_straight_curve_that_turns_back_near_its_end_is_not_one_line() -> None:
+    """It overshoots its end by 0.9 µm, between any samples that are looked at."""
+    curve = spline(3, [0] * 4 + [1] * 4, 1e-3 * np.array([(0, 0), (1, 0), (3.05, 0), (3, 0)]))
+    (part,) = parts(curve, 1e-7)
+    assert part.edge is None
+    furthest = float(np.max(curve.points(np.linspace(0.0, 1.0, 100_001))[:, 0]))
+    ends = [edge.end[0] for edge in fit_arcs(curve, 1e-7).edges]
+    assert max(ends) == pytest.approx(furthest, abs=1e-10) and furthest > 3.0008e-3
+    assert ends[-1] == pytest.approx(3e-3, abs=1e-15)

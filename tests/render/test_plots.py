@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import matplotlib
+import matplotlib.image
 import numpy as np
 import pytest
 from render.fake_runs import disc_run, slide_run, watch_run
 
-from watchsim.render.plots import plot_kinematics
+from watchsim.render.plots import Kinematics, plot_kinematics, write_png
 from watchsim.render.readouts import clock
 
 
@@ -102,15 +104,48 @@ def test_figures_save_in_every_format_without_pyplot(tmp_path):
     assert not any(name == "matplotlib.pyplot" for name in vars(matplotlib))
 
 
-def test_nothing_is_clipped():
-    figure = plot_kinematics(watch_run(title="A rather long title of a scene with an escapement in it"))
+def test_a_second_window_is_drawn_as_in_a_figure_of_its_own():
+    kept = Kinematics(watch_run())
+    for window in (None, (0.5, 0.5001), (1.4, 1.75), None):
+        shown = [plot_kinematics(watch_run(), window=window), kept.show(window)]
+        for figure in shown:
+            figure.canvas.draw()
+        first, second = (np.asarray(figure.canvas.buffer_rgba()) for figure in shown)
+        assert np.array_equal(first, second), window
+
+
+def test_the_light_png_shows_the_same_pixels(tmp_path):
+    figure = plot_kinematics(watch_run(), window=(0.4, 0.75))
+    figure.savefig(tmp_path / "usual.png")
+    write_png(figure, tmp_path / "light.png")
+    usual, light = (matplotlib.image.imread(tmp_path / f"{name}.png") for name in ("usual", "light"))
+    assert np.array_equal(usual[..., :3], light)
+    assert (usual[..., 3] == 1.0).all()
+
+
+@pytest.mark.parametrize("window", [None, (0.5, 0.5001), (1.4, 1.75)])
+@pytest.mark.parametrize("turned", [0.0, 1e4])
+def test_nothing_is_clipped_and_no_words_overlap(window, turned):
+    run = watch_run(title="A rather long title of a scene with an escapement in it")
+    for values in (run.q, run.u, run.a):
+        values[:, :2] *= (1e-3, 1e-6)
+    run.q[:, 0] += turned
+    figure = plot_kinematics(run, window=window)
     figure.canvas.draw()
-    renderer = figure.canvas.get_renderer()
-    whole = figure.bbox
-    texts = [figure.get_suptitle() and figure._suptitle]
+    renderer, whole = figure.canvas.get_renderer(), figure.bbox
+    texts = [figure._suptitle]
     for axes in figure.axes:
-        texts += [axes.xaxis.label, axes.yaxis.label, axes.title, axes._left_title, *axes.get_yticklabels()]
-    for text in texts:
-        if text.get_text() and text.get_visible():
-            box = text.get_window_extent(renderer)
-            assert box.x0 >= whole.x0 and box.y0 >= whole.y0 and box.x1 <= whole.x1 and box.y1 <= whole.y1, text
+        texts += [axes.xaxis.label, axes.yaxis.label, axes._left_title, axes.yaxis.get_offset_text()]
+        texts += [*in_view(axes.yaxis), *(in_view(axes.xaxis) if axes in figure.axes[-2:] else ())]
+    boxes = [(text.get_text(), text.get_window_extent(renderer)) for text in texts if text.get_text()]
+    assert any("e5" in told for told, _ in boxes) or not turned
+    for told, box in boxes:
+        assert box.x0 >= whole.x0 and box.y0 >= whole.y0 and box.x1 <= whole.x1 and box.y1 <= whole.y1, told
+    overlaps = [(one, other) for (one, a), (other, b) in itertools.combinations(boxes, 2) if a.overlaps(b)]
+    assert not overlaps
+
+
+def in_view(axis):
+    """The tick labels that are drawn."""
+    low, high = axis.get_view_interval()
+    return [tick.label1 for tick in axis.get_major_ticks() if low <= tick.get_loc() <= high and tick.label1.get_visible()]

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import json
 import zipfile
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -29,7 +28,7 @@ def write_trajectory(run: Trajectory, path: Path) -> None:
         "format": FORMAT,
         "stop": run.stop.name,
         "slices": {body: [columns.start, columns.stop] for body, columns in run.slices.items()},
-        "pairs": [asdict(pair) for pair in run.pairs],
+        "pairs": [vars(pair) for pair in run.pairs],
         "spans": run.spans,
         **{name: getattr(run, name) for name in (*SCALARS, *NUMBERS)},
     }

@@ -78,7 +78,7 @@ class BareContacts:
         """Status, velocities after, impulses N, T, N, T, ... of the contacts that take part."""
         after, m = u.copy(), len(self.taken)
         shares = (self.eps if eps is None else eps)[self.taken]
-        status = _kernel(impact)(self.model, self.closed, m, shares, 0.0, self.work, after)
+        status = _kernel(impact)(self.model, self.closed, m, shares, 0.0, 0.0, self.work, after)
         return int(status), after, self.work.force[: 2 * m].copy()
 
     def energy_change(self) -> float:

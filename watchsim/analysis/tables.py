@@ -29,6 +29,8 @@ EVENT_COLUMNS = (
 
 def plain(value: Any) -> Any:
     """The value in what JSON knows: numpy numbers and arrays unpacked, names for enums, null for what is not finite."""
+    if type(value) in (str, int):  # most of it
+        return value
     if isinstance(value, Mapping):
         return {str(key): plain(item) for key, item in value.items()}
     if isinstance(value, np.ndarray):

@@ -56,21 +56,7 @@ def emit_row(found: Gathering, shapes: Sequence[Shape], layer: str, source: str)
         curves = [shape for shape in row if isinstance(shape, Spline)]
         if not _round(found, curves, layer, source):
             for chain in joined(curves, SLACK * found.tolerance / found.scale):
-                _emit_chain(found, chain, layer, source)
-
-
-def _emit_chain(found: Gathering, chain: Chain, layer: str, source: str) -> None:
-    """Keeps the edges of a chain, what it was moved being part of the deviation."""
-    moved = found.scale * chain.moved
-    tolerance, before, count = found.tolerance, found.deviation, found.curves
-    found.tolerance, found.deviation = tolerance - moved, 0.0
-    emit(found, chain.spline, layer, source)
-    found.tolerance = tolerance
-    found.kinds["spline"] += chain.curves - 1
-    if found.curves > count:
-        found.curves = count + chain.curves
-        found.deviation += moved
-    found.deviation = max(before, found.deviation)
+                emit(found, chain.spline, layer, source, chain.curves, found.scale * chain.moved)
 
 
 def straightened(curve: Spline) -> Sequence[Shape]:

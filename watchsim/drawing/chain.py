@@ -83,7 +83,7 @@ def closed_runs(strokes: Sequence[Stroke]) -> tuple[list[list[Stroke]], list[Str
     whole, rest = [], []
     for _, group in groupby(strokes, key=lambda stroke: stroke.run):
         run = list(group)
-        joints = zip(run, [*run[1:], run[0]], strict=True)
+        joints = zip([run[-1], *run], run, strict=False)  # that of its ends first: most runs are not closed
         circle = isinstance(run[0].edge, Arc) and run[0].edge.is_circle
         if circle or (all(math.dist(a.edge.end, b.edge.start) <= TIGHT for a, b in joints) and not folded(run)):
             whole.append(run)
@@ -144,7 +144,7 @@ def assembled(strokes: Sequence[Stroke], layer: str, closed: bool) -> Outline:
     count = len(edges)
     for k in range(count if closed else count - 1):
         following = (k + 1) % count
-        if following != k:
+        if following != k and not (isinstance(edges[k], Arc) and isinstance(edges[following], Arc)):
             joint = joint_of(edges[k], edges[following])
             edges[k], edges[following] = ending_at(edges[k], joint), starting_at(edges[following], joint)
     return Outline(Loop(tuple(edges), layer, closed), tuple(stroke.source for stroke in strokes))

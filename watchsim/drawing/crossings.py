@@ -18,8 +18,9 @@ from watchsim.drawing.gaps import shown
 from watchsim.drawing.nodes import TIGHT, Grid
 from watchsim.drawing.outline import Outline
 from watchsim.drawing.track import Track, nearest_fraction, passes_through
+from watchsim.geometry.edge_table import table_of
 from watchsim.geometry.meetings import meetings, within
-from watchsim.geometry.near_edges import Floats, Ints, near_pairs, table_of
+from watchsim.geometry.near_edges import Floats, Ints, near_pairs
 from watchsim.geometry.primitives import Arc, Edge, Point
 
 SHALLOW = 10.0 * TIGHT  # metres: crossings less deep, and overlaps shorter, are rounding
@@ -146,7 +147,7 @@ def fresh(layer: Layer, meeting: Meeting, p: Point, places: dict[tuple[int, int]
     """Is this the first pair of edges of these two outlines that meets there (at a corner there are up to four)?"""
     a, b = int(layer.owner[meeting.first]), int(layer.owner[meeting.second])
     grid = places.setdefault((min(a, b), max(a, b)), Grid(SHALLOW))
-    if next(grid.around(p), None) is not None:
+    if grid.around(p):
         return False
     grid.add(p, 0)
     return True

@@ -58,15 +58,21 @@ def smooth(points: Array, tolerance: float) -> Fit | None:
     lengths = np.hypot(sides[:, 0], sides[:, 1])
     s = np.append(0.0, np.cumsum(lengths))
     curve = CubicSpline(s, points)
-    slope = curve.derivative()
     between = (s[:-1, None] + lengths[:, None] * np.array([0.25, 0.5, 0.75])).ravel()
     side = np.repeat(np.arange(len(sides)), 3)
     offset = curve(between) - points[side]
     swing = float(np.max(np.abs(sides[side, 0] * offset[:, 1] - sides[side, 1] * offset[:, 0]) / lengths[side]))
     if swing > 0.5 * tolerance:
         return None
-    follow = Curve(
-        lambda t: np.column_stack((curve(t), np.ones(len(t)))), lambda t: np.column_stack((slope(t), np.zeros(len(t)))), s, 3
-    )
+    follow = Curve(_bezier_spans(curve.c, lengths), s)
     fit = fit_arcs(follow, tolerance - swing)
     return Fit(fit.edges, fit.deviation + swing)
+
+
+def _bezier_spans(powers: Array, widths: Array) -> Array:
+    """Control points (n, 4, 3), weight 1, of cubics given by falling powers (4, n, 2) of what is up to `widths` (n,)."""
+    cubic, square, linear, constant = (powers[k] * widths[:, None] ** (3 - k) for k in range(4))
+    points = (constant, constant + linear / 3.0, constant + (2.0 * linear + square) / 3.0, constant + linear + square + cubic)
+    control: Array = np.ones((len(widths), 4, 3))
+    control[:, :, :2] = np.stack(points, axis=1)
+    return control

@@ -17,6 +17,7 @@ from watchsim.drawing.dxf_sections import Block, Layer, Sections, divide
 from watchsim.drawing.dxf_units import INSUNITS, named_length
 from watchsim.drawing.entities import READERS, Insert, heavyweight, insert, is_mesh
 from watchsim.drawing.findings import Finding
+from watchsim.drawing.follow import follow
 from watchsim.drawing.group_codes import strange_codes
 from watchsim.drawing.left_out import left_out
 from watchsim.drawing.projection import MOST_COPIES, MOST_STROKES, Gathering, TooLarge, emit
@@ -52,6 +53,7 @@ def read_dxf(data: bytes, units: str | None, fit: float) -> Content:
     walker = Walker(sections, found)
     try:
         walker.walk(walker.items(sections.entities, "model"), IDENTITY, "", ())
+        follow(found)
     except TooLarge:
         message = (
             f"the drawing unfolds into more than {MOST_STROKES} pieces or {MOST_COPIES} copies of blocks; the rest was not read"

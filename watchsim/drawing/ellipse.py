@@ -1,15 +1,17 @@
-"""Which arcs follow this ellipse?"""
+"""Which arcs follow these ellipses?"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
 from watchsim.drawing.shapes import Conic
 from watchsim.geometry.curve import Array, Curve
-from watchsim.geometry.fit import Fit, fit_arcs
+from watchsim.geometry.fit import Fit, fit_all
 from watchsim.geometry.primitives import Arc, Edge, Line
 from watchsim.geometry.recognise import joined
 
@@ -17,42 +19,67 @@ QUARTER = 0.5 * math.pi
 SLIVER = 0.02  # radians of the parameter
 
 
-def ellipse_edges(conic: Conic, scale: float, tolerance: float) -> Fit:
-    """Tangent-continuous arcs (metres) within `tolerance` metres, the same in every quadrant.
+class Stretch(NamedTuple):
+    """A part of an ellipse: the number of the curve that is followed, and the quadrant that this one is mirrored into."""
+
+    curve: int
+    quadrant: int | None
+
+
+def ellipses_edges(conics: Sequence[Conic], scale: float, tolerances: Sequence[float]) -> list[Fit]:
+    """Tangent-continuous arcs (metres) within `tolerances` metres, for each ellipse the same in every quadrant.
 
     Cut at the ends of the axes: in between the curvature grows or falls throughout. Where the arcs on both sides of such an
     end belong to one circle they become one arc.
     """
-    centre = scale * np.array(conic.centre[:2])
-    first, cuts = axis_cuts(conic)
-    c, s = math.cos(first), math.sin(first)
-    u, v = scale * np.array(conic.u[:2]), scale * np.array(conic.v[:2])
-    a, b = c * u + s * v, c * v - s * u  # the half axes
+    curves: list[Curve] = []
+    limits: list[float] = []
+    plans: list[tuple[Array, Array, list[Stretch]]] = []
+    for conic, tolerance in zip(conics, tolerances, strict=True):
+        first, cuts = axis_cuts(conic)
+        c, s = math.cos(first), math.sin(first)
+        u, v = scale * np.array(conic.u[:2]), scale * np.array(conic.v[:2])
+        a, b = c * u + s * v, c * v - s * u  # the half axes
+        stretches: list[Stretch] = []
+        whole: int | None = None
+        for low, high in pairwise(cuts):
+            quarter = abs(high - low - QUARTER) <= 1e-9
+            if whole is None or not quarter:
+                curves.append(rational(a, b, 0.0, QUARTER) if quarter else rational(a, b, low - first, high - first))
+                limits.append(tolerance)
+            whole = whole if whole is not None or not quarter else len(curves) - 1
+            if quarter and whole is not None:
+                stretches.append(Stretch(whole, round((low - first) / QUARTER) % 4))
+            else:
+                stretches.append(Stretch(len(curves) - 1, None))
+        plans.append((a, b, stretches))
+    fits = fit_all(curves, limits)
+    return [
+        _put_together(scale * np.array(conic.centre[:2]), plan, fits, tolerance)
+        for conic, plan, tolerance in zip(conics, plans, tolerances, strict=True)
+    ]
+
+
+def _put_together(centre: Array, plan: tuple[Array, Array, list[Stretch]], fits: Sequence[Fit], tolerance: float) -> Fit:
+    """The edges of all stretches of one ellipse."""
+    a, b, stretches = plan
     edges: list[Edge] = []
     worst = 0.0
-    quadrant: Fit | None = None
-    for low, high in pairwise(cuts):
-        if abs(high - low - QUARTER) > 1e-9:
-            part = fit_arcs(rational(a, b, low - first, high - first), tolerance)
-            edges += [moved(edge, centre) for edge in part.edges]
-        else:
-            quadrant = part = quadrant or fit_arcs(rational(a, b, 0.0, QUARTER), tolerance)
-            edges += [moved(edge, centre) for edge in in_quadrant(part, a, b, round((low - first) / QUARTER) % 4)]
-        worst = max(worst, part.deviation)
+    for curve, quadrant in stretches:
+        fit = fits[curve]
+        edges += [moved(edge, centre) for edge in (fit.edges if quadrant is None else in_quadrant(fit, a, b, quadrant))]
+        worst = max(worst, fit.deviation)
     edges, shift = joined(edges, tolerance - worst)
     return Fit(tuple(edges), worst + shift)
 
 
 def rational(a: Array, b: Array, low: float, high: float) -> Curve:
     """a·cos t + b·sin t from `low` to at most a quarter turn later, as a rational parabola in the tangent of half the angle."""
-    from scipy.interpolate import BSpline
-
     half = 0.5 * (high - low)
     angles, weights = np.array([low, low + half, high]), np.array([1.0, math.cos(half), 1.0])
     points = np.cos(angles)[:, None] * a + np.sin(angles)[:, None] * b
     points[1] /= weights[1]
-    curve = BSpline([0.0] * 3 + [1.0] * 3, np.column_stack((points * weights[:, None], weights)), 2)
-    return Curve(curve, curve.derivative(), np.array([0.0, 1.0]), 2)
+    return Curve(np.column_stack((points * weights[:, None], weights))[None], np.array([0.0, 1.0]))
 
 
 def in_quadrant(fit: Fit, a: Array, b: Array, number: int) -> list[Edge]:

@@ -15,7 +15,8 @@ from watchsim.drawing.content import Stroke
 from watchsim.geometry.primitives import Point
 
 TIGHT = 1e-9  # metres: the decimals of a drawing
-CROWD = 16  # neighbours looked at per cell: where more ends crowd within a snap, none can be told from another
+CROWD = 64  # neighbours looked at per cell: where more ends crowd within a snap, none can be told from another
+NOBODY: list[int] = []
 
 
 class Join(NamedTuple):
@@ -100,20 +101,27 @@ class Nodes:
 
 
 class Grid:
-    """Numbered points by square cells; what lies within one cell width is in the cell of a point or one of its neighbours."""
+    """Numbered points by square cells of four times the reach: what is within reach of a point lies in one to four of them."""
 
-    def __init__(self, width: float) -> None:
-        self.width = width
+    def __init__(self, reach: float) -> None:
+        self.reach = reach
+        self.scale = 0.25 / reach
         self.cells: dict[tuple[int, int], list[int]] = {}
 
-    def _cell(self, p: Point) -> tuple[int, int]:
-        return math.floor(p[0] / self.width), math.floor(p[1] / self.width)
-
     def add(self, p: Point, number: int) -> None:
-        self.cells.setdefault(self._cell(p), []).append(number)
+        cell = math.floor(p[0] * self.scale), math.floor(p[1] * self.scale)
+        self.cells.setdefault(cell, []).append(number)
 
-    def around(self, p: Point) -> Iterator[int]:
-        i, j = self._cell(p)
-        for cell in ((i + di, j + dj) for di in (0, -1, 1) for dj in (0, -1, 1)):
-            if cell in self.cells:
-                yield from self.cells[cell][:CROWD]
+    def around(self, p: Point) -> list[int]:
+        """The numbers of the points within reach, and of some further away."""
+        (x, y), reach, scale, cells = p, self.reach, self.scale, self.cells
+        low_x, high_x = math.floor((x - reach) * scale), math.floor((x + reach) * scale)
+        low_y, high_y = math.floor((y - reach) * scale), math.floor((y + reach) * scale)
+        found = cells.get((low_x, low_y), NOBODY)[:CROWD]
+        if high_x > low_x:
+            found = found + cells.get((high_x, low_y), NOBODY)[:CROWD]
+        if high_y > low_y:
+            found = found + cells.get((low_x, high_y), NOBODY)[:CROWD]
+            if high_x > low_x:
+                found = found + cells.get((high_x, high_y), NOBODY)[:CROWD]
+        return found

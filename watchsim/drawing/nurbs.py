@@ -6,7 +6,7 @@ lines and arcs, and only the rest is fitted.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -16,12 +16,12 @@ from watchsim.drawing.affine import Vector
 from watchsim.drawing.dense_polygon import polygon_edges
 from watchsim.drawing.shapes import Spline
 from watchsim.drawing.tags import DxfError
+from watchsim.geometry.bspline import beziers
 from watchsim.geometry.curve import Curve
-from watchsim.geometry.fit import Fit, fit_arcs
+from watchsim.geometry.fit import Fit, fit_all
 from watchsim.geometry.primitives import Edge, Line
-from watchsim.geometry.recognise import Part, joined, parts, whole_circle
+from watchsim.geometry.recognise import Part, joined, parts_of, whole_circle
 
-Array = NDArray[np.float64]
 HIGHEST_DEGREE = 24  # CAD programs stop at 11; beyond this the basis functions lose their digits
 SAME_KNOT = 1e-10  # of the knots' range
 WEIGHTIEST = 1e9  # times the smallest weight
@@ -91,51 +91,82 @@ def through(fit_points: Sequence[Vector], tangents: Sequence[Vector]) -> Spline:
     return spline_from(curve.degree, False, list(curve.knots()), list(curve.weights() or ()), points, ())
 
 
-def spline_edges(spline: Spline, scale: float, tolerance: float) -> tuple[Fit, bool]:
-    """Lines and arcs (metres) along a spline in units of `scale` metres; and whether anything had to be fitted."""
-    plane = scale * np.array([(x, y) for x, y, _ in spline.points])
-    if np.all(plane == plane[0]):
-        return Fit((Line(*plane[0].tolist(), *plane[0].tolist()),), 0.0), False  # of no length: the reader will say so
-    if spline.degree == 1:
-        return polygon_edges(plane, tolerance)
+def splines_edges(splines: Sequence[Spline], scale: float, tolerances: Sequence[float]) -> list[tuple[Fit, bool]]:
+    """Lines and arcs (metres) along splines in units of `scale` metres; and whether anything had to be fitted."""
+    result: list[tuple[Fit, bool]] = [(Fit((), 0.0), False)] * len(splines)
+    curved = []
+    for k, spline in enumerate(splines):
+        if all(point[:2] == spline.points[0][:2] for point in spline.points):
+            x, y = scale * spline.points[0][0], scale * spline.points[0][1]
+            result[k] = Fit((Line(x, y, x, y),), 0.0), False  # of no length: the reader will say so
+        elif spline.degree == 1:
+            result[k] = polygon_edges(scale * np.array([(x, y) for x, y, _ in spline.points]), tolerances[k])
+        else:
+            curved.append(k)
+    pieces = pieces_of([splines[k] for k in curved], scale)
+    limits = [tolerances[k] for k, row in zip(curved, pieces, strict=True) for _ in row]
+    parts = parts_of([piece for row in pieces for piece in row], limits)
+    wanted = [(part.curve, limit) for row, limit in zip(parts, limits, strict=True) for part in row if part.edge is None]
+    fits = iter(followed([curve for curve, _ in wanted], [limit for _, limit in wanted]))
+    rows = iter(parts)
+    for k, row in zip(curved, pieces, strict=True):
+        result[k] = _put_together([part for _ in row for part in next(rows)], fits, tolerances[k])
+    return result
+
+
+def _put_together(parts: Sequence[Part], fits: Iterator[Fit], tolerance: float) -> tuple[Fit, bool]:
+    """The edges of the parts of one spline: their own, or the next of the fits."""
     edges: list[Edge] = []
     worst, fitted = 0.0, False
-    for curve in pieces(spline, scale):
-        for part in parts(curve, tolerance):
-            if part.edge is not None:
-                edges.append(part.edge)
-                continue
-            fit = followed(curve, part, tolerance)
-            edges.extend(fit.edges)
-            worst, fitted = max(worst, fit.deviation), True
+    for part in parts:
+        if part.edge is not None:
+            edges.append(part.edge)
+            continue
+        fit = next(fits)
+        edges.extend(fit.edges)
+        worst, fitted = max(worst, fit.deviation), True
     edges, shift = joined(edges, tolerance - worst)
     return Fit(tuple(edges), worst + shift), fitted
 
 
-def followed(curve: Curve, part: Part, tolerance: float) -> Fit:
-    """A circle where that is within the tolerance, else the fewest arcs."""
-    inner = curve.between(part.low, part.high)
-    open_part = Curve(curve.homogeneous, curve.derivative, np.array([part.low, *inner, part.high]), curve.degree)
-    return whole_circle(open_part, tolerance) or fit_arcs(open_part, tolerance)
+def followed(curves: Sequence[Curve], tolerances: Sequence[float]) -> list[Fit]:
+    """Circles where these are within the tolerance, else the fewest arcs."""
+    circles = [whole_circle(curve, limit) for curve, limit in zip(curves, tolerances, strict=True)]
+    rest = [k for k, circle in enumerate(circles) if circle is None]
+    fits = iter(fit_all([curves[k] for k in rest], [tolerances[k] for k in rest]))
+    return [next(fits) if circle is None else circle for circle in circles]
 
 
-def pieces(spline: Spline, scale: float) -> list[Curve]:
-    """The spline cut at its corners: a span between cuts keeps the control points that act on it."""
-    from scipy.interpolate import BSpline
-
-    degree = spline.degree
-    knots = np.asarray(spline.knots)
-    weights = np.asarray(spline.weights) if spline.weights else np.ones(len(spline.points))
-    plane = scale * np.array([(x, y) for x, y, _ in spline.points])
-    points = np.column_stack((plane * weights[:, None], weights))
-    distinct, first, count = np.unique(knots, return_index=True, return_counts=True)
-    low, high = knots[degree], knots[len(points)]
-    cuts = [k for k in range(len(distinct)) if low < distinct[k] < high and count[k] >= degree]
-    ends = [int(np.searchsorted(distinct, low)), *cuts, int(np.searchsorted(distinct, high))]
-    result = []
-    for a, b in pairwise(ends):
-        last, begin = int(first[a] + count[a] - 1), int(first[b])
-        own = knots[last - degree : begin + degree + 1]
-        curve = BSpline(own, points[last - degree : begin], degree)
-        result.append(Curve(curve, curve.derivative(), distinct[a : b + 1], degree))
+def pieces_of(splines: Sequence[Spline], scale: float) -> list[list[Curve]]:
+    """Each spline cut at its corners, in metres."""
+    result: list[list[Curve]] = [[] for _ in splines]
+    for degree in {spline.degree for spline in splines}:
+        chosen = [k for k, spline in enumerate(splines) if spline.degree == degree]
+        for k, row in zip(chosen, _pieces(degree, [splines[k] for k in chosen], scale), strict=True):
+            result[k] = row
     return result
+
+
+def _pieces(degree: int, splines: Sequence[Spline], scale: float) -> Iterator[list[Curve]]:
+    """The same for splines of one degree."""
+    knots = np.array([knot for spline in splines for knot in spline.knots])
+    weights = np.array([w for spline in splines for w in spline.weights or [1.0] * len(spline.points)])[:, None]
+    plane = scale * np.array([(x, y) for spline in splines for x, y, _ in spline.points])
+    starts = [[i for i in range(degree, len(s.points)) if s.knots[i] < s.knots[i + 1]] for s in splines]
+    counts = [len(row) for row in starts]
+    local = np.array([i for row in starts for i in row])
+    knot = local + np.repeat(_first([len(spline.knots) for spline in splines]), counts)
+    point = local + np.repeat(_first([len(spline.points) for spline in splines]), counts)
+    control = beziers(degree, knots, np.hstack((plane * weights, weights)), knot, point)
+    if np.all(weights == 1.0):
+        control[..., 2] = 1.0
+    for row, spline, first in zip(starts, splines, _first(counts).tolist(), strict=True):
+        # Between two spans there are as many equal knots as their starts are apart.
+        cuts = [0, *(j for j in range(1, len(row)) if row[j] - row[j - 1] >= degree), len(row)]
+        breaks = np.array([*(spline.knots[i] for i in row), spline.knots[row[-1] + 1]])
+        yield [Curve(control[first + a : first + b], breaks[a : b + 1]) for a, b in pairwise(cuts)]
+
+
+def _first(counts: Sequence[int]) -> NDArray[np.intp]:
+    """Where each of some rows begins when they are put end to end."""
+    return np.cumsum([0, *counts[:-1]])

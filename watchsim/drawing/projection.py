@@ -1,7 +1,7 @@
 """What becomes of a shape in the plane?
 
-Shapes are projected to the drawing plane and turned into lines and arcs in metres: exactly where they are such, else
-by arcs within the tolerance. Everything found on the way is gathered here.
+Shapes are projected to the drawing plane. What is a line or an arc becomes one, in metres; other curves wait until all are
+known, since many are followed much faster together (see follow). Everything found on the way is gathered here.
 """
 
 from __future__ import annotations
@@ -12,15 +12,27 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from watchsim.drawing.content import Drawn, Stroke
-from watchsim.drawing.ellipse import ellipse_edges
 from watchsim.drawing.findings import Finding
-from watchsim.drawing.nurbs import spline_edges
-from watchsim.drawing.shapes import Conic, Dot, Shape, Spline, Straight, edge_on, exact_edge, forward
-from watchsim.geometry.primitives import TURN, Arc, Edge, Line
+from watchsim.drawing.shapes import Conic, Dot, Shape, Spline, Straight, edge_on, exact_edge
+from watchsim.geometry.primitives import TURN, Edge, Line
 
 MOST_STROKES = 500_000  # more is a fault in the file, not a drawing
 MOST_COPIES = 100_000  # of blocks, likewise
 ROUNDING = 1e-11  # of the coordinates: a fit cannot be better than this
+
+
+@dataclass(frozen=True, slots=True)
+class Waiting:
+    """A curve that arcs shall follow within `limit` metres, less what it was moved; its edges go before stroke `before`."""
+
+    shape: Conic | Spline
+    layer: str
+    source: str
+    run: int
+    before: int
+    limit: float
+    curves: int
+    moved: float
 
 
 @dataclass
@@ -30,6 +42,7 @@ class Gathering:
     scale: float
     tolerance: float
     strokes: list[Stroke] = field(default_factory=list)
+    waiting: list[Waiting] = field(default_factory=list)
     points: list[tuple[str, float, float]] = field(default_factory=list)
     findings: list[Finding] = field(default_factory=list)
     ignored: Counter[str] = field(default_factory=Counter)
@@ -50,36 +63,36 @@ class TooLarge(Exception):
     """The drawing unfolds into more than MOST_STROKES pieces or MOST_COPIES copies of blocks."""
 
 
-def emit(found: Gathering, shape: Shape, layer: str, source: str) -> None:
-    """Projects one shape in world coordinates to the plane and keeps its edges."""
+def emit(found: Gathering, shape: Shape, layer: str, source: str, curves: int = 1, moved: float = 0.0) -> None:
+    """Projects one shape in world coordinates to the plane and keeps its edges, or keeps it until all are known.
+
+    It stands for so many curves of the file, points of which were moved by at most `moved` metres.
+    """
     scale = found.scale
     if isinstance(shape, Dot):
         found.points.append((layer, scale * shape.at[0], scale * shape.at[1]))
         return
     found.tilted += tilted(shape)
-    limit = max(found.tolerance, ROUNDING * scale * reach(shape))
-    if isinstance(shape, Spline):
-        fit, fitted = spline_edges(shape, scale, limit)
-    elif (edge := exact_edge(shape, scale)) is not None:
+    edge = None if isinstance(shape, Spline) else exact_edge(shape, scale)
+    if edge is not None:
         if edge.length > 0.0:
             found.kinds["line" if isinstance(edge, Line) else "circle" if edge.is_circle else "arc"] += 1
         keep(found, (edge,), layer, source)
-        return
-    elif isinstance(shape, Conic) and not edge_on(shape):
-        fit, fitted = ellipse_edges(forward(shape), scale, limit), True
+    elif isinstance(shape, Spline) or (isinstance(shape, Conic) and not edge_on(shape)):
+        found.kinds[kind_of(shape)] += curves
+        limit = max(found.tolerance - moved, ROUNDING * scale * reach(shape))
+        found.waiting.append(Waiting(shape, layer, source, found.runs, len(found.strokes), limit, curves, moved))
+        if len(found.waiting) > MOST_STROKES:
+            raise TooLarge
     else:
         message = f"{source} is seen edge-on, as a line drawn there and back; it is left out"
         found.findings.append(_at("edge-on", "warning", message, layer, scale, shape))
-        return
-    found.kinds[kind_of(shape)] += 1
-    if fitted:
-        found.curves += 1
-        found.arcs += sum(isinstance(edge, Arc) for edge in fit.edges)
-        found.deviation = max(found.deviation, fit.deviation)
-        if fit.deviation > limit:
-            message = f"{source} could only be followed within {fit.deviation * 1e6:.3g} µm: it has a cusp or a gap"
-            found.findings.append(_at("fit", "warning", message, layer, scale, shape))
-    keep(found, fit.edges, layer, source)
+
+
+def cannot_follow(found: Gathering, curve: Waiting, deviation: float) -> None:
+    """Says that a curve could not be followed within its tolerance."""
+    message = f"{curve.source} could only be followed within {deviation * 1e6:.3g} µm: it has a cusp or a gap"
+    found.findings.append(_at("fit", "warning", message, curve.layer, found.scale, curve.shape))
 
 
 def kind_of(shape: Conic | Spline) -> str:

@@ -131,6 +131,8 @@ def emptiness(content: Content) -> Finding:
 
 def smallness(loops: tuple[Loop, ...], snap: float) -> list[Finding]:
     """A warning where the whole drawing is hardly larger than what counts as one point: its units are wrong."""
+    if any(math.dist(edge.start, edge.end) > SMALLEST * snap for loop in loops for edge in loop.edges):
+        return []
     box = extents(loops)
     across = max(box[2] - box[0], box[3] - box[1]) if box else math.inf
     if across > SMALLEST * snap:

@@ -14,6 +14,7 @@ from watchsim.drawing.affine import IDENTITY, Affine, shifted
 from watchsim.drawing.bezier import emit_row
 from watchsim.drawing.content import Content
 from watchsim.drawing.findings import Finding
+from watchsim.drawing.follow import follow
 from watchsim.drawing.projection import Gathering, TooLarge
 from watchsim.drawing.shapes import Dot
 from watchsim.drawing.svg_layers import Place, inside
@@ -67,6 +68,7 @@ def read_svg(data: bytes, units: str | None, fit: float) -> Content:
     if not page.empty:
         try:
             walker.walk(Spot(root, page.root, Place(), True, page.width, page.height))
+            follow(found)
         except TooLarge:
             message = "its elements are used so often that they unfold into too much; nothing was read"
             findings = (*tree.findings, *page.findings, Finding("too-large", "error", message, "Look at its <use> elements."))

@@ -111,6 +111,8 @@ def without_slits(
     strokes: Sequence[Stroke], nodes: Nodes, kept: set[int], doubled: dict[int, int]
 ) -> tuple[set[int], list[Finding]]:
     """Takes out runs of doubled strokes that have no width: from a free tip into an outline, or from an outline to its hole."""
+    if not doubled:
+        return kept, []
     rows = unbroken_rows(strokes)
     bridges = {number for number, copy in doubled.items() if rows[number] == rows[copy]}
     findings = []

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from watchsim.contact.index_sets import STICK
 from watchsim.dynamics.lcp import LcpWork, lcp_work
+from watchsim.dynamics.parts import Parts, parts_of
 from watchsim.jit import by_reference, kernel
 
 Array = NDArray[np.float64]
@@ -51,6 +52,7 @@ class ContactWork(NamedTuple):
     h: Array  # (n,)
     rungs: Integers  # problems solved since last asked, by Rung; the last one counts those without a solution
     note: Integers  # of the last problem: contacts, elements, bearings, level, status of Lemke
+    parts: Parts  # the whole of a problem that falls into parts
 
 
 ContactWorkRef = by_reference(ContactWork, __name__)
@@ -89,6 +91,7 @@ def contact_work(room: int, coordinates: int) -> ContactWork:
         h=np.zeros(coordinates),
         rungs=np.zeros(RUNGS, np.int64),
         note=np.zeros(5, np.int64),
+        parts=parts_of(side, blocks),
     )
 
 

@@ -87,7 +87,7 @@ def lemke_checked(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> in
 def lemke(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> int:
     """Lemke's method on the leading n×n problem; out_x[:n] is set when the status is OK (unchecked), else zero."""
     for i in range(n):
-        out_x[i] = 0.0
+        out_x[i], work.is_active[i] = 0.0, 0
     if _is_trivial(b, n):
         return OK
     magnitude = scale(A, b, n, work)

@@ -6,10 +6,10 @@ a time, as arrays.
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from watchsim.geometry.curve import Array
 from watchsim.geometry.primitives import Arc, Edge, Line, Point
@@ -31,8 +31,16 @@ class ArcChain(NamedTuple):
 
     def edges(self) -> list[Edge]:
         """The same as lines and arcs."""
-        rows = zip(self.starts.tolist(), self.start_tangents.tolist(), self.ends.tolist(), strict=True)
-        return [arc_from((p[0], p[1]), (t[0], t[1]), (q[0], q[1])) for p, t, q in rows]
+        (px, py), (qx, qy), (tx, ty) = self.starts.T, self.ends.T, self.start_tangents.T
+        chord = self.ends - self.starts
+        along, across = dots(chord, self.start_tangents), crosses(self.start_tangents, chord)
+        flat = _is_flat(chord, across)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            r = dots(chord, chord) / (2.0 * across)  # positive: the centre lies to the left
+            x, y = px - r * ty, py + r * tx
+            arcs = np.stack((x, y, np.abs(r), np.arctan2(py - y, px - x), 2.0 * np.arctan2(across, along)))
+        rows = np.where(flat, np.stack((px, py, qx, qy, px)), arcs).T.tolist()
+        return [Line(*row[:4]) if line else Arc(*row) for row, line in zip(rows, flat.tolist(), strict=True)]
 
 
 def arcs_from(starts: Array, tangents: Array, ends: Array) -> ArcChain:
@@ -44,7 +52,7 @@ def arcs_from(starts: Array, tangents: Array, ends: Array) -> ArcChain:
         curvature = np.where(along > 0.0, 2.0 * across / square, np.nan)
         # The end tangent is the start tangent mirrored in the chord.
         last = 2.0 * (along / square)[:, None] * chord - tangents
-        flat = 2.0 * np.abs(across) * STRAIGHT <= np.sqrt(square)
+        flat = _is_flat(chord, across)
         straight = chord / np.sqrt(square)[:, None]
     first = np.where(flat[:, None], straight, tangents)
     return ArcChain(starts, first, ends, np.where(flat[:, None], straight, last), np.where(flat, 0.0, curvature))
@@ -69,14 +77,12 @@ def biarc_joints(p: Array, tangent_p: Array, q: Array, tangent_q: Array, ratio: 
 
 def arc_from(p: Point, tangent: Point, q: Point) -> Edge:
     """The arc from p, leaving along the unit `tangent`, to q; a line where it is straight."""
-    cx, cy = q[0] - p[0], q[1] - p[1]
-    along, across = cx * tangent[0] + cy * tangent[1], cy * tangent[0] - cx * tangent[1]
-    chord2 = cx * cx + cy * cy
-    if 2.0 * abs(across) * STRAIGHT <= math.sqrt(chord2):
-        return Line(*p, *q)
-    r = chord2 / (2.0 * across)  # positive: the centre lies to the left
-    x, y = p[0] - r * tangent[1], p[1] + r * tangent[0]
-    return Arc(x, y, abs(r), math.atan2(p[1] - y, p[0] - x), 2.0 * math.atan2(across, along))
+    return arcs_from(np.array([p]), np.array([tangent]), np.array([q])).edges()[0]
+
+
+def _is_flat(chord: Array, across: Array) -> NDArray[np.bool_]:
+    """Is an arc with these chords (n, 2) and such legs (n,) across it straight?"""
+    return 2.0 * np.abs(across) * STRAIGHT <= np.hypot(chord[:, 0], chord[:, 1])
 
 
 def dots(a: Array, b: Array) -> Array:

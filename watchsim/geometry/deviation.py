@@ -16,73 +16,82 @@ from functools import lru_cache
 import numpy as np
 
 from watchsim.geometry.biarc import ArcChain
-from watchsim.geometry.curve import Array, Curve
+from watchsim.geometry.bundle import Bundle, Numbers
+from watchsim.geometry.curve import Array
 
 SLACK = 0.01  # of the bound: where the higher terms or unequal weights may add more, the interval is halved
 HALVINGS = 6
 GLANCES = 0.5 - 0.5 * np.cos(np.pi * (np.arange(6) + 0.5) / 6.0)  # places along an arc, denser towards its ends
 
 
-def glances(curve: Curve, stations: Array, arcs: ArcChain) -> Array:
+def glances(bundle: Bundle, low: Array, high: Array, arcs: ArcChain) -> Array:
     """About the same as `deviations`, quickly: the largest (n,) of a few samples, some per cent too small at worst."""
-    t = stations[:-1, None] + np.diff(stations)[:, None] * GLANCES
-    q = curve.points(t.ravel()).reshape(*t.shape, 2) - arcs.starts[:, None]
-    x, y, tangent, k = q[..., 0], q[..., 1], arcs.start_tangents, arcs.curvatures[:, None]
-    g = np.abs(y * tangent[:, :1] - x * tangent[:, 1:] - 0.5 * k * (x * x + y * y))
+    low, high, source = bundle.stretches(low, high)
+    span, start = bundle.locate(low)
+    x, y = bundle.at(span, start[:, None] + (high - low)[:, None] * GLANCES) - arcs.starts[source].T[:, :, None]
+    tangent, k = arcs.start_tangents[source], arcs.curvatures[source][:, None]
+    square = x * x  # in place from here: new memory would take longer than the arithmetic
+    square += y * y
+    square *= 0.5 * k
+    y *= tangent[:, :1]
+    x *= tangent[:, 1:]
+    y -= x
+    y -= square
+    g = np.max(np.abs(y, out=y), axis=1)
     with np.errstate(invalid="ignore"):
-        most = np.max(2.0 * g / (1.0 + np.sqrt(1.0 - 2.0 * np.abs(k) * g)), axis=1)
-    return np.where(np.isfinite(most), most, np.inf)
+        most = 2.0 * g / (1.0 + np.sqrt(1.0 - 2.0 * np.abs(k[:, 0]) * g))
+    result = np.zeros(len(arcs.curvatures))
+    np.maximum.at(result, source, np.where(np.isfinite(most), most, np.inf))
+    return result
 
 
-def deviations(curve: Curve, stations: Array, arcs: ArcChain) -> Array:
-    """Upper bounds (n,) in metres for the distance between arc i and the curve from stations[i] to stations[i + 1].
+def deviations(bundle: Bundle, low: Array, high: Array, arcs: ArcChain, group: Numbers) -> Array:
+    """Upper bounds (n,) in metres for the distance between arc i and the curve between the places low[i] and high[i].
 
-    The stations must ascend, and no arc may reach a half circle; then no point of either is further from the other. Intervals
-    are halved where the deviation is far from a cubic.
+    No arc may reach a half circle; then no point of either is further from the other. Intervals are halved where the deviation
+    is far from a cubic and might be the largest of its group, so that the largest bound of each group is sharp.
     """
-    count = len(arcs.curvatures)
-    bounds = np.zeros(count)
-    inner = curve.between(float(stations[0]), float(stations[-1]))
-    cuts = np.union1d(stations, inner) if len(inner) else stations
-    low, high = cuts[:-1], cuts[1:]
+    bounds = np.zeros(len(arcs.curvatures))
+    floor = np.zeros(int(np.max(group, initial=0)) + 1)
+    low, high, owner = bundle.stretches(low, high)
     for left in range(HALVINGS, -1, -1):
-        owner = np.minimum(np.searchsorted(stations, low, "right") - 1, count - 1)
-        bound, slack = _interval_bounds(curve, low, high, owner, arcs)
-        again = (slack > SLACK * bound) & (bound > 0.25 * np.max(bound)) if left else np.zeros(len(bound), dtype=bool)
+        bound, slack = _interval_bounds(bundle, low, high, owner, arcs)
+        sure = np.where(np.isfinite(bound), bound - slack, 0.0)
+        np.maximum.at(floor, group[owner], sure)
+        again = (slack > SLACK * bound) & (bound > floor[group[owner]]) if left else np.zeros(len(bound), dtype=bool)
         np.maximum.at(bounds, owner[~again], bound[~again])
         if not np.any(again):
             break
         middle = 0.5 * (low[again] + high[again])
         low, high = np.concatenate((low[again], middle)), np.concatenate((middle, high[again]))
+        owner = np.concatenate((owner[again], owner[again]))
     return bounds
 
 
-def _interval_bounds(curve: Curve, low: Array, high: Array, owner: Array, arcs: ArcChain) -> tuple[Array, Array]:
+def _interval_bounds(bundle: Bundle, low: Array, high: Array, owner: Numbers, arcs: ArcChain) -> tuple[Array, Array]:
     """For each interval the bound of the distance from its arc, and by how much it may be too large."""
-    rank = 2 * curve.degree + 1
+    rank = 2 * bundle.degree + 1
     x, transform = _chebyshev(rank)
-    t = (0.5 * (low + high))[:, None] + (0.5 * (high - low))[:, None] * x
-    h = curve.homogeneous(t.ravel()).reshape(len(low), rank, 3)
-    w = h[..., 2]
+    span, first = bundle.locate(low)
+    h = bundle.homogeneous(span, first[:, None] + (high - low)[:, None] * (0.5 + 0.5 * x))
+    w = h[2] if bundle.weighted else 1.0
     start, tangent, k = arcs.starts[owner], arcs.start_tangents[owner], arcs.curvatures[owner]
-    qx, qy = h[..., 0] - start[:, :1] * w, h[..., 1] - start[:, 1:] * w
+    qx, qy = h[0] - start[:, :1] * w, h[1] - start[:, 1:] * w
     along = qx * tangent[:, :1] + qy * tangent[:, 1:]
     across = qy * tangent[:, :1] - qx * tangent[:, 1:]
     g = across * w - 0.5 * k[:, None] * (qx * qx + qy * qy)
     g_low, g_high, g_tail = _range(g @ transform)
     lightest = heaviest = np.ones(len(low))
-    if curve.weighted:
+    if bundle.weighted:
         w_low, w_high, w_tail = _range(w @ transform)
         lightest, heaviest = w_low - w_tail, w_high + w_tail
     with np.errstate(invalid="ignore", divide="ignore"):
         most = (np.maximum(np.abs(g_low), np.abs(g_high)) + g_tail) / lightest**2
-        distance = 2.0 * most / (1.0 + np.sqrt(1.0 - 2.0 * np.abs(k) * most))
+        bound = 2.0 * most / (1.0 + np.sqrt(1.0 - 2.0 * np.abs(k) * most))
         end, last = arcs.ends[owner], arcs.end_tangents[owner]
-        beyond = (end[:, :1] * w - h[..., 0]) * last[:, :1] + (end[:, 1:] * w - h[..., 1]) * last[:, 1:]
-        bound = distance
-        for projection in (along, beyond):
-            least, _, tail = _range(projection @ transform)
-            bound = bound + np.maximum(0.0, tail - least) / lightest
+        beyond = (end[:, :1] * w - h[0]) * last[:, :1] + (end[:, 1:] * w - h[1]) * last[:, 1:]
+        for projection in (along @ transform, beyond[:, ::-1] @ transform):
+            bound = bound + np.maximum(0.0, -_least(projection)) / lightest
         slack = g_tail / lightest**2 + most * (1.0 - (lightest / heaviest) ** 2)
     return np.where((lightest > 0.0) & np.isfinite(bound), bound, np.inf), slack
 
@@ -94,6 +103,18 @@ def _chebyshev(rank: int) -> tuple[Array, Array]:
     transform = 2.0 / rank * np.cos(np.outer(angle, np.arange(rank)))
     transform[:, 0] *= 0.5
     return np.cos(angle), transform
+
+
+def _least(a: Array) -> Array:
+    """A bound (n,) of the least value on [-1, 1] of what has the Chebyshev coefficients a (n, rank), mostly growing."""
+    order = np.arange(a.shape[1])
+    result: Array = a @ (1.0 - 2.0 * (order % 2))
+    # The derivative of T_j is at most j²: where the first term outweighs the others the least is at the lower end.
+    doubtful = ~(a[:, 1] >= np.abs(a[:, 2:]) @ (order[2:] ** 2))
+    if np.any(doubtful):
+        least, _, tail = _range(a[doubtful])
+        result[doubtful] = least - tail
+    return result
 
 
 def _range(a: Array) -> tuple[Array, Array, Array]:

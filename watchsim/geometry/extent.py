@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
+from watchsim.geometry.edge_table import table_of
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Edge
 
 Box = tuple[float, float, float, float]
 QUARTER = 0.5 * math.pi
+FEW = 32  # edges: from columns it takes longer
 
 
 def edge_extents(edge: Edge) -> Box:
@@ -27,10 +29,13 @@ def edge_extents(edge: Edge) -> Box:
 
 def extents(loops: Iterable[Loop]) -> Box | None:
     """The box around all loops and chains in metres; None where there are none."""
-    boxes = [edge_extents(edge) for loop in loops for edge in loop.edges]
-    if not boxes:
+    edges = [edge for loop in loops for edge in loop.edges]
+    if not edges:
         return None
-    xmin, ymin, xmax, ymax = zip(*boxes, strict=True)
+    if len(edges) > FEW:
+        box = table_of(edges).box
+        return (*box[:, :2].min(axis=0).tolist(), *box[:, 2:].max(axis=0).tolist())
+    xmin, ymin, xmax, ymax = zip(*map(edge_extents, edges), strict=True)
     return (min(xmin), min(ymin), max(xmax), max(ymax))
 
 

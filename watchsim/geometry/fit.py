@@ -11,34 +11,27 @@ Bernoulli polynomial, and the lengths are corrected step by step until all devia
 
 from __future__ import annotations
 
-import math
-from collections import Counter
-from itertools import pairwise
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from watchsim.geometry.arc_chain import Trial, balanced, capacities, lay_chain
-from watchsim.geometry.biarc import arcs_from, crosses, dots
+from watchsim.geometry.biarc import ArcChain, arcs_from, crosses, dots
+from watchsim.geometry.bundle import Bundle
 from watchsim.geometry.curve import Array, Curve
 from watchsim.geometry.deviation import deviations
+from watchsim.geometry.fewest import Found, fewest
 from watchsim.geometry.primitives import Edge, Line
 from watchsim.geometry.smooth import smooth_parts
 
-BEST = math.sqrt(3.0) / 216.0  # largest deviation of the best chain over |κ′| h³
 KINK = 1e-6  # radians between a single arc's and the curve's tangent at its end
 ROUNDS = 20  # of distributing the arcs anew
 ROUNDS_OF_HALVES = 6  # where the whole did not succeed
-FEW, MOST = 2, 5  # attempts with one number of arcs: more where one arc counts for more
-WEIGHTY = 48  # arcs over attempts
-ENOUGH = 1.04  # times the number of arcs that seems necessary
-SURE = 0.97  # of the number of arcs that seems necessary: fewer are not tried
-MANY = 10_000  # arcs: a part that needs more is halved before
-DAMPING = 0.6  # of the correction of the lengths from one distribution to the next
-
-STILL = 1e-12  # of the whole: a step of no length
+AT_ONCE = 512  # curves: so many that single steps cost little, so few that the numbers stay near the processor
 DEEPEST = 40  # halvings where nothing helps: at a cusp
 NOTHING = 1e-5  # of the tolerance: edges shorter than that are left out
+LOOKS = 33  # places in each span that show its extent
 
 
 class Fit(NamedTuple):
@@ -54,118 +47,107 @@ def fit_arcs(curve: Curve, tolerance: float) -> Fit:
     Where the curve itself has a corner or a cusp so have they. A larger deviation than the tolerance is possible where the
     curve jumps, and is told.
     """
-    edges: list[Edge] = []
-    worst = 0.0
-    for low, high in pairwise(smooth_parts(curve, tolerance)):
-        for part, deviation in _follow(curve, low, high, tolerance, 0):
-            edges.extend(edge for edge in part if edge.length > NOTHING * tolerance)
-            worst = max(worst, deviation)
-    return Fit(tuple(edges), worst)
+    return fit_all([curve], [tolerance])[0]
 
 
-def _follow(curve: Curve, low: float, high: float, tolerance: float, depth: int) -> list[tuple[list[Edge], float]]:
-    """The edges and deviations of the part from `low` to `high`, halved where no chain is found."""
-    trial = _one_arc(curve, low, high, tolerance) or _fewest(
-        curve, low, high, tolerance, ROUNDS if depth == 0 else ROUNDS_OF_HALVES
-    )
-    if trial is not None:
-        return [(trial.arcs.edges(), trial.worst)]
-    (p, q) = curve.points(np.array([low, high]))
-    chord: list[Edge] = [Line(*p.tolist(), *q.tolist())]
-    away = _from_chord(curve, low, high)
-    if away <= tolerance or depth >= DEEPEST:
-        return [(chord, away)]
-    middle = 0.5 * (low + high)
-    return _follow(curve, low, middle, tolerance, depth + 1) + _follow(curve, middle, high, tolerance, depth + 1)
+def fit_all(curves: Sequence[Curve], tolerances: Sequence[float]) -> list[Fit]:
+    """The same for many curves, much faster than one by one."""
+    parts: list[list[Curve]] = [[] for _ in curves]
+    for chosen in batches(curves):
+        smooth = smooth_parts([curves[k] for k in chosen], np.array([tolerances[k] for k in chosen]))
+        for k, row in zip(chosen, smooth, strict=True):
+            parts[k] = row
+    each = np.array([limit for row, limit in zip(parts, tolerances, strict=True) for _ in row])
+    fits = iter(_follow([part for row in parts for part in row], each, 0))
+    return [_end_to_end([next(fits) for _ in row]) for row in parts]
 
 
-def _from_chord(curve: Curve, low: float, high: float) -> float:
-    """A bound of the distance between a short part of the curve and its chord, wherever it turns: its extent, sampled."""
-    points = curve.points(np.unique(np.concatenate((np.linspace(low, high, 33), curve.between(low, high)))))
-    return float(np.hypot(*np.ptp(points, axis=0)))
+def batches(curves: Sequence[Curve]) -> Iterator[list[int]]:
+    """Numbers of curves that can be looked at together."""
+    alike: dict[int, list[int]] = {}
+    for k, curve in enumerate(curves):
+        alike.setdefault(curve.degree, []).append(k)
+    for numbers in alike.values():
+        for first in range(0, len(numbers), AT_ONCE):
+            yield numbers[first : first + AT_ONCE]
 
 
-def _one_arc(curve: Curve, low: float, high: float, tolerance: float) -> Trial | None:
-    """The single arc or line, where it has the right tangents at both ends."""
-    nodes = np.array([low, high])
-    points, tangents = curve.points(nodes), curve.tangents(nodes, low, high)
-    arc = arcs_from(points[:1], tangents[:1], points[1:])
-    mirrored = arc.end_tangents if arc.curvatures[0] else tangents[:1]
-    kink = abs(float(crosses(mirrored, tangents[1:])[0]))
-    if not kink <= KINK or not dots(mirrored, tangents[1:])[0] > 0.0:
-        return None
-    errors = deviations(curve, nodes, arc)
-    return Trial(nodes, arc, nodes, np.ones(1), np.array([0]), errors) if errors[0] <= tolerance else None
+def _follow(curves: Sequence[Curve], tolerance: Array, depth: int) -> list[Fit]:
+    """Arcs along smooth curves, which are halved where no chain is found."""
+    result: list[Fit] = [Fit((), 0.0)] * len(curves)
+    missing = []
+    for chosen in batches(curves):
+        found = _chains([curves[k] for k in chosen], tolerance[chosen], ROUNDS if depth == 0 else ROUNDS_OF_HALVES)
+        for k, chain, fit in zip(chosen, found, _fits(found, tolerance[chosen]), strict=True):
+            result[k] = fit
+            if chain is None:
+                away = _extent(curves[k])
+                if away <= tolerance[k] or depth >= DEEPEST:
+                    result[k] = _chord(curves[k], away, float(tolerance[k]))
+                else:
+                    missing.append(k)
+    if missing:
+        halves = [half for k in missing for half in curves[k].split(0.5 * len(curves[k].control))]
+        fits = iter(_follow(halves, np.repeat(tolerance[missing], 2), depth + 1))
+        for k in missing:
+            result[k] = _end_to_end((next(fits), next(fits)))
+    return result
 
 
-def _fewest(curve: Curve, low: float, high: float, tolerance: float, rounds: int) -> Trial | None:
-    """The chain with the fewest arcs that was found within the tolerance."""
-    t, load = _demand(curve, low, high, tolerance)
-    skew = np.array([[low, high], [0.0, 0.0]])
-    best: Trial | None = None
-    fewest = 10**9
-    attempts: Counter[int] = Counter()
-    count = arcs_for(float(min(load[-1], MANY)))
-    most = 4 * count + 16
-    for _ in range(rounds):
-        if count > most:
-            break
-        capacity = capacities(count)
-        trial = lay_chain(curve, t, load, capacity, skew)
-        attempts[count] += 1
-        work = capacity * trial.strains(tolerance)
-        needed = arcs_for(float(np.sum(work)))
-        t, load = _redistributed(t, load, trial.nodes, work)
-        skew = balanced(trial)
-        if trial.worst <= tolerance:
-            trial = trial._replace(errors=deviations(curve, trial.stations, trial.arcs))
-        if trial.worst <= tolerance:
-            best, fewest = trial, count
-            count = min(needed, count - 1)
-        elif needed > count:
-            count = needed
-        elif attempts[count] >= enough_attempts(count):
-            count += 1
-        if count >= fewest:
-            count = fewest - 1
-        enough = fewest <= ENOUGH * needed or count < SURE * needed or count < 2
-        if best is not None and (enough or attempts[count] >= enough_attempts(count)):
-            break
-    return best
+def _chains(curves: Sequence[Curve], tolerance: Array, rounds: int) -> list[Found | None]:
+    """One arc or the fewest along each of some curves of one degree; None where none are found."""
+    found = _one_arc_each(Bundle(curves), tolerance)
+    rest = [k for k, chain in enumerate(found) if chain is None]
+    if rest:
+        for k, chain in zip(rest, fewest(Bundle([curves[k] for k in rest]), tolerance[rest], rounds), strict=True):
+            found[k] = chain
+    return found
 
 
-def enough_attempts(count: int) -> int:
-    return min(MOST, max(FEW, WEIGHTY // count))
+def _chord(curve: Curve, away: float, tolerance: float) -> Fit:
+    """The line from end to end of a short curve that is at most `away` from it."""
+    (x0, y0), (x1, y1) = curve.ends.tolist()
+    chord = Line(x0, y0, x1, y1)
+    return Fit((chord,) if chord.length > NOTHING * tolerance else (), away)
 
 
-def arcs_for(work: float) -> int:
-    """The smallest number of arcs that can do the work of so many arcs of the best chain."""
-    count = max(2, math.floor(work))
-    while float(np.sum(capacities(count))) < work:
-        count += 1
-    return count
+def _end_to_end(fits: Sequence[Fit]) -> Fit:
+    if len(fits) == 1:
+        return fits[0]
+    return Fit(tuple(edge for fit in fits for edge in fit.edges), max(fit.deviation for fit in fits))
 
 
-def _demand(curve: Curve, low: float, high: float, tolerance: float) -> tuple[Array, Array]:
-    """Parameters (n,) and how many arcs (n,) the best chain needs up to each of them, from κ′ by differences."""
-    breaks = np.concatenate(([low], curve.between(low, high), [high]))
-    each = max(4, math.ceil(48 / (len(breaks) - 1)))
-    t = np.append((breaks[:-1, None] + np.diff(breaks)[:, None] * np.arange(each) / each).ravel(), high)
-    points, tangents = curve.points(t), curve.tangents(t, low, high)
-    length = np.hypot(*np.diff(points, axis=0).T)
-    length = np.maximum(length, STILL * np.sum(length) + NOTHING * tolerance)
-    turn = np.arctan2(crosses(tangents[:-1], tangents[1:]), dots(tangents[:-1], tangents[1:]))
-    curvature = turn / length
-    change = np.abs(np.diff(curvature)) / (0.5 * (length[:-1] + length[1:]))
-    rate = np.cbrt(BEST * np.concatenate((change[:1], np.maximum(change[:-1], change[1:]), change[-1:])) / tolerance) * length
-    rate = np.maximum(rate, 0.05 * np.sum(rate) * length / np.sum(length)) + 1e-12
-    return t, np.append(0.0, np.cumsum(rate))
+def _fits(found: Sequence[Found | None], tolerance: Array) -> list[Fit]:
+    """The lines and arcs of chains; nothing where there is none."""
+    chains = [chain.arcs for chain in found if chain is not None]
+    edges = iter(ArcChain(*(np.concatenate(column) for column in zip(*chains, strict=True))).edges() if chains else ())
+    result = []
+    for chain, limit in zip(found, (NOTHING * tolerance).tolist(), strict=True):
+        own = [next(edges) for _ in chain.arcs.curvatures] if chain is not None else []
+        result.append(Fit(tuple(edge for edge in own if edge.length > limit), chain.deviation if chain is not None else 0.0))
+    return result
 
 
-def _redistributed(t: Array, load: Array, nodes: Array, work: Array) -> tuple[Array, Array]:
-    """The demand corrected piece by piece: between neighbouring nodes it is now `work`."""
-    grid = np.union1d(t, nodes)
-    steps = np.diff(np.interp(grid, t, load))
-    piece = np.minimum(np.searchsorted(nodes, grid[:-1], "right") - 1, len(work) - 1)
-    before = np.bincount(piece, steps, len(work))
-    return grid, np.append(0.0, np.cumsum(steps * ((np.maximum(work, 1e-3) / before) ** DAMPING)[piece]))
+def _extent(curve: Curve) -> float:
+    """A bound of the distance between a short curve and its chord, wherever it turns: its extent, sampled."""
+    number = np.arange(len(curve.control))
+    points = Bundle([curve]).at(number, np.broadcast_to(np.linspace(0.0, 1.0, LOOKS), (len(number), LOOKS)))
+    return float(np.hypot(np.ptp(points[0]), np.ptp(points[1])))
+
+
+def _one_arc_each(bundle: Bundle, tolerance: Array) -> list[Found | None]:
+    """The single arc or line, where it has the right tangents at both ends and stays within the tolerance."""
+    low, high = bundle.begin.astype(float), bundle.end.astype(float)
+    starts, ways, ends, last = bundle.points(low), bundle.tangents(low), bundle.points(high), bundle.tangents(high)
+    arcs = arcs_from(starts, ways, ends)
+    mirrored = np.where((arcs.curvatures != 0.0)[:, None], arcs.end_tangents, ways)
+    with np.errstate(invalid="ignore"):
+        smooth: NDArray[np.bool_] = (np.abs(crosses(mirrored, last)) <= KINK) & (dots(mirrored, last) > 0.0)
+    result: list[Found | None] = [None] * len(bundle)
+    chosen = np.flatnonzero(smooth)
+    if len(chosen):
+        own = ArcChain(*(column[chosen] for column in arcs))
+        errors = deviations(bundle, low[chosen], high[chosen], own, np.arange(len(chosen)))
+        for i in np.flatnonzero(errors <= tolerance[chosen]).tolist():
+            result[chosen[i]] = Found(ArcChain(*(column[i : i + 1] for column in own)), float(errors[i]))
+    return result

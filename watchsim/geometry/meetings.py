@@ -11,7 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.geometry.near_edges import Floats, Ints, Table
+from watchsim.geometry.edge_table import Table
+from watchsim.geometry.near_edges import Floats, Ints
 from watchsim.geometry.primitives import TURN
 
 Flags = NDArray[np.bool_]

@@ -7,14 +7,13 @@ every pair is given, and it is said where.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.geometry.extent import edge_extents
-from watchsim.geometry.primitives import Arc, Edge, Point
+from watchsim.geometry.edge_table import Table
+from watchsim.geometry.primitives import Point
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -25,42 +24,12 @@ GROWTH = 64  # entries per edge; edges that run along each other could be cut in
 CROWD = 32  # partners looked at for each edge in a cell that could not be refined
 
 
-class Table(NamedTuple):
-    """Edges as columns, metres and radians: ends, boxes (n, 4), and for arcs centre, radius, start angle and sweep."""
-
-    start: Floats
-    end: Floats
-    box: Floats
-    arc: NDArray[np.bool_]
-    centre: Floats
-    radius: Floats
-    start_angle: Floats
-    sweep: Floats
-
-
 class Pairs(NamedTuple):
     """Numbers of edges that could meet, first < second, and where there were too many edges to give all of them."""
 
     first: Ints
     second: Ints
     crowds: tuple[Point, ...]
-
-
-def table_of(edges: Sequence[Edge]) -> Table:
-    """The edges in columns; what only arcs have is 0 for lines."""
-    nothing = (0.0, 0.0, 0.0, 0.0, 0.0)
-    arcs = [(e.x, e.y, e.radius, e.start_angle, e.sweep) if isinstance(e, Arc) else nothing for e in edges]
-    x, y, radius, angle, sweep = np.array(arcs, dtype=float).reshape(-1, 5).T
-    return Table(
-        start=np.array([edge.start for edge in edges], dtype=float).reshape(-1, 2),
-        end=np.array([edge.end for edge in edges], dtype=float).reshape(-1, 2),
-        box=np.array([edge_extents(edge) for edge in edges], dtype=float).reshape(-1, 4),
-        arc=np.array([isinstance(edge, Arc) for edge in edges], dtype=bool),
-        centre=np.column_stack((x, y)),
-        radius=radius,
-        start_angle=angle,
-        sweep=sweep,
-    )
 
 
 def near_pairs(table: Table, reach: float) -> Pairs:

@@ -11,11 +11,13 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from watchsim.geometry.biarc import ArcChain, arc_from, crosses, dots
+from watchsim.geometry.bundle import Bundle
 from watchsim.geometry.curve import Array, Curve
 from watchsim.geometry.deviation import deviations
-from watchsim.geometry.fit import KINK, Fit
+from watchsim.geometry.fit import KINK, Fit, batches
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line
 
 ON_LINE = 1e-9  # of the length
@@ -26,10 +28,9 @@ CLOSED = 1e-9  # of the length
 
 
 class Part(NamedTuple):
-    """The curve from parameter `low` to `high`, and the edge that it is, if it is one."""
+    """A part of a curve, and the edge that it is, if it is one."""
 
-    low: float
-    high: float
+    curve: Curve
     edge: Edge | None
 
 
@@ -37,35 +38,51 @@ class _Spans(NamedTuple):
     """For each span of the curve: its sampled points (n, m, 2), whether it is straight or round, and its circle."""
 
     points: Array
-    straight: Array
-    round: Array
+    straight: NDArray[np.bool_]
+    round: NDArray[np.bool_]
     centres: Array
     radii: Array
 
+    def chosen(self, first: int, last: int) -> _Spans:
+        part = slice(first, last)
+        return _Spans(self.points[part], self.straight[part], self.round[part], self.centres[part], self.radii[part])
 
-def parts(curve: Curve, tolerance: float) -> list[Part]:
-    """The curve cut into what is exactly straight, what is exactly round, and the rest."""
-    spans = _classified(curve, tolerance)
+
+def parts_of(curves: Sequence[Curve], tolerances: Sequence[float]) -> list[list[Part]]:
+    """Each curve cut into what is exactly straight, what is exactly round, and the rest."""
+    result = [[Part(curve, None)] for curve in curves]
+    for chosen in batches(curves):
+        bundle = Bundle([curves[k] for k in chosen])
+        spans = _classified(bundle, np.array([tolerances[k] for k in chosen])[bundle.owner])
+        special = np.bincount(bundle.owner, spans.straight | spans.round) > 0
+        first = np.searchsorted(bundle.owner, np.arange(len(chosen) + 1)).tolist()
+        for i in np.flatnonzero(special).tolist():
+            own = spans.chosen(first[i], first[i + 1])
+            result[chosen[i]] = _grouped(curves[chosen[i]], own, tolerances[chosen[i]])
+    return result
+
+
+def _grouped(curve: Curve, spans: _Spans, tolerance: float) -> list[Part]:
+    """The parts of a curve whose spans are those."""
     groups: list[list[int]] = []
     for k in range(len(spans.radii)):
         if groups and _continues(spans, groups[-1][0], k, tolerance):
             groups[-1].append(k)
         else:
             groups.append([k])
-    return [Part(float(curve.breaks[g[0]]), float(curve.breaks[g[-1] + 1]), _edge(spans, g)) for g in groups]
+    return [Part(curve.spans(g[0], g[-1] + 1), _edge(spans, g)) for g in groups]
 
 
-def _classified(curve: Curve, tolerance: float) -> _Spans:
-    """Samples, so many that what holds for them holds for the whole span, up to their decimals."""
-    count = 2 * curve.degree + 2
-    low, high = curve.breaks[:-1], curve.breaks[1:]
-    t = low[:, None] + (high - low)[:, None] * (np.arange(count + 1) / count)
-    t[:, -1] = high
-    p = curve.points(t.ravel()).reshape(len(low), count + 1, 2)
+def _classified(bundle: Bundle, tolerance: Array) -> _Spans:
+    """Samples, so many that what holds for them holds for the whole span, up to their decimals; tolerances (spans,)."""
+    count = 2 * bundle.degree + 2
+    number = np.arange(len(bundle.owner))
+    p = bundle.at(number, np.broadcast_to(np.arange(count + 1) / count, (len(number), count + 1))).transpose(1, 2, 0)
     chord = p[:, -1] - p[:, 0]
     length = np.hypot(chord[:, 0], chord[:, 1])
     offset = p - p[:, :1]
-    along = np.einsum("nmk,nk->nm", offset, chord)
+    # Where the control points ascend along the chord the curve does, too.
+    along = np.einsum("nmk,nk->nm", bundle.corners - p[:, :1], chord)
     across = np.abs(offset[..., 1] * chord[:, :1] - offset[..., 0] * chord[:, 1:])
     sides = np.diff(p, axis=1)
     long = np.sum(np.hypot(sides[..., 0], sides[..., 1]), axis=1) > SHORTEST * tolerance
@@ -132,8 +149,11 @@ def _edge(spans: _Spans, group: Sequence[int]) -> Edge | None:
 
 def whole_circle(curve: Curve, tolerance: float) -> Fit | None:
     """The circle that a closed curve follows within the tolerance all round, in its direction; None if it does not."""
-    t = np.unique(np.concatenate([np.linspace(a, b, 9) for a, b in zip(curve.breaks[:-1], curve.breaks[1:], strict=True)]))
-    p = curve.points(t)
+    if curve.open_by() > CLOSED:
+        return None
+    bundle = Bundle([curve])
+    t = np.arange(8 * len(curve.control) + 1) / 8.0
+    p = bundle.points(t)
     length = float(np.sum(np.hypot(*np.diff(p, axis=0).T)))
     if not 0.0 < math.dist(p[0], p[-1]) + length <= (1.0 + CLOSED) * length:
         return None
@@ -154,7 +174,7 @@ def whole_circle(curve: Curve, tolerance: float) -> Fit | None:
     ways = side * np.column_stack((-arms[:, 1], arms[:, 0]))
     places = centre + radius * arms
     chain = ArcChain(places[:-1], ways[:-1], places[1:], ways[1:], np.full(len(t) - 1, side / radius))
-    deviation = float(np.max(deviations(curve, t, chain)))
+    deviation = float(np.max(deviations(bundle, t[:-1], t[1:], chain, np.zeros(len(t) - 1, dtype=np.intp))))
     if deviation > tolerance:
         return None
     return Fit((Arc(float(centre[0]), float(centre[1]), radius, float(angles[0]), side * TURN),), deviation)

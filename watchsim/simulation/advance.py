@@ -13,6 +13,7 @@ from watchsim.contact.lookup import time_through_cells
 from watchsim.dynamics.delassus import ContactWorkRef, fill_inverse
 from watchsim.dynamics.forces import next_knot
 from watchsim.dynamics.lcp import LcpWorkRef
+from watchsim.dynamics.parts import PartsRef
 from watchsim.jit import entry, inlined, kernel
 from watchsim.mechanism.model import CellsRef, ModelRef
 from watchsim.simulation.coupled import motion
@@ -25,7 +26,7 @@ from watchsim.simulation.options import FINEST_ROWS, OptionsRef
 from watchsim.simulation.passages import keep_passages
 from watchsim.simulation.rows import keep_inner_rows
 from watchsim.simulation.settle import settle
-from watchsim.simulation.state import DAMPING, DRIVE, FRICTION, N_FLIGHTS, ROOM, SUMS, RecordRef, ScratchRef, StateRef, StepRef
+from watchsim.simulation.state import DAMPING, DRIVE, FRICTION, N_FLIGHTS, SUMS, RecordRef, ScratchRef, StateRef, StepRef
 from watchsim.simulation.stops import Stop
 from watchsim.simulation.touch import first_touch
 from watchsim.simulation.within import begin_flight, coordinate_within, flight_acceleration
@@ -37,7 +38,7 @@ FLIGHT_CELLS = 128
 FLIGHT_PHASE = 1.6  # rad of the fastest coordinate's own time scale: the longest flight
 EVENTS_AT_ONCE = 2000
 ROWS_PER_STEP = math.ceil(FLIGHT_PHASE / FINEST_ROWS) + 8
-EVENTS_PER_STEP = 20 * ROOM
+EVENTS_PER_CONTACT = 20
 
 # Gauss-Legendre nodes and weights on [0, 1]: damping losses of a flight of at most a quarter period, to rounding.
 _NODES = (0.019855071751231856, 0.10166676129318664, 0.2372337950418355, 0.4082826787521751)
@@ -145,8 +146,9 @@ def _is_finite(state):
 
 
 @kernel
-def _room_left(record):
-    return record.used[0] + ROWS_PER_STEP < len(record.rows) and record.used[1] + EVENTS_PER_STEP < len(record.events)
+def _room_left(record, contacts):
+    events = EVENTS_PER_CONTACT * contacts
+    return record.used[0] + ROWS_PER_STEP < len(record.rows) and record.used[1] + events < len(record.events)
 
 
 @kernel
@@ -222,7 +224,7 @@ def _loop(model, cells, state, options, until, scratch, record):
     """From step to step and event to event; see `advance`."""
     fill_inverse(model, state.grip, scratch.work.inverse)
     while True:
-        if not _room_left(record):
+        if not _room_left(record, len(scratch.closed.ids)):
             return BUFFER_FULL
         if state.numbers[2]:
             code = _settle(model, cells, state, options, scratch, record)
@@ -274,6 +276,7 @@ def _by_reference(scratch):
         work.h,
         work.rungs,
         work.note,
+        PartsRef(*work.parts),
     )
     return ScratchRef(
         StepRef(*scratch.step),

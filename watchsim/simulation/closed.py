@@ -10,7 +10,6 @@ from watchsim.dynamics.linear import copy
 from watchsim.jit import kernel
 from watchsim.simulation.handover import continues_active
 from watchsim.simulation.sleep import is_at_rest
-from watchsim.simulation.state import ROOM
 
 
 @kernel
@@ -59,7 +58,7 @@ def gather(model, cells, state, options, scratch):
             if -options.behind <= gap <= options.gap_close and extent_margin(model, k, scratch.pose) >= -options.extent:
                 if continues_active(model, state, options, k, scratch.pose):
                     continue
-                if m == ROOM:
+                if m == len(ids):
                     return -2
                 m = insert(ids, m, k)
     return m

@@ -72,12 +72,12 @@ def count_rungs(state, work):
 
 
 @kernel
-def _solve(model, state, m, jam, scratch):
+def _solve(model, state, m, jam, slow, scratch):
     """One impact with scratch.restitution; on an energy gain again with the smallest restitution, then with none."""
     kinetic = kinetic_energy(model, scratch.before)
     for attempt in range(3):
         copy(scratch.before, state.u)
-        status = impact(model, scratch.closed, m, scratch.restitution, jam, scratch.work, state.u)
+        status = impact(model, scratch.closed, m, scratch.restitution, jam, slow, scratch.work, state.u)
         count_rungs(state, scratch.work)
         if status != 0:
             state.counts[N_LCP_FAILED] += 1
@@ -152,7 +152,7 @@ def collide(model, state, m, options, jam, scratch, record):
     _law_restitution(model, m, scratch)
     ends = -1.0
     for _ in range(1 + m):
-        status = _solve(model, state, m, jam, scratch)
+        status = _solve(model, state, m, jam, options.speed_zero, scratch)
         if status != 0:
             copy(scratch.before, state.u)
             return status

@@ -11,10 +11,10 @@ from watchsim.mechanism.compile import Compiled
 from watchsim.mechanism.recording import Recording
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation.methods import MOREAU
-from watchsim.simulation.moreau_loop import EVENTS_PER_STEP, ROWS_PER_STEP, advance_fixed
+from watchsim.simulation.moreau_loop import EVENTS_PER_CONTACT, ROWS_PER_STEP, advance_fixed
 from watchsim.simulation.moreau_work import moreau_work
 from watchsim.simulation.run import EVENTS, ROWS, Run
-from watchsim.simulation.state import CORRECTION, new_record
+from watchsim.simulation.state import CORRECTION, new_record, room_for
 from watchsim.simulation.stops import Stop
 
 ROWS_PER_QUARTER = 300  # of the fastest spring's period; of the scene's duration where there is no spring
@@ -30,7 +30,9 @@ class MoreauRun(Run):
         self.step = step
         self.pace = np.array([step, max(step, self.options.max_step / ROWS_PER_QUARTER)])
         self.work = moreau_work(compiled.model)
-        self.record = new_record(compiled.model, ROWS + ROWS_PER_STEP, EVENTS + EVENTS_PER_STEP, self.record.windows)
+        self.record = new_record(
+            compiled.model, ROWS + ROWS_PER_STEP, EVENTS + EVENTS_PER_CONTACT * room_for(compiled.model), self.record.windows
+        )
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         return {**super().arrays(), "memory": self.work.memory, "depth": self.work.depth, "sweeps": self.work.sweeps}

@@ -14,14 +14,14 @@ from watchsim.simulation.moreau_impact import stop_approaches
 from watchsim.simulation.moreau_step import act, closed_at_middle, move
 from watchsim.simulation.moreau_work import MoreauWorkRef
 from watchsim.simulation.options import OptionsRef
-from watchsim.simulation.state import N_STEPS, ROOM, RecordRef, StateRef
+from watchsim.simulation.state import N_STEPS, RecordRef, StateRef
 from watchsim.simulation.stops import Stop
 
 SLICE, CELL_UNKNOWN, BUFFER_FULL = int(Stop.SLICE), int(Stop.CELL_UNKNOWN), int(Stop.BUFFER_FULL)
 DURATION, NOT_FINITE, LAST_STEP = int(Stop.DURATION), int(Stop.NOT_FINITE), int(Stop.LAST_STEP)
 RUNNING, TOO_MANY_CONTACTS = int(Stop.RUNNING), int(Stop.TOO_MANY_CONTACTS)
 TURN_EVENT, CROSS_EVENT = 8, 9
-ROWS_PER_STEP, EVENTS_PER_STEP = 3, 2 * ROOM
+ROWS_PER_STEP, EVENTS_PER_CONTACT = 3, 2
 CLOSE = 1e-9  # share of a step that is rounding of time
 
 
@@ -147,7 +147,8 @@ def _by_reference(work):
 @kernel
 def _loop(model, cells, state, options, until, pace, work, record):
     while True:
-        if record.used[0] + ROWS_PER_STEP >= len(record.rows) or record.used[1] + EVENTS_PER_STEP >= len(record.events):
+        events = EVENTS_PER_CONTACT * len(work.closed.ids)
+        if record.used[0] + ROWS_PER_STEP >= len(record.rows) or record.used[1] + events >= len(record.events):
             return BUFFER_FULL
         if state.numbers[2]:
             state.numbers[2] = 0

@@ -18,7 +18,7 @@ from watchsim.dynamics.linear import copy
 from watchsim.jit import kernel
 from watchsim.simulation.moreau_impact import friction_cones, solve_percussions
 from watchsim.simulation.moreau_prox import cone, fill_mobility, push, rates_of, relax
-from watchsim.simulation.state import CORRECTION, DAMPING, DRIVE, FRICTION, ROOM
+from watchsim.simulation.state import CORRECTION, DAMPING, DRIVE, FRICTION
 
 TAKEN_BACK = 0.2  # share of a penetration beyond `slop` taken back in a step
 
@@ -45,7 +45,7 @@ def closed_at_middle(model, cells, state, options, h, work):
             if gap > options.gap_close or (state.mode[k] == 0 and gap < -_believable(model, options, k, h, work)):
                 continue
             if extent_margin(model, k, work.pose) >= -options.extent:
-                if m == ROOM:
+                if m == len(work.closed.ids):
                     return -2
                 contact_kinematics(model, k, work.pose, m, work.closed)
                 m += 1

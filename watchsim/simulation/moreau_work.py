@@ -11,7 +11,7 @@ from watchsim.contact.kinematics import Closed, closed_contacts
 from watchsim.contact.poses import poses
 from watchsim.jit import by_reference
 from watchsim.mechanism.model import Model
-from watchsim.simulation.state import ROOM
+from watchsim.simulation.state import room_for
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -55,20 +55,20 @@ MoreauWorkRef = by_reference(MoreauWork, __name__)
 
 def moreau_work(model: Model) -> MoreauWork:
     """Room for one model."""
-    n = len(model.coordinates)
+    n, room = len(model.coordinates), room_for(model)
     dry = np.flatnonzero(model.coordinates.coulomb > 0.0)
-    rows = 2 * ROOM + len(dry)
+    rows = 2 * room + len(dry)
     vectors = {name: np.zeros(n) for name in ("q", "u", "free", "force", "damping", "joint", "mass", "inverse", "at")}
     by_row = {name: np.zeros(rows) for name in ("b", "rates", "more", "P")}
     return MoreauWork(
         memory=np.zeros((len(model.contacts), 2)),
         depth=np.zeros(1),
         pose=poses(len(model.bodies)),
-        closed=closed_contacts(ROOM),
+        closed=closed_contacts(room),
         G=np.zeros((rows, rows)),
-        low=np.zeros(ROOM),
-        ends=np.zeros((ROOM + len(dry), 4)),
-        restitution=np.zeros(ROOM),
+        low=np.zeros(room),
+        ends=np.zeros((room + len(dry), 4)),
+        restitution=np.zeros(room),
         dry=dry,
         unknown=np.zeros(1, np.int64),
         sweeps=np.zeros(1, np.int64),

@@ -22,7 +22,7 @@ from watchsim.mechanism.compile import Compiled
 from watchsim.mechanism.model import KIND_WORD
 from watchsim.mechanism.recording import Recording
 from watchsim.mechanism.scene import Scene
-from watchsim.simulation.advance import EVENTS_PER_STEP, ROWS_PER_STEP, advance
+from watchsim.simulation.advance import EVENTS_PER_CONTACT, ROWS_PER_STEP, advance
 from watchsim.simulation.failure import failure_of
 from watchsim.simulation.interrupts import held_interrupts
 from watchsim.simulation.kept import Kept, tail_length
@@ -39,6 +39,7 @@ from watchsim.simulation.state import (
     new_record,
     new_scratch,
     new_state,
+    room_for,
 )
 from watchsim.simulation.stops import Stop
 from watchsim.simulation.tally import Tally
@@ -77,7 +78,7 @@ class Run:
         self.kept, self.tally = Kept(recording, tail_length(frequency(scene))), Tally(scene, self.pairs)
         # A step wider, for the rows next to a window.
         windows = np.array(self.kept.windows, float).reshape(-1, 2) + self.options.max_step * np.array([-1.0, 1.0])
-        self.record = new_record(model, ROWS + ROWS_PER_STEP, EVENTS + EVENTS_PER_STEP, windows)
+        self.record = new_record(model, ROWS + ROWS_PER_STEP, EVENTS + EVENTS_PER_CONTACT * room_for(model), windows)
         self.stored_at_start = stored_energy(model, self.state.q, self.state.u)
         self.saved: SavedState | None = None
         self._parts_before = 0  # what was flushed before the state was saved

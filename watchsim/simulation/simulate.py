@@ -11,7 +11,6 @@ from watchsim.mechanism.recording import Recording, Window, as_recording
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation.joined import joined
 from watchsim.simulation.methods import EVENT_DRIVEN, METHODS, MOREAU, USUAL_STEP
-from watchsim.simulation.moreau import MoreauRun
 from watchsim.simulation.run import Progress, Run
 from watchsim.simulation.saved import SavedState
 from watchsim.simulation.trajectory import Trajectory
@@ -51,6 +50,8 @@ def simulate(
     compiled = compile_scene(scene, prefilter)
     recording = as_recording(record) or scene.record
     if method == MOREAU:
+        from watchsim.simulation.moreau import MoreauRun
+
         run: Run = MoreauRun(scene, compiled, tolerance, recording, USUAL_STEP if step is None else float(step))
     else:
         run = Run(scene, compiled, tolerance, recording)

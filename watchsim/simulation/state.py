@@ -20,7 +20,7 @@ from watchsim.simulation.event_kinds import EVENT_DTYPE
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-ROOM = 48  # contacts closed at once
+ROOM, ROOM_PER_COORDINATE = 48, 2  # contacts closed at once: at least, and in large scenes
 SUMS = 3  # integrated along with the motion: work in, damping, friction
 DRIVE, DAMPING, FRICTION, IMPACTS, CORRECTION = 0, 1, 2, 3, 4  # places in State.sums
 
@@ -134,6 +134,11 @@ class Record(NamedTuple):
 RecordRef = by_reference(Record, __name__)
 
 
+def room_for(model: Model) -> int:
+    """How many contacts may be closed at once."""
+    return max(ROOM, ROOM_PER_COORDINATE * len(model.coordinates))
+
+
 def new_state(model: Model, q: Array, u: Array) -> State:
     """The state at t = 0 with nothing decided yet."""
     n = len(model.coordinates)
@@ -148,7 +153,7 @@ def new_state(model: Model, q: Array, u: Array) -> State:
         mode=np.zeros(len(model.contacts), np.int8),
         grip=np.zeros(n, np.int8),
         awake=np.ones(n, np.int8),
-        active=np.zeros(ROOM, np.int64),
+        active=np.zeros(room_for(model), np.int64),
         numbers=np.array([0, 0, 1, 0, -1], np.int64),
         side_u=np.sign(speed).astype(np.int8),
         side_q=np.sign(q - rest).astype(np.int8),
@@ -160,7 +165,7 @@ def new_state(model: Model, q: Array, u: Array) -> State:
 
 def new_scratch(model: Model) -> Scratch:
     """Room to work for one model."""
-    n = len(model.coordinates)
+    n, room = len(model.coordinates), room_for(model)
     width = 2 * n + SUMS
     step = Step(
         kind=np.zeros(1, np.int64),
@@ -176,12 +181,12 @@ def new_scratch(model: Model) -> Scratch:
     return Scratch(
         step=step,
         pose=poses(len(model.bodies)),
-        closed=closed_contacts(ROOM),
-        rest=closed_contacts(ROOM),
-        work=contact_work(ROOM, n),
-        restitution=np.zeros(ROOM),
-        impulse=np.zeros(2 * ROOM),
-        rates=np.zeros(2 * ROOM),
+        closed=closed_contacts(room),
+        rest=closed_contacts(room),
+        work=contact_work(room, n),
+        restitution=np.zeros(room),
+        impulse=np.zeros(2 * room),
+        rates=np.zeros(2 * room),
         before=np.zeros(n),
         q=np.zeros(n),
         u=np.zeros(n),
@@ -190,7 +195,7 @@ def new_scratch(model: Model) -> Scratch:
         label=np.zeros(n, np.int64),
         engaged=np.zeros(len(model.bodies), np.int8),
         doubt=np.zeros(len(model.contacts), np.int64),
-        codes=np.zeros(4 * ROOM + n, np.int64),
+        codes=np.zeros(4 * room + n, np.int64),
         trial=np.zeros(len(model.contacts), np.int8),
         grip=np.zeros(n, np.int8),
         alarm=np.zeros(1),

@@ -1,0 +1,34 @@
+"""Does the grid find everything within reach?"""
+
+from __future__ import annotations
+
+import math
+import random
+
+import pytest
+
+from watchsim.drawing.nodes import Grid
+
+
+@pytest.mark.parametrize("reach", [1e-9, 1e-6, 3e-6])
+def test_grid_finds_all_within_reach(reach: float) -> None:
+    """Places with decimals of a nanometre, which often lie on borders of cells, far from the origin too."""
+    rng = random.Random(1)
+    for far in (0.0, 0.019, -0.3):
+        places = [(far + round(rng.uniform(0, 12 * reach), 9), far + round(rng.uniform(0, 12 * reach), 9)) for _ in range(300)]
+        grid = Grid(reach)
+        for number, p in enumerate(places[::3]):
+            grid.add(p, number)
+        for p in places:
+            near = {number for number, other in enumerate(places[::3]) if math.dist(p, other) <= 0.999 * reach}
+            assert near <= set(grid.around(p))
+
+
+@pytest.mark.parametrize("reach", [1e-9, 1e-6, 3e-6])
+def test_grid_finds_what_lies_at_the_same_place(reach: float) -> None:
+    rng = random.Random(2)
+    for _ in range(5000):
+        p = round(rng.uniform(-0.3, 0.3), 9), round(rng.uniform(-0.3, 0.3), 9)
+        grid = Grid(reach)
+        grid.add(p, 7)
+        assert grid.around(p) == [7]

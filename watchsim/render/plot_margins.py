@@ -1,0 +1,64 @@
+"""How much room do the words around the panels of a plot need?
+
+Worked out from the number of characters. matplotlib's own layouts draw everything twice more to measure it, which takes
+longer than the plot.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from matplotlib.axis import Axis
+    from matplotlib.figure import Figure
+
+POINT = 1.0 / 72.0  # inches
+TICK_SIZE = 9.0  # pt
+LABEL_SIZE = 10.0
+TITLE_SIZE = 13.0
+DIGIT = 0.637  # width of a digit over its size, in matplotlib's own font
+LINE = 1.25  # height of a line of text over its size
+BEFORE_LABEL = 7.0  # pt, the tick and the gap to its label
+GAP = 6.0  # pt, between words and from the edge of the figure
+TITLE_PAD = 4.0  # pt, between a panel and its title
+
+
+def place_panels(figure: Figure, panels: NDArray[np.object_]) -> None:
+    """Set the sides of a grid of panels whose limits are final, so that nothing overlaps and nothing is cut off.
+
+    `panels`: (rows, columns) axes with y labels and left titles, x labels in the last row only; room is left on top for a
+    title of the figure.
+    """
+    width, height = (inches / POINT for inches in figure.get_size_inches())
+    rows, columns = panels.shape
+    label = LINE * LABEL_SIZE
+    labels = [max(_label_width(axes.yaxis) for axes in panels[:, j]) for j in range(columns)]
+    left = [BEFORE_LABEL + labels[j] + label + 2.0 * GAP for j in range(columns)]
+    right = 0.5 * _label_width(panels[-1, 0].xaxis) + 0.5 * GAP  # the last label may stand below the corner
+    bottom = BEFORE_LABEL + LINE * TICK_SIZE + label + GAP
+    above = TITLE_PAD + label
+    top = LINE * TITLE_SIZE + GAP
+    panel_width = (width - sum(left) - columns * right) / columns
+    step = (height - top - bottom) / rows
+    panel_height = step - above - GAP
+    for j in range(columns):
+        x = sum(left[: j + 1]) + j * (panel_width + right)
+        for i in range(rows):
+            y = bottom + (rows - 1 - i) * step
+            axes = panels[i, j]
+            axes.set_position((x / width, y / height, panel_width / width, panel_height / height))
+            axes.yaxis.set_label_coords(-(left[j] - GAP - 0.5 * label) / panel_width, 0.5)
+            axes.yaxis.label.set_verticalalignment("center")
+            axes.xaxis.set_label_coords(0.5, -(bottom - GAP - 0.5 * label) / panel_height)
+            axes.xaxis.label.set_verticalalignment("center")
+
+
+def _label_width(axis: Axis) -> float:
+    """Of its widest tick label (pt)."""
+    low, high = sorted(axis.get_view_interval())
+    ticks = [tick for tick in axis.get_major_locator().tick_values(low, high) if low <= tick <= high]
+    texts = axis.get_major_formatter().format_ticks(ticks)
+    return max((DIGIT * TICK_SIZE * sum(0.5 if c in ",." else 1.0 for c in text) for text in texts), default=0.0)
