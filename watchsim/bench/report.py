@@ -51,5 +51,5 @@ def _line(row: Mapping[str, Any]) -> str:
     if row["note"]:
         errors = [row["note"], "", ""]
     engine = f"{row['method']} {row['version']}".strip()
-    cells = (engine, setting, f"{time:.3g}", f"{least:.3g} to {most:.3g} ({row['repeats']} runs)", *errors)
+    cells = (engine, setting, f"{time:.3g}", f"{least:.3g} to {most:.3g} (runs: {row['repeats']})", *errors)
     return "| " + " | ".join(cells) + " |"
