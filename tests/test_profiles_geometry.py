@@ -12,7 +12,10 @@ from pathlib import Path
 
 import ezdxf
 import pytest
+import shapely
 from reference import incline_closed_form as incline
+from scipy.optimize import brentq
+from shapely.affinity import rotate
 
 ROOT = Path(__file__).resolve().parents[1]
 PROFILES, SHARED = ROOT / "profiles", ROOT.parent / "shared"
@@ -166,6 +169,23 @@ def test_bench_lever_measures_as_designed():
         assert beat.lift_stone == pytest.approx(8.5, abs=1e-3)
         assert beat.draw == pytest.approx(13.0, abs=2.01)  # 13° between the banks: 11° and 15° on them
         assert beat.drop > 2.0
+
+
+@pytest.mark.parametrize("name", ["bench_lever", "carriage"])
+def test_bench_lift_angle_is_twice_the_angle_at_which_the_pin_meets_the_fork(name):
+    """The lever on its banking; pin and fork as drawn, turned by shapely."""
+    layout = tomllib.loads((PROFILES / name / "scene.toml").read_text(encoding="utf-8"))
+    turn = math.degrees(float(layout["bodies"]["lever"]["angle"].split()[0]))
+    fork = rotate(shapely.MultiPolygon([shapely.Polygon(half) for half in draw_bench_lever.FORK]), turn, (0.0, 0.0))
+    reach = -draw_bench_lever.PIN_CENTRE[1]
+
+    def gap(angle: float) -> float:
+        pin = shapely.Point(reach * math.sin(angle), 4.6 - reach * math.cos(angle))
+        return pin.distance(fork) - draw_bench_lever.PIN_RADIUS
+
+    meets = brentq(gap, math.radians(-60.0), math.radians(-15.0))
+    assert 2.0 * math.degrees(-meets) == pytest.approx(46.933, abs=1e-3)
+    assert float(layout["timegrapher"]["lift_angle"].rstrip("°")) == pytest.approx(2.0 * math.degrees(-meets), abs=0.05)
 
 
 @needs_bench

@@ -14,7 +14,9 @@ from render.fake_runs import disc_run, slide_run
 from watchsim.analysis.energy import energy_shares
 from watchsim.analysis.headlines import expected_text, with_error
 from watchsim.analysis.summary import summary, summary_text, tables
+from watchsim.mechanism.compile import scene_size
 from watchsim.mechanism.scene import Expectation
+from watchsim.simulation.methods import MOREAU
 from watchsim.simulation.stops import Stop
 
 PROMISED = (
@@ -87,7 +89,7 @@ def test_text_of_a_watch():
     assert lines[0] == "Made lever"
     text = "\n".join(lines)
     for part in (
-        *("amplitude    270.000000° ±", "rate         0.000000 s/d ±", "28800.00 vph, averaged from 3.333 s to 5 s"),
+        *("amplitude    270.000000° ±", "rate         0 s/d", "28800.00 vph, averaged from 3.333 s to 5 s"),
         *("would show 289° with a lift angle of 52°", "none of 39", "240, 48 per second", "overlapped by up to 300 pm"),
         *("2 µJ put in, 400 nW: friction 25.0 %, damping 50.0 %, impacts 20.0 %, stored 5.0 %", "closes to 5e-11"),
         *("10 × real time, 0.5 s", "amplitude = 260° ± 1°, got 270°: MISSED"),
@@ -140,11 +142,37 @@ def test_text_of_other_things():
         (1.5, 0.0, "1.500000° ± 0.000000°"),
         (1.5, 1e-12, "1.500000° ± 0.000001°"),
         (-1e-9, 0.1, "0.0° ± 0.1°"),
+        (1e-9, 1e-12, "below 0.000001°"),
+        (0.0, 0.0, "0°"),
         (3.0, None, "3.000°"),
     ],
 )
 def test_numbers_show_what_is_sure(value, error, text):
     assert with_error(value, error, "°") == text
+
+
+def test_a_swing_that_dies_out_is_not_called_driven():
+    """Nothing drives it, nothing touches: the energy was there at the start, and no contact problem was solved."""
+    free = replace(lever_run(20), energy={**LEDGER, "in_J": 0.0, "stored_J": -2e-6, "dissipated": {"damping": 2e-6}}, counts={})
+    text = summary_text(free)
+    assert "2 µJ taken from what was stored at the start, 800 nW: damping 100.0 %" in text and "put in" not in text
+    assert "there was no contact problem to solve" in text
+    both = replace(free, energy={**free.energy, "in_J": 1e-6})
+    assert "3 µJ put in or taken from what was stored" in summary_text(both)
+
+
+def test_doubtful_runs_say_so():
+    run = lever_run(20)
+    assert summary(run)["warnings"] == [] and "WARNING" not in summary_text(run)
+    coarse = replace(run, method=MOREAU, step=50e-6, worst_penetration=74e-6)
+    (warning,) = summary(coarse)["warnings"]
+    assert "the step of 50 µs is too coarse: bodies overlapped by 74 µm" in warning and '--step "10 µs"' in warning
+    assert "  WARNING      the step of 50 µs" in summary_text(coarse)
+    fine = replace(coarse, worst_penetration=1e-3 * scene_size(run.scene))
+    assert summary(fine)["warnings"] == []
+    unsolved = summary_text(replace(run, worst_residual=0.989, counts={"lcp": 3}))
+    assert "3 contact problems, the worst left with a residual of 0.99" in unsolved and "solved to" not in unsolved
+    assert "WARNING      a contact problem was left with a residual of 0.99" in unsolved
 
 
 def test_energy_shares_sum_to_one():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -12,9 +13,11 @@ from render.fake_runs import disc_run, watch_run
 
 from watchsim.analysis.beats import beats
 from watchsim.analysis.recorded import is_recorded
-from watchsim.analysis.roles import Roles, drive_direction, partners, roles
 from watchsim.analysis.standstill import standstill
+from watchsim.analysis.summary import summary, summary_text
 from watchsim.analysis.wheel import advance, missed_beats, progress
+from watchsim.commands.run import filmed
+from watchsim.mechanism.roles import Roles, drive_direction, keeps_time, partners, roles
 
 
 def test_roles_follow_from_springs_drives_and_contacts():
@@ -105,3 +108,25 @@ def test_short_runs_and_other_mechanisms_do_not_stand():
     free = replace(lever_run(20), scene=replace(lever_scene(), torques=()))
     assert standstill(free, beats(free)) is None
     assert not watch_run().scene.springs
+
+
+def test_a_ratchet_that_rests_is_no_watch_that_stopped():
+    """A driven wheel held by a sprung body alone: only a lever between them, or a lift angle, makes it an escapement."""
+    run = lever_run(20, missed=range(12, 20))
+    ratchet = replace(run.scene, contacts=run.scene.contacts[1:], lift_angle=None)
+    assert keeps_time(run.scene) and not keeps_time(ratchet) and keeps_time(replace(ratchet, lift_angle=1.0))
+    assert keeps_time(replace(ratchet, torques=())) and not keeps_time(replace(ratchet, springs=()))
+    held = replace(run, scene=ratchet)
+    assert standstill(held, beats(held)) is None and standstill(run, beats(run)) is not None
+    told = {numbers["stopped"]: summary_text(one, numbers) for one in (held, run) for numbers in (summary(one),)}
+    assert re.search(r"wheel +at −\d+\.\d+° at the end", told[False]) and "missed beats" not in told[False]
+    assert "at the end" not in told[True] and "missed beats" in told[True]
+
+
+def test_the_movie_of_a_run_shows_the_last_swing_or_all_of_a_ratchet():
+    run = lever_run(20)
+    (start, end), speed = filmed(run, 1 / 20)
+    assert end == run.t[-1] and end - start == pytest.approx(1.1 * 0.25) and speed == 1 / 20
+    ratchet = replace(run, scene=replace(run.scene, contacts=run.scene.contacts[1:], lift_angle=None))
+    (start, end), speed = filmed(ratchet, 1 / 20)
+    assert (start, end) == (run.t[0], run.t[-1]) and (end - start) / speed == pytest.approx(10.0)

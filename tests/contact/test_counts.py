@@ -23,7 +23,7 @@ def counted(scene):
     return modelled_pairs(compile_scene(scene), [body.name for body in scene.bodies])
 
 
-@pytest.mark.parametrize("name", ["bench_lever", "swiss_lever"])
+@pytest.mark.parametrize("name", ["bench_lever", "swiss_lever", "carriage"])
 def test_every_pair_of_bodies_is_counted_and_candidates_are_few(name):
     scene = ws.load(PROFILES / name / "scene.toml")
     compiled, pairs = compile_scene(scene), counted(scene)

@@ -10,7 +10,8 @@ import dxf_text as d
 import pytest
 
 from watchsim.drawing.drawing import Drawing
-from watchsim.drawing.inspect import inspect_report, inspect_text
+from watchsim.drawing.findings import Finding
+from watchsim.drawing.inspect import finding_lines, inspect_report, inspect_text
 
 Reader = Callable[..., Drawing]
 
@@ -90,3 +91,19 @@ def test_text_says_when_all_is_well_and_cuts_long_lists(read_bytes: Reader) -> N
     text = inspect_text(read_bytes(d.dxf(strays)))
     assert text.count("stray-line [") == 12
     assert "and 18 more of stray-line" in text
+
+
+def test_every_finding_with_a_place_tells_it_once() -> None:
+    inside = Finding("open-outline", "error", "the outline is open: 1 mm between (1, -2) and (1, -3) mm", x_mm=1.0, y_mm=-2.0)
+    beside = Finding("slit", "notice", "LINE #4F goes out and back along itself", x_mm=1.25, y_mm=-2.0)
+    nowhere = Finding("units-missing", "warning", "the drawing does not say its units")
+    lines = finding_lines([inside, beside, nowhere])
+    assert sum("(1, -2)" in line for line in lines) == 1 and not any("(1, -2) mm, at" in line for line in lines)
+    assert any(line.endswith("along itself, at (1.25, -2) mm") for line in lines)
+    assert any(line.endswith("its units") for line in lines)
+
+
+def test_areas_of_several_layers_are_called_a_sum(read_bytes: Reader) -> None:
+    assert "mm² of material" in inspect_text(read_bytes(wheel()))
+    text = inspect_text(read_bytes(d.dxf(d.circle(0, 0, 2, layer="TEETH") + d.circle(0, 0, 1, layer="BORE"))))
+    assert f"{5 * math.pi:.5g} mm² in all layers added up" in text and "of material" not in text

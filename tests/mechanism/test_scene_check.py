@@ -69,7 +69,8 @@ def test_text_for_people(desk):
         "drive on wheel: -1 µN·m",
         "Q = 250",
         "contact wheel.TEETH - lever: friction 0.12, restitution 0.2",
-        "wheel - lever            120               17                      3",
+        "wheel - lever                   120               17                      3",
         "warning: wheel.dxf: an edge was drawn twice.",
     ):
         assert part in text, part
+    assert "nothing overlaps at the start" in text

@@ -10,7 +10,7 @@ from render.fake_runs import MM, circle, polygon, watch_scene
 
 from watchsim.mechanism.body import Body
 from watchsim.mechanism.scene import Scene
-from watchsim.render.palette import BLUED, BRASS, GILT, NIGHT, PLATE, RUBY, STEEL, body_finish, finish
+from watchsim.render.palette import BLUED, BRASS, GILT, NIGHT, OTHERS, PLATE, RUBY, STEEL, finish, looks
 from watchsim.render.parts import hatching, is_round, parts, signed_area
 
 
@@ -64,14 +64,24 @@ def test_only_circles_about_the_origin_hide_their_turning():
 
 def test_watch_colours():
     scene = watch_scene()
-    wheel, lever, balance, banking = scene.bodies
-    assert finish(wheel, "TEETH") is BRASS
-    assert finish(lever, "STONES") is RUBY and finish(lever, "ARMS") is STEEL and finish(lever, "FORK") is STEEL
-    assert finish(Body("pallet_fork"), "0") is STEEL and finish(Body("lever"), "PALLET_FORK") is STEEL
-    assert finish(balance, "ROLLER") is BLUED and finish(balance, "PIN") is RUBY and finish(balance, "SAFETY") is NIGHT
-    assert finish(banking, "PINS") is GILT
-    assert finish(Body("balance_wheel"), "0") is BLUED and finish(Body("escape_wheel"), "0") is BRASS
-    assert finish(Body("plane", "fixed"), "0") is PLATE
-    assert finish(Body("a"), "0", 0) is not finish(Body("b"), "0", 1)
-    assert body_finish(Body("balance", loops=(circle(0, 0, 1, "PIN"),))) is RUBY
-    assert body_finish(balance) is BLUED
+    _, lever, balance, _ = scene.bodies
+    worn = looks(scene)
+    assert worn == {"wheel": BRASS, "lever": STEEL, "balance": BLUED, "banking": GILT}
+    assert finish(lever, "STONES", STEEL) is RUBY and finish(lever, "ARMS", STEEL) is STEEL
+    assert finish(lever, "PALLET_FORK", STEEL) is STEEL
+    assert finish(balance, "ROLLER", BLUED) is BLUED and finish(balance, "PIN", BLUED) is RUBY
+    assert finish(balance, "SAFETY", BLUED) is NIGHT
+    for name, look in {"pallet_fork": STEEL, "balance_wheel": BLUED, "escape_wheel": BRASS}.items():
+        assert looks(Scene("", (Body(name),))) == {name: look}
+    assert looks(Scene("", (Body("plane", "fixed"),))) == {"plane": PLATE}
+    assert looks(Scene("", (Body("balance", loops=(circle(0, 0, 1, "PIN"),)),))) == {"balance": RUBY}
+
+
+def test_no_two_moving_bodies_look_alike():
+    """Words come first: a carriage named before the lever leaves it its steel."""
+    names = ("carriage", "wheel", "lever", "balance", "click", "third_wheel", "cam")
+    worn = looks(Scene("", tuple(Body(name) for name in names)))
+    assert worn["lever"] is STEEL and worn["wheel"] is BRASS and worn["balance"] is BLUED
+    assert len(set(worn.values())) == len({look.line for look in worn.values()}) == len(names)
+    many = tuple(Body(f"part {k}") for k in range(20))
+    assert set(looks(Scene("", many)).values()) == set(OTHERS)

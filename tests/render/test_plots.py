@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import itertools
 import math
+from dataclasses import replace
 
 import matplotlib
 import matplotlib.image
 import numpy as np
 import pytest
+from matplotlib.colors import rgb_to_hsv, to_rgb
 from render.fake_runs import disc_run, slide_run, watch_run
 
+from watchsim.render.palette import looks
+from watchsim.render.parts import parts
 from watchsim.render.plots import Kinematics, plot_kinematics, write_png
 from watchsim.render.readouts import clock
 
@@ -149,3 +153,27 @@ def in_view(axis):
     """The tick labels that are drawn."""
     low, high = axis.get_view_interval()
     return [tick.label1 for tick in axis.get_major_ticks() if low <= tick.get_loc() <= high and tick.label1.get_visible()]
+
+
+@pytest.mark.parametrize("amplitude", [250.0, 275.0, 305.0, 325.0])
+def test_a_full_swing_has_ticks_at_quarter_turns(amplitude):
+    run = watch_run()
+    factor = math.radians(amplitude) / np.abs(run.q[:, 2]).max()
+    scaled = replace(run, q=factor * run.q, u=factor * run.u, a=factor * run.a)
+    panel = plot_kinematics(scaled, bodies=["balance"], quantities=["angle"]).axes[0]
+    low, high = panel.get_ylim()
+    assert [tick for tick in panel.get_yticks() if low <= tick <= high] == [
+        tick for tick in range(-720, 721, 90) if low <= tick <= high
+    ]
+
+
+def test_a_body_has_one_colour_in_plot_and_movie():
+    run = watch_run()
+    worn = looks(run.scene)
+    figure = plot_kinematics(run)
+    shown = {axes.get_title(loc="left"): axes.lines[0].get_color() for axes in figure.axes}
+    assert shown == {name: worn[name].line for name in run.slices}
+    filled = {part.body: part.finish.fill for part in parts(run.scene, 1e-6, 1e-3) if part.finish is worn[part.body]}
+    for name in run.slices:
+        (hue, _, grey), (other, _, pale) = (rgb_to_hsv(to_rgb(colour)) for colour in (shown[name], filled[name]))
+        assert abs(hue - other) < 0.08 and grey < pale

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from render.fake_runs import slide_run, watch_run
 
 from watchsim.render.poses import poses, sampled
-from watchsim.render.readouts import clock, decimals_for, reading, scale_bar, signed, speed_text
+from watchsim.render.readouts import clock, decimals_for, reading, scale_bar, signed, speed_text, turn_text
 
 
 @pytest.mark.parametrize(
@@ -61,3 +63,18 @@ def test_poses_in_words():
     body = slider.scene.body("slider")
     tell, _ = reading(body, sampled(slider, body, (0.0, 1.0)))
     assert tell(poses(slider, np.array([0.3]))["slider"][0]) == f"{2 * np.sin(3.0):.2f} mm"
+
+
+@pytest.mark.parametrize(
+    ("degrees", "text"),
+    [
+        (0.0, ""),
+        (360.0, ""),
+        (-90.0, "picture turned by 90° clockwise"),
+        (20.0, "picture turned by 20° counter-clockwise"),
+        (270.0, "picture turned by 90° clockwise"),
+        (180.0, "picture turned by 180°"),
+    ],
+)
+def test_a_turned_picture_says_so(degrees, text):
+    assert turn_text(math.radians(degrees)) == text

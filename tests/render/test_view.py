@@ -87,3 +87,15 @@ def test_a_scene_without_outlines_cannot_be_drawn():
     run = watch_run(bodies=(Body("wheel"), Body("lever"), Body("balance")))
     with pytest.raises(ValueError, match="no body of this scene has an outline"):
         view(run, (0.0, 2.0), FRAME, None, None)
+
+
+def test_ground_near_the_bodies_is_brought_into_sight():
+    """A disc of 50 mm stands still, 1 mm above a plane that reaches 20 m to the right, or a hundred sizes above it."""
+    run = disc_run()
+    for height, near in ((0.06, True), (10.0, False)):
+        at_rest = replace(run, q=np.tile([0.3, height, 0.0], (len(run.t), 1)), u=0.0 * run.u, a=0.0 * run.a)
+        shown = view(at_rest, (0.0, 3.0), FRAME, None, 0.0)
+        below = seen(shown, {}, np.array([[0.3, -1e-3]]))[0]
+        assert (FRAME.bottom < below[1] < FRAME.bottom + FRAME.height) == near
+        left, right = seen(shown, {}, np.array([[0.25, height], [0.35, height]]))[:, 0]
+        assert FRAME.left < left < right < FRAME.left + FRAME.width

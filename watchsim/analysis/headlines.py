@@ -6,7 +6,9 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from watchsim.analysis.doubts import UNSOLVED
 from watchsim.analysis.energy import energy_shares
+from watchsim.mechanism.roles import keeps_time
 from watchsim.simulation.methods import MOREAU
 from watchsim.simulation.trajectory import Trajectory
 
@@ -22,9 +24,9 @@ HELPED = (
     ("lcp_enumerated", "by trying all cases"),
 )
 RULES = (
-    ("accumulations", "{} rows of ever smaller rebounds ended at once"),
-    ("energy_rescues", "{} impacts solved again with less restitution, which would have gained energy"),
-    ("jams", "{} jams: sliding contacts that no finite force could hold apart, stopped by impulses (Painlevé)"),
+    ("accumulations", "bounces that died out in ever smaller rebounds: {}"),
+    ("energy_rescues", "impacts that would have gained energy, solved again with less restitution: {}"),
+    ("jams", "jams, sliding contacts that no finite force could hold apart, stopped by impulses (Painlevé): {}"),
 )
 NO_PENETRATION = 1e-12  # m; less is not worth a digit, neither of depths nor of errors
 PLAIN = 1e-6  # errors below are written with an exponent
@@ -39,6 +41,8 @@ def headlines(run: Trajectory, numbers: Mapping[str, Any]) -> str:
 
 def with_error(value: float, error: float | None, unit: str) -> str:
     """ "275.3° ± 0.1°": as many decimals as the error justifies, three where it is not known; a true minus sign."""
+    if error is not None and max(abs(value), error) < 10.0**-EXACT:
+        return f"below {10.0**-EXACT:.{EXACT}f}{unit}" if error > 0.0 or value else f"0{unit}"
     decimals = 3 if error is None else _decimals(error)
     text = _signed(value, decimals) + unit
     if error is None:
@@ -67,6 +71,7 @@ def _timing(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     if numbers["vph"] is not None:
         start, end = numbers["window_s"]
         yield "frequency", f"{numbers['vph']:.2f} vph, averaged from {start:.4g} s to {end:.4g} s"
+        yield "", "± tells how much the beats of that time scatter and drift"
     heard = numbers["timegrapher"]
     if heard is not None and heard["amplitude_deg"] is not None:
         yield "timegrapher", f"would show {heard['amplitude_deg']:.0f}° with a lift angle of {heard['lift_angle_deg']:.4g}°"
@@ -75,10 +80,14 @@ def _timing(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
 
 
 def _places(run: Trajectory, numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """Where free and sliding bodies have got to."""
+    """Where free and sliding bodies have got to, and pivoted ones where nothing keeps time."""
     for body in run.scene.bodies:
         state = numbers["bodies"].get(body.name)
-        if state is None or body.motion not in ("free", "slide"):
+        if state is None or body.motion == "fixed":
+            continue
+        if body.motion == "pivot":
+            if not keeps_time(run.scene):
+                yield body.name, f"at {_signed(math.degrees(state['angle_rad']), 3)}° at the end"
             continue
         angle = f", {_signed(math.degrees(state['angle_rad']), 3)}°" if body.motion == "free" else ""
         yield body.name, f"at ({_signed(1e3 * state['x_m'], 4)}, {_signed(1e3 * state['y_m'], 4)}) mm{angle} at the end"
@@ -98,8 +107,16 @@ def _energy(run: Trajectory) -> Iterator[tuple[str, str]]:
         return
     power = f", {_metric(shares.supplied / run.simulated, 'W')}" if run.simulated > 0.0 else ""
     listed = ", ".join(f"{cause} {100.0 * share:.1f} %" for cause, share in shares.went_to.items() if abs(share) >= 5e-4)
-    yield "energy", f"{_metric(shares.supplied, 'J')} put in{power}: {listed}"
+    yield "energy", f"{_metric(shares.supplied, 'J')} {_source(run)}{power}: {listed}"
     yield "", f"the account closes to {run.energy.get('residual_relative', 0.0):.1g} of it"
+
+
+def _source(run: Trajectory) -> str:
+    """Where the energy came from: a drive or weight, or what springs and moving bodies held."""
+    driven, drained = run.energy.get("in_J", 0.0) > 0.0, run.energy.get("stored_J", 0.0) < 0.0
+    if driven and drained:
+        return "put in or taken from what was stored"
+    return "put in" if driven else "taken from what was stored at the start"
 
 
 def _metric(value: float, unit: str, digits: int = 4) -> str:
@@ -134,7 +151,13 @@ def _solver(run: Trajectory, numbers: Mapping[str, Any]) -> Iterator[tuple[str, 
 def _solved(run: Trajectory, numbers: Mapping[str, Any]) -> str:
     """How the complementarity problems came out."""
     counts = run.counts
-    parts = [f"{counts.get('lcp', 0)} contact problems, each solved to {run.worst_residual:.1g} or better"]
+    count = counts.get("lcp", 0)
+    if not count and not numbers["lcp_failures"]:
+        return "there was no contact problem to solve"
+    solved = f"each solved to {run.worst_residual:.1g} or better"
+    if run.worst_residual > UNSOLVED:
+        solved = f"the worst left with a residual of {run.worst_residual:.2g}"
+    parts = [f"{count} contact {'problem' if count == 1 else 'problems'}, {solved}"]
     parts += [f"{counts[name]} {words}" for name, words in HELPED if counts.get(name)]
     if numbers["lcp_failures"]:
         parts.append(f"{numbers['lcp_failures']} had no solution")
@@ -166,7 +189,9 @@ def _compared(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
 
 
 def _verdicts(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """Whether the watch stands, and expectations."""
+    """What is to be doubted, whether the watch stands, and expectations."""
+    for warning in numbers.get("warnings", ()):
+        yield "WARNING", warning
     if numbers["stopped"]:
         yield "stopped", numbers["stopped_message"]
     for entry in numbers["expect"]:

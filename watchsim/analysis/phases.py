@@ -22,9 +22,9 @@ from numpy.typing import NDArray
 
 from watchsim.analysis.beats import Beats, beats
 from watchsim.analysis.recorded import is_recorded
-from watchsim.analysis.roles import Roles, roles
 from watchsim.analysis.touches import Events, between, contact_events, held, involves
 from watchsim.analysis.wheel import progress
+from watchsim.mechanism.roles import Roles, roles
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.trajectory import Array, Trajectory
 

@@ -9,10 +9,10 @@ import numpy as np
 
 from watchsim.analysis.beats import Beats
 from watchsim.analysis.recorded import is_recorded, nominal_period
-from watchsim.analysis.roles import roles
 from watchsim.analysis.teeth import pitch
 from watchsim.analysis.touches import holding_at_end
 from watchsim.analysis.wheel import progress
+from watchsim.mechanism.roles import keeps_time, roles
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.trajectory import Trajectory
 
@@ -37,7 +37,7 @@ def standstill(run: Trajectory, found: Beats) -> Standstill | None:
     not recorded, if the oscillator did not pass its rest position in that time.
     """
     parts = roles(run.scene)
-    if parts.oscillator is None or parts.wheel is None:
+    if parts.oscillator is None or parts.wheel is None or not keeps_time(run.scene):
         return None
     start = run.simulated - HALF_SWINGS * 0.5 * nominal_period(run, parts.oscillator)
     if start <= 0.0:

@@ -15,15 +15,16 @@ from numpy.typing import NDArray
 from watchsim.analysis.averages import Averages, averages, last_window
 from watchsim.analysis.beat_tables import beats_csv, phases_csv
 from watchsim.analysis.beats import Beats, beats
+from watchsim.analysis.doubts import doubts
 from watchsim.analysis.expectations import judge
 from watchsim.analysis.headlines import headlines
-from watchsim.analysis.roles import roles
 from watchsim.analysis.standstill import standstill
 from watchsim.analysis.tables import plain
 from watchsim.analysis.timegrapher import timegrapher
 from watchsim.analysis.wheel import missed_beats
 from watchsim.analysis.whole_run import whole_run
 from watchsim.mechanism.lock import versions
+from watchsim.mechanism.roles import keeps_time, roles
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.frames import frames, speeds
 from watchsim.simulation.trajectory import Trajectory
@@ -42,10 +43,11 @@ def summary(run: Trajectory) -> dict[str, Any]:
     `whole_run` (mean, spread and extremes over all of them, see analysis/whole_run.py), `kept` (all, events or statistics),
     `missed_beats`, `stopped` and `stopped_message` (the watch no longer ticks), `scene_file`, `stop_message`,
     `events_by_kind`, `counts`, `step_s` (of a method with fixed steps), `worst_complementarity_residual` (worst violation of
-    a complementarity condition, as a share of the problem's largest term).
+    a complementarity condition, as a share of the problem's largest term), `warnings` (sentences, see analysis/doubts.py).
     """
     numbers: dict[str, Any] = {**_about(run), "bodies": _bodies(run), **_counts(run), **_timing(run)}
     numbers["expect"] = [judge(expectation, numbers) for expectation in run.scene.expect]
+    numbers["warnings"] = list(doubts(run))
     numbers["versions"] = versions()
     clean: dict[str, Any] = plain(numbers)
     return clean
@@ -149,4 +151,4 @@ def _timing_of(means: Averages | None) -> dict[str, Any]:
 
 def _missed(run: Trajectory, found: Beats) -> int | None:
     wheel = roles(run.scene).wheel
-    return missed_beats(run, wheel, found) if wheel else None
+    return missed_beats(run, wheel, found) if wheel and keeps_time(run.scene) else None

@@ -8,8 +8,8 @@ import numpy as np
 
 from watchsim.analysis.beats import Beats
 from watchsim.analysis.recorded import is_recorded
-from watchsim.analysis.roles import drive_direction
 from watchsim.analysis.teeth import pitch
+from watchsim.mechanism.roles import drive_direction
 from watchsim.simulation.trajectory import Array, Trajectory
 
 

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from watchsim.mechanism.body import Body
     from watchsim.mechanism.levels import Slab
     from watchsim.mechanism.scene import Scene
+    from watchsim.render.palette import Finish
 
 HELP = "outlines as DXF and SVG, bodies as GLB and STL"
 FORMATS = ("dxf", "svg", "glb", "stl")
@@ -102,12 +103,14 @@ def _contents(
     """The files by name, and what the manifest tells about them."""
     from watchsim.geometry.export import glb, stl
     from watchsim.mechanism.levels import slabs
+    from watchsim.render.palette import looks
 
+    worn = looks(scene)
     found: dict[str, bytes] = {}
     stems = _stems([body.name for body in bodies])
-    for rank, body in enumerate(scene.bodies):
+    for body in scene.bodies:
         if body.name in stems and (body.loops or body.decoration):
-            for name, text in _drawings(body, rank, formats):
+            for name, text in _drawings(body, worn[body.name], formats):
                 found[f"{stems[body.name]}.{name}"] = text.encode()
     stacked = tuple(slab for slab in slabs(scene, thickness) if slab.body in stems)
     if "glb" in formats or "stl" in formats:
@@ -126,7 +129,7 @@ def _contents(
     return found, _manifest(scene, bodies, stacked, thickness)
 
 
-def _drawings(body: Body, rank: int, formats: Sequence[str]) -> Iterator[tuple[str, str]]:
+def _drawings(body: Body, look: Finish, formats: Sequence[str]) -> Iterator[tuple[str, str]]:
     """The outlines of one body in its own frame, the pivot at the origin and marked."""
     from watchsim.drawing.write_dxf import dxf_text
     from watchsim.drawing.write_svg import svg_text
@@ -134,7 +137,7 @@ def _drawings(body: Body, rank: int, formats: Sequence[str]) -> Iterator[tuple[s
 
     loops = (*body.loops, *body.decoration)
     layers = dict.fromkeys(loop.layer for loop in loops)
-    colours = {layer: finish(body, layer, rank).fill for layer in layers}
+    colours = {layer: finish(body, layer, look).fill for layer in layers}
     mark = next(name for name in (PIVOT, *(f"{PIVOT}_{k}" for k in range(1, len(layers) + 2))) if name not in layers)
     points = ((mark, (0.0, 0.0)),)
     if "dxf" in formats:

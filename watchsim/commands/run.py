@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
 FAR = 1e8  # a balance has a thousand times the inertia of a lever
 HELP = "simulate a scene and write a results folder"
+WHOLE_RUN = 10.0  # s that the movie of a whole run takes
 
 
 def options(parser: argparse.ArgumentParser) -> None:
@@ -49,7 +50,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--resume", metavar="RUN", help="go on from the end of this results folder, up to --duration")
     parser.add_argument("--error-bars", action="store_true", help="run again more exactly, and say how far the numbers move")
     parser.add_argument("--json", action="store_true", help="print the summary as one JSON object")
-    parser.add_argument("--movie", action="store_true", help="write movie.mp4 too: the last beats in slow motion")
+    parser.add_argument("--movie", action="store_true", help="write movie.mp4 too: the last beats slowly, or the whole run")
     parser.add_argument("--gif", action="store_true", help="write movie.gif too")
     parser.add_argument("--no-plots", action="store_true", help="write no plots, which take a third of the time of a short run")
     parser.add_argument("--profile", action="store_true", help="count what was done, and say where the time went")
@@ -94,6 +95,8 @@ def run(args: argparse.Namespace) -> int:
     )
     if args.json:
         print_json(summary)
+        for warning in summary["warnings"]:
+            say(f"Warning: {warning}.")
     else:
         from watchsim.analysis.summary import summary_text
 
@@ -141,15 +144,14 @@ def write(
     `changed` holds the options by which the run is another than the scene's own: its expectations are then not judged.
     """
     from watchsim.analysis.expectations import not_judged
-    from watchsim.simulation.stops import Stop
-
-    if run.stop == Stop.INTERRUPTED:
-        say("Interrupted: writing what was simulated; a second Ctrl-C gives it up ...")
     from watchsim.analysis.results import write_results
     from watchsim.analysis.summary import summary, tables
     from watchsim.analysis.tables import plain
     from watchsim.mechanism.lock import lock_text
+    from watchsim.simulation.stops import Stop
 
+    if run.stop == Stop.INTERRUPTED:
+        say("Interrupted: writing what was simulated; a second Ctrl-C gives it up ...")
     numbers = plain(_with_error_bars(run) if error_bars else summary(run))
     if changed:
         numbers["expect"] = [not_judged(entry, changed) for entry in numbers["expect"]]
@@ -159,9 +161,9 @@ def write(
         numbers["profile"] = plain(profile_of(run))
     pictures: dict[str, Callable[[Path], object]] = _plots(run) if plots else {}
     if movie:
-        pictures["movie.mp4"] = lambda path: _movie(run, path, speed=1 / 20)
+        pictures["movie.mp4"] = lambda path: _movie(run, path, slow=1 / 20)
     if gif:
-        pictures["movie.gif"] = lambda path: _movie(run, path, speed=1 / 40)
+        pictures["movie.gif"] = lambda path: _movie(run, path, slow=1 / 40)
     extra: dict[str, Any] = {**tables(run), **{name: _drawn(draw) for name, draw in pictures.items()}}
     write_results(run, folder, numbers, lock_text(run.scene, folder.absolute()), extra=extra, force=force)
     return numbers
@@ -230,12 +232,27 @@ def last_beats(run: Trajectory, share: float = 1.5) -> tuple[float, float]:
     return max(start, end - length), end
 
 
-def _movie(run: Trajectory, path: Path, speed: float) -> None:
+def filmed(run: Trajectory, slow: float) -> tuple[tuple[float, float], float]:
+    """What a movie shows, and how fast: the last oscillation at the speed `slow`; where nothing keeps time, all of it.
+
+    All means the last stretch that was recorded without a gap, in WHOLE_RUN seconds.
+    """
+    from watchsim.mechanism.roles import keeps_time
+    from watchsim.render.poses import recorded
+
+    if keeps_time(run.scene):
+        return last_beats(run, 1.1), slow
+    start, end = recorded(run)[-1]
+    return (start, end), (end - start) / WHOLE_RUN
+
+
+def _movie(run: Trajectory, path: Path, slow: float) -> None:
     from watchsim.render.movie import movie
 
+    window, speed = filmed(run, slow)
     progress = Progress(f"{path.name}, frames:")
     try:
-        movie(run, path, window=last_beats(run, 1.1), speed=speed, progress=progress)
+        movie(run, path, window=window, speed=speed, progress=progress)
     finally:
         progress.close()
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,7 +35,7 @@ def modelled_pairs(compiled: Compiled, names: Sequence[str]) -> ModelledPairs:
             _, around, _ = cells.around(compiled.q)
             at_start = cells.here(compiled.q)
         here.append(at_start)
-        bodies = (names[pair.a], names[pair.b])
+        bodies = (_named(compiled, pair, pair.a, names), _named(compiled, pair, pair.b, names))
         declared = int(pair.stop - pair.start)
         counts.append(PairCount(bodies, declared, len(near), round(float(np.median(around))), int(around.max()), len(at_start)))
     return ModelledPairs(tuple(counts), _primitives(compiled, model.near), _primitives(compiled, np.concatenate(here)))
@@ -45,3 +45,11 @@ def _primitives(compiled: Compiled, contacts: Integers) -> Integers:
     """The primitives of some contacts, each once."""
     declared = compiled.model.contacts
     return np.unique(np.concatenate([declared.a[contacts], declared.b[contacts]]))
+
+
+def _named(compiled: Compiled, pair: Any, body: int, names: Sequence[str]) -> str:
+    """What the scene calls one side of a pair: outlines fixed on a moving body keep the name of the part they belong to."""
+    contacts, primitives = compiled.model.contacts[pair.start : pair.stop], compiled.model.primitives
+    rows = np.unique(np.concatenate([contacts.a, contacts.b]))
+    owners = [compiled.owners[row] for row in rows if primitives.body[row] == body]
+    return ", ".join(dict.fromkeys(owners)) or names[body]

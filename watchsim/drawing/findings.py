@@ -7,12 +7,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from watchsim.geometry.primitives import Point
+
 ORDER = ("error", "warning", "notice")  # the gravest first
 
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One observation. `severity` is "error", "warning" or "notice"; coordinates are millimetres in the drawing."""
+    """One observation. `severity` is "error", "warning" or "notice"; coordinates are millimetres in the drawing.
+
+    `other_mm` is the second place of a fault between two, such as the other end of a gap.
+    """
 
     code: str
     severity: str
@@ -21,6 +26,7 @@ class Finding:
     layer: str | None = None
     x_mm: float | None = None
     y_mm: float | None = None
+    other_mm: Point | None = None
 
     def as_dict(self) -> dict[str, object]:
         names = ("code", "severity", "layer", "x_mm", "y_mm", "message", "fix")

@@ -89,7 +89,9 @@ def gap_finding(end: int, partner: int, strokes: Sequence[Stroke], nodes: Nodes)
     fix = "Join them in CAD"
     if gap <= MENDABLE:
         fix += f', or set snap = "{math.ceil(1e6 * gap)} µm"'
-    return Finding("open-outline", "error", message, fix + ".", layer, 1e3 * p[0], 1e3 * p[1])
+    return Finding(
+        "open-outline", "error", message, fix + ".", layer, 1e3 * p[0], 1e3 * p[1], other_mm=(1e3 * q[0], 1e3 * q[1])
+    )
 
 
 def shown(p: Point) -> str:

@@ -5,15 +5,18 @@ The same facts twice: as a dictionary with fixed names for programs, and as text
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.findings import ORDER, Finding
+from watchsim.drawing.gaps import shown
 from watchsim.geometry.extent import Box, extents, total_length
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.mass import area
 from watchsim.geometry.primitives import Arc, Point
 
+TOLD = re.compile(r"\([-−]?\d[^()]*, [-−]?\d[^()]*\)")  # coordinates in a message
 SHOWN = 12  # findings of one code written out in the text
 NOTHING = 1e-12  # m; deviations below are those of floating point
 
@@ -125,8 +128,13 @@ def size_lines(drawing: Drawing, box: Box | None) -> list[str]:
         f"  the part is {three_digits(max(width, height))} mm across ({width:.4g} × {height:.4g} mm; x {x}, y {y})",
         f"  {plural(len(drawing.loops), 'closed outline')}, {plural(len(drawing.open_chains), 'open chain')}: "
         f"{plural(lines, 'line')} and {plural(arcs, 'arc')}, {1e3 * total_length(everything):.5g} mm long, "
-        f"{1e6 * net_area(drawing.loops):.5g} mm² of material",
+        f"{1e6 * net_area(drawing.loops):.5g} mm² {_covered(drawing.loops)}",
     ]
+
+
+def _covered(loops: Iterable[Loop]) -> str:
+    """What the areas added up are: a layer takes nothing out of another one, whether a bore is drawn on it or a stone."""
+    return "of material" if len({loop.layer for loop in loops}) < 2 else "in all layers added up"
 
 
 def three_digits(value: float) -> str:
@@ -157,6 +165,13 @@ def layer_lines(drawing: Drawing) -> list[str]:
     return ["  layers:", *result] if result else []
 
 
+def _place(finding: Finding) -> str:
+    """Coordinates, where the finding has some and its message does not tell them."""
+    if finding.x_mm is None or finding.y_mm is None:
+        return ""
+    return "" if TOLD.search(finding.message) else f", at {shown((1e-3 * finding.x_mm, 1e-3 * finding.y_mm))} mm"
+
+
 def finding_lines(findings: Iterable[Finding]) -> list[str]:
     """Findings by severity, numbered as in the picture; many of one kind are cut short with their count."""
     numbered = sorted(enumerate(findings, 1), key=lambda pair: ORDER.index(pair[1].severity))
@@ -169,7 +184,7 @@ def finding_lines(findings: Iterable[Finding]) -> list[str]:
         seen[finding.code] = seen.get(finding.code, 0) + 1
         if seen[finding.code] <= SHOWN:
             where = f" [layer {finding.layer}]" if finding.layer is not None else ""
-            result.append(f"    {number:>3} {finding.severity}, {finding.code}{where}: {finding.message}")
+            result.append(f"    {number:>3} {finding.severity}, {finding.code}{where}: {finding.message}{_place(finding)}")
             result += [f"        {finding.fix}"] if finding.fix and finding.fix not in fixes else []
             fixes.add(finding.fix)
     result += [f"        and {count - SHOWN} more of {code}" for code, count in seen.items() if count > SHOWN]

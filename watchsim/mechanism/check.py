@@ -16,6 +16,7 @@ from watchsim.mechanism.carry import at_start, is_still
 from watchsim.mechanism.force import Damping, Spring
 from watchsim.mechanism.overlap import overlaps
 from watchsim.mechanism.pair_count import PairCount, pair_lines, pairs_entry
+from watchsim.mechanism.roles import keeps_time
 from watchsim.mechanism.scene import Scene
 from watchsim.mechanism.solid import HAIRSPRING, LYING, PLATE, UPRIGHT, Solid, total
 from watchsim.units import show, to
@@ -52,6 +53,8 @@ def frequency(scene: Scene) -> float | None:
 def check_text(report: Mapping[str, Any], scene: Scene) -> str:
     """The same for people, in watch units."""
     parts = [scene.title, *_body_lines(scene), *_distance_lines(scene), *_force_lines(scene), *_contact_lines(scene)]
+    if scene.contacts and all(finding["code"] != "overlap" for finding in report["findings"]):
+        parts.append("  nothing overlaps at the start, among all pairs that may touch")
     parts += pair_lines(report["pairs"])
     parts += [f"{finding['severity']}: {finding['message']}. {finding['fix']}".rstrip() for finding in report["findings"]]
     return "\n".join(parts)
@@ -220,7 +223,8 @@ def _spring(scene: Scene, spring: Spring) -> str:
     linear = body.motion == "slide"
     hertz = math.sqrt(spring.stiffness / _moving_mass(body)) / math.tau
     stiffness, rest = show(spring.stiffness, "N/m" if linear else "µN·m/rad"), show(spring.rest, "mm" if linear else "°")
-    return f"{stiffness}, {show(hertz, 'Hz')} = {show(hertz, 'vph')}, at rest at {rest}"
+    beats = f" = {show(hertz, 'vph')}" if keeps_time(scene) else " while it touches nothing"
+    return f"{stiffness}, {show(hertz, 'Hz')}{beats}, at rest at {rest}"
 
 
 def _damping(scene: Scene, damping: Damping) -> str:

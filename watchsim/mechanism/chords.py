@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from watchsim.mechanism.model import ARC, FULL, LINE, Records
 
 Array = NDArray[np.float64]
-MOST = 64  # pieces of one arc
+MOST = 64  # pieces of one arc, unless asked otherwise
 
 
 class Chords(NamedTuple):
@@ -26,14 +26,17 @@ class Chords(NamedTuple):
         return np.repeat(np.arange(len(self.sag)), np.diff(self.first))
 
 
-def chords(primitives: Records, sag: float) -> Chords:
-    """Chords of all `primitives`: one point for a corner, two for a line, for an arc as many as keep within about `sag` m."""
+def chords(primitives: Records, sag: float, most: int = MOST) -> Chords:
+    """Chords of all `primitives`: one point for a corner, two for a line, for an arc as many as keep within about `sag` m.
+
+    No arc has more than `most`; how far its true curve then lies from them is told.
+    """
     arc, line = primitives.kind == ARC, primitives.kind == LINE
     half = np.where(primitives.extent == FULL, np.pi, np.arctan2(primitives.half_sin, primitives.half_cos))
     # Sagitta of an arc of half angle h: 2 R sin²(h/2).
     with np.errstate(divide="ignore", invalid="ignore"):
         largest = 2.0 * np.arcsin(np.sqrt(np.minimum(1.0, sag / (2.0 * primitives.radius))))
-        pieces = np.where(arc, np.clip(np.ceil(half / largest), 1, MOST), np.where(line, 1, 0)).astype(int)
+        pieces = np.where(arc, np.clip(np.ceil(half / largest), 1, most), np.where(line, 1, 0)).astype(int)
     first = np.concatenate([[0], np.cumsum(pieces + 1)])
     owner = np.repeat(np.arange(len(primitives)), pieces + 1)
     share = (np.arange(len(owner)) - first[owner]) / np.maximum(pieces[owner], 1)

@@ -33,10 +33,10 @@ def pair_lines(entry: Mapping[str, Any]) -> Iterator[str]:
     """The same as a table for people, in which only two pairs of bodies or more need a sum."""
     rows = [(" - ".join(count["bodies"]), count) for count in entry["between"]]
     if not rows:
-        yield "pairs of primitives: no contact is declared"
+        yield "pairs of edges and corners: no contact is declared"
         return
     rows += [("together", entry)] if len(rows) > 1 else []
-    title = "pairs of primitives"
+    title = "pairs of edges and corners"
     width = max(len(title), *(2 + len(name) for name, _ in rows))
     yield f"{title:{width}}" + "".join(f"   {heading}" for heading in HEADINGS.values())
     for name, numbers in rows:

@@ -12,6 +12,7 @@ from watchsim.mechanism.chords import chords
 from watchsim.mechanism.model import Model
 
 Array = NDArray[np.float64]
+SMOOTH = 2000  # chords of one arc, at most: a circle larger than any picture still looks round
 
 
 @dataclass(frozen=True)
@@ -34,7 +35,7 @@ def edge_paths(edges: Edges, deviation: float) -> dict[int, Path]:
 
 
 def _path(edges: Edges, rows: NDArray[np.int64], deviation: float) -> Path:
-    drawn = chords(edges.model.primitives[rows], deviation)
+    drawn = chords(edges.model.primitives[rows], deviation, SMOOTH)
     lines = [drawn.points[first:last] for first, last in zip(drawn.first[:-1], drawn.first[1:], strict=True)]
     lines = [line if len(line) > 1 else np.stack([line[0], line[0] + np.array([deviation, 0.0])]) for line in lines]
     codes = np.full(sum(map(len, lines)), Path.LINETO, Path.code_type)

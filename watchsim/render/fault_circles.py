@@ -24,7 +24,7 @@ CIRCLED = 80  # more circles would cover the part
 RADIUS = 6.5  # of a circle
 CLOSE = 6.0  # faults this close share a circle
 LETTER, LINE = 5.9, 9.5  # width of a digit and height of a number
-REACHES = (10.5, 21.0, 35.0)  # from the centre of a circle to the near side of its number
+REACHES = (10.5, 21.0, 35.0, 50.0, 65.0, 80.0)  # from the centre of a circle to the near side of its number
 WAYS = 12
 GROUPS = 2  # numbers or ranges of numbers written at one circle
 
@@ -34,7 +34,7 @@ Box = tuple[float, float, float, float]
 def fault_circles(axes: Axes, findings: Sequence[Finding]) -> int:
     """Draws circles with the numbers of the report, the gravest first; returns how many faults with a place have none."""
     numbered = sorted(enumerate(findings, 1), key=lambda pair: ORDER.index(pair[1].severity))
-    placed = [(k, f.x_mm, f.y_mm) for k, f in numbered if f.x_mm is not None and f.y_mm is not None]
+    placed = [(k, x, y) for k, finding in numbered for x, y in places(finding)]
     if not placed:
         return 0
     figure = axes.get_figure(root=True)
@@ -47,26 +47,32 @@ def fault_circles(axes: Axes, findings: Sequence[Finding]) -> int:
     centres = np.array([centre for centre, _ in circles])
     taken = [(x - RADIUS, y - RADIUS, x + RADIUS, y + RADIUS) for x, y in centres.tolist()]
     for centre, numbers in sorted(circles, key=lambda circle: min(circle[1])):
-        text = in_ranges(numbers)
-        box = best_box(centre, LETTER * len(text), np.array(taken), frame)
+        box, text = label(centre, numbers, np.array(taken), frame)
         taken.append(box)
         _draw(axes, tuple(axes.transData.inverted().transform(centre / scale)), centre, text, box)
     return left
 
 
+def places(finding: Finding) -> list[Point]:
+    """Where in the drawing (mm) it is: nowhere, at one place, or at both ends of a gap."""
+    if finding.x_mm is None or finding.y_mm is None:
+        return []
+    return [(finding.x_mm, finding.y_mm), *([finding.other_mm] if finding.other_mm else [])]
+
+
 def shared(points: Sequence[tuple[int, NDArray[np.float64]]]) -> tuple[list[tuple[NDArray[np.float64], list[int]]], int]:
-    """Circles (centre, numbers of their faults), at most CIRCLED, and how many faults found no place."""
+    """Circles (centre, numbers of their faults), at most CIRCLED, and how many faults found no place at all."""
     circles: list[tuple[NDArray[np.float64], list[int]]] = []
-    left = 0
+    left: set[int] = set()
     for number, point in points:
         near = next((numbers for centre, numbers in circles if math.dist(centre, point) <= CLOSE), None)
         if near is not None:
-            near.append(number)
+            near += [number] if number not in near else []
         elif len(circles) < CIRCLED:
             circles.append((point, [number]))
         else:
-            left += 1
-    return circles, left
+            left.add(number)
+    return circles, len(left.difference(*(numbers for _, numbers in circles)))
 
 
 def in_ranges(numbers: Sequence[int]) -> str:
@@ -81,10 +87,23 @@ def in_ranges(numbers: Sequence[int]) -> str:
     return ", ".join(texts[:GROUPS]) + (f" … (in all {len(numbers)})" if len(texts) > GROUPS else "")
 
 
-def best_box(centre: NDArray[np.float64], width: float, taken: NDArray[np.float64], frame: NDArray[np.float64]) -> Box:
-    """The place of a number of that width that covers least, the nearest of those; upper right before others."""
-    best: Box = (0.0, 0.0, 0.0, 0.0)
-    least = math.inf
+def label(
+    centre: NDArray[np.float64], numbers: Sequence[int], taken: NDArray[np.float64], frame: NDArray[np.float64]
+) -> tuple[Box, str]:
+    """Box and text of a circle's numbers; where all of them have no room, the first alone and how many more there are."""
+    full = in_ranges(numbers)
+    box, covered = best_box(centre, LETTER * len(full), taken, frame)
+    short = f"{min(numbers)} +{len(numbers) - 1}"
+    if covered == 0.0 or len(short) >= len(full):
+        return box, full
+    return best_box(centre, LETTER * len(short), taken, frame)[0], short
+
+
+def best_box(
+    centre: NDArray[np.float64], width: float, taken: NDArray[np.float64], frame: NDArray[np.float64]
+) -> tuple[Box, float]:
+    """The place of a number of that width that covers least, and the area it covers; upper right before others."""
+    best, least, hidden = (0.0, 0.0, 0.0, 0.0), math.inf, 0.0
     for reach in REACHES:
         for k in range(WAYS):
             angle = math.pi / 4.0 - math.tau * k / WAYS
@@ -98,8 +117,8 @@ def best_box(centre: NDArray[np.float64], width: float, taken: NDArray[np.float6
             outside = box[0] < frame[0] or box[1] < frame[1] or box[2] > frame[2] or box[3] > frame[3]
             cost = covered + (width * LINE if outside else 0.0) + 0.5 * (reach - REACHES[0])
             if cost < least - 1e-9:
-                best, least = box, cost
-    return best
+                best, least, hidden = box, cost, covered
+    return best, hidden
 
 
 def _draw(axes: Axes, place: Point, centre: NDArray[np.float64], text: str, box: Box) -> None:

@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 
 from watchsim.mechanism.body import Body
 from watchsim.render.lettering import Lettering
-from watchsim.render.palette import BACKGROUND, FAINT, GRID, INK, Finish, body_finish
+from watchsim.render.palette import BACKGROUND, FAINT, GRID, INK, Finish, looks
 from watchsim.render.poses import Window, sampled
-from watchsim.render.readouts import Clock, clock, reading, scale_bar, speed_text
+from watchsim.render.readouts import Clock, clock, reading, scale_bar, speed_text, turn_text
 from watchsim.render.view import Frame
 from watchsim.simulation.trajectory import Trajectory
 
@@ -66,8 +66,8 @@ class Layout:
             self.small.write(item.text(own), item.right, item.baseline, out_pixels)
 
 
-def lay_out(figure: Figure, run: Trajectory, window: Window, speed: float | None, step: float) -> Layout:
-    """Place title, time, speed and read-outs on the figure (one point is one pixel) and say what room is left."""
+def lay_out(figure: Figure, run: Trajectory, window: Window, step: float) -> Layout:
+    """Place title, time and read-outs on the figure (one point is one pixel) and say what room is left."""
     width, height = int(figure.bbox.width), int(figure.bbox.height)
     unit = _unit(figure)
     time = Lettering(max(TIME * unit, SMALLEST), INK, BACKGROUND, "bold")
@@ -76,13 +76,21 @@ def lay_out(figure: Figure, run: Trajectory, window: Window, speed: float | None
     baseline = round(height - PAD * unit - 0.75 * TIME * unit)
     time_width = max(time.width(told.text(t, step)) for t in window)
     _title(figure, run.scene.title, (PAD * unit, baseline), width - 2.0 * PAD * unit - time_width - GAP * unit)
-    # The line for the speed is kept free even where no speed is told: a frame drawn alone matches its movie.
+    # The line for notes is kept free even where none is told: a frame drawn alone matches its movie.
     top = height - baseline + 0.35 * TIME * unit + 1.3 * small.size
-    if speed is not None:
-        _words(figure, speed_text(speed), (width - PAD * unit, height - top + 0.3 * small.size), small.size, FAINT, ha="right")
     readings, bottom = _readings(figure, run, window, small)
     frame = Frame(0.0, bottom, width, height - top - bottom)
     return Layout(frame, told, step, time, (round(width - PAD * unit), baseline), small, readings)
+
+
+def draw_notes(figure: Figure, frame: Frame, speed: float | None, turn: float) -> None:
+    """Below the time: how fast a movie goes, and by how much (rad) the picture is turned against the scene's axes."""
+    size = max(SMALL * _unit(figure), SMALLEST)
+    notes = [] if speed is None else [speed_text(speed)]
+    if turned := turn_text(turn):
+        notes.append(turned)
+    place = (frame.left + frame.width - PAD * _unit(figure), frame.bottom + frame.height + 0.3 * size)
+    _words(figure, ", ".join(notes), place, size, FAINT, ha="right")
 
 
 def draw_scale(figure: Figure, scale: float) -> None:
@@ -170,8 +178,8 @@ def _readings(figure: Figure, run: Trajectory, window: Window, small: Lettering)
     unit = _unit(figure)
     line, left, limit = 1.55 * small.size, PAD * unit, figure.bbox.width * (1.0 - BAR) - (PAD + GAP) * unit
     cells: list[_Cell] = []
-    x, row = left, 0
-    for rank, body in enumerate(run.scene.bodies):
+    x, row, worn = left, 0, looks(run.scene)
+    for body in run.scene.bodies:
         if body.name not in run.slices:
             continue
         tell, ends = reading(body, _told(run, body, window))
@@ -179,7 +187,7 @@ def _readings(figure: Figure, run: Trajectory, window: Window, small: Lettering)
         taken = 1.5 * CHIP * small.size + _width(name) + 0.8 * small.size + max(small.width(text) for text in ends)
         if x > left and x + taken > limit:
             x, row = left, row + 1
-        cells.append(_Cell(body, name, tell, body_finish(body, rank), x, row, taken))
+        cells.append(_Cell(body, name, tell, worn[body.name], x, row, taken))
         x += taken + GAP * unit
     placed = tuple(_place(figure, cell, round(PAD * unit + (row - cell.row) * line), small.size) for cell in cells)
     return placed, 1.6 * PAD * unit + (row + 1) * line

@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from watchsim.mechanism.body import Body
+from watchsim.mechanism.scene import Scene
 
 BACKGROUND = "#f6f3ed"
 INK = "#23272c"
@@ -26,15 +27,18 @@ class Finish:
 
 
 BRASS = Finish("#dcb862", "#57420f", "#9c6f00")
-STEEL = Finish("#b3bdc8", "#303841", "#35618e")
+STEEL = Finish("#b3bdc8", "#303841", "#6a7683")
 RUBY = Finish("#c4234f", "#4a0818", "#b0183c")
 GILT = Finish("#eccf7c", "#6b5112", "#7a5c00")
-BLUED = Finish("#8296b4", "#1f2a3f", "#5b3f94")
-NIGHT = Finish("#65799a", "#1f2a3f", "#44307a")
+BLUED = Finish("#7d98cb", "#1c2c4d", "#2f57a6")
+NIGHT = Finish("#65799a", "#1f2a3f", "#2b3f63")
 COPPER = Finish("#d49a78", "#56301c", "#b5532a")
+PATINA = Finish("#8fbfa6", "#1f4634", "#2f7a58")
+ENAMEL = Finish("#b79bc9", "#402a52", "#74469a")
+OLIVE = Finish("#b9bd7a", "#43461a", "#767a14")
 PLATE = Finish("#cfcac0", "#55524b", "#6b675e")
 
-OTHERS = (STEEL, BRASS, COPPER, BLUED)
+OTHERS = (STEEL, BRASS, COPPER, BLUED, PATINA, ENAMEL, OLIVE)
 
 _STONES = ("stone", "pallet", "jewel", "ruby")
 _FORKS = ("lever", "fork", "anchor", "arm")
@@ -52,8 +56,25 @@ _LAYERS = (
 )
 
 
-def finish(body: Body, layer: str, rank: int = 0) -> Finish:
-    """The finish of one layer of a body; `rank` (its place among the bodies) decides where no word does."""
+def looks(scene: Scene) -> dict[str, Finish]:
+    """What stands for every body in pictures, read-outs and plots; no two moving bodies alike while there are enough.
+
+    Bodies whose words tell of one come first; the others take what is left.
+    """
+    told = {body.name: _told(body) for body in scene.bodies}
+    found: dict[str, Finish] = {body.name: told[body.name] or PLATE for body in scene.bodies if body.motion == "fixed"}
+    moving = sorted((body for body in scene.bodies if body.motion != "fixed"), key=lambda body: told[body.name] is None)
+    used: list[Finish] = []
+    for rank, body in enumerate(moving):
+        own = told[body.name]
+        choices = OTHERS if own is None else (own, *OTHERS)
+        used.append(next((look for look in choices if look not in used), choices[rank % len(choices)]))
+        found[body.name] = used[-1]
+    return found
+
+
+def finish(body: Body, layer: str, look: Finish) -> Finish:
+    """The finish of one layer of a body that `look` stands for: stones and impulse pins are ruby on any body."""
     name, sheet = body.name.lower(), layer.lower()
     if any(word in sheet for word in _STONES) and not any(word in sheet for word in _FORKS):
         return RUBY
@@ -61,14 +82,16 @@ def finish(body: Body, layer: str, rank: int = 0) -> Finish:
         return RUBY
     if "safety" in sheet:
         return NIGHT  # it lies on the roller and should stand out from it
-    return _match(name, _BODIES) or _match(sheet, _LAYERS) or (PLATE if body.motion == "fixed" else OTHERS[rank % len(OTHERS)])
+    return look
+
+
+def _told(body: Body) -> Finish | None:
+    """What the words say of a body: its only layer if that has a finish of its own, else its name, else its layers."""
+    if len(body.layers) == 1 and (own := finish(body, body.layers[0], PLATE)) is not PLATE:
+        return own
+    layers = (_match(layer.lower(), _LAYERS) for layer in body.layers)
+    return _match(body.name.lower(), _BODIES) or next((look for look in layers if look is not None), None)
 
 
 def _match(text: str, table: tuple[tuple[tuple[str, ...], Finish], ...]) -> Finish | None:
     return next((found for words, found in table if any(word in text for word in words)), None)
-
-
-def body_finish(body: Body, rank: int = 0) -> Finish:
-    """The finish that stands for a whole body in read-outs and plots: that of its only layer, or the body's own."""
-    looks = {finish(body, layer, rank) for layer in body.layers}
-    return looks.pop() if len(looks) == 1 else finish(body, "", rank)

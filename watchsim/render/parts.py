@@ -19,7 +19,7 @@ from watchsim.geometry.polyline import polyline
 from watchsim.geometry.primitives import Arc
 from watchsim.mechanism.body import Body
 from watchsim.mechanism.scene import Scene
-from watchsim.render.palette import Finish, finish
+from watchsim.render.palette import Finish, finish, looks
 
 Array = NDArray[np.float64]
 
@@ -43,7 +43,8 @@ def parts(scene: Scene, deviation: float, spacing: float) -> tuple[Part, ...]:
 
     `deviation` (m) is the largest distance of a chord from its arc, `spacing` (m) that of hatch strokes.
     """
-    found = [part for rank, body in enumerate(scene.bodies) for part in _of_body(body, rank, deviation, spacing)]
+    worn = looks(scene)
+    found = [part for body in scene.bodies for part in _of_body(body, worn[body.name], deviation, spacing)]
     return tuple(sorted(found, key=lambda part: -part.area))
 
 
@@ -64,7 +65,7 @@ def signed_area(points: Array) -> float:
     return 0.5 * float(np.sum(x[:-1] * y[1:] - x[1:] * y[:-1]))
 
 
-def _of_body(body: Body, rank: int, deviation: float, spacing: float) -> list[Part]:
+def _of_body(body: Body, look: Finish, deviation: float, spacing: float) -> list[Part]:
     lines = [(loop, polyline(loop, deviation)) for loop in loops_of(body)]
     outer = [(loop, line) for loop, line in lines if loop.closed and not loop.hole]
     owners: list[list[Array]] = [[line] for _, line in outer]
@@ -76,7 +77,7 @@ def _of_body(body: Body, rank: int, deviation: float, spacing: float) -> list[Pa
                 ground.append((loop, line))
             else:
                 owners[owner].append(line)
-    return [*_solids(body, rank, outer, owners), *_grounds(body, rank, ground, spacing)]
+    return [*_solids(body, look, outer, owners), *_grounds(body, look, ground, spacing)]
 
 
 def _owner(hole: Array, outlines: Sequence[Array]) -> int | None:
@@ -85,14 +86,14 @@ def _owner(hole: Array, outlines: Sequence[Array]) -> int | None:
     return min(around, key=lambda i: abs(signed_area(outlines[i])), default=None)
 
 
-def _solids(body: Body, rank: int, outer: list[tuple[Loop, Array]], owners: list[list[Array]]) -> list[Part]:
+def _solids(body: Body, look: Finish, outer: list[tuple[Loop, Array]], owners: list[list[Array]]) -> list[Part]:
     layers = dict.fromkeys(loop.layer for loop, _ in outer)
     made = []
     for layer in layers:
         members = [i for i, (loop, _) in enumerate(outer) if loop.layer == layer]
         lines = [_oriented(line, hole=k > 0) for i in members for k, line in enumerate(owners[i])]
         area = max(abs(signed_area(outer[i][1])) for i in members)
-        made.append(Part(body.name, compound(lines), None, area, finish(body, layer, rank)))
+        made.append(Part(body.name, compound(lines), None, area, finish(body, layer, look)))
     return made
 
 
@@ -111,13 +112,13 @@ def compound(lines: Sequence[Array]) -> Path:
     return Path(np.concatenate(lines), np.concatenate(codes))
 
 
-def _grounds(body: Body, rank: int, chains: list[tuple[Loop, Array]], spacing: float) -> list[Part]:
+def _grounds(body: Body, look: Finish, chains: list[tuple[Loop, Array]], spacing: float) -> list[Part]:
     made = []
     for loop, line in chains:
         codes = np.full(len(line), Path.LINETO, dtype=np.uint8)
         codes[0] = Path.MOVETO
-        look = finish(body, loop.layer, rank)
-        made.append(Part(body.name, Path(line, codes), hatching(line, spacing), math.inf, look, ground=True))
+        own = finish(body, loop.layer, look)
+        made.append(Part(body.name, Path(line, codes), hatching(line, spacing), math.inf, own, ground=True))
     return made
 
 

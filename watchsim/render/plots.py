@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.mechanism.body import Body
-from watchsim.render.palette import FAINT, GRID, INK, OTHERS, Finish, body_finish
+from watchsim.render.palette import FAINT, GRID, INK, looks
 from watchsim.render.plot_margins import GAP, LABEL_SIZE, POINT, TICK_SIZE, TITLE_PAD, TITLE_SIZE, place_panels
-from watchsim.render.poses import choose, dense, moving, stretch
+from watchsim.render.poses import choose, dense, stretch
 from watchsim.render.readouts import clock
 from watchsim.simulation.trajectory import Trajectory
 
@@ -30,7 +30,7 @@ Array = NDArray[np.float64]
 QUANTITIES = ("angle", "velocity")
 PANEL = (6.0, 2.1)  # inches
 FLAT = 1e-6  # a range smaller than this part of the value (or of 1 unit) is shown as flat, not magnified
-SECOND_COLOUR = FAINT  # of the y component beside x
+STYLES = ("-", "--")  # of x and y
 
 
 @dataclass(frozen=True)
@@ -85,9 +85,9 @@ class Kinematics:
         below = 1.0 - GAP * POINT / self.figure.get_figheight()
         title = {"fontsize": TITLE_SIZE, "weight": "bold", "color": INK}
         self.figure.suptitle(run.scene.title, x=0.01, y=below, ha="left", va="top", **title)
-        looks = _looks(run)
+        worn = looks(run.scene)
         for axes, channel, quantity in self._each():
-            _panel(axes, channel, quantity, looks[channel.body.name])
+            _panel(axes, channel, quantity, worn[channel.body.name].line)
 
     def show(self, window: Sequence[float] | None = None) -> Figure:
         """The figure, now of this window (s); default all that was recorded."""
@@ -143,15 +143,6 @@ def _channels(run: Trajectory, body: Body) -> list[Channel]:
     return [Channel(body, (first,), 180.0 / math.pi, *ROTATION)]
 
 
-def _looks(run: Trajectory) -> dict[str, str]:
-    """A colour for every moving body, no two alike while there are enough."""
-    used: list[Finish] = []
-    for rank, body in enumerate(moving(run)):
-        look = body_finish(body, rank)
-        used.append(next((other for other in (look, *OTHERS) if other not in used), look))
-    return {body.name: look.line for body, look in zip(moving(run), used, strict=True)}
-
-
 def _panel(axes: Axes, channel: Channel, quantity: str, colour: str) -> None:
     axes.set_ylabel(f"{channel.names[quantity]} ({channel.units[quantity]})", color=INK)
     axes.set_title(channel.body.name, loc="left", fontsize=LABEL_SIZE, color=colour, weight="bold", y=1.0, pad=TITLE_PAD)
@@ -163,7 +154,7 @@ def _panel(axes: Axes, channel: Channel, quantity: str, colour: str) -> None:
     axes.yaxis.set_offset_position("right")  # opposite the title
     for k in range(len(channel.columns)):
         label = channel.legend[k] if channel.legend else None
-        axes.plot([], [], color=colour if k == 0 else SECOND_COLOUR, linewidth=1.3, label=label, solid_joinstyle="round")
+        axes.plot([], [], STYLES[k], color=colour, linewidth=1.3, label=label, solid_joinstyle="round")
     if channel.legend:
         axes.legend(frameon=False, fontsize=TICK_SIZE, loc="upper left", ncols=len(channel.legend), borderaxespad=0.2)
 
@@ -176,8 +167,10 @@ def _limits(axes: Axes, values: Array, angle: bool) -> None:
     least = FLAT * max(abs(low), abs(high), 1.0)
     room = max(0.08 * (high - low), 0.5 * least)
     axes.set_ylim(low - room, high + room)
-    steps = [1, 1.8, 3.6, 4.5, 9, 10] if angle and high - low > 120.0 else [1, 2, 5, 10]
-    axes.yaxis.set_major_locator(MaxNLocator(nbins=5, steps=steps))
+    if angle and high - low > 60.0:
+        axes.yaxis.set_major_locator(MaxNLocator(nbins=9, steps=[1, 1.5, 1.8, 3, 3.6, 4.5, 6, 9, 10]))
+    else:
+        axes.yaxis.set_major_locator(MaxNLocator(nbins=5, steps=[1, 2, 5, 10]))
     if high - low > 10.0:
         axes.yaxis.set_major_formatter(StrMethodFormatter("{x:,.0f}"))
     else:

@@ -76,6 +76,15 @@ def speed_text(speed: float) -> str:
     return f"{speed:.4g} of true speed"
 
 
+def turn_text(turn: float) -> str:
+    """ "picture turned by 90° clockwise"; nothing where the scene's axes stand as drawn."""
+    degrees = round(math.degrees(math.remainder(turn, math.tau)), 2)
+    if degrees == 0.0:
+        return ""
+    way = "" if abs(degrees) == 180.0 else " clockwise" if degrees < 0.0 else " counter-clockwise"
+    return f"picture turned by {abs(degrees):g}°{way}"
+
+
 def reading(body: Body, frames: Array) -> tuple[Callable[[Array], str], tuple[str, str]]:
     """How to tell a body's pose (its angle; a slide's travel), and the texts at the two ends of the range in `frames`."""
     if body.motion == "slide":

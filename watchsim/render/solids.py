@@ -11,7 +11,7 @@ from watchsim.mechanism.carry import at_start
 from watchsim.mechanism.levels import Slab
 from watchsim.mechanism.scene import Scene
 from watchsim.mechanism.solid import HAIRSPRING, LYING, UPRIGHT
-from watchsim.render.palette import BLUED, BRASS, GILT, PLATE, RUBY, STEEL, Finish, finish
+from watchsim.render.palette import BLUED, BRASS, GILT, PLATE, RUBY, STEEL, Finish, finish, looks
 
 METAL, STONE = 0.55, 0.05  # how metallic the parts look
 METALS = ((12e3, GILT), (8.0e3, BRASS), (5e3, STEEL), (3e3, RUBY))  # kg/m³ from which on: gold, copper alloys, steel, stones
@@ -19,17 +19,19 @@ METALS = ((12e3, GILT), (8.0e3, BRASS), (5e3, STEEL), (3e3, RUBY))  # kg/m³ fro
 
 def placed_solids(scene: Scene, slabs: tuple[Slab, ...], deviation: float) -> list[Placed]:
     """The solids of every body that has any, in its frame, with its pose at the start; chords within `deviation` metres."""
-    found = []
-    for rank, body in enumerate(at_start(scene).bodies):
-        pieces = [piece for slab in slabs if slab.body == body.name for piece in _pieces(slab, body, rank, deviation)]
+    found, worn = [], looks(scene)
+    for body in at_start(scene).bodies:
+        pieces = [
+            piece for slab in slabs if slab.body == body.name for piece in _pieces(slab, body, worn[body.name], deviation)
+        ]
         if pieces:
             found.append(Placed(body.name, _named_apart(pieces), body.position, body.angle))
     return found
 
 
-def _pieces(slab: Slab, body: Body, rank: int, deviation: float) -> Iterator[Piece]:
+def _pieces(slab: Slab, body: Body, own: Finish, deviation: float) -> Iterator[Piece]:
     solid = slab.solid
-    look = _finish(slab, body, rank)
+    look = _finish(slab, body, own)
     metallic = STONE if look is RUBY else METAL
     if solid is not None and solid.kind in (UPRIGHT, LYING):
         mesh = revolved(solid.upright_profile(), deviation)
@@ -49,10 +51,10 @@ def _pieces(slab: Slab, body: Body, rank: int, deviation: float) -> Iterator[Pie
         yield Piece(slab.layer, mesh, look.fill, metallic)
 
 
-def _finish(slab: Slab, body: Body, rank: int) -> Finish:
+def _finish(slab: Slab, body: Body, own: Finish) -> Finish:
     """By its density where the scene gives one, else by the words of body and layer as in the plane."""
     if slab.solid is None:
-        return finish(body, slab.layer, rank)
+        return finish(body, slab.layer, own)
     if slab.solid.kind == HAIRSPRING:
         return BLUED
     return next((look for lightest, look in METALS if slab.solid.density >= lightest), PLATE)

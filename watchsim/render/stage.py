@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from watchsim.geometry.primitives import Arc
 from watchsim.mechanism.carry import at_start, is_still
 from watchsim.render.edges import Edges, edge_paths
-from watchsim.render.layout import draw_key, draw_rules, draw_scale, lay_out
+from watchsim.render.layout import draw_key, draw_notes, draw_rules, draw_scale, lay_out
 from watchsim.render.palette import BACKGROUND, CONTACT, INK
 from watchsim.render.parts import Part, is_round, loops_of, parts
 from watchsim.render.poses import Window
@@ -59,9 +59,10 @@ class Stage:
         self._figure = Figure(figsize=((size[0] + 0.5) / DPI, (size[1] + 0.5) / DPI), dpi=DPI, facecolor=BACKGROUND)
         self._canvas = FigureCanvasAgg(self._figure)
         self._unit = min(size[0] / 1280.0, size[1] / 720.0)
-        self._layout = lay_out(self._figure, run, window, speed, step or (window[1] - window[0]) / 2000.0)
+        self._layout = lay_out(self._figure, run, window, step or (window[1] - window[0]) / 2000.0)
         self.view = view(run, window, self._layout.frame, zoom, turn)
         draw_scale(self._figure, self.view.scale)
+        draw_notes(self._figure, self._layout.frame, speed, self.view.turn)
         endless = any(not loop.closed for body in run.scene.bodies for loop in loops_of(body))
         if zoom is not None or endless or self.view.follow is not None:
             draw_rules(self._figure, self._layout.frame)

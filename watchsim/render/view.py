@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.mechanism.body import Body
+from watchsim.mechanism.carry import at_start, is_still
 from watchsim.render.parts import loops_of, outline
 from watchsim.render.poses import Window, placed, swept
 from watchsim.simulation.trajectory import Trajectory
@@ -22,6 +23,8 @@ Array = NDArray[np.float64]
 
 MARGIN = 0.05  # of the frame, on every side
 QUARTER_GAIN = 1.25  # a quarter turn must enlarge the picture by this
+REACH = 4.0  # ground as far away as so many times the room of the bodies is still brought into sight
+GROUND = 0.06  # of that room: what is seen of the ground's material
 FAR = 12.0  # a travel of so many times the body's size is followed
 FOLLOWED = 7.0  # how much of the path is then in sight, in sizes of the body
 COARSE = 1e-3  # of a body's size: outlines for extents need no more
@@ -70,6 +73,8 @@ def view(run: Trajectory, window: Window, frame: Frame, zoom: Sequence[str] | No
     room = {body.name: _room(body, frames[body.name]) for body in bodies}
     traveller = _traveller(bodies, frames)
     points = np.concatenate(list(room.values()))
+    if zoom is None:
+        points = np.concatenate((points, _ground_below(run, points)))
     angle = _upright(run, points, frame, traveller) if turn is None else turn
     if traveller is not None:
         return _following(traveller, frames[traveller.name], frame, angle)
@@ -77,7 +82,7 @@ def view(run: Trajectory, window: Window, frame: Frame, zoom: Sequence[str] | No
 
 
 def _shown(run: Trajectory, zoom: Sequence[str] | None) -> list[Body]:
-    """The bodies to frame: those named, or all that bound an area; ground alone never widens the picture."""
+    """The bodies to frame: those named, or all that bound an area; ground is only brought into sight."""
     drawn = {body.name: body for body in run.scene.bodies if loops_of(body)}
     if zoom is not None:
         asked = (zoom,) if isinstance(zoom, str) else tuple(zoom)
@@ -90,6 +95,34 @@ def _shown(run: Trajectory, zoom: Sequence[str] | None) -> list[Body]:
         raise ValueError("nothing to draw: no body of this scene has an outline")
     solid = [body for body in drawn.values() if any(loop.closed for loop in loops_of(body))]
     return solid or list(drawn.values())
+
+
+def _ground_below(run: Trajectory, points: Array) -> Array:
+    """(n, 2) points that bring ground into sight: of every open outline that stays in place, those nearest to `points`.
+
+    Ground further away than REACH times the room of the points is left out.
+    """
+    size, middle = float(np.ptp(points, axis=0).max()), 0.5 * (points.min(axis=0) + points.max(axis=0))
+    found = [np.empty((0, 2))]
+    for body in at_start(run.scene).bodies:
+        if not is_still(run.scene, body) or any(loop.closed for loop in loops_of(body)):
+            continue
+        pose = np.array([[*body.position, body.angle]])
+        for loop in loops_of(body):
+            line = placed(outline([loop], COARSE * size), pose)[0]
+            foot = _nearest(line, middle)
+            away = foot - middle
+            if math.hypot(*away) <= REACH * size:
+                found.append((foot + GROUND * size * away / max(math.hypot(*away), 1e-9 * size))[None])
+    return np.concatenate(found)
+
+
+def _nearest(line: Array, point: Array) -> Array:
+    """The point of a polyline nearest to another point."""
+    start, way = line[:-1], np.diff(line, axis=0)
+    share = np.clip(np.sum((point - start) * way, axis=1) / np.maximum(np.sum(way * way, axis=1), 1e-300), 0.0, 1.0)
+    feet = start + share[:, None] * way
+    return feet[np.argmin(np.hypot(*(feet - point).T))]
 
 
 def size_of(body: Body) -> float:

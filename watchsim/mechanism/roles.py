@@ -32,6 +32,16 @@ def roles(scene: Scene) -> Roles:
     return Roles(oscillator, wheel, next(moving, None))
 
 
+def keeps_time(scene: Scene) -> bool:
+    """True for an oscillator that swings alone or is kept going by an escapement; False for a ratchet's click on its spring.
+
+    A driven wheel makes an escapement where a lever stands between it and the oscillator, or where the scene names a lift
+    angle; a wheel that touches the sprung body itself may as well be held by it.
+    """
+    found = roles(scene)
+    return found.oscillator is not None and (found.wheel is None or found.lever is not None or scene.lift_angle is not None)
+
+
 def partners(scene: Scene, name: str) -> set[str]:
     """The bodies that a declared contact lets touch body `name`."""
     pairs = [{side.body for side in contact.sides} for contact in scene.contacts]
