@@ -11,7 +11,7 @@ import pytest
 from watchsim.analysis.results import read_results
 from watchsim.cli import main
 from watchsim.commands.console import BAD_INPUT, FINE
-from watchsim.commands.run import last_beats
+from watchsim.commands.pictures import last_beats
 from watchsim.profiles_path import profiles_dir
 
 SCENE = str(profiles_dir() / "bench_lever")
