@@ -16,7 +16,7 @@ from watchsim.analysis.recorded import is_recorded
 from watchsim.analysis.standstill import standstill
 from watchsim.analysis.summary import summary, summary_text
 from watchsim.analysis.wheel import advance, missed_beats, progress
-from watchsim.commands.run import filmed
+from watchsim.commands.pictures import filmed
 from watchsim.mechanism.roles import Roles, drive_direction, keeps_time, partners, roles
 
 

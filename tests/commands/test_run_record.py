@@ -11,7 +11,7 @@ import pytest
 from watchsim.analysis.results import read_results
 from watchsim.cli import main
 from watchsim.commands.console import BAD_INPUT, FINE
-from watchsim.commands.run import last_beats
+from watchsim.commands.pictures import last_beats
 from watchsim.profiles_path import profiles_dir
 
 SCENE = str(profiles_dir() / "bench_lever")
@@ -83,7 +83,7 @@ def test_a_plot_that_fails_costs_a_line_only(capsys, tmp_path, monkeypatch) -> N
     def fail(*_: object, **__: object) -> None:
         raise RuntimeError("no ink")
 
-    monkeypatch.setattr("watchsim.render.plots.plot_kinematics", fail)
+    monkeypatch.setattr("watchsim.render.plots.write_png", fail)
     assert main(["run", SCENE, "--duration", "0.1 s", "-o", str(tmp_path / "r")]) == FINE
     assert "kinematics.png could not be drawn: no ink" in capsys.readouterr().err
     assert (tmp_path / "r" / "trajectory.npz").is_file() and not list((tmp_path / "r" / "plots").iterdir())

@@ -47,7 +47,7 @@ def judge(expectation: Expectation, numbers: Mapping[str, Any]) -> dict[str, Any
 
 def not_judged(entry: Mapping[str, Any], changed: Sequence[str]) -> dict[str, Any]:
     """An entry of `judge` without a verdict (`ok` is null): options made the run another than the scene's own."""
-    return {**entry, "ok": None, "message": f"not checked: {' and '.join(changed)} made this another run than the scene's own"}
+    return {**entry, "ok": None, "message": f"not checked: changed by {' and '.join(changed)}"}
 
 
 def unit_of(name: str) -> str:

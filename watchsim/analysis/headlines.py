@@ -25,8 +25,8 @@ HELPED = (
 )
 RULES = (
     ("accumulations", "bounces that died out in ever smaller rebounds: {}"),
-    ("energy_rescues", "{} impacts solved again with less restitution, which would have gained energy"),
-    ("jams", "{} jams: sliding contacts that no finite force could hold apart, stopped by impulses (Painlevé)"),
+    ("energy_rescues", "impacts that would have gained energy, solved again with less restitution: {}"),
+    ("jams", "jams, sliding contacts that no finite force could hold apart, stopped by impulses (Painlevé): {}"),
 )
 NO_PENETRATION = 1e-12  # m; less is not worth a digit, neither of depths nor of errors
 PLAIN = 1e-6  # errors below are written with an exponent

@@ -51,5 +51,6 @@ def _line(row: Mapping[str, Any]) -> str:
     if row["note"]:
         errors = [row["note"], "", ""]
     engine = f"{row['method']} {row['version']}".strip()
-    cells = (engine, setting, f"{time:.3g}", f"{least:.3g} to {most:.3g} ({row['repeats']} runs)", *errors)
+    spread = f"{least:.3g} to {most:.3g} ({row['repeats']} {'run' if row['repeats'] == 1 else 'runs'})"
+    cells = (engine, setting, f"{time:.3g}", spread, *errors)
     return "| " + " | ".join(cells) + " |"

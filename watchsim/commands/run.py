@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import functools
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,14 +21,13 @@ from watchsim.commands.console import (
 from watchsim.simulation.methods import EVENT_DRIVEN, METHODS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from watchsim.mechanism.scene import Scene
     from watchsim.simulation.trajectory import Trajectory
 
-HELP = "simulate a scene and write a results folder"
 FAR = 1e8  # a balance has a thousand times the inertia of a lever
-WHOLE_RUN = 10.0  # s that the movie of a whole run takes
+HELP = "simulate a scene and write a results folder"
 
 
 def options(parser: argparse.ArgumentParser) -> None:
@@ -144,15 +142,15 @@ def write(
     `changed` holds the options by which the run is another than the scene's own: its expectations are then not judged.
     """
     from watchsim.analysis.expectations import not_judged
+    from watchsim.analysis.results import write_results
+    from watchsim.analysis.summary import summary, tables
+    from watchsim.analysis.tables import plain
+    from watchsim.commands.pictures import pictures
+    from watchsim.mechanism.lock import lock_text
     from watchsim.simulation.stops import Stop
 
     if run.stop == Stop.INTERRUPTED:
         say("Interrupted: writing what was simulated; a second Ctrl-C gives it up ...")
-    from watchsim.analysis.results import write_results
-    from watchsim.analysis.summary import summary, tables
-    from watchsim.analysis.tables import plain
-    from watchsim.mechanism.lock import lock_text
-
     numbers = plain(_with_error_bars(run) if error_bars else summary(run))
     if changed:
         numbers["expect"] = [not_judged(entry, changed) for entry in numbers["expect"]]
@@ -160,12 +158,7 @@ def write(
         from watchsim.bench.profile import profile_of
 
         numbers["profile"] = plain(profile_of(run))
-    pictures: dict[str, Callable[[Path], object]] = _plots(run) if plots else {}
-    if movie:
-        pictures["movie.mp4"] = lambda path: _movie(run, path, slow=1 / 20)
-    if gif:
-        pictures["movie.gif"] = lambda path: _movie(run, path, slow=1 / 40)
-    extra: dict[str, Any] = {**tables(run), **{name: _drawn(draw) for name, draw in pictures.items()}}
+    extra: dict[str, Any] = {**tables(run), **pictures(run, plots, movie, gif)}
     write_results(run, folder, numbers, lock_text(run.scene, folder.absolute()), extra=extra, force=force)
     return numbers
 
@@ -192,70 +185,6 @@ def _earlier(folder: str, scene: Scene) -> Trajectory:
     if run.end_state is None:
         raise InputError(f"--resume {folder}: this results folder holds no state.npz to go on from.")
     return dataclasses.replace(run, scene=scene)
-
-
-def _drawn(draw: Callable[[Path], object]) -> Callable[[Path], None]:
-    """The same, but a picture that cannot be drawn costs a line, not the run."""
-
-    def attempt(path: Path) -> None:
-        try:
-            draw(path)
-        except Exception as error:
-            path.unlink(missing_ok=True)
-            say(f"{path.name} could not be drawn: {error}")
-
-    return attempt
-
-
-def _plots(run: Trajectory) -> dict[str, Callable[[Path], object]]:
-    """Kinematic plots: all that was recorded, and the last beats."""
-    from watchsim.render.plots import Kinematics, write_png
-
-    if len(run.t) < 2:
-        return {}
-    windows = {"plots/kinematics.png": None, "plots/last_beats.png": last_beats(run)}
-    shown = functools.cache(lambda: Kinematics(run))
-
-    def plot(window: tuple[float, float] | None) -> Any:
-        return lambda path: write_png(shown().show(window), path)
-
-    return {name: plot(window) for name, window in windows.items()}
-
-
-def last_beats(run: Trajectory, share: float = 1.5) -> tuple[float, float]:
-    """The last one and a half oscillations, or the last tenth where nothing oscillates, of the last stretch recorded."""
-    from watchsim.mechanism.check import frequency
-    from watchsim.render.poses import recorded
-
-    start, end = recorded(run)[-1]
-    hertz = frequency(run.scene)
-    length = share / hertz if hertz else 0.1 * (end - start)
-    return max(start, end - length), end
-
-
-def filmed(run: Trajectory, slow: float) -> tuple[tuple[float, float], float]:
-    """What a movie shows, and how fast: the last oscillation at the speed `slow`; where nothing keeps time, all of it.
-
-    All means the last stretch that was recorded without a gap, in WHOLE_RUN seconds.
-    """
-    from watchsim.mechanism.roles import keeps_time
-    from watchsim.render.poses import recorded
-
-    if keeps_time(run.scene):
-        return last_beats(run, 1.1), slow
-    start, end = recorded(run)[-1]
-    return (start, end), (end - start) / WHOLE_RUN
-
-
-def _movie(run: Trajectory, path: Path, slow: float) -> None:
-    from watchsim.render.movie import movie
-
-    window, speed = filmed(run, slow)
-    progress = Progress(f"{path.name}, frames:")
-    try:
-        movie(run, path, window=window, speed=speed, progress=progress)
-    finally:
-        progress.close()
 
 
 def status(run: Trajectory, summary: dict[str, Any]) -> int:
