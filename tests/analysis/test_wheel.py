@@ -16,7 +16,7 @@ from watchsim.analysis.recorded import is_recorded
 from watchsim.analysis.standstill import standstill
 from watchsim.analysis.summary import summary, summary_text
 from watchsim.analysis.wheel import advance, missed_beats, progress
-from watchsim.commands.pictures import filmed
+from watchsim.commands.pictures import filmed, last_beats
 from watchsim.mechanism.roles import Roles, drive_direction, keeps_time, partners, roles
 
 
@@ -128,5 +128,6 @@ def test_the_movie_of_a_run_shows_the_last_swing_or_all_of_a_ratchet():
     (start, end), speed = filmed(run, 1 / 20)
     assert end == run.t[-1] and end - start == pytest.approx(1.1 * 0.25) and speed == 1 / 20
     ratchet = replace(run, scene=replace(run.scene, contacts=run.scene.contacts[1:], lift_angle=None))
+    assert last_beats(ratchet) == (pytest.approx(0.9 * run.t[-1]), run.t[-1])
     (start, end), speed = filmed(ratchet, 1 / 20)
     assert (start, end) == (run.t[0], run.t[-1]) and (end - start) / speed == pytest.approx(10.0)

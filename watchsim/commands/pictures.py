@@ -54,12 +54,13 @@ def _plots(run: Trajectory) -> dict[str, Callable[[Path], object]]:
 
 
 def last_beats(run: Trajectory, share: float = 1.5) -> tuple[float, float]:
-    """The last one and a half oscillations, or the last tenth where nothing oscillates, of the last stretch recorded."""
+    """The last one and a half oscillations, or the last tenth where nothing keeps time, of the last stretch recorded."""
     from watchsim.mechanism.check import frequency
+    from watchsim.mechanism.roles import keeps_time
     from watchsim.render.poses import recorded
 
     start, end = recorded(run)[-1]
-    hertz = frequency(run.scene)
+    hertz = frequency(run.scene) if keeps_time(run.scene) else None
     length = share / hertz if hertz else 0.1 * (end - start)
     return max(start, end - length), end
 
