@@ -17,13 +17,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.analysis.beats import DAY, beats
-from watchsim.analysis.roles import roles
 from watchsim.analysis.wheel import missed_beats
 from watchsim.mechanism.load import load
+from watchsim.mechanism.recording import EVERYTHING
+from watchsim.mechanism.roles import roles
 from watchsim.mechanism.scene import Scene
 from watchsim.profiles_path import profiles_dir
 from watchsim.simulation.event_kinds import EventKind
-from watchsim.simulation.simulate import WHOLE_RUN, simulate
+from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
 from watchsim.simulation.trajectory import Trajectory
 
@@ -80,7 +81,7 @@ def pieces(scene: Scene, duration: float) -> list[Trajectory]:
     start, reached = None, 0.0
     while reached < duration:
         reached = min(duration, reached + PIECE)
-        run = simulate(scene, reached, record=WHOLE_RUN, start=start)
+        run = simulate(scene, reached, record=EVERYTHING, start=start)
         if run.stop != Stop.DURATION or run.end_state is None:
             raise SystemExit(f"{scene.title}: {run.stop_message}")
         start = run.end_state
@@ -125,8 +126,8 @@ def long_run(scene: Scene, duration: float) -> Long:
 
 def _share(scene: Scene, tolerance: float) -> float:
     """The residual's share of the work put in, from 5 s to 15 s."""
-    early = simulate(scene, 5.0, tolerance, record=WHOLE_RUN)
-    late = simulate(scene, 15.0, tolerance, record=WHOLE_RUN, start=early)
+    early = simulate(scene, 5.0, tolerance, record=EVERYTHING)
+    late = simulate(scene, 15.0, tolerance, record=EVERYTHING, start=early)
     residual, supplied = (late.energy[name] - early.energy[name] for name in ("residual_J", "in_J"))
     return abs(residual) / float(supplied)
 
