@@ -46,8 +46,7 @@ def _compress(model, closed, m, u, jam, slow, work):
     contact_velocities(closed, m, u, work.b)
     fill_matrix(work, m, elements)
     fill_rhs(work, m, elements, work.b)
-    if jam == 0.0:
-        spare_parts(work, m, elements, slow)
+    spare_parts(work, m, elements, slow)
     nudged = _nudge(m, jam, work)
     work.note[0], work.note[1], work.note[2], work.note[3] = m, elements, 0, LEVEL_COMPRESSION
     status, rung = solve_contacts(work, m, elements)
@@ -123,6 +122,8 @@ def impact(model, closed, m, restitution, jam, slow, work, out_u):
     approaches faster than `slow` (m/s), nor those of others that they touch, take no part. Total impulses N, T are left in
     `work.force`, rates before the impact in `work.b`. Returns the LCP status (0: solved); the velocities are changed only then.
     """
+    if jam > 0.0:
+        slow = -1.0  # nothing approaches, and what is jammed may be anywhere
     status, elements = _compress(model, closed, m, out_u, jam, slow, work)
     if status != 0:
         return status
