@@ -8,12 +8,9 @@ fashion. It shares no code with the complementarity solver of `dynamics`, so tha
 
 from __future__ import annotations
 
-import math
-
 from watchsim.jit import kernel
 
 SWEEPS = 20000  # at each pace
-WATCHED = 1000  # sweeps in which changes must halve: slower, they would not settle in SWEEPS either
 PACES = 4
 # Largest change of a percussion in a sweep, as a share of the first guess or of what would stop the fastest contact.
 SETTLED = 1e-13
@@ -108,7 +105,6 @@ def residual(G, b, low, ends, m, bearings, P):
 @kernel
 def _sweeps(G, b, low, ends, m, rows, pace, settled, out_P):
     """Sweep until no percussion changes by more than `settled`; returns the number of sweeps, SWEEPS + 1 if that fails."""
-    earlier = math.inf
     for sweep in range(1, SWEEPS + 1):
         change = 0.0
         for row in range(rows):
@@ -119,10 +115,6 @@ def _sweeps(G, b, low, ends, m, rows, pace, settled, out_P):
             out_P[row] += pace * (new - out_P[row])
         if change <= settled:
             return sweep
-        if sweep % WATCHED == 0:
-            if change > 0.5 * earlier:
-                break
-            earlier = change
     return SWEEPS + 1
 
 
