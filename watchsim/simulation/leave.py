@@ -38,13 +38,15 @@ def _evaluate(model, state, options, tau, scratch):
 
 @kernel
 def _root(model, state, options, which, low, high, scratch):
-    """Time at which one monitor passes zero between low (positive) and high (not positive): Illinois' method."""
+    """Time at which one monitor, positive at low, passes zero; `high` where it is still positive then. Illinois' method."""
     _evaluate(model, state, options, low, scratch)
     f_low = scratch.monitors[which]
     _evaluate(model, state, options, high, scratch)
     f_high = scratch.monitors[which]
     if not f_low > 0.0:
         return low
+    if f_high > 0.0:
+        return high  # another one has fired before
     slack = _slack(model, state, options, which)
     if f_low <= slack:
         slack = 0.0
