@@ -50,14 +50,14 @@ class ContactWork(NamedTuple):
     lcp: LcpWork
     h: Array  # (n,)
     rungs: Integers  # problems solved since last asked, by Rung; the last one counts those without a solution
-    sizes: Integers  # the same problems by their number of contacts
+    sizes: Integers  # the same problems by their number of unknowns, see `LARGEST`
     note: Integers  # of the last problem: contacts, elements, bearings, level, status of Lemke
 
 
 ContactWorkRef = by_reference(ContactWork, __name__)
 
 RUNGS = 4
-SIZES = 7  # problems of 0, 1, ... contacts; the last place is for all larger ones
+LARGEST = (1, 2, 4, 8, 16)  # unknowns of the problems counted together; one more place for larger ones
 
 
 def contact_work(room: int, coordinates: int) -> ContactWork:
@@ -90,7 +90,7 @@ def contact_work(room: int, coordinates: int) -> ContactWork:
         lcp=lcp_work(side),
         h=np.zeros(coordinates),
         rungs=np.zeros(RUNGS, np.int64),
-        sizes=np.zeros(SIZES, np.int64),
+        sizes=np.zeros(len(LARGEST) + 1, np.int64),
         note=np.zeros(5, np.int64),
     )
 

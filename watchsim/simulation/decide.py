@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from watchsim.contact.index_sets import STICK
 from watchsim.dynamics.acceleration import decide_modes
-from watchsim.dynamics.delassus import SIZES, fill_inverse
+from watchsim.dynamics.delassus import LARGEST, fill_inverse
 from watchsim.dynamics.dry import add_drag, set_grips
 from watchsim.dynamics.forces import forces
 from watchsim.jit import kernel
@@ -51,6 +51,6 @@ def count_problems(state, work):
         if rung < 3:  # the last one counts those without a solution
             state.counts[N_LEMKE + rung] += work.rungs[rung]
         work.rungs[rung] = 0
-    for size in range(SIZES):
-        state.counts[N_LCP_SIZE + size] += work.sizes[size]
-        work.sizes[size] = 0
+    for place in range(len(LARGEST) + 1):
+        state.counts[N_LCP_SIZE + place] += work.sizes[place]
+        work.sizes[place] = 0

@@ -2,7 +2,7 @@
 
 Coordinates that closed contacts join, or that belong to a free body or to a body and its carrier, form an island. No force or
 impulse passes from one island to another: every contact problem is posed for one island, and what happens in it leaves the
-others as they are, to the bit.
+others as they are.
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from watchsim.contact.kinematics import Closed, closed_contacts
 from watchsim.contact.poses import poses
-from watchsim.dynamics.delassus import SIZES, ContactWork, contact_work
+from watchsim.dynamics.delassus import LARGEST, ContactWork, contact_work
 from watchsim.jit import by_reference
 from watchsim.mechanism.model import Model, Records
 from watchsim.simulation.event_kinds import EVENT_DTYPE
@@ -47,8 +47,8 @@ COUNT_NAMES = (
     "lcp_enumerated",
     "jams",
     "redundant_sets",
-    *(f"lcp_of_{size}" for size in range(SIZES - 1)),
-    f"lcp_of_{SIZES - 1}_or_more",
+    *(f"lcp_to_{size}" for size in LARGEST),  # with at most so many unknowns, more than the one before
+    "lcp_larger",
 )
 
 FLIGHT, COUPLED = 0, 1
