@@ -10,7 +10,7 @@ import argparse
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from watchsim.commands.console import BAD_INPUT, FINE, InputError, check_picture, parse_length, print_json, say
+from watchsim.commands.console import BAD_INPUT, FINE, InputError, check_picture, parse_positive, print_json, say
 
 if TYPE_CHECKING:
     from watchsim.drawing.drawing import Drawing
@@ -32,10 +32,12 @@ def options(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from watchsim.drawing.inspect import inspect_report, inspect_text
     from watchsim.drawing.read import read
+    from watchsim.units import LENGTH
 
     if args.png:
         check_picture(args.png, args.file)
-    lengths = {name: parse_length(name, getattr(args, name)) for name in ("snap", "fit") if getattr(args, name) is not None}
+    asked = {name: getattr(args, name) for name in ("snap", "fit")}
+    lengths = {name: parse_positive(f"--{name}", text, LENGTH) for name, text in asked.items() if text is not None}
     try:
         drawing = read(args.file, units=args.units, **lengths)
     except ValueError as error:
