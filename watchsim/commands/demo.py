@@ -38,7 +38,7 @@ def run(args: argparse.Namespace) -> int:
     trajectory = simulate_with_progress(scene, DURATION, None)
     summary = write(trajectory, folder, Extras(movie=True, gif=True), args.force, changed=["--duration"])
     print(summary_text(trajectory, {**summary, "expect": []}), flush=True)
-    print(f"\nPlots, movie.mp4, movie.gif and all numbers: {folder}")
+    print(f"\nPlots, movie.mp4, movie.gif and all numbers: {args.output}/swiss_lever")
     print(f"Done in {time.monotonic() - start:.0f} s.")
     code = status(trajectory, summary)
     return code if code != FINE else FINE if all(row["ok"] for row in rows) else MISSED

@@ -44,7 +44,8 @@ def run(args: argparse.Namespace) -> int:
         raise InputError(f"{args.file}: {error}") from error
     if args.layer:
         drawing = _only(drawing, [name.strip() for name in args.layer.split(",")])
-    if args.png:
+    unreadable = not drawing.layers and any(finding.severity == "error" for finding in drawing.findings)
+    if args.png and not unreadable:
         from watchsim.render.drawing_picture import draw_drawing
 
         draw_drawing(drawing, args.png, centres=args.centres)
@@ -53,7 +54,7 @@ def run(args: argparse.Namespace) -> int:
         print_json(inspect_report(drawing))
     else:
         print(inspect_text(drawing))
-    return BAD_INPUT if not drawing.layers and any(f.severity == "error" for f in drawing.findings) else FINE
+    return BAD_INPUT if unreadable else FINE
 
 
 def _only(drawing: Drawing, names: list[str]) -> Drawing:
