@@ -19,7 +19,7 @@ from watchsim.mechanism.compile import compile_scene
 from watchsim.mechanism.model import ModelRef
 from watchsim.mechanism.recording import Recording
 from watchsim.mechanism.scene import Scene
-from watchsim.simulation.advance import _by_reference
+from watchsim.simulation.advance import scratch_by_reference
 from watchsim.simulation.coupled import engage, motion
 from watchsim.simulation.free import flow
 from watchsim.simulation.options import OptionsRef
@@ -58,7 +58,7 @@ def flights_again(model, state, repeats):
 @jit.entry
 def evaluations_again(model, state, options, scratch, repeats):
     """The accelerations of coupled bodies with all monitors."""
-    m, s, o, w = ModelRef(*model), StateRef(*state), OptionsRef(*options), _by_reference(scratch)
+    m, s, o, w = ModelRef(*model), StateRef(*state), OptionsRef(*options), scratch_by_reference(scratch)
     n = len(s.q)
     w.y[:n], w.y[n : 2 * n] = s.q, s.u
     engage(m, s, w)
