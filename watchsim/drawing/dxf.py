@@ -52,13 +52,14 @@ def read_dxf(data: bytes, units: str | None, fit: float) -> Content:
     found = Gathering(scale, fit)
     walker = Walker(sections, found)
     try:
+        if len(sections.entities) > MOST_STROKES:
+            raise TooLarge
         walker.walk(walker.items(sections.entities, "model"), IDENTITY, "", ())
         follow(found)
     except TooLarge:
-        message = (
-            f"the drawing unfolds into more than {MOST_STROKES} pieces or {MOST_COPIES} copies of blocks; nothing was read"
-        )
-        refusal = Finding("too-large", "error", message, "Look for arrays of blocks with huge counts.")
+        message = f"the drawing has more than {MOST_STROKES} pieces, or {MOST_COPIES} copies of blocks; nothing was read"
+        fix = "Look for curves made of points, and for arrays of blocks with huge counts."
+        refusal = Finding("too-large", "error", message, fix)
         return Content(units=name, units_from=origin, findings=(*notes, *sections.findings, refusal))
     return Content(
         strokes=tuple(found.strokes),
