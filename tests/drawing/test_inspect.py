@@ -77,6 +77,11 @@ def test_text_for_people(read_bytes: Reader) -> None:
     assert "warning, stray-line [layer SLOT]" in text
 
 
+def test_the_place_of_a_small_part_far_from_the_origin_is_told(read_bytes: Reader) -> None:
+    text = inspect_text(read_bytes(d.dxf(d.polygon([(1e5, -2e-5), (1e5 + 4.25, -2e-5), (1e5 + 4.25, 3)]))))
+    assert "x 100000 to 100004.25, y 0 to 3)" in text
+
+
 def test_text_without_units_and_without_anything(read_bytes: Reader) -> None:
     text = inspect_text(read_bytes(d.dxf(d.circle(0, 0, 2.15), units=None)))
     assert "units: not stated" in text and "4.3 mm or 109.2 mm across" in text and 'Set units = "mm"' in text

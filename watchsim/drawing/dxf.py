@@ -25,6 +25,7 @@ from watchsim.drawing.shapes import Shape
 from watchsim.drawing.tags import LARGEST, DxfError, Record, read_tags
 
 DEEPEST = 32  # blocks within blocks
+MISSING = ("block-missing", "is not in the file")
 
 
 @dataclass(frozen=True, slots=True)
@@ -203,13 +204,17 @@ class Walker:
     def _unfold(self, item: Item, reference: Insert, layer: str, affine: Affine, path: tuple[str, ...]) -> None:
         name = reference.block.lower()
         block = self.sections.blocks.get(name)
-        if block is None or name in path or len(path) >= DEEPEST:
-            why = "is not in the file" if block is None else "contains itself" if name in path else "is nested too deeply"
+        fault = MISSING if block is None else _unusable(block, path)
+        if block is None or fault is not None:
+            code, why = fault or MISSING
             message = f'block "{reference.block}" {why}; {item.source} is left out'
-            self.found.findings.append(Finding("block-missing" if block is None else "block-loop", "error", message, "", layer))
+            self.found.findings.append(Finding(code, "error", message, "", layer))
             return
         if name not in self.read_blocks:
             self.read_blocks[name] = self.items(block.entities, reference.block)
+            if not block.entities:
+                message = f'block "{reference.block}" is empty: where it is inserted nothing is drawn'
+                self.found.findings.append(Finding("empty-block", "notice", message, layer=layer))
         base = self._base(block)
         for placing in reference.maps:
             self.found.copies += 1
@@ -230,6 +235,17 @@ class Walker:
             self.found.findings.append(Finding("damaged", "error", message))
             return IDENTITY
         return shifted((-x, -y, -z))
+
+
+def _unusable(block: Block, path: tuple[str, ...]) -> tuple[str, str] | None:
+    """Code and reason for a block that cannot be unfolded inside those of `path`."""
+    if block.head.text(2).lower() in path:
+        return "block-loop", "contains itself"
+    if len(path) >= DEEPEST:
+        return "block-loop", "is nested too deeply"
+    if not block.entities and block.head.text(1):
+        return "external", f'is drawn in another file, "{block.head.text(1)}", which is not read'
+    return None
 
 
 def _grouped(records: Iterable[Record]) -> Iterable[tuple[Record, list[Record]]]:
