@@ -17,7 +17,6 @@ from watchsim.bench.world import Setup
 from watchsim.mechanism.body import Body
 from watchsim.mechanism.scene import Scene
 
-
 _RIM = 0.95  # of the reach: where the mass of a pivoted body is put; what is left of its inertia stays about that point
 
 
