@@ -6,7 +6,9 @@ import math
 from collections.abc import Callable
 
 import dxf_text as d
+import numpy as np
 import pytest
+from ezdxf.math import ConstructionEllipse
 
 from watchsim.drawing.drawing import Drawing
 from watchsim.geometry.extent import extents
@@ -107,6 +109,29 @@ def test_ellipse_within_the_tolerance(read_bytes: Reader) -> None:
     assert 0.0 < coarse.fitted_deviation <= 1e-6 and 0.0 < fine.fitted_deviation <= 1e-9
     assert area(fine.loops[0]) == pytest.approx(math.pi * 5 * 2 * 1e-6, rel=1e-6)
     assert fine.fitted_arcs > 5 * coarse.fitted_arcs
+
+
+@pytest.mark.parametrize(("start", "end"), [(4.0, 1.0), (-2.0, 7.0), (7.0, -2.0), (math.tau, 0.5), (0.0, -1e-12)])
+@pytest.mark.parametrize("height", [1.0, -1.0])
+def test_ellipse_runs_forward_from_start_to_end_once_at_most(
+    read_bytes: Reader, start: float, end: float, height: float
+) -> None:
+    """Against ezdxf's own ellipse: parameters beyond a turn, running backwards, seen from below."""
+    entity = d.record(
+        "ELLIPSE",
+        *d.point(10, (1, 2)),
+        *d.point(11, (5, 1)),
+        *d.point(210, (0, 0, height)),
+        (40, 0.3),
+        (41, repr(start)),
+        (42, repr(end)),
+    )
+    drawing = read_bytes(d.dxf(entity))
+    truth = ConstructionEllipse((1, 2), (5, 1), (0, 0, height), 0.3, start, end)
+    points = np.array([(p.x, p.y) for p in truth.vertices(np.linspace(start, start + (truth.param_span or TURN), 4000))])
+    assert 1e3 * drawing.drawn.length == pytest.approx(float(np.hypot(*np.diff(points, axis=0).T).sum()), rel=1e-5)
+    box = extents((*drawing.loops, *drawing.open_chains))
+    assert box == pytest.approx(1e-3 * np.concatenate((points.min(axis=0), points.max(axis=0))), abs=2e-7)
 
 
 def test_ellipse_with_equal_axes_is_a_circle(read_bytes: Reader) -> None:
