@@ -34,6 +34,17 @@ def label_islands(model, closed, m, out_label):
 
 
 @kernel
+def _share_terms(model, out_terms):
+    """Rounding in a coordinate of a free body comes from the forces on all three, whatever angle the body has."""
+    for b in range(len(model.bodies)):
+        if model.bodies[b].motion == FREE:
+            x, y, turn = model.bodies[b].first, model.bodies[b].first + 1, model.bodies[b].first + 2
+            gyration = (model.coordinates[turn].mass / model.coordinates[x].mass) ** 0.5
+            largest = max(out_terms[x], out_terms[y], out_terms[turn] / gyration)
+            out_terms[x], out_terms[y], out_terms[turn] = largest, largest, largest * gyration
+
+
+@kernel
 def _is_still(model, state, options, i, terms):
     """Coordinate i has no velocity and no acceleration beyond rounding; `terms` is the sum of the forces on it without sign."""
     coordinate = model.coordinates[i]
@@ -61,6 +72,7 @@ def find_sleepers(model, state, options, scratch, m):
             j = closed.coord[i, k]
             scratch.q[j] += abs(closed.w_N[i, k] * work.force[2 * i]) + abs(closed.w_T[i, k] * work.force[2 * i + 1])
             touched[label[j]] = 1.0
+    _share_terms(model, scratch.q)
     for i in range(n):
         if state.grip[i] == STICK:
             touched[label[i]] = 1.0
