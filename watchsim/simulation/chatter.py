@@ -7,7 +7,7 @@ others' impulses lift by less than `gap_close`, the distance at which contacts c
 
 from __future__ import annotations
 
-from watchsim.contact.index_sets import OPEN
+from watchsim.contact.index_sets import OPEN, STICK
 from watchsim.contact.poses import place
 from watchsim.jit import kernel
 from watchsim.simulation.closed import refresh
@@ -55,10 +55,15 @@ def is_chatter(state, m, options, closed):
 
 
 @kernel
-def end_chatter(model, state, m, scratch):
-    """Bring the gap rates of the m closed contacts to zero by the smallest change of velocities: it only takes energy."""
+def end_chatter(model, state, m, options, scratch):
+    """Zero the gap rates of the m closed contacts, and the slip of those that hold, by the smallest change of velocities.
+
+    It only takes energy. A block that stopped turning but went on sliding would be tipped over by its friction, and rock anew.
+    """
     for i in range(m):
-        scratch.trial[scratch.closed.ids[i]] = OPEN
+        k = scratch.closed.ids[i]
+        holds = model.laws[model.contacts[k].group].friction > 0.0 and abs(scratch.closed.kin[i].gT_dot) <= options.speed_zero
+        scratch.trial[k] = STICK if holds else OPEN
     for j in range(len(model.coordinates)):
         scratch.work.inverse[j] = 1.0 / model.coordinates[j].mass
     project_velocities(scratch.closed, m, scratch.trial, scratch.work, state.u)

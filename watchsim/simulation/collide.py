@@ -160,7 +160,7 @@ def _still(model, state, m, options, scratch, record):
             back = state.clock[0] + return_time(scratch.closed, i, state.a)
             keep_event(state, record, ACCUMULATION_EVENT, scratch.closed.ids[i], -1, back)
             state.counts[N_ACCUMULATED] += 1
-    end_chatter(model, state, m, scratch)
+    end_chatter(model, state, m, options, scratch)
     state.sums[IMPACTS] += before - kinetic_energy(model, state.u)
 
 
