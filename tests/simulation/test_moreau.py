@@ -13,6 +13,7 @@ from reference import incline_closed_form as closed_form
 from watchsim.jit import callable_kernel
 from watchsim.mechanism.body import Body
 from watchsim.mechanism.scene import Scene
+from watchsim.simulation.moreau_laws import laws
 from watchsim.simulation.moreau_prox import relax
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
@@ -92,12 +93,11 @@ def test_relaxation_solves_the_laws() -> None:
     for _ in range(300):
         m, bearings = int(rng.integers(1, 4)), int(rng.integers(0, 3))
         rows = 2 * m + bearings
-        W = rng.normal(size=(8, rows))
-        G, b = W.T @ W, rng.normal(size=rows)
-        low, ends = np.maximum(0.0, rng.normal(size=m)), np.zeros((m + bearings, 4))
+        W, obeyed = rng.normal(size=(8, rows)), laws(m, bearings)
+        G, b, low, ends, P = obeyed.G, obeyed.b, obeyed.low, obeyed.ends, obeyed.P
+        G[:], b[:], low[:] = W.T @ W, rng.normal(size=rows), np.maximum(0.0, rng.normal(size=m))
         ends[:m, 1], ends[:m, 3], ends[m:, 0], ends[m:, 2] = -0.3, 0.3, -0.2, 0.2
-        P = np.zeros(rows)
-        _, settled = _relax(G, b, low, ends, m, bearings, P)
+        _, settled = _relax(obeyed, m, bearings)
         assert settled
         rate = b + G @ P
         normal = P[0 : 2 * m : 2]

@@ -13,13 +13,13 @@ from watchsim.contact.lookup import time_through_cells
 from watchsim.dynamics.delassus import ContactWorkRef, fill_inverse
 from watchsim.dynamics.forces import next_knot
 from watchsim.dynamics.lcp import LcpWorkRef
-from watchsim.dynamics.parts import PartsRef
 from watchsim.jit import entry, inlined, kernel
 from watchsim.mechanism.model import CellsRef, ModelRef
 from watchsim.simulation.coupled import motion
 from watchsim.simulation.drift import project_positions, project_velocities
 from watchsim.simulation.flight import FLIGHT_PHASE, add_flight_sums, begin_flight, can_fly, flight_length, keep_flight_rows
 from watchsim.simulation.integrator import coupled_step, dense_value
+from watchsim.simulation.islands import place_contacts
 from watchsim.simulation.keep import keep_row
 from watchsim.simulation.leave import first_leave, first_turn
 from watchsim.simulation.options import FINEST_ROWS, OptionsRef
@@ -54,11 +54,13 @@ def _accept_coupled(model, state, options, end, scratch):
     for i in range(SUMS):
         state.sums[(DRIVE, DAMPING, FRICTION)[i]] += scratch.y[2 * n + i]
     motion(model, state, options, state.clock[0], scratch.y, scratch)
-    m = state.numbers[0]
-    if m > 0:
+    first = 0
+    while first < state.numbers[0]:
+        m = place_contacts(model, state.active, first, state.upto[first], scratch.pose, scratch.closed)
         deepest = project_positions(scratch.closed, m, True, scratch.work, state.q)
         state.worst[0] = max(state.worst[0], deepest)
         project_velocities(scratch.closed, m, state.mode, scratch.work, state.u)
+        first += m
     for i in range(n):
         state.a[i] = scratch.dy[n + i]
 
@@ -201,8 +203,8 @@ def scratch_by_reference(scratch):
         LcpWorkRef(*work.lcp),
         work.h,
         work.rungs,
+        work.sizes,
         work.note,
-        PartsRef(*work.parts),
     )
     return ScratchRef(
         StepRef(*scratch.step),
@@ -219,11 +221,16 @@ def scratch_by_reference(scratch):
         scratch.y,
         scratch.dy,
         scratch.label,
+        scratch.listed,
+        scratch.upto,
         scratch.engaged,
         scratch.doubt,
+        scratch.monitors,
         scratch.codes,
         scratch.trial,
         scratch.grip,
+        scratch.load,
+        scratch.terms,
         scratch.alarm,
         scratch.unknown,
         scratch.at,

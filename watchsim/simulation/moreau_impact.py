@@ -10,7 +10,9 @@ from watchsim.dynamics.linear import copy
 from watchsim.jit import kernel
 from watchsim.mechanism.model import PG1996, SHIFTED
 from watchsim.simulation.keep import keep_event
-from watchsim.simulation.moreau_prox import cone, fill_mobility, push, rates_of, relax, residual
+from watchsim.simulation.moreau_laws import cone, residual
+from watchsim.simulation.moreau_mobility import fill_mobility, push, rates_of
+from watchsim.simulation.moreau_prox import relax
 from watchsim.simulation.state import IMPACTS, N_ENERGY, N_IMPACTS, N_LCP, N_LCP_FAILED
 
 IMPACT_EVENT = 1
@@ -21,12 +23,12 @@ NO_SIGN = 1e-10  # a tangential percussion below this share of the friction cone
 @kernel
 def solve_percussions(state, m, bearings, work):
     """Relax, and count what it took."""
-    sweeps, settled = relax(work.G, work.b, work.low, work.ends, m, bearings, work.P)
+    sweeps, settled = relax(work.laws, m, bearings)
     state.counts[N_LCP] += 1
     work.sweeps[0] += sweeps
     if not settled:
         state.counts[N_LCP_FAILED] += 1
-    work.worst[0] = max(work.worst[0], residual(work.G, work.b, work.low, work.ends, m, bearings, work.P))
+    work.worst[0] = max(work.worst[0], residual(work.laws, m, 2 * m + bearings))
 
 
 @kernel
@@ -38,8 +40,8 @@ def _law(model, work, i):
 def friction_cones(model, m, work):
     """Coulomb's law for all closed contacts."""
     for i in range(m):
-        work.low[i] = 0.0
-        cone(work.ends, i, _law(model, work, i).friction)
+        work.laws.low[i] = 0.0
+        cone(work.laws.ends, i, _law(model, work, i).friction)
 
 
 @kernel
@@ -67,30 +69,32 @@ def _expansion_ends(law, share, N, T, ends, i):
 @kernel
 def _compress(model, state, m, work):
     """Percussions that stop the approach into `work.more`; rates before are in `work.rates`."""
+    laws = work.laws
     friction_cones(model, m, work)
     for row in range(2 * m):
-        work.b[row], work.P[row] = work.rates[row], 0.0
+        laws.b[row], laws.P[row] = work.rates[row], 0.0
     solve_percussions(state, m, 0, work)
     for row in range(2 * m):
-        work.more[row] = work.P[row]
+        work.more[row] = laws.P[row]
 
 
 @kernel
 def _expand(model, state, m, work):
-    """Percussions of the expansion with `work.restitution` into `work.P`."""
+    """Percussions of the expansion with `work.restitution` into `work.laws.P`."""
+    laws = work.laws
     for row in range(2 * m):
-        work.b[row] = work.rates[row]
+        laws.b[row] = work.rates[row]
         for column in range(2 * m):
-            work.b[row] += work.G[row, column] * work.more[column]
+            laws.b[row] += laws.G[row, column] * work.more[column]
     for i in range(m):
         N, T, law = work.more[2 * i], work.more[2 * i + 1], _law(model, work, i)
-        work.low[i] = work.restitution[i] * N
-        returned = law.nu * _expansion_ends(law, work.restitution[i], N, T, work.ends, i)
-        work.P[2 * i], work.P[2 * i + 1] = work.low[i], 0.0
+        laws.low[i] = work.restitution[i] * N
+        returned = law.nu * _expansion_ends(law, work.restitution[i], N, T, laws.ends, i)
+        laws.P[2 * i], laws.P[2 * i + 1] = laws.low[i], 0.0
         if returned != 0.0:
             # Friction of pg1996 changes sides at the slip that nu of what is returned would make.
             for j in range(m):
-                work.b[2 * j + 1] -= work.G[2 * j + 1, 2 * i + 1] * returned
+                laws.b[2 * j + 1] -= laws.G[2 * j + 1, 2 * i + 1] * returned
     solve_percussions(state, m, 0, work)
 
 
@@ -104,10 +108,10 @@ def _least_restitution(m, work):
 
 @kernel
 def _loss(m, work):
-    """Energy that the percussions `work.P` take between the rates before, `work.rates`, and after, `work.b`."""
+    """Energy that the percussions take between the rates before, `work.rates`, and after, `work.laws.b`."""
     total = 0.0
     for row in range(2 * m):
-        total -= 0.5 * work.P[row] * (work.rates[row] + work.b[row])
+        total -= 0.5 * work.laws.P[row] * (work.rates[row] + work.laws.b[row])
     return total
 
 
@@ -126,15 +130,15 @@ def stop_approaches(model, state, options, m, work, record):
     for i in range(len(work.u)):
         work.inverse[i] = 1.0 / model.coordinates[i].mass
         kinetic += 0.5 * model.coordinates[i].mass * state.u[i] * state.u[i]
-    fill_mobility(closed, m, work.dry, 0, work.inverse, work.G)
+    fill_mobility(closed, m, work.dry, 0, work.inverse, work.laws.G)
     _compress(model, state, m, work)
     for attempt in range(3):
         _expand(model, state, m, work)
         for row in range(2 * m):
-            work.P[row] += work.more[row]
+            work.laws.P[row] += work.more[row]
         copy(state.u, work.u)
-        push(closed, m, work.dry, 0, work.P, work.inverse, work.u)
-        rates_of(closed, m, work.u, work.b)
+        push(closed, m, work.dry, 0, work.laws.P, work.inverse, work.u)
+        rates_of(closed, m, work.u, work.laws.b)
         if attempt == 2 or _loss(m, work) >= -GAIN * kinetic:
             break
         state.counts[N_ENERGY] += 1
@@ -148,14 +152,15 @@ def stop_approaches(model, state, options, m, work, record):
 def _write_impacts(state, options, m, work, record):
     """Energy of the impacts, and events of those that are faster than creeping into contact."""
     written = False
+    P, before, after = work.laws.P, work.rates, work.laws.b
     for i in range(m):
         N, T = 2 * i, 2 * i + 1
-        lost = -0.5 * (work.P[N] * (work.rates[N] + work.b[N]) + work.P[T] * (work.rates[T] + work.b[T]))
+        lost = -0.5 * (P[N] * (before[N] + after[N]) + P[T] * (before[T] + after[T]))
         state.sums[IMPACTS] += lost
-        if work.P[N] > 0.0 and work.rates[N] < -options.accumulation_speed:
-            row = keep_event(state, record, IMPACT_EVENT, work.closed.ids[i], -1, work.rates[N])
+        if P[N] > 0.0 and before[N] < -options.accumulation_speed:
+            row = keep_event(state, record, IMPACT_EVENT, work.closed.ids[i], -1, before[N])
             event = record.events[row]
-            event.impulse_normal, event.impulse_tangential, event.energy_lost = work.P[N], work.P[T], lost
+            event.impulse_normal, event.impulse_tangential, event.energy_lost = P[N], P[T], lost
             state.counts[N_IMPACTS] += 1
             written = True
     return written

@@ -11,6 +11,7 @@ from watchsim.jit import entry, inlined, kernel
 from watchsim.mechanism.model import CellsRef, ModelRef
 from watchsim.simulation.keep import keep_event, keep_row
 from watchsim.simulation.moreau_impact import stop_approaches
+from watchsim.simulation.moreau_laws import LawsRef
 from watchsim.simulation.moreau_step import act, closed_at_middle, move
 from watchsim.simulation.moreau_work import MoreauWorkRef
 from watchsim.simulation.options import OptionsRef
@@ -128,13 +129,9 @@ def _by_reference(work):
         work.joint,
         work.mass,
         work.inverse,
-        work.G,
-        work.b,
+        LawsRef(*work.laws),
         work.rates,
         work.more,
-        work.P,
-        work.low,
-        work.ends,
         work.restitution,
         work.dry,
         work.unknown,

@@ -17,10 +17,13 @@ from watchsim.dynamics.forces import driving_force, joint_damping, joint_energy,
 from watchsim.dynamics.linear import copy
 from watchsim.jit import kernel
 from watchsim.simulation.moreau_impact import friction_cones, solve_percussions
-from watchsim.simulation.moreau_prox import cone, fill_mobility, push, rates_of, relax
+from watchsim.simulation.moreau_laws import cone
+from watchsim.simulation.moreau_mobility import fill_mobility, push, rates_of
+from watchsim.simulation.moreau_prox import relax
 from watchsim.simulation.state import CORRECTION, DAMPING, DRIVE, FRICTION
 
 TAKEN_BACK = 0.2  # share of a penetration beyond `slop` taken back in a step
+YIELD = 1e-3  # share by which a contact's own push yields: of what is wedged in from two sides, both keep some
 
 
 @kernel
@@ -103,42 +106,42 @@ def _free_velocity(model, state, h, work):
 @kernel
 def _begin_percussions(model, m, h, work):
     """The laws of contacts and bearings in this step, and a first guess; returns the number of bearings."""
-    closed, bearings = work.closed, len(work.dry)
-    fill_mobility(closed, m, work.dry, bearings, work.inverse, work.G)
-    rates_of(closed, m, work.free, work.b)
+    closed, laws, bearings = work.closed, work.laws, len(work.dry)
+    fill_mobility(closed, m, work.dry, bearings, work.inverse, laws.G)
+    rates_of(closed, m, work.free, laws.b)
     friction_cones(model, m, work)
     for i in range(m):
         # Last step's percussions are a good guess at this one's.
-        work.P[2 * i], work.P[2 * i + 1] = work.memory[closed.ids[i], 0], work.memory[closed.ids[i], 1]
+        laws.P[2 * i], laws.P[2 * i + 1] = work.memory[closed.ids[i], 0], work.memory[closed.ids[i], 1]
     for k in range(bearings):
         j = work.dry[k]
         most = h * model.coordinates[j].coulomb
-        work.ends[m + k, 0], work.ends[m + k, 1], work.ends[m + k, 2], work.ends[m + k, 3] = -most, 0.0, most, 0.0
-        work.b[2 * m + k] = work.free[j]
-        work.P[2 * m + k] = -math.copysign(most, work.u[j]) if work.u[j] != 0.0 else 0.0
+        laws.ends[m + k, 0], laws.ends[m + k, 2] = -most, most
+        laws.b[2 * m + k] = work.free[j]
+        laws.P[2 * m + k] = -math.copysign(most, work.u[j]) if work.u[j] != 0.0 else 0.0
     return bearings
 
 
 @kernel
 def act(model, state, m, h, work, out_u):
     """Velocities at the end of the step: forces, contacts and dry bearings together, without restitution."""
-    closed = work.closed
+    closed, laws = work.closed, work.laws
     _free_velocity(model, state, h, work)
     copy(work.free, out_u)
     if m == 0 and len(work.dry) == 0:
         return
     bearings = _begin_percussions(model, m, h, work)
     solve_percussions(state, m, bearings, work)
-    push(closed, m, work.dry, bearings, work.P, work.inverse, out_u)
-    rates_of(closed, m, work.u, work.b)
+    push(closed, m, work.dry, bearings, laws.P, work.inverse, out_u)
+    rates_of(closed, m, work.u, laws.b)
     rates_of(closed, m, out_u, work.rates)
     for i in range(m):
         N, T = 2 * i, 2 * i + 1
-        state.sums[CORRECTION] -= 0.5 * work.P[N] * (work.b[N] + work.rates[N])
-        state.sums[FRICTION] -= 0.5 * work.P[T] * (work.b[T] + work.rates[T])
+        state.sums[CORRECTION] -= 0.5 * laws.P[N] * (laws.b[N] + work.rates[N])
+        state.sums[FRICTION] -= 0.5 * laws.P[T] * (laws.b[T] + work.rates[T])
     for k in range(bearings):
         j = work.dry[k]
-        state.sums[DAMPING] -= 0.5 * work.P[2 * m + k] * (work.u[j] + out_u[j])
+        state.sums[DAMPING] -= 0.5 * laws.P[2 * m + k] * (work.u[j] + out_u[j])
 
 
 @kernel
@@ -170,6 +173,7 @@ def move(model, state, options, m, h, work, u):
 @kernel
 def _take_back(state, options, m, work):
     """A share of the penetrations at the middle, by the smallest change of positions; remember who is closed."""
+    laws = work.laws
     state.mode[:] = 0
     work.memory[:] = 0.0
     work.depth[0] = 0.0
@@ -178,17 +182,18 @@ def _take_back(state, options, m, work):
     for i in range(m):
         k = work.closed.ids[i]
         state.mode[k] = 1
-        work.memory[k, 0], work.memory[k, 1] = work.P[2 * i], work.P[2 * i + 1]
+        work.memory[k, 0], work.memory[k, 1] = laws.P[2 * i], laws.P[2 * i + 1]
         depth = -work.closed.kin[i].g
         work.depth[0] = max(work.depth[0], depth)
-        work.b[2 * i], work.b[2 * i + 1] = -TAKEN_BACK * max(0.0, depth - slop), 0.0
-        work.low[i] = 0.0
-        cone(work.ends, i, 0.0)
+        laws.b[2 * i], laws.b[2 * i + 1] = -TAKEN_BACK * max(0.0, depth - slop), 0.0
+        laws.low[i] = 0.0
+        cone(laws.ends, i, 0.0)
         any_deep = any_deep or depth > slop
     state.worst[0] = max(state.worst[0], work.depth[0])
     if not any_deep:
         return
     for i in range(m):
-        work.P[2 * i], work.P[2 * i + 1] = 0.0, 0.0
-    relax(work.G, work.b, work.low, work.ends, m, 0, work.P)
-    push(work.closed, m, work.dry, 0, work.P, work.inverse, state.q)
+        laws.P[2 * i], laws.P[2 * i + 1] = 0.0, 0.0
+        laws.G[2 * i, 2 * i] *= 1.0 + YIELD
+    relax(laws, m, 0)
+    push(work.closed, m, work.dry, 0, laws.P, work.inverse, state.q)

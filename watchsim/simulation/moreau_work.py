@@ -11,6 +11,7 @@ from watchsim.contact.kinematics import Closed, closed_contacts
 from watchsim.contact.poses import poses
 from watchsim.jit import by_reference
 from watchsim.mechanism.model import Model
+from watchsim.simulation.moreau_laws import Laws, laws
 from watchsim.simulation.state import room_for
 
 Array = NDArray[np.float64]
@@ -20,7 +21,7 @@ Integers = NDArray[np.int64]
 class MoreauWork(NamedTuple):
     """Room to work in; `memory` (percussions of the last step by contact), `depth`, `sweeps` and `worst` belong to the state.
 
-    Rows of G, b and P: N, T of each of the m closed contacts, then one for each bearing with dry friction.
+    Rows of `rates` and `more` are those of `laws`: N, T of each of the m closed contacts, then the bearings.
     """
 
     memory: Array  # (contacts, 2)
@@ -35,13 +36,9 @@ class MoreauWork(NamedTuple):
     joint: Array  # torque of the damping between a carried body and its carrier
     mass: Array
     inverse: Array
-    G: Array
-    b: Array
+    laws: Laws
     rates: Array
     more: Array
-    P: Array
-    low: Array  # least normal percussion, by contact
-    ends: Array  # (contacts + bearings, 4): see `moreau_prox`
     restitution: Array
     dry: Integers  # coordinate of each bearing with dry friction
     unknown: Integers
@@ -59,15 +56,13 @@ def moreau_work(model: Model) -> MoreauWork:
     dry = np.flatnonzero(model.coordinates.coulomb > 0.0)
     rows = 2 * room + len(dry)
     vectors = {name: np.zeros(n) for name in ("q", "u", "free", "force", "damping", "joint", "mass", "inverse", "at")}
-    by_row = {name: np.zeros(rows) for name in ("b", "rates", "more", "P")}
+    by_row = {name: np.zeros(rows) for name in ("rates", "more")}
     return MoreauWork(
         memory=np.zeros((len(model.contacts), 2)),
         depth=np.zeros(1),
         pose=poses(len(model.bodies)),
         closed=closed_contacts(room),
-        G=np.zeros((rows, rows)),
-        low=np.zeros(room),
-        ends=np.zeros((room + len(dry), 4)),
+        laws=laws(room, len(dry)),
         restitution=np.zeros(room),
         dry=dry,
         unknown=np.zeros(1, np.int64),

@@ -10,6 +10,7 @@ import numpy as np
 
 from watchsim.analysis.woodpecker.toy import Array, Modal
 from watchsim.jit import callable_kernel
+from watchsim.simulation.moreau_laws import laws
 from watchsim.simulation.moreau_prox import relax
 
 _relax = callable_kernel(relax)
@@ -18,13 +19,13 @@ _relax = callable_kernel(relax)
 def percussions(G: Array, rates: Array, low: Array, friction: Array) -> Array:
     """(2m,) that keep the normal rates from being negative, at least `low` along the normals."""
     m = len(low)
-    P = np.zeros(2 * m)
-    P[::2] = low
-    ends = np.outer(friction, (0.0, -1.0, 0.0, 1.0))  # Coulomb's law, see moreau_prox
-    _, settled = _relax(G, rates, low, ends, m, 0, P)
+    obeyed = laws(m, 0)
+    obeyed.G[:], obeyed.b[:], obeyed.low[:], obeyed.P[::2] = G, rates, low, low
+    obeyed.ends[:] = np.outer(friction, (0.0, -1.0, 0.0, 1.0))  # Coulomb's law, see moreau_laws
+    _, settled = _relax(obeyed, m, 0)
     if not settled:
         raise RuntimeError("the relaxation of the woodpecker has not settled")
-    return P
+    return obeyed.P
 
 
 def step_to(model: Modal, e: Array, v: Array, until: float, h: float) -> tuple[Array, Array]:
