@@ -218,6 +218,11 @@ def test_stray_line_is_a_warning_only(read_bytes: Reader) -> None:
     assert len(drawing.open_chains) == 1
 
 
+def test_a_single_line_on_a_layer_of_axes_is_meant(read_bytes: Reader) -> None:
+    drawing = read_bytes(d.dxf(d.polygon(SQUARE) + d.line((2, 2), (2, 9), layer="STAFF_AXIS")))
+    assert not drawing.findings and len(drawing.open_chains) == 1
+
+
 def test_layers_do_not_mix(read_bytes: Reader) -> None:
     drawing = read_bytes(d.dxf(d.polygon(SQUARE, "A") + d.polygon(SQUARE, "B")))
     assert sorted(loop.layer for loop in drawing.loops) == ["A", "B"]
@@ -303,4 +308,5 @@ def calls(work: Callable[[], object]) -> int:
 @pytest.mark.parametrize("make", [ring, star])
 def test_work_grows_with_the_number_of_edges(make: Callable[[int], list[Stroke]]) -> None:
     few, many = make(500), make(4000)
+    chain(many, 1e-6)  # imports what it needs
     assert calls(lambda: chain(many, 1e-6)) < 8 * 1.2 * calls(lambda: chain(few, 1e-6))

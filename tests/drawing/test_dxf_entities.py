@@ -197,6 +197,18 @@ def test_missing_and_self_containing_blocks_are_errors(read_bytes: Reader) -> No
     assert len(drawing.loops) == 1
 
 
+def test_a_block_drawn_in_another_file_is_an_error_and_an_empty_one_is_said(read_bytes: Reader) -> None:
+    head = d.record("BLOCK", (2, "GEAR"), (70, 4), *d.point(10, (0, 0)), (3, "GEAR"), (1, "gear.dwg"))
+    blocks = head + "0\nENDBLK\n8\n0\n" + d.block("NONE", "")
+    drawing = read_bytes(d.dxf(d.circle(0, 0, 1) + d.insert("GEAR", (5, 5)) + 2 * d.insert("NONE", (9, 9)), blocks=blocks))
+    assert [(finding.code, finding.severity) for finding in drawing.findings] == [
+        ("external", "error"),
+        ("empty-block", "notice"),
+    ]
+    assert "gear.dwg" in drawing.findings[0].message
+    assert len(drawing.loops) == 1
+
+
 def test_hidden_layers_are_left_out_and_said(read_bytes: Reader) -> None:
     tables = d.layers(("Off", -7, 0), ("Cold", 7, 1), ("On", 7, 0))
     entities = d.circle(0, 0, 1, layer="OFF") + 2 * d.circle(0, 0, 2, layer="cold") + d.circle(0, 0, 3, layer="ON")

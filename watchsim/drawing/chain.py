@@ -63,9 +63,10 @@ def chain_layer(layer: str, strokes: Sequence[Stroke], snap: float, deviation: f
     kept, doubled, doubles = without_doubles(pieces, nodes, range(len(pieces)), min(TIGHT, snap))
     nodes.snap(snap, loose_only=False)
     joins = nodes.snap(NOTED * snap, loose_only=True)
-    if nodes.joined:  # what was drawn twice with small differences hangs together only now
-        kept, again, more = without_doubles(pieces, nodes, sorted(kept), snap)
-        doubled, doubles = doubled | again, doubles + more
+    # What was drawn twice with small differences hangs together only now.
+    changed = {end // 2 for node in nodes.joined for end in nodes.members[node]} & kept
+    still, again, more = without_doubles(pieces, nodes, sorted(changed), snap)
+    kept, doubled, doubles = kept - changed | still, doubled | again, doubles + more
     kept, slits = without_slits(pieces, nodes, kept, doubled)
     meeting = junctions(nodes, pieces)
     paths = trace(nodes, meeting, kept)
