@@ -14,6 +14,7 @@ from watchsim.dynamics.delassus import fill_inverse
 from watchsim.dynamics.dry import add_drag, set_grips, stop_held
 from watchsim.dynamics.forces import forces
 from watchsim.jit import kernel
+from watchsim.simulation.chatter import stand_still
 from watchsim.simulation.closed import gather, refresh, resting
 from watchsim.simulation.collide import approaching, collide, count_rungs
 from watchsim.simulation.drift import project_positions, project_velocities
@@ -127,6 +128,9 @@ def _resolve(model, state, m, options, scratch, record):
         if not _slides(r, options.speed_zero, scratch.rest):
             state.counts[N_LCP_FAILED] += 1
             return LCP_FAILED, 0
+        # Their gaps must not open, however slowly, or there is nothing to stop.
+        stand_still(model, state, scratch.rest, r, options, scratch)
+        refresh(model, m, scratch.closed, scratch.pose)
         jam = options.speed_zero
     return TOO_MANY_EVENTS, 0
 
@@ -193,10 +197,13 @@ def _take(model, state, m, r, scratch, record):
 
 @kernel
 def _correct(model, state, f, scratch):
-    """Exact zero gaps and rates for the f contacts in force."""
+    """Exact zero gaps and rates for the f contacts in force; no slip against the mode where it was too slow to count."""
     if f == 0:
         return
     rest, work = scratch.rest, scratch.work
     deepest = project_positions(rest, f, True, work, state.q)
     state.worst[0] = max(state.worst[0], deepest)
-    project_velocities(rest, f, state.mode, work, state.u)
+    for i in range(f):
+        k = rest.ids[i]
+        scratch.trial[k] = STICK if state.mode[k] * rest.kin[i].gT_dot < 0.0 else state.mode[k]
+    project_velocities(rest, f, scratch.trial, work, state.u)
