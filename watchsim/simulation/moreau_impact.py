@@ -120,9 +120,8 @@ def _loss(m, work):
 @kernel
 def stop_approaches(model, state, options, m, work, record):
     """Impacts at the start of the step, into `work.u`; True if any is fast enough to be written down."""
-    closed = work.closed
     copy(state.u, work.u)
-    rates_of(closed, m, work.u, work.rates)
+    rates_of(work, m, 0, work.u, work.rates)
     fastest, kinetic = 0.0, 0.0
     for i in range(m):
         fastest = max(fastest, -work.rates[2 * i])
@@ -132,15 +131,15 @@ def stop_approaches(model, state, options, m, work, record):
     for i in range(len(work.u)):
         work.inverse[i] = 1.0 / model.coordinates[i].mass
         kinetic += 0.5 * model.coordinates[i].mass * state.u[i] * state.u[i]
-    fill_mobility(closed, m, work.dry, 0, work.inverse, work.laws.G)
+    fill_mobility(work, m, 0)
     _compress(model, state, m, work)
     for attempt in range(3):
         _expand(model, state, m, work)
         for row in range(2 * m):
             work.laws.P[row] += work.more[row]
         copy(state.u, work.u)
-        push(closed, m, work.dry, 0, work.laws.P, work.inverse, work.u)
-        rates_of(closed, m, work.u, work.laws.b)
+        push(work, m, 0, work.laws.P, work.u)
+        rates_of(work, m, 0, work.u, work.laws.b)
         if attempt == 2 or _loss(m, work) >= -GAIN * kinetic:
             break
         state.counts[N_ENERGY] += 1
