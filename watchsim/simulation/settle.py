@@ -133,7 +133,7 @@ def _go_on(model, state, f, options, scratch):
 
 @kernel
 def _correct(state, m, scratch):
-    """Exact zero gaps and rates for an island's m contacts in force; no slip against the mode where it was too slow to count."""
+    """Exact zero gaps and rates of an island's m contacts in force; no slip against the mode where it was too slow to count."""
     rest, work = scratch.rest, scratch.work
     deepest = project_positions(rest, m, True, work, state.q)
     state.worst[0] = max(state.worst[0], deepest)
