@@ -67,6 +67,11 @@ def test_inspect_writes_a_picture(tmp_path: Path) -> None:
     assert picture.read_bytes().startswith(b"\x89PNG")
 
 
+def test_inspect_draws_no_picture_of_what_it_cannot_read(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["inspect", str(tmp_path / "lost.dxf"), "--png", str(tmp_path / "lost.png")]) == 2
+    assert "there is no such file" in capsys.readouterr().out and not (tmp_path / "lost.png").exists()
+
+
 def test_check_counts_pairs_and_knows_the_frequency(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["check", str(LEVER), "--json"]) == 0
     seen = json.loads(capsys.readouterr().out)

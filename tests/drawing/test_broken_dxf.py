@@ -120,6 +120,14 @@ def test_blocks_that_multiply_are_stopped(read_bytes: Reader) -> None:
     assert "too-large" in errors(drawing)
 
 
+def test_more_pieces_than_a_drawing_can_have_are_refused_whole(read_bytes: Reader) -> None:
+    """Half a drawing would be worse than none, and takes long to look through."""
+    comb = "".join(d.line((k, 0), (k, 1)) for k in range(600))
+    drawing = read_bytes(d.dxf(d.insert("B", (0, 0), (70, 900), (44, 1e3)), blocks=d.block("B", comb)))
+    assert "nothing was read" in errors(drawing)["too-large"]
+    assert not drawing.open_chains and drawing.units == "mm"
+
+
 def test_strange_groups_are_a_warning(read_bytes: Reader) -> None:
     drawing = read_bytes(d.dxf(d.circle(0, 0, 1, (43, 2.0))))
     assert [(finding.code, finding.severity) for finding in drawing.findings] == [("strange-group", "warning")]

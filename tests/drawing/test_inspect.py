@@ -104,6 +104,49 @@ def test_every_finding_with_a_place_tells_it_once() -> None:
 
 
 def test_areas_of_several_layers_are_called_a_sum(read_bytes: Reader) -> None:
-    assert "mm² of material" in inspect_text(read_bytes(wheel()))
-    text = inspect_text(read_bytes(d.dxf(d.circle(0, 0, 2, layer="TEETH") + d.circle(0, 0, 1, layer="BORE"))))
-    assert f"{5 * math.pi:.5g} mm² in all layers added up" in text and "of material" not in text
+    assert "mm² of material\n" in inspect_text(read_bytes(wheel()))
+    text = inspect_text(read_bytes(d.dxf(d.circle(0, 0, 2, layer="TABLE") + d.circle(0, 0, 1, layer="SAFETY"))))
+    assert f"{5 * math.pi:.5g} mm² of material in all layers added up" in text
+
+
+def test_bores_are_taken_out_and_pivots_are_no_material(read_bytes: Reader) -> None:
+    pivot = d.circle(0, 0, 0.5, layer="PIVOT")
+    bore = d.circle(0, 0, 1, layer="BORE")
+    drawing = read_bytes(d.dxf(d.circle(0, 0, 4, layer="TEETH") + bore + pivot))
+    assert inspect_report(drawing)["area_mm2"] == pytest.approx(math.pi * (16 - 1), rel=1e-13)
+    text = inspect_text(drawing)
+    assert f"{15 * math.pi:.5g} mm² of material\n" in text
+    assert f"BORE   1 outline, 1 arc, {math.pi:.5g} mm² taken out" in text
+    assert f"PIVOT  1 outline, 1 arc, {0.25 * math.pi:.5g} mm², no material" in text
+
+
+def test_a_bore_in_a_hole_takes_out_nothing_more(read_bytes: Reader) -> None:
+    ring = d.circle(0, 0, 4, layer="TEETH") + d.circle(0, 0, 1, layer="TEETH")
+    for radius in (0.7, 1.0):
+        report = inspect_report(read_bytes(d.dxf(ring + d.circle(0, 0, radius, layer="Wheel hole 2"))))
+        assert report["area_mm2"] == pytest.approx(math.pi * (16 - 1), rel=1e-13)
+
+
+def test_slots_among_bores_and_the_ring_of_a_bore_count_once(read_bytes: Reader) -> None:
+    slot = d.polygon([(2, -0.5), (3, -0.5), (3, 0.5), (2, 0.5)], layer="holes")
+    ring = d.circle(0, 0, 1, layer="holes") + d.circle(0, 0, 0.8, layer="holes")
+    report = inspect_report(read_bytes(d.dxf(d.circle(0, 0, 4, layer="PLATE") + slot + ring)))
+    assert report["area_mm2"] == pytest.approx(math.pi * (16 - 1) - 1, rel=1e-13)
+
+
+def test_the_last_word_of_a_layer_says_what_it_holds(read_bytes: Reader) -> None:
+    def measured(layer: str) -> float:
+        content = d.circle(0, 0, 4, layer="PLATE") + d.circle(2, 0, 1, layer=layer)
+        return inspect_report(read_bytes(d.dxf(content)))["area_mm2"] / math.pi
+
+    for layer in ("CENTER WHEEL", "HOLE_JEWEL", "PIN", "0"):
+        assert measured(layer) == pytest.approx(17)
+    for layer in ("Lever_Pivot-2", "WHEEL CENTRE", "AXIS"):
+        assert measured(layer) == pytest.approx(16)
+    for layer in ("Pivot-Holes", "BORE_D0.3"):
+        assert measured(layer) == pytest.approx(15)
+
+
+def test_what_is_drawn_on_layers_of_bores_and_pivots_alone_is_the_part(read_bytes: Reader) -> None:
+    report = inspect_report(read_bytes(d.dxf(d.circle(0, 0, 2, layer="HOLES") + d.circle(5, 0, 1, layer="PIVOT"))))
+    assert report["area_mm2"] == pytest.approx(5 * math.pi, rel=1e-13)

@@ -44,7 +44,7 @@ class Outcome:
         work.h[:] = h
         self.grip = np.zeros(n, np.int8)
         self.gaps = closed.kin.g[:m].copy()
-        self.status = _decide(model, closed, m, SLOW, work, self.grip, self.mode)
+        self.status = _decide(model, closed, m, 0, SLOW, work, self.grip, self.mode)
         self.force, self.a = work.force[: 2 * m].copy(), np.zeros(n)
         _accelerate(closed, m, work, self.a)
         # The equality system of the decided mode has the same answer as the complementarity problem that chose it.

@@ -46,7 +46,7 @@ def test_one_contact_in_closed_form(law: str) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("law", LAWS)
 def test_one_contact_in_closed_form_many_times(law: str) -> None:
-    draws(law, 100_000, 52)
+    assert 5_000 < draws(law, 100_000, 52) < 95_000
 
 
 def bounds(case: Case, N_C: np.ndarray, T_C: np.ndarray, N_E: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -105,5 +105,6 @@ def test_a_sticking_superball_reverses_slip_and_loses_nothing(law: str) -> None:
             u[1] = -abs(u[1])
         status, after, _ = case.impact(u)
         assert status == 0
-        assert case.W @ after == pytest.approx(-(case.W @ u), abs=1e-11)
-        assert case.kinetic(after) == pytest.approx(case.kinetic(u), rel=1e-11)
+        lost = 1e-13 * max(100.0, np.linalg.cond(case.G))
+        assert case.W @ after == pytest.approx(-(case.W @ u), abs=lost)
+        assert case.kinetic(after) == pytest.approx(case.kinetic(u), rel=lost)

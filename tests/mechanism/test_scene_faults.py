@@ -195,6 +195,11 @@ def test_spring_on_an_unknown_body(desk, good):
     assert keys == ["springs.0.body", "damping.0.q_factor"], "without its spring the balance has no quality factor"
 
 
+def test_a_misspelt_inertia_is_one_fault(desk, good):
+    text = good.replace('velocity = "360 °/s"\ninertia', 'velocity = "360 °/s"\ninertai')
+    assert [fault.key for fault in faults_of(desk, text)] == ["bodies.balance.inertai"], "the spring is there all the same"
+
+
 def test_contact_of_a_body_without_outline(desk, good):
     faults = faults_of(desk, good.replace(POLYGON, ""))
     assert [fault.key for fault in faults] == ["contacts.0.between.1", "contacts.1.between.0", "contacts.2.between.0"]

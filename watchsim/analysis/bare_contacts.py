@@ -78,7 +78,7 @@ class BareContacts:
         """Status, velocities after, impulses N, T, N, T, ... of the contacts that take part."""
         after, m = u.copy(), len(self.taken)
         shares = (self.eps if eps is None else eps)[self.taken]
-        status = _kernel(impact)(self.model, self.closed, m, shares, 0.0, 0.0, self.work, after)
+        status = _kernel(impact)(self.model, self.closed, m, shares, 0.0, self.work, after)
         return int(status), after, self.work.force[: 2 * m].copy()
 
     def energy_change(self) -> float:
@@ -95,7 +95,7 @@ class BareContacts:
         for row, i in enumerate(self.taken):
             self.closed.kin[row].gN_dot, self.closed.kin[row].gT_dot = self.W[2 * i : 2 * i + 2] @ u
         self.work.h[:] = h
-        status = _kernel(decide_modes)(self.model, self.closed, len(self.taken), speed_zero, self.work, grip, mode)
+        status = _kernel(decide_modes)(self.model, self.closed, len(self.taken), 0, speed_zero, self.work, grip, mode)
         return int(status), mode
 
     def forces(self, h: Array, mode: NDArray[np.int8]) -> Array:

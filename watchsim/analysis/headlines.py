@@ -47,8 +47,7 @@ def with_error(value: float, error: float | None, unit: str) -> str:
     text = _signed(value, decimals) + unit
     if error is None:
         return text
-    shown = max(error, 10.0**-EXACT) if error > 0.0 else 0.0
-    return f"{text} ± {shown:.{decimals}f}{unit}"
+    return f"{text} ± {max(error, 10.0**-EXACT):.{decimals}f}{unit}"
 
 
 def _decimals(error: float) -> int:

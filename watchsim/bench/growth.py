@@ -27,7 +27,7 @@ DISTANCE = 0.03  # m between levers side by side
 APART = 0.013  # rad between the start angles of their balances, so that they do not tick at one instant
 STRONGER = 0.01  # share by which each torque exceeds the one before, for the same reason
 DURATIONS = (2.5, 5.0, 10.0, 20.0, 40.0)  # s
-LEVERS = (1, 2, 3, 5, 10, 20)
+LEVERS = (1, 2, 5, 10, 20, 50)
 ARCS = (2, 8, 32, 128, 512)  # in every full circle
 
 

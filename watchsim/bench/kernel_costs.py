@@ -19,7 +19,7 @@ from watchsim.mechanism.compile import compile_scene
 from watchsim.mechanism.model import ModelRef
 from watchsim.mechanism.recording import Recording
 from watchsim.mechanism.scene import Scene
-from watchsim.simulation.advance import _by_reference
+from watchsim.simulation.advance import scratch_by_reference
 from watchsim.simulation.coupled import engage, motion
 from watchsim.simulation.free import flow
 from watchsim.simulation.options import OptionsRef
@@ -28,7 +28,7 @@ from watchsim.simulation.state import StateRef
 from watchsim.simulation.stops import Stop
 
 REPEATS = 2000
-LCP_SIZE = 6  # two contacts with friction
+LCP_SIZES = {"lcp_to_1": 1, "lcp_to_2": 2, "lcp_to_4": 3, "lcp_to_8": 6, "lcp_to_16": 12, "lcp_larger": 24}  # unknowns
 MOST_SLICES = 100000
 
 
@@ -58,7 +58,7 @@ def flights_again(model, state, repeats):
 @jit.entry
 def evaluations_again(model, state, options, scratch, repeats):
     """The accelerations of coupled bodies with all monitors."""
-    m, s, o, w = ModelRef(*model), StateRef(*state), OptionsRef(*options), _by_reference(scratch)
+    m, s, o, w = ModelRef(*model), StateRef(*state), OptionsRef(*options), scratch_by_reference(scratch)
     n = len(s.q)
     w.y[:n], w.y[n : 2 * n] = s.q, s.u
     engage(m, s, w)
@@ -95,24 +95,29 @@ def coupled_run(scene: Scene) -> Run | None:
 
 
 def kernel_costs(scene: Scene) -> dict[str, float]:
-    """Seconds for one `evaluation`, `flight`, `gap_evaluation` and `lcp`; without `evaluation` where nothing ever couples."""
+    """Seconds for one `evaluation`, `flight`, `gap_evaluation`, and one complementarity problem by size (`LCP_SIZES`).
+
+    Without `evaluation` where nothing ever couples.
+    """
     run = coupled_run(scene)
     compiled = compile_scene(scene)
     model = compiled.model if run is None else run.compiled.model
     state = run.state if run is not None else Run(scene, compiled, scene.tolerance, Recording()).state
     spare = Run(scene, compiled, scene.tolerance, Recording()) if run is None else run
     q, u, pose = state.q.copy(), state.u.copy(), spare.scratch.pose
-    A = np.eye(LCP_SIZE) * 2.0 + 0.1
-    b, x, work = -np.linspace(0.5, 1.0, LCP_SIZE), np.zeros(LCP_SIZE), lcp_work(LCP_SIZE)
-    costs = {
-        "flight": _seconds(lambda: flights_again(model, state, REPEATS)),
-        "lcp": _seconds(lambda: lcps_again(A, b, LCP_SIZE, work, x, REPEATS)),
-    }
+    costs = {"flight": _seconds(lambda: flights_again(model, state, REPEATS))}
+    costs |= {name: _lcp_seconds(size) for name, size in LCP_SIZES.items()}
     if len(model.contacts):
         costs["gap_evaluation"] = _seconds(lambda: gaps_again(model, 0, q, u, pose, REPEATS))
     if run is not None:
         costs["evaluation"] = _seconds(lambda: evaluations_again(model, state, run.options, run.scratch, REPEATS))
     return costs
+
+
+def _lcp_seconds(size: int) -> float:
+    """Of a problem with that many unknowns, each of which has to be pivoted in."""
+    A, b, x, work = np.eye(size) * 2.0 + 0.1, -np.linspace(0.5, 1.0, size), np.zeros(size), lcp_work(size)
+    return _seconds(lambda: lcps_again(A, b, size, work, x, REPEATS))
 
 
 def _seconds(call: Callable[[], object]) -> float:

@@ -20,7 +20,12 @@ WORK = {
     "evaluation": ("evaluations", "accelerations of coupled bodies"),
     "flight": ("flights", "flights in closed form"),
     "gap_evaluation": ("gap_evaluations", "gaps"),
-    "lcp": ("lcp", "complementarity problems"),
+    "lcp_to_1": ("lcp_to_1", "problems of 1 unknown"),
+    "lcp_to_2": ("lcp_to_2", "problems of 2 unknowns"),
+    "lcp_to_4": ("lcp_to_4", "problems of 3 and 4 unknowns"),
+    "lcp_to_8": ("lcp_to_8", "problems of 5 to 8 unknowns"),
+    "lcp_to_16": ("lcp_to_16", "problems of 9 to 16 unknowns"),
+    "lcp_larger": ("lcp_larger", "problems of more unknowns"),
 }
 LONGEST = 10.0  # s simulated once more
 
@@ -40,6 +45,8 @@ def profile_of(run: Trajectory) -> dict[str, Any]:
     counts = again.trajectory(stop, stepping, 0.0).counts
     work: dict[str, dict[str, float]] = {}
     for name, cost in kernel_costs(run.scene).items():
+        if counts[WORK[name][0]] == 0:
+            continue
         seconds = counts[WORK[name][0]] * cost
         work[name] = {"count": counts[WORK[name][0]], "seconds_each": cost, "seconds": seconds, "share": seconds / stepping}
     floor = sum(entry["seconds"] for entry in work.values())

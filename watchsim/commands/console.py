@@ -9,7 +9,10 @@ import json
 import sys
 import time
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from watchsim.units import Dimension
 
 FINE, MISSED, BAD_INPUT, GAVE_UP, INTERRUPTED = 0, 1, 2, 3, 130
 
@@ -104,14 +107,14 @@ def parse_names(text: str | None) -> list[str] | None:
     return [name.strip() for name in text.split(",") if name.strip()] if text else None
 
 
-def parse_length(name: str, text: str) -> float:
-    """The metres of the option `--name`; above zero."""
-    from watchsim.units import LENGTH, UnitError, parse
+def parse_positive(option: str, text: str, dimension: Dimension) -> float:
+    """The value of a command-line option such as `--snap "0.01 mm"` in SI units; above zero."""
+    from watchsim.units import UnitError, parse
 
     try:
-        value = parse(text, LENGTH)
+        value = parse(text, dimension)
     except UnitError as error:
-        raise InputError(f"--{name} {text}: {error}") from error
+        raise InputError(f'{option} "{text}": {error}') from error
     if not value > 0.0:
-        raise InputError(f"--{name} {text}: must be positive.")
+        raise InputError(f'{option} "{text}": must be positive.')
     return value

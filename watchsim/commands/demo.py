@@ -21,7 +21,7 @@ def run(args: argparse.Namespace) -> int:
     from watchsim.analysis.results import check_folder
     from watchsim.analysis.summary import summary_text
     from watchsim.analysis.verify import incline_rows, verify_text
-    from watchsim.commands.run import simulate_with_progress, status, write
+    from watchsim.commands.run import Extras, simulate_with_progress, status, write
     from watchsim.commands.scenes import load_scene
     from watchsim.profiles_path import profiles_dir
 
@@ -36,9 +36,9 @@ def run(args: argparse.Namespace) -> int:
     print(f"\n2. A Swiss lever, read from DXF drawings, ticks for {DURATION:g} s", flush=True)
     scene = load_scene(str(profiles_dir() / "swiss_lever"))
     trajectory = simulate_with_progress(scene, DURATION, None)
-    summary = write(trajectory, folder, args.force, movie=True, gif=True, changed=["--duration"])
+    summary = write(trajectory, folder, Extras(movie=True, gif=True), args.force, changed=["--duration"])
     print(summary_text(trajectory, {**summary, "expect": []}), flush=True)
-    print(f"\nPlots, movie.mp4, movie.gif and all numbers: {folder}")
+    print(f"\nPlots, movie.mp4, movie.gif and all numbers: {args.output}/swiss_lever")
     print(f"Done in {time.monotonic() - start:.0f} s.")
     code = status(trajectory, summary)
     return code if code != FINE else FINE if all(row["ok"] for row in rows) else MISSED

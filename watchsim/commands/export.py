@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from watchsim.commands.console import FINE, InputError, parse_length, parse_names, print_json, say
+from watchsim.commands.console import FINE, InputError, parse_names, parse_positive, print_json, say
 
 if TYPE_CHECKING:
     from watchsim.geometry.export import Placed
@@ -42,11 +42,13 @@ def options(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from watchsim.analysis.folder import write_folder
     from watchsim.commands.scenes import load_scene
+    from watchsim.units import LENGTH
 
     formats = parse_names(args.format) or []
     if not formats or any(name not in FORMATS for name in formats):
         raise InputError(f"--format {args.format}: choose from {', '.join(FORMATS)}.")
-    thickness, deviation = parse_length("thickness", args.thickness), parse_length("deviation", args.deviation)
+    thickness = parse_positive("--thickness", args.thickness, LENGTH)
+    deviation = parse_positive("--deviation", args.deviation, LENGTH)
     scene = load_scene(args.scene, overlap=False)
     bodies = _chosen(scene, parse_names(args.bodies))
     folder = Path(args.output) if args.output else Path("export") / _name(scene)

@@ -10,7 +10,7 @@ import argparse
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from watchsim.commands.console import BAD_INPUT, FINE, InputError, check_picture, parse_length, print_json, say
+from watchsim.commands.console import BAD_INPUT, FINE, InputError, check_picture, parse_positive, print_json, say
 
 if TYPE_CHECKING:
     from watchsim.drawing.drawing import Drawing
@@ -32,17 +32,20 @@ def options(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from watchsim.drawing.inspect import inspect_report, inspect_text
     from watchsim.drawing.read import read
+    from watchsim.units import LENGTH
 
     if args.png:
         check_picture(args.png, args.file)
-    lengths = {name: parse_length(name, getattr(args, name)) for name in ("snap", "fit") if getattr(args, name) is not None}
+    asked = {name: getattr(args, name) for name in ("snap", "fit")}
+    lengths = {name: parse_positive(f"--{name}", text, LENGTH) for name, text in asked.items() if text is not None}
     try:
         drawing = read(args.file, units=args.units, **lengths)
     except ValueError as error:
         raise InputError(f"{args.file}: {error}") from error
     if args.layer:
         drawing = _only(drawing, [name.strip() for name in args.layer.split(",")])
-    if args.png:
+    unreadable = not drawing.layers and any(finding.severity == "error" for finding in drawing.findings)
+    if args.png and not unreadable:
         from watchsim.render.drawing_picture import draw_drawing
 
         draw_drawing(drawing, args.png, centres=args.centres)
@@ -51,7 +54,7 @@ def run(args: argparse.Namespace) -> int:
         print_json(inspect_report(drawing))
     else:
         print(inspect_text(drawing))
-    return BAD_INPUT if not drawing.layers and any(f.severity == "error" for f in drawing.findings) else FINE
+    return BAD_INPUT if unreadable else FINE
 
 
 def _only(drawing: Drawing, names: list[str]) -> Drawing:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +15,7 @@ from watchsim.commands.console import (
     InputError,
     Progress,
     announce_compile,
+    parse_positive,
     parse_window,
     print_json,
     say,
@@ -58,12 +60,13 @@ def options(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from watchsim.analysis.results import check_folder
     from watchsim.commands.scenes import load_scene
+    from watchsim.units import TIME
 
     scene = load_scene(args.scene, args.set)
     if args.record:
         scene = scene.set("run.record", [_record(what) for what in args.record])
-    duration = _time("--duration", args.duration)
-    step = _time("--step", args.step)
+    duration = None if args.duration is None else parse_positive("--duration", args.duration, TIME)
+    step = None if args.step is None else parse_positive("--step", args.step, TIME)
     _check_windows(scene, scene.duration if duration is None else duration, asked=bool(args.record))
     if args.tol is not None and not 1e-13 <= args.tol <= 1e-2:
         raise InputError(f"--tol {args.tol:g}: must lie between 1e-13 and 1e-2.")
@@ -80,17 +83,8 @@ def run(args: argparse.Namespace) -> int:
     given = {"--set": args.set, "--duration": duration not in (None, scene.duration), "--tol": args.tol, "--step": args.step}
     changed = [name for name, value in (*given.items(), ("--method", method != EVENT_DRIVEN)) if value]
     trajectory = simulate_with_progress(scene, duration, args.tol, method=method, step=step, start=start)
-    summary = write(
-        trajectory,
-        folder,
-        replace,
-        movie=args.movie,
-        gif=args.gif,
-        error_bars=args.error_bars,
-        plots=not args.no_plots,
-        profile=args.profile,
-        changed=changed,
-    )
+    extras = Extras(not args.no_plots, args.movie, args.gif, args.error_bars, args.profile)
+    summary = write(trajectory, folder, extras, replace, changed)
     if args.json:
         print_json(summary)
         for warning in summary["warnings"]:
@@ -126,18 +120,19 @@ def simulate_with_progress(
         progress.close()
 
 
-def write(
-    run: Trajectory,
-    folder: Path,
-    force: bool,
-    movie: bool = False,
-    gif: bool = False,
-    error_bars: bool = False,
-    plots: bool = True,
-    profile: bool = False,
-    changed: Sequence[str] = (),
-) -> dict[str, Any]:
-    """Write the results folder with plots (and movies); returns the summary as written.
+@dataclass(frozen=True, slots=True)
+class Extras:
+    """What a results folder is to hold besides the motion and its numbers."""
+
+    plots: bool = True
+    movie: bool = False
+    gif: bool = False
+    error_bars: bool = False
+    profile: bool = False
+
+
+def write(run: Trajectory, folder: Path, extras: Extras, force: bool, changed: Sequence[str] = ()) -> dict[str, Any]:
+    """Write the results folder; returns the summary as written.
 
     `changed` holds the options by which the run is another than the scene's own: its expectations are then not judged.
     """
@@ -151,14 +146,14 @@ def write(
 
     if run.stop == Stop.INTERRUPTED:
         say("Interrupted: writing what was simulated; a second Ctrl-C gives it up ...")
-    numbers = plain(_with_error_bars(run) if error_bars else summary(run))
+    numbers = plain(_with_error_bars(run) if extras.error_bars else summary(run))
     if changed:
         numbers["expect"] = [not_judged(entry, changed) for entry in numbers["expect"]]
-    if profile:
+    if extras.profile:
         from watchsim.bench.profile import profile_of
 
         numbers["profile"] = plain(profile_of(run))
-    extra: dict[str, Any] = {**tables(run), **pictures(run, plots, movie, gif)}
+    extra: dict[str, Any] = {**tables(run), **pictures(run, extras.plots, extras.movie, extras.gif)}
     write_results(run, folder, numbers, lock_text(run.scene, folder.absolute()), extra=extra, force=force)
     return numbers
 
@@ -238,21 +233,6 @@ def _record(what: str) -> object:
     if what in KEPT or (word == EVERY and number.strip().isdecimal() and int(number) > 0):
         return what
     raise InputError(f'--record "{what}": write {", ".join(KEPT)}, "{EVERY} 10", or a window such as "179 s:180 s".')
-
-
-def _time(option: str, text: str | None) -> float | None:
-    """A positive time in seconds."""
-    if text is None:
-        return None
-    from watchsim.units import TIME, UnitError, parse
-
-    try:
-        value = parse(text, TIME)
-    except UnitError as error:
-        raise InputError(f'{option} "{text}": {error}') from error
-    if not value > 0.0:
-        raise InputError(f'{option} "{text}": must be positive.')
-    return value
 
 
 def _name(scene: Scene) -> str:

@@ -56,9 +56,10 @@ def read_dxf(data: bytes, units: str | None, fit: float) -> Content:
         follow(found)
     except TooLarge:
         message = (
-            f"the drawing unfolds into more than {MOST_STROKES} pieces or {MOST_COPIES} copies of blocks; the rest was not read"
+            f"the drawing unfolds into more than {MOST_STROKES} pieces or {MOST_COPIES} copies of blocks; nothing was read"
         )
-        found.findings.append(Finding("too-large", "error", message, "Look for arrays of blocks with huge counts."))
+        refusal = Finding("too-large", "error", message, "Look for arrays of blocks with huge counts.")
+        return Content(units=name, units_from=origin, findings=(*notes, *sections.findings, refusal))
     return Content(
         strokes=tuple(found.strokes),
         points=tuple(found.points),

@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from watchsim.drawing.content import Stroke
+from watchsim.drawing.copies import SAME, Follower
 from watchsim.drawing.ellipse import ellipses_edges
-from watchsim.drawing.nurbs import splines_edges
 from watchsim.drawing.projection import MOST_STROKES, Gathering, TooLarge, Waiting, cannot_follow
 from watchsim.drawing.shapes import Conic, Spline, forward
 from watchsim.geometry.fit import Fit
@@ -22,17 +22,17 @@ def follow(found: Gathering) -> None:
     """Puts the lines and arcs of all waiting curves among the strokes, in the order of the file. May raise TooLarge."""
     waiting, found.waiting = found.waiting, []
     strokes: list[Stroke] = []
+    follower = Follower(found.scale)
     taken = 0
     for first in range(0, len(waiting), AT_ONCE):
         chosen = waiting[first : first + AT_ONCE]
-        for curve, (fit, fitted) in zip(chosen, _fits(chosen, found.scale), strict=True):
+        for curve, (fit, fitted) in zip(chosen, _fits(chosen, follower), strict=True):
             strokes += found.strokes[taken : curve.before]
             taken = curve.before
             strokes += [Stroke(edge, curve.layer, curve.source, curve.run) for edge in fit.edges]
             if fitted:
                 _count(found, curve, fit)
         if len(strokes) > MOST_STROKES:
-            found.strokes = strokes[:MOST_STROKES]
             raise TooLarge
     found.strokes = strokes + found.strokes[taken:]
 
@@ -41,19 +41,19 @@ def _count(found: Gathering, curve: Waiting, fit: Fit) -> None:
     found.curves += curve.curves
     found.arcs += sum(isinstance(edge, Arc) for edge in fit.edges)
     found.deviation = max(found.deviation, fit.deviation + curve.moved)
-    if fit.deviation > curve.limit:
+    if fit.deviation > curve.limit * (1.0 + SAME):
         cannot_follow(found, curve, fit.deviation)
 
 
-def _fits(waiting: Sequence[Waiting], scale: float) -> list[tuple[Fit, bool]]:
+def _fits(waiting: Sequence[Waiting], follower: Follower) -> list[tuple[Fit, bool]]:
     """Lines and arcs for each curve, and whether anything had to be fitted."""
     splines = [(k, curve.shape, curve.limit) for k, curve in enumerate(waiting) if isinstance(curve.shape, Spline)]
     conics = [(k, forward(curve.shape), curve.limit) for k, curve in enumerate(waiting) if isinstance(curve.shape, Conic)]
     result = [(Fit((), 0.0), False)] * len(waiting)
-    followed = splines_edges([shape for _, shape, _ in splines], scale, [limit for _, _, limit in splines])
+    followed = follower.edges([shape for _, shape, _ in splines], [limit for _, _, limit in splines])
     for (k, _, _), fit in zip(splines, followed, strict=True):
         result[k] = fit
-    rounded = ellipses_edges([shape for _, shape, _ in conics], scale, [limit for _, _, limit in conics])
+    rounded = ellipses_edges([shape for _, shape, _ in conics], follower.scale, [limit for _, _, limit in conics])
     for (k, _, _), ellipse in zip(conics, rounded, strict=True):
         result[k] = ellipse, True
     return result

@@ -8,6 +8,9 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+import numpy as np
+from numpy.typing import NDArray
+
 from watchsim.drawing.content import Stroke
 from watchsim.drawing.findings import Finding
 from watchsim.drawing.nodes import Nodes
@@ -15,6 +18,7 @@ from watchsim.geometry.primitives import Line, Point
 
 STRAY = 0.25  # a single line whose ends are further than this part of its length from anything is no torn outline
 MENDABLE = 1e-4  # metres: up to here a larger snap is proposed
+FEW = 300  # up to that many ends all pairs are compared; the library takes longer to load
 NEIGHBOURS = 8  # nearest ends considered for each loose end
 
 
@@ -29,19 +33,29 @@ def open_ends(chains: Sequence[Sequence[int]], loose: Sequence[int], strokes: Se
 
 
 def near_pairs(points: Sequence[Point]) -> list[tuple[float, int, int]]:
-    """(distance, i, j), nearest first, of every point i and its nearest others j."""
-    from scipy.spatial import KDTree
-
+    """(distance, i, j) with i < j, nearest first, of all pairs of which one is among the nearest of the other."""
     count = min(NEIGHBOURS + 1, len(points))
     if count < 2:
         return []
+    distances, others = nearest(np.array(points), count)
+    own = np.broadcast_to(np.arange(len(points))[:, None], others.shape)
+    first, second, gap = np.minimum(own, others).ravel(), np.maximum(own, others).ravel(), distances.ravel()
+    order = np.lexsort((second, first, gap))
+    order = order[first[order] != second[order]]
+    pairs = zip(gap[order].tolist(), first[order].tolist(), second[order].tolist(), strict=True)
+    return list(dict.fromkeys(pairs))
+
+
+def nearest(points: NDArray[np.float64], count: int) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
+    """Distances and numbers (n, count) of the points nearest to each of points (n, 2), itself among them."""
+    if len(points) <= FEW:
+        gaps = np.hypot(*(points[:, None] - points).transpose(2, 0, 1))
+        others = np.argsort(gaps, axis=1, kind="stable")[:, :count]
+        return np.take_along_axis(gaps, others, axis=1), others
+    from scipy.spatial import KDTree
+
     distances, others = KDTree(points).query(points, k=count)
-    return sorted(
-        (float(d), i, int(j))
-        for i, (row, names) in enumerate(zip(distances, others, strict=True))
-        for d, j in zip(row, names, strict=True)
-        if int(j) != i
-    )
+    return distances, others
 
 
 def stray_lines(
@@ -49,11 +63,12 @@ def stray_lines(
 ) -> dict[int, None]:
     """The single lines (numbers of strokes, as an ordered set) far from every other loose end."""
     ends = set(loose)
-    stray = {number: None for number in alone if isinstance(strokes[number].edge, Line)}
+    stray = {number: STRAY * strokes[number].edge.length for number in alone if isinstance(strokes[number].edge, Line)}
     for gap, i, j in near:
         a, b = loose[i] // 2, loose[j] // 2
-        if a in stray and a != b and gap < STRAY * strokes[a].edge.length:
-            del stray[a]
+        for number in (a, b) if a != b else ():
+            if gap < stray.get(number, 0.0):
+                del stray[number]
     return {number: None for number in stray if {2 * number, 2 * number + 1} <= ends}
 
 

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Sequence
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.findings import ORDER, Finding
 from watchsim.drawing.gaps import shown
+from watchsim.drawing.material import layer_area, layer_roles, material_area
 from watchsim.geometry.extent import Box, extents, total_length
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.mass import area
@@ -18,6 +19,7 @@ from watchsim.geometry.primitives import Arc, Point
 
 TOLD = re.compile(r"\([-−]?\d[^()]*, [-−]?\d[^()]*\)")  # coordinates in a message
 SHOWN = 12  # findings of one code written out in the text
+SAID = {"material": "", "bore": " taken out", "mark": ", no material"}
 NOTHING = 1e-12  # m; deviations below are those of floating point
 
 
@@ -46,13 +48,8 @@ def inspect_report(drawing: Drawing) -> dict[str, object]:
         "lines": lines,
         "arcs": arcs,
         "length_mm": 1e3 * total_length(everything),
-        "area_mm2": 1e6 * net_area(drawing.loops),
+        "area_mm2": 1e6 * material_area(drawing.loops),
     }
-
-
-def net_area(loops: Iterable[Loop]) -> float:
-    """Material in m²: outer loops less their holes."""
-    return sum(area(loop) for loop in loops)
 
 
 def counts(loops: Iterable[Loop]) -> tuple[int, int]:
@@ -128,13 +125,13 @@ def size_lines(drawing: Drawing, box: Box | None) -> list[str]:
         f"  the part is {three_digits(max(width, height))} mm across ({width:.4g} × {height:.4g} mm; x {x}, y {y})",
         f"  {plural(len(drawing.loops), 'closed outline')}, {plural(len(drawing.open_chains), 'open chain')}: "
         f"{plural(lines, 'line')} and {plural(arcs, 'arc')}, {1e3 * total_length(everything):.5g} mm long, "
-        f"{1e6 * net_area(drawing.loops):.5g} mm² {_covered(drawing.loops)}",
+        f"{1e6 * material_area(drawing.loops):.5g} mm² {_covered(drawing.loops)}",
     ]
 
 
 def _covered(loops: Iterable[Loop]) -> str:
-    """What the areas added up are: a layer takes nothing out of another one, whether a bore is drawn on it or a stone."""
-    return "of material" if len({loop.layer for loop in loops}) < 2 else "in all layers added up"
+    """What the area is: layers may lie above each other."""
+    return "of material" if list(layer_roles(loops).values()).count("material") < 2 else "of material in all layers added up"
 
 
 def three_digits(value: float) -> str:
@@ -145,6 +142,7 @@ def three_digits(value: float) -> str:
 def layer_lines(drawing: Drawing) -> list[str]:
     """One row per layer, aligned."""
     result = []
+    roles = layer_roles(drawing.loops)
     width = max((len(layer) for layer in drawing.layers), default=0)
     places: dict[str, list[Point]] = {}
     for name, x, y in drawing.points:
@@ -156,7 +154,7 @@ def layer_lines(drawing: Drawing) -> list[str]:
         words = [plural(facts["loops"], "outline") + (f" ({plural(holes, 'hole')})" if holes else "")] if facts["loops"] else []
         words += [plural(facts["open_chains"], "open chain")] if facts["open_chains"] else []
         words += [plural(facts[f"{kind}s"], kind) for kind in ("line", "arc") if facts[f"{kind}s"]]
-        words += [f"{1e6 * net_area(loops):.5g} mm²"] if loops else []
+        words += [f"{1e6 * layer_area(loops):.5g} mm²{SAID[roles[layer]]}"] if loops else []
         if len(points) == 1:
             words.append(f"a point at ({1e3 * points[0][0]:.6g}, {1e3 * points[0][1]:.6g}) mm")
         elif points:

@@ -11,7 +11,10 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
+import numpy as np
+
 from watchsim.drawing.content import Stroke
+from watchsim.geometry.edge_table import table_of
 from watchsim.geometry.primitives import Point
 
 TIGHT = 1e-9  # metres: the decimals of a drawing
@@ -31,7 +34,8 @@ class Nodes:
     """The node of every end. End 2·i is the start of stroke i, 2·i + 1 its end."""
 
     def __init__(self, strokes: Sequence[Stroke]) -> None:
-        self.ends: list[Point] = [p for stroke in strokes for p in (stroke.edge.start, stroke.edge.end)]
+        table = table_of([stroke.edge for stroke in strokes])
+        self.ends: list[Point] = [(x, y) for x, y in np.hstack((table.start, table.end)).reshape(-1, 2).tolist()]
         self.lengths = [stroke.edge.length for stroke in strokes]
         self.at: list[Point] = []
         self.members: list[list[int]] = []
@@ -43,7 +47,10 @@ class Nodes:
         grid = Grid(TIGHT)
         for end, p in enumerate(self.ends):
             best, nearest = -1, TIGHT
-            for node in grid.around(p):
+            before = self.node[-1] if end % 2 == 0 and end else -1
+            # Most often an edge starts where the one before ends: no other node can be nearer.
+            beside = before >= 0 and math.dist(p, self.at[before]) <= 0.5 * TIGHT and self._may_join(end, before, TIGHT)
+            for node in (before,) if beside else grid.around(p):
                 gap = math.dist(p, self.at[node])
                 if gap <= nearest and self._may_join(end, node, TIGHT):
                     best, nearest = node, gap

@@ -116,6 +116,8 @@ def splines_edges(splines: Sequence[Spline], scale: float, tolerances: Sequence[
 
 def _put_together(parts: Sequence[Part], fits: Iterator[Fit], tolerance: float) -> tuple[Fit, bool]:
     """The edges of the parts of one spline: their own, or the next of the fits."""
+    if len(parts) == 1 and parts[0].edge is None:
+        return next(fits), True
     edges: list[Edge] = []
     worst, fitted = 0.0, False
     for part in parts:

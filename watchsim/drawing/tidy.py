@@ -14,7 +14,7 @@ from watchsim.drawing.nodes import Grid, Nodes
 from watchsim.drawing.outline import Outline
 from watchsim.geometry.extent import Box, extents
 from watchsim.geometry.loop import Loop
-from watchsim.geometry.primitives import Arc, Edge, Point
+from watchsim.geometry.primitives import Arc, Edge
 
 NOTHING = 1e-12  # metres; far below any decimal of a drawing
 SAME = 1e-9  # metres
@@ -91,7 +91,8 @@ def without_doubles(strokes: Sequence[Stroke], nodes: Nodes, reach: float) -> tu
         a, b = nodes.of(number)
         key = (min(a, b), max(a, b), isinstance(stroke.edge, Arc))
         others = groups.setdefault(key, [])
-        twin = next((o for o in others if math.dist(middle(strokes[o].edge), middle(stroke.edge)) <= reach), None)
+        half = stroke.edge.point(0.5) if others else (0.0, 0.0)
+        twin = next((o for o in others if math.dist(strokes[o].edge.point(0.5), half) <= reach), None)
         if twin is None:
             others.append(number)
             kept.add(number)
@@ -101,10 +102,6 @@ def without_doubles(strokes: Sequence[Stroke], nodes: Nodes, reach: float) -> tu
         by = "itself" if strokes[twin].source == stroke.source else strokes[twin].source
         findings.append(at_edge("duplicate", f"{stroke.source} repeats an edge of {by}; one was left out", stroke))
     return kept, doubled, findings
-
-
-def middle(edge: Edge) -> Point:
-    return edge.point(0.5)
 
 
 def without_slits(

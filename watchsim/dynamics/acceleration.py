@@ -91,14 +91,15 @@ def _equation(work, m, row, line):
 
 
 @kernel
-def decide_modes(model, closed, m, speed_zero, work, out_grip, out_mode):
-    """Acceleration-level LCP over I_N, the first m closed contacts, and the bearings whose grip is STICK; returns its status.
+def decide_modes(model, closed, m, bearings, speed_zero, work, out_grip, out_mode):
+    """Acceleration-level LCP over I_N, the first m closed contacts, and the bearings listed in `work.dry`; returns its status.
 
     Contacts whose |g_T_dot| is below `speed_zero` may stick; the others slide as they do. Sets modes and grips, fills
     `work.force`, `work.inverse` and adds to `work.h` the dry friction of the bearings that begin to move. NO_FORCE, or the
     status of the LCP: no finite force keeps the bodies apart (Painlevé's paradox, if a contact slides).
     """
-    bearings = _begin(model, out_grip, work)
+    for i in range(len(model.coordinates)):
+        work.inverse[i] = 1.0 / model.coordinates[i].mass
     fill_delassus(closed, m, work)
     fill_bearings(closed, m, bearings, work)
     gap_accelerations(closed, m, work, work.b, work.size)
@@ -121,18 +122,6 @@ def decide_modes(model, closed, m, speed_zero, work, out_grip, out_mode):
             work.force[2 * i], work.force[2 * i + 1] = 0.0, 0.0
     _decide_grips(model, m, bearings, work, out_grip)
     return 0
-
-
-@kernel
-def _begin(model, grip, work):
-    """Every coordinate may move; lists the bearings that might hold and returns their number."""
-    bearings = 0
-    for i in range(len(model.coordinates)):
-        work.inverse[i] = 1.0 / model.coordinates[i].mass
-        if grip[i] == STICK:
-            work.dry[bearings] = i
-            bearings += 1
-    return bearings
 
 
 @kernel

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from watchsim.contact.index_sets import STICK
 from watchsim.dynamics.lcp import LcpWork, lcp_work
-from watchsim.dynamics.parts import Parts, parts_of
 from watchsim.jit import by_reference, kernel
 
 Array = NDArray[np.float64]
@@ -51,13 +50,14 @@ class ContactWork(NamedTuple):
     lcp: LcpWork
     h: Array  # (n,)
     rungs: Integers  # problems solved since last asked, by Rung; the last one counts those without a solution
+    sizes: Integers  # the same problems by their number of unknowns, see `LARGEST`
     note: Integers  # of the last problem: contacts, elements, bearings, level, status of Lemke
-    parts: Parts  # the whole of a problem that falls into parts
 
 
 ContactWorkRef = by_reference(ContactWork, __name__)
 
 RUNGS = 4
+LARGEST = (1, 2, 4, 8, 16)  # unknowns of the problems counted together; one more place for larger ones
 
 
 def contact_work(room: int, coordinates: int) -> ContactWork:
@@ -90,8 +90,8 @@ def contact_work(room: int, coordinates: int) -> ContactWork:
         lcp=lcp_work(side),
         h=np.zeros(coordinates),
         rungs=np.zeros(RUNGS, np.int64),
+        sizes=np.zeros(len(LARGEST) + 1, np.int64),
         note=np.zeros(5, np.int64),
-        parts=parts_of(side, blocks),
     )
 
 

@@ -11,19 +11,18 @@ from watchsim.jit import kernel
 
 
 @kernel
-def set_grips(model, u, speed_zero, size, out_grip):
-    """What the velocities say; STICK where one is below rounding: held or about to move. Returns how many of those."""
-    standing = 0
+def set_grips(model, u, label, island, options, out_grip):
+    """What the velocities of the island's coordinates say; STICK where one is below rounding: held or about to move."""
     for i in range(len(model.coordinates)):
         coordinate = model.coordinates[i]
+        if label[i] != island:
+            continue
         if coordinate.coulomb == 0.0:
             out_grip[i] = OPEN
-        elif abs(u[i]) * size <= speed_zero * coordinate.scale:
+        elif abs(u[i]) * options.size <= options.speed_zero * coordinate.scale:
             out_grip[i] = STICK
-            standing += 1
         else:
             out_grip[i] = FORWARD if u[i] > 0.0 else BACKWARD
-    return standing
 
 
 @kernel
@@ -45,21 +44,22 @@ def drag_power(model, grip, u):
 
 
 @kernel
-def load_on(closed, m, work, i):
-    """(force, sum of its terms without sign) of drives and contacts on coordinate i, from `work.h` and `work.force`."""
-    load, terms = work.h[i], abs(work.h[i])
-    for j in range(m):
-        for k in range(closed.slots[j]):
-            if closed.coord[j, k] == i:
-                normal, tangential = closed.w_N[j, k] * work.force[2 * j], closed.w_T[j, k] * work.force[2 * j + 1]
-                load += normal + tangential
-                terms += abs(normal) + abs(tangential)
-    return load, terms
+def add_loads(closed, m, force, grip, out_load, out_terms):
+    """Add what the m contacts do to the coordinates that are held, and the sum of its terms without sign."""
+    for row in range(m):
+        for k in range(closed.slots[row]):
+            i = closed.coord[row, k]
+            if grip[i] == STICK:
+                normal, tangential = closed.w_N[row, k] * force[2 * row], closed.w_T[row, k] * force[2 * row + 1]
+                out_load[i] += normal + tangential
+                out_terms[i] += abs(normal) + abs(tangential)
 
 
 @kernel
-def stop_held(model, grip, out_u):
-    """Velocities after a decision: zero where held; where just set in motion, never against the new direction."""
-    for i in range(len(model.coordinates)):
+def stop_held(label, island, grip, out_u):
+    """Velocities of the island after a decision: zero where held; where just set in motion, never against the new direction."""
+    for i in range(len(label)):
+        if label[i] != island:
+            continue
         if grip[i] == STICK or (grip[i] != OPEN and grip[i] * out_u[i] < 0.0):
             out_u[i] = 0.0

@@ -11,7 +11,6 @@ from watchsim.dynamics.coulomb import add_element, element_row, fill_matrix, fil
 from watchsim.dynamics.delassus import apply, contact_velocities, fill_delassus
 from watchsim.dynamics.expansion import interval
 from watchsim.dynamics.ladder import LEMKE, keep_basis, solve_contacts
-from watchsim.dynamics.parts import spare_parts
 from watchsim.jit import kernel
 
 LEVEL_COMPRESSION, LEVEL_EXPANSION = 2, 3
@@ -39,14 +38,13 @@ def _begin(model, closed, m, work):
 
 
 @kernel
-def _compress(model, closed, m, u, jam, slow, work):
+def _compress(model, closed, m, u, jam, work):
     """Impulses of the compression into `work.force`; rates before it are in `work.b`. Returns (LCP status, elements)."""
     elements = _begin(model, closed, m, work)
     fill_delassus(closed, m, work)
     contact_velocities(closed, m, u, work.b)
     fill_matrix(work, m, elements)
     fill_rhs(work, m, elements, work.b)
-    spare_parts(work, m, elements, slow)
     nudged = _nudge(m, jam, work)
     work.note[0], work.note[1], work.note[2], work.note[3] = m, elements, 0, LEVEL_COMPRESSION
     status, rung = solve_contacts(work, m, elements)
@@ -73,7 +71,7 @@ def _nudge(m, jam, work):
 
 
 @kernel
-def _expand(model, closed, m, restitution, elements, slow, work):
+def _expand(model, closed, m, restitution, elements, work):
     """Impulses of the expansion into `work.more`. Returns the LCP status.
 
     Unknowns: Lambda_NP = Lambda_NE - eps Lambda_NC and the distance of Lambda_TE from the lower end of its interval.
@@ -101,7 +99,6 @@ def _expand(model, closed, m, restitution, elements, slow, work):
             work.size[row] -= work.G[row, 2 * i + 1] * work.other_x[i]
     fill_matrix(work, m, elements)
     fill_rhs(work, m, elements, work.size)
-    spare_parts(work, m, elements, slow)
     work.note[3] = LEVEL_EXPANSION
     status, _ = solve_contacts(work, m, elements)
     for i in range(m):
@@ -114,17 +111,14 @@ def _expand(model, closed, m, restitution, elements, slow, work):
 
 
 @kernel
-def impact(model, closed, m, restitution, jam, slow, work, out_u):
+def impact(model, closed, m, restitution, jam, work, out_u):
     """Two-phase impact of the first m closed contacts; `out_u` holds the velocities before and gets those after.
 
     `restitution[i]` is eps_N of row i. With `jam` > 0 (m/s) contacts that slide while their gap stands still, to that
-    speed, are jammed: the impulses that stop them are found although nothing approaches. Bodies none of whose contacts
-    approaches faster than `slow` (m/s), nor those of others that they touch, take no part. Total impulses N, T are left in
+    speed, are jammed: the impulses that stop them are found although nothing approaches. Total impulses N, T are left in
     `work.force`, rates before the impact in `work.b`. Returns the LCP status (0: solved); the velocities are changed only then.
     """
-    if jam > 0.0:
-        slow = -1.0  # nothing approaches, and what is jammed may be anywhere
-    status, elements = _compress(model, closed, m, out_u, jam, slow, work)
+    status, elements = _compress(model, closed, m, out_u, jam, work)
     if status != 0:
         return status
     returns = False
@@ -132,7 +126,7 @@ def impact(model, closed, m, restitution, jam, slow, work, out_u):
         if restitution[i] > 0.0 and work.force[2 * i] > 0.0:
             returns = True
     if returns:
-        status = _expand(model, closed, m, restitution, elements, slow, work)
+        status = _expand(model, closed, m, restitution, elements, work)
         if status != 0:
             return status
         for row in range(2 * m):

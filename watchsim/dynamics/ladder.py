@@ -7,10 +7,10 @@ the problem is checked against the first form. If nothing does, the caller stops
 
 from __future__ import annotations
 
+from watchsim.dynamics.delassus import LARGEST
 from watchsim.dynamics.lcp import OK, lemke_checked
 from watchsim.dynamics.lcp_basis import ROUNDING, is_solution, solve_active
 from watchsim.dynamics.lcp_scaling import scale, unscale
-from watchsim.dynamics.parts import keep_whole, label_parts, put_part, restore_whole, take_part
 from watchsim.jit import kernel
 
 LEMKE, COPOSITIVE, ENUMERATED, FAILED = 0, 1, 2, 3  # rungs: places in ContactWork.rungs
@@ -19,29 +19,7 @@ MODES = 50000  # sets of modes tried at most: some tenths of a second
 
 @kernel
 def solve_contacts(work, m, elements):
-    """Solve the problem in `work.A`, `work.rhs` into `work.x`, part by part; returns (status: OK or why Lemke failed, rung).
-
-    Of several parts the status is that of one that failed, the rung the furthest one climbed.
-    """
-    n = m + 2 * elements
-    parts = label_parts(work, n)
-    if parts <= 1:
-        return _climb(work, m, elements)
-    keep_whole(work, n, elements)
-    status, furthest = OK, LEMKE
-    for part in range(parts):
-        contacts, held = take_part(work, m, elements, part)
-        outcome, rung = _climb(work, contacts, held)
-        put_part(work, contacts, held)
-        status = outcome if outcome != OK else status
-        furthest = max(furthest, rung)
-    restore_whole(work, n, elements)
-    return status, furthest
-
-
-@kernel
-def _climb(work, m, elements):
-    """The same for one part."""
+    """Solve the problem in `work.A`, `work.rhs` into `work.x`; returns (status: OK or why Lemke failed, rung)."""
     n = m + 2 * elements
     status = lemke_checked(work.A, work.rhs, n, work.lcp, work.x)
     work.note[4] = status
@@ -53,6 +31,10 @@ def _climb(work, m, elements):
         elif enumerate_modes(work, m, elements):
             rung = ENUMERATED
     work.rungs[rung] += 1
+    place = 0
+    while place < len(LARGEST) and n > LARGEST[place]:
+        place += 1
+    work.sizes[place] += 1
     return (OK if rung != FAILED else status), rung
 
 

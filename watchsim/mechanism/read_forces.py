@@ -154,10 +154,10 @@ def _from_quality(entry: Entry, springs: tuple[Spring, ...]) -> float:
     if "viscous" in table:
         table.fault("q_factor", "q_factor and viscous say the same thing: leave one out")
     quality = table.positive("q_factor", "it is the quality factor of the oscillation, about 250 for a balance")
-    stiffness = sum(spring.stiffness for spring in springs if spring.body == entry.name)
-    if entry.body and stiffness == 0.0:
+    own = [spring.stiffness for spring in springs if spring.body == entry.name]
+    if entry.body and not own:
         table.fault(
             "q_factor", f"{entry.name} has no spring, so it has no quality factor. Add one under [[springs]] or write viscous"
         )
-    product = stiffness * entry.mass
+    product = sum(own) * entry.mass
     return math.sqrt(product) / quality if product > 0.0 and quality > 0.0 else NAN

@@ -1,4 +1,4 @@
-"""Which keys may a scene file hold, and what is refused for now?"""
+"""Which keys may a scene file hold, and which of them ask for what is not done yet?"""
 
 from __future__ import annotations
 

@@ -13,14 +13,14 @@ from watchsim.contact.lookup import time_through_cells
 from watchsim.dynamics.delassus import ContactWorkRef, fill_inverse
 from watchsim.dynamics.forces import next_knot
 from watchsim.dynamics.lcp import LcpWorkRef
-from watchsim.dynamics.parts import PartsRef
 from watchsim.jit import entry, inlined, kernel
 from watchsim.mechanism.model import CellsRef, ModelRef
 from watchsim.simulation.coupled import motion
 from watchsim.simulation.drift import project_positions, project_velocities
-from watchsim.simulation.free import quarter_period
+from watchsim.simulation.flight import FLIGHT_PHASE, add_flight_sums, begin_flight, can_fly, flight_length, keep_flight_rows
 from watchsim.simulation.integrator import coupled_step, dense_value
-from watchsim.simulation.keep import is_kept, keep_row
+from watchsim.simulation.islands import place_contacts
+from watchsim.simulation.keep import keep_row
 from watchsim.simulation.leave import first_leave, first_turn
 from watchsim.simulation.options import FINEST_ROWS, OptionsRef
 from watchsim.simulation.passages import keep_passages
@@ -29,88 +29,14 @@ from watchsim.simulation.settle import settle
 from watchsim.simulation.state import DAMPING, DRIVE, FRICTION, N_FLIGHTS, SUMS, RecordRef, ScratchRef, StateRef, StepRef
 from watchsim.simulation.stops import Stop
 from watchsim.simulation.touch import first_touch
-from watchsim.simulation.within import begin_flight, coordinate_within, flight_acceleration
 
 RUNNING, SLICE, CELL_UNKNOWN, BUFFER_FULL = int(Stop.RUNNING), int(Stop.SLICE), int(Stop.CELL_UNKNOWN), int(Stop.BUFFER_FULL)
 DURATION, STEP_TOO_SMALL, NOT_FINITE = int(Stop.DURATION), int(Stop.STEP_TOO_SMALL), int(Stop.NOT_FINITE)
 TOO_MANY_EVENTS, LAST_STEP = int(Stop.TOO_MANY_EVENTS), int(Stop.LAST_STEP)
 FLIGHT_CELLS = 128
-FLIGHT_PHASE = 1.6  # rad of the fastest coordinate's own time scale: the longest flight
 EVENTS_AT_ONCE = 2000
 ROWS_PER_STEP = math.ceil(FLIGHT_PHASE / FINEST_ROWS) + 8
 EVENTS_PER_CONTACT = 20
-
-# Gauss-Legendre nodes and weights on [0, 1]: damping losses of a flight of at most a quarter period, to rounding.
-_NODES = (0.019855071751231856, 0.10166676129318664, 0.2372337950418355, 0.4082826787521751)
-_WEIGHTS = (0.05061426814518813, 0.11119051722668724, 0.15685332293894363, 0.18134189168918099)
-
-
-@kernel
-def _row_spacing(model, options, i):
-    """Longest time between rows for coordinate i in flight: its own time scale."""
-    coordinate = model.coordinates[i]
-    spacing = math.inf
-    if coordinate.stiffness > 0.0:
-        spacing = options.row_phase * math.sqrt(coordinate.mass / coordinate.stiffness)
-    if coordinate.viscous > 0.0:
-        spacing = min(spacing, options.row_phase * coordinate.mass / coordinate.viscous)
-    return spacing
-
-
-@kernel
-def _flight_length(model, state, options):
-    """(length, row spacing): of an exact flight now."""
-    length, spacing = options.max_step, math.inf
-    for i in range(len(model.coordinates)):
-        if state.awake[i]:
-            length = min(length, quarter_period(model.coordinates[i]))
-            spacing = min(spacing, _row_spacing(model, options, i))
-    return min(length, FLIGHT_PHASE / options.row_phase * spacing), spacing
-
-
-@kernel
-def _can_fly(model, state):
-    """True if no contact is in force between awake bodies and all awake coordinates have exact solutions."""
-    if state.numbers[0] > 0:
-        return False
-    for i in range(len(model.coordinates)):
-        if state.awake[i] and not model.coordinates[i].linear:
-            return False
-    return True
-
-
-@kernel
-def _flight_sums(model, state, step, end):
-    """Work in and damping losses of the first `end` seconds of a flight."""
-    for i in range(len(model.coordinates)):
-        coordinate = model.coordinates[i]
-        if not state.awake[i]:
-            continue
-        state.sums[DRIVE] += coordinate.force * (coordinate_within(model, state, step, i, end)[0] - step.q[i])
-        if coordinate.coulomb > 0.0:
-            state.sums[DAMPING] += coordinate.coulomb * abs(coordinate_within(model, state, step, i, end)[0] - step.q[i])
-        if coordinate.viscous == 0.0:
-            continue
-        total = 0.0
-        for j in range(4):
-            first = coordinate_within(model, state, step, i, end * _NODES[j])[1]
-            last = coordinate_within(model, state, step, i, end * (1.0 - _NODES[j]))[1]
-            total += _WEIGHTS[j] * (first * first + last * last)
-        state.sums[DAMPING] += coordinate.viscous * end * total
-
-
-@kernel
-def _flight_rows(model, state, end, spacing, scratch, record):
-    """Rows of a flight, evenly spaced, the last one at its end; brings the state there."""
-    step = scratch.step
-    n = len(model.coordinates)
-    rows = 1 if spacing == math.inf or not is_kept(record, step.span[0], end) else max(1, math.ceil(end / spacing))
-    for row in range(1, rows + 1):
-        tau = end * row / rows if row < rows else end
-        for i in range(n):
-            state.q[i], state.u[i] = coordinate_within(model, state, step, i, tau)
-            state.a[i] = flight_acceleration(model, state, i, state.q[i], state.u[i])
-        keep_row(state, record, step.span[0] + tau, state.q, state.u, state.a)
 
 
 @kernel
@@ -128,11 +54,13 @@ def _accept_coupled(model, state, options, end, scratch):
     for i in range(SUMS):
         state.sums[(DRIVE, DAMPING, FRICTION)[i]] += scratch.y[2 * n + i]
     motion(model, state, options, state.clock[0], scratch.y, scratch)
-    m = state.numbers[0]
-    if m > 0:
+    first = 0
+    while first < state.numbers[0]:
+        m = place_contacts(model, state.active, first, state.upto[first], scratch.pose, scratch.closed)
         deepest = project_positions(scratch.closed, m, True, scratch.work, state.q)
         state.worst[0] = max(state.worst[0], deepest)
         project_velocities(scratch.closed, m, state.mode, scratch.work, state.u)
+        first += m
     for i in range(n):
         state.a[i] = scratch.dy[n + i]
 
@@ -155,10 +83,10 @@ def _room_left(record, contacts):
 def _smooth_step(model, cells, state, options, end_time, scratch, record):
     """One smooth step up to its first event; returns (Stop code, event?)."""
     left = end_time - state.clock[0]
-    flying, spacing, leave = _can_fly(model, state), math.inf, math.inf
+    flying, spacing, leave = can_fly(model, state), math.inf, math.inf
     proposed = state.clock[1]
     if flying:
-        length, spacing = _flight_length(model, state, options)
+        length, spacing = flight_length(model, state, options)
         begin_flight(model, state, min(length, left), scratch)
         # A long flight would ask about cells far behind the first event.
         for p in range(len(model.pairs)):
@@ -181,8 +109,8 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
     state.clock[0] = end_time if end == left else step.span[0] + end
     if flying:
         state.counts[N_FLIGHTS] += 1
-        _flight_sums(model, state, step, end)
-        _flight_rows(model, state, end, spacing, scratch, record)
+        add_flight_sums(model, state, step, end)
+        keep_flight_rows(model, state, end, spacing, scratch, record)
     else:
         _accept_coupled(model, state, options, end, scratch)
         keep_inner_rows(model, options, end, scratch, record)
@@ -196,8 +124,8 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
 def _reaches(model, state, options, end_time):
     """True if the next step, taken freely, might come as far as `end_time`."""
     longest = min(state.clock[1], options.max_step)
-    if _can_fly(model, state):
-        longest, _ = _flight_length(model, state, options)
+    if can_fly(model, state):
+        longest, _ = flight_length(model, state, options)
     return longest >= end_time - state.clock[0]
 
 
@@ -246,7 +174,7 @@ def _loop(model, cells, state, options, until, scratch, record):
 
 
 @inlined
-def _by_reference(scratch):
+def scratch_by_reference(scratch):
     """The scratch arrays as nested structs."""
     work = scratch.work
     inner = ContactWorkRef(
@@ -275,8 +203,8 @@ def _by_reference(scratch):
         LcpWorkRef(*work.lcp),
         work.h,
         work.rungs,
+        work.sizes,
         work.note,
-        PartsRef(*work.parts),
     )
     return ScratchRef(
         StepRef(*scratch.step),
@@ -293,11 +221,16 @@ def _by_reference(scratch):
         scratch.y,
         scratch.dy,
         scratch.label,
+        scratch.listed,
+        scratch.upto,
         scratch.engaged,
         scratch.doubt,
+        scratch.monitors,
         scratch.codes,
         scratch.trial,
         scratch.grip,
+        scratch.load,
+        scratch.terms,
         scratch.alarm,
         scratch.unknown,
         scratch.at,
@@ -318,6 +251,6 @@ def advance(model, cells, state, options, until, scratch, record):
         StateRef(*state),
         OptionsRef(*options),
         until,
-        _by_reference(scratch),
+        scratch_by_reference(scratch),
         RecordRef(*record),
     )

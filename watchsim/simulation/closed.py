@@ -28,13 +28,13 @@ def insert(ids, count, k):
 
 @kernel
 def gather(model, cells, state, options, scratch):
-    """Ids of I_C, ascending, into `scratch.closed.ids`: contacts in force and those with a gap of zero.
+    """Ids of I_C, ascending, into `scratch.listed`: contacts in force and those with a gap of zero.
 
     What a contact in force will touch next on the same smooth outline is left out.
 
     Poses must be current. Returns their number, -1 when a cell is unknown, -2 when there are too many.
     """
-    ids = scratch.closed.ids
+    ids = scratch.listed
     m = 0
     for j in range(state.numbers[0] + state.numbers[1]):
         m = insert(ids, m, state.active[j])

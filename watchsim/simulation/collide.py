@@ -1,6 +1,6 @@
 """What happens at an impact?
 
-All closed contacts take part. The energy is checked; where the law would gain any, the documented rule applies
+All closed contacts of the island take part. The energy is checked; where the law would gain any, the documented rule applies
 (docs/method.md 2.7); rebounds that would accumulate within `accumulation_time` are ended by an inelastic solution, and so
 is chatter between contacts (chatter.py).
 """
@@ -10,17 +10,16 @@ from __future__ import annotations
 import math
 
 from watchsim.contact.poses import place
-from watchsim.dynamics.acceleration import accelerate, decide_modes
+from watchsim.dynamics.acceleration import accelerate
 from watchsim.dynamics.delassus import contact_velocities
-from watchsim.dynamics.dry import add_drag, set_grips
-from watchsim.dynamics.forces import forces
 from watchsim.dynamics.impact import energy_change, impact
 from watchsim.dynamics.linear import copy
 from watchsim.jit import kernel
 from watchsim.simulation.chatter import is_chatter, may_be_chatter, return_time, stand_still
-from watchsim.simulation.closed import refresh, resting
+from watchsim.simulation.closed import refresh
+from watchsim.simulation.decide import count_problems, decide
 from watchsim.simulation.keep import keep_event
-from watchsim.simulation.state import IMPACTS, N_ACCUMULATED, N_ENERGY, N_IMPACTS, N_JAMS, N_LCP, N_LCP_FAILED, N_LEMKE
+from watchsim.simulation.state import IMPACTS, N_ACCUMULATED, N_ENERGY, N_IMPACTS, N_JAMS, N_LCP_FAILED
 
 GAIN = 1e-12  # a rise of kinetic energy beyond this share is a gain, not rounding
 ENERGY_GAINED = 11  # status: even without restitution an impact would gain energy, so its solution is wrong
@@ -61,24 +60,13 @@ def _least_restitution(m, scratch):
 
 
 @kernel
-def count_rungs(state, work):
-    """Add the problems solved since last asked to the state's counts."""
-    for rung in range(3):
-        state.counts[N_LEMKE + rung] += work.rungs[rung]
-        state.counts[N_LCP] += work.rungs[rung]
-        work.rungs[rung] = 0
-    state.counts[N_LCP] += work.rungs[3]
-    work.rungs[3] = 0
-
-
-@kernel
-def _solve(model, state, m, jam, slow, scratch):
+def _solve(model, state, m, jam, scratch):
     """One impact with scratch.restitution; on an energy gain again with the smallest restitution, then with none."""
     kinetic = kinetic_energy(model, scratch.before)
     for attempt in range(3):
         copy(scratch.before, state.u)
-        status = impact(model, scratch.closed, m, scratch.restitution, jam, slow, scratch.work, state.u)
-        count_rungs(state, scratch.work)
+        status = impact(model, scratch.closed, m, scratch.restitution, jam, scratch.work, state.u)
+        count_problems(state, scratch.work)
         if status != 0:
             state.counts[N_LCP_FAILED] += 1
             return status
@@ -102,30 +90,22 @@ def _rebounds(i, options, scratch):
 
 
 @kernel
-def _accelerations(model, state, m, options, scratch):
-    """Accelerations after the impact into `state.a`; False if there are none."""
-    work = scratch.work
-    r = resting(model, m, scratch.closed, scratch.pose, options.speed_zero, scratch.rest)
-    forces(model, state.clock[0], state.q, state.u, work.h)
-    set_grips(model, state.u, options.speed_zero, options.size, scratch.grip)
-    add_drag(model, scratch.grip, work.h)
-    for i in range(2 * r):
-        work.force[i] = 0.0
-    status = decide_modes(model, scratch.rest, r, options.speed_zero, work, scratch.grip, scratch.trial)
-    count_rungs(state, work)
+def _accelerations(model, state, island, m, options, scratch):
+    """Accelerations of the island after the impact into `state.a`; False if there are none."""
+    r, status = decide(model, state, island, m, options, scratch, scratch.grip)
     if status != 0:
         return False
-    accelerate(scratch.rest, r, work, state.a)
+    accelerate(scratch.rest, r, scratch.work, state.a)
     return True
 
 
 @kernel
-def _end_rebounds(model, state, m, options, scratch):
+def _end_rebounds(model, state, island, m, options, scratch):
     """Flag the rebounds that would end within `accumulation_time` (restitution 0); returns the latest end, -1 for none."""
     latest, worth = -1.0, False
     for i in range(m):
         worth = worth or _rebounds(i, options, scratch)
-    if not worth or not _accelerations(model, state, m, options, scratch):
+    if not worth or not _accelerations(model, state, island, m, options, scratch):
         return latest
     for i in range(m):
         if not _rebounds(i, options, scratch):
@@ -143,8 +123,8 @@ def _end_rebounds(model, state, m, options, scratch):
 
 
 @kernel
-def collide(model, state, m, options, jam, scratch, record):
-    """Resolve the impact of the m closed contacts: new velocities, refreshed kinematics, events. Returns the LCP status.
+def collide(model, state, island, m, options, jam, scratch, record):
+    """Resolve the impact of the island's m closed contacts: new velocities, kinematics, events. Returns the LCP status.
 
     `jam` (m/s) is positive where nothing approaches, but a sliding contact needs an infinite force (Painlevé).
     """
@@ -152,7 +132,7 @@ def collide(model, state, m, options, jam, scratch, record):
     _law_restitution(model, m, scratch)
     ends = -1.0
     for _ in range(1 + m):
-        status = _solve(model, state, m, jam, options.speed_zero, scratch)
+        status = _solve(model, state, m, jam, scratch)
         if status != 0:
             copy(scratch.before, state.u)
             return status
@@ -160,12 +140,12 @@ def collide(model, state, m, options, jam, scratch, record):
             scratch.impulse[row] = scratch.work.force[row]
         place(model, state.q, state.u, scratch.pose)
         refresh(model, m, scratch.closed, scratch.pose)
-        end = _end_rebounds(model, state, m, options, scratch)
+        end = _end_rebounds(model, state, island, m, options, scratch)
         if end < 0.0:
             break
         ends = max(ends, end)
     _write(model, state, m, jam, scratch, record, ends)
-    slow = jam == 0.0 and may_be_chatter(m, options, scratch) and _accelerations(model, state, m, options, scratch)
+    slow = jam == 0.0 and may_be_chatter(m, options, scratch) and _accelerations(model, state, island, m, options, scratch)
     if slow and is_chatter(state, m, options, scratch.closed):
         _still(model, state, m, options, scratch, record)
     return 0

@@ -8,53 +8,77 @@ comes near Painlevé's paradox, a bearing with dry friction that stops or breaks
 from __future__ import annotations
 
 from watchsim.contact.index_sets import OPEN, STICK
-from watchsim.contact.kinematics import contact_kinematics
 from watchsim.contact.poses import place_body
-from watchsim.dynamics.acceleration import accelerate, is_paradox, solve_mode
-from watchsim.dynamics.dry import add_drag, drag_power, load_on
+from watchsim.dynamics.acceleration import is_paradox, solve_mode
+from watchsim.dynamics.delassus import apply
+from watchsim.dynamics.dry import add_drag, add_loads, drag_power
 from watchsim.dynamics.forces import damping_power, drive_power, forces
 from watchsim.jit import kernel
-from watchsim.simulation.state import N_EVALUATIONS
+from watchsim.simulation.islands import place_contacts
+from watchsim.simulation.state import MONITORS, N_EVALUATIONS
 
-MONITORS = 4
+NORMAL, TANGENTIAL, EXTENT, PARADOX = range(MONITORS)
 
 
 @kernel
 def bearing_monitor(model, state, scratch, options, j):
-    """Of coordinate j at the state last evaluated; its grip holds while it is positive."""
+    """Of coordinate j at the state being evaluated; its grip holds while it is positive."""
     coordinate = model.coordinates[j]
     if state.grip[j] == OPEN or state.awake[j] == 0:
         return 1.0
     if state.grip[j] == STICK:
-        load, terms = load_on(scratch.closed, state.numbers[0], scratch.work, j)
-        return coordinate.coulomb - abs(load) + options.force_zero * terms
+        return coordinate.coulomb - abs(scratch.load[j]) + options.force_zero * scratch.terms[j]
     return state.grip[j] * scratch.y[len(model.coordinates) + j] + 0.5 * options.speed_zero / options.size * coordinate.scale
 
 
 @kernel
-def monitor(model, state, scratch, options, i, which):
-    """Monitor `which` of active contact i at the state last evaluated; the mode holds while it is positive."""
+def _normal_monitor(work, i, options):
+    normal = work.force[2 * i]
+    if normal == 0.0 and work.size[2 * i] == 0.0:
+        return 1.0  # nothing acts on this gap: touching bodies that travel together without a force
+    return normal + options.force_zero * work.size[2 * i] / work.G[2 * i, 2 * i]
+
+
+@kernel
+def _tangential_monitor(model, state, scratch, options, i):
     closed, work = scratch.closed, scratch.work
     k = closed.ids[i]
-    normal = work.force[2 * i]
-    if which == 0:
-        if normal == 0.0 and work.size[2 * i] == 0.0:
-            return 1.0  # nothing acts on this gap: touching bodies that travel together without a force
-        slack = options.force_zero * work.size[2 * i] / work.G[2 * i, 2 * i]
-        return normal + slack
-    if which == 1:
-        friction = model.laws[model.contacts[k].group].friction
-        if friction == 0.0:
-            return 1.0
-        if state.mode[k] == STICK:
-            slack = options.force_zero * (work.size[2 * i] / work.G[2 * i, 2 * i] + abs(normal))
-            return friction * normal - abs(work.force[2 * i + 1]) + slack
-        # Half of what `decide_modes` calls no slip: a contact that fires here may stick there, and one that turns back
-        # starts a whole `speed_zero` away from firing again.
-        return state.mode[k] * closed.kin[i].gT_dot + 0.5 * options.speed_zero
-    if which == 3:
-        return -1.0 if is_paradox(work, state.numbers[0], i) else 1.0
-    return closed.kin[i].margin + 2.0 * options.extent
+    friction = model.laws[model.contacts[k].group].friction
+    if friction == 0.0:
+        return 1.0
+    if state.mode[k] == STICK:
+        normal = work.force[2 * i]
+        slack = options.force_zero * (work.size[2 * i] / work.G[2 * i, 2 * i] + abs(normal))
+        return friction * normal - abs(work.force[2 * i + 1]) + slack
+    # Half of what `decide_modes` calls no slip: a contact that fires here may stick there, and one that turns back
+    # starts a whole `speed_zero` away from firing again.
+    return state.mode[k] * closed.kin[i].gT_dot + 0.5 * options.speed_zero
+
+
+@kernel
+def _watch(model, state, options, first, m, scratch):
+    """Set the monitors of an island's m contacts, the first of them at place `first` of `state.active`.
+
+    Code MONITORS * place + kind; the mode holds while all are positive.
+    """
+    closed, work, values = scratch.closed, scratch.work, scratch.monitors
+    for i in range(m):
+        code = MONITORS * (first + i)
+        values[code + NORMAL] = _normal_monitor(work, i, options)
+        values[code + TANGENTIAL] = _tangential_monitor(model, state, scratch, options, i)
+        values[code + EXTENT] = closed.kin[i].margin + 2.0 * options.extent
+        values[code + PARADOX] = -1.0 if is_paradox(work, m, i) else 1.0
+        for kind in range(MONITORS):
+            scratch.alarm[0] = min(scratch.alarm[0], values[code + kind])
+
+
+@kernel
+def _watch_bearings(model, state, options, scratch):
+    """Set the monitors of the bearings: one for each coordinate, codes after those of the contacts."""
+    code = MONITORS * state.numbers[0]
+    for j in range(len(model.coordinates)):
+        scratch.monitors[code + j] = bearing_monitor(model, state, scratch, options, j)
+        scratch.alarm[0] = min(scratch.alarm[0], scratch.monitors[code + j])
 
 
 @kernel
@@ -75,28 +99,29 @@ def motion(model, state, options, t, y, scratch):
     """
     n = len(model.coordinates)
     q, u = y[:n], y[n : 2 * n]
-    m = state.numbers[0]
     work, closed, out = scratch.work, scratch.closed, scratch.dy
     forces(model, t, q, u, work.h)
     add_drag(model, state.grip, work.h)
-    friction = 0.0
-    if m > 0:
-        for b in range(len(model.bodies)):
-            if scratch.engaged[b]:
-                place_body(model, b, q, u, scratch.pose)
-        for i in range(m):
-            contact_kinematics(model, state.active[i], scratch.pose, i, closed)
+    for b in range(len(model.bodies)):
+        if scratch.engaged[b]:
+            place_body(model, b, q, u, scratch.pose)
+    for i in range(n):
+        out[i], out[n + i] = u[i], work.h[i] * work.inverse[i]
+        scratch.load[i], scratch.terms[i] = work.h[i], abs(work.h[i])
+    friction, first = 0.0, 0
+    while first < state.numbers[0]:
+        m = place_contacts(model, state.active, first, state.upto[first], scratch.pose, closed)
         solve_mode(model, closed, m, state.mode, work)
+        apply(closed, m, work.force, work.inverse, out[n : 2 * n])
+        add_loads(closed, m, work.force, state.grip, scratch.load, scratch.terms)
         for i in range(m):
             friction -= work.force[2 * i + 1] * closed.kin[i].gT_dot
-            for which in range(MONITORS):
-                scratch.alarm[0] = min(scratch.alarm[0], monitor(model, state, scratch, options, i, which))
-    accelerate(closed, m, work, out[n : 2 * n])
+        _watch(model, state, options, first, m, scratch)
+        first += m
+    _watch_bearings(model, state, options, scratch)
     for i in range(n):
-        scratch.alarm[0] = min(scratch.alarm[0], bearing_monitor(model, state, scratch, options, i))
         if state.awake[i] == 0:
             out[n + i] = 0.0
-        out[i] = u[i]
     out[2 * n] = drive_power(model, t, q, u)
     out[2 * n + 1] = damping_power(model, u) + drag_power(model, state.grip, u)
     out[2 * n + 2] = friction

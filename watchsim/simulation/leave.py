@@ -6,37 +6,30 @@ import math
 
 from watchsim.contact.index_sets import STICK
 from watchsim.jit import kernel
-from watchsim.simulation.coupled import MONITORS, bearing_monitor, monitor, motion
+from watchsim.simulation.coupled import TANGENTIAL, motion
 from watchsim.simulation.free import turning_time
 from watchsim.simulation.integrator import dense_value
+from watchsim.simulation.state import MONITORS
 
 SAMPLES = 8
 HALVINGS = 60
-KINDS = 4  # codes KINDS i + kind; from i = number of contacts on, the bearings of the coordinates
 
 
 @kernel
-def _monitor(model, state, options, code, scratch):
-    i, m = code // KINDS, state.numbers[0]
-    if i >= m:
-        return bearing_monitor(model, state, scratch, options, i - m)
-    return monitor(model, state, scratch, options, i, code % KINDS)
-
-
-@kernel
-def _slack(model, state, options, code, scratch):
+def _slack(model, state, options, code):
     """How far beyond zero velocity the monitors of slips and of moving bearings fire; the reversal is where it vanishes."""
-    i, m = code // KINDS, state.numbers[0]
-    if i >= m:
-        if state.grip[i - m] == STICK:
+    j = code - MONITORS * state.numbers[0]
+    if j >= 0:
+        if state.grip[j] == STICK:
             return 0.0
-        return 0.5 * options.speed_zero / options.size * model.coordinates[i - m].scale
-    return 0.5 * options.speed_zero if code % KINDS == 1 and state.mode[scratch.closed.ids[i]] != STICK else 0.0
+        return 0.5 * options.speed_zero / options.size * model.coordinates[j].scale
+    slides = code % MONITORS == TANGENTIAL and state.mode[state.active[code // MONITORS]] != STICK
+    return 0.5 * options.speed_zero if slides else 0.0
 
 
 @kernel
 def _evaluate(model, state, options, tau, scratch):
-    """Evaluate the motion at time tau of the step, so that all monitors can be read."""
+    """Evaluate the motion, and with it all monitors, at time tau of the step."""
     for i in range(len(scratch.y)):
         scratch.y[i] = dense_value(scratch.step, i, tau)
     # `motion` reads `scratch.y` and writes `scratch.dy`.
@@ -45,14 +38,16 @@ def _evaluate(model, state, options, tau, scratch):
 
 @kernel
 def _root(model, state, options, which, low, high, scratch):
-    """Time at which one monitor passes zero between low (positive) and high (not positive): Illinois' method."""
+    """Time at which one monitor, positive at low, passes zero; `high` where it is still positive then. Illinois' method."""
     _evaluate(model, state, options, low, scratch)
-    f_low = _monitor(model, state, options, which, scratch)
+    f_low = scratch.monitors[which]
     _evaluate(model, state, options, high, scratch)
-    f_high = _monitor(model, state, options, which, scratch)
+    f_high = scratch.monitors[which]
     if not f_low > 0.0:
         return low
-    slack = _slack(model, state, options, which, scratch)
+    if f_high > 0.0:
+        return high  # another one has fired before
+    slack = _slack(model, state, options, which)
     if f_low <= slack:
         slack = 0.0
     f_low -= slack
@@ -67,7 +62,7 @@ def _root(model, state, options, which, low, high, scratch):
             if not low < middle < high:
                 break
         _evaluate(model, state, options, middle, scratch)
-        f = _monitor(model, state, options, which, scratch) - slack
+        f = scratch.monitors[which] - slack
         if f <= 0.0:
             high, f_high = middle, f
             if side == 1:
@@ -106,15 +101,13 @@ def _earliest(model, state, options, before, tau, scratch):
     if tau == 0.0:
         return 0.0
     fired = 0
-    m, codes = state.numbers[0], scratch.codes
-    for i in range(m + len(model.coordinates)):
-        for kind in range(MONITORS if i < m else 1):
-            if _monitor(model, state, options, KINDS * i + kind, scratch) <= 0.0:
-                codes[fired] = KINDS * i + kind
-                fired += 1
+    for code in range(MONITORS * state.numbers[0] + len(model.coordinates)):
+        if scratch.monitors[code] <= 0.0:
+            scratch.codes[fired] = code
+            fired += 1
     best = tau
     for j in range(fired):
-        best = min(best, _root(model, state, options, codes[j], before, best, scratch))
+        best = min(best, _root(model, state, options, scratch.codes[j], before, best, scratch))
     return best
 
 

@@ -1,7 +1,8 @@
 """What follows an event?
 
-At one instant: the closed contacts are gathered, impacts resolved, and the acceleration-level LCP decides which contacts
-stay closed and which of them stick. Velocities and positions are then exact to rounding.
+At one instant: the closed contacts are gathered and fall into islands; impacts are resolved and the
+acceleration-level LCP decides which contacts stay closed and which of them stick, island by island. Velocities and positions
+are then exact to rounding.
 """
 
 from __future__ import annotations
@@ -9,18 +10,21 @@ from __future__ import annotations
 from watchsim.contact.gaps import extent_margin
 from watchsim.contact.index_sets import OPEN, STICK
 from watchsim.contact.poses import place
-from watchsim.dynamics.acceleration import accelerate, decide_modes, solve_mode
-from watchsim.dynamics.delassus import fill_inverse
-from watchsim.dynamics.dry import add_drag, set_grips, stop_held
+from watchsim.dynamics.acceleration import accelerate, solve_mode
+from watchsim.dynamics.delassus import apply, fill_inverse
+from watchsim.dynamics.dry import add_drag, stop_held
 from watchsim.dynamics.forces import forces
+from watchsim.dynamics.linear import copy
 from watchsim.jit import kernel
 from watchsim.simulation.chatter import stand_still
-from watchsim.simulation.closed import gather, refresh, resting
-from watchsim.simulation.collide import approaching, collide, count_rungs
+from watchsim.simulation.closed import gather, refresh
+from watchsim.simulation.collide import approaching, collide
+from watchsim.simulation.decide import decide
 from watchsim.simulation.drift import project_positions, project_velocities
 from watchsim.simulation.handover import LEFT, hand_over
+from watchsim.simulation.islands import island_of, label_islands, place_contacts, sort_by_island
 from watchsim.simulation.keep import keep_event
-from watchsim.simulation.sleep import find_sleepers
+from watchsim.simulation.sleep import add_terms, begin_terms, find_sleepers
 from watchsim.simulation.state import N_LCP_FAILED, N_REDUNDANT
 from watchsim.simulation.stops import Stop
 
@@ -47,35 +51,6 @@ def _keep_change(state, record, k, old):
 
 
 @kernel
-def _in_force(state, r, scratch):
-    """Keep only the rows of `rest` that are closed; returns their number."""
-    rest = scratch.rest
-    kept = 0
-    for i in range(r):
-        if state.mode[rest.ids[i]] != OPEN:
-            rest.ids[kept] = rest.ids[i]
-            kept += 1
-    return kept
-
-
-@kernel
-def _list_active(model, state, f, scratch):
-    """Fill `state.active` from the f contacts in force: those of awake bodies first."""
-    rest = scratch.rest
-    awake = 0
-    for i in range(f):
-        if state.awake[rest.coord[i, 0]]:
-            state.active[awake] = rest.ids[i]
-            awake += 1
-    asleep = 0
-    for i in range(f):
-        if not state.awake[rest.coord[i, 0]]:
-            state.active[awake + asleep] = rest.ids[i]
-            asleep += 1
-    state.numbers[0], state.numbers[1] = awake, asleep
-
-
-@kernel
 def settle(model, cells, state, options, scratch, record):
     """Handle the event that waits at the current state; returns a Stop code, RUNNING when all went well."""
     place(model, state.q, state.u, scratch.pose)
@@ -85,32 +60,107 @@ def settle(model, cells, state, options, scratch, record):
     m = gather(model, cells, state, options, scratch)
     if m < 0:
         return CELL_UNKNOWN if m == -1 else TOO_MANY_CONTACTS
-    closed, work = scratch.closed, scratch.work
-    refresh(model, m, closed, scratch.pose)
-    deepest = project_positions(closed, m, False, work, state.q)
-    if deepest > 0.0:
-        state.worst[0] = max(state.worst[0], deepest)
-        place(model, state.q, state.u, scratch.pose)
-        refresh(model, m, closed, scratch.pose)
-    stop, r = _resolve(model, state, m, options, scratch, record)
-    if stop != RUNNING:
-        return stop
-    _take(model, state, m, r, scratch, record)
-    f = _in_force(state, r, scratch)
-    refresh(model, f, scratch.rest, scratch.pose)
-    _correct(model, state, f, scratch)
-    if f > 0 and not solve_mode(model, scratch.rest, f, state.mode, work):
-        state.counts[N_REDUNDANT] += 1
-    accelerate(scratch.rest, f, work, state.a)
-    find_sleepers(model, state, options, scratch, f)
-    _list_active(model, state, f, scratch)
+    label_islands(model, scratch.listed, m, scratch.label)
+    sort_by_island(model, scratch.label, m, scratch.listed, scratch.upto)
+    first = 0
+    for island in range(len(scratch.label)):
+        if scratch.label[island] != island:
+            continue
+        last = first
+        if first < m and island_of(model, scratch.label, scratch.listed[first]) == island:
+            last = scratch.upto[first]
+        stop = _settle_island(model, state, island, (first, last), options, scratch, record)
+        if stop != RUNNING:
+            return stop
+        first = last
+    _go_on(model, state, _list_in_force(state, m, scratch), options, scratch)
     state.numbers[2], state.numbers[4] = 0, -1
     return RUNNING
 
 
 @kernel
-def _resolve(model, state, m, options, scratch, record):
-    """Impacts until nothing approaches, then the modes; returns (Stop code, number of contacts in I_N).
+def _settle_island(model, state, island, span, options, scratch, record):
+    """Impacts and modes of one island, whose closed contacts are listed[span[0]:span[1]]; returns a Stop code."""
+    closed, work = scratch.closed, scratch.work
+    fill_inverse(model, state.grip, work.inverse)
+    m = place_contacts(model, scratch.listed, span[0], span[1], scratch.pose, closed)
+    deepest = project_positions(closed, m, False, work, state.q)
+    if deepest > 0.0:
+        state.worst[0] = max(state.worst[0], deepest)
+        place(model, state.q, state.u, scratch.pose)
+        refresh(model, m, closed, scratch.pose)
+    stop, r = _resolve(model, state, island, m, options, scratch, record)
+    if stop == RUNNING:
+        _take(model, state, m, r, scratch, record)
+    return stop
+
+
+@kernel
+def _list_in_force(state, m, scratch):
+    """Fill `state.active` with those of the m listed contacts that are closed; returns their number."""
+    f = 0
+    for j in range(m):
+        if state.mode[scratch.listed[j]] != OPEN:
+            state.active[f] = scratch.listed[j]
+            f += 1
+    return f
+
+
+@kernel
+def _go_on(model, state, f, options, scratch):
+    """Exact positions and velocities, accelerations and sleep with the f contacts in force."""
+    rest, work = scratch.rest, scratch.work
+    label_islands(model, state.active, f, scratch.label)
+    sort_by_island(model, scratch.label, f, state.active, state.upto)
+    place(model, state.q, state.u, scratch.pose)
+    forces(model, state.clock[0], state.q, state.u, work.h)
+    add_drag(model, state.grip, work.h)
+    fill_inverse(model, state.grip, work.inverse)
+    accelerate(rest, 0, work, state.a)
+    begin_terms(work.h, scratch.terms)
+    first = 0
+    while first < f:
+        m = place_contacts(model, state.active, first, state.upto[first], scratch.pose, rest)
+        deepest = project_positions(rest, m, True, work, state.q)
+        state.worst[0] = max(state.worst[0], deepest)
+        _hold(state, m, rest, scratch.trial)
+        project_velocities(rest, m, scratch.trial, work, state.u)
+        if not solve_mode(model, rest, m, state.mode, work):
+            state.counts[N_REDUNDANT] += 1
+        apply(rest, m, work.force, work.inverse, state.a)
+        add_terms(rest, m, work.force, scratch.terms)
+        first += m
+    find_sleepers(model, state, options, scratch, f)
+    _list_awake_first(model, state, f, scratch)
+
+
+@kernel
+def _hold(state, m, closed, out_mode):
+    """The modes of the m contacts; STICK where a slip too slow to count runs against the mode decided."""
+    for i in range(m):
+        k = closed.ids[i]
+        out_mode[k] = STICK if state.mode[k] * closed.kin[i].gT_dot < 0.0 else state.mode[k]
+
+
+@kernel
+def _list_awake_first(model, state, f, scratch):
+    """Put the contacts of awake bodies first among the f in force."""
+    copy(state.active, scratch.listed)
+    count = 0
+    for awake in (True, False):
+        if not awake:
+            state.numbers[0], state.numbers[1] = count, f - count
+        for j in range(f):
+            k = scratch.listed[j]
+            if (state.awake[island_of(model, scratch.label, k)] != 0) == awake:
+                state.active[count] = k
+                count += 1
+    sort_by_island(model, scratch.label, state.numbers[0], state.active, state.upto)
+
+
+@kernel
+def _resolve(model, state, island, m, options, scratch, record):
+    """Impacts of the island until nothing approaches, then the modes; returns (Stop code, number of contacts in I_N).
 
     Where no finite forces exist although nothing approaches, sliding contacts are jammed (Painlevé): their impulses are
     found, and the modes asked for again.
@@ -118,12 +168,13 @@ def _resolve(model, state, m, options, scratch, record):
     jam = 0.0
     for _ in range(ROUNDS):
         if jam > 0.0 or approaching(m, scratch.closed, options.speed_zero):
-            if collide(model, state, m, options, jam, scratch, record) != 0:
+            if collide(model, state, island, m, options, jam, scratch, record) != 0:
                 return LCP_FAILED, 0
             jam = 0.0
             continue
-        r, status = _decide(model, state, m, options, scratch)
+        r, status = decide(model, state, island, m, options, scratch, state.grip)
         if status == 0:
+            stop_held(scratch.label, island, state.grip, state.u)
             return RUNNING, r
         if not _slides(r, options.speed_zero, scratch.rest):
             state.counts[N_LCP_FAILED] += 1
@@ -133,25 +184,6 @@ def _resolve(model, state, m, options, scratch, record):
         refresh(model, m, scratch.closed, scratch.pose)
         jam = options.speed_zero
     return TOO_MANY_EVENTS, 0
-
-
-@kernel
-def _decide(model, state, m, options, scratch):
-    """Modes of the contacts in I_N and grips of the bearings; (number of contacts in I_N, status)."""
-    work = scratch.work
-    r = resting(model, m, scratch.closed, scratch.pose, options.speed_zero, scratch.rest)
-    forces(model, state.clock[0], state.q, state.u, work.h)
-    standing = set_grips(model, state.u, options.speed_zero, options.size, state.grip)
-    add_drag(model, state.grip, work.h)
-    status = 0
-    if r > 0 or standing > 0:
-        status = decide_modes(model, scratch.rest, r, options.speed_zero, work, state.grip, scratch.trial)
-        count_rungs(state, work)
-    else:
-        fill_inverse(model, state.grip, work.inverse)
-    if status == 0:
-        stop_held(model, state.grip, state.u)
-    return r, status
 
 
 @kernel
@@ -193,17 +225,3 @@ def _take(model, state, m, r, scratch, record):
         old = state.mode[k]
         state.mode[k] = new
         _keep_change(state, record, k, old)
-
-
-@kernel
-def _correct(model, state, f, scratch):
-    """Exact zero gaps and rates for the f contacts in force; no slip against the mode where it was too slow to count."""
-    if f == 0:
-        return
-    rest, work = scratch.rest, scratch.work
-    deepest = project_positions(rest, f, True, work, state.q)
-    state.worst[0] = max(state.worst[0], deepest)
-    for i in range(f):
-        k = rest.ids[i]
-        scratch.trial[k] = STICK if state.mode[k] * rest.kin[i].gT_dot < 0.0 else state.mode[k]
-    project_velocities(rest, f, scratch.trial, work, state.u)

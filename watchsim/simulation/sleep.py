@@ -5,32 +5,7 @@ from __future__ import annotations
 from watchsim.contact.index_sets import STICK
 from watchsim.jit import kernel
 from watchsim.mechanism.model import FREE, OVER_TIME
-
-
-@kernel
-def _join(label, i, j):
-    """Give both coordinates' groups one label."""
-    low, high = min(label[i], label[j]), max(label[i], label[j])
-    for k in range(len(label)):
-        if label[k] == high:
-            label[k] = low
-
-
-@kernel
-def label_islands(model, closed, m, out_label):
-    """Number the groups of coordinates that the first m contacts, and what acts at pivots of carried bodies, couple."""
-    for i in range(len(out_label)):
-        out_label[i] = i
-    for b in range(len(model.bodies)):
-        body = model.bodies[b]
-        if body.motion == FREE:
-            _join(out_label, body.first, body.first + 1)
-            _join(out_label, body.first, body.first + 2)
-    for j in range(len(model.joints)):
-        _join(out_label, model.joints[j].coordinate, model.joints[j].on)
-    for i in range(m):
-        for k in range(1, closed.slots[i]):
-            _join(out_label, closed.coord[i, 0], closed.coord[i, k])
+from watchsim.simulation.islands import island_of
 
 
 @kernel
@@ -54,30 +29,41 @@ def _is_still(model, state, options, i, terms):
 
 
 @kernel
-def find_sleepers(model, state, options, scratch, m):
-    """Set `state.awake`: a group with a contact or a bearing that holds sleeps if it is still and nothing depends on time.
+def begin_terms(h, out_terms):
+    """The magnitudes of the forces h."""
+    for i in range(len(h)):
+        out_terms[i] = abs(h[i])
 
-    The m contacts in force are in `scratch.rest`, their forces in `scratch.work.force`, accelerations in `state.a`.
+
+@kernel
+def add_terms(closed, m, force, out_terms):
+    """Add the magnitudes of what the m contacts do to each coordinate."""
+    for i in range(m):
+        for k in range(closed.slots[i]):
+            normal, tangential = closed.w_N[i, k] * force[2 * i], closed.w_T[i, k] * force[2 * i + 1]
+            out_terms[closed.coord[i, k]] += abs(normal) + abs(tangential)
+
+
+@kernel
+def find_sleepers(model, state, options, scratch, f):
+    """Set `state.awake`: an island with a contact or a bearing that holds sleeps if it is still and nothing depends on time.
+
+    The f contacts in force are in `state.active`, their islands in `scratch.label`, accelerations in `state.a`, the magnitudes
+    of the forces on each coordinate in `scratch.terms`.
     """
-    closed, work, label = scratch.rest, scratch.work, scratch.label
-    label_islands(model, closed, m, label)
+    label, touched = scratch.label, scratch.u
     n = len(label)
     for i in range(n):
         state.awake[i] = 0
-        scratch.q[i] = abs(work.h[i])
-    touched = scratch.u
     touched[:] = 0.0
-    for i in range(m):
-        for k in range(closed.slots[i]):
-            j = closed.coord[i, k]
-            scratch.q[j] += abs(closed.w_N[i, k] * work.force[2 * i]) + abs(closed.w_T[i, k] * work.force[2 * i + 1])
-            touched[label[j]] = 1.0
-    _share_terms(model, scratch.q)
+    _share_terms(model, scratch.terms)
+    for j in range(f):
+        touched[island_of(model, label, state.active[j])] = 1.0
     for i in range(n):
         if state.grip[i] == STICK:
             touched[label[i]] = 1.0
     for i in range(n):
-        if touched[label[i]] == 0.0 or not _is_still(model, state, options, i, scratch.q[i]):
+        if touched[label[i]] == 0.0 or not _is_still(model, state, options, i, scratch.terms[i]):
             _wake(state, label, label[i])
     for j in range(len(model.tables)):
         if model.tables[j].over == OVER_TIME:

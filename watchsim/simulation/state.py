@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from watchsim.contact.kinematics import Closed, closed_contacts
 from watchsim.contact.poses import poses
-from watchsim.dynamics.delassus import ContactWork, contact_work
+from watchsim.dynamics.delassus import LARGEST, ContactWork, contact_work
 from watchsim.jit import by_reference
 from watchsim.mechanism.model import Model, Records
 from watchsim.simulation.event_kinds import EVENT_DTYPE
@@ -21,6 +21,7 @@ Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 ROOM, ROOM_PER_COORDINATE = 48, 2  # contacts closed at once: at least, and in large scenes
+MONITORS = 4  # what is watched of each contact in force
 SUMS = 3  # integrated along with the motion: work in, damping, friction
 DRIVE, DAMPING, FRICTION, IMPACTS, CORRECTION = 0, 1, 2, 3, 4  # places in State.sums
 
@@ -28,7 +29,7 @@ DRIVE, DAMPING, FRICTION, IMPACTS, CORRECTION = 0, 1, 2, 3, 4  # places in State
 N_STEPS, N_REJECTED, N_EVALUATIONS, N_FLIGHTS, N_EVENTS, N_IMPACTS, N_LCP, N_LCP_FAILED, N_ACCUMULATED, N_ENERGY, N_GAPS = (
     range(11)
 )
-N_LEMKE, N_COPOSITIVE, N_ENUMERATED, N_JAMS, N_REDUNDANT = range(11, 16)
+N_LEMKE, N_COPOSITIVE, N_ENUMERATED, N_JAMS, N_REDUNDANT, N_LCP_SIZE = range(11, 17)
 COUNT_NAMES = (
     "steps",
     "rejected_steps",
@@ -46,6 +47,8 @@ COUNT_NAMES = (
     "lcp_enumerated",
     "jams",
     "redundant_sets",
+    *(f"lcp_to_{size}" for size in LARGEST),  # with at most so many unknowns, more than the one before
+    "lcp_larger",
 )
 
 FLIGHT, COUPLED = 0, 1
@@ -61,7 +64,8 @@ class State(NamedTuple):
     mode: NDArray[np.int8]  # by permanent number of the contact
     grip: NDArray[np.int8]  # by coordinate: what dry friction in its bearing does, see dynamics/dry.py
     awake: NDArray[np.int8]  # by coordinate; 0: asleep on its contacts
-    active: Integers  # closed contacts of awake bodies, then those of sleeping ones, each ascending
+    active: Integers  # closed contacts of awake bodies, then those of sleeping ones, by island (islands.py)
+    upto: Integers  # by place in `active`, of awake bodies: the place behind the last contact of the same island
     numbers: (
         Integers  # how many awake, how many asleep, 1 if an event waits, events at this instant, the contact that touched or -1
     )
@@ -108,12 +112,17 @@ class Scratch(NamedTuple):
     u: Array
     y: Array
     dy: Array
-    label: Integers
+    label: Integers  # by coordinate: the islands of the contacts closed at an event
+    listed: Integers  # these contacts
+    upto: Integers  # by place in `listed`
     engaged: NDArray[np.int8]  # bodies that the active contacts join
     doubt: Integers  # candidates that may close within a stretch
-    codes: Integers  # monitors that fired
+    monitors: Array  # at the state last evaluated, by code (coupled.py)
+    codes: Integers  # of those that fired
     trial: NDArray[np.int8]
     grip: NDArray[np.int8]
+    load: Array  # force on each coordinate that dry friction holds
+    terms: Array  # sum of the magnitudes it is made of
     alarm: Array  # smallest monitor met in the current step
     unknown: Integers  # body pair whose cell is not known
     at: Array  # coordinates where it was met
@@ -154,6 +163,7 @@ def new_state(model: Model, q: Array, u: Array) -> State:
         grip=np.zeros(n, np.int8),
         awake=np.ones(n, np.int8),
         active=np.zeros(room_for(model), np.int64),
+        upto=np.zeros(room_for(model), np.int64),
         numbers=np.array([0, 0, 1, 0, -1], np.int64),
         side_u=np.sign(speed).astype(np.int8),
         side_q=np.sign(q - rest).astype(np.int8),
@@ -193,11 +203,16 @@ def new_scratch(model: Model) -> Scratch:
         y=np.zeros(width),
         dy=np.zeros(width),
         label=np.zeros(n, np.int64),
+        listed=np.zeros(room, np.int64),
+        upto=np.zeros(room, np.int64),
         engaged=np.zeros(len(model.bodies), np.int8),
         doubt=np.zeros(len(model.contacts), np.int64),
-        codes=np.zeros(4 * room + n, np.int64),
+        monitors=np.zeros(MONITORS * (room + n)),
+        codes=np.zeros(MONITORS * (room + n), np.int64),
         trial=np.zeros(len(model.contacts), np.int8),
         grip=np.zeros(n, np.int8),
+        load=np.zeros(n),
+        terms=np.zeros(n),
         alarm=np.zeros(1),
         unknown=np.zeros(1, np.int64),
         at=np.zeros(n),

@@ -3,22 +3,9 @@
 from __future__ import annotations
 
 from watchsim.jit import kernel
-from watchsim.simulation.free import acceleration, acceleration_bound, flow
+from watchsim.simulation.free import acceleration, flow
 from watchsim.simulation.integrator import dense_value
 from watchsim.simulation.state import FLIGHT
-
-
-@kernel
-def begin_flight(model, state, length, scratch):
-    """Make the current step an exact flight of all awake coordinates."""
-    step = scratch.step
-    step.kind[0] = FLIGHT
-    step.span[0], step.span[1] = state.clock[0], length
-    for i in range(len(model.coordinates)):
-        step.q[i], step.u[i] = state.q[i], state.u[i]
-        step.bound[i] = 0.0
-        if state.awake[i]:
-            step.bound[i] = acceleration_bound(model.coordinates[i], state.grip[i], state.q[i], state.u[i])
 
 
 @kernel
