@@ -123,7 +123,7 @@ def test_blocks_that_multiply_are_stopped(read_bytes: Reader) -> None:
 def test_more_pieces_than_a_drawing_can_have_are_refused_whole(read_bytes: Reader) -> None:
     """Half a drawing would be worse than none, and takes long to look through."""
     comb = "".join(d.line((k, 0), (k, 1)) for k in range(600))
-    drawing = read_bytes(d.dxf(d.insert("B", (0, 0), (70, 900), (44, 1e3)), blocks=d.block("B", comb)))
+    drawing = read_bytes(d.dxf(d.insert("B", (0, 0), (70, 450), (44, 1e3)), blocks=d.block("B", comb)))
     assert "nothing was read" in errors(drawing)["too-large"]
     assert not drawing.open_chains and drawing.units == "mm"
 
