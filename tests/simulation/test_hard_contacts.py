@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 import pytest
-from moving_scenes import box, circle, ground, polygon, profile, touching
+from moving_scenes import box, circle, ground, on_slope, polygon, profile, touching
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Line
@@ -195,6 +195,20 @@ def test_accumulation_moves_nothing_beyond_the_stated_error(name: str) -> None:
     assert np.abs(runs[0].u[-1]).max() < 1e-9
     assert all(0 < run.counts["impacts"] < 1000 for run in runs)
     assert all(run.energy["residual_relative"] < 200.0 * run.tolerance for run in runs)
+
+
+def test_a_block_that_has_done_rocking_stands_still() -> None:
+    """Slender, with friction enough to tip it: its last corners stop its slip too, else it would rock by that for ever."""
+    width, height, spin = 2e-3, 40e-3, 0.05
+    speeds = (0.5 * height * spin, 0.5 * width * spin, -spin)
+    block = Body("block", "free", (0.0, 0.5 * height), velocity=speeds, mass=0.01, inertia=1.3e-6, loops=(box(width, height),))
+    contact = touching("block", "ground", friction=1.0)
+    for angle in (0.0, 0.02):
+        done = simulate(Scene("block", (block, ground()), contacts=contact, gravity=on_slope(angle), duration=5.0))
+        assert done.counts["accumulations"] == 1
+        assert done.counts["impacts"] < 3000
+        assert np.all(done.u[-1] == 0.0)
+        assert abs(done.q[-1, 2]) < 1e-9
 
 
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-8, 1e-9, 1e-10, 1e-11])

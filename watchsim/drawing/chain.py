@@ -60,9 +60,13 @@ def chain_layer(layer: str, strokes: Sequence[Stroke], snap: float, deviation: f
     drawn, findings = with_length(strokes)
     whole, pieces = closed_runs(drawn)
     nodes = Nodes(pieces)
-    kept, doubled, doubles = without_doubles(pieces, nodes, min(TIGHT, snap))
+    kept, doubled, doubles = without_doubles(pieces, nodes, range(len(pieces)), min(TIGHT, snap))
     nodes.snap(snap, loose_only=False)
     joins = nodes.snap(NOTED * snap, loose_only=True)
+    # What was drawn twice with small differences hangs together only now.
+    changed = {end // 2 for node in nodes.joined for end in nodes.members[node]} & kept
+    still, again, more = without_doubles(pieces, nodes, sorted(changed), snap)
+    kept, doubled, doubles = kept - changed | still, doubled | again, doubles + more
     kept, slits = without_slits(pieces, nodes, kept, doubled)
     meeting = junctions(nodes, pieces)
     paths = trace(nodes, meeting, kept)

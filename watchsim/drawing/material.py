@@ -46,9 +46,13 @@ def layer_roles(loops: Iterable[Loop]) -> dict[str, str]:
 
 
 def _role(layer: str, only_circles: bool) -> str:
-    """By the last word of the name: "lever_PIVOT-2" is a pivot and "CENTER WHEEL" a wheel."""
-    last = (re.findall(r"[a-z]{3,}", layer.lower()) or [""])[-1]
-    return "bore" if last in BORES else "mark" if last in MARKS and only_circles else "material"
+    word = last_word(layer)
+    return "bore" if word in BORES else "mark" if word in MARKS and only_circles else "material"
+
+
+def last_word(layer: str) -> str:
+    """What a layer's name says it holds: "lever_PIVOT-2" is a pivot and "CENTER WHEEL" a wheel; in lower case."""
+    return (re.findall(r"[a-z]{3,}", layer.lower()) or [""])[-1]
 
 
 def in_material(points: Sequence[Point], solid: Sequence[Loop]) -> list[int]:

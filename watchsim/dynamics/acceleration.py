@@ -14,7 +14,7 @@ from watchsim.dynamics.linear import solve_small, unit_scale
 from watchsim.dynamics.redundant import smallest_forces
 from watchsim.jit import kernel
 
-ROUNDING = 1e-10  # accelerations below this share of the terms they are the sum of count as zero
+ROUNDING = 1e-11  # accelerations below this share of the terms they are the sum of count as zero
 PAINLEVE = 1e-9  # share of G_N below which pressing on a sliding contact no longer pushes its bodies apart
 NO_FORCE = 10  # status of `decide_modes`: a sliding contact would need an infinite force
 LEVEL_ACCELERATION = 1

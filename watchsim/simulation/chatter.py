@@ -7,10 +7,9 @@ others' impulses lift by less than `gap_close`, the distance at which contacts c
 
 from __future__ import annotations
 
-from watchsim.contact.index_sets import OPEN
+from watchsim.contact.index_sets import OPEN, STICK
 from watchsim.contact.poses import place
 from watchsim.jit import kernel
-from watchsim.simulation.closed import refresh
 from watchsim.simulation.drift import project_velocities
 
 
@@ -55,12 +54,16 @@ def is_chatter(state, m, options, closed):
 
 
 @kernel
-def end_chatter(model, state, m, scratch):
-    """Bring the gap rates of the m closed contacts to zero by the smallest change of velocities: it only takes energy."""
+def stand_still(model, state, closed, m, options, scratch):
+    """Zero the gap rates of m contacts, and the slip of those that hold, by the smallest change of velocities.
+
+    It only takes energy. A block that stopped turning but went on sliding would be tipped over by its friction, and rock anew.
+    """
     for i in range(m):
-        scratch.trial[scratch.closed.ids[i]] = OPEN
+        k = closed.ids[i]
+        holds = model.laws[model.contacts[k].group].friction > 0.0 and abs(closed.kin[i].gT_dot) <= options.speed_zero
+        scratch.trial[k] = STICK if holds else OPEN
     for j in range(len(model.coordinates)):
         scratch.work.inverse[j] = 1.0 / model.coordinates[j].mass
-    project_velocities(scratch.closed, m, scratch.trial, scratch.work, state.u)
+    project_velocities(closed, m, scratch.trial, scratch.work, state.u)
     place(model, state.q, state.u, scratch.pose)
-    refresh(model, m, scratch.closed, scratch.pose)

@@ -15,7 +15,7 @@ from watchsim.dynamics.delassus import contact_velocities
 from watchsim.dynamics.impact import energy_change, impact
 from watchsim.dynamics.linear import copy
 from watchsim.jit import kernel
-from watchsim.simulation.chatter import end_chatter, is_chatter, may_be_chatter, return_time
+from watchsim.simulation.chatter import is_chatter, may_be_chatter, return_time, stand_still
 from watchsim.simulation.closed import refresh
 from watchsim.simulation.decide import count_problems, decide
 from watchsim.simulation.keep import keep_event
@@ -160,7 +160,8 @@ def _still(model, state, m, options, scratch, record):
             back = state.clock[0] + return_time(scratch.closed, i, state.a)
             keep_event(state, record, ACCUMULATION_EVENT, scratch.closed.ids[i], -1, back)
             state.counts[N_ACCUMULATED] += 1
-    end_chatter(model, state, m, scratch)
+    stand_still(model, state, scratch.closed, m, options, scratch)
+    refresh(model, m, scratch.closed, scratch.pose)
     state.sums[IMPACTS] += before - kinetic_energy(model, state.u)
 
 

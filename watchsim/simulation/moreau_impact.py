@@ -6,6 +6,7 @@ scene's tangential law). Where that gains energy, less is thrown back (docs/meth
 
 from __future__ import annotations
 
+from watchsim.dynamics.delassus import size_class
 from watchsim.dynamics.linear import copy
 from watchsim.jit import kernel
 from watchsim.mechanism.model import PG1996, SHIFTED
@@ -13,7 +14,7 @@ from watchsim.simulation.keep import keep_event
 from watchsim.simulation.moreau_laws import cone, residual
 from watchsim.simulation.moreau_mobility import fill_mobility, push, rates_of
 from watchsim.simulation.moreau_prox import relax
-from watchsim.simulation.state import IMPACTS, N_ENERGY, N_IMPACTS, N_LCP, N_LCP_FAILED
+from watchsim.simulation.state import IMPACTS, N_ENERGY, N_IMPACTS, N_LCP, N_LCP_FAILED, N_LCP_SIZE
 
 IMPACT_EVENT = 1
 GAIN = 1e-12  # share of the kinetic energy up to which a gain is rounding
@@ -25,6 +26,7 @@ def solve_percussions(state, m, bearings, work):
     """Relax, and count what it took."""
     sweeps, settled = relax(work.laws, m, bearings)
     state.counts[N_LCP] += 1
+    state.counts[N_LCP_SIZE + size_class(2 * m + bearings)] += 1
     work.sweeps[0] += sweeps
     if not settled:
         state.counts[N_LCP_FAILED] += 1
@@ -118,9 +120,8 @@ def _loss(m, work):
 @kernel
 def stop_approaches(model, state, options, m, work, record):
     """Impacts at the start of the step, into `work.u`; True if any is fast enough to be written down."""
-    closed = work.closed
     copy(state.u, work.u)
-    rates_of(closed, m, work.u, work.rates)
+    rates_of(work, m, 0, work.u, work.rates)
     fastest, kinetic = 0.0, 0.0
     for i in range(m):
         fastest = max(fastest, -work.rates[2 * i])
@@ -130,15 +131,15 @@ def stop_approaches(model, state, options, m, work, record):
     for i in range(len(work.u)):
         work.inverse[i] = 1.0 / model.coordinates[i].mass
         kinetic += 0.5 * model.coordinates[i].mass * state.u[i] * state.u[i]
-    fill_mobility(closed, m, work.dry, 0, work.inverse, work.laws.G)
+    fill_mobility(work, m, 0)
     _compress(model, state, m, work)
     for attempt in range(3):
         _expand(model, state, m, work)
         for row in range(2 * m):
             work.laws.P[row] += work.more[row]
         copy(state.u, work.u)
-        push(closed, m, work.dry, 0, work.laws.P, work.inverse, work.u)
-        rates_of(closed, m, work.u, work.laws.b)
+        push(work, m, 0, work.laws.P, work.u)
+        rates_of(work, m, 0, work.u, work.laws.b)
         if attempt == 2 or _loss(m, work) >= -GAIN * kinetic:
             break
         state.counts[N_ENERGY] += 1

@@ -15,6 +15,7 @@ from watchsim.simulation.moreau_laws import LawsRef
 from watchsim.simulation.moreau_step import act, closed_at_middle, move
 from watchsim.simulation.moreau_work import MoreauWorkRef
 from watchsim.simulation.options import OptionsRef
+from watchsim.simulation.passages import sign
 from watchsim.simulation.state import N_STEPS, RecordRef, StateRef
 from watchsim.simulation.stops import Stop
 
@@ -24,13 +25,6 @@ RUNNING, TOO_MANY_CONTACTS = int(Stop.RUNNING), int(Stop.TOO_MANY_CONTACTS)
 TURN_EVENT, CROSS_EVENT = 8, 9
 ROWS_PER_STEP, EVENTS_PER_CONTACT = 3, 2
 CLOSE = 1e-9  # share of a step that is rounding of time
-
-
-@kernel
-def _sign(x):
-    if x > 0.0:
-        return 1
-    return -1 if x < 0.0 else 0
 
 
 @kernel
@@ -54,14 +48,14 @@ def _keep_of(model, state, h, spring, ends, record):
     body = model.coordinates[i].body
     before, fast, after, last = along(ends[0], i, on), along(ends[1], i, on), along(ends[2], i, on), along(ends[3], i, on)
     bend = (last - fast) / h
-    side = _sign(last)
+    side = sign(last)
     if side != 0 and side != state.side_u[i]:
         if state.side_u[i] != 0:
             tau = h * fast / (fast - last) if fast * last < 0.0 else 0.0
             state.clock[0] = start + tau
             keep_event(state, record, TURN_EVENT, -1, body, before + 0.5 * fast * tau)
         state.side_u[i] = side
-    way, side = before - rest, _sign(after - rest)
+    way, side = before - rest, sign(after - rest)
     if side != 0 and side != state.side_q[i]:
         if state.side_q[i] != 0:
             root = math.sqrt(max(0.0, fast * fast - 2.0 * bend * way))
@@ -129,6 +123,7 @@ def _by_reference(work):
         work.joint,
         work.mass,
         work.inverse,
+        work.change,
         LawsRef(*work.laws),
         work.rates,
         work.more,

@@ -106,18 +106,18 @@ def _free_velocity(model, state, h, work):
 @kernel
 def _begin_percussions(model, m, h, work):
     """The laws of contacts and bearings in this step, and a first guess; returns the number of bearings."""
-    closed, laws, bearings = work.closed, work.laws, len(work.dry)
-    fill_mobility(closed, m, work.dry, bearings, work.inverse, laws.G)
-    rates_of(closed, m, work.free, laws.b)
+    laws, bearings = work.laws, len(work.dry)
+    fill_mobility(work, m, bearings)
+    rates_of(work, m, bearings, work.free, laws.b)
     friction_cones(model, m, work)
     for i in range(m):
         # Last step's percussions are a good guess at this one's.
-        laws.P[2 * i], laws.P[2 * i + 1] = work.memory[closed.ids[i], 0], work.memory[closed.ids[i], 1]
+        last = work.memory[work.closed.ids[i]]
+        laws.P[2 * i], laws.P[2 * i + 1] = last[0], last[1]
     for k in range(bearings):
         j = work.dry[k]
         most = h * model.coordinates[j].coulomb
         laws.ends[m + k, 0], laws.ends[m + k, 2] = -most, most
-        laws.b[2 * m + k] = work.free[j]
         laws.P[2 * m + k] = -math.copysign(most, work.u[j]) if work.u[j] != 0.0 else 0.0
     return bearings
 
@@ -125,23 +125,22 @@ def _begin_percussions(model, m, h, work):
 @kernel
 def act(model, state, m, h, work, out_u):
     """Velocities at the end of the step: forces, contacts and dry bearings together, without restitution."""
-    closed, laws = work.closed, work.laws
+    laws = work.laws
     _free_velocity(model, state, h, work)
     copy(work.free, out_u)
     if m == 0 and len(work.dry) == 0:
         return
     bearings = _begin_percussions(model, m, h, work)
     solve_percussions(state, m, bearings, work)
-    push(closed, m, work.dry, bearings, laws.P, work.inverse, out_u)
-    rates_of(closed, m, work.u, laws.b)
-    rates_of(closed, m, out_u, work.rates)
+    push(work, m, bearings, laws.P, out_u)
+    rates_of(work, m, bearings, work.u, laws.b)
+    rates_of(work, m, bearings, out_u, work.rates)
     for i in range(m):
         N, T = 2 * i, 2 * i + 1
         state.sums[CORRECTION] -= 0.5 * laws.P[N] * (laws.b[N] + work.rates[N])
         state.sums[FRICTION] -= 0.5 * laws.P[T] * (laws.b[T] + work.rates[T])
-    for k in range(bearings):
-        j = work.dry[k]
-        state.sums[DAMPING] -= 0.5 * laws.P[2 * m + k] * (work.u[j] + out_u[j])
+    for row in range(2 * m, 2 * m + bearings):
+        state.sums[DAMPING] -= 0.5 * laws.P[row] * (laws.b[row] + work.rates[row])
 
 
 @kernel
@@ -196,4 +195,4 @@ def _take_back(state, options, m, work):
         laws.P[2 * i], laws.P[2 * i + 1] = 0.0, 0.0
         laws.G[2 * i, 2 * i] *= 1.0 + YIELD
     relax(laws, m, 0)
-    push(work.closed, m, work.dry, 0, laws.P, work.inverse, state.q)
+    push(work, m, 0, laws.P, state.q)

@@ -36,6 +36,7 @@ class MoreauWork(NamedTuple):
     joint: Array  # torque of the damping between a carried body and its carrier
     mass: Array
     inverse: Array
+    change: Array  # of velocities, by one percussion
     laws: Laws
     rates: Array
     more: Array
@@ -55,7 +56,7 @@ def moreau_work(model: Model) -> MoreauWork:
     n, room = len(model.coordinates), room_for(model)
     dry = np.flatnonzero(model.coordinates.coulomb > 0.0)
     rows = 2 * room + len(dry)
-    vectors = {name: np.zeros(n) for name in ("q", "u", "free", "force", "damping", "joint", "mass", "inverse", "at")}
+    vectors = {name: np.zeros(n) for name in ("q", "u", "free", "force", "damping", "joint", "mass", "inverse", "change", "at")}
     by_row = {name: np.zeros(rows) for name in ("rates", "more")}
     return MoreauWork(
         memory=np.zeros((len(model.contacts), 2)),

@@ -46,7 +46,7 @@ def options_for(size: float, tolerance: float, max_step: float) -> Options:
         extent=4.0 * JOINT * size,
         # Velocities drift off their contacts by about the tolerance within a step.
         speed_zero=max(1e-8, 20.0 * tolerance) * size,
-        force_zero=1e-9,
+        force_zero=1e-10,
         accumulation_time=1e-6,
         accumulation_speed=0.1 * size,
         sleep=1e-9,

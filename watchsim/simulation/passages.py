@@ -57,7 +57,8 @@ def _root(model, state, step, spring, turn, end):
 
 
 @kernel
-def _sign(x):
+def sign(x):
+    """-1, 0 or 1."""
     if x > 0.0:
         return 1
     return -1 if x < 0.0 else 0
@@ -80,7 +81,7 @@ def keep_passages(model, state, step, end, record):
             if joint.stiffness == 0.0:
                 continue
             i, on, rest = joint.coordinate, joint.on, joint.rest
-        side = _sign(along(state.u, i, on))
+        side = sign(along(state.u, i, on))
         if side != 0 and side != state.side_u[i]:
             if state.side_u[i] != 0:
                 tau = _root(model, state, step, (i, on, rest), True, end) if end > 0.0 else 0.0
@@ -88,7 +89,7 @@ def keep_passages(model, state, step, end, record):
                 state.clock[0] = now - end + tau
                 keep_event(state, record, TURN_EVENT, -1, model.coordinates[i].body, q)
             state.side_u[i] = side
-        side = _sign(along(state.q, i, on) - rest)
+        side = sign(along(state.q, i, on) - rest)
         if side != 0 and side != state.side_q[i]:
             if state.side_q[i] != 0 and end > 0.0:
                 tau = _root(model, state, step, (i, on, rest), False, end)

@@ -16,6 +16,7 @@ from watchsim.dynamics.dry import add_drag, stop_held
 from watchsim.dynamics.forces import forces
 from watchsim.dynamics.linear import copy
 from watchsim.jit import kernel
+from watchsim.simulation.chatter import stand_still
 from watchsim.simulation.closed import gather, refresh
 from watchsim.simulation.collide import approaching, collide
 from watchsim.simulation.decide import decide
@@ -120,9 +121,7 @@ def _go_on(model, state, f, options, scratch):
     first = 0
     while first < f:
         m = place_contacts(model, state.active, first, state.upto[first], scratch.pose, rest)
-        deepest = project_positions(rest, m, True, work, state.q)
-        state.worst[0] = max(state.worst[0], deepest)
-        project_velocities(rest, m, state.mode, work, state.u)
+        _correct(state, m, scratch)
         if not solve_mode(model, rest, m, state.mode, work):
             state.counts[N_REDUNDANT] += 1
         apply(rest, m, work.force, work.inverse, state.a)
@@ -130,6 +129,18 @@ def _go_on(model, state, f, options, scratch):
         first += m
     find_sleepers(model, state, options, scratch, f)
     _list_awake_first(model, state, f, scratch)
+
+
+@kernel
+def _correct(state, m, scratch):
+    """Exact zero gaps and rates of an island's m contacts in force; no slip against the mode where it was too slow to count."""
+    rest, work = scratch.rest, scratch.work
+    deepest = project_positions(rest, m, True, work, state.q)
+    state.worst[0] = max(state.worst[0], deepest)
+    for i in range(m):
+        k = rest.ids[i]
+        scratch.trial[k] = STICK if state.mode[k] * rest.kin[i].gT_dot < 0.0 else state.mode[k]
+    project_velocities(rest, m, scratch.trial, work, state.u)
 
 
 @kernel
@@ -169,6 +180,9 @@ def _resolve(model, state, island, m, options, scratch, record):
         if not _slides(r, options.speed_zero, scratch.rest):
             state.counts[N_LCP_FAILED] += 1
             return LCP_FAILED, 0
+        # Their gaps must not open, however slowly, or there is nothing to stop.
+        stand_still(model, state, scratch.rest, r, options, scratch)
+        refresh(model, m, scratch.closed, scratch.pose)
         jam = options.speed_zero
     return TOO_MANY_EVENTS, 0
 

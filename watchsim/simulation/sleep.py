@@ -4,8 +4,19 @@ from __future__ import annotations
 
 from watchsim.contact.index_sets import STICK
 from watchsim.jit import kernel
-from watchsim.mechanism.model import OVER_TIME
+from watchsim.mechanism.model import FREE, OVER_TIME
 from watchsim.simulation.islands import island_of
+
+
+@kernel
+def _share_terms(model, out_terms):
+    """Rounding in a coordinate of a free body comes from the forces on all three, whatever angle the body has."""
+    for b in range(len(model.bodies)):
+        if model.bodies[b].motion == FREE:
+            x, y, turn = model.bodies[b].first, model.bodies[b].first + 1, model.bodies[b].first + 2
+            gyration = (model.coordinates[turn].mass / model.coordinates[x].mass) ** 0.5
+            largest = max(out_terms[x], out_terms[y], out_terms[turn] / gyration)
+            out_terms[x], out_terms[y], out_terms[turn] = largest, largest, largest * gyration
 
 
 @kernel
@@ -47,6 +58,7 @@ def find_sleepers(model, state, options, scratch, f):
     touched[:] = 0.0
     for j in range(f):
         touched[island_of(model, label, state.active[j])] = 1.0
+    _share_terms(model, scratch.terms)
     for i in range(n):
         if state.grip[i] == STICK:
             touched[label[i]] = 1.0
