@@ -146,7 +146,8 @@ def picture(found: Found, path: Path) -> None:
         axis.loglog(ends, middle * ends / math.sqrt(low * high), color="0.6", linestyle="--", label="slope 1", zorder=0)
         axis.set(title=title, xlabel="step, s", ylabel=label)
         axis.grid(True, which="major", color="0.9")
-        axis.legend(frameon=False, fontsize=8)
+        axis.set_ylim(top=20.0 * axis.get_ylim()[1])  # room for the legend
+        axis.legend(loc="upper left", frameon=False, fontsize=8)
     figure.savefig(path, dpi=120)
 
 
