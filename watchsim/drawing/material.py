@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from watchsim.geometry.boxes import holding
+from watchsim.geometry.boxes import Boxes
 from watchsim.geometry.extent import extents
 from watchsim.geometry.inside import Inside
 from watchsim.geometry.loop import Loop
@@ -61,7 +61,7 @@ def in_material(points: Sequence[Point], solid: Sequence[Loop]) -> list[int]:
         return []
     depths = [0] * len(points)
     insides: dict[int, Inside] = {}
-    for k, number in zip(*holding(np.array([extents([loop]) for loop in solid]), np.array(points)), strict=True):
+    for k, number in zip(*Boxes(np.array([extents([loop]) for loop in solid])).holding(np.array(points)), strict=True):
         if number not in insides:
             insides[number] = Inside(solid[number])
         if insides[number].winding(points[k]) != 0:
