@@ -13,6 +13,7 @@ import dataclasses
 import os
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -101,7 +102,9 @@ def long_run(scene: Scene, duration: float) -> Long:
     begun = time.process_time()
     parts = pieces(scene, duration)
     cpu = time.process_time() - begun
-    joined = {name: np.concatenate([getattr(part, name) for part in parts]) for name in ("t", "q", "u", "a", "events")}
+    joined: dict[str, Any] = {
+        name: np.concatenate([getattr(part, name) for part in parts]) for name in ("t", "q", "u", "a", "events")
+    }
     whole = dataclasses.replace(parts[-1], **joined)
     found, wheel = beats(whole), roles(scene).wheel
     end = np.array([part.simulated for part in parts])

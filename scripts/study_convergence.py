@@ -134,8 +134,10 @@ def picture(found: Found, path: Path) -> None:
     import matplotlib.pyplot as plt
 
     figure, axes = plt.subplots(1, 2, figsize=(10.0, 4.6), constrained_layout=True)
-    panels = (("place, m/m", "Incline, dry bearings, stick and slip", "relative error of place"),)
-    panels += (("balance, rad", "Levers: balance", "mean difference of angle, rad"),)
+    panels = (
+        ("place, m/m", "Incline, dry bearings, stick and slip", "relative error of place"),
+        ("balance, rad", "Levers: balance", "mean difference of angle, rad"),
+    )
     for axis, (quantity, title, label) in zip(axes, panels, strict=True):
         for (case, name), (steps, errors) in found.items():
             if name == quantity:
