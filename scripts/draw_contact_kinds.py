@@ -77,8 +77,8 @@ def fill(ax: plt.Axes, loop: Loop, pose: tuple[float, float, float], colour: str
 
 def arrow(ax: plt.Axes, start: np.ndarray, way: np.ndarray, colour: str, word: str) -> None:
     look = {"arrowstyle": "-|>", "color": colour, "linewidth": 1.6, "shrinkA": 0, "shrinkB": 0}
-    ax.annotate("", start + way, start, arrowprops=look)
-    ax.annotate(word, start + 1.16 * way, color=colour, ha="center", va="center", fontsize=11)
+    ax.annotate("", tuple(start + way), tuple(start), arrowprops=look)
+    ax.annotate(word, tuple(start + 1.16 * way), color=colour, ha="center", va="center", fontsize=11)
 
 
 def panel(ax: plt.Axes, title: str, a: Loop, pose: tuple[float, float, float], b: Loop) -> None:

@@ -1,7 +1,7 @@
 """How do the pictures of the contact laws in docs/laws come about?
 
 The characteristics of the expansion are read off the solver itself: one contact of a rigid body, the slip before it swept,
-the impulses and rates of both phases as `watchsim.dynamics.impact` gives them. The characteristics of normal contact, of
+the impulses and rates of both phases as the solver's own `impact` gives them. The characteristics of normal contact, of
 friction while bodies touch and of a dry bearing are drawn from their definitions.
 
     python scripts/draw_laws.py
@@ -17,33 +17,21 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-from watchsim.contact.kinematics import closed_contacts
-from watchsim.dynamics.delassus import contact_work
-from watchsim.dynamics.impact import impact
-from watchsim.jit import callable_kernel
-from watchsim.mechanism import model as m
+from watchsim.analysis.bare_contacts import BareContacts
 
 IMAGES = Path(__file__).resolve().parents[1] / "docs" / "images"
 INK, GREY = "#1f2933", "#9aa5b1"
 COLOURS = {"coulomb": "#1f77b4", "pg1996": "#d1495b", "shifted": "#2a9d8f"}
 MU, EPS, BACK = 0.3, 0.8, 0.6
-_impact = callable_kernel(impact)
 
 
 def one_contact(law: str, eps: float, u: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
     """Total impulses N, T and rates after the impact; unit mass, no coupling, G = diag(1, 3) as for a uniform disc."""
-    coordinates, laws, contacts = m.records(m.COORDINATE, 2), m.records(m.LAW, 1), m.records(m.CONTACT, 1)
-    coordinates.mass = (1.0, 1.0 / 3.0)
-    laws.friction, laws.restitution, laws.tangential, laws.kind = MU, eps, BACK, m.TANGENTIAL_CODE[law]
-    empty = [m.records(kind, 0) for kind in (m.BODY, m.TABLE, m.PRIMITIVE, m.BODY_PAIR)]
-    model = m.Model(empty[0], coordinates, empty[1], np.zeros((0, 2)), empty[2], contacts, laws, empty[3])
-    closed, work = closed_contacts(1), contact_work(1, 2)
-    closed.slots[0], closed.coord[0, :2] = 2, (0, 1)
-    closed.w_N[0, 0], closed.w_T[0, 1] = 1.0, 1.0
-    after = np.array(u)
-    if _impact(model, closed, 1, np.array([eps]), 0.0, work, after) != 0:
+    contact = BareContacts(np.array([1.0, 1.0 / 3.0]), np.eye(2), np.array([MU]), np.array([eps]), law, tangential=BACK)
+    status, after, impulses = contact.impact(np.array(u))
+    if status != 0:
         raise SystemExit(f"{law}: the impact at {u} was not solved")
-    return work.force[:2].copy(), after
+    return impulses, after
 
 
 def axes_through_zero(ax: plt.Axes, x: str, y: str) -> None:

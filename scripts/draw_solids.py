@@ -99,4 +99,6 @@ def draw(scene_file: Path, picture: Path) -> None:
 
 
 if __name__ == "__main__":
+    if len(sys.argv) != 3:
+        raise SystemExit(__doc__)
     draw(Path(sys.argv[1]), Path(sys.argv[2]))

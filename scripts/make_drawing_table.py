@@ -39,6 +39,8 @@ class Row(NamedTuple):
 
 def main(folder: Path, target: Path) -> None:
     stored = facts(folder)
+    if not stored:
+        raise SystemExit(f"{folder}: no drawings with a truth.json beside them; nothing was written")
     rows = [row_of(name, folder) if truth.get("length") else empty_row(name, folder) for name, truth in sorted(stored.items())]
     exact = sum(row.agrees and not row.curved for row in rows)
     curved = sum(row.agrees and row.curved for row in rows)

@@ -7,9 +7,9 @@ GRID.csv is made by scripts/measure_grid.py. The rows are those of `watchsim ver
 
 from __future__ import annotations
 
+import argparse
 import csv
 import datetime
-import sys
 from itertools import groupby
 from pathlib import Path
 from typing import Any
@@ -130,12 +130,13 @@ def grid_text(grid: list[dict[str, str]]) -> list[str]:
 
 
 def main() -> None:
-    paths = [word for word in sys.argv[1:] if not word.startswith("--")]
-    if len(paths) != 1:
-        raise SystemExit(__doc__)
-    with Path(paths[0]).open(encoding="utf-8") as file:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("grid", type=Path, help="table that scripts/measure_grid.py has written")
+    parser.add_argument("--slow", action="store_true", help="the large numbers of random problems too")
+    args = parser.parse_args()
+    with args.grid.open(encoding="utf-8") as file:
         grid = list(csv.DictReader(file))
-    rows = verify("--slow" in sys.argv)
+    rows = verify(args.slow)
     images = DOCS / "images"
     margins(rows, images / "stability_margins.png")
     grid_picture(grid, images / "stability_grid.png")

@@ -7,6 +7,7 @@ Prints the largest error by kind of pair, as a share of the pair's size, and how
 
 from __future__ import annotations
 
+import argparse
 import sys
 import time
 from collections import defaultdict
@@ -24,7 +25,9 @@ from watchsim.contact.outlines import distance, gap  # noqa: E402
 
 
 def main() -> int:
-    count = int(sys.argv[1]) if len(sys.argv) > 1 else 100_000
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("count", type=int, nargs="?", default=100_000, help="pairs of primitives")
+    count = parser.parse_args().count
     distances: dict[str, list[float]] = defaultdict(list)
     gaps: dict[str, list[float]] = defaultdict(list)
     spent = 0.0

@@ -9,9 +9,9 @@ kinetic energy in any impact. Fails if a run ends for no good reason, gains ener
 
 from __future__ import annotations
 
+import argparse
 import csv
 import dataclasses
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -57,12 +57,13 @@ def measure(scene: ws.Scene, restitution: float, friction: float) -> dict[str, o
 
 
 def main() -> None:
-    if len(sys.argv) != 2:
-        raise SystemExit(__doc__)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("table", type=Path, help="CSV file to write")
+    args = parser.parse_args()
     scene = ws.load(ROOT / "profiles" / "bench_lever" / "scene.toml")
     values = np.linspace(0.0, 1.0, STEPS)
     rows: list[dict[str, object]] = []
-    with Path(sys.argv[1]).open("w", newline="", encoding="utf-8") as file:
+    with args.table.open("w", newline="", encoding="utf-8") as file:
         for eps in values:
             for mu in values:
                 rows.append(measure(scene, float(eps), float(mu)))

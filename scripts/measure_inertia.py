@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable
 from functools import cache
+from typing import Any, TypeAlias
 
 import mpmath
 import numpy as np
@@ -18,7 +19,7 @@ from watchsim.geometry.primitives import Arc, Edge
 
 DIGITS = 30
 NODES = 12
-Number = mpmath.mpf
+Number: TypeAlias = Any  # mpmath.mpf, which has no types
 
 
 def moments(loops: Iterable[Loop]) -> tuple[Number, Number]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -79,7 +80,7 @@ def one_margin_again(model, k, pose, repeats):
     return total
 
 
-def nanoseconds(function, *arguments: object) -> float:
+def nanoseconds(function: Callable[..., object], *arguments: object) -> float:
     """Processor time of one repeat, the best of ten: what other programs take is not counted."""
     best = float("inf")
     for _ in range(10):

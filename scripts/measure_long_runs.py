@@ -1,17 +1,19 @@
 """Does a watch still beat evenly, and does its account still close, after an hour? Does a locked lever creep in a day?
 
-    python scripts/measure_long_runs.py [--duration SECONDS] [--locked SECONDS] [--page FILE]
+    python scripts/measure_long_runs.py [--duration SECONDS] [--locked SECONDS] [--day SECONDS] [--page FILE]
 
-Every hour is run in pieces of a minute, each taken up from the saved state of the one before. Writes docs/long-runs.md and
-docs/images/long_runs.png.
+Every hour is run in pieces of a minute, each taken up from the saved state of the one before; the day of the Swiss lever in
+one piece, of which only statistics are kept. Writes docs/long-runs.md and docs/images/long_runs.png.
 """
 
 from __future__ import annotations
 
 import argparse
 import dataclasses
+import os
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +35,7 @@ PAGE = ROOT / "docs" / "long-runs.md"
 PIECE = 60.0  # s
 TOLD = (1, 2, 3, 5, 10, 15, 30, 45, 60)  # minutes that have a line in the table
 TIGHTER = 0.01  # of the tolerance, for comparison
+MEMORY_AT = (0.01, 0.1, 0.25, 0.5, 0.75, 0.99)  # shares of the day
 STEADY = 1e-6  # °, what the amplitude should be steady to
 COUNTED = ("impacts", "lcp", "lcp_failures", "lcp_copositive", "lcp_enumerated", "energy_rescues", "accumulations", "jams")
 Floats = NDArray[np.float64]
@@ -99,7 +102,9 @@ def long_run(scene: Scene, duration: float) -> Long:
     begun = time.process_time()
     parts = pieces(scene, duration)
     cpu = time.process_time() - begun
-    joined = {name: np.concatenate([getattr(part, name) for part in parts]) for name in ("t", "q", "u", "a", "events")}
+    joined: dict[str, Any] = {
+        name: np.concatenate([getattr(part, name) for part in parts]) for name in ("t", "q", "u", "a", "events")
+    }
     whole = dataclasses.replace(parts[-1], **joined)
     found, wheel = beats(whole), roles(scene).wheel
     end = np.array([part.simulated for part in parts])
@@ -167,17 +172,57 @@ Largest change of any coordinate after the first second.
 
 | scene | wheel, lever, balance: rad | processor time, s |
 |---|---|---:|"""
+WHOLE = """
+## Swiss lever, {hours:g} h in one piece, statistics only
+
+- {half_swings:,} half swings, {ticks:,} with a tick; {cpu:.0f} s of processor time.
+- Amplitude {mean:.7f}° on average, from {least:.7f}° to {largest:.7f}°; energy residual {share:.0e} of the work put in.
+- {counts}.
+- Memory of the process after {points} of the time: {memory} MB."""
 TABLE = """
 | minute | amplitude, ° | half swings differ by, ° | rate, s/d | residual, J | of the work put in |
 |---:|---:|---:|---:|---:|---:|"""
 
 
-def page(runs: list[Long], stands: dict[str, tuple[Floats, float]], asked: float) -> str:
+def whole_day(scene: Scene, duration: float) -> str:
+    """What is said of one run of that many seconds, of which only statistics are kept."""
+    memory: list[float] = []
+
+    def watch(now: float, end: float) -> None:
+        if now >= MEMORY_AT[min(len(memory), len(MEMORY_AT) - 1)] * end and len(memory) < len(MEMORY_AT):
+            memory.append(resident())
+
+    begun = time.process_time()
+    run = simulate(scene, duration, record="statistics", progress=watch)
+    cpu = time.process_time() - begun
+    if run.stop != Stop.DURATION:
+        raise SystemExit(f"{scene.title}: {run.stop_message}")
+    swings = run.sums["amplitude"]
+    return WHOLE.format(
+        hours=duration / 3600.0,
+        half_swings=run.sums["half_swings"],
+        ticks=run.sums["ticks"],
+        cpu=cpu,
+        share=run.energy["residual_relative"],
+        counts=", ".join(f"{run.counts[name]:,} {name}" for name in COUNTED),
+        points=", ".join(f"{part:.0%}" for part in MEMORY_AT),
+        memory=", ".join(f"{megabytes:.1f}" for megabytes in memory),
+        **{name: np.degrees(swings[name]) for name in ("mean", "least", "largest")},
+    )
+
+
+def resident() -> float:
+    """MB that this process occupies now."""
+    pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
+    return 1e-6 * pages * os.sysconf("SC_PAGE_SIZE")
+
+
+def page(runs: list[Long], stands: dict[str, tuple[Floats, float]], asked: float, day: str) -> str:
     """The whole page."""
     lines = [HEAD.rstrip(), *(line for run in runs for line in _one(run)), STANDS.format(hours=asked / 3600.0)]
     for name, (moved, cpu) in stands.items():
         lines.append(f"| {name} | {', '.join(f'{v:.0e}' if v else '0' for v in moved)} | {cpu:.1f} |")
-    return "\n".join(lines) + "\n"
+    return "\n".join([*lines, *([day] if day else [])]) + "\n"
 
 
 def _one(run: Long) -> list[str]:
@@ -243,6 +288,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--duration", type=float, default=3600.0, help="s, of the running watches; eight minutes or more")
     parser.add_argument("--locked", type=float, default=86400.0, help="s, of the locked ones")
+    parser.add_argument("--day", type=float, default=86400.0, help="s, of the run of which only statistics are kept; 0: none")
     parser.add_argument("--page", type=Path, default=PAGE)
     args = parser.parse_args()
     if args.duration < 8.0 * PIECE:
@@ -250,7 +296,8 @@ def main() -> None:
     scenes = {name: load(profiles_dir() / name / "scene.toml") for name in ("bench_lever", "swiss_lever")}
     stands = {scene.title: creep(scene, args.locked) for scene in scenes.values()}
     runs = [long_run(scene, args.duration) for scene in scenes.values()]
-    args.page.write_text(page(runs, stands, args.locked), encoding="utf-8")
+    day = whole_day(scenes["swiss_lever"], args.day) if args.day else ""
+    args.page.write_text(page(runs, stands, args.locked, day), encoding="utf-8")
     picture(runs, args.page.parent / "images" / "long_runs.png")
     if short := failures(runs, stands):
         raise SystemExit("\n".join(short))

@@ -8,6 +8,7 @@ only what curves take that must be followed by arcs, and renews that part of the
 from __future__ import annotations
 
 import argparse
+import cmath
 import math
 import os
 import random
@@ -15,7 +16,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -24,8 +25,8 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 SIZES = (1000, 3000, 10_000, 30_000, 100_000)
 FITTED_FROM = 10_000  # edges; below, the start of Python is most of the time
-CURVES = (100, 1000, 9000)  # splines
 CURVED = "## Curves"
+SPANS = 57  # of a closed spline
 SEED = 1
 
 
@@ -83,14 +84,43 @@ def crossing_rings(count: int, rng: random.Random) -> Iterator[str]:
         yield arc(x, y, 0.9, 0.0, 360.0)
 
 
+def spline(points: Sequence[tuple[float, float]], knots: Sequence[float]) -> str:
+    groups = "".join(f"40\n{float(knot)}\n" for knot in knots)
+    control = "".join(f"10\n{x!r}\n20\n{y!r}\n30\n0.0\n" for x, y in points)
+    return f"0\nSPLINE\n8\nPART\n70\n8\n71\n3\n72\n{len(knots)}\n73\n{len(points)}\n74\n0\n{groups}{control}"
+
+
 def wavy_splines(count: int, rng: random.Random) -> Iterator[str]:
     """Cubic Béziers of any shape, some millimetres long, in rows."""
     side = math.ceil(math.sqrt(count))
     for k in range(count):
         points = [(3.0 * (k % side) + rng.uniform(-1, 1), 3.0 * (k // side) + rng.uniform(-1, 1)) for _ in range(4)]
-        knots = "".join(f"40\n{float(knot)}\n" for knot in (0, 0, 0, 0, 1, 1, 1, 1))
-        control = "".join(f"10\n{x!r}\n20\n{y!r}\n30\n0.0\n" for x, y in points)
-        yield f"0\nSPLINE\n8\nPART\n70\n8\n71\n3\n72\n8\n73\n4\n74\n0\n{knots}{control}"
+        yield spline(points, (0, 0, 0, 0, 1, 1, 1, 1))
+
+
+def wavy_outline(rng: random.Random) -> list[complex]:
+    """The control points of a closed cubic spline of SPANS spans, some 20 mm around."""
+    waves = [(rng.uniform(0, 0.3) / n, n, rng.uniform(0, math.tau)) for n in range(1, 7)]
+    angles = [math.tau * i / (SPANS + 2) for i in range(SPANS + 2)]
+    points = [cmath.rect(3.0 + sum(size * math.cos(n * t + phase) for size, n, phase in waves), t) for t in angles]
+    return [*points, points[0]]
+
+
+def in_rows(outlines: Iterable[Iterable[complex]], count: int) -> Iterator[str]:
+    side = math.ceil(math.sqrt(count))
+    for k, outline in enumerate(outlines):
+        points = [(10.0 * (k % side) + z.real, 10.0 * (k // side) + z.imag) for z in outline]
+        yield spline(points, (0, 0, 0, *range(SPANS + 1), SPANS, SPANS, SPANS))
+
+
+def wavy_outlines(count: int, rng: random.Random) -> Iterator[str]:
+    return in_rows((wavy_outline(rng) for _ in range(count)), count)
+
+
+def copies(count: int, rng: random.Random) -> Iterator[str]:
+    """One such outline, turned, drawn anew each time."""
+    first = wavy_outline(rng)
+    return in_rows(([z * cmath.exp(1j * k) for z in first] for k in range(count)), count)
 
 
 DRAWINGS: dict[str, Callable[[int, random.Random], Iterator[str]]] = {
@@ -98,6 +128,13 @@ DRAWINGS: dict[str, Callable[[int, random.Random], Iterator[str]]] = {
     "one disc of arcs": scalloped_disc,
     "slots in a plate": plate_of_holes,
     "circles, some crossing": crossing_rings,
+}
+
+
+CURVES: dict[str, tuple[Callable[[int, random.Random], Iterator[str]], tuple[int, ...]]] = {
+    "cubics": (wavy_splines, (100, 1000, 9000)),
+    "outlines": (wavy_outlines, (10, 100, 760)),
+    "copies of one outline": (copies, (10, 100, 760)),
 }
 
 
@@ -169,18 +206,16 @@ def curves_text(repeats: int) -> str:
     rows = []
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "drawing.dxf"
-        for count in CURVES:
-            write(path, wavy_splines(count, random.Random(SEED)))
-            used, drawing = seconds(path, repeats)[0], read(path)
-            rows.append((count, path.stat().st_size / 1e6, drawing.fitted_arcs, used))
-    (few, _, _, least), (many, _, arcs, most) = rows[0], rows[-1]
-    lines = "\n".join(f"| {count} | {size:.2f} MB | {arcs} | {used:.2f} |" for count, size, arcs, used in rows)
+        for name, (make, counts) in CURVES.items():
+            for count in counts:
+                write(path, make(count, random.Random(SEED)))
+                used, drawing = seconds(path, repeats)[0], read(path)
+                rows.append(f"| {count} {name} | {path.stat().st_size / 1e6:.2f} MB | {drawing.fitted_arcs} | {used:.2f} |")
     return (
         f"{CURVED}\n\nSplines and Béziers that are neither straight nor round are followed by the fewest arcs within 0.1 µm "
-        f"that are found,\nall curves of a drawing at once. For cubics of any shape some millimetres long, {arcs / many:.0f} "
-        f"arcs each:\n\n| Curves | file | arcs | seconds |\n|---|---|---|---|\n{lines}\n\n"
-        f"That is {1e3 * (most - least) / (many - few):.2f} ms for each curve; about half of it is for chaining the arcs and "
-        f"looking where they cross.\n"
+        f"that are found,\nall curves of a drawing at once, copies (blocks, turned teeth, mirrored halves) once for all. "
+        f"Cubics of any shape some\nmillimetres long, and closed outlines of {SPANS} spans:\n\n"
+        f"| Curves | file | arcs | seconds |\n|---|---|---|---|\n" + "\n".join(rows) + "\n"
     )
 
 

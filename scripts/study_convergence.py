@@ -134,8 +134,10 @@ def picture(found: Found, path: Path) -> None:
     import matplotlib.pyplot as plt
 
     figure, axes = plt.subplots(1, 2, figsize=(10.0, 4.6), constrained_layout=True)
-    panels = (("place, m/m", "Incline, dry bearings, stick and slip", "relative error of place"),)
-    panels += (("balance, rad", "Levers: balance", "mean difference of angle, rad"),)
+    panels = (
+        ("place, m/m", "Incline, dry bearings, stick and slip", "relative error of place"),
+        ("balance, rad", "Levers: balance", "mean difference of angle, rad"),
+    )
     for axis, (quantity, title, label) in zip(axes, panels, strict=True):
         for (case, name), (steps, errors) in found.items():
             if name == quantity:
@@ -146,7 +148,8 @@ def picture(found: Found, path: Path) -> None:
         axis.loglog(ends, middle * ends / math.sqrt(low * high), color="0.6", linestyle="--", label="slope 1", zorder=0)
         axis.set(title=title, xlabel="step, s", ylabel=label)
         axis.grid(True, which="major", color="0.9")
-        axis.legend(frameon=False, fontsize=8)
+        axis.set_ylim(top=20.0 * axis.get_ylim()[1])  # room for the legend
+        axis.legend(loc="upper left", frameon=False, fontsize=8)
     figure.savefig(path, dpi=120)
 
 

@@ -8,7 +8,6 @@ Writes the tables into the document, between the comments that name them, and dr
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
@@ -65,11 +64,9 @@ def outlines() -> str:
         found = section(loops).about((0.0, 0.0)).polar
         rows.append(f"| {name} | {found / MM4:.12g} | {formula} | {_agrees(found, exact)} |")
     for name, path in (("escape wheel, 15 club teeth, 4 arms", WHEEL), ("lever with stones", WHEEL.with_name("lever.dxf"))):
-        loops = ws.read(path).loops
-        found = section(loops).about((0.0, 0.0)).polar
-        rows.append(
-            f"| {name} | {found / MM4:.12g} | Green's theorem with 30 digits | {_agrees(found, float(moments(loops)[1]))} |"
-        )
+        drawn = ws.read(path).loops
+        found, exact = section(drawn).about((0.0, 0.0)).polar, float(moments(drawn)[1])
+        rows.append(f"| {name} | {found / MM4:.12g} | Green's theorem with 30 digits | {_agrees(found, exact)} |")
     return "\n".join(rows)
 
 
@@ -121,7 +118,8 @@ def filled(text: str, names: Iterable[str] = TABLES) -> str:
         if start not in text or end not in text:
             raise SystemExit(f"{DOCUMENT} has no place for the table {name}")
         block = f"{start}\n{TABLES[name]()}\n{end}"
-        text = re.sub(f"{re.escape(start)}.*?{re.escape(end)}", lambda _, block=block: block, text, flags=re.S)
+        before, after = text.split(start, maxsplit=1)[0], text.split(end, 1)[1]
+        text = before + block + after
     return text
 
 

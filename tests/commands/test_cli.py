@@ -229,8 +229,10 @@ def test_expectations_of_another_run_are_not_judged(tmp_path: Path, capsys: pyte
     entries = json.loads((tmp_path / "short" / "summary.json").read_text(encoding="utf-8"))["expect"]
     assert entries and all(entry["ok"] is None for entry in entries)
     assert main(["run", incline, "--duration", "3 s", "--no-plots", "-o", str(tmp_path / "own")]) == 0
-    entries = json.loads((tmp_path / "own" / "summary.json").read_text(encoding="utf-8"))["expect"]
-    assert entries and all(entry["ok"] is True for entry in entries)
+    assert main(["run", incline, "--resume", str(tmp_path / "short"), "--no-plots"]) == 0, "gone on to the scene's own end"
+    for name in ("own", "short"):
+        entries = json.loads((tmp_path / name / "summary.json").read_text(encoding="utf-8"))["expect"]
+        assert entries and all(entry["ok"] is True for entry in entries)
 
 
 @pytest.mark.parametrize("command", ["inspect", "check"])

@@ -6,30 +6,16 @@ One accident per file: bytes, numbers, group codes, lines, the nesting of blocks
 from __future__ import annotations
 
 import random
-from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
 
+import accidents
 import dxf_text as d
+from accidents import Accident, after_accidents, bytes_overwritten, cut_off, line_lost, lines_swapped
 
 ENDING = "dxf"
 TOLD = ("layer-off", "paper-space", "edge-on")  # findings that account for entities not drawn
-NUMBERS = (
-    b"0",
-    b"-1",
-    b"1e308",
-    b"-1e-320",
-    b"nan",
-    b"inf",
-    b"1e9",
-    b"-1e9",
-    b"",
-    b"99999999999",
-    b"1e-300",
-    b"3.7",
-    b"0x10",
-    b"1,5",
-)
+NUMBERS = (*accidents.NUMBERS, b"0x10", b"1,5")
 CODES = (
     b"0",
     b"1",
@@ -176,46 +162,13 @@ def drawn_length(path: Path) -> float | None:
 
 def mutate(rng: random.Random, data: bytes) -> bytes:
     """The file after one to three accidents."""
-    for _ in range(rng.choice((1, 1, 1, 2, 3))):
-        data = rng.choice(ACCIDENTS)(rng, data) if data else data
-    return data
-
-
-def bytes_overwritten(rng: random.Random, data: bytes) -> bytes:
-    changed = bytearray(data)
-    for _ in range(rng.choice((1, 1, 2, 8))):
-        changed[rng.randrange(len(changed))] = rng.randrange(256)
-    return bytes(changed)
-
-
-def cut_off(rng: random.Random, data: bytes) -> bytes:
-    return data[: rng.randrange(len(data))]
-
-
-def line_lost(rng: random.Random, data: bytes) -> bytes:
-    lines = data.split(b"\n")
-    del lines[rng.randrange(len(lines))]
-    return b"\n".join(lines)
+    return after_accidents(rng, data, ACCIDENTS)
 
 
 def line_replaced(rng: random.Random, data: bytes) -> bytes:
     lines = data.split(b"\n")
     k = rng.randrange(len(lines))
     lines[k] = rng.choice(NUMBERS + CODES + WORDS if lines[k - 1].strip() == b"0" else NUMBERS + CODES)
-    return b"\n".join(lines)
-
-
-def lines_swapped(rng: random.Random, data: bytes) -> bytes:
-    lines = data.split(b"\n")
-    i, j = rng.randrange(len(lines)), rng.randrange(len(lines))
-    lines[i], lines[j] = lines[j], lines[i]
-    return b"\n".join(lines)
-
-
-def lines_doubled(rng: random.Random, data: bytes) -> bytes:
-    lines = data.split(b"\n")
-    i, j = rng.randrange(len(lines)), rng.randrange(len(lines))
-    lines[i:i] = lines[j : j + rng.randrange(30)]
     return b"\n".join(lines)
 
 
@@ -246,7 +199,18 @@ def nesting_changed(rng: random.Random, data: bytes) -> bytes:
     return b"\n".join(lines)
 
 
-ACCIDENTS: tuple[Callable[[random.Random, bytes], bytes], ...] = (
-    *(bytes_overwritten, cut_off, line_lost, line_replaced, lines_swapped, lines_doubled, code_changed, number_changed),
+def lines_doubled(rng: random.Random, data: bytes) -> bytes:
+    return accidents.lines_doubled(rng, data, most=30)
+
+
+ACCIDENTS: tuple[Accident, ...] = (
+    bytes_overwritten,
+    cut_off,
+    line_lost,
+    line_replaced,
+    lines_swapped,
+    lines_doubled,
+    code_changed,
+    number_changed,
     nesting_changed,
 )

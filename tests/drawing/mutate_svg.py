@@ -9,31 +9,18 @@ import random
 import re
 import sys
 import xml.etree.ElementTree as ET
-from collections.abc import Callable
 from pathlib import Path
 from xml.parsers.expat import ExpatError
+
+import accidents
+from accidents import Accident, after_accidents, bytes_overwritten, cut_off, line_lost, lines_swapped
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "naive"))
 import svg_length
 
 ENDING = "svg"
 TOLD = ("hidden", "unused", "zero-size", "page", "edge-on")  # findings that account for elements not drawn
-NUMBERS = (
-    b"0",
-    b"-1",
-    b"1e308",
-    b"-1e-320",
-    b"nan",
-    b"inf",
-    b"1e9",
-    b"-1e9",
-    b"",
-    b"99999999999",
-    b"1e-300",
-    b"3.7",
-    b"50%",
-    b"2em",
-)
+NUMBERS = (*accidents.NUMBERS, b"50%", b"2em")
 NAMES = (
     *(b"rect", b"circle", b"path", b"g", b"use", b"symbol", b"defs", b"svg", b"style", b"switch", b"text", b"polygon", b"line"),
     *(b"id", b"d", b"r", b"cx", b"x", b"width", b"points", b"transform", b"viewBox", b"href", b"class", b"xmlns", b"clip-path"),
@@ -196,40 +183,7 @@ def length(path: Path) -> float | None:
 
 def mutate(rng: random.Random, data: bytes) -> bytes:
     """The file after one to three accidents."""
-    for _ in range(rng.choice((1, 1, 1, 2, 3))):
-        data = rng.choice(ACCIDENTS)(rng, data) if data else data
-    return data
-
-
-def bytes_overwritten(rng: random.Random, data: bytes) -> bytes:
-    changed = bytearray(data)
-    for _ in range(rng.choice((1, 1, 2, 8))):
-        changed[rng.randrange(len(changed))] = rng.randrange(256)
-    return bytes(changed)
-
-
-def cut_off(rng: random.Random, data: bytes) -> bytes:
-    return data[: rng.randrange(len(data))]
-
-
-def line_lost(rng: random.Random, data: bytes) -> bytes:
-    lines = data.split(b"\n")
-    del lines[rng.randrange(len(lines))]
-    return b"\n".join(lines)
-
-
-def lines_swapped(rng: random.Random, data: bytes) -> bytes:
-    lines = data.split(b"\n")
-    i, j = rng.randrange(len(lines)), rng.randrange(len(lines))
-    lines[i], lines[j] = lines[j], lines[i]
-    return b"\n".join(lines)
-
-
-def lines_doubled(rng: random.Random, data: bytes) -> bytes:
-    lines = data.split(b"\n")
-    i, j = rng.randrange(len(lines)), rng.randrange(len(lines))
-    lines[i:i] = lines[j : j + rng.randrange(12)]
-    return b"\n".join(lines)
+    return after_accidents(rng, data, ACCIDENTS)
 
 
 def _replaced(rng: random.Random, data: bytes, pattern: bytes, words: tuple[bytes, ...]) -> bytes:
@@ -269,7 +223,19 @@ def nesting_changed(rng: random.Random, data: bytes) -> bytes:
     return rest[:at] + tag[0] + rest[at:]
 
 
-ACCIDENTS: tuple[Callable[[random.Random, bytes], bytes], ...] = (
-    *(bytes_overwritten, cut_off, line_lost, lines_swapped, lines_doubled, number_changed, name_changed, letter_changed),
-    *(fragment_inserted, nesting_changed),
+def lines_doubled(rng: random.Random, data: bytes) -> bytes:
+    return accidents.lines_doubled(rng, data, most=12)
+
+
+ACCIDENTS: tuple[Accident, ...] = (
+    bytes_overwritten,
+    cut_off,
+    line_lost,
+    lines_swapped,
+    lines_doubled,
+    number_changed,
+    name_changed,
+    letter_changed,
+    fragment_inserted,
+    nesting_changed,
 )

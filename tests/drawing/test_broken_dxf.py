@@ -10,7 +10,7 @@ import pytest
 
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.inspect import inspect_report, inspect_text
-from watchsim.drawing.read import read
+from watchsim.drawing.read import LARGEST_FILE, read
 
 Reader = Callable[..., Drawing]
 DATA = Path(__file__).resolve().parents[1] / "data"
@@ -123,9 +123,16 @@ def test_blocks_that_multiply_are_stopped(read_bytes: Reader) -> None:
 def test_more_pieces_than_a_drawing_can_have_are_refused_whole(read_bytes: Reader) -> None:
     """Half a drawing would be worse than none, and takes long to look through."""
     comb = "".join(d.line((k, 0), (k, 1)) for k in range(600))
-    drawing = read_bytes(d.dxf(d.insert("B", (0, 0), (70, 900), (44, 1e3)), blocks=d.block("B", comb)))
+    drawing = read_bytes(d.dxf(d.insert("B", (0, 0), (70, 450), (44, 1e3)), blocks=d.block("B", comb)))
     assert "nothing was read" in errors(drawing)["too-large"]
     assert not drawing.open_chains and drawing.units == "mm"
+
+
+def test_a_file_too_large_for_a_drawing_is_not_even_opened(tmp_path: Path) -> None:
+    path = tmp_path / "map.dxf"
+    with path.open("wb") as file:
+        file.truncate(LARGEST_FILE + 1)
+    assert "75 MB" in errors(read(path))["too-large"]
 
 
 def test_strange_groups_are_a_warning(read_bytes: Reader) -> None:

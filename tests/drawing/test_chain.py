@@ -116,6 +116,28 @@ def test_duplicates_forward_and_reversed(read_bytes: Reader) -> None:
     assert [finding.code for finding in drawing.findings] == ["duplicate", "duplicate"]
 
 
+def test_an_edge_drawn_twice_half_a_micrometre_apart_is_one_edge(read_bytes: Reader) -> None:
+    lens = d.arc(9, 0, 1, 0, 120) + d.arc(9, 0, 1, 120, 360)
+    again = d.line((4.0, 5e-4), (0.0, -3e-4)) + d.arc(9, 4e-4, 1, 0, 120)
+    drawing = read_bytes(d.dxf(d.polygon(SQUARE) + lens + again))
+    assert sorted(area(loop) for loop in drawing.loops) == pytest.approx([math.pi * 1e-6, 16e-6], rel=1e-6)
+    assert not drawing.open_chains
+    assert [finding.code for finding in drawing.findings] == ["duplicate", "duplicate"]
+
+
+def test_two_lines_a_few_micrometres_apart_are_no_outline(read_bytes: Reader) -> None:
+    drawing = read_bytes(d.dxf(d.line((0, 0), (5, 0)) + d.line((5, 7e-3), (0, 7e-3))))
+    assert not drawing.loops and len(drawing.open_chains) == 1
+    assert {finding.code for finding in drawing.findings} == {"duplicate", "gap-closed", "stray-line"}
+
+
+def test_a_thin_lens_is_an_outline(read_bytes: Reader) -> None:
+    """Its two arcs join the same ends, five micrometres from each other."""
+    rise = 2.5e-3
+    drawing = read_bytes(d.dxf(d.lwpolyline([(0, 0, 2 * rise / 4), (4, 0, 2 * rise / 4)], True)))
+    assert len(drawing.loops) == 1 and not drawing.findings
+
+
 def test_whole_outlines_drawn_twice(read_bytes: Reader) -> None:
     entities = d.polygon(SQUARE) + d.lwpolyline(SQUARE[2:] + SQUARE[:2], True) + d.circle(9, 0, 1) + d.arc(9, 0, 1, 90, 450)
     drawing = read_bytes(d.dxf(entities))
@@ -194,6 +216,11 @@ def test_stray_line_is_a_warning_only(read_bytes: Reader) -> None:
     drawing = read_bytes(d.dxf(d.polygon(SQUARE) + d.line((10, 0), (20, 0))))
     assert [(finding.code, finding.severity) for finding in drawing.findings] == [("stray-line", "warning")]
     assert len(drawing.open_chains) == 1
+
+
+def test_a_single_line_on_a_layer_of_axes_is_meant(read_bytes: Reader) -> None:
+    drawing = read_bytes(d.dxf(d.polygon(SQUARE) + d.line((2, 2), (2, 9), layer="STAFF_AXIS")))
+    assert not drawing.findings and len(drawing.open_chains) == 1
 
 
 def test_layers_do_not_mix(read_bytes: Reader) -> None:
@@ -281,4 +308,5 @@ def calls(work: Callable[[], object]) -> int:
 @pytest.mark.parametrize("make", [ring, star])
 def test_work_grows_with_the_number_of_edges(make: Callable[[int], list[Stroke]]) -> None:
     few, many = make(500), make(4000)
+    chain(many, 1e-6)  # imports what it needs
     assert calls(lambda: chain(many, 1e-6)) < 8 * 1.2 * calls(lambda: chain(few, 1e-6))

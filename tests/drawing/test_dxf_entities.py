@@ -6,7 +6,9 @@ import math
 from collections.abc import Callable
 
 import dxf_text as d
+import numpy as np
 import pytest
+from ezdxf.math import ConstructionEllipse
 
 from watchsim.drawing.drawing import Drawing
 from watchsim.geometry.extent import extents
@@ -109,6 +111,29 @@ def test_ellipse_within_the_tolerance(read_bytes: Reader) -> None:
     assert fine.fitted_arcs > 5 * coarse.fitted_arcs
 
 
+@pytest.mark.parametrize(("start", "end"), [(4.0, 1.0), (-2.0, 7.0), (7.0, -2.0), (math.tau, 0.5), (0.0, -1e-12)])
+@pytest.mark.parametrize("height", [1.0, -1.0])
+def test_ellipse_runs_forward_from_start_to_end_once_at_most(
+    read_bytes: Reader, start: float, end: float, height: float
+) -> None:
+    """Against ezdxf's own ellipse: parameters beyond a turn, running backwards, seen from below."""
+    entity = d.record(
+        "ELLIPSE",
+        *d.point(10, (1, 2)),
+        *d.point(11, (5, 1)),
+        *d.point(210, (0, 0, height)),
+        (40, 0.3),
+        (41, repr(start)),
+        (42, repr(end)),
+    )
+    drawing = read_bytes(d.dxf(entity))
+    truth = ConstructionEllipse((1, 2), (5, 1), (0, 0, height), 0.3, start, end)
+    points = np.array([(p.x, p.y) for p in truth.vertices(np.linspace(start, start + (truth.param_span or TURN), 4000))])
+    assert 1e3 * drawing.drawn.length == pytest.approx(float(np.hypot(*np.diff(points, axis=0).T).sum()), rel=1e-5)
+    box = extents((*drawing.loops, *drawing.open_chains))
+    assert box == pytest.approx(1e-3 * np.concatenate((points.min(axis=0), points.max(axis=0))), abs=2e-7)
+
+
 def test_ellipse_with_equal_axes_is_a_circle(read_bytes: Reader) -> None:
     entity = d.record("ELLIPSE", *d.point(10, (1, 2)), *d.point(11, (0, 4)), (40, 1.0), (41, 0.0), (42, repr(math.pi)))
     drawing = read_bytes(d.dxf(entity))
@@ -169,6 +194,18 @@ def test_missing_and_self_containing_blocks_are_errors(read_bytes: Reader) -> No
     blocks = d.block("A", d.insert("B", (0, 0))) + d.block("B", d.insert("A", (0, 0)) + d.circle(0, 0, 1))
     drawing = read_bytes(d.dxf(d.insert("A", (0, 0)) + d.insert("NONE", (1, 1)), blocks=blocks))
     assert sorted(codes(drawing)) == ["block-loop", "block-missing"]
+    assert len(drawing.loops) == 1
+
+
+def test_a_block_drawn_in_another_file_is_an_error_and_an_empty_one_is_said(read_bytes: Reader) -> None:
+    head = d.record("BLOCK", (2, "GEAR"), (70, 4), *d.point(10, (0, 0)), (3, "GEAR"), (1, "gear.dwg"))
+    blocks = head + "0\nENDBLK\n8\n0\n" + d.block("NONE", "")
+    drawing = read_bytes(d.dxf(d.circle(0, 0, 1) + d.insert("GEAR", (5, 5)) + 2 * d.insert("NONE", (9, 9)), blocks=blocks))
+    assert [(finding.code, finding.severity) for finding in drawing.findings] == [
+        ("external", "error"),
+        ("empty-block", "notice"),
+    ]
+    assert "gear.dwg" in drawing.findings[0].message
     assert len(drawing.loops) == 1
 
 

@@ -35,7 +35,7 @@ TOP = (
 
 
 def wheel() -> bytes:
-    ring = d.circle(0, 0, 2.15, layer="TEETH") + d.circle(0, 0, 1, layer="TEETH") + d.line((5, 5), (6, 5), layer="AXES")
+    ring = d.circle(0, 0, 2.15, layer="TEETH") + d.circle(0, 0, 1, layer="TEETH") + d.line((5, 5), (6, 5), layer="SLOT")
     return d.dxf(ring + d.record("POINT", *d.point(10, (0, 0)), layer="PIVOT") + d.record("TEXT", (1, "x")))
 
 
@@ -47,7 +47,7 @@ def test_fixed_names_and_values(read_bytes: Reader) -> None:
     assert report["extents_mm"] == pytest.approx([-2.15, -2.15, 6.0, 5.0])
     assert report["layers"] == {
         "TEETH": {"lines": 0, "arcs": 2, "loops": 2, "open_chains": 0},
-        "AXES": {"lines": 1, "arcs": 0, "loops": 0, "open_chains": 1},
+        "SLOT": {"lines": 1, "arcs": 0, "loops": 0, "open_chains": 1},
         "PIVOT": {"lines": 0, "arcs": 0, "loops": 0, "open_chains": 0},
     }
     loops = report["loops"]
@@ -74,7 +74,12 @@ def test_text_for_people(read_bytes: Reader) -> None:
     assert "TEETH  2 outlines (1 hole), 2 arcs" in text
     assert "PIVOT  a point at (0, 0) mm" in text
     assert "not read: 1 TEXT" in text
-    assert "warning, stray-line [layer AXES]" in text
+    assert "warning, stray-line [layer SLOT]" in text
+
+
+def test_the_place_of_a_small_part_far_from_the_origin_is_told(read_bytes: Reader) -> None:
+    text = inspect_text(read_bytes(d.dxf(d.polygon([(1e5, -2e-5), (1e5 + 4.25, -2e-5), (1e5 + 4.25, 3)]))))
+    assert "x 100000 to 100004.25, y 0 to 3)" in text
 
 
 def test_text_without_units_and_without_anything(read_bytes: Reader) -> None:

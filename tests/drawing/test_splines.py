@@ -9,6 +9,7 @@ from itertools import pairwise
 import dxf_text as d
 import numpy as np
 import pytest
+from scipy.interpolate import CubicSpline
 
 from watchsim.drawing.drawing import Drawing
 from watchsim.geometry.loop import Loop
@@ -112,6 +113,20 @@ def test_fit_points_only(read_bytes: Reader) -> None:
     assert distance_to(1e-3 * np.array(places, dtype=float), chain) < 1.01e-7
     assert chain.edges[0].start == pytest.approx((0, 0), abs=1e-15)
     assert chain.edges[-1].end == pytest.approx((3e-3, 1e-3), abs=1e-15)
+
+
+def test_closed_through_fit_points_is_one_smooth_outline(read_bytes: Reader) -> None:
+    """Flagged as closed, the first point not repeated: scipy's periodic spline with the chords' lengths as parameter."""
+    places = np.array([(0, 0), (4, 1), (5, 4), (1, 5), (-1, 2)], dtype=float)
+    tags: list[d.Tag] = [(70, 9), (71, 3), (72, 0), (73, 0), (74, 5)]
+    (loop,) = read_bytes(d.dxf(d.record("SPLINE", *tags, *(tag for p in places for tag in d.point(11, p))))).loops
+    around = np.vstack((places, places[:1]))
+    t = np.append(0.0, np.cumsum(np.hypot(*np.diff(around, axis=0).T)))
+    truth = CubicSpline(t, around, bc_type="periodic")
+    assert distance_to(1e-3 * truth(np.linspace(0.0, t[-1], 2000)), loop) < 1.002e-7
+    slopes = truth(t[0], 1) / np.hypot(*truth(t[0], 1))
+    assert loop.edges[0].tangent(0.0) == pytest.approx(slopes, abs=1e-9)
+    assert loop.edges[-1].tangent(1.0) == pytest.approx(slopes, abs=1e-9)
 
 
 def test_pause_in_a_spline_does_not_hang(read_bytes: Reader) -> None:

@@ -50,6 +50,44 @@ def test_a_page_with_a_size_says_the_unit(read_svg: Reader, page: str, units: st
     assert not drawing.findings
 
 
+ILLUSTRATOR = "<!-- Generator: Adobe Illustrator 27.0.0, SVG Export Plug-In . SVG Version: 6.00 Build 0)  -->"
+OLD, NEW = ('inkscape:version="0.91 r13725"', 'inkscape:version="0.92.4 (5da689c313, 2019-01-14)"')
+
+
+@pytest.mark.parametrize(
+    ("before", "page", "factor"),
+    [
+        (ILLUSTRATOR, 'width="28.346px" height="28.346px" viewBox="0 0 28.346 28.346"', "1.33333"),
+        (ILLUSTRATOR, 'viewBox="0 0 28.346 28.346"', "1.33333"),
+        ("", f'width="210mm" height="297mm" {OLD}', "1.06667"),
+        ("", f'width="372px" height="1052px" viewBox="0 0 372 1052" {OLD}', "1.06667"),
+    ],
+)
+def test_programs_that_count_pixels_differently_are_named(read_svg: Reader, before: str, page: str, factor: str) -> None:
+    drawing = read_svg(before + s.svg(SQUARE, page))
+    assert f"{factor} times as large" in s.codes(drawing)["pixels"]
+    assert "pixels" not in s.codes(read_svg(before + s.svg(SQUARE, page), units="pt"))
+
+
+@pytest.mark.parametrize(
+    ("before", "page"),
+    [
+        (ILLUSTRATOR, 'width="10mm" height="10mm" viewBox="0 0 28.346 28.346"'),
+        ("", f'width="210mm" height="297mm" viewBox="0 0 210 297" {OLD}'),
+        ("", f'width="372px" height="1052px" viewBox="0 0 372 1052" {NEW}'),
+        ("<!-- drawn by hand -->", 'width="372px" height="1052px"'),
+    ],
+)
+def test_pages_that_do_not_rest_on_such_pixels_are_fine(read_svg: Reader, before: str, page: str) -> None:
+    assert not read_svg(before + s.svg(SQUARE, page)).findings
+
+
+def test_points_named_by_the_caller_give_the_size_that_was_drawn(read_svg: Reader) -> None:
+    page = 'width="28.346px" height="28.346px" viewBox="0 0 28.346 28.346"'
+    drawing = read_svg(ILLUSTRATOR + s.svg('<circle cx="14.173" cy="14.173" r="14.173"/>', page), units="pt")
+    assert across(drawing) == pytest.approx(10e-3, rel=1e-4)
+
+
 def test_millimetres_are_exact(read_svg: Reader) -> None:
     drawing = read_svg(s.svg('<circle cx="1.7" cy="2.3" r="1.15"/>', 'width="4.3mm" height="4.3mm" viewBox="0 0 4.3 4.3"'))
     (edge,) = s.edges(drawing)

@@ -131,7 +131,7 @@ def test_circular_arcs_stay_exact_under_similarities(read_svg: Reader, large: in
     drawing = read_svg(s.svg(s.path(f"M10 20A5 5 40 {large}{sweep}17 21", f'transform="{mirror}"')))
     (edge,) = s.edges(drawing)
     assert isinstance(edge, Arc)
-    truth = np.array(svg_curve.arc(10 + 20j, 5, 5, 40, large, sweep, 17, 21, 50))
+    truth = np.array(svg_curve.arc(10 + 20j, (5, 5, 40, large, sweep, 17, 21), 50))
     points = np.column_stack((truth.real, truth.imag))
     if mirror:
         name, numbers = mirror[:-1].split("(")

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from collections.abc import Sequence
+from itertools import product
 from typing import NamedTuple
 
 from watchsim.geometry.primitives import Arc, Edge
@@ -25,22 +26,9 @@ class Component(NamedTuple):
 
 
 def components(edges: Sequence[Edge], reach: float) -> list[Component]:
-    places: list[Point] = []
-    cells: dict[tuple[int, int], list[int]] = defaultdict(list)
-
-    def place(p: Point) -> int:
-        cell = (math.floor(p[0] / reach), math.floor(p[1] / reach))
-        for i in (-1, 0, 1):
-            for j in (-1, 0, 1):
-                for k in cells[(cell[0] + i, cell[1] + j)]:
-                    if math.dist(places[k], p) <= reach:
-                        return k
-        places.append(p)
-        cells[cell].append(len(places) - 1)
-        return len(places) - 1
-
+    places = Places(reach)
     others = [e for e in edges if e.length > 0.0]
-    ends = [(place(e.start), place(e.end)) for e in others]
+    ends = [(places.number(e.start), places.number(e.end)) for e in others]
     at: dict[int, list[int]] = defaultdict(list)
     for number, pair in enumerate(ends):
         for node in pair:
@@ -48,20 +36,45 @@ def components(edges: Sequence[Edge], reach: float) -> list[Component]:
     found: list[Component] = []
     left = set(range(len(others)))
     while left:
-        todo, members = [min(left)], []
-        left.discard(todo[0])
-        while todo:
-            number = todo.pop()
-            members.append(number)
-            for node in ends[number]:
-                todo += [n for n in at[node] if n in left]
-                left.difference_update(at[node])
+        members = hanging_together(min(left), ends, at)
+        left.difference_update(members)
         degrees = [len(at[node]) for number in members for node in ends[number]]
         kind = "branched" if max(degrees) > 2 else "chain" if min(degrees) == 1 else "loop"
         double = kind == "loop" and len(members) == 2 and not any(isinstance(others[m], Arc) for m in members)
         row = walk(members, ends, at, others) if kind == "loop" else [others[m] for m in members]
         found.append(component("double" if double else kind, row))
     return found
+
+
+class Places:
+    """Points, of which those within a reach of each other are one."""
+
+    def __init__(self, reach: float) -> None:
+        self.reach = reach
+        self.points: list[Point] = []
+        self.cells: dict[tuple[int, int], list[int]] = defaultdict(list)
+
+    def number(self, p: Point) -> int:
+        x, y = (math.floor(c / self.reach) for c in p)
+        for cell in product((x - 1, x, x + 1), (y - 1, y, y + 1)):
+            for k in self.cells[cell]:
+                if math.dist(self.points[k], p) <= self.reach:
+                    return k
+        self.points.append(p)
+        self.cells[(x, y)].append(len(self.points) - 1)
+        return len(self.points) - 1
+
+
+def hanging_together(first: int, ends: list[tuple[int, int]], at: dict[int, list[int]]) -> list[int]:
+    """The edges that can be reached from one of them."""
+    members, seen, ahead = [], {first}, [first]
+    while ahead:
+        number = ahead.pop()
+        members.append(number)
+        for node in ends[number]:
+            ahead += [n for n in at[node] if n not in seen]
+            seen.update(at[node])
+    return members
 
 
 def walk(members: list[int], ends: list[tuple[int, int]], at: dict[int, list[int]], edges: Sequence[Edge]) -> list[Edge]:

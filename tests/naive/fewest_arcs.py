@@ -6,7 +6,7 @@ of vectors, samples instead of bounds; nothing of the package is used.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
@@ -45,41 +45,41 @@ def fewest_arcs(curve: Callable[[Array], Array], t: Array, tolerance: float, til
 
     `tilts` in radians are tried at all inner places; at the ends the tangent is the curve's.
     """
-    step = 1e-5 * float(t[-1] - t[0])
-    z = curve(t)
-    inner = np.clip(t, t[0] + step, t[-1] - step)
-    slope = (
-        curve(inner + step)
-        - curve(inner - step)
-        + (t - inner) / step * (curve(inner + step) - 2.0 * curve(inner) + curve(inner - step)) * 2.0
-    )
-    ways = slope / np.abs(slope)
-    turned = np.exp(1j * np.asarray(tilts))
-    fractions = (np.arange(SAMPLES) + 0.5) / SAMPLES
-    count = len(t)
-    reached = np.full((count, len(tilts)), np.inf)
-    reached[0, :] = np.inf
-    reached[0, int(np.argmin(np.abs(np.asarray(tilts))))] = 0.0
-    straight = int(np.argmin(np.abs(np.asarray(tilts))))
-    frontier = 1
+    grid = Grid(curve, t, np.asarray(tilts))
+    straight = int(np.argmin(np.abs(tilts)))
+    reached = np.full((len(t), len(tilts)), np.inf)  # the least number of biarcs to each place and tilt
+    reached[0, straight] = 0.0
+    frontier = 0
     while not np.isfinite(reached[-1, straight]):
-        for i in range(count - 1):
-            for k in np.flatnonzero(reached[i] == frontier - 1):
-                extend(curve, t, z, ways, turned, straight, i, int(k), reached, frontier, fractions, tolerance)
+        for i, k in np.argwhere(reached[:-1] == frontier).tolist():
+            for places, tilt in grid.reachable(i, k, tolerance):
+                reached[places, tilt] = np.minimum(reached[places, tilt], frontier + 1)
         frontier += 1
     return 2 * int(reached[-1, straight])
 
 
-def extend(curve, t, z, ways, turned, straight, i, k, reached, frontier, fractions, tolerance) -> None:  # type: ignore[no-untyped-def]
-    """Marks all places that one biarc from place i with tilt k reaches."""
-    ahead = np.arange(i + 1, len(t))
-    for block in np.array_split(ahead, max(1, len(ahead) // 64)):
-        points = curve((t[i] + (t[block] - t[i])[:, None] * fractions).ravel()).reshape(len(block), -1)
-        found = False
-        for other, turn in enumerate(turned):
-            full = np.full(len(block), z[i]), np.full(len(block), ways[i] * turned[k]), z[block], ways[block] * turn
-            near = biarc_deviation(*full, points) <= tolerance
-            reached[block[near], other] = np.minimum(reached[block[near], other], frontier)
-            found = found or bool(np.any(near))
-        if not found:
-            return
+class Grid:
+    """Places on a curve, and at each the curve's tangent turned by each of some tilts."""
+
+    def __init__(self, curve: Callable[[Array], Array], t: Array, tilts: Array) -> None:
+        step = 1e-5 * float(t[-1] - t[0])
+        inner = np.clip(t, t[0] + step, t[-1] - step)
+        before, at, after = curve(inner - step), curve(inner), curve(inner + step)
+        slope = after - before + 2.0 * (t - inner) / step * (after - 2.0 * at + before)
+        self.curve, self.t, self.z = curve, t, curve(t)
+        self.ways = (slope / np.abs(slope))[:, None] * np.exp(1j * tilts)
+
+    def reachable(self, i: int, k: int, tolerance: float) -> Iterator[tuple[Array, int]]:
+        """Places, and the tilt there, which one biarc from place i with tilt k reaches."""
+        fractions = (np.arange(SAMPLES) + 0.5) / SAMPLES
+        ahead = np.arange(i + 1, len(self.t))
+        for block in np.array_split(ahead, max(1, len(ahead) // 64)):
+            between = self.t[i] + (self.t[block] - self.t[i])[:, None] * fractions
+            samples = self.curve(between.ravel()).reshape(between.shape)
+            start, way = np.full(len(block), self.z[i]), np.full(len(block), self.ways[i, k])
+            near = np.array(
+                [biarc_deviation(start, way, self.z[block], other, samples) <= tolerance for other in self.ways[block].T]
+            )
+            if not np.any(near):
+                return
+            yield from ((block[row], tilt) for tilt, row in enumerate(near))

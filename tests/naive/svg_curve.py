@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -24,7 +25,7 @@ def points(commands: list[Command], count: int = 200) -> np.ndarray:
         if kind == "M":
             here = start = pairs[0]
         elif kind == "A":
-            result += arc(here, *a, count) if here != complex(a[5], a[6]) else []
+            result += arc(here, a, count) if here != complex(a[5], a[6]) else []
             here = complex(a[5], a[6])
         else:
             if kind == "H":
@@ -47,10 +48,9 @@ def points(commands: list[Command], count: int = 200) -> np.ndarray:
     return np.array([(p.real, p.imag) for p in result])
 
 
-def arc(
-    p: complex, rx: float, ry: float, degrees: float, large: float, sweep: float, x: float, y: float, count: int
-) -> list[complex]:
-    """Of the two ellipses through both points each gives two arcs; the flags choose one of the four."""
+def arc(p: complex, numbers: Sequence[float], count: int) -> list[complex]:
+    """From p on. Of the two ellipses through both points each gives two arcs; the flags choose one of the four."""
+    rx, ry, degrees, large, sweep, x, y = numbers
     turn = cmath.exp(1j * math.radians(degrees))
 
     def to_circle(z: complex) -> complex:

@@ -88,4 +88,33 @@ def test_more_faults_than_circles_is_said() -> None:
     )
     figure = picture(drawing(findings=many))
     assert len(figure.axes[0].texts) == CIRCLED
-    assert f"{225 - CIRCLED} more faults" in figure.legends[0].get_title().get_text()
+    assert f"{225 - CIRCLED} more faults" in figure.axes[0].get_legend().get_title().get_text()
+
+
+def disc(layer: str, radius: float, x: float = 0.0) -> Loop:
+    return Loop((Arc(x, 0, radius, 0, TURN),), layer)
+
+
+def test_a_bore_on_its_own_layer_is_empty_and_a_pivot_has_no_tint(tmp_path: Path) -> None:
+    from PIL import Image
+
+    parts = (disc("TEETH", 4e-3), disc("BORE", 1e-3, 2e-3), disc("PIVOT", 1e-3, -2e-3), disc("PIN", 0.5e-3, 1e-4))
+    layers = tuple(loop.layer for loop in parts)
+    figure = picture(drawing(loops=parts, open_chains=(), points=(), findings=(), layers=layers))
+    figure.savefig(tmp_path / "bore.png", dpi=100)
+    pixels = np.asarray(Image.open(tmp_path / "bore.png").convert("RGB"))
+
+    def seen(x_mm: float, y_mm: float) -> tuple[int, ...]:
+        x, y = figure.axes[0].transData.transform((x_mm, y_mm))
+        return tuple(pixels[len(pixels) - 1 - round(y), round(x)].tolist())
+
+    assert seen(2.3, 0.3) == (255, 255, 255)
+    assert seen(-2.3, 0.3) == seen(0.3, 3.3) != (255, 255, 255)
+    assert seen(0.3, 0.2) not in (seen(0.3, 3.3), (255, 255, 255))
+
+
+def test_no_two_layers_look_alike() -> None:
+    many = tuple(disc(f"L{k}", 1e-3, 3e-3 * k) for k in range(15))
+    (axes,) = picture(drawing(loops=many, layers=tuple(loop.layer for loop in many), points=())).axes
+    swatches = [(patch.get_facecolor(), patch.get_hatch()) for patch in axes.get_legend().get_patches()]
+    assert len(swatches) == len(set(swatches)) == 15

@@ -35,6 +35,12 @@ def test_a_hole_is_empty_even_on_a_layer_of_its_own_or_wrongly_oriented():
         assert total == pytest.approx(math.pi * 3 * MM**2, rel=1e-4)
 
 
+def test_a_layer_named_for_bores_empties_the_wheel_and_a_pivot_is_not_drawn():
+    (part,) = shapes(circle(0, 0, 2, "TEETH"), decoration=(circle(0, 0, 1, "Wheel bore"), circle(0, 0, 0.5, "PIVOT")))
+    total = sum(signed_area(ring) for ring in part.faces.to_polygons(closed_only=True))
+    assert total == pytest.approx(math.pi * 3 * MM**2, rel=1e-4)
+
+
 def test_a_hole_goes_to_the_smallest_outline_around_it():
     found = shapes(circle(0, 0, 5, "BIG"), circle(0, 0, 2, "SMALL"), circle(0, 0, 1, "BORE", hole=True))
     rings = [len(part.faces.to_polygons()) for part in found]

@@ -30,7 +30,8 @@ def more_exact(run: Trajectory, progress: Progress | None = None) -> Trajectory:
 def with_error_bars(numbers: Mapping[str, Any], other: Mapping[str, Any]) -> dict[str, Any]:
     """The summary `numbers` with the differences to `other`, the summary of the more exact run, as errors.
 
-    Each `..._error` becomes at least the difference, every end state gets an error beside it, and `error_bars` says what was
+    Each `..._error` becomes at least the difference (where beats are too few to tell their scatter, it stays None: how exactly
+    they were computed, `differences` says), every end state gets an error beside it, and `error_bars` says what was
     compared; its `complete` is False where the more exact run did not come to its end, and no error is given then.
     """
     share = 2.0 if numbers["method"] == MOREAU else 1.0
@@ -43,7 +44,8 @@ def with_error_bars(numbers: Mapping[str, Any], other: Mapping[str, Any]) -> dic
         if numbers[name] is None or other[name] is None:
             continue
         moved[name] = share * abs(numbers[name] - other[name])
-        out[f"{name}_error"] = max(moved[name], numbers[f"{name}_error"] or 0.0)
+        if numbers[f"{name}_error"] is not None:
+            out[f"{name}_error"] = max(moved[name], numbers[f"{name}_error"])
     out["bodies"] = {
         body: {**state, **{f"{name}_error": share * abs(value - other["bodies"][body][name]) for name, value in state.items()}}
         for body, state in numbers["bodies"].items()

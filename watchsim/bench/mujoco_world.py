@@ -17,6 +17,8 @@ from watchsim.bench.world import Setup
 from watchsim.mechanism.body import Body
 from watchsim.mechanism.scene import Scene
 
+_RIM = 0.95  # of the reach: where the mass of a pivoted body is put; what is left of its inertia stays about that point
+
 
 class MujocoWorld:
     """Model and data, and where each body's coordinates are."""
@@ -105,13 +107,20 @@ def _geom(number: int, surface: Surface, units: float) -> str:
 def _body(body: Body, found: list[Surface], drive: Drive | None, units: float, mass: float) -> str:
     geoms = "".join(_geom(k, surface, units) for k, surface in enumerate(found) if surface.body == body.name)
     turned = f'euler="0 0 {body.angle!r}"' if body.motion != "pivot" else ""
-    head = f'<body name={quoteattr(body.name)} pos="{body.position[0] * units!r} {body.position[1] * units!r} 0" {turned}>'
+    place = (
+        f'pos="{body.position[0] * units!r} {body.position[1] * units!r} 0" {turned} gravcomp="{int(body.motion == "pivot")}"'
+    )
+    head = f"<body name={quoteattr(body.name)} {place}>"
     if body.motion == "fixed":
         return f"{head}{geoms}</body>"
     name, inertia = body.name, body.inertia * mass * units**2
-    # Contacts are made as stiff as the masses suggest, so a pivoted body gets one that goes with its inertia.
-    weight = inertia / _reach(body, found, units) ** 2 if body.motion == "pivot" else mass * body.mass
-    inertial = f'<inertial pos="0 0 0" mass="{weight!r}" diaginertia="{inertia!r} {inertia!r} {inertia!r}"/>'
+    weight, arm, own = mass * body.mass, 0.0, inertia
+    if body.motion == "pivot":
+        # Contacts are made as stiff as the engine thinks the body's centre of mass is hard to move. One that lies in the pivot
+        # cannot be moved at all, and contacts go wild. So the inertia is that of a mass at the body's reach.
+        reach = _reach(body, found, units)
+        weight, arm, own = inertia / reach**2, _RIM * reach, inertia * (1.0 - _RIM**2)
+    inertial = f'<inertial pos="{arm!r} 0 0" mass="{weight!r}" diaginertia="{own!r} {own!r} {own!r}"/>'
     scale = mass * units**2
     spring = ""
     if drive:

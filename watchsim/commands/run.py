@@ -80,8 +80,14 @@ def run(args: argparse.Namespace) -> int:
         args.tol = args.tol or start.tolerance
     check_folder(folder, replace)
     # What a scene promises, it promises as it is written.
-    given = {"--set": args.set, "--duration": duration not in (None, scene.duration), "--tol": args.tol, "--step": args.step}
-    changed = [name for name, value in (*given.items(), ("--method", method != EVENT_DRIVEN)) if value]
+    given = {
+        "--set": args.set,
+        "--duration": duration not in (None, scene.duration),
+        "--tol": args.tol not in (None, scene.tolerance),
+        "--step": step,
+        "--method": method != EVENT_DRIVEN,
+    }
+    changed = [name for name, value in given.items() if value]
     trajectory = simulate_with_progress(scene, duration, args.tol, method=method, step=step, start=start)
     extras = Extras(not args.no_plots, args.movie, args.gif, args.error_bars, args.profile)
     summary = write(trajectory, folder, extras, replace, changed)

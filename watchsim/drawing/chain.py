@@ -60,9 +60,13 @@ def chain_layer(layer: str, strokes: Sequence[Stroke], snap: float, deviation: f
     drawn, findings = with_length(strokes)
     whole, pieces = closed_runs(drawn)
     nodes = Nodes(pieces)
-    kept, doubled, doubles = without_doubles(pieces, nodes, min(TIGHT, snap))
+    kept, doubled, doubles = without_doubles(pieces, nodes, range(len(pieces)), min(TIGHT, snap))
     nodes.snap(snap, loose_only=False)
     joins = nodes.snap(NOTED * snap, loose_only=True)
+    # What was drawn twice with small differences hangs together only now.
+    changed = {end // 2 for node in nodes.joined for end in nodes.members[node]} & kept
+    still, again, more = without_doubles(pieces, nodes, sorted(changed), snap)
+    kept, doubled, doubles = kept - changed | still, doubled | again, doubles + more
     kept, slits = without_slits(pieces, nodes, kept, doubled)
     meeting = junctions(nodes, pieces)
     paths = trace(nodes, meeting, kept)
@@ -74,8 +78,12 @@ def chain_layer(layer: str, strokes: Sequence[Stroke], snap: float, deviation: f
     notes += open_ends([path.steps for path in still_open], meeting.loose, pieces, nodes)
     chains = [assembled(travelled(path, pieces), layer, False) for path in still_open]
     notes += crossings([*outlines, *chains], deviation)
-    loops = tuple(nested([outline.loop for outline in outlines]))
-    return Chains(loops, tuple(chain.loop for chain in chains), (*findings, *repeated, *doubles, *slits, *notes))
+    loops = nested([outline.loop for outline in outlines])
+    if loops is None:
+        loops = [outline.loop for outline in outlines]
+        message = "so many outlines lie within each other that holes were not told from what they are in"
+        notes.append(Finding("crowded", "error", message, "Look for parts that are drawn many times over each other.", layer))
+    return Chains(tuple(loops), tuple(chain.loop for chain in chains), (*findings, *repeated, *doubles, *slits, *notes))
 
 
 def closed_runs(strokes: Sequence[Stroke]) -> tuple[list[list[Stroke]], list[Stroke]]:

@@ -17,7 +17,7 @@ import numpy as np
 from watchsim.drawing.nurbs import splines_edges
 from watchsim.drawing.shapes import Spline
 from watchsim.geometry.fit import Fit
-from watchsim.geometry.primitives import Arc, Edge, Line
+from watchsim.geometry.primitives import Edge, moved, reflected
 
 SAME = 1e-3  # of the tolerance: copies may differ by so much
 TRIED = 4  # splines of the same size that are compared
@@ -32,15 +32,8 @@ class Motion(NamedTuple):
 
     def edge(self, edge: Edge) -> Edge:
         """The image of an edge (metres, as is `shift`), travelled in the same direction."""
-        if isinstance(edge, Line):
-            a, b = self._point(edge.x0, edge.y0), self._point(edge.x1, edge.y1)
-            return Line(a.real, a.imag, b.real, b.imag)
-        centre, angle = self._point(edge.x, edge.y), cmath.phase(self.turn)
-        side = -1.0 if self.mirrors else 1.0
-        return Arc(centre.real, centre.imag, edge.radius, angle + side * edge.start_angle, side * edge.sweep)
-
-    def _point(self, x: float, y: float) -> complex:
-        return self.turn * complex(x, -y if self.mirrors else y) + self.shift
+        image = reflected(edge, (0.0, 0.0), (1.0, 0.0)) if self.mirrors else edge
+        return moved(image, cmath.phase(self.turn), (self.shift.real, self.shift.imag))
 
 
 class Follower:

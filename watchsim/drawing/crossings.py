@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -18,12 +18,13 @@ from watchsim.drawing.gaps import shown
 from watchsim.drawing.nodes import TIGHT, Grid
 from watchsim.drawing.outline import Outline
 from watchsim.drawing.track import Track, nearest_fraction, passes_through
-from watchsim.geometry.edge_table import table_of
+from watchsim.geometry.edge_table import Table, table_of
 from watchsim.geometry.meetings import meetings, within
 from watchsim.geometry.near_edges import Floats, Ints, near_pairs
 from watchsim.geometry.primitives import Arc, Edge, Point
 
 SHALLOW = 10.0 * TIGHT  # metres: crossings less deep, and overlaps shorter, are rounding
+AT_ONCE = 1 << 17  # pairs of edges whose points are worked out in one go
 MOST = 2000  # findings of a layer: with more, the drawing as a whole is wrong
 
 
@@ -96,20 +97,26 @@ def all_meetings(layer: Layer) -> tuple[Iterator[Meeting], tuple[Point, ...]]:
     """Pairs of edges that meet other than at their common joint, and where there were too many edges to tell."""
     table = table_of(layer.edges)
     near = near_pairs(table, TIGHT)
-    found = meetings(table, near.first, near.second, TIGHT)
-    first, second, point = near.first[found.pair], near.second[found.pair], found.point
+    parts = (slice(k, k + AT_ONCE) for k in range(0, len(near.first), AT_ONCE))
+    found = (meetings_of(layer, table, near.first[part], near.second[part]) for part in parts)
+    return chain.from_iterable(found), near.crowds
+
+
+def meetings_of(layer: Layer, table: Table, one: Ints, other: Ints) -> Iterator[Meeting]:
+    """The same for some pairs."""
+    found = meetings(table, one, other, TIGHT)
+    first, second, point = one[found.pair], other[found.pair], found.point
     elsewhere = np.ones(len(point), bool)
     for before, after in ((first, second), (second, first)):
         end, start = table.end[before], table.start[after]
         gap = np.hypot(*(end - start).T)
         away = np.minimum(np.hypot(*(point - end).T), np.hypot(*(point - start).T))
         elsewhere &= ~layer.follows(before, after) | (away > 2.0 * gap + 4.0 * TIGHT)
-    keep = np.zeros(len(near.first), bool)
+    keep = np.zeros(len(one), bool)
     keep[found.pair[elsewhere]] = True  # then with the joint, from which two edges may run back along each other
     order = np.flatnonzero(keep[found.pair])
     order = order[np.argsort(found.pair[order], kind="stable")]
-    first, second, point = first[order], second[order], point[order]
-    return grouped(layer, first, second, point), near.crowds
+    return grouped(layer, first[order], second[order], point[order])
 
 
 def grouped(layer: Layer, first: Ints, second: Ints, point: Floats) -> Iterator[Meeting]:

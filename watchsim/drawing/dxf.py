@@ -18,13 +18,14 @@ from watchsim.drawing.dxf_units import INSUNITS, named_length
 from watchsim.drawing.entities import READERS, Insert, heavyweight, insert, is_mesh
 from watchsim.drawing.findings import Finding
 from watchsim.drawing.follow import follow
-from watchsim.drawing.group_codes import strange_codes
 from watchsim.drawing.left_out import left_out
 from watchsim.drawing.projection import MOST_COPIES, MOST_STROKES, Gathering, TooLarge, emit
 from watchsim.drawing.shapes import Shape
+from watchsim.drawing.suspicion import odd_copies, odd_radius, strange_groups, swallowed
 from watchsim.drawing.tags import LARGEST, DxfError, Record, read_tags
 
 DEEPEST = 32  # blocks within blocks
+MISSING = ("block-missing", "is not in the file")
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,13 +53,14 @@ def read_dxf(data: bytes, units: str | None, fit: float) -> Content:
     found = Gathering(scale, fit)
     walker = Walker(sections, found)
     try:
-        walker.walk(walker.items(sections.entities, "model"), IDENTITY, "", ())
+        if len(sections.entities) > MOST_STROKES:
+            raise TooLarge
+        walker.walk(walker.items(sections.entities), IDENTITY, "", ())
         follow(found)
     except TooLarge:
-        message = (
-            f"the drawing unfolds into more than {MOST_STROKES} pieces or {MOST_COPIES} copies of blocks; nothing was read"
-        )
-        refusal = Finding("too-large", "error", message, "Look for arrays of blocks with huge counts.")
+        message = f"the drawing has more than {MOST_STROKES} pieces, or {MOST_COPIES} copies of blocks; nothing was read"
+        fix = "Look for curves made of points, and for arrays of blocks with huge counts."
+        refusal = Finding("too-large", "error", message, fix)
         return Content(units=name, units_from=origin, findings=(*notes, *sections.findings, refusal))
     return Content(
         strokes=tuple(found.strokes),
@@ -98,14 +100,13 @@ class Walker:
         self.found = found
         self.read_blocks: dict[str, list[Item]] = {}
 
-    def items(self, records: Iterable[Record], where: str) -> list[Item]:
+    def items(self, records: Iterable[Record]) -> list[Item]:
         """Every record read, polylines together with their vertices; findings for those that cannot be."""
         records = list(records)
         result = []
         paper = 0
         for record, following in zip_longest(records, records[1:]):
-            self._warn_of_boundary(record)
-            self._warn_of_attributes(record, following)
+            self.found.findings += swallowed(record, following, self._spelling(record.text(8, "0")))
         for head, vertices in _grouped(records):
             if head.text(67) == "1":
                 paper += head.kind != "VIEWPORT"  # every file with paper space has one
@@ -123,61 +124,23 @@ class Walker:
     def _item(self, head: Record, vertices: list[Record]) -> Item | None:
         layer = self._spelling(head.text(8, "0") or "0")
         for record in (head, *vertices):
-            self._warn_of_codes(record, layer)
+            self.found.findings += strange_groups(record, layer)
         try:
             if head.kind == "INSERT":
-                self._warn_of_copies(head, layer)
+                self.found.findings += odd_copies(head, layer)
                 return Item(layer, head.name, insert=insert(head, MOST_COPIES))
             if head.kind == "POLYLINE" and not is_mesh(head):
                 return Item(layer, head.name, tuple(heavyweight(head, vertices)))
             if head.kind in READERS and vertices:
                 raise DxfError("VERTEX records follow it that belong to no POLYLINE")
             if head.kind in READERS:
-                self._warn_of_radius(head, layer)
+                self.found.findings += odd_radius(head, layer)
                 return Item(layer, head.name, tuple(READERS[head.kind](head)))
         except DxfError as error:
             message = f"{head.name} at {head.place} cannot be read: {error}. It is left out."
             self.found.findings.append(Finding("damaged", "error", message, "Draw it again or purge it in CAD.", layer))
             return None
         return Item(layer, head.name, ignored=head.kind or "(no type)")
-
-    def _warn_of_boundary(self, record: Record) -> None:
-        """What is read complains itself; other records may have swallowed an entity behind them."""
-        if record.kind == "SEQEND":
-            self._warn_of_codes(record, self._spelling(record.text(8, "0")))
-        elif record.kind not in READERS and record.codes.count(8) > 1:
-            message = f"{record.name} at {record.place} names two layers: the entity behind it seems to have been swallowed"
-            self.found.findings.append(
-                Finding("damaged", "error", message, "Draw again what is missing there, or export anew.")
-            )
-
-    def _warn_of_attributes(self, record: Record, following: Record | None) -> None:
-        if (
-            record.kind == "INSERT"
-            and record.text(66, "0") not in ("0", "")
-            and (following is None or following.kind != "ATTRIB")
-        ):
-            message = f"{record.name} at {record.place} announces attributes (group 66) and none follow: it may be damaged"
-            fix = "Look whether it is all there."
-            self.found.findings.append(Finding("strange-group", "warning", message, fix, self._spelling(record.text(8, "0"))))
-
-    def _warn_of_copies(self, head: Record, layer: str) -> None:
-        for code, what in ((70, "columns"), (71, "rows")):
-            if head.integer(code, 1) < 1:
-                message = f"{head.name} has {head.integer(code)} {what} (group {code}); one is read"
-                self.found.findings.append(Finding("strange-group", "warning", message, "Insert it again.", layer))
-
-    def _warn_of_radius(self, head: Record, layer: str) -> None:
-        if head.kind in ("CIRCLE", "ARC") and head.number(40) < 0.0:
-            message = f"the radius of {head.name} is {head.number(40):g}; it is read without its sign"
-            self.found.findings.append(Finding("negative-radius", "warning", message, "Draw it again.", layer))
-
-    def _warn_of_codes(self, record: Record, layer: str) -> None:
-        strange = strange_codes(record)
-        if strange:
-            codes = ", ".join(map(str, strange[:6]))
-            message = f"{record.name} at {record.place} has groups that do not belong there ({codes}): it may be damaged"
-            self.found.findings.append(Finding("strange-group", "warning", message, "Look whether its shape is right.", layer))
 
     def _spelling(self, layer: str) -> str:
         known = self.sections.layers.get(layer.lower())
@@ -202,13 +165,17 @@ class Walker:
     def _unfold(self, item: Item, reference: Insert, layer: str, affine: Affine, path: tuple[str, ...]) -> None:
         name = reference.block.lower()
         block = self.sections.blocks.get(name)
-        if block is None or name in path or len(path) >= DEEPEST:
-            why = "is not in the file" if block is None else "contains itself" if name in path else "is nested too deeply"
+        fault = MISSING if block is None else _unusable(block, path)
+        if block is None or fault is not None:
+            code, why = fault or MISSING
             message = f'block "{reference.block}" {why}; {item.source} is left out'
-            self.found.findings.append(Finding("block-missing" if block is None else "block-loop", "error", message, "", layer))
+            self.found.findings.append(Finding(code, "error", message, "", layer))
             return
         if name not in self.read_blocks:
-            self.read_blocks[name] = self.items(block.entities, reference.block)
+            self.read_blocks[name] = self.items(block.entities)
+            if not block.entities:
+                message = f'block "{reference.block}" is empty: where it is inserted nothing is drawn'
+                self.found.findings.append(Finding("empty-block", "notice", message, layer=layer))
         base = self._base(block)
         for placing in reference.maps:
             self.found.copies += 1
@@ -229,6 +196,17 @@ class Walker:
             self.found.findings.append(Finding("damaged", "error", message))
             return IDENTITY
         return shifted((-x, -y, -z))
+
+
+def _unusable(block: Block, path: tuple[str, ...]) -> tuple[str, str] | None:
+    """Code and reason for a block that cannot be unfolded inside those of `path`."""
+    if block.head.text(2).lower() in path:
+        return "block-loop", "contains itself"
+    if len(path) >= DEEPEST:
+        return "block-loop", "is nested too deeply"
+    if not block.entities and block.head.text(1):
+        return "external", f'is drawn in another file, "{block.head.text(1)}", which is not read'
+    return None
 
 
 def _grouped(records: Iterable[Record]) -> Iterable[tuple[Record, list[Record]]]:

@@ -12,7 +12,7 @@ import numpy as np
 from watchsim.drawing.shapes import Conic
 from watchsim.geometry.curve import Array, Curve
 from watchsim.geometry.fit import Fit, fit_all
-from watchsim.geometry.primitives import Arc, Edge, Line
+from watchsim.geometry.primitives import Edge, moved, reflected
 from watchsim.geometry.recognise import joined
 
 QUARTER = 0.5 * math.pi
@@ -63,11 +63,12 @@ def ellipses_edges(conics: Sequence[Conic], scale: float, tolerances: Sequence[f
 def _put_together(centre: Array, plan: tuple[Array, Array, list[Stretch]], fits: Sequence[Fit], tolerance: float) -> Fit:
     """The edges of all stretches of one ellipse."""
     a, b, stretches = plan
+    x, y = centre.tolist()
     edges: list[Edge] = []
     worst = 0.0
     for curve, quadrant in stretches:
         fit = fits[curve]
-        edges += [moved(edge, centre) for edge in (fit.edges if quadrant is None else in_quadrant(fit, a, b, quadrant))]
+        edges += [moved(edge, 0.0, (x, y)) for edge in (fit.edges if quadrant is None else in_quadrant(fit, a, b, quadrant))]
         worst = max(worst, fit.deviation)
     edges, shift = joined(edges, tolerance - worst)
     return Fit(tuple(edges), worst + shift)
@@ -94,24 +95,8 @@ def in_quadrant(fit: Fit, a: Array, b: Array, number: int) -> list[Edge]:
 
 def mirrored(edge: Edge, axis: Array) -> Edge:
     """The mirror image with the component along `axis` turned round."""
-    nx, ny = axis / math.hypot(*axis)
-
-    def image(x: float, y: float) -> tuple[float, float]:
-        along = 2.0 * (x * nx + y * ny)
-        return float(x - along * nx), float(y - along * ny)
-
-    if isinstance(edge, Line):
-        return Line(*image(*edge.start), *image(*edge.end))
-    x, y = image(edge.x, edge.y)
-    dx, dy = image(math.cos(edge.start_angle), math.sin(edge.start_angle))
-    return Arc(x, y, edge.radius, math.atan2(dy, dx), -edge.sweep)
-
-
-def moved(edge: Edge, by: Array) -> Edge:
-    x, y = float(by[0]), float(by[1])
-    if isinstance(edge, Line):
-        return Line(edge.x0 + x, edge.y0 + y, edge.x1 + x, edge.y1 + y)
-    return Arc(edge.x + x, edge.y + y, edge.radius, edge.start_angle, edge.sweep)
+    nx, ny = (axis / math.hypot(*axis)).tolist()
+    return reflected(edge, (0.0, 0.0), (-ny, nx))
 
 
 def axis_cuts(conic: Conic) -> tuple[float, list[float]]:

@@ -65,7 +65,7 @@ def ellipse(record: Record) -> list[Shape]:
         raise DxfError("one of its axes has no length")
     start, end = record.number(41, 0.0), record.number(42, TURN)
     sweep = (end - start) % TURN
-    if sweep < 1e-9 or abs(end - start) >= TURN - 1e-9:
+    if min(sweep, TURN - sweep) < 1e-9:
         sweep = TURN
     return [Conic(record.point(10), major, (ratio * a, ratio * b, ratio * c), start, sweep)]
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from watchsim.drawing.content import Stroke
 from watchsim.drawing.findings import Finding
+from watchsim.drawing.material import MARKS, last_word
 from watchsim.drawing.nodes import Nodes
 from watchsim.geometry.primitives import Line, Point
 
@@ -23,13 +24,19 @@ NEIGHBOURS = 8  # nearest ends considered for each loose end
 
 
 def open_ends(chains: Sequence[Sequence[int]], loose: Sequence[int], strokes: Sequence[Stroke], nodes: Nodes) -> list[Finding]:
-    """One finding per gap between `loose` ends. `chains` are steps: 2·i travels stroke i forward, 2·i + 1 backward."""
+    """One finding per gap between `loose` ends. `chains` are steps: 2·i travels stroke i forward, 2·i + 1 backward.
+
+    A single line on a layer of axes or centres is meant as one.
+    """
     if not loose:
         return []
     near = near_pairs([nodes.ends[end] for end in loose])
     stray = stray_lines([steps[0] // 2 for steps in chains if len(steps) == 1], loose, near, strokes)
     pairs = paired(loose, near, stray)
-    return [stray_finding(strokes[number]) for number in stray] + [gap_finding(a, b, strokes, nodes) for a, b in pairs]
+    meant = {number for number in stray if last_word(strokes[number].layer) in MARKS}
+    return [stray_finding(strokes[number]) for number in stray if number not in meant] + [
+        gap_finding(a, b, strokes, nodes) for a, b in pairs
+    ]
 
 
 def near_pairs(points: Sequence[Point]) -> list[tuple[float, int, int]]:

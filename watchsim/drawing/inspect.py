@@ -5,6 +5,7 @@ The same facts twice: as a dictionary with fixed names for programs, and as text
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable, Sequence
 
@@ -118,7 +119,7 @@ def size_lines(drawing: Drawing, box: Box | None) -> list[str]:
     if box is None:
         return ["  nothing to measure"]
     width, height = 1e3 * (box[2] - box[0]), 1e3 * (box[3] - box[1])
-    x, y = (f"{1e3 * box[k]:.4g} to {1e3 * box[k + 2]:.4g}" for k in (0, 1))
+    x, y = (f"{placed(1e3 * box[k], width, height)} to {placed(1e3 * box[k + 2], width, height)}" for k in (0, 1))
     everything = (*drawing.loops, *drawing.open_chains)
     lines, arcs = counts(everything)
     return [
@@ -137,6 +138,13 @@ def _covered(loops: Iterable[Loop]) -> str:
 def three_digits(value: float) -> str:
     """ "4.30", "12.0", "1016": at least three digits, also where they are zero."""
     return f"{value:.0f}" if value >= 100.0 else f"{value:#.3g}"
+
+
+def placed(value: float, *sizes: float) -> str:
+    """A coordinate to a thousandth of the size of what lies there, or better, however far off the origin."""
+    decimals = min(max(0, 3 - math.floor(math.log10(max(*sizes, 1e-9)))), 9)
+    text = f"{round(value, decimals) + 0.0:.{decimals}f}"  # no minus before a zero
+    return text.rstrip("0").rstrip(".") if decimals else text
 
 
 def layer_lines(drawing: Drawing) -> list[str]:

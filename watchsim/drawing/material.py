@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from watchsim.geometry.boxes import holding
+from watchsim.geometry.boxes import Boxes
 from watchsim.geometry.extent import extents
 from watchsim.geometry.inside import Inside
 from watchsim.geometry.loop import Loop
@@ -46,9 +46,13 @@ def layer_roles(loops: Iterable[Loop]) -> dict[str, str]:
 
 
 def _role(layer: str, only_circles: bool) -> str:
-    """By the last word of the name: "lever_PIVOT-2" is a pivot and "CENTER WHEEL" a wheel."""
-    last = (re.findall(r"[a-z]{3,}", layer.lower()) or [""])[-1]
-    return "bore" if last in BORES else "mark" if last in MARKS and only_circles else "material"
+    word = last_word(layer)
+    return "bore" if word in BORES else "mark" if word in MARKS and only_circles else "material"
+
+
+def last_word(layer: str) -> str:
+    """What a layer's name says it holds: "lever_PIVOT-2" is a pivot and "CENTER WHEEL" a wheel; in lower case."""
+    return (re.findall(r"[a-z]{3,}", layer.lower()) or [""])[-1]
 
 
 def in_material(points: Sequence[Point], solid: Sequence[Loop]) -> list[int]:
@@ -57,7 +61,7 @@ def in_material(points: Sequence[Point], solid: Sequence[Loop]) -> list[int]:
         return []
     depths = [0] * len(points)
     insides: dict[int, Inside] = {}
-    for k, number in zip(*holding(np.array([extents([loop]) for loop in solid]), np.array(points)), strict=True):
+    for k, number in zip(*Boxes(np.array([extents([loop]) for loop in solid])).holding(np.array(points)), strict=True):
         if number not in insides:
             insides[number] = Inside(solid[number])
         if insides[number].winding(points[k]) != 0:

@@ -40,6 +40,7 @@ class Nodes:
         self.at: list[Point] = []
         self.members: list[list[int]] = []
         self.node: list[int] = []
+        self.joined: set[int] = set()  # nodes made of two
         self._collect()
 
     def _collect(self) -> None:
@@ -96,6 +97,7 @@ class Nodes:
             self.node[end] = a
         self.members[a].extend(self.members[b])
         self.members[b] = []
+        self.joined.add(a)
 
     def drop(self, stroke: int) -> None:
         """Takes both ends of a stroke out."""

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from watchsim.drawing.affine import Vector
 from watchsim.drawing.dense_polygon import polygon_edges
+from watchsim.drawing.fit_points import through
 from watchsim.drawing.shapes import Spline
 from watchsim.drawing.tags import DxfError
 from watchsim.geometry.bspline import beziers
@@ -38,7 +39,8 @@ def spline_from(
 ) -> Spline:
     """The spline of those parts, complete and consistent; DxfError says what does not fit."""
     if not points:
-        return through(fit_points, tangents)
+        degree, knots, points = through(fit_points, tangents, closed)
+        closed, weights = False, ()
     if not 1 <= degree <= HIGHEST_DEGREE:
         raise DxfError(f"its degree is {degree}")
     if not knots:
@@ -75,20 +77,6 @@ def uniform(
     wrapped = [*points, *points[:degree]]
     knots = [float(k) for k in range(len(wrapped) + degree + 1)]
     return knots, wrapped, [*weights, *weights[:degree]] if weights else []
-
-
-def through(fit_points: Sequence[Vector], tangents: Sequence[Vector]) -> Spline:
-    """The cubic spline through points, as CAD programs draw it (ezdxf's)."""
-    from ezdxf.math import fit_points_to_cad_cv
-
-    if len(fit_points) < 2:
-        raise DxfError("it has neither control points nor at least two fit points")
-    try:
-        curve = fit_points_to_cad_cv(fit_points, tangents=list(tangents) or None)
-    except (ValueError, ArithmeticError) as error:
-        raise DxfError(f"no curve can be laid through its fit points ({error})") from None
-    points = [(p.x, p.y, p.z) for p in curve.control_points]
-    return spline_from(curve.degree, False, list(curve.knots()), list(curve.weights() or ()), points, ())
 
 
 def splines_edges(splines: Sequence[Spline], scale: float, tolerances: Sequence[float]) -> list[tuple[Fit, bool]]:

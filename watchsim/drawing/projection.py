@@ -16,8 +16,8 @@ from watchsim.drawing.findings import Finding
 from watchsim.drawing.shapes import Conic, Dot, Shape, Spline, Straight, edge_on, exact_edge
 from watchsim.geometry.primitives import TURN, Edge, Line
 
-MOST_STROKES = 500_000  # more is a fault in the file, not a drawing
-MOST_COPIES = 100_000  # of blocks, likewise
+MOST_STROKES = 250_000  # more is a fault in the file, not a drawing
+MOST_COPIES = 50_000  # of blocks, likewise
 ROUNDING = 1e-11  # of the coordinates: a fit cannot be better than this
 
 

@@ -24,6 +24,7 @@ from watchsim.geometry.loop import Loop
 
 SNAP = 1e-6
 FIT = 1e-7
+LARGEST_FILE = 75_000_000  # bytes; to take it apart needs thirteen times as much memory
 SMALLEST = 20.0  # times the snap: the smallest drawing that is believed
 
 
@@ -83,6 +84,9 @@ def read_content(path: Path, ending: str, units: str | None, fit: float) -> Cont
         fix = "Save the drawing as DXF or SVG."
         return refused(f'"{path.name}" ends in neither .dxf nor .svg: this kind of file is not read', fix)
     try:
+        size = path.stat().st_size
+        if size > LARGEST_FILE:
+            return oversized(size)
         data = path.read_bytes()
     except OSError as error:
         reason = "there is no such file" if isinstance(error, FileNotFoundError) else error.strerror or "it cannot be read"
@@ -112,6 +116,14 @@ def format_of(data: bytes, ending: str) -> str:
 
 def refused(message: str, fix: str) -> Content:
     return Content(findings=(Finding("format", "error", message, fix),))
+
+
+def oversized(size: int) -> Content:
+    message = (
+        f"the file has {size / 1e6:.0f} MB: more than {LARGEST_FILE / 1e6:.0f} MB are no drawing of a part; it was not read"
+    )
+    fix = "Save what is wanted by itself: without pictures, hatches and meshes."
+    return Content(findings=(Finding("too-large", "error", message, fix),))
 
 
 def layer_names(content: Content) -> tuple[str, ...]:

@@ -25,6 +25,7 @@ from watchsim.drawing.svg_path import PathData
 from watchsim.drawing.svg_shapes import READERS, Measures
 from watchsim.drawing.svg_style import Styles, read_styles
 from watchsim.drawing.svg_transform import fitted, placed, plane, view_box
+from watchsim.drawing.svg_writer import other_pixels
 from watchsim.drawing.svg_xml import Node, SvgError, Tree, read_tree
 from watchsim.drawing.tags import LARGEST
 
@@ -63,6 +64,7 @@ def read_svg(data: bytes, units: str | None, fit: float) -> Content:
     styles = read_styles(tree.sheets)
     values = styles.of(root)
     page = read_page(values, stated)
+    notes = (*tree.findings, *page.findings, *other_pixels(root.attributes, tree.remarks, page))
     found = Gathering(page.scale, fit)
     walker = Walker(tree, styles, found)
     if not page.empty:
@@ -71,7 +73,7 @@ def read_svg(data: bytes, units: str | None, fit: float) -> Content:
             follow(found)
         except TooLarge:
             message = "its elements are used so often that they unfold into too much; nothing was read"
-            findings = (*tree.findings, *page.findings, Finding("too-large", "error", message, "Look at its <use> elements."))
+            findings = (*notes, Finding("too-large", "error", message, "Look at its <use> elements."))
             return Content(units=page.units, units_from=page.units_from, findings=findings)
     else:
         found.findings.append(Finding("page", "warning", "the page has no width or no height: nothing of it is shown"))
@@ -85,7 +87,7 @@ def read_svg(data: bytes, units: str | None, fit: float) -> Content:
         fitted_deviation=found.deviation,
         drawn=found.drawn(),
         ignored=dict(walker.left_out.ignored),
-        findings=(*tree.findings, *styles.findings, *page.findings, *found.findings, *walker.left_out.findings(root)),
+        findings=(*notes, *styles.findings, *found.findings, *walker.left_out.findings(root)),
     )
 
 

@@ -63,12 +63,16 @@ class Node:
 
 @dataclass(frozen=True)
 class Tree:
-    """The root (None where the file is no XML at all), all elements by id, the style sheets, and what was wrong."""
+    """The root (None where the file is no XML at all), all elements by id, the style sheets, and what was wrong.
+
+    `remarks` are the comments before the root, where programs sign.
+    """
 
     root: Node | None
     by_id: dict[str, Node]
     sheets: tuple[str, ...]
     findings: tuple[Finding, ...]
+    remarks: tuple[str, ...] = ()
 
 
 def read_tree(data: bytes) -> Tree:
@@ -87,7 +91,7 @@ def read_tree(data: bytes) -> Tree:
         findings.append(Finding("unreadable", "error", f"this is no SVG file ({error})"))
     findings += builder.findings
     sheets = tuple(node.text for node in builder.styles)
-    return Tree(builder.root, builder.by_id, sheets, tuple(findings))
+    return Tree(builder.root, builder.by_id, sheets, tuple(findings), tuple(builder.remarks))
 
 
 def unpacked(data: bytes, findings: list[Finding]) -> bytes:
@@ -141,6 +145,7 @@ class _Builder:
         self.by_id: dict[str, Node] = {}
         self.styles: list[Node] = []
         self.findings: list[Finding] = []
+        self.remarks: list[str] = []
         self.entities: dict[str, int] = {}
         self.has_doctype = False
 
@@ -160,6 +165,7 @@ class _Builder:
         parser.SkippedEntityHandler = lambda name, _: self.refuse(f"the entity {name} is not declared in the file")
         parser.ExternalEntityRefHandler = lambda *_: self.refuse("it refers to another file, which is never opened")
         parser.ProcessingInstructionHandler = self.instruction
+        parser.CommentHandler = lambda text: self.remarks.append(text) if self.root is None else None
         parser.Parse(data, True)
 
     def refuse(self, message: str) -> int:

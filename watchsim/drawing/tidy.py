@@ -6,7 +6,7 @@ Edges without length, edges drawn twice, and slits (a line out and back, of no w
 from __future__ import annotations
 
 import math
-from collections.abc import Container, Sequence
+from collections.abc import Container, Iterable, Sequence
 
 from watchsim.drawing.content import Stroke
 from watchsim.drawing.findings import Finding
@@ -78,21 +78,26 @@ def same_edge(a: Edge, b: Edge) -> bool:
     return near and isinstance(a, Arc) == isinstance(b, Arc)
 
 
-def without_doubles(strokes: Sequence[Stroke], nodes: Nodes, reach: float) -> tuple[set[int], dict[int, int], list[Finding]]:
-    """Numbers of the strokes to keep, of those among them drawn more than once (with the copy's number), and findings.
+def without_doubles(
+    strokes: Sequence[Stroke], nodes: Nodes, numbers: Iterable[int], reach: float
+) -> tuple[set[int], dict[int, int], list[Finding]]:
+    """Which of these strokes to keep, those among them drawn more than once (with the copy's number), and findings.
 
-    Strokes are the same, forward or reversed, if they join the same nodes with their middles within `reach` metres.
+    Strokes are the same, forward or reversed, if they join the same nodes and are lines, or arcs with their middles within
+    `reach` metres.
     """
     groups: dict[tuple[int, int, bool], list[int]] = {}
     kept: set[int] = set()
     doubled: dict[int, int] = {}
     findings = []
-    for number, stroke in enumerate(strokes):
+    for number in numbers:
+        stroke = strokes[number]
         a, b = nodes.of(number)
-        key = (min(a, b), max(a, b), isinstance(stroke.edge, Arc))
-        others = groups.setdefault(key, [])
+        round_one = isinstance(stroke.edge, Arc)
+        others = groups.setdefault((min(a, b), max(a, b), round_one), [])
         half = stroke.edge.point(0.5) if others else (0.0, 0.0)
-        twin = next((o for o in others if math.dist(strokes[o].edge.point(0.5), half) <= reach), None)
+        same = (o for o in others if not round_one or math.dist(strokes[o].edge.point(0.5), half) <= reach)
+        twin = next(same, None)
         if twin is None:
             others.append(number)
             kept.add(number)

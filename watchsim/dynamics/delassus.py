@@ -96,6 +96,15 @@ def contact_work(room: int, coordinates: int) -> ContactWork:
 
 
 @kernel
+def size_class(n):
+    """The place in `sizes` for a problem of n unknowns."""
+    place = 0
+    while place < len(LARGEST) and n > LARGEST[place]:
+        place += 1
+    return place
+
+
+@kernel
 def fill_inverse(model, grip, out_inverse):
     """1/mass of each coordinate; 0 for those that `grip` says dry friction holds."""
     for i in range(len(model.coordinates)):

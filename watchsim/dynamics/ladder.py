@@ -7,7 +7,7 @@ the problem is checked against the first form. If nothing does, the caller stops
 
 from __future__ import annotations
 
-from watchsim.dynamics.delassus import LARGEST
+from watchsim.dynamics.delassus import size_class
 from watchsim.dynamics.lcp import OK, lemke_checked
 from watchsim.dynamics.lcp_basis import ROUNDING, is_solution, solve_active
 from watchsim.dynamics.lcp_scaling import scale, unscale
@@ -31,10 +31,7 @@ def solve_contacts(work, m, elements):
         elif enumerate_modes(work, m, elements):
             rung = ENUMERATED
     work.rungs[rung] += 1
-    place = 0
-    while place < len(LARGEST) and n > LARGEST[place]:
-        place += 1
-    work.sizes[place] += 1
+    work.sizes[size_class(n)] += 1
     return (OK if rung != FAILED else status), rung
 
 

@@ -48,10 +48,3 @@ def table_of(edges: Sequence[Edge]) -> Table:
         side = centre[:, column % 2] + radius * (1.0 if column > 1 else -1.0)
         box[passes, column] = furthest(box[passes, column], side[passes])
     return Table(start, end, box, arc, centre, radius, angle, sweep)
-
-
-def numbers(edge: Edge) -> tuple[float, float, float, float, float]:
-    """What an edge is made of; a line leaves the fifth place empty."""
-    if isinstance(edge, Arc):
-        return edge.x, edge.y, edge.radius, edge.start_angle, edge.sweep
-    return edge.x0, edge.y0, edge.x1, edge.y1, 0.0

@@ -21,7 +21,11 @@ Ints = NDArray[np.int64]
 FEW = 24  # edges in a cell that is refined no further
 DEEPEST = 30  # levels: cells of a billionth of the drawing
 GROWTH = 64  # entries per edge; edges that run along each other could be cut into cells for ever
+MOST_ENTRIES = 3_000_000  # of edges in cells, and
+MOST_PAIRS = 4_000_000  # of which each may be found in several cells: more would take too much memory
+MOST_CROWDS = 8  # places told
 CROWD = 32  # partners looked at for each edge in a cell that could not be refined
+AT_ONCE = 1 << 17  # entries refined in one go
 
 
 class Pairs(NamedTuple):
@@ -42,28 +46,35 @@ def near_pairs(table: Table, reach: float) -> Pairs:
     edge, cell = np.arange(count), np.zeros((count, 2), np.int64)
     keys: list[Ints] = []
     crowds: list[Point] = []
+    room = MOST_PAIRS
     for level in range(DEEPEST + 1):
         size = width / 2**level
         order = np.lexsort((edge, cell[:, 1], cell[:, 0]))
         edge, cell = edge[order], cell[order]
         starts = np.flatnonzero(np.append(True, np.any(cell[1:] != cell[:-1], axis=1)))
         counts = np.diff(np.append(starts, len(edge)))
-        last = level == DEEPEST or len(edge) > GROWTH * count or size < 4.0 * reach
+        last = level == DEEPEST or len(edge) > min(GROWTH * count, MOST_ENTRIES) or size < 4.0 * reach
         done = np.ones(len(counts), bool) if last else counts <= FEW
-        keys.append(_paired(table, edge, starts[done], counts[done], reach))
-        crowds += [tuple((low + (cell[k] + 0.5) * size).tolist()) for k in starts[done & (counts > CROWD)]]
-        if np.all(done):
+        found, complete = _paired(table, edge, starts[done], counts[done], reach, room)
+        keys += found
+        room -= sum(map(len, found))
+        full = done & (counts > CROWD) if complete else done & (counts == counts[done].max())
+        crowds += [tuple((low + (cell[k] + 0.5) * size).tolist()) for k in starts[full][:MOST_CROWDS]]
+        if np.all(done) or not complete:
             break
         crowded = np.repeat(~done, counts)
         edge, cell = _refined(table, edge[crowded], cell[crowded], low, 0.5 * size, reach)
-    ordered = np.sort(np.concatenate(keys))
+    ordered = np.sort(np.concatenate(keys)) if keys else np.empty(0, np.int64)
     unique = ordered[np.append(True, ordered[1:] != ordered[:-1])[: len(ordered)]]
     return Pairs(unique // count, unique % count, tuple(crowds))
 
 
-def _paired(table: Table, edge: Ints, starts: Ints, counts: Ints, reach: float) -> Ints:
-    """Keys first · n + second of the pairs within each group; in groups above CROWD each with its next ones only."""
-    keys = [np.empty(0, np.int64)]
+def _paired(table: Table, edge: Ints, starts: Ints, counts: Ints, reach: float, room: int) -> tuple[list[Ints], bool]:
+    """Keys first · n + second of the pairs within each group; in groups above CROWD each with its next ones only.
+
+    False where there are more than `room`: then not all were looked for.
+    """
+    keys: list[Ints] = []
     last = np.repeat(starts + counts, counts)  # one past the group's end, for each of its members
     member = np.repeat(starts - np.append(0, np.cumsum(counts)[:-1]), counts) + np.arange(int(counts.sum()))
     for step in range(1, int(min(counts.max(initial=0), CROWD + 1))):
@@ -73,11 +84,22 @@ def _paired(table: Table, edge: Ints, starts: Ints, counts: Ints, reach: float) 
         a, b = table.box[first], table.box[second]
         near = np.all((a[:, :2] <= b[:, 2:] + reach) & (b[:, :2] <= a[:, 2:] + reach), axis=1)
         keys.append(first[near] * len(table.box) + second[near])
-    return np.concatenate(keys)
+        room -= len(keys[-1])
+        if room < 0:
+            return keys, False
+    return keys, True
 
 
 def _refined(table: Table, edge: Ints, cell: Ints, low: Floats, size: float, reach: float) -> tuple[Ints, Ints]:
     """The quarters (of width `size`) of the cells that each edge really passes through, within `reach`."""
+    parts = [
+        _quartered(table, edge[k : k + AT_ONCE], cell[k : k + AT_ONCE], low, size, reach) for k in range(0, len(edge), AT_ONCE)
+    ]
+    edges, cells = zip(*parts, strict=True)
+    return np.concatenate(edges), np.concatenate(cells)
+
+
+def _quartered(table: Table, edge: Ints, cell: Ints, low: Floats, size: float, reach: float) -> tuple[Ints, Ints]:
     edge = np.repeat(edge, 4)
     cell = np.repeat(2 * cell, 4, axis=0) + np.tile(np.array([[0, 0], [0, 1], [1, 0], [1, 1]]), (len(cell), 1))
     middle, half = low + (cell + 0.5) * size, 0.5 * size + reach

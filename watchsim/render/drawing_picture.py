@@ -9,13 +9,13 @@ from __future__ import annotations
 import io
 import math
 import os
-from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from watchsim.drawing.drawing import Drawing
+from watchsim.drawing.material import layer_roles
 from watchsim.geometry.extent import Box, extents
 from watchsim.geometry.polyline import polyline
 from watchsim.geometry.primitives import Arc
@@ -32,6 +32,9 @@ SIZE = (9.0, 7.2)  # inches
 DPI = 150
 LONGEST, SHORTEST = 16.0, 4.0  # inches of the sides of a slender part's picture
 FINENESS = 3e-5  # of the part's size: chords of arcs stray less than a twentieth of a pixel
+TINT = 0.16  # opacity of material
+HATCHES = ("", "////", "....", "xxxx")  # of the material, for layers beyond the last colour
+BESIDE = 1.015  # of the width of the axes: where the legend begins
 LISTED = 20  # layers in the legend
 
 
@@ -58,11 +61,12 @@ def picture(drawing: Drawing, centres: bool = False) -> Figure:
     FigureCanvasAgg(figure)
     axes = figure.add_subplot()
     _furnish(axes, drawing, box)
-    for layer, colour in _coloured(drawing):
-        _layer(axes, drawing, layer, colour, FINENESS * max(box[2] - box[0], box[3] - box[1]))
+    roles = layer_roles(drawing.loops)
+    for look in _looks(drawing):
+        _layer(axes, drawing, look, roles.get(look.layer, "material"), FINENESS * max(box[2] - box[0], box[3] - box[1]))
         if centres:
-            _centres(axes, drawing, layer, colour)
-    legend = _legend(figure, drawing, centres) if drawing.layers else None
+            _centres(axes, drawing, look.layer, look.colour)
+    legend = _legend(axes, drawing, centres) if drawing.layers else None
     left = fault_circles(axes, drawing.findings)
     if left and legend is not None:
         legend.set_title(f"{left} more faults\nare in the list only")
@@ -114,23 +118,40 @@ def _title(drawing: Drawing) -> str:
     return f"{drawing.path.name}   {size}{'' if drawing.units else '   (units not stated, taken as mm)'}"
 
 
-def _coloured(drawing: Drawing) -> Iterator[tuple[str, str]]:
-    for number, layer in enumerate(drawing.layers):
-        yield layer, COLOURS[number % len(COLOURS)]
+class _Look(NamedTuple):
+    """How a layer is shown."""
+
+    layer: str
+    colour: str
+    hatch: str
 
 
-def _layer(axes: Axes, drawing: Drawing, layer: str, colour: str, deviation: float) -> None:
-    """The material of a layer in one tint with its holes left white, outlines and open chains on top, points as crosses."""
+def _looks(drawing: Drawing) -> list[_Look]:
+    rounds = ((layer, *divmod(number, len(COLOURS))) for number, layer in enumerate(drawing.layers))
+    return [_Look(layer, COLOURS[colour], HATCHES[turn % len(HATCHES)]) for layer, turn, colour in rounds]
+
+
+def _layer(axes: Axes, drawing: Drawing, look: _Look, role: str, deviation: float) -> None:
+    """The material of a layer in one tint with its holes left white, outlines and open chains on top, points as crosses.
+
+    A bore on a layer of its own is white, and what only marks a place has no tint.
+    """
     from matplotlib.collections import LineCollection
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path as Curve
 
+    layer, colour, hatch = look
     closed = [1e3 * polyline(loop, deviation) for loop in drawing.loops if loop.layer == layer]
     chains = [1e3 * polyline(loop, deviation) for loop in drawing.open_chains if loop.layer == layer]
     if closed:
         # Holes run the other way round, so the winding rule leaves them out.
         curve = Curve(np.concatenate(closed), np.concatenate([_codes(len(points)) for points in closed]))
-        axes.add_patch(PathPatch(curve, facecolor=colour, alpha=0.16, linewidth=0.0))
+        if role == "material":
+            axes.add_patch(PathPatch(curve, facecolor=colour, alpha=TINT, linewidth=0.0))
+        elif role == "bore":
+            axes.add_patch(PathPatch(curve, facecolor="white", linewidth=0.0, zorder=1.2))
+        if hatch and role == "material":
+            axes.add_patch(PathPatch(curve, facecolor="none", edgecolor=colour, alpha=2.0 * TINT, hatch=hatch, linewidth=0.0))
         axes.add_collection(LineCollection(closed, colors=colour, linewidths=1.1))
     if chains:
         axes.add_collection(LineCollection(chains, colors=colour, linewidths=1.1, linestyles=(0, (5, 2))))
@@ -156,19 +177,27 @@ def _centres(axes: Axes, drawing: Drawing, layer: str, colour: str) -> None:
         axes.plot(*zip(*sorted(places), strict=True), "o", color=colour, markersize=2.2, markeredgewidth=0.0, zorder=5)
 
 
-def _legend(figure: Figure, drawing: Drawing, centres: bool) -> Legend:
+def _legend(axes: Axes, drawing: Drawing, centres: bool) -> Legend:
     """Layer names beside the picture, and what crosses, dashes and circles mean where there are any."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
-    rows: list[tuple[object, str]] = [
-        (Patch(facecolor=colour, alpha=0.5, edgecolor=colour), _short(layer)) for layer, colour in _coloured(drawing)
-    ]
+    roles = layer_roles(drawing.loops)
+    drawn = {loop.layer for loop in (*drawing.loops, *drawing.open_chains)}
+
+    def swatch(look: _Look) -> object:
+        if look.layer not in drawn:
+            return Line2D([], [], color=look.colour, marker="+", linestyle="none", markersize=10, markeredgewidth=1.6)
+        if roles.get(look.layer, "material") != "material":
+            return Patch(facecolor="none", edgecolor=look.colour)
+        return Patch(facecolor=look.colour, alpha=0.5, edgecolor=look.colour, hatch=look.hatch)
+
+    rows = [(swatch(look), _short(look.layer)) for look in _looks(drawing)]
     if len(rows) > LISTED:
         rows = [*rows[:LISTED], (Line2D([], [], linestyle="none"), f"and {len(rows) - LISTED} more layers")]
     if drawing.open_chains:
         rows.append((Line2D([], [], color=FAINT, linestyle=(0, (5, 2)), linewidth=1.1), "open"))
-    if drawing.points:
+    if any(layer in drawn for layer, _, _ in drawing.points):
         rows.append((Line2D([], [], color=FAINT, marker="+", linestyle="none", markersize=10), "point"))
     if centres:
         rows.append((Line2D([], [], color=FAINT, marker="o", linestyle="none", markersize=3), "centre of an arc"))
@@ -176,7 +205,16 @@ def _legend(figure: Figure, drawing: Drawing, centres: bool) -> Legend:
         ring = Line2D([], [], marker="o", linestyle="none", markersize=10, markerfacecolor="none", markeredgecolor=FAULT)
         rows.append((ring, "fault: see the list"))
     handles, names = zip(*rows, strict=True)
-    legend = figure.legend(handles, names, loc="outside right upper", frameon=False, fontsize=9, labelcolor=INK)
+    legend = axes.legend(
+        handles,
+        names,
+        loc="upper left",
+        bbox_to_anchor=(BESIDE, 1.0),
+        borderaxespad=0.0,
+        frameon=False,
+        fontsize=9,
+        labelcolor=INK,
+    )
     for text in legend.get_texts():
         text.set_parse_math(False)
     return legend

@@ -79,7 +79,8 @@ def _run(command: list[str], frames: Iterable[bytes | memoryview], path: Path) -
             raise
         process.stdin.close()
         words = process.stderr.read().decode(errors="replace")
-        if process.wait() != 0 or broken:
+        # Some releases of ffmpeg end with status 0 after a write that failed.
+        if process.wait() != 0 or broken or _refusals(words):
             raise OSError(f"could not write {path}: {_reason(words)}; nothing was changed")
 
 
@@ -89,7 +90,14 @@ def _feed(pipe: IO[bytes], rest: memoryview) -> None:
         rest = rest[pipe.write(rest) :]
 
 
+def _lines(words: str) -> list[str]:
+    return [line.strip() for line in words.splitlines() if line.strip()]
+
+
+def _refusals(words: str) -> list[str]:
+    """The lines that say why a file could not be written."""
+    return [line for line in _lines(words) if any(why in line for why in ("No space left", "denied", "File too large"))]
+
+
 def _reason(words: str) -> str:
-    lines = [line.strip() for line in words.splitlines() if line.strip()]
-    telling = [line for line in lines if "No space left" in line or "denied" in line or "File too large" in line]
-    return (telling or lines or ["the encoder stopped without a word"])[0]
+    return (_refusals(words) or _lines(words) or ["the encoder stopped without a word"])[0]

@@ -33,12 +33,14 @@ Box = tuple[float, float, float, float]
 
 def fault_circles(axes: Axes, findings: Sequence[Finding]) -> int:
     """Draws circles with the numbers of the report, the gravest first; returns how many faults with a place have none."""
+    from matplotlib.figure import Figure
+
     numbered = sorted(enumerate(findings, 1), key=lambda pair: ORDER.index(pair[1].severity))
     placed = [(k, x, y) for k, finding in numbered for x, y in places(finding)]
     if not placed:
         return 0
-    figure = axes.get_figure(root=True)
-    assert figure is not None
+    figure = axes.get_figure()
+    assert isinstance(figure, Figure)
     figure.draw_without_rendering()  # the layout is settled only then
     scale = 72.0 / figure.dpi
     points = scale * axes.transData.transform(np.array([(x, y) for _, x, y in placed]))

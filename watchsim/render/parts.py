@@ -1,7 +1,7 @@
 """Which shapes are filled to draw a body?
 
-One shape per body and layer, holes left empty wherever they were drawn; an open outline (a plane, a wall) becomes
-ground: a line with hatching on the side of its material.
+One shape per body and layer, holes and bores left empty wherever they were drawn, marks left out; an open outline (a plane, a
+wall) becomes ground: a line with hatching on the side of its material.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import numpy as np
 from matplotlib.path import Path
 from numpy.typing import NDArray
 
+from watchsim.drawing.material import layer_roles
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.polyline import polyline
 from watchsim.geometry.primitives import Arc
@@ -66,17 +67,19 @@ def signed_area(points: Array) -> float:
 
 
 def _of_body(body: Body, look: Finish, deviation: float, spacing: float) -> list[Part]:
-    lines = [(loop, polyline(loop, deviation)) for loop in loops_of(body)]
-    outer = [(loop, line) for loop, line in lines if loop.closed and not loop.hole]
+    loops = loops_of(body)
+    roles = layer_roles(loop for loop in loops if loop.closed)
+    lines = [(loop, polyline(loop, deviation)) for loop in loops]
+    outer = [(loop, line) for loop, line in lines if loop.closed and not loop.hole and roles[loop.layer] == "material"]
     owners: list[list[Array]] = [[line] for _, line in outer]
     ground = [(loop, line) for loop, line in lines if not loop.closed]
     for loop, line in lines:
-        if loop.closed and loop.hole:
+        if loop.closed and (loop.hole or roles[loop.layer] == "bore"):
             owner = _owner(line, [points for _, points in outer])
-            if owner is None:
-                ground.append((loop, line))
-            else:
+            if owner is not None:
                 owners[owner].append(line)
+            elif loop.hole:
+                ground.append((loop, line))
     return [*_solids(body, look, outer, owners), *_grounds(body, look, ground, spacing)]
 
 

@@ -30,6 +30,7 @@ class Kept:
         self._rows: list[tuple[Array, Bits]] = []  # with those that stay for good
         self._events: list[tuple[NDArray[Any], Bits]] = []
         self._trimmed = 0  # parts that hold nothing of the tail any more
+        self._gone = 0  # earlier parts of which nothing stayed
         self._met = 0  # rows met within the windows
         self._last = (0, np.nan, True)  # the last row met: part, time (s), whether within a window
 
@@ -41,7 +42,7 @@ class Kept:
     @property
     def parts(self) -> int:
         """How often something was flushed."""
-        return len(self._rows)
+        return self._gone + len(self._rows)
 
     def flush(self, rows: Array, events: NDArray[Any]) -> None:
         """Keep copies of what is wanted of the next rows and events, and forget earlier ones that were only of the tail."""
@@ -71,8 +72,8 @@ class Kept:
             across = _across(np.append(last, times), windows)
             stays |= ~inside & (across | np.append(across[1:], False))
             if across[0] and not last_inside:
-                self._rows[part][1][-1] = True
-            self._last = len(self._rows), float(times[-1]), bool(inside[-1])
+                self._rows[part - self._gone][1][-1] = True
+            self._last = self.parts, float(times[-1]), bool(inside[-1])
         return stays
 
     def _forget(self, before: float) -> None:
@@ -83,14 +84,21 @@ class Kept:
                     return
             if np.max(self._events[self._trimmed][0]["t"], initial=-np.inf) >= before:
                 return
+            stayed = 0
             for kept in (self._rows, self._events):
                 part, stays = kept[self._trimmed]
                 kept[self._trimmed] = part[stays], stays[stays]
-            self._trimmed += 1
+                stayed += int(stays.sum())
+            if stayed:
+                self._trimmed += 1
+            else:
+                del self._rows[self._trimmed], self._events[self._trimmed]
+                self._gone += 1
 
     def closed(self, end: float, parts: int | None = None) -> tuple[Array | None, NDArray[Any] | None]:
         """All that is kept of a run that ends at `end` (s), from the first `parts` flushes (default all); None for nothing."""
         since = end - self.tail if self.recording.has_tail else np.inf
+        parts = None if parts is None else max(parts - self._gone, 0)
         if not self._rows[:parts]:
             return None, None
         rows, row_stays = (np.concatenate(arrays) for arrays in zip(*self._rows, strict=True))

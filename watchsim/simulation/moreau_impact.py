@@ -6,6 +6,7 @@ scene's tangential law). Where that gains energy, less is thrown back (docs/meth
 
 from __future__ import annotations
 
+from watchsim.dynamics.delassus import size_class
 from watchsim.dynamics.linear import copy
 from watchsim.jit import kernel
 from watchsim.mechanism.model import PG1996, SHIFTED
@@ -13,7 +14,7 @@ from watchsim.simulation.keep import keep_event
 from watchsim.simulation.moreau_laws import cone, residual
 from watchsim.simulation.moreau_mobility import fill_mobility, push, rates_of
 from watchsim.simulation.moreau_prox import relax
-from watchsim.simulation.state import IMPACTS, N_ENERGY, N_IMPACTS, N_LCP, N_LCP_FAILED
+from watchsim.simulation.state import IMPACTS, N_ENERGY, N_IMPACTS, N_LCP, N_LCP_FAILED, N_LCP_SIZE
 
 IMPACT_EVENT = 1
 GAIN = 1e-12  # share of the kinetic energy up to which a gain is rounding
@@ -25,6 +26,7 @@ def solve_percussions(state, m, bearings, work):
     """Relax, and count what it took."""
     sweeps, settled = relax(work.laws, m, bearings)
     state.counts[N_LCP] += 1
+    state.counts[N_LCP_SIZE + size_class(2 * m + bearings)] += 1
     work.sweeps[0] += sweeps
     if not settled:
         state.counts[N_LCP_FAILED] += 1

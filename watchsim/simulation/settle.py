@@ -105,10 +105,7 @@ def _go_on(model, state, f, options, scratch, record):
     first = 0
     while first < f:
         m = place_contacts(model, state.active, first, state.upto[first], scratch.pose, rest)
-        deepest = project_positions(rest, m, True, work, state.q)
-        state.worst[0] = max(state.worst[0], deepest)
-        _hold(state, m, rest, scratch.trial)
-        project_velocities(rest, m, scratch.trial, work, state.u)
+        _correct(state, m, scratch)
         first += m
         m, unique = let_go(model, state, m, options, scratch, record)
         if not unique:
@@ -121,11 +118,15 @@ def _go_on(model, state, f, options, scratch, record):
 
 
 @kernel
-def _hold(state, m, closed, out_mode):
-    """The modes of the m contacts; STICK where a slip too slow to count runs against the mode decided."""
+def _correct(state, m, scratch):
+    """Exact zero gaps and rates of an island's m contacts in force; no slip against the mode where it was too slow to count."""
+    rest, work = scratch.rest, scratch.work
+    deepest = project_positions(rest, m, True, work, state.q)
+    state.worst[0] = max(state.worst[0], deepest)
     for i in range(m):
-        k = closed.ids[i]
-        out_mode[k] = STICK if state.mode[k] * closed.kin[i].gT_dot < 0.0 else state.mode[k]
+        k = rest.ids[i]
+        scratch.trial[k] = STICK if state.mode[k] * rest.kin[i].gT_dot < 0.0 else state.mode[k]
+    project_velocities(rest, m, scratch.trial, work, state.u)
 
 
 @kernel

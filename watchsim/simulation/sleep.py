@@ -56,9 +56,9 @@ def find_sleepers(model, state, options, scratch, f):
     for i in range(n):
         state.awake[i] = 0
     touched[:] = 0.0
-    _share_terms(model, scratch.terms)
     for j in range(f):
         touched[island_of(model, label, state.active[j])] = 1.0
+    _share_terms(model, scratch.terms)
     for i in range(n):
         if state.grip[i] == STICK:
             touched[label[i]] = 1.0

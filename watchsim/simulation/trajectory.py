@@ -98,7 +98,8 @@ class Trajectory:
         """q and u at time `t` (after the impact where one happens at `t`).
 
         Positions by the quintics through q, u, a of two rows; velocities by the cubics through u, a, with what is missing to
-        the way between the rows where that is more than the error of positions. Times outside are clamped.
+        the way between the rows where that is more than the error of positions: within ten tolerances of the coordinate's
+        largest value times its own rate. Times outside are clamped.
         """
         q, u = self.sample(np.array([t]))
         return q[0], u[0]
