@@ -35,6 +35,7 @@ DURATION, STEP_TOO_SMALL, NOT_FINITE = int(Stop.DURATION), int(Stop.STEP_TOO_SMA
 TOO_MANY_EVENTS, LAST_STEP = int(Stop.TOO_MANY_EVENTS), int(Stop.LAST_STEP)
 FLIGHT_CELLS = 128
 EVENTS_AT_ONCE = 2000
+INSTANT = 1e-3  # share of `accumulation_time` within which events count as happening at once
 ROWS_PER_STEP = math.ceil(FLIGHT_PHASE / FINEST_ROWS) + 8
 EVENTS_PER_CONTACT = 20
 
@@ -131,17 +132,15 @@ def _reaches(model, state, options, end_time):
 
 @kernel
 def _settle(model, cells, state, options, scratch, record):
-    """Handle the waiting event; counts events that do not let time advance."""
-    if state.clock[0] == state.clock[2]:
-        if state.numbers[3] > EVENTS_AT_ONCE:
-            return TOO_MANY_EVENTS
-    else:
-        state.numbers[3] = 0
+    """Handle the waiting event; counts events that hardly let time advance."""
+    if state.clock[0] - state.clock[2] > INSTANT * options.accumulation_time:
+        state.numbers[3], state.clock[2] = 0, state.clock[0]
+    elif state.numbers[3] > EVENTS_AT_ONCE:
+        return TOO_MANY_EVENTS
     code = settle(model, cells, state, options, scratch, record)
     if code != RUNNING:
         return code
     state.numbers[3] += 1
-    state.clock[2] = state.clock[0]
     keep_passages(model, state, scratch.step, 0.0, record)
     keep_row(state, record, state.clock[0], state.q, state.u, state.a)
     return RUNNING

@@ -32,11 +32,20 @@ def bearing_monitor(model, state, scratch, options, j):
 
 
 @kernel
-def _normal_monitor(work, i, options):
+def press_left(work, i, zero):
+    """Normal force of contact i in the modes solved, with the share `zero` of its terms on top; not positive where it pulls."""
     normal = work.force[2 * i]
     if normal == 0.0 and work.size[2 * i] == 0.0:
         return 1.0  # nothing acts on this gap: touching bodies that travel together without a force
-    return normal + options.force_zero * work.size[2 * i] / work.G[2 * i, 2 * i]
+    return normal + zero * work.size[2 * i] / work.G[2 * i, 2 * i]
+
+
+@kernel
+def grip_left(friction, work, i, zero):
+    """How far the friction force of contact i, which sticks, is from its bound, with the share `zero` of its terms on top."""
+    normal = work.force[2 * i]
+    slack = zero * (work.size[2 * i] / work.G[2 * i, 2 * i] + abs(normal))
+    return friction * normal - abs(work.force[2 * i + 1]) + slack
 
 
 @kernel
@@ -47,9 +56,7 @@ def _tangential_monitor(model, state, scratch, options, i):
     if friction == 0.0:
         return 1.0
     if state.mode[k] == STICK:
-        normal = work.force[2 * i]
-        slack = options.force_zero * (work.size[2 * i] / work.G[2 * i, 2 * i] + abs(normal))
-        return friction * normal - abs(work.force[2 * i + 1]) + slack
+        return grip_left(friction, work, i, options.force_zero)
     # Half of what `decide_modes` calls no slip: a contact that fires here may stick there, and one that turns back
     # starts a whole `speed_zero` away from firing again.
     return state.mode[k] * closed.kin[i].gT_dot + 0.5 * options.speed_zero
@@ -64,7 +71,7 @@ def _watch(model, state, options, first, m, scratch):
     closed, work, values = scratch.closed, scratch.work, scratch.monitors
     for i in range(m):
         code = MONITORS * (first + i)
-        values[code + NORMAL] = _normal_monitor(work, i, options)
+        values[code + NORMAL] = press_left(work, i, options.force_zero)
         values[code + TANGENTIAL] = _tangential_monitor(model, state, scratch, options, i)
         values[code + EXTENT] = closed.kin[i].margin + 2.0 * options.extent
         values[code + PARADOX] = -1.0 if is_paradox(work, m, i) else 1.0

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from watchsim.contact.index_sets import OPEN, STICK
 from watchsim.jit import kernel
 from watchsim.simulation.state import N_EVENTS
+
+CLOSE_EVENT, OPEN_EVENT, STICK_EVENT, SLIDE_EVENT = 2, 3, 4, 5
 
 
 @kernel
@@ -40,3 +43,19 @@ def keep_event(state, record, kind, contact, body, value):
     record.used[1] = row + 1
     state.counts[N_EVENTS] += 1
     return row
+
+
+@kernel
+def keep_change(state, record, k, old):
+    """Write down how contact k's mode changed."""
+    new = state.mode[k]
+    if new == old:
+        return
+    if old == OPEN:
+        keep_event(state, record, CLOSE_EVENT, k, -1, float(new))
+    elif new == OPEN:
+        keep_event(state, record, OPEN_EVENT, k, -1, 0.0)
+    elif new == STICK:
+        keep_event(state, record, STICK_EVENT, k, -1, 0.0)
+    else:
+        keep_event(state, record, SLIDE_EVENT, k, -1, float(new))

@@ -10,7 +10,7 @@ from __future__ import annotations
 from watchsim.contact.gaps import extent_margin
 from watchsim.contact.index_sets import OPEN, STICK
 from watchsim.contact.poses import place
-from watchsim.dynamics.acceleration import accelerate, solve_mode
+from watchsim.dynamics.acceleration import accelerate
 from watchsim.dynamics.delassus import apply, fill_inverse
 from watchsim.dynamics.dry import add_drag, stop_held
 from watchsim.dynamics.forces import forces
@@ -23,31 +23,15 @@ from watchsim.simulation.decide import decide
 from watchsim.simulation.drift import project_positions, project_velocities
 from watchsim.simulation.handover import LEFT, hand_over
 from watchsim.simulation.islands import island_of, label_islands, place_contacts, sort_by_island
-from watchsim.simulation.keep import keep_event
+from watchsim.simulation.keep import OPEN_EVENT, keep_change, keep_event
+from watchsim.simulation.let_go import let_go
 from watchsim.simulation.sleep import add_terms, begin_terms, find_sleepers
 from watchsim.simulation.state import N_LCP_FAILED, N_REDUNDANT
 from watchsim.simulation.stops import Stop
 
 RUNNING, CELL_UNKNOWN = int(Stop.RUNNING), int(Stop.CELL_UNKNOWN)
 LCP_FAILED, TOO_MANY_CONTACTS, TOO_MANY_EVENTS = int(Stop.LCP_FAILED), int(Stop.TOO_MANY_CONTACTS), int(Stop.TOO_MANY_EVENTS)
-CLOSE_EVENT, OPEN_EVENT, STICK_EVENT, SLIDE_EVENT = 2, 3, 4, 5
 ROUNDS = 16  # impacts in a row at one instant
-
-
-@kernel
-def _keep_change(state, record, k, old):
-    """Write down how contact k's mode changed."""
-    new = state.mode[k]
-    if new == old:
-        return
-    if old == OPEN:
-        keep_event(state, record, CLOSE_EVENT, k, -1, float(new))
-    elif new == OPEN:
-        keep_event(state, record, OPEN_EVENT, k, -1, 0.0)
-    elif new == STICK:
-        keep_event(state, record, STICK_EVENT, k, -1, 0.0)
-    else:
-        keep_event(state, record, SLIDE_EVENT, k, -1, float(new))
 
 
 @kernel
@@ -73,7 +57,7 @@ def settle(model, cells, state, options, scratch, record):
         if stop != RUNNING:
             return stop
         first = last
-    _go_on(model, state, _list_in_force(state, m, scratch), options, scratch)
+    _go_on(model, state, _closed_of(state, m, scratch.listed, state.active), options, scratch, record)
     state.numbers[2], state.numbers[4] = 0, -1
     return RUNNING
 
@@ -96,18 +80,18 @@ def _settle_island(model, state, island, span, options, scratch, record):
 
 
 @kernel
-def _list_in_force(state, m, scratch):
-    """Fill `state.active` with those of the m listed contacts that are closed; returns their number."""
+def _closed_of(state, m, ids, out_ids):
+    """Those of the m contacts that are closed; returns their number."""
     f = 0
     for j in range(m):
-        if state.mode[scratch.listed[j]] != OPEN:
-            state.active[f] = scratch.listed[j]
+        if state.mode[ids[j]] != OPEN:
+            out_ids[f] = ids[j]
             f += 1
     return f
 
 
 @kernel
-def _go_on(model, state, f, options, scratch):
+def _go_on(model, state, f, options, scratch, record):
     """Exact positions and velocities, accelerations and sleep with the f contacts in force."""
     rest, work = scratch.rest, scratch.work
     label_islands(model, state.active, f, scratch.label)
@@ -122,11 +106,13 @@ def _go_on(model, state, f, options, scratch):
     while first < f:
         m = place_contacts(model, state.active, first, state.upto[first], scratch.pose, rest)
         _correct(state, m, scratch)
-        if not solve_mode(model, rest, m, state.mode, work):
+        first += m
+        m, unique = let_go(model, state, m, options, scratch, record)
+        if not unique:
             state.counts[N_REDUNDANT] += 1
         apply(rest, m, work.force, work.inverse, state.a)
         add_terms(rest, m, work.force, scratch.terms)
-        first += m
+    f = _closed_of(state, f, state.active, state.active)
     find_sleepers(model, state, options, scratch, f)
     _list_awake_first(model, state, f, scratch)
 
@@ -225,4 +211,4 @@ def _take(model, state, m, r, scratch, record):
                 new = scratch.trial[k]
         old = state.mode[k]
         state.mode[k] = new
-        _keep_change(state, record, k, old)
+        keep_change(state, record, k, old)
