@@ -47,10 +47,11 @@ def test_locked_parts_stand_still_between_beats(short: Trajectory) -> None:
 
 
 @pytest.mark.slow
-def test_a_minute_of_steady_running() -> None:
+def test_three_minutes_of_steady_running() -> None:
+    """The amplitude comes to its steady value with a time constant of some 10 s: after 40 s 0.1° are still missing."""
     scene = ws.load(ws.profiles_dir() / "swiss_lever" / "scene.toml")
-    run = ws.simulate(scene, duration=60.0, record=((0.0, 0.1), (59.0, 60.0)))
+    run = ws.simulate(scene, duration=180.0, record=((0.0, 0.1), (179.0, 180.0)))
     check_running(run)
     turns = np.abs(np.degrees(run.events["value"][run.events["kind"] == EventKind.TURN]))
     assert 250.0 < turns[-16:].mean() < 310.0
-    assert abs(turns[-16:].mean() - turns[-160:-144].mean()) < 0.01
+    assert abs(turns[-16:].mean() - turns[-160:-144].mean()) < 1e-4
