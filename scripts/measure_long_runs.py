@@ -10,13 +10,13 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
-import os
 import time
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from one_day import whole_day
 
 from watchsim.analysis.beats import DAY, beats
 from watchsim.analysis.wheel import missed_beats
@@ -35,7 +35,6 @@ PAGE = ROOT / "docs" / "long-runs.md"
 PIECE = 60.0  # s
 TOLD = (1, 2, 3, 5, 10, 15, 30, 45, 60)  # minutes that have a line in the table
 TIGHTER = 0.01  # of the tolerance, for comparison
-MEMORY_AT = (0.01, 0.1, 0.25, 0.5, 0.75, 0.99)  # shares of the day
 STEADY = 1e-6  # °, what the amplitude should be steady to
 COUNTED = ("impacts", "lcp", "lcp_failures", "lcp_copositive", "lcp_enumerated", "energy_rescues", "accumulations", "jams")
 Floats = NDArray[np.float64]
@@ -172,49 +171,9 @@ Largest change of any coordinate after the first second.
 
 | scene | wheel, lever, balance: rad | processor time, s |
 |---|---|---:|"""
-WHOLE = """
-## Swiss lever, {hours:g} h in one piece, statistics only
-
-- {half_swings:,} half swings, {ticks:,} with a tick; {cpu:.0f} s of processor time.
-- Amplitude {mean:.7f}° on average, from {least:.7f}° to {largest:.7f}°; energy residual {share:.0e} of the work put in.
-- {counts}.
-- Memory of the process after {points} of the time: {memory} MB."""
 TABLE = """
 | minute | amplitude, ° | half swings differ by, ° | rate, s/d | residual, J | of the work put in |
 |---:|---:|---:|---:|---:|---:|"""
-
-
-def whole_day(scene: Scene, duration: float) -> str:
-    """What is said of one run of that many seconds, of which only statistics are kept."""
-    memory: list[float] = []
-
-    def watch(now: float, end: float) -> None:
-        if now >= MEMORY_AT[min(len(memory), len(MEMORY_AT) - 1)] * end and len(memory) < len(MEMORY_AT):
-            memory.append(resident())
-
-    begun = time.process_time()
-    run = simulate(scene, duration, record="statistics", progress=watch)
-    cpu = time.process_time() - begun
-    if run.stop != Stop.DURATION:
-        raise SystemExit(f"{scene.title}: {run.stop_message}")
-    swings = run.sums["amplitude"]
-    return WHOLE.format(
-        hours=duration / 3600.0,
-        half_swings=run.sums["half_swings"],
-        ticks=run.sums["ticks"],
-        cpu=cpu,
-        share=run.energy["residual_relative"],
-        counts=", ".join(f"{run.counts[name]:,} {name}" for name in COUNTED),
-        points=", ".join(f"{part:.0%}" for part in MEMORY_AT),
-        memory=", ".join(f"{megabytes:.1f}" for megabytes in memory),
-        **{name: np.degrees(swings[name]) for name in ("mean", "least", "largest")},
-    )
-
-
-def resident() -> float:
-    """MB that this process occupies now."""
-    pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
-    return 1e-6 * pages * os.sysconf("SC_PAGE_SIZE")
 
 
 def page(runs: list[Long], stands: dict[str, tuple[Floats, float]], asked: float, day: str) -> str:
@@ -294,9 +253,10 @@ def main() -> None:
     if args.duration < 8.0 * PIECE:
         parser.error(f"--duration {args.duration:g}: at least eight minutes, for the slopes")
     scenes = {name: load(profiles_dir() / name / "scene.toml") for name in ("bench_lever", "swiss_lever")}
+    simulate(scenes["bench_lever"], 0.01)  # compiles: that is no part of the times
     stands = {scene.title: creep(scene, args.locked) for scene in scenes.values()}
     runs = [long_run(scene, args.duration) for scene in scenes.values()]
-    day = whole_day(scenes["swiss_lever"], args.day) if args.day else ""
+    day = whole_day(scenes["swiss_lever"], args.day, COUNTED) if args.day else ""
     args.page.write_text(page(runs, stands, args.locked, day), encoding="utf-8")
     picture(runs, args.page.parent / "images" / "long_runs.png")
     if short := failures(runs, stands):

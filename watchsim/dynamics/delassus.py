@@ -25,6 +25,7 @@ class ContactWork(NamedTuple):
     or bearing. An element is a bounded force: the friction of one block.
     """
 
+    lcp: LcpWork
     G: Array  # (rows, rows)
     b: Array  # (rows,) accelerations or velocities of the gaps without contact forces
     size: Array  # (rows,) the same with all terms taken positive: the scale of rounding
@@ -47,7 +48,6 @@ class ContactWork(NamedTuple):
     other_x: Array
     scale: Array
     order: Integers
-    lcp: LcpWork
     h: Array  # (n,)
     rungs: Integers  # problems solved since last asked, by Rung; the last one counts those without a solution
     sizes: Integers  # the same problems by their number of unknowns, see `LARGEST`

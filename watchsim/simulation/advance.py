@@ -174,66 +174,9 @@ def _loop(model, cells, state, options, until, scratch, record):
 
 @inlined
 def scratch_by_reference(scratch):
-    """The scratch arrays as nested structs."""
-    work = scratch.work
-    inner = ContactWorkRef(
-        work.G,
-        work.b,
-        work.size,
-        work.force,
-        work.more,
-        work.inverse,
-        work.unit,
-        work.drag,
-        work.tangent,
-        work.block,
-        work.dry,
-        work.width,
-        work.span,
-        work.shift,
-        work.A,
-        work.rhs,
-        work.x,
-        work.B,
-        work.other_rhs,
-        work.other_x,
-        work.scale,
-        work.order,
-        LcpWorkRef(*work.lcp),
-        work.h,
-        work.rungs,
-        work.sizes,
-        work.note,
-    )
-    return ScratchRef(
-        StepRef(*scratch.step),
-        scratch.pose,
-        ClosedRef(*scratch.closed),
-        ClosedRef(*scratch.rest),
-        inner,
-        scratch.restitution,
-        scratch.impulse,
-        scratch.rates,
-        scratch.before,
-        scratch.q,
-        scratch.u,
-        scratch.y,
-        scratch.dy,
-        scratch.label,
-        scratch.listed,
-        scratch.upto,
-        scratch.engaged,
-        scratch.doubt,
-        scratch.monitors,
-        scratch.codes,
-        scratch.trial,
-        scratch.grip,
-        scratch.load,
-        scratch.terms,
-        scratch.alarm,
-        scratch.unknown,
-        scratch.at,
-    )
+    """The scratch arrays as nested structs; what holds structs itself names them first."""
+    work = ContactWorkRef(LcpWorkRef(*scratch.work.lcp), *scratch.work[1:])
+    return ScratchRef(StepRef(*scratch.step), ClosedRef(*scratch.closed), ClosedRef(*scratch.rest), work, *scratch[4:])
 
 
 @entry

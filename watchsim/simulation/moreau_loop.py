@@ -109,31 +109,8 @@ def advance_fixed(model, cells, state, options, until, pace, work, record):
 
 @inlined
 def _by_reference(work):
-    """The scratch arrays as a struct."""
-    return MoreauWorkRef(
-        work.memory,
-        work.depth,
-        work.pose,
-        ClosedRef(*work.closed),
-        work.q,
-        work.u,
-        work.free,
-        work.force,
-        work.damping,
-        work.joint,
-        work.mass,
-        work.inverse,
-        work.change,
-        LawsRef(*work.laws),
-        work.rates,
-        work.more,
-        work.restitution,
-        work.dry,
-        work.unknown,
-        work.at,
-        work.sweeps,
-        work.worst,
-    )
+    """The scratch arrays as a struct; what holds structs itself names them first."""
+    return MoreauWorkRef(ClosedRef(*work.closed), LawsRef(*work.laws), *work[2:])
 
 
 @kernel

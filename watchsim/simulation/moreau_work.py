@@ -24,10 +24,11 @@ class MoreauWork(NamedTuple):
     Rows of `rates` and `more` are those of `laws`: N, T of each of the m closed contacts, then the bearings.
     """
 
+    closed: Closed
+    laws: Laws
     memory: Array  # (contacts, 2)
     depth: Array  # deepest penetration of the last step, m
     pose: object
-    closed: Closed
     q: Array  # at the middle of the step
     u: Array  # after the impacts, before the forces
     free: Array  # with the forces, without contacts
@@ -37,7 +38,6 @@ class MoreauWork(NamedTuple):
     mass: Array
     inverse: Array
     change: Array  # of velocities, by one percussion
-    laws: Laws
     rates: Array
     more: Array
     restitution: Array

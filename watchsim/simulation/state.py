@@ -100,10 +100,10 @@ class Scratch(NamedTuple):
     """Room to work in, allocated once."""
 
     step: Step
-    pose: Any
     closed: Closed
     rest: Closed
     work: ContactWork
+    pose: Any
     restitution: Array
     impulse: Array  # of the last impact, N and T by row
     rates: Array  # contact rates after it
