@@ -83,7 +83,7 @@ def _bench_levers() -> list[Scenario]:
     dead = scene
     for number in range(len(scene.contacts)):
         dead = dead.set(f"contacts.{number}.restitution", 0.0)
-    fewer = {"pymunk": (2e-5, 5e-6), "box2d": (5e-5,), "mujoco": ()}
+    fewer = {"pymunk": (2e-5, 5e-6), "box2d": (5e-5,)}
     return [
         Scenario("bench_lever", scene, 3.0, steps, setups, (1.0, 3.0)),
         Scenario("bench_lever, restitution 0", dead, 3.0, {**steps, **fewer}, setups, (1.0, 3.0)),
@@ -91,11 +91,13 @@ def _bench_levers() -> list[Scenario]:
 
 
 def _swiss_lever() -> Scenario:
-    setups = {"pymunk": Setup(units=1e3, deviation=4e-6), "box2d": Setup(units=1e5, deviation=4e-6)}
+    units = {"pymunk": 1e3, "box2d": 1e5, "mujoco": 1e3}
+    setups = {name: Setup(units=value, deviation=4e-6) for name, value in units.items()}
     steps = {
         EVENT_DRIVEN: (1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11),
         MOREAU: (1e-5, 4e-6, 2e-6),
         "pymunk": (2e-5,),
         "box2d": (5e-5,),
+        "mujoco": (5e-6,),
     }
     return Scenario("swiss_lever", load(profiles_dir() / "swiss_lever" / "scene.toml"), 3.0, steps, setups, (1.0, 3.0))

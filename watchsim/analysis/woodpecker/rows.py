@@ -42,7 +42,10 @@ def woodpecker_rows(steps: tuple[float, ...] = STEPS) -> list[Row]:
 def _cycle_rows(cycle: Cycle) -> list[Row]:
     wrong = sum((event.cause, event.contact) != wanted for event, wanted in zip(cycle.events, ORDER, strict=False))
     wrong += abs(len(cycle.events) - len(ORDER))
-    source = "Glocker 1995; Leine, Glocker, van Campen, DETC 2001: a stable cycle, one peck after the other"
+    source = (
+        "the toy of Glocker 1995 and of Leine, Glocker, van Campen, DETC 2001: a stable cycle, one peck after the other; the "
+        "order of events as found here, no printed one was at hand"
+    )
     return [
         compared(NAME, "events of a peck out of order", 0.0, float(wrong), 0.0, source),
         compared(NAME, "tilts and rates after one period, scaled", 0.0, cycle.gap, 1e-9, source),
