@@ -12,6 +12,7 @@ from typing import Any
 from watchsim.drawing.findings import Finding
 from watchsim.geometry.extent import extents
 from watchsim.mechanism.body import Body
+from watchsim.mechanism.bore_notices import told
 from watchsim.mechanism.carry import at_start, is_still
 from watchsim.mechanism.force import Damping, Spring
 from watchsim.mechanism.overlap import overlaps
@@ -78,6 +79,7 @@ def _solid_entry(solid: Solid) -> dict[str, Any]:
         "layer": solid.layer,
         "kind": solid.kind,
         "count": solid.count,
+        "bores": list(solid.bores),
         "mass_kg": solid.weight.mass,
         "centre_of_mass_m": list(solid.weight.centre),
         "inertia_kg_m2": solid.weight.about((0.0, 0.0)),
@@ -144,7 +146,7 @@ def _millimetres(value: float) -> str:
 def _kind(solid: Solid) -> str:
     """Of what shape, in words."""
     return {
-        PLATE: f"plate of {show(solid.thickness, 'mm')}",
+        PLATE: f"plate of {show(solid.thickness, 'mm')}" + (f" less {told(solid.drilled)}" if solid.drilled else ""),
         UPRIGHT: "turned, upright on the pivot",
         LYING: "turned, lying",
         HAIRSPRING: "hairspring, one third",
