@@ -85,7 +85,7 @@ def _line_to_add(table: Table, plate: Solid, missing: Sequence[Loop]) -> str:
     left = layer_area(_material(plate, layers)) - sum(abs(area(bore)) for bore in missing)
     before, after = plate.weight.mass, plate.density * plate.thickness * plate.count * left
     masses = f"{show(before, 'mg')} become {show(after, 'mg')}"
-    return f"{first} bores = [{names}] beside its thickness: {masses}. With bores = [] this is as it should be."
+    return f"{first} bores = [{names}] beside its thickness: {masses}. bores = [] says that the plate is whole."
 
 
 def uniform_notices(table: Table, outlines: Outlines, weight: Weight, elsewhere: Set[str]) -> tuple[Finding, ...]:

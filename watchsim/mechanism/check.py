@@ -12,7 +12,6 @@ from typing import Any
 from watchsim.drawing.findings import Finding
 from watchsim.geometry.extent import extents
 from watchsim.mechanism.body import Body
-from watchsim.mechanism.bore_notices import told
 from watchsim.mechanism.carry import at_start, is_still
 from watchsim.mechanism.force import Damping, Spring
 from watchsim.mechanism.overlap import overlaps
@@ -146,11 +145,15 @@ def _millimetres(value: float) -> str:
 def _kind(solid: Solid) -> str:
     """Of what shape, in words."""
     return {
-        PLATE: f"plate of {show(solid.thickness, 'mm')}" + (f" less {told(solid.drilled)}" if solid.drilled else ""),
+        PLATE: f"plate of {show(solid.thickness, 'mm')}" + _less(len(solid.drilled)),
         UPRIGHT: "turned, upright on the pivot",
         LYING: "turned, lying",
         HAIRSPRING: "hairspring, one third",
     }[solid.kind]
+
+
+def _less(bores: int) -> str:
+    return f" less {bores} bore{'' if bores == 1 else 's'}" if bores else ""
 
 
 def _poise_lines(scene: Scene, body: Body) -> Iterator[str]:
