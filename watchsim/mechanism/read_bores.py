@@ -63,7 +63,7 @@ def _is_there(entry: Table, outlines: Outlines, plate: Sequence[Loop], names: Se
         return True
     elif outlines.sound and name not in {finding.layer for finding in outlines.errors}:
         others = [layer for layer in closed if layer not in own]
-        hint = nearest(name, others) or "The drawing has no other layer with one"
+        hint = nearest(name, others) or "There is no other layer with one"
         _fault(entry, i, f"no closed outline is on this layer. {hint}")
     return False
 
