@@ -44,6 +44,8 @@ def _idle(outlines: Outlines, plates: Sequence[Solid]) -> Iterator[Finding]:
     seen: set[Loop] = set()
     for plate in plates:
         bores = [loop for loop in outlines.all if loop.closed and loop.layer in plate.bores]
+        if all(as_hole(bore).edges in taken for bore in bores):
+            continue
         for bore, lie in zip(bores, lies(bores, _material(plate, plate.bores)), strict=True):
             if as_hole(bore).edges in taken or bore in seen:
                 continue
