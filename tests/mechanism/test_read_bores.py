@@ -82,12 +82,16 @@ def test_without_the_key_nothing_is_taken_out(lever) -> None:
     assert plain == none
 
 
-def test_a_stone_in_its_bore_has_its_own_mass_and_is_seen(lever) -> None:
-    body = scene_of(lever, PLATE + 'bores = ["STONE"]\n', STONE).body("lever")
+@pytest.mark.parametrize("touching", [False, True])
+def test_a_stone_in_its_bore_has_its_own_mass_and_is_seen(lever, touching) -> None:
+    more = 'layers = ["LEVER", "STONE"]\n' if touching else 'layers = ["LEVER"]\n'
+    body = scene_of(lever, PLATE + 'bores = ["STONE"]\n', STONE, more=more).body("lever")
     plate, stone = body.solids
     assert plate.weight.mass == pytest.approx(RHO * HEIGHT * math.pi * (4 - 0.09 - 0.16) * 1e-6, rel=1e-12)
     assert stone.weight.mass == pytest.approx(3980.0 * 0.3e-3 * math.pi * 0.16e-6, rel=1e-12)
-    assert not any(loop.hole for loop in body.decoration if loop.layer == "STONE")
+    seen = [loop for loop in (body.loops if touching else body.decoration) if loop.layer == "STONE"]
+    assert [loop.hole for loop in seen] == [False]
+    assert touching == ("STONE" in body.layers) != ("STONE" in {loop.layer for loop in body.decoration})
 
 
 def test_copies_have_their_bores(lever) -> None:
