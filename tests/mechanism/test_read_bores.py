@@ -148,6 +148,11 @@ def test_every_misuse_has_one_fault_with_its_line(lever, line, key, message) -> 
     assert ".toml:" in fault.place
 
 
+def test_a_layer_that_is_no_text_is_one_fault_of_the_layer(lever) -> None:
+    faults = faults_of(lever, PLATE.replace('"LEVER"', '["LEVER"]') + 'bores = ["BORE"]\n')
+    assert {fault.key for fault in faults} == {"bodies.lever.solids.0.layer"}
+
+
 def test_faults_of_all_bores_come_at_once(lever) -> None:
     lines = PLATE + 'bores = ["BOER", "ACROSS", "ROUND_HOLE", "AWAY", "LEVER"]\n'
     found = faults_of(lever, lines, 'layer = "STONE"\nthickness = "0 mm"\ndensity = "1 g/cm³"\nbores = ["PINS"]\n')

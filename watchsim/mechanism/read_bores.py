@@ -22,7 +22,7 @@ LATER = "Draw what is missing there in the outline itself"
 def bores_of_plate(entry: Table, outlines: Outlines, plate: Sequence[Loop]) -> tuple[Loop, ...]:
     """The bores taken out of `plate` (its closed loops), as holes on their own layers; every fault is noted at its layer."""
     names = entry.texts("bores", "LEVER_BORE")
-    layers = {name: i for i, name in reversed(list(enumerate(names))) if _is_there(entry, outlines, plate, names, i)}
+    layers = {name: i for i, name in enumerate(names) if _is_there(entry, outlines, plate, names, i)}
     bores = [loop for loop in outlines.all if loop.closed and loop.layer in layers]
     found = lies(bores, plate)
     for bore, lie in zip(bores, found, strict=True):
@@ -51,7 +51,8 @@ def _is_there(entry: Table, outlines: Outlines, plate: Sequence[Loop], names: Se
     """Are there closed outlines on the layer, and may they be bores of this plate?"""
     name = names[i]
     closed = dict.fromkeys(loop.layer for loop in outlines.all if loop.closed)
-    own = {loop.layer for loop in plate} | {entry.mapping.get("layer")}
+    layer = entry.mapping.get("layer")
+    own = {loop.layer for loop in plate} | ({layer} if isinstance(layer, str) else set())
     if name in names[:i]:
         _fault(entry, i, "this layer is named twice: leave one out")
     elif name in own:
