@@ -14,8 +14,8 @@ from watchsim.analysis.woodpecker.motion import moments
 from watchsim.analysis.woodpecker.toy import BEAK, LOWER, UPPER, Toy, modal, start
 
 NAME = "woodpecker toy"
-# One peck, with the last frame before each event: the sleeve slides on its lower edge and sticks; breaks loose, slides, lets go;
-# its upper edge meets the pole; the beak pecks; thrown back the upper edge slides up the pole; the lower edge comes back twice.
+# One peck, with the last frame before each event. The sleeve slides on its lower edge and sticks; breaks loose, slides and lets
+# go; its upper edge meets the pole; the beak pecks; the upper edge slides up the pole; the lower edge comes back twice.
 FRAMES = (
     ("reverse", LOWER, 32),
     ("slip", LOWER, 91),
