@@ -168,3 +168,22 @@ def test_redundant_contacts_share_one_impulse() -> None:
     truth, double = once.impact(u), twice.impact(u)
     assert double[0] == 0
     assert double[1] == pytest.approx(truth[1], abs=1e-13)
+
+
+def test_a_disc_that_slides_down_a_wall_meets_the_floor() -> None:
+    """Friction 1, both walls: exactly at rest towards the wall it is not pushed against it, which would make it jam.
+
+    The floor turns it back: with both contacts pressed it can neither roll nor go on, and stands still or leaves the wall.
+    """
+    m, r = 0.01, 7.9e-3
+    W = np.array([[-1.0, 0.0, 0.0], [0.0, 1.0, r], [0.0, 1.0, 0.0], [-1.0, 0.0, r]])
+    case = Case(np.array([m, m, 0.5 * m * r * r]), W, np.ones(2), np.zeros(2))
+    u = np.array([0.0, -0.0225, -2.84])
+    assert (W @ u)[0] == 0.0
+    status, after, force = case.impact(u)
+    assert status == 0
+    after_rates = rates(case, after)
+    assert np.all(after_rates[::2] >= -1e-12) and np.all(force[::2] >= 0.0)
+    assert np.all(np.abs(force[1::2]) <= force[::2] * (1.0 + 1e-12))
+    assert case.mass * (after - u) == pytest.approx(W.T @ force, abs=1e-12)
+    assert case.energy_change() < 0.0

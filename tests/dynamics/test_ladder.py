@@ -89,7 +89,7 @@ def test_enumeration_alone_solves_impacts(m: int) -> None:
 def test_a_jammed_rotor_needs_the_second_rung() -> None:
     """One rotor on a stop, friction above |a/b|: the first form can end on a ray, the copositive one does not."""
     rng = np.random.default_rng(95)
-    rungs = np.zeros(4, int)
+    rungs = np.zeros(FAILED + 1, int)
     for _ in range(3000):
         a, b = rng.normal(size=2)
         mu = rng.uniform(0.0, 3.0)

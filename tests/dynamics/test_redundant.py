@@ -94,6 +94,25 @@ def test_a_lever_on_its_banking_with_a_tooth_that_sticks() -> None:
     assert list(mode) == [STICK, STICK]
 
 
+def test_forces_without_bound_are_not_taken() -> None:
+    """A disc in a groove of a right angle, friction 1: it can be squeezed along both cones' edges at once, as hard as one likes.
+
+    That does not help a torque beyond what the weight's friction holds: the smallest forces stay, and leave a cone.
+    """
+    c, r = np.sqrt(0.5), 0.5
+    W = np.array([[c, c, 0.0], [c, -c, r], [-c, c, 0.0], [c, c, r]])
+    case = Case(np.array([2.0, 2.0, 0.25]), W, np.ones(2), np.zeros(2))
+    squeeze = np.array([1.0, 1.0, 1.0, -1.0])
+    assert squeeze @ W == pytest.approx(np.zeros(3), abs=1e-15)
+    for torque in (-3.0, 3.0):
+        h = np.array([0.0, -2.0, torque])
+        unique, force, a = resting(case, h)
+        assert not unique
+        assert a == pytest.approx(np.zeros(3), abs=1e-13)
+        assert force == pytest.approx(smallest(case, h), abs=1e-12)
+        assert np.any(np.abs(force[1::2]) > force[::2] * (1.0 + 1e-9))
+
+
 def test_bodies_a_million_million_times_apart_keep_all_their_forces() -> None:
     """Two contacts that share nothing, one on a body of 1 kg, one on a body of 1e-12 kg: neither is taken for redundant."""
     W = np.array([[1.0, 0.0], [0.0, 0.0], [0.0, 1.0], [0.0, 0.0]])

@@ -22,6 +22,7 @@ AVERAGED = (
 HELPED = (
     ("lcp_copositive", "by the second way (copositive form)"),
     ("lcp_enumerated", "by trying all cases"),
+    ("lcp_inexact", "to a billionth of the largest load"),
 )
 RULES = (
     ("accumulations", "bounces that died out in ever smaller rebounds: {}"),

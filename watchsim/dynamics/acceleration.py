@@ -116,7 +116,7 @@ def decide_modes(model, closed, m, bearings, speed_zero, work, out_grip, out_mod
         if work.x[i] > 0.0 and is_paradox(work, m, i):
             return NO_FORCE
     for i in range(m):
-        out_mode[closed.ids[i]] = _mode_of(closed, i, m, bearings, work)
+        out_mode[closed.ids[i]] = _mode_of(closed, i, m, elements, bearings, work)
     for i in range(m):
         if out_mode[closed.ids[i]] == OPEN:
             work.force[2 * i], work.force[2 * i + 1] = 0.0, 0.0
@@ -183,8 +183,12 @@ def _row_acceleration(work, rows, row):
 
 
 @kernel
-def _mode_of(closed, i, m, bearings, work):
-    """The mode of contact i after the LCP."""
+def _mode_of(closed, i, m, elements, bearings, work):
+    """The mode of contact i after the LCP.
+
+    It slides only one way if the LCP has its friction at that end of the cone: where contacts are redundant, the slip of one
+    whose friction is at the other end is what the LCP may miss.
+    """
     rows = 2 * m + bearings
     if work.x[i] <= 0.0 and _row_acceleration(work, rows, 2 * i) > ROUNDING * work.size[2 * i]:
         return OPEN
@@ -194,9 +198,10 @@ def _mode_of(closed, i, m, bearings, work):
     # lambda_T is the difference of terms as large as the friction cone.
     terms = abs(work.force[2 * i + 1]) + work.drag[i] * work.force[2 * i]
     size = ROUNDING * (work.size[2 * i + 1] + work.G[2 * i + 1, 2 * i + 1] * terms)
-    if slip > size:
+    e = work.tangent[i]
+    if slip > size and work.x[m + e] == 0.0:
         return FORWARD
-    return BACKWARD if slip < -size else STICK
+    return BACKWARD if slip < -size and work.x[m + elements + e] > 0.0 else STICK
 
 
 @kernel

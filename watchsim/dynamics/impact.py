@@ -62,6 +62,8 @@ def _nudge(m, jam, work):
     The impulses of a jam do not vanish with the speed of approach; which contacts carry them is found this way.
     """
     found = False
+    if not jam > 0.0:
+        return found  # where something approaches, a gap that stands still needs no nudge, even one at exactly zero
     for i in range(m):
         slip = abs(work.b[2 * i + 1])
         if work.tangent[i] >= 0 and abs(work.b[2 * i]) <= jam and slip > jam:

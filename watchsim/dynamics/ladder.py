@@ -2,18 +2,20 @@
 
 Rung after rung: Lemke's method on the form of coulomb.py; on the copositive form, which always has a solution for
 impacts (Stewart & Trinkle 1996; Anitescu & Potra 1997); enumeration of the modes of small sets. What solves
-the problem is checked against the first form. If nothing does, the caller stops and keeps the problem.
+the problem is checked against the first form. Where many contacts are redundant their loads are rounding errors that may
+contradict each other: then Lemke's end is taken if it misses by no more than a billionth of the largest load. If nothing helps,
+the caller stops and keeps the problem.
 """
 
 from __future__ import annotations
 
 from watchsim.dynamics.delassus import size_class
-from watchsim.dynamics.lcp import OK, lemke_checked
-from watchsim.dynamics.lcp_basis import ROUNDING, is_solution, solve_active
+from watchsim.dynamics.lcp import OK, lemke, lemke_checked
+from watchsim.dynamics.lcp_basis import ROUGH, ROUNDING, is_solution, solve_active, solves
 from watchsim.dynamics.lcp_scaling import scale, unscale
 from watchsim.jit import kernel
 
-LEMKE, COPOSITIVE, ENUMERATED, FAILED = 0, 1, 2, 3  # rungs: places in ContactWork.rungs
+LEMKE, COPOSITIVE, ENUMERATED, INEXACT, FAILED = 0, 1, 2, 3, 4  # rungs: places in ContactWork.rungs
 MODES = 50000  # sets of modes tried at most: some tenths of a second
 
 
@@ -30,6 +32,8 @@ def solve_contacts(work, m, elements):
             rung = COPOSITIVE
         elif enumerate_modes(work, m, elements):
             rung = ENUMERATED
+        elif lemke(work.A, work.rhs, n, work.lcp, work.x) == OK and solves(n, ROUGH, work.lcp):
+            rung = INEXACT
     work.rungs[rung] += 1
     work.sizes[size_class(n)] += 1
     return (OK if rung != FAILED else status), rung

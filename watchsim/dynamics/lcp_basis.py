@@ -12,11 +12,18 @@ from watchsim.jit import kernel
 PIVOT = 1e-11  # smaller pivots are rounding errors of a zero
 RESIDUAL = 1e-9  # a y this much smaller than the terms it is the sum of is zero
 ROUNDING = 1e-13  # so is one this much smaller than the largest x, or than one
+ROUGH = 1e-9  # the same where loads are the rounding of larger terms
 
 
 @kernel
 def is_solution(n, work):
-    """True when the scaled trial solves the problem; each y_i is judged by the terms it is the sum of.
+    """True when the scaled trial solves the problem to rounding; see `solves`."""
+    return solves(n, ROUNDING, work)
+
+
+@kernel
+def solves(n, rounding, work):
+    """True when the scaled trial solves the problem; each y_i is judged by the terms it is the sum of and by `rounding`.
 
     `work.worst` keeps the worst violation of an accepted solution, as a share of one or of its largest unknown.
     """
@@ -29,7 +36,7 @@ def is_solution(n, work):
             term = work.matrix[i, j] * work.trial[j]
             y += term
             terms += abs(term)
-        allowed = RESIDUAL * terms + ROUNDING * floor
+        allowed = RESIDUAL * terms + rounding * floor
         if not math.isfinite(terms) or work.trial[i] < 0.0 or y < -allowed or (work.trial[i] > 0.0 and y > allowed):
             return False
         worst = max(worst, -y, abs(y) if work.trial[i] > 0.0 else 0.0)

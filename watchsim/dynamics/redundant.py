@@ -12,6 +12,7 @@ from watchsim.dynamics.linear import null_vectors
 from watchsim.jit import kernel
 
 SLACK = 1e-9  # share of the largest force by which a law may be missed
+NO_GAIN = 1e-11  # what a free direction of length one does for a law by rounding alone
 
 
 @kernel
@@ -88,6 +89,13 @@ def _law(work, m, line, values):
 
 
 @kernel
+def _gain(work, m, line, vector):
+    """What a free direction does for a law; none where it runs along the law's edge, or forces without bound would be taken."""
+    gain = _law(work, m, line, vector)
+    return gain if abs(gain) > NO_GAIN else 0.0
+
+
+@kernel
 def _keep_laws(m, n, count, work):
     """The smallest change along the free directions that fulfils all laws: the dual problem, positive semidefinite."""
     vectors, largest, worst = work.B, 0.0, 0.0
@@ -100,16 +108,18 @@ def _keep_laws(m, n, count, work):
     if worst >= -SLACK * largest:
         return
     for line in range(laws):
+        if work.rhs[line] >= -SLACK * largest:
+            work.rhs[line] = max(work.rhs[line], 0.0)
         for other in range(laws):
             total = 0.0
             for v in range(count):
-                total += _law(work, m, line, vectors[v]) * _law(work, m, other, vectors[v])
+                total += _gain(work, m, line, vectors[v]) * _gain(work, m, other, vectors[v])
             work.A[line, other] = total
     if lemke_checked(work.A, work.rhs, laws, work.lcp, work.other_x) != OK:
         return  # no forces obey the laws: the mode has ended, and its monitors say so
     for v in range(count):
         share = 0.0
         for line in range(laws):
-            share += _law(work, m, line, vectors[v]) * work.other_x[line]
+            share += _gain(work, m, line, vectors[v]) * work.other_x[line]
         for j in range(n):
             work.x[j] += share * vectors[v, j]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from watchsim.contact.index_sets import STICK
 from watchsim.dynamics.acceleration import decide_modes
-from watchsim.dynamics.delassus import LARGEST, fill_inverse
+from watchsim.dynamics.delassus import LARGEST, RUNGS, fill_inverse
 from watchsim.dynamics.dry import add_drag, set_grips
 from watchsim.dynamics.forces import forces
 from watchsim.jit import kernel
@@ -46,9 +46,9 @@ def decide(model, state, island, m, options, scratch, out_grip):
 @kernel
 def count_problems(state, work):
     """Add the problems solved since last asked to the state's counts."""
-    for rung in range(4):
+    for rung in range(RUNGS):
         state.counts[N_LCP] += work.rungs[rung]
-        if rung < 3:  # the last one counts those without a solution
+        if rung < RUNGS - 1:  # the last one counts those without a solution
             state.counts[N_LEMKE + rung] += work.rungs[rung]
         work.rungs[rung] = 0
     for place in range(len(LARGEST) + 1):

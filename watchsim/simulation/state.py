@@ -29,7 +29,7 @@ DRIVE, DAMPING, FRICTION, IMPACTS, CORRECTION = 0, 1, 2, 3, 4  # places in State
 N_STEPS, N_REJECTED, N_EVALUATIONS, N_FLIGHTS, N_EVENTS, N_IMPACTS, N_LCP, N_LCP_FAILED, N_ACCUMULATED, N_ENERGY, N_GAPS = (
     range(11)
 )
-N_LEMKE, N_COPOSITIVE, N_ENUMERATED, N_JAMS, N_REDUNDANT, N_LCP_SIZE = range(11, 17)
+N_LEMKE, N_COPOSITIVE, N_ENUMERATED, N_INEXACT, N_JAMS, N_REDUNDANT, N_LCP_SIZE = range(11, 18)
 COUNT_NAMES = (
     "steps",
     "rejected_steps",
@@ -45,6 +45,7 @@ COUNT_NAMES = (
     "lcp_lemke",
     "lcp_copositive",
     "lcp_enumerated",
+    "lcp_inexact",
     "jams",
     "redundant_sets",
     *(f"lcp_to_{size}" for size in LARGEST),  # with at most so many unknowns, more than the one before
