@@ -26,7 +26,18 @@ from watchsim.simulation.options import FINEST_ROWS, OptionsRef
 from watchsim.simulation.passages import keep_passages
 from watchsim.simulation.rows import keep_inner_rows
 from watchsim.simulation.settle import settle
-from watchsim.simulation.state import DAMPING, DRIVE, FRICTION, N_FLIGHTS, N_INSTANTS, SUMS, RecordRef, ScratchRef, StateRef, StepRef
+from watchsim.simulation.state import (
+    DAMPING,
+    DRIVE,
+    FRICTION,
+    N_FLIGHTS,
+    N_INSTANTS,
+    SUMS,
+    RecordRef,
+    ScratchRef,
+    StateRef,
+    StepRef,
+)
 from watchsim.simulation.stops import Stop
 from watchsim.simulation.touch import first_touch
 
