@@ -51,13 +51,19 @@ need not come to the same amplitude.
 
 ## Where the time goes
 
-Each count times the cost of one piece of that work, measured by itself in the middle of the run, beside the time of the stepping
-(`watchsim run --profile`): how far from the floor. No work is in two lines. A step is what is done for it besides accelerations
-and gaps: Runge-Kutta sums, the estimate of the error, the polynomial between, taking back drift, recording. Gaps are the whole
-search for the next contact but for looking up cells. An instant is the settling of an event but for its impacts and its
-complementarity problems; an impact is without its problems. Calls of the loop come from Python, which saves and tallies between
-them. The rest is what the same work takes more in the midst of other work. Cells are learnt once for a geometry, before which
-the run is told apart. A test compares these shares with those of clocks in the loop itself (`tests/bench/test_where_time_goes.py`).
+Each count times the cost of one piece of that work, measured by itself in the middle of the run, beside the time of the
+stepping (`watchsim run --profile`): how far from the floor. No work is in two lines:
+
+- a step is what it takes besides accelerations and gaps: Runge-Kutta sums, the estimate of the error, attempts that are
+  rejected, the polynomial in between, taking back drift, recording; a flight is the same in closed form;
+- gaps are the whole search for the next contact, but for looking up cells;
+- an instant is the settling of an event, but for its impacts, complementarity problems and look-ups; an impact is without its
+  problems;
+- calls of the loop come from Python, which saves and tallies between them;
+- the rest is what goes on in between, and what the same work takes more in the midst of other work.
+
+Cells are learnt once for a geometry: the stepping told here knows them all, the last line is of a run that knows none. A test
+compares the shares with those of clocks within the loop (`tests/bench/test_where_time_goes.py`).
 
 {profiles}
 
