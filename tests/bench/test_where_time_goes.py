@@ -66,25 +66,40 @@ def clocked() -> tuple[Callable[..., Any], Callable[[], dict[str, tuple[int, int
 @pytest.mark.parametrize(("name", "duration"), RUNS[1:])  # the incline is done before its code is in the caches
 def test_shares_are_those_of_clocks_within_the_loop(name: str, duration: float, clocked: Any) -> None:
     loop, clocks = clocked
-    profile = profile_of(simulate(scene(name), duration, record="statistics"))
+    made = simulate(scene(name), duration, record="statistics")  # learns the cells, which takes some work again
     plain, timed = a_run(advance.advance, name, duration), a_run(loop, name, duration)
     for part, other in zip(plain.state, timed.state, strict=True):
         assert np.array_equal(part, other)
+    apart: dict[str, tuple[float, float]] = {}
+    for _ in range(3):  # other programs may slow down one measurement, but not each
+        work, read = profile_of(made)["work"], read_clocks(loop, clocks, name, duration)
+        assert read["motion"][1] == work["evaluation"]["count"]
+        assert read["_settle"][1] == work["instant"]["count"]
+        assert read["_smooth_step"][1] == sum(work[one]["count"] for one in SMOOTH)
+        apart = far_apart(work, {kernel: ticks for kernel, (ticks, _) in read.items()})
+        if not apart:
+            break
+    assert not apart
+
+
+def read_clocks(loop: Any, clocks: Any, name: str, duration: float) -> dict[str, tuple[int, int]]:
+    """Kernel -> (fewest ticks, calls) of five runs."""
     clocks()
     found = []
     for _ in range(5):
         a_run(loop, name, duration)
         found.append(clocks())
-    spent = {kernel: min(clock[kernel][0] for clock in found) for kernel in CLOCKS}
-    calls = {kernel: found[0][kernel][1] for kernel in CLOCKS}
-    work = {kernel: sum(profile["work"].get(one, {"seconds": 0.0})["seconds"] for one in CLOCKS[kernel]) for kernel in CLOCKS}
-    assert calls["motion"] == profile["work"]["evaluation"]["count"]
-    assert calls["_settle"] == profile["work"]["instant"]["count"]
-    assert calls["_smooth_step"] == sum(profile["work"][one]["count"] for one in SMOOTH)
-    for kernel in CLOCKS:
-        clock, share = spent[kernel] / sum(spent.values()), work[kernel] / sum(work.values())
-        # In the midst of others a kernel runs slower than many times in a row, and the clocks themselves take time.
-        assert abs(share - clock) < 0.25 * clock + 0.02, kernel
+    return {kernel: (min(one[kernel][0] for one in found), found[0][kernel][1]) for kernel in CLOCKS}
+
+
+def far_apart(work: dict[str, Any], ticks: dict[str, int]) -> dict[str, tuple[float, float]]:
+    """Kernels whose shares by count and cost and by the clock differ: kernel -> both.
+
+    In the midst of others a kernel runs slower than many times in a row, and the clocks themselves take time.
+    """
+    seconds = {kernel: sum(work[one]["seconds"] for one in kinds if one in work) for kernel, kinds in CLOCKS.items()}
+    shares = {kernel: (seconds[kernel] / sum(seconds.values()), ticks[kernel] / sum(ticks.values())) for kernel in CLOCKS}
+    return {kernel: (share, clock) for kernel, (share, clock) in shares.items() if abs(share - clock) > 0.2 * clock + 0.015}
 
 
 @pytest.mark.slow

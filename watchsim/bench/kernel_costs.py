@@ -35,16 +35,16 @@ Integers = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class _Parts:
-    """A moment of smooth motion with what its parts take, s."""
+    """What a step or flight and its parts take, s."""
 
-    moment: Moment
+    whole: float
     evaluations: float  # all of them
     search: float  # for the first contact that closes
 
     @property
     def beyond(self) -> float:
         """What the step or flight takes besides."""
-        return self.moment.seconds - self.evaluations - self.search
+        return self.whole - self.evaluations - self.search
 
 
 def kernel_costs(walk: Walk) -> Costs:
@@ -67,7 +67,9 @@ def _smooth_costs(walk: Walk, lookup: float) -> Costs:
         costs["step"] = sum(part.beyond for part in steps) / len(steps)
         costs["evaluation"] = sum(part.evaluations for part in steps) / _count("evaluations", walk.moments[Kind.STEP])
     if flights:
-        costs["flight"] = sum(part.beyond for part in flights) / len(flights)
+        # Some flights look for contacts at length: a difference of large numbers, where the machine code of the loop and of the
+        # search by itself differ by some per cent.
+        costs["flight"] = float(np.median([part.beyond for part in flights]))
     for kind, parts in ((Kind.STEP, steps), (Kind.FLIGHT, flights)):
         weight, moments = walk.weight(kind), walk.moments[kind]
         search += weight * (sum(part.search for part in parts) - lookup * _count("cells_looked_up", moments))
@@ -93,7 +95,7 @@ def _parts(walk: Walk, moment: Moment) -> _Parts:
     each = 0.0
     if moment.kind == Kind.STEP:
         each = seconds_each(evaluations_again, (run.compiled.model, state, options, scratch), REPEATS)
-    return _Parts(moment, each * moment.count("evaluations"), search)
+    return _Parts(walk.seconds(moment), each * moment.count("evaluations"), search)
 
 
 def _lookup_costs(walk: Walk) -> Costs:
@@ -114,7 +116,8 @@ def _settling_costs(walk: Walk, costs: Costs) -> Costs:
         found["impact"] = sum(one[0] for one in impacts) / number
     left, instants = 0.0, 0
     for kind in (Kind.CHANGE, Kind.IMPACT):
-        left += walk.weight(kind) * sum(moment.seconds - _seconds(moment.done, costs | found) for moment in walk.moments[kind])
+        beyond = [walk.seconds(moment) - _seconds(moment.done, costs | found) for moment in walk.moments[kind]]
+        left += walk.weight(kind) * sum(beyond)
         instants += walk.met[kind]
     return found | ({"instant": left / instants} if instants else {})
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
@@ -45,7 +45,6 @@ class Moment:
 
     state: State
     done: NDArray[np.int64]  # by place in `COUNT_NAMES`
-    seconds: float = 0.0
 
     def count(self, name: str) -> int:
         """How often that is done."""
@@ -69,18 +68,17 @@ class Walk:
         self._nowhere = new_record(model, 0, 0, EVERYWHERE)
         self._until = np.array([duration, duration, 1.0])
         self.met = dict.fromkeys(Kind, 0)
-        kept: dict[Kind, list[Moment]] = {kind: [] for kind in Kind}
+        self.moments: dict[Kind, list[Moment]] = {kind: [] for kind in Kind}
         chance = np.random.default_rng(0)
         for moment in self._passed():
             # Each of its kind met so far is in the sample with the same chance.
-            sample = kept[moment.kind]
+            sample = self.moments[moment.kind]
             self.met[moment.kind] += 1
             if len(sample) < SAMPLE:
                 sample.append(moment)
             elif (place := int(chance.integers(self.met[moment.kind]))) < SAMPLE:
                 sample[place] = moment
         self.counts = dict(zip(COUNT_NAMES, self.run.state.counts.tolist(), strict=True))
-        self.moments = {kind: [self._timed(moment) for moment in sample] for kind, sample in kept.items()}
 
     def weight(self, kind: Kind) -> float:
         """For how many moments of its kind one of the sample stands."""
@@ -94,6 +92,13 @@ class Walk:
         """Do once more what follows the moment: its step is in the run's scratch then, its state is the one behind it."""
         self.at(moment)
         self._advance(self.room)
+
+    def seconds(self, moment: Moment) -> float:
+        """What follows the moment takes so long, without what a call takes in which nothing is done."""
+        run = self.run
+        loop = run.compiled.model, run.finder.cells, run.state, moment.state, run.options, self._until, run.scratch
+        whole, nothing = (seconds_each(moments_again, (*loop, record), REPEATS) for record in (self.room, self._nowhere))
+        return whole - nothing
 
     def call_seconds(self) -> float:
         """Of one call of the compiled loop from Python, s; in those timed here nothing is done."""
@@ -119,13 +124,6 @@ class Walk:
             if stop != Stop.BUFFER_FULL:
                 return
             yield Moment(before, run.state.counts - before.counts)
-
-    def _timed(self, moment: Moment) -> Moment:
-        """With the seconds that it takes, less those of a call in which nothing is done."""
-        run = self.run
-        loop = run.compiled.model, run.finder.cells, run.state, moment.state, run.options, self._until, run.scratch
-        whole, nothing = (seconds_each(moments_again, (*loop, record), REPEATS) for record in (self.room, self._nowhere))
-        return replace(moment, seconds=whole - nothing)
 
 
 def copied(state: State) -> State:
