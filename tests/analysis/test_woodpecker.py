@@ -11,6 +11,49 @@ from watchsim.analysis.woodpecker.rows import woodpecker_rows
 from watchsim.analysis.woodpecker.toy import LOWER, UPPER, Toy, modal, start
 from watchsim.contact.index_sets import BACKWARD, OPEN
 
+STICKS = (10.496956, 30.073403, 49.633109)  # mm down the page: where the sleeve's lower edge sticks in the animation
+
+
+def by_hand(toy: Toy, tilt: float, h: float, until: float) -> np.ndarray:
+    """Coordinates (steps, 3) by the published scheme: contacts closed half-way, Newton's law, Gauss-Seidel."""
+    inverse, W, mu, eps = np.linalg.inv(toy.mass), toy.directions, toy.friction, toy.restitution
+    spring = toy.stiffness * np.array([[0, 0, 0], [0, 1, -1], [0, -1, 1]])
+    q, u, passed = np.array([0.0, tilt, -0.2788]), np.array([-0.3411, 0.0, -7.4583]), []
+    for _ in range(round(until / h)):
+        middle, P, before = q + 0.5 * h * u, np.zeros(6), np.ones(6)
+        closed = [k for k in range(3) if toy.gaps[k] + W[2 * k] @ middle <= 0.0]
+        free = u + inverse @ (toy.load - spring @ middle) * h
+        while closed and np.abs(P - before).max() > 1e-13:
+            before = P.copy()
+            for k in closed:
+                for row in (2 * k, 2 * k + 1):
+                    rate = W[row] @ (free + inverse @ (W.T @ P)) + (eps[k] * (W[row] @ u) if row == 2 * k else 0.0)
+                    P[row] -= rate / (W[row] @ inverse @ W[row])
+                    P[row] = max(P[row], 0.0) if row == 2 * k else np.clip(P[row], -mu * P[2 * k], mu * P[2 * k])
+        new = free + inverse @ (W.T @ P)
+        q, u = q + 0.5 * h * (u + new), new
+        passed.append(q)
+    return np.array(passed)
+
+
+def test_the_published_animation_is_understood() -> None:
+    """Its scheme, written down again, sticks where the animation does, within what its relaxation leaves."""
+    toy = Toy()
+    y, tilt, _ = by_hand(toy, -0.1036, 1e-4, 0.34)[[400, 1860, 3340]].T
+    edge = y + toy.sleeve_radius * np.sin(tilt) - toy.sleeve_half_height * np.cos(tilt)
+    assert -1e3 * edge == pytest.approx(STICKS, abs=1e-4)
+
+
+@pytest.mark.slow
+def test_the_published_scheme_comes_to_the_same_with_small_steps() -> None:
+    """Nothing but the data of the toy is shared with it."""
+    toy = Toy()
+    model = modal(toy)
+    q, u = start(toy, model)
+    exact = list(moments(model, q, u, 0.187))[-1].q[0]
+    errors = [abs(by_hand(toy, float((model.basis @ q)[1]), h, 0.187)[-1, 0] - exact) for h in (1e-4, 1e-5, 2e-6)]
+    assert errors[1] < 1e-4 and errors[2] < 1e-5 and errors[2] < 0.1 * errors[0]
+
 
 def test_rows() -> None:
     wrong = [row for row in woodpecker_rows() if not row["ok"]]

@@ -106,6 +106,20 @@ def test_many_curves_at_once_are_followed_like_each_alone() -> None:
         assert measured <= fit.deviation * (1.0 + 1e-6) + 1e-15 and fit.deviation <= tolerance
 
 
+def test_very_many_curves_are_followed_with_a_few_more_arcs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The shorter search keeps the tolerance just as well."""
+    rng = np.random.default_rng(4)
+    curves = [spline(3, [0] * 4 + [1] * 4, 1e-3 * rng.uniform(-1.0, 1.0, (4, 2))) for _ in range(100)]
+    thorough = fit_all(curves, [1e-7] * len(curves))
+    monkeypatch.setattr("watchsim.geometry.fit.MANY", len(curves) - 1)
+    brisk = fit_all(curves, [1e-7] * len(curves))
+    for curve, fit in zip(curves, brisk, strict=True):
+        measured = true_distance(curve, fit, float(curve.breaks[0]), float(curve.breaks[-1]))
+        assert measured <= fit.deviation * (1.0 + 1e-6) + 1e-15 and fit.deviation <= 1e-7
+    counts = [sum(len(fit.edges) for fit in fits) for fits in (thorough, brisk)]
+    assert counts[0] < counts[1] < 1.1 * counts[0]
+
+
 def test_involute_from_its_cusp() -> None:
     """At the base circle the involute starts with no speed; its direction there is the limit."""
     curve = involute(1e-3, 0.0, 1.0)

@@ -47,6 +47,14 @@ def test_a_hole_goes_to_the_smallest_outline_around_it():
     assert rings == [1, 2]
 
 
+def test_a_slot_on_the_border_is_empty_and_what_fills_a_hole_is_not():
+    plate, slot = polygon([(0, 0), (4, 0), (4, 2), (0, 2)], "A"), polygon([(1, 0), (2, 0), (2, 1), (1, 1)], "SLOT")
+    (part,) = shapes(plate, decoration=(type(slot)(slot.reversed().edges, "SLOT", True, True),))
+    assert not part.ground and len(part.faces.to_polygons()) == 2
+    found = shapes(circle(0, 0, 2, "A"), circle(0, 0, 1, "A", hole=True), circle(0, 0, 1, "STONE"))
+    assert [len(part.faces.to_polygons()) for part in found] == [2, 1]
+
+
 def test_small_parts_lie_on_top_and_decoration_is_drawn():
     found = shapes(circle(0, 0, 1, "A"), circle(0, 0, 0.2, "C"), decoration=(circle(0, 0, 3, "B"),))
     assert [part.area for part in found] == sorted((part.area for part in found), reverse=True)

@@ -168,6 +168,8 @@ def _manifest(scene: Scene, bodies: Sequence[Body], stacked: Sequence[Slab], thi
     entries: dict[str, list[dict[str, Any]]] = {body.name: [] for body in bodies}
     for slab in stacked:
         entry = {"layer": slab.layer, "kind": slab.solid.kind if slab.solid else "plate", "middle_mm": 1e3 * slab.middle}
+        if slab.solid and slab.solid.bores:
+            entry["bores"] = list(slab.solid.bores)
         if slab.thickness:
             entry |= {"thickness_mm": 1e3 * slab.thickness, "thickness_from": "scene" if slab.solid else "default"}
         entries[slab.body].append(entry)

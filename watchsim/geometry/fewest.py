@@ -1,11 +1,13 @@
 """Which chain of arcs within the tolerance has the fewest?
 
 Chains are laid, their lengths corrected until all deviations are alike, and the number of arcs lowered as long as that
-succeeds. All curves of a bundle are searched side by side, each as long as it needs.
+succeeds. All curves of a bundle are searched side by side, each as long as it needs. How hard to try is a choice: where
+thousands of curves wait, a search that stops a little sooner takes half the time and leaves some four per cent more arcs.
 """
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from typing import NamedTuple
 
@@ -20,9 +22,8 @@ from watchsim.geometry.demand import corrected, first_demand, of_chosen
 from watchsim.geometry.deviation import deviations
 from watchsim.geometry.layout import arcs_for
 
-FEW, MOST = 2, 5  # attempts with one number of arcs: more where one arc counts for more
+MOST = 5  # attempts with one number of arcs: more where one arc counts for more
 WEIGHTY = 48  # arcs over attempts
-ENOUGH = 1.04  # times the number of arcs that seems necessary
 SURE = 0.97  # of the number of arcs that seems necessary: fewer are not tried
 MANY = 10_000  # arcs: a part that needs more is halved before
 
@@ -34,11 +35,24 @@ class Found(NamedTuple):
     deviation: float
 
 
+class Effort(NamedTuple):
+    """How hard the fewest arcs are looked for."""
+
+    first: float  # times the number of arcs that the curvature asks for: the first attempt
+    attempts: int  # with one number of arcs, at least
+    enough: float  # times the number of arcs that seems necessary: no fewer are looked for
+
+
+THOROUGH = Effort(1.0, 2, 1.04)
+BRISK = Effort(1.3, 1, 1.15)
+
+
 class Search:
     """The search along one curve: with how many arcs to try next, and the best chain so far."""
 
-    def __init__(self, count: int) -> None:
-        self.count = count
+    def __init__(self, count: int, effort: Effort) -> None:
+        self.effort = effort
+        self.count = math.ceil(effort.first * count)
         self.limit = 4 * count + 16
         self.best: Found | None = None
         self.fewest = 10**9
@@ -53,24 +67,23 @@ class Search:
             count = min(needed, count - 1)
         elif needed > count:
             count = needed
-        elif self.attempts[count] >= enough_attempts(count):
+        elif self.attempts[count] >= self.enough_attempts(count):
             count += 1
         self.count = count = min(count, self.fewest - 1)
         if self.best is None:
             return count <= self.limit
-        enough = self.fewest <= ENOUGH * needed or count < SURE * needed or count < 2
-        return not enough and self.attempts[count] < enough_attempts(count)
+        enough = self.fewest <= self.effort.enough * needed or count < SURE * needed or count < 2
+        return not enough and self.attempts[count] < self.enough_attempts(count)
+
+    def enough_attempts(self, count: int) -> int:
+        return min(MOST, max(self.effort.attempts, WEIGHTY // count))
 
 
-def enough_attempts(count: int) -> int:
-    return min(MOST, max(FEW, WEIGHTY // count))
-
-
-def fewest(bundle: Bundle, tolerance: Array, rounds: int) -> list[Found | None]:
+def fewest(bundle: Bundle, tolerance: Array, rounds: int, effort: Effort = THOROUGH) -> list[Found | None]:
     """For each curve the chain with the fewest arcs that was found within its tolerance (curves,) in metres."""
     demand = first_demand(bundle, tolerance)
     whole = np.interp(bundle.end, *demand) - np.interp(bundle.begin, *demand)
-    searches = [Search(count) for count in arcs_for(np.minimum(whole, MANY)).tolist()]
+    searches = [Search(count, effort) for count in arcs_for(np.minimum(whole, MANY)).tolist()]
     active = np.arange(len(bundle))
     legs = Legs(np.empty(0), np.empty(0))
     for _ in range(rounds):

@@ -21,14 +21,15 @@ from watchsim.geometry.biarc import ArcChain, arcs_from, crosses, dots
 from watchsim.geometry.bundle import Bundle
 from watchsim.geometry.curve import Array, Curve
 from watchsim.geometry.deviation import deviations
-from watchsim.geometry.fewest import Found, fewest
+from watchsim.geometry.fewest import BRISK, THOROUGH, Effort, Found, fewest
 from watchsim.geometry.primitives import Edge, Line
 from watchsim.geometry.smooth import smooth_parts
 
 KINK = 1e-6  # radians between a single arc's and the curve's tangent at its end
 ROUNDS = 20  # of distributing the arcs anew
 ROUNDS_OF_HALVES = 6  # where the whole did not succeed
-AT_ONCE = 512  # curves: so many that single steps cost little, so few that the numbers stay near the processor
+AT_ONCE = 1024  # curves: so many that single steps cost little, so few that the numbers stay near the processor
+MANY = 4000  # spans: where more wait, the search for the fewest arcs stops a little sooner
 DEEPEST = 40  # halvings where nothing helps: at a cusp
 NOTHING = 1e-5  # of the tolerance: edges shorter than that are left out
 LOOKS = 33  # places in each span that show its extent
@@ -51,14 +52,15 @@ def fit_arcs(curve: Curve, tolerance: float) -> Fit:
 
 
 def fit_all(curves: Sequence[Curve], tolerances: Sequence[float]) -> list[Fit]:
-    """The same for many curves, much faster than one by one."""
+    """The same for many curves, much faster than one by one; where there are very many, with some more arcs."""
+    effort = THOROUGH if sum(len(curve.control) for curve in curves) <= MANY else BRISK
     parts: list[list[Curve]] = [[] for _ in curves]
     for chosen in batches(curves):
         smooth = smooth_parts([curves[k] for k in chosen], np.array([tolerances[k] for k in chosen]))
         for k, row in zip(chosen, smooth, strict=True):
             parts[k] = row
     each = np.array([limit for row, limit in zip(parts, tolerances, strict=True) for _ in row])
-    fits = iter(_follow([part for row in parts for part in row], each, 0))
+    fits = iter(_follow([part for row in parts for part in row], each, effort, 0))
     return [_end_to_end([next(fits) for _ in row]) for row in parts]
 
 
@@ -72,12 +74,13 @@ def batches(curves: Sequence[Curve]) -> Iterator[list[int]]:
             yield numbers[first : first + AT_ONCE]
 
 
-def _follow(curves: Sequence[Curve], tolerance: Array, depth: int) -> list[Fit]:
+def _follow(curves: Sequence[Curve], tolerance: Array, effort: Effort, depth: int) -> list[Fit]:
     """Arcs along smooth curves, which are halved where no chain is found."""
     result: list[Fit] = [Fit((), 0.0)] * len(curves)
     missing = []
     for chosen in batches(curves):
-        found = _chains([curves[k] for k in chosen], tolerance[chosen], ROUNDS if depth == 0 else ROUNDS_OF_HALVES)
+        rounds = ROUNDS if depth == 0 else ROUNDS_OF_HALVES
+        found = _chains([curves[k] for k in chosen], tolerance[chosen], rounds, effort)
         for k, chain, fit in zip(chosen, found, _fits(found, tolerance[chosen]), strict=True):
             result[k] = fit
             if chain is None:
@@ -88,18 +91,18 @@ def _follow(curves: Sequence[Curve], tolerance: Array, depth: int) -> list[Fit]:
                     missing.append(k)
     if missing:
         halves = [half for k in missing for half in curves[k].split(0.5 * len(curves[k].control))]
-        fits = iter(_follow(halves, np.repeat(tolerance[missing], 2), depth + 1))
+        fits = iter(_follow(halves, np.repeat(tolerance[missing], 2), effort, depth + 1))
         for k in missing:
             result[k] = _end_to_end((next(fits), next(fits)))
     return result
 
 
-def _chains(curves: Sequence[Curve], tolerance: Array, rounds: int) -> list[Found | None]:
+def _chains(curves: Sequence[Curve], tolerance: Array, rounds: int, effort: Effort) -> list[Found | None]:
     """One arc or the fewest along each of some curves of one degree; None where none are found."""
     found = _one_arc_each(Bundle(curves), tolerance)
     rest = [k for k, chain in enumerate(found) if chain is None]
     if rest:
-        for k, chain in zip(rest, fewest(Bundle([curves[k] for k in rest]), tolerance[rest], rounds), strict=True):
+        for k, chain in zip(rest, fewest(Bundle([curves[k] for k in rest]), tolerance[rest], rounds, effort), strict=True):
             found[k] = chain
     return found
 

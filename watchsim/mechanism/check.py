@@ -78,6 +78,7 @@ def _solid_entry(solid: Solid) -> dict[str, Any]:
         "layer": solid.layer,
         "kind": solid.kind,
         "count": solid.count,
+        "bores": list(solid.bores),
         "mass_kg": solid.weight.mass,
         "centre_of_mass_m": list(solid.weight.centre),
         "inertia_kg_m2": solid.weight.about((0.0, 0.0)),
@@ -144,11 +145,15 @@ def _millimetres(value: float) -> str:
 def _kind(solid: Solid) -> str:
     """Of what shape, in words."""
     return {
-        PLATE: f"plate of {show(solid.thickness, 'mm')}",
+        PLATE: f"plate of {show(solid.thickness, 'mm')}" + _less(len(solid.drilled)),
         UPRIGHT: "turned, upright on the pivot",
         LYING: "turned, lying",
         HAIRSPRING: "hairspring, one third",
     }[solid.kind]
+
+
+def _less(bores: int) -> str:
+    return f" less {bores} bore{'' if bores == 1 else 's'}" if bores else ""
 
 
 def _poise_lines(scene: Scene, body: Body) -> Iterator[str]:

@@ -8,7 +8,6 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
 
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.findings import Finding
@@ -17,6 +16,7 @@ from watchsim.geometry.primitives import Arc, Point
 from watchsim.mechanism.material import ADVICE, Side, face_layers, faces
 from watchsim.mechanism.schema import SHAPES, nearest
 from watchsim.mechanism.shapes import shape_loops
+from watchsim.mechanism.solid_layers import hollow, set_apart, weighed
 from watchsim.mechanism.table import NAN, UNREADABLE, Table
 
 _SETTING = re.compile(r'(\b[Ss]et \w+ = "[^"]*"(?: \(or "[^"]*"\))?)')  # the reader does not know whose drawing it reads
@@ -29,8 +29,8 @@ class Outlines:
     """What a drawing or a shape gives a body, in the coordinates of the drawing (metres).
 
     `loops` can touch, `rest` are closed outlines on layers left out, `aside` those that solids use as sections and
-    hairsprings, `chains` the open lines. `pivot` is None when nobody said where it is. `errors` are what is wrong on layers
-    left out.
+    hairsprings, `bores` those that solids take out and nothing fills, `chains` the open lines. `pivot` is None when nobody said
+    where it is. `errors` are what is wrong on layers left out.
     `sound` is False after a fault: questions about layers are then not worth asking.
     """
 
@@ -40,12 +40,13 @@ class Outlines:
     findings: tuple[Finding, ...] = ()
     sound: bool = True
     aside: tuple[Loop, ...] = ()
+    bores: tuple[Loop, ...] = ()
     chains: tuple[Loop, ...] = ()
     errors: tuple[Finding, ...] = ()
 
     @property
     def all(self) -> tuple[Loop, ...]:
-        return self.loops + self.rest + self.aside
+        return self.loops + self.rest + self.aside + self.bores
 
 
 def read_outlines(table: Table, folder: Path) -> Outlines:
@@ -70,30 +71,23 @@ def _from_drawing(table: Table, folder: Path) -> Outlines:
     if drawing is None:
         return Outlines(pivot=UNREADABLE if marked else _given_pivot(table), sound=False)
     pivot = _marked_pivot(table, drawing) if marked else _given_pivot(table)
-    apart = frozenset(set_apart(table.mapping))
+    apart, drilled = frozenset(set_apart(table.mapping)), frozenset(hollow(table.mapping))
     sides = {layer: side for layer, side in face_layers(table, drawing, table.texts("layers")).items() if layer not in apart}
-    layers = _layers(table, drawing, sides, apart)
+    layers = _layers(table, drawing, sides, apart | drilled)
     findings = tuple(_sorted_out(table, drawing, layers, sides, apart))
     closed = [loop for loop in drawing.loops if loop.closed]
     touchable = tuple(loop for loop in closed if loop.layer in layers)
     return Outlines(
         loops=touchable + tuple(faces(table, drawing, sides)),
-        rest=tuple(loop for loop in closed if loop.layer not in layers and loop.layer not in apart),
+        rest=tuple(loop for loop in closed if loop.layer not in (*layers, *apart, *drilled)),
         pivot=pivot,
         findings=findings,
         sound=len(table.faults.found) == known,
         aside=tuple(loop for loop in closed if loop.layer not in layers and loop.layer in apart),
+        bores=tuple(loop for loop in closed if loop.layer in drilled - apart),
         chains=drawing.open_chains,
         errors=tuple(f for f in drawing.findings if f.severity == "error" and f.layer in apart and f.layer not in layers),
     )
-
-
-def set_apart(mapping: Mapping[str, Any]) -> Iterator[str]:
-    """The layers that solids name for sections, axes and hairsprings: what is drawn there is no outline that could touch."""
-    solids = mapping.get("solids")
-    for solid in solids if isinstance(solids, (list, tuple)) else ():
-        if isinstance(solid, Mapping) and ("turned" in solid or solid.get("hairspring") is True):
-            yield from (name for name in (solid.get("layer"), solid.get("turned")) if isinstance(name, str))
 
 
 def _open(table: Table, folder: Path) -> Drawing | None:
@@ -180,7 +174,7 @@ def _sorted_out(
     hairsprings are judged by the solids that use them.
     """
     pivot = table.mapping.get("pivot")
-    used = {*layers, *_solid_layers(table)}
+    used = {*layers, *weighed(table.mapping)}
     for finding in drawing.findings:
         if finding.layer in apart and finding.layer not in layers:
             continue
@@ -198,14 +192,6 @@ def _sorted_out(
         else:
             severity = "warning" if finding.severity == "error" else finding.severity
             yield replace(finding, severity=severity, message=f"{drawing.path.name}: {finding.message}")
-
-
-def _solid_layers(table: Table) -> Iterator[str]:
-    """The layers that give the body its mass."""
-    solids = table.mapping.get("solids")
-    for solid in solids if isinstance(solids, list) else ():
-        if isinstance(solid, dict) and isinstance(solid.get("layer"), str):
-            yield solid["layer"]
 
 
 def _given_pivot(table: Table) -> Point | None:

@@ -16,8 +16,9 @@ from watchsim.mechanism.errors import Faults
 from watchsim.mechanism.outlines import Outlines, read_outlines
 from watchsim.mechanism.schema import BODY, nearest
 from watchsim.mechanism.solid import more_seen
+from watchsim.mechanism.solid_layers import bored
 from watchsim.mechanism.table import NAN, Table, shown
-from watchsim.mechanism.weight import read_inertias
+from watchsim.mechanism.weight import Inertias, read_inertias
 from watchsim.units import SPEED
 
 REFUSED = ("adjust",)
@@ -39,8 +40,10 @@ def read_bodies(mapping: object, folder: Path, faults: Faults) -> tuple[tuple[Bo
             table.fault("", "a body's name must not be empty or contain a point: paths such as bodies.lever.angle use it")
         outlines = read_outlines(table, folder)
         shared = users[_drawing_path(entry, folder)] > 1
-        bodies.append(_body(name, table, motion, outlines, () if shared else outlines.rest, _carrier(table, name, mapping)))
-        findings.extend(outlines.findings)
+        inertias = read_inertias(table, motion, outlines, _bores_elsewhere(mapping, name, folder) if shared else frozenset())
+        rest = () if shared else outlines.rest
+        bodies.append(_body(name, table, motion, (outlines, inertias), rest, _carrier(table, name, mapping)))
+        findings.extend((*outlines.findings, *inertias.findings))
         sound.update([name] if outlines.sound else [])
     return tuple(bodies), tuple(dict.fromkeys(findings)), frozenset(sound)
 
@@ -57,13 +60,22 @@ def _drawing_path(entry: object, folder: Path) -> Path | None:
     return folder / name if isinstance(name, str) else None
 
 
-def _body(name: str, table: Table, motion: str, outlines: Outlines, rest: tuple[Loop, ...], on: str | None) -> Body:
+def _bores_elsewhere(bodies: Mapping[str, Any], name: str, folder: Path) -> frozenset[str]:
+    """The layers that other bodies of the same drawing name as bores."""
+    path = _drawing_path(bodies[name], folder)
+    others = [entry for other, entry in bodies.items() if other != name and _drawing_path(entry, folder) == path]
+    return frozenset(layer for entry in others for layer in bored(entry))
+
+
+def _body(
+    name: str, table: Table, motion: str, drawn: tuple[Outlines, Inertias], rest: tuple[Loop, ...], on: str | None
+) -> Body:
     """Everything is read even after a fault, so that all faults of a body are found at once."""
+    outlines, inertias = drawn
     table.one_of("motion", MOTIONS, "pivot")
     for key in REFUSED:
         if key in table:
             table.refuse(key)
-    inertias = read_inertias(table, motion, outlines)
     shift = (-inertias.origin[0], -inertias.origin[1])
     return Body(
         name=name,
@@ -76,7 +88,7 @@ def _body(name: str, table: Table, motion: str, outlines: Outlines, rest: tuple[
         inertia=inertias.inertia,
         centre_of_mass=inertias.centre,
         loops=_shifted(outlines.loops, shift),
-        decoration=(*_shifted(rest, shift), *more_seen(inertias.solids)),
+        decoration=(*_shifted(rest, shift), *more_seen(inertias.solids, {loop.layer for loop in outlines.loops})),
         solids=inertias.solids,
         on=on,
     )

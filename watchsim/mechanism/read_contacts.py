@@ -101,6 +101,11 @@ def _side(table: Table, i: int, name: str, known: Known) -> Side:
 
 def _note_layer(table: Table, key: str, body: Body, layer: str) -> None:
     shown = f' = "{body.name}.{layer}"'
+    if any(layer in solid.bores for solid in body.solids):
+        table.faults.add(
+            key, "this layer is taken out as a bore; to be touched, draw the bore on the layer of its plate", shown
+        )
+        return
     if layer in {loop.layer for loop in body.decoration}:
         table.faults.add(key, f'layer {layer} is left out by layers under [bodies.{body.name}]: add "{layer}" there', shown)
         return

@@ -14,6 +14,7 @@ from watchsim.geometry.mass import Section, mass_properties, section
 from watchsim.geometry.primitives import Line, Point
 from watchsim.geometry.revolution import turned, upright
 from watchsim.mechanism.outlines import Outlines
+from watchsim.mechanism.read_bores import bores_of_plate
 from watchsim.mechanism.schema import SOLID
 from watchsim.mechanism.solid import HAIRSPRING, LYING, PLATE, UPRIGHT, Solid, Weight
 from watchsim.mechanism.table import Table
@@ -70,6 +71,9 @@ class _Reader:
                 entry.fault(key, "belongs to a hairspring: write hairspring = true as well, or leave it out", with_value=True)
         if "lying" in entry and "turned" not in entry:
             entry.fault("lying", "belongs to a turned solid: write turned as well, or leave it out", with_value=True)
+        if "bores" in entry and (spring or "turned" in entry):
+            what = "a hairspring has none" if spring else "those of a turned solid are drawn in its half profile"
+            entry.fault("bores", f"belongs to a plate: {what}. Leave bores out", with_value=True)
         if "turned" in entry and spring:
             entry.fault("turned", "a solid is a hairspring or turned, not both: leave out one of them")
         if "turned" in entry and "thickness" in entry:
@@ -77,19 +81,22 @@ class _Reader:
 
     def _plate(self, density: float) -> Solid | None:
         thickness, count, loops = self._positive("thickness"), self._count(), self._closed()
+        bores = bores_of_plate(self.entry, self.outlines, loops) if "bores" in self.entry else ()
         if any(loop in self.outlines.loops for loop in loops) and count > 1:
             self.entry.fault(
                 "count", "this layer can touch, and nothing could touch the copies: draw them all", with_value=True
             )
         if not loops or math.isnan(thickness) or math.isnan(density):
             return None
+        loops += bores
         try:
             found = mass_properties(loops, thickness, density)
         except ValueError as error:
             self.entry.fault("", str(error))
             return None
         weight = Weight(found.mass, found.centre, found.inertia_about(found.centre)).repeated(count, self.pivot)
-        return Solid(PLATE, self._layer(), weight, density, loops, thickness, self.pivot, count)
+        named = self.entry.texts("bores") if bores else ()
+        return Solid(PLATE, self._layer(), weight, density, loops, thickness, self.pivot, count, bores=named)
 
     def _turned(self, density: float, lying: bool) -> Solid | None:
         count, axis = self._count(), self._axis()

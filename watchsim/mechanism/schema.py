@@ -45,7 +45,7 @@ BODY: Keys = {
 }
 SOLID: Keys = {
     **{"layer": PLAIN, "thickness": LENGTH, "density": Key(units.DENSITY), "count": NUMBER},
-    **{"turned": LENGTH, "lying": PLAIN},
+    **{"bores": PLAIN, "turned": LENGTH, "lying": PLAIN},
     **{"hairspring": PLAIN, "inner": LENGTH, "outer": LENGTH, "turns": NUMBER, "length": LENGTH, "width": LENGTH},
 }
 SPRING: Keys = {

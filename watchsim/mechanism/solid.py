@@ -7,7 +7,7 @@ of its solids.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Container, Iterable
 from dataclasses import dataclass, replace
 
 from watchsim.geometry.hairspring import Spiral
@@ -49,9 +49,9 @@ class Solid:
     """One solid, SI, in the coordinates of its body (of the drawing while it is read).
 
     `weight` counts all copies, which are spread evenly about `pivot`, and of a hairspring its share. `loops` are the outlines
-    of a plate or of a hairspring's strip, the half profile of a turned part; `axis` is a point and the unit direction of a
-    turned part's axis. An upright part stands on the pivot: its loops have the axis along x. `spiral` and `width` describe a
-    hairspring that is not drawn.
+    of a plate, with what is taken out of it on the layers `bores` as holes, or of a hairspring's strip, or the half profile of
+    a turned part; `axis` is a point and the unit direction of a turned part's axis. An upright part stands on the pivot: its
+    loops have the axis along x. `spiral` and `width` describe a hairspring that is not drawn.
     """
 
     kind: str
@@ -65,11 +65,17 @@ class Solid:
     axis: tuple[Point, Point] = ((0.0, 0.0), (1.0, 0.0))
     spiral: Spiral | None = None
     width: float = 0.0
+    bores: tuple[str, ...] = ()
 
     @property
     def name(self) -> str:
         """The layer it is drawn on; what it is where it is not, or on all layers that touch."""
         return self.layer or self.kind
+
+    @property
+    def drilled(self) -> tuple[Loop, ...]:
+        """The bores of other layers that are taken out, as holes."""
+        return tuple(loop for loop in self.loops if loop.layer in self.bores)
 
     def shifted(self, shift: Point) -> Solid:
         """The same solid in coordinates whose origin lies at minus `shift`."""
@@ -93,15 +99,23 @@ class Solid:
         return [loop.moved(0.0, (-x, -y)).moved(step, (x, y)) for step in steps for loop in shapes]
 
 
-def more_seen(solids: tuple[Solid, ...]) -> tuple[Loop, ...]:
-    """What pictures show besides the outlines as drawn: copies, and both halves of turned parts that lie."""
+def more_seen(solids: tuple[Solid, ...], touchable: Container[str] = ()) -> tuple[Loop, ...]:
+    """What pictures show besides the outlines as drawn: bores, copies, and both halves of turned parts that lie.
+
+    A bore is not seen where something fills it: another solid of its layer, or an outline of a `touchable` layer.
+    """
     found: list[Loop] = []
+    filled = {solid.layer for solid in solids}
     for solid in solids:
         if solid.kind == LYING:
             found += solid.copies([*solid.loops, *(loop.reflected(*solid.axis) for loop in solid.loops)])
-        elif solid.kind == PLATE and solid.count > 1:
-            found += solid.copies(solid.loops, first=1)
-    return tuple(found)
+        elif solid.kind == PLATE:
+            empty = {layer for layer in solid.bores if layer not in filled and layer not in touchable}
+            found += [loop for loop in solid.loops if loop.layer in empty]
+            found += solid.copies(
+                (loop for loop in solid.loops if loop.layer in empty or loop.layer not in solid.bores), first=1
+            )
+    return tuple(dict.fromkeys(found))
 
 
 def total(solids: tuple[Solid, ...]) -> Weight | None:

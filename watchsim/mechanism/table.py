@@ -71,11 +71,11 @@ class Table:
         self.fault(key, f"not one of {', '.join(choices)}. {nearest(value, choices)}", with_value=True)
         return default
 
-    def texts(self, key: str) -> tuple[str, ...]:
+    def texts(self, key: str, example: str = "TEETH") -> tuple[str, ...]:
         value = self.mapping.get(key, [])
         if isinstance(value, (list, tuple)) and all(isinstance(item, str) for item in value):
             return tuple(value)
-        self.fault(key, f'a list of texts is needed here, such as {key} = ["TEETH"]', with_value=True)
+        self.fault(key, f'a list of texts is needed here, such as {key} = ["{example}"]', with_value=True)
         return ()
 
     def tables(self, key: str) -> list[Any]:

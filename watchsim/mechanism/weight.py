@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Set
 from dataclasses import dataclass
 
+from watchsim.drawing.findings import Finding
 from watchsim.geometry.mass import mass_properties
 from watchsim.geometry.primitives import Point
+from watchsim.mechanism.bore_notices import bore_notices, uniform_notices
 from watchsim.mechanism.outlines import Outlines
 from watchsim.mechanism.read_solids import read_solids
 from watchsim.mechanism.schema import nearest
@@ -17,19 +20,27 @@ from watchsim.mechanism.table import Table
 class Inertias:
     """What the motion needs: `origin` is the point of the drawing that becomes the origin of the body's frame.
 
-    `centre` and `solids` are in that frame."""
+    `centre` and `solids` are in that frame. `findings` tell of bores that count otherwise than their names say."""
 
     origin: Point
     mass: float
     inertia: float
     centre: Point
     solids: tuple[Solid, ...] = ()
+    findings: tuple[Finding, ...] = ()
 
 
-def read_inertias(table: Table, motion: str, outlines: Outlines) -> Inertias:
-    """Mass and inertia from the keys of a body or from its solids; a moving body without is a fault."""
+def read_inertias(table: Table, motion: str, outlines: Outlines, elsewhere: Set[str] = frozenset()) -> Inertias:
+    """Mass and inertia from the keys of a body or from its solids; a moving body without is a fault.
+
+    `elsewhere` are the layers of the drawing that other bodies name as their bores.
+    """
     solids = read_solids(table, outlines)
-    weight = total(solids) if "solids" in table else _uniform_plate(table, motion, outlines)
+    if "solids" in table:
+        weight, findings = total(solids), bore_notices(table, outlines, solids, elsewhere)
+    else:
+        weight = _uniform_plate(table, motion, outlines)
+        findings = uniform_notices(table, outlines, weight, elsewhere) if weight and "inertia" not in table else ()
     _note_conflicts(table, motion, outlines)
     origin = outlines.pivot or ((weight.centre if weight else (0.0, 0.0)) if motion == "free" else (0.0, 0.0))
     mass = table.quantity("mass", weight.mass if weight else 0.0)
@@ -37,7 +48,7 @@ def read_inertias(table: Table, motion: str, outlines: Outlines) -> Inertias:
     centre = weight.centre if weight and motion != "free" else origin
     shift = (-origin[0], -origin[1])
     local = (centre[0] + shift[0], centre[1] + shift[1])
-    inertias = Inertias(origin, mass, inertia, local, tuple(solid.shifted(shift) for solid in solids))
+    inertias = Inertias(origin, mass, inertia, local, tuple(solid.shifted(shift) for solid in solids), findings)
     _note_massless(table, motion, inertias, outlines)
     return inertias
 

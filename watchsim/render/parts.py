@@ -17,13 +17,14 @@ from numpy.typing import NDArray
 from watchsim.drawing.material import layer_roles
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.polyline import polyline
-from watchsim.geometry.primitives import Arc
+from watchsim.geometry.primitives import Arc, Point
 from watchsim.mechanism.body import Body
 from watchsim.mechanism.scene import Scene
 from watchsim.render.palette import Finish, finish, looks
 
 Array = NDArray[np.float64]
 
+LARGER = 1.0 + 1e-6  # in area: an outline in the very place of a hole fills it and is not around it
 HATCH_SLANT = 0.7  # tangential lean of a hatch stroke per unit of depth
 
 
@@ -85,8 +86,23 @@ def _of_body(body: Body, look: Finish, deviation: float, spacing: float) -> list
 
 def _owner(hole: Array, outlines: Sequence[Array]) -> int | None:
     """The smallest outline around a hole: a bore drawn on a layer of its own still empties the wheel."""
-    around = [i for i, line in enumerate(outlines) if Path(line).contains_point(hole[0])]
-    return min(around, key=lambda i: abs(signed_area(outlines[i])), default=None)
+    inside, least = _inner_point(hole), LARGER * abs(signed_area(hole))
+    areas = [abs(signed_area(line)) for line in outlines]
+    around = [i for i, line in enumerate(outlines) if areas[i] > least and Path(line).contains_point(inside)]
+    return min(around, key=lambda i: areas[i], default=None)
+
+
+def _inner_point(line: Array) -> Point:
+    """A point well inside a closed polyline: half way between where it is entered and left again, at a height of no corner."""
+    heights = np.unique(line[:, 1])
+    if len(heights) < 2:
+        return (float(line[0, 0]), float(line[0, 1]))
+    k = int(np.argmax(np.diff(heights)))
+    y = 0.5 * (heights[k] + heights[k + 1])
+    (x0, y0), (x1, y1) = line[:-1].T, line[1:].T
+    passes = (y0 < y) != (y1 < y)
+    crossed = np.sort(x0[passes] + (y - y0[passes]) * (x1 - x0)[passes] / (y1 - y0)[passes])
+    return (0.5 * float(crossed[0] + crossed[1]), float(y))
 
 
 def _solids(body: Body, look: Finish, outer: list[tuple[Loop, Array]], owners: list[list[Array]]) -> list[Part]:
