@@ -41,6 +41,7 @@ WORDS = {
     "lcp_larger": "problems of more unknowns",
     "call": "calls of the loop, tallies",
 }
+NUMERICS = ("evaluation", "gap_evaluation", *(name for name in WORDS if name.startswith("lcp_")))
 LONGEST = 10.0  # s simulated once more
 TIMES, ENOUGH = 5, 1.0  # runs, of which the quickest counts; s after which no other one is begun
 
@@ -70,8 +71,9 @@ def profile_of(run: Trajectory) -> dict[str, Any]:
 
     `simulated_s`; `stepping_s` of the processor with all cells known, without getting ready; `counts`; `work`: kind of work ->
     {count, seconds_each, seconds, share}; `floor_s`, the sum of these seconds; `rest`: {seconds, share} above it; `over_floor`,
-    the stepping over the floor; `learning`: as one of `work`, for the cells asked about where nothing is known before, its
-    share that of the stepping there. ValueError for a run with fixed steps.
+    the stepping over the floor; `over_numerics`, over accelerations, gaps and problems alone; `learning`: as one of `work`, for
+    the cells asked about where nothing is known before, its share that of the stepping there.
+    ValueError for a run with fixed steps.
     """
     if run.method != EVENT_DRIVEN:
         raise ValueError(f"only runs of the method {EVENT_DRIVEN} have a profile, not those of {run.method}")
@@ -84,6 +86,7 @@ def profile_of(run: Trajectory) -> dict[str, Any]:
     count = {name: counts[COUNTED_AS.get(name, name)] for name in WORDS}
     work = {name: _shared(n, costs[name] * n, stepping) for name, n in count.items() if n and name in costs}
     floor = sum(entry["seconds"] for entry in work.values())
+    numerics = sum(work[name]["seconds"] for name in NUMERICS if name in work)
     return {
         "simulated_s": duration,
         "stepping_s": stepping,
@@ -92,6 +95,7 @@ def profile_of(run: Trajectory) -> dict[str, Any]:
         "rest": {"seconds": stepping - floor, "share": 1.0 - floor / stepping},
         "floor_s": floor,
         "over_floor": stepping / floor if floor > 0.0 else None,
+        "over_numerics": stepping / numerics if numerics > 0.0 else None,
         "learning": learning,
     }
 
@@ -131,9 +135,11 @@ def profile_text(profile: Mapping[str, Any]) -> str:
     for name, entry in profile["work"].items():
         each = 1e9 * entry["seconds_each"]
         lines.append(f"{'':15}{WORDS[name]:33}{entry['count']:>9} × {each:6.0f} ns = {100.0 * entry['share']:4.1f} %")
-    lines.append(f"{'':15}{'the rest':33}{'':24}{100.0 * profile['rest']['share']:4.1f} %")
+    rest = f"{'':15}{'the rest':33}{'':24}{100.0 * profile['rest']['share']:4.1f} %"
     if profile["over_floor"] is not None:
-        lines.append(f"{'':15}{profile['over_floor']:.3g} × the sum of these without the rest")
+        alone = f", {profile['over_numerics']:.3g} × accelerations, gaps and problems alone" if profile["over_numerics"] else ""
+        lines.append(f"{'':15}{profile['over_floor']:.3g} × the sum of these{alone}")
+    lines.append(rest)
     learning = profile["learning"]
     if learning["count"]:
         each, share = 1e6 * learning["seconds_each"], 100.0 * learning["share"]
