@@ -95,7 +95,7 @@ def test_a_lever_on_its_banking_with_a_tooth_that_sticks() -> None:
 
 
 def test_forces_without_bound_are_not_taken() -> None:
-    """A disc in a groove of a right angle, friction 1: it can be squeezed along both cones' edges at once, as hard as one likes.
+    """A disc in a groove of a right angle, friction 1: it can be squeezed along the edges of both cones without bound.
 
     That does not help a torque beyond what the weight's friction holds: the smallest forces stay, and leave a cone.
     """

@@ -25,7 +25,7 @@ from watchsim.simulation.state import COUNT_NAMES
 from watchsim.simulation.trajectory import Trajectory
 
 Short = tuple[Scene, float, dict[str, Any]]  # the scene, how long, how
-WORK = ("steps", "rejected_steps", "evaluations", "gap_evaluations", "flights")
+WORK = ("steps", "rejected_steps", "evaluations", "gap_evaluations", "flights", "cells_looked_up")
 
 
 def _of(case: Callable[[], Benchmark] | Benchmark, duration: float) -> Short:

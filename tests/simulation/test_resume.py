@@ -35,7 +35,7 @@ def assert_same(one: Trajectory, other: Trajectory) -> None:
 
 def met(run: Trajectory) -> dict[str, int]:
     """What the motion met. Work is not told: a step that comes into an unknown cell is done again, and counted."""
-    work = ("steps", "rejected_steps", "evaluations", "gap_evaluations", "cells", "cells_asked")
+    work = ("steps", "rejected_steps", "evaluations", "gap_evaluations", "cells", "cells_asked", "cells_looked_up")
     return {name: count for name, count in run.counts.items() if name not in work}
 
 

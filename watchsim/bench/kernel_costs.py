@@ -1,131 +1,139 @@
-"""What does one call of each kernel cost, in the middle of a run?
+"""What does one piece of each kind of work cost, in the middle of a run?
 
-Each is called many times in compiled code at a state of the scene in which contacts couple bodies. Nothing depends on these
-entries, so they are not among the sources that `jit` takes for kernels.
+Kernels are called many times in compiled code at the moments of a walk. What has no kernel of its own is what the loop takes at
+these moments beyond the pieces counted by themselves.
 """
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
+from collections.abc import Iterable
+from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
-from watchsim import jit
-from watchsim.contact.gaps import normal_gap
-from watchsim.contact.poses import place_body
-from watchsim.dynamics.lcp import lcp_work, lemke_checked
-from watchsim.mechanism.compile import compile_scene
-from watchsim.mechanism.model import ModelRef
-from watchsim.mechanism.recording import Recording
-from watchsim.mechanism.scene import Scene
-from watchsim.simulation.advance import scratch_by_reference
-from watchsim.simulation.coupled import engage, motion
-from watchsim.simulation.free import flow
-from watchsim.simulation.options import OptionsRef
-from watchsim.simulation.run import Run
-from watchsim.simulation.state import StateRef
-from watchsim.simulation.stops import Stop
+from watchsim.bench.again import evaluations_again, impacts_again, lookups_again, touches_again
+from watchsim.bench.moments import Kind, Moment, Walk, seconds_each
+from watchsim.bench.problems import problem_costs
+from watchsim.simulation.state import COUNT_NAMES, N_IMPACTS, N_LOOKUPS
 
-REPEATS = 2000
-LCP_SIZES = {"lcp_to_1": 1, "lcp_to_2": 2, "lcp_to_4": 3, "lcp_to_8": 6, "lcp_to_16": 12, "lcp_larger": 24}  # unknowns
-MOST_SLICES = 100000
+REPEATS = 50
+COUNTED_AS = {  # kind of work -> its count, where that has another name
+    "step": "steps",
+    "evaluation": "evaluations",
+    "flight": "flights",
+    "gap_evaluation": "gap_evaluations",
+    "cell_lookup": "cells_looked_up",
+    "instant": "instants",
+    "impact": "impacts",
+    "call": "calls",
+}
 
-
-@jit.entry
-def gaps_again(model, k, q, u, pose, repeats):
-    """One gap with the places of its two bodies."""
-    total = 0.0
-    a, b = model.primitives[model.contacts[k].a].body, model.primitives[model.contacts[k].b].body
-    for i in range(repeats):
-        q[0] += 1e-18 * i
-        place_body(model, a, q, u, pose)
-        place_body(model, b, q, u, pose)
-        total += normal_gap(model, k, pose)[0]
-    return total
+Costs = dict[str, float]  # kind of work -> seconds for one
+Integers = NDArray[np.int64]
 
 
-@jit.entry
-def flights_again(model, state, repeats):
-    """All coordinates at one time of a flight."""
-    total = 0.0
-    for i in range(repeats):
-        for j in range(len(model.coordinates)):
-            total += flow(model.coordinates[j], state.grip[j], state.q[j], state.u[j], 1e-6 * i)[0]
-    return total
+@dataclass(frozen=True)
+class _Parts:
+    """What a step or flight and its parts take, s."""
+
+    whole: float
+    evaluations: float  # all of them
+    search: float  # for the first contact that closes
+
+    @property
+    def beyond(self) -> float:
+        """What the step or flight takes besides."""
+        return self.whole - self.evaluations - self.search
 
 
-@jit.entry
-def evaluations_again(model, state, options, scratch, repeats):
-    """The accelerations of coupled bodies with all monitors."""
-    m, s, o, w = ModelRef(*model), StateRef(*state), OptionsRef(*options), scratch_by_reference(scratch)
-    n = len(s.q)
-    w.y[:n], w.y[n : 2 * n] = s.q, s.u
-    engage(m, s, w)
-    for _ in range(repeats):
-        motion(m, s, o, s.clock[0], w.y, w)
-    return w.dy[0]
+def kernel_costs(walk: Walk) -> Costs:
+    """Seconds for one `step`, `evaluation`, `flight`, `gap_evaluation`, `cell_lookup`, `instant`, `impact` and one
+    complementarity problem of each size (`lcp_to_1`, ...); without those that the walk does not meet.
 
-
-@jit.entry
-def lcps_again(A, b, n, work, x, repeats):
-    """One complementarity problem by Lemke's method."""
-    total = 0
-    for _ in range(repeats):
-        total += lemke_checked(A, b, n, work, x)
-    return total
-
-
-def coupled_run(scene: Scene) -> Run | None:
-    """A run stopped where contacts couple bodies; None if it never comes to that."""
-    run = Run(scene, compile_scene(scene), scene.tolerance, Recording(keep="statistics"))
-    until = np.array([0.0, scene.duration, 1.0])
-    for _ in range(MOST_SLICES):
-        until[0] = run.state.clock[0] + 1e-9
-        stop = run._advance(until, run.record)
-        if stop == Stop.CELL_UNKNOWN:
-            run._learn()
-        elif stop == Stop.BUFFER_FULL:
-            run.flush()
-        elif stop != Stop.SLICE:
-            return None
-        elif run.state.numbers[0] > 0 and run.state.numbers[2] == 0 and run.state.clock[0] > 0.0:
-            return run
-    return None
-
-
-def kernel_costs(scene: Scene) -> dict[str, float]:
-    """Seconds for one `evaluation`, `flight`, `gap_evaluation`, and one complementarity problem by size (`LCP_SIZES`).
-
-    Without `evaluation` where nothing ever couples.
+    No work is in two of them. A step or flight is what evaluations and the search for contacts leave of it; a gap what look-ups
+    leave of that search; an impact all that is done for it but the problems; an instant the settling of an event but for
+    impacts, problems and look-ups.
     """
-    run = coupled_run(scene)
-    compiled = compile_scene(scene)
-    model = compiled.model if run is None else run.compiled.model
-    state = run.state if run is not None else Run(scene, compiled, scene.tolerance, Recording()).state
-    spare = Run(scene, compiled, scene.tolerance, Recording()) if run is None else run
-    q, u, pose = state.q.copy(), state.u.copy(), spare.scratch.pose
-    costs = {"flight": _seconds(lambda: flights_again(model, state, REPEATS))}
-    costs |= {name: _lcp_seconds(size) for name, size in LCP_SIZES.items()}
-    if len(model.contacts):
-        costs["gap_evaluation"] = _seconds(lambda: gaps_again(model, 0, q, u, pose, REPEATS))
-    if run is not None:
-        costs["evaluation"] = _seconds(lambda: evaluations_again(model, state, run.options, run.scratch, REPEATS))
-    return costs
+    costs = problem_costs(walk) | _lookup_costs(walk)
+    return costs | _smooth_costs(walk, costs.get("cell_lookup", 0.0)) | _settling_costs(walk, costs)
 
 
-def _lcp_seconds(size: int) -> float:
-    """Of a problem with that many unknowns, each of which has to be pivoted in."""
-    A, b, x, work = np.eye(size) * 2.0 + 0.1, -np.linspace(0.5, 1.0, size), np.zeros(size), lcp_work(size)
-    return _seconds(lambda: lcps_again(A, b, size, work, x, REPEATS))
+def _smooth_costs(walk: Walk, lookup: float) -> Costs:
+    """Of a `step`, `evaluation`, `flight` and `gap_evaluation`."""
+    steps, flights = ([_parts(walk, moment) for moment in walk.moments[kind]] for kind in (Kind.STEP, Kind.FLIGHT))
+    costs, search, gaps = {}, 0.0, 0.0
+    if steps:
+        costs["step"] = sum(part.beyond for part in steps) / len(steps)
+        costs["evaluation"] = sum(part.evaluations for part in steps) / _count("evaluations", walk.moments[Kind.STEP])
+    if flights:
+        # Some flights look for contacts at length: a difference of large numbers, where the machine code of the loop and of the
+        # search by itself differ by some per cent.
+        costs["flight"] = float(np.median([part.beyond for part in flights]))
+    for kind, parts in ((Kind.STEP, steps), (Kind.FLIGHT, flights)):
+        weight, moments = walk.weight(kind), walk.moments[kind]
+        search += weight * (sum(part.search for part in parts) - lookup * _count("cells_looked_up", moments))
+        gaps += weight * _count("gap_evaluations", moments)
+    return costs | ({"gap_evaluation": search / gaps} if gaps else {})
 
 
-def _seconds(call: Callable[[], object]) -> float:
-    """Of one repeat, the best of five; compiled before."""
-    call()
-    best = float("inf")
-    for _ in range(5):
-        begun = time.perf_counter()
-        call()
-        best = min(best, time.perf_counter() - begun)
-    return best / REPEATS
+def _count(name: str, moments: Iterable[Moment]) -> int:
+    """How often that is done at all these moments."""
+    return sum(moment.count(name) for moment in moments)
+
+
+def _parts(walk: Walk, moment: Moment) -> _Parts:
+    """The parts of one step or flight, each by itself."""
+    walk.again(moment)
+    run = walk.run
+    state, options, scratch = run.state, run.options, run.scratch
+    # Contacts are looked for up to the end of the step, or up to where a mode ends before.
+    mode_ends = state.numbers[2] == 1 and state.numbers[4] < 0
+    end = float(state.clock[0] - scratch.step.span[0] if mode_ends else scratch.step.span[1])
+    walk.at(moment)
+    search = seconds_each(touches_again, (run.compiled.model, run.finder.cells, state, options, end, scratch), REPEATS)
+    each = 0.0
+    if moment.kind == Kind.STEP:
+        each = seconds_each(evaluations_again, (run.compiled.model, state, options, scratch), REPEATS)
+    return _Parts(walk.seconds(moment), each * moment.count("evaluations"), search)
+
+
+def _lookup_costs(walk: Walk) -> Costs:
+    """Of a `cell_lookup`."""
+    model, cells = walk.run.compiled.model, walk.run.finder.cells
+    listed = int(np.count_nonzero(model.pairs.listed))
+    places = [moment.state.q for moments in walk.moments.values() for moment in moments]
+    if not listed:
+        return {}
+    return {"cell_lookup": float(np.mean([seconds_each(lookups_again, (model, cells, q), REPEATS) for q in places])) / listed}
+
+
+def _settling_costs(walk: Walk, costs: Costs) -> Costs:
+    """Of an `impact` and of an `instant`; `costs`: what is known to be done at both."""
+    found: Costs = {}
+    impacts = [_impacts(walk, moment, costs) for moment in walk.moments[Kind.IMPACT]]
+    if number := sum(one[1] for one in impacts):
+        found["impact"] = sum(one[0] for one in impacts) / number
+    left, instants = 0.0, 0
+    for kind in (Kind.CHANGE, Kind.IMPACT):
+        beyond = [walk.seconds(moment) - _seconds(moment.done, costs | found) for moment in walk.moments[kind]]
+        left += walk.weight(kind) * sum(beyond)
+        instants += walk.met[kind]
+    return found | ({"instant": left / instants} if instants else {})
+
+
+def _impacts(walk: Walk, moment: Moment, costs: Costs) -> tuple[float, int]:
+    """(seconds of the impacts at an event without the problems solved, how many)."""
+    run = walk.run
+    loop = run.compiled.model, run.finder.cells, run.state, run.options, run.scratch, walk.room
+    walk.at(moment)
+    impacts_again(*loop, True, 1)
+    done = run.state.counts - moment.state.counts
+    done[N_LOOKUPS] = 0  # contacts are gathered before that is repeated
+    whole, nothing = (seconds_each(impacts_again, (*loop, collides), REPEATS) for collides in (True, False))
+    return whole - nothing - _seconds(done, costs), int(done[N_IMPACTS])
+
+
+def _seconds(done: Integers, costs: Costs) -> float:
+    """Of what is done, by place in `COUNT_NAMES`, at these costs."""
+    return sum(cost * float(done[COUNT_NAMES.index(COUNTED_AS.get(work, work))]) for work, cost in costs.items())

@@ -78,6 +78,8 @@ def run(args: argparse.Namespace) -> int:
         start = _earlier(args.resume, scene)
         method, step = args.method or start.method, step or start.step
         args.tol = args.tol or start.tolerance
+    if args.profile and method != EVENT_DRIVEN:
+        raise InputError(f"--profile: only the method {EVENT_DRIVEN} has a profile, not {method}.")
     check_folder(folder, replace)
     # What a scene promises, it promises as it is written.
     given = {

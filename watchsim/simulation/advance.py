@@ -26,7 +26,18 @@ from watchsim.simulation.options import FINEST_ROWS, OptionsRef
 from watchsim.simulation.passages import keep_passages
 from watchsim.simulation.rows import keep_inner_rows
 from watchsim.simulation.settle import settle
-from watchsim.simulation.state import DAMPING, DRIVE, FRICTION, N_FLIGHTS, SUMS, RecordRef, ScratchRef, StateRef, StepRef
+from watchsim.simulation.state import (
+    DAMPING,
+    DRIVE,
+    FRICTION,
+    N_FLIGHTS,
+    N_INSTANTS,
+    SUMS,
+    RecordRef,
+    ScratchRef,
+    StateRef,
+    StepRef,
+)
 from watchsim.simulation.stops import Stop
 from watchsim.simulation.touch import first_touch
 
@@ -141,6 +152,7 @@ def _settle(model, cells, state, options, scratch, record):
     if code != RUNNING:
         return code
     state.numbers[3] += 1
+    state.counts[N_INSTANTS] += 1
     keep_passages(model, state, scratch.step, 0.0, record)
     keep_row(state, record, state.clock[0], state.q, state.u, state.a)
     return RUNNING

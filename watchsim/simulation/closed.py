@@ -5,11 +5,12 @@ from __future__ import annotations
 from watchsim.contact.gaps import extent_margin, normal_gap
 from watchsim.contact.index_sets import OPEN
 from watchsim.contact.kinematics import contact_kinematics
-from watchsim.contact.lookup import UNKNOWN, candidate, candidates
+from watchsim.contact.lookup import LISTED, UNKNOWN, candidate, candidates
 from watchsim.dynamics.linear import copy
 from watchsim.jit import kernel
 from watchsim.simulation.handover import continues_active
 from watchsim.simulation.sleep import is_at_rest
+from watchsim.simulation.state import N_LOOKUPS
 
 
 @kernel
@@ -50,6 +51,8 @@ def gather(model, cells, state, options, scratch):
             scratch.unknown[0] = p
             copy(state.q, scratch.at)
             return -1
+        if how == LISTED:
+            state.counts[N_LOOKUPS] += 1
         for place in range(start, start + count):
             k = candidate(model, cells, how, place)
             if state.mode[k] != OPEN:

@@ -9,12 +9,13 @@ from __future__ import annotations
 from watchsim.contact.gaps import contact_point, extent_margin, normal_gap
 from watchsim.contact.index_sets import OPEN
 from watchsim.contact.kinematics import contact_kinematics
-from watchsim.contact.lookup import UNKNOWN, candidate, candidates
+from watchsim.contact.lookup import LISTED, UNKNOWN, candidate, candidates
 from watchsim.contact.poses import place
 from watchsim.dynamics.linear import copy
 from watchsim.jit import kernel
 from watchsim.simulation.drift import project_velocities
 from watchsim.simulation.keep import keep_event
+from watchsim.simulation.state import N_LOOKUPS
 
 HANDOVER_EVENT = 6
 LEFT = 1.5  # times the extent beyond the primitive's end: the contact has left it; touching ends at 1, the monitor at 2
@@ -98,6 +99,8 @@ def _successor(model, cells, state, options, k, scratch):
         scratch.unknown[0] = p
         copy(state.q, scratch.at)
         return -2
+    if how == LISTED:
+        state.counts[N_LOOKUPS] += 1
     best, deepest = -1, -options.extent
     for slot in range(start, start + count):
         j = candidate(model, cells, how, slot)

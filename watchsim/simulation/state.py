@@ -29,7 +29,7 @@ DRIVE, DAMPING, FRICTION, IMPACTS, CORRECTION = 0, 1, 2, 3, 4  # places in State
 N_STEPS, N_REJECTED, N_EVALUATIONS, N_FLIGHTS, N_EVENTS, N_IMPACTS, N_LCP, N_LCP_FAILED, N_ACCUMULATED, N_ENERGY, N_GAPS = (
     range(11)
 )
-N_LEMKE, N_COPOSITIVE, N_ENUMERATED, N_INEXACT, N_JAMS, N_REDUNDANT, N_LCP_SIZE = range(11, 18)
+N_LEMKE, N_COPOSITIVE, N_ENUMERATED, N_INEXACT, N_JAMS, N_REDUNDANT, N_INSTANTS, N_LOOKUPS, N_LCP_SIZE = range(11, 20)
 COUNT_NAMES = (
     "steps",
     "rejected_steps",
@@ -48,6 +48,8 @@ COUNT_NAMES = (
     "lcp_inexact",
     "jams",
     "redundant_sets",
+    "instants",  # at which events were settled
+    "cells_looked_up",  # how often candidates were looked up in the table of cells
     *(f"lcp_to_{size}" for size in LARGEST),  # with at most so many unknowns, more than the one before
     "lcp_larger",
 )

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from watchsim.contact.gaps import extent_margins, normal_gap
-from watchsim.contact.lookup import UNKNOWN, candidate, candidates, time_in_cell
+from watchsim.contact.lookup import LISTED, UNKNOWN, candidate, candidates, time_in_cell
 from watchsim.contact.poses import point_of
 from watchsim.dynamics.linear import copy
 from watchsim.jit import kernel
@@ -18,7 +18,7 @@ from watchsim.mechanism.model import FREE, LINE, PIVOT, SLIDE
 from watchsim.simulation.handover import continues_active, is_beside_active
 from watchsim.simulation.path import body_on_path
 from watchsim.simulation.sleep import is_at_rest
-from watchsim.simulation.state import N_GAPS
+from watchsim.simulation.state import N_GAPS, N_LOOKUPS
 
 STRIDE = 0.25  # of the extent: steps in which a neighbour of a contact in force is watched until its turn comes
 
@@ -230,6 +230,8 @@ def _first_of(model, cells, state, options, p, tau, until, scratch):
     how, start, count = candidates(model, cells, p, scratch.q)
     if how == UNKNOWN:
         return False, 0.0, -1
+    if how == LISTED:
+        state.counts[N_LOOKUPS] += 1
     bounds = (_body_bounds(model, pair.a, until - tau, scratch), _body_bounds(model, pair.b, until - tau, scratch))
     doubts = 0
     for place in range(start, start + count):
