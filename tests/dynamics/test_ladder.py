@@ -9,12 +9,12 @@ from random_contacts import random_case
 
 from watchsim.dynamics.coulomb import add_element, fill_matrix, fill_rhs
 from watchsim.dynamics.delassus import ContactWork, contact_work
-from watchsim.dynamics.ladder import COPOSITIVE, FAILED, LEMKE, _solve_copositive, enumerate_modes, solve_contacts
+from watchsim.dynamics.ladder import COPOSITIVE, FAILED, LEMKE, _detour, _solve_copositive, enumerate_modes, solve_contacts
 from watchsim.jit import callable_kernel
 
-_add, _fill, _load, _solve, _copositive, _enumerate = (
+_add, _fill, _load, _solve, _copositive, _other_paths, _enumerate = (
     callable_kernel(kernel)
-    for kernel in (add_element, fill_matrix, fill_rhs, solve_contacts, _solve_copositive, enumerate_modes)
+    for kernel in (add_element, fill_matrix, fill_rhs, solve_contacts, _solve_copositive, _detour, enumerate_modes)
 )
 
 
@@ -75,6 +75,18 @@ def test_the_copositive_form_alone_solves_impacts(m: int) -> None:
             solved += 1
             assert residual(A, b, work.x[:size]) < 1e-9
     assert solved >= 285
+
+
+@pytest.mark.parametrize("m", [1, 2, 3])
+def test_other_paths_alone_solve_impacts(m: int) -> None:
+    rng = np.random.default_rng(85 + m)
+    solved = 0
+    for _ in range(300):
+        work, size, A, b = compression(rng, m, 3, 1.5)
+        if _other_paths(work, size):
+            solved += 1
+            assert residual(A, b, work.x[:size]) < 1e-9
+    assert solved >= 270
 
 
 @pytest.mark.parametrize("m", [1, 2, 3])

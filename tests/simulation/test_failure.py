@@ -15,8 +15,8 @@ from watchsim.dynamics.lcp import RAY
 
 def unsolvable(work, m, elements):
     work.note[4] = RAY
-    work.rungs[4] += 1
-    return RAY, 4
+    work.rungs[5] += 1
+    return RAY, 5
 
 impact.solve_contacts = acceleration.solve_contacts = unsolvable
 from watchsim.cli import main

@@ -21,6 +21,7 @@ AVERAGED = (
 )
 HELPED = (
     ("lcp_copositive", "by the second way (copositive form)"),
+    ("lcp_detours", "from another start"),
     ("lcp_enumerated", "by trying all cases"),
     ("lcp_inexact", "to a billionth of the largest load"),
 )

@@ -56,7 +56,7 @@ class ContactWork(NamedTuple):
 
 ContactWorkRef = by_reference(ContactWork, __name__)
 
-RUNGS = 5
+RUNGS = 6
 LARGEST = (1, 2, 4, 8, 16)  # unknowns of the problems counted together; one more place for larger ones
 
 

@@ -1,7 +1,7 @@
 """How is a contact problem solved, and what if the first method fails?
 
 Rung after rung: Lemke's method on the form of coulomb.py; on the copositive form, which always has a solution for
-impacts (Stewart & Trinkle 1996; Anitescu & Potra 1997); enumeration of the modes of small sets. What solves
+impacts (Stewart & Trinkle 1996; Anitescu & Potra 1997); Lemke's method on other paths; enumeration of the modes of small sets. What solves
 the problem is checked against the first form. Where many contacts are redundant their loads are rounding errors that may
 contradict each other: then Lemke's end is taken if it misses by no more than a billionth of the largest load. If nothing helps,
 the caller stops and keeps the problem.
@@ -10,12 +10,13 @@ the caller stops and keeps the problem.
 from __future__ import annotations
 
 from watchsim.dynamics.delassus import size_class
-from watchsim.dynamics.lcp import OK, lemke, lemke_checked
+from watchsim.dynamics.lcp import OK, lemke, lemke_checked, lemke_on_path
 from watchsim.dynamics.lcp_basis import ROUGH, ROUNDING, is_solution, solve_active, solves
 from watchsim.dynamics.lcp_scaling import scale, unscale
 from watchsim.jit import kernel
 
-LEMKE, COPOSITIVE, ENUMERATED, INEXACT, FAILED = 0, 1, 2, 3, 4  # rungs: places in ContactWork.rungs
+LEMKE, COPOSITIVE, DETOUR, ENUMERATED, INEXACT, FAILED = 0, 1, 2, 3, 4, 5  # rungs: places in ContactWork.rungs
+PATHS = 8  # other ones that Lemke tries
 MODES = 50000  # sets of modes tried at most: some tenths of a second
 
 
@@ -30,6 +31,8 @@ def solve_contacts(work, m, elements):
         rung = FAILED
         if elements > 0 and _solve_copositive(work, m, elements):
             rung = COPOSITIVE
+        elif _detour(work, n):
+            rung = DETOUR
         elif enumerate_modes(work, m, elements):
             rung = ENUMERATED
         elif lemke(work.A, work.rhs, n, work.lcp, work.x) == OK and solves(n, ROUGH, work.lcp):
@@ -37,6 +40,15 @@ def solve_contacts(work, m, elements):
     work.rungs[rung] += 1
     work.sizes[size_class(n)] += 1
     return (OK if rung != FAILED else status), rung
+
+
+@kernel
+def _detour(work, n):
+    """True if Lemke's method reaches a solution from another start, then in `work.x`: ties and rounding fall otherwise."""
+    for path in range(1, PATHS + 1):
+        if lemke_on_path(work.A, work.rhs, n, path, work.lcp, work.x) == OK:
+            return True
+    return False
 
 
 @kernel

@@ -8,6 +8,7 @@ the data. It knows no mechanics.
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +20,7 @@ from watchsim.jit import by_reference, entry, kernel
 
 OK, RAY, MAX_ITER, INEXACT = 0, 1, 2, 3
 
+UNEVEN, PERIOD = 5, 7  # for unlike entries of d on other paths
 ENUMERATED_SIZE = 12  # 2^12 small eliminations: some milliseconds
 TIE = 1e-10  # ratios closer than this are equal; 1e-12 sends 1 in 1000 singular problems down a ray
 
@@ -77,7 +79,13 @@ def solve_lcp(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> int:
 @kernel
 def lemke_checked(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> int:
     """Lemke's method; OK only if what it ended with solves the problem to rounding, else INEXACT, RAY or MAX_ITER."""
-    status: int = lemke(A, b, n, work, out_x)
+    return lemke_on_path(A, b, n, 0, work, out_x)
+
+
+@kernel
+def lemke_on_path(A: Array, b: Array, n: int, path: int, work: LcpWork, out_x: Array) -> int:
+    """The same on another path: the numbers of the paths have no meaning, but 0 is the usual one."""
+    status: int = _follow(A, b, n, path, work, out_x)
     if status == OK and not (_is_trivial(b, n) or is_solution(n, work)):
         return INEXACT
     return status
@@ -86,12 +94,17 @@ def lemke_checked(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> in
 @entry
 def lemke(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> int:
     """Lemke's method on the leading n×n problem; out_x[:n] is set when the status is OK (unchecked), else zero."""
+    return _follow(A, b, n, 0, work, out_x)
+
+
+@kernel
+def _follow(A: Array, b: Array, n: int, path: int, work: LcpWork, out_x: Array) -> int:
     for i in range(n):
         out_x[i], work.is_active[i] = 0.0, 0
     if _is_trivial(b, n):
         return OK
     magnitude = scale(A, b, n, work)
-    status = _pivot_to_end(n, work)
+    status = _pivot_to_end(n, path, work)
     if status == OK:
         _solve_basis(n, work)
         unscale(n, magnitude, work, out_x)
@@ -124,10 +137,10 @@ def _is_trivial(b: Array, n: int) -> bool:
 
 
 @kernel
-def _pivot_to_end(n: int, work: LcpWork) -> int:
-    """Lemke's path on y - A x - e z0 = b, from z0 large enough to the basis that z0 leaves."""
+def _pivot_to_end(n: int, path: int, work: LcpWork) -> int:
+    """Lemke's path on y - A x - d z0 = b, from z0 large enough to the basis that z0 leaves."""
     z0 = 2 * n
-    row = _start(n, work)
+    row = _start(n, path, work)
     entering = z0
     for _ in range(50 + 20 * n):
         leaving = work.basis[row]
@@ -142,19 +155,23 @@ def _pivot_to_end(n: int, work: LcpWork) -> int:
 
 
 @kernel
-def _start(n: int, work: LcpWork) -> int:
-    """Set up the tableau; returns the row z0 enters in: the most negative load, the last of equals (lexicographic)."""
-    row = 0
+def _start(n: int, path: int, work: LcpWork) -> int:
+    """Set up the tableau; returns the row z0 enters in: the most negative load over d, the last of equals (lexicographic).
+
+    Any d > 0 will do (Cottle, Pang, Stone, 4.4); path 0 takes ones.
+    """
+    row, lowest = 0, math.inf
     for i in range(n):
         work.basis[i] = i
         for j in range(n):
             work.tableau[i, j] = 0.0
             work.tableau[i, n + j] = -work.matrix[i, j]
         work.tableau[i, i] = 1.0
-        work.tableau[i, 2 * n] = -1.0
+        cover = 1.0 + path * ((UNEVEN * i + path) % PERIOD) / PERIOD
+        work.tableau[i, 2 * n] = -cover
         work.tableau[i, 2 * n + 1] = work.load[i]
-        if work.load[i] <= work.load[row]:
-            row = i
+        if work.load[i] / cover <= lowest:
+            row, lowest = i, work.load[i] / cover
     return row
 
 

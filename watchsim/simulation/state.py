@@ -29,7 +29,18 @@ DRIVE, DAMPING, FRICTION, IMPACTS, CORRECTION = 0, 1, 2, 3, 4  # places in State
 N_STEPS, N_REJECTED, N_EVALUATIONS, N_FLIGHTS, N_EVENTS, N_IMPACTS, N_LCP, N_LCP_FAILED, N_ACCUMULATED, N_ENERGY, N_GAPS = (
     range(11)
 )
-N_LEMKE, N_COPOSITIVE, N_ENUMERATED, N_INEXACT, N_JAMS, N_REDUNDANT, N_INSTANTS, N_LOOKUPS, N_LCP_SIZE = range(11, 20)
+(
+    N_LEMKE,
+    N_COPOSITIVE,
+    N_DETOUR,
+    N_ENUMERATED,
+    N_INEXACT,
+    N_JAMS,
+    N_REDUNDANT,
+    N_INSTANTS,
+    N_LOOKUPS,
+    N_LCP_SIZE,
+) = range(11, 21)
 COUNT_NAMES = (
     "steps",
     "rejected_steps",
@@ -44,6 +55,7 @@ COUNT_NAMES = (
     "gap_evaluations",
     "lcp_lemke",
     "lcp_copositive",
+    "lcp_detours",
     "lcp_enumerated",
     "lcp_inexact",
     "jams",
