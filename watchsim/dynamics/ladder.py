@@ -1,10 +1,10 @@
 """How is a contact problem solved, and what if the first method fails?
 
 Rung after rung: Lemke's method on the form of coulomb.py; on the copositive form, which always has a solution for
-impacts (Stewart & Trinkle 1996; Anitescu & Potra 1997); Lemke's method on other paths; enumeration of the modes of small sets. What solves
-the problem is checked against the first form. Where many contacts are redundant their loads are rounding errors that may
-contradict each other: then Lemke's end is taken if it misses by no more than a billionth of the largest load. If nothing helps,
-the caller stops and keeps the problem.
+impacts (Stewart & Trinkle 1996; Anitescu & Potra 1997); Lemke's method on other paths; enumeration of the modes of
+small sets. What solves the problem is checked against the first form. Where many contacts are redundant their loads are
+rounding errors that may contradict each other: then Lemke's end is taken if it misses by no more than a billionth of the
+largest load. If nothing helps, the caller stops and keeps the problem.
 """
 
 from __future__ import annotations
