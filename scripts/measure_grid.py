@@ -23,7 +23,10 @@ STEPS = 20
 DURATION = 1.0  # s: eight beats
 LEDGER = 1e-6  # largest residual over the energy put in
 GAIN = 1e-10  # largest gain of an impact over the energy stored in the balance
-COUNTS = ("impacts", "lcp_lemke", "lcp_copositive", "lcp_enumerated", "lcp_failures", "energy_rescues", "jams", "accumulations")
+COUNTS = (
+    *("impacts", "lcp_lemke", "lcp_copositive", "lcp_detours", "lcp_enumerated", "lcp_inexact", "lcp_failures"),
+    *("energy_rescues", "jams", "accumulations"),
+)
 
 
 def largest_gain(run: ws.Trajectory) -> float:
