@@ -36,7 +36,10 @@ PIECE = 60.0  # s
 TOLD = (1, 2, 3, 5, 10, 15, 30, 45, 60)  # minutes that have a line in the table
 TIGHTER = 0.01  # of the tolerance, for comparison
 STEADY = 1e-6  # °, what the amplitude should be steady to
-COUNTED = ("impacts", "lcp", "lcp_failures", "lcp_copositive", "lcp_enumerated", "energy_rescues", "accumulations", "jams")
+COUNTED = (
+    *("impacts", "lcp", "lcp_failures", "lcp_copositive", "lcp_detours", "lcp_enumerated", "lcp_inexact"),
+    *("energy_rescues", "accumulations", "jams"),
+)
 Floats = NDArray[np.float64]
 
 
