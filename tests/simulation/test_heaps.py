@@ -73,3 +73,12 @@ def test_a_heap_comes_to_the_end(place: str, count: int) -> None:
         assert run.stop == Stop.DURATION, number
         assert run.worst_penetration < 1e-9
         assert run.energy["residual_relative"] < 1e-6
+
+
+def test_a_long_flight_does_not_make_short_looks() -> None:
+    """A disc that leaves a corner with no force, and might fly for long: bounds of the whole flight took sixty million looks."""
+    rng = np.random.default_rng(2)
+    scene = [heap(rng, "floor", 3) for _ in range(10)][-1]
+    run = simulate(scene, 0.4)
+    assert run.stop == Stop.DURATION
+    assert run.counts["gap_evaluations"] < 5_000_000

@@ -144,6 +144,23 @@ def _time_to_zero(gap, rate, outside, bounds, options):
 
 
 @kernel
+def _next_stretch(model, options, k, left, scratch):
+    """(length, closing, bend, swing): how long the bounds shall hold, of `left` seconds, and the `_gap_bounds` for so long.
+
+    What is thrown far has bounds far beyond its motion: a stretch is no longer than the bodies travel by the scene's size.
+    """
+    contact = model.contacts[k]
+    a, b = model.primitives[contact.a].body, model.primitives[contact.b].body
+    length = left
+    speed = _body_bounds(model, a, left, scratch)[0] + _body_bounds(model, b, left, scratch)[0]
+    if speed * left > options.size:
+        length = options.size / speed
+    bounds = (_body_bounds(model, a, length, scratch), _body_bounds(model, b, length, scratch))
+    closing, bend, swing = _gap_bounds(model, k, length, bounds[0], bounds[1], scratch)
+    return length, closing, bend, swing
+
+
+@kernel
 def crossing(model, state, options, k, start, end, scratch):
     """First time in [start, end) at which open contact k closes inside its primitives; infinity if it does not.
 
@@ -151,19 +168,20 @@ def crossing(model, state, options, k, start, end, scratch):
     """
     contact = model.contacts[k]
     body_a, body_b = model.primitives[contact.a].body, model.primitives[contact.b].body
-    bounds_a = _body_bounds(model, body_a, end - start, scratch)
-    bounds_b = _body_bounds(model, body_b, end - start, scratch)
-    closing, bend, swing = _gap_bounds(model, k, end - start, bounds_a, bounds_b, scratch)
-    if closing == 0.0:
+    length, closing, bend, swing = _next_stretch(model, options, k, end - start, scratch)
+    if closing == 0.0 and length == end - start:
         return math.inf
     zero = options.gap_zero
-    tau = start
+    tau, stretch = start, start + length
     # `outside`: on the free side; `clear`: has been further than rounding from it since.
     fresh, outside, clear, beside = True, True, False, 0.0
     while tau < end:
         if tau > start:
             body_on_path(model, state, body_a, tau, scratch)
             body_on_path(model, state, body_b, tau, scratch)
+        if tau >= stretch:
+            length, closing, bend, swing = _next_stretch(model, options, k, end - tau, scratch)
+            stretch = tau + length
         gap, rate, _, _ = normal_gap(model, k, scratch.pose)
         distance = _centre_distance(model, k, scratch.pose)
         state.counts[N_GAPS] += 1
@@ -195,6 +213,8 @@ def crossing(model, state, options, k, start, end, scratch):
             fresh = beside > safe
             # Never less than the rounding of time itself.
             tau += beside if fresh else max(safe, 4e-16 * tau)
+        if stretch < end:
+            tau = min(tau, stretch)
     return math.inf
 
 
