@@ -76,7 +76,7 @@ def test_a_heap_comes_to_the_end(place: str, count: int) -> None:
 
 
 def test_a_long_flight_does_not_make_short_looks() -> None:
-    """A disc that leaves a corner with no force, and might fly for long: bounds of the whole flight took sixty million looks."""
+    """A disc that leaves a corner with no force, and might fly for long: with bounds of the whole flight it took 63 million."""
     rng = np.random.default_rng(2)
     scene = [heap(rng, "floor", 3) for _ in range(10)][-1]
     run = simulate(scene, 0.4)
