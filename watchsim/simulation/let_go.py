@@ -13,6 +13,7 @@ from watchsim.simulation.closed import refresh
 from watchsim.simulation.coupled import grip_left, press_left
 from watchsim.simulation.keep import keep_change
 
+NOISE = 1e-14  # share of the island's largest force: a smaller one has its sign from rounding
 SHARE = 0.5  # of the slack with which a mode ends: one that has come to its end is not begun anew
 
 
@@ -20,9 +21,11 @@ SHARE = 0.5  # of the slack with which a mode ends: one that has come to its end
 def _weakest(model, state, m, options, scratch):
     """(row of the contact that is furthest from holding, -1 if all hold; does it pull?)."""
     rest, work, zero = scratch.rest, scratch.work, SHARE * options.force_zero
-    worst, row, pulls = 0.0, -1, False
+    worst, row, pulls, largest = 0.0, -1, False, 0.0
     for i in range(m):
-        left = press_left(work, i, zero)
+        largest = max(largest, work.force[2 * i])
+    for i in range(m):
+        left = press_left(work, i, zero) - NOISE * largest
         if left <= worst:
             worst, row, pulls = left, i, True
         friction = model.laws[model.contacts[rest.ids[i]].group].friction
