@@ -65,37 +65,25 @@ def test_a_solution_is_found_exactly_when_there_is_one_many_times() -> None:
     check_against_the_oracle(100_000, 72)
 
 
+ALONE = {  # one rung: problems given to it, how many of them it solves at least
+    "copositive form": (lambda work, m, size: _copositive(work, m, m), 300, 285),
+    "other paths": (lambda work, m, size: _other_paths(work, size), 300, 270),
+    "enumeration": (lambda work, m, size: _enumerate(work, m, m), 60, 60),
+}
+
+
 @pytest.mark.parametrize("m", [1, 2, 3])
-def test_the_copositive_form_alone_solves_impacts(m: int) -> None:
+@pytest.mark.parametrize("rung", ALONE)
+def test_each_lower_rung_alone_solves_impacts(rung: str, m: int) -> None:
+    solve, given, least = ALONE[rung]
     rng = np.random.default_rng(80 + m)
     solved = 0
-    for _ in range(300):
+    for _ in range(given):
         work, size, A, b = compression(rng, m, 3, 1.5)
-        if _copositive(work, m, m):
+        if solve(work, m, size):
             solved += 1
             assert residual(A, b, work.x[:size]) < 1e-9
-    assert solved >= 285
-
-
-@pytest.mark.parametrize("m", [1, 2, 3])
-def test_other_paths_alone_solve_impacts(m: int) -> None:
-    rng = np.random.default_rng(85 + m)
-    solved = 0
-    for _ in range(300):
-        work, size, A, b = compression(rng, m, 3, 1.5)
-        if _other_paths(work, size):
-            solved += 1
-            assert residual(A, b, work.x[:size]) < 1e-9
-    assert solved >= 270
-
-
-@pytest.mark.parametrize("m", [1, 2, 3])
-def test_enumeration_alone_solves_impacts(m: int) -> None:
-    rng = np.random.default_rng(90 + m)
-    for _ in range(60):
-        work, size, A, b = compression(rng, m, 3, 1.5)
-        assert _enumerate(work, m, m)
-        assert residual(A, b, work.x[:size]) < 1e-9
+    assert solved >= least
 
 
 def test_a_jammed_rotor_needs_the_second_rung() -> None:

@@ -152,11 +152,12 @@ def _next_stretch(model, options, k, left, scratch):
     contact = model.contacts[k]
     a, b = model.primitives[contact.a].body, model.primitives[contact.b].body
     length = left
-    speed = _body_bounds(model, a, left, scratch)[0] + _body_bounds(model, b, left, scratch)[0]
+    bounds_a, bounds_b = _body_bounds(model, a, left, scratch), _body_bounds(model, b, left, scratch)
+    speed = bounds_a[0] + bounds_b[0]
     if speed * left > options.size:
         length = options.size / speed
-    bounds = (_body_bounds(model, a, length, scratch), _body_bounds(model, b, length, scratch))
-    closing, bend, swing = _gap_bounds(model, k, length, bounds[0], bounds[1], scratch)
+        bounds_a, bounds_b = _body_bounds(model, a, length, scratch), _body_bounds(model, b, length, scratch)
+    closing, bend, swing = _gap_bounds(model, k, length, bounds_a, bounds_b, scratch)
     return length, closing, bend, swing
 
 
