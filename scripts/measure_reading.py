@@ -202,6 +202,7 @@ def table(results: dict[str, np.ndarray], megabytes: dict[str, float], empty: fl
 def curves_text(repeats: int) -> str:
     """What curves take that are neither straight nor round, from drawings of different size."""
     from watchsim.drawing.read import read
+    from watchsim.geometry.fit import MANY
 
     rows = []
     with tempfile.TemporaryDirectory() as folder:
@@ -214,7 +215,9 @@ def curves_text(repeats: int) -> str:
     return (
         f"{CURVED}\n\nSplines and Béziers that are neither straight nor round are followed by the fewest arcs within 0.1 µm "
         f"that are found,\nall curves of a drawing at once, copies (blocks, turned teeth, mirrored halves) once for all. "
-        f"Cubics of any shape some\nmillimetres long, and closed outlines of {SPANS} spans:\n\n"
+        f"Where more than {MANY} spans\nwait the search stops a little sooner, with some four per cent more arcs. "
+        f"Cubics of any shape some"
+        f"\nmillimetres long, and closed outlines of {SPANS} spans:\n\n"
         f"| Curves | file | arcs | seconds |\n|---|---|---|---|\n" + "\n".join(rows) + "\n"
     )
 
