@@ -22,6 +22,7 @@ KINEMATICS = np.dtype(
         ("gT_dot", "f8"),
         ("bar_N", "f8"),
         ("bar_T", "f8"),
+        ("bar_size", "f8"),  # magnitudes of the vectors that both are made of, m/s²: the scale of their rounding
         ("margin", "f8"),  # how far inside its primitives the contact lies, m
         ("x", "f8"),  # contact point in the world
         ("y", "f8"),
@@ -129,6 +130,9 @@ def contact_kinematics(model, k, pose, row, out_closed):
     square_a, square_b = pa.w * pa.w, pb.w * pb.w
     kin.bar_N = (turning + pb.w) * v_t - spin * travel - square_a * (nx * xa + ny * ya) + square_b * (nx * xb + ny * yb)
     kin.bar_T = -(turning + pb.w) * v_n - square_a * (tx * xa + ty * ya) + square_b * (tx * xb + ty * yb)
+    reach_a, reach_b = abs(xa) + abs(ya), abs(xb) + abs(yb)
+    speed = abs(v_t) + abs(v_n)
+    kin.bar_size = (abs(turning) + abs(pb.w)) * speed + abs(spin * travel) + square_a * reach_a + square_b * reach_b
     inside_a, inside_b = margins_of(contact, a, b, pa, pb, shape)
     kin.margin = min(inside_a, inside_b)
     kin.x, kin.y = pa.x + xa, pa.y + ya

@@ -10,7 +10,7 @@ from watchsim.contact.index_sets import BACKWARD, FORWARD, OPEN, STICK
 from watchsim.dynamics.coulomb import add_element, fill_matrix, fill_rhs, read_forces
 from watchsim.dynamics.delassus import apply, fill_bearings, fill_delassus
 from watchsim.dynamics.ladder import solve_contacts
-from watchsim.dynamics.linear import solve_small, unit_scale
+from watchsim.dynamics.linear import RANK, solve_small, unit_scale
 from watchsim.dynamics.redundant import smallest_forces
 from watchsim.jit import kernel
 
@@ -21,19 +21,23 @@ LEVEL_ACCELERATION = 1
 
 
 @kernel
-def gap_accelerations(closed, m, work, out_b, out_size):
-    """b = Wᵀ M⁻¹ h + w̄ for the first m contacts, and the sum of its terms' magnitudes."""
+def gap_accelerations(model, closed, m, work, out_b, out_size):
+    """b = Wᵀ M⁻¹ h + w̄ for the first m contacts, and the sum of its terms' magnitudes.
+
+    A term that happens to vanish, as a pendulum's weight does when it hangs straight, still has the rounding of its vectors.
+    """
     for i in range(m):
         kin = closed.kin[i]
         normal, tangential = kin.bar_N, kin.bar_T
-        size_N, size_T = abs(kin.bar_N), abs(kin.bar_T)
+        size_N, size_T = kin.bar_size, kin.bar_size
         for k in range(closed.slots[i]):
             j = closed.coord[i, k]
             free = work.h[j] * work.inverse[j]
             normal += closed.w_N[i, k] * free
             tangential += closed.w_T[i, k] * free
-            size_N += abs(closed.w_N[i, k] * free)
-            size_T += abs(closed.w_T[i, k] * free)
+            terms = abs(free) + model.coordinates[j].load * work.inverse[j]
+            size_N += abs(closed.w_N[i, k]) * terms
+            size_T += abs(closed.w_T[i, k]) * terms
         out_b[2 * i], out_b[2 * i + 1] = normal, tangential
         out_size[2 * i], out_size[2 * i + 1] = size_N, size_T
 
@@ -53,7 +57,7 @@ def solve_mode(model, closed, m, mode, work):
     Fills `work.force`, `work.b`, `work.size`, `work.G`; True if the forces are unique.
     """
     fill_delassus(closed, m, work)
-    gap_accelerations(closed, m, work, work.b, work.size)
+    gap_accelerations(model, closed, m, work, work.b, work.size)
     n = m
     for i in range(m):
         state = mode[closed.ids[i]]
@@ -70,7 +74,7 @@ def solve_mode(model, closed, m, mode, work):
         _equation(work, m, 2 * i, i)
         if work.tangent[i] >= 0:
             _equation(work, m, 2 * i + 1, work.tangent[i])
-    rank = solve_small(work.A, work.rhs, n, work.scale, work.order, work.x)
+    rank = solve_small(work.A, work.rhs, n, work.scale, work.order, work.x, RANK)
     if rank < n:
         smallest_forces(m, n, rank, work)
     for i in range(m):
@@ -102,7 +106,7 @@ def decide_modes(model, closed, m, bearings, speed_zero, work, out_grip, out_mod
         work.inverse[i] = 1.0 / model.coordinates[i].mass
     fill_delassus(closed, m, work)
     fill_bearings(closed, m, bearings, work)
-    gap_accelerations(closed, m, work, work.b, work.size)
+    gap_accelerations(model, closed, m, work, work.b, work.size)
     elements = _elements(model, closed, m, bearings, speed_zero, work)
     fill_matrix(work, m, elements)
     _load(work, m, elements, bearings)

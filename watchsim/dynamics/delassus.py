@@ -48,6 +48,7 @@ class ContactWork(NamedTuple):
     other_x: Array
     scale: Array
     order: Integers
+    row: Integers  # (side,) of G, by row of a correction (simulation/drift.py)
     h: Array  # (n,)
     rungs: Integers  # problems solved since last asked, by Rung; the last one counts those without a solution
     sizes: Integers  # the same problems by their number of unknowns, see `LARGEST`
@@ -87,6 +88,7 @@ def contact_work(room: int, coordinates: int) -> ContactWork:
         other_x=np.zeros(side),
         scale=np.zeros(side),
         order=np.zeros(side, np.int64),
+        row=np.zeros(side, np.int64),
         lcp=lcp_work(side),
         h=np.zeros(coordinates),
         rungs=np.zeros(RUNGS, np.int64),

@@ -7,6 +7,7 @@ compression, the scene's tangential law in the expansion (Pfeiffer & Glocker 199
 
 from __future__ import annotations
 
+from watchsim.dynamics.acceleration import gap_accelerations
 from watchsim.dynamics.coulomb import add_element, element_row, fill_matrix, fill_rhs, read_forces
 from watchsim.dynamics.delassus import apply, contact_velocities, fill_delassus
 from watchsim.dynamics.expansion import interval
@@ -25,8 +26,6 @@ def _law(model, closed, i):
 @kernel
 def _begin(model, closed, m, work):
     """Coulomb friction within ± mu Lambda_N for every contact that has any; returns the number of elements."""
-    for j in range(len(model.coordinates)):
-        work.inverse[j] = 1.0 / model.coordinates[j].mass
     elements = 0
     for i in range(m):
         work.drag[i] = _law(model, closed, i).friction
@@ -40,6 +39,8 @@ def _begin(model, closed, m, work):
 @kernel
 def _compress(model, closed, m, u, jam, work):
     """Impulses of the compression into `work.force`; rates before it are in `work.b`. Returns (LCP status, elements)."""
+    for j in range(len(model.coordinates)):
+        work.inverse[j] = 1.0 / model.coordinates[j].mass
     elements = _begin(model, closed, m, work)
     fill_delassus(closed, m, work)
     contact_velocities(closed, m, u, work.b)
@@ -135,6 +136,27 @@ def impact(model, closed, m, restitution, jam, work, out_u):
             work.force[row] += work.more[row]
     apply(closed, m, work.force, work.inverse, out_u)
     return 0
+
+
+@kernel
+def plastic_impact(model, closed, m, time, u, work):
+    """Impulses of the compression over a time in which the forces `work.h` act on `work.inverse`, into `work.force`.
+
+    The compression of the rates that free motion over `time` would lead to (a step of Moreau's scheme at fixed positions).
+    Returns the LCP status.
+    """
+    elements = _begin(model, closed, m, work)
+    fill_delassus(closed, m, work)
+    contact_velocities(closed, m, u, work.b)
+    gap_accelerations(model, closed, m, work, work.more, work.size)
+    for row in range(2 * m):
+        work.b[row] += time * work.more[row]
+    fill_matrix(work, m, elements)
+    fill_rhs(work, m, elements, work.b)
+    work.note[0], work.note[1], work.note[2], work.note[3] = m, elements, 0, LEVEL_COMPRESSION
+    status, _ = solve_contacts(work, m, elements)
+    read_forces(work, m, elements, work.force)
+    return status
 
 
 @kernel

@@ -32,11 +32,12 @@ def _largest(A, k, n):
 
 
 @kernel
-def solve_small(A, b, n, scale, order, out_x):
+def solve_small(A, b, n, scale, order, out_x, smallest):
     """Solve A x = b (leading n × n block, both overwritten) by complete pivoting; returns the rank.
 
-    `scale` (n,) makes the diagonal of scale_i A_ij scale_j one where it can. Beyond the rank the unknowns are 0: one
-    solution of a consistent singular system. `order` gets the unknown of each column of the triangle left in A.
+    `scale` (n,) makes the diagonal of scale_i A_ij scale_j one where it can; pivots below `smallest` of the first one count
+    as zero. Beyond the rank the unknowns are 0: one solution of a consistent singular system. `order` gets the unknown of
+    each column of the triangle left in A.
     """
     for i in range(n):
         order[i] = i
@@ -48,7 +49,7 @@ def solve_small(A, b, n, scale, order, out_x):
         row, column, best = _largest(A, k, n)
         if k == 0:
             first = best
-        if best <= RANK * first:
+        if best <= smallest * first:
             rank = k
             break
         if row != k:

@@ -96,6 +96,7 @@ def forced_coordinates(scene: Scene, hung: tuple[Ride, ...], slices: dict[str, s
     joints = targets.joints
     if joints.coulomb.any():
         raise ValueError("dry friction between a carried body and a carrier that turns is not simulated")
+    rows.load = np.abs(rows.force) + np.hypot(rows.weight_x, rows.weight_y)
     tabled = {int(table.coordinate) for table in tables}
     jointed = {*joints.coordinate.tolist(), *joints.on.tolist()}
     for i, row in enumerate(rows):

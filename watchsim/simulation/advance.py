@@ -16,7 +16,7 @@ from watchsim.dynamics.lcp import LcpWorkRef
 from watchsim.jit import entry, inlined, kernel
 from watchsim.mechanism.model import CellsRef, ModelRef
 from watchsim.simulation.coupled import motion
-from watchsim.simulation.drift import project_positions, project_velocities
+from watchsim.simulation.drift import IN_STEPS, project_positions, project_velocities
 from watchsim.simulation.flight import FLIGHT_PHASE, add_flight_sums, begin_flight, can_fly, flight_length, keep_flight_rows
 from watchsim.simulation.integrator import coupled_step, dense_value
 from watchsim.simulation.islands import place_contacts
@@ -71,7 +71,7 @@ def _accept_coupled(model, state, options, end, scratch):
         m = place_contacts(model, state.active, first, state.upto[first], scratch.pose, scratch.closed)
         deepest = project_positions(scratch.closed, m, True, scratch.work, state.q)
         state.worst[0] = max(state.worst[0], deepest)
-        project_velocities(scratch.closed, m, state.mode, scratch.work, state.u)
+        project_velocities(scratch.closed, m, state.mode, IN_STEPS, scratch.work, state.u)
         first += m
     for i in range(n):
         state.a[i] = scratch.dy[n + i]

@@ -1,16 +1,23 @@
-"""When do impacts that alternate between contacts come to their end?
+"""When do impacts that alternate between contacts come to their end, and what is left then?
 
 A block that rocks from corner to corner, or a disc between two flanks, makes infinitely many impacts in a finite time, also
 without restitution: no single contact rebounds, so the rule for rebounds (collide.py) does not see it. A contact that the
 others' impulses lift by less than `gap_close`, the distance at which contacts count as closed, is not lifted at all.
+
+What is left is found from the contacts' plastic impact over the time until all of them are back, forces acting: it tells
+which of them carry something then, and which leave after all. Nothing is stopped that these impulses cannot stop.
 """
 
 from __future__ import annotations
 
-from watchsim.contact.index_sets import OPEN, STICK
-from watchsim.contact.poses import place
+from watchsim.contact.index_sets import BACKWARD, FORWARD, STICK
+from watchsim.contact.kinematics import contact_kinematics
+from watchsim.dynamics.acceleration import solve_mode
+from watchsim.dynamics.delassus import apply
+from watchsim.dynamics.impact import plastic_impact
 from watchsim.jit import kernel
-from watchsim.simulation.drift import project_velocities
+
+WITHIN = 1e-9  # share of the friction cone by which a sticking contact's impulse stays inside it
 
 
 @kernel
@@ -25,7 +32,7 @@ def may_be_chatter(m, options, scratch):
         if hit and scratch.restitution[i] == 1.0:
             return False
         # Where only contacts leave that rebound, their own rule knows when that would end.
-        if rate > options.speed_zero and not (hit and scratch.restitution[i] > 0.0):
+        if rate > scratch.zero[i] and not (hit and scratch.restitution[i] > 0.0):
             found = True
     return found
 
@@ -40,30 +47,54 @@ def return_time(closed, i, a):
 
 
 @kernel
-def is_chatter(state, m, options, closed):
-    """True if no contact that leaves comes further than `gap_close` before it is back; accelerations are in `state.a`."""
+def chatter_time(state, m, options, scratch):
+    """Time until all contacts that leave are back, -1 if one of them comes further than `gap_close`; s.
+
+    The accelerations are in `state.a`.
+    """
+    latest = -1.0
     for i in range(m):
-        rate = closed.kin[i].gN_dot
-        if rate <= options.speed_zero:
+        rate = scratch.closed.kin[i].gN_dot
+        if rate <= scratch.zero[i]:
             continue
-        back = return_time(closed, i, state.a)
+        back = return_time(scratch.closed, i, state.a)
         # It rises on a parabola, to a quarter of the way it would go at its first speed.
         if back < 0.0 or 0.25 * rate * back > options.gap_close:
-            return False
-    return True
+            return -1.0
+        latest = max(latest, back)
+    return latest
 
 
 @kernel
-def stand_still(model, state, closed, m, options, scratch):
-    """Zero the gap rates of m contacts, and the slip of those that hold, by the smallest change of velocities.
+def end_chatter(model, state, m, time, scratch):
+    """Velocities at the end of a chatter that lasts `time`; returns the LCP status, velocities unchanged unless solved.
 
-    It only takes energy. A block that stopped turning but went on sliding would be tipped over by its friction, and rock anew.
+    P are the impulses of the plastic impact with the rates that free motion over `time` would lead to, lambda the
+    forces of the contacts that P finds in force. What lambda does will be integrated when that time passes; the rest
+    is done now: u += M⁻¹ W (P - lambda time). `scratch.work` holds h and the inverse masses of the last decision.
     """
+    closed, rest, work = scratch.closed, scratch.rest, scratch.work
+    status = plastic_impact(model, closed, m, time, state.u, work)
+    if status != 0:
+        return status
+    r = 0
     for i in range(m):
+        N, T = work.force[2 * i], work.force[2 * i + 1]
+        if N <= 0.0:
+            continue
         k = closed.ids[i]
-        holds = model.laws[model.contacts[k].group].friction > 0.0 and abs(closed.kin[i].gT_dot) <= options.speed_zero
-        scratch.trial[k] = STICK if holds else OPEN
-    for j in range(len(model.coordinates)):
-        scratch.work.inverse[j] = 1.0 / model.coordinates[j].mass
-    project_velocities(closed, m, scratch.trial, scratch.work, state.u)
-    place(model, state.q, state.u, scratch.pose)
+        bound = model.laws[model.contacts[k].group].friction * N
+        if abs(T) < (1.0 - WITHIN) * bound:
+            scratch.trial[k] = STICK
+        elif bound > 0.0:
+            scratch.trial[k] = BACKWARD if T > 0.0 else FORWARD
+        else:
+            scratch.trial[k] = BACKWARD if closed.kin[i].gT_dot < 0.0 else FORWARD
+        contact_kinematics(model, k, scratch.pose, r, rest)
+        scratch.impulse[2 * r], scratch.impulse[2 * r + 1] = N, T
+        r += 1
+    solve_mode(model, rest, r, scratch.trial, work)
+    for row in range(2 * r):
+        scratch.impulse[row] -= work.force[row] * time
+    apply(rest, r, scratch.impulse, work.inverse, state.u)
+    return 0

@@ -75,11 +75,14 @@ def refresh(model, m, closed, pose):
 
 
 @kernel
-def resting(model, m, closed, pose, speed_zero, out_rest):
-    """I_N: the contacts of `closed` that neither approach nor separate, with kinematics, into `out_rest`; returns how many."""
+def resting(model, m, closed, pose, zero, out_rest):
+    """I_N: the contacts of `closed` that neither approach nor separate, with kinematics, into `out_rest`; returns how many.
+
+    `zero[i]` is the magnitude up to which the gap rate of row i counts as zero.
+    """
     r = 0
     for i in range(m):
-        if abs(closed.kin[i].gN_dot) <= speed_zero:
+        if abs(closed.kin[i].gN_dot) <= zero[i]:
             contact_kinematics(model, closed.ids[i], pose, r, out_rest)
             r += 1
     return r

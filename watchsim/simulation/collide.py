@@ -15,10 +15,11 @@ from watchsim.dynamics.delassus import contact_velocities
 from watchsim.dynamics.impact import energy_change, impact
 from watchsim.dynamics.linear import copy
 from watchsim.jit import kernel
-from watchsim.simulation.chatter import is_chatter, may_be_chatter, return_time, stand_still
+from watchsim.simulation.chatter import chatter_time, end_chatter, may_be_chatter, return_time
 from watchsim.simulation.closed import refresh
 from watchsim.simulation.decide import count_problems, decide
 from watchsim.simulation.keep import keep_event
+from watchsim.simulation.rate_zero import note_pace
 from watchsim.simulation.state import IMPACTS, N_ACCUMULATED, N_ENERGY, N_IMPACTS, N_JAMS, N_LCP_FAILED
 
 GAIN = 1e-12  # a rise of kinetic energy beyond this share is a gain, not rounding
@@ -28,10 +29,10 @@ IMPACT_EVENT, ACCUMULATION_EVENT, JAM_EVENT = 1, 7, 10
 
 
 @kernel
-def approaching(m, closed, speed_zero):
-    """True if a closed contact is about to penetrate."""
+def approaching(m, closed, zero):
+    """True if a closed contact is about to penetrate; `zero`: the gap rates that count as none."""
     for i in range(m):
-        if closed.kin[i].gN_dot < -speed_zero:
+        if closed.kin[i].gN_dot < -zero[i]:
             return True
     return False
 
@@ -86,7 +87,7 @@ def _solve(model, state, m, jam, scratch):
 def _rebounds(i, options, scratch):
     """True if contact i leaves the impact on its own restitution, and slowly."""
     rate, share = scratch.closed.kin[i].gN_dot, scratch.restitution[i]
-    return share > 0.0 and scratch.impulse[2 * i] > 0.0 and options.speed_zero < rate <= options.accumulation_speed
+    return share > 0.0 and scratch.impulse[2 * i] > 0.0 and scratch.zero[i] < rate <= options.accumulation_speed
 
 
 @kernel
@@ -145,22 +146,28 @@ def collide(model, state, island, m, options, jam, scratch, record):
             break
         ends = max(ends, end)
     _write(model, state, m, jam, scratch, record, ends)
-    slow = jam == 0.0 and may_be_chatter(m, options, scratch) and _accelerations(model, state, island, m, options, scratch)
-    if slow and is_chatter(state, m, options, scratch.closed):
-        _still(model, state, m, options, scratch, record)
+    note_pace(state.u, scratch.pace)
+    if jam == 0.0 and may_be_chatter(m, options, scratch) and _accelerations(model, state, island, m, options, scratch):
+        time = chatter_time(state, m, options, scratch)
+        if time > 0.0:
+            _end_chatter(model, state, m, time, scratch, record)
     return 0
 
 
 @kernel
-def _still(model, state, m, options, scratch, record):
-    """End the chatter of the m closed contacts; its energy goes to the impacts."""
+def _end_chatter(model, state, m, time, scratch, record):
+    """End the chatter of the m closed contacts within `time`; its energy goes to the impacts."""
     before = kinetic_energy(model, state.u)
+    status = end_chatter(model, state, m, time, scratch)
+    count_problems(state, scratch.work)
+    if status != 0:
+        return  # the impacts go on one by one
     for i in range(m):
-        if scratch.closed.kin[i].gN_dot > options.speed_zero:
+        if scratch.closed.kin[i].gN_dot > scratch.zero[i]:
             back = state.clock[0] + return_time(scratch.closed, i, state.a)
             keep_event(state, record, ACCUMULATION_EVENT, scratch.closed.ids[i], -1, back)
             state.counts[N_ACCUMULATED] += 1
-    stand_still(model, state, scratch.closed, m, options, scratch)
+    place(model, state.q, state.u, scratch.pose)
     refresh(model, m, scratch.closed, scratch.pose)
     state.sums[IMPACTS] += before - kinetic_energy(model, state.u)
 

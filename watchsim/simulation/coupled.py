@@ -17,6 +17,8 @@ from watchsim.jit import kernel
 from watchsim.simulation.islands import place_contacts
 from watchsim.simulation.state import MONITORS, N_EVALUATIONS
 
+SLIP_SLACK = 2.0  # times `speed_zero`: slips against their direction by less do not end a mode
+
 NORMAL, TANGENTIAL, EXTENT, PARADOX = range(MONITORS)
 
 
@@ -57,9 +59,8 @@ def _tangential_monitor(model, state, scratch, options, i):
         return 1.0
     if state.mode[k] == STICK:
         return grip_left(friction, work, i, options.force_zero)
-    # Half of what `decide_modes` calls no slip: a contact that fires here may stick there, and one that turns back
-    # starts a whole `speed_zero` away from firing again.
-    return state.mode[k] * closed.kin[i].gT_dot + 0.5 * options.speed_zero
+    # A slip that counted as none may run against the mode decided: it ends only beyond what counts as none.
+    return state.mode[k] * closed.kin[i].gT_dot + SLIP_SLACK * options.speed_zero
 
 
 @kernel

@@ -30,7 +30,7 @@ def decide(model, state, island, m, options, scratch, out_grip):
     The forces of the contacts are left in `scratch.work`. Returns (number of contacts in I_N, now in `scratch.rest`; status).
     """
     work = scratch.work
-    r = resting(model, m, scratch.closed, scratch.pose, options.speed_zero, scratch.rest)
+    r = resting(model, m, scratch.closed, scratch.pose, scratch.zero, scratch.rest)
     forces(model, state.clock[0], state.q, state.u, work.h)
     set_grips(model, state.u, scratch.label, island, options, out_grip)
     add_drag(model, out_grip, work.h)

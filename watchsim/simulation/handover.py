@@ -13,7 +13,7 @@ from watchsim.contact.lookup import LISTED, UNKNOWN, candidate, candidates
 from watchsim.contact.poses import place
 from watchsim.dynamics.linear import copy
 from watchsim.jit import kernel
-from watchsim.simulation.drift import project_velocities
+from watchsim.simulation.drift import IN_STEPS, project_velocities
 from watchsim.simulation.keep import keep_event
 from watchsim.simulation.state import N_LOOKUPS
 
@@ -142,5 +142,5 @@ def _follow(model, state, scratch):
     m = state.numbers[0]
     for i in range(m):
         contact_kinematics(model, state.active[i], scratch.pose, i, scratch.closed)
-    project_velocities(scratch.closed, m, state.mode, scratch.work, state.u)
+    project_velocities(scratch.closed, m, state.mode, IN_STEPS, scratch.work, state.u)
     place(model, state.q, state.u, scratch.pose)

@@ -6,7 +6,7 @@ import math
 
 from watchsim.contact.index_sets import STICK
 from watchsim.jit import kernel
-from watchsim.simulation.coupled import TANGENTIAL, motion
+from watchsim.simulation.coupled import SLIP_SLACK, TANGENTIAL, motion
 from watchsim.simulation.free import turning_time
 from watchsim.simulation.integrator import dense_value
 from watchsim.simulation.state import MONITORS
@@ -24,7 +24,7 @@ def _slack(model, state, options, code):
             return 0.0
         return 0.5 * options.speed_zero / options.size * model.coordinates[j].scale
     slides = code % MONITORS == TANGENTIAL and state.mode[state.active[code // MONITORS]] != STICK
-    return 0.5 * options.speed_zero if slides else 0.0
+    return SLIP_SLACK * options.speed_zero if slides else 0.0
 
 
 @kernel

@@ -7,7 +7,7 @@ equations singular: what they leave open stays as it was.
 
 from __future__ import annotations
 
-from watchsim.dynamics.linear import copy, solve_small
+from watchsim.dynamics.linear import RANK, copy, solve_small
 from watchsim.jit import kernel
 from watchsim.simulation.moreau_laws import bounds, improvement, size
 
@@ -53,7 +53,7 @@ def finish(laws, m, rows, settled):
         if short <= settled * size(laws, rows, laws.trial):
             copy(laws.trial, laws.P)
             return True
-        solve_small(laws.J, laws.right, rows, laws.scale, laws.order, laws.step)
+        solve_small(laws.J, laws.right, rows, laws.scale, laws.order, laws.step, RANK)
         for row in range(rows):
             laws.trial[row] += laws.step[row]
     return False

@@ -8,7 +8,7 @@ are then exact to rounding.
 from __future__ import annotations
 
 from watchsim.contact.gaps import extent_margin
-from watchsim.contact.index_sets import OPEN, STICK
+from watchsim.contact.index_sets import FORWARD, OPEN, STICK
 from watchsim.contact.poses import place
 from watchsim.dynamics.acceleration import accelerate
 from watchsim.dynamics.delassus import apply, fill_inverse
@@ -16,15 +16,15 @@ from watchsim.dynamics.dry import add_drag, stop_held
 from watchsim.dynamics.forces import forces
 from watchsim.dynamics.linear import copy
 from watchsim.jit import kernel
-from watchsim.simulation.chatter import stand_still
 from watchsim.simulation.closed import gather, refresh
 from watchsim.simulation.collide import approaching, collide
 from watchsim.simulation.decide import decide
-from watchsim.simulation.drift import project_positions, project_velocities
+from watchsim.simulation.drift import AT_EVENTS, find_correction, project_positions, project_velocities, rate_left
 from watchsim.simulation.handover import LEFT, hand_over
 from watchsim.simulation.islands import island_of, label_islands, place_contacts, sort_by_island
 from watchsim.simulation.keep import OPEN_EVENT, keep_change, keep_event
 from watchsim.simulation.let_go import let_go
+from watchsim.simulation.rate_zero import note_pace, rounding_of, set_rate_zeros
 from watchsim.simulation.sleep import add_terms, begin_terms, find_sleepers
 from watchsim.simulation.state import N_LCP_FAILED, N_REDUNDANT
 from watchsim.simulation.stops import Stop
@@ -37,6 +37,7 @@ ROUNDS = 16  # impacts in a row at one instant
 @kernel
 def settle(model, cells, state, options, scratch, record):
     """Handle the event that waits at the current state; returns a Stop code, RUNNING when all went well."""
+    scratch.pace[:] = 0.0
     place(model, state.q, state.u, scratch.pose)
     if not hand_over(model, cells, state, options, scratch, record):
         return CELL_UNKNOWN
@@ -68,6 +69,7 @@ def _settle_island(model, state, island, span, options, scratch, record):
     closed, work = scratch.closed, scratch.work
     fill_inverse(model, state.grip, work.inverse)
     m = place_contacts(model, scratch.listed, span[0], span[1], scratch.pose, closed)
+    note_pace(state.u, scratch.pace)
     deepest = project_positions(closed, m, False, work, state.q)
     if deepest > 0.0:
         state.worst[0] = max(state.worst[0], deepest)
@@ -126,7 +128,7 @@ def _correct(state, m, scratch):
     for i in range(m):
         k = rest.ids[i]
         scratch.trial[k] = STICK if state.mode[k] * rest.kin[i].gT_dot < 0.0 else state.mode[k]
-    project_velocities(rest, m, scratch.trial, work, state.u)
+    project_velocities(rest, m, scratch.trial, AT_EVENTS, work, state.u)
 
 
 @kernel
@@ -152,25 +154,60 @@ def _resolve(model, state, island, m, options, scratch, record):
     Where no finite forces exist although nothing approaches, sliding contacts are jammed (Painlevé): their impulses are
     found, and the modes asked for again.
     """
-    jam = 0.0
+    jam, exactly = 0.0, False
     for _ in range(ROUNDS):
-        if jam > 0.0 or approaching(m, scratch.closed, options.speed_zero):
+        set_rate_zeros(scratch.closed, m, exactly, options, scratch.pace, scratch.zero)
+        if jam > 0.0 or approaching(m, scratch.closed, scratch.zero):
             if collide(model, state, island, m, options, jam, scratch, record) != 0:
                 return LCP_FAILED, 0
             jam = 0.0
             continue
         r, status = decide(model, state, island, m, options, scratch, state.grip)
         if status == 0:
+            if not exactly and _contradicts(r, options, scratch):
+                exactly = True
+                continue
             stop_held(scratch.label, island, state.grip, state.u)
             return RUNNING, r
         if not _slides(r, options.speed_zero, scratch.rest):
             state.counts[N_LCP_FAILED] += 1
             return LCP_FAILED, 0
-        # Their gaps must not open, however slowly, or there is nothing to stop.
-        stand_still(model, state, scratch.rest, r, options, scratch)
+        _hold_gaps(model, state, r, options, scratch)
         refresh(model, m, scratch.closed, scratch.pose)
         jam = options.speed_zero
     return TOO_MANY_EVENTS, 0
+
+
+@kernel
+def _contradicts(r, options, scratch):
+    """True if the contacts decided to be in force, of the r in `scratch.rest`, cannot all have a gap rate of zero.
+
+    Their rates then only seemed to be zero.
+    """
+    rest, work = scratch.rest, scratch.work
+    find_correction(rest, r, scratch.trial, AT_EVENTS, work)
+    for i in range(r):
+        if scratch.trial[rest.ids[i]] != OPEN:
+            if abs(rate_left(rest, r, i, work)) > 100.0 * rounding_of(rest, i, options, scratch.pace):
+                return True
+    return False
+
+
+@kernel
+def _hold_gaps(model, state, r, options, scratch):
+    """Zero the gap rates of the r contacts in `scratch.rest`, and the slip of those that hold.
+
+    The gaps of jammed contacts must not open, however slowly, or there is nothing to stop.
+    """
+    rest, work = scratch.rest, scratch.work
+    for i in range(r):
+        k = rest.ids[i]
+        holds = model.laws[model.contacts[k].group].friction > 0.0 and abs(rest.kin[i].gT_dot) <= options.speed_zero
+        scratch.trial[k] = STICK if holds else FORWARD
+    for j in range(len(model.coordinates)):
+        work.inverse[j] = 1.0 / model.coordinates[j].mass
+    project_velocities(rest, r, scratch.trial, AT_EVENTS, work, state.u)
+    place(model, state.q, state.u, scratch.pose)
 
 
 @kernel

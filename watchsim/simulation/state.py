@@ -119,6 +119,8 @@ class Scratch(NamedTuple):
     rest: Closed
     work: ContactWork
     pose: Any
+    pace: Array  # largest magnitude of each velocity at the instant being settled
+    zero: Array  # by row of `closed`: the gap rate that counts as zero, see rate_zero.py
     restitution: Array
     impulse: Array  # of the last impact, N and T by row
     rates: Array  # contact rates after it
@@ -209,6 +211,8 @@ def new_scratch(model: Model) -> Scratch:
         closed=closed_contacts(room),
         rest=closed_contacts(room),
         work=contact_work(room, n),
+        pace=np.zeros(n),
+        zero=np.zeros(room),
         restitution=np.zeros(room),
         impulse=np.zeros(2 * room),
         rates=np.zeros(2 * room),

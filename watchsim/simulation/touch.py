@@ -20,6 +20,7 @@ from watchsim.simulation.path import body_on_path
 from watchsim.simulation.sleep import is_at_rest
 from watchsim.simulation.state import N_GAPS, N_LOOKUPS
 
+SLOWEST = 1e-300  # m/s: a bound of a speed that is zero, to be divided by
 STRIDE = 0.25  # of the extent: steps in which a neighbour of a contact in force is watched until its turn comes
 
 
@@ -69,9 +70,15 @@ def _gap_bounds(model, k, length, bounds_a, bounds_b, scratch):
     dx, dy = pa.x + rx - pb.x, pa.y + ry - pb.y
     arm_b = math.sqrt(dx * dx + dy * dy) + speed * length
     closing = speed + turn_b * arm_b
-    bend = push_a + twist_a * arm_a + turn_a * turn_a * arm_a
-    bend += push_b + twist_b * arm_b + turn_b * turn_b * arm_b + 2.0 * turn_b * closing
-    return closing, bend, turn_a + turn_b
+    bend_a = push_a + twist_a * arm_a + turn_a * turn_a * arm_a
+    if b.kind != LINE:
+        # An arc's gap depends on where its centre is, not on how it is turned: one about its own pivot does not move.
+        arm_p = math.sqrt(b.x * b.x + b.y * b.y)
+        centres = speed + turn_b * arm_p
+        if centres < closing:
+            return max(centres, SLOWEST), bend_a + push_b + twist_b * arm_p + turn_b * turn_b * arm_p, turn_a + turn_b
+    bend_b = push_b + twist_b * arm_b + turn_b * turn_b * arm_b + 2.0 * turn_b * closing
+    return closing, bend_a + bend_b, turn_a + turn_b
 
 
 @kernel
