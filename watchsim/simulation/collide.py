@@ -158,10 +158,14 @@ def collide(model, state, island, m, options, jam, scratch, record):
 def _end_chatter(model, state, m, time, scratch, record):
     """End the chatter of the m closed contacts within `time`; its energy goes to the impacts."""
     before = kinetic_energy(model, state.u)
+    copy(state.u, scratch.before)
     status = end_chatter(model, state, m, time, scratch)
     count_problems(state, scratch.work)
-    if status != 0:
-        return  # the impacts go on one by one
+    contact_velocities(scratch.closed, m, state.u, scratch.rates)
+    for i in range(m):
+        if status != 0 or scratch.rates[2 * i] < -scratch.zero[i]:
+            copy(scratch.before, state.u)
+            return  # the impacts go on one by one
     for i in range(m):
         if scratch.closed.kin[i].gN_dot > scratch.zero[i]:
             back = state.clock[0] + return_time(scratch.closed, i, state.a)
