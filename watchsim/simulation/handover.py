@@ -6,6 +6,8 @@ and the same normal. Then the contact goes on with its mode: no impact, no relea
 
 from __future__ import annotations
 
+import math
+
 from watchsim.contact.gaps import contact_point, extent_margin, normal_gap
 from watchsim.contact.index_sets import OPEN
 from watchsim.contact.kinematics import contact_kinematics
@@ -28,24 +30,33 @@ SHARP = 1e-2  # rad: no joint that turns by more is smooth
 @kernel
 def same_contact(model, k, other, options, pose):
     """True if contacts k and `other` touch the same two bodies at one point with one normal."""
+    way, turn = room_to_differ(model, k, other, options, pose)
+    return way >= 0.0 and turn >= 0.0
+
+
+@kernel
+def room_to_differ(model, k, other, options, pose):
+    """How much further apart the points of two contacts may come (m), their normals turn (rad), before they are no longer one.
+
+    Negative where they are two already.
+    """
     one, two = model.contacts[k], model.contacts[other]
     a, b = model.primitives[one.a].body, model.primitives[one.b].body
     c, d = model.primitives[two.a].body, model.primitives[two.b].body
     if not ((a == c and b == d) or (a == d and b == c)):
-        return False
+        return -1.0, -1.0
     # The circle may be on either body: normals point out of the other one.
     sign = 1.0 if a == c else -1.0
     _, _, nx, ny = normal_gap(model, k, pose)
     _, _, mx, my = normal_gap(model, other, pose)
     # One of them may be beyond its joint by some extents, and its normal turned by the curvature of that way.
     turn = min(TURN + 4.0 * options.extent * max(abs(one.curvature), abs(two.curvature)), SHARP)
-    if (nx - sign * mx) ** 2 + (ny - sign * my) ** 2 > turn * turn:
-        return False
+    turned = math.sqrt((nx - sign * mx) ** 2 + (ny - sign * my) ** 2)
     x, y = contact_point(model, k, pose)
     X, Y = contact_point(model, other, pose)
     radius = max(model.primitives[one.a].radius, model.primitives[two.a].radius)
     near = min(NEAR * options.extent + turn * radius, FAR * options.extent)
-    return (x - X) ** 2 + (y - Y) ** 2 <= near * near
+    return near - math.sqrt((x - X) ** 2 + (y - Y) ** 2), turn - turned
 
 
 @kernel
@@ -76,10 +87,18 @@ def is_beside_active(model, state, k):
 @kernel
 def continues_active(model, state, options, k, pose):
     """True if open contact k is a contact in force, seen from a neighbouring primitive."""
+    way, _ = room_beside_active(model, state, options, k, pose)
+    return way >= 0.0
+
+
+@kernel
+def room_beside_active(model, state, options, k, pose):
+    """`room_to_differ` from the contact in force that open contact k continues; negative where it continues none."""
     for j in range(state.numbers[0] + state.numbers[1]):
-        if same_contact(model, k, state.active[j], options, pose):
-            return True
-    return False
+        way, turn = room_to_differ(model, k, state.active[j], options, pose)
+        if way >= 0.0 and turn >= 0.0:
+            return way, turn
+    return -1.0, -1.0
 
 
 @kernel

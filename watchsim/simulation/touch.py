@@ -15,7 +15,7 @@ from watchsim.contact.poses import point_of
 from watchsim.dynamics.linear import copy
 from watchsim.jit import kernel
 from watchsim.mechanism.model import FREE, LINE, PIVOT, SLIDE
-from watchsim.simulation.handover import continues_active, is_beside_active
+from watchsim.simulation.handover import is_beside_active, room_beside_active
 from watchsim.simulation.path import body_on_path
 from watchsim.simulation.sleep import is_at_rest
 from watchsim.simulation.state import N_GAPS, N_LOOKUPS
@@ -209,10 +209,14 @@ def crossing(model, state, options, k, start, end, scratch):
             fresh = True
         elif _is_due(gap, rate, outside, clear, options):
             # Where a smooth outline goes on, its next piece has no gap either, and closes only when its turn comes.
-            if not continues_active(model, state, options, k, scratch.pose):
+            way, turn = room_beside_active(model, state, options, k, scratch.pose)
+            if way < 0.0:
                 soon = outside and clear and gap > 0.0 and rate * (end - tau) < -gap
                 return min(end, tau + gap / -rate) if soon else tau
-            tau += STRIDE * options.extent / closing
+            # It is the same contact at least until points or normals could have come apart.
+            turning = swing + closing / (0.5 * distance)
+            same = 0.5 * min(way / closing, turn / turning if turning > 0.0 else math.inf)
+            tau += max(same, STRIDE * options.extent / closing)
             fresh = True
         else:
             clear = clear and leaving if outside else clear
