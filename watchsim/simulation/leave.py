@@ -6,13 +6,13 @@ import math
 
 from watchsim.contact.index_sets import STICK
 from watchsim.jit import kernel
+from watchsim.simulation.bracket import LOOK_EVERY, MOST, RESOLUTION, is_slow, next_time
 from watchsim.simulation.coupled import SLIP_SLACK, TANGENTIAL, motion
 from watchsim.simulation.free import turning_time
 from watchsim.simulation.integrator import dense_value
 from watchsim.simulation.state import MONITORS
 
 SAMPLES = 8
-HALVINGS = 60
 
 
 @kernel
@@ -38,7 +38,7 @@ def _evaluate(model, state, options, tau, scratch):
 
 @kernel
 def _root(model, state, options, which, low, high, scratch):
-    """Time at which one monitor, positive at low, passes zero; `high` where it is still positive then. Illinois' method."""
+    """Time at which one monitor, positive at low, passes zero; `high` where it is still positive then."""
     _evaluate(model, state, options, low, scratch)
     f_low = scratch.monitors[which]
     _evaluate(model, state, options, high, scratch)
@@ -53,14 +53,13 @@ def _root(model, state, options, which, low, high, scratch):
     f_low -= slack
     f_high -= slack
     side = 0
-    for _ in range(HALVINGS):
-        if high - low <= 1e-15 * (scratch.step.span[0] + high):
+    before = 2.0 * (high - low)
+    for number in range(MOST):
+        middle = next_time(low, f_low, high, f_high, is_slow(number, high - low, before))
+        if number % LOOK_EVERY == 0:
+            before = high - low
+        if high - low <= RESOLUTION * (scratch.step.span[0] + high) or not low < middle < high:
             break
-        middle = (low * f_high - high * f_low) / (f_high - f_low)
-        if not low < middle < high:
-            middle = 0.5 * (low + high)
-            if not low < middle < high:
-                break
         _evaluate(model, state, options, middle, scratch)
         f = scratch.monitors[which] - slack
         if f <= 0.0:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from watchsim.contact.lookup import along
 from watchsim.jit import kernel
+from watchsim.simulation.bracket import LOOK_EVERY, MOST, is_slow, next_time
 from watchsim.simulation.keep import keep_event
 from watchsim.simulation.within import coordinate_within
 
 TURN_EVENT, CROSS_EVENT = 8, 9
-HALVINGS = 100
 
 
 @kernel
@@ -30,14 +30,17 @@ def _value(model, state, step, spring, turn, tau):
 
 @kernel
 def _root(model, state, step, spring, turn, end):
-    """Time in [0, end] at which the velocity (turn) or the distance from rest changes sign: Illinois' method."""
+    """Time in [0, end] at which the velocity (turn) or the distance from rest changes sign."""
     low, high = 0.0, end
     f_low, f_high = _value(model, state, step, spring, turn, low), _value(model, state, step, spring, turn, high)
     if f_low == 0.0 or f_low * f_high > 0.0:
         return low
     side = 0
-    for _ in range(HALVINGS):
-        middle = (low * f_high - high * f_low) / (f_high - f_low)
+    before = 2.0 * (high - low)
+    for number in range(MOST):
+        middle = next_time(low, f_low, high, f_high, is_slow(number, high - low, before))
+        if number % LOOK_EVERY == 0:
+            before = high - low
         if not low < middle < high or high - low <= 1e-16 * (step.span[0] + high):
             break
         f = _value(model, state, step, spring, turn, middle)

@@ -70,15 +70,24 @@ def _gap_bounds(model, k, length, bounds_a, bounds_b, scratch):
     dx, dy = pa.x + rx - pb.x, pa.y + ry - pb.y
     arm_b = math.sqrt(dx * dx + dy * dy) + speed * length
     closing = speed + turn_b * arm_b
-    bend_a = push_a + twist_a * arm_a + turn_a * turn_a * arm_a
+    bend = push_a + twist_a * arm_a + turn_a * turn_a * arm_a + push_b
+    vx, vy = pa.vx - pa.w * ry - pb.vx, pa.vy + pa.w * rx - pb.vy
     if b.kind != LINE:
         # An arc's gap depends on where its centre is, not on how it is turned: one about its own pivot does not move.
-        arm_p = math.sqrt(b.x * b.x + b.y * b.y)
-        centres = speed + turn_b * arm_p
-        if centres < closing:
-            return max(centres, SLOWEST), bend_a + push_b + twist_b * arm_p + turn_b * turn_b * arm_p, turn_a + turn_b
-    bend_b = push_b + twist_b * arm_b + turn_b * turn_b * arm_b + 2.0 * turn_b * closing
-    return closing, bend_a + bend_b, turn_a + turn_b
+        px, py = point_of(pb, b.x, b.y)
+        arm_p = math.sqrt(px * px + py * py)
+        if arm_p < arm_b:
+            bend += (twist_b + turn_b * turn_b) * arm_p
+            return _closing((vx + pb.w * py, vy - pb.w * px), bend, length, speed + turn_b * arm_p), bend, turn_a + turn_b
+    bend += (twist_b + turn_b * turn_b) * arm_b + 2.0 * turn_b * closing
+    return _closing((vx + pb.w * dy, vy - pb.w * dx), bend, length, closing), bend, turn_a + turn_b
+
+
+@kernel
+def _closing(velocity, bend, length, most):
+    """Bound of a relative speed over `length` seconds from what it is now: bodies that travel together do not approach."""
+    vx, vy = velocity
+    return max(min(most, math.sqrt(vx * vx + vy * vy) + bend * length), SLOWEST)
 
 
 @kernel
