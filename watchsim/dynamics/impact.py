@@ -15,6 +15,7 @@ from watchsim.dynamics.ladder import LEMKE, keep_basis, solve_contacts
 from watchsim.jit import kernel
 
 LEVEL_COMPRESSION, LEVEL_EXPANSION = 2, 3
+PARALLEL = 1e-12  # sine² of the angle between parallel directions
 NUDGE = 1e-6  # approach, as a share of the slip, by which the force of a jammed contact is made to act
 
 
@@ -47,6 +48,7 @@ def _compress(model, closed, m, u, jam, work):
     fill_matrix(work, m, elements)
     fill_rhs(work, m, elements, work.b)
     nudged = _nudge(m, jam, work)
+    nudged = _keep_sliding(m, work) or nudged
     work.note[0], work.note[1], work.note[2], work.note[3] = m, elements, 0, LEVEL_COMPRESSION
     status, rung = solve_contacts(work, m, elements)
     if status == 0 and nudged and rung == LEMKE:
@@ -71,6 +73,29 @@ def _nudge(m, jam, work):
             work.rhs[i] -= NUDGE * slip * work.unit[i]
             found = True
     return found
+
+
+@kernel
+def _keep_sliding(m, work):
+    """Let contacts whose slip is a multiple of their gap rate end the compression still sliding a little; True if there are any.
+
+    Where w_T is parallel to w_N (one rotor or slider against the frame, sliders on parallel axes) slip and approach stop
+    together, and Coulomb's law leaves the share of friction open. The contact slid all the time: friction is at its bound.
+    """
+    found = False
+    for i in range(m):
+        e = work.tangent[i]
+        if e >= 0 and is_parallel(work, i):
+            work.rhs[m + e] += NUDGE * work.b[2 * i + 1] * work.unit[i]
+            found = True
+    return found
+
+
+@kernel
+def is_parallel(work, i):
+    """True if the directions of contact i's normal and friction force are parallel to rounding."""
+    N, T, both = work.G[2 * i, 2 * i], work.G[2 * i + 1, 2 * i + 1], work.G[2 * i, 2 * i + 1]
+    return both * both > (1.0 - PARALLEL) * N * T > 0.0
 
 
 @kernel

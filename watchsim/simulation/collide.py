@@ -116,7 +116,9 @@ def _end_rebounds(model, state, island, m, options, scratch):
             continue
         ending = back / (1.0 - share) if share < 1.0 else math.inf
         # A rebound that rises by no more than rounding is none, whatever its restitution: it would go on by rounding alone.
-        hidden = 0.25 * scratch.closed.kin[i].gN_dot * back <= HIDDEN * options.gap_zero
+        # One that loses nothing would go on for ever: it is none where it stays within what counts as closed.
+        lowest = HIDDEN * options.gap_zero if share < 1.0 else options.gap_close
+        hidden = 0.25 * scratch.closed.kin[i].gN_dot * back <= lowest
         if ending < options.accumulation_time or hidden:
             scratch.restitution[i] = 0.0
             latest = max(latest, state.clock[0] + (ending if share < 1.0 else back))

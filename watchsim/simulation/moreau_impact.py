@@ -18,6 +18,7 @@ from watchsim.simulation.state import IMPACTS, N_ENERGY, N_IMPACTS, N_LCP, N_LCP
 
 IMPACT_EVENT = 1
 GAIN = 1e-12  # share of the kinetic energy up to which a gain is rounding
+PARALLEL = 1e-12  # sine² of the angle between parallel directions
 NO_SIGN = 1e-10  # a tangential percussion below this share of the friction cone has no sign
 
 
@@ -75,9 +76,21 @@ def _compress(model, state, m, work):
     friction_cones(model, m, work)
     for row in range(2 * m):
         laws.b[row], laws.P[row] = work.rates[row], 0.0
+    _keep_sliding(model, m, work)
     solve_percussions(state, m, 0, work)
     for row in range(2 * m):
         work.more[row] = laws.P[row]
+
+
+@kernel
+def _keep_sliding(model, m, work):
+    """Where slip and approach stop together, because their directions are parallel, friction is what it was while they lasted."""
+    laws = work.laws
+    for i in range(m):
+        N, T, slip = 2 * i, 2 * i + 1, work.rates[2 * i + 1]
+        if slip != 0.0 and laws.G[N, T] ** 2 > (1.0 - PARALLEL) * laws.G[N, N] * laws.G[T, T]:
+            one_way = -_law(model, work, i).friction if slip > 0.0 else _law(model, work, i).friction
+            laws.ends[i, 1], laws.ends[i, 3] = one_way, one_way
 
 
 @kernel
