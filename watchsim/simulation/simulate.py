@@ -40,7 +40,8 @@ def simulate(
               `end_state` (the result holds what follows). The same bits come out as from one run, whatever was cut where.
 
     KeyboardInterrupt ends the run and keeps what was simulated. A solver that cannot go on does not raise: see
-    `Trajectory.stop`. ValueError for a bad argument, and for a `start` of another scene or other settings.
+    `Trajectory.stop`. ValueError for a bad argument, and for a `start` of another scene or other settings; SceneError where
+    bodies overlap at the start by more than the rounding of drawings.
     """
     begun = time.perf_counter()
     duration = scene.duration if duration is None else _seconds("duration", duration)
@@ -55,7 +56,9 @@ def simulate(
         run: Run = MoreauRun(scene, compiled, tolerance, recording, USUAL_STEP if step is None else float(step))
     else:
         run = Run(scene, compiled, tolerance, recording)
-    if start is not None:
+    if start is None:
+        run.begin()
+    else:
         _take_up(run, start, duration)
     ready = time.perf_counter()
     run.warm_up()
