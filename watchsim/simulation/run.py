@@ -31,6 +31,7 @@ from watchsim.simulation.options import Options, options_for
 from watchsim.simulation.overlap_watch import OverlapWatch
 from watchsim.simulation.saved import SavedState, save_state
 from watchsim.simulation.start import clear_start
+from watchsim.simulation.start import warm_up as warm_up_start
 from watchsim.simulation.state import (
     COUNT_NAMES,
     DAMPING,
@@ -131,6 +132,7 @@ class Run:
         """Load or compile the kernels: a call that returns at once because it has no room to record."""
         nowhere = new_record(self.compiled.model, 0, 0, self.record.windows)
         self._advance(np.zeros(3), nowhere)
+        warm_up_start(self.scene, self.compiled.model)
 
     def _advance(self, until: NDArray[np.float64], record: Any) -> Stop:
         code = advance(self.compiled.model, self.finder.cells, self.state, self.options, until, self.scratch, record)

@@ -56,13 +56,13 @@ def simulate(
         run: Run = MoreauRun(scene, compiled, tolerance, recording, USUAL_STEP if step is None else float(step))
     else:
         run = Run(scene, compiled, tolerance, recording)
-    if start is None:
-        run.begin()
-    else:
+    if start is not None:
         _take_up(run, start, duration)
     ready = time.perf_counter()
     run.warm_up()
     warm = time.perf_counter()
+    if start is None:
+        run.begin()
     stop = run.to_the_end(duration, progress)
     wall = time.perf_counter() - warm + ready - begun
     made = run.trajectory(stop, wall, compile_time=warm - ready)

@@ -1,0 +1,120 @@
+"""Was there ever material inside material in a run?
+
+Recorded rows are looked at now and then, chosen by their number alone, so that a run comes to the same whatever it was cut into
+and never depends on being watched. The outlines of all declared contacts are compared as polygons (overlap_pairs.py), which
+shares nothing with the gap functions: a contact that the loop has lost is found by this.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.mechanism.compile import Compiled
+from watchsim.mechanism.recording import WHOLE_RUN, Window
+from watchsim.mechanism.scene import Scene
+from watchsim.simulation.frames import frames
+from watchsim.simulation.methods import MOREAU
+from watchsim.simulation.overlap_pairs import PairOfLayers, declared_pairs
+
+Array = NDArray[np.float64]
+
+RESOLUTION = 5e-5  # of the scene's size: overlaps that count. More than twice `Options.behind` at any tolerance
+CHORD = 1.0 / 8.0  # of the resolution: deviation of chords from arcs
+STRIDE = 1024  # rows, of which one is looked at. Large: short overlaps are missed; small: costs time
+FIRST = 32  # row looked at first; then every second power of 2 up to the stride
+GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)  # rows within their strides are spread by it, so that no beat is met at one phase only
+DEEPER = 1.25  # times the worst so far: what is measured next
+STEPPED = 5e-3  # of the size, that bodies may overlap where time is stepped (see analysis/doubts.py: the step is too coarse)
+LOOKS = 16  # in a scene's duration, where no rows are recorded
+ROWS_SEEN, LOOKED, DEPTH, TIME, PLACE_X, PLACE_Y, CONTACT = range(7)
+
+
+class OverlapWatch:
+    """What has been seen so far; `found` is all that a saved state needs of it."""
+
+    def __init__(self, scene: Scene, compiled: Compiled, method: str, windows: tuple[Window, ...]) -> None:
+        self._scene, self._compiled = scene, compiled
+        self.resolution = RESOLUTION * compiled.size
+        self._stepped = STEPPED * compiled.size if method == MOREAU else 0.0
+        self._sees_rows = windows == WHOLE_RUN
+        self._pairs: list[PairOfLayers] | None = None
+        self.found = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0])
+
+    def limit(self, admitted: float) -> float:
+        """How deep bodies may overlap (m) where the gap functions have seen overlaps of `admitted`."""
+        return max(self.resolution, self._stepped, 4.0 * admitted if self._stepped else 0.0)
+
+    def fails(self, admitted: float) -> bool:
+        """True if bodies have overlapped by more than the limit."""
+        return bool(self.found[DEPTH] > self.limit(admitted))
+
+    def next_look(self, t: float) -> float:
+        """The time after t (s) at which the state must be looked at, for want of rows; infinity where there are rows."""
+        if self._sees_rows:
+            return math.inf
+        spacing = self._scene.duration / LOOKS
+        return (math.floor(t / spacing * (1.0 + 1e-12)) + 1.0) * spacing
+
+    def see_rows(self, rows: Array) -> None:
+        """Look at some of the next rows (t, q, …) of the run."""
+        first, n = int(self.found[ROWS_SEEN]), len(self._compiled.q)
+        self.found[ROWS_SEEN] += len(rows)
+        if self._sees_rows:
+            chosen = chosen_rows(first, len(rows))
+            self.see(rows[chosen, 0], rows[chosen, 1 : 1 + n])
+
+    def see(self, times: Array, q: Array) -> None:
+        """Look at these instants; q (instants, n) are coordinates of the model."""
+        if self._pairs is None:
+            self._pairs = list(declared_pairs(self._scene, self.resolution, CHORD * self.resolution))
+        if not len(times) or not self._pairs:
+            return
+        self.found[LOOKED] += len(times)
+        poses = frames(self._scene, self._compiled.slices, self._compiled.relative(q))
+        for pair in self._pairs:
+            both = poses[pair.sides[0].body], poses[pair.sides[1].body]
+            for i in pair.overlapping(both).tolist():
+                self._measure(pair, float(times[i]), (both[0][i], both[1][i]))
+
+    def _measure(self, pair: PairOfLayers, t: float, poses: tuple[Array, Array]) -> None:
+        depth, place = pair.deepest(poses)
+        if depth > self.found[DEPTH]:
+            self.found[DEPTH:] = depth, t, *place, pair.contact
+        if depth > pair.depth:
+            # The next one of this pair counts where it is deeper.
+            pair.look_for(DEEPER * depth)
+
+    def words(self) -> str:
+        """The worst overlap in words."""
+        first, second = self._scene.contacts[int(self.found[CONTACT])].sides
+        x, y = (f"{1e3 * value:.4g}" for value in self.found[[PLACE_X, PLACE_Y]])
+        depth, t = 1e6 * self.found[DEPTH], self.found[TIME]
+        return f"{first} and {second} overlapped by {depth:.3g} µm at t = {t:.9g} s, at ({x}, {y}) mm"
+
+    def result(self, admitted: float) -> dict[str, Any]:
+        """What was found, as plain values for the summary."""
+        depth, contact = float(self.found[DEPTH]), int(self.found[CONTACT])
+        sides = self._scene.contacts[contact].sides if contact >= 0 else None
+        return {
+            "worst_m": depth,
+            "resolution_m": self.resolution,
+            "allowed_m": self.limit(admitted),
+            "looks": int(self.found[LOOKED]),
+            "between": [str(side) for side in sides] if sides else None,
+            "t_s": float(self.found[TIME]) if sides else None,
+            "x_mm": 1e3 * float(self.found[PLACE_X]) if sides else None,
+            "y_mm": 1e3 * float(self.found[PLACE_Y]) if sides else None,
+        }
+
+
+def chosen_rows(first: int, count: int) -> NDArray[np.int64]:
+    """Which of the rows numbered from `first` are looked at, as places among them."""
+    early = FIRST * 4 ** np.arange(int(math.log(STRIDE / FIRST, 4)) + 1)
+    turn = np.arange(max(first // STRIDE - 1, 0), (first + count) // STRIDE + 1)
+    later = STRIDE * (turn + 1) + np.floor(STRIDE * np.mod(GOLDEN * turn, 1.0)).astype(np.int64)
+    numbers = np.unique(np.concatenate([early, later]).astype(np.int64))
+    return numbers[(numbers >= first) & (numbers < first + count)] - first
