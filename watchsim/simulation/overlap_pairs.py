@@ -1,7 +1,8 @@
 """Do two layers overlap at some of many instants, by more than a given depth?
 
 Both are polygons of chords. One is shrunk by that depth and stays where it is (prepared once); stretches of the other's outline
-are brought to it, those alone that come near. Nothing here is shared with the gap functions of contacts.
+are brought to it, those alone that come near. Nothing here is shared with the gap functions of contacts. Points and poses are
+complex numbers: a pose is (place of the frame's origin, turn of unit size).
 """
 
 from __future__ import annotations
@@ -21,10 +22,12 @@ from watchsim.mechanism.overlap import face_depth, regions_depth
 from watchsim.mechanism.polygons import chord_points, material, placed
 
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Poses = tuple[Complex, Complex]
 Bits = NDArray[np.bool_]
 Integers = NDArray[np.int64]
 
-STRETCH = 16  # chords of an outline that are brought along together
+STRETCH = 48  # chords of an outline that are brought along together
 MOST = 1 << 21  # distances of stretches worked out at once
 
 
@@ -34,10 +37,11 @@ class Outlines:
 
     rings: tuple[tuple[Array, bool], ...]
     faces: tuple[Array, ...]
-    stretches: Array  # (stretches, STRETCH + 1, 2) points of the rings, the last ones repeated
-    centres: Array  # (stretches, 2) of circles around them
+    starts: Complex  # a point of each outer ring
+    stretches: Complex  # (stretches, STRETCH + 1) points of the rings, the last ones repeated
+    centres: Complex  # (stretches,) of circles around them
     radii: Array
-    centre: Array  # of a circle around everything
+    centre: complex  # of a circle around everything
     radius: float
 
     @property
@@ -65,18 +69,31 @@ def outlines_of(loops: tuple[Loop, ...], deviation: float) -> Outlines:
     drawn = [(chord_points(loop, deviation), loop) for loop in loops if loop.edges]
     rings = tuple((points, loop.hole) for points, loop in drawn if loop.closed)
     faces = tuple(points for points, loop in drawn if not loop.closed)
-    parts = [np.zeros((0, STRETCH + 1, 2))]
+    parts = [np.zeros((0, STRETCH + 1), complex)]
     for points, _ in rings:
         count = -(-(len(points) - 1) // STRETCH)
-        parts.append(points[np.minimum(np.arange(count)[:, None] * STRETCH + np.arange(STRETCH + 1), len(points) - 1)])
+        places = np.minimum(np.arange(count)[:, None] * STRETCH + np.arange(STRETCH + 1), len(points) - 1)
+        parts.append(_complex(points)[places])
     stretches = np.concatenate(parts)
-    centres = 0.5 * (stretches.min(axis=1) + stretches.max(axis=1))
-    radii = np.hypot(*(stretches - centres[:, None]).transpose(2, 0, 1)).max(axis=1, initial=0.0)
-    every = np.concatenate([np.zeros((0, 2)), *(points for points, _ in rings), *faces])
+    centres = _middle(stretches)
+    radii = np.abs(stretches - centres[:, None]).max(axis=1, initial=0.0)
+    starts = np.array([complex(*points[0]) for points, hole in rings if not hole], complex)
+    every = np.concatenate([np.zeros(0, complex), *(_complex(points) for points, _ in rings), *map(_complex, faces)])
     if not len(every):
-        return Outlines(rings, faces, stretches, centres, radii, np.zeros(2), -np.inf)
-    centre = 0.5 * (every.min(axis=0) + every.max(axis=0))
-    return Outlines(rings, faces, stretches, centres, radii, centre, float(np.hypot(*(every - centre).T).max()))
+        return Outlines(rings, faces, starts, stretches, centres, radii, 0.0, -np.inf)
+    centre = complex(_middle(every[None])[0])
+    return Outlines(rings, faces, starts, stretches, centres, radii, centre, float(np.abs(every - centre).max()))
+
+
+def _complex(points: Array) -> Complex:
+    return points[:, 0] + 1j * points[:, 1]
+
+
+def _middle(rows: Complex) -> Complex:
+    """The middle of the box around each row of points."""
+    low, high = rows.real.min(axis=1) + 1j * rows.imag.min(axis=1), rows.real.max(axis=1) + 1j * rows.imag.max(axis=1)
+    middle: Complex = 0.5 * (low + high)
+    return middle
 
 
 @functools.lru_cache(maxsize=256)
@@ -104,90 +121,95 @@ class PairOfLayers:
         self._outlines = [outlines_of(one, chord) for one in loops]
         # The larger side stays where it is.
         self._still = int(self._outlines[1].points > self._outlines[0].points)
-        self.depth = depth
         self.look_for(depth)
 
     def look_for(self, depth: float) -> None:
         """Overlaps deeper than `depth` (m) count from now on."""
-        self.depth = depth
-        self._shrunk = [_shrunk(loops, self._chord, depth) for loops in self._loops]
-        self._whole = [
-            _shrunk(loops, self._chord, 0.0) if any(o.faces for o in self._outlines) else [] for loops in self._loops
-        ]
+        still, mover = self._still, 1 - self._still
+        any_faces = any(outlines.faces for outlines in self._outlines)
+        self._shrunk: list[list[Any]] = [[], []]
+        self._shrunk[still] = _shrunk(self._loops[still], self._chord, depth)
+        if self._outlines[still].radius <= self._outlines[mover].radius:
+            # Only then can the other one swallow it.
+            self._shrunk[mover] = _shrunk(self._loops[mover], self._chord, depth)
+        self._whole = [_shrunk(loops, self._chord, 0.0) if any_faces else [] for loops in self._loops]
         self._faces = [outlines.shifted_faces(depth) for outlines in self._outlines]
 
-    def overlapping(self, poses: tuple[Array, Array]) -> Integers:
-        """At which instants they overlap; `poses` of both bodies, (instants, 3)."""
+    def overlapping(self, poses: tuple[Poses, Poses]) -> Integers:
+        """At which instants they overlap; `poses` of both bodies, by instant."""
         still, mover = self._outlines[self._still], self._outlines[1 - self._still]
-        seen = _seen_from(poses[self._still], poses[1 - self._still])
-        near = np.hypot(*(_turned(seen, mover.centre) - still.centre).T) <= still.radius + mover.radius
+        (origin, turn), (place, turned) = poses[self._still], poses[1 - self._still]
+        back = turn.conj()
+        shift, twist = (place - origin) * back, turned * back
+        near = np.abs(twist * mover.centre + shift - still.centre) <= still.radius + mover.radius
         places = np.flatnonzero(near)
         if not len(places):
             return places
-        seen, back = seen[places], _seen_from(poses[1 - self._still][places], poses[self._still][places])
-        hit = self._crossing(seen)
-        hit |= self._within(self._shrunk[self._still], mover, seen) | self._within(self._shrunk[1 - self._still], still, back)
+        seen = shift[places], twist[places]
+        hit = self._crossing(*seen)
+        hit |= self._within(self._shrunk[self._still], mover, seen)
+        if self._shrunk[1 - self._still]:
+            hit |= self._within(self._shrunk[1 - self._still], still, _inverse(seen))
         if still.faces or mover.faces:
-            hit |= self._behind(self._still, back) | self._behind(1 - self._still, seen)
+            hit |= self._behind(self._still, _inverse(seen)) | self._behind(1 - self._still, seen)
         return places[hit]
 
-    def _crossing(self, seen: Array) -> Bits:
+    def _crossing(self, shift: Complex, twist: Complex) -> Bits:
         """Does some of the moved outline lie in the shrunk material of the other?"""
         import shapely
 
         still, mover = self._outlines[self._still], self._outlines[1 - self._still]
-        hit = np.zeros(len(seen), bool)
-        size = max(1, len(mover.radii) * len(still.radii))
-        for first in range(0, len(seen), max(1, MOST // size)):
-            part = seen[first : first + max(1, MOST // size)]
-            centres = _turned(part, mover.centres)  # (instants, stretches, 2)
-            way = centres[:, :, None, :] - still.centres
-            near = (way * way).sum(axis=3) <= (mover.radii[:, None] + still.radii) ** 2
+        hit = np.zeros(len(shift), bool)
+        block = max(1, MOST // max(1, len(mover.radii) * len(still.radii)))
+        for first in range(0, len(shift), block):
+            at = slice(first, first + block)
+            centres = twist[at, None] * mover.centres + shift[at, None]
+            near = np.abs(centres[:, :, None] - still.centres) <= mover.radii[:, None] + still.radii
             instant, stretch = np.nonzero(near.any(axis=2))
             if not len(instant):
                 continue
-            lines = shapely.linestrings(_turned_each(part[instant], mover.stretches[stretch]))
+            instant += first
+            lines = shapely.linestrings(_real(twist[instant, None] * mover.stretches[stretch] + shift[instant, None]))
             for polygon in self._shrunk[self._still]:
-                hit[first + instant[shapely.intersects(polygon, lines)]] = True
+                hit[instant[shapely.intersects(polygon, lines)]] = True
         return hit
 
     @staticmethod
-    def _within(polygons: list[Any], other: Outlines, seen: Array) -> Bits:
+    def _within(polygons: list[Any], other: Outlines, seen: Poses) -> Bits:
         """Does a ring of the other lie wholly within one of the polygons? One point of it says so, where nothing crosses."""
         import shapely
 
-        hit = np.zeros(len(seen), bool)
-        starts = np.array([points[0] for points, hole in other.rings if not hole]).reshape(-1, 2)
-        if len(starts) and polygons:
-            at = _turned(seen, starts)
-            for polygon in polygons:
-                hit |= shapely.intersects_xy(polygon, at[..., 0], at[..., 1]).any(axis=1)
+        hit = np.zeros(len(seen[0]), bool)
+        at = seen[1][:, None] * other.starts + seen[0][:, None]
+        for polygon in polygons:
+            hit |= shapely.intersects_xy(polygon, at.real, at.imag).any(axis=1)
         return hit
 
-    def _behind(self, side: int, seen: Array) -> Bits:
+    def _behind(self, side: int, seen: Poses) -> Bits:
         """Does something of the other side reach behind the open faces of this one, between their ends?"""
         import shapely
 
-        hit = np.zeros(len(seen), bool)
+        hit = np.zeros(len(seen[0]), bool)
         for face in self._faces[side]:
-            lines = shapely.linestrings(_turned(seen, face))
-            ends = _turned(seen, face[[0, -1]])
+            at = seen[1][:, None] * _complex(face) + seen[0][:, None]
+            lines, ends = shapely.linestrings(_real(at)), at[:, [0, -1]]
             for polygon in self._whole[1 - side]:
                 # What hangs over an end of the face has come round it.
-                round_it = shapely.intersects_xy(polygon, ends[..., 0], ends[..., 1]).any(axis=1)
+                round_it = shapely.intersects_xy(polygon, ends.real, ends.imag).any(axis=1)
                 hit |= shapely.intersects(polygon, lines) & ~round_it
             for other in self._outlines[1 - side].faces:
                 met = shapely.intersection(shapely.LineString(other), lines)
                 hit |= shapely.get_num_geometries(met) >= 2
         return hit
 
-    def deepest(self, poses: tuple[Array, Array]) -> tuple[float, Point]:
-        """How deep they overlap (m) at one instant, and where in the movement; `poses` of both bodies, (3,)."""
+    def deepest(self, poses: tuple[Poses, Poses], instant: int) -> tuple[float, Point]:
+        """How deep they overlap (m) at one of the instants, and where in the movement."""
         import shapely
 
         regions, faces = [], []
-        for outlines, loops, pose in zip(self._outlines, self._loops, poses, strict=True):
-            at = (float(pose[0]), float(pose[1]), float(pose[2]))
+        for outlines, loops, (origin, turn) in zip(self._outlines, self._loops, poses, strict=True):
+            place = complex(origin[instant])
+            at = (place.real, place.imag, float(np.angle(turn[instant])))
             regions.append(shapely.union_all(material([(placed(points, at), hole) for points, hole in outlines.rings])))
             edges = [loop.moved(at[2], at[:2]).edges for loop in loops if loop.edges and not loop.closed]
             faces.append([(placed(points, at), own) for points, own in zip(outlines.faces, edges, strict=True)])
@@ -198,25 +220,16 @@ class PairOfLayers:
         return max(found)
 
 
-def _seen_from(frame: Array, other: Array) -> Array:
-    """(instants, 4): where the other frame stands in the first one, x, y, cosine and sine of its angle; poses (instants, 3)."""
-    c, s = np.cos(frame[:, 2]), np.sin(frame[:, 2])
-    dx, dy = (other - frame)[:, :2].T
-    turn = other[:, 2] - frame[:, 2]
-    return np.column_stack((c * dx + s * dy, c * dy - s * dx, np.cos(turn), np.sin(turn)))
+def _inverse(seen: Poses) -> Poses:
+    """Where the first frame stands in the second one."""
+    shift, twist = seen
+    back = twist.conj()
+    return -shift * back, back
 
 
-def _turned(seen: Array, points: Array) -> Array:
-    """The same points (…, 2) at every instant, (instants, …, 2)."""
-    shape = (-1,) + (1,) * (points.ndim - 1)
-    x, y, c, s = (value.reshape(shape) for value in seen.T)
-    return np.stack((c * points[..., 0] - s * points[..., 1] + x, s * points[..., 0] + c * points[..., 1] + y), axis=-1)
-
-
-def _turned_each(seen: Array, points: Array) -> Array:
-    """Points (rows, n, 2), each row at its own instant."""
-    x, y, c, s = (value[:, None] for value in seen.T)
-    return np.stack((c * points[..., 0] - s * points[..., 1] + x, s * points[..., 0] + c * points[..., 1] + y), axis=-1)
+def _real(points: Complex) -> Array:
+    """Points as (…, 2) coordinates."""
+    return np.ascontiguousarray(points).view(np.float64).reshape(*points.shape, 2)
 
 
 def declared_pairs(scene: Any, depth: float, chord: float) -> Iterator[PairOfLayers]:

@@ -18,14 +18,15 @@ from watchsim.mechanism.recording import WHOLE_RUN, Window
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation.frames import frames
 from watchsim.simulation.methods import MOREAU
-from watchsim.simulation.overlap_pairs import PairOfLayers, declared_pairs
+from watchsim.simulation.overlap_pairs import PairOfLayers, Poses, declared_pairs
 
 Array = NDArray[np.float64]
 
 RESOLUTION = 5e-5  # of the scene's size: overlaps that count. More than twice `Options.behind` at any tolerance
 CHORD = 1.0 / 8.0  # of the resolution: deviation of chords from arcs
-STRIDE = 1024  # rows, of which one is looked at. Large: short overlaps are missed; small: costs time
+STRIDE = 4096  # rows, of which one is looked at. Large: short overlaps are missed; small: costs time
 FIRST = 32  # row looked at first; then every second power of 2 up to the stride
+TOGETHER = 16  # instants looked at together
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)  # rows within their strides are spread by it, so that no beat is met at one phase only
 DEEPER = 1.25  # times the worst so far: what is measured next
 STEPPED = 5e-3  # of the size, that bodies may overlap where time is stepped (see analysis/doubts.py: the step is too coarse)
@@ -42,6 +43,7 @@ class OverlapWatch:
         self._stepped = STEPPED * compiled.size if method == MOREAU else 0.0
         self._sees_rows = windows == WHOLE_RUN
         self._pairs: list[PairOfLayers] | None = None
+        self._waiting: list[tuple[Array, Array]] = []  # times and coordinates of chosen rows
         self.found = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0])
 
     def limit(self, admitted: float) -> float:
@@ -60,33 +62,56 @@ class OverlapWatch:
         return (math.floor(t / spacing * (1.0 + 1e-12)) + 1.0) * spacing
 
     def see_rows(self, rows: Array) -> None:
-        """Look at some of the next rows (t, q, …) of the run."""
+        """Look, soon, at some of the next rows (t, q, …) of the run."""
         first, n = int(self.found[ROWS_SEEN]), len(self._compiled.q)
         self.found[ROWS_SEEN] += len(rows)
-        if self._sees_rows:
-            chosen = chosen_rows(first, len(rows))
-            self.see(rows[chosen, 0], rows[chosen, 1 : 1 + n])
+        chosen = chosen_rows(first, len(rows)) if self._sees_rows else []
+        if len(chosen):
+            self._waiting.append((rows[chosen, 0], rows[chosen, 1 : 1 + n]))
+        if sum(len(times) for times, _ in self._waiting) >= TOGETHER:
+            self.see()
 
-    def see(self, times: Array, q: Array) -> None:
-        """Look at these instants; q (instants, n) are coordinates of the model."""
+    def see(self, *now: tuple[Array, Array]) -> None:
+        """Look at what waits, and at further instants: times, and coordinates of the model (instants, n)."""
+        instants, self._waiting = [*self._waiting, *now], []
         if self._pairs is None:
-            self._pairs = list(declared_pairs(self._scene, self.resolution, CHORD * self.resolution))
-        if not len(times) or not self._pairs:
+            self._pairs = list(declared_pairs(self._scene, self._bar, CHORD * self.resolution))
+        if not instants or not self._pairs:
             return
+        times, q = (np.concatenate(parts) for parts in zip(*instants, strict=True))
         self.found[LOOKED] += len(times)
-        poses = frames(self._scene, self._compiled.slices, self._compiled.relative(q))
-        for pair in self._pairs:
-            both = poses[pair.sides[0].body], poses[pair.sides[1].body]
-            for i in pair.overlapping(both).tolist():
-                self._measure(pair, float(times[i]), (both[0][i], both[1][i]))
+        places = frames(self._scene, self._compiled.slices, self._compiled.relative(q))
+        poses = {name: (place[:, 0] + 1j * place[:, 1], np.exp(1j * place[:, 2])) for name, place in places.items()}
+        both = [(poses[pair.sides[0].body], poses[pair.sides[1].body]) for pair in self._pairs]
+        done = 0
+        while done < len(times):
+            done = self._next_overlap(self._pairs, times, both, done)
 
-    def _measure(self, pair: PairOfLayers, t: float, poses: tuple[Array, Array]) -> None:
-        depth, place = pair.deepest(poses)
-        if depth > self.found[DEPTH]:
-            self.found[DEPTH:] = depth, t, *place, pair.contact
-        if depth > pair.depth:
-            # The next one of this pair counts where it is deeper.
-            pair.look_for(DEEPER * depth)
+    @property
+    def _bar(self) -> float:
+        """How deep an overlap must be to be measured: one for all pairs, whatever is looked at together."""
+        return max(self.resolution, DEEPER * float(self.found[DEPTH]))
+
+    def _next_overlap(self, pairs: list[PairOfLayers], times: Array, both: list[tuple[Poses, Poses]], done: int) -> int:
+        """Measure the overlaps of the next instant, from number `done`, that has any; returns the number of the one after."""
+        left = slice(done, None)
+        hits = [
+            done + pair.overlapping(((a[0][left], a[1][left]), (b[0][left], b[1][left])))
+            for pair, (a, b) in zip(pairs, both, strict=True)
+        ]
+        if not any(len(hit) for hit in hits):
+            return len(times)
+        at = min(int(hit[0]) for hit in hits if len(hit))
+        before = self._bar
+        for pair, hit, poses in zip(pairs, hits, both, strict=True):
+            if len(hit) and hit[0] == at:
+                depth, place = pair.deepest(poses, at)
+                if depth > self.found[DEPTH]:
+                    self.found[DEPTH:] = depth, times[at], *place, pair.contact
+        if self._bar > before:
+            for pair in pairs:
+                pair.look_for(self._bar)
+        return at + 1
 
     def words(self) -> str:
         """The worst overlap in words."""

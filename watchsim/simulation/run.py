@@ -117,6 +117,7 @@ class Run:
     def save(self) -> SavedState:
         """The state now, with the sums over all events so far."""
         self.flush()
+        self.watch.see()
         self._parts_before = self.kept.parts
         return save_state(self.compiled, self.settings(), self.arrays(), self.stored_at_start, self.tally.arrays())
 
@@ -157,7 +158,7 @@ class Run:
 
     def _look(self) -> None:
         """Look at the state now for bodies inside each other."""
-        self.watch.see(self.state.clock[:1], self.state.q[None])
+        self.watch.see((self.state.clock[:1].copy(), self.state.q[None].copy()))
 
     def _overlaps(self) -> bool:
         return self.watch.fails(float(self.state.worst[0]))
