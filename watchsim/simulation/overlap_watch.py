@@ -1,8 +1,8 @@
 """Was there ever material inside material in a run?
 
-Recorded rows are looked at now and then, chosen by their number alone, so that a run comes to the same whatever it was cut into
-and never depends on being watched. The outlines of all declared contacts are compared as polygons (overlap_pairs.py), which
-shares nothing with the gap functions: a contact that the loop has lost is found by this.
+Now and then a state is looked at, chosen from the recorded rows; the motion never depends on being watched. The outlines of
+all declared contacts are compared as polygons (overlap_pairs.py), which shares nothing with the gap functions: a contact that
+the loop has lost is found by this.
 """
 
 from __future__ import annotations
@@ -19,15 +19,17 @@ from watchsim.mechanism.scene import Scene
 from watchsim.simulation.frames import frames
 from watchsim.simulation.methods import MOREAU
 from watchsim.simulation.overlap_pairs import PairOfLayers, Poses, declared_pairs
+from watchsim.simulation.trajectory import between
 
 Array = NDArray[np.float64]
 
 RESOLUTION = 5e-5  # of the scene's size: overlaps that count. More than twice `Options.behind` at any tolerance
 CHORD = 1.0 / 8.0  # of the resolution: deviation of chords from arcs
-STRIDE = 4096  # rows, of which one is looked at. Large: short overlaps are missed; small: costs time
-FIRST = 32  # row looked at first; then every second power of 2 up to the stride
-TOGETHER = 16  # instants looked at together
-GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)  # rows within their strides are spread by it, so that no beat is met at one phase only
+BLOCK = 8192  # rows, of which the longest moves of each coordinate are looked at. Large: less is seen; small: costs time
+FEW = 8  # coordinates whose longest moves are looked at in one block; of more, others in the next
+STRIDE = 0.02  # of the scene's size: moves between two rows are looked at in such steps
+MOST_STEPS = 7  # in one move
+TOGETHER = 32  # instants looked at together
 DEEPER = 1.25  # times the worst so far: what is measured next
 STEPPED = 5e-3  # of the size, that bodies may overlap where time is stepped (see analysis/doubts.py: the step is too coarse)
 LOOKS = 16  # in a scene's duration, where no rows are recorded
@@ -43,6 +45,8 @@ class OverlapWatch:
         self._stepped = STEPPED * compiled.size if method == MOREAU else 0.0
         self._sees_rows = windows == WHOLE_RUN
         self._pairs: list[PairOfLayers] | None = None
+        self._scale = np.array(compiled.model.coordinates.scale)
+        self._last: Array | None = None  # row
         self._waiting: list[tuple[Array, Array]] = []  # times and coordinates of chosen rows
         self.found = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0])
 
@@ -62,14 +66,31 @@ class OverlapWatch:
         return (math.floor(t / spacing * (1.0 + 1e-12)) + 1.0) * spacing
 
     def see_rows(self, rows: Array) -> None:
-        """Look, soon, at some of the next rows (t, q, …) of the run."""
-        first, n = int(self.found[ROWS_SEEN]), len(self._compiled.q)
+        """Look, soon, at some of the next rows (t, q, u, a) of the run and between them."""
+        first = int(self.found[ROWS_SEEN])
         self.found[ROWS_SEEN] += len(rows)
-        chosen = chosen_rows(first, len(rows)) if self._sees_rows else []
-        if len(chosen):
-            self._waiting.append((rows[chosen, 0], rows[chosen, 1 : 1 + n]))
+        if not self._sees_rows or not len(rows):
+            return
+        rows = rows if self._last is None else np.concatenate([self._last, rows])
+        self._last = rows[-1:].copy()
+        self._waiting.append(self._instants(rows, chosen_moves(rows, self._scale, first)))
         if sum(len(times) for times, _ in self._waiting) >= TOGETHER:
             self.see()
+
+    def _instants(self, rows: Array, moves: NDArray[np.int64]) -> tuple[Array, Array]:
+        """Times and coordinates within the moves from rows `moves` to the next ones; only at rows where time is stepped."""
+        n = len(self._scale)
+        if self._stepped:
+            return rows[moves + 1, 0], rows[moves + 1, 1 : 1 + n]
+        way = np.abs(rows[moves + 1, 1 : 1 + n] - rows[moves, 1 : 1 + n]) / self._scale
+        steps = np.clip(np.ceil(way.max(axis=1, initial=0.0) / STRIDE), 1, MOST_STEPS).astype(np.int64)
+        move = np.repeat(moves, steps)
+        nth = np.arange(len(move)) - np.repeat(np.cumsum(steps) - steps, steps)
+        share = ((nth + 1.0) / (np.repeat(steps, steps) + 1.0))[:, None]
+        h = (rows[move + 1, 0] - rows[move, 0])[:, None]
+        ends = [(at[:, 1 : 1 + n], at[:, 1 + n : 1 + 2 * n], at[:, 1 + 2 * n :]) for at in (rows[move], rows[move + 1])]
+        q, _ = between(share, h, ends[0], ends[1], np.zeros(n))
+        return rows[move, 0] + share[:, 0] * h[:, 0], q
 
     def see(self, *now: tuple[Array, Array]) -> None:
         """Look at what waits, and at further instants: times, and coordinates of the model (instants, n)."""
@@ -136,10 +157,20 @@ class OverlapWatch:
         }
 
 
-def chosen_rows(first: int, count: int) -> NDArray[np.int64]:
-    """Which of the rows numbered from `first` are looked at, as places among them."""
-    early = FIRST * 4 ** np.arange(int(math.log(STRIDE / FIRST, 4)) + 1)
-    turn = np.arange(max(first // STRIDE - 1, 0), (first + count) // STRIDE + 1)
-    later = STRIDE * (turn + 1) + np.floor(STRIDE * np.mod(GOLDEN * turn, 1.0)).astype(np.int64)
-    numbers = np.unique(np.concatenate([early, later]).astype(np.int64))
-    return numbers[(numbers >= first) & (numbers < first + count)] - first
+def chosen_moves(rows: Array, scale: Array, first: int) -> NDArray[np.int64]:
+    """Between which rows to look: places of the rows before. `first` rows of the run came before these.
+
+    A contact that is lost shows in a long way without an event: of each block of rows the longest moves of the coordinates are
+    chosen; and some of the first rows, since what is lost at the start may be over soon after.
+    """
+    takes_time = np.diff(rows[:, 0]) > 0.0
+    way = np.abs(np.diff(rows[:, 1 : 1 + len(scale)], axis=0)) * takes_time[:, None]
+    chosen: list[int] = []
+    for start in range(0, len(way), BLOCK):
+        number = (first + start) // BLOCK
+        some = np.arange(len(scale)) if len(scale) <= FEW else (number * FEW + np.arange(FEW)) % len(scale)
+        chosen += (start + np.argmax(way[start : start + BLOCK, some], axis=0)).tolist()
+    early = [0, *(4**k for k in range(int(math.log(BLOCK, 4))))]
+    chosen += [number - first for number in early if 0 <= number - first < len(way)]
+    places = np.unique(np.array(chosen, np.int64))
+    return places[takes_time[places]]

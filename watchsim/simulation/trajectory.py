@@ -122,7 +122,7 @@ class Trajectory:
         last = h <= 0.0  # two rows of one instant at the very end: take the one after the impact
         s = np.where(last, 1.0, np.clip((times - self.t[i])[:, None] / np.where(last, 1.0, h), 0.0, 1.0))
         h = np.where(last, 1.0, h)
-        q, u = _between(s, h, (self.q[i], self.u[i], self.a[i]), (self.q[j], self.u[j], self.a[j]), self._noise)
+        q, u = between(s, h, (self.q[i], self.u[i], self.a[i]), (self.q[j], self.u[j], self.a[j]), self._noise)
         return np.where(last, self.q[j], q), np.where(last, self.u[j], u)
 
     def pose(self, body: str, t: float) -> tuple[float, float, float]:
@@ -142,7 +142,7 @@ class Trajectory:
         return x, y, angle
 
 
-def _between(s: Array, h: Array, left: tuple[Array, ...], right: tuple[Array, ...], noise: Array) -> tuple[Array, Array]:
+def between(s: Array, h: Array, left: tuple[Array, ...], right: tuple[Array, ...], noise: Array) -> tuple[Array, Array]:
     """q and u at fractions `s` of intervals of length h with (q, u, a) at both ends; `noise` is the error of q.
 
     The derivative of the quintic in q is the cubic in u and a bump, which makes up for the way that the cubic misses. Over a
