@@ -25,11 +25,12 @@ Array = NDArray[np.float64]
 
 RESOLUTION = 5e-5  # of the scene's size: overlaps that count. More than twice `Options.behind` at any tolerance
 CHORD = 1.0 / 8.0  # of the resolution: deviation of chords from arcs
-BLOCK = 8192  # rows, of which the longest moves of each coordinate are looked at. Large: less is seen; small: costs time
+BLOCK = 32768  # rows, of which the longest moves of each coordinate are looked at. Large: less is seen; small: costs time
 FEW = 8  # coordinates whose longest moves are looked at in one block; of more, others in the next
-STRIDE = 0.02  # of the scene's size: moves between two rows are looked at in such steps
+STRIDE = 0.05  # of the scene's size: moves between two rows are looked at in such steps
 MOST_STEPS = 7  # in one move
 TOGETHER = 32  # instants looked at together
+EARLY = (0, 1, 4, 16, 64, 256, 1024)  # rows looked at in any case
 DEEPER = 1.25  # times the worst so far: what is measured next
 STEPPED = 5e-3  # of the size, that bodies may overlap where time is stepped (see analysis/doubts.py: the step is too coarse)
 LOOKS = 16  # in a scene's duration, where no rows are recorded
@@ -71,9 +72,11 @@ class OverlapWatch:
         self.found[ROWS_SEEN] += len(rows)
         if not self._sees_rows or not len(rows):
             return
-        rows = rows if self._last is None else np.concatenate([self._last, rows])
+        if self._last is not None and rows[0, 0] > self._last[0, 0]:
+            # What lies between two parts of the rows is always looked at.
+            self._waiting.append(self._instants(np.concatenate([self._last, rows[:1]]), np.zeros(1, np.int64)))
         self._last = rows[-1:].copy()
-        self._waiting.append(self._instants(rows, chosen_moves(rows, self._scale, first)))
+        self._waiting.append(self._instants(rows, chosen_moves(rows, len(self._scale), first)))
         if sum(len(times) for times, _ in self._waiting) >= TOGETHER:
             self.see()
 
@@ -157,20 +160,18 @@ class OverlapWatch:
         }
 
 
-def chosen_moves(rows: Array, scale: Array, first: int) -> NDArray[np.int64]:
-    """Between which rows to look: places of the rows before. `first` rows of the run came before these.
+def chosen_moves(rows: Array, n: int, first: int) -> NDArray[np.int64]:
+    """Between which rows to look: places of the rows before. n coordinates; `first` rows of the run came before these.
 
     A contact that is lost shows in a long way without an event: of each block of rows the longest moves of the coordinates are
     chosen; and some of the first rows, since what is lost at the start may be over soon after.
     """
-    takes_time = np.diff(rows[:, 0]) > 0.0
-    way = np.abs(np.diff(rows[:, 1 : 1 + len(scale)], axis=0)) * takes_time[:, None]
     chosen: list[int] = []
-    for start in range(0, len(way), BLOCK):
+    for start in range(0, len(rows) - 1, BLOCK):
         number = (first + start) // BLOCK
-        some = np.arange(len(scale)) if len(scale) <= FEW else (number * FEW + np.arange(FEW)) % len(scale)
-        chosen += (start + np.argmax(way[start : start + BLOCK, some], axis=0)).tolist()
-    early = [0, *(4**k for k in range(int(math.log(BLOCK, 4))))]
-    chosen += [number - first for number in early if 0 <= number - first < len(way)]
+        some = slice(1, 1 + n) if n <= FEW else 1 + (number * FEW + np.arange(FEW)) % n
+        q = np.ascontiguousarray(rows[start : start + BLOCK + 1, some].T)
+        chosen += (start + np.argmax(np.abs(q[:, 1:] - q[:, :-1]), axis=1)).tolist()
+    chosen += [number - first for number in EARLY if 0 <= number - first < len(rows) - 1]
     places = np.unique(np.array(chosen, np.int64))
-    return places[takes_time[places]]
+    return places[rows[places + 1, 0] > rows[places, 0]]
