@@ -20,9 +20,9 @@ from watchsim.contact.poses import poses
 from watchsim.mechanism.compile import Compiled
 from watchsim.mechanism.errors import SceneError
 from watchsim.mechanism.model import Model, frozen
-from watchsim.mechanism.overlap import Overlap, faults_at, meetings, overlap_faults
+from watchsim.mechanism.overlap import Overlap, faults_at, meetings, overlap_faults, overlaps
 from watchsim.mechanism.scene import Scene
-from watchsim.simulation.options import Options
+from watchsim.simulation.options import Options, options_for
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -41,24 +41,41 @@ def clear_start(scene: Scene, compiled: Compiled, finder: CellFinder, options: O
     """
     if faults := overlap_faults(scene):
         raise SceneError(faults)
+    q, taken_back, refused = _clear(scene, compiled, finder, options)
+    if refused:
+        raise SceneError(faults_at(scene, refused))
+    return q, taken_back
+
+
+def refusals(scene: Scene, compiled: Compiled) -> list[tuple[Overlap, str]]:
+    """What touches at the start in a way that no run can begin with, each with a sentence; overlaps beyond rounding apart."""
+    if overlaps(scene):
+        return []
+    return _clear(scene, compiled, CellFinder(compiled.model), options_for(compiled.size, scene.tolerance, scene.duration))[2]
+
+
+def _clear(
+    scene: Scene, compiled: Compiled, finder: CellFinder, options: Options
+) -> tuple[Array, float, list[tuple[Overlap, str]]]:
+    """Coordinates, the overlap taken back, and what cannot be taken back."""
     touching = meetings(scene)
     q = compiled.q
     if not touching or not len(q):
-        return q, 0.0
+        return q, 0.0, []
     near = REACH * max(met.allowed for met in touching)
     ids = _candidates(compiled.model, finder, q)
     model = compiled.model._replace(contacts=frozen(compiled.model.contacts[ids]))
     closed = _kinematics(model, q)
     if unknown := [met for met in touching if not _is_known(met, compiled, model, closed, near)]:
-        raise SceneError(faults_at(scene, ((met, _words(met, NO_GAP)) for met in unknown)))
+        return q, 0.0, [(met, _words(met, NO_GAP)) for met in unknown]
     overlapping = _overlapping(model, closed, options, near, options.behind)
     if not len(overlapping):
-        return q, 0.0
+        return q, 0.0, []
     moved = _taken_back(model, q, options, near)
     if moved is None:
         worst = max(touching, key=lambda met: met.depth)
-        raise SceneError(faults_at(scene, [(worst, _words(worst, WEDGED))]))
-    return moved, float(-closed.kin.g[overlapping].min())
+        return q, 0.0, [(worst, _words(worst, WEDGED))]
+    return moved, float(-closed.kin.g[overlapping].min()), []
 
 
 def warm_up(scene: Scene, model: Model) -> None:
