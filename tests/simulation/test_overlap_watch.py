@@ -1,6 +1,7 @@
 """Is material inside material found in a run whose contacts were lost, and nothing reported of sound ones?
 
-Contacts are lost here on purpose: runs begin without the check of the start, from overlaps that no gap function takes for a touch.
+Contacts are lost here on purpose: runs begin without the check of the start, from overlaps that no gap function takes for a
+touch.
 """
 
 from __future__ import annotations

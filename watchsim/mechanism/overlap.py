@@ -16,11 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.geometry.loop import Loop
-from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point
+from watchsim.geometry.primitives import Edge, Point
 from watchsim.mechanism.carry import start_poses
 from watchsim.mechanism.errors import Fault
 from watchsim.mechanism.force import Side
 from watchsim.mechanism.locate import key_lines
+from watchsim.mechanism.overlap_depth import COARSE, face_depth, face_line, regions_depth
 from watchsim.mechanism.polygons import chord_points, material, placed, refined_points
 from watchsim.mechanism.scene import Scene
 
@@ -30,7 +31,6 @@ Pose = tuple[float, float, float]
 # a body add their own. Too large: a contact begins where none was drawn; too small: resting contacts are refused.
 ROUNDING = 2e-9
 DEVIATION = 0.1e-9  # m, of chords near the other outline; too large: depths are uncertain; too small: slow
-COARSE = 5e-8  # m, of chords elsewhere
 SIDES = np.array([-1.0, -1.0, 1.0, 1.0])  # what widens a box (xmin, ymin, xmax, ymax)
 CLOSE = 1e-6  # m, between chords of two outlines that count as near
 
@@ -126,7 +126,8 @@ class _Layer:
         none = np.zeros((0, 2))
         # Boxes around the chords, wide enough for their arcs.
         self.boxes = np.hstack([np.concatenate([none, *low]) - COARSE, np.concatenate([none, *high]) + COARSE])
-        self.box = np.concatenate([self.boxes[:, :2].min(axis=0), self.boxes[:, 2:].max(axis=0)]) if loops else None
+        ends = self.boxes[:, :2].min(axis=0, initial=math.inf), self.boxes[:, 2:].max(axis=0, initial=-math.inf)
+        self.box: Floats = np.concatenate(ends)
 
     def finely(self, near: NDArray[np.bool_]) -> tuple[Any, list[tuple[Floats, tuple[Edge, ...]]], float]:
         """(region of material, open faces as points and edges, largest deviation of the chords marked `near`)."""
@@ -147,7 +148,7 @@ class _Layer:
 
 def _meeting(contact: int, a: _Layer, b: _Layer) -> Overlap | None:
     """The deepest point at which two layers touch or overlap; None where they are apart."""
-    if a.box is None or b.box is None or not _meet(a.box[None], b.box[None] + ROUNDING * SIDES)[0]:
+    if not (len(a.boxes) and len(b.boxes)) or not _meet(a.box[None], b.box[None] + ROUNDING * SIDES)[0]:
         return None
     (region_a, faces_a, error_a), (region_b, faces_b, error_b) = (
         layer.finely(near) for layer, near in zip((a, b), _near(a, b), strict=True)
@@ -156,21 +157,16 @@ def _meeting(contact: int, a: _Layer, b: _Layer) -> Overlap | None:
     found = [regions_depth(region_a, region_b, allowed)]
     for faces, region, others in ((faces_a, region_b, faces_b), (faces_b, region_a, faces_a)):
         for points, edges in faces:
-            found += [face_depth(points, edges, shape, allowed) for shape in (region, *(_line(other) for other, _ in others))]
+            found += [
+                face_depth(points, edges, shape, allowed) for shape in (region, *(face_line(other) for other, _ in others))
+            ]
     depth, place = max(found)
     return Overlap(contact, (a.side, b.side), depth, place, allowed) if depth >= 0.0 else None
 
 
-def _line(points: Floats) -> Any:
-    import shapely
-
-    return shapely.LineString(points)
-
-
 def _meet(boxes: Floats, box: Floats) -> NDArray[np.bool_]:
     """Which boxes (xmin, ymin, xmax, ymax) meet the other one."""
-    meet: NDArray[np.bool_] = ((boxes[:, :2] <= box[:, 2:]) & (boxes[:, 2:] >= box[:, :2])).all(axis=1)
-    return meet
+    return np.asarray(((boxes[:, :2] <= box[:, 2:]) & (boxes[:, 2:] >= box[:, :2])).all(axis=1))
 
 
 def _near(a: _Layer, b: _Layer) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
@@ -185,71 +181,3 @@ def _near(a: _Layer, b: _Layer) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
         found_b, found_a = tree.query(shapely.box(*b.boxes[inside_b].T))
         marks[0][inside_a[found_a]], marks[1][inside_b[found_b]] = True, True
     return marks
-
-
-def regions_depth(a: Any, b: Any, allowed: float) -> tuple[float, Point]:
-    """How far the boundary of one region reaches into the other, and where; 0 for a touch, negative for none.
-
-    Where two bars cross, no corner of either lies in the other: there the width of what is common counts. The largest disc in a
-    region is at least as wide as twice its area over its perimeter.
-    """
-    import shapely
-
-    common = shapely.intersection(a, b)
-    parts = [part for part in shapely.get_parts(common) if part.area > 0.0]
-    if not parts:
-        line = shapely.shortest_line(a, b)
-        if line is None or line.is_empty or line.length > allowed:
-            return -1.0, (0.0, 0.0)
-        return 0.0, line.coords[0]
-    points = np.concatenate([shapely.get_coordinates(part) for part in parts])
-    vertices = shapely.points(points)
-    depths = np.maximum(shapely.distance(vertices, a.boundary), shapely.distance(vertices, b.boundary))
-    worst, widest = int(np.argmax(depths)), max(parts, key=_width)
-    if _width(widest) > depths[worst]:
-        return _width(widest), widest.representative_point().coords[0]
-    return float(depths[worst]), (float(points[worst, 0]), float(points[worst, 1]))
-
-
-def _width(region: Any) -> float:
-    return 2.0 * float(region.area) / float(region.length)
-
-
-def face_depth(face: Floats, edges: tuple[Edge, ...], shape: Any, allowed: float) -> tuple[float, Point]:
-    """How far a region, or another face, that straddles an open face reaches behind it, counting only what lies beside an edge.
-
-    0 for a touch, negative for none.
-    """
-    import shapely
-
-    line = _line(face)
-    if shape.is_empty or line.distance(shape) > allowed:
-        return -1.0, (0.0, 0.0)
-    best, place = 0.0, shapely.shortest_line(line, shape).coords[0]
-    if not line.intersects(shape):
-        return best, place
-    points = shapely.get_coordinates(shape)
-    for edge in edges:
-        if _line(chord_points(Loop((edge,), closed=False), COARSE)).distance(shape) > 2.0 * COARSE:
-            continue
-        beside, behind = _behind_arc(edge, points) if isinstance(edge, Arc) else _behind_line(edge, points)
-        behind = np.where(beside, behind, -math.inf)
-        worst = int(np.argmax(behind))
-        if behind[worst] > best:
-            best, place = float(behind[worst]), (float(points[worst, 0]), float(points[worst, 1]))
-    return best, place
-
-
-def _behind_line(face: Line, points: Floats) -> tuple[NDArray[np.bool_], Floats]:
-    """Which points lie beside the line, and how far each is behind it (m)."""
-    (tx, ty), (x, y) = face.tangent(0.0), points.T - np.array([[face.x0], [face.y0]])
-    along = x * tx + y * ty
-    return (along >= 0.0) & (along <= face.length), tx * y - ty * x
-
-
-def _behind_arc(face: Arc, points: Floats) -> tuple[NDArray[np.bool_], Floats]:
-    """The same for an arc: behind is inside the circle if it runs counter-clockwise, else outside."""
-    x, y = points.T - np.array([[face.x], [face.y]])
-    way = math.copysign(1.0, face.sweep)
-    turn = np.mod(way * (np.arctan2(y, x) - face.start_angle), TURN)
-    return turn <= abs(face.sweep), way * (face.radius - np.hypot(x, y))

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.force import Side
-from watchsim.mechanism.overlap import face_depth, regions_depth
+from watchsim.mechanism.overlap_depth import face_depth, regions_depth
 from watchsim.mechanism.polygons import chord_points, material, placed
 
 Array = NDArray[np.float64]

@@ -29,7 +29,7 @@ BLOCK = 32768  # rows, of which the longest moves of each coordinate are looked 
 FEW = 8  # coordinates whose longest moves are looked at in one block; of more, others in the next
 STRIDE = 0.05  # of the scene's size: moves between two rows are looked at in such steps
 MOST_STEPS = 7  # in one move
-TOGETHER = 32  # instants looked at together
+TOGETHER = 64  # instants looked at together
 EARLY = (0, 1, 4, 16, 64, 256, 1024)  # rows looked at in any case
 DEEPER = 1.25  # times the worst so far: what is measured next
 STEPPED = 5e-3  # of the size, that bodies may overlap where time is stepped (see analysis/doubts.py: the step is too coarse)
@@ -169,9 +169,9 @@ def chosen_moves(rows: Array, n: int, first: int) -> NDArray[np.int64]:
     chosen: list[int] = []
     for start in range(0, len(rows) - 1, BLOCK):
         number = (first + start) // BLOCK
-        some = slice(1, 1 + n) if n <= FEW else 1 + (number * FEW + np.arange(FEW)) % n
-        q = np.ascontiguousarray(rows[start : start + BLOCK + 1, some].T)
-        chosen += (start + np.argmax(np.abs(q[:, 1:] - q[:, :-1]), axis=1)).tolist()
+        for i in range(n) if n <= FEW else (number * FEW + np.arange(FEW)) % n:
+            q = rows[start : start + BLOCK + 1, 1 + i]
+            chosen.append(start + int(np.argmax(np.abs(q[1:] - q[:-1]))))
     chosen += [number - first for number in EARLY if 0 <= number - first < len(rows) - 1]
     places = np.unique(np.array(chosen, np.int64))
     return places[rows[places + 1, 0] > rows[places, 0]]

@@ -7,30 +7,24 @@ leaves no gap negative. What cannot be taken back is refused, as is what overlap
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.contact.cells import CellFinder
-from watchsim.contact.kinematics import Closed, closed_contacts
+from watchsim.contact.kinematics import Closed
 from watchsim.contact.lookup import cell_key, find_slot
-from watchsim.contact.outlines import every_contact
-from watchsim.contact.poses import poses
 from watchsim.mechanism.compile import Compiled
 from watchsim.mechanism.errors import SceneError
 from watchsim.mechanism.model import Model, frozen
 from watchsim.mechanism.overlap import Overlap, faults_at, meetings, overlap_faults, overlaps
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation.options import Options, options_for
+from watchsim.simulation.take_back import kinematics_at, overlapping_rows, taken_back_from
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 REACH = 1.5  # times the rounding: gaps of what touches as outlines do
-FURTHEST = 50.0  # times the rounding, that any point may move to take an overlap back; further, it is no rounding
-ROUNDS = 6  # of Newton's method; an overlap is smaller than all radii, so that two suffice
-IMMOBILE = 1e-9  # of the largest mobility of any contact: less is none
 
 
 def clear_start(scene: Scene, compiled: Compiled, finder: CellFinder, options: Options) -> tuple[Array, float]:
@@ -65,13 +59,13 @@ def _clear(
     near = REACH * max(met.allowed for met in touching)
     ids = _candidates(compiled.model, finder, q)
     model = compiled.model._replace(contacts=frozen(compiled.model.contacts[ids]))
-    closed = _kinematics(model, q)
+    closed = kinematics_at(model, q)
     if unknown := [met for met in touching if not _is_known(met, compiled, model, closed, near)]:
         return q, 0.0, [(met, _words(met, NO_GAP)) for met in unknown]
-    overlapping = _overlapping(model, closed, options, near, options.behind)
+    overlapping = overlapping_rows(model, closed, options, near, options.behind)
     if not len(overlapping):
         return q, 0.0, []
-    moved = _taken_back(model, q, options, near)
+    moved = taken_back_from(model, q, options, near)
     if moved is None:
         worst = max(touching, key=lambda met: met.depth)
         return q, 0.0, [(worst, _words(worst, WEDGED))]
@@ -81,7 +75,7 @@ def _clear(
 def warm_up(scene: Scene, model: Model) -> None:
     """Load or compile the kernel that a start in contact needs."""
     if meetings(scene):
-        _kinematics(model._replace(contacts=frozen(model.contacts[:0].copy())), np.zeros(len(model.coordinates)))
+        kinematics_at(model._replace(contacts=frozen(model.contacts[:0].copy())), np.zeros(len(model.coordinates)))
 
 
 NO_GAP = (
@@ -115,13 +109,6 @@ def _candidates(model: Model, finder: CellFinder, q: Array) -> Integers:
     return np.unique(np.concatenate(found))
 
 
-def _kinematics(model: Model, q: Array) -> Closed:
-    """Gaps and force directions of all contacts of the model at rest at q."""
-    closed = closed_contacts(len(model.contacts))
-    every_contact(model, q, np.zeros(len(q)), poses(len(model.bodies)), closed)
-    return closed
-
-
 def _is_known(met: Overlap, compiled: Compiled, model: Model, closed: Closed, near: float) -> bool:
     """Is there a contact for what touches as outlines? Its gap and place are known to within their rounding."""
     here = (model.contacts.group == met.contact) & (np.abs(closed.kin.g) <= near) & (closed.kin.margin >= -near)
@@ -131,85 +118,3 @@ def _is_known(met: Overlap, compiled: Compiled, model: Model, closed: Closed, ne
         if {(compiled.owners[end], compiled.layers[end]) for end in ends} == sides:
             return True
     return False
-
-
-def _overlapping(model: Model, closed: Closed, options: Options, near: float, least: float) -> Integers:
-    """Contacts within their primitives that overlap by more than `least`, up to `near`, without the backs of convex corners."""
-    gap = closed.kin.g
-    rows = np.flatnonzero((gap < -least) & (gap >= -near) & (closed.kin.margin >= -options.extent))
-    return np.array([k for k in rows if not _is_back(model, gap, closed.kin.margin >= -options.extent, int(k))], np.int64)
-
-
-def _is_back(model: Model, gap: Array, inside: NDArray[np.bool_], k: int) -> bool:
-    """True if the same circle lies less deep behind a neighbouring edge: near a sharp corner both faces are close."""
-    contact = model.contacts[k]
-    beside = set(_beside(model, int(contact.b)))
-    rivals = np.flatnonzero((model.contacts.a == contact.a) & inside & (gap > gap[k]))
-    return any(int(model.contacts[r].b) in beside for r in rivals)
-
-
-def _beside(model: Model, primitive: int) -> Iterator[int]:
-    """The edges next to one on the same outline, round a convex corner too."""
-    for side in ("before", "after"):
-        other = int(model.primitives[primitive][side])
-        if other >= 0:
-            yield other
-            beyond = int(model.primitives[other][side])
-            if beyond >= 0:
-                yield beyond
-
-
-def _taken_back(model: Model, q: Array, options: Options, near: float) -> Array | None:
-    """Coordinates close to q at which nothing overlaps; None where there are none."""
-    kept: set[int] = set()
-    root = np.sqrt(model.coordinates.mass)
-    moved = q.copy()
-    for _ in range(ROUNDS):
-        closed = _kinematics(model, moved)
-        overlapping = _overlapping(model, closed, options, near, 0.0)
-        if not len(overlapping) or -closed.kin.g[overlapping].min() <= 10.0 * options.gap_zero:
-            return moved if _furthest(model, moved - q, options.size) <= FURTHEST * near else None
-        # What touches from outside must not be pushed into.
-        close = (np.abs(closed.kin.g) <= near) & (closed.kin.margin >= -options.extent) & (closed.kin.g >= 0.0)
-        kept |= {*overlapping.tolist(), *np.flatnonzero(close).tolist()}
-        rows = np.array(sorted(kept))
-        change = _least_change(_directions(closed, rows, len(q)) / root, -closed.kin.g[rows])
-        if change is None:
-            return None
-        moved += change / root
-    return None
-
-
-def _directions(closed: Closed, rows: Integers, n: int) -> Array:
-    """(rows, n): how the gaps change with the coordinates."""
-    out = np.zeros((len(rows), n))
-    for place, row in enumerate(rows):
-        slots = closed.slots[row]
-        np.add.at(out[place], closed.coord[row, :slots], closed.w_N[row, :slots])
-    return out
-
-
-def _least_change(directions: Array, wanted: Array) -> Array | None:
-    """The shortest y with directions · y >= wanted, None where there is none (Lawson and Hanson 1974, chapter 23)."""
-    from scipy.optimize import nnls
-
-    size = np.linalg.norm(directions, axis=1)
-    free = size > IMMOBILE * size.max(initial=0.0)
-    if np.any(wanted[~free] > 0.0):
-        return None
-    scale = float(wanted.max())
-    rows, bounds = directions[free] / size[free, None], wanted[free] / size[free]
-    unit = scale / float(size.max())
-    system = np.vstack([rows.T, bounds[None] / unit])
-    target = np.append(np.zeros(directions.shape[1]), 1.0)
-    loads, _ = nnls(system, target)
-    left = system @ loads - target
-    if np.linalg.norm(left) < 1e-9:
-        return None
-    change: Array = -left[:-1] / left[-1] * unit
-    return change
-
-
-def _furthest(model: Model, change: Array, size: float) -> float:
-    """A bound of how far any point moves, m."""
-    return float(np.max(np.abs(change) / model.coordinates.scale * size, initial=0.0))
