@@ -18,7 +18,7 @@ from watchsim.simulation.stops import Stop
 from watchsim.simulation.trajectory import EVENT_DTYPE, Trajectory
 
 COUNTS = (*COUNT_NAMES, "cells", "cells_asked", "declared_pairs", "sweeps")
-LOOKED = ("worst_m", "resolution_m", "allowed_m", "looks")
+LOOKED = ("worst_m", "resolution_m", "allowed_m", "looks", "t_s", "x_mm", "y_mm")
 CAUSES = ("friction", "damping", "impacts", "stepping")
 
 
