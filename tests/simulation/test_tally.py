@@ -19,7 +19,8 @@ from watchsim.simulation.trajectory import Trajectory
 
 DURATION = 6.0
 CLOCKS = ("wall_s", "compile_s", "realtime_factor")
-OTHERWISE = (*CLOCKS, "kept", "counts")  # counts: how many cells were asked about depends on the runs before
+# counts: how many cells were asked about depends on the runs before; overlap: how often was looked, on the buffers
+OTHERWISE = (*CLOCKS, "kept", "counts", "overlap")
 
 
 @functools.cache

@@ -19,7 +19,7 @@ from watchsim.simulation.trajectory import EVENT_DTYPE, Pair, Trajectory
 
 FORMAT = 3
 SCALARS = ("stop_message", "simulated", "wall", "compile", "method", "tolerance", "step", "keep")
-NUMBERS = ("worst_penetration", "worst_residual", "energy", "counts", "sums")
+NUMBERS = ("worst_penetration", "worst_residual", "overlap", "energy", "counts", "sums")
 
 
 def write_trajectory(run: Trajectory, path: Path) -> None:
@@ -60,6 +60,7 @@ def read_trajectory(path: Path, scene: Scene) -> Trajectory:
             f"{', '.join(sorted(moving)) or 'nothing'} can move: the two do not belong together"
         )
     columns["events"] = columns["events"].astype(EVENT_DTYPE)
+    header.setdefault("overlap", {})  # of files written before it was looked for
     kept = {name: header[name] for name in (*SCALARS, *NUMBERS)}
     pairs = tuple(Pair(**pair) for pair in header["pairs"])
     spans = tuple((start, end) for start, end in header["spans"])

@@ -100,6 +100,18 @@ def _contacts(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     depth = numbers["worst_penetration_m"]
     deep = f"by up to {_metric(depth, 'm', 2)}" if depth >= NO_PENETRATION else f"by less than {1e9 * NO_PENETRATION:g} nm"
     yield "penetration", f"bodies overlapped {deep}"
+    if numbers["overlap"].get("looks"):
+        yield "", _looked(numbers["overlap"])
+
+
+def _looked(overlap: Mapping[str, Any]) -> str:
+    """What looking at the outlines themselves has found."""
+    looks = f"{overlap['looks']} {'look' if overlap['looks'] == 1 else 'looks'} at the outlines themselves"
+    if overlap["between"] is None:
+        return f"{looks} found no overlap of {_metric(overlap['resolution_m'], 'm', 2)} or more"
+    first, second = overlap["between"]
+    place = f"at ({_signed(overlap['x_mm'], 4)}, {_signed(overlap['y_mm'], 4)}) mm"
+    return f"{looks}: {first} and {second} by {_metric(overlap['worst_m'], 'm', 2)} at {overlap['t_s']:.6g} s, {place}"
 
 
 def _energy(run: Trajectory) -> Iterator[tuple[str, str]]:

@@ -18,6 +18,7 @@ from watchsim.simulation.stops import Stop
 from watchsim.simulation.trajectory import EVENT_DTYPE, Trajectory
 
 COUNTS = (*COUNT_NAMES, "cells", "cells_asked", "declared_pairs", "sweeps")
+LOOKED = ("worst_m", "resolution_m", "allowed_m", "looks", "t_s", "x_mm", "y_mm")
 CAUSES = ("friction", "damping", "impacts", "stepping")
 
 
@@ -50,4 +51,5 @@ def _not_begun(scene: Scene) -> Trajectory:
         stop=Stop.DURATION,
         energy={"dissipated": dict.fromkeys(CAUSES, 0.0)},
         counts=dict.fromkeys(COUNTS, 0),
+        overlap={**dict.fromkeys(LOOKED, 0.0), "between": None},
     )

@@ -42,8 +42,9 @@ def summary(run: Trajectory) -> dict[str, Any]:
     Besides the promised names: `frequency_hz`, `vph`, `window_s` (over which was averaged), `beats` (half swings in all),
     `whole_run` (mean, spread and extremes over all of them, see analysis/whole_run.py), `kept` (all, events or statistics),
     `missed_beats`, `stopped` and `stopped_message` (the watch no longer ticks), `scene_file`, `stop_message`,
-    `events_by_kind`, `counts`, `step_s` (of a method with fixed steps), `worst_complementarity_residual` (worst violation of
-    a complementarity condition, as a share of the problem's largest term), `warnings` (sentences, see analysis/doubts.py).
+    `events_by_kind`, `counts`, `overlap` (what looking at the outlines themselves found, see simulation/overlap_watch.py),
+    `step_s` (of a method with fixed steps), `worst_complementarity_residual` (worst violation of a complementarity condition,
+    as a share of the problem's largest term), `warnings` (sentences, see analysis/doubts.py).
     """
     numbers: dict[str, Any] = {**_about(run), "bodies": _bodies(run), **_counts(run), **_timing(run)}
     numbers["expect"] = [judge(expectation, numbers) for expectation in run.scene.expect]
@@ -107,6 +108,8 @@ def _counts(run: Trajectory) -> dict[str, Any]:
         "forces_unique": run.counts.get("redundant_sets", 0) == 0,
         "counts": dict(run.counts),
         "worst_penetration_m": run.worst_penetration,
+        "worst_overlap_m": run.worst_overlap,
+        "overlap": dict(run.overlap),
         "worst_complementarity_residual": run.worst_residual,
         "energy": {**LEDGER, **run.energy},
     }

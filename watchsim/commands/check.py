@@ -20,8 +20,10 @@ def options(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from watchsim.commands.scenes import load_scene
     from watchsim.contact.counts import modelled_pairs
+    from watchsim.drawing.findings import Finding
     from watchsim.mechanism.check import check_report, check_text
     from watchsim.mechanism.compile import compile_scene
+    from watchsim.simulation.start import refusals
 
     if args.png:
         check_picture(args.png, args.scene)
@@ -29,6 +31,9 @@ def run(args: argparse.Namespace) -> int:
     compiled = compile_scene(scene)
     pairs = modelled_pairs(compiled, [body.name for body in scene.bodies])
     report = check_report(scene, pairs.counts)
+    for met, words in refusals(scene, compiled):
+        x, y = (1e3 * value for value in met.place)
+        report["findings"].append(Finding("overlap", "error", words, "", x_mm=x, y_mm=y).as_dict())
     if args.png:
         from watchsim.render.still import still
 

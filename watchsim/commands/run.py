@@ -195,6 +195,9 @@ def status(run: Trajectory, summary: dict[str, Any]) -> int:
     from watchsim.analysis.headlines import expected_text
     from watchsim.simulation.stops import Stop
 
+    if run.stop == Stop.OVERLAP:
+        say(f"The result is wrong: {run.stop_message}. It is kept, to be looked at.")
+        return GAVE_UP
     if run.stop.gave_up:
         say(f"The solver gave up: {run.stop_message}. What was simulated up to there is kept.")
         if hint := _unlike(run.scene):

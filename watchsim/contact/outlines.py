@@ -98,7 +98,7 @@ def kinematics(a: Outline, pose_a: Vector, velocity_a: Vector, b: Outline, pose_
     count = len(model.contacts)
     closed = closed_contacts(count)
     q, u = np.array((*pose_a, *pose_b), float), np.array((*velocity_a, *velocity_b), float)
-    _every_contact(model, q, u, poses(2), closed)
+    every_contact(model, q, u, poses(2), closed)
     out = np.zeros(count, CONTACT_ROW)
     first, last = model.primitives[model.contacts.a], model.primitives[model.contacts.b]
     on_a = first.body == 0
@@ -122,7 +122,7 @@ def kinematics(a: Outline, pose_a: Vector, velocity_a: Vector, b: Outline, pose_
 
 
 @entry
-def _every_contact(model, q, u, pose, out_closed):
+def every_contact(model, q, u, pose, out_closed):
     """Kinematics of all contacts, row by row."""
     place(model, q, u, pose)
     for k in range(len(model.contacts)):

@@ -1,13 +1,14 @@
-"""Which bodies stand inside each other at the start?
+"""Which bodies touch at the start, and which stand inside each other?
 
-Contact laws push bodies apart from a touch, not out of each other: a scene must begin with all declared pairs open or just
-touching. Outlines are compared as polylines, so depths below the polyline's own error are not told from a touch.
+Contact laws push bodies apart from a touch, not out of each other: a scene must begin with all declared pairs open or
+touching. Numbers of drawings and scenes are rounded: what overlaps by no more than `ROUNDING` touches, what overlaps by more is
+a fault. Outlines are compared as polygons of chords that are fine where the two come close.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,28 +16,37 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.geometry.loop import Loop
-from watchsim.geometry.polyline import polyline
-from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point
-from watchsim.mechanism.body import Body
-from watchsim.mechanism.carry import at_start
+from watchsim.geometry.primitives import Edge, Point
+from watchsim.mechanism.carry import start_poses
 from watchsim.mechanism.errors import Fault
 from watchsim.mechanism.force import Side
 from watchsim.mechanism.locate import key_lines
+from watchsim.mechanism.overlap_depth import COARSE, face_depth, face_line, regions_depth
+from watchsim.mechanism.polygons import chord_points, material, placed, refined_points
 from watchsim.mechanism.scene import Scene
 
 Floats = NDArray[np.float64]
-DEVIATION = 0.5e-9  # m, of the polylines; too large: resting contacts are refused; too small: slow
-ALLOWED = 1e-9 + 2.0 * DEVIATION  # m; both outlines may deviate
+Pose = tuple[float, float, float]
+# m. Six decimals of a millimetre place a point within 0.71 nm, two outlines within 1.41 nm of each other; position and angle of
+# a body add their own. Too large: a contact begins where none was drawn; too small: resting contacts are refused.
+ROUNDING = 2e-9
+DEVIATION = 0.1e-9  # m, of chords near the other outline; too large: depths are uncertain; too small: slow
+SIDES = np.array([-1.0, -1.0, 1.0, 1.0])  # what widens a box (xmin, ymin, xmax, ymax)
+CLOSE = 1e-6  # m, between chords of two outlines that count as near
 
 
 @dataclass(frozen=True, slots=True)
 class Overlap:
-    """The deepest point of an overlap of contact number `contact`: depth (m), place (m, movement coordinates)."""
+    """Where two layers of contact number `contact` overlap most: depth (m), place (m, in the movement); depth 0: they touch.
+
+    `allowed` is the depth up to which they count as touching: the rounding of the drawing and the error of the chords.
+    """
 
     contact: int
     sides: tuple[Side, Side]
     depth: float
     place: Point
+    allowed: float = ROUNDING
 
     def __str__(self) -> str:
         first, second = self.sides
@@ -45,108 +55,129 @@ class Overlap:
         return f"{first.body} and {second.body} overlap by {1e3 * self.depth:.3g} mm at the start, at ({x}, {y}) mm ({layers})"
 
 
+_last: tuple[Scene | None, tuple[Overlap, ...]] = (None, ())
+
+
+def meetings(scene: Scene) -> tuple[Overlap, ...]:
+    """Every two layers of a declared contact that touch or overlap at the start. The last scene's are remembered."""
+    global _last  # noqa: PLW0603  # a command checks the scene that it then simulates
+    if _last[0] is not scene:
+        _last = scene, tuple(_meetings(scene))
+    return _last[1]
+
+
 def overlaps(scene: Scene) -> list[Overlap]:
-    """The deepest overlap of every declared contact whose outlines overlap by more than about a nanometre at the start."""
-    found, scene = [], at_start(scene)
-    for i, contact in enumerate(scene.contacts):
-        sides = [list(_layers(scene.body(side.body), side)) for side in contact.sides]
-        pairs = ((a, b) for a in sides[0] for b in sides[1])
-        deepest = max((_deepest(i, a, b) for a, b in pairs), key=lambda overlap: overlap.depth, default=None)
-        if deepest and deepest.depth > ALLOWED:
-            found.append(deepest)
-    return found
+    """The deepest overlap of every declared contact whose outlines overlap at the start by more than rounding."""
+    deepest: dict[int, Overlap] = {}
+    for met in meetings(scene):
+        if met.depth > met.allowed and (met.contact not in deepest or met.depth > deepest[met.contact].depth):
+            deepest[met.contact] = met
+    return list(deepest.values())
 
 
 def overlap_faults(scene: Scene) -> list[Fault]:
-    """The same as faults of the scene file, at the position of a body that can be moved."""
-    lines = key_lines(scene.path.read_text(encoding="utf-8-sig")) if scene.path and scene.path.is_file() else {}
+    """The same as faults of the scene file."""
+    return faults_at(scene, ((overlap, f"{overlap}. Move or turn one of them") for overlap in overlaps(scene)))
+
+
+def faults_at(scene: Scene, found: Iterable[tuple[Overlap, str]]) -> list[Fault]:
+    """Words about overlaps as faults of the scene file, at the position of a body that can be moved."""
+    found = list(found)
+    lines = key_lines(scene.path.read_text(encoding="utf-8-sig")) if found and scene.path and scene.path.is_file() else {}
     faults = []
-    for overlap in overlaps(scene):
+    for overlap, words in found:
         moving = next((side.body for side in overlap.sides if scene.body(side.body).motion != "fixed"), overlap.sides[0].body)
         key = f"bodies.{moving}.position"
         line = lines.get(key) or lines.get(f"bodies.{moving}")
         place = f"{scene.path or 'scene'}:{line}" if line else str(scene.path or "scene")
         shown = f"`watchsim check {scene.path} --png FILE` shows where" if scene.path else "`watchsim check` shows where"
-        faults.append(Fault(key, f"{overlap}. Move or turn one of them; {shown}", place=place))
+        faults.append(Fault(key, f"{words}; {shown}", place=place))
     return faults
 
 
-@dataclass(frozen=True, slots=True)
+def _meetings(scene: Scene) -> Iterator[Overlap]:
+    poses = start_poses(scene)
+    layers: dict[Side, _Layer] = {}
+    for i, contact in enumerate(scene.contacts):
+        sides = []
+        for side in contact.sides:
+            body = scene.body(side.body)
+            names = (side.layer,) if side.layer else body.layers
+            for own in (Side(body.name, name) for name in names):
+                if own not in layers:
+                    loops = tuple(loop for loop in body.loops if loop.layer == own.layer and loop.edges)
+                    layers[own] = _Layer(own, loops, poses[body.name])
+            sides.append([layers[Side(body.name, name)] for name in names])
+        for a in sides[0]:
+            for b in sides[1]:
+                met = _meeting(i, a, b)
+                if met is not None:
+                    yield met
+
+
 class _Layer:
-    """The outlines of one layer where they stand at the start: a region of material and open faces."""
+    """The outlines of one layer where they stand at the start: their chords, and open faces."""
 
-    side: Side
-    region: Any  # a shapely geometry
-    faces: tuple[Edge, ...]
+    def __init__(self, side: Side, loops: tuple[Loop, ...], pose: Pose) -> None:
+        self.side, self.loops, self.pose = side, loops, pose
+        self.points = [placed(chord_points(loop, COARSE), pose) for loop in loops]
+        low = [np.minimum(points[1:], points[:-1]) for points in self.points]
+        high = [np.maximum(points[1:], points[:-1]) for points in self.points]
+        none = np.zeros((0, 2))
+        # Boxes around the chords, wide enough for their arcs.
+        self.boxes = np.hstack([np.concatenate([none, *low]) - COARSE, np.concatenate([none, *high]) + COARSE])
+        ends = self.boxes[:, :2].min(axis=0, initial=math.inf), self.boxes[:, 2:].max(axis=0, initial=-math.inf)
+        self.box: Floats = np.concatenate(ends)
+
+    def finely(self, near: NDArray[np.bool_]) -> tuple[Any, list[tuple[Floats, tuple[Edge, ...]]], float]:
+        """(region of material, open faces as points and edges, largest deviation of the chords marked `near`)."""
+        import shapely
+
+        rings, faces, worst, at = [], [], 0.0, 0
+        for loop, coarse in zip(self.loops, self.points, strict=True):
+            marked = near[at : at + len(coarse) - 1]
+            at += len(coarse) - 1
+            points, error = refined_points(loop, COARSE, marked, DEVIATION) if marked.any() else (None, 0.0)
+            points, worst = coarse if points is None else placed(points, self.pose), max(worst, error)
+            if loop.closed:
+                rings.append((points, loop.hole))
+            else:
+                faces.append((points, loop.moved(self.pose[2], self.pose[:2]).edges))
+        return shapely.union_all(material(rings)), faces, worst
 
 
-def _layers(body: Body, side: Side) -> Iterator[_Layer]:
-    for layer in (side.layer,) if side.layer else body.layers:
-        loops = [loop.moved(body.angle, body.position) for loop in body.loops if loop.layer == layer]
-        faces = tuple(edge for loop in loops if not loop.closed for edge in loop.edges)
-        yield _Layer(Side(body.name, layer), _region([loop for loop in loops if loop.closed]), faces)
+def _meeting(contact: int, a: _Layer, b: _Layer) -> Overlap | None:
+    """The deepest point at which two layers touch or overlap; None where they are apart."""
+    if not (len(a.boxes) and len(b.boxes)) or not _meet(a.box[None], b.box[None] + ROUNDING * SIDES)[0]:
+        return None
+    (region_a, faces_a, error_a), (region_b, faces_b, error_b) = (
+        layer.finely(near) for layer, near in zip((a, b), _near(a, b), strict=True)
+    )
+    allowed = ROUNDING + error_a + error_b
+    found = [regions_depth(region_a, region_b, allowed)]
+    for faces, region, others in ((faces_a, region_b, faces_b), (faces_b, region_a, faces_a)):
+        for points, edges in faces:
+            found += [
+                face_depth(points, edges, shape, allowed) for shape in (region, *(face_line(other) for other, _ in others))
+            ]
+    depth, place = max(found)
+    return Overlap(contact, (a.side, b.side), depth, place, allowed) if depth >= 0.0 else None
 
 
-def _region(loops: list[Loop]) -> Any:
-    """Outer outlines without the holes that lie directly in them."""
+def _meet(boxes: Floats, box: Floats) -> NDArray[np.bool_]:
+    """Which boxes (xmin, ymin, xmax, ymax) meet the other one."""
+    return np.asarray(((boxes[:, :2] <= box[:, 2:]) & (boxes[:, 2:] >= box[:, :2])).all(axis=1))
+
+
+def _near(a: _Layer, b: _Layer) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Which chords of either layer come close to one of the other."""
     import shapely
 
-    outers = [shapely.Polygon(polyline(loop, DEVIATION)) for loop in loops if not loop.hole]
-    holes: list[list[NDArray[np.float64]]] = [[] for _ in outers]
-    for loop in loops:
-        if loop.hole:
-            points = polyline(loop, DEVIATION)
-            around = [i for i, outer in enumerate(outers) if outer.covers(shapely.Polygon(points).representative_point())]
-            if around:
-                holes[min(around, key=lambda i: outers[i].area)].append(points)
-    pierced = [shapely.Polygon(outer.exterior, inner) for outer, inner in zip(outers, holes, strict=True)]
-    return shapely.union_all([polygon if polygon.is_valid else polygon.buffer(0.0) for polygon in pierced])
-
-
-def _deepest(contact: int, a: _Layer, b: _Layer) -> Overlap:
-    candidates = [_regions_depth(a.region, b.region)]
-    candidates += [_face_depth(face, b.region) for face in a.faces] + [_face_depth(face, a.region) for face in b.faces]
-    depth, place = max(candidates)
-    return Overlap(contact, (a.side, b.side), depth, place)
-
-
-def _regions_depth(a: Any, b: Any) -> tuple[float, Point]:
-    """How far the boundary of one region reaches into the other, and where."""
-    import shapely
-
-    common = shapely.intersection(a, b)
-    if common.area == 0.0:
-        return 0.0, (0.0, 0.0)
-    points = shapely.get_coordinates(common)
-    vertices = shapely.points(points)
-    depths = np.maximum(shapely.distance(vertices, a.boundary), shapely.distance(vertices, b.boundary))
-    worst = int(np.argmax(depths))
-    return float(depths[worst]), (float(points[worst, 0]), float(points[worst, 1]))
-
-
-def _face_depth(face: Edge, region: Any) -> tuple[float, Point]:
-    """How far a region that straddles an open face reaches behind it, counting only what lies beside the face."""
-    import shapely
-
-    if not region.intersects(shapely.LineString(polyline(Loop((face,), closed=False), DEVIATION))):
-        return 0.0, (0.0, 0.0)
-    points = shapely.get_coordinates(region)
-    beside, behind = _behind_arc(face, points) if isinstance(face, Arc) else _behind_line(face, points)
-    behind = np.where(beside, behind, -math.inf)
-    worst = int(np.argmax(behind))
-    return max(float(behind[worst]), 0.0), (float(points[worst, 0]), float(points[worst, 1]))
-
-
-def _behind_line(face: Line, points: Floats) -> tuple[NDArray[np.bool_], Floats]:
-    """Which points lie beside the line, and how far each is behind it (m)."""
-    (tx, ty), (x, y) = face.tangent(0.0), points.T - np.array([[face.x0], [face.y0]])
-    along = x * tx + y * ty
-    return (along >= 0.0) & (along <= face.length), tx * y - ty * x
-
-
-def _behind_arc(face: Arc, points: Floats) -> tuple[NDArray[np.bool_], Floats]:
-    """The same for an arc: behind is inside the circle if it runs counter-clockwise, else outside."""
-    x, y = points.T - np.array([[face.x], [face.y]])
-    way = math.copysign(1.0, face.sweep)
-    turn = np.mod(way * (np.arctan2(y, x) - face.start_angle), TURN)
-    return turn <= abs(face.sweep), way * (face.radius - np.hypot(x, y))
+    marks = np.zeros(len(a.boxes), bool), np.zeros(len(b.boxes), bool)
+    wide = a.boxes + CLOSE * SIDES
+    inside_a, inside_b = np.flatnonzero(_meet(wide, b.box[None])), np.flatnonzero(_meet(b.boxes, a.box[None] + CLOSE * SIDES))
+    if len(inside_a) and len(inside_b):
+        tree = shapely.STRtree(shapely.box(*wide[inside_a].T))
+        found_b, found_a = tree.query(shapely.box(*b.boxes[inside_b].T))
+        marks[0][inside_a[found_a]], marks[1][inside_b[found_b]] = True, True
+    return marks

@@ -28,7 +28,10 @@ from watchsim.simulation.interrupts import held_interrupts
 from watchsim.simulation.kept import Kept, tail_length
 from watchsim.simulation.methods import EVENT_DRIVEN
 from watchsim.simulation.options import Options, options_for
+from watchsim.simulation.overlap_watch import OverlapWatch
 from watchsim.simulation.saved import SavedState, save_state
+from watchsim.simulation.start import clear_start
+from watchsim.simulation.start import warm_up as warm_up_start
 from watchsim.simulation.state import (
     COUNT_NAMES,
     DAMPING,
@@ -79,9 +82,17 @@ class Run:
         # A step wider, for the rows next to a window.
         windows = np.array(self.kept.windows, float).reshape(-1, 2) + self.options.max_step * np.array([-1.0, 1.0])
         self.record = new_record(model, ROWS + ROWS_PER_STEP, EVENTS + EVENTS_PER_CONTACT * room_for(model), windows)
+        self.watch = OverlapWatch(scene, compiled, self.method, self.kept.windows)
         self.stored_at_start = stored_energy(model, self.state.q, self.state.u)
         self.saved: SavedState | None = None
         self._parts_before = 0  # what was flushed before the state was saved
+
+    def begin(self) -> None:
+        """Begin at the scene's start; SceneError where bodies overlap there (see `start.clear_start`)."""
+        q, taken_back = clear_start(self.scene, self.compiled, self.finder, self.options)
+        if taken_back > 0.0:
+            self.state.q[:], self.state.worst[0] = q, taken_back
+            self.stored_at_start = stored_energy(self.compiled.model, q, self.state.u)
 
     def begin_from(self, saved: SavedState) -> None:
         """Take up a saved state; ValueError where it is not one of this model with these settings."""
@@ -92,7 +103,7 @@ class Run:
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Everything the future depends on, besides the model and the settings."""
-        return {**self.state._asdict(), "worst_residual": self._worst_residual()}
+        return {**self.state._asdict(), "worst_residual": self._worst_residual(), "overlap": self.watch.found}
 
     def _worst_residual(self) -> NDArray[np.float64]:
         """(1,): the worst violation of a complementarity condition so far."""
@@ -106,6 +117,7 @@ class Run:
     def save(self) -> SavedState:
         """The state now, with the sums over all events so far."""
         self.flush()
+        self.watch.see()
         self._parts_before = self.kept.parts
         return save_state(self.compiled, self.settings(), self.arrays(), self.stored_at_start, self.tally.arrays())
 
@@ -113,6 +125,7 @@ class Run:
         """Empty the buffers: count the events, keep what the recording wants."""
         rows, events = self.record.used
         self.tally.fold(self.record.events[:events])
+        self.watch.see_rows(self.record.rows[:rows])
         self.kept.flush(self.record.rows[:rows], self.record.events[:events])
         self.record.used[:] = 0
 
@@ -120,6 +133,7 @@ class Run:
         """Load or compile the kernels: a call that returns at once because it has no room to record."""
         nowhere = new_record(self.compiled.model, 0, 0, self.record.windows)
         self._advance(np.zeros(3), nowhere)
+        warm_up_start(self.scene, self.compiled.model)
 
     def _advance(self, until: NDArray[np.float64], record: Any) -> Stop:
         code = advance(self.compiled.model, self.finder.cells, self.state, self.options, until, self.scratch, record)
@@ -139,15 +153,24 @@ class Run:
         if self.saved is None:
             self.saved = self.save()
         self.flush()
-        return stop
+        self._look()
+        return Stop.OVERLAP if stop in (Stop.DURATION, Stop.INTERRUPTED) and self._overlaps() else stop
+
+    def _look(self) -> None:
+        """Look at the state now for bodies inside each other."""
+        self.watch.see((self.state.clock[:1].copy(), self.state.q[None].copy()))
+
+    def _overlaps(self) -> bool:
+        return self.watch.fails(float(self.state.worst[0]))
 
     def _slices(self, duration: float, progress: Progress | None, interrupted: Callable[[], bool]) -> Stop:
         """Slice after slice of about `SLICE_WALL`, with what has to be done between them."""
         length = 1e-5 * duration  # grows tenfold at most: a long slice would be deaf
         until = np.array([0.0, duration, 0.0])
+        look = self.watch.next_look(float(self.state.clock[0]))
         while True:
-            start = time.perf_counter()
-            until[0] = min(duration, self.state.clock[0] + length)
+            start, begun = time.perf_counter(), float(self.state.clock[0])
+            until[0] = min(duration, begun + length, look)
             stop = self._advance(until, self.record)
             if stop == Stop.CELL_UNKNOWN:
                 self._learn()
@@ -160,7 +183,13 @@ class Run:
                 return stop
             else:
                 taken = time.perf_counter() - start
-                length = min(max(length * SLICE_WALL / max(taken, 1e-4), 1e-9 * duration), 10.0 * length)
+                done = float(self.state.clock[0]) - begun
+                length = min(max(done * SLICE_WALL / max(taken, 1e-4), 1e-9 * duration), 10.0 * length)
+            if self.state.clock[0] >= look:
+                self._look()
+                look = self.watch.next_look(float(self.state.clock[0]))
+            if self._overlaps():
+                return Stop.OVERLAP
             if progress is not None:
                 progress(float(self.state.clock[0]), duration)
             if interrupted():
@@ -178,6 +207,7 @@ class Run:
         compiled = self.compiled
         rows, events = self._all_kept()
         before = [len(part) for part in self._all_kept(self._parts_before)]
+        words = f": {self.watch.words()}" if stop == Stop.OVERLAP else ""
         saved = None if self.saved is None else dataclasses.replace(self.saved, rows=before[0], events=before[1])
         return Trajectory(
             scene=self.scene,
@@ -189,7 +219,7 @@ class Run:
             events=_as_told(events, compiled),
             pairs=self.pairs,
             stop=stop,
-            stop_message=f"t = {self.state.clock[0]:.9g} s: {stop.sentence}",
+            stop_message=f"t = {self.state.clock[0]:.9g} s: {stop.sentence}{words}",
             simulated=float(self.state.clock[0]),
             wall=wall,
             compile=compile_time,
@@ -197,6 +227,7 @@ class Run:
             tolerance=self.tolerance,
             worst_penetration=float(self.state.worst[0]),
             worst_residual=float(self._worst_residual()[0]),
+            overlap=self.watch.result(float(self.state.worst[0])),
             energy=self._energy(),
             counts=self._counts(),
             step=self.step,

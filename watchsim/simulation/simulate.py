@@ -40,7 +40,8 @@ def simulate(
               `end_state` (the result holds what follows). The same bits come out as from one run, whatever was cut where.
 
     KeyboardInterrupt ends the run and keeps what was simulated. A solver that cannot go on does not raise: see
-    `Trajectory.stop`. ValueError for a bad argument, and for a `start` of another scene or other settings.
+    `Trajectory.stop`. ValueError for a bad argument, and for a `start` of another scene or other settings; SceneError where
+    bodies overlap at the start by more than the rounding of drawings.
     """
     begun = time.perf_counter()
     duration = scene.duration if duration is None else _seconds("duration", duration)
@@ -60,6 +61,8 @@ def simulate(
     ready = time.perf_counter()
     run.warm_up()
     warm = time.perf_counter()
+    if start is None:
+        run.begin()
     stop = run.to_the_end(duration, progress)
     wall = time.perf_counter() - warm + ready - begun
     made = run.trajectory(stop, wall, compile_time=warm - ready)

@@ -20,6 +20,7 @@ class Stop(IntEnum):
     NOT_FINITE = 9
     TOO_MANY_CONTACTS = 10
     LAST_STEP = 11
+    OVERLAP = 20
 
     @property
     def sentence(self) -> str:
@@ -27,8 +28,8 @@ class Stop(IntEnum):
 
     @property
     def gave_up(self) -> bool:
-        """True when the solver could not go on (exit status 3)."""
-        return Stop.TOO_MANY_EVENTS <= self <= Stop.TOO_MANY_CONTACTS
+        """True when the solver could not go on, or its result is known to be wrong (exit status 3)."""
+        return Stop.TOO_MANY_EVENTS <= self <= Stop.TOO_MANY_CONTACTS or self == Stop.OVERLAP
 
 
 _SENTENCES = {
@@ -47,4 +48,5 @@ _SENTENCES = {
     Stop.STEP_TOO_SMALL: "the step became too small for the asked tolerance",
     Stop.NOT_FINITE: "a coordinate or velocity is no longer a finite number",
     Stop.TOO_MANY_CONTACTS: "more contacts closed at once than there is room for",
+    Stop.OVERLAP: "bodies stood inside each other, so that the motion is wrong from there on at the latest",
 }

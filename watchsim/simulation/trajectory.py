@@ -56,6 +56,8 @@ class Trajectory:
     `energy` holds joules: in_J, stored_J, dissipated {cause: J}, residual_J.
     `counts` holds events, impacts, steps, lcp_failures and the like; `worst_penetration` is metres;
     `worst_residual` the worst violation of a complementarity condition, as a share of the problem's largest term.
+    `overlap` is what looking at the outlines themselves has found, apart from all gap functions (see
+    simulation/overlap_watch.py): worst_m, between, t_s, x_mm, y_mm, looks, and what was looked for and allowed.
     `keep` and `spans` say what was kept (see mechanism/recording.py): `spans` the stretches of time (s) with rows, () for a
     run that was made by hand. `sums` holds sums over all events of the whole run, kept or not (see simulation/tally.py).
     `failure` is the complementarity problem on which the solver gave up (see simulation/failure.py), None otherwise.
@@ -78,6 +80,7 @@ class Trajectory:
     tolerance: float = 1e-9
     worst_penetration: float = 0.0
     worst_residual: float = 0.0
+    overlap: dict[str, Any] = field(default_factory=dict)
     energy: dict[str, Any] = field(default_factory=dict)
     counts: dict[str, int] = field(default_factory=dict)
     step: float | None = None  # s, of a method with fixed steps
@@ -88,6 +91,11 @@ class Trajectory:
     sums: dict[str, Any] = field(default_factory=dict)
     end_state: SavedState | None = field(default=None, repr=False, compare=False)  # to go on from, see `simulate`
     failure: dict[str, Any] | None = field(default=None, repr=False)
+
+    @property
+    def worst_overlap(self) -> float:
+        """The deepest overlap of bodies that looking at their outlines has found, m; 0: none as deep as the resolution."""
+        return float(self.overlap.get("worst_m", 0.0))
 
     @cached_property
     def _noise(self) -> Array:
@@ -114,7 +122,7 @@ class Trajectory:
         last = h <= 0.0  # two rows of one instant at the very end: take the one after the impact
         s = np.where(last, 1.0, np.clip((times - self.t[i])[:, None] / np.where(last, 1.0, h), 0.0, 1.0))
         h = np.where(last, 1.0, h)
-        q, u = _between(s, h, (self.q[i], self.u[i], self.a[i]), (self.q[j], self.u[j], self.a[j]), self._noise)
+        q, u = between(s, h, (self.q[i], self.u[i], self.a[i]), (self.q[j], self.u[j], self.a[j]), self._noise)
         return np.where(last, self.q[j], q), np.where(last, self.u[j], u)
 
     def pose(self, body: str, t: float) -> tuple[float, float, float]:
@@ -134,7 +142,7 @@ class Trajectory:
         return x, y, angle
 
 
-def _between(s: Array, h: Array, left: tuple[Array, ...], right: tuple[Array, ...], noise: Array) -> tuple[Array, Array]:
+def between(s: Array, h: Array, left: tuple[Array, ...], right: tuple[Array, ...], noise: Array) -> tuple[Array, Array]:
     """q and u at fractions `s` of intervals of length h with (q, u, a) at both ends; `noise` is the error of q.
 
     The derivative of the quintic in q is the cubic in u and a bump, which makes up for the way that the cubic misses. Over a
