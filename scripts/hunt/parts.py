@@ -30,9 +30,7 @@ def pivoted(
     if not inertia:
         found = mass_properties([loop], 1.0, 1.0)
         inertia, centre = found.inertia * mass / found.mass, found.centre
-    return Body(
-        name, "pivot", position, angle, (spin,), mass=mass, inertia=inertia, centre_of_mass=centre, loops=(loop,)
-    )
+    return Body(name, "pivot", position, angle, (spin,), mass=mass, inertia=inertia, centre_of_mass=centre, loops=(loop,))
 
 
 def sliding(name: str, loop: Loop, position: Point, direction: float, speed: float, mass: float, angle: float = 0.0) -> Body:
@@ -43,7 +41,12 @@ def sliding(name: str, loop: Loop, position: Point, direction: float, speed: flo
 
 
 def free(
-    name: str, loop: Loop, position: Point, mass: float, angle: float = 0.0, velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    name: str,
+    loop: Loop,
+    position: Point,
+    mass: float,
+    angle: float = 0.0,
+    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0),
 ) -> Body:
     """A plate whose outline stands where it would with its origin at `position`."""
     found = mass_properties([loop], 1.0, 1.0)

@@ -44,9 +44,7 @@ def blade(dice: Dice) -> Scene:
         ),
     ]
     springs = (Spring("balance", dice.log(1e-7, 1e-5)),) if dice.chance(0.3) else ()
-    return scene(
-        dice, "blade", bodies, 0.015, torques=(Torque("wheel", -dice.log(1e-7, 1e-4)),), springs=springs
-    )
+    return scene(dice, "blade", bodies, 0.015, torques=(Torque("wheel", -dice.log(1e-7, 1e-4)),), springs=springs)
 
 
 def cam(dice: Dice) -> Scene:
@@ -104,7 +102,14 @@ def ratchet(dice: Dice) -> Scene:
     lift = dice.uniform(0.15, 0.5)
     place = (radius * math.sin(0.2) + long * math.cos(lift), radius * math.cos(0.2) + 2.5 * MM + long * math.sin(lift) * 0.2)
     bodies = [
-        pivoted("wheel", wheel, (0.0, 0.0), dice.uniform(0.0, 1.0), dice.sign() * dice.uniform(0.0, 20.0), inertia=dice.log(1e-7, 1e-5)),
+        pivoted(
+            "wheel",
+            wheel,
+            (0.0, 0.0),
+            dice.uniform(0.0, 1.0),
+            dice.sign() * dice.uniform(0.0, 20.0),
+            inertia=dice.log(1e-7, 1e-5),
+        ),
         pivoted("click", click, place, -lift, inertia=dice.log(1e-8, 1e-7)),
     ]
     torques = (Torque("wheel", dice.sign() * dice.log(1e-4, 1e-2)), Torque("click", dice.log(1e-4, 1e-2)))
@@ -138,7 +143,10 @@ def anchor(dice: Dice) -> Scene:
         points += turned_points([(3.8 * MM, -0.6 * MM), (radius, 0.0), (3.8 * MM, 0.2 * MM)], a)
     span, height = (int(teeth / 3.0) + 0.5) * TURN / teeth, 1.25 * radius
     half = 0.5 * span
-    left, right = (-(radius * math.sin(half)), radius * math.cos(half) - height), (radius * math.sin(half), radius * math.cos(half) - height)
+    left, right = (
+        (-(radius * math.sin(half)), radius * math.cos(half) - height),
+        (radius * math.sin(half), radius * math.cos(half) - height),
+    )
     lean, w = dice.uniform(0.0, 0.6), 0.8 * MM
     dip = dice.uniform(0.1, 0.3) * MM
     arm = polygon(
@@ -202,8 +210,4 @@ def levers(dice: Dice) -> Scene:
         bodies.append(fixed("stop", circle(1.0 * MM), position=(7.0 * MM, dice.uniform(8.0, 12.0) * MM)))
     if dice.chance(0.2):
         bodies.append(free("pawn", circle(1.5 * MM), (8.0 * MM, -14.0 * MM), 0.01, velocity=(0.0, 0.3, 0.0)))
-    return scene(
-        dice, "levers", bodies, 0.2, torques=tuple(torques), springs=tuple(springs), damping=tuple(damping)
-    )
-
-
+    return scene(dice, "levers", bodies, 0.2, torques=tuple(torques), springs=tuple(springs), damping=tuple(damping))

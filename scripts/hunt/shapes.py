@@ -145,7 +145,9 @@ def slotted_wheel(slots: int, radius: float, width: float, depth: float) -> Loop
     half = math.atan2(0.5 * width, reach)
     for k in range(slots):
         a = k * TURN / slots
-        slot = turned_points([(reach, -0.5 * width), (radius - depth, -0.5 * width), (radius - depth, 0.5 * width), (reach, 0.5 * width)], a)
+        slot = turned_points(
+            [(reach, -0.5 * width), (radius - depth, -0.5 * width), (radius - depth, 0.5 * width), (reach, 0.5 * width)], a
+        )
         edges += [Line(*p, *q) for p, q in zip(slot[:-1], slot[1:], strict=True)]
         edges.append(Arc(0.0, 0.0, radius, a + half, TURN / slots - 2.0 * half))
     return joined(edges)

@@ -157,5 +157,3 @@ def pressed(dice: Dice) -> Scene:
     ]
     torques = (Torque("flap", -dice.log(1e-4, 1e-2)), Torque("bar", dice.sign() * dice.log(1e-2, 1.0)))
     return scene(dice, "pressed", bodies, 0.1, gravity=True, torques=torques)
-
-
