@@ -8,17 +8,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hunt.impulses import Touches
+from hunt.material import Material, reach
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.stops import Stop
 from watchsim.simulation.trajectory import Trajectory
-
-from hunt.impulses import Touches
-from hunt.material import Material
 
 Array = NDArray[np.float64]
 
@@ -28,6 +28,7 @@ JUMP = 1e-5  # of the largest speed, in the metric of the masses: smaller jumps 
 OUTSIDE = 1e-3  # share of a jump that no impulses of the contacts explain
 AUDITED = 6  # jumps of a run
 LOOKS = 10  # for overlap, evenly spread over the run
+SHIFT = 1e-6  # of the size: what a correction may move, at tolerances up to 1e-8
 MANY = 20_000  # events
 SUDDEN = (EventKind.IMPACT, EventKind.ACCUMULATION, EventKind.JAM)
 
@@ -63,7 +64,7 @@ def potential(scene: Scene, run: Trajectory) -> Array:
     return found
 
 
-def faults(run: Trajectory, material: Material, audit: bool = True) -> Iterator[str]:
+def faults(run: Trajectory, material: Material) -> Iterator[str]:
     """What is wrong with the run by itself, a phrase each: the first word names the class."""
     if run.stop.gave_up or run.stop == Stop.INTERRUPTED:
         yield f"{'hanging' if run.stop == Stop.INTERRUPTED else 'gave up'}: {run.stop.name} at t = {run.simulated:.6g} s"
@@ -80,9 +81,10 @@ def faults(run: Trajectory, material: Material, audit: bool = True) -> Iterator[
         yield f"events: {len(run.events)}"
     deep, when = _overlap(run, material)
     if deep > OVERLAP * loose * material.size:
-        yield f"overlap: {deep / material.size:.1e} of the size at t = {when:.6g} s, reported {run.worst_penetration / material.size:.1e}"
-    if audit:
-        yield from _jumps(run, m, float(kinetic.max()))
+        share, told = deep / material.size, run.worst_penetration / material.size
+        yield f"overlap: {share:.1e} of the size at t = {when:.6g} s, reported {told:.1e}"
+    yield from _shifts(run, SHIFT * loose * material.size)
+    yield from _jumps(run, m, float(kinetic.max()))
 
 
 def _rise(run: Trajectory, total: Array, allowed: float, scale: float) -> Iterator[str]:
@@ -104,6 +106,26 @@ def _overlap(run: Trajectory, material: Material) -> tuple[float, float]:
     return deepest, when
 
 
+def _shifts(run: Trajectory, allowed: float) -> Iterator[str]:
+    """Bodies are where they were: positions do not jump. Angles count with the body's reach."""
+    jump = np.abs(np.diff(run.q, axis=0))[np.diff(run.t) == 0.0]
+    if len(jump):
+        worst = int(np.argmax(jump.max(axis=1)))
+        far = float((jump[worst] * _lengths(run.scene)).max())
+        if far > allowed:
+            t = run.t[:-1][np.diff(run.t) == 0.0][worst]
+            yield f"shift: coordinates jump by {far:.1e} m at t = {t:.9g} s"
+
+
+def _lengths(scene: Scene) -> Array:
+    """(n,): what makes lengths of coordinates."""
+    found: list[float] = []
+    for body in scene.bodies:
+        own = 0.0 if body.motion == "fixed" else reach(replace(scene, bodies=(body,)))
+        found += {"fixed": [], "pivot": [own], "slide": [1.0], "free": [1.0, 1.0, own]}[body.motion]
+    return np.array(found)
+
+
 def _jumps(run: Trajectory, m: Array, largest: float) -> Iterator[str]:
     """Each jump of velocity must come from impulses that push, within the cones of friction, where outlines touch."""
     first = np.flatnonzero((np.diff(run.t) == 0.0) & np.append(True, np.diff(run.t)[:-1] > 0.0))
@@ -123,6 +145,10 @@ def _jumps(run: Trajectory, m: Array, largest: float) -> Iterator[str]:
             return
         touches = touches or Touches(run.scene, run.slices, m)
         share, points = touches.unexplained(run.q[row], jump)
-        if share > OUTSIDE:
-            yield f"impulse: {share:.1e} of the jump at t = {t:.9g} s lies outside the cones of its {points} contacts"
+        part = math.sqrt(size[k] / largest)
+        if share > OUTSIDE and share * part > JUMP:
+            yield (
+                f"impulse: {share:.1e} of a jump of {part:.1e} of the speed at t = {t:.9g} s lies outside the cones of "
+                f"{points} contacts"
+            )
             return

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from watchsim.mechanism.overlap import overlaps
-from watchsim.mechanism.scene import Scene
-
 from hunt import pivots, sliders
 from hunt.dice import Dice
 from hunt.material import Material
+from watchsim.mechanism.overlap import overlaps
+from watchsim.mechanism.scene import Scene
 
 FAMILIES: dict[str, tuple[Callable[[Dice], Scene], int]] = {  # with their weights
     "blade": (pivots.blade, 10),

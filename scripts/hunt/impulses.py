@@ -13,11 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import nnls
 
+from hunt.material import reach
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point, moved
 from watchsim.mechanism.body import Body
 from watchsim.mechanism.scene import Scene
-
-from hunt.material import reach
 
 Array = NDArray[np.float64]
 NEAR = 1e-6  # of the size: outlines this close touch

@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 from itertools import combinations
 
+from hunt.dice import Dice
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.mass import mass_properties
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.body import Body
 from watchsim.mechanism.force import Contact, Damping, Side, Spring, Torque
 from watchsim.mechanism.scene import Scene
-
-from hunt.dice import Dice
 
 MM = 1e-3
 GRAVITY = (0.0, -9.81)
@@ -71,7 +70,7 @@ def scene(
     damping: tuple[Damping, ...] = (),
     law: tuple[float, float] | None = None,
 ) -> Scene:
-    """All pairs of bodies can touch; `law` is (friction, restitution) of all contacts, else each has its own or all share one."""
+    """All pairs of bodies can touch; `law` is (friction, restitution) of all contacts, else drawn, for all or for each."""
     shared = law or ((dice.friction(), dice.restitution()) if dice.chance(0.6) else None)
     contacts = []
     for a, b in combinations(bodies, 2):

@@ -4,10 +4,6 @@ from __future__ import annotations
 
 import math
 
-from watchsim.geometry.primitives import TURN
-from watchsim.mechanism.force import Damping, Spring, Torque
-from watchsim.mechanism.scene import Scene
-
 from hunt.dice import Dice
 from hunt.parts import MM, fixed, free, pivoted, scene
 from hunt.shapes import (
@@ -22,6 +18,9 @@ from hunt.shapes import (
     slotted_wheel,
     turned_points,
 )
+from watchsim.geometry.primitives import TURN
+from watchsim.mechanism.force import Damping, Spring, Torque
+from watchsim.mechanism.scene import Scene
 
 
 def blade(dice: Dice) -> Scene:

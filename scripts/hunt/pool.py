@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Iterator
 from multiprocessing.connection import Connection, wait
 from typing import Any
 
-PATIENCE = 90.0  # s on the clock, for all runs of one mechanism
+PATIENCE = 45.0  # s on the clock, for all runs of one mechanism
 Work = Callable[[int], Any]
 
 
@@ -54,23 +54,25 @@ def answers(numbers: Iterable[int], work: Work, jobs: int) -> Iterator[tuple[int
             late = time.perf_counter() - worker.since > PATIENCE
             if worker.line not in ready and not late:
                 continue
-            number, answer = worker.number, None
-            try:
-                answer = worker.line.recv() if worker.line in ready else None
-            except EOFError:
-                pass
-            if answer is None:
-                worker.end()
-                workers.remove(worker)
-                worker = _Worker(work)
-                workers.append(worker)
-            yield number, answer
+            answer = _answer(worker) if worker.line in ready else None
+            yield worker.number, answer
             following = next(waiting, None)
-            if following is None:
+            if answer is None or following is None:
                 worker.end()
                 workers.remove(worker)
-            else:
-                worker.give(following)
+            if following is None:
+                continue
+            if answer is None:
+                workers.append(_Worker(work))
+            (workers[-1] if answer is None else worker).give(following)
+
+
+def _answer(worker: _Worker) -> Any:
+    """None where the process died."""
+    try:
+        return worker.line.recv()
+    except EOFError:
+        return None
 
 
 def _first(numbers: Iterator[int], count: int) -> list[int]:

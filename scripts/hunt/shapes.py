@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 
 import numpy as np
 
+from hunt.dice import Dice
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point
-
-from hunt.dice import Dice
 
 Curve = Callable[[float], Point]
 STRAIGHT = 1e-9  # sagitta by chord below which three points count as straight
@@ -66,7 +66,7 @@ def curve_edges(curve: Curve, count: int, arcs: bool) -> list[Edge]:
     """The curve for parameters from 0 to 1 in so many arcs or chords."""
     if not arcs:
         points = [curve(k / count) for k in range(count + 1)]
-        return [Line(*a, *b) for a, b in zip(points[:-1], points[1:], strict=True)]
+        return [Line(*a, *b) for a, b in pairwise(points)]
     points = [curve(0.5 * k / count) for k in range(2 * count + 1)]
     return [arc_through(*points[k : k + 3]) for k in range(0, 2 * count, 2)]
 
@@ -148,7 +148,7 @@ def slotted_wheel(slots: int, radius: float, width: float, depth: float) -> Loop
         slot = turned_points(
             [(reach, -0.5 * width), (radius - depth, -0.5 * width), (radius - depth, 0.5 * width), (reach, 0.5 * width)], a
         )
-        edges += [Line(*p, *q) for p, q in zip(slot[:-1], slot[1:], strict=True)]
+        edges += [Line(*p, *q) for p, q in pairwise(slot)]
         edges.append(Arc(0.0, 0.0, radius, a + half, TURN / slots - 2.0 * half))
     return joined(edges)
 
@@ -177,4 +177,4 @@ def wavy_bar(dice: Dice, length: float, thick: float) -> Loop:
 
     edges = curve_edges(top, count, dice.chance(0.6))
     corners = [(begin, 0.0), (-0.5 * length, 0.0), (-0.5 * length, -thick), (0.5 * length, -thick), edges[0].start]
-    return joined(edges, [Line(*a, *b) for a, b in zip(corners[:-1], corners[1:], strict=True)])
+    return joined(edges, [Line(*a, *b) for a, b in pairwise(corners)])

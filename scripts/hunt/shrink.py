@@ -9,14 +9,14 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from typing import Any
 
+from hunt.judge import Verdict, judged
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Line
 from watchsim.mechanism.body import Body
 from watchsim.mechanism.overlap import overlaps
 from watchsim.mechanism.scene import Scene
-
-from hunt.judge import Verdict, judged
 
 BUDGET = 60.0  # s
 
@@ -60,9 +60,8 @@ def _smaller(scene: Scene) -> Iterator[Scene]:
     if any(scene.gravity):
         yield replace(scene, gravity=(0.0, 0.0))
     for k, contact in enumerate(scene.contacts):
-        for key in ("friction", "restitution"):
-            if getattr(contact, key) != 0.0:
-                changed = replace(contact, **{key: 0.0})
+        for changed in (replace(contact, friction=0.0), replace(contact, restitution=0.0)):
+            if changed != contact:
                 yield replace(scene, contacts=(*scene.contacts[:k], changed, *scene.contacts[k + 1 :]))
     for k, body in enumerate(scene.bodies):
         for other in _plainer(body):
@@ -70,7 +69,7 @@ def _smaller(scene: Scene) -> Iterator[Scene]:
 
 
 def _without(scene: Scene, name: str) -> Scene:
-    def keep(entries: tuple) -> tuple:  # type: ignore[type-arg]
+    def keep(entries: tuple[Any, ...]) -> tuple[Any, ...]:
         return tuple(entry for entry in entries if entry.body != name)
 
     return replace(

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 
+from hunt.dice import Dice
+from hunt.parts import MM, fixed, free, pivoted, scene, sliding
+from hunt.shapes import box, circle, kinked_bar, polygon, ragged, wavy_bar
 from watchsim.geometry.loop import Loop
 from watchsim.mechanism.body import Body
 from watchsim.mechanism.force import Damping, Spring, Torque
 from watchsim.mechanism.scene import Scene
-
-from hunt.dice import Dice
-from hunt.parts import MM, fixed, free, pivoted, scene, sliding
-from hunt.shapes import box, circle, kinked_bar, polygon, ragged, wavy_bar
 
 
 def kink(dice: Dice) -> Scene:
@@ -149,7 +148,8 @@ def pressed(dice: Dice) -> Scene:
     """A pivoted flap falls flat on a sliding bar: parallel faces, or nearly."""
     long, thick = dice.uniform(10.0, 30.0) * MM, 2.0 * MM
     skew = dice.pick((0.0, dice.kink(0.1)))
-    flap = polygon([(0.0, 0.0), (long, skew * long * (1.0 if abs(skew) > 1e-9 else 0.0)), (long, thick), (0.0, thick)])
+    rise = skew * long if abs(skew) > 1e-9 else 0.0
+    flap = polygon([(1.0 * MM, 0.0), (long, rise), (long, thick), (1.0 * MM, thick)])
     bar = box(100.0 * MM, 5.0 * MM, (0.0, -2.5 * MM))
     bodies = [
         sliding("bar", bar, (0.0, 0.0), 0.0, dice.uniform(-0.5, 0.5), dice.log(0.01, 0.3)),

@@ -116,7 +116,8 @@ def perturbed(scene: Scene, share: float, seed: int) -> Scene:
     speeds = _typical_speeds(scene)
     bodies = []
     for body in scene.bodies:
-        position = tuple(m + stretch * (p - m) for p, m in zip(body.position, centre, strict=True))
+        (x, y), (mx, my) = body.position, centre
+        position = (mx + stretch * (x - mx), my + stretch * (y - my))
         velocity = tuple(near(v, speeds[body.motion if i < 2 else "pivot"]) for i, v in enumerate(body.velocity))
         inertia, mass = near(body.inertia), near(body.mass)
         bodies.append(replace(body, position=position, velocity=velocity, inertia=inertia, mass=mass))

@@ -1,8 +1,8 @@
 """Does Moreau's time stepping see the same motion?
 
-It shares the gap functions with the event-driven solver, and neither events nor contact solver. Its error goes with the step, so
-two steps say how far it can be trusted: it contradicts where the event-driven motion lies ten times further from the finer one
-than the two lie from each other and twins of 1e-4 from the scene, and where a third step does not come nearer.
+It shares the gap functions with the event-driven solver, and neither events nor contact solver. Its error goes with the step,
+so two steps say how far it can be trusted: it contradicts where the event-driven motion lies ten times further from the finer
+one than the two lie from each other and twins of 1e-4 from the scene, and where a third step does not come nearer.
 """
 
 from __future__ import annotations

@@ -64,7 +64,7 @@ def _body(body: Body, path: Path) -> dict[str, Any]:
     entry["angle"] = _text(body.angle, "rad")
     if body.motion == "free":
         entry["pivot"] = ["0 m", "0 m"]
-        entry["velocity"], entry["spin"] = _pair(body.velocity[:2], "m/s"), _text(body.velocity[2], "rad/s")
+        entry["velocity"], entry["spin"] = _pair((body.velocity[0], body.velocity[1]), "m/s"), _text(body.velocity[2], "rad/s")
     elif body.motion == "slide":
         entry["axis"], entry["velocity"] = list(body.axis), _text(body.velocity[0], "m/s")
     elif body.motion == "pivot":
