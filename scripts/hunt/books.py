@@ -25,10 +25,12 @@ Array = NDArray[np.float64]
 RESIDUAL = 1e-6  # of the energy turned over, at tolerances up to 1e-8
 OVERLAP = 2e-5  # of the size: what counts as material inside material, at tolerances up to 1e-8
 JUMP = 1e-5  # of the largest speed, in the metric of the masses: smaller jumps are corrections
+NEAR = 1e-6  # of the size: outlines this close touch
 OUTSIDE = 1e-3  # share of a jump that no impulses of the contacts explain
 AUDITED = 6  # jumps of a run
-LOOKS = 10  # for overlap, evenly spread over the run
+LOOKS = 8  # for overlap, evenly spread over the run
 SHIFT = 1e-6  # of the size: what a correction may move, at tolerances up to 1e-8
+LOOKS_PER_STEP = 3000  # at each pair; ten are usual
 MANY = 20_000  # events
 SUDDEN = (EventKind.IMPACT, EventKind.ACCUMULATION, EventKind.JAM)
 
@@ -68,7 +70,12 @@ def faults(run: Trajectory, material: Material) -> Iterator[str]:
     """What is wrong with the run by itself, a phrase each: the first word names the class."""
     if run.stop.gave_up or run.stop == Stop.INTERRUPTED:
         yield f"{'hanging' if run.stop == Stop.INTERRUPTED else 'gave up'}: {run.stop.name} at t = {run.simulated:.6g} s"
+    if len(run.t) == 0:
+        return
     loose = max(1.0, run.tolerance / 1e-8)
+    looks, done = run.counts["gap_evaluations"], run.counts["events"] + run.counts["steps"] + run.counts["flights"]
+    if looks > LOOKS_PER_STEP * (done + 10) * max(run.counts["declared_pairs"], 1):
+        yield f"hanging: {looks} gap evaluations for {done} steps and events of {run.counts['declared_pairs']} pairs"
     scene, m = run.scene, masses(run.scene)
     kinetic = 0.5 * (run.u**2) @ m
     turned_over = max(float(kinetic.max()), abs(run.energy["in_J"]), sum(run.energy["dissipated"].values()))
@@ -84,7 +91,7 @@ def faults(run: Trajectory, material: Material) -> Iterator[str]:
         share, told = deep / material.size, run.worst_penetration / material.size
         yield f"overlap: {share:.1e} of the size at t = {when:.6g} s, reported {told:.1e}"
     yield from _shifts(run, SHIFT * loose * material.size)
-    yield from _jumps(run, m, float(kinetic.max()))
+    yield from _jumps(run, m, float(kinetic.max()), loose)
 
 
 def _rise(run: Trajectory, total: Array, allowed: float, scale: float) -> Iterator[str]:
@@ -126,7 +133,7 @@ def _lengths(scene: Scene) -> Array:
     return np.array(found)
 
 
-def _jumps(run: Trajectory, m: Array, largest: float) -> Iterator[str]:
+def _jumps(run: Trajectory, m: Array, largest: float, loose: float) -> Iterator[str]:
     """Each jump of velocity must come from impulses that push, within the cones of friction, where outlines touch."""
     first = np.flatnonzero((np.diff(run.t) == 0.0) & np.append(True, np.diff(run.t)[:-1] > 0.0))
     if not len(first):
@@ -143,10 +150,10 @@ def _jumps(run: Trajectory, m: Array, largest: float) -> Iterator[str]:
         if not np.isin(here["kind"], SUDDEN).any():
             yield f"jump: without an impact at t = {t:.9g} s, of {math.sqrt(size[k] / largest):.1e} of the speed"
             return
-        touches = touches or Touches(run.scene, run.slices, m)
-        share, points = touches.unexplained(run.q[row], jump)
+        touches = touches or Touches(run.scene, run.slices, m, NEAR * loose)
+        share, points = touches.unexplained(run.q[then], jump)
         part = math.sqrt(size[k] / largest)
-        if share > OUTSIDE and share * part > JUMP:
+        if share > OUTSIDE and share * part > JUMP * loose:
             yield (
                 f"impulse: {share:.1e} of a jump of {part:.1e} of the speed at t = {t:.9g} s lies outside the cones of "
                 f"{points} contacts"

@@ -19,15 +19,14 @@ from watchsim.mechanism.body import Body
 from watchsim.mechanism.scene import Scene
 
 Array = NDArray[np.float64]
-NEAR = 1e-6  # of the size: outlines this close touch
 
 
 class Touches:
-    """The contacts of a scene at given coordinates."""
+    """The contacts of a scene at given coordinates: where outlines come as `near` as that share of the size."""
 
-    def __init__(self, scene: Scene, slices: Mapping[str, slice], masses: Array) -> None:
+    def __init__(self, scene: Scene, slices: Mapping[str, slice], masses: Array, near: float) -> None:
         self._scene, self._slices, self._root = scene, slices, np.sqrt(masses)
-        self._near = NEAR * reach(scene)
+        self._near = near * reach(scene)
 
     def unexplained(self, q: Array, jump: Array) -> tuple[float, int]:
         """The share of a jump (m/s, rad/s) that no pushing impulses explain, and the number of touching points."""

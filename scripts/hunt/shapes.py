@@ -106,7 +106,7 @@ def cam_curve(dice: Dice, radius: float) -> Curve:
 
 
 def gear(teeth: int, module: float, pieces: int, arcs: bool, play: float) -> Loop:
-    """Involute teeth of 25 degrees, each flank in so many pieces; a tooth points along +x."""
+    """A sector of involute teeth of 25 degrees, each flank in so many pieces; its middle tooth points along +x."""
     pressure = math.radians(25.0)
     pitch = 0.5 * module * teeth
     base, tip, root = pitch * math.cos(pressure), pitch + module, pitch - 1.3 * module
@@ -124,7 +124,7 @@ def gear(teeth: int, module: float, pieces: int, arcs: bool, play: float) -> Loo
     foot_angle = math.atan2(flank(0.0)[1], flank(0.0)[0])
     foot = (root * math.cos(foot_angle), root * math.sin(foot_angle))
     tooth = joined([Line(*foot, *up[0].start)], up, down, [Line(*down[-1].end, foot[0], -foot[1])])
-    edges = [tooth.moved(k * TURN / teeth, (0.0, 0.0)).edges[:-1] for k in range(teeth)]
+    edges = [tooth.moved(k * TURN / teeth, (0.0, 0.0)).edges[:-1] for k in range(-2, 3 if teeth > 9 else 2)]
     return joined(*edges)
 
 

@@ -18,7 +18,7 @@ from watchsim.mechanism.body import Body
 from watchsim.mechanism.overlap import overlaps
 from watchsim.mechanism.scene import Scene
 
-BUDGET = 60.0  # s
+BUDGET = 40.0  # s
 
 
 def shrunk(scene: Scene, verdict: Verdict, seed: int) -> Scene:
