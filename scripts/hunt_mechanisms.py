@@ -14,6 +14,7 @@ Exit status: 0 all fine, 1 something was wrong, hung or gave up.
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 import time
 from collections import Counter
@@ -62,9 +63,18 @@ def verdict_of(number: int, args: argparse.Namespace) -> tuple[str, Verdict]:
 def kept(args: argparse.Namespace, number: int, verdict: Verdict) -> Path:
     """Where the scene of what fails was written."""
     scene = mechanism(args.seed, number, args.family)
+    path = args.keep / f"{scene.title}-{args.seed}-{number}.toml"
     if args.shrink:
-        scene = shrunk(scene, verdict, number)
-    return write_scene(scene, args.keep / f"{scene.title}-{args.seed}-{number}.toml")
+        write_scene(shrunk(scene, verdict, number), path)
+        if judged_file(path).kind not in CLEAN:
+            return path
+    return write_scene(scene, path)
+
+
+def judged_file(path: Path) -> Verdict:
+    """A scene file, with Moreau's stepping; the orientations are those of the number at the end of its name."""
+    number = re.search(r"(\d+)$", path.stem)
+    return judged(load(path), int(number[1]) if number else 0, True)
 
 
 def table(found: list[tuple[str, Verdict]]) -> str:
@@ -96,8 +106,7 @@ def main() -> int:
     found: list[tuple[str, Verdict]] = []
     if args.scene:
         for path in args.scene:
-            scene = load(path)
-            found.append((scene.title, judged(scene, 0, True)))
+            found.append((load(path).title, judged_file(path)))
             report(str(path), *found[-1])
     else:
         numbers = [args.only] if args.only is not None else range(args.start, args.start + args.count)

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Iterator
 from multiprocessing.connection import Connection, wait
 from typing import Any
 
-PATIENCE = 45.0  # s on the clock, for all runs of one mechanism
+PATIENCE = 30.0  # s on the clock, for all runs of one mechanism
 Work = Callable[[int], Any]
 
 

@@ -19,6 +19,7 @@ from watchsim.mechanism.overlap import overlaps
 from watchsim.mechanism.scene import Scene
 
 BUDGET = 40.0  # s
+SHORTEST = 1e-2  # of the duration: below that runs are so short that anything is large against them
 
 
 def shrunk(scene: Scene, verdict: Verdict, seed: int) -> Scene:
@@ -35,14 +36,14 @@ def shrunk(scene: Scene, verdict: Verdict, seed: int) -> Scene:
             return False
         return bool(classes & {reason.split(":")[0] for reason in found.reasons})
 
-    end = time.perf_counter() + BUDGET
+    end, shortest = time.perf_counter() + BUDGET, SHORTEST * scene.duration
     smaller = True
     while smaller and time.perf_counter() < end:
         smaller = False
         for candidate in _smaller(scene):
             if time.perf_counter() > end:
                 break
-            if fails(candidate):
+            if candidate.duration >= shortest and fails(candidate):
                 scene, smaller = candidate, True
                 break
     return scene

@@ -7,9 +7,7 @@ from __future__ import annotations
 
 import hunt_path
 import pytest
-from hunt.judge import judged
-
-from watchsim.mechanism.load import load
+from hunt_mechanisms import judged_file
 
 SCENES = sorted((hunt_path.ROOT / "tests" / "data" / "hunt").glob("*.toml"))
 
@@ -17,7 +15,7 @@ SCENES = sorted((hunt_path.ROOT / "tests" / "data" / "hunt").glob("*.toml"))
 @pytest.mark.slow
 @pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
 def test_mended(path):
-    verdict = judged(load(path), 0, with_witness=True)
+    verdict = judged_file(path)
     assert verdict.reasons == []
 
 
