@@ -14,6 +14,7 @@
 from __future__ import annotations
 
 import time
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -27,6 +28,7 @@ from watchsim.mechanism.errors import SceneError
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.simulate import simulate
+from watchsim.simulation.stops import Stop
 from watchsim.simulation.trajectory import Trajectory
 
 Array = NDArray[np.float64]
@@ -55,6 +57,10 @@ class Verdict:
     events: int = 0
     judged: float = 1.0
     seconds: float = 0.0
+
+
+class _Hanging(Exception):
+    """One run that hangs is enough."""
 
 
 class _Clock:
@@ -96,11 +102,14 @@ class Judge:
         material = self.material if run.scene is self.scene else Material(run.scene)
         found = list(faults(run, material))
         self.verdict.reasons += [f"{text} ({label})" for text in found]
+        if run.stop == Stop.INTERRUPTED:
+            raise _Hanging
         return not found
 
     def judge(self, with_witness: bool) -> Verdict:
         begun = time.perf_counter()
-        self._judge(with_witness)
+        with suppress(_Hanging):
+            self._judge(with_witness)
         verdict = self.verdict
         verdict.seconds = time.perf_counter() - begun
         if verdict.reasons:
