@@ -6,8 +6,7 @@ from collections.abc import Callable
 
 from hunt import pivots, sliders
 from hunt.dice import Dice
-from hunt.material import Material
-from watchsim.mechanism.overlap import overlaps
+from hunt.material import apart
 from watchsim.mechanism.scene import Scene
 
 FAMILIES: dict[str, tuple[Callable[[Dice], Scene], int]] = {  # with their weights
@@ -39,12 +38,3 @@ def mechanism(seed: int, number: int, family: str | None = None) -> Scene:
         if apart(scene):
             return scene
     raise RuntimeError(f"no start without overlap in {ATTEMPTS} attempts for number {number} of seed {seed}")
-
-
-def apart(scene: Scene) -> bool:
-    """A coarse look first: the exact one draws arcs within half a nanometre."""
-    material = Material(scene)
-    depth, nearest = material.at_start()
-    if depth > 1e-3 * material.size:
-        return False
-    return nearest > 1e-3 * material.size or not overlaps(scene)

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from hunt.material import apart
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.body import Body
 from watchsim.mechanism.scene import Scene
@@ -103,7 +104,8 @@ def views(scene: Scene, seed: int, count: int) -> list[View]:
 def perturbed(scene: Scene, share: float, seed: int) -> Scene:
     """Velocities, forces, masses, laws and, outwards, places changed by up to that share of themselves or of the scene's own.
 
-    Places are stretched from a point of the plane, so that what touches at the start parts rather than overlaps.
+    Places are stretched from a point of the plane, so that what touches at the start parts rather than overlaps; outlines are
+    turned where that leaves them apart.
     """
     rng = np.random.default_rng(seed)
 
@@ -122,7 +124,7 @@ def perturbed(scene: Scene, share: float, seed: int) -> Scene:
         inertia, mass = near(body.inertia), near(body.mass)
         bodies.append(replace(body, position=position, velocity=velocity, inertia=inertia, mass=mass))
     gravity = _turned(scene.gravity, share * float(rng.uniform(-1.0, 1.0)))
-    return replace(
+    twin = replace(
         scene,
         bodies=tuple(bodies),
         gravity=gravity,
@@ -132,6 +134,17 @@ def perturbed(scene: Scene, share: float, seed: int) -> Scene:
             replace(c, friction=near(c.friction), restitution=min(near(c.restitution), 1.0)) for c in scene.contacts
         ),
     )
+    skewed = replace(twin, bodies=tuple(_skewed(body, share * float(rng.uniform(-1.0, 1.0))) for body in twin.bodies))
+    return skewed if apart(skewed) else twin
+
+
+def _skewed(body: Body, angle: float) -> Body:
+    """Its outline turned about a corner of its own: faces that land flat land on one end or the other."""
+    if body.motion in ("fixed", "slide"):
+        return body
+    x, y = body.loops[0].edges[0].start
+    c, s = _turned((x, y), angle)
+    return replace(body, loops=tuple(loop.moved(angle, (x - c, y - s)) for loop in body.loops))
 
 
 def _typical_speeds(scene: Scene) -> dict[str, float]:
