@@ -23,6 +23,9 @@ mkdir -p "$scratch/images"
 "$environment/bin/python" scripts/study_convergence.py --quick --page "$scratch/convergence.md"
 cat "$scratch/long-runs.md" "$scratch/convergence.md"
 
+echo "== random mechanisms, others every night"
+"$environment/bin/python" scripts/hunt_mechanisms.py --seed "$(date +%Y%m%d)" --count 1000 --jobs "$(nproc)"
+
 echo "== benchmarks and demo"
 "$environment/bin/watchsim" verify --slow
 "$environment/bin/python" scripts/measure_grid.py "$scratch/grid.csv"
