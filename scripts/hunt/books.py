@@ -84,7 +84,8 @@ def faults(run: Trajectory, material: Material) -> Iterator[str]:
     if turned_over > 0.0 and residual > RESIDUAL * loose * turned_over:
         yield f"residual: {residual / turned_over:.1e} of the energy turned over"
     yield from _rise(run, kinetic + potential(scene, run), RESIDUAL * loose * turned_over, turned_over)
-    if len(run.events) > MANY:
+    # What loses nothing may go on bouncing, however low.
+    if len(run.events) > MANY and all(contact.restitution < 1.0 for contact in run.scene.contacts):
         yield f"events: {len(run.events)}"
     deep, when = _overlap(run, material)
     if deep > OVERLAP * loose * material.size:
