@@ -31,6 +31,7 @@ from watchsim.simulation.stops import Stop
 
 RUNNING, CELL_UNKNOWN = int(Stop.RUNNING), int(Stop.CELL_UNKNOWN)
 LCP_FAILED, TOO_MANY_CONTACTS, TOO_MANY_EVENTS = int(Stop.LCP_FAILED), int(Stop.TOO_MANY_CONTACTS), int(Stop.TOO_MANY_EVENTS)
+MANY_ROUNDINGS = 100.0  # a gap rate beyond so many times its rounding is not zero
 ROUNDS = 16  # impacts in a row at one instant
 
 
@@ -187,9 +188,9 @@ def _contradicts(r, options, scratch):
     rest, work = scratch.rest, scratch.work
     find_correction(rest, r, scratch.trial, AT_EVENTS, work)
     for i in range(r):
-        if scratch.trial[rest.ids[i]] != OPEN:
-            if abs(rate_left(rest, r, i, work)) > 100.0 * rounding_of(rest, i, options, scratch.pace):
-                return True
+        left = abs(rate_left(rest, r, i, work)) if scratch.trial[rest.ids[i]] != OPEN else 0.0
+        if left > MANY_ROUNDINGS * rounding_of(rest, i, options, scratch.pace):
+            return True
     return False
 
 
