@@ -10,11 +10,13 @@ import math
 
 from watchsim.contact.kinematics import ClosedRef
 from watchsim.contact.lookup import time_through_cells
+from watchsim.contact.poses import place
 from watchsim.dynamics.delassus import ContactWorkRef, fill_inverse
 from watchsim.dynamics.forces import next_knot
 from watchsim.dynamics.lcp import LcpWorkRef
 from watchsim.jit import entry, inlined, kernel
 from watchsim.mechanism.model import CellsRef, ModelRef
+from watchsim.simulation.closed import refresh
 from watchsim.simulation.coupled import motion
 from watchsim.simulation.drift import IN_STEPS, project_positions, project_velocities
 from watchsim.simulation.explained import is_explained, kinetic_energy
@@ -52,6 +54,7 @@ DURATION, STEP_TOO_SMALL, NOT_FINITE = int(Stop.DURATION), int(Stop.STEP_TOO_SMA
 TOO_MANY_EVENTS, LAST_STEP = int(Stop.TOO_MANY_EVENTS), int(Stop.LAST_STEP)
 UNEXPLAINED = int(Stop.UNEXPLAINED)
 TOUCHED, BEARING, KINDS = MONITORS, MONITORS + 1, MONITORS + 2  # what ends a step, besides the monitors of a contact
+TURNS = 0.1  # times the gap rate that counts as zero: rates that change by less need not be found anew
 FLIGHT_CELLS = 128
 EVENTS_AT_ONCE = 2000
 INSTANT = 1e-3  # share of `accumulation_time` within which events count as happening at once
@@ -83,12 +86,26 @@ def _accept_coupled(model, state, options, end, scratch):
         m = place_contacts(model, state.active, first, state.upto[first], scratch.pose, scratch.closed)
         deepest = project_positions(scratch.closed, m, True, scratch.work, state.q)
         state.worst[0] = max(state.worst[0], deepest)
+        if _turns_rates(model, state, options, m, scratch.closed):
+            place(model, state.q, state.u, scratch.pose)
+            refresh(model, m, scratch.closed, scratch.pose)
         project_velocities(scratch.closed, m, state.mode, IN_STEPS, scratch.work, state.u)
         first += m
     for i in range(n):
         state.a[i] = scratch.dy[n + i]
     state.worst[1] = max(state.worst[1], before)
     return is_explained(model, options, before, kinetic_energy(model, state.u), state.worst[1])
+
+
+@kernel
+def _turns_rates(model, state, options, m, closed):
+    """True if taking back the gaps of the m contacts changes their rates, by the gap times how fast bodies turn."""
+    furthest, fastest = 0.0, 0.0
+    for i in range(m):
+        furthest = max(furthest, abs(closed.kin[i].g))
+    for i in range(len(state.u)):
+        fastest = max(fastest, abs(state.u[i]) / model.coordinates[i].scale)
+    return furthest * fastest > TURNS * options.speed_zero
 
 
 @kernel

@@ -33,9 +33,9 @@ def key_of_modes(state):
     key = 1
     for j in range(state.numbers[0] + state.numbers[1]):
         k = state.active[j]
-        key = (key * BASE + 4 * k + state.mode[k] + 1) % MODULUS
+        key = (key * BASE + 4 * int(k) + int(state.mode[k]) + 1) % MODULUS
     for i in range(len(state.grip)):
-        key = (key * BASE + state.grip[i] + 1) % MODULUS
+        key = (key * BASE + int(state.grip[i]) + 1) % MODULUS
     return key
 
 

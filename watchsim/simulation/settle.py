@@ -19,7 +19,7 @@ from watchsim.jit import kernel
 from watchsim.simulation.closed import gather, refresh
 from watchsim.simulation.collide import approaching, collide
 from watchsim.simulation.decide import decide
-from watchsim.simulation.drift import AT_EVENTS, find_correction, project_positions, project_velocities, rate_left
+from watchsim.simulation.drift import AT_EVENTS, IN_STEPS, find_correction, project_positions, project_velocities, rate_left
 from watchsim.simulation.handover import LEFT, hand_over
 from watchsim.simulation.islands import island_of, label_islands, place_contacts, sort_by_island
 from watchsim.simulation.keep import OPEN_EVENT, keep_change, keep_event
@@ -74,6 +74,10 @@ def _settle_island(model, state, island, span, options, scratch, record):
     deepest = project_positions(closed, m, False, work, state.q)
     if deepest > 0.0:
         state.worst[0] = max(state.worst[0], deepest)
+        place(model, state.q, state.u, scratch.pose)
+        refresh(model, m, closed, scratch.pose)
+        # Rates of the contacts in force have changed with the places, by the gaps times how fast bodies turn.
+        project_velocities(closed, m, state.mode, IN_STEPS, work, state.u)
         place(model, state.q, state.u, scratch.pose)
         refresh(model, m, closed, scratch.pose)
     stop, r = _resolve(model, state, island, m, options, scratch, record)
