@@ -66,7 +66,7 @@ class Walk:
         # Each step and each event leaves a row: with room for no more the loop comes back. Twice the events it asks for.
         self.room = new_record(model, ROWS_PER_STEP + 1, 2 * EVENTS_PER_CONTACT * room_for(model), EVERYWHERE)
         self._nowhere = new_record(model, 0, 0, EVERYWHERE)
-        self._until = np.array([duration, duration, 1.0])
+        self._until = np.array([duration, duration, 1.0, np.inf])
         self.met = dict.fromkeys(Kind, 0)
         self.moments: dict[Kind, list[Moment]] = {kind: [] for kind in Kind}
         chance = np.random.default_rng(0)

@@ -7,10 +7,16 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from watchsim import stopping
 from watchsim.commands.console import Progress, say
 
 if TYPE_CHECKING:
     from watchsim.simulation.trajectory import Trajectory
+
+
+class LeftOut(Exception):
+    """The process is to stop: a picture under way is given up, it can be drawn later."""
+
 
 WHOLE_RUN = 10.0  # s that the movie of a whole run takes
 
@@ -29,8 +35,12 @@ def _drawn(draw: Callable[[Path], object]) -> Callable[[Path], None]:
     """The same, but a picture that cannot be drawn costs a line, not the run."""
 
     def attempt(path: Path) -> None:
+        if stopping.requested():
+            return
         try:
             draw(path)
+        except LeftOut:
+            path.unlink(missing_ok=True)
         except Exception as error:
             path.unlink(missing_ok=True)
             say(f"{path.name} could not be drawn: {error}")
@@ -84,7 +94,13 @@ def _movie(run: Trajectory, path: Path, slow: float) -> None:
 
     window, speed = filmed(run, slow)
     progress = Progress(f"{path.name}, frames:")
+
+    def drawn(done: int, whole: int) -> None:
+        if stopping.requested():
+            raise LeftOut
+        progress(done, whole)
+
     try:
-        movie(run, path, window=window, speed=speed, progress=progress)
+        movie(run, path, window=window, speed=speed, progress=drawn)
     finally:
         progress.close()

@@ -172,10 +172,11 @@ def _loop(model, cells, state, options, until, scratch, record):
             continue
         if state.clock[0] >= until[1]:
             return DURATION
-        if state.clock[0] >= until[0]:
+        if state.clock[0] >= until[0] or until[3] <= 0.0:
             return SLICE
         if until[2] == 0.0 and _reaches(model, state, options, until[1]):
             return LAST_STEP
+        until[3] -= 1.0
         code, event = _smooth_step(model, cells, state, options, until[1], scratch, record)
         if code != RUNNING:
             return code
@@ -193,9 +194,9 @@ def scratch_by_reference(scratch):
 
 @entry
 def advance(model, cells, state, options, until, scratch, record):
-    """Run to the time until[1] (or return after until[0], the end of a slice); returns a Stop code.
+    """Run to the time until[1] (or return at the end of a slice, after until[0] or until[3] steps); returns a Stop code.
 
-    Before a step that until[1] might cut short it returns once, unless until[2] is set.
+    Before a step that until[1] might cut short it returns once, unless until[2] is set. Steps are counted down in until[3].
 
     All arguments but `until` are NamedTuples; `state`, `scratch` and `record` are written to.
     """

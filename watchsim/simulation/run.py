@@ -49,6 +49,7 @@ Progress = Callable[[float, float], None]  # simulated time, duration
 
 ROWS, EVENTS = 20000, 20000
 SLICE_WALL = 0.1  # s between looks at the clock
+FEWEST_STEPS, MOST_STEPS = 16.0, 4000.0  # of a slice; steps may become much slower from one to the next
 
 
 def natural_step(compiled: Compiled, longest: float) -> float:
@@ -119,7 +120,7 @@ class Run:
     def warm_up(self) -> None:
         """Load or compile the kernels: a call that returns at once because it has no room to record."""
         nowhere = new_record(self.compiled.model, 0, 0, self.record.windows)
-        self._advance(np.zeros(3), nowhere)
+        self._advance(np.zeros(4), nowhere)
 
     def _advance(self, until: NDArray[np.float64], record: Any) -> Stop:
         code = advance(self.compiled.model, self.finder.cells, self.state, self.options, until, self.scratch, record)
@@ -144,10 +145,12 @@ class Run:
     def _slices(self, duration: float, progress: Progress | None, interrupted: Callable[[], bool]) -> Stop:
         """Slice after slice of about `SLICE_WALL`, with what has to be done between them."""
         length = 1e-5 * duration  # grows tenfold at most: a long slice would be deaf
-        until = np.array([0.0, duration, 0.0])
+        steps = FEWEST_STEPS  # where events crowd, time is no measure of work
+        until = np.array([0.0, duration, 0.0, 0.0])
         while True:
             start = time.perf_counter()
             until[0] = min(duration, self.state.clock[0] + length)
+            until[3] = steps
             stop = self._advance(until, self.record)
             if stop == Stop.CELL_UNKNOWN:
                 self._learn()
@@ -159,8 +162,10 @@ class Run:
             elif stop != Stop.SLICE:
                 return stop
             else:
-                taken = time.perf_counter() - start
-                length = min(max(length * SLICE_WALL / max(taken, 1e-4), 1e-9 * duration), 10.0 * length)
+                pace = SLICE_WALL / max(time.perf_counter() - start, 1e-4)
+                if until[3] > 0.0:
+                    length = min(max(length * pace, 1e-9 * duration), 10.0 * length)
+                steps = min(max(pace * (steps - until[3]), 1.0), 2.0 * steps, MOST_STEPS)
             if progress is not None:
                 progress(float(self.state.clock[0]), duration)
             if interrupted():
