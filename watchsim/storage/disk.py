@@ -22,10 +22,10 @@ def write_bytes(path: Path, content: bytes) -> None:
         os.fsync(file.fileno())
 
 
-def sync_tree(folder: Path) -> None:
+def sync_tree(folder: Path, files: bool = True) -> None:
     """See every file below `folder`, and the folders that name them, onto the disk; OSError where that fails."""
     for place, _, names in os.walk(folder, topdown=False):
-        for name in names:
+        for name in names if files else ():
             path = Path(place) / name
             if not path.is_symlink():
                 sync_file(path)

@@ -53,6 +53,7 @@ def write_folder(target: Path, fill: Callable[[Path], object], ours: Ours, what:
         sync_tree(scratch.new)
         if place.is_dir():
             _take_along(place, scratch.new, ours)
+            sync_tree(scratch.new, files=False)
             shutil.copymode(place, scratch.new)
         _note(scratch, place)
         _exchange(scratch, place, ours)
