@@ -188,13 +188,14 @@ def _check_windows(scene: Scene, duration: float, asked: bool) -> None:
 
 def _record(what: str) -> object:
     """A window as the scene file has it, or the word; InputError where it is neither."""
+    from watchsim.mechanism.read_record import is_stride
     from watchsim.mechanism.recording import EVERY, KEPT
 
     if ":" in what:
         parse_window(what, "--record")
         return [time.strip() for time in what.split(":")]
     word, _, number = what.partition(" ")
-    if what in KEPT or (word == EVERY and number.strip().isdecimal() and int(number) > 0):
+    if what in KEPT or (word == EVERY and is_stride(number)):
         return what
     raise InputError(f'--record "{what}": write {", ".join(KEPT)}, "{EVERY} 10", or a window such as "179 s:180 s".')
 

@@ -66,7 +66,7 @@ def _note_law(table: Table, contact: Contact, law: str) -> None:
 def _sides(table: Table, known: Known) -> tuple[Side, Side]:
     names = table.texts("between")
     if len(names) != 2:
-        if table.mapping:
+        if table.is_table:
             table.fault(
                 "between" if "between" in table else "", 'two sides are needed: between = ["wheel.TEETH", "lever.STONES"]'
             )
