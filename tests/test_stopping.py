@@ -74,7 +74,8 @@ def test_what_was_simulated_is_kept(home: str, name: str, number: int, tmp_path:
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize(
-    ("home", "name"), [("watchsim.cli", "main"), ("watchsim.commands.scenes", "load_scene"), ("watchsim.simulation.run", "Run.warm_up")]
+    ("home", "name"),
+    [("watchsim.cli", "main"), ("watchsim.commands.scenes", "load_scene"), ("watchsim.simulation.run", "Run.warm_up")],
 )
 def test_where_nothing_was_made_it_ends_at_once(home: str, name: str, number: int, tmp_path: Path) -> None:
     done = stopped(["run", str(LEVER), "--duration", "0.3 s", "-o", str(tmp_path / "out")], home, name, number)

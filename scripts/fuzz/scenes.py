@@ -1,8 +1,8 @@
 """Does any damaged scene file bring watchsim down, or make it slow?
 
 Damages scene files at random, one to three accidents each, and has `watchsim check` judge them (every fourth one `watchsim run`
-for a millisecond, where the check finds nothing). A file fails that brings exit status 4, a traceback, the death of the process,
-or takes more than 20 s. Files are numbered: number k is the same damage on every machine, so `--only K` repeats it.
+for a millisecond, where the check finds nothing). A file fails that brings exit status 4, a traceback, the death of the process
+or more than 20 s. Files are numbered: number k is the same damage on every machine, so `--only K` repeats it.
 """
 
 from __future__ import annotations
@@ -28,21 +28,135 @@ SCENES = ("profiles/swiss_lever", "profiles/bench_lever", "profiles/incline", "p
 SECONDS = 20
 MEMORY = 4 << 30
 VALUES = (
-    *("", "0", "-1", "1", "1e308", "1e-320", "5e101", "nan", "inf", "-inf", "true", "[]", "{}", "[[]]", "[{}]", '""', '"x"', "'''a'''"),
-    *('"5e101 mm"', '"-1 mm"', '"0 mm"', '"1e-320 g"', '"1e400 m"', '"nan m"', '"1 mm/0"', '"28800"', '"28800 vph"', '"1e5000 Hz"'),
-    *('"every 99999999999999999999"', '"every 0"', '"events"', '["1 s", "0 s"]', '["0 s", "1e99 s"]', "1979-05-27T07:32:00Z", "07:32:00"),
-    *("9" * 5000, f'"{"9" * 5000} mm"', f'"every {"9" * 5000}"', "[" * 400 + "]" * 400, "{a=" * 400 + "1" + "}" * 400, "[" * 5000),
-    *('"wheel"', '"wheel.TEETH"', '["wheel.TEETH", "wheel.TEETH"]', '["a", "b", "c"]', '"../../etc/passwd"', '"/dev/null"', '"."', "1_0"),
-    *('"\\u0000"', '"\\ud800"', '"µ"', '"1 µN·m"', "[1, 2]", '["1 mm", "1 mm"]', '["0 mm", "0 mm", "0 mm"]', "0x10", "1e-14", '"free"'),
-    *('"fixed"', '"slide"', '"moving"', "[0.0, 0.0]", "[1.0, 0.0]", '"-0 mm"', '"1 mm mm mm"', '"((((mm))))"', '"1 mm^9"', '"1 mm^-9"'),
+    *(
+        "",
+        "0",
+        "-1",
+        "1",
+        "1e308",
+        "1e-320",
+        "5e101",
+        "nan",
+        "inf",
+        "-inf",
+        "true",
+        "[]",
+        "{}",
+        "[[]]",
+        "[{}]",
+        '""',
+        '"x"',
+        "'''a'''",
+    ),
+    *(
+        '"5e101 mm"',
+        '"-1 mm"',
+        '"0 mm"',
+        '"1e-320 g"',
+        '"1e400 m"',
+        '"nan m"',
+        '"1 mm/0"',
+        '"28800"',
+        '"28800 vph"',
+        '"1e5000 Hz"',
+    ),
+    *(
+        '"every 99999999999999999999"',
+        '"every 0"',
+        '"events"',
+        '["1 s", "0 s"]',
+        '["0 s", "1e99 s"]',
+        "1979-05-27T07:32:00Z",
+        "07:32:00",
+    ),
+    *(
+        "9" * 5000,
+        f'"{"9" * 5000} mm"',
+        f'"every {"9" * 5000}"',
+        "[" * 400 + "]" * 400,
+        "{a=" * 400 + "1" + "}" * 400,
+        "[" * 5000,
+    ),
+    *(
+        '"wheel"',
+        '"wheel.TEETH"',
+        '["wheel.TEETH", "wheel.TEETH"]',
+        '["a", "b", "c"]',
+        '"../../etc/passwd"',
+        '"/dev/null"',
+        '"."',
+        "1_0",
+    ),
+    *(
+        '"\\u0000"',
+        '"\\ud800"',
+        '"µ"',
+        '"1 µN·m"',
+        "[1, 2]",
+        '["1 mm", "1 mm"]',
+        '["0 mm", "0 mm", "0 mm"]',
+        "0x10",
+        "1e-14",
+        '"free"',
+    ),
+    *(
+        '"fixed"',
+        '"slide"',
+        '"moving"',
+        "[0.0, 0.0]",
+        "[1.0, 0.0]",
+        '"-0 mm"',
+        '"1 mm mm mm"',
+        '"((((mm))))"',
+        '"1 mm^9"',
+        '"1 mm^-9"',
+    ),
 )
 LINES = (
-    *("[bodies]", "[[bodies]]", "[[contacts]]", "[[springs]]", "[[torques]]", "[[damping]]", "[run]", "[expect]", "[scene]", "[lock]"),
-    *("[bodies.x]", "[bodies.'']", "[bodies.'a.b']", "[timegrapher]", "[bodies.wheel.solids]", "[[bodies.wheel.solids]]", "[[]]", "["),
+    *(
+        "[bodies]",
+        "[[bodies]]",
+        "[[contacts]]",
+        "[[springs]]",
+        "[[torques]]",
+        "[[damping]]",
+        "[run]",
+        "[expect]",
+        "[scene]",
+        "[lock]",
+    ),
+    *(
+        "[bodies.x]",
+        "[bodies.'']",
+        "[bodies.'a.b']",
+        "[timegrapher]",
+        "[bodies.wheel.solids]",
+        "[[bodies.wheel.solids]]",
+        "[[]]",
+        "[",
+    ),
     *("[bodies]\ndrawing = 'x.dxf'\nposition = ['0 mm', '0 mm']", "[[contacts]]\n[[contacts]]", "bodies = 1", "contacts = [1]"),
-    *("contacts = [[]]", "springs = {}", "x = 1", "=", "a.b.c.d = 1", "[a." + "a." * 400 + "a]", "\x00", "\ufeff", "# \x01", "[expect.x]"),
+    *(
+        "contacts = [[]]",
+        "springs = {}",
+        "x = 1",
+        "=",
+        "a.b.c.d = 1",
+        "[a." + "a." * 400 + "a]",
+        "\x00",
+        "\ufeff",
+        "# \x01",
+        "[expect.x]",
+    ),
     *('"amplitude" = 1', '"amplitude" = { value = "1", tolerance = "1" }', '"x.y" = { value = "1 s", tolerance = "-1 s" }'),
-    *("[lock.drawings]", 'on = "wheel"', 'on = "balance"', 'record = "statistics"', "tolerance = 1e-14", 'duration = "1e300 s"'),
+    *(
+        "[lock.drawings]",
+        'on = "wheel"',
+        'on = "balance"',
+        'record = "statistics"',
+        "tolerance = 1e-14",
+        'duration = "1e300 s"',
+    ),
 )
 
 
@@ -108,7 +222,9 @@ def _number(rng: random.Random, text: str) -> str:
     if not numbers:
         return text
     found = rng.choice(numbers)
-    other = rng.choice(("0", "-1", "1e9", "1e-9", "1e30", "1e-30", "1e300", "-" + found[0], found[0] + "0", "1e-320", "99999999999999999999"))
+    other = rng.choice(
+        ("0", "-1", "1e9", "1e-9", "1e30", "1e-30", "1e300", "-" + found[0], found[0] + "0", "1e-320", "99999999999999999999")
+    )
     return text[: found.start()] + other + text[found.end() :]
 
 
@@ -119,39 +235,39 @@ def _cut(rng: random.Random, text: str) -> str:
 ACCIDENTS = (_value, _value, _value, _line, _line, _lost, _moved, _key, _key, _number, _number, _number, _cut)
 
 
-def judge(place: Path, number: int) -> tuple[str, str]:
-    """What became of it: ("2", "") for a refusal; what went wrong, and what was said."""
+def judged(arguments: list[str]) -> tuple[int, str]:
+    """Exit status of a command, and what it said."""
     from watchsim.cli import main
 
     said = io.StringIO()
     with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
-        status = main(["check", str(place), "--json"])
-        if status == 0 and number % 4 == 0:
-            out = place.parent / "out"
-            status = main(["run", str(place), "--duration", "1 ms", "--no-plots", "-o", str(out)])
-            shutil.rmtree(out, ignore_errors=True)
-    text = said.getvalue()
+        status = main(arguments)
+    return status, said.getvalue()
+
+
+def judge(*commands: list[str]) -> tuple[str, str]:
+    """The exit status of the last command that is reached, each one where the one before was fine, and a fault's report."""
+    text, status = "", 0
+    for arguments in commands:
+        status, said = judged(arguments) if status == 0 else (status, "")
+        text += said
     if status == 4 or "Traceback" in text:
-        return "a fault of the program", text
-    return str(status), text
+        where = [path.read_text()[-600:] for path in Path().glob("watchsim-fault-*.txt")]
+        return "a fault of the program", text[-1500:] + "".join(where)
+    return str(status), ""
 
 
-def one(number: int, copies: Path) -> tuple[str, float]:
-    """Judge file `number` in a process of its own; what became of it, and the seconds it took."""
-    name, content = damaged(number)
-    folder = copies / Path(name).name
-    place = folder / "scene.toml"
-    place.write_bytes(content)
+def in_a_process(place: Path, *commands: list[str]) -> tuple[str, float]:
+    """What became of the commands in a process of its own with little time and memory, and the seconds it took."""
     reading, writing = os.pipe()
     start = time.perf_counter()
     child = os.fork()
     if child == 0:
         try:
-            os.chdir(copies)
+            os.chdir(place)
             resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
             resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS))
-            word, text = judge(place, number)
-            os.write(writing, f"{word}\n{text[-1500:] if word.startswith('a fault') else ''}".encode()[:4000])
+            os.write(writing, "\n".join(judge(*commands)).encode()[:4000])
         except BaseException as error:
             os.write(writing, f"escaped: {type(error).__name__}: {error}".encode()[:4000])
         finally:
@@ -164,7 +280,22 @@ def one(number: int, copies: Path) -> tuple[str, float]:
     if os.WIFSIGNALED(status):
         slow = os.WTERMSIG(status) in (signal.SIGXCPU, signal.SIGKILL)
         words = f"more than {SECONDS} s of processor time" if slow else f"died of signal {os.WTERMSIG(status)}"
+    for report in place.glob("watchsim-fault-*.txt"):
+        report.unlink()
     return words, took
+
+
+def one(number: int, copies: Path) -> tuple[str, float]:
+    """Judge file `number`."""
+    name, content = damaged(number)
+    place = copies / Path(name).name / "scene.toml"
+    place.write_bytes(content)
+    commands = [["check", str(place), "--json"]]
+    if number % 4 == 0:
+        commands.append(["run", str(place), "--duration", "1 ms", "--no-plots", "-o", str(place.parent / "out")])
+    answer = in_a_process(copies, *commands)
+    shutil.rmtree(place.parent / "out", ignore_errors=True)
+    return answer
 
 
 def main() -> None:

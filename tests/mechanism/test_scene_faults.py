@@ -145,7 +145,7 @@ ONE_FAULT = [
     ('duration = "180 s"', 'duration = "-1 s"', "run.duration", "must be above zero"),
     ('["179 s", "180 s"]', '["180 s", "179 s"]', "run.record", "from an earlier to a later time"),
     ('["179 s", "180 s"]', '[["1 s", "2 s"], ["4 s", "3 s"]]', "run.record.1", "from an earlier to a later time"),
-    ("tolerance = 1e-8", "tolerance = 0", "run.tolerance", "must lie between 1e-14 and 0.01"),
+    ("tolerance = 1e-8", "tolerance = 0", "run.tolerance", "must lie between 1e-13 and 0.01"),
     ('lift_angle = "52°"', 'lift_angle = "400°"', "timegrapher.lift_angle", "below a full turn"),
     ('value = "275°", ', "", "expect.amplitude", "value is missing"),
     ('value = "275°"', 'value = "275 s"', "expect.amplitude.value", "is a time; here an angle is needed"),

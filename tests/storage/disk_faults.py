@@ -74,7 +74,7 @@ def _opened(file: Any, mode: str = "r", buffering: int = -1, encoding: Any = Non
 
 def _synced(number: int) -> None:
     if _disk is not None:
-        _disk.step("fsync", os.readlink(f"/proc/self/fd/{number}"))
+        _disk.step("fsync", Path(f"/proc/self/fd/{number}").readlink())
     _fsync(number)
 
 
@@ -110,7 +110,7 @@ def killed_at(root: Path, number: int, work: Callable[[], object]) -> bool:
 
 
 def not_yet_on_disk(log: list[tuple[str, ...]], is_final: Callable[[str], bool]) -> list[str]:
-    """What a power cut could leave empty under a final name: renamed before it and the folders that name it were synchronised."""
+    """What a power cut could leave empty under a final name: renamed before it was synchronised."""
     dirty: set[str] = set()
     found = []
     for name, *paths in log:

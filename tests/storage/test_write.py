@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 import sys
 from pathlib import Path
 
 import pytest
-
 from storage.disk_faults import Disk, killed_at, not_yet_on_disk, watched
+
 from watchsim.storage.scratch import PREFIX, make
 from watchsim.storage.write import sweep, write_file, write_folder
 
@@ -58,7 +57,7 @@ def check(target: Path, old: bool, done: bool) -> None:
 
 
 def nothing_left(root: Path) -> bool:
-    return not [name for name in os.listdir(root) if name.startswith(PREFIX)]
+    return not [name for name in root.iterdir() if name.name.startswith(PREFIX)]
 
 
 @pytest.mark.parametrize("old", [True, False])
@@ -129,6 +128,10 @@ def test_a_power_cut_finds_no_empty_file_under_a_final_name(tmp_path: Path) -> N
         assert len(not_yet_on_disk(bare, final.__contains__)) >= 4, "the check would have seen it"
 
 
+def written(target: Path) -> None:
+    write_file(target, lambda path: path.write_text("new"), "a text")
+
+
 def test_files_fail_and_die_alike(tmp_path: Path) -> None:
     root = tmp_path / "disk"
     for number in range(1, MOST):
@@ -138,7 +141,7 @@ def test_files_fail_and_die_alike(tmp_path: Path) -> None:
             target = root / "a.txt"
             if old:
                 target.write_text("old")
-            died = killed_at(root, number, lambda target=target: write_file(target, lambda path: path.write_text("new"), "a text"))
+            died = killed_at(root, number, lambda target=target: written(target))
             sweep(root)
             assert [path.name for path in root.iterdir()] == (["a.txt"] if old or target.exists() else [])
             assert not target.exists() or target.read_text() in ("old", "new")

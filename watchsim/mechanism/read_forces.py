@@ -75,9 +75,9 @@ def _note_body(table: Table, known: Mapping[str, Body]) -> None:
     if not table.is_table:
         return
     name = table.needed_text("body", next(iter(known), "balance"))
-    if name and name not in known:
+    if name not in known and (name or table.mapping.get("body") == ""):
         table.fault("body", f"there is no such body. {nearest(name, known)}", with_value=True)
-    elif name and known[name].motion not in COORDINATE:
+    elif name in known and known[name].motion not in COORDINATE:
         table.fault("body", f'acts on a pivoted or a sliding body, and motion of {name} is "{known[name].motion}"', True)
 
 

@@ -10,6 +10,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+from watchsim import units
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.errors import Faults
 from watchsim.mechanism.schema import UNSUPPORTED, Keys, nearest
@@ -17,6 +18,7 @@ from watchsim.mechanism.toml import value_text
 from watchsim.units import NUMBER, Dimension, UnitError, parse
 
 NAN = math.nan
+FURTHEST = 1e9  # m or rad: beyond, the places of what is a micrometre small are lost to rounding
 SMALLEST, LARGEST = 1e-100, 1e50  # SI: products and powers of what is read must stay numbers
 TOO_SMALL, TOO_LARGE = "is too small to compute with", "is too large to compute with"
 UNREADABLE: Point = (NAN, NAN)
@@ -122,7 +124,7 @@ class Table:
     def parsed(self, path: str, value: object, dimension: Dimension) -> float:
         try:
             number = parse(value, dimension)
-            if abs(number) <= LARGEST:
+            if abs(number) <= (FURTHEST if dimension in (units.LENGTH, units.ANGLE) else LARGEST):
                 return number
             self.faults.add(f"{self.path}.{path}", TOO_LARGE, shown(value))
         except UnitError as error:

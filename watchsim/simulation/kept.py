@@ -7,12 +7,14 @@ short it is.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.mechanism.recording import ALL, STATISTICS, WHOLE_RUN, Recording, Window
+from watchsim.simulation.event_kinds import EVENT_DTYPE
 
 Array = NDArray[np.float64]
 Bits = NDArray[np.bool_]
@@ -43,6 +45,33 @@ class Kept:
     def parts(self) -> int:
         """How often something was flushed."""
         return self._gone + len(self._rows)
+
+    def unfinished(self) -> dict[str, NDArray[Any]]:
+        """What decides about the rows that come next: how many were met, when the last one was, and itself where it waits."""
+        part, time, inside = self._last
+        rows, stays = (
+            self._rows[part - self._gone] if self.parts > part >= self._gone else (np.zeros((0, 0)), np.zeros(0, bool))
+        )
+        waits = not self.recording.has_tail and len(rows) > 0 and not stays[-1]
+        return {
+            "met": np.array(self._met),
+            "last": np.array([time, float(inside)]),
+            "row": rows[-1].copy() if waits else np.zeros(0),
+        }
+
+    def go_on(self, unfinished: Mapping[str, NDArray[Any]]) -> None:
+        """Decide about the next rows as if they followed on those before; nothing is known of them where it is empty."""
+        if not unfinished:
+            return
+        self._met = int(unfinished["met"])
+        time, inside = unfinished["last"].tolist()
+        self._last = 0, time, bool(inside)
+        row = unfinished["row"]
+        if len(row):
+            self._rows.append((row[None].copy(), np.zeros(1, bool)))
+            self._events.append((np.zeros(0, EVENT_DTYPE), np.zeros(0, bool)))
+        else:
+            self._last = 0, time, True
 
     def flush(self, rows: Array, events: NDArray[Any]) -> None:
         """Keep copies of what is wanted of the next rows and events, and forget earlier ones that were only of the tail."""

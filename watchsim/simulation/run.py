@@ -57,6 +57,11 @@ def natural_step(compiled: Compiled, longest: float) -> float:
     return min(longest, 0.5 * math.pi / compiled.fastest) if compiled.fastest else longest
 
 
+def new_until(end: float = 0.0, duration: float = 0.0, last: float = 0.0, steps: float = 0.0) -> NDArray[np.float64]:
+    """How far `advance` is to run: end of the slice (s), of the run (s), 1 if the last step may be cut short, steps."""
+    return np.array([end, duration, last, steps, *(0.0 for _ in COUNT_NAMES)])
+
+
 class Run:
     """A run under way: the loop's arrays and what has been kept. By events; see `moreau.MoreauRun` for fixed steps.
 
@@ -90,6 +95,7 @@ class Run:
         saved.restore(self.arrays())
         self.stored_at_start = saved.stored_at_start
         self.tally.restore(saved.tally)
+        self.kept.go_on(saved.recorded)
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Everything the future depends on, besides the model and the settings."""
@@ -108,7 +114,8 @@ class Run:
         """The state now, with the sums over all events so far."""
         self.flush()
         self._parts_before = self.kept.parts
-        return save_state(self.compiled, self.settings(), self.arrays(), self.stored_at_start, self.tally.arrays())
+        state = save_state(self.compiled, self.settings(), self.arrays(), self.stored_at_start, self.tally.arrays())
+        return dataclasses.replace(state, recorded=self.kept.unfinished())
 
     def flush(self) -> None:
         """Empty the buffers: count the events, keep what the recording wants."""
@@ -120,7 +127,7 @@ class Run:
     def warm_up(self) -> None:
         """Load or compile the kernels: a call that returns at once because it has no room to record."""
         nowhere = new_record(self.compiled.model, 0, 0, self.record.windows)
-        self._advance(np.zeros(4), nowhere)
+        self._advance(new_until(), nowhere)
 
     def _advance(self, until: NDArray[np.float64], record: Any) -> Stop:
         code = advance(self.compiled.model, self.finder.cells, self.state, self.options, until, self.scratch, record)
@@ -137,6 +144,10 @@ class Run:
                 stop = self._slices(duration, progress, interrupted)
         except KeyboardInterrupt:
             stop = Stop.INTERRUPTED
+        except OverflowError:  # so far away that no cell has a number
+            stop = Stop.NOT_FINITE
+        except MemoryError:
+            stop = Stop.OUT_OF_MEMORY
         if self.saved is None:
             self.saved = self.save()
         self.flush()
@@ -146,7 +157,7 @@ class Run:
         """Slice after slice of about `SLICE_WALL`, with what has to be done between them."""
         length = 1e-5 * duration  # grows tenfold at most: a long slice would be deaf
         steps = FEWEST_STEPS  # where events crowd, time is no measure of work
-        until = np.array([0.0, duration, 0.0, 0.0])
+        until = new_until(0.0, duration)
         while True:
             start = time.perf_counter()
             until[0] = min(duration, self.state.clock[0] + length)

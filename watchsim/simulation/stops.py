@@ -20,6 +20,7 @@ class Stop(IntEnum):
     NOT_FINITE = 9
     TOO_MANY_CONTACTS = 10
     LAST_STEP = 11
+    OUT_OF_MEMORY = 12
 
     @property
     def sentence(self) -> str:
@@ -28,7 +29,7 @@ class Stop(IntEnum):
     @property
     def gave_up(self) -> bool:
         """True when the solver could not go on (exit status 3)."""
-        return Stop.TOO_MANY_EVENTS <= self <= Stop.TOO_MANY_CONTACTS
+        return Stop.TOO_MANY_EVENTS <= self <= Stop.TOO_MANY_CONTACTS or self == Stop.OUT_OF_MEMORY
 
 
 _SENTENCES = {
@@ -46,5 +47,6 @@ _SENTENCES = {
     ),
     Stop.STEP_TOO_SMALL: "the step became too small for the asked tolerance",
     Stop.NOT_FINITE: "a coordinate or velocity is no longer a finite number",
+    Stop.OUT_OF_MEMORY: "there is no memory left to keep more; --record statistics needs least",
     Stop.TOO_MANY_CONTACTS: "more contacts closed at once than there is room for",
 }
