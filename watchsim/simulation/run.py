@@ -193,8 +193,12 @@ class Run:
         n = len(self.state.q)
         compiled = self.compiled
         rows, events = self._all_kept()
-        before = [len(part) for part in self._all_kept(self._parts_before)]
-        saved = None if self.saved is None else dataclasses.replace(self.saved, rows=before[0], events=before[1])
+        saved = self.saved
+        if saved is not None:
+            before = [len(part) for part in self._all_kept(self._parts_before)]
+            stays = self.kept.for_good(float(self.state.clock[0]), self._parts_before)
+            recorded = {**saved.recorded, "stays": stays}
+            saved = dataclasses.replace(saved, rows=before[0], events=before[1], recorded=recorded)
         return Trajectory(
             scene=self.scene,
             t=rows[:, 0],

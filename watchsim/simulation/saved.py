@@ -50,7 +50,7 @@ class SavedState:
             and clock.shape == (3,)
             and all(np.isfinite(array).all() for array in self.arrays.values())
             and set(self.tally) == set(TALLIED)
-            and set(self.recorded) in (set(), {"met", "last", "row"})
+            and set(self.recorded) in (set(), {"met", "last", "row", "stays"})
             and isinstance(self.settings, dict)
             and isinstance(self.stored_at_start, float)
             and all(isinstance(count, int) and count >= 0 for count in (self.rows, self.events))
