@@ -102,7 +102,7 @@ def _found(expectation: Expectation, known: Mapping[str, float | None]) -> tuple
         return None, f'this run gives no "{expectation.key}"'
     if not expectation.unit:
         return value, ""
-    return value * known_unit(unit_of(name)).factor / known_unit(expectation.unit).factor, ""
+    return value * known_unit(unit_of(_name(expectation))).factor / known_unit(expectation.unit).factor, ""
 
 
 def _numbers(mapping: Mapping[str, Any], above: str = "") -> list[tuple[str, float | None]]:

@@ -12,7 +12,7 @@ from watchsim.analysis.archive import whole
 from watchsim.simulation.saved import SavedState
 
 FORMAT = 2
-PARTS = {"arrays": "state", "tally": "tally", "recorded": "recorded"}  # of a state: what their names begin with
+PARTS = ("state", "tally", "recorded")  # of a state: what the names of their arrays begin with
 
 
 def write_state(state: SavedState, path: Path) -> None:
@@ -40,8 +40,8 @@ def read_state(path: Path) -> SavedState:
     if kind != FORMAT:
         raise ValueError(f"{path} was written by another version of watchsim; run the scene again")
     with whole(path, "saved state"):
-        parts = {part: _of(arrays, f"{prefix}_") for part, prefix in PARTS.items()}
-        state = SavedState(**parts, **header)
+        own, tally, recorded = (_of(arrays, f"{part}_") for part in PARTS)
+        state = SavedState(arrays=own, tally=tally, recorded=recorded, **header)
         if not state.is_whole():
             raise ValueError("its parts do not fit together")
     return state
