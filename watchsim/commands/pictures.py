@@ -18,6 +18,7 @@ class LeftOut(Exception):
     """The process is to stop: a picture under way is given up, it can be drawn later."""
 
 
+MOST_PLOTTED = 12  # bodies, in the plots that come with a run; each costs a fiftieth of a second and an inch of paper
 WHOLE_RUN = 10.0  # s that the movie of a whole run takes
 
 
@@ -54,8 +55,12 @@ def _plots(run: Trajectory) -> dict[str, Callable[[Path], object]]:
 
     if len(run.t) < 2:
         return {}
+    moving = [body.name for body in run.scene.bodies if body.motion != "fixed"]
+    if len(moving) > MOST_PLOTTED:
+        say(f"Plots of {MOST_PLOTTED} of {len(moving)} moving bodies; watchsim plot RUN --bodies NAMES draws others.")
+    shown_bodies = moving[:MOST_PLOTTED]
     windows = {"plots/kinematics.png": None, "plots/last_beats.png": last_beats(run)}
-    shown = functools.cache(lambda: Kinematics(run))
+    shown = functools.cache(lambda: Kinematics(run, shown_bodies))
 
     def plot(window: tuple[float, float] | None) -> Any:
         return lambda path: write_png(shown().show(window), path)

@@ -243,10 +243,13 @@ class Run:
     def _energy(self) -> dict[str, Any]:
         """The ledger: work in = stored + dissipated + residual, J."""
         sums = self.state.sums
-        stored = stored_energy(self.compiled.model, self.state.q, self.state.u) - self.stored_at_start
+        at_end = stored_energy(self.compiled.model, self.state.q, self.state.u)
+        stored = at_end - self.stored_at_start
         dissipated = self._dissipated()
         residual = sums[DRIVE] - stored - sum(dissipated.values())
-        scale = max(abs(sums[DRIVE]), abs(stored), sum(dissipated.values()))
+        # A swing that loses nothing gets nothing and stores nothing more: what it turns over is the scale of its rounding.
+        held = max(at_end, self.stored_at_start, _turned_over(self.compiled.model.coordinates))
+        scale = max(abs(sums[DRIVE]), abs(stored), sum(dissipated.values()), held)
         return {
             "in_J": float(sums[DRIVE]),
             "dissipated": dissipated,
@@ -254,6 +257,12 @@ class Run:
             "residual_J": float(residual),
             "residual_relative": float(abs(residual) / scale) if scale else 0.0,
         }
+
+
+def _turned_over(coordinates: Any) -> float:
+    """What constant forces give to springs and take back in each swing, J."""
+    sprung = coordinates[coordinates.stiffness > 0.0]
+    return float(np.max(2.0 * sprung.force**2 / sprung.stiffness, initial=0.0))
 
 
 def _as_told(events: NDArray[Any], compiled: Compiled) -> NDArray[Any]:

@@ -89,6 +89,13 @@ class Trajectory:
     end_state: SavedState | None = field(default=None, repr=False, compare=False)  # to go on from, see `simulate`
     failure: dict[str, Any] | None = field(default=None, repr=False)
 
+    def __post_init__(self) -> None:
+        """A frozen value to the last element; views, so that whoever made the arrays may go on with them."""
+        for name in ("t", "q", "u", "a", "events", "end_q", "end_u"):
+            view = getattr(self, name)[...]
+            view.flags.writeable = False
+            object.__setattr__(self, name, view)
+
     @cached_property
     def _noise(self) -> Array:
         """(n,): how exact each coordinate is at its rows."""
