@@ -1,7 +1,7 @@
 """Is anything lost when the disk fails once, at any one of the things a command does to it?
 
-For `run`, `run --force`, `run --resume`, `movie` and `plot`: the first opening for writing, write, synchronisation, rename, link
-or removal fails with "No space left on device", then only the second, and so on to the last one. After each: what was there
+For `run`, with `--force` and `--resume`, `movie` and `plot`: the first opening for writing, write, synchronisation, rename or
+removal fails with "No space left on device", then only the second, and so on to the last one. After each: what was there
 before is whole, and what was computed lies where it was to go, or where the message says. `--stride N` takes every N-th.
 """
 

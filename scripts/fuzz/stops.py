@@ -144,9 +144,8 @@ def main() -> None:
                 wrong_rounds += 1
                 print(f"{number} ({name}): {wrong}", flush=True)
     took = time.perf_counter() - begun
-    print(
-        f"{args.count} rounds of {args.signal} from number {args.first}: {wrong_rounds} wrong; {dict(sorted(ended.items()))}; {took:.0f} s"
-    )
+    print(f"{args.count} rounds of {args.signal} from number {args.first}: {wrong_rounds} wrong; {took:.0f} s")
+    print(dict(sorted(ended.items())))
     sys.exit(bool(wrong_rounds))
 
 

@@ -30,8 +30,13 @@ from watchsim.simulation.state import (
     DAMPING,
     DRIVE,
     FRICTION,
+    N_EVALUATIONS,
     N_FLIGHTS,
+    N_GAPS,
     N_INSTANTS,
+    N_LOOKUPS,
+    N_REJECTED,
+    N_STEPS,
     SUMS,
     RecordRef,
     ScratchRef,
@@ -49,7 +54,8 @@ EVENTS_AT_ONCE = 2000
 INSTANT = 1e-3  # share of `accumulation_time` within which events count as happening at once
 ROWS_PER_STEP = math.ceil(FLIGHT_PHASE / FINEST_ROWS) + 8
 EVENTS_PER_CONTACT = 20
-WORK = 4  # in `until`, from here on: the counts before the current step
+WORK = (N_STEPS, N_REJECTED, N_EVALUATIONS, N_GAPS, N_LOOKUPS)  # counts of what is done again once a cell is known
+BEFORE = 4  # in `until`, from here on: these counts before the current step
 
 
 @kernel
@@ -163,8 +169,8 @@ def _settle(model, cells, state, options, scratch, record):
 def _undone(code, state, until):
     """What is done again with the cell known counts once: work must not depend on what earlier runs have learnt."""
     if code == CELL_UNKNOWN:
-        for i in range(len(state.counts)):
-            state.counts[i] = int(until[WORK + i])
+        for i in range(len(WORK)):
+            state.counts[WORK[i]] = int(until[BEFORE + i])
     return code
 
 
@@ -175,8 +181,8 @@ def _loop(model, cells, state, options, until, scratch, record):
     while True:
         if not _room_left(record, len(scratch.closed.ids)):
             return BUFFER_FULL
-        for i in range(len(state.counts)):
-            until[WORK + i] = state.counts[i]
+        for i in range(len(WORK)):
+            until[BEFORE + i] = state.counts[WORK[i]]
         if state.numbers[2]:
             code = _settle(model, cells, state, options, scratch, record)
             if code != RUNNING:
@@ -209,7 +215,7 @@ def advance(model, cells, state, options, until, scratch, record):
     """Run to the time until[1] (or return at the end of a slice, after until[0] or until[3] steps); returns a Stop code.
 
     Before a step that until[1] might cut short it returns once, unless until[2] is set. Steps are counted down in until[3].
-    Behind that is room for the counts.
+    Behind that is room for counts.
 
     All arguments but `until` are NamedTuples; `state`, `scratch` and `record` are written to.
     """

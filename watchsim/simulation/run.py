@@ -22,7 +22,7 @@ from watchsim.mechanism.compile import Compiled
 from watchsim.mechanism.model import KIND_WORD
 from watchsim.mechanism.recording import Recording
 from watchsim.mechanism.scene import Scene
-from watchsim.simulation.advance import EVENTS_PER_CONTACT, ROWS_PER_STEP, advance
+from watchsim.simulation.advance import EVENTS_PER_CONTACT, ROWS_PER_STEP, WORK, advance
 from watchsim.simulation.failure import failure_of
 from watchsim.simulation.interrupts import held_interrupts
 from watchsim.simulation.kept import Kept, tail_length
@@ -59,7 +59,7 @@ def natural_step(compiled: Compiled, longest: float) -> float:
 
 def new_until(end: float = 0.0, duration: float = 0.0, last: float = 0.0, steps: float = 0.0) -> NDArray[np.float64]:
     """How far `advance` is to run: end of the slice (s), of the run (s), 1 if the last step may be cut short, steps."""
-    return np.array([end, duration, last, steps, *(0.0 for _ in COUNT_NAMES)])
+    return np.array([end, duration, last, steps, *(0.0 for _ in WORK)])
 
 
 class Run:

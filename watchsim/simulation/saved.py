@@ -50,11 +50,20 @@ class SavedState:
             and clock.shape == (3,)
             and all(np.isfinite(array).all() for array in self.arrays.values())
             and set(self.tally) == set(TALLIED)
-            and set(self.recorded) in (set(), {"met", "last", "row", "stays"})
+            and self._recorded_is_whole()
             and isinstance(self.settings, dict)
             and isinstance(self.stored_at_start, float)
             and all(isinstance(count, int) and count >= 0 for count in (self.rows, self.events))
         )
+
+    def _recorded_is_whole(self) -> bool:
+        if not self.recorded:
+            return True
+        if set(self.recorded) != {"met", "last", "row", "stays"}:
+            return False
+        met, last, row, stays = (self.recorded[name] for name in ("met", "last", "row", "stays"))
+        shapes = met.shape == () and last.shape == (2,) and row.ndim == 1 and stays.shape == (self.rows,)
+        return bool(shapes and met.dtype.kind == "i" and last.dtype.kind == row.dtype.kind == "f" and stays.dtype == bool)
 
     def check(self, compiled: Compiled, settings: Mapping[str, Any]) -> None:
         """ValueError where the model or a setting is not the one the state was made with."""
