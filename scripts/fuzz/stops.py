@@ -87,9 +87,12 @@ def one(number: int, which: int, made: Path, usual: dict[str, float], place: Pat
     process = start(COMMANDS[name], place)
     share = rng.random() * 1.1
     time.sleep(0.12 + share * usual[name])  # before that the interpreter itself is starting
+    alive = process.poll() is None
     process.send_signal(which)
     said = "".join(process.communicate())
     wrong = [] if process.returncode in (STATUS[signal.Signals(which)], 0) else [f"exit status {process.returncode}"]
+    if alive and process.returncode == 0 and which != signal.SIGKILL:
+        wrong.append("swallowed")
     if "Traceback" in said or "Error" in said:
         wrong.append(said)
     if (

@@ -138,7 +138,7 @@ def test_memory_that_runs_out_is_no_fault(
         original(self)
 
     monkeypatch.setattr(Run, "flush", full)
-    assert main([*SHORT, "-o", str(tmp_path / "out")]) == 3
+    assert main(["run", LEVER, "--duration", "0.3 s", "--no-plots", "-o", str(tmp_path / "out")]) == 3
     assert "no memory left" in capsys.readouterr().err
     assert read_results(tmp_path / "out").simulated > 0.0
 

@@ -20,6 +20,7 @@ from watchsim.commands.console import (
     say,
 )
 from watchsim.commands.destination import secured_folder, swept_run
+from watchsim.commands.record_size import bounded_record
 from watchsim.commands.write_run import Extras, goal_of, write
 from watchsim.simulation.methods import EVENT_DRIVEN, METHODS
 
@@ -66,6 +67,7 @@ def run(args: argparse.Namespace) -> int:
         scene = scene.set("run.record", [_record(what) for what in args.record])
     duration = None if args.duration is None else parse_positive("--duration", args.duration, TIME)
     step = None if args.step is None else parse_positive("--step", args.step, TIME)
+    scene = bounded_record(scene, scene.duration if duration is None else duration)
     _check_windows(scene, scene.duration if duration is None else duration, asked=bool(args.record))
     if args.tol is not None and not 1e-13 <= args.tol <= 1e-2:
         raise InputError(f"--tol {args.tol:g}: must lie between 1e-13 and 1e-2.")
