@@ -33,10 +33,13 @@ COMMANDS = {
 def judge(name: str, place: Path, second: Path, status: int, said: str) -> list[str]:
     """What is wrong after a command that met a fault."""
     from watchsim.analysis.results import read_results
+    from watchsim.storage.write import sweep
 
     wrong = [] if status in (0, 2) else [f"exit status {status}"]
     if "Traceback" in said or (place / "old" / "mine.txt").read_text() != "mine":
         wrong.append("traceback, or the user's file is gone")
+    for folder in (place, place / "old", place / "new", place / "old" / "plots"):  # what the next command does first
+        sweep(folder)
     if list(place.rglob(".watchsim-*")):
         wrong.append("leftover")
     old = read_results(place / "old").simulated

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dis
 import os
 import platform
 import shlex
@@ -18,15 +19,20 @@ PACKAGE = Path(__file__).resolve().parents[1]
 def is_refusal(error: Exception) -> bool:
     """True for a ValueError that this package raised itself: it says in words what cannot be used.
 
-    One out of another library comes from what this package should have checked.
+    One out of a library, or out of a function such as math.sqrt, comes from what this package should have checked.
     """
     return isinstance(error, ValueError) and _is_raised_here(error.__traceback__)
 
 
 def _is_raised_here(trace: TracebackType | None) -> bool:
+    """True if the last thing that was done is a `raise` in this package."""
     while trace is not None and trace.tb_next is not None:
         trace = trace.tb_next
-    return trace is not None and PACKAGE in Path(trace.tb_frame.f_code.co_filename).resolve().parents
+    if trace is None:
+        return False
+    code = trace.tb_frame.f_code
+    raised = code.co_code[trace.tb_lasti] == dis.opmap["RAISE_VARARGS"]
+    return raised and PACKAGE in Path(code.co_filename).resolve().parents
 
 
 def report(error: Exception, argv: list[str]) -> str:
