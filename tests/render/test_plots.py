@@ -134,9 +134,10 @@ def test_the_light_png_shows_the_same_pixels(tmp_path):
 @pytest.mark.parametrize("turned", [0.0, 1e4])
 def test_nothing_is_clipped_and_no_words_overlap(window, turned):
     run = watch_run(title="A rather long title of a scene with an escapement in it")
-    for values in (run.q, run.u, run.a):
-        values[:, :2] *= (1e-3, 1e-6)
-    run.q[:, 0] += turned
+    small = np.array([1e-3, 1e-6, *np.ones(run.q.shape[1] - 2)])
+    columns = {name: getattr(run, name) * small for name in ("q", "u", "a")}
+    columns["q"][:, 0] += turned
+    run = dataclasses.replace(run, **columns)
     figure = plot_kinematics(run, window=window)
     figure.canvas.draw()
     renderer, whole = figure.canvas.get_renderer(), figure.bbox
