@@ -23,6 +23,12 @@ mkdir -p "$scratch/images"
 "$environment/bin/python" scripts/study_convergence.py --quick --page "$scratch/convergence.md"
 cat "$scratch/long-runs.md" "$scratch/convergence.md"
 
+echo "== killed, interrupted, damaged, out of room"
+for signal in KILL INT TERM; do "$environment/bin/python" scripts/fuzz/stops.py --signal "$signal" --count 70; done
+"$environment/bin/python" scripts/fuzz/faults.py
+"$environment/bin/python" scripts/fuzz/scenes.py --count 2000
+"$environment/bin/python" scripts/fuzz/results.py --count 500
+
 echo "== benchmarks and demo"
 "$environment/bin/watchsim" verify --slow
 "$environment/bin/python" scripts/measure_grid.py "$scratch/grid.csv"

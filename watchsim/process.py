@@ -8,14 +8,21 @@ from __future__ import annotations
 
 from typing import NoReturn
 
-from watchsim import stopping
-
 GARBAGE = 500_000  # objects that may pile up, some 50 MB
 
 
 def process() -> NoReturn:
     """Run the command line of this process, and end it."""
+    import signal
+
+    heard = (signal.SIGINT, signal.SIGTERM)
+    if hasattr(signal, "pthread_sigmask"):  # what comes while nobody listens yet waits
+        signal.pthread_sigmask(signal.SIG_BLOCK, heard)
+    from watchsim import stopping
+
     stopping.install()
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, heard)
     import atexit
     import gc
     import os

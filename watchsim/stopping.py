@@ -13,7 +13,6 @@ from __future__ import annotations
 import contextlib
 import os
 import signal
-import socket
 import threading
 from collections.abc import Callable, Iterator
 from typing import NoReturn, TypeVar
@@ -33,7 +32,6 @@ class _Listener:
         self.sticky = False
         self.installed = False
         self.lock = threading.Lock()
-        self.ends: tuple[socket.socket, ...] = ()
         self.hooks: list[Callable[[], None]] = []
 
 
@@ -42,16 +40,28 @@ _listener = _Listener()
 
 def install() -> None:
     """Hear the signals from now on, but for those that whoever started the process has switched off (nohup, &)."""
-    reading, writing = socket.socketpair()
-    reading.setblocking(True)
-    writing.setblocking(False)
-    _listener.ends, _listener.installed = (reading, writing), True
-    signal.set_wakeup_fd(writing.fileno(), warn_on_full_buffer=False)
-    threading.Thread(target=_listen, args=(reading,), daemon=True, name="signals").start()
+    read, wakeup = _ends()
+    _listener.installed = True
+    signal.set_wakeup_fd(wakeup, warn_on_full_buffer=False)
     for name in SIGNALS:
         number = getattr(signal, name, None)
         if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, _leave_it_to_the_thread)
+    threading.Thread(target=_listen, args=(read,), daemon=True, name="signals").start()
+
+
+def _ends() -> tuple[Callable[[], bytes], int]:
+    """What waits for the numbers of signals, and the number of the file that Python is to write them to."""
+    if os.name != "nt":
+        reading, writing = os.pipe()
+        os.set_blocking(writing, False)
+        return lambda: os.read(reading, 64), writing
+    import socket
+
+    receiver, sender = socket.socketpair()
+    sender.setblocking(False)
+    number = sender.detach()
+    return lambda: receiver.recv(64), number
 
 
 def installed() -> bool:
@@ -103,9 +113,9 @@ def _leave_it_to_the_thread(*_: object) -> None:
     """Python writes the signal's number to the socket only where there is a handler."""
 
 
-def _listen(reading: socket.socket) -> None:
+def _listen(read: Callable[[], bytes]) -> None:
     while True:
-        for number in reading.recv(64):
+        for number in read():
             if number in {getattr(signal, name, None) for name in SIGNALS}:
                 _hear(number)
 
