@@ -25,6 +25,11 @@ cat "$scratch/long-runs.md" "$scratch/convergence.md"
 
 echo "== random mechanisms, others every night"
 "$environment/bin/python" scripts/hunt_mechanisms.py --seed "$(date +%Y%m%d)" --count 1000 --jobs "$(nproc)"
+echo "== killed, interrupted, damaged, out of room"
+for signal in KILL INT TERM; do "$environment/bin/python" scripts/fuzz/stops.py --signal "$signal" --count 70; done
+"$environment/bin/python" scripts/fuzz/faults.py
+"$environment/bin/python" scripts/fuzz/scenes.py --count 2000
+"$environment/bin/python" scripts/fuzz/results.py --count 500
 
 echo "== benchmarks and demo"
 "$environment/bin/watchsim" verify --slow

@@ -1,7 +1,5 @@
 """python -m watchsim"""
 
-import sys
+from watchsim.process import process
 
-from watchsim.cli import process
-
-sys.exit(process())
+process()

@@ -1,20 +1,19 @@
 """What can be typed? Parse, call, print.
 
-Exit status: 0 fine; 1 ran, but an expectation was missed or the watch stopped; 2 bad input; 3 the solver gave up.
+Exit status: 0 fine; 1 ran, but an expectation was missed or the watch stopped; 2 bad input, or nowhere to write; 3 the solver
+gave up; 4 a fault of the program itself; 130, 143 stopped by Ctrl-C, SIGTERM.
 """
 
 from __future__ import annotations
 
 import argparse
-import gc
 import importlib
 import sys
 
-from watchsim import __version__
-from watchsim.commands.console import BAD_INPUT, INTERRUPTED, InputError, say
+from watchsim import __version__, stopping
+from watchsim.commands.console import BAD_INPUT, FAULT, INTERRUPTED, InputError, say
 
 COMMANDS = ("demo", "inspect", "check", "run", "plot", "movie", "verify", "bench", "export")
-GARBAGE = 500_000  # objects that may pile up, some 50 MB
 
 
 def parser() -> argparse.ArgumentParser:
@@ -34,18 +33,6 @@ def parser() -> argparse.ArgumentParser:
     return top
 
 
-def process() -> int:
-    """`main` as a process of its own.
-
-    Nearly all objects of a short run are imported modules, which stay to the end: looking for garbage among them every few
-    hundred objects, and once more at the end, would take a sixth of its time.
-    """
-    gc.set_threshold(GARBAGE)
-    status = main()
-    gc.freeze()
-    return status
-
-
 def main(argv: list[str] | None = None) -> int:
     """Run one command; returns its exit status."""
     for stream in (sys.stdout, sys.stderr):
@@ -54,24 +41,26 @@ def main(argv: list[str] | None = None) -> int:
             stream.reconfigure(encoding="utf-8", errors="replace")
     args = parser().parse_args(argv)
     try:
-        return int(args.run(args))
-    except (InputError, ValueError, OSError) as error:
-        if isinstance(error, BrokenPipeError):
-            return _closed_pipe()
-        say(str(error))
-        return BAD_INPUT
+        status = int(args.run(args))
     except KeyboardInterrupt:
         say("Interrupted.")
-        return INTERRUPTED
+        status = INTERRUPTED
+    except MemoryError:
+        say("There is not enough memory for this. A shorter run, a coarser picture, or --record statistics needs less.")
+        status = BAD_INPUT
+    except Exception as error:
+        status = _failed(error, sys.argv[1:] if argv is None else argv)
+    return stopping.status() if stopping.requested() else status
 
 
-def _closed_pipe() -> int:
-    """The reader of our output has gone (`watchsim ... | head`): leave without a word."""
-    import os
+def _failed(error: Exception, argv: list[str]) -> int:
+    """Say what is wrong, and whose fault it is."""
+    from watchsim.commands.fault_report import is_refusal, report
 
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    return BAD_INPUT
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    if isinstance(error, BrokenPipeError):  # the reader of our output has gone: leave without a word
+        return BAD_INPUT
+    if isinstance(error, (InputError, OSError)) or is_refusal(error):
+        say(str(error))
+        return BAD_INPUT
+    say(report(error, argv))
+    return FAULT

@@ -12,7 +12,8 @@ import sys
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-from watchsim.machine_code import cache_folder
+from watchsim.cache_files import checked_files
+from watchsim.machine_code import MOVE, cache_folder, complain
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -41,10 +42,17 @@ def entry(function: Function) -> Function:
         return function
     import numba
 
-    before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(cache_folder())
+    folder = cache_folder()
+    before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(folder or "")
+    compiled: Function
     try:
-        compiled: Function = numba.njit(cache=True, error_model="numpy", fastmath=False)(function)
-        _load_lightly(compiled)
+        compiled = numba.njit(cache=folder is not None, error_model="numpy", fastmath=False)(function)
+        if folder is not None:
+            checked_files(compiled, complain)
+            _load_lightly(compiled)
+    except (OSError, RuntimeError) as error:  # the disk has become full, or the folder has been taken away
+        complain(f"The machine code cannot be kept in {folder} ({error}): it is compiled each time. {MOVE}")
+        compiled = numba.njit(error_model="numpy", fastmath=False)(function)
     finally:
         numba.config.CACHE_DIR = before
     return compiled
@@ -66,8 +74,11 @@ def _load_lightly(compiled: Any) -> None:
 
     def load_overload(signature: Any, target: Any) -> Any:
         rtsys.initialize(target)  # the counter of references, which wrappers for calls from Python use
-        with cache._guard_against_spurious_io_errors():  # type: ignore[union-attr]
+        try:
             return cache._load_overload(signature, target)  # type: ignore[union-attr]
+        except Exception as error:  # whatever it is, the function can be compiled
+            complain(f"Machine code in {cache.cache_path} cannot be used ({error}): compiled again. {MOVE}")  # type: ignore[union-attr]
+            return None
 
     cache.load_overload = load_overload  # type: ignore[union-attr]
 
@@ -223,4 +234,5 @@ def is_cached(name: str = "") -> bool:
     """True when no compile is to be expected. `name` ("advance.run": file and function) asks about one kernel, "" about any."""
     if not is_compiled():
         return True
-    return any(cache_folder().glob(f"*/{name}-*.nbi" if name else "*/*.nbi"))
+    folder = cache_folder()
+    return folder is not None and any(folder.glob(f"*/{name}-*.nbi" if name else "*/*.nbi"))

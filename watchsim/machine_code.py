@@ -1,22 +1,27 @@
 """Where is the machine code of the kernels kept?
 
 A cached kernel does not notice when a function it calls in another file changes, so the folder carries a digest of every
-source a kernel can reach: after an edit there the kernels are compiled anew. `WATCHSIM_CACHE` names another folder.
+source a kernel can reach: after an edit there the kernels are compiled anew. `WATCHSIM_CACHE` names another folder. What lies
+there is executed, so nobody else may be able to put something there.
 """
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import hashlib
 import os
 import platform
 import re
+import stat
 import sys
 import time
 from collections.abc import Iterable
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parent
+VARIABLE = "WATCHSIM_CACHE"
+MOVE = f"The environment variable {VARIABLE} names another folder."
 DIGESTS_KEPT = 3
 IN_USE_SECONDS = 3600.0  # another process may be compiling into a folder it has just made
 _KERNELS = re.compile(r"^from watchsim\.jit import .*\b(?:kernel|entry)\b", re.MULTILINE)
@@ -25,17 +30,27 @@ _IMPORT = re.compile(r"^from (watchsim(?:\.\w+)*) import \(?([\w, ]*)", re.MULTI
 
 
 @functools.lru_cache(maxsize=1)
-def cache_folder() -> Path:
-    """The writable folder that holds the machine code of exactly these sources; made if need be."""
+def cache_folder() -> Path | None:
+    """The writable folder that holds the machine code of exactly these sources; made if need be. None where there is none."""
     key = source_digest(PACKAGE)
-    for base in (_user_folder(), _temporary_folder()):
+    refusals: list[str] = []
+    for base, others_may_write in ((_user_folder(), True), (_temporary_folder(), False)):
         folder = base / "kernels" / key
-        if _is_usable(folder):
+        if not (refusal := _refusal(folder, others_may_write)):
+            if refusals:
+                complain(f"The machine code is kept in {folder}, because {refusals[0]}. {MOVE}")
             _forget_old(folder)
             return folder
-    import tempfile
+        refusals.append(f"{folder} {refusal}")
+    complain(f"The machine code is compiled each time, about a minute, because {' and '.join(refusals)}. {MOVE}")
+    return None
 
-    return Path(tempfile.mkdtemp(prefix="watchsim-"))
+
+@functools.lru_cache(maxsize=64)
+def complain(words: str) -> None:
+    """Say something about the cache on stderr, once."""
+    with contextlib.suppress(OSError, ValueError):
+        print(words, file=sys.stderr, flush=True)
 
 
 def source_digest(package: Path) -> str:
@@ -75,7 +90,7 @@ def _imported(package: Path, text: str) -> Iterable[Path]:
 
 def _user_folder() -> Path:
     """Where this user's caches live: WATCHSIM_CACHE, or the platform's custom."""
-    if asked := os.environ.get("WATCHSIM_CACHE"):
+    if asked := os.environ.get(VARIABLE):
         return Path(asked).expanduser().absolute()
     home = Path(os.path.expanduser("~"))  # noqa: PTH111 - Path.home() raises where there is no home
     if sys.platform == "win32":
@@ -95,17 +110,46 @@ def _temporary_folder() -> Path:
     return Path(tempfile.gettempdir()) / f"watchsim-{user}"
 
 
-def _is_usable(folder: Path) -> bool:
-    """Make the folder; True if it can be written and nobody else could have put code there for us to load."""
+def _refusal(folder: Path, others_may_write: bool) -> str:
+    """Make the folder; why it cannot be used, "" if it can: it must be writable, and nobody else may put code there.
+
+    Whether others could write to the folders above is left to the user where it is the user's own choice.
+    """
     import tempfile
 
     try:
-        folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+        _make(folder)
         tempfile.TemporaryFile(dir=folder).close()
         os.utime(folder)
-    except OSError:
-        return False
-    return not hasattr(os, "getuid") or folder.stat().st_uid == os.getuid()
+        if hasattr(os, "getuid"):
+            if folder.stat().st_uid != os.getuid() or folder.stat().st_mode & stat.S_IWOTH:
+                return "belongs to somebody else"
+            if not others_may_write and (open_to := _open_to_others(folder)):
+                return f"lies in {open_to}, where others can write"
+    except OSError as error:
+        return f"cannot be written ({error.strerror or error})"
+    return ""
+
+
+def _make(folder: Path) -> None:
+    """The folder and those above it that are missing, for this user alone."""
+    if not folder.is_dir():
+        if not folder.parent.is_dir():
+            _make(folder.parent)
+        folder.mkdir(exist_ok=True, mode=0o700)
+
+
+def _open_to_others(folder: Path) -> Path | None:
+    """The folder, or one above it, in which somebody else could exchange what is there; None where there is none.
+
+    In a folder with the sticky bit, such as /tmp, everybody may only exchange his own.
+    """
+    for place in (folder, *folder.parents):
+        about = place.stat(follow_symlinks=False)
+        shared = about.st_mode & (stat.S_IWGRP | stat.S_IWOTH) and not about.st_mode & stat.S_ISVTX
+        if shared or about.st_uid not in (0, os.getuid()):
+            return place
+    return None
 
 
 def _forget_old(current: Path) -> None:

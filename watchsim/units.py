@@ -100,6 +100,7 @@ _PLAIN: dict[str, Unit] = {
     "vph": Unit(Fraction(1, 7200), 0, (0, 0, -1, 0)),  # a vibration is half an oscillation
     "gf": Unit(Fraction(980665, 10**8), 0, (1, 1, -2, 0)),
 }
+DIGITS = 1000  # of a number as text
 _ALIASES = {"deg": "°", "degree": "°", "degrees": "°", "in": "inch", "day": "d", "bph": "vph", "turn": "rev", "sec": "s"}
 _SPELLINGS = {"μ": "µ", "−": "-", "**": "^", "⋅": "·", "*": "·", ".": "·", "\u00a0": " ", "\u202f": " "}
 _SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
@@ -140,6 +141,8 @@ def split(value: object) -> tuple[str, str]:
     if match is None:
         raise UnitError(f'"{value}" does not begin with a number')
     number = match[1].replace("−", "-")
+    if len(number) > DIGITS:
+        raise UnitError(f"a number of {len(number)} characters is longer than any precision")
     if not math.isfinite(float(number)):
         raise UnitError(f'"{value}" is not a finite number')
     if match[2][:1] in (",", "'", "’", "_"):

@@ -74,7 +74,7 @@ def test_an_existing_folder_is_left_alone_without_force(run, tmp_path):
 
 
 def test_force_replaces_results_but_keeps_other_files(run, tmp_path):
-    folder = write_results(run, tmp_path / "out", {"n": 1}, extra={"plots/old.png": b"old"})
+    folder = write_results(run, tmp_path / "out", {"n": 1}, extra={"plots/last_beats.png": b"old"})
     (folder / "notes.txt").write_text("mine")
     write_results(run, folder, {"n": 2}, force=True)
     assert json.loads((folder / "summary.json").read_text()) == {"n": 2}
@@ -127,7 +127,7 @@ def test_the_old_folder_comes_back_if_the_exchange_fails(run, tmp_path, monkeypa
     rename = results.Path.rename
 
     def failing(self, target):
-        if ".new-" in self.name:
+        if self.name == "new":
             raise PermissionError(errno.EACCES, "Permission denied")
         return rename(self, target)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 from pathlib import Path
 
@@ -12,9 +13,26 @@ from watchsim.analysis.results import read_results
 from watchsim.cli import main
 from watchsim.commands.console import BAD_INPUT, FINE
 from watchsim.commands.pictures import last_beats
+from watchsim.commands.record_size import bounded_record, record_size
+from watchsim.commands.scenes import load_scene
 from watchsim.profiles_path import profiles_dir
+from watchsim.simulation.simulate import simulate
 
 SCENE = str(profiles_dir() / "bench_lever")
+
+
+def test_a_long_run_keeps_no_more_than_memory_should_hold(capsys: pytest.CaptureFixture[str]) -> None:
+    """The estimate holds for what is measured, within a factor of two; what was requested is done as requested."""
+    scene = load_scene(SCENE)
+    run = simulate(scene, 3.0)
+    made = run.events.nbytes + 8 * len(run.t) * (1 + 3 * run.q.shape[1])
+    assert 0.5 < record_size(scene, 3.0) / made < 2.0
+    plain = dataclasses.replace(scene, source={**scene.source, "run": {"duration": "1 s"}})
+    assert bounded_record(plain, 10.0) is plain and capsys.readouterr().err == ""
+    assert bounded_record(plain, 3600.0).record.keep == "statistics"
+    assert "--record all keeps everything" in capsys.readouterr().err
+    asked = plain.set("run.record", "all")
+    assert bounded_record(asked, 3600.0) is asked and "three times that" in capsys.readouterr().err
 
 
 def summary_of(folder: Path, *options: str) -> dict[str, object]:

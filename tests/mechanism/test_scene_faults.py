@@ -145,7 +145,7 @@ ONE_FAULT = [
     ('duration = "180 s"', 'duration = "-1 s"', "run.duration", "must be above zero"),
     ('["179 s", "180 s"]', '["180 s", "179 s"]', "run.record", "from an earlier to a later time"),
     ('["179 s", "180 s"]', '[["1 s", "2 s"], ["4 s", "3 s"]]', "run.record.1", "from an earlier to a later time"),
-    ("tolerance = 1e-8", "tolerance = 0", "run.tolerance", "must lie between 1e-14 and 0.01"),
+    ("tolerance = 1e-8", "tolerance = 0", "run.tolerance", "must lie between 1e-13 and 0.01"),
     ('lift_angle = "52°"', 'lift_angle = "400°"', "timegrapher.lift_angle", "below a full turn"),
     ('value = "275°", ', "", "expect.amplitude", "value is missing"),
     ('value = "275°"', 'value = "275 s"', "expect.amplitude.value", "is a time; here an angle is needed"),
@@ -310,3 +310,30 @@ def test_broken_toml_names_the_line(desk, text):
 )
 def test_wrong_shapes_never_crash(desk, text):
     assert faults_of(desk, text)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("[bodies]\ndrawing = 'x.dxf'\nposition = ['0 mm', '0 mm']\n", "a body has a name and a table, such as"),
+        ("[bodies.a]\ncircle = '1 mm'\ninertia = '1 mg·cm²'\n[[contacts]]\n", "two sides are needed"),
+        (
+            "[bodies.a]\ncircle = '1 mm'\ninertia = '1 mg·cm²'\n[[springs]]\nbody = ''\nfrequency = '4 Hz'\n",
+            "there is no such body",
+        ),
+        ("[bodies.a]\ncircle = '1 mm'\ninertia = '1 mg·cm²'\n[[damping]]\n", "missing"),
+        ("x = " + "[" * 400 + "]" * 400, "nested more than 20 deep"),
+        ("x = " + "[" * 5000 + "]" * 5000, "nested more than 20 deep"),
+        ("x = " + "9" * 5000, "not valid TOML"),
+        ("[bodies.a]\ncircle = '5e101 mm'\n", "too large to compute with"),
+        ("[bodies.a]\ncircle = '1 mm'\nmotion = 'free'\nmass = '1e-320 g'\n", "too small to compute with"),
+        ("[bodies.a]\ncircle = '1 mm'\ninertia = '1 mg·cm²'\n[run]\nrecord = 'every 99999999999999999999'\n", "every 10"),
+        (f"[bodies.a]\ncircle = '0.{'1' * 5000} mm'\n", "longer than any precision"),
+        ("[bodies.a]\ncircle = '1 mm'\ninertia = '1 mg·cm²'\n[run]\ntolerance = 1e-14\n", "between 1e-13 and 0.01"),
+    ],
+)
+def test_damaged_scenes_are_refused_in_words(text, words, tmp_path):
+    path = tmp_path / "scene.toml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(SceneError, match=words):
+        load(path)

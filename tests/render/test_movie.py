@@ -126,6 +126,8 @@ def test_a_palette_keeps_what_is_plain():
         ({"speed": math.nan}, "seconds of the watch per second"),
         ({"fps": 0}, "1 to 240"),
         ({"size": (10, 10)}, "64 to 8192"),
+        ({"size": (64, 64)}, "no room is left"),
+        ({"speed": 1e-300}, "more than 1e\\+06 frames"),
         ({"size": "big"}, "width, height"),
         ({"zoom": ["ballance"]}, "wheel, lever, balance"),
     ],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import itertools
 import math
 from dataclasses import replace
@@ -82,7 +83,8 @@ def test_axes_say_which_time_they_show():
 def test_tick_labels_tell_the_value_at_the_tick(window):
     run = watch_run()
     for scale in (1.0, 0.01, 0.9, 30.0):  # the lever then swings by ±5.7°, ±0.06°, ±5.2°, ±172°
-        run.q[:, 1], run.u[:, 1], run.a[:, 1] = (scale * column[:, 1] for column in (run.q, run.u, run.a))
+        columns = {name: getattr(run, name) * np.array([1.0, scale, *np.ones(run.q.shape[1] - 2)]) for name in ("q", "u", "a")}
+        run = dataclasses.replace(run, **columns)
         figure = plot_kinematics(run, ["lever"], window=window)
         figure.canvas.draw()
         for axes in figure.axes:
@@ -94,8 +96,9 @@ def test_tick_labels_tell_the_value_at_the_tick(window):
 
 def test_rounding_noise_of_a_resting_body_is_not_magnified():
     run = watch_run()
-    run.q[:, 0] = 0.1 + 1e-14 * np.sin(1e3 * run.t)
-    run.u[:, 0] = run.a[:, 0] = 0.0
+    q, still = run.q.copy(), np.zeros_like(run.q)
+    q[:, 0] = 0.1 + 1e-14 * np.sin(1e3 * run.t)
+    run = dataclasses.replace(run, q=q, u=still, a=still)
     low, high = plot_kinematics(run, ["wheel"], ["angle"]).axes[0].get_ylim()
     assert high - low > 1e-7
 
@@ -131,9 +134,10 @@ def test_the_light_png_shows_the_same_pixels(tmp_path):
 @pytest.mark.parametrize("turned", [0.0, 1e4])
 def test_nothing_is_clipped_and_no_words_overlap(window, turned):
     run = watch_run(title="A rather long title of a scene with an escapement in it")
-    for values in (run.q, run.u, run.a):
-        values[:, :2] *= (1e-3, 1e-6)
-    run.q[:, 0] += turned
+    small = np.array([1e-3, 1e-6, *np.ones(run.q.shape[1] - 2)])
+    columns = {name: getattr(run, name) * small for name in ("q", "u", "a")}
+    columns["q"][:, 0] += turned
+    run = dataclasses.replace(run, **columns)
     figure = plot_kinematics(run, window=window)
     figure.canvas.draw()
     renderer, whole = figure.canvas.get_renderer(), figure.bbox

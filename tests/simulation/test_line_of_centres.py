@@ -72,11 +72,6 @@ def test_friction_takes_only_what_its_lever_arm_allows() -> None:
 def sliders(mirrored: bool, restitution: float, friction: float = 0.5) -> Scene:
     """Two sliders on parallel axes whose tilted faces meet: slip is a multiple of approach."""
     sign = -1.0 if mirrored else 1.0
-    left = [(0.0, -5.0), (0.0, 5.0), (-10.0, 5.0), (-10.0, -5.0)]
-    face = [(-2.0, sign * 5.0), (2.0, sign * -5.0), (10.0, sign * -5.0), (10.0, sign * 5.0)]
-    slope = [(2.0 - x, y) for x, y in face]
-    if not mirrored:
-        face, slope = face[::-1], slope
     one = Body("one", "slide", (-8e-3, 0.0), velocity=(0.3,), mass=2e-2, loops=(turned(order(left_tip(sign)), 0.0),))
     two = Body("two", "slide", (8e-3, 0.0), mass=2e-2, loops=(turned(order([(-x, -y) for x, y in left_tip(sign)]), 0.0),))
     return Scene("sliders", (one, two), contacts=(Contact((Side("one"), Side("two")), friction, restitution),), duration=0.1)

@@ -11,7 +11,7 @@ from moving_scenes import box, circle, ground, mirrored, of_kind, profile, touch
 
 from watchsim.contact.known import forget
 from watchsim.mechanism.body import Body
-from watchsim.mechanism.force import Spring
+from watchsim.mechanism.force import Spring, Torque
 from watchsim.mechanism.recording import Recording
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation import run as simulating
@@ -201,6 +201,26 @@ def test_a_scene_without_contacts_or_forces() -> None:
     assert (done.stop, done.q[-1][0]) == (Stop.DURATION, 2.0)
     assert len(done.events) == 0
     assert done.energy["residual_relative"] == 0.0
+
+
+@pytest.mark.parametrize("torque", [0.0, 3.0])
+def test_the_account_of_a_lossless_swing_closes_to_rounding(torque: float) -> None:
+    """At the end of whole periods nothing has come in and nothing more is stored: what swings is the measure."""
+    bodies = (Body("balance", "pivot", angle=1.0 if torque == 0.0 else 0.0, inertia=1.0),)
+    scene = Scene("swing", bodies, (Spring("balance", math.tau**2),), (Torque("balance", torque),))
+    for end in (1.0, 3.0, 2.7):
+        energy = simulate(scene, end).energy
+        assert energy["residual_relative"] < 1e-13, energy
+    assert abs(simulate(scene, 3.0).energy["in_J"]) < 1e-12
+
+
+def test_nothing_of_a_trajectory_can_be_written_over() -> None:
+    done = simulate(Scene("drift", (Body("rotor", "pivot", velocity=(2.0,), inertia=1.0),)), 1.0)
+    for name in ("t", "q", "u", "a", "events", "end_q", "end_u"):
+        with pytest.raises(ValueError, match="read-only"):
+            getattr(done, name)[...] = 0
+    with pytest.raises(ValueError, match="read-only"):
+        done.events["t"][0:] = 0.0
 
 
 def test_times_may_carry_their_units() -> None:

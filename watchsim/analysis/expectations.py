@@ -32,7 +32,11 @@ ERROR = "_error"
 
 def judge(expectation: Expectation, numbers: Mapping[str, Any]) -> dict[str, Any]:
     """{key, expected, tolerance, got, ok, unit, message}, in the unit of the promise; `message` says why `got` is None."""
-    got, message = _found(expectation, numbers)
+    return _judged(expectation, dict(_numbers(numbers)))
+
+
+def _judged(expectation: Expectation, known: Mapping[str, float | None]) -> dict[str, Any]:
+    got, message = _found(expectation, known)
     ok = got is not None and abs(got - expectation.value) <= expectation.tolerance
     return {
         "key": expectation.key,
@@ -60,8 +64,23 @@ def unit_of(name: str) -> str:
 
 def mistake(expectation: Expectation, numbers: Mapping[str, Any]) -> str:
     """What is wrong with the key or the unit, whatever the run; "" for nothing. What is null may hold numbers later."""
-    name = _name(expectation)
+    return _mistake(expectation, dict(_numbers(numbers)))
+
+
+def mistakes(expectations: Sequence[Expectation], numbers: Mapping[str, Any]) -> list[str]:
+    """`mistake` of each."""
     known = dict(_numbers(numbers))
+    return [_mistake(expectation, known) for expectation in expectations]
+
+
+def judged(expectations: Sequence[Expectation], numbers: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """`judge` of each."""
+    known = dict(_numbers(numbers))
+    return [_judged(expectation, known) for expectation in expectations]
+
+
+def _mistake(expectation: Expectation, known: Mapping[str, float | None]) -> str:
+    name = _name(expectation)
     if name not in known and not any(name.startswith(f"{whole}.") for whole, value in known.items() if value is None):
         return f'"{expectation.key}" is no number of the results. {_advice(expectation.key, known)}'
     source = unit_of(name)
@@ -74,17 +93,16 @@ def _name(expectation: Expectation) -> str:
     return WATCH_KEYS.get(expectation.key, expectation.key)
 
 
-def _found(expectation: Expectation, numbers: Mapping[str, Any]) -> tuple[float | None, str]:
+def _found(expectation: Expectation, known: Mapping[str, float | None]) -> tuple[float | None, str]:
     """The number in the expectation's unit, or None and what is wrong."""
-    if message := mistake(expectation, numbers):
+    if message := _mistake(expectation, known):
         return None, message
-    name = _name(expectation)
-    value = dict(_numbers(numbers)).get(name)
+    value = known.get(_name(expectation))
     if value is None:
         return None, f'this run gives no "{expectation.key}"'
     if not expectation.unit:
         return value, ""
-    return value * known_unit(unit_of(name)).factor / known_unit(expectation.unit).factor, ""
+    return value * known_unit(unit_of(_name(expectation))).factor / known_unit(expectation.unit).factor, ""
 
 
 def _numbers(mapping: Mapping[str, Any], above: str = "") -> list[tuple[str, float | None]]:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from watchsim.analysis.expectations import mistake
+from watchsim.analysis.expectations import mistakes
 from watchsim.analysis.summary import summary
 from watchsim.mechanism.compile import compile_scene
 from watchsim.mechanism.errors import Fault, Faults
@@ -29,8 +29,8 @@ def expectation_faults(scene: Scene) -> list[Fault]:
     numbers = summary(_not_begun(scene))
     lines = key_lines(scene.path.read_text(encoding="utf-8-sig")) if scene.path and scene.path.is_file() else {}
     faults = Faults(str(scene.path or "scene"), lines)
-    for expectation in scene.expect:
-        if message := mistake(expectation, numbers):
+    for expectation, message in zip(scene.expect, mistakes(scene.expect, numbers), strict=True):
+        if message:
             faults.add(f"expect.{expectation.key}", message)
     return faults.found
 

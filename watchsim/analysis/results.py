@@ -8,21 +8,24 @@ from __future__ import annotations
 
 import dataclasses
 import os
+import re
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
 from watchsim.analysis.archive import read_trajectory, write_trajectory
-from watchsim.analysis.folder import write_folder
 from watchsim.analysis.state_file import read_state, write_state
 from watchsim.analysis.tables import json_text, write_events
 from watchsim.simulation.trajectory import Trajectory
+from watchsim.storage.scratch import PREFIX
+from watchsim.storage.write import real, write_folder
 
 SUMMARY, LOCK, TRAJECTORY, EVENTS = "summary.json", "scene.lock.toml", "trajectory.npz", "events.csv"
 STATE = "state.npz"
 FAILURE = "lcp_failure.json"  # only where the solver gave up on a complementarity problem
-LATER = ("beats.csv", "phases.csv", "plots", "drawings", "movie.mp4", "movie.gif", "report.html", "import.png")
+LATER = ("beats.csv", "phases.csv", "movie.mp4", "movie.gif", "report.html", "import.png")
 OURS = frozenset((SUMMARY, LOCK, TRAJECTORY, EVENTS, STATE, FAILURE, *LATER))
+PLOTS = re.compile(r"(plots|drawings|plots/(kinematics|last_beats)\.(png|svg|pdf))")
 
 Extra = Mapping[str, str | bytes | Callable[[Path], object]]
 
@@ -37,12 +40,17 @@ def check_folder(folder: str | os.PathLike[str], force: bool = False) -> Path:
         return target
     if not target.is_dir():
         raise FileExistsError(f"{folder} is a file; results need a folder of their own")
-    empty = next(target.iterdir(), None) is None
+    empty = all(item.name.startswith(PREFIX) for item in target.iterdir())
     if not (empty or (target / SUMMARY).is_file() or (target / TRAJECTORY).is_file()):
         raise FileExistsError(f"{folder} exists and holds no results of a run; it is left alone. Choose another folder")
     if not (empty or force):
         raise FileExistsError(f"{folder} exists already and is left alone. Choose another folder, or replace it with --force")
     return target
+
+
+def is_ours(name: str) -> bool:
+    """Whether a path in a results folder is one that the package writes, so that new results replace it."""
+    return name in OURS or PLOTS.fullmatch(name) is not None
 
 
 def write_results(
@@ -65,8 +73,14 @@ def write_results(
     is then still there, and nothing else.
     """
     target = check_folder(folder, force)
-    write_folder(target, lambda place: _fill(place, run, summary or {}, scene_lock, extra or {}), OURS, "the results")
+    real(target).parent.mkdir(parents=True, exist_ok=True)
+    write_folder(target, filler(run, summary or {}, scene_lock, extra or {}), is_ours, "the results")
     return target
+
+
+def filler(run: Trajectory, summary: Mapping[str, Any], scene_lock: str, extra: Extra) -> Callable[[Path], None]:
+    """What writes the files of a results folder into the folder it is given."""
+    return lambda place: _fill(place, run, summary, scene_lock, extra)
 
 
 def read_results(folder: str | os.PathLike[str]) -> Trajectory:
@@ -89,13 +103,22 @@ def read_results(folder: str | os.PathLike[str]) -> Trajectory:
     return run
 
 
-def _fill(place: Path, run: Trajectory, summary: Mapping[str, Any], scene_lock: str, extra: Extra) -> None:
+def bare_filler(run: Trajectory, scene_lock: str) -> Callable[[Path], None]:
+    """The same with the motion, the state and the scene only."""
+    return lambda place: _fill_bare(place, run, scene_lock)
+
+
+def _fill_bare(place: Path, run: Trajectory, scene_lock: str) -> None:
     write_trajectory(run, place / TRAJECTORY)
-    write_events(run, place / EVENTS)
     if run.end_state is not None:
         write_state(run.end_state, place / STATE)
-    (place / SUMMARY).write_text(json_text(summary), encoding="utf-8")
     (place / LOCK).write_text(scene_lock, encoding="utf-8")
+
+
+def _fill(place: Path, run: Trajectory, summary: Mapping[str, Any], scene_lock: str, extra: Extra) -> None:
+    _fill_bare(place, run, scene_lock)
+    write_events(run, place / EVENTS)
+    (place / SUMMARY).write_text(json_text(summary), encoding="utf-8")
     if run.failure is not None:
         (place / FAILURE).write_text(json_text(run.failure), encoding="utf-8")
     for name, content in extra.items():

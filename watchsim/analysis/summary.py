@@ -16,7 +16,7 @@ from watchsim.analysis.averages import Averages, averages, last_window
 from watchsim.analysis.beat_tables import beats_csv, phases_csv
 from watchsim.analysis.beats import Beats, beats
 from watchsim.analysis.doubts import doubts
-from watchsim.analysis.expectations import judge
+from watchsim.analysis.expectations import judged
 from watchsim.analysis.headlines import headlines
 from watchsim.analysis.standstill import standstill
 from watchsim.analysis.tables import plain
@@ -47,7 +47,7 @@ def summary(run: Trajectory) -> dict[str, Any]:
     as a share of the problem's largest term), `warnings` (sentences, see analysis/doubts.py).
     """
     numbers: dict[str, Any] = {**_about(run), "bodies": _bodies(run), **_counts(run), **_timing(run)}
-    numbers["expect"] = [judge(expectation, numbers) for expectation in run.scene.expect]
+    numbers["expect"] = judged(run.scene.expect, numbers)
     numbers["warnings"] = list(doubts(run))
     numbers["versions"] = versions()
     clean: dict[str, Any] = plain(numbers)

@@ -20,7 +20,7 @@ from watchsim.mechanism.compile import compile_scene
 from watchsim.mechanism.recording import Recording
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation.advance import EVENTS_PER_CONTACT, ROWS_PER_STEP
-from watchsim.simulation.run import Run
+from watchsim.simulation.run import Run, new_until
 from watchsim.simulation.state import COUNT_NAMES, N_FLIGHTS, N_IMPACTS, N_INSTANTS, Record, State, new_record, room_for
 from watchsim.simulation.stops import Stop
 
@@ -66,7 +66,7 @@ class Walk:
         # Each step and each event leaves a row: with room for no more the loop comes back. Twice the events it asks for.
         self.room = new_record(model, ROWS_PER_STEP + 1, 2 * EVENTS_PER_CONTACT * room_for(model), EVERYWHERE)
         self._nowhere = new_record(model, 0, 0, EVERYWHERE)
-        self._until = np.array([duration, duration, 1.0])
+        self._until = new_until(duration, duration, 1.0, np.inf)
         self.met = dict.fromkeys(Kind, 0)
         self.moments: dict[Kind, list[Moment]] = {kind: [] for kind in Kind}
         chance = np.random.default_rng(0)

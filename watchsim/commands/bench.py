@@ -14,6 +14,7 @@ from watchsim.commands.console import FINE, announce_compile, print_json, say
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+FILES = ("bench.json", "bench.md", "bench.png")
 HELP = "speed against error, beside other engines: table and plot"
 
 
@@ -26,12 +27,18 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from watchsim.bench.compare import missing_engines
+    from watchsim.commands.destination import secured_file, secured_folder
 
+    folder = Path(args.output)
+    if not folder.is_dir():
+        secured_folder(folder, "results")
+    for name in FILES if folder.is_dir() else ():
+        secured_file(folder / name, "the comparison")
     announce_compile()
     for engine in missing_engines():
         say(f"{engine} is not installed and left out. To compare with it: pip install 'watchsim[bench]'")
     rows, references = measured(args.quick, args.scene, say)
-    write(Path(args.output), rows, references)
+    write(folder, rows, references)
     if args.json:
         print_json(rows)
     else:
@@ -69,8 +76,10 @@ def write(folder: Path, rows: list[dict[str, Any]], references: list[dict[str, A
     from watchsim.analysis.tables import json_text
     from watchsim.bench.report import table
     from watchsim.render.speed import plot_speed
+    from watchsim.storage.write import write_file
 
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "bench.json").write_text(json_text({"rows": rows, "references": references}), encoding="utf-8")
-    (folder / "bench.md").write_text(table(rows, references), encoding="utf-8")
-    plot_speed(rows, folder / "bench.png")
+    folder.mkdir(exist_ok=True)
+    numbers = json_text({"rows": rows, "references": references})
+    write_file(folder / FILES[0], lambda path: path.write_text(numbers, encoding="utf-8"), "the numbers")
+    write_file(folder / FILES[1], lambda path: path.write_text(table(rows, references), encoding="utf-8"), "the table")
+    write_file(folder / FILES[2], lambda path: plot_speed(rows, path), "the plot")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 
 from watchsim.commands.console import BAD_INPUT, FINE, check_picture, print_json, say
 
@@ -18,6 +19,7 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    from watchsim.commands.destination import secured_file
     from watchsim.commands.scenes import load_scene
     from watchsim.contact.counts import modelled_pairs
     from watchsim.drawing.findings import Finding
@@ -27,6 +29,7 @@ def run(args: argparse.Namespace) -> int:
 
     if args.png:
         check_picture(args.png, args.scene)
+        secured_file(Path(args.png), "the picture")
     scene = load_scene(args.scene, overlap=False)
     compiled = compile_scene(scene)
     pairs = modelled_pairs(compiled, [body.name for body in scene.bodies])

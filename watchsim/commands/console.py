@@ -5,6 +5,7 @@ Results go to stdout. Everything else goes to stderr, and progress is quiet wher
 
 from __future__ import annotations
 
+import contextlib
 import json
 import sys
 import time
@@ -14,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from watchsim.units import Dimension
 
-FINE, MISSED, BAD_INPUT, GAVE_UP, INTERRUPTED = 0, 1, 2, 3, 130
+FINE, MISSED, BAD_INPUT, GAVE_UP, FAULT, INTERRUPTED = 0, 1, 2, 3, 4, 130
 
 
 class InputError(ValueError):
@@ -22,8 +23,9 @@ class InputError(ValueError):
 
 
 def say(words: str) -> None:
-    """A line for people, on stderr."""
-    print(words, file=sys.stderr, flush=True)
+    """A line for people, on stderr; where nobody reads it any more, nothing stops for that."""
+    with contextlib.suppress(OSError, ValueError):
+        print(words, file=sys.stderr, flush=True)
 
 
 def print_json(value: Any) -> None:
@@ -49,11 +51,17 @@ class Progress:
         elapsed = now - self._start
         left = elapsed * (whole - done) / done if done > 0.0 else 0.0
         words = f"\r{self._words}  {done:.4g} of {whole:.4g}   {_clock(elapsed)} elapsed, {_clock(left)} left"
-        print(f"{words:<79}", end="", file=sys.stderr, flush=True)
+        self._show(f"{words:<79}")
 
     def close(self) -> None:
         if not self._quiet and self._told:
-            print("\r" + " " * 79 + "\r", end="", file=sys.stderr, flush=True)
+            self._show("\r" + " " * 79 + "\r")
+
+    def _show(self, words: str) -> None:
+        try:
+            print(words, end="", file=sys.stderr, flush=True)
+        except OSError:  # the terminal was closed
+            self._quiet = True
 
 
 def _clock(seconds: float) -> str:

@@ -6,14 +6,16 @@ import argparse
 import time
 from pathlib import Path
 
+from watchsim import stopping
 from watchsim.commands.console import FINE, MISSED, announce_compile
 
 HELP = "the incline check and a ticking Swiss lever: numbers, plots, MP4 and GIF"
 DURATION = 10.0
+DEFAULT, PICTURE = "results/demo", "incline.png"
 
 
 def options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("-o", "--output", metavar="DIR", default="results/demo", help="results folder (default %(default)s)")
+    parser.add_argument("-o", "--output", metavar="DIR", default=DEFAULT, help="results folder (default %(default)s)")
     parser.add_argument("--force", action="store_true", help="replace a results folder that exists")
 
 
@@ -21,22 +23,32 @@ def run(args: argparse.Namespace) -> int:
     from watchsim.analysis.results import check_folder
     from watchsim.analysis.summary import summary_text
     from watchsim.analysis.verify import incline_rows, verify_text
-    from watchsim.commands.run import Extras, simulate_with_progress, status, write
+    from watchsim.commands.destination import secured_file, secured_folder
+    from watchsim.commands.run import simulate_with_progress, status
     from watchsim.commands.scenes import load_scene
+    from watchsim.commands.write_run import Extras, goal_of, write
     from watchsim.profiles_path import profiles_dir
 
     start = time.monotonic()
-    folder = check_folder(Path(args.output) / "swiss_lever", args.force)
+    parent = Path(args.output)
+    if not parent.is_dir():
+        secured_folder(parent, "results", default=args.output == DEFAULT)
+        parent.mkdir()
+    secured_file(parent / PICTURE, "the plot")
+    folder = secured_folder(parent / "swiss_lever", "results")
+    check_folder(folder, args.force)
     announce_compile()
     print("1. A disc bounces and rolls down an incline: against the closed form", flush=True)
     rows = incline_rows()
     print(verify_text(rows), flush=True)
-    picture = _incline_picture(Path(args.output))
+    picture = _incline_picture(parent)
     print(f"Plot: {picture}", flush=True)
     print(f"\n2. A Swiss lever, read from DXF drawings, ticks for {DURATION:g} s", flush=True)
     scene = load_scene(str(profiles_dir() / "swiss_lever"))
-    trajectory = simulate_with_progress(scene, DURATION, None)
-    summary = write(trajectory, folder, Extras(movie=True, gif=True), args.force, changed=["--duration"])
+    goal = goal_of(scene, folder, args.force)
+    with stopping.keeping():
+        trajectory = simulate_with_progress(scene, DURATION, None)
+        summary = write(trajectory, goal, Extras(movie=True, gif=True), changed=["--duration"])
     print(summary_text(trajectory, {**summary, "expect": []}), flush=True)
     print(f"\nPlots, movie.mp4, movie.gif and all numbers: {args.output}/swiss_lever")
     print(f"Done in {time.monotonic() - start:.0f} s.")
@@ -51,11 +63,11 @@ def _incline_picture(folder: Path) -> Path:
     from watchsim.render.plots import plot_kinematics
     from watchsim.simulation.simulate import simulate
     from watchsim.simulation.stops import Stop
+    from watchsim.storage.write import write_file
 
     run = simulate(load_scene(str(profiles_dir() / "incline")))
     if run.stop == Stop.INTERRUPTED:
         raise KeyboardInterrupt
-    folder.mkdir(parents=True, exist_ok=True)
-    path = folder / "incline.png"
-    plot_kinematics(run).savefig(path)
+    path = folder / PICTURE
+    write_file(path, plot_kinematics(run).savefig, "the plot")
     return path

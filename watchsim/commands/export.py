@@ -40,8 +40,9 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from watchsim.analysis.folder import write_folder
+    from watchsim.commands.destination import secured_folder
     from watchsim.commands.scenes import load_scene
+    from watchsim.storage.write import write_folder
     from watchsim.units import LENGTH
 
     formats = parse_names(args.format) or []
@@ -52,6 +53,7 @@ def run(args: argparse.Namespace) -> int:
     scene = load_scene(args.scene, overlap=False)
     bodies = _chosen(scene, parse_names(args.bodies))
     folder = Path(args.output) if args.output else Path("export") / _name(scene)
+    secured_folder(folder, "exported files", default=not args.output)
     replaced = _check_folder(folder.absolute(), args.force)
     contents, manifest = _contents(scene, bodies, formats, thickness, deviation)
     manifest["files"] = [*contents, MANIFEST]
@@ -61,7 +63,7 @@ def run(args: argparse.Namespace) -> int:
         for name, content in contents.items():
             (place / name).write_bytes(content)
 
-    write_folder(folder.absolute(), fill, replaced, "the export")
+    write_folder(folder, fill, replaced.__contains__, "the export")
     _tell(manifest, folder, args.json)
     return FINE
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from watchsim.commands.console import BAD_INPUT, FINE, InputError, check_picture, parse_positive, print_json, say
@@ -30,12 +31,14 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    from watchsim.commands.destination import secured_file
     from watchsim.drawing.inspect import inspect_report, inspect_text
     from watchsim.drawing.read import read
     from watchsim.units import LENGTH
 
     if args.png:
         check_picture(args.png, args.file)
+        secured_file(Path(args.png), "the picture")
     asked = {name: getattr(args, name) for name in ("snap", "fit")}
     lengths = {name: parse_positive(f"--{name}", text, LENGTH) for name, text in asked.items() if text is not None}
     try:

@@ -23,15 +23,18 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    from watchsim.commands.destination import secured_file, swept_run
     from watchsim.commands.scenes import read_run
+    from watchsim.render.encoder import check_path
     from watchsim.render.movie import movie
 
     speed, size = _speed(args.speed), _size(args.size)
     if size and any(side % 2 for side in size):
         say(f"Note: sides of a movie are even numbers of pixels; {args.size} is rounded up.")
     window = parse_window(args.window)
+    swept_run(args.run_folder)
     trajectory = read_run(args.run_folder)
-    target = Path(args.output) if args.output else Path(args.run_folder) / "movie.mp4"
+    target = secured_file(check_path(args.output or Path(args.run_folder) / "movie.mp4"), "the movie")
     progress = Progress("frames:")
     try:
         movie(

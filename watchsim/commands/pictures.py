@@ -7,11 +7,18 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from watchsim import stopping
 from watchsim.commands.console import Progress, say
 
 if TYPE_CHECKING:
     from watchsim.simulation.trajectory import Trajectory
 
+
+class LeftOut(Exception):
+    """The process is to stop: a picture under way is given up, it can be drawn later."""
+
+
+MOST_PLOTTED = 12  # bodies, in the plots that come with a run; each costs a fiftieth of a second and an inch of paper
 WHOLE_RUN = 10.0  # s that the movie of a whole run takes
 
 
@@ -29,8 +36,12 @@ def _drawn(draw: Callable[[Path], object]) -> Callable[[Path], None]:
     """The same, but a picture that cannot be drawn costs a line, not the run."""
 
     def attempt(path: Path) -> None:
+        if stopping.requested():
+            return
         try:
             draw(path)
+        except LeftOut:
+            path.unlink(missing_ok=True)
         except Exception as error:
             path.unlink(missing_ok=True)
             say(f"{path.name} could not be drawn: {error}")
@@ -44,8 +55,12 @@ def _plots(run: Trajectory) -> dict[str, Callable[[Path], object]]:
 
     if len(run.t) < 2:
         return {}
+    moving = [body.name for body in run.scene.bodies if body.motion != "fixed"]
+    if len(moving) > MOST_PLOTTED:
+        say(f"Plots of {MOST_PLOTTED} of {len(moving)} moving bodies; watchsim plot RUN --bodies NAMES draws others.")
+    shown_bodies = moving[:MOST_PLOTTED]
     windows = {"plots/kinematics.png": None, "plots/last_beats.png": last_beats(run)}
-    shown = functools.cache(lambda: Kinematics(run))
+    shown = functools.cache(lambda: Kinematics(run, shown_bodies))
 
     def plot(window: tuple[float, float] | None) -> Any:
         return lambda path: write_png(shown().show(window), path)
@@ -84,7 +99,13 @@ def _movie(run: Trajectory, path: Path, slow: float) -> None:
 
     window, speed = filmed(run, slow)
     progress = Progress(f"{path.name}, frames:")
+
+    def drawn(done: int, whole: int) -> None:
+        if stopping.requested():
+            raise LeftOut
+        progress(done, whole)
+
     try:
-        movie(run, path, window=window, speed=speed, progress=progress)
+        movie(run, path, window=window, speed=speed, progress=drawn)
     finally:
         progress.close()

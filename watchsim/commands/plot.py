@@ -21,23 +21,28 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    from watchsim.commands.destination import secured_file, swept_run
     from watchsim.commands.scenes import read_run
     from watchsim.render.plots import plot_kinematics
+    from watchsim.storage.write import write_file
 
     formats = parse_names(args.format) or []
     wrong = [name for name in formats if name not in FORMATS]
     if wrong or not formats:
         raise InputError(f"--format {args.format}: choose from {', '.join(FORMATS)}.")
+    swept_run(args.run_folder)
     trajectory = read_run(args.run_folder)
     quantities = tuple(parse_names(args.quantities) or ())
-    figure = plot_kinematics(trajectory, parse_names(args.bodies), quantities, parse_window(args.window))
+    window = parse_window(args.window)
     target = Path(args.output) if args.output else Path(args.run_folder) / "plots" / "kinematics"
     if target.suffix[1:] in FORMATS:
         formats = [target.suffix[1:]] if args.format == "png" else formats
         target = target.with_suffix("")
-    target.parent.mkdir(parents=True, exist_ok=True)
-    for name in formats:
-        path = target.parent / f"{target.name}.{name}"
-        figure.savefig(path)
+    if not args.output:
+        target.parent.mkdir(exist_ok=True)
+    paths = [secured_file(target.parent / f"{target.name}.{name}", "the plot") for name in formats]
+    figure = plot_kinematics(trajectory, parse_names(args.bodies), quantities, window)
+    for path in paths:
+        write_file(path, figure.savefig, "the plot")
         print(path)
     return FINE

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import argparse
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from watchsim import stopping
 from watchsim.commands.console import (
     FINE,
     GAVE_UP,
-    INTERRUPTED,
     MISSED,
     InputError,
     Progress,
@@ -20,11 +19,12 @@ from watchsim.commands.console import (
     print_json,
     say,
 )
+from watchsim.commands.destination import secured_folder, swept_run
+from watchsim.commands.record_size import bounded_record
+from watchsim.commands.write_run import Extras, goal_of, write
 from watchsim.simulation.methods import EVENT_DRIVEN, METHODS
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from watchsim.mechanism.scene import Scene
     from watchsim.simulation.trajectory import Trajectory
 
@@ -67,6 +67,7 @@ def run(args: argparse.Namespace) -> int:
         scene = scene.set("run.record", [_record(what) for what in args.record])
     duration = None if args.duration is None else parse_positive("--duration", args.duration, TIME)
     step = None if args.step is None else parse_positive("--step", args.step, TIME)
+    scene = bounded_record(scene, scene.duration if duration is None else duration)
     _check_windows(scene, scene.duration if duration is None else duration, asked=bool(args.record))
     if args.tol is not None and not 1e-13 <= args.tol <= 1e-2:
         raise InputError(f"--tol {args.tol:g}: must lie between 1e-13 and 1e-2.")
@@ -75,12 +76,15 @@ def run(args: argparse.Namespace) -> int:
     # What is resumed is written whole, with what follows it: nothing is lost where it takes the old one's place.
     replace = args.force or (args.resume is not None and folder.resolve() == Path(args.resume).resolve())
     if args.resume:
+        swept_run(args.resume)
         start = _earlier(args.resume, scene)
         method, step = args.method or start.method, step or start.step
         args.tol = args.tol or start.tolerance
     if args.profile and method != EVENT_DRIVEN:
         raise InputError(f"--profile: only the method {EVENT_DRIVEN} has a profile, not {method}.")
+    secured_folder(folder, "results", default=not (args.output or args.resume))
     check_folder(folder, replace)
+    goal = goal_of(scene, folder, replace)
     # What a scene promises, it promises as it is written.
     given = {
         "--set": args.set,
@@ -90,9 +94,10 @@ def run(args: argparse.Namespace) -> int:
         "--method": method != EVENT_DRIVEN,
     }
     changed = [name for name, value in given.items() if value]
-    trajectory = simulate_with_progress(scene, duration, args.tol, method=method, step=step, start=start)
     extras = Extras(not args.no_plots, args.movie, args.gif, args.error_bars, args.profile)
-    summary = write(trajectory, folder, extras, replace, changed)
+    with stopping.keeping():
+        trajectory = simulate_with_progress(scene, duration, args.tol, method=method, step=step, start=start)
+        summary = write(trajectory, goal, extras, changed)
     if args.json:
         print_json(summary)
         for warning in summary["warnings"]:
@@ -128,56 +133,6 @@ def simulate_with_progress(
         progress.close()
 
 
-@dataclass(frozen=True, slots=True)
-class Extras:
-    """What a results folder is to hold besides the motion and its numbers."""
-
-    plots: bool = True
-    movie: bool = False
-    gif: bool = False
-    error_bars: bool = False
-    profile: bool = False
-
-
-def write(run: Trajectory, folder: Path, extras: Extras, force: bool, changed: Sequence[str] = ()) -> dict[str, Any]:
-    """Write the results folder; returns the summary as written.
-
-    `changed` holds the options by which the run is another than the scene's own: its expectations are then not judged.
-    """
-    from watchsim.analysis.expectations import not_judged
-    from watchsim.analysis.results import write_results
-    from watchsim.analysis.summary import summary, tables
-    from watchsim.analysis.tables import plain
-    from watchsim.commands.pictures import pictures
-    from watchsim.mechanism.lock import lock_text
-    from watchsim.simulation.stops import Stop
-
-    if run.stop == Stop.INTERRUPTED:
-        say("Interrupted: writing what was simulated; a second Ctrl-C gives it up ...")
-    numbers = plain(_with_error_bars(run) if extras.error_bars else summary(run))
-    if changed:
-        numbers["expect"] = [not_judged(entry, changed) for entry in numbers["expect"]]
-    if extras.profile:
-        from watchsim.bench.profile import profile_of
-
-        numbers["profile"] = plain(profile_of(run))
-    extra: dict[str, Any] = {**tables(run), **pictures(run, extras.plots, extras.movie, extras.gif)}
-    write_results(run, folder, numbers, lock_text(run.scene, folder.absolute()), extra=extra, force=force)
-    return numbers
-
-
-def _with_error_bars(run: Trajectory) -> dict[str, Any]:
-    """The summary with errors from a second, more exact run."""
-    from watchsim.analysis.error_bars import more_exact, with_error_bars
-    from watchsim.analysis.summary import summary
-
-    progress = Progress("once more, more exactly; simulated s:")
-    try:
-        return with_error_bars(summary(run), summary(more_exact(run, progress)))
-    finally:
-        progress.close()
-
-
 def _earlier(folder: str, scene: Scene) -> Trajectory:
     """The run to go on from, its scene replaced by the one given, which must be the same (see `simulate`)."""
     import dataclasses
@@ -205,7 +160,10 @@ def status(run: Trajectory, summary: dict[str, Any]) -> int:
         return GAVE_UP
     if run.stop == Stop.INTERRUPTED:
         say(f"Stopped at {run.stop_message}.")
-        return INTERRUPTED
+        return stopping.status()
+    if stopping.requested():
+        say("Interrupted while writing: all was kept but the pictures that were not drawn yet.")
+        return stopping.status()
     missed = [entry for entry in summary["expect"] if entry["ok"] is False]
     for entry in missed:
         say(expected_text(entry))
@@ -235,13 +193,14 @@ def _check_windows(scene: Scene, duration: float, asked: bool) -> None:
 
 def _record(what: str) -> object:
     """A window as the scene file has it, or the word; InputError where it is neither."""
+    from watchsim.mechanism.read_record import is_stride
     from watchsim.mechanism.recording import EVERY, KEPT
 
     if ":" in what:
         parse_window(what, "--record")
         return [time.strip() for time in what.split(":")]
     word, _, number = what.partition(" ")
-    if what in KEPT or (word == EVERY and number.strip().isdecimal() and int(number) > 0):
+    if what in KEPT or (word == EVERY and is_stride(number)):
         return what
     raise InputError(f'--record "{what}": write {", ".join(KEPT)}, "{EVERY} 10", or a window such as "179 s:180 s".')
 

@@ -33,7 +33,7 @@ from watchsim.mechanism.model import (
     frozen,
     records,
 )
-from watchsim.mechanism.reachable import reachable
+from watchsim.mechanism.reachable import Drawn, reachable
 from watchsim.mechanism.scene import Scene
 
 CLEARANCE = 2e-3  # of the size: a pair that comes this close counts as touching. More than any tolerance of a run
@@ -136,13 +136,13 @@ def _primitives(
     Outlines of a part that is rigid with a moving body become outlines of that one.
     """
     asked = list(dict.fromkeys(side for contact in scene.contacts for side in contact.sides))
-    names = [body.name for body in scene.bodies]
+    numbers = {body.name: number for number, body in enumerate(scene.bodies)}
     blocks: list[Records] = []
     layers: list[str] = []
     owners: list[str] = []
     of_layer: dict[tuple[str, str], np.ndarray] = {}
     for side in asked:
-        body, ride = scene.body(side.body), hung[names.index(side.body)]
+        body, ride = scene.body(side.body), hung[numbers[side.body]]
         for layer in body.layers if side.layer is None else (side.layer,):
             if (side.body, layer) in of_layer:
                 continue
@@ -171,7 +171,7 @@ def _contacts(
     """Every declared pair (circle on A, line or arc on B), grouped by pair of bodies; the laws; the pairs of bodies."""
     laws = records(LAW, len(scene.contacts))
     found: dict[tuple[int, int], list[np.ndarray]] = {}
-    names = [body.name for body in scene.bodies]
+    numbers = {body.name: number for number, body in enumerate(scene.bodies)}
     for group, contact in enumerate(scene.contacts):
         laws[group].friction, laws[group].restitution = contact.friction, contact.restitution
         laws[group].tangential = contact.tangential_restitution
@@ -179,7 +179,7 @@ def _contacts(
         first, last = (sides[side] for side in contact.sides)
         a, b = _touching(primitives, first, last)
         block = np.stack([a, b, np.full(len(a), group)], axis=1)
-        i, j = (hung[names.index(side.body)].part_of for side in contact.sides)
+        i, j = (hung[numbers[side.body]].part_of for side in contact.sides)
         found.setdefault((min(i, j), max(i, j)), []).append(block)
     pairs = records(BODY_PAIR, len(found))
     blocks = []
@@ -231,8 +231,9 @@ def _near(bodies: Records, primitives: Records, contacts: Records, pairs: Record
     """The contacts that can ever touch, by pair of bodies."""
     found = [np.zeros(0, np.int64)]
     count = 0
+    drawn: Drawn = {}
     for pair in pairs:
-        ids = np.flatnonzero(reachable(bodies, primitives, contacts, pair)) + pair.start
+        ids = np.flatnonzero(reachable(bodies, primitives, contacts, pair, drawn)) + pair.start
         pair.near_start, pair.near_stop = count, count + len(ids)
         count += len(ids)
         found.append(ids)

@@ -40,11 +40,13 @@ class Faults:
     lines: Mapping[str, int] = field(default_factory=dict)
     changed: frozenset[str] = frozenset()
     found: list[Fault] = field(default_factory=list)
+    _known: set[Fault] = field(default_factory=set, repr=False)
 
     def add(self, key: str, message: str, shown: str = "") -> None:
         """Notes one fault at a dotted key such as "bodies.lever.position.1"; the same fault twice counts once."""
         fault = replace(Fault(key, message, shown), place=self._place(key))
-        if fault not in self.found:
+        if fault not in self._known:
+            self._known.add(fault)
             self.found.append(fault)
 
     def raise_any(self) -> None:

@@ -28,16 +28,34 @@ if sys.version_info >= (3, 11):
 else:
     import tomli as tomllib
 
+DEEPEST = 20  # tables and lists within each other
+TOO_DEEP = f"tables and lists are nested more than {DEEPEST} deep, and nothing in a scene is"
+
 
 def load(path: str | Path) -> Scene:
     """The scene of a TOML file, in SI units. SceneError lists everything that is wrong with it."""
     path = Path(path)
     text = _text(path)
     try:
-        mapping = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+        mapping = parsed(text)
+    except ValueError as error:
         raise SceneError([_syntax_fault(path, text, str(error))]) from error
     return from_mapping(mapping, path, Faults(str(path), key_lines(text)))
+
+
+def parsed(text: str) -> dict[str, Any]:
+    """The mapping that a TOML text holds; ValueError where it is none, or one that no scene can be."""
+    try:
+        mapping = tomllib.loads(text)
+    except RecursionError:
+        raise ValueError(TOO_DEEP) from None
+    level: list[Any] = [mapping]
+    for _ in range(DEEPEST):
+        level = [item for value in level for item in (value.values() if isinstance(value, dict) else value)]
+        level = [item for item in level if isinstance(item, (dict, list))]
+        if not level:
+            return mapping
+    raise ValueError(TOO_DEEP)
 
 
 def from_mapping(mapping: dict[str, Any], path: Path | None, faults: Faults | None = None) -> Scene:

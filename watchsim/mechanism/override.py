@@ -3,23 +3,17 @@
 from __future__ import annotations
 
 import copy
-import sys
 from collections.abc import Iterable, Mapping
 from numbers import Real
 from typing import Any
 
 from watchsim.mechanism.errors import Fault, Faults, SceneError
-from watchsim.mechanism.load import from_mapping
+from watchsim.mechanism.load import from_mapping, parsed
 from watchsim.mechanism.read_bodies import motion_of
 from watchsim.mechanism.scene import Scene
 from watchsim.mechanism.schema import LISTED, NAMED, SECTIONS, TABLES, key_at, nearest, siblings
 from watchsim.mechanism.table import shown
 from watchsim.units import NUMBER, Dimension
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
 
 # Keys that say the same thing: setting one takes the others away.
 INSTEAD_OF = {
@@ -54,8 +48,8 @@ def assignments(texts: Iterable[str]) -> dict[str, object]:
 
 def _literal(text: str, value: str) -> object:
     try:
-        return tomllib.loads(f"value = {value}")["value"]
-    except tomllib.TOMLDecodeError:
+        return parsed(f"value = {value}")["value"]
+    except ValueError:
         raise SceneError([Fault(text, "the value is not a list or text as in a scene file", place="--set")]) from None
 
 

@@ -32,8 +32,14 @@ class _Span(NamedTuple):
         return np.asarray((self.low <= other.high) & (other.low <= self.high))
 
 
-def reachable(bodies: Records, primitives: Records, contacts: Records, pair: Any) -> NDArray[np.bool_]:
-    """For each contact of one pair of bodies: can its primitives come within the pair's clearance at any pose?"""
+Drawn = dict[tuple[bytes, float], Chords]  # of the primitives in those rows, that closely
+
+
+def reachable(bodies: Records, primitives: Records, contacts: Records, pair: Any, drawn: Drawn) -> NDArray[np.bool_]:
+    """For each contact of one pair of bodies: can its primitives come within the pair's clearance at any pose?
+
+    `drawn` holds what was drawn for other pairs: each body meets many.
+    """
     part = contacts[pair.start : pair.stop]
     a, b = (seen_from(bodies, int(number), int(pair.frame)) for number in (pair.a, pair.b))
     if any(body.carrier >= 0 and bodies[body.carrier].motion != PIVOT for body in (a, b)):
@@ -44,8 +50,7 @@ def reachable(bodies: Records, primitives: Records, contacts: Records, pair: Any
         a, b, on_a, on_b = b, a, on_b, on_a
     movers, row_a = np.unique(on_a, return_inverse=True)
     others, row_b = np.unique(on_b, return_inverse=True)
-    one = chords(primitives[movers], 0.5 * pair.clearance)
-    two = chords(primitives[others], 0.5 * pair.clearance)
+    one, two = (_drawn(primitives, rows, 0.5 * float(pair.clearance), drawn) for rows in (movers, others))
     centre_a, centre_b = _centre(bodies, a), _centre(bodies, b)
     if a.motion == PIVOT and b.motion == PIVOT:
         ring_a, ring_b = _ring(a, one, pair.clearance).of(row_a), _ring(b, two, 0.0).of(row_b)
@@ -64,6 +69,13 @@ def reachable(bodies: Records, primitives: Records, contacts: Records, pair: Any
         strip = _across(one, _world(a, one.points), a, pair.clearance)
         return strip.of(row_a).meets(_across(two, _world(b, two.points), a, 0.0).of(row_b))
     return np.ones(len(part), bool)
+
+
+def _drawn(primitives: Records, rows: NDArray[np.int64], sag: float, drawn: Drawn) -> Chords:
+    key = rows.tobytes(), sag
+    if key not in drawn:
+        drawn[key] = chords(primitives[rows], sag)
+    return drawn[key]
 
 
 def _centre(bodies: Records, body: Any) -> tuple[float, float]:

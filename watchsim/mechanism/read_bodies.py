@@ -29,6 +29,11 @@ def read_bodies(mapping: object, folder: Path, faults: Faults) -> tuple[tuple[Bo
     if not isinstance(mapping, dict):
         faults.add("bodies", "write one table per body, such as [bodies.wheel]", shown(mapping))
         return (), (), frozenset()
+    for name, entry in mapping.items():
+        if not isinstance(entry, dict):
+            where = f"bodies.{name}"
+            faults.add(where, "stands where bodies stand: a body has a name and a table, such as [bodies.wheel]", shown(entry))
+    mapping = {name: entry for name, entry in mapping.items() if isinstance(entry, dict)}
     users = Counter(_drawing_path(entry, folder) for entry in mapping.values())
     bodies: list[Body] = []
     findings: list[Finding] = []

@@ -32,8 +32,7 @@ def read_contacts(
     known = Known({body.name: body for body in bodies}, sound, law)
     tables = [Table(one, f"contacts.{i}", CONTACT, faults) for i, one in enumerate(listed(mapping, "contacts", faults))]
     contacts = tuple(_contact(table, known) for table in tables)
-    for i, table in enumerate(tables):
-        _note_repeated(table, i, contacts, known)
+    _note_repeated(tables, contacts, known)
     return contacts
 
 
@@ -66,7 +65,7 @@ def _note_law(table: Table, contact: Contact, law: str) -> None:
 def _sides(table: Table, known: Known) -> tuple[Side, Side]:
     names = table.texts("between")
     if len(names) != 2:
-        if table.mapping:
+        if table.is_table:
             table.fault(
                 "between" if "between" in table else "", 'two sides are needed: between = ["wheel.TEETH", "lever.STONES"]'
             )
@@ -114,13 +113,15 @@ def _note_layer(table: Table, key: str, body: Body, layer: str) -> None:
     table.faults.add(key, f"{body.name} has no such layer. {hint}{there}", shown)
 
 
-def _note_repeated(table: Table, i: int, contacts: tuple[Contact, ...], known: Known) -> None:
+def _note_repeated(tables: list[Table], contacts: tuple[Contact, ...], known: Known) -> None:
     """Two declarations for one pair of outlines would make the pair touch twice."""
-    mine = _covered(contacts[i], known)
-    for j in range(i):
-        if mine & _covered(contacts[j], known):
-            table.fault("between", f"contacts.{j} declares this pair already: leave one out", with_value=True)
-            return
+    first: dict[frozenset[Side], int] = {}
+    for i, (table, contact) in enumerate(zip(tables, contacts, strict=True)):
+        pairs = _covered(contact, known)
+        if earlier := [first[pair] for pair in pairs if pair in first]:
+            table.fault("between", f"contacts.{min(earlier)} declares this pair already: leave one out", with_value=True)
+        for pair in pairs:
+            first.setdefault(pair, i)
 
 
 def _covered(contact: Contact, known: Known) -> set[frozenset[Side]]:

@@ -72,12 +72,12 @@ def _entries(mapping: Mapping[str, Any], section: str, keys: Keys, bodies: tuple
 
 
 def _note_body(table: Table, known: Mapping[str, Body]) -> None:
-    if not table.mapping:
+    if not table.is_table:
         return
     name = table.needed_text("body", next(iter(known), "balance"))
-    if name and name not in known:
+    if name not in known and (name or table.mapping.get("body") == ""):
         table.fault("body", f"there is no such body. {nearest(name, known)}", with_value=True)
-    elif name and known[name].motion not in COORDINATE:
+    elif name in known and known[name].motion not in COORDINATE:
         table.fault("body", f'acts on a pivoted or a sliding body, and motion of {name} is "{known[name].motion}"', True)
 
 
@@ -90,7 +90,7 @@ def _stiffness(entry: Entry) -> float:
     if "frequency" in table:
         frequency = table.positive("frequency", "it is the frequency of the free oscillation")
         return entry.mass * (math.tau * frequency) ** 2
-    if "stiffness" not in table and table.mapping:
+    if "stiffness" not in table and table.is_table:
         table.fault("", 'a spring needs frequency = "28800 vph" or stiffness = "0.758 µN·m/rad"')
     return table.positive("stiffness", "a spring pulls back")
 
@@ -98,7 +98,7 @@ def _stiffness(entry: Entry) -> float:
 def _torque(entry: Entry) -> Torque:
     table = entry.table
     if "table" not in table:
-        if "value" not in table and table.mapping:
+        if "value" not in table and table.is_table:
             table.fault("", 'missing: value = "-1.0 µN·m", or a table over angle or time')
         if "over" in table:
             table.fault("over", "belongs to a table; a value is constant")
@@ -138,7 +138,7 @@ def _row(table: Table, i: int, row: object, dimensions: tuple[units.Dimension, u
 
 def _damping(entry: Entry, springs: tuple[Spring, ...]) -> Damping:
     table = entry.table
-    if table.mapping and not any(key in table for key in ("q_factor", "viscous", "quadratic", "coulomb")):
+    if table.is_table and not any(key in table for key in ("q_factor", "viscous", "quadratic", "coulomb")):
         choices = 'q_factor = 250, viscous = "0.6 nN·m·s/rad", quadratic = "1 nN·m·s²/rad²" or coulomb = "10 nN·m"'
         table.fault("", f"missing: {choices}")
     for key in ("viscous", "quadratic", "coulomb"):

@@ -12,6 +12,8 @@ from watchsim.mechanism.recording import ALL, EVERY, KEPT, Recording, Window
 from watchsim.mechanism.schema import nearest
 from watchsim.mechanism.table import Table, shown
 
+DIGITS = 9  # of the number after "every"
+
 
 def read_record(table: Table, key: str = "record") -> Recording:
     """What the key says; everything where it is absent, and where it cannot be read (the fault is noted)."""
@@ -58,9 +60,14 @@ def _window(table: Table, path: str, item: object) -> list[Window]:
     return [(start, end)] if start < end else []  # what could not be read is no window
 
 
+def is_stride(text: str) -> bool:
+    """Whether the text is a number of rows that a run may have."""
+    return text.strip().isdecimal() and len(text.strip()) <= DIGITS and int(text) > 0
+
+
 def _stride(table: Table, path: str, item: str) -> int:
     word, _, number = item.partition(" ")
-    if word == EVERY and number.strip().isdecimal() and int(number) > 0:
+    if word == EVERY and is_stride(number):
         return int(number)
     advice = f'write "{EVERY} 10" for each tenth row' if word == EVERY else nearest(item, KEPT)
     table.faults.add(

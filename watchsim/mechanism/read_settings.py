@@ -20,7 +20,7 @@ from watchsim.units import Dimension, UnitError, known_unit, parse, split
 
 DURATION = 1.0
 TOLERANCE = 1e-9
-TOLERANCES = (1e-14, 1e-2)
+TOLERANCES = (1e-13, 1e-2)
 WATCH_QUANTITIES = {
     "amplitude": units.ANGLE,
     "rate": units.RATE,
@@ -87,7 +87,7 @@ def read_expectations(mapping: Mapping[str, Any], faults: Faults) -> tuple[Expec
 def _expectation(key: str, table: Table) -> Expectation | None:
     """In the unit of its value; the tolerance may have another unit of the same kind."""
     missing = [name for name in ("value", "tolerance") if name not in table]
-    for name in missing if table.mapping else ():
+    for name in missing if table.is_table else ():
         table.fault("", f'{name} is missing. Write e.g. {{ value = "275°", tolerance = "1°" }}')
     if missing:
         return None

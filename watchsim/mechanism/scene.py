@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -53,10 +54,11 @@ class Scene:
 
     def body(self, name: str) -> Body:
         """The body of that name; KeyError if there is none."""
-        for body in self.bodies:
-            if body.name == name:
-                return body
-        raise KeyError(name)
+        return self._by_name[name]
+
+    @cached_property
+    def _by_name(self) -> dict[str, Body]:
+        return {body.name: body for body in self.bodies}
 
     def set(self, key: str, value: object) -> Scene:
         """A copy with one key of the scene file changed, everything else checked again.

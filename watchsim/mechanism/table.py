@@ -10,6 +10,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+from watchsim import units
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.errors import Faults
 from watchsim.mechanism.schema import UNSUPPORTED, Keys, nearest
@@ -17,6 +18,9 @@ from watchsim.mechanism.toml import value_text
 from watchsim.units import NUMBER, Dimension, UnitError, parse
 
 NAN = math.nan
+FURTHEST = 1e9  # m or rad: beyond, the places of what is a micrometre small are lost to rounding
+SMALLEST, LARGEST = 1e-100, 1e50  # SI: products and powers of what is read must stay numbers
+TOO_SMALL, TOO_LARGE = "is too small to compute with", "is too large to compute with"
 UNREADABLE: Point = (NAN, NAN)
 
 
@@ -24,7 +28,7 @@ def shown(value: object) -> str:
     """' = value' as it stands in the file, shortened."""
     try:
         text = value_text(value)
-    except TypeError:
+    except (TypeError, ValueError):  # a number of thousands of digits
         text = repr(value)
     return f" = {text if len(text) <= 60 else text[:57] + '...'}"
 
@@ -34,8 +38,9 @@ class Table:
 
     def __init__(self, mapping: object, path: str, keys: Keys, faults: Faults, motion: str = "pivot") -> None:
         self.mapping: dict[str, Any] = mapping if isinstance(mapping, dict) else {}
+        self.is_table = isinstance(mapping, dict)  # otherwise that has been noted, and is enough
         self.path, self.keys, self.faults, self.motion = path, keys, faults, motion
-        if not isinstance(mapping, dict):
+        if not self.is_table:
             faults.add(path, "a table of keys is needed here", shown(mapping))
         for key in self.mapping:
             if key not in keys:
@@ -98,6 +103,9 @@ class Table:
         if value <= 0.0:
             self.fault(key, f"must be above zero: {why}", with_value=True)
             return NAN
+        if value < SMALLEST:
+            self.fault(key, TOO_SMALL, with_value=True)
+            return NAN
         return value
 
     def pair(self, key: str, default: Point = (0.0, 0.0)) -> Point:
@@ -115,10 +123,13 @@ class Table:
 
     def parsed(self, path: str, value: object, dimension: Dimension) -> float:
         try:
-            return parse(value, dimension)
+            number = parse(value, dimension)
+            if abs(number) <= (FURTHEST if dimension in (units.LENGTH, units.ANGLE) else LARGEST):
+                return number
+            self.faults.add(f"{self.path}.{path}", TOO_LARGE, shown(value))
         except UnitError as error:
             self.faults.add(f"{self.path}.{path}", str(error), shown(value))
-            return NAN
+        return NAN
 
 
 def _pair_example(dimension: Dimension) -> str:

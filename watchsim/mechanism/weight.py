@@ -13,7 +13,7 @@ from watchsim.mechanism.outlines import Outlines
 from watchsim.mechanism.read_solids import read_solids
 from watchsim.mechanism.schema import nearest
 from watchsim.mechanism.solid import Solid, Weight, total
-from watchsim.mechanism.table import Table
+from watchsim.mechanism.table import SMALLEST, TOO_SMALL, Table
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +90,9 @@ def _note_massless(table: Table, motion: str, inertias: Inertias, outlines: Outl
     slips = {nearest(name, table.keys) for name in table.mapping if name not in table.keys}
     promised = bool(table.mapping.get("solids")) or ("mass" in table and (outlines.loops or not outlines.sound))
     for key, value, example in (("mass", inertias.mass, "1 mg"), ("inertia", inertias.inertia, "0.05 mg·cm²")):
-        if key in table and value < 0.0:
+        if key in table and 0.0 < value < SMALLEST:
+            table.fault(key, TOO_SMALL, with_value=True)
+        elif key in table and value < 0.0:
             table.fault(key, "must not be negative", with_value=True)
         elif key in needs and value == 0.0 and (key in table or not promised) and nearest(key, (key,)) not in slips:
             why = f"the body can move ({motion}) but has no {key}"

@@ -6,9 +6,7 @@ sees what was read and where to mend it. The numbers are those of the text repor
 
 from __future__ import annotations
 
-import io
 import math
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -21,6 +19,7 @@ from watchsim.geometry.polyline import polyline
 from watchsim.geometry.primitives import Arc
 from watchsim.render.fault_circles import FAULT, fault_circles
 from watchsim.render.palette import BACKGROUND, FAINT, GRID, INK
+from watchsim.storage.write import write_file
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -40,15 +39,12 @@ LISTED = 20  # layers in the legend
 
 def draw_drawing(drawing: Drawing, png_path: Path | str, centres: bool = False) -> None:
     """Writes the picture as PNG; OSError where the file cannot be written. It is written whole or not at all."""
-    buffer = io.BytesIO()
-    picture(drawing, centres).savefig(buffer, format="png", dpi=DPI, bbox_inches="tight", pad_inches=0.2)
-    path = Path(png_path)
-    scratch = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        scratch.write_bytes(buffer.getvalue())
-        scratch.replace(path)
-    finally:
-        scratch.unlink(missing_ok=True)
+    figure = picture(drawing, centres)
+
+    def fill(scratch: Path) -> None:
+        figure.savefig(scratch, format="png", dpi=DPI, bbox_inches="tight", pad_inches=0.2)
+
+    write_file(Path(png_path), fill, "the picture")
 
 
 def picture(drawing: Drawing, centres: bool = False) -> Figure:

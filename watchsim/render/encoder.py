@@ -1,7 +1,7 @@
 """How do frames become a file?
 
-Raw frames are piped into the ffmpeg that comes with imageio-ffmpeg. The file is written beside its destination and moved
-there only when the encoder has ended well, so that a full disk or an interrupt never leaves half a movie.
+Raw frames are piped into the ffmpeg that comes with imageio-ffmpeg. The file gets its name only when the encoder has ended
+well, so that a full disk or an interrupt never leaves half a movie.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.render.colours import Palette
+from watchsim.storage.write import write_file
 
 Pixels = NDArray[np.uint8]
 
@@ -39,13 +40,8 @@ def encode(frames: Iterable[Pixels], path: Path, size: tuple[int, int], fps: flo
 
     OSError with the encoder's own words where it fails; the destination then is as it was before.
     """
-    scratch = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix.lower()}")
     raw = (np.ascontiguousarray(frame).data for frame in frames) if palette is None else map(palette.indexed, frames)
-    try:
-        _run(_command(scratch, size, fps, palette is not None), raw, path)
-        scratch.replace(path)
-    finally:
-        scratch.unlink(missing_ok=True)
+    write_file(path, lambda scratch: _run(_command(scratch, size, fps, palette is not None), raw), "the movie")
 
 
 def _command(scratch: Path, size: tuple[int, int], fps: float, gif: bool) -> list[str]:
@@ -63,7 +59,7 @@ def _command(scratch: Path, size: tuple[int, int], fps: float, gif: bool) -> lis
     return [*head, "-an", *convert, *quality, *tags, "-movflags", "+faststart", str(scratch)]
 
 
-def _run(command: list[str], frames: Iterable[bytes | memoryview], path: Path) -> None:
+def _run(command: list[str], frames: Iterable[bytes | memoryview]) -> None:
     """Feed the encoder; its own session keeps a Ctrl-C meant for us from cutting it off unnoticed."""
     pipe = subprocess.PIPE
     with subprocess.Popen(command, stdin=pipe, stderr=pipe, bufsize=0, start_new_session=True) as process:
@@ -81,7 +77,7 @@ def _run(command: list[str], frames: Iterable[bytes | memoryview], path: Path) -
         words = process.stderr.read().decode(errors="replace")
         # Some releases of ffmpeg end with status 0 after a write that failed.
         if process.wait() != 0 or broken or _refusals(words):
-            raise OSError(f"could not write {path}: {_reason(words)}; nothing was changed")
+            raise OSError(_reason(words))
 
 
 def _feed(pipe: IO[bytes], rest: memoryview) -> None:

@@ -33,6 +33,7 @@ PAD, GAP = 24.0, 30.0
 CHIP = 0.85  # of the text size: the side of a coloured square
 BAR = 0.16  # of the width: the longest scale bar
 SMALLEST = 9.0  # pixels; smaller text cannot be read
+LEAST = 8.0  # pixels of height for the bodies
 
 
 @dataclass(frozen=True)
@@ -80,6 +81,8 @@ def lay_out(figure: Figure, run: Trajectory, window: Window, step: float) -> Lay
     top = height - baseline + 0.35 * TIME * unit + 1.3 * small.size
     readings, bottom = _readings(figure, run, window, small)
     frame = Frame(0.0, bottom, width, height - top - bottom)
+    if frame.height < LEAST:
+        raise ValueError(f"size = {width}x{height}: no room is left beside title, time and read-outs; choose a larger picture")
     return Layout(frame, told, step, time, (round(width - PAD * unit), baseline), small, readings)
 
 

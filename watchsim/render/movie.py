@@ -29,6 +29,7 @@ Pixels = NDArray[np.uint8]
 MP4_FPS, GIF_FPS = 60.0, 25.0
 MP4_SIZE, GIF_SIZE = (1280, 720), (800, 450)
 SIZES = (64, 8192)  # pixels a side
+MOST_FRAMES = 1e6
 SAMPLES = 12  # frames from which a GIF takes its colours
 
 
@@ -107,6 +108,8 @@ def _plan(span: Window, speed: float, fps: float, gif: bool) -> Plan:
         raise ValueError(f"fps = {fps}: give 1 to 240 frames per second")
     if gif:
         fps = 100.0 / max(2, round(100.0 / fps))  # players slow down anything shorter than two hundredths
+    if not (span[1] - span[0]) * fps / speed <= MOST_FRAMES:
+        raise ValueError(f"speed = {speed:g}: more than {MOST_FRAMES:g} frames; show a shorter window, or show it faster")
     count = math.floor((span[1] - span[0]) * fps / speed + 1e-6) + 1
     return Plan(np.minimum(span[0] + np.arange(count) * (speed / fps), span[1]), fps)
 

@@ -18,6 +18,7 @@ from watchsim.render.poses import poses
 from watchsim.render.stage import Stage
 from watchsim.simulation.stops import Stop
 from watchsim.simulation.trajectory import EVENT_DTYPE, Trajectory
+from watchsim.storage.write import write_file
 
 SIZE = (1280, 720)
 REACHABLE, CANDIDATE = "#1971c2", "#f76707"
@@ -43,7 +44,8 @@ def still(
     run = _at_rest(scene, compiled)
     stage = Stage(run, SIZE, (0.0, 1.0), picked=picked)
     frames = {name: rows[0] for name, rows in poses(run, np.zeros(1)).items()}
-    imageio.imwrite(Path(path), stage.draw(0.0, frames, np.array(overlaps).reshape(-1, 2), FAULT)[..., :3])
+    pixels = stage.draw(0.0, frames, np.array(overlaps).reshape(-1, 2), FAULT)[..., :3]
+    write_file(Path(path), lambda scratch: imageio.imwrite(scratch, pixels), "the picture")
 
 
 def _at_rest(scene: Scene, compiled: Compiled) -> Trajectory:

@@ -36,9 +36,14 @@ from watchsim.simulation.state import (
     FRICTION,
     IMPACTS,
     MONITORS,
+    N_EVALUATIONS,
     N_FLIGHTS,
+    N_GAPS,
     N_IMPACTS,
     N_INSTANTS,
+    N_LOOKUPS,
+    N_REJECTED,
+    N_STEPS,
     RECENT,
     SUMS,
     RecordRef,
@@ -60,6 +65,8 @@ EVENTS_AT_ONCE = 2000
 INSTANT = 1e-3  # share of `accumulation_time` within which events count as happening at once
 ROWS_PER_STEP = math.ceil(FLIGHT_PHASE / FINEST_ROWS) + 8
 EVENTS_PER_CONTACT = 20
+WORK = (N_STEPS, N_REJECTED, N_EVALUATIONS, N_GAPS, N_LOOKUPS)  # counts of what is done again once a cell is known
+BEFORE = 4  # in `until`, from here on: these counts before the current step
 
 
 @kernel
@@ -223,26 +230,38 @@ def _settle(model, cells, state, options, scratch, record):
 
 
 @kernel
+def _undone(code, state, until):
+    """What is done again with the cell known counts once: work must not depend on what earlier runs have learnt."""
+    if code == CELL_UNKNOWN:
+        for i in range(len(WORK)):
+            state.counts[WORK[i]] = int(until[BEFORE + i])
+    return code
+
+
+@kernel
 def _loop(model, cells, state, options, until, scratch, record):
     """From step to step and event to event; see `advance`."""
     fill_inverse(model, state.grip, scratch.work.inverse)
     while True:
         if not _room_left(record, len(scratch.closed.ids)):
             return BUFFER_FULL
+        for i in range(len(WORK)):
+            until[BEFORE + i] = state.counts[WORK[i]]
         if state.numbers[2]:
             code = _settle(model, cells, state, options, scratch, record)
             if code != RUNNING:
-                return code
+                return _undone(code, state, until)
             continue
         if state.clock[0] >= until[1]:
             return DURATION
-        if state.clock[0] >= until[0]:
+        if state.clock[0] >= until[0] or until[3] <= 0.0:
             return SLICE
         if until[2] == 0.0 and _reaches(model, state, options, until[1]):
             return LAST_STEP
+        until[3] -= 1.0
         code, event = _smooth_step(model, cells, state, options, until[1], scratch, record)
         if code != RUNNING:
-            return code
+            return _undone(code, state, until)
         if not _is_finite(state):
             return NOT_FINITE
         state.numbers[2] = 1 if event else 0
@@ -257,9 +276,10 @@ def scratch_by_reference(scratch):
 
 @entry
 def advance(model, cells, state, options, until, scratch, record):
-    """Run to the time until[1] (or return after until[0], the end of a slice); returns a Stop code.
+    """Run to the time until[1] (or return at the end of a slice, after until[0] or until[3] steps); returns a Stop code.
 
-    Before a step that until[1] might cut short it returns once, unless until[2] is set.
+    Before a step that until[1] might cut short it returns once, unless until[2] is set. Steps are counted down in until[3].
+    Behind that is room for counts.
 
     All arguments but `until` are NamedTuples; `state`, `scratch` and `record` are written to.
     """

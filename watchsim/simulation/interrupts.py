@@ -8,6 +8,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
 
+from watchsim import stopping
+
 _USUAL = signal.default_int_handler
 
 
@@ -15,8 +17,13 @@ _USUAL = signal.default_int_handler
 def held_interrupts() -> Iterator[Callable[[], bool]]:
     """Within, the first Ctrl-C is only remembered: the function handed out says whether it came. A second one raises.
 
-    Where somebody else listens to the signal, or outside the main thread, everything stays as it is.
+    In a process of the command line SIGTERM is heard alike (see stopping.py). Where somebody else listens to the signal, or
+    outside the main thread, everything stays as it is.
     """
+    if stopping.installed():
+        with stopping.held() as requested:
+            yield lambda: requested() != 0
+        return
     came = threading.Event()
     if threading.current_thread() is not threading.main_thread() or signal.getsignal(signal.SIGINT) is not _USUAL:
         yield came.is_set

@@ -7,12 +7,14 @@ short it is.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.mechanism.recording import ALL, STATISTICS, WHOLE_RUN, Recording, Window
+from watchsim.simulation.event_kinds import EVENT_DTYPE
 
 Array = NDArray[np.float64]
 Bits = NDArray[np.bool_]
@@ -43,6 +45,33 @@ class Kept:
     def parts(self) -> int:
         """How often something was flushed."""
         return self._gone + len(self._rows)
+
+    def unfinished(self) -> dict[str, NDArray[Any]]:
+        """What decides about the rows that come next: how many were met, when the last one was, and itself where it waits."""
+        part, time, inside = self._last
+        rows, stays = (
+            self._rows[part - self._gone] if self.parts > part >= self._gone else (np.zeros((0, 0)), np.zeros(0, bool))
+        )
+        waits = len(rows) > 0 and not stays[-1]
+        return {
+            "met": np.array(self._met),
+            "last": np.array([time, float(inside)]),
+            "row": rows[-1].copy() if waits else np.zeros(0),
+        }
+
+    def go_on(self, unfinished: Mapping[str, NDArray[Any]]) -> None:
+        """Decide about the next rows as if they followed on those before; nothing is known of them where it is empty."""
+        if not unfinished:
+            return
+        self._met = int(unfinished["met"])
+        time, inside = unfinished["last"].tolist()
+        self._last = 0, time, bool(inside)
+        row = unfinished["row"]
+        if len(row):
+            self._rows.append((row[None].copy(), np.zeros(1, bool)))
+            self._events.append((np.zeros(0, EVENT_DTYPE), np.zeros(0, bool)))
+        else:
+            self._last = 0, time, True
 
     def flush(self, rows: Array, events: NDArray[Any]) -> None:
         """Keep copies of what is wanted of the next rows and events, and forget earlier ones that were only of the tail."""
@@ -95,20 +124,35 @@ class Kept:
                 del self._rows[self._trimmed], self._events[self._trimmed]
                 self._gone += 1
 
+    def for_good(self, end: float, parts: int) -> Bits:
+        """Which of the rows that `closed` gives stay however long the run goes on."""
+        count = max(parts - self._gone, 0)
+        if not self._rows[:count]:
+            return np.zeros(0, bool)
+        stays = np.concatenate([bits for _, bits in self._rows])
+        return stays[self._chosen(end, count)]
+
     def closed(self, end: float, parts: int | None = None) -> tuple[Array | None, NDArray[Any] | None]:
         """All that is kept of a run that ends at `end` (s), from the first `parts` flushes (default all); None for nothing."""
         since = end - self.tail if self.recording.has_tail else np.inf
         parts = None if parts is None else max(parts - self._gone, 0)
         if not self._rows[:parts]:
             return None, None
-        rows, row_stays = (np.concatenate(arrays) for arrays in zip(*self._rows, strict=True))
-        first = int(np.searchsorted(rows[:, 0], since))
-        row_stays[first:] = True
-        if 0 < first < len(rows) and rows[first, 0] > since:
-            row_stays[first - 1] = True
-        row_stays[sum(len(part) for part, _ in self._rows[:parts]) :] = False
+        rows = np.concatenate([rows for rows, _ in self._rows])
         events = [part[stays | (part["t"] >= since)] for part, stays in self._events[:parts]]
-        return rows[row_stays], np.concatenate(events)
+        return rows[self._chosen(end, parts)], np.concatenate(events)
+
+    def _chosen(self, end: float, parts: int | None) -> Bits:
+        """Which of all rows `closed` gives."""
+        since = end - self.tail if self.recording.has_tail else np.inf
+        times = np.concatenate([rows[:, 0] for rows, _ in self._rows])
+        stays = np.concatenate([bits for _, bits in self._rows])
+        first = int(np.searchsorted(times, since))
+        stays[first:] = True
+        if 0 < first < len(times) and times[first] > since:
+            stays[first - 1] = True
+        stays[sum(len(part) for part, _ in self._rows[:parts]) :] = False
+        return stays
 
     def spans(self, end: float) -> tuple[Window, ...]:
         """The stretches of time whose rows are kept."""

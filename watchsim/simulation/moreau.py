@@ -45,7 +45,11 @@ class MoreauRun(Run):
 
     def _advance(self, until: NDArray[np.float64], record: Any) -> Stop:
         model = self.compiled.model
+        # Of fixed length, so that their number is a time.
+        before = float(self.state.clock[0])
+        until[0] = min(until[0], before + until[3] * self.pace[0])
         code = advance_fixed(model, self.finder.cells, self.state, self.options, until, self.pace, self.work, record)
+        until[3] -= round((float(self.state.clock[0]) - before) / self.pace[0])
         return Stop(int(code))
 
     def _learn(self) -> None:

@@ -22,7 +22,7 @@ from watchsim.mechanism.compile import Compiled
 from watchsim.mechanism.model import KIND_WORD
 from watchsim.mechanism.recording import Recording
 from watchsim.mechanism.scene import Scene
-from watchsim.simulation.advance import EVENTS_PER_CONTACT, ROWS_PER_STEP, advance
+from watchsim.simulation.advance import EVENTS_PER_CONTACT, ROWS_PER_STEP, WORK, advance
 from watchsim.simulation.books import ledger_fails, touching, what_alternates
 from watchsim.simulation.failure import failure_of
 from watchsim.simulation.interrupts import held_interrupts
@@ -54,11 +54,17 @@ Progress = Callable[[float, float], None]  # simulated time, duration
 ROWS, EVENTS = 20000, 20000
 ADVICE = "Try a tighter tolerance; if that does not help, this is a fault of the program, and the scene shows it"
 SLICE_WALL = 0.1  # s between looks at the clock
+FEWEST_STEPS, MOST_STEPS = 16.0, 4000.0  # of a slice; steps may become much slower from one to the next
 
 
 def natural_step(compiled: Compiled, longest: float) -> float:
     """Longest step: a quarter of the fastest spring's period, so that no turning point hides between two others."""
     return min(longest, 0.5 * math.pi / compiled.fastest) if compiled.fastest else longest
+
+
+def new_until(end: float = 0.0, duration: float = 0.0, last: float = 0.0, steps: float = 0.0) -> NDArray[np.float64]:
+    """How far `advance` is to run: end of the slice (s), of the run (s), 1 if the last step may be cut short, steps."""
+    return np.array([end, duration, last, steps, *(0.0 for _ in WORK)])
 
 
 class Run:
@@ -102,6 +108,7 @@ class Run:
         saved.restore(self.arrays())
         self.stored_at_start = saved.stored_at_start
         self.tally.restore(saved.tally)
+        self.kept.go_on(saved.recorded)
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Everything the future depends on, besides the model and the settings."""
@@ -121,7 +128,8 @@ class Run:
         self.flush()
         self.watch.see()
         self._parts_before = self.kept.parts
-        return save_state(self.compiled, self.settings(), self.arrays(), self.stored_at_start, self.tally.arrays())
+        state = save_state(self.compiled, self.settings(), self.arrays(), self.stored_at_start, self.tally.arrays())
+        return dataclasses.replace(state, recorded=self.kept.unfinished())
 
     def flush(self) -> None:
         """Empty the buffers: count the events, keep what the recording wants."""
@@ -134,7 +142,7 @@ class Run:
     def warm_up(self) -> None:
         """Load or compile the kernels: a call that returns at once because it has no room to record."""
         nowhere = new_record(self.compiled.model, 0, 0, self.record.windows)
-        self._advance(np.zeros(3), nowhere)
+        self._advance(new_until(), nowhere)
         warm_up_start(self.scene, self.compiled.model)
 
     def _advance(self, until: NDArray[np.float64], record: Any) -> Stop:
@@ -152,6 +160,10 @@ class Run:
                 stop = self._slices(duration, progress, interrupted)
         except KeyboardInterrupt:
             stop = Stop.INTERRUPTED
+        except OverflowError:  # so far away that no cell has a number
+            stop = Stop.NOT_FINITE
+        except MemoryError:
+            stop = Stop.OUT_OF_MEMORY
         if self.saved is None:
             self.saved = self.save()
         self.flush()
@@ -192,11 +204,13 @@ class Run:
     def _slices(self, duration: float, progress: Progress | None, interrupted: Callable[[], bool]) -> Stop:
         """Slice after slice of about `SLICE_WALL`, with what has to be done between them."""
         length = 1e-5 * duration  # grows tenfold at most: a long slice would be deaf
-        until = np.array([0.0, duration, 0.0])
+        steps = FEWEST_STEPS  # where events crowd, time is no measure of work
+        until = new_until(0.0, duration)
         look = self.watch.next_look(float(self.state.clock[0]))
         while True:
             start, begun = time.perf_counter(), float(self.state.clock[0])
             until[0] = min(duration, begun + length, look)
+            until[3] = steps
             stop = self._advance(until, self.record)
             if stop == Stop.CELL_UNKNOWN:
                 self._learn()
@@ -208,9 +222,11 @@ class Run:
             elif stop != Stop.SLICE:
                 return stop
             else:
-                taken = time.perf_counter() - start
-                done = float(self.state.clock[0]) - begun
-                length = min(max(done * SLICE_WALL / max(taken, 1e-4), 1e-9 * duration), 10.0 * length)
+                pace = SLICE_WALL / max(time.perf_counter() - start, 1e-4)
+                if until[3] > 0.0:
+                    done = float(self.state.clock[0]) - begun
+                    length = min(max(done * pace, 1e-9 * duration), 10.0 * length)
+                steps = min(max(pace * (steps - until[3]), 1.0), 2.0 * steps, MOST_STEPS)
             if self.state.clock[0] >= look:
                 self._look()
                 look = self.watch.next_look(float(self.state.clock[0]))
@@ -234,9 +250,13 @@ class Run:
         n = len(self.state.q)
         compiled = self.compiled
         rows, events = self._all_kept()
-        before = [len(part) for part in self._all_kept(self._parts_before)]
         words = self._details(stop)
-        saved = None if self.saved is None else dataclasses.replace(self.saved, rows=before[0], events=before[1])
+        saved = self.saved
+        if saved is not None:
+            before = [len(part) for part in self._all_kept(self._parts_before)]
+            stays = self.kept.for_good(float(self.state.clock[0]), self._parts_before)
+            recorded = {**saved.recorded, "stays": stays}
+            saved = dataclasses.replace(saved, rows=before[0], events=before[1], recorded=recorded)
         return Trajectory(
             scene=self.scene,
             t=rows[:, 0],
@@ -282,10 +302,13 @@ class Run:
     def _energy(self) -> dict[str, Any]:
         """The ledger: work in = stored + dissipated + residual, J."""
         sums = self.state.sums
-        stored = stored_energy(self.compiled.model, self.state.q, self.state.u) - self.stored_at_start
+        at_end = stored_energy(self.compiled.model, self.state.q, self.state.u)
+        stored = at_end - self.stored_at_start
         dissipated = self._dissipated()
         residual = sums[DRIVE] - stored - sum(dissipated.values())
-        scale = max(abs(sums[DRIVE]), abs(stored), sum(dissipated.values()))
+        # A swing that loses nothing gets nothing and stores nothing more: what it turns over is the scale of its rounding.
+        held = max(at_end, self.stored_at_start, _turned_over(self.compiled.model.coordinates))
+        scale = max(abs(sums[DRIVE]), abs(stored), sum(dissipated.values()), held)
         return {
             "in_J": float(sums[DRIVE]),
             "dissipated": dissipated,
@@ -293,6 +316,12 @@ class Run:
             "residual_J": float(residual),
             "residual_relative": float(abs(residual) / scale) if scale else 0.0,
         }
+
+
+def _turned_over(coordinates: Any) -> float:
+    """What constant forces give to springs and take back in each swing, J."""
+    sprung = coordinates[coordinates.stiffness > 0.0]
+    return float(np.max(2.0 * sprung.force**2 / sprung.stiffness, initial=0.0))
 
 
 def _as_told(events: NDArray[Any], compiled: Compiled) -> NDArray[Any]:

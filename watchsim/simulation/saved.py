@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from watchsim.mechanism.compile import Compiled
 
+TALLIED = ("kinds", "beats", "moments", "last", "carried")
 ASKED = ("method", "step", "tolerance")
 
 
@@ -23,7 +24,8 @@ ASKED = ("method", "step", "tolerance")
 class SavedState:
     """A state to go on from. `rows` and `events` say how many of its run's kept rows and events lie before it.
 
-    `tally` holds the sums over all events before it (see simulation/tally.py).
+    `tally` holds the sums over all events before it (see simulation/tally.py); `recorded` what decides about the next rows
+    (see `Kept.unfinished`).
     """
 
     arrays: dict[str, NDArray[Any]]
@@ -33,11 +35,35 @@ class SavedState:
     tally: dict[str, NDArray[Any]] = field(default_factory=dict)
     rows: int = 0
     events: int = 0
+    recorded: dict[str, NDArray[Any]] = field(default_factory=dict)
 
     @property
     def time(self) -> float:
         """Simulated time it belongs to, s."""
         return float(self.arrays["clock"][0])
+
+    def is_whole(self) -> bool:
+        """True if it holds what every state holds, whatever the model."""
+        clock = self.arrays.get("clock")
+        return (
+            clock is not None
+            and clock.shape == (3,)
+            and all(np.isfinite(array).all() for array in self.arrays.values())
+            and set(self.tally) == set(TALLIED)
+            and self._recorded_is_whole()
+            and isinstance(self.settings, dict)
+            and isinstance(self.stored_at_start, float)
+            and all(isinstance(count, int) and count >= 0 for count in (self.rows, self.events))
+        )
+
+    def _recorded_is_whole(self) -> bool:
+        if not self.recorded:
+            return True
+        if set(self.recorded) != {"met", "last", "row", "stays"}:
+            return False
+        met, last, row, stays = (self.recorded[name] for name in ("met", "last", "row", "stays"))
+        shapes = met.shape == () and last.shape == (2,) and row.ndim == 1 and stays.shape == (self.rows,)
+        return bool(shapes and met.dtype.kind == "i" and last.dtype.kind == row.dtype.kind == "f" and stays.dtype == bool)
 
     def check(self, compiled: Compiled, settings: Mapping[str, Any]) -> None:
         """ValueError where the model or a setting is not the one the state was made with."""
@@ -59,7 +85,8 @@ class SavedState:
     def restore(self, arrays: Mapping[str, NDArray[Any]]) -> None:
         """Write the state into `arrays`; ValueError where another version of the package has saved it."""
         shapes = {name: array.shape for name, array in self.arrays.items()}
-        if shapes != {name: array.shape for name, array in arrays.items()}:
+        row = self.recorded.get("row", np.zeros(0)).shape in ((0,), (1 + 3 * len(arrays["q"]),))
+        if shapes != {name: array.shape for name, array in arrays.items()} or not row:
             raise ValueError("the saved state was written by another version of watchsim; begin anew")
         for name, array in arrays.items():
             array[...] = self.arrays[name]

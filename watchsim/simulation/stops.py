@@ -20,6 +20,7 @@ class Stop(IntEnum):
     NOT_FINITE = 9
     TOO_MANY_CONTACTS = 10
     LAST_STEP = 11
+    OUT_OF_MEMORY = 12
     OVERLAP = 20
     UNEXPLAINED = 21
     LEDGER = 22
@@ -36,7 +37,8 @@ class Stop(IntEnum):
     @property
     def gave_up(self) -> bool:
         """True when the solver could not go on, or its result is known to be wrong (exit status 3)."""
-        return Stop.TOO_MANY_EVENTS <= self <= Stop.TOO_MANY_CONTACTS or self.is_wrong
+        could_not = Stop.TOO_MANY_EVENTS <= self <= Stop.TOO_MANY_CONTACTS or self == Stop.OUT_OF_MEMORY
+        return could_not or self.is_wrong
 
 
 _SENTENCES = {
@@ -54,6 +56,7 @@ _SENTENCES = {
     ),
     Stop.STEP_TOO_SMALL: "the step became too small for the asked tolerance",
     Stop.NOT_FINITE: "a coordinate or velocity is no longer a finite number",
+    Stop.OUT_OF_MEMORY: "there is no memory left to keep more; --record statistics needs least",
     Stop.TOO_MANY_CONTACTS: "more contacts closed at once than there is room for",
     Stop.UNEXPLAINED: "velocities changed at an instant by more than the impulses there explain",
     Stop.LEDGER: "the energy ledger does not close",

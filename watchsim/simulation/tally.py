@@ -17,6 +17,7 @@ from watchsim.mechanism.check import frequency
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation.event_kinds import EVENT_DTYPE, EventKind
 from watchsim.simulation.half_swings import first_noises, half_swings, since_two_before, unevenness
+from watchsim.simulation.saved import TALLIED
 from watchsim.simulation.trajectory import Pair
 
 Array = NDArray[np.float64]
@@ -49,8 +50,7 @@ class Tally:
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Everything, to be saved."""
-        names = ("kinds", "beats", "moments", "last", "carried")
-        return {name: np.array(getattr(self, name)) for name in names}
+        return {name: np.array(getattr(self, name)) for name in TALLIED}
 
     def restore(self, arrays: Mapping[str, NDArray[Any]]) -> None:
         """Go on from saved sums."""

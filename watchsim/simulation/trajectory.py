@@ -97,6 +97,13 @@ class Trajectory:
         """The deepest overlap of bodies that looking at their outlines has found, m; 0: none as deep as the resolution."""
         return float(self.overlap.get("worst_m", 0.0))
 
+    def __post_init__(self) -> None:
+        """A frozen value to the last element; views, so that whoever made the arrays may go on with them."""
+        for name in ("t", "q", "u", "a", "events", "end_q", "end_u"):
+            view = getattr(self, name)[...]
+            view.flags.writeable = False
+            object.__setattr__(self, name, view)
+
     @cached_property
     def _noise(self) -> Array:
         """(n,): how exact each coordinate is at its rows."""

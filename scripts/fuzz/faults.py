@@ -1,0 +1,106 @@
+"""Is anything lost when the disk fails once, at any one of the things a command does to it?
+
+For `run`, with `--force` and `--resume`, `movie` and `plot`: the first opening for writing, write, synchronisation, rename or
+removal fails with "No space left on device", then only the second, and so on to the last one. After each: what was there
+before is whole, and what was computed lies where it was to go, or where the message says. `--stride N` takes every N-th.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import io
+import os
+import re
+import shutil
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
+LEVER = str(ROOT / "profiles" / "bench_lever")
+COMMANDS = {
+    "run": ["run", LEVER, "--duration", "0.1 s", "-o", "new"],
+    "run --force": ["run", LEVER, "--duration", "0.1 s", "-o", "old", "--force"],
+    "run --resume": ["run", LEVER, "--duration", "0.25 s", "--resume", "old"],
+    "movie": ["movie", "old", "--window", "0.1 s:0.11 s", "--size", "64x64"],
+    "plot": ["plot", "old", "--bodies", "lever"],
+}
+
+
+def judge(name: str, place: Path, second: Path, status: int, said: str) -> list[str]:
+    """What is wrong after a command that met a fault."""
+    from watchsim.analysis.results import read_results
+    from watchsim.storage.write import sweep
+
+    wrong = [] if status in (0, 2) else [f"exit status {status}"]
+    if "Traceback" in said or (place / "old" / "mine.txt").read_text() != "mine":
+        wrong.append("traceback, or the user's file is gone")
+    for folder in (place, place / "old", place / "new", place / "old" / "plots"):  # what the next command does first
+        sweep(folder)
+    if list(place.rglob(".watchsim-*")):
+        wrong.append("leftover")
+    old = read_results(place / "old").simulated
+    reached = {"run": 0.1, "run --force": 0.1, "run --resume": 0.25}.get(name)
+    if reached is None:
+        return wrong + ([] if old == 0.2 else ["the run was changed"])
+    target = place / ("new" if name == "run" else "old")
+    saved = re.search(r"saved, without pictures, in (\S+)", said)
+    if status == 0 and read_results(target).simulated != reached:
+        wrong.append("said to be written, and is not")
+    elif saved and read_results(saved[1]).simulated != reached:
+        wrong.append("not where the message says")
+    elif status == 2 and not saved and "nothing can be written" not in said and "cannot be written" not in said:
+        wrong.append(f"computed and lost: {said}")
+    if status == 2 and name != "run" and old not in (0.2, reached):
+        wrong.append("the old run is gone")
+    return wrong
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--stride", type=int, default=1)
+    parser.add_argument("--command", choices=list(COMMANDS), action="append")
+    args = parser.parse_args()
+    from storage.disk_faults import Disk, watched
+
+    from watchsim.cli import main as watchsim
+
+    failed = 0
+    with tempfile.TemporaryDirectory() as parent:
+        made, place, second = (Path(parent) / name for name in ("made", "place", "elsewhere"))
+        for folder in (made, second):
+            folder.mkdir()
+        os.chdir(made)
+        with contextlib.redirect_stdout(io.StringIO()):
+            watchsim(["run", LEVER, "--duration", "0.2 s", "--no-plots", "-o", "old"])
+        (made / "old" / "mine.txt").write_text("mine")
+        for name in args.command or COMMANDS:
+            begun, number, rounds = time.perf_counter(), 1, 0
+            arguments = [str(place / word) if word in ("old", "new") else word for word in COMMANDS[name]]
+            while True:
+                shutil.rmtree(place, ignore_errors=True)
+                shutil.copytree(made, place)
+                os.chdir(second)
+                said = io.StringIO()
+                with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said), watched(Disk(place, number)) as disk:
+                    status = watchsim(arguments)
+                wrong = judge(name, place, second, status, said.getvalue())
+                rounds += 1
+                if wrong:
+                    failed += 1
+                    print(f"{name}, fault {number} ({disk.log[number - 1] if disk.failed else 'none'}): {wrong}", flush=True)
+                if not disk.failed:
+                    break
+                number += args.stride
+            print(
+                f"{name}: {rounds - 1} of {len(disk.log)} actions failed once; {time.perf_counter() - begun:.0f} s", flush=True
+            )
+    print(f"{failed} wrong")
+    sys.exit(bool(failed))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,166 @@
+"""Does any damaged results folder bring watchsim down?
+
+Makes one folder, damages copies of it at random (files lost, cut, overwritten, exchanged; arrays and headers changed within
+sound archives), and has `plot`, `movie` or `run --resume` read them. A folder fails that brings exit status 4, a traceback, the
+death of the process, takes more than 20 s, or changes where the command refuses it. `--only K` repeats number K.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import io
+import json
+import random
+import shutil
+import sys
+import tempfile
+import time
+import zipfile
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT), str(Path(__file__).parent)]
+import scenes  # noqa: E402
+
+SCENE = str(ROOT / "profiles" / "bench_lever")
+FILES = ("trajectory.npz", "state.npz", "scene.lock.toml", "summary.json")
+COMMANDS = ("plot", "plot", "movie", "resume")
+NASTY: tuple[object, ...] = (None, [], {}, "x", -1, 10**30, 1e300, [[]], {"a": 1}, True, "DURATION")
+
+
+def damage(rng: random.Random, folder: Path) -> None:
+    """One accident."""
+    path = folder / rng.choice((*FILES, "trajectory.npz", "state.npz"))
+    if path.is_dir():
+        return
+    kind = rng.choice(("lost", "cut", "bytes", "folder", "exchanged", "empty", "header", "array", "array", "member"))
+    data = path.read_bytes() if path.is_file() else b""
+    if kind == "lost":
+        path.unlink(missing_ok=True)
+    elif kind == "cut":
+        path.write_bytes(data[: rng.randrange(len(data) + 1)])
+    elif kind == "bytes":
+        changed = bytearray(data)
+        for _ in range(rng.randrange(1, 20) if changed else 0):
+            changed[rng.randrange(len(changed))] = rng.randrange(256)
+        path.write_bytes(changed)
+    elif kind == "folder":
+        path.unlink(missing_ok=True)
+        path.mkdir(exist_ok=True)
+    elif kind == "exchanged":
+        other = folder / rng.choice(FILES)
+        path.write_bytes(other.read_bytes() if other.is_file() else b"")
+    elif kind == "empty":
+        path.write_bytes(b"")
+    else:
+        with contextlib.suppress(Exception):  # damaged already
+            _inside(rng, path, kind)
+
+
+def _inside(rng: random.Random, path: Path, kind: str) -> None:
+    """Another content in a sound archive."""
+    with np.load(path, allow_pickle=False) as archive:
+        arrays = {name: archive[name] for name in archive.files}
+    name = rng.choice([name for name in arrays if (name == "header") == (kind == "header")])
+    array = arrays[name]
+    if kind == "header":
+        header = json.loads(array.tobytes())
+        key = rng.choice(list(header))
+        if rng.random() < 0.2:
+            del header[key]
+        else:
+            header[key] = rng.choice(NASTY)
+        arrays[name] = np.frombuffer(json.dumps(header).encode(), np.uint8)
+    elif kind == "member":
+        if rng.random() < 0.5:
+            del arrays[name]
+        else:
+            arrays[name] = np.zeros((3, 3))
+    else:
+        arrays[name] = rng.choice((_shorter, _nan, _flat, _other_type, _zeros, _huge))(rng, array)
+    with zipfile.ZipFile(path, "w") as file:
+        for name, array in arrays.items():
+            buffer = io.BytesIO()
+            np.lib.format.write_array(buffer, np.ascontiguousarray(array), allow_pickle=False)
+            file.writestr(f"{name}.npy", buffer.getvalue())
+
+
+def _shorter(rng: random.Random, array: np.ndarray) -> np.ndarray:
+    return array[: rng.randrange(len(array) + 1)] if array.ndim else array
+
+
+def _nan(rng: random.Random, array: np.ndarray) -> np.ndarray:
+    array = array.copy()
+    if array.dtype.kind == "f" and array.size:
+        array.flat[rng.randrange(array.size)] = rng.choice((np.nan, np.inf, -np.inf))
+    return array
+
+
+def _flat(rng: random.Random, array: np.ndarray) -> np.ndarray:
+    return array.reshape(-1)
+
+
+def _other_type(rng: random.Random, array: np.ndarray) -> np.ndarray:
+    return np.zeros(array.shape, rng.choice(("i1", "f4", "U3", "c16", "?")))
+
+
+def _zeros(rng: random.Random, array: np.ndarray) -> np.ndarray:
+    return np.zeros_like(array)
+
+
+def _huge(rng: random.Random, array: np.ndarray) -> np.ndarray:
+    return (
+        np.full_like(array, 10**9 if array.dtype.kind in "iu" and array.dtype.itemsize > 2 else 100)
+        if array.dtype.names is None
+        else array
+    )
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--count", type=int, default=200)
+    parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--only", type=int)
+    args = parser.parse_args()
+    from watchsim.cli import main as watchsim
+
+    kinds: Counter[str] = Counter()
+    slowest, start = (0.0, -1), time.perf_counter()
+    with tempfile.TemporaryDirectory() as parent:
+        whole = Path(parent) / "whole"
+        watchsim(["run", SCENE, "--duration", "0.2 s", "-o", str(whole)])
+        for number in range(args.first, args.first + args.count) if args.only is None else [args.only]:
+            rng = random.Random(f"results {number}")
+            folder = Path(parent) / "copy"
+            shutil.rmtree(folder, ignore_errors=True)
+            shutil.copytree(whole, folder)
+            for _ in range(rng.choice((1, 1, 2))):
+                damage(rng, folder)
+            command = rng.choice(COMMANDS)
+            words, took = scenes.in_a_process(Path(parent), _arguments(command, folder))
+            slowest = max(slowest, (took, number))
+            kind = words.splitlines()[0] if words else "nothing said"
+            kinds[kind] += 1
+            if kind not in ("0", "1", "2", "3") or args.only is not None:
+                print(f"{number} ({command}): {words}", flush=True)
+    print(
+        f"{sum(kinds.values())} results folders from number {args.first}: exit statuses {dict(sorted(kinds.items()))}; "
+        f"{time.perf_counter() - start:.0f} s, the slowest {slowest[0]:.1f} s (number {slowest[1]})"
+    )
+    sys.exit(bool(set(kinds) - {"0", "1", "2", "3"}) and args.only is None)
+
+
+def _arguments(command: str, folder: Path) -> list[str]:
+    if command == "plot":
+        return ["plot", str(folder)]
+    if command == "movie":
+        return ["movie", str(folder), "--size", "64x64", "--window", "0.1 s:0.11 s", "--speed", "1/10"]
+    return ["run", SCENE, "--resume", str(folder), "--duration", "0.21 s", "--no-plots"]
+
+
+if __name__ == "__main__":
+    main()

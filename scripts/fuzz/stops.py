@@ -1,0 +1,156 @@
+"""Is anything lost when a command is killed, interrupted or terminated at a random moment?
+
+Starts commands again and again (`run`, `run --force`, `run --resume`, `plot`, `movie`, `export`, `check --png`), sends each one
+a signal at a random moment of its life, and looks at what it leaves. Rounds are numbered: number k takes the same command, and
+the same share of that command's usual time, on every machine.
+
+KILL: no half file under a final name, no leftover after the next command's sweep, the user's own file is there; each fifth time
+the next command is run as well, and must be fine.
+INT and TERM: exit status 130 and 143, or 0 where the command had ended before; results readable where there are any, no
+traceback, no leftover.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections import Counter
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT))
+LEVER = str(ROOT / "profiles" / "bench_lever")
+LONG = "2 s"
+STATUS = {signal.SIGKILL: -9, signal.SIGINT: 130, signal.SIGTERM: 143}
+COMMANDS = {
+    "run": ["run", LEVER, "--duration", LONG, "-o", "new"],
+    "force": ["run", LEVER, "--duration", LONG, "-o", "old", "--force"],
+    "resume": ["run", LEVER, "--duration", "1 s", "--resume", "old"],
+    "movie": ["movie", "old", "--window", "0.01 s:0.19 s", "--speed", "1/5", "--size", "320x180"],
+    "plot": ["plot", "old", "--format", "png,svg,pdf"],
+    "export": ["export", LEVER, "-o", "parts"],
+    "picture": ["check", LEVER, "--png", "start.png"],
+}
+
+
+def environment() -> dict[str, str]:
+    return {**os.environ, "PYTHONPATH": str(ROOT)}
+
+
+def start(arguments: list[str], place: Path) -> subprocess.Popen[str]:
+    command = [sys.executable, "-m", "watchsim", *arguments]
+    pipe = subprocess.PIPE
+    return subprocess.Popen(command, cwd=place, env=environment(), stdout=pipe, stderr=pipe, text=True)
+
+
+def faults(place: Path, before: dict[str, bytes]) -> list[str]:
+    """What is wrong with what lies there."""
+    from watchsim.analysis.results import read_results
+    from watchsim.storage.scratch import PREFIX
+
+    found = [f"leftover {path.relative_to(place)}" for path in place.rglob(f"{PREFIX}*")]
+    if not (place / "old" / "mine.txt").is_file():
+        found.append("the user's own file is gone")
+    for folder in (place / "old", place / "new"):
+        if folder.exists():
+            try:
+                read_results(folder)
+            except (OSError, ValueError) as error:
+                found.append(f"{folder.name}: {error}")
+    for path, ends in (
+        (place / "old" / "movie.mp4", b"moov"),
+        (place / "start.png", b"IEND"),
+        (place / "old/plots/kinematics.pdf", b"%%EOF"),
+    ):
+        if path.exists() and ends not in path.read_bytes():
+            found.append(f"{path.name} is not whole")
+    if "old/trajectory.npz" not in before:
+        found.append("no old run")
+    return found
+
+
+def one(number: int, which: int, made: Path, usual: dict[str, float], place: Path) -> tuple[str, str, list[str]]:
+    """Round `number` with signal `which`: the command, how it ended, what is wrong."""
+    from watchsim.storage.write import sweep
+
+    rng = random.Random(f"{number}")
+    name = list(COMMANDS)[number % len(COMMANDS)]
+    shutil.rmtree(place, ignore_errors=True)
+    shutil.copytree(made, place)
+    process = start(COMMANDS[name], place)
+    share = rng.random() * 1.1
+    time.sleep(0.12 + share * usual[name])  # before that the interpreter itself is starting
+    alive = process.poll() is None
+    process.send_signal(which)
+    said = "".join(process.communicate())
+    wrong = [] if process.returncode in (STATUS[signal.Signals(which)], 0) else [f"exit status {process.returncode}"]
+    if alive and process.returncode == 0 and which != signal.SIGKILL:
+        wrong.append("swallowed")
+    if "Traceback" in said or "Error" in said:
+        wrong.append(said)
+    if (
+        process.returncode in (130, 143)
+        and "Results:" not in said
+        and name in ("run", "resume", "force")
+        and "writing what was" in said
+    ):
+        wrong.append("results were announced and not written")
+    for folder in (place, place / "old", place / "old" / "plots"):
+        if which == signal.SIGKILL:  # what the next command does first
+            sweep(folder)
+    wrong += faults(place, {"old/trajectory.npz": b""})
+    if number % 5 == 0 and which == signal.SIGKILL:
+        again = start([*COMMANDS[name], *(["--force"] if name in ("run", "export") else [])], place)
+        said = "".join(again.communicate())
+        if again.returncode != 0 or list(place.rglob(".watchsim-*")):
+            wrong.append(f"the next command: {again.returncode} {said}")
+    return name, str(process.returncode), wrong
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--signal", choices=("KILL", "INT", "TERM"), default="KILL")
+    parser.add_argument("--count", type=int, default=70)
+    parser.add_argument("--first", type=int, default=0)
+    args = parser.parse_args()
+    which = getattr(signal, f"SIG{args.signal}")
+    ended: Counter[str] = Counter()
+    wrong_rounds = 0
+    begun = time.perf_counter()
+    with tempfile.TemporaryDirectory() as parent:
+        made, place = Path(parent) / "made", Path(parent) / "place"
+        made.mkdir()
+        subprocess.run(
+            [sys.executable, "-m", "watchsim", "run", LEVER, "--duration", "0.2 s", "-o", "old"],
+            cwd=made, env=environment(), check=True, capture_output=True,
+        )  # fmt: skip
+        (made / "old" / "mine.txt").write_text("mine")
+        usual = {}
+        for name, arguments in COMMANDS.items():
+            shutil.rmtree(place, ignore_errors=True)
+            shutil.copytree(made, place)
+            since = time.perf_counter()
+            start(arguments, place).communicate()
+            usual[name] = time.perf_counter() - since
+        print({name: round(seconds, 2) for name, seconds in usual.items()}, flush=True)
+        for number in range(args.first, args.first + args.count):
+            name, status, wrong = one(number, which, made, usual, place)
+            ended[f"{name} {status}"] += 1
+            if wrong:
+                wrong_rounds += 1
+                print(f"{number} ({name}): {wrong}", flush=True)
+    took = time.perf_counter() - begun
+    print(f"{args.count} rounds of {args.signal} from number {args.first}: {wrong_rounds} wrong; {took:.0f} s")
+    print(dict(sorted(ended.items())))
+    sys.exit(bool(wrong_rounds))
+
+
+if __name__ == "__main__":
+    main()

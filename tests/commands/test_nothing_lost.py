@@ -1,0 +1,192 @@
+"""Is refused at once what cannot be written at the end, and saved elsewhere what cannot be written all the same?"""
+
+from __future__ import annotations
+
+import errno
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from interpreter import ROOT
+from storage.disk_faults import Disk, watched
+
+from watchsim.analysis import results
+from watchsim.analysis.results import read_results
+from watchsim.cli import main
+from watchsim.commands import write_run
+from watchsim.simulation.run import Run
+
+LEVER = str(ROOT / "profiles" / "bench_lever")
+SHORT = ["run", LEVER, "--duration", "0.05 s", "--no-plots"]
+
+
+@pytest.fixture(autouse=True)
+def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Where the command is started from."""
+    place = tmp_path / "elsewhere"
+    place.mkdir()
+    monkeypatch.chdir(place)
+    return place
+
+
+@pytest.mark.parametrize("name", ["none/out", "file/out", "dangling", "x" * 256])
+def test_nothing_is_simulated_for_a_place_that_cannot_be_written(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def never(*_: object) -> None:
+        raise AssertionError("simulated")
+
+    monkeypatch.setattr(Run, "__init__", never)
+    (tmp_path / "file").write_text("")
+    (tmp_path / "dangling").symlink_to(tmp_path / "gone")
+    assert main([*SHORT, "-o", str(tmp_path / name)]) == 2
+    assert str(tmp_path / name)[:40] in capsys.readouterr().err
+
+
+def saved(said: str) -> Path:
+    found = re.search(r"(?:saved, without pictures, in|kept in) (\S+)", said)
+    assert found, said
+    return Path(found[1])
+
+
+def test_results_go_to_a_second_place(tmp_path: Path, elsewhere: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The disk fills up while it computes: every write and rename there fails from then on."""
+    target = tmp_path / "disk" / "out"
+    target.parent.mkdir()
+    actions = 12  # what securing the place does
+    with watched(Disk(target.parent, actions, count=10**6)) as disk:
+        assert main([*SHORT, "-o", str(target)]) == 2
+    assert disk.failed
+    said = capsys.readouterr().err
+    assert "No space left on device; nothing was changed" in said
+    assert saved(said).parent == elsewhere and read_results(saved(said)).simulated == 0.05
+    assert (saved(said) / "summary.json").is_file() and not target.exists()
+
+
+def test_a_folder_made_meanwhile_is_left_alone(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    target = tmp_path / "out"
+    original = write_run.write
+
+    def late(*args: object) -> object:
+        target.mkdir()
+        (target / "thesis.txt").write_text("years of work")
+        return original(*args)  # type: ignore[arg-type]
+
+    monkeypatch.setattr("watchsim.commands.run.write", late)
+    assert main([*SHORT, "-o", str(target)]) == 2
+    assert read_results(saved(capsys.readouterr().err)).simulated == 0.05
+    assert [path.name for path in target.iterdir()] == ["thesis.txt"]
+
+
+@pytest.mark.parametrize("home", ["watchsim.analysis.summary.summary", "watchsim.analysis.results.write_events"])
+def test_a_fault_in_what_is_made_of_it_does_not_cost_the_motion(
+    home: str, tmp_path: Path, elsewhere: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(*_: object) -> None:
+        raise ZeroDivisionError("a slip")
+
+    monkeypatch.setattr(home, broken)
+    assert main([*SHORT, "-o", str(tmp_path / "out")]) == 4
+    said = capsys.readouterr().err
+    assert read_results(saved(said)).simulated == 0.05
+    (report,) = elsewhere.glob("watchsim-fault-*.txt")
+    assert str(report) in said and "Traceback" not in said
+    assert "ZeroDivisionError: a slip" in report.read_text() and "watchsim run" in report.read_text()
+
+
+def test_drawings_may_be_gone_at_the_end(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    import shutil
+
+    scene = tmp_path / "scene"
+    shutil.copytree(LEVER, scene)
+    original = Run.to_the_end
+
+    def gone(self: Run, *args: object) -> object:
+        shutil.rmtree(scene)
+        return original(self, *args)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(Run, "to_the_end", gone)
+    assert main(["run", str(scene), "--duration", "0.05 s", "--no-plots", "-o", str(tmp_path / "out")]) == 0
+    assert (tmp_path / "out" / "trajectory.npz").is_file()
+
+
+def test_a_symlinked_results_folder_is_resumed_behind_its_link(tmp_path: Path) -> None:
+    (tmp_path / "other").mkdir()
+    link = tmp_path / "out"
+    assert main([*SHORT, "-o", str(tmp_path / "other" / "there")]) == 0
+    link.symlink_to(tmp_path / "other" / "there")
+    assert main(["run", LEVER, "--resume", str(link), "--duration", "0.1 s", "--no-plots"]) == 0
+    assert link.is_symlink() and read_results(link).simulated == 0.1
+    assert main([*SHORT, "-o", str(link), "--force"]) == 0
+    assert link.is_symlink() and read_results(tmp_path / "other" / "there").simulated == 0.05
+
+
+def test_memory_that_runs_out_is_no_fault(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    original = Run.flush
+
+    def full(self: Run) -> None:
+        if self.saved is None and not hasattr(self, "_failed"):
+            self._failed = True  # type: ignore[attr-defined]
+            raise MemoryError
+        original(self)
+
+    monkeypatch.setattr(Run, "flush", full)
+    assert main(["run", LEVER, "--duration", "0.3 s", "--no-plots", "-o", str(tmp_path / "out")]) == 3
+    assert "no memory left" in capsys.readouterr().err
+    assert read_results(tmp_path / "out").simulated > 0.0
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="pipes of Unix")
+def test_a_closed_pipe_is_silent(tmp_path: Path) -> None:
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    reading, writing = os.pipe()
+    os.close(reading)
+    command = [sys.executable, "-m", "watchsim", *SHORT, "-o", str(tmp_path / "out")]
+    done = subprocess.run(command, env=environment, stdout=writing, stderr=subprocess.PIPE, text=True, check=False)
+    os.close(writing)
+    assert (done.returncode, done.stderr) == (0, "") and (tmp_path / "out" / "summary.json").is_file()
+
+
+def test_picture_files_are_whole_or_as_they_were(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    main([*SHORT, "-o", str(tmp_path / "out")])
+    plot = tmp_path / "plot.png"
+    plot.write_bytes(b"before")
+
+    def half(path: Path, *_: object, **__: object) -> None:
+        Path(path).write_bytes(b"half")
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr("matplotlib.figure.Figure.savefig", lambda self, path, **_: half(path))
+    monkeypatch.setattr("imageio.v3.imwrite", half)
+    for arguments in (
+        ["plot", str(tmp_path / "out"), "-o", str(plot)],
+        ["inspect", f"{LEVER}/wheel.dxf", "--png", str(plot)],
+        ["check", LEVER, "--png", str(plot)],
+    ):
+        assert main(arguments) == 2
+        assert "nothing was changed" in capsys.readouterr().err
+        assert plot.read_bytes() == b"before" and sorted(path.name for path in tmp_path.iterdir()) == [
+            "elsewhere",
+            "out",
+            "plot.png",
+        ]
+
+
+def test_fallback_names_what_fails(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    """Where no second place can be written either, all places are named."""
+
+    def full(*_: object, **__: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(results, "write_trajectory", full)
+    assert main([*SHORT, "-o", str(tmp_path / "out")]) == 2
+    assert capsys.readouterr().err.count("No space left on device") >= 2

@@ -1,0 +1,82 @@
+"""Does machine code that was damaged get compiled again, and is nothing loaded that somebody else could have put there?"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from interpreter import ROOT
+
+from watchsim import machine_code
+
+CODE = """
+import numpy as np
+from watchsim.jit import entry
+@entry
+def twice(x):
+    return 2.0 * x
+print(twice(21.0), end=" ")
+print(twice.stats.cache_hits.total() if hasattr(twice.stats.cache_hits, "total") else sum(twice.stats.cache_hits.values()))
+"""
+
+
+def printed(cache: Path, script: Path, **more: str) -> tuple[str, str]:
+    """Standard output and error of a process that compiles one small function, or finds it."""
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "WATCHSIM_CACHE": str(cache), **more}
+    done = subprocess.run([sys.executable, str(script)], env=environment, capture_output=True, text=True, check=True)
+    return done.stdout.strip(), done.stderr
+
+
+@pytest.fixture
+def script(tmp_path: Path) -> Path:
+    path = tmp_path / "twice.py"
+    path.write_text(CODE)
+    return path
+
+
+@pytest.mark.parametrize("ending", ["nbi", "nbc"])
+@pytest.mark.parametrize("damage", ["empty", "cut", "foreign", "one bit"])
+def test_damaged_files_are_compiled_again(ending: str, damage: str, script: Path, tmp_path: Path) -> None:
+    cache = tmp_path / "cache"
+    assert printed(cache, script) == ("42.0 0", "")
+    assert printed(cache, script) == ("42.0 1", "")
+    (path,) = cache.rglob(f"*.{ending}")
+    whole = path.read_bytes()
+    flipped = whole[:-9] + bytes([whole[-9] ^ 1]) + whole[-8:]
+    path.write_bytes(
+        {"empty": b"", "cut": whole[:200], "foreign": b"cos\nsystem\n(S'false'\ntR." * 9, "one bit": flipped}[damage]
+    )
+    told, said = printed(cache, script)
+    assert told == "42.0 0" and str(path) in said and "WATCHSIM_CACHE" in said and "Traceback" not in said
+    assert printed(cache, script) == ("42.0 1", "")
+
+
+def test_a_full_disk_is_named_and_costs_only_time(script: Path, tmp_path: Path) -> None:
+    full = script.with_name("full.py")
+    limit = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (99, 99))"  # Python ignores the signal
+    full.write_text(f"{limit}\n{CODE}")
+    told, said = printed(tmp_path / "cache", full)
+    assert told == "42.0 0" and str(tmp_path / "cache") in said and "WATCHSIM_CACHE" in said and "File too large" in said
+
+
+@pytest.mark.skipif(not hasattr(os, "getuid"), reason="users of Unix")
+def test_nothing_is_kept_where_others_can_write(tmp_path: Path) -> None:
+    shared = tmp_path / "shared"
+    shared.mkdir()
+    shared.chmod(0o777)
+    assert "where others can write" in machine_code._refusal(shared / "mine" / "kernels", others_may_write=False)
+    shared.chmod(0o1777)
+    assert machine_code._refusal(shared / "mine" / "kernels", others_may_write=False) == ""
+    (shared / "mine").chmod(0o775)
+    assert "where others can write" in machine_code._refusal(shared / "mine" / "kernels", others_may_write=False)
+
+
+def test_without_any_folder_it_still_runs(script: Path, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    (tmp_path / "open").mkdir()
+    (tmp_path / "open").chmod(0o777)
+    told, said = printed(tmp_path / "file" / "cache", script, TMPDIR=str(tmp_path / "open"))
+    assert told == "42.0 0" and "compiled each time" in said and "WATCHSIM_CACHE" in said

@@ -1,0 +1,118 @@
+"""Does every signal stop a command where stopping is safe, with its own status, and with what was simulated on the disk?"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from interpreter import ROOT
+
+from watchsim.analysis.results import read_results
+
+LEVER = ROOT / "profiles" / "bench_lever"
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of Unix")
+
+# A process of the command line in which `moment` is a function of the package before whose call the signal comes.
+CODE = """
+import importlib, os, signal, sys, time
+home, name, number, times, pause = {home!r}, {name!r}, {number}, {times}, {pause}
+module = importlib.import_module(home)
+owner = module
+*path, last = name.split(".")
+for step in path:
+    owner = getattr(owner, step)
+original, seen = getattr(owner, last), []
+def watched(*args, **kwargs):
+    seen.append(None)
+    if len(seen) <= times:
+        os.kill(os.getpid(), number)
+        time.sleep(pause)  # the process is heard while it waits
+    return original(*args, **kwargs)
+setattr(owner, last, watched)
+from watchsim.process import process
+process()
+"""
+
+
+def stopped(arguments: list[str], home: str, name: str, number: int, times: int = 1) -> subprocess.CompletedProcess[str]:
+    """A command that gets the signal as it comes to a function, the first `times` times."""
+    code = CODE.format(home=home, name=name, number=int(number), times=times, pause=1.0)
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    return subprocess.run(
+        [sys.executable, "-c", code, *arguments], env=environment, capture_output=True, text=True, check=False, timeout=600
+    )
+
+
+KEPT = [
+    ("watchsim.simulation.run", "Run._slices"),
+    ("watchsim.simulation.run", "Run.trajectory"),
+    ("watchsim.analysis.summary", "tables"),
+    ("watchsim.analysis.results", "write_events"),
+    ("watchsim.storage.write", "sync_tree"),
+    ("watchsim.storage.write", "sync_name"),
+]
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize(("home", "name"), KEPT)
+def test_what_was_simulated_is_kept(home: str, name: str, number: int, tmp_path: Path) -> None:
+    folder = tmp_path / "out"
+    done = stopped(["run", str(LEVER), "--duration", "0.3 s", "-o", str(folder)], home, name, number)
+    assert done.returncode == 128 + number, done.stderr
+    assert "Traceback" not in done.stderr
+    run = read_results(folder)
+    told = json.loads((folder / "summary.json").read_text())
+    assert told["simulated_s"] == run.simulated and (len(run.t) > 1) == (run.simulated > 0.0)
+    assert (run.simulated < 0.3) == (name == "Run._slices")
+    assert [path.name for path in tmp_path.iterdir()] == ["out"]
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize(
+    ("home", "name"),
+    [("watchsim.cli", "main"), ("watchsim.commands.scenes", "load_scene"), ("watchsim.simulation.run", "Run.warm_up")],
+)
+def test_where_nothing_was_made_it_ends_at_once(home: str, name: str, number: int, tmp_path: Path) -> None:
+    done = stopped(["run", str(LEVER), "--duration", "0.3 s", "-o", str(tmp_path / "out")], home, name, number)
+    assert done.returncode == 128 + number
+    assert done.stderr.strip() == {signal.SIGINT: "Interrupted.", signal.SIGTERM: "Terminated."}[number]
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_second_one_stops_at_once(tmp_path: Path) -> None:
+    """In the middle of writing: what stood there stays, and nothing else does."""
+    folder = tmp_path / "out"
+    arguments = ["run", str(LEVER), "--duration", "0.3 s", "--no-plots", "-o", str(folder)]
+    done = stopped([*arguments], "watchsim.analysis.results", "json_text", signal.SIGINT, times=2)
+    assert done.returncode == 130 and (folder / "summary.json").is_file(), "json_text is called once"
+    before = (folder / "trajectory.npz").read_bytes()
+    done = stopped([*arguments, "--force"], "watchsim.storage.disk", "sync_file", signal.SIGTERM, times=2)
+    assert done.returncode == 143
+    assert (folder / "trajectory.npz").read_bytes() == before
+    assert [path.name for path in tmp_path.iterdir()] == ["out"]
+
+
+def test_a_movie_under_way_is_given_up(tmp_path: Path) -> None:
+    folder = tmp_path / "out"
+    home = ("watchsim.render.stage", "Stage.draw")
+    done = stopped(["run", str(LEVER), "--duration", "0.3 s", "--movie", "-o", str(folder)], *home, signal.SIGINT)
+    assert done.returncode == 130 and not (folder / "movie.mp4").exists()
+    assert (folder / "plots" / "kinematics.png").is_file() and (folder / "summary.json").is_file()
+    done = stopped(["movie", str(folder), "--window", "0.1 s:0.2 s"], *home, signal.SIGTERM)
+    assert done.returncode == 143 and not (folder / "movie.mp4").exists()
+    assert not [path for path in folder.iterdir() if path.name.startswith(".")]
+
+
+def test_what_the_shell_has_switched_off_stays_off(tmp_path: Path) -> None:
+    """`nohup watchsim run ... &`"""
+    code = "import signal; signal.signal(signal.SIGHUP, signal.SIG_IGN); signal.signal(signal.SIGINT, signal.SIG_IGN)\n"
+    code += CODE.format(home="watchsim.analysis.results", name="write_events", number=int(signal.SIGHUP), times=1, pause=0.5)
+    arguments = ["run", str(LEVER), "--duration", "0.1 s", "--no-plots", "-o", str(tmp_path / "out")]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run([sys.executable, "-c", code, *arguments], env=environment, capture_output=True, check=False)
+    assert done.returncode == 0 and (tmp_path / "out" / "summary.json").is_file()

@@ -1,0 +1,47 @@
+"""What if nobody reads the output any more?
+
+`watchsim run ... | head` closes the pipe after ten lines; a terminal may be closed. That is no reason to stop, or to say
+anything: what is printed from then on goes nowhere.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import io
+import os
+import sys
+from typing import Any
+
+GONE = (errno.EPIPE, errno.EIO, errno.EBADF, errno.ESHUTDOWN)
+
+
+class _Patient(io.FileIO):
+    """A stream whose reader may go."""
+
+    def write(self, content: Any) -> int:
+        """All of it, somewhere or nowhere; OSError where a file cannot take it."""
+        try:
+            return super().write(content)
+        except OSError as error:
+            if error.errno not in GONE:
+                raise
+            with contextlib.suppress(OSError):
+                nowhere = os.open(os.devnull, os.O_WRONLY)
+                os.dup2(nowhere, self.fileno())
+                os.close(nowhere)
+            return len(memoryview(content))
+
+
+def open_streams() -> None:
+    """Make stdout and stderr such streams."""
+    for name, number in (("stdout", 1), ("stderr", 2)):
+        old = getattr(sys, name)
+        try:
+            raw = _Patient(number, "w", closefd=False)
+        except OSError:  # closed from the start
+            raw = _Patient(os.devnull, "w")
+        lines = old is not None and (raw.isatty() or name == "stderr")
+        # What is flushed to a full disk must fail where it is printed, not when the interpreter ends.
+        stream = io.TextIOWrapper(io.BufferedWriter(raw), encoding="utf-8", errors="replace", line_buffering=lines)
+        setattr(sys, name, stream)

@@ -1,0 +1,136 @@
+"""What happens at Ctrl-C, at SIGTERM, and when the terminal is closed?
+
+Nothing in the middle of anything: an exception thrown between any two instructions would be lost in a destructor, or leave
+half of something. A thread hears the signal. Where nothing is to be kept (loading, compiling, drawing) it ends the process at
+once; where something is, it only notes the wish, and whoever keeps looks at `requested` where stopping is safe. A second signal
+ends the process in any case.
+
+Used by the command line only; in other people's processes signals are theirs.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from typing import NoReturn, TypeVar
+
+SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP")
+WORDS = {"SIGINT": "Interrupted.", "SIGTERM": "Terminated.", "SIGHUP": "Hung up."}
+
+Hook = TypeVar("Hook", bound=Callable[[], None])
+
+
+class _Listener:
+    """What has come so far, and whether anything is to be kept."""
+
+    def __init__(self) -> None:
+        self.number = 0  # of the signal that came
+        self.holds = 0
+        self.sticky = False
+        self.installed = False
+        self.lock = threading.Lock()
+        self.hooks: list[Callable[[], None]] = []
+
+
+_listener = _Listener()
+
+
+def install() -> None:
+    """Hear the signals from now on, but for those that whoever started the process has switched off (nohup, &)."""
+    read, wakeup = _ends()
+    _listener.installed = True
+    signal.set_wakeup_fd(wakeup, warn_on_full_buffer=False)
+    for name in SIGNALS:
+        number = getattr(signal, name, None)
+        if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, _leave_it_to_the_thread)
+    threading.Thread(target=_listen, args=(read,), daemon=True, name="signals").start()
+
+
+def _ends() -> tuple[Callable[[], bytes], int]:
+    """What waits for the numbers of signals, and the number of the file that Python is to write them to."""
+    if os.name != "nt":
+        reading, writing = os.pipe()
+        os.set_blocking(writing, False)
+        return lambda: os.read(reading, 64), writing
+    import socket
+
+    receiver, sender = socket.socketpair()
+    sender.setblocking(False)
+    number = sender.detach()
+    return lambda: receiver.recv(64), number
+
+
+def installed() -> bool:
+    """True in a process of the command line."""
+    return _listener.installed
+
+
+def requested() -> int:
+    """The number of the signal that asks this process to stop; 0 for none."""
+    return _listener.number
+
+
+def status() -> int:
+    """The exit status that the signal that came asks for: 130 after Ctrl-C, 143 after SIGTERM."""
+    return 128 + (_listener.number or signal.SIGINT)
+
+
+@contextlib.contextmanager
+def held() -> Iterator[Callable[[], int]]:
+    """Within, something is being made that is to be kept: the first signal is only noted; the function says whether it came."""
+    with _listener.lock:
+        _listener.holds += 1
+    try:
+        yield requested
+    finally:
+        if not _listener.sticky:
+            with _listener.lock:
+                _listener.holds -= 1
+
+
+@contextlib.contextmanager
+def keeping() -> Iterator[None]:
+    """Within, what was once held stays held to the end: it has still to be written."""
+    before, _listener.sticky = (_listener.holds, _listener.sticky), True
+    try:
+        yield
+    finally:
+        with _listener.lock:
+            _listener.holds, _listener.sticky = before
+
+
+def before_leaving(hook: Hook) -> Hook:
+    """Have `hook` called before the process is ended at once."""
+    _listener.hooks.append(hook)
+    return hook
+
+
+def _leave_it_to_the_thread(*_: object) -> None:
+    """Python writes the signal's number to the socket only where there is a handler."""
+
+
+def _listen(read: Callable[[], bytes]) -> None:
+    while True:
+        for number in read():
+            if number in {getattr(signal, name, None) for name in SIGNALS}:
+                _hear(number)
+
+
+def _hear(number: int) -> None:
+    with _listener.lock:
+        if _listener.holds == 0 or _listener.number:
+            _leave(number)
+        _listener.number = number
+
+
+def _leave(number: int) -> NoReturn:
+    with contextlib.suppress(OSError):
+        os.write(2, f"\n{WORDS[signal.Signals(number).name]}\n".encode())
+    for hook in _listener.hooks:
+        with contextlib.suppress(Exception):
+            hook()
+    os._exit(128 + number)
