@@ -18,6 +18,7 @@ from watchsim.contact.loose import LooseContacts
 from watchsim.contact.regions import Regions
 from watchsim.mechanism.chords import Chords, chords
 from watchsim.mechanism.model import Model
+from watchsim.mechanism.named_rows import named_rows
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -33,10 +34,12 @@ class PairSearch:
         self._motion, self._clearance = CellMotion(model.bodies, pair), float(pair.clearance)
         self._regions = Regions(model, p)
         ids = model.near[pair.near_start : pair.near_stop]
-        contacts, bodies = model.contacts[ids], model.primitives.body
-        a_first = bodies[contacts.a] == pair.a
-        on_a, on_b = np.where(a_first, contacts.a, contacts.b), np.where(a_first, contacts.b, contacts.a)
-        loose_a, loose_b = np.isin(on_a, loose), np.isin(on_b, loose)
+        circle, met = model.contacts.a[ids], model.contacts.b[ids]
+        a_first = (model.primitives.body == pair.a)[circle]
+        on_a, on_b = np.where(a_first, circle, met), np.where(a_first, met, circle)
+        is_loose = np.zeros(len(model.primitives), bool)
+        is_loose[loose] = True
+        loose_a, loose_b = is_loose[on_a], is_loose[on_b]
         local = ids - pair.start
         self._always = local[loose_a & loose_b]
         self._loose = [
@@ -47,7 +50,7 @@ class PairSearch:
         alike = ~(loose_a | loose_b)
         sides = [(int(pair.a), on_a[alike]), (int(pair.b), on_b[alike])]
         # The side with fewer primitives is moved, the other one stays in the tree.
-        sides.sort(key=lambda side: len(np.unique(side[1])))
+        sides.sort(key=lambda side: len(named_rows(side[1], len(model.primitives))[0]))
         self._set_shapes(model, sides, local[alike])
 
     def _set_shapes(self, model: Model, sides: list[tuple[int, Integers]], local: Integers) -> None:
@@ -55,8 +58,8 @@ class PairSearch:
         import shapely
 
         self._bodies = [body for body, _ in sides]
-        movers, mover_row = np.unique(sides[0][1], return_inverse=True)
-        others, other_row = np.unique(sides[1][1], return_inverse=True)
+        movers, mover_row = named_rows(sides[0][1], len(model.primitives))
+        others, other_row = named_rows(sides[1][1], len(model.primitives))
         # Several contacts share a pair of primitives where several groups name it.
         wanted = mover_row * len(others) + other_row
         order = np.argsort(wanted, kind="stable")
