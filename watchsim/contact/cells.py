@@ -107,8 +107,12 @@ class PairCells:
     def __init__(self, model: Model, p: int) -> None:
         self.model, self.p, self.pair = model, p, model.pairs[p]
         self.axes = [
-            _Axis(*(self.pair[f"{name}{i}"] for name in ("c", "on", "size", "wrap", "fold"))) for i in range(self.pair.axes)
+            _Axis(*(self.pair[f"{name}{i}"].item() for name in ("c", "on", "size", "wrap", "fold")))
+            for i in range(self.pair.axes)
         ]
+        reach = AROUND[len(self.axes)]
+        self._steps = np.array(list(itertools.product(range(-reach, reach + 1), repeat=len(self.axes))))
+        self._parts = np.array([axis.part for axis in self.axes])
         self.start = int(self.pair.start)
         near = model.near[self.pair.near_start : self.pair.near_stop]
         body = [int(model.coordinates[axis.coordinate].body) for axis in self.axes]
@@ -125,16 +129,17 @@ class PairCells:
 
     def known_around(self, q: Array) -> list[Cell]:
         """The cell of q and its neighbours, of each the alike one in the first part of a turn; all of them known now."""
-        steps = itertools.product(range(-AROUND[len(self.axes)], AROUND[len(self.axes)] + 1), repeat=len(self.axes))
-        here = [axis.cell_of(q) for axis in self.axes]
-        block = np.array(here) + np.array(list(steps))
-        parts = np.array([axis.part for axis in self.axes])
+        parts = self._parts
+        block = np.array([axis.cell_of(q) for axis in self.axes]) + self._steps
         block = block[((np.abs(block) < REACH) | (parts > 0)).all(axis=1)]
         turns = np.where(parts > 0, block // np.maximum(parts, 1), 0)
         base = block - turns * parts
         # Cells of one part lie side by side: they are asked about together.
-        for turn in np.unique(turns, axis=0):
-            self.known.ask(base[(turns == turn).all(axis=1)])
+        if (turns == turns[:1]).all():
+            self.known.ask(base)
+        else:
+            for turn in np.unique(turns, axis=0):
+                self.known.ask(base[(turns == turn).all(axis=1)])
         return list(dict.fromkeys(map(tuple, base.tolist())))
 
     def here(self, q: Array) -> Integers:

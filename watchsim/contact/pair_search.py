@@ -65,6 +65,7 @@ class PairSearch:
         order = np.argsort(wanted, kind="stable")
         self._others, self._wanted, self._local = len(others), wanted[order], local[order]
         self._drawn = chords(model.primitives[movers], 0.5 * self._clearance)
+        self._owner = self._drawn.owner
         still = chords(model.primitives[others], 0.5 * self._clearance)
         self._still_sag = still.sag
         self._reach = _largest(np.hypot(*self._drawn.points.T), self._drawn.first) + self._drawn.sag
@@ -127,7 +128,11 @@ class PairSearch:
 
         `at`: cell coordinates (places, axes); `room`: how far each may change.
         """
-        local, first = self._drawn.points[np.isin(self._drawn.owner, used)], _firsts(self._drawn, used)
+        local, first = self._drawn.points, self._drawn.first
+        if len(used) < len(self._reach):
+            is_used = np.zeros(len(self._reach), bool)
+            is_used[used] = True
+            local, first = local[is_used[self._owner]], _firsts(self._drawn, used)
         (ax, ay, turn_a), (bx, by, turn_b) = (self._motion.pose(body, at) for body in self._bodies)
         world = turned(local[None], turn_a) + np.stack([ax - bx, ay - by], axis=1)[:, None, :]
         points = turned(world, -turn_b)

@@ -41,6 +41,8 @@ class Regions:
         keep = np.zeros(len(place), bool)
         for order in (False, True):
             rows = np.flatnonzero(self._is_first[self._circle[contact]] == order)
+            if not len(rows):
+                continue
             bodies = self._bodies if order else self._bodies[::-1]
             keep[rows] = self._possible(bodies, place[rows], contact[rows], at, room)
         return keep
