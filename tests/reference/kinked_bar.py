@@ -183,9 +183,10 @@ def _past_concave(bar: Bar, after: Vector, span: float) -> Vector | None:
         return None  # the level contact is not lifted, so it stays
     try:
         spent, x = _bounce(bar, ramp, after, span)
-        return _ride(ramp, x, span - spent, None)[1] if spent < span else x
+        end = _ride(ramp, x, span - spent, None)[1] if spent < span else x
     except BeyondClosedFormError:
         return None
+    return end if end[1] > 0.0 else None  # the follower has fallen back on the level
 
 
 def _past_convex(bar: Bar, x: Vector, span: float) -> Vector:
