@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from reference.gear_friction import Train
+
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line
 from watchsim.mechanism.body import Body
@@ -122,3 +124,10 @@ def contact_ratio(cut: float = 0.0) -> float:
     working = math.acos((a.base + b.base) / DISTANCE)
     path = sum(math.sqrt(g.tip**2 - g.base**2) for g in (a, b)) - DISTANCE * math.sin(working)
     return path / (math.pi * MODULE * math.cos(PRESSURE))
+
+
+def train(friction: float, cut: float = 0.0) -> Train:
+    """The same pair with exact involutes, for the reference."""
+    pinion, wheel = Gear(TEETH[0], 0.4, 1, cut), Gear(TEETH[1], -0.4, 1, cut)
+    pitch = math.pi * MODULE * math.cos(PRESSURE)
+    return Train((wheel.base, pinion.base), (wheel.tip, pinion.tip), DISTANCE, pitch, (30e-10, 0.5e-10), DRIVE, LOAD, friction)
