@@ -2,8 +2,8 @@
 
     python scripts/measure_ordinary_mechanisms.py [--quick] [--only PART ...] [--page FILE]
 
-Parts: kinks, orientations, gears, cams, pin_lever. With --only the other parts of the page stay as they are. The exit status is 1 where
-a run was wrong.
+Parts: kinks, orientations, gears, cams, pin_lever. With --only the other parts of the page stay as they are.
+The exit status is 1 where a run was wrong.
 """
 
 from __future__ import annotations
@@ -16,13 +16,17 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT), str(ROOT / "scripts")]
 
-from ordinary import cams, gears, kinks, orientations, pin_lever  # noqa: E402
+import ordinary_cams as cams  # noqa: E402
+import ordinary_gears as gears  # noqa: E402
+import ordinary_kinks as kinks  # noqa: E402
+import ordinary_orientations as orientations  # noqa: E402
+import ordinary_pin_lever as pin_lever  # noqa: E402
 
 PAGE = ROOT / "docs" / "ordinary-mechanisms.md"
 HEAD = """# Ordinary mechanisms
 
-What no lever escapement shows: kinks between edges from 1e-10 rad to 90°, mechanisms in any orientation, curves of many arcs. Made by
-`scripts/measure_ordinary_mechanisms.py`, which the nightly script runs; the tests in `tests/ordinary` hold a part of it.
+What no lever escapement shows: kinks between edges from 1e-10 rad to 90°, mechanisms in any orientation, curves of many arcs.
+Made by `scripts/measure_ordinary_mechanisms.py`, which the nightly script runs; the tests in `tests/ordinary` hold a part.
 """
 PARTS: dict[str, tuple[str, Callable[[bool], tuple[str, int]]]] = {
     "kinks": ("Kinks", kinks.section),

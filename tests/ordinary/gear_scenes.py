@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-
 from reference.gear_friction import Train
 
 from watchsim.geometry.loop import Loop

@@ -51,7 +51,15 @@ def kinked_scene(bar: Bar, duration: float, tolerance: float) -> Scene:
     return Scene(
         "kinked bar",
         (
-            Body("bar", "slide", (bar.ahead + bar.arm, 0.0), axis=(1.0, 0.0), velocity=(bar.speed,), mass=bar.mass, loops=(outline,)),
+            Body(
+                "bar",
+                "slide",
+                (bar.ahead + bar.arm, 0.0),
+                axis=(1.0, 0.0),
+                velocity=(bar.speed,),
+                mass=bar.mass,
+                loops=(outline,),
+            ),
             Body("follower", "pivot", (0.0, bar.radius), inertia=bar.inertia, loops=(roller,)),
         ),
         torques=(Torque("follower", bar.torque),),
@@ -81,7 +89,7 @@ def allowed(bar: Bar, tolerance: float) -> float:
 
 @dataclass(frozen=True)
 class Off:
-    """How far a run is off: speeds over the bar's, places over the bar's way beyond the kink, energy over the kinetic energy."""
+    """How far a run is off: speeds over the bar's, places over its way past the kink, energy over the kinetic energy."""
 
     speed: float
     place: float

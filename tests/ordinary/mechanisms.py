@@ -1,4 +1,4 @@
-"""Which twenty small mechanisms touch in ways that depend on nothing but the laws of contact?
+"""Which small mechanisms touch in ways that depend on nothing but the laws of contact?
 
 Lines of centres, kinks, equal masses, faces flat on flat, bodies in a row, axes that are parallel: whatever happens
 there must not depend on how the mechanism lies in the plane.
@@ -40,6 +40,10 @@ def fine_kink() -> Scene:
     return kinked_scene(bar_for(1e-4, False, 0.1, 0.2), 0.12, TOLERANCE)
 
 
+def coarse_kink() -> Scene:
+    return kinked_scene(bar_for(0.05, False, 0.1, 0.0), 0.15, TOLERANCE)
+
+
 def convex_kink() -> Scene:
     return kinked_scene(bar_for(0.1, True, 0.1, 0.0), 0.05, TOLERANCE)
 
@@ -47,13 +51,27 @@ def convex_kink() -> Scene:
 def _pendulum(name: str, x: float, angle: float) -> Body:
     mass, length, bob = 0.1, 0.3, 0.02
     inertia = mass * (length**2 + 0.5 * bob**2)
-    return Body(name, position=(x, 0.0), angle=angle, mass=mass, inertia=inertia, centre_of_mass=(0.0, -length), loops=(circle(bob, (0.0, -length)),))
+    return Body(
+        name,
+        position=(x, 0.0),
+        angle=angle,
+        mass=mass,
+        inertia=inertia,
+        centre_of_mass=(0.0, -length),
+        loops=(circle(bob, (0.0, -length)),),
+    )
 
 
 def pendulums(friction: float, restitution: float, duration: float) -> Scene:
     """Equal ones that meet where both hang straight down."""
     bodies = (_pendulum("a", 0.0, -1.0), _pendulum("b", 0.04, 0.0))
-    return Scene("pendulums", bodies, contacts=touching("a", "b", friction=friction, restitution=restitution), gravity=G, duration=duration)
+    return Scene(
+        "pendulums",
+        bodies,
+        contacts=touching("a", "b", friction=friction, restitution=restitution),
+        gravity=G,
+        duration=duration,
+    )
 
 
 def cradle() -> Scene:
@@ -79,7 +97,14 @@ def geneva() -> Scene:
         points += [(x * math.cos(a) - y * math.sin(a), x * math.sin(a) + y * math.cos(a)) for x, y in quarter]
     wheel = polygon(*points[::-1])
     bodies = (
-        Body("driver", position=(c, 0.0), angle=math.radians(131.0), velocity=(6.0,), inertia=1e-2, loops=(circle(1.5e-3, (r, 0.0)),)),
+        Body(
+            "driver",
+            position=(c, 0.0),
+            angle=math.radians(131.0),
+            velocity=(6.0,),
+            inertia=1e-2,
+            loops=(circle(1.5e-3, (r, 0.0)),),
+        ),
         Body("wheel", angle=math.radians(45.0), inertia=2e-7, loops=(wheel,)),
     )
     contacts = touching("driver", "wheel", friction=0.1)
@@ -99,7 +124,12 @@ def ratchet() -> Scene:
     )
     contacts = touching("wheel", "click", friction=0.15, restitution=0.2)
     return Scene(
-        "ratchet", bodies, springs=(Spring("click", 1e-5, 0.8),), torques=(Torque("wheel", -2e-5),), contacts=contacts, duration=0.04
+        "ratchet",
+        bodies,
+        springs=(Spring("click", 1e-5, 0.8),),
+        torques=(Torque("wheel", -2e-5),),
+        contacts=contacts,
+        duration=0.04,
     )
 
 
@@ -135,7 +165,15 @@ def cam() -> Scene:
     height = 1.5e-3
     bodies = (
         Body("cam", angle=0.0, inertia=2e-8, velocity=(20.0,), loops=(round_,)),
-        Body("follower", "slide", (0.0, height), axis=(0.0, 1.0), velocity=(8e-3,), mass=1e-4, loops=(box(4e-3, 0.6e-3, (0.0, 0.3e-3)),)),
+        Body(
+            "follower",
+            "slide",
+            (0.0, height),
+            axis=(0.0, 1.0),
+            velocity=(8e-3,),
+            mass=1e-4,
+            loops=(box(4e-3, 0.6e-3, (0.0, 0.3e-3)),),
+        ),
     )
     contacts = touching("cam", "follower", friction=0.1, restitution=0.3)
     springs = (Spring("follower", 5.0, -2e-3),)
@@ -143,7 +181,7 @@ def cam() -> Scene:
 
 
 def tilted_bars() -> Scene:
-    """Two bars on one axis meet on tilted faces: the directions of normal and friction force are parallel in the coordinates."""
+    """Two bars on one axis meet on tilted faces: in the coordinates normal and friction force are parallel."""
     left = polygon((-5e-3, -2e-3), (0.0, -2e-3), (2e-3, 2e-3), (-5e-3, 2e-3))
     right = polygon((0.0, -2e-3), (6e-3, -2e-3), (6e-3, 2e-3), (2e-3, 2e-3))
     bodies = (
@@ -165,11 +203,37 @@ def parallel_discs() -> Scene:
 def row() -> Scene:
     """Three equal discs in a row, restitution 0: the first pushes the second on the third."""
     bodies = tuple(
-        Body(f"d{i}", "free", (11e-3 * i, 0.0), velocity=(0.4 if i == 0 else 0.0, 0.0, 0.0), mass=0.01, inertia=1.25e-7, loops=(circle(5e-3),))
+        Body(
+            f"d{i}",
+            "free",
+            (11e-3 * i, 0.0),
+            velocity=(0.4 if i == 0 else 0.0, 0.0, 0.0),
+            mass=0.01,
+            inertia=1.25e-7,
+            loops=(circle(5e-3),),
+        )
         for i in range(3)
     )
     contacts = touching("d0", "d1", friction=0.2) + touching("d1", "d2", friction=0.2)
     return Scene("row", bodies, contacts=contacts, duration=0.02)
+
+
+def head_on() -> Scene:
+    """Two discs meet head-on, restitution 0: they travel on together and touch without force."""
+    masses = (0.0942, 0.0107)
+    bodies = tuple(
+        Body(
+            f"d{i}",
+            "free",
+            (15e-3 * i, 0.0),
+            velocity=(0.9 - 1.8 * i, 0.0, 0.0),
+            mass=m,
+            inertia=1.25e-5 * m,
+            loops=(circle(5e-3),),
+        )
+        for i, m in enumerate(masses)
+    )
+    return Scene("head-on", bodies, contacts=touching("d0", "d1"), duration=0.02)
 
 
 def yoke() -> Scene:
@@ -198,7 +262,9 @@ def sliding_block() -> Scene:
     mass, angle = 5e-3, 0.5
     block = Body("block", "free", (0.0, 5e-3), mass=mass, inertia=mass * 500e-6 / 12.0, loops=(box(20e-3, 10e-3),))
     gravity = (9.81 * math.sin(angle), -9.81 * math.cos(angle))
-    return Scene("sliding block", (ground(0.5), block), contacts=touching("block", "ground", friction=0.3), gravity=gravity, duration=0.2)
+    return Scene(
+        "sliding block", (ground(0.5), block), contacts=touching("block", "ground", friction=0.3), gravity=gravity, duration=0.2
+    )
 
 
 def groove() -> Scene:
@@ -217,6 +283,7 @@ def lever_escapement() -> Scene:
 MECHANISMS: dict[str, Callable[[], Scene]] = {
     "blade past the line of centres": blade,
     "follower, concave kink of 1e-4": fine_kink,
+    "follower, concave kink of 0.05": coarse_kink,
     "follower, convex kink of 0.1": convex_kink,
     "equal pendulums, plastic": lambda: pendulums(0.0, 0.0, 2.0),
     "equal pendulums, friction": lambda: pendulums(0.3, 0.5, 0.8),
@@ -229,6 +296,7 @@ MECHANISMS: dict[str, Callable[[], Scene]] = {
     "bars with tilted faces": tilted_bars,
     "discs on parallel slides": parallel_discs,
     "three discs in a row": row,
+    "two discs head-on, plastic": head_on,
     "pin in a slot": yoke,
     "lever on banking pins": banked_lever,
     "block flat on a slope": sliding_block,

@@ -60,8 +60,8 @@ def seen(scene: Scene, world: float, drawn: tuple[float, ...]) -> Seen:
     """The run of the scene so posed, seen from the scene's own frame."""
     turned = posed(scene, world, drawn)
     run = simulate(turned)
-    moved, starts = [], {}
-    for body, given, angle in zip(scene.bodies, turned.bodies, drawn, strict=True):
+    moved = []
+    for body, given in zip(scene.bodies, turned.bodies, strict=True):
         if body.motion == "fixed":
             continue
         q = np.asarray(run.end_q[run.slices[body.name]], dtype=float)
@@ -70,13 +70,12 @@ def seen(scene: Scene, world: float, drawn: tuple[float, ...]) -> Seen:
             moved += [x - body.position[0], y - body.position[1], q[2] - given.angle]
         elif body.motion == "pivot":
             moved.append(q[0] - given.angle)
-            starts[run.slices[body.name].start] = given.angle
         else:
             moved.append(q[0])
     turns = run.events[run.events["kind"] == EventKind.TURN]["value"]
-    swing = [spring for spring in turned.springs]
-    if swing and turned.body(swing[0].body).motion == "pivot":
-        turns = turns - turned.body(swing[0].body).angle
+    if len(turns):
+        swinging = turned.body(turned.springs[0].body)
+        turns = turns - (swinging.angle if swinging.motion == "pivot" else 0.0)
     bad = "" if run.stop == Stop.DURATION else run.stop.name
     if abs(run.energy["residual_relative"]) > 1e-6:
         bad += f" residual {run.energy['residual_relative']:.1e}"

@@ -1,8 +1,8 @@
 """How fast does an involute wheel turn a pinion against a viscous load, with friction between the flanks?
 
 One pair of teeth in contact: the force acts along the line of action, friction across it, with the distances from the base
-circles' tangent points as lever arms; before the pitch point friction helps the wheel, behind it it hinders. With two pairs the
-share of each is not determined (two rigid flanks on two rigid flanks): the mean speed lies between those of the luckiest and the unluckiest share.
+circles' tangent points as lever arms; before the pitch point friction helps the wheel, behind it hinders. With two pairs the
+share of each is not determined (rigid flanks on rigid flanks): the mean speed lies between those of the two extreme shares.
 Nothing of the package is used.
 """
 

@@ -1,7 +1,7 @@
 """How do a sliding bar with a kink and a round follower on it move, by the laws of contact alone?
 
 The bar slides along x, the follower swings about a pivot to its left: two coordinates, (s, theta). The bar's top is level up to
-the kink, then rises (concave) or falls (convex) by its angle. At a concave kink one contact is hit while the other leaves, so the
+the kink, rises (concave) or falls (convex) by its angle. At a concave kink one contact is hit while the other leaves, so the
 impact is that of a single contact, in closed form; rebounds are flights on parabolas, and while the follower rides on a line or
 on the corner, one equation holds for the contact force. Nothing of the package is used.
 """
@@ -104,7 +104,14 @@ def _ride(surface: _Surface, x: Vector, span: float, until: Any) -> tuple[float,
     if until is not None and until(x) <= 0.0:
         return 0.0, x
     made = solve_ivp(
-        lambda _, y: _rates(surface, y), (0.0, span), x, method="DOP853", rtol=1e-12, atol=1e-15, dense_output=True, max_step=0.02
+        lambda _, y: _rates(surface, y),
+        (0.0, span),
+        x,
+        method="DOP853",
+        rtol=1e-12,
+        atol=1e-15,
+        dense_output=True,
+        max_step=0.02,
     )
     if until is None or until(made.y[:, -1]) > 0.0:
         return span, made.y[:, -1]
@@ -155,7 +162,9 @@ def _bounce(bar: Bar, surface: _Surface, x: Vector, span: float) -> tuple[float,
         rate, closing = float(w_n @ x[2:]), -(w_n[1] * pull + bend)
         time = 2.0 * max(rate, 0.0) / closing if closing > 0.0 else span
         if time < SHORT:
-            return spent, x if rate <= 0.0 else single_impact(Bar(**{**vars(bar), "restitution": 0.0}), surface, _against(x, w_n))
+            return spent, x if rate <= 0.0 else single_impact(
+                Bar(**{**vars(bar), "restitution": 0.0}), surface, _against(x, w_n)
+            )
         start = x
 
         def flown(t: float, start: Vector = start) -> Vector:

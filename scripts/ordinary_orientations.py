@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests"), str(ROOT / "tests" / "ordinary")]
 
 from mechanisms import MECHANISMS, TOLERANCE, mechanism  # noqa: E402
@@ -15,14 +15,16 @@ from orientations import apart, random_pose, seen  # noqa: E402
 
 SEED = 11
 POSES = 1000
+DEAR, FEW = ("gears, two arcs a flank", "Swiss lever"), 100  # a run of these takes ten times as long
 LIMIT = 1e-9
-TEXT = """Each of {count} mechanisms in {poses} poses (seed {seed}): the world is turned by a random angle, with gravity and axes, and the
-outlines of each body are turned within its frame by another one. Compared with the mechanism as it was written: all coordinates at the end and all
-turning points of what swings on a spring, since the start, over the largest of them; tolerance {tolerance:g}. Wrong is a difference
-above {limit:g}, a missing turning point, an early end or an energy residual above 1e-6.
+TEXT = """{count} mechanisms, each in random poses (seed {seed}): the world is turned by a random angle, with gravity and axes, and
+the outlines of each body are turned within its frame by another one. Compared with the mechanism as it was written: all
+coordinates at the end and all turning points of what swings on a spring, since the start, over the largest of them;
+tolerance {tolerance:g}. Wrong is a difference above {limit:g}, a missing turning point, an early end, or an energy
+residual above 1e-6.
 
-| mechanism | impacts | turning points | largest difference | wrong of {poses} |
-|---|---:|---:|---:|---:|
+| mechanism | impacts | turning points | poses | largest difference | wrong |
+|---|---:|---:|---:|---:|---:|
 """
 
 
@@ -30,11 +32,11 @@ def section(quick: bool) -> tuple[str, int]:
     """The section of the page and how many runs were wrong."""
     poses, lines, total = (20 if quick else POSES), [], 0
     for name in MECHANISMS:
-        line, wrong = compare(name, poses)
+        line, wrong = compare(name, min(poses, FEW) if name in DEAR else poses)
         lines.append(line)
         total += wrong
         print(line, flush=True)
-    return TEXT.format(count=len(MECHANISMS), poses=poses, seed=SEED, tolerance=TOLERANCE, limit=LIMIT) + "\n".join(lines), total
+    return TEXT.format(count=len(MECHANISMS), seed=SEED, tolerance=TOLERANCE, limit=LIMIT) + "\n".join(lines), total
 
 
 def compare(name: str, poses: int) -> tuple[str, int]:
@@ -50,4 +52,4 @@ def compare(name: str, poses: int) -> tuple[str, int]:
         if off > LIMIT or found.bad:
             wrong += 1
             print("   wrong:", name, pose, off, found.bad, flush=True)
-    return f"| {name} | {truth.impacts} | {len(truth.turns)} | {worst:.1e} | {wrong} |", wrong
+    return f"| {name} | {truth.impacts} | {len(truth.turns)} | {poses} | {worst:.1e} | {wrong} |", wrong

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests"), str(ROOT / "tests" / "ordinary")]
 
 from gear_scenes import through  # noqa: E402
@@ -23,15 +23,18 @@ from watchsim.mechanism.scene import Scene  # noqa: E402
 from watchsim.simulation.simulate import simulate  # noqa: E402
 from watchsim.simulation.trajectory import EventKind  # noqa: E402
 
-SHARED = [place for place in (ROOT.parent / "shared", ROOT.parents[1] / "shared") if (place / "drawings" / "pin_lever").exists()]
+SHARED = [
+    place for place in (ROOT.parent / "shared", ROOT.parents[1] / "shared") if (place / "drawings" / "pin_lever").exists()
+]
 ASSEMBLY = "siconos_pin_lever_assembly.dxf"
 PIN = "BALANCE_z-1.10_IMPULSE"
 WHEEL, LEVER = np.array([4.697017, -10.646001]), np.array([7.08439152, -7.80542761])  # mm, as drawn
 OFFSETS = (0.03, 0.06, 0.09)  # mm
 COUNTS = (20, 50, 100, 150, 200, 400)
 DURATION = 3.0
-TEXT = """The real lever of `tests/pin_lever` with its wheel moved away by three distances and turned by 1° before the start, so that nothing overlaps. The impulse pin's
-two splines are drawn as N arcs through three points each, or as N chords. Amplitudes in degrees, mean of the last two half swings of 3 s.
+TEXT = """The real lever of `tests/pin_lever` with its wheel moved away by three distances and turned by 1° before the start, so
+that nothing overlaps. The impulse pin's two splines are drawn as N arcs through three points each, or as N chords.
+Amplitudes in degrees, mean of the last two half swings of 3 s.
 
 | pin drawn as | {heads} | ended |
 |---|{rules}---|
@@ -47,7 +50,9 @@ def section(quick: bool) -> tuple[str, int]:
         runs = [_amplitude(offset, count, chords) for offset in OFFSETS]
         ended = sorted({stop for _, stop in runs})
         wrong += ended != ["DURATION"]
-        lines.append(f"| {count} {'chords' if chords else 'arcs'} | {' | '.join(f'{a:.4f}' for a, _ in runs)} | {', '.join(ended)} |")
+        lines.append(
+            f"| {count} {'chords' if chords else 'arcs'} | {' | '.join(f'{a:.4f}' for a, _ in runs)} | {', '.join(ended)} |"
+        )
         print(lines[-1], flush=True)
     heads = " | ".join(f"wheel away by {x:g} mm" for x in OFFSETS)
     return TEXT.format(heads=heads, rules="---:|" * len(OFFSETS)) + "\n".join(lines), wrong
@@ -68,7 +73,8 @@ def _scene(offset: float, count: int, chords: bool) -> Scene:
         scene = load(path)
     away = (WHEEL - offset * (LEVER - WHEEL) / np.hypot(*(LEVER - WHEEL))) * 1e-3
     bodies = []
-    for body in scene.bodies:
+    for given in scene.bodies:
+        body = given
         if body.name == "wheel":
             body = dataclasses.replace(body, position=(float(away[0]), float(away[1])))
         elif body.name == "balance":

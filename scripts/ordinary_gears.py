@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests"), str(ROOT / "tests" / "ordinary")]
 
 from gear_scenes import TEETH, contact_ratio, gear_scene, train  # noqa: E402
@@ -21,17 +21,23 @@ TOLERANCES = (1e-7, 1e-9, 1e-11)
 SHORT = 0.215  # modules off both tips: one pair of teeth at a time
 DURATION, SETTLED = 0.3, 0.15  # s
 SAME = 1e-4
-TEXT = """Involute wheel of 30 teeth (module 0.2 mm) that drives a pinion of 8 against a viscous load; each flank N arcs through three points of the involute. Mean speed of
-the wheel in rad/s over whole teeth between {settled:g} and {duration:g} s, when one tooth is like the next to 2e-9. The truth is `tests/reference/gear_friction.py`: exact
-involutes, one equation of motion, scipy.
+TEXT = """An involute wheel of 30 teeth (module 0.2 mm) drives a pinion of 8 against a viscous load; each flank is N arcs
+through three points of the involute. Mean speed of the wheel in rad/s over whole teeth between {settled:g} and
+{duration:g} s, when one tooth is like the next to 2e-9. *Apart*: between the tolerances, relative; wrong above 1e-4.
+The truth is `tests/reference/gear_friction.py`: exact involutes, one equation of motion, scipy.
 
-Without friction the truth is {free:.4f} rad/s. With friction 0.1 and teeth as usual (contact ratio {usual:.2f}) two pairs of teeth share the load for part of the way, and rigid
-bodies leave open how: their forces are redundant, the friction's lever arms differ, and any speed from {slow:.3f} to {fast:.3f} (the whole load always on the pair that costs most, or least)
-obeys all laws. Which pair carries is decided by nanometres of the profiles: by the arcs, not by the solver. So for a number of arcs the speed is a definite one, and Moreau's
-stepping finds the same, but with their number it need not converge, and does not. With the tips cut by {short:g} modules (contact ratio {one:.5f}) one pair
-carries at a time, the truth is unique ({unique:.4f}), and the speed converges to it.
+Without friction the truth is {free:.4f} rad/s, and the speed converges to it. With friction 0.1 and teeth as usual
+(contact ratio {usual:.2f}) two pairs of teeth share the load for part of the way, and rigid bodies leave open how:
+the forces are redundant, the lever arms of friction differ, and any speed from {slow:.3f} to {fast:.3f} (the load on
+the pair that costs most, or least) obeys all laws. Which pair carries is decided by the arcs' deviations from the
+involute, nanometres, which take turns from arc to arc. So each drawing has its own speed, within these limits, but
+with N it need not converge, and does not. As soon as the deviations are less than the gap at which contacts count as
+closed (a nanometre at tolerance 1e-7), the speed depends on the tolerance as well, within the same limits. With the
+tips cut by {short:g} modules (contact ratio {one:.5f}) one pair carries at a time, the truth is unique
+({unique:.4f}), and the speed converges to it. Moreau's stepping (1 µs, over 0.1 s) was compared once for usual teeth:
+45.894 and 45.962 for N = 20 and 30, where events gave 45.895 and 45.961.
 
-| teeth | friction | arcs a flank | {heads} | apart by, relative | truth | off by, relative | impacts a tooth | gap evaluations a tooth and arc |
+| teeth | friction | N | {heads} | apart | truth | off | impacts a tooth | gap evaluations a tooth and arc |
 |---|---:|---:|{rules}---:|---:|---:|---:|---:|
 """
 

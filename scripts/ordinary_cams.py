@@ -6,19 +6,21 @@ import math
 import sys
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests"), str(ROOT / "tests" / "ordinary")]
 
 from flat_cams import compared  # noqa: E402
 from reference.flat_cam import FlatCam, Harmonic, Oval  # noqa: E402
 
 COUNTS = (2, 4, 8, 16, 32, 64, 128, 256, 400)
-TEXT = """A cam turns under a flat follower on a spring, for about five turns; no friction, so that the truth is one equation of motion for the curve
-itself (`tests/reference/flat_cam.py`, scipy). The curve, an ellipse of 4 mm by 3.2 mm or a sum of two harmonics, is drawn as N arcs through three of its
-points each, or as N chords. The expected orders: the place of arcs is off by N⁻³; chords lose at each corner the square of its angle, N times N⁻², so that the
-error goes with 1/N. *Order* is that from the line above. With few pieces the cam is another one; with four chords it has not the energy to turn.
+TEXT = """A cam turns under a flat follower on a spring, for about five turns; no friction, so that the truth is one equation of
+motion for the curve itself (`tests/reference/flat_cam.py`, scipy). The curve, an ellipse of 4 mm by 3.2 mm or a sum of two
+harmonics, is drawn as N arcs through three of its points each, or as N chords. The expected orders: the place of arcs is
+off by N⁻³; chords lose at each corner the square of its angle, N times N⁻², so that the error goes with 1/N. *Passed* are
+pieces of the outline, *each* is of these, *order* is that from the line above. With few pieces the cam is another one; with
+four chords it has not the energy to turn. N = 2 … 4 is therefore a test of running at all.
 
-| curve | drawn as | restitution | N | angle off by, rad | order | speed off by | pieces passed | events a piece | gap evaluations a piece |
+| curve | drawn as | restitution | N | angle off, rad | order | speed off | passed | events each | gap evaluations each |
 |---|---|---:|---:|---:|---:|---:|---:|---:|---:|
 """
 
@@ -27,7 +29,7 @@ def section(quick: bool) -> tuple[str, int]:
     """The section of the page, and how many runs gave up or did not converge."""
     lines, wrong = [], 0
     for name, curve in (("ellipse", Oval()), ("harmonics", Harmonic())):
-        for chords in (False, True):
+        for drawn, chords in (("arcs", False), ("chords", True)):
             for restitution in (0.0, 0.3):
                 before: tuple[int, float] | None = None
                 for count in COUNTS[1 if chords else 0 : 6 if quick else None]:
@@ -38,8 +40,10 @@ def section(quick: bool) -> tuple[str, int]:
                     wrong += bad
                     before = count, c.angle
                     lines.append(
-                        f"| {name} | {'chords' if chords else 'arcs'} | {restitution:g} | {count} | {c.angle:.1e} | {order:.1f} | "
-                        f"{c.speed:.1e} | {c.passed} | {c.events / c.passed:.1f} | {c.evaluations / c.passed:.0f} |" + " wrong |" * bad
+                        f"| {name} | {drawn} | {restitution:g} | {count} | {c.angle:.1e} | "
+                        f"{order:.1f} | {c.speed:.1e} | {c.passed} | {c.events / c.passed:.1f} | {c.evaluations / c.passed:.0f} |"
+                        + " wrong |"
+                        * bad
                     )
                     print(lines[-1], flush=True)
     return TEXT + "\n".join(lines).replace("nan", ""), wrong
