@@ -20,6 +20,9 @@ off by N⁻³; chords lose at each corner the square of its angle, N times N⁻�
 pieces of the outline, *each* is of these, *order* is that from the line above. With few pieces the cam is another one; with
 four chords it has not the energy to turn. N = 2 … 4 is therefore a test of running at all.
 
+The number of events grows with the pieces passed, or less. Gap evaluations grow somewhat faster: neighbours of the piece in
+contact are looked at as well, and there are more of them within reach where pieces are small.
+
 | curve | drawn as | restitution | N | angle off, rad | order | speed off | passed | events each | gap evaluations each |
 |---|---|---:|---:|---:|---:|---:|---:|---:|---:|
 """
@@ -28,22 +31,31 @@ four chords it has not the energy to turn. N = 2 … 4 is therefore a test of ru
 def section(quick: bool) -> tuple[str, int]:
     """The section of the page, and how many runs gave up or did not converge."""
     lines, wrong = [], 0
-    for name, curve in (("ellipse", Oval()), ("harmonics", Harmonic())):
-        for drawn, chords in (("arcs", False), ("chords", True)):
+    for curve in (Oval(), Harmonic()):
+        for chords in (False, True):
             for restitution in (0.0, 0.3):
-                before: tuple[int, float] | None = None
-                for count in COUNTS[1 if chords else 0 : 6 if quick else None]:
-                    c = compared(FlatCam(curve), count, chords, restitution)
-                    order = math.nan if before is None else math.log(before[1] / c.angle) / math.log(count / before[0])
-                    bad = c.stop != "DURATION" or abs(c.residual) > 1e-6
-                    bad |= count > 32 and not order > (0.8 if chords else 2.4)
-                    wrong += bad
-                    before = count, c.angle
-                    lines.append(
-                        f"| {name} | {drawn} | {restitution:g} | {count} | {c.angle:.1e} | "
-                        f"{order:.1f} | {c.speed:.1e} | {c.passed} | {c.events / c.passed:.1f} | {c.evaluations / c.passed:.0f} |"
-                        + " wrong |"
-                        * bad
-                    )
-                    print(lines[-1], flush=True)
-    return TEXT + "\n".join(lines).replace("nan", ""), wrong
+                counts = COUNTS[1 if chords else 0 : 6 if quick else None]
+                more, bad = _table(FlatCam(curve), chords, restitution, counts)
+                lines += more
+                wrong += bad
+    return TEXT + "\n".join(lines), wrong
+
+
+def _table(cam: FlatCam, chords: bool, restitution: float, counts: tuple[int, ...]) -> tuple[list[str], int]:
+    """Lines of one curve, and how many of them were wrong."""
+    name = "ellipse" if isinstance(cam.curve, Oval) else "harmonics"
+    lines, wrong, before = [], 0, None
+    for count in counts:
+        c = compared(cam, count, chords, restitution)
+        order = math.nan if before is None else math.log(before[1] / c.angle) / math.log(count / before[0])
+        bad = c.stop != "DURATION" or abs(c.residual) > 1e-6
+        bad |= count > 32 and not order > (0.8 if chords else 2.4)
+        wrong, before = wrong + bad, (count, c.angle)
+        told = "" if math.isnan(order) else f"{order:.1f}"
+        line = (
+            f"| {name} | {'chords' if chords else 'arcs'} | {restitution:g} | {count} | {c.angle:.1e} | {told} | {c.speed:.1e} "
+        )
+        line += f"| {c.passed} | {c.events / c.passed:.1f} | {c.evaluations / c.passed:.0f} |"
+        lines.append(line + " wrong |" if bad else line)
+        print(lines[-1], flush=True)
+    return lines, wrong
