@@ -27,6 +27,9 @@ echo "== kinks, orientations, curves of many arcs"
 "$environment/bin/python" scripts/measure_ordinary_mechanisms.py --page "$scratch/ordinary-mechanisms.md"
 cat "$scratch/ordinary-mechanisms.md"
 
+echo "== random mechanisms, others every night"
+"$environment/bin/python" scripts/hunt_mechanisms.py --seed "$(date +%Y%m%d)" --count 1000 --jobs "$(nproc)"
+
 echo "== benchmarks and demo"
 "$environment/bin/watchsim" verify --slow
 "$environment/bin/python" scripts/measure_grid.py "$scratch/grid.csv"

@@ -17,7 +17,8 @@ def test_the_motion_does_not_depend_on_the_orientation(name: str) -> None:
     scene, rng = mechanism(name), np.random.default_rng(3)
     truth = seen(scene, 0.0, (0.0,) * len(scene.bodies))
     assert not truth.bad
-    for pose in [(0.5 * math.pi, (0.0,) * len(scene.bodies)), *(random_pose(scene, rng) for _ in range(3))]:
+    quarters = [(0.5 * math.pi * k, (0.0,) * len(scene.bodies)) for k in (1, 2)]
+    for pose in [*quarters, *(random_pose(scene, rng) for _ in range(2))]:
         found = seen(scene, *pose)
         assert not found.bad
         assert apart(truth, found) < 1e-9, pose

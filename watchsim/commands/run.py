@@ -195,7 +195,7 @@ def status(run: Trajectory, summary: dict[str, Any]) -> int:
     from watchsim.analysis.headlines import expected_text
     from watchsim.simulation.stops import Stop
 
-    if run.stop == Stop.OVERLAP:
+    if run.stop.is_wrong:
         say(f"The result is wrong: {run.stop_message}. It is kept, to be looked at.")
         return GAVE_UP
     if run.stop.gave_up:

@@ -77,7 +77,7 @@ def _nudge(m, jam, work):
 
 @kernel
 def _keep_sliding(m, work):
-    """Let contacts whose slip is a multiple of their gap rate end the compression still sliding a little; True if there are any.
+    """Let contacts whose slip is a multiple of their gap rate end the compression still sliding a little; True if any does.
 
     Where w_T is parallel to w_N (one rotor or slider against the frame, sliders on parallel axes) slip and approach stop
     together, and Coulomb's law leaves the share of friction open. The contact slid all the time: friction is at its bound.

@@ -11,6 +11,7 @@ import math
 from watchsim.jit import kernel
 
 SWEEPS = 3
+ROUNDING = 1e-14  # of unit diagonals
 
 
 @kernel
@@ -63,13 +64,19 @@ def _largest_mutual(A, i, n, s):
 @kernel
 def _balance(A, n, work):
     """Make the largest coefficients of row i and of column i alike, keeping R_i C_i (Osborne 1960)."""
-    r, c = work.row_scale, work.column_scale
+    r, c, s = work.row_scale, work.column_scale, work.trial
+    for i in range(n):
+        s[i] = c[i]
     for _ in range(SWEEPS):
         for i in range(n):
             row = column = 0.0
             for j in range(n):
-                if j != i:
+                if j == i:
+                    continue
+                # What rounding leaves of a zero says nothing about units.
+                if abs(A[i, j]) * s[i] * s[j] > ROUNDING:
                     row = max(row, abs(A[i, j]) * c[j])
+                if abs(A[j, i]) * s[i] * s[j] > ROUNDING:
                     column = max(column, abs(A[j, i]) * r[j])
             row, column = row * r[i], column * c[i]
             if row > 0.0 and column > 0.0:

@@ -10,18 +10,22 @@ import math
 
 from watchsim.contact.kinematics import ClosedRef
 from watchsim.contact.lookup import time_through_cells
+from watchsim.contact.poses import place
 from watchsim.dynamics.delassus import ContactWorkRef, fill_inverse
 from watchsim.dynamics.forces import next_knot
 from watchsim.dynamics.lcp import LcpWorkRef
 from watchsim.jit import entry, inlined, kernel
 from watchsim.mechanism.model import CellsRef, ModelRef
+from watchsim.simulation.closed import refresh
 from watchsim.simulation.coupled import motion
 from watchsim.simulation.drift import IN_STEPS, project_positions, project_velocities
+from watchsim.simulation.explained import is_explained, kinetic_energy
 from watchsim.simulation.flight import FLIGHT_PHASE, add_flight_sums, begin_flight, can_fly, flight_length, keep_flight_rows
 from watchsim.simulation.integrator import coupled_step, dense_value
 from watchsim.simulation.islands import place_contacts
 from watchsim.simulation.keep import keep_row
 from watchsim.simulation.leave import first_leave, first_turn
+from watchsim.simulation.once import begin_instant, decide_once, forget_decisions
 from watchsim.simulation.options import FINEST_ROWS, OptionsRef
 from watchsim.simulation.passages import keep_passages
 from watchsim.simulation.rows import keep_inner_rows
@@ -30,8 +34,12 @@ from watchsim.simulation.state import (
     DAMPING,
     DRIVE,
     FRICTION,
+    IMPACTS,
+    MONITORS,
     N_FLIGHTS,
+    N_IMPACTS,
     N_INSTANTS,
+    RECENT,
     SUMS,
     RecordRef,
     ScratchRef,
@@ -44,6 +52,9 @@ from watchsim.simulation.touch import first_touch
 RUNNING, SLICE, CELL_UNKNOWN, BUFFER_FULL = int(Stop.RUNNING), int(Stop.SLICE), int(Stop.CELL_UNKNOWN), int(Stop.BUFFER_FULL)
 DURATION, STEP_TOO_SMALL, NOT_FINITE = int(Stop.DURATION), int(Stop.STEP_TOO_SMALL), int(Stop.NOT_FINITE)
 TOO_MANY_EVENTS, LAST_STEP = int(Stop.TOO_MANY_EVENTS), int(Stop.LAST_STEP)
+UNEXPLAINED = int(Stop.UNEXPLAINED)
+TOUCHED, BEARING, KINDS = MONITORS, MONITORS + 1, MONITORS + 2  # what ends a step, besides the monitors of a contact
+TURNS = 0.1  # times the gap rate that counts as zero: rates that change by less need not be found anew
 FLIGHT_CELLS = 128
 EVENTS_AT_ONCE = 2000
 INSTANT = 1e-3  # share of `accumulation_time` within which events count as happening at once
@@ -53,7 +64,10 @@ EVENTS_PER_CONTACT = 20
 
 @kernel
 def _accept_coupled(model, state, options, end, scratch):
-    """Bring the state to time `end` of a coupled step: sums, positions and velocities, drift taken back."""
+    """Bring the state to time `end` of a coupled step: sums, positions and velocities, drift taken back.
+
+    False where drift is no rounding.
+    """
     step = scratch.step
     n = len(model.coordinates)
     for i in range(2 * n + SUMS):
@@ -66,15 +80,32 @@ def _accept_coupled(model, state, options, end, scratch):
     for i in range(SUMS):
         state.sums[(DRIVE, DAMPING, FRICTION)[i]] += scratch.y[2 * n + i]
     motion(model, state, options, state.clock[0], scratch.y, scratch)
+    before = kinetic_energy(model, state.u)
     first = 0
     while first < state.numbers[0]:
         m = place_contacts(model, state.active, first, state.upto[first], scratch.pose, scratch.closed)
         deepest = project_positions(scratch.closed, m, True, scratch.work, state.q)
         state.worst[0] = max(state.worst[0], deepest)
+        if _turns_rates(model, state, options, m, scratch.closed):
+            place(model, state.q, state.u, scratch.pose)
+            refresh(model, m, scratch.closed, scratch.pose)
         project_velocities(scratch.closed, m, state.mode, IN_STEPS, scratch.work, state.u)
         first += m
     for i in range(n):
         state.a[i] = scratch.dy[n + i]
+    state.worst[1] = max(state.worst[1], before)
+    return is_explained(model, options, before, kinetic_energy(model, state.u), state.worst[1])
+
+
+@kernel
+def _turns_rates(model, state, options, m, closed):
+    """True if taking back the gaps of the m contacts changes their rates, by the gap times how fast bodies turn."""
+    furthest, fastest = 0.0, 0.0
+    for i in range(m):
+        furthest = max(furthest, abs(closed.kin[i].g))
+    for i in range(len(state.u)):
+        fastest = max(fastest, abs(state.u[i]) / model.coordinates[i].scale)
+    return furthest * fastest > TURNS * options.speed_zero
 
 
 @kernel
@@ -124,12 +155,35 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
         add_flight_sums(model, state, step, end)
         keep_flight_rows(model, state, end, spacing, scratch, record)
     else:
-        _accept_coupled(model, state, options, end, scratch)
+        if not _accept_coupled(model, state, options, end, scratch):
+            return UNEXPLAINED, False
         keep_inner_rows(model, options, end, scratch, record)
         keep_row(state, record, state.clock[0], state.q, state.u, state.a)
     keep_passages(model, state, step, end, record)
     state.numbers[4] = contact
-    return RUNNING, contact >= 0 or leave <= length
+    event = contact >= 0 or leave <= length
+    if event:
+        _note_end(model, state, contact, flying, scratch)
+    return RUNNING, event
+
+
+@kernel
+def _note_end(model, state, contact, flying, scratch):
+    """Remember what ended the step: `KINDS` times the contact (or bearing) that did, plus the kind of its monitor.
+
+    TOUCHED: it closed; BEARING: dry friction in the bearing of a coordinate holds or lets go.
+    """
+    code = scratch.codes[0]
+    if contact >= 0:
+        what = KINDS * contact + TOUCHED
+    elif flying:
+        what = BEARING
+    elif code >= MONITORS * state.numbers[0]:
+        what = KINDS * (code - MONITORS * state.numbers[0]) + BEARING
+    else:
+        what = KINDS * state.active[code // MONITORS] + code % MONITORS
+    scratch.recent[scratch.recent[RECENT] % RECENT] = what
+    scratch.recent[RECENT] += 1
 
 
 @kernel
@@ -146,11 +200,21 @@ def _settle(model, cells, state, options, scratch, record):
     """Handle the waiting event; counts events that hardly let time advance."""
     if state.clock[0] - state.clock[2] > INSTANT * options.accumulation_time:
         state.numbers[3], state.clock[2] = 0, state.clock[0]
+        begin_instant(state)
     elif state.numbers[3] > EVENTS_AT_ONCE:
         return TOO_MANY_EVENTS
+    touched, impacts, lost = state.numbers[4], state.counts[N_IMPACTS], state.sums[IMPACTS]
+    before = kinetic_energy(model, state.u)
     code = settle(model, cells, state, options, scratch, record)
     if code != RUNNING:
         return code
+    state.worst[1] = max(state.worst[1], before)
+    if not is_explained(model, options, before, kinetic_energy(model, state.u) + (state.sums[IMPACTS] - lost), state.worst[1]):
+        return UNEXPLAINED
+    if state.counts[N_IMPACTS] > impacts:
+        forget_decisions(state)
+    elif touched < 0 and not decide_once(state):
+        return TOO_MANY_EVENTS
     state.numbers[3] += 1
     state.counts[N_INSTANTS] += 1
     keep_passages(model, state, scratch.step, 0.0, record)

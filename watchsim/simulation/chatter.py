@@ -13,9 +13,10 @@ from __future__ import annotations
 from watchsim.contact.index_sets import BACKWARD, FORWARD, STICK
 from watchsim.contact.kinematics import contact_kinematics
 from watchsim.dynamics.acceleration import solve_mode
-from watchsim.dynamics.delassus import apply
+from watchsim.dynamics.delassus import apply, contact_velocities
 from watchsim.dynamics.impact import plastic_impact
 from watchsim.jit import kernel
+from watchsim.simulation.drift import AT_EVENTS, project_velocities
 
 WITHIN = 1e-9  # share of the friction cone by which a sticking contact's impulse stays inside it
 
@@ -96,5 +97,22 @@ def end_chatter(model, state, m, time, scratch):
     solve_mode(model, rest, r, scratch.trial, work)
     for row in range(2 * r):
         scratch.impulse[row] -= work.force[row] * time
-    apply(rest, r, scratch.impulse, work.inverse, state.u)
+    if _gain(rest, r, state.u, scratch.impulse, work) > 0.0:
+        # Less pressure for a moment is less friction, which the ledger would show as energy from nowhere: without it.
+        project_velocities(rest, r, scratch.trial, AT_EVENTS, work, state.u)
+    else:
+        apply(rest, r, scratch.impulse, work.inverse, state.u)
     return 0
+
+
+@kernel
+def _gain(rest, r, u, impulse, work):
+    """Kinetic energy that the impulses add to the motion u, J."""
+    contact_velocities(rest, r, u, work.b)
+    gain = 0.0
+    for row in range(2 * r):
+        jump = 0.0
+        for column in range(2 * r):
+            jump += work.G[row, column] * impulse[column]
+        gain += impulse[row] * (work.b[row] + 0.5 * jump)
+    return gain

@@ -18,6 +18,7 @@ from watchsim.jit import kernel
 from watchsim.simulation.chatter import chatter_time, end_chatter, may_be_chatter, return_time
 from watchsim.simulation.closed import refresh
 from watchsim.simulation.decide import count_problems, decide
+from watchsim.simulation.explained import kinetic_energy
 from watchsim.simulation.keep import keep_event
 from watchsim.simulation.rate_zero import note_pace
 from watchsim.simulation.state import IMPACTS, N_ACCUMULATED, N_ENERGY, N_IMPACTS, N_JAMS, N_LCP_FAILED
@@ -35,15 +36,6 @@ def approaching(m, closed, zero):
         if closed.kin[i].gN_dot < -zero[i]:
             return True
     return False
-
-
-@kernel
-def kinetic_energy(model, u):
-    """J."""
-    total = 0.0
-    for i in range(len(u)):
-        total += 0.5 * model.coordinates[i].mass * u[i] * u[i]
-    return total
 
 
 @kernel

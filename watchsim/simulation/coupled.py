@@ -29,8 +29,9 @@ def bearing_monitor(model, state, scratch, options, j):
     if state.grip[j] == OPEN or state.awake[j] == 0:
         return 1.0
     if state.grip[j] == STICK:
-        return coordinate.coulomb - abs(scratch.load[j]) + options.force_zero * scratch.terms[j]
-    return state.grip[j] * scratch.y[len(model.coordinates) + j] + 0.5 * options.speed_zero / options.size * coordinate.scale
+        return coordinate.coulomb - abs(scratch.load[j]) + state.lenience[0] * options.force_zero * scratch.terms[j]
+    slack = 0.5 * state.lenience[0] * options.speed_zero / options.size * coordinate.scale
+    return state.grip[j] * scratch.y[len(model.coordinates) + j] + slack
 
 
 @kernel
@@ -58,9 +59,9 @@ def _tangential_monitor(model, state, scratch, options, i):
     if friction == 0.0:
         return 1.0
     if state.mode[k] == STICK:
-        return grip_left(friction, work, i, options.force_zero)
+        return grip_left(friction, work, i, state.lenience[0] * options.force_zero)
     # A slip that counted as none may run against the mode decided: it ends only beyond what counts as none.
-    return state.mode[k] * closed.kin[i].gT_dot + SLIP_SLACK * options.speed_zero
+    return state.mode[k] * closed.kin[i].gT_dot + state.lenience[0] * SLIP_SLACK * options.speed_zero
 
 
 @kernel
@@ -72,7 +73,7 @@ def _watch(model, state, options, first, m, scratch):
     closed, work, values = scratch.closed, scratch.work, scratch.monitors
     for i in range(m):
         code = MONITORS * (first + i)
-        values[code + NORMAL] = press_left(work, i, options.force_zero)
+        values[code + NORMAL] = press_left(work, i, state.lenience[0] * options.force_zero)
         values[code + TANGENTIAL] = _tangential_monitor(model, state, scratch, options, i)
         values[code + EXTENT] = closed.kin[i].margin + 2.0 * options.extent
         values[code + PARADOX] = -1.0 if is_paradox(work, m, i) else 1.0

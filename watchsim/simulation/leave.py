@@ -22,9 +22,9 @@ def _slack(model, state, options, code):
     if j >= 0:
         if state.grip[j] == STICK:
             return 0.0
-        return 0.5 * options.speed_zero / options.size * model.coordinates[j].scale
+        return 0.5 * state.lenience[0] * options.speed_zero / options.size * model.coordinates[j].scale
     slides = code % MONITORS == TANGENTIAL and state.mode[state.active[code // MONITORS]] != STICK
-    return SLIP_SLACK * options.speed_zero if slides else 0.0
+    return state.lenience[0] * SLIP_SLACK * options.speed_zero if slides else 0.0
 
 
 @kernel
@@ -96,17 +96,23 @@ def first_leave(model, state, options, scratch):
 
 @kernel
 def _earliest(model, state, options, before, tau, scratch):
-    """The earliest root among the monitors that are not positive at tau, all of them positive at `before`."""
-    if tau == 0.0:
-        return 0.0
+    """The earliest root among the monitors that are not positive at tau, all of them positive at `before`.
+
+    Its code is then the first in `scratch.codes`.
+    """
     fired = 0
     for code in range(MONITORS * state.numbers[0] + len(model.coordinates)):
         if scratch.monitors[code] <= 0.0:
             scratch.codes[fired] = code
             fired += 1
-    best = tau
+    if tau == 0.0:
+        return 0.0
+    best, first = tau, scratch.codes[0]
     for j in range(fired):
-        best = min(best, _root(model, state, options, scratch.codes[j], before, best, scratch))
+        root = _root(model, state, options, scratch.codes[j], before, best, scratch)
+        if root < best:
+            best, first = root, scratch.codes[j]
+    scratch.codes[0] = first
     return best
 
 

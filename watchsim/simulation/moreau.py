@@ -54,5 +54,9 @@ class MoreauRun(Run):
     def _counts(self) -> dict[str, int]:
         return {**super()._counts(), "sweeps": int(self.work.sweeps[0])}
 
+    def _ledger_fails(self) -> bool:
+        """Never: the error of the ledger goes with the step, which the user has chosen."""
+        return False
+
     def _dissipated(self) -> dict[str, float]:
         return {**super()._dissipated(), "stepping": float(self.state.sums[CORRECTION])}

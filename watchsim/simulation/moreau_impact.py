@@ -84,7 +84,7 @@ def _compress(model, state, m, work):
 
 @kernel
 def _keep_sliding(model, m, work):
-    """Where slip and approach stop together, because their directions are parallel, friction is what it was while they lasted."""
+    """Where slip and approach stop together, their directions being parallel, friction is what it was while they lasted."""
     laws = work.laws
     for i in range(m):
         N, T, slip = 2 * i, 2 * i + 1, work.rates[2 * i + 1]

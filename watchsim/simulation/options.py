@@ -40,7 +40,7 @@ def options_for(size: float, tolerance: float, max_step: float) -> Options:
     return Options(
         tolerance=tolerance,
         gap_zero=1e-13 * size,
-        gap_close=min(max(2e-10, tolerance), 0.25 * CLEARANCE) * size,
+        gap_close=min(max(1e-9, tolerance), 0.25 * CLEARANCE) * size,
         # A corner that lands flat comes within its primitives only when it has landed: as far behind as drift has let it.
         behind=max(2e-10, min(20.0 * tolerance, 2e-5)) * size,
         extent=4.0 * JOINT * size,

@@ -1,8 +1,8 @@
 """Which gap rates count as zero?
 
 As a rule those below `speed_zero`, which is what tolerances leave of a rate that is zero. But bodies may move on a pair of
-nearly parallel faces whose gap rates are tiny and yet not zero: a follower that passes a shallow kink at v closes the gap to the
-next face at v times the angle. Where taking small rates for zero contradicts itself, only what is rounding of the
+nearly parallel faces whose gap rates are tiny and yet not zero: a follower that passes a shallow kink at v closes the gap to
+the next face at v times the angle. Where taking small rates for zero contradicts itself, only what is rounding of the
 velocities counts as zero (`exactly`), at that instant and in that island.
 """
 

@@ -23,6 +23,7 @@ from watchsim.mechanism.model import KIND_WORD
 from watchsim.mechanism.recording import Recording
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation.advance import EVENTS_PER_CONTACT, ROWS_PER_STEP, advance
+from watchsim.simulation.books import ledger_fails, touching, what_alternates
 from watchsim.simulation.failure import failure_of
 from watchsim.simulation.interrupts import held_interrupts
 from watchsim.simulation.kept import Kept, tail_length
@@ -51,6 +52,7 @@ from watchsim.simulation.trajectory import EVENT_DTYPE, EventKind, Pair, Traject
 Progress = Callable[[float, float], None]  # simulated time, duration
 
 ROWS, EVENTS = 20000, 20000
+ADVICE = "Try a tighter tolerance; if that does not help, this is a fault of the program, and the scene shows it"
 SLICE_WALL = 0.1  # s between looks at the clock
 
 
@@ -154,7 +156,31 @@ class Run:
             self.saved = self.save()
         self.flush()
         self._look()
-        return Stop.OVERLAP if stop in (Stop.DURATION, Stop.INTERRUPTED) and self._overlaps() else stop
+        if stop not in (Stop.DURATION, Stop.INTERRUPTED):
+            return stop
+        if self._overlaps():
+            return Stop.OVERLAP
+        return Stop.LEDGER if self._ledger_fails() else stop
+
+    def _ledger_fails(self) -> bool:
+        """Is the residual of the energy ledger more than rounding?"""
+        return ledger_fails(self._energy(), max(float(self.state.worst[1]), self.stored_at_start), self.tolerance)
+
+    def _details(self, stop: Stop) -> str:
+        """What is known of where and why, behind a colon; "" where the cause says it all."""
+        if stop == Stop.OVERLAP:
+            words = self.watch.words()
+        elif stop == Stop.LEDGER:
+            energy = self._energy()
+            words = f"{energy['residual_J']:.3g} J are unaccounted for, of {energy['in_J']:.3g} J put in. {ADVICE}"
+        elif stop == Stop.UNEXPLAINED:
+            words = ". ".join(filter(None, (touching(self.state, self.pairs), ADVICE)))
+        elif stop == Stop.TOO_MANY_EVENTS:
+            bodies = [self.scene.bodies[coordinate.body].name for coordinate in self.compiled.model.coordinates]
+            words = what_alternates(self.state, self.scratch, self.pairs, bodies)
+        else:
+            words = ""
+        return f": {words}" if words else ""
 
     def _look(self) -> None:
         """Look at the state now for bodies inside each other."""
@@ -188,6 +214,8 @@ class Run:
             if self.state.clock[0] >= look:
                 self._look()
                 look = self.watch.next_look(float(self.state.clock[0]))
+            if self._ledger_fails():
+                return Stop.LEDGER
             if self._overlaps():
                 return Stop.OVERLAP
             if progress is not None:
@@ -207,7 +235,7 @@ class Run:
         compiled = self.compiled
         rows, events = self._all_kept()
         before = [len(part) for part in self._all_kept(self._parts_before)]
-        words = f": {self.watch.words()}" if stop == Stop.OVERLAP else ""
+        words = self._details(stop)
         saved = None if self.saved is None else dataclasses.replace(self.saved, rows=before[0], events=before[1])
         return Trajectory(
             scene=self.scene,

@@ -19,7 +19,7 @@ from watchsim.jit import kernel
 from watchsim.simulation.closed import gather, refresh
 from watchsim.simulation.collide import approaching, collide
 from watchsim.simulation.decide import decide
-from watchsim.simulation.drift import AT_EVENTS, find_correction, project_positions, project_velocities, rate_left
+from watchsim.simulation.drift import AT_EVENTS, IN_STEPS, find_correction, project_positions, project_velocities, rate_left
 from watchsim.simulation.handover import LEFT, hand_over
 from watchsim.simulation.islands import island_of, label_islands, place_contacts, sort_by_island
 from watchsim.simulation.keep import OPEN_EVENT, keep_change, keep_event
@@ -31,6 +31,7 @@ from watchsim.simulation.stops import Stop
 
 RUNNING, CELL_UNKNOWN = int(Stop.RUNNING), int(Stop.CELL_UNKNOWN)
 LCP_FAILED, TOO_MANY_CONTACTS, TOO_MANY_EVENTS = int(Stop.LCP_FAILED), int(Stop.TOO_MANY_CONTACTS), int(Stop.TOO_MANY_EVENTS)
+MANY_ROUNDINGS = 100.0  # a gap rate beyond so many times its rounding is not zero
 ROUNDS = 16  # impacts in a row at one instant
 
 
@@ -73,6 +74,10 @@ def _settle_island(model, state, island, span, options, scratch, record):
     deepest = project_positions(closed, m, False, work, state.q)
     if deepest > 0.0:
         state.worst[0] = max(state.worst[0], deepest)
+        place(model, state.q, state.u, scratch.pose)
+        refresh(model, m, closed, scratch.pose)
+        # Rates of the contacts in force have changed with the places, by the gaps times how fast bodies turn.
+        project_velocities(closed, m, state.mode, IN_STEPS, work, state.u)
         place(model, state.q, state.u, scratch.pose)
         refresh(model, m, closed, scratch.pose)
     stop, r = _resolve(model, state, island, m, options, scratch, record)
@@ -187,9 +192,9 @@ def _contradicts(r, options, scratch):
     rest, work = scratch.rest, scratch.work
     find_correction(rest, r, scratch.trial, AT_EVENTS, work)
     for i in range(r):
-        if scratch.trial[rest.ids[i]] != OPEN:
-            if abs(rate_left(rest, r, i, work)) > 100.0 * rounding_of(rest, i, options, scratch.pace):
-                return True
+        left = abs(rate_left(rest, r, i, work)) if scratch.trial[rest.ids[i]] != OPEN else 0.0
+        if left > MANY_ROUNDINGS * rounding_of(rest, i, options, scratch.pace):
+            return True
     return False
 
 

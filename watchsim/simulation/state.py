@@ -22,6 +22,8 @@ Integers = NDArray[np.int64]
 
 ROOM, ROOM_PER_COORDINATE = 48, 2  # contacts closed at once: at least, and in large scenes
 MONITORS = 4  # what is watched of each contact in force
+DECISIONS = 32  # sets of modes remembered at one instant
+RECENT = 64  # events remembered for the case that time does not advance
 SUMS = 3  # integrated along with the motion: work in, damping, friction
 DRIVE, DAMPING, FRICTION, IMPACTS, CORRECTION = 0, 1, 2, 3, 4  # places in State.sums
 
@@ -82,13 +84,17 @@ class State(NamedTuple):
     active: Integers  # closed contacts of awake bodies, then those of sleeping ones, by island (islands.py)
     upto: Integers  # by place in `active`, of awake bodies: the place behind the last contact of the same island
     numbers: (
-        Integers  # how many awake, how many asleep, 1 if an event waits, events at this instant, the contact that touched or -1
+        # How many awake, how many asleep, 1 if an event waits, events at this instant, the contact that touched or -1, how many
+        # sets of modes were decided at this instant.
+        Integers
     )
     side_u: NDArray[np.int8]  # last sign of the velocity of a sprung coordinate
     side_q: NDArray[np.int8]  # and of its distance from rest
     sums: Array
     counts: Integers
-    worst: Array  # deepest penetration met, m
+    worst: Array  # deepest penetration met, m; highest kinetic energy, J
+    decided: Integers  # keys of the sets of modes decided at this instant, see once.py
+    lenience: Array  # by how much more than usual forces and slips may miss their laws until the next instant
 
 
 StateRef = by_reference(State, __name__)
@@ -141,6 +147,7 @@ class Scratch(NamedTuple):
     load: Array  # force on each coordinate that dry friction holds
     terms: Array  # sum of the magnitudes it is made of
     alarm: Array  # smallest monitor met in the current step
+    recent: Integers  # what ended the last steps, see `ended_by` in advance.py; last: how many there were
     unknown: Integers  # body pair whose cell is not known
     at: Array  # coordinates where it was met
 
@@ -181,12 +188,14 @@ def new_state(model: Model, q: Array, u: Array) -> State:
         awake=np.ones(n, np.int8),
         active=np.zeros(room_for(model), np.int64),
         upto=np.zeros(room_for(model), np.int64),
-        numbers=np.array([0, 0, 1, 0, -1], np.int64),
+        numbers=np.array([0, 0, 1, 0, -1, 0], np.int64),
         side_u=np.sign(speed).astype(np.int8),
         side_q=np.sign(q - rest).astype(np.int8),
         sums=np.zeros(5),
         counts=np.zeros(len(COUNT_NAMES), np.int64),
-        worst=np.zeros(1),
+        worst=np.zeros(2),
+        decided=np.zeros(DECISIONS, np.int64),
+        lenience=np.ones(1),
     )
 
 
@@ -233,6 +242,7 @@ def new_scratch(model: Model) -> Scratch:
         load=np.zeros(n),
         terms=np.zeros(n),
         alarm=np.zeros(1),
+        recent=np.zeros(RECENT + 1, np.int64),
         unknown=np.zeros(1, np.int64),
         at=np.zeros(n),
     )

@@ -21,15 +21,22 @@ class Stop(IntEnum):
     TOO_MANY_CONTACTS = 10
     LAST_STEP = 11
     OVERLAP = 20
+    UNEXPLAINED = 21
+    LEDGER = 22
 
     @property
     def sentence(self) -> str:
         return _SENTENCES[self]
 
     @property
+    def is_wrong(self) -> bool:
+        """True when a check that the run makes of itself says that its result is wrong."""
+        return self in (Stop.OVERLAP, Stop.UNEXPLAINED, Stop.LEDGER)
+
+    @property
     def gave_up(self) -> bool:
         """True when the solver could not go on, or its result is known to be wrong (exit status 3)."""
-        return Stop.TOO_MANY_EVENTS <= self <= Stop.TOO_MANY_CONTACTS or self == Stop.OVERLAP
+        return Stop.TOO_MANY_EVENTS <= self <= Stop.TOO_MANY_CONTACTS or self.is_wrong
 
 
 _SENTENCES = {
@@ -48,5 +55,7 @@ _SENTENCES = {
     Stop.STEP_TOO_SMALL: "the step became too small for the asked tolerance",
     Stop.NOT_FINITE: "a coordinate or velocity is no longer a finite number",
     Stop.TOO_MANY_CONTACTS: "more contacts closed at once than there is room for",
+    Stop.UNEXPLAINED: "velocities changed at an instant by more than the impulses there explain",
+    Stop.LEDGER: "the energy ledger does not close",
     Stop.OVERLAP: "bodies stood inside each other, so that the motion is wrong from there on at the latest",
 }

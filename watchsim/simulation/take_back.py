@@ -22,7 +22,7 @@ Integers = NDArray[np.int64]
 
 FURTHEST = 50.0  # times the rounding, that any point may move to take an overlap back; further, it is no rounding
 ROUNDS = 6  # of Newton's method; an overlap is smaller than all radii, so that two suffice
-IMMOBILE = 1e-9  # of the largest mobility of any contact: less is none
+IMMOBILE = 1e-6  # of a contact's mobility in all directions: less across it is none
 
 
 def kinematics_at(model: Model, q: Array) -> Closed:
@@ -65,26 +65,29 @@ def taken_back_from(model: Model, q: Array, options: Options, near: float) -> Ar
     moved = q.copy()
     for _ in range(ROUNDS):
         closed = kinematics_at(model, moved)
+        # What no motion opens, as a disc about its own pivot against a bar that slides past it, stays as it is drawn.
+        across, along = _directions(closed, closed.w_N, len(q)) / root, _directions(closed, closed.w_T, len(q)) / root
+        mobile = np.linalg.norm(across, axis=1) > IMMOBILE * np.linalg.norm(np.hstack([across, along]), axis=1)
         overlapping = overlapping_rows(model, closed, options, near, 0.0)
+        overlapping = overlapping[mobile[overlapping]]
         if not len(overlapping) or -closed.kin.g[overlapping].min() <= 10.0 * options.gap_zero:
             return moved if _furthest(model, moved - q, options.size) <= FURTHEST * near else None
         # What touches from outside must not be pushed into.
         close = (np.abs(closed.kin.g) <= near) & (closed.kin.margin >= -options.extent) & (closed.kin.g >= 0.0)
-        kept |= {*overlapping.tolist(), *np.flatnonzero(close).tolist()}
+        kept |= {*overlapping.tolist(), *np.flatnonzero(close & mobile).tolist()}
         rows = np.array(sorted(kept))
-        change = _least_change(_directions(closed, rows, len(q)) / root, -closed.kin.g[rows])
+        change = _least_change(across[rows], -closed.kin.g[rows])
         if change is None:
             return None
         moved += change / root
     return None
 
 
-def _directions(closed: Closed, rows: Integers, n: int) -> Array:
-    """(rows, n): how the gaps change with the coordinates."""
-    out = np.zeros((len(rows), n))
-    for place, row in enumerate(rows):
-        slots = closed.slots[row]
-        np.add.at(out[place], closed.coord[row, :slots], closed.w_N[row, :slots])
+def _directions(closed: Closed, sparse: Array, n: int) -> Array:
+    """(contacts, n): w_N or w_T of all contacts over the coordinates."""
+    out = np.zeros((len(closed.ids), n))
+    for row, slots in enumerate(closed.slots):
+        np.add.at(out[row], closed.coord[row, :slots], sparse[row, :slots])
     return out
 
 
@@ -93,11 +96,8 @@ def _least_change(directions: Array, wanted: Array) -> Array | None:
     from scipy.optimize import nnls
 
     size = np.linalg.norm(directions, axis=1)
-    free = size > IMMOBILE * size.max(initial=0.0)
-    if np.any(wanted[~free] > 0.0):
-        return None
     scale = float(wanted.max())
-    rows, bounds = directions[free] / size[free, None], wanted[free] / size[free]
+    rows, bounds = directions / size[:, None], wanted / size
     unit = scale / float(size.max())
     system = np.vstack([rows.T, bounds[None] / unit])
     target = np.append(np.zeros(directions.shape[1]), 1.0)

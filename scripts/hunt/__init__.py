@@ -1,0 +1,1 @@
+"""Random planar mechanisms, and a judge that needs no reference solution. See docs/hunt.md."""

@@ -1,0 +1,162 @@
+"""Does one run obey mechanics, whatever the right motion is?
+
+Energy is computed here from the rows of the motion and the scene, not taken from the ledger; overlap by shapely; impulses by
+`hunt.impulses`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hunt.impulses import Touches
+from hunt.material import Material, reach
+from watchsim.mechanism.scene import Scene
+from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.stops import Stop
+from watchsim.simulation.trajectory import Trajectory
+
+Array = NDArray[np.float64]
+
+RESIDUAL = 1e-6  # of the energy turned over, at tolerances up to 1e-8
+OVERLAP = 2e-5  # of the size: what counts as material inside material, at tolerances up to 1e-8
+JUMP = 1e-5  # of the largest speed, in the metric of the masses: smaller jumps are corrections
+NEAR = 1e-6  # of the size: outlines this close touch
+OUTSIDE = 1e-3  # share of a jump that no impulses of the contacts explain
+AUDITED = 6  # jumps of a run
+LOOKS = 8  # for overlap, evenly spread over the run
+SHIFT = 1e-6  # of the size: what a correction may move, at tolerances up to 1e-8
+LOOKS_PER_STEP = 3000  # at each pair; ten are usual
+MANY = 20_000  # events
+SUDDEN = (EventKind.IMPACT, EventKind.ACCUMULATION, EventKind.JAM)
+
+
+def masses(scene: Scene) -> Array:
+    """(n,): of each coordinate."""
+    each = {"fixed": lambda b: (), "pivot": lambda b: (b.inertia,), "slide": lambda b: (b.mass,)}
+    each["free"] = lambda b: (b.mass, b.mass, b.inertia)
+    return np.array([m for body in scene.bodies for m in each[body.motion](body)])
+
+
+def potential(scene: Scene, run: Trajectory) -> Array:
+    """(rows,): of springs, constant drives and gravity, J."""
+    found = np.zeros(len(run.t))
+    for spring in scene.springs:
+        q = run.q[:, run.slices[spring.body].start]
+        found += 0.5 * spring.stiffness * (q - spring.rest) ** 2
+    for torque in scene.torques:
+        q = run.q[:, run.slices[torque.body].start]
+        found -= torque.value * (q - q[0])
+    gx, gy = scene.gravity
+    for body in scene.bodies if gx or gy else ():
+        if body.motion == "fixed":
+            continue
+        q = run.q[:, run.slices[body.name]]
+        if body.motion == "pivot":
+            (x, y), c, s = body.centre_of_mass, np.cos(q[:, 0]), np.sin(q[:, 0])
+            found -= body.mass * (gx * (c * x - s * y) + gy * (s * x + c * y))
+        elif body.motion == "slide":
+            found -= body.mass * q[:, 0] * (gx * body.axis[0] + gy * body.axis[1])
+        else:
+            found -= body.mass * (gx * q[:, 0] + gy * q[:, 1])
+    return found
+
+
+def faults(run: Trajectory, material: Material) -> Iterator[str]:
+    """What is wrong with the run by itself, a phrase each: the first word names the class."""
+    if run.stop.gave_up or run.stop == Stop.INTERRUPTED:
+        yield f"{'hanging' if run.stop == Stop.INTERRUPTED else 'gave up'}: {run.stop.name} at t = {run.simulated:.6g} s"
+    if len(run.t) == 0:
+        return
+    loose = max(1.0, run.tolerance / 1e-8)
+    looks, done = run.counts["gap_evaluations"], run.counts["events"] + run.counts["steps"] + run.counts["flights"]
+    if looks > LOOKS_PER_STEP * (done + 10) * max(run.counts["declared_pairs"], 1):
+        yield f"hanging: {looks} gap evaluations for {done} steps and events of {run.counts['declared_pairs']} pairs"
+    scene, m = run.scene, masses(run.scene)
+    kinetic = 0.5 * (run.u**2) @ m
+    turned_over = max(float(kinetic.max()), abs(run.energy["in_J"]), sum(run.energy["dissipated"].values()))
+    turned_over = max(turned_over, abs(run.energy["stored_J"]))
+    residual = abs(run.energy["residual_J"])
+    if turned_over > 0.0 and residual > RESIDUAL * loose * turned_over:
+        yield f"residual: {residual / turned_over:.1e} of the energy turned over"
+    yield from _rise(run, kinetic + potential(scene, run), RESIDUAL * loose * turned_over, turned_over)
+    # What loses nothing may go on bouncing, however low.
+    if len(run.events) > MANY and all(contact.restitution < 1.0 for contact in run.scene.contacts):
+        yield f"events: {len(run.events)}"
+    deep, when = _overlap(run, material)
+    if deep > OVERLAP * loose * material.size:
+        share, told = deep / material.size, run.worst_penetration / material.size
+        yield f"overlap: {share:.1e} of the size at t = {when:.6g} s, reported {told:.1e}"
+    yield from _shifts(run, SHIFT * loose * material.size)
+    yield from _jumps(run, m, float(kinetic.max()), loose)
+
+
+def _rise(run: Trajectory, total: Array, allowed: float, scale: float) -> Iterator[str]:
+    """Energy with that of the drives never grows."""
+    rise = total - np.minimum.accumulate(total)
+    worst = int(np.argmax(rise))
+    if rise[worst] > allowed:
+        yield f"energy: rises by {rise[worst] / scale:.1e} of what is turned over, until t = {run.t[worst]:.6g} s"
+
+
+def _overlap(run: Trajectory, material: Material) -> tuple[float, float]:
+    times = np.linspace(0.0, run.simulated, LOOKS + 1)[1:]
+    q, _ = run.sample(times)
+    deepest, when = 0.0, 0.0
+    for t, row in zip(times, q, strict=True):
+        depth = material.depth({body.name: run.pose_of(body.name, row) for body in run.scene.bodies})
+        if depth > deepest:
+            deepest, when = depth, float(t)
+    return deepest, when
+
+
+def _shifts(run: Trajectory, allowed: float) -> Iterator[str]:
+    """Bodies are where they were: positions do not jump. Angles count with the body's reach."""
+    jump = np.abs(np.diff(run.q, axis=0))[np.diff(run.t) == 0.0]
+    if len(jump):
+        worst = int(np.argmax(jump.max(axis=1)))
+        far = float((jump[worst] * _lengths(run.scene)).max())
+        if far > allowed:
+            t = run.t[:-1][np.diff(run.t) == 0.0][worst]
+            yield f"shift: coordinates jump by {far:.1e} m at t = {t:.9g} s"
+
+
+def _lengths(scene: Scene) -> Array:
+    """(n,): what makes lengths of coordinates."""
+    found: list[float] = []
+    for body in scene.bodies:
+        own = 0.0 if body.motion == "fixed" else reach(replace(scene, bodies=(body,)))
+        found += {"fixed": [], "pivot": [own], "slide": [1.0], "free": [1.0, 1.0, own]}[body.motion]
+    return np.array(found)
+
+
+def _jumps(run: Trajectory, m: Array, largest: float, loose: float) -> Iterator[str]:
+    """Each jump of velocity must come from impulses that push, within the cones of friction, where outlines touch."""
+    first = np.flatnonzero((np.diff(run.t) == 0.0) & np.append(True, np.diff(run.t)[:-1] > 0.0))
+    if not len(first):
+        return
+    last = np.searchsorted(run.t, run.t[first], side="right") - 1
+    size = 0.5 * ((run.u[last] - run.u[first]) ** 2) @ m
+    touches = None
+    for k in np.argsort(-size)[:AUDITED]:
+        if size[k] <= JUMP**2 * largest:
+            return
+        row, then = int(first[k]), int(last[k])
+        t, jump = run.t[row], run.u[then] - run.u[row]
+        here = run.events[run.events["t"] == t]
+        if not np.isin(here["kind"], SUDDEN).any():
+            yield f"jump: without an impact at t = {t:.9g} s, of {math.sqrt(size[k] / largest):.1e} of the speed"
+            return
+        touches = touches or Touches(run.scene, run.slices, m, NEAR * loose)
+        share, points = touches.unexplained(run.q[then], jump)
+        part = math.sqrt(size[k] / largest)
+        if share > OUTSIDE and share * part > JUMP * loose:
+            yield (
+                f"impulse: {share:.1e} of a jump of {part:.1e} of the speed at t = {t:.9g} s lies outside the cones of "
+                f"{points} contacts"
+            )
+            return

@@ -1,0 +1,79 @@
+"""How are many mechanisms judged on all processors, none of them able to stop the hunt?
+
+Compiled code cannot be interrupted from within; a worker that does not answer is killed, its mechanism counts as hanging.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import time
+from collections.abc import Callable, Iterable, Iterator
+from multiprocessing.connection import Connection, wait
+from typing import Any
+
+PATIENCE = 30.0  # s on the clock, for all runs of one mechanism
+Work = Callable[[int], Any]
+
+
+class _Worker:
+    def __init__(self, work: Work) -> None:
+        context = multiprocessing.get_context("fork")
+        self.line, theirs = context.Pipe()
+        self.process = context.Process(target=_serve, args=(theirs, work), daemon=True)
+        self.process.start()
+        theirs.close()
+        self.number, self.since = -1, 0.0
+
+    def give(self, number: int) -> None:
+        self.number, self.since = number, time.perf_counter()
+        self.line.send(number)
+
+    def end(self) -> None:
+        self.process.kill()
+        self.process.join()
+
+
+def _serve(line: Connection, work: Work) -> None:
+    while True:
+        try:
+            line.send(work(line.recv()))
+        except EOFError:
+            return
+
+
+def answers(numbers: Iterable[int], work: Work, jobs: int) -> Iterator[tuple[int, Any]]:
+    """(number, what `work` says of it) in the order in which they come; None where its worker hung or died."""
+    waiting = iter(numbers)
+    workers: list[_Worker] = []
+    for number in _first(waiting, jobs):
+        workers.append(_Worker(work))
+        workers[-1].give(number)
+    while workers:
+        ready = wait([worker.line for worker in workers], timeout=1.0)
+        for worker in list(workers):
+            late = time.perf_counter() - worker.since > PATIENCE
+            if worker.line not in ready and not late:
+                continue
+            answer = _answer(worker) if worker.line in ready else None
+            yield worker.number, answer
+            following = next(waiting, None)
+            if answer is None or following is None:
+                worker.end()
+                workers.remove(worker)
+            if following is None:
+                continue
+            if answer is None:
+                workers.append(_Worker(work))
+            (workers[-1] if answer is None else worker).give(following)
+
+
+def _answer(worker: _Worker) -> Any:
+    """None where the process died."""
+    try:
+        return worker.line.recv()
+    except EOFError:
+        return None
+
+
+def _first(numbers: Iterator[int], count: int) -> list[int]:
+    return [number for _, number in zip(range(count), numbers, strict=False)]

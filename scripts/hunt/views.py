@@ -1,0 +1,161 @@
+"""How else can the same mechanism be described?
+
+Turned in the plane, mirrored, each outline drawn at another angle in its own frame; and how does its motion look from there?
+Start velocities, forces and places changed by a small share give the perturbed twins.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hunt.material import apart
+from watchsim.geometry.primitives import Point
+from watchsim.mechanism.body import Body
+from watchsim.mechanism.scene import Scene
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class View:
+    """First mirrored in the x axis, then turned by `tilt` (rad); the outline of a body drawn turned by `drawn[name]`."""
+
+    tilt: float = 0.0
+    mirrored: bool = False
+    drawn: Mapping[str, float] = field(default_factory=dict)
+
+    def of(self, scene: Scene) -> Scene:
+        """The scene as described from here."""
+        motions = {body.name: body.motion for body in scene.bodies}
+        sign = -1.0 if self.mirrored else 1.0
+        signs = {name: sign if motion == "pivot" else 1.0 for name, motion in motions.items()}
+        return replace(
+            scene,
+            bodies=tuple(self._body(body) for body in scene.bodies),
+            gravity=self._vector(scene.gravity),
+            torques=tuple(replace(t, value=signs[t.body] * t.value) for t in scene.torques),
+            springs=tuple(
+                replace(s, rest=signs[s.body] * s.rest + (self._offset(s.body) if motions[s.body] == "pivot" else 0.0))
+                for s in scene.springs
+            ),
+        )
+
+    def back(self, scene: Scene, slices: Mapping[str, slice], q: Array) -> Array:
+        """Rows of coordinates of the turned scene as those of the scene itself."""
+        out, sign = np.array(q), -1.0 if self.mirrored else 1.0
+        c, s = math.cos(self.tilt), math.sin(self.tilt)
+        for body in scene.bodies:
+            if body.motion == "pivot":
+                column = slices[body.name].start
+                out[:, column] = sign * (q[:, column] - self._offset(body.name))
+            elif body.motion == "free":
+                i = slices[body.name].start
+                out[:, i] = c * q[:, i] + s * q[:, i + 1]
+                out[:, i + 1] = sign * (c * q[:, i + 1] - s * q[:, i])
+                out[:, i + 2] = sign * (q[:, i + 2] - self._offset(body.name))
+        return out
+
+    def _offset(self, name: str) -> float:
+        return self.tilt - self.drawn.get(name, 0.0)
+
+    def _vector(self, v: Point) -> Point:
+        x, y = v[0], -v[1] if self.mirrored else v[1]
+        return _turned((x, y), self.tilt)
+
+    def _body(self, body: Body) -> Body:
+        angle = self.drawn.get(body.name, 0.0)
+        sign = -1.0 if self.mirrored else 1.0
+        loops = tuple(loop.reflected((0.0, 0.0), (1.0, 0.0)) if self.mirrored else loop for loop in body.loops)
+        velocity = body.velocity
+        if body.motion == "pivot":
+            velocity = (sign * velocity[0],)
+        elif body.motion == "free":
+            velocity = (*self._vector((velocity[0], velocity[1])), sign * velocity[2])
+        centre = body.centre_of_mass
+        return replace(
+            body,
+            position=self._vector(body.position),
+            angle=sign * body.angle + self._offset(body.name),
+            velocity=velocity,
+            axis=self._vector(body.axis),
+            centre_of_mass=_turned((centre[0], sign * centre[1]), angle),
+            loops=tuple(loop.moved(angle, (0.0, 0.0)) if angle else loop for loop in loops),
+        )
+
+
+def views(scene: Scene, seed: int, count: int) -> list[View]:
+    """Turned anyhow; every other one mirrored."""
+    rng = np.random.default_rng(seed)
+    return [
+        View(
+            float(rng.uniform(0.0, 2.0 * math.pi)),
+            bool(k % 2),
+            {body.name: float(rng.uniform(0.0, 2.0 * math.pi)) for body in scene.bodies},
+        )
+        for k in range(count)
+    ]
+
+
+def perturbed(scene: Scene, share: float, seed: int) -> Scene:
+    """Velocities, forces, masses, laws and, outwards, places changed by up to that share of themselves or of the scene's own.
+
+    Places are stretched from a point of the plane, so that what touches at the start parts rather than overlaps; outlines are
+    turned where that leaves them apart.
+    """
+    rng = np.random.default_rng(seed)
+
+    def near(value: float, scale: float = 0.0) -> float:
+        return value + share * float(rng.uniform(-1.0, 1.0)) * max(abs(value), scale)
+
+    size = max(math.dist(a.position, b.position) for a in scene.bodies for b in scene.bodies)
+    centre = (size * rng.uniform(-1.0, 1.0), size * rng.uniform(-1.0, 1.0))
+    stretch = 1.0 + share * float(rng.uniform(0.0, 1.0)) * float(rng.random() < 0.7)
+    speeds = _typical_speeds(scene)
+    bodies = []
+    for body in scene.bodies:
+        (x, y), (mx, my) = body.position, centre
+        position = (mx + stretch * (x - mx), my + stretch * (y - my))
+        velocity = tuple(near(v, speeds[body.motion if i < 2 else "pivot"]) for i, v in enumerate(body.velocity))
+        inertia, mass = near(body.inertia), near(body.mass)
+        bodies.append(replace(body, position=position, velocity=velocity, inertia=inertia, mass=mass))
+    gravity = _turned(scene.gravity, share * float(rng.uniform(-1.0, 1.0)))
+    twin = replace(
+        scene,
+        bodies=tuple(bodies),
+        gravity=gravity,
+        torques=tuple(replace(t, value=near(t.value)) for t in scene.torques),
+        springs=tuple(replace(s, stiffness=near(s.stiffness)) for s in scene.springs),
+        contacts=tuple(
+            replace(c, friction=near(c.friction), restitution=min(near(c.restitution), 1.0)) for c in scene.contacts
+        ),
+    )
+    skewed = replace(twin, bodies=tuple(_skewed(body, share * float(rng.uniform(-1.0, 1.0))) for body in twin.bodies))
+    return skewed if apart(skewed) else twin
+
+
+def _skewed(body: Body, angle: float) -> Body:
+    """Its outline turned about a corner of its own: faces that land flat land on one end or the other."""
+    if body.motion in ("fixed", "slide"):
+        return body
+    x, y = body.loops[0].edges[0].start
+    c, s = _turned((x, y), angle)
+    return replace(body, loops=tuple(loop.moved(angle, (x - c, y - s)) for loop in body.loops))
+
+
+def _typical_speeds(scene: Scene) -> dict[str, float]:
+    """The largest start velocity of each kind of motion: what a body at rest is nudged by is a share of it."""
+    found: dict[str, float] = {"fixed": 0.0}
+    for motion in ("pivot", "slide", "free"):
+        values = [abs(v) for body in scene.bodies if body.motion == motion for v in body.velocity[:2]]
+        found[motion] = max(values, default=0.0) or (1.0 if motion == "pivot" else 0.01)
+    return found
+
+
+def _turned(v: Point, angle: float) -> Point:
+    c, s = math.cos(angle), math.sin(angle)
+    return c * v[0] - s * v[1], s * v[0] + c * v[1]

@@ -1,0 +1,56 @@
+"""Does Moreau's time stepping see the same motion?
+
+It shares the gap functions with the event-driven solver, and neither events nor contact solver. Its error goes with the step,
+so two steps say how far it can be trusted: it contradicts where the event-driven motion lies ten times further from the finer
+one than the two lie from each other and twins of 1e-4 from the scene, and where a third step does not come nearer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.simulation.methods import MOREAU
+from watchsim.simulation.simulate import simulate
+
+if TYPE_CHECKING:
+    from hunt.judge import Judge
+
+Array = NDArray[np.float64]
+
+STEPS = (2_000, 8_000, 32_000)  # of the duration
+FACTOR, FLOOR = 10.0, 0.03
+ALIKE = 1e-6  # tolerance whose twins (a hundred times that) are as far off as a step
+
+
+def witness_fault(judge: Judge, middle: Array) -> Iterator[str]:
+    """A phrase where the witness contradicts the motion `middle`."""
+    coarse, fine = (_stepped(judge, n) for n in STEPS[:2])
+    far, own = _drift(middle, fine), _drift(coarse, fine)
+    if not (far > FLOOR + FACTOR * own).any():
+        return
+    known = len(judge.verdict.reasons)
+    spread = judge.spread(middle, ALIKE)
+    del judge.verdict.reasons[known:]  # coarse changes are not what is judged here
+    allowed = FLOOR + FACTOR * np.maximum(own, spread)
+    if not (far > allowed).any():
+        return
+    finer = _stepped(judge, STEPS[2])
+    closer, own = _drift(middle, finer), _drift(fine, finer)
+    beyond = np.flatnonzero((closer > FLOOR + FACTOR * np.maximum(own, spread)) & (closer > 0.7 * far))
+    if len(beyond):
+        k = beyond[0]
+        yield f"witness: Moreau is {closer[k]:.1e} of the size away at t = {judge.times[k]:.6g} s, its steps {own[k]:.1e}"
+
+
+def _stepped(judge: Judge, steps: int) -> Array:
+    judge.verdict.runs += 1
+    run = simulate(judge.scene, prefilter=False, method=MOREAU, step=judge.scene.duration / steps)
+    return judge.motion(run)
+
+
+def _drift(a: Array, b: Array) -> Array:
+    return np.maximum.accumulate(np.abs(a - b).max(axis=1))

@@ -1,0 +1,85 @@
+"""Is a mechanism that is turned, mirrored and drawn otherwise the same one?"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import hunt_path  # noqa: F401
+import numpy as np
+import pytest
+from hunt.generate import FAMILIES, mechanism
+from hunt.material import Material, apart, start_pose
+from hunt.views import View, perturbed
+from hunt.write import write_scene
+
+from watchsim.mechanism.load import load
+from watchsim.simulation.simulate import simulate
+
+VIEW = View(2.1, True, {"b0": 0.7, "b1": 3.0, "s0": 1.0, "a": 2.0, "p0": 1.1, "bar": 0.4})
+
+
+@pytest.mark.parametrize("family", sorted(FAMILIES))
+def test_same_start_seen_otherwise(family):
+    """Distances between bodies at the start do not depend on the view, and coordinates are the scene's own again."""
+    scene = mechanism(7, 3, family)
+    seen = VIEW.of(scene)
+    depth, distance = Material(scene).at_start()
+    other_depth, other_distance = Material(seen).at_start()
+    assert other_distance == pytest.approx(distance, abs=1e-12)
+    assert other_depth == pytest.approx(depth, abs=1e-12)
+
+
+@pytest.mark.parametrize("family", ["levers", "row", "boxed", "pendulums", "wedge"])
+def test_same_motion_without_contacts(family):
+    """Springs, drives, gravity and damping act alike."""
+    scene = replace(mechanism(7, 5, family), contacts=())
+    run, seen = simulate(scene), simulate(VIEW.of(scene))
+    times = np.linspace(0.0, scene.duration, 7)
+    back = VIEW.back(scene, seen.slices, seen.sample(times)[0])
+    assert back == pytest.approx(run.sample(times)[0], rel=1e-7, abs=1e-10)
+
+
+def test_twins_part_rather_than_overlap():
+    for number in range(10):
+        scene = mechanism(7, number, "blocks")
+        assert apart(perturbed(scene, 1e-5, number))
+
+
+def test_twins_are_that_near():
+    scene = mechanism(7, 1, "levers")
+    twin = perturbed(scene, 1e-5, 1)
+    for body, other in zip(scene.bodies, twin.bodies, strict=True):
+        assert math.dist(start_pose(body)[:2], start_pose(other)[:2]) < 1e-5
+        if body.motion == "pivot":
+            assert 0.0 < abs(other.inertia / body.inertia - 1.0) < 1.0001e-5
+
+
+@pytest.mark.parametrize("family", sorted(FAMILIES))
+def test_written_scene_reads_back(family, tmp_path):
+    """Number 4 of each family comes out of its file with the same numbers, but for a rounding of what outlines weigh."""
+    scene = mechanism(7, 4, family)
+    again = load(write_scene(scene, tmp_path / "scene.toml"))
+    assert again.springs == scene.springs
+    assert again.torques == scene.torques
+    assert again.damping == scene.damping
+    assert again.contacts == scene.contacts
+    for body, other in zip(scene.bodies, again.bodies, strict=True):
+        assert other.motion == body.motion
+        assert (other.position, other.angle, other.velocity) == (body.position, body.angle, body.velocity)
+        assert other.inertia == pytest.approx(body.inertia, rel=1e-12)
+        assert other.centre_of_mass == pytest.approx(body.centre_of_mass, abs=1e-15)
+        assert corners(other) == pytest.approx(corners(body), abs=1e-15)
+
+
+def corners(body):
+    """In an order that does not hang on rounding."""
+    return np.array(
+        sorted((e.start for loop in body.loops for e in loop.edges), key=lambda p: (round(p[0], 10), round(p[1], 10)))
+    )
+
+
+def test_number_names_the_mechanism():
+    assert mechanism(1, 12) == mechanism(1, 12)
+    assert mechanism(1, 12) != mechanism(1, 13)
+    assert mechanism(1, 12) != mechanism(2, 12)

@@ -1,0 +1,36 @@
+"""Is every change of velocities at an instant explained by its impulses?
+
+Impulses account for what they take. What else moves velocities at an instant are corrections of rounding size: drift
+taken back, slips and speeds that count as zero. The kinetic energy that such a change takes or gives must be next to nothing.
+"""
+
+from __future__ import annotations
+
+from watchsim.jit import kernel
+
+SHARE = 1e-6  # of the kinetic energy before, that corrections may change at an instant
+OF_HIGHEST = 1e-12  # and of the highest one met
+SLOW = 30.0  # times the speed that counts as zero: what moves no faster may be stopped
+
+
+@kernel
+def kinetic_energy(model, u):
+    """J."""
+    total = 0.0
+    for i in range(len(u)):
+        total += 0.5 * model.coordinates[i].mass * u[i] * u[i]
+    return total
+
+
+@kernel
+def is_explained(model, options, before, after, highest):
+    """True if a change of kinetic energy from `before` to `after` (J, impulses taken out) is of the size of rounding."""
+    allowed = SHARE * before + OF_HIGHEST * highest
+    change = abs(after - before)
+    if change <= allowed:
+        return True
+    for i in range(len(model.coordinates)):
+        coordinate = model.coordinates[i]
+        slow = SLOW * options.speed_zero / options.size * coordinate.scale
+        allowed += 0.5 * coordinate.mass * slow * slow
+    return change <= allowed
