@@ -80,10 +80,10 @@ def allowed(bar: Bar, tolerance: float) -> float:
     The tolerance; rebounds that would end within ENDED are ended at once (method 2.9), so that the bar misses what the pressed
     follower does to it in that time; a tangent joint is passed without the friction of its impact.
     """
-    d, share = abs(bar.kink), 1.0 / (1.0 - bar.restitution)
+    d = abs(bar.kink)
     slope = bar.friction + math.sin(d)
     ended = ENDED * abs(bar.torque) / bar.arm * slope / (bar.mass * abs(bar.speed)) if bar.restitution > 0.0 else 0.0
-    passed = bar.inertia / bar.arm**2 / bar.mass * d * slope * share if 0.0 < bar.kink < TANGENT else 0.0
+    passed = bar.inertia / bar.arm**2 / bar.mass * d * slope if 0.0 < bar.kink < TANGENT else 0.0
     return 1e-9 + 20.0 * tolerance + ended + passed
 
 

@@ -162,9 +162,7 @@ def _bounce(bar: Bar, surface: _Surface, x: Vector, span: float) -> tuple[float,
         rate, closing = float(w_n @ x[2:]), -(w_n[1] * pull + bend)
         time = 2.0 * max(rate, 0.0) / closing if closing > 0.0 else span
         if time < SHORT:
-            return spent, x if rate <= 0.0 else single_impact(
-                Bar(**{**vars(bar), "restitution": 0.0}), surface, _against(x, w_n)
-            )
+            return spent, _ended(surface, x)
         start = x
 
         def flown(t: float, start: Vector = start) -> Vector:
@@ -180,10 +178,16 @@ def _bounce(bar: Bar, surface: _Surface, x: Vector, span: float) -> tuple[float,
         spent, x = spent + time, single_impact(bar, surface, flown(time))
 
 
-def _against(x: Vector, w_n: Vector) -> Vector:
-    """The same state with its gap rate turned round by the follower: what it comes back with."""
-    rate = float(w_n @ x[2:])
-    return np.array([x[0], x[1], x[2], x[3] - 2.0 * rate / w_n[1]])
+def _ended(surface: _Surface, x: Vector) -> Vector:
+    """The state without the rest of its gap rate.
+
+    What is left to rebound takes the time T, in which the contact gives the momentum of the rate less than the load would in
+    T. To ride on at once, with the load, that momentum is taken away, with its friction.
+    """
+    inverse = _inverse(surface.bar)
+    _, w_n, w_t, _ = surface.at(x)
+    force = w_n - surface.bar.friction * math.copysign(1.0, float(w_t @ x[2:])) * w_t
+    return np.concatenate([x[:2], x[2:] - inverse * force * float(w_n @ x[2:]) / float(w_n @ (inverse * force))])
 
 
 def _past_concave(bar: Bar, after: Vector, span: float) -> Vector | None:
