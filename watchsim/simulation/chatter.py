@@ -74,7 +74,8 @@ def end_chatter(model, state, m, time, scratch):
 
     P are the impulses of the plastic impact with the rates that free motion over `time` would lead to, lambda the
     forces of the contacts that P finds in force. What lambda does will be integrated when that time passes; the rest
-    is done now: u += M⁻¹ W (P - lambda time). TOO_EARLY where that would gain energy. `scratch.work` holds h and the inverse masses of the last decision.
+    is done now: u += M⁻¹ W (P - lambda time). TOO_EARLY where that would gain energy. `scratch.work` holds h and the
+    inverse masses of the last decision.
     """
     closed, rest, work = scratch.closed, scratch.rest, scratch.work
     status = plastic_impact(model, closed, m, time, state.u, work)
