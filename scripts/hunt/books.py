@@ -74,7 +74,8 @@ def faults(run: Trajectory, material: Material) -> Iterator[str]:
         return
     loose = max(1.0, run.tolerance / 1e-8)
     looks, done = run.counts["gap_evaluations"], run.counts["events"] + run.counts["steps"] + run.counts["flights"]
-    if looks > LOOKS_PER_STEP * (done + 10) * max(run.counts["declared_pairs"], 1):
+    turns = np.abs(np.diff(run.q, axis=0)).sum() / (2.0 * np.pi)  # a wheel that runs away is looked at in every turn
+    if looks > LOOKS_PER_STEP * (done + turns + 10) * max(run.counts["declared_pairs"], 1):
         yield f"hanging: {looks} gap evaluations for {done} steps and events of {run.counts['declared_pairs']} pairs"
     scene, m = run.scene, masses(run.scene)
     kinetic = 0.5 * (run.u**2) @ m

@@ -54,7 +54,6 @@ def test_the_truth_itself_keeps_its_energy() -> None:
         assert 0.5 * float(masses @ end[2:] ** 2) - bar.torque * end[1] == pytest.approx(begun, rel=1e-11)
 
 
-@pytest.mark.xfail(strict=True, reason="rebounds ended within gap_close leave the friction of their impact behind")
 @pytest.mark.parametrize(("angle", "tolerance"), [(1e-3, 1e-7), (1e-4, 1e-9)])
 def test_rebounds_that_are_ended_take_their_friction_with_them(angle: float, tolerance: float) -> None:
     """Rebounds that are over have given the contact what a plastic impact gives, friction included."""

@@ -16,6 +16,7 @@ from watchsim.contact.poses import place, point_of
 from watchsim.dynamics.forces import driving_force, joint_damping, joint_energy, stretch, table_force
 from watchsim.dynamics.linear import copy
 from watchsim.jit import kernel
+from watchsim.simulation.immovable import is_immovable
 from watchsim.simulation.moreau_impact import friction_cones, solve_percussions
 from watchsim.simulation.moreau_laws import cone
 from watchsim.simulation.moreau_mobility import fill_mobility, push, rates_of
@@ -51,6 +52,8 @@ def closed_at_middle(model, cells, state, options, h, work):
                 if m == len(work.closed.ids):
                     return -2
                 contact_kinematics(model, k, work.pose, m, work.closed)
+                if is_immovable(model, work.closed, m):
+                    continue
                 m += 1
     return m
 

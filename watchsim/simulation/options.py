@@ -8,7 +8,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from watchsim.jit import by_reference
-from watchsim.mechanism.compile import CLEARANCE
 from watchsim.mechanism.features import JOINT
 
 FINEST_ROWS, COARSEST_ROWS = 0.0125, 0.1  # rad
@@ -40,7 +39,8 @@ def options_for(size: float, tolerance: float, max_step: float) -> Options:
     return Options(
         tolerance=tolerance,
         gap_zero=1e-13 * size,
-        gap_close=min(max(1e-9, tolerance), 0.25 * CLEARANCE) * size,
+        # Alike for all tolerances: which contacts share an impact must not depend on how exactly it is computed.
+        gap_close=1e-9 * size,
         # A corner that lands flat comes within its primitives only when it has landed: as far behind as drift has let it.
         behind=max(2e-10, min(20.0 * tolerance, 2e-5)) * size,
         extent=4.0 * JOINT * size,

@@ -15,9 +15,9 @@ from watchsim.contact.lookup import LISTED, UNKNOWN, candidate, candidates, time
 from watchsim.contact.poses import point_of
 from watchsim.dynamics.linear import copy
 from watchsim.jit import kernel
-from watchsim.mechanism.model import FREE, LINE, PIVOT, SLIDE
+from watchsim.mechanism.model import FIXED, FREE, LINE, PIVOT, SLIDE
 from watchsim.simulation.handover import is_beside_active, room_beside_active
-from watchsim.simulation.immovable import is_immovable
+from watchsim.simulation.immovable import IMMOVABLE, is_immovable
 from watchsim.simulation.path import body_on_path
 from watchsim.simulation.sleep import is_at_rest
 from watchsim.simulation.state import N_GAPS, N_LOOKUPS
@@ -188,6 +188,10 @@ def _time_immovable(model, options, k, rate, bend, scratch):
     contact_kinematics(model, k, scratch.pose, 0, scratch.rest)
     if not is_immovable(model, scratch.rest, 0):
         return 0.0
+    b = model.primitives[model.contacts[k].b]
+    motion = model.bodies[b.body].motion
+    if b.kind == LINE and motion in (FIXED, SLIDE):
+        bend *= math.sqrt(IMMOVABLE)  # the line does not turn: bodies accelerate along it, too
     steady = 0.25 * options.behind / max(-rate, SLOWEST)
     return min(steady, math.sqrt(0.5 * options.behind / max(bend, SLOWEST)))
 
