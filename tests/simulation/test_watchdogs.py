@@ -1,0 +1,199 @@
+"""Is a run that goes wrong ended by its own checks, and do instants come to an end?"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from moving_scenes import box, circle, ground, profile, touching
+
+from watchsim import jit
+from watchsim.jit import callable_kernel
+from watchsim.mechanism.body import Body
+from watchsim.mechanism.compile import compile_scene
+from watchsim.mechanism.scene import Scene
+from watchsim.simulation.advance import BEARING, KINDS, TOUCHED
+from watchsim.simulation.books import ledger_fails, what_alternates
+from watchsim.simulation.bracket import LOOK_EVERY, MOST, is_slow, next_time
+from watchsim.simulation.coupled import NORMAL
+from watchsim.simulation.explained import is_explained
+from watchsim.simulation.once import FIRMER, begin_instant, decide_once, forget_decisions
+from watchsim.simulation.once import MOST as MOST_LENIENT
+from watchsim.simulation.options import options_for
+from watchsim.simulation.run import pairs_of
+from watchsim.simulation.simulate import simulate
+from watchsim.simulation.state import RECENT, new_state
+from watchsim.simulation.stops import Stop
+
+ROOT = Path(jit.__file__).resolve().parents[1]
+SABOTAGE = """
+import sys
+import watchsim.simulation.advance as advance
+import watchsim.simulation.settle as settle
+from moving_scenes import profile
+from watchsim.simulation.simulate import simulate
+
+def stop_everything(closed, m, mode, independent, work, out_u):
+    out_u[:] = 0.0
+
+{place}.project_velocities = stop_everything
+run = simulate(profile("incline", "scene.toml"), duration=2.0)
+print(run.stop.name)
+print(run.stop_message)
+"""
+
+
+@pytest.mark.parametrize("place", ["advance", "settle"])
+def test_a_correction_that_stops_bodies_ends_the_run(place: str, tmp_path: Path) -> None:
+    """Corrections replaced, in plain Python, by one that stops all motion: the run says so and keeps what it has."""
+    environment = {
+        **os.environ,
+        "PYTHONPATH": os.pathsep.join([str(ROOT), str(Path(__file__).parent)]),
+        "NUMBA_DISABLE_JIT": "1",
+    }
+    done = subprocess.run(
+        [sys.executable, "-c", SABOTAGE.format(place=place)], env=environment, capture_output=True, text=True, check=True
+    )
+    stop, message = done.stdout.splitlines()[:2]
+    assert stop == "UNEXPLAINED"
+    assert "more than the impulses there explain" in message
+
+
+def test_changes_of_energy_are_explained_up_to_rounding() -> None:
+    model, options = compile_scene(profile("incline")).model, options_for(0.1, 1e-9, 1e-3)
+    explained = callable_kernel(is_explained)
+    assert explained(model, options, 1.0, 1.0 + 5e-7, 1.0)
+    assert not explained(model, options, 1.0, 1.0 - 5e-6, 1.0)
+    assert explained(model, options, 1e-20, 0.0, 1.0)  # of what was highest, or slow enough to count as standing
+
+
+def test_a_ledger_that_does_not_close_is_noticed() -> None:
+    energy = {"in_J": 1.0, "stored_J": 0.5, "dissipated": {"friction": 0.5}, "residual_J": 1e-5}
+    assert ledger_fails(energy, 0.5, 1e-9)
+    assert not ledger_fails(energy | {"residual_J": 1e-6}, 0.5, 1e-9)
+    assert not ledger_fails(energy, 0.5, 1e-7)  # what was asked for
+    assert not ledger_fails({"in_J": 0.0, "stored_J": 0.0, "dissipated": {}, "residual_J": 0.0}, 0.0, 1e-9)
+
+
+def test_no_set_of_modes_is_decided_twice_on_the_same_terms() -> None:
+    """Two sets of modes that alternate make the terms more lenient each time one comes back, and then the run ends."""
+    compiled = compile_scene(profile("incline"))
+    state = new_state(compiled.model, compiled.q, compiled.u)
+    once, forget, begin = (callable_kernel(kernel) for kernel in (decide_once, forget_decisions, begin_instant))
+    seen: list[tuple[int, float]] = []
+    for turn in range(1000):
+        state.numbers[0] = turn % 2
+        state.mode[0] = 1 + turn % 2
+        if not once(state):
+            break
+        terms = (turn % 2, float(state.lenience[0]))
+        seen.append(terms)
+    assert state.lenience[0] > MOST_LENIENT
+    assert len(seen) < 40
+    assert {lenience for _, lenience in seen} == {FIRMER**power for power in range(8)}
+    begin(state)
+    assert state.lenience[0] == 1.0
+    assert once(state)
+    forget(state)
+    assert once(state)  # after an impact the same modes may come again
+    assert state.lenience[0] == 1.0
+
+
+def test_what_alternates_is_named_with_bodies_and_edges() -> None:
+    compiled = compile_scene(profile("bench_lever"))
+    pairs, bodies = pairs_of(compiled), ["wheel", "lever", "balance"]
+    recent = np.zeros(RECENT + 1, np.int64)
+    recent[:4] = KINDS * 5 + NORMAL, KINDS * 5 + TOUCHED, KINDS * 5 + NORMAL, KINDS * 1 + BEARING
+    recent[RECENT] = 4
+    words = what_alternates(None, SimpleNamespace(recent=recent), pairs, bodies)
+    assert f"the force ends at {pairs[5]} (2×)" in words
+    assert f"{pairs[5]} touch (1×)" in words
+    assert "the bearing of lever" in words
+
+
+def bracketed(value: object) -> tuple[float, int]:
+    """A root in [0, 1] found as the solver does, and the evaluations it took."""
+    following, slow = callable_kernel(next_time), callable_kernel(is_slow)
+    low, high, f_low, f_high, side, before = 0.0, 1.0, value(0.0), value(1.0), 0, 2.0
+    for number in range(MOST):
+        middle = following(low, f_low, high, f_high, slow(number, high - low, before))
+        if number % LOOK_EVERY == 0:
+            before = high - low
+        if high - low <= 1e-15 or not low < middle < high:
+            break
+        f = value(middle)
+        if f <= 0.0:
+            high, f_high, f_low, side = middle, f, f_low * (0.5 if side == 1 else 1.0), 1
+        else:
+            low, f_low, f_high, side = middle, f, f_high * (0.5 if side == -1 else 1.0), -1
+    return high, number
+
+
+@pytest.mark.parametrize("root", [1e-9, 0.1, 0.5, 0.999])
+def test_roots_are_found_where_a_function_is_flat_and_then_falls_steeply(root: float) -> None:
+    """The least of a margin that hardly changes and one that falls off: Illinois' method alone is lost there."""
+    found, evaluations = bracketed(lambda x: min(1e-12, root - x + 1e-12))
+    assert found == pytest.approx(root, abs=2e-12)
+    assert evaluations < MOST - 1
+    smooth, few = bracketed(lambda x: root * root - x * x)
+    assert smooth == pytest.approx(root, abs=1e-14)
+    assert few < 60
+
+
+def test_bodies_that_travel_together_are_not_looked_at_for_ever() -> None:
+    """Two free discs go on together after a plastic impact, without a force between them."""
+    discs = (
+        Body("a", "free", (0.0, 0.0), velocity=(0.9, 0.0, 0.0), mass=0.09, inertia=1e-6, loops=(circle(5e-3),)),
+        Body("b", "free", (0.015, 0.0), velocity=(-0.9, 0.0, 0.0), mass=0.01, inertia=1e-7, loops=(circle(5e-3),)),
+    )
+    done = simulate(Scene("discs", discs, contacts=touching("a", "b"), duration=1.0))
+    assert done.stop == Stop.DURATION
+    assert done.counts["gap_evaluations"] < 2000
+    np.testing.assert_allclose(done.end_u[[0, 3]], 0.72, rtol=1e-12)
+
+
+def test_equal_pendulums_that_meet_at_their_lowest_point_go_on_together() -> None:
+    """All forces between them are rounding: nothing alternates. The speed halves, and both rise as one pendulum would."""
+    length, radius, gravity = 0.3, 0.02, 9.81
+    bob = {
+        "mass": 0.1,
+        "inertia": 0.1 * length**2,
+        "centre_of_mass": (0.0, -length),
+        "loops": (circle(radius, (0.0, -length)),),
+    }
+    bodies = (
+        Body("a", "pivot", (0.0, 0.0), -1.0, **bob),
+        Body("b", "pivot", (2.0 * radius, 0.0), 0.0, **bob),
+    )
+    scene = Scene("pendulums", bodies, contacts=touching("a", "b"), duration=1.0, gravity=(0.0, -gravity))
+    for tolerance in (1e-7, 1e-9, 1e-12):
+        done = simulate(scene, tolerance=tolerance)
+        assert done.stop == Stop.DURATION
+        highest = np.arccos(1.0 - 0.25 * (1.0 - np.cos(1.0)))
+        assert done.q[:, 1].max() == pytest.approx(highest, rel=1e-3)
+        np.testing.assert_allclose(done.q[done.t > 0.5, 0], done.q[done.t > 0.5, 1], atol=1e-9)
+
+
+def test_a_rocking_block_comes_to_rest_on_both_corners() -> None:
+    tilt, side = 0.02, 0.04
+    block = Body(
+        "block",
+        "free",
+        (0.0, 0.5 * side * (np.cos(tilt) + np.sin(tilt))),
+        tilt,
+        velocity=(0.0, 0.0, 0.0),
+        mass=0.1,
+        inertia=0.1 * side**2 / 6.0,
+        loops=(box(side, side),),
+    )
+    contacts = touching("ground", "block", friction=0.5)
+    done = simulate(Scene("rocking", (ground(), block), contacts=contacts, duration=2.0, gravity=(0.0, -9.81)))
+    assert done.stop == Stop.DURATION
+    np.testing.assert_allclose(done.end_u, 0.0, atol=1e-9)
+    assert done.end_q[1] == pytest.approx(0.5 * side, abs=1e-10)
+    assert done.end_q[2] == pytest.approx(0.0, abs=1e-9)
