@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from watchsim.jit import kernel
 
-MOST = 240  # evaluations at most: bisections alone reach the rounding of time before
+MOST = 250  # evaluations at most: bisections alone reach the rounding of time before
 LOOK_EVERY = 3
 RESOLUTION = 1e-15  # share of the time since the start of the run: closer bounds are the same instant
 

@@ -254,6 +254,8 @@ def crossing(model, state, options, k, start, end, scratch):
         else:
             clear = clear and leaving if outside else clear
             safe = _time_to_zero(gap, rate, outside, (closing, bend, distance), options)
+            if near and not leaving:
+                safe = max(safe, _time_immovable(model, options, k, rate, bend, scratch))
             # Beside its primitives the gap may pass through zero: which side it is on afterwards is found anew.
             fresh = beside > safe
             # Never less than the rounding of time itself.
