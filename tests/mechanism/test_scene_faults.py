@@ -278,7 +278,7 @@ def test_free_body_with_two_centres(desk, good):
 def test_files_that_are_no_scene(desk, tmp_path):
     with pytest.raises(SceneError, match="there is no such scene file"):
         load(tmp_path / "none.toml")
-    with pytest.raises(SceneError, match="cannot be read"):
+    with pytest.raises(SceneError, match="this folder holds no scene"):
         load(tmp_path)
     latin = tmp_path / "latin.toml"
     latin.write_bytes('title = "Unruh µ"'.encode("latin-1"))

@@ -16,12 +16,13 @@ from watchsim.analysis.archive import read_trajectory, write_trajectory
 from watchsim.analysis.folder import write_folder
 from watchsim.analysis.state_file import read_state, write_state
 from watchsim.analysis.tables import json_text, write_events
+from watchsim.mechanism.travelling import LOCK, travelling
 from watchsim.simulation.trajectory import Trajectory
 
-SUMMARY, LOCK, TRAJECTORY, EVENTS = "summary.json", "scene.lock.toml", "trajectory.npz", "events.csv"
+SUMMARY, TRAJECTORY, EVENTS = "summary.json", "trajectory.npz", "events.csv"
 STATE = "state.npz"
 FAILURE = "lcp_failure.json"  # only where the solver gave up on a complementarity problem
-LATER = ("beats.csv", "phases.csv", "plots", "drawings", "movie.mp4", "movie.gif", "report.html", "import.png")
+LATER = ("beats.csv", "phases.csv", "report.txt", "plots", "drawings", "movie.mp4", "movie.gif", "report.html", "import.png")
 OURS = frozenset((SUMMARY, LOCK, TRAJECTORY, EVENTS, STATE, FAILURE, *LATER))
 
 Extra = Mapping[str, str | bytes | Callable[[Path], object]]
@@ -49,7 +50,7 @@ def write_results(
     run: Trajectory,
     folder: str | os.PathLike[str],
     summary: Mapping[str, Any] | None = None,
-    scene_lock: str = "",
+    scene_lock: str | None = None,
     *,
     extra: Extra | None = None,
     force: bool = False,
@@ -57,7 +58,7 @@ def write_results(
     """Write a results folder and return its path.
 
     summary     numbers for summary.json (numpy values welcome; not-a-number becomes null)
-    scene_lock  text of scene.lock.toml; drawings are named relative to the folder
+    scene_lock  text of scene.lock.toml; by default made of the run's scene, whose drawings go into the folder with it
     extra       more files: relative path -> text, bytes, or a function that writes the file it is given
     force       replace an existing results folder; files in it that are not ours are kept
 
@@ -65,7 +66,8 @@ def write_results(
     is then still there, and nothing else.
     """
     target = check_folder(folder, force)
-    write_folder(target, lambda place: _fill(place, run, summary or {}, scene_lock, extra or {}), OURS, "the results")
+    files: dict[str, Any] = {**(travelling(run.scene) if scene_lock is None else {LOCK: scene_lock}), **(extra or {})}
+    write_folder(target, lambda place: _fill(place, run, summary or {}, files), OURS, "the results")
     return target
 
 
@@ -89,13 +91,12 @@ def read_results(folder: str | os.PathLike[str]) -> Trajectory:
     return run
 
 
-def _fill(place: Path, run: Trajectory, summary: Mapping[str, Any], scene_lock: str, extra: Extra) -> None:
+def _fill(place: Path, run: Trajectory, summary: Mapping[str, Any], extra: Extra) -> None:
     write_trajectory(run, place / TRAJECTORY)
     write_events(run, place / EVENTS)
     if run.end_state is not None:
         write_state(run.end_state, place / STATE)
     (place / SUMMARY).write_text(json_text(summary), encoding="utf-8")
-    (place / LOCK).write_text(scene_lock, encoding="utf-8")
     if run.failure is not None:
         (place / FAILURE).write_text(json_text(run.failure), encoding="utf-8")
     for name, content in extra.items():

@@ -10,7 +10,9 @@ HELP = "everything short of simulating: units, overlap at the start, mass, frequ
 
 
 def options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("scene", metavar="SCENE", help="a scene file (TOML), or the folder that holds scene.toml")
+    parser.add_argument(
+        "scene", metavar="SCENE", help="a scene file (TOML), the folder that holds scene.toml, or a results folder"
+    )
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of text")
     parser.add_argument(
         "--png", metavar="FILE", help="where to write a picture of the start position, what can ever touch in colour"

@@ -33,7 +33,12 @@ HELP = "simulate a scene and write a results folder"
 
 
 def options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("scene", metavar="SCENE", help="a scene file (TOML), or the folder that holds scene.toml")
+    parser.add_argument(
+        "scene",
+        metavar="SCENE",
+        nargs="?",
+        help="a scene file (TOML), the folder that holds scene.toml, or a results folder (default with --resume: its own)",
+    )
     parser.add_argument("-o", "--output", metavar="DIR", help="results folder (default results/NAME)")
     parser.add_argument(
         "--record",
@@ -62,7 +67,9 @@ def run(args: argparse.Namespace) -> int:
     from watchsim.commands.scenes import load_scene
     from watchsim.units import TIME
 
-    scene = load_scene(args.scene, args.set)
+    if args.scene is None and args.resume is None:
+        raise InputError("run: name a scene file, or the folder that holds scene.toml.")
+    scene = load_scene(args.scene or args.resume, args.set)
     if args.record:
         scene = scene.set("run.record", [_record(what) for what in args.record])
     duration = None if args.duration is None else parse_positive("--duration", args.duration, TIME)
@@ -98,13 +105,7 @@ def run(args: argparse.Namespace) -> int:
         for warning in summary["warnings"]:
             say(f"Warning: {warning}.")
     else:
-        from watchsim.analysis.summary import summary_text
-
-        print(summary_text(trajectory, summary))
-        if args.profile:
-            from watchsim.bench.profile import profile_text
-
-            print(profile_text(summary["profile"]))
+        print(report_text(trajectory, summary))
         print(f"Results: {folder}")
     return status(trajectory, summary)
 
@@ -149,7 +150,6 @@ def write(run: Trajectory, folder: Path, extras: Extras, force: bool, changed: S
     from watchsim.analysis.summary import summary, tables
     from watchsim.analysis.tables import plain
     from watchsim.commands.pictures import pictures
-    from watchsim.mechanism.lock import lock_text
     from watchsim.simulation.stops import Stop
 
     if run.stop == Stop.INTERRUPTED:
@@ -162,8 +162,21 @@ def write(run: Trajectory, folder: Path, extras: Extras, force: bool, changed: S
 
         numbers["profile"] = plain(profile_of(run))
     extra: dict[str, Any] = {**tables(run), **pictures(run, extras.plots, extras.movie, extras.gif)}
-    write_results(run, folder, numbers, lock_text(run.scene, folder.absolute()), extra=extra, force=force)
+    extra["report.txt"] = report_text(run, numbers) + "\n"
+    write_results(run, folder, numbers, extra=extra, force=force)
     return numbers
+
+
+def report_text(run: Trajectory, summary: dict[str, Any]) -> str:
+    """What the terminal says of a run, which report.txt keeps."""
+    from watchsim.analysis.summary import summary_text
+
+    text = summary_text(run, summary)
+    if "profile" in summary:
+        from watchsim.bench.profile import profile_text
+
+        text += "\n" + profile_text(summary["profile"])
+    return text
 
 
 def _with_error_bars(run: Trajectory) -> dict[str, Any]:
@@ -245,8 +258,10 @@ def _record(what: str) -> object:
 
 def _name(scene: Scene) -> str:
     """A folder name for the results: the scene's folder, with the file's own name where it is not scene.toml."""
+    from watchsim.mechanism.load import SCENE_FILES
+
     path = scene.path
     if path is None:
         return "scene"
     folder = path.resolve().parent.name
-    return folder if path.stem == "scene" else f"{folder}_{path.stem}"
+    return folder if path.name in SCENE_FILES else f"{folder}_{path.stem}"

@@ -28,10 +28,15 @@ if sys.version_info >= (3, 11):
 else:
     import tomli as tomllib
 
+SCENE_FILES = ("scene.toml", "scene.lock.toml")  # in a folder, the first that is there
+
 
 def load(path: str | Path) -> Scene:
-    """The scene of a TOML file, in SI units. SceneError lists everything that is wrong with it."""
-    path = Path(path)
+    """The scene of a TOML file or of the folder that holds one, in SI units. SceneError lists all that is wrong with it.
+
+    Of a folder it is `scene.toml`, else `scene.lock.toml`, the scene of a results folder.
+    """
+    path = _scene_file(Path(path))
     text = _text(path)
     try:
         mapping = tomllib.loads(text)
@@ -46,7 +51,8 @@ def from_mapping(mapping: dict[str, Any], path: Path | None, faults: Faults | No
     folder = path.parent if path else Path()
     _note_sections(mapping, faults)
     heading = read_heading(mapping, faults)
-    bodies, findings, sound = read_bodies(mapping.get("bodies", {}), folder, faults)
+    read = read_bodies(mapping.get("bodies", {}), folder, faults)
+    bodies, sound = read.bodies, read.sound
     springs = read_springs(mapping, bodies, faults)
     torques = read_torques(mapping, bodies, faults)
     damping = read_damping(mapping, bodies, springs, faults)
@@ -74,8 +80,19 @@ def from_mapping(mapping: dict[str, Any], path: Path | None, faults: Faults | No
         expect=expect,
         path=path,
         source=mapping,
-        findings=findings,
+        findings=read.findings,
+        drawings=read.drawings,
     )
+
+
+def _scene_file(path: Path) -> Path:
+    if not path.is_dir():
+        return path
+    found = next((path / name for name in SCENE_FILES if (path / name).is_file()), None)
+    if found is None:
+        message = f"this folder holds no scene: neither {' nor '.join(SCENE_FILES)} is in it"
+        raise SceneError([Fault("", message, place=str(path))])
+    return found
 
 
 def _text(path: Path) -> str:
@@ -113,9 +130,9 @@ def _check_lock(mapping: Mapping[str, Any], folder: Path, faults: Faults) -> Non
         return
     table = Table(mapping["lock"], "lock", LOCK, faults)
     digests = table.mapping.get("drawings", {})
-    for name, digest in digests.items() if isinstance(digests, dict) else ():
+    for name, expected in digests.items() if isinstance(digests, dict) else ():
         path = folder / name
-        if path.is_file() and file_digest(path) != digest:
+        if path.is_file() and file_digest(path) != expected:
             faults.add(
                 f"lock.drawings.{name}", "the drawing was changed after this scene was locked. Load the original scene file"
             )
@@ -123,4 +140,9 @@ def _check_lock(mapping: Mapping[str, Any], folder: Path, faults: Faults) -> Non
 
 def file_digest(path: Path) -> str:
     """SHA-256 of the file, hexadecimal."""
-    return hashlib.sha256(path.read_bytes()).hexdigest()
+    return digest(path.read_bytes())
+
+
+def digest(data: bytes) -> str:
+    """SHA-256, hexadecimal."""
+    return hashlib.sha256(data).hexdigest()

@@ -30,7 +30,7 @@ class Outlines:
 
     `loops` can touch, `rest` are closed outlines on layers left out, `aside` those that solids use as sections and
     hairsprings, `bores` those that solids take out and nothing fills, `chains` the open lines. `pivot` is None when nobody said
-    where it is. `errors` are what is wrong on layers left out.
+    where it is. `errors` are what is wrong on layers left out. `data` is the drawing file, None without one.
     `sound` is False after a fault: questions about layers are then not worth asking.
     """
 
@@ -43,6 +43,7 @@ class Outlines:
     bores: tuple[Loop, ...] = ()
     chains: tuple[Loop, ...] = ()
     errors: tuple[Finding, ...] = ()
+    data: bytes | None = None
 
     @property
     def all(self) -> tuple[Loop, ...]:
@@ -87,6 +88,7 @@ def _from_drawing(table: Table, folder: Path) -> Outlines:
         bores=tuple(loop for loop in closed if loop.layer in drilled - apart),
         chains=drawing.open_chains,
         errors=tuple(f for f in drawing.findings if f.severity == "error" and f.layer in apart and f.layer not in layers),
+        data=drawing.data,
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -24,15 +25,27 @@ from watchsim.units import SPEED
 REFUSED = ("adjust",)
 
 
-def read_bodies(mapping: object, folder: Path, faults: Faults) -> tuple[tuple[Body, ...], tuple[Finding, ...], frozenset[str]]:
-    """All bodies, what their drawings said besides errors, and the names of bodies whose outlines are sound."""
+@dataclass(frozen=True)
+class ReadBodies:
+    """All bodies, what their drawings said besides errors, the names of bodies whose outlines are sound, and the drawings as
+    they were read: name in the scene file -> bytes."""
+
+    bodies: tuple[Body, ...] = ()
+    findings: tuple[Finding, ...] = ()
+    sound: frozenset[str] = frozenset()
+    drawings: Mapping[str, bytes] = field(default_factory=dict)
+
+
+def read_bodies(mapping: object, folder: Path, faults: Faults) -> ReadBodies:
+    """Every body of the scene file; faults go to `faults`."""
     if not isinstance(mapping, dict):
         faults.add("bodies", "write one table per body, such as [bodies.wheel]", shown(mapping))
-        return (), (), frozenset()
+        return ReadBodies()
     users = Counter(_drawing_path(entry, folder) for entry in mapping.values())
     bodies: list[Body] = []
     findings: list[Finding] = []
     sound: set[str] = set()
+    drawings: dict[str, bytes] = {}
     for name, entry in mapping.items():
         motion = motion_of(mapping, name)
         table = Table(entry, f"bodies.{name}", BODY, faults, motion)
@@ -45,7 +58,9 @@ def read_bodies(mapping: object, folder: Path, faults: Faults) -> tuple[tuple[Bo
         bodies.append(_body(name, table, motion, (outlines, inertias), rest, _carrier(table, name, mapping)))
         findings.extend((*outlines.findings, *inertias.findings))
         sound.update([name] if outlines.sound else [])
-    return tuple(bodies), tuple(dict.fromkeys(findings)), frozenset(sound)
+        if outlines.data is not None:
+            drawings[table.text("drawing")] = outlines.data
+    return ReadBodies(tuple(bodies), tuple(dict.fromkeys(findings)), frozenset(sound), drawings)
 
 
 def motion_of(bodies: Mapping[str, Any], name: object) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -29,8 +30,9 @@ class Scene:
 
     `tangential_law` ("coulomb", "pg1996" or "shifted") says what friction does in the expansion of impacts, `nu` belongs to
     pg1996 (docs/laws.md).
-    `source` is the TOML mapping it was made from, `path` its file, `findings` what the drawings said besides errors; two
-    scenes are equal when everything else is.
+    `source` is the TOML mapping it was made from, `path` its file, `findings` what the drawings said besides errors,
+    `drawings` the files themselves as they were read, by their names in the scene file; two scenes are equal when everything
+    else is.
     """
 
     title: str
@@ -50,6 +52,7 @@ class Scene:
     path: Path | None = field(default=None, compare=False)
     source: dict[str, Any] = field(default_factory=dict, repr=False, compare=False)
     findings: tuple[Finding, ...] = field(default=(), repr=False, compare=False)
+    drawings: Mapping[str, bytes] = field(default_factory=dict, repr=False, compare=False)
 
     def body(self, name: str) -> Body:
         """The body of that name; KeyError if there is none."""
