@@ -65,6 +65,7 @@ def options(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from watchsim.analysis.results import check_folder
     from watchsim.commands.scenes import load_scene
+    from watchsim.mechanism.notes import notes
     from watchsim.units import TIME
 
     if args.scene is None and args.resume is None:
@@ -97,6 +98,8 @@ def run(args: argparse.Namespace) -> int:
         "--method": method != EVENT_DRIVEN,
     }
     changed = [name for name, value in given.items() if value]
+    for note in notes(scene):
+        say(f"Note: {note.message}. {note.fix}")
     trajectory = simulate_with_progress(scene, duration, args.tol, method=method, step=step, start=start)
     extras = Extras(not args.no_plots, args.movie, args.gif, args.error_bars, args.profile)
     summary = write(trajectory, folder, extras, replace, changed)
@@ -162,7 +165,8 @@ def write(run: Trajectory, folder: Path, extras: Extras, force: bool, changed: S
 
         numbers["profile"] = plain(profile_of(run))
     extra: dict[str, Any] = {**tables(run), **pictures(run, extras.plots, extras.movie, extras.gif)}
-    extra["report.txt"] = report_text(run, numbers) + "\n"
+    said = [*(f"Note: {note}" for note in numbers["notes"]), report_text(run, numbers)]
+    extra["report.txt"] = "\n".join(said) + "\n"
     write_results(run, folder, numbers, extra=extra, force=force)
     return numbers
 

@@ -190,7 +190,7 @@ def finding_lines(findings: Iterable[Finding]) -> list[str]:
         seen[finding.code] = seen.get(finding.code, 0) + 1
         if seen[finding.code] <= SHOWN:
             where = f" [layer {finding.layer}]" if finding.layer is not None else ""
-            result.append(f"    {number:>3} {finding.severity}, {finding.code}{where}: {finding.message}{_place(finding)}")
+            result.append(f"    {number:>3}. {finding.severity} ({finding.code}){where}: {finding.message}{_place(finding)}")
             result += [f"        {finding.fix}"] if finding.fix and finding.fix not in fixes else []
             fixes.add(finding.fix)
     result += [f"        and {count - SHOWN} more of {code}" for code, count in seen.items() if count > SHOWN]

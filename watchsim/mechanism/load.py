@@ -14,11 +14,12 @@ from typing import Any
 
 from watchsim.mechanism.errors import Fault, Faults, SceneError
 from watchsim.mechanism.locate import key_lines
+from watchsim.mechanism.oscillation import frequency
 from watchsim.mechanism.read_bodies import read_bodies
 from watchsim.mechanism.read_carriers import note_carriers
 from watchsim.mechanism.read_contacts import read_contacts
 from watchsim.mechanism.read_forces import read_damping, read_springs, read_torques
-from watchsim.mechanism.read_settings import read_expectations, read_heading, read_lift_angle, read_run
+from watchsim.mechanism.read_settings import read_expectations, read_heading, read_run, read_timegrapher
 from watchsim.mechanism.scene import Scene
 from watchsim.mechanism.schema import LOCK, SECTIONS, nearest
 from watchsim.mechanism.table import Table
@@ -28,6 +29,7 @@ if sys.version_info >= (3, 11):
 else:
     import tomli as tomllib
 
+FAR_OFF = 0.1  # of the frequency of small swings: what a rate may be measured against
 SCENE_FILES = ("scene.toml", "scene.lock.toml")  # in a folder, the first that is there
 
 
@@ -55,15 +57,15 @@ def from_mapping(mapping: dict[str, Any], path: Path | None, faults: Faults | No
     bodies, sound = read.bodies, read.sound
     springs = read_springs(mapping, bodies, faults)
     torques = read_torques(mapping, bodies, faults)
-    damping = read_damping(mapping, bodies, springs, faults)
+    damping = read_damping(mapping, bodies, springs, heading.gravity, faults)
     contacts = read_contacts(mapping, bodies, sound, heading.tangential_law, faults)
     note_carriers(bodies, damping, contacts, faults)
     duration, record, tolerance = read_run(mapping, faults)
-    lift_angle = read_lift_angle(mapping, faults)
+    lift_angle, nominal = read_timegrapher(mapping, faults)
     expect = read_expectations(mapping, faults)
     _check_lock(mapping, folder, faults)
     faults.raise_any()
-    return Scene(
+    scene = Scene(
         title=heading.title or (path.parent.name if path else ""),
         bodies=bodies,
         springs=springs,
@@ -77,12 +79,16 @@ def from_mapping(mapping: dict[str, Any], path: Path | None, faults: Faults | No
         record=record,
         tolerance=tolerance,
         lift_angle=lift_angle,
+        nominal=nominal,
         expect=expect,
         path=path,
         source=mapping,
         findings=read.findings,
         drawings=read.drawings,
     )
+    _check_nominal(scene, faults)
+    faults.raise_any()
+    return scene
 
 
 def _scene_file(path: Path) -> Path:
@@ -122,6 +128,18 @@ def _note_sections(mapping: Mapping[str, Any], faults: Faults) -> None:
             faults.add(section, f"unknown section. {nearest(section, SECTIONS)}")
     if not mapping.get("bodies"):
         faults.add("bodies", "a scene needs at least one body, such as [bodies.wheel]")
+
+
+def _check_nominal(scene: Scene, faults: Faults) -> None:
+    """A rate is measured against a frequency near that of the oscillator; anything else is a slip."""
+    if scene.nominal is None:
+        return
+    natural = frequency(scene)
+    if natural is None:
+        faults.add("timegrapher.frequency", "nothing in this scene swings on a spring or by gravity, so it has no rate")
+    elif abs(scene.nominal / natural - 1.0) > FAR_OFF:
+        seen = f"the oscillator makes small swings at {natural:.6g} Hz ({7200.0 * natural:.6g} vph)"
+        faults.add("timegrapher.frequency", f"{seen}, more than {100 * FAR_OFF:.0f} % off: look at mass, inertia and spring")
 
 
 def _check_lock(mapping: Mapping[str, Any], folder: Path, faults: Faults) -> None:

@@ -47,6 +47,8 @@ COORDINATE = np.dtype(
         ("quadratic", "f8"),
         ("stiffness", "f8"),
         ("rest", "f8"),
+        ("level", "f8"),  # where it stands in balance: passages of it are events
+        ("watched", "i8"),  # 1: its turning points and passages are events
         ("weight_x", "f8"),  # gravity torque on an excentric rotor: cos(q) weight_y - sin(q) weight_x, see forces.py
         ("weight_y", "f8"),
         ("scale", "f8"),  # 1 rad, or the scene's size for a length

@@ -30,6 +30,7 @@ class Scene:
 
     `tangential_law` ("coulomb", "pg1996" or "shifted") says what friction does in the expansion of impacts, `nu` belongs to
     pg1996 (docs/laws.md).
+    `nominal` (Hz) is what the rate is measured against, where the scene says so.
     `source` is the TOML mapping it was made from, `path` its file, `findings` what the drawings said besides errors,
     `drawings` the files themselves as they were read, by their names in the scene file; two scenes are equal when everything
     else is.
@@ -48,6 +49,7 @@ class Scene:
     record: Recording = EVERYTHING
     tolerance: float = 1e-9
     lift_angle: float | None = None
+    nominal: float | None = None
     expect: tuple[Expectation, ...] = ()
     path: Path | None = field(default=None, compare=False)
     source: dict[str, Any] = field(default_factory=dict, repr=False, compare=False)

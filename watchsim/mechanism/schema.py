@@ -64,7 +64,7 @@ DAMPING: Keys = {
 }
 CONTACT: Keys = {"between": PLAIN, "friction": NUMBER, "restitution": NUMBER, "tangential_restitution": NUMBER}
 RUN: Keys = {"duration": Key(units.TIME), "record": Key(units.TIME), "tolerance": NUMBER}
-TIMEGRAPHER: Keys = {"lift_angle": ANGLE}
+TIMEGRAPHER: Keys = {"lift_angle": ANGLE, "frequency": Key(units.FREQUENCY)}
 EXPECTATION: Keys = {"value": PLAIN, "tolerance": PLAIN}
 LOCK: Keys = {"versions": PLAIN, "drawings": PLAIN}
 
