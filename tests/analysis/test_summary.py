@@ -90,7 +90,12 @@ def test_text_of_a_watch():
     text = "\n".join(lines)
     for part in (
         *("amplitude    270.000000°, scatter", "rate         0 s/d", "28800.00 vph, averaged from 3.333 s to 5 s"),
-        *("would show 289° with a lift angle of 52°", "none of 39", "240, 48 per second", "overlapped by up to 300 pm"),
+        *(
+            "would show 289° with a lift angle of 52°",
+            "none in 39 half swings",
+            "240, 48 per second",
+            "overlapped by up to 300 pm",
+        ),
         *("2 µJ put in, 400 nW: friction 25.0 %, damping 50.0 %, impacts 20.0 %, stored 5.0 %", "closes to 5e-11"),
         *("10 × real time, 0.5 s", "amplitude = 260° ± 1°, got 270°: MISSED"),
     ):

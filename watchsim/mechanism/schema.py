@@ -36,7 +36,7 @@ SCENE: Keys = {
 }
 SHAPES = ("circle", "polygon", "line")
 BODY: Keys = {
-    **{"drawing": PLAIN, "layers": PLAIN, "units": PLAIN, "snap": LENGTH, "material": LENGTH},
+    **{"drawing": PLAIN, "layers": PLAIN, "draw": PLAIN, "units": PLAIN, "snap": LENGTH, "material": LENGTH},
     **{"circle": LENGTH, "polygon": LENGTH, "line": LENGTH},
     **{"pivot": LENGTH, "position": LENGTH, "motion": PLAIN, "axis": NUMBER, "angle": ANGLE},
     **{"velocity": Key(units.SPIN, units.SPEED), "spin": Key(units.SPIN)},
