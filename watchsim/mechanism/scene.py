@@ -56,6 +56,10 @@ class Scene:
     findings: tuple[Finding, ...] = field(default=(), repr=False, compare=False)
     drawings: Mapping[str, bytes] = field(default_factory=dict, repr=False, compare=False)
 
+    def __repr__(self) -> str:
+        names = ", ".join(body.name for body in self.bodies)
+        return f"<Scene {self.title!r}: {names}; {len(self.contacts)} contacts declared>"
+
     def body(self, name: str) -> Body:
         """The body of that name; KeyError if there is none."""
         for body in self.bodies:
