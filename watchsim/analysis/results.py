@@ -9,6 +9,7 @@ from __future__ import annotations
 import dataclasses
 import os
 from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -92,8 +93,10 @@ def read_results(folder: str | os.PathLike[str]) -> Trajectory:
 
 
 def _fill(place: Path, run: Trajectory, summary: Mapping[str, Any], extra: Extra) -> None:
-    write_trajectory(run, place / TRAJECTORY)
-    write_events(run, place / EVENTS)
+    with ThreadPoolExecutor(1) as beside:  # packing needs another core, and no Python
+        packed = beside.submit(write_trajectory, run, place / TRAJECTORY)
+        write_events(run, place / EVENTS)
+        packed.result()
     if run.end_state is not None:
         write_state(run.end_state, place / STATE)
     (place / SUMMARY).write_text(json_text(summary), encoding="utf-8")
