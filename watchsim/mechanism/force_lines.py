@@ -30,7 +30,7 @@ def place(value: float) -> str:
 
 def length(value: float) -> str:
     """A small or large distance: "12.5 mm", "3.71 nm"."""
-    return show(value, "mm", 4) if SMALL <= abs(value) < 10.0 else metric(value, "m", 4)
+    return show(value, "mm", 4) if SMALL <= abs(value) < 1.0 else metric(value, "m", 4)
 
 
 def turned(value: float) -> str:
