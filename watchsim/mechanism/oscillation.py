@@ -7,6 +7,7 @@ not driven. Stiffnesses of springs and of gravity add; inertia counts with all t
 from __future__ import annotations
 
 import math
+from collections import deque
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
@@ -16,8 +17,13 @@ from watchsim.mechanism.carry import Ride, Weighed, rides, weigh
 from watchsim.mechanism.force import Spring
 from watchsim.mechanism.scene import Scene
 
+Loads = tuple[tuple[Ride, ...], tuple[Weighed, ...]]
+
 POISED = 1e-9  # of the radius of gyration: a centre of mass nearer to the pivot lies on it, but for rounding
 HALVINGS = 200
+
+# Asked for every spring and damper of a scene; a body's outlines make comparing longer than weighing.
+_recent: deque[tuple[tuple[Body, ...], Loads]] = deque(maxlen=4)
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,10 +112,15 @@ def _middle(springs: list[Spring], stiffness: float) -> float | None:
     return sum(spring.stiffness * spring.rest for spring in springs) / stiffness if stiffness else springs[0].rest
 
 
-def loads(bodies: tuple[Body, ...]) -> tuple[tuple[Ride, ...], tuple[Weighed, ...]]:
+def loads(bodies: tuple[Body, ...]) -> Loads:
     """How each body hangs, and what it weighs with all it carries; what cannot be carried is complained of elsewhere."""
+    for known, found in _recent:
+        if known is bodies:
+            return found
     hung = rides(bodies, _in_silence)
-    return hung, weigh(bodies, hung, _in_silence)
+    found = hung, weigh(bodies, hung, _in_silence)
+    _recent.appendleft((bodies, found))
+    return found
 
 
 def _in_silence(_name: str, _message: str) -> None:
