@@ -31,7 +31,7 @@ def moved(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Path:
 
 def test_every_command_works_on_it(moved: Path, tmp_path: Path) -> None:
     assert main(["plot", str(moved), "-o", str(tmp_path / "a.png")]) == FINE
-    assert main(["movie", str(moved), "--window", "0.1 s:0.11 s", "--size", "160x90", "-o", str(tmp_path / "a.gif")]) == FINE
+    assert main(["movie", str(moved), "--window", "0.1 s:0.11 s", "--size", "320x180", "-o", str(tmp_path / "a.gif")]) == FINE
     assert main(["export", str(moved), "--format", "dxf", "-o", str(tmp_path / "parts")]) == FINE
     assert main(["check", str(moved)]) == FINE
     assert (tmp_path / "a.png").stat().st_size > 10_000 and (tmp_path / "parts" / "lever.dxf").is_file()
