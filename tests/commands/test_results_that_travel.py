@@ -85,6 +85,22 @@ def test_what_is_kept_is_what_was_read_not_what_lies_there_now(tmp_path: Path) -
     assert travelling(scene)["drawings/lever.dxf"] == before
 
 
+def test_new_results_replace_old_drawings_but_nobody_elses(tmp_path: Path) -> None:
+    scene = tmp_path / "bench"
+    shutil.copytree(profiles_dir() / "bench_lever", scene)
+    run = ["run", str(scene), "--duration", "0.01 s", "--no-plots", "--force", "-o", str(tmp_path / "out")]
+    assert main(run) == FINE
+    drawings = tmp_path / "out" / "drawings"
+    (drawings / "mine.dxf").write_text("mine", encoding="utf-8")
+    (scene / "lever.dxf").rename(scene / "fork.dxf")
+    text = (scene / "scene.toml").read_text(encoding="utf-8")
+    (scene / "scene.toml").write_text(text.replace("lever.dxf", "fork.dxf"), encoding="utf-8")
+    assert main(run) == FINE
+    names = {path.name for path in drawings.iterdir()}
+    assert {"fork.dxf", "mine.dxf"} < names and "lever.dxf" not in names
+    assert load(tmp_path / "out").drawings["drawings/fork.dxf"] == (scene / "fork.dxf").read_bytes()
+
+
 def test_different_drawings_of_one_name_get_names_of_their_own(tmp_path: Path) -> None:
     text = "[scene]\nschema = 1\n"
     for folder, other in (("one", "banking"), ("two", "lever"), ("three", "banking")):
