@@ -27,6 +27,10 @@ mkdir -p "$scratch/images"
 "$environment/bin/python" scripts/study_convergence.py --quick --page "$scratch/convergence.md"
 cat "$scratch/long-runs.md" "$scratch/convergence.md"
 
+echo "== kinks, orientations, curves of many arcs"
+"$environment/bin/python" scripts/measure_ordinary_mechanisms.py --page "$scratch/ordinary-mechanisms.md"
+cat "$scratch/ordinary-mechanisms.md"
+
 echo "== random mechanisms, others every night"
 "$environment/bin/python" scripts/hunt_mechanisms.py --seed "$(date +%Y%m%d)" --count 1000 --jobs "$(nproc)"
 echo "== killed, interrupted, damaged, out of room"

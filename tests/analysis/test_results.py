@@ -62,6 +62,20 @@ def test_a_trajectory_comes_back_to_the_last_bit(run, tmp_path):
     assert np.array_equal(back.at(0.777)[0], run.at(0.777)[0])
 
 
+def test_a_trajectory_with_pairs_in_words_comes_back(run, tmp_path):
+    """As earlier versions wrote it: format 3, every pair in words in the header."""
+    write_trajectory(run, tmp_path / "new.npz")
+    with np.load(tmp_path / "new.npz") as file:
+        arrays = dict(file)
+    header = json.loads(arrays.pop("header").tobytes())
+    del header["names"], arrays["pairs"]
+    header |= {"format": 3, "pairs": [dataclasses.asdict(pair) for pair in run.pairs]}
+    np.savez(tmp_path / "old.npz", header=np.frombuffer(json.dumps(header).encode(), np.uint8), **arrays)
+    back = read_trajectory(tmp_path / "old.npz", run.scene)
+    assert back.pairs == run.pairs and len(run.pairs) > 0
+    assert np.array_equal(back.q, run.q) and np.array_equal(back.events, run.events)
+
+
 def test_an_existing_folder_is_left_alone_without_force(run, tmp_path):
     folder = write_results(run, tmp_path / "out", {"n": 1})
     before = snapshot(folder)
@@ -161,7 +175,7 @@ def test_what_cannot_be_read_says_why(run, tmp_path, monkeypatch):
     monkeypatch.setattr(archive, "FORMAT", 9)
     write_trajectory(run, tmp_path / "t.npz")
     monkeypatch.undo()
-    with pytest.raises(ValueError, match="has format 9; this version reads format 3"):
+    with pytest.raises(ValueError, match="has format 9; this version reads format 4"):
         read_trajectory(tmp_path / "t.npz", run.scene)
 
 

@@ -12,7 +12,7 @@ import pytest
 from pair_scenes import DEGREES, outline
 from true_contacts import touches
 
-from watchsim.contact.cells import CellFinder
+from watchsim.contact.cells import CellFinder, PairCells
 from watchsim.contact.known import forget
 from watchsim.contact.lookup import (
     ALL,
@@ -169,3 +169,33 @@ def test_far_away_every_pair_is_a_candidate() -> None:
     how, ids = listed(compiled, CellFinder(compiled.model).learn(0, q), q)
     assert how == ALL
     assert len(ids) == len(compiled.model.near)
+
+
+def table_of(cells: Cells) -> dict[int, list[int]]:
+    """The candidates of each cell in a table, by key."""
+    taken = np.flatnonzero(cells.keys >= 0)
+    return {int(cells.keys[i]): cells.entries[cells.start[i] : cells.start[i] + cells.count[i]].tolist() for i in taken}
+
+
+def test_cells_learnt_bit_by_bit_are_the_same() -> None:
+    """Blocks of cells that share some with earlier ones, in any order: each cell once, with the same candidates."""
+    model = pair("pivot", "pivot")[1].model
+    places = [np.array([0.2 + 0.05 * k, 0.1 * k]) for k in range(5)]
+    tables = []
+    for order in (places, places[::-1]):
+        forget()
+        finder = CellFinder(model)
+        for q in order:
+            finder.learn(0, q)
+        tables.append(table_of(finder.cells))
+        assert finder.number == len(tables[-1])
+        # All that another run has learnt is there from the start.
+        assert table_of(CellFinder(model).cells) == tables[-1]
+    assert tables[0] == tables[1]
+    assert all(sorted(set(found)) == found for found in tables[0].values()) and any(tables[0].values())
+    alone = {}
+    for q in places:
+        keys, count, found = PairCells(model, 0).around(q)
+        parts = np.split(found, np.cumsum(count)[:-1])
+        alone |= {int(key): part.tolist() for key, part in zip(keys, parts, strict=True)}
+    assert alone == tables[0]

@@ -16,9 +16,10 @@ Events = NDArray[Any]
 
 def contact_events(run: Trajectory, wanted: Callable[[Pair], bool], *kinds: EventKind) -> Events:
     """The rows of the event table that concern the wanted pairs of primitives, of those kinds (all if none are named)."""
-    chosen = np.array([wanted(pair) for pair in run.pairs] + [False])  # the last is for events without a contact, -1
     events = run.events
-    mask = chosen[np.where(events["contact"] >= 0, events["contact"], -1)]
+    contacts, row = np.unique(events["contact"], return_inverse=True)
+    # Events without a contact have the number -1.
+    mask = np.array([contact >= 0 and wanted(run.pairs[contact]) for contact in contacts.tolist()], bool)[row]
     if kinds:
         mask &= np.isin(events["kind"], kinds)
     return events[mask]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,19 @@ from watchsim.mechanism.model import FIXED, FREE, PIVOT, SLIDE, Records
 Array = NDArray[np.float64]
 
 
+class _Body(NamedTuple):
+    """What counts of a body, in plain numbers: reading a field of a record takes a microsecond."""
+
+    motion: int
+    first: int
+    carrier: int
+    x: float
+    y: float
+    angle: float
+    axis_x: float
+    axis_y: float
+
+
 class CellMotion:
     """The cell coordinates of one pair of bodies, read from its record (model.py), and the frame they are told in."""
 
@@ -21,8 +34,8 @@ class CellMotion:
         self.coordinates = [int(pair[f"c{i}"]) for i in range(pair.axes)]
         self.sizes = np.array([float(pair[f"size{i}"]) for i in range(pair.axes)])
         self.on = [int(pair[f"on{i}"]) for i in range(pair.axes)]
-        self._seen = {int(b): seen_from(bodies, int(b), int(pair.frame)) for b in (pair.a, pair.b)}
-        self._carrier = {b: bodies[body.carrier] for b, body in self._seen.items() if body.carrier >= 0}
+        self._seen = {int(b): _plain(seen_from(bodies, int(b), int(pair.frame))) for b in (pair.a, pair.b)}
+        self._carrier = {b: _plain(bodies[body.carrier]) for b, body in self._seen.items() if body.carrier >= 0}
 
     def pose(self, b: int, at: Array) -> tuple[Array, Array, Array]:
         """Places x, y (m) and angles (rad) of body b at cell coordinates `at`, (places, axes)."""
@@ -33,7 +46,7 @@ class CellMotion:
         c, s = np.cos(angle), np.sin(angle)
         return x + c * body.x - s * body.y, y + s * body.x + c * body.y, self._own(body, at)[2]
 
-    def _own(self, body: Any, at: Array) -> tuple[Array, Array, Array]:
+    def _own(self, body: _Body, at: Array) -> tuple[Array, Array, Array]:
         """The same for a body that nothing carries."""
         value = {coordinate: at[:, axis] for axis, coordinate in enumerate(self.coordinates)}
         x, y, angle = (np.full(len(at), v) for v in (body.x, body.y, body.angle))
@@ -54,13 +67,17 @@ class CellMotion:
             shift += more + swing * math.hypot(body.x, body.y)
         return shift, turn
 
-    def _own_freedom(self, body: Any, room: Array) -> tuple[float, float]:
+    def _own_freedom(self, body: _Body, room: Array) -> tuple[float, float]:
         value = dict(zip(self.coordinates, room.tolist(), strict=True))
         if body.motion == FIXED:
             return 0.0, 0.0
         if body.motion == FREE:
             return math.hypot(value[body.first], value[body.first + 1]), value[body.first + 2]
         return (0.0, value[body.first]) if body.motion == PIVOT else (value[body.first], 0.0)
+
+
+def _plain(body: Any) -> _Body:
+    return _Body(*(body[name].item() for name in _Body._fields))
 
 
 def turned(points: Array, angle: Array) -> Array:

@@ -9,12 +9,13 @@ from __future__ import annotations
 import itertools
 import math
 import time
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.contact.known import Known, known_cells
+from watchsim.contact.known import Cell, Known, known_cells
 from watchsim.contact.lookup import REACH, insert_cells
 from watchsim.mechanism.alike import AlikeContacts
 from watchsim.mechanism.model import Cells, Model
@@ -33,9 +34,9 @@ class CellFinder:
         self.seconds = 0.0
         self.learned = 0  # cells that shapely was asked about
         self._forget()
-        self._pairs = {p: PairCells(model, p) for p in range(len(model.pairs)) if model.pairs[p].listed}
-        for pair in self._pairs.values():
-            self._insert(*pair.everything())
+        self._pairs = {int(p): PairCells(model, int(p)) for p in np.flatnonzero(model.pairs.listed)}
+        for p, pair in self._pairs.items():
+            self._insert_cells(p, pair.known.cells())
 
     def learn(self, p: int, q: Array) -> Cells:
         """Find the cell of body pair p at q and its neighbours; returns the new table."""
@@ -44,14 +45,21 @@ class CellFinder:
         before = len(pair.known)
         if self.number > MOST:
             self._forget()
-        self._insert(*pair.around(q))
+        self._insert_cells(p, pair.known_around(q))
         self.learned += len(pair.known) - before
         self.seconds += time.perf_counter() - start
         return self.cells
 
     def _forget(self) -> None:
         self.number = self._entries = 0
+        self._inside: set[tuple[int, Cell]] = set()  # pairs of bodies and cells of theirs that the table holds
         self.cells = Cells(np.full(64, -1, np.int64), *(np.zeros(size, np.int64) for size in (64, 64, 256)))
+
+    def _insert_cells(self, p: int, cells: list[Cell]) -> None:
+        """Put cells of body pair p into the table that it does not hold yet."""
+        new = [cell for cell in cells if (p, cell) not in self._inside]
+        self._inside.update((p, cell) for cell in new)
+        self._insert(*self._pairs[p].everywhere(new))
 
     def _insert(self, keys: Integers, count: Integers, found: Integers) -> None:
         """Put cells into the table, which doubles so that it is never more than half full."""
@@ -99,8 +107,12 @@ class PairCells:
     def __init__(self, model: Model, p: int) -> None:
         self.model, self.p, self.pair = model, p, model.pairs[p]
         self.axes = [
-            _Axis(*(self.pair[f"{name}{i}"] for name in ("c", "on", "size", "wrap", "fold"))) for i in range(self.pair.axes)
+            _Axis(*(self.pair[f"{name}{i}"].item() for name in ("c", "on", "size", "wrap", "fold")))
+            for i in range(self.pair.axes)
         ]
+        reach = AROUND[len(self.axes)]
+        self._steps = np.array(list(itertools.product(range(-reach, reach + 1), repeat=len(self.axes))))
+        self._parts = np.array([axis.part for axis in self.axes])
         self.start = int(self.pair.start)
         near = model.near[self.pair.near_start : self.pair.near_stop]
         body = [int(model.coordinates[axis.coordinate].body) for axis in self.axes]
@@ -111,24 +123,24 @@ class PairCells:
         loose = [alike.loose for alike in self._alike if alike is not None]
         self.known: Known = known_cells(model, p, np.concatenate([np.zeros(0, np.int64), *loose]))
 
-    def everything(self) -> tuple[Integers, Integers, Integers]:
-        """All that is known: keys of cells, numbers of candidates, and these one after another."""
-        return self._everywhere(self.known.cells())
-
     def around(self, q: Array) -> tuple[Integers, Integers, Integers]:
-        """The same for the cell of q and its neighbours."""
-        steps = itertools.product(range(-AROUND[len(self.axes)], AROUND[len(self.axes)] + 1), repeat=len(self.axes))
-        here = [axis.cell_of(q) for axis in self.axes]
-        block = np.array(here) + np.array(list(steps))
-        parts = np.array([axis.part for axis in self.axes])
+        """Of the cell of q and its neighbours: keys of cells, numbers of candidates, and these one after another."""
+        return self.everywhere(self.known_around(q))
+
+    def known_around(self, q: Array) -> list[Cell]:
+        """The cell of q and its neighbours, of each the alike one in the first part of a turn; all of them known now."""
+        parts = self._parts
+        block = np.array([axis.cell_of(q) for axis in self.axes]) + self._steps
         block = block[((np.abs(block) < REACH) | (parts > 0)).all(axis=1)]
         turns = np.where(parts > 0, block // np.maximum(parts, 1), 0)
         base = block - turns * parts
         # Cells of one part lie side by side: they are asked about together.
-        for turn in np.unique(turns, axis=0):
-            self.known.ask(base[(turns == turn).all(axis=1)])
-        cells = list(dict.fromkeys(map(tuple, base.tolist())))
-        return self._everywhere(cells)
+        if (turns == turns[:1]).all():
+            self.known.ask(base)
+        else:
+            for turn in np.unique(turns, axis=0):
+                self.known.ask(base[(turns == turn).all(axis=1)])
+        return list(dict.fromkeys(map(tuple, base.tolist())))
 
     def here(self, q: Array) -> Integers:
         """The candidates in the cell of q alone."""
@@ -139,22 +151,31 @@ class PairCells:
         start = int(count[:place].sum())
         return found[start : start + count[place]]
 
-    def _everywhere(self, cells: list[tuple[int, ...]]) -> tuple[Integers, Integers, Integers]:
+    def everywhere(self, cells: list[Cell]) -> tuple[Integers, Integers, Integers]:
         """Cells and their candidates in all alike parts of a turn."""
         if not cells:
             return (np.zeros(0, np.int64),) * 3
         count, found = self.known.answers(cells)
         index = np.array(cells, np.int64)
-        owner = np.repeat(np.arange(len(cells)), count)
+        # Within each cell ascending: sorted together with the number of the cell.
+        first = np.repeat(np.arange(len(cells)) * int(self.pair.stop - self.pair.start), count)
         keys, lists = [], []
-        for turns in itertools.product(*(range(axis.fold) for axis in self.axes)):
+        for turns, moved in self._turned(found):
             shift = np.array([turn * axis.part for turn, axis in zip(turns, self.axes, strict=True)])
             keys.append(self._keys(index + shift))
-            moved = found
-            for alike, turn in zip(self._alike, turns, strict=True):
-                moved = alike.later(moved, turn) if alike is not None and turn else moved
-            lists.append(moved[np.lexsort((moved, owner))] + self.start)
+            lists.append(np.sort(first + moved) - first + self.start)
         return np.concatenate(keys), np.tile(count, len(keys)), np.concatenate(lists)
+
+    def _turned(self, found: Integers, level: int = 0) -> Iterator[tuple[Cell, Integers]]:
+        """For each alike part of a turn about the axes from `level` on: its numbers, and what is there for `found`."""
+        if level == len(self.axes):
+            yield (), found
+            return
+        for turn in range(self.axes[level].fold):
+            alike = self._alike[level]
+            found = alike.later(found) if alike is not None and turn else found
+            for others, moved in self._turned(found, level + 1):
+                yield (turn, *others), moved
 
     def _keys(self, index: Integers) -> Integers:
         """The keys of cells, as `lookup.cell_key` makes them."""

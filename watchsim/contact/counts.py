@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from watchsim.contact.cells import PairCells
 from watchsim.mechanism.compile import Compiled
+from watchsim.mechanism.named_rows import named_rows
 from watchsim.mechanism.pair_count import PairCount
 
 Integers = NDArray[np.int64]
@@ -44,12 +45,12 @@ def modelled_pairs(compiled: Compiled, names: Sequence[str]) -> ModelledPairs:
 def _primitives(compiled: Compiled, contacts: Integers) -> Integers:
     """The primitives of some contacts, each once."""
     declared = compiled.model.contacts
-    return np.unique(np.concatenate([declared.a[contacts], declared.b[contacts]]))
+    return named_rows(np.concatenate([declared.a[contacts], declared.b[contacts]]), len(compiled.model.primitives))[0]
 
 
 def _named(compiled: Compiled, pair: Any, body: int, names: Sequence[str]) -> str:
     """What the scene calls one side of a pair: outlines fixed on a moving body keep the name of the part they belong to."""
     contacts, primitives = compiled.model.contacts[pair.start : pair.stop], compiled.model.primitives
-    rows = np.unique(np.concatenate([contacts.a, contacts.b]))
+    rows, _ = named_rows(np.concatenate([contacts.a, contacts.b]), len(primitives))
     owners = [compiled.owners[row] for row in rows if primitives.body[row] == body]
     return ", ".join(dict.fromkeys(owners)) or names[body]

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from watchsim.contact.pair_search import PairSearch
 from watchsim.mechanism.cell_frame import seen_from
 from watchsim.mechanism.model import FIXED, PIVOT, SLIDE, Model
+from watchsim.mechanism.named_rows import named_rows
 
 Integers = NDArray[np.int64]
 Cell = tuple[int, ...]
@@ -97,7 +98,7 @@ def _digest(model: Model, p: int) -> bytes:
     cells = [float(pair[f"{name}{i}"]) for i in range(pair.axes) for name in ("size", "wrap", "fold")]
     digest.update(repr((cells, [used.index(axis) if axis >= 0 else -1 for axis in axes], float(pair.clearance))).encode())
     contacts = model.contacts[pair.start : pair.stop]
-    present, rows = np.unique(np.concatenate([contacts.a, contacts.b]), return_inverse=True)
+    present, rows = named_rows(np.concatenate([contacts.a, contacts.b]), len(model.primitives))
     mine = model.primitives[present]
     for name in mine.dtype.names:
         if name in ("before", "after"):  # numbers in the whole model, which say nothing about places

@@ -18,6 +18,7 @@ from watchsim.contact.loose import LooseContacts
 from watchsim.contact.regions import Regions
 from watchsim.mechanism.chords import Chords, chords
 from watchsim.mechanism.model import Model
+from watchsim.mechanism.named_rows import named_rows
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -33,10 +34,12 @@ class PairSearch:
         self._motion, self._clearance = CellMotion(model.bodies, pair), float(pair.clearance)
         self._regions = Regions(model, p)
         ids = model.near[pair.near_start : pair.near_stop]
-        contacts, bodies = model.contacts[ids], model.primitives.body
-        a_first = bodies[contacts.a] == pair.a
-        on_a, on_b = np.where(a_first, contacts.a, contacts.b), np.where(a_first, contacts.b, contacts.a)
-        loose_a, loose_b = np.isin(on_a, loose), np.isin(on_b, loose)
+        circle, met = model.contacts.a[ids], model.contacts.b[ids]
+        a_first = (model.primitives.body == pair.a)[circle]
+        on_a, on_b = np.where(a_first, circle, met), np.where(a_first, met, circle)
+        is_loose = np.zeros(len(model.primitives), bool)
+        is_loose[loose] = True
+        loose_a, loose_b = is_loose[on_a], is_loose[on_b]
         local = ids - pair.start
         self._always = local[loose_a & loose_b]
         self._loose = [
@@ -47,7 +50,7 @@ class PairSearch:
         alike = ~(loose_a | loose_b)
         sides = [(int(pair.a), on_a[alike]), (int(pair.b), on_b[alike])]
         # The side with fewer primitives is moved, the other one stays in the tree.
-        sides.sort(key=lambda side: len(np.unique(side[1])))
+        sides.sort(key=lambda side: len(named_rows(side[1], len(model.primitives))[0]))
         self._set_shapes(model, sides, local[alike])
 
     def _set_shapes(self, model: Model, sides: list[tuple[int, Integers]], local: Integers) -> None:
@@ -55,13 +58,14 @@ class PairSearch:
         import shapely
 
         self._bodies = [body for body, _ in sides]
-        movers, mover_row = np.unique(sides[0][1], return_inverse=True)
-        others, other_row = np.unique(sides[1][1], return_inverse=True)
+        movers, mover_row = named_rows(sides[0][1], len(model.primitives))
+        others, other_row = named_rows(sides[1][1], len(model.primitives))
         # Several contacts share a pair of primitives where several groups name it.
         wanted = mover_row * len(others) + other_row
         order = np.argsort(wanted, kind="stable")
         self._others, self._wanted, self._local = len(others), wanted[order], local[order]
         self._drawn = chords(model.primitives[movers], 0.5 * self._clearance)
+        self._owner = self._drawn.owner
         still = chords(model.primitives[others], 0.5 * self._clearance)
         self._still_sag = still.sag
         self._reach = _largest(np.hypot(*self._drawn.points.T), self._drawn.first) + self._drawn.sag
@@ -124,7 +128,11 @@ class PairSearch:
 
         `at`: cell coordinates (places, axes); `room`: how far each may change.
         """
-        local, first = self._drawn.points[np.isin(self._drawn.owner, used)], _firsts(self._drawn, used)
+        local, first = self._drawn.points, self._drawn.first
+        if len(used) < len(self._reach):
+            is_used = np.zeros(len(self._reach), bool)
+            is_used[used] = True
+            local, first = local[is_used[self._owner]], _firsts(self._drawn, used)
         (ax, ay, turn_a), (bx, by, turn_b) = (self._motion.pose(body, at) for body in self._bodies)
         world = turned(local[None], turn_a) + np.stack([ax - bx, ay - by], axis=1)[:, None, :]
         points = turned(world, -turn_b)

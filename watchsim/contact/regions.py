@@ -28,8 +28,10 @@ class Regions:
         self._motion, self._clearance = CellMotion(model.bodies, pair), float(pair.clearance)
         self._bodies = (int(pair.a), int(pair.b))
         contacts = model.contacts[pair.start : pair.stop]
-        self._circle, self._met = model.primitives[contacts.a], model.primitives[contacts.b]
-        self._circle_first = np.asarray(self._circle.body == pair.a)
+        # Of primitives there are few, of contacts many: their fields are looked up where they are needed.
+        self._circle, self._met = np.array(contacts.a), np.array(contacts.b)
+        self._primitives, self._fan = model.primitives, _fan(model.primitives, self._clearance)
+        self._is_first = np.asarray(model.primitives.body == pair.a)
 
     def possible(self, place: Integers, contact: Integers, at: Array, room: Array) -> NDArray[np.bool_]:
         """For each pair of numbers of `place` and `contact`: could it lie inside both primitives within `room` of at[place]?
@@ -38,7 +40,9 @@ class Regions:
         """
         keep = np.zeros(len(place), bool)
         for order in (False, True):
-            rows = np.flatnonzero(self._circle_first[contact] == order)
+            rows = np.flatnonzero(self._is_first[self._circle[contact]] == order)
+            if not len(rows):
+                continue
             bodies = self._bodies if order else self._bodies[::-1]
             keep[rows] = self._possible(bodies, place[rows], contact[rows], at, room)
         return keep
@@ -47,7 +51,8 @@ class Regions:
         """The same for contacts whose circle is on the first of `bodies`."""
         (ax, ay, turn_a), (bx, by, turn_b) = (tuple(v[place] for v in self._motion.pose(body, at)) for body in bodies)
         (shift_a, swing_a), (shift_b, swing_b) = (self._motion.freedom(body, room) for body in bodies)
-        circle, met = self._circle[contact], self._met[contact]
+        rows, others = self._circle[contact], self._met[contact]
+        circle, met = self._primitives[rows], self._primitives[others]
         # The circle's centre in the frame of the body that it meets, and how far it may be from there.
         x, y = _turned(circle.x, circle.y, turn_a)
         x, y = _turned(ax + x - bx, ay + y - by, -turn_b)
@@ -65,9 +70,9 @@ class Regions:
         safe = np.where(distance > 0.0, distance, 1.0)
         nx, ny = (np.where(straight, n, met.side * d / safe) for n, d in ((met.nx, dx), (met.ny, dy)))
         swing = np.where(straight, 0.0, np.where(travel < distance, np.arcsin(np.minimum(travel / safe, 1.0)), np.pi))
-        onto &= straight | (_angle(nx, ny, met.nx, met.ny) <= _fan(met, self._clearance) + swing)
+        onto &= straight | (_angle(nx, ny, met.nx, met.ny) <= self._fan[others] + swing)
         mx, my = _turned(-nx, -ny, turn_b - turn_a)
-        inside = _angle(mx, my, circle.nx, circle.ny) <= _fan(circle, self._clearance) + swing + swing_a + swing_b
+        inside = _angle(mx, my, circle.nx, circle.ny) <= self._fan[rows] + swing + swing_a + swing_b
         return (gap <= travel) & onto & inside
 
 

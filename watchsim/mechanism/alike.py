@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.mechanism.model import Records
+from watchsim.mechanism.named_rows import named_rows
 from watchsim.mechanism.symmetry import turn_symmetry
 
 Integers = NDArray[np.int64]
@@ -18,32 +19,30 @@ class AlikeContacts:
 
     def __init__(self, primitives: Records, contacts: Records, pair: Any, near: Integers, body: int) -> None:
         """`near`: the contacts that can ever touch; the symmetry looked for is that of the primitives of `body` in them."""
-        part = contacts[pair.start : pair.stop]
-        used = np.unique(np.concatenate([contacts.a[near], contacts.b[near]]))
+        used, _ = named_rows(np.concatenate([contacts.a[near], contacts.b[near]]), len(primitives))
         used = used[primitives.body[used] == body]
-        self._a, self._b, self._group = part.a, part.b, part.group
-        self._many, self._groups = len(primitives), int(part.group.max(initial=0)) + 1
-        self._names = self._name(part.a, part.b, part.group)
         symmetry = turn_symmetry(primitives[used], 0.5 * float(pair.clearance))
-        # Primitive i is, a part of a turn later, where image[i] is now: what holds now for image[i] holds then for i.
-        before = np.arange(self._many)
-        before[used[symmetry.image]] = used
-        self.fold, self._before = symmetry.fold, before
+        self.fold = symmetry.fold
         # Primitives of the body that do not share the symmetry, numbered as in the model.
         self.loose = used[symmetry.loose]
-        there = np.flatnonzero(np.isin(np.arange(pair.start, pair.stop), near))
-        names = self._name(before[part.a[there]], before[part.b[there]], part.group[there])
-        if not np.isin(names, self._names).all():
-            self.fold = 1  # drawn alike, but not declared alike
+        if self.fold > 1:
+            # Primitive i is, a part of a turn later, where image[i] is now: what holds now for image[i] holds then for i.
+            before = np.arange(len(primitives))
+            before[used[symmetry.image]] = used
+            self._next, declared = _numbers_later(contacts[pair.start : pair.stop], before)
+            if not declared[near - pair.start].all():
+                self.fold = 1  # drawn alike, but not declared alike
 
-    def later(self, ids: Integers, parts: int) -> Integers:
-        """The contacts (numbered from the pair's first) that are, `parts` parts of a turn later, where `ids` are now."""
-        before = np.arange(self._many)
-        for _ in range(parts):
-            before = self._before[before]
-        names = self._name(before[self._a[ids]], before[self._b[ids]], self._group[ids])
-        return np.searchsorted(self._names, names)
+    def later(self, ids: Integers) -> Integers:
+        """The contacts (numbered from the pair's first) that are, a part of a turn later, where `ids` are now; fold > 1."""
+        return self._next[ids]
 
-    def _name(self, a: Integers, b: Integers, group: Integers) -> Integers:
-        """One number for each contact; ascending, as contacts are sorted by a, b and group."""
-        return np.asarray((a * self._many + b) * self._groups + group)
+
+def _numbers_later(part: Records, before: Integers) -> tuple[Integers, NDArray[np.bool_]]:
+    """For each contact the number of that between the primitives `before` of its own, and whether there is one."""
+    a, b, group = np.array(part.a), np.array(part.b), np.array(part.group)
+    groups = int(group.max(initial=0)) + 1
+    # One number for each contact; ascending, as contacts are sorted by a, b and group.
+    names, wanted = (((x * len(before)) + y) * groups + group for x, y in ((a, b), (before[a], before[b])))
+    number = np.minimum(np.searchsorted(names, wanted), len(names) - 1)
+    return number, names[number] == wanted

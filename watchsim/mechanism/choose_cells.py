@@ -16,6 +16,7 @@ from watchsim.mechanism.alike import AlikeContacts
 from watchsim.mechanism.cell_frame import TRAVEL, Axis, axes_of, seen_from
 from watchsim.mechanism.chords import chords
 from watchsim.mechanism.model import ARC, CORNER, FULL, SLIDE, Records
+from watchsim.mechanism.named_rows import named_rows
 
 FEW_CONTACTS = 24  # with no more reachable pairs of primitives than this, a search costs more than it saves
 # A cell lets the outermost point of either body travel this share of the larger one's reach: the first where outlines are made
@@ -43,7 +44,7 @@ def choose_cells(bodies: Records, primitives: Records, contacts: Records, pairs:
         if len(ids) <= FEW_CONTACTS or not 1 <= sum(map(len, axes.values())) <= 3:
             continue
         moving = [b for b in axes if axes[b]]
-        used = np.unique(np.concatenate([contacts.a[ids], contacts.b[ids]]))
+        used, _ = named_rows(np.concatenate([contacts.a[ids], contacts.b[ids]]), len(primitives))
         mine = {b: primitives[used[primitives.body[used] == b]] for b in moving}
         reach = {b: float(np.hypot(*chords(rows, pair.clearance).points.T).max(initial=0.0)) for b, rows in mine.items()}
         piece = _typical_length(primitives[used])

@@ -15,25 +15,11 @@ from watchsim.mechanism.body import Body
 from watchsim.mechanism.carry import Ride, rides
 from watchsim.mechanism.cell_frame import angle_of, choose_frames
 from watchsim.mechanism.choose_cells import choose_cells
+from watchsim.mechanism.declared import declared_contacts, near_contacts
 from watchsim.mechanism.features import features
 from watchsim.mechanism.force import Side
 from watchsim.mechanism.forced import forced_coordinates
-from watchsim.mechanism.model import (
-    ARC,
-    BODY,
-    BODY_PAIR,
-    CONTACT,
-    CORNER,
-    LAW,
-    MOTION_CODE,
-    PRIMITIVE,
-    TANGENTIAL_CODE,
-    Model,
-    Records,
-    frozen,
-    records,
-)
-from watchsim.mechanism.reachable import Drawn, reachable
+from watchsim.mechanism.model import BODY, MOTION_CODE, PRIMITIVE, Model, Records, frozen, records
 from watchsim.mechanism.scene import Scene
 
 CLEARANCE = 2e-3  # of the size: a pair that comes this close counts as touching. More than any tolerance of a run
@@ -70,11 +56,11 @@ def compile_scene(scene: Scene, prefilter: bool = True) -> Compiled:
     hung = rides(scene.bodies)
     bodies, slices, q, u = _bodies(scene, hung)
     primitives, layers, owners, sides = _primitives(scene, hung, size)
-    contacts, laws, pairs = _contacts(scene, hung, sides, primitives)
+    contacts, laws, pairs = declared_contacts(scene, hung, sides, primitives)
     forced = forced_coordinates(scene, hung, slices, size)
     pairs.clearance = CLEARANCE * size
     choose_frames(bodies, pairs)
-    near = _near(bodies, primitives, contacts, pairs)
+    near = near_contacts(bodies, primitives, contacts, pairs)
     choose_cells(bodies, primitives, contacts, pairs, near)
     if not prefilter:
         # The cells stay, so that time is parted in the same way; only their answers are not used.
@@ -113,13 +99,13 @@ def _bodies(scene: Scene, hung: tuple[Ride, ...]) -> tuple[Records, dict[str, sl
     slices: dict[str, slice] = {}
     q: list[float] = []
     u: list[float] = []
-    for row, body, ride in zip(rows, scene.bodies, hung, strict=True):
-        row.motion, row.carrier = MOTION_CODE[body.motion], ride.host if body.motion == "pivot" else -1
-        row.x, row.y, row.angle = *ride.place, ride.start
-        row.c, row.s = math.cos(row.angle), math.sin(row.angle)
-        row.axis_x, row.axis_y = body.axis
+    for i, (body, ride) in enumerate(zip(scene.bodies, hung, strict=True)):
+        carrier = ride.host if body.motion == "pivot" else -1
+        direction = math.cos(ride.start), math.sin(ride.start)
         start = {"fixed": (), "pivot": (ride.start,), "slide": (0.0,), "free": (*body.position, body.angle)}[body.motion]
-        row.first = len(q) if start else -1
+        # The whole record at once: writing one field takes as long.
+        first = len(q) if start else -1
+        rows[i] = (MOTION_CODE[body.motion], first, *ride.place, ride.start, *body.axis, *direction, carrier)
         if start:
             slices[body.name] = slice(len(q), len(q) + len(start))
         q.extend(start)
@@ -163,78 +149,3 @@ def _primitives(
         sides[side] = np.concatenate([of_layer[side.body, layer] for layer in chosen] or [np.zeros(0, int)]).astype(int)
     rows = np.concatenate(blocks).view(np.recarray) if blocks else records(PRIMITIVE, 0)
     return rows, tuple(layers), tuple(owners), sides
-
-
-def _contacts(
-    scene: Scene, hung: tuple[Ride, ...], sides: dict[Side, np.ndarray], primitives: Records
-) -> tuple[Records, Records, Records]:
-    """Every declared pair (circle on A, line or arc on B), grouped by pair of bodies; the laws; the pairs of bodies."""
-    laws = records(LAW, len(scene.contacts))
-    found: dict[tuple[int, int], list[np.ndarray]] = {}
-    numbers = {body.name: number for number, body in enumerate(scene.bodies)}
-    for group, contact in enumerate(scene.contacts):
-        laws[group].friction, laws[group].restitution = contact.friction, contact.restitution
-        laws[group].tangential = contact.tangential_restitution
-        laws[group].kind, laws[group].nu = TANGENTIAL_CODE[scene.tangential_law], scene.nu
-        first, last = (sides[side] for side in contact.sides)
-        a, b = _touching(primitives, first, last)
-        block = np.stack([a, b, np.full(len(a), group)], axis=1)
-        i, j = (hung[numbers[side.body]].part_of for side in contact.sides)
-        found.setdefault((min(i, j), max(i, j)), []).append(block)
-    pairs = records(BODY_PAIR, len(found))
-    blocks = []
-    start = 0
-    for row, (key, parts) in zip(pairs, found.items(), strict=True):
-        block = np.unique(np.concatenate(parts), axis=0)
-        row.a, row.b, row.start, row.stop = *key, start, start + len(block)
-        start += len(block)
-        blocks.append(block)
-    contacts = records(CONTACT, start)
-    if blocks:
-        table = np.concatenate(blocks)
-        contacts.a, contacts.b, contacts.group = table[:, 0], table[:, 1], table[:, 2]
-        _add_shapes(primitives, contacts)
-    return contacts, laws, pairs
-
-
-def _add_shapes(primitives: Records, contacts: Records) -> None:
-    """Curvature of B's curve with A's radius added to it, and the reduced radius of the two."""
-    a, b = primitives[contacts.a], primitives[contacts.b]
-    arcs = b.kind == ARC
-    total = np.where(arcs, b.radius + b.side * a.radius, 1.0)
-    contacts.curvature = np.where(arcs, b.side / total, 0.0)
-    contacts.reduced = np.where(arcs, a.radius * b.radius / total, a.radius)
-
-
-def _touching(primitives: Records, first: np.ndarray, last: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """All pairs (circle, other) between two sets of primitives that have a gap function."""
-    kind, radius, convex = primitives.kind, primitives.radius, primitives.side > 0.0
-
-    def circles_and_edges(circles: np.ndarray, edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        circles = circles[(kind[circles] == CORNER) | ((kind[circles] == ARC) & convex[circles])]
-        edges = edges[kind[edges] != CORNER]
-        a, b = np.repeat(circles, len(edges)), np.tile(edges, len(circles))
-        fits = (kind[b] != ARC) | convex[b] | (radius[a] < radius[b])
-        return a[fits], b[fits]
-
-    def both_round(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-        return (kind[a] == ARC) & (kind[b] == ARC) & convex[b]
-
-    a, b = circles_and_edges(first, last)
-    c, d = circles_and_edges(last, first)
-    # Two convex arcs are one contact, not two: the rounder one plays the circle, of equal ones the first set's.
-    one, two = ~both_round(a, b) | (radius[a] <= radius[b]), ~both_round(c, d) | (radius[c] < radius[d])
-    return np.concatenate([a[one], c[two]]), np.concatenate([b[one], d[two]])
-
-
-def _near(bodies: Records, primitives: Records, contacts: Records, pairs: Records) -> np.ndarray:
-    """The contacts that can ever touch, by pair of bodies."""
-    found = [np.zeros(0, np.int64)]
-    count = 0
-    drawn: Drawn = {}
-    for pair in pairs:
-        ids = np.flatnonzero(reachable(bodies, primitives, contacts, pair, drawn)) + pair.start
-        pair.near_start, pair.near_stop = count, count + len(ids)
-        count += len(ids)
-        found.append(ids)
-    return np.concatenate(found)

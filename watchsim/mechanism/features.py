@@ -39,12 +39,9 @@ def features(loop: Loop, body: int, size: float) -> Records:
                 rows[corner]["after"], rows[j]["before"] = j, corner
         elif turn == 0.0 and i != j and not (_is_hollow(edges[i]) or _is_hollow(edges[j])):
             rows[i]["after"], rows[j]["before"] = j, i
-    out = np.zeros(len(rows), PRIMITIVE).view(np.recarray)
-    for row, values in zip(out, rows, strict=True):
-        row.body, row.before, row.after = body, -1, -1
-        for name, value in values.items():
-            setattr(row, name, value)
-    return out
+    empty = {**dict.fromkeys(PRIMITIVE.names or (), 0), "body": body, "before": -1, "after": -1}
+    # Whole rows at once: writing one field of a record takes microseconds.
+    return np.array([tuple({**empty, **row}.values()) for row in rows], PRIMITIVE).view(np.recarray)
 
 
 def _watertight(loop: Loop, joint: float) -> list[Edge]:

@@ -67,7 +67,7 @@ def material(rings: Sequence[tuple[Floats, bool]]) -> list[Any]:
             around = [i for i, outer in enumerate(outers) if outer.covers(inside)]
             if around:
                 holes[min(around, key=lambda i: outers[i].area)].append(points)
-    pierced = [shapely.Polygon(outer.exterior, inner) for outer, inner in zip(outers, holes, strict=True)]
+    pierced = [shapely.Polygon(outer.exterior, inner) if inner else outer for outer, inner in zip(outers, holes, strict=True)]
     return [polygon if polygon.is_valid else polygon.buffer(0.0) for polygon in pierced]
 
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from watchsim.mechanism.cell_frame import seen_from
 from watchsim.mechanism.chords import Chords, chords
 from watchsim.mechanism.model import FIXED, PIVOT, SLIDE, Records
+from watchsim.mechanism.named_rows import named_rows
 
 Array = NDArray[np.float64]
 
@@ -41,15 +42,16 @@ def reachable(bodies: Records, primitives: Records, contacts: Records, pair: Any
     `drawn` holds what was drawn for other pairs: each body meets many.
     """
     part = contacts[pair.start : pair.stop]
+    part_a, part_b = np.array(part.a), np.array(part.b)
     a, b = (seen_from(bodies, int(number), int(pair.frame)) for number in (pair.a, pair.b))
     if any(body.carrier >= 0 and bodies[body.carrier].motion != PIVOT for body in (a, b)):
         return np.ones(len(part), bool)
-    a_first = primitives.body[part.a] == pair.a
-    on_a, on_b = np.where(a_first, part.a, part.b), np.where(a_first, part.b, part.a)
+    a_first = (primitives.body == pair.a)[part_a]
+    on_a, on_b = np.where(a_first, part_a, part_b), np.where(a_first, part_b, part_a)
     if a.motion != PIVOT and (b.motion == PIVOT or a.motion == FIXED):
         a, b, on_a, on_b = b, a, on_b, on_a
-    movers, row_a = np.unique(on_a, return_inverse=True)
-    others, row_b = np.unique(on_b, return_inverse=True)
+    movers, row_a = named_rows(on_a, len(primitives))
+    others, row_b = named_rows(on_b, len(primitives))
     one, two = (_drawn(primitives, rows, 0.5 * float(pair.clearance), drawn) for rows in (movers, others))
     centre_a, centre_b = _centre(bodies, a), _centre(bodies, b)
     if a.motion == PIVOT and b.motion == PIVOT:

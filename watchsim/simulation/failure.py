@@ -5,13 +5,14 @@ All that is needed to look at it elsewhere: the matrices, the contacts in words,
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from watchsim.dynamics.acceleration import LEVEL_ACCELERATION
 from watchsim.dynamics.impact import LEVEL_COMPRESSION, LEVEL_EXPANSION
 from watchsim.dynamics.lcp import INEXACT, MAX_ITER, RAY
+from watchsim.simulation.pairs import Pair
 from watchsim.simulation.state import Scratch, State
-from watchsim.simulation.trajectory import Pair
 
 LEVELS = {LEVEL_ACCELERATION: "acceleration", LEVEL_COMPRESSION: "compression", LEVEL_EXPANSION: "expansion"}
 LEMKE_ENDS = {RAY: "ray", MAX_ITER: "too many pivots", INEXACT: "not a solution"}
@@ -22,7 +23,7 @@ ADVICE = (
 )
 
 
-def failure_of(state: State, scratch: Scratch, pairs: tuple[Pair, ...]) -> dict[str, Any]:
+def failure_of(state: State, scratch: Scratch, pairs: Sequence[Pair]) -> dict[str, Any]:
     """The last problem posed, as plain values. Units SI.
 
     level       of the problem: acceleration, compression or expansion
@@ -50,7 +51,7 @@ def failure_of(state: State, scratch: Scratch, pairs: tuple[Pair, ...]) -> dict[
     }
 
 
-def _contact(k: int, kinematics: Any, state: State, pairs: tuple[Pair, ...]) -> dict[str, Any]:
+def _contact(k: int, kinematics: Any, state: State, pairs: Sequence[Pair]) -> dict[str, Any]:
     return {
         "number": k,
         "between": str(pairs[k]),

@@ -125,8 +125,13 @@ class PairOfLayers:
 
     def look_for(self, depth: float) -> None:
         """Overlaps deeper than `depth` (m) count from now on."""
-        still, mover = self._still, 1 - self._still
+        self._depth, self._drawn = depth, False
+
+    def _draw(self) -> None:
+        """Shrink the material by the depth; left until they first come near."""
+        still, mover, depth = self._still, 1 - self._still, self._depth
         any_faces = any(outlines.faces for outlines in self._outlines)
+        self._drawn = True
         self._shrunk: list[list[Any]] = [[], []]
         self._shrunk[still] = _shrunk(self._loops[still], self._chord, depth)
         if self._outlines[still].radius <= self._outlines[mover].radius:
@@ -145,6 +150,8 @@ class PairOfLayers:
         places = np.flatnonzero(near)
         if not len(places):
             return places
+        if not self._drawn:
+            self._draw()
         seen = shift[places], twist[places]
         hit = self._crossing(*seen)
         hit |= self._within(self._shrunk[self._still], mover, seen)

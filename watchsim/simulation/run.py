@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 from watchsim.contact.cells import CellFinder
 from watchsim.dynamics.forces import stored_energy
 from watchsim.mechanism.compile import Compiled
-from watchsim.mechanism.model import KIND_WORD
 from watchsim.mechanism.oscillation import frequency
 from watchsim.mechanism.recording import Recording
 from watchsim.mechanism.scene import Scene
@@ -30,6 +29,7 @@ from watchsim.simulation.kept import Kept, tail_length
 from watchsim.simulation.methods import EVENT_DRIVEN
 from watchsim.simulation.options import Options, options_for
 from watchsim.simulation.overlap_watch import OverlapWatch
+from watchsim.simulation.pairs import pairs_of
 from watchsim.simulation.saved import SavedState, save_state
 from watchsim.simulation.start import clear_start
 from watchsim.simulation.start import warm_up as warm_up_start
@@ -47,7 +47,7 @@ from watchsim.simulation.state import (
 )
 from watchsim.simulation.stops import Stop
 from watchsim.simulation.tally import Tally
-from watchsim.simulation.trajectory import EVENT_DTYPE, EventKind, Pair, Trajectory
+from watchsim.simulation.trajectory import EVENT_DTYPE, EventKind, Trajectory
 
 Progress = Callable[[float, float], None]  # simulated time, duration
 
@@ -55,6 +55,8 @@ ROWS, EVENTS = 20000, 20000
 ADVICE = "Try a tighter tolerance; if that does not help, this is a fault of the program, and the scene shows it"
 SLICE_WALL = 0.1  # s between looks at the clock
 FEWEST_STEPS, MOST_STEPS = 16.0, 4000.0  # of a slice; steps may become much slower from one to the next
+
+_warm: set[type[Run]] = set()  # ways of stepping whose kernels are loaded
 
 
 def natural_step(compiled: Compiled, longest: float) -> float:
@@ -140,9 +142,11 @@ class Run:
         self.record.used[:] = 0
 
     def warm_up(self) -> None:
-        """Load or compile the kernels: a call that returns at once because it has no room to record."""
-        nowhere = new_record(self.compiled.model, 0, 0, self.record.windows)
-        self._advance(new_until(), nowhere)
+        """Load or compile the kernels, once in a process: a call that returns at once because it has no room to record."""
+        if type(self) not in _warm:
+            nowhere = new_record(self.compiled.model, 0, 0, self.record.windows)
+            self._advance(new_until(), nowhere)
+            _warm.add(type(self))
         warm_up_start(self.scene, self.compiled.model)
 
     def _advance(self, until: NDArray[np.float64], record: Any) -> Stop:
@@ -331,15 +335,3 @@ def _as_told(events: NDArray[Any], compiled: Compiled) -> NDArray[Any]:
     for body, angle in told:
         events["value"][(events["kind"] == EventKind.TURN) & (events["body"] == body)] -= angle
     return events
-
-
-def pairs_of(compiled: Compiled) -> tuple[Pair, ...]:
-    """The contacts of a model in words; row k belongs to contact number k."""
-    model, owners = compiled.model, compiled.owners
-    first = {name: owners.index(name) for name in dict.fromkeys(owners)}
-    index = [number - first[name] for number, name in enumerate(owners)]
-    # Plain lists: reading a field of a record array takes a microsecond each time.
-    kind = [KIND_WORD[kind] for kind in model.primitives.kind.tolist()]
-    side = list(zip(owners, kind, index, compiled.layers, strict=True))
-    contacts = zip(model.contacts.group.tolist(), model.contacts.a.tolist(), model.contacts.b.tolist(), strict=True)
-    return tuple(Pair(group, *side[a], *side[b]) for group, a, b in contacts)

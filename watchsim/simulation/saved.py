@@ -6,6 +6,7 @@ future follows bit by bit.
 
 from __future__ import annotations
 
+import functools
 import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -108,5 +109,12 @@ def model_digest(compiled: Compiled) -> str:
     """Of every number of the model and of the start."""
     digest = hashlib.sha256()
     for part in (*compiled.model, compiled.q, compiled.u):
-        digest.update(repr((part.dtype.descr, part.shape)).encode() + np.ascontiguousarray(part).tobytes())
+        digest.update(f"({_described(part.dtype)}, {part.shape!r})".encode())
+        digest.update(np.ascontiguousarray(part).reshape(-1).view(np.uint8).data)
     return digest.hexdigest()[:16]
+
+
+@functools.cache
+def _described(dtype: np.dtype[Any]) -> str:
+    """The fields of a record; to put them into words takes longer than to digest a small model."""
+    return repr(dtype.descr)

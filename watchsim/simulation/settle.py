@@ -21,6 +21,7 @@ from watchsim.simulation.collide import approaching, collide
 from watchsim.simulation.decide import decide
 from watchsim.simulation.drift import AT_EVENTS, IN_STEPS, find_correction, project_positions, project_velocities, rate_left
 from watchsim.simulation.handover import LEFT, hand_over
+from watchsim.simulation.immovable import drop_immovable
 from watchsim.simulation.islands import island_of, label_islands, place_contacts, sort_by_island
 from watchsim.simulation.keep import OPEN_EVENT, keep_change, keep_event
 from watchsim.simulation.let_go import let_go
@@ -70,6 +71,7 @@ def _settle_island(model, state, island, span, options, scratch, record):
     closed, work = scratch.closed, scratch.work
     fill_inverse(model, state.grip, work.inverse)
     m = place_contacts(model, scratch.listed, span[0], span[1], scratch.pose, closed)
+    m = drop_immovable(model, state, m, scratch, record)
     note_pace(state.u, scratch.pace)
     deepest = project_positions(closed, m, False, work, state.q)
     if deepest > 0.0:

@@ -7,7 +7,7 @@ by part; what a half swing still needs is carried on. However a run is cut, the 
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -18,8 +18,8 @@ from watchsim.mechanism.roles import roles
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation.event_kinds import EVENT_DTYPE, EventKind
 from watchsim.simulation.half_swings import first_noises, half_swings, since_two_before, unevenness
+from watchsim.simulation.pairs import Pair, as_pairs
 from watchsim.simulation.saved import TALLIED
-from watchsim.simulation.trajectory import Pair
 
 Array = NDArray[np.float64]
 Events = NDArray[Any]
@@ -35,13 +35,13 @@ MOST_CARRIED = 20000  # events, of an oscillator that makes noises but never pas
 class Tally:
     """Sums so far. `arrays()` is all it holds."""
 
-    def __init__(self, scene: Scene, pairs: tuple[Pair, ...]) -> None:
+    def __init__(self, scene: Scene, pairs: Sequence[Pair]) -> None:
         self.body, self.half_period = -1, 0.0
         name = roles(scene).oscillator
         if name is not None:
             self.body = [body.name for body in scene.bodies].index(name)
             self.half_period = 0.5 / (nominal_frequency(scene) or np.inf)
-            self._noisy = np.array([name in (pair.body_a, pair.body_b) for pair in pairs] + [False])
+            self._noisy = np.append(as_pairs(pairs).of_body(name), False)
         self.kinds = np.zeros(max(EventKind) + 1, np.int64)
         self.beats = np.zeros(2, np.int64)  # half swings, and those with a tick
         self.moments = np.zeros((len(QUANTITIES), len(MOMENTS)))

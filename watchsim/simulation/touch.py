@@ -10,12 +10,14 @@ from __future__ import annotations
 import math
 
 from watchsim.contact.gaps import extent_margins, normal_gap
+from watchsim.contact.kinematics import contact_kinematics
 from watchsim.contact.lookup import LISTED, UNKNOWN, candidate, candidates, time_in_cell
 from watchsim.contact.poses import point_of
 from watchsim.dynamics.linear import copy
 from watchsim.jit import kernel
 from watchsim.mechanism.model import FREE, LINE, PIVOT, SLIDE
 from watchsim.simulation.handover import is_beside_active, room_beside_active
+from watchsim.simulation.immovable import is_immovable
 from watchsim.simulation.path import body_on_path
 from watchsim.simulation.sleep import is_at_rest
 from watchsim.simulation.state import N_GAPS, N_LOOKUPS
@@ -178,6 +180,19 @@ def _next_stretch(model, options, k, left, scratch):
 
 
 @kernel
+def _time_immovable(model, options, k, rate, bend, scratch):
+    """Until when contact k, without a gap, need not be looked at because no motion closes it; 0 where one does.
+
+    It may begin to close when its lever arms grow: it is looked at before it is further behind than counts as touching.
+    """
+    contact_kinematics(model, k, scratch.pose, 0, scratch.rest)
+    if not is_immovable(model, scratch.rest, 0):
+        return 0.0
+    steady = 0.25 * options.behind / max(-rate, SLOWEST)
+    return min(steady, math.sqrt(0.5 * options.behind / max(bend, SLOWEST)))
+
+
+@kernel
 def crossing(model, state, options, k, start, end, scratch):
     """First time in [start, end) at which open contact k closes inside its primitives; infinity if it does not.
 
@@ -220,6 +235,11 @@ def crossing(model, state, options, k, start, end, scratch):
             # Where a smooth outline goes on, its next piece has no gap either, and closes only when its turn comes.
             way, turn = room_beside_active(model, state, options, k, scratch.pose)
             if way < 0.0:
+                wait = _time_immovable(model, options, k, rate, bend, scratch)
+                if wait > 0.0:
+                    tau += max(wait, 4e-16 * tau)
+                    fresh = True
+                    continue
                 soon = outside and clear and gap > 0.0 and rate * (end - tau) < -gap
                 return min(end, tau + gap / -rate) if soon else tau
             # It is the same contact at least until points or normals could have come apart.

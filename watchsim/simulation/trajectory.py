@@ -6,6 +6,7 @@ A frozen value: rows of time, coordinates, velocities and accelerations, and a t
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -18,33 +19,13 @@ from watchsim.mechanism.scene import Scene
 from watchsim.simulation.event_kinds import EVENT_DTYPE as EVENT_DTYPE
 from watchsim.simulation.event_kinds import EventKind as EventKind
 from watchsim.simulation.frames import frames
+from watchsim.simulation.pairs import Pair as Pair
 from watchsim.simulation.saved import SavedState
 from watchsim.simulation.stops import Stop
 
 Array = NDArray[np.float64]
 
 NOISE = 0.5  # tolerances: by so much positions at rows may be off, each for itself
-
-
-@dataclass(frozen=True)
-class Pair:
-    """The two primitives of a contact, for people: bodies, layers, a word for each primitive and its index in the body."""
-
-    group: int  # index in scene.contacts
-    body_a: str
-    primitive_a: str  # "corner", "arc", "line"
-    index_a: int
-    layer_a: str
-    body_b: str
-    primitive_b: str
-    index_b: int
-    layer_b: str
-
-    def __str__(self) -> str:
-        return (
-            f"{self.body_a}.{self.layer_a} {self.primitive_a} {self.index_a} / "
-            f"{self.body_b}.{self.layer_b} {self.primitive_b} {self.index_b}"
-        )
 
 
 @dataclass(frozen=True)
@@ -70,7 +51,7 @@ class Trajectory:
     a: Array
     slices: dict[str, slice]
     events: NDArray[Any]
-    pairs: tuple[Pair, ...]
+    pairs: Sequence[Pair]
     stop: Stop
     stop_message: str = ""
     simulated: float = 0.0
