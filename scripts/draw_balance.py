@@ -9,7 +9,6 @@ pin in plan, and beside them half a section of the staff. The scene itself is wr
 from __future__ import annotations
 
 import math
-import sys
 from pathlib import Path
 
 from balance_sizes import (
@@ -96,5 +95,7 @@ def draw(folder: Path) -> None:
 
 
 if __name__ == "__main__":
+    from usage import arguments
+
     default = Path(__file__).resolve().parents[1] / "profiles" / "balance"
-    draw(Path(sys.argv[1]) if len(sys.argv) > 1 else default)
+    draw(arguments(__doc__, folder=(default, "where the drawings go")).folder)

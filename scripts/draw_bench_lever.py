@@ -9,7 +9,6 @@ so nothing is computed here. The scene itself (profiles/bench_lever/scene.toml) 
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 from draw_sheet import add_circle, add_polygon, new_sheet, write
@@ -65,5 +64,7 @@ def draw(folder: Path) -> None:
 
 
 if __name__ == "__main__":
+    from usage import arguments
+
     default = Path(__file__).resolve().parents[1] / "profiles" / "bench_lever"
-    draw(Path(sys.argv[1]) if len(sys.argv) > 1 else default)
+    draw(arguments(__doc__, folder=(default, "where the drawings go")).folder)

@@ -8,7 +8,6 @@ A small renderer for the pictures of the documents: every triangle is filled poi
 from __future__ import annotations
 
 import math
-import sys
 from pathlib import Path
 
 import imageio.v3 as imageio
@@ -99,6 +98,7 @@ def draw(scene_file: Path, picture: Path) -> None:
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 3:
-        raise SystemExit(__doc__)
-    draw(Path(sys.argv[1]), Path(sys.argv[2]))
+    from usage import arguments
+
+    given = arguments(__doc__, scene=(..., "a scene file"), picture=(..., "the PNG to write"))
+    draw(Path(given.scene), Path(given.picture))

@@ -9,7 +9,6 @@ hand; scripts/measure_lever.py measures what was drawn.
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 from draw_sheet import add_loop, new_sheet, write
@@ -38,5 +37,7 @@ def draw_sheet(path: Path, loops: list[Loop]) -> None:
 
 
 if __name__ == "__main__":
+    from usage import arguments
+
     default = Path(__file__).resolve().parents[1] / "profiles" / "swiss_lever"
-    draw(Path(sys.argv[1]) if len(sys.argv) > 1 else default)
+    draw(arguments(__doc__, folder=(default, "where the drawings go")).folder)

@@ -142,6 +142,8 @@ def row_text(name: str, this: Case, deltas: tuple[float | None, ...]) -> str:
 
 
 if __name__ == "__main__":
-    if len(sys.argv) < 2:
-        raise SystemExit(__doc__)
-    main(Path(sys.argv[1]), Path(sys.argv[2]) if len(sys.argv) > 2 else ROOT / "docs" / "drawings-read.md")
+    from usage import arguments
+
+    page = ROOT / "docs" / "drawings-read.md"
+    given = arguments(__doc__, drawings=(..., "the folder with the drawings"), page=(page, "the page to write"))
+    main(Path(given.drawings), given.page)

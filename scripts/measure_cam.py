@@ -53,4 +53,7 @@ def main() -> int:
 
 
 if __name__ == "__main__":
+    from usage import arguments
+
+    arguments(__doc__)
     sys.exit(main())

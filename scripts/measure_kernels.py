@@ -91,8 +91,10 @@ def nanoseconds(function: Callable[..., object], *arguments: object) -> float:
 
 
 def main() -> int:
-    path = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "profiles" / "swiss_lever" / "scene.toml"
-    scene = load(path)
+    from usage import arguments
+
+    default = ROOT / "profiles" / "swiss_lever" / "scene.toml"
+    scene = load(arguments(__doc__, scene=(default, "the scene to measure")).scene)
     model = compile_scene(scene).model
     run = simulate(scene, 0.35)
     finder, pose = CellFinder(model), poses(len(model.bodies))

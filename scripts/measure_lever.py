@@ -11,7 +11,6 @@ angle counted towards the bank on which the stone in question locks.
 from __future__ import annotations
 
 import math
-import sys
 from dataclasses import asdict, dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -202,5 +201,7 @@ def main(scene: Path) -> None:
 
 
 if __name__ == "__main__":
+    from usage import arguments
+
     default = Path(__file__).resolve().parents[1] / "profiles" / "swiss_lever" / "scene.toml"
-    main(Path(sys.argv[1]) if len(sys.argv) > 1 else default)
+    main(arguments(__doc__, scene=(default, "the scene to measure")).scene)

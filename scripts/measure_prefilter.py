@@ -63,9 +63,11 @@ def told(name: str, part: float, whole: float) -> None:
 
 
 def main() -> int:
-    path = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "profiles" / "swiss_lever" / "scene.toml"
-    seconds = float(sys.argv[2]) if len(sys.argv) > 2 else 20.0
-    scene = load(path)
+    from usage import arguments
+
+    default = ROOT / "profiles" / "swiss_lever" / "scene.toml"
+    given = arguments(__doc__, scene=(default, "the scene to measure"), seconds=(20.0, "how long to simulate"))
+    scene, seconds = load(given.scene), given.seconds
     watch = simulated(scene, seconds, True)
     total, shapely = watch.spent()
     first, first_shapely = watch.turned or (total, shapely)

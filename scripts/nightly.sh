@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# What is too slow for every change: all tests, the kernels with their index checks on, and the demo from a fresh environment.
+# What is too slow for every change: all tests, whether they notice small faults, the kernels with their index checks on, and the
+# demo from a fresh environment.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -11,7 +12,10 @@ python3 -m venv "$environment"
 "$environment/bin/pip" install --quiet '.[test]'
 
 echo "== all tests"
-"$environment/bin/pytest" -m "slow or not slow" --durations=20
+"$environment/bin/pytest" -n auto --dist worksteal -m "slow or not slow" --durations=20
+
+echo "== small faults planted in the code"
+"$environment/bin/python" scripts/plant_faults.py --count 60 --minutes 240 --output "$scratch/faults.jsonl"
 
 # numba reads past the end of an array without a word unless asked; machine code with the checks in it is kept apart.
 echo "== kernels with index checks"
@@ -31,7 +35,7 @@ echo "== random mechanisms, others every night"
 "$environment/bin/python" scripts/hunt_mechanisms.py --seed "$(date +%Y%m%d)" --count 1000 --jobs "$(nproc)"
 echo "== killed, interrupted, damaged, out of room"
 for signal in KILL INT TERM; do "$environment/bin/python" scripts/fuzz/stops.py --signal "$signal" --count 70; done
-"$environment/bin/python" scripts/fuzz/faults.py
+"$environment/bin/python" scripts/fuzz/disk.py
 "$environment/bin/python" scripts/fuzz/scenes.py --count 2000
 "$environment/bin/python" scripts/fuzz/results.py --count 500
 

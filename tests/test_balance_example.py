@@ -49,7 +49,7 @@ def test_the_mesh_of_the_wheel_converges_as_the_document_says() -> None:
 def test_the_balance_is_hardly_out_of_poise(balance) -> None:
     scene = ws.load(SCENE).set("scene.gravity", ["0 m/s²", "-9.81 m/s²"])
     text = check_text(check_report(scene, ()), scene)
-    assert "0.1116 µm beside the pivot: gravity turns it with up to 0.117" in text
+    assert "111.6 nm beside the pivot: gravity turns it with up to 117.8" in text
 
 
 def test_it_swings_as_its_inertia_demands() -> None:

@@ -25,6 +25,7 @@ _HOMES = {
     "EventKind": "watchsim.simulation.trajectory",
     "Stop": "watchsim.simulation.stops",
     "beats": "watchsim.analysis.beats",
+    "forces": "watchsim.analysis.forces",
     "summary": "watchsim.analysis.summary",
     "read_results": "watchsim.analysis.results",
     "write_results": "watchsim.analysis.results",
@@ -39,6 +40,7 @@ __all__ = [*_HOMES, "__version__"]  # noqa: PLE0604 - the keys are the public na
 
 if TYPE_CHECKING:
     from watchsim.analysis.beats import beats as beats
+    from watchsim.analysis.forces import forces as forces
     from watchsim.analysis.results import read_results as read_results
     from watchsim.analysis.results import write_results as write_results
     from watchsim.analysis.summary import summary as summary

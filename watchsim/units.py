@@ -77,6 +77,7 @@ DIMENSIONS = (
 )
 
 _PREFIXES = {"n": -9, "µ": -6, "u": -6, "m": -3, "c": -2, "d": -1, "k": 3, "M": 6}
+_METRIC = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 _PREFIXABLE: dict[str, Unit] = {
     "m": Unit(Fraction(1), 0, (1, 0, 0, 0)),
     "g": Unit(Fraction(1, 1000), 0, (0, 1, 0, 0)),
@@ -167,6 +168,15 @@ def to(value: float, unit: str) -> float:
 def show(value: float, unit: str, digits: int = 6) -> str:
     """An SI value as text with its unit: "0.12 mm", "-270°"."""
     return _joined(f"{to(value, unit):.{digits}g}", unit)
+
+
+def metric(value: float, unit: str, digits: int = 6) -> str:
+    """An SI value as text in `unit` with the prefix that leaves one to three digits before the point: "3.71 µm"."""
+    power = min(max(3 * math.floor(math.log10(abs(value)) / 3.0), -12), 9) if value else 0
+    shown = float(f"{value / 10.0**power:.{digits}g}")
+    if abs(shown) >= 1000.0 and power < 9:
+        power, shown = power + 3, shown / 1000.0
+    return f"{shown:.12g} {_METRIC[power]}{unit}"
 
 
 @lru_cache(maxsize=512)

@@ -140,12 +140,12 @@ def test_another_body_may_be_asked_for():
     assert len(beats(run)) == 5
     with pytest.raises(KeyError):
         beats(run, "anchor")
-    with pytest.raises(ValueError, match='no spring acts on "wheel"'):
+    with pytest.raises(ValueError, match='neither a spring nor gravity pulls "wheel" back'):
         beats(run, "wheel")
 
 
 def test_a_scene_without_springs_has_no_beats():
-    with pytest.raises(ValueError, match="no body of this scene has a spring"):
+    with pytest.raises(ValueError, match="no body of this scene swings on a spring or by gravity"):
         beats(disc_run())
 
 

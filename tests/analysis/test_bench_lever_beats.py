@@ -57,7 +57,7 @@ def test_every_beat_is_heard_counted_and_told(bench_lever):
     assert numbers["missed_beats"] == 0 and not numbers["stopped"]
     assert numbers["beat_error_ms"] < 0.02 and numbers["timegrapher"]["amplitude_deg"] > numbers["amplitude_deg"]
     assert json.loads(json.dumps(numbers, allow_nan=False)) == numbers
-    assert "missed beats none of 22" in summary_text(bench_lever, numbers)
+    assert "missed beats none in 22 half swings" in summary_text(bench_lever, numbers)
     assert len(tables(bench_lever)["beats.csv"].splitlines()) == 23
 
 

@@ -77,3 +77,12 @@ def test_the_made_lever():
     found = beats(run)
     expected = [(math.asin(22.5 / 270.0) + math.asin(26.0 / 270.0)) / OMEGA] * len(found)
     assert intervals(run, found) == pytest.approx(expected, rel=1e-9) and np.isfinite(found.tick).all()
+
+
+@pytest.mark.parametrize(("share", "heard"), [(0.9, True), (0.4, True), (0.3, False)])
+def test_a_noise_counts_from_a_third_of_the_loudest_on(share, heard):
+    """A second knock after the lock: from one third of its energy on it is the last loud noise of the beat."""
+    run = heard_run(270.0, 20.0, ((IMPULSE, 24.0, share * 2e-8),))
+    last = 24.0 if heard else 20.0
+    expected = (math.asin(26.0 / 270.0) + math.asin(last / 270.0)) / OMEGA
+    assert intervals(run, beats(run)) == pytest.approx(expected, rel=1e-9)

@@ -112,7 +112,8 @@ def test_drawings_may_be_gone_at_the_end(tmp_path: Path, monkeypatch: pytest.Mon
 
     monkeypatch.setattr(Run, "to_the_end", gone)
     assert main(["run", str(scene), "--duration", "0.05 s", "--no-plots", "-o", str(tmp_path / "out")]) == 0
-    assert (tmp_path / "out" / "trajectory.npz").is_file()
+    assert read_results(tmp_path / "out").simulated == 0.05
+    assert (tmp_path / "out" / "drawings" / "lever.dxf").read_bytes() == (Path(LEVER) / "lever.dxf").read_bytes()
 
 
 def test_a_symlinked_results_folder_is_resumed_behind_its_link(tmp_path: Path) -> None:

@@ -287,3 +287,14 @@ def test_bulges_to_either_side_become_elliptic_in_unequal_scales(read_bytes: Rea
     squashed = read_bytes(d.dxf(d.insert("B", (300, 0), (41, 2.0), (42, 0.5), (50, 20.0)), blocks=block))
     assert not squashed.findings and len(squashed.loops) == 1
     assert area(squashed.loops[0]) == pytest.approx(area(plain.loops[0]), rel=1e-4)
+
+
+@pytest.mark.parametrize("size", [1e-2, 1e-3, 1e-4, 1e-5])
+@pytest.mark.parametrize("hand", [1.0, -1.0])
+def test_flat_bulges_are_arcs(size: float, hand: float, read_bytes: Reader) -> None:
+    """A bulge of 1e-3 over 1 mm rises by 0.5 µm: by the definition the sagitta is half the chord times the bulge."""
+    corners = [(0.0, 0.0, hand * size), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0), (0.0, 1.0, 0.0)]
+    (loop,) = read_bytes(d.dxf(d.lwpolyline(corners, True))).loops
+    (edge,) = [edge for edge in loop.edges if isinstance(edge, Arc)]
+    assert edge.point(0.5)[1] == pytest.approx(-hand * 0.5e-3 * size, rel=1e-6, abs=1e-15)
+    assert edge.radius == pytest.approx(0.25e-3 * (1.0 / size + size), rel=1e-9)

@@ -30,7 +30,7 @@ TOP = (
         "ignored",
         "findings",
     ),
-    *("lines", "arcs", "length_mm", "area_mm2"),
+    *("lines", "arcs", "length_mm", "area_mm2", "circles"),
 )
 
 
@@ -74,7 +74,7 @@ def test_text_for_people(read_bytes: Reader) -> None:
     assert "TEETH  2 outlines (1 hole), 2 arcs" in text
     assert "PIVOT  a point at (0, 0) mm" in text
     assert "not read: 1 TEXT" in text
-    assert "warning, stray-line [layer SLOT]" in text
+    assert "warning (stray-line) [layer SLOT]" in text
 
 
 def test_the_place_of_a_small_part_far_from_the_origin_is_told(read_bytes: Reader) -> None:
@@ -94,7 +94,7 @@ def test_text_says_when_all_is_well_and_cuts_long_lists(read_bytes: Reader) -> N
     assert "nothing to complain about" in inspect_text(read_bytes(d.dxf(d.circle(0, 0, 1))))
     strays = "".join(d.line((5 * k, 0), (5 * k + 1, 0)) for k in range(30))
     text = inspect_text(read_bytes(d.dxf(strays)))
-    assert text.count("stray-line [") == 12
+    assert text.count("(stray-line) [") == 12
     assert "and 18 more of stray-line" in text
 
 

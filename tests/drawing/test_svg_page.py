@@ -179,3 +179,16 @@ def test_layers(read_svg: Reader, content: str, layers: list[str]) -> None:
 def test_outlines_of_single_lines_with_names_of_their_own_close(read_svg: Reader) -> None:
     lines = '<line id="a" x2="3"/><line id="b" x1="3" x2="3" y2="3"/><path id="c" d="M3 3L0 0"/>'
     assert len(read_svg(s.svg(lines)).loops) == 1
+
+
+def test_elements_of_no_namespace_are_read_and_said(read_svg: Reader) -> None:
+    """Browsers draw nothing that is not in the namespace of SVG."""
+    bare = '<svg width="9mm" height="9mm" viewBox="0 0 9 9"><circle cx="4" cy="4" r="2"/></svg>'
+    (finding,) = read_svg(bare).findings
+    assert (finding.code, finding.severity) == ("namespace", "warning") and "browsers draw nothing of it" in finding.message
+    assert len(read_svg(bare).loops) == 1 and 'xmlns="http://www.w3.org/2000/svg"' in finding.fix
+    named = bare.replace("<svg", '<svg xmlns="http://www.w3.org/2000/svg"')
+    assert not read_svg(named).findings
+    inside = named.replace("</svg>", '<g xmlns=""><rect width="1" height="1"/></g></svg>')
+    (finding,) = read_svg(inside).findings
+    assert "2 of 4 elements are in no namespace" in finding.message

@@ -123,7 +123,12 @@ ONE_FAULT = [
     ("q_factor = 250", 'coulomb = "-1 nN·m"', "damping.0.coulomb", "negative damping would drive the body"),
     ("q_factor = 250", 'coulomb = "1 nN"', "damping.0.coulomb", "here a torque is needed"),
     ("q_factor = 250", "", "damping.0", "missing: q_factor = 250"),
-    ('body = "balance"\nq_factor', 'body = "wheel"\nq_factor', "damping.0.q_factor", "wheel has no spring"),
+    (
+        'body = "balance"\nq_factor',
+        'body = "wheel"\nq_factor',
+        "damping.0.q_factor",
+        "neither a spring nor gravity pulls wheel back",
+    ),
     (
         '["wheel.TEETH", "lever"]',
         '["whel.TEETH", "lever"]',
@@ -278,7 +283,7 @@ def test_free_body_with_two_centres(desk, good):
 def test_files_that_are_no_scene(desk, tmp_path):
     with pytest.raises(SceneError, match="there is no such scene file"):
         load(tmp_path / "none.toml")
-    with pytest.raises(SceneError, match="cannot be read"):
+    with pytest.raises(SceneError, match="this folder holds no scene"):
         load(tmp_path)
     latin = tmp_path / "latin.toml"
     latin.write_bytes('title = "Unruh µ"'.encode("latin-1"))

@@ -171,3 +171,16 @@ def test_an_interrupt_leaves_nothing(tmp_path):
     with pytest.raises(KeyboardInterrupt):
         movie(watch_run(), tmp_path / "beat.mp4", size=SMALL, progress=stop)
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("speed", "fps", "window"), [(1.0, 25.0, (0.0, 2.0)), (0.05, 60.0, (0.3, 0.5)), (1 / 40, 50.0, (1.0, 1.1))]
+)
+def test_frames_lie_as_far_apart_as_speed_and_rate_say(speed, fps, window, tmp_path, monkeypatch):
+    """Frame k shows the instant start + k speed / fps, to the last one in the window."""
+    shown = []
+    monkeypatch.setattr(Stage, "draw", lambda self, t, *_: shown.append(t) or np.zeros((180, 320, 4), np.uint8))
+    movie(watch_run(), tmp_path / "a.mp4", window=window, speed=speed, fps=fps, size=(320, 180))
+    assert len(shown) == round((window[1] - window[0]) * fps / speed) + 1
+    assert shown == pytest.approx([window[0] + k * speed / fps for k in range(len(shown))], rel=1e-12)
+    assert iio.immeta(tmp_path / "a.mp4", plugin="FFMPEG")["fps"] == fps

@@ -70,7 +70,7 @@ def test_swept_angles_end_where_the_motion_ends():
 
 def test_dense_keeps_rows_and_jumps():
     run = watch_run()
-    t, q, u = dense(run, (0.95, 1.05))
+    t, q, u, _ = dense(run, (0.95, 1.05))
     assert (t[0], t[-1]) == (0.95, 1.05)
     assert np.all(np.diff(t) >= 0.0)
     assert np.diff(t).max() <= 0.1 / 2000 * 1.001
@@ -106,7 +106,7 @@ def test_gaps_in_the_record_are_neither_drawn_nor_allowed():
         stretch(run, (0.4, 1.6))
     with pytest.raises(ValueError, match="choose a window"):
         stretch(run, None, unbroken=True)
-    t, q, _ = dense(run, stretch(run, None))
+    t, q, *_ = dense(run, stretch(run, None))
     assert np.all(np.isnan(q[(t > 0.5) & (t < 1.5)]))
     assert not np.any(np.isnan(q[(t <= 0.5) | (t >= 1.5)]))
 

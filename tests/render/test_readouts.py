@@ -78,3 +78,14 @@ def test_poses_in_words():
 )
 def test_a_turned_picture_says_so(degrees, text):
     assert turn_text(math.radians(degrees)) == text
+
+
+def test_room_for_a_slider_is_that_of_its_whole_travel():
+    """2 mm · sin(10 t) along its axis: the texts at both ends say how much room the read-out needs."""
+    run = slide_run()
+    slider = run.scene.body("slider")
+    tell, ends = reading(slider, sampled(run, slider, (0.0, 1.0)))
+    frames = poses(run, np.array([0.05]))["slider"]
+    assert float(tell(frames[0]).split()[0]) == pytest.approx(2.0 * math.sin(0.5), abs=6e-3)
+    assert [float(text.replace("−", "-").split()[0]) for text in ends] == pytest.approx([-2.0, 2.0], abs=6e-3)
+    assert [text.split()[1] for text in ends] == ["mm", "mm"]

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from watchsim.analysis.beats import DAY, Beats, beats
+from watchsim.mechanism.roles import roles
 from watchsim.simulation.half_swings import unevenness
 from watchsim.simulation.kept import USUAL_PERIODS, USUAL_WINDOW
 from watchsim.simulation.trajectory import Array, Trajectory
@@ -39,8 +40,8 @@ class Averages:
 
 
 def headline(run: Trajectory) -> Averages | None:
-    """The averages at the end of a run, see `last_window`; None where nothing swings on a spring."""
-    if not run.scene.springs:
+    """The averages at the end of a run, see `last_window`; None where nothing swings."""
+    if roles(run.scene).oscillator is None:
         return None
     found = beats(run)
     return averages(found, last_window(run, found.nominal_period))

@@ -14,6 +14,7 @@ from watchsim.analysis.recorded import nominal_period
 from watchsim.analysis.ticks import ticks
 from watchsim.analysis.touches import Events
 from watchsim.mechanism.recording import STATISTICS
+from watchsim.mechanism.roles import roles
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.half_swings import half_swings, since_two_before, unevenness
 from watchsim.simulation.trajectory import Array, Trajectory
@@ -61,7 +62,7 @@ class Beats:
 
     @property
     def rate_s_per_d(self) -> Array:
-        """Seconds gained per day against the spring's undamped frequency."""
+        """Seconds gained per day against the nominal frequency."""
         return DAY * (self.nominal_period / self.period_s - 1.0)
 
     @property
@@ -81,11 +82,11 @@ class Beats:
 
 
 def beats(run: Trajectory, body: str | None = None) -> Beats:
-    """The half swings of the first sprung body, or of the one named; empty with fewer than three turning points.
+    """The half swings of the oscillator, or of the body named; empty with fewer than three turning points.
 
-    ValueError where no spring acts on the body, KeyError where there is no such body.
+    ValueError where neither a spring nor gravity pulls the body back, KeyError where there is no such body.
     """
-    name = _sprung(run, body)
+    name = _swinging(run, body)
     period, angular = nominal_period(run, name), run.scene.body(name).motion == "pivot"
     index = [one.name for one in run.scene.bodies].index(name)
     own = _unbroken(run)
@@ -116,9 +117,10 @@ def _unbroken(run: Trajectory) -> Events:
     return run.events[run.events["t"] >= run.spans[-1][0]]
 
 
-def _sprung(run: Trajectory, body: str | None) -> str:
+def _swinging(run: Trajectory, body: str | None) -> str:
     if body is not None:
         return run.scene.body(body).name
-    if not run.scene.springs:
-        raise ValueError("no body of this scene has a spring, so nothing beats")
-    return run.scene.springs[0].body
+    found = roles(run.scene).oscillator
+    if found is None:
+        raise ValueError("no body of this scene swings on a spring or by gravity, so nothing beats")
+    return found

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -11,6 +12,7 @@ from watchsim.analysis.energy import energy_shares
 from watchsim.mechanism.roles import keeps_time
 from watchsim.simulation.methods import MOREAU
 from watchsim.simulation.trajectory import Trajectory
+from watchsim.units import metric
 
 LABEL = 13
 EXACT = 6  # decimals at most
@@ -31,6 +33,8 @@ RULES = (
     ("jams", "jams, sliding contacts that no finite force could hold apart, stopped by impulses (Painlevé): {}"),
 )
 NO_PENETRATION = 1e-12  # m; less is not worth a digit, neither of depths nor of errors
+SCATTER = "scatter: how much the beats of that time scatter and drift; the error of the computation is another (--error-bars)"
+ALIKE = 0.5  # °; nearer than that a timegrapher shows the true amplitude
 PLAIN = 1e-6  # errors below are written with an exponent
 
 
@@ -41,15 +45,15 @@ def headlines(run: Trajectory, numbers: Mapping[str, Any]) -> str:
     return "\n".join([run.scene.title, *lines])
 
 
-def with_error(value: float, error: float | None, unit: str) -> str:
-    """ "275.3° ± 0.1°": as many decimals as the error justifies, three where it is not known; a true minus sign."""
+def with_scatter(value: float, error: float | None, unit: str) -> str:
+    """ "275.3°, scatter 0.1°": as many decimals as the scatter justifies, three where it is not known; a true minus sign."""
     if error is not None and max(abs(value), error) < 10.0**-EXACT:
         return f"below {10.0**-EXACT:.{EXACT}f}{unit}" if error > 0.0 or value else f"0{unit}"
     decimals = 3 if error is None else _decimals(error)
     text = _signed(value, decimals) + unit
     if error is None:
         return text
-    return f"{text} ± {max(error, 10.0**-EXACT):.{decimals}f}{unit}"
+    return f"{text}, scatter {max(error, 10.0**-EXACT):.{decimals}f}{unit}"
 
 
 def _decimals(error: float) -> int:
@@ -68,16 +72,33 @@ def _timing(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     """Lines of the oscillator; none where there is none."""
     for name, label, unit in AVERAGED:
         if numbers[name] is not None:
-            yield label, with_error(numbers[name], numbers[f"{name}_error"], unit)
+            yield label, with_scatter(numbers[name], numbers[f"{name}_error"], unit)
+        if name == "amplitude_deg":
+            yield from _heard(numbers)
+    if numbers["timing_message"] is not None:
+        yield "timing", numbers["timing_message"]
     if numbers["vph"] is not None:
         start, end = numbers["window_s"]
         yield "frequency", f"{numbers['vph']:.2f} vph, averaged from {start:.4g} s to {end:.4g} s"
-        yield "", "± tells how much the beats of that time scatter and drift"
-    heard = numbers["timegrapher"]
-    if heard is not None and heard["amplitude_deg"] is not None:
-        yield "timegrapher", f"would show {heard['amplitude_deg']:.0f}° with a lift angle of {heard['lift_angle_deg']:.4g}°"
-    if numbers["missed_beats"] is not None:
-        yield "missed beats", f"{numbers['missed_beats'] or 'none'} of {numbers['beats']}"
+        if any(numbers[f"{name}_error"] is not None for name, _, _ in AVERAGED):
+            yield "", SCATTER
+    if (missed := numbers["missed_beats"]) is not None:
+        where = f"in {numbers['beats']} half swings"
+        yield "missed beats", f"{missed} {where}: half pitches the wheel fell short or ran ahead" if missed else f"none {where}"
+    if numbers["efficiency"] is not None:
+        yield "efficiency", f"{100.0 * numbers['efficiency']:.1f} % of the drive's work reached the oscillator"
+
+
+def _heard(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """The amplitude that a timegrapher shows, and why it is another one."""
+    heard, true = numbers["timegrapher"], numbers["amplitude_deg"]
+    if heard is None or heard["amplitude_deg"] is None:
+        return
+    shown = heard["amplitude_deg"]
+    yield "timegrapher", f"would show {shown:.0f}° with a lift angle of {heard['lift_angle_deg']:.4g}°"
+    if true is not None and abs(shown - true) >= ALIKE:
+        side = "before the lift is over, so it reads high" if shown > true else "after the lift is over, so it reads low"
+        yield "", f"it takes the lift to end with the last loud noise of a beat, which comes {side}"
 
 
 def _places(run: Trajectory, numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
@@ -98,7 +119,7 @@ def _contacts(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     per_second = f", {numbers['impacts'] / numbers['simulated_s']:.0f} per second" if numbers["simulated_s"] > 0.0 else ""
     yield "impacts", f"{numbers['impacts']}{per_second}; {numbers['events']} events"
     depth = numbers["worst_penetration_m"]
-    deep = f"by up to {_metric(depth, 'm', 2)}" if depth >= NO_PENETRATION else f"by less than {1e9 * NO_PENETRATION:g} nm"
+    deep = f"by up to {metric(depth, 'm', 2)}" if depth >= NO_PENETRATION else f"by less than {1e9 * NO_PENETRATION:g} nm"
     yield "penetration", f"bodies overlapped {deep}"
     if numbers["overlap"].get("looks"):
         yield "", _looked(numbers["overlap"])
@@ -108,19 +129,19 @@ def _looked(overlap: Mapping[str, Any]) -> str:
     """What looking at the outlines themselves has found."""
     looks = f"{overlap['looks']} {'look' if overlap['looks'] == 1 else 'looks'} at the outlines themselves"
     if overlap["between"] is None:
-        return f"{looks} found no overlap of {_metric(overlap['resolution_m'], 'm', 2)} or more"
+        return f"{looks} found no overlap of {metric(overlap['resolution_m'], 'm', 2)} or more"
     first, second = overlap["between"]
     place = f"at ({_signed(overlap['x_mm'], 4)}, {_signed(overlap['y_mm'], 4)}) mm"
-    return f"{looks}: {first} and {second} by {_metric(overlap['worst_m'], 'm', 2)} at {overlap['t_s']:.6g} s, {place}"
+    return f"{looks}: {first} and {second} by {metric(overlap['worst_m'], 'm', 2)} at {overlap['t_s']:.6g} s, {place}"
 
 
 def _energy(run: Trajectory) -> Iterator[tuple[str, str]]:
     shares = energy_shares(run)
     if not shares.went_to:
         return
-    power = f", {_metric(shares.supplied / run.simulated, 'W')}" if run.simulated > 0.0 else ""
+    power = f", {metric(shares.supplied / run.simulated, 'W', 4)}" if run.simulated > 0.0 else ""
     listed = ", ".join(f"{cause} {100.0 * share:.1f} %" for cause, share in shares.went_to.items() if abs(share) >= 5e-4)
-    yield "energy", f"{_metric(shares.supplied, 'J')} {_source(run)}{power}: {listed}"
+    yield "energy", f"{metric(shares.supplied, 'J', 4)} {_source(run)}{power}: {listed}"
     yield "", f"the account closes to {run.energy.get('residual_relative', 0.0):.1g} of it"
 
 
@@ -132,18 +153,10 @@ def _source(run: Trajectory) -> str:
     return "put in" if driven else "taken from what was stored at the start"
 
 
-def _metric(value: float, unit: str, digits: int = 4) -> str:
-    """With the prefix that leaves one to three digits before the point."""
-    power = min(max(3 * math.floor(math.log10(abs(value)) / 3.0), -12), 9) if value else 0
-    prefix = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}[power]
-    shown = float(f"{value / 10.0**power:.{digits}g}")
-    return f"{shown:.12g} {prefix}{unit}"
-
-
 def _error(value: float, unit: str) -> str:
     """An error with one digit; a length with a prefix."""
     if unit == "m":
-        return _metric(max(value, NO_PENETRATION), unit, 1)
+        return metric(max(value, NO_PENETRATION), unit, 1)
     return f"{value:.{_decimals(value)}f}{unit}" if value >= PLAIN or value == 0.0 else f"{value:.0e}{unit}"
 
 
@@ -152,7 +165,7 @@ def _solver(run: Trajectory, numbers: Mapping[str, Any]) -> Iterator[tuple[str, 
     compiling = f" (and {run.compile:.1f} s to compile or load the solver)" if run.compile > 1.0 else ""
     yield "speed", f"{factor:.3g} × real time, {run.wall:.2g} s{compiling}" if factor else "not measured"
     if run.method == MOREAU and run.step is not None:
-        yield "method", f"Moreau's time stepping, steps of {_metric(run.step, 's')}"
+        yield "method", f"Moreau's time stepping, steps of {metric(run.step, 's', 4)}"
     yield "solver", _solved(run, numbers)
     for name, words in RULES:
         if count := numbers["counts"].get(name):
@@ -185,7 +198,7 @@ def _compared(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     if not bars["complete"]:
         yield "error bars", "none: the more exact run did not come to its end"
         return
-    finer = f"steps of {_metric(bars['step_s'], 's')}" if bars["step_s"] else f"tolerance {bars['tolerance']:.0e}"
+    finer = f"steps of {metric(bars['step_s'], 's', 4)}" if bars["step_s"] else f"tolerance {bars['tolerance']:.0e}"
     yield "error bars", f"of the computation, from a second run with {finer}:"
     units = {name: (label, unit) for name, label, unit in AVERAGED}
     moved = [
@@ -208,8 +221,11 @@ def _verdicts(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     if numbers["stopped"]:
         yield "stopped", numbers["stopped_message"]
     for entry in numbers["expect"]:
-        verdict = entry["message"] if entry["ok"] is None else "kept" if entry["ok"] else "MISSED"
-        yield "expected", f"{expected_text(entry)}: {verdict}"
+        if entry["ok"] is not None:
+            yield "expected", f"{expected_text(entry)}: {'kept' if entry['ok'] else 'MISSED'}"
+    unjudged = Counter(entry["message"] for entry in numbers["expect"] if entry["ok"] is None)
+    for message, count in unjudged.items():
+        yield "expected", f"{count} {'number' if count == 1 else 'numbers'} {message}"
 
 
 def expected_text(entry: Mapping[str, Any]) -> str:

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from watchsim.analysis.beats import Beats, beats
 from watchsim.analysis.recorded import is_recorded
-from watchsim.analysis.touches import Events, between, contact_events, held, involves
+from watchsim.analysis.touches import between, contact_events, held, involves
 from watchsim.analysis.wheel import progress
 from watchsim.mechanism.roles import Roles, roles
 from watchsim.simulation.event_kinds import EventKind
@@ -52,11 +52,13 @@ class Phase:
 
 @dataclass(frozen=True, slots=True)
 class _Contacts:
-    """Contact events of the wheel with its progress and the number of contacts that hold after each; touches of the banking."""
+    """Contact events of the wheel: times, its progress, how many contacts hold after each, which are touches; and when the
+    lever touches its banking."""
 
-    wheel: Events
+    times: Array
     angle: Array
     held: NDArray[np.int64]
+    touching: NDArray[np.bool_]
     banking: Array
 
 
@@ -69,9 +71,17 @@ def phases(run: Trajectory, found: Beats | None = None) -> list[Phase]:
     if parts.wheel is None or parts.lever is None or parts.oscillator is None or len(run.t) == 0:
         return []
     found = found or beats(run)
-    contacts = _contacts(run, parts)
-    rows = [phase for i in range(len(found)) for phase in _beat(run, parts, found, contacts, i)]
+    contacts, told = _contacts(run, parts), _told(run, found)
+    at_entry, at_end = (progress(run, parts.wheel, np.where(told, t, run.t[0])) for t in (found.tick, found.end))
+    ways = zip(at_entry.tolist(), at_end.tolist(), strict=True)
+    rows = [phase for i, way in enumerate(ways) if told[i] for phase in _beat(found, contacts, i, way)]
     return _with_angles(run, parts, rows)
+
+
+def _told(run: Trajectory, found: Beats) -> NDArray[np.bool_]:
+    """The beats that have a tick and were recorded from there to their end."""
+    heard = np.isfinite(found.tick)
+    return heard & is_recorded(run, np.where(heard, found.tick, 0.0)) & is_recorded(run, found.end)
 
 
 def _contacts(run: Trajectory, parts: Roles) -> _Contacts:
@@ -79,17 +89,16 @@ def _contacts(run: Trajectory, parts: Roles) -> _Contacts:
     wheel = contact_events(run, involves(parts.wheel), *TOUCH, EventKind.OPEN)
     fixed = {body.name for body in run.scene.bodies if body.motion == "fixed"}
     banking = contact_events(run, between(parts.lever, fixed), *TOUCH)["t"]
-    return _Contacts(wheel, progress(run, parts.wheel, wheel["t"]), held(wheel), banking)
+    times = np.ascontiguousarray(wheel["t"])
+    touching = np.isin(wheel["kind"], TOUCH)
+    return _Contacts(times, progress(run, parts.wheel, times), held(wheel), touching, np.ascontiguousarray(banking))
 
 
-def _beat(run: Trajectory, parts: Roles, found: Beats, contacts: _Contacts, i: int) -> Iterator[Phase]:
-    """The phases of beat `i`, without angles."""
+def _beat(found: Beats, contacts: _Contacts, i: int, way: tuple[float, float]) -> Iterator[Phase]:
+    """The phases of beat `i`, without angles; `way`: the wheel's progress from its tick to its end."""
     entry, end = found.tick[i], found.end[i]
-    if not np.isfinite(entry) or not is_recorded(run, np.array([entry, end])).all():
-        return
-    first, last = np.searchsorted(contacts.wheel["t"], (entry, end), side="left")
-    at_entry, at_end = progress(run, parts.wheel or "", np.array([entry, end]))
-    marks = _release_and_lock(contacts, slice(first, last), at_entry, at_end)
+    first, last = np.searchsorted(contacts.times, (entry, end), side="left")
+    marks = _release_and_lock(contacts, slice(first, last), *way)
     if marks is None:
         return
     unlocked, caught, let_off, lock = marks
@@ -98,16 +107,17 @@ def _beat(run: Trajectory, parts: Roles, found: Beats, contacts: _Contacts, i: i
     for name, (t0, t1) in zip(names, pairwise(times), strict=True):
         yield Phase(i + 1, name, float(t0), float(t1))
     resting = lock
-    for t in contacts.banking[(contacts.banking >= lock) & (contacts.banking <= end)][:1]:
-        yield Phase(i + 1, "run to banking", lock, float(t))
-        resting = float(t)
+    met = int(np.searchsorted(contacts.banking, lock, side="left"))
+    if met < len(contacts.banking) and contacts.banking[met] <= end:
+        resting = float(contacts.banking[met])
+        yield Phase(i + 1, "run to banking", lock, resting)
     if i + 1 < len(found) and np.isfinite(found.tick[i + 1]):
         yield Phase(i + 1, "locked", resting, float(found.tick[i + 1]))
 
 
 def _release_and_lock(contacts: _Contacts, own: slice, at_entry: float, at_end: float) -> Marks | None:
     """Release, first touch after it, last touch before the drop, and lock (s), among the wheel's events `own` of one beat."""
-    times, angle, holding = contacts.wheel["t"][own], contacts.angle[own], contacts.held[own]
+    times, angle, holding = contacts.times[own], contacts.angle[own], contacts.held[own]
     way = at_end - at_entry
     if len(times) < 3 or not way > 0.0:
         return None
@@ -118,8 +128,7 @@ def _release_and_lock(contacts: _Contacts, own: slice, at_entry: float, at_end: 
         return None
     drop = int(np.argmax(np.where(dropping, np.diff(angle), -np.inf)))
     released = int(np.flatnonzero(angle[: drop + 1] <= angle[: drop + 1].min() + STANDING * way)[-1])
-    touching = np.isin(contacts.wheel["kind"][own], TOUCH)
-    caught = np.flatnonzero(touching[released + 1 : drop + 1])
+    caught = np.flatnonzero(contacts.touching[own][released + 1 : drop + 1])
     if len(caught) == 0:
         return None
     return float(times[released]), float(times[released + 1 + caught[0]]), float(times[drop]), float(times[drop + 1])

@@ -7,18 +7,30 @@ from __future__ import annotations
 
 import numpy as np
 
-from watchsim.analysis.expectations import mistakes
+from watchsim.analysis.expectations import WATCH_KEYS, mistakes
 from watchsim.analysis.summary import summary
 from watchsim.mechanism.compile import compile_scene
 from watchsim.mechanism.errors import Fault, Faults
 from watchsim.mechanism.locate import key_lines
-from watchsim.mechanism.scene import Scene
+from watchsim.mechanism.roles import keeps_time, partners, roles
+from watchsim.mechanism.scene import Expectation, Scene
 from watchsim.simulation.state import COUNT_NAMES
 from watchsim.simulation.stops import Stop
 from watchsim.simulation.trajectory import EVENT_DTYPE, Trajectory
 
 COUNTS = (*COUNT_NAMES, "cells", "cells_asked", "declared_pairs", "sweeps")
 LOOKED = ("worst_m", "resolution_m", "allowed_m", "looks", "t_s", "x_mm", "y_mm")
+TIMED = (
+    "amplitude_deg",
+    "amplitude_deg_error",
+    "period_s",
+    "rate_s_per_d",
+    "beat_error_ms",
+    "frequency_hz",
+    "vph",
+    "timegrapher",
+)
+BY_WHEEL = ("missed_beats", "efficiency")
 CAUSES = ("friction", "damping", "impacts", "stepping")
 
 
@@ -29,10 +41,32 @@ def expectation_faults(scene: Scene) -> list[Fault]:
     numbers = summary(_not_begun(scene))
     lines = key_lines(scene.path.read_text(encoding="utf-8-sig")) if scene.path and scene.path.is_file() else {}
     faults = Faults(str(scene.path or "scene"), lines)
-    for expectation, message in zip(scene.expect, mistakes(scene.expect, numbers), strict=True):
-        if message:
+    for expectation, wrong in zip(scene.expect, mistakes(scene.expect, numbers), strict=True):
+        if message := wrong or impossible(expectation, scene):
             faults.add(f"expect.{expectation.key}", message)
     return faults.found
+
+
+def impossible(expectation: Expectation, scene: Scene) -> str:
+    """Why no run of this scene gives the number, whatever happens in it; "" where one can."""
+    name = WATCH_KEYS.get(expectation.key, expectation.key)
+    whole = name.split(".", 1)[0]
+    if whole not in (*TIMED, *BY_WHEEL):
+        return ""
+    parts = roles(scene)
+    if parts.oscillator is None:
+        why = "nothing in it swings on a spring or by gravity"
+    elif "amplitude_deg" in name and scene.body(parts.oscillator).motion == "slide":
+        why = f"{parts.oscillator} slides, so that it has no amplitude in degrees"
+    elif whole in BY_WHEEL and (parts.wheel is None or not keeps_time(scene)):
+        why = "no driven wheel keeps the oscillator going"
+    elif name == "timegrapher.amplitude_deg" and scene.lift_angle is None:
+        why = "it names no lift_angle under [timegrapher]"
+    elif whole == "timegrapher" and not partners(scene, parts.oscillator):
+        why = f"nothing may touch {parts.oscillator}, so that no beat is heard"
+    else:
+        return ""
+    return f'no run of this scene gives "{expectation.key}": {why}. Leave it out'
 
 
 def _not_begun(scene: Scene) -> Trajectory:

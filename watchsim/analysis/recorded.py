@@ -5,24 +5,31 @@ A scene may record a few windows of a long run only; interpolating across what w
 
 from __future__ import annotations
 
-import dataclasses
 import math
 
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.mechanism.check import frequency
+from watchsim.mechanism.oscillation import nominal_frequency, oscillator, oscillators
 from watchsim.simulation.trajectory import Array, Trajectory
 
 LONGEST_STEP = 0.26  # periods: within a window rows are never further apart than a quarter of a swing
 
 
 def nominal_period(run: Trajectory, body: str) -> float:
-    """Undamped period (s) of a sprung body."""
-    springs = tuple(spring for spring in run.scene.springs if spring.body == body)
-    hertz = frequency(dataclasses.replace(run.scene, springs=springs))
+    """Period (s) that a rate is measured against: of the oscillator its nominal one, of other bodies that of small swings.
+
+    ValueError where nothing pulls the body back.
+    """
+    scene = run.scene
+    found = oscillators(scene)
+    if found and found[0].body == body:
+        hertz = nominal_frequency(scene)
+    else:
+        one = oscillator(scene.bodies, scene.springs, scene.gravity, body)
+        hertz = one.hertz if one else None
     if not hertz:
-        raise ValueError(f'no spring acts on "{body}", so it has no period')
+        raise ValueError(f'neither a spring nor gravity pulls "{body}" back, so it has no period')
     return 1.0 / hertz
 
 
@@ -31,8 +38,9 @@ def is_recorded(run: Trajectory, times: Array) -> NDArray[np.bool_]:
     if len(run.t) == 0:
         return np.zeros(len(times), bool)
     longest = math.inf
-    if run.scene.springs:
-        longest = LONGEST_STEP * min(nominal_period(run, spring.body) for spring in run.scene.springs)
+    frequencies = [one.hertz for one in oscillators(run.scene) if one.hertz]
+    if frequencies:
+        longest = LONGEST_STEP / max(frequencies)
     after = np.clip(np.searchsorted(run.t, times, side="left"), 0, len(run.t) - 1)
     before = np.clip(np.searchsorted(run.t, times, side="right") - 1, 0, len(run.t) - 1)
     inside = (times >= run.t[0]) & (times <= run.t[-1])

@@ -10,20 +10,22 @@ import dataclasses
 import os
 import re
 from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
 from watchsim.analysis.archive import read_trajectory, write_trajectory
 from watchsim.analysis.state_file import read_state, write_state
 from watchsim.analysis.tables import json_text, write_events
+from watchsim.mechanism.travelling import LOCK, locked_drawings, travelling
 from watchsim.simulation.trajectory import Trajectory
 from watchsim.storage.scratch import PREFIX
 from watchsim.storage.write import real, write_folder
 
-SUMMARY, LOCK, TRAJECTORY, EVENTS = "summary.json", "scene.lock.toml", "trajectory.npz", "events.csv"
+SUMMARY, TRAJECTORY, EVENTS = "summary.json", "trajectory.npz", "events.csv"
 STATE = "state.npz"
 FAILURE = "lcp_failure.json"  # only where the solver gave up on a complementarity problem
-LATER = ("beats.csv", "phases.csv", "movie.mp4", "movie.gif", "report.html", "import.png")
+LATER = ("beats.csv", "phases.csv", "report.txt", "movie.mp4", "movie.gif", "report.html", "import.png")
 OURS = frozenset((SUMMARY, LOCK, TRAJECTORY, EVENTS, STATE, FAILURE, *LATER))
 PLOTS = re.compile(r"(plots|drawings|plots/(kinematics|last_beats)\.(png|svg|pdf))")
 
@@ -53,11 +55,17 @@ def is_ours(name: str) -> bool:
     return name in OURS or PLOTS.fullmatch(name) is not None
 
 
+def ours_in(folder: Path) -> Callable[[str], bool]:
+    """`is_ours` for a folder as it stands: the drawings that its locked scene names are ours, too; others are somebody's."""
+    drawings = locked_drawings(folder)
+    return lambda name: name in drawings or is_ours(name)
+
+
 def write_results(
     run: Trajectory,
     folder: str | os.PathLike[str],
     summary: Mapping[str, Any] | None = None,
-    scene_lock: str = "",
+    scene_lock: str | None = None,
     *,
     extra: Extra | None = None,
     force: bool = False,
@@ -65,7 +73,7 @@ def write_results(
     """Write a results folder and return its path.
 
     summary     numbers for summary.json (numpy values welcome; not-a-number becomes null)
-    scene_lock  text of scene.lock.toml; drawings are named relative to the folder
+    scene_lock  text of scene.lock.toml; by default made of the run's scene, whose drawings go into the folder with it
     extra       more files: relative path -> text, bytes, or a function that writes the file it is given
     force       replace an existing results folder; files in it that are not ours are kept
 
@@ -73,14 +81,15 @@ def write_results(
     is then still there, and nothing else.
     """
     target = check_folder(folder, force)
+    files: dict[str, Any] = {**(travelling(run.scene) if scene_lock is None else {LOCK: scene_lock}), **(extra or {})}
     real(target).parent.mkdir(parents=True, exist_ok=True)
-    write_folder(target, filler(run, summary or {}, scene_lock, extra or {}), is_ours, "the results")
+    write_folder(target, filler(run, summary or {}, files), ours_in(real(target)), "the results")
     return target
 
 
-def filler(run: Trajectory, summary: Mapping[str, Any], scene_lock: str, extra: Extra) -> Callable[[Path], None]:
-    """What writes the files of a results folder into the folder it is given."""
-    return lambda place: _fill(place, run, summary, scene_lock, extra)
+def filler(run: Trajectory, summary: Mapping[str, Any], files: Extra) -> Callable[[Path], None]:
+    """What writes a results folder into the folder it is given; `files` holds the locked scene, its drawings and extras."""
+    return lambda place: _fill(place, run, summary, files)
 
 
 def read_results(folder: str | os.PathLike[str]) -> Trajectory:
@@ -103,25 +112,31 @@ def read_results(folder: str | os.PathLike[str]) -> Trajectory:
     return run
 
 
-def bare_filler(run: Trajectory, scene_lock: str) -> Callable[[Path], None]:
-    """The same with the motion, the state and the scene only."""
-    return lambda place: _fill_bare(place, run, scene_lock)
+def bare_filler(run: Trajectory, files: Extra) -> Callable[[Path], None]:
+    """The same with the motion, the state and the given files only, such as the scene and its drawings."""
+    return lambda place: _fill_bare(place, run, files)
 
 
-def _fill_bare(place: Path, run: Trajectory, scene_lock: str) -> None:
-    write_trajectory(run, place / TRAJECTORY)
-    if run.end_state is not None:
-        write_state(run.end_state, place / STATE)
-    (place / LOCK).write_text(scene_lock, encoding="utf-8")
-
-
-def _fill(place: Path, run: Trajectory, summary: Mapping[str, Any], scene_lock: str, extra: Extra) -> None:
-    _fill_bare(place, run, scene_lock)
-    write_events(run, place / EVENTS)
+def _fill(place: Path, run: Trajectory, summary: Mapping[str, Any], files: Extra) -> None:
+    with ThreadPoolExecutor(1) as beside:  # packing needs another core, and no Python
+        packed = beside.submit(write_trajectory, run, place / TRAJECTORY)
+        write_events(run, place / EVENTS)
+        packed.result()
     (place / SUMMARY).write_text(json_text(summary), encoding="utf-8")
     if run.failure is not None:
         (place / FAILURE).write_text(json_text(run.failure), encoding="utf-8")
-    for name, content in extra.items():
+    _fill_rest(place, run, files)
+
+
+def _fill_bare(place: Path, run: Trajectory, files: Extra) -> None:
+    write_trajectory(run, place / TRAJECTORY)
+    _fill_rest(place, run, files)
+
+
+def _fill_rest(place: Path, run: Trajectory, files: Extra) -> None:
+    if run.end_state is not None:
+        write_state(run.end_state, place / STATE)
+    for name, content in files.items():
         path = place / name
         if not path.resolve().is_relative_to(place.resolve()):
             raise ValueError(f"extra file {name!r} would lie outside the results folder")

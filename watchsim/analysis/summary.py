@@ -16,15 +16,18 @@ from watchsim.analysis.averages import Averages, averages, last_window
 from watchsim.analysis.beat_tables import beats_csv, phases_csv
 from watchsim.analysis.beats import Beats, beats
 from watchsim.analysis.doubts import doubts
+from watchsim.analysis.efficiency import efficiency
 from watchsim.analysis.expectations import judged
 from watchsim.analysis.headlines import headlines
+from watchsim.analysis.no_timing import why_no_timing
 from watchsim.analysis.standstill import standstill
 from watchsim.analysis.tables import plain
 from watchsim.analysis.timegrapher import timegrapher
 from watchsim.analysis.wheel import missed_beats
 from watchsim.analysis.whole_run import whole_run
 from watchsim.mechanism.lock import versions
-from watchsim.mechanism.roles import keeps_time, roles
+from watchsim.mechanism.notes import notes
+from watchsim.mechanism.roles import keeps_time, roles, swings
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.frames import frames, speeds
 from watchsim.simulation.trajectory import Trajectory
@@ -44,11 +47,15 @@ def summary(run: Trajectory) -> dict[str, Any]:
     `missed_beats`, `stopped` and `stopped_message` (the watch no longer ticks), `scene_file`, `stop_message`,
     `events_by_kind`, `counts`, `overlap` (what looking at the outlines themselves found, see simulation/overlap_watch.py),
     `step_s` (of a method with fixed steps), `worst_complementarity_residual` (worst violation of a complementarity condition,
-    as a share of the problem's largest term), `warnings` (sentences, see analysis/doubts.py).
+    as a share of the problem's largest term), `warnings` (sentences, see analysis/doubts.py), `notes` (what the scene leaves
+    unsaid or says without effect, see mechanism/notes.py), `timing_message` (why there is no amplitude or rate), `efficiency`
+    (share of the drive's work that reaches the oscillator).
     """
     numbers: dict[str, Any] = {**_about(run), "bodies": _bodies(run), **_counts(run), **_timing(run)}
+    numbers["efficiency"] = efficiency(run)
     numbers["expect"] = judged(run.scene.expect, numbers)
     numbers["warnings"] = list(doubts(run))
+    numbers["notes"] = [finding.message for finding in notes(run.scene)]
     numbers["versions"] = versions()
     clean: dict[str, Any] = plain(numbers)
     return clean
@@ -61,7 +68,7 @@ def summary_text(run: Trajectory, numbers: Mapping[str, Any] | None = None) -> s
 
 def tables(run: Trajectory) -> dict[str, str]:
     """The tables of a results folder besides events.csv: name -> text."""
-    if not run.scene.springs:
+    if not swings(run.scene):
         return {}
     found = beats(run)
     return {"beats.csv": beats_csv(found), "phases.csv": phases_csv(run, found)}
@@ -117,7 +124,7 @@ def _counts(run: Trajectory) -> dict[str, Any]:
 
 def _timing(run: Trajectory) -> dict[str, Any]:
     """Amplitude, period, rate, beat error and what follows from them; null where nothing oscillates."""
-    if not run.scene.springs:
+    if not swings(run.scene):
         nothing = {
             "beats": 0,
             "whole_run": None,
@@ -126,12 +133,15 @@ def _timing(run: Trajectory) -> dict[str, Any]:
             "stopped": False,
             "stopped_message": None,
         }
-        return _timing_of(None) | nothing
+        values = _timing_of(None) | nothing
+        return {**values, "timing_message": why_no_timing(run, None, values)}
     found = beats(run)
     window = last_window(run, found.nominal_period)
     stands = standstill(run, found)
+    values = _timing_of(averages(found, window))
     return {
-        **_timing_of(averages(found, window)),
+        **values,
+        "timing_message": why_no_timing(run, found, values, window[0]),
         "beats": found.before + len(found),
         "whole_run": whole_run(run, found),
         "timegrapher": timegrapher(run, found, window),

@@ -11,7 +11,10 @@ HELP = "everything short of simulating: units, overlap at the start, mass, frequ
 
 
 def options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("scene", metavar="SCENE", help="a scene file (TOML), or the folder that holds scene.toml")
+    parser.add_argument(
+        "scene", metavar="SCENE", help="a scene file (TOML), the folder that holds scene.toml, or a results folder"
+    )
+    parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], help="change a value of the scene")
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of text")
     parser.add_argument(
         "--png", metavar="FILE", help="where to write a picture of the start position, what can ever touch in colour"
@@ -30,7 +33,7 @@ def run(args: argparse.Namespace) -> int:
     if args.png:
         check_picture(args.png, args.scene)
         secured_file(Path(args.png), "the picture")
-    scene = load_scene(args.scene, overlap=False)
+    scene = load_scene(args.scene, args.set, overlap=False)
     compiled = compile_scene(scene)
     pairs = modelled_pairs(compiled, [body.name for body in scene.bodies])
     report = check_report(scene, pairs.counts)

@@ -76,7 +76,7 @@ def announce_compile() -> None:
     from watchsim.jit import is_cached
 
     if not is_cached("advance.advance"):
-        say("Compiling the solver for this machine: once after installation, about a minute ...")
+        say("Compiling the solver for this machine: once after installation, about half a minute ...")
 
 
 def parse_window(text: str | None, option: str = "--window") -> tuple[float, float] | None:

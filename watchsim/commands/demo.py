@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import argparse
 import time
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from watchsim import stopping
 from watchsim.commands.console import FINE, MISSED, announce_compile
@@ -16,6 +18,7 @@ DEFAULT, PICTURE = "results/demo", "incline.png"
 
 def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-o", "--output", metavar="DIR", default=DEFAULT, help="results folder (default %(default)s)")
+    parser.add_argument("--details", action="store_true", help="print every number, not the verdicts alone")
     parser.add_argument("--force", action="store_true", help="replace a results folder that exists")
 
 
@@ -40,20 +43,42 @@ def run(args: argparse.Namespace) -> int:
     announce_compile()
     print("1. A disc bounces and rolls down an incline: against the closed form", flush=True)
     rows = incline_rows()
-    print(verify_text(rows), flush=True)
     picture = _incline_picture(parent)
-    print(f"Plot: {picture}", flush=True)
+    print(f"   {_agreement(rows)}", flush=True)
+    print(f"   Plot: {picture}", flush=True)
+    if args.details:
+        print(verify_text(rows), flush=True)
     print(f"\n2. A Swiss lever, read from DXF drawings, ticks for {DURATION:g} s", flush=True)
     scene = load_scene(str(profiles_dir() / "swiss_lever"))
     goal = goal_of(scene, folder, args.force)
     with stopping.keeping():
         trajectory = simulate_with_progress(scene, DURATION, None)
         summary = write(trajectory, goal, Extras(movie=True, gif=True), changed=["--duration"])
-    print(summary_text(trajectory, {**summary, "expect": []}), flush=True)
-    print(f"\nPlots, movie.mp4, movie.gif and all numbers: {args.output}/swiss_lever")
+    print(f"   {_ticking(summary)}")
+    print(f"   Plots, movie.mp4, movie.gif and all numbers (report.txt): {args.output}/swiss_lever")
+    if args.details:
+        print(summary_text(trajectory, {**summary, "expect": []}), flush=True)
     print(f"Done in {time.monotonic() - start:.0f} s.")
     code = status(trajectory, summary)
     return code if code != FINE else FINE if all(row["ok"] for row in rows) else MISSED
+
+
+def _agreement(rows: Sequence[Mapping[str, Any]]) -> str:
+    """The verdict on the incline in a line."""
+    wrong = [row for row in rows if not row["ok"]]
+    if wrong:
+        return f"WRONG: {len(wrong)} of {len(rows)} numbers, the first {wrong[0]['name']}, {wrong[0]['quantity']}."
+    return f"All {len(rows)} numbers agree, with errors below {max(row['error'] for row in rows):.0e}."
+
+
+def _ticking(summary: Mapping[str, Any]) -> str:
+    """The verdict on the watch in a line."""
+    if summary["stopped"] or summary["amplitude_deg"] is None or summary["rate_s_per_d"] is None:
+        return f"It does NOT tick: {summary['stopped_message'] or summary['timing_message'] or summary['stop_message']}."
+    missed = f"{summary['missed_beats'] or 'none'} missed in {summary['beats']} half swings"
+    rate = f"{summary['rate_s_per_d']:+.1f} s/d".replace("-", "−")
+    close = f"the energy account closes to {summary['energy']['residual_relative']:.0e}"
+    return f"It ticks: amplitude {summary['amplitude_deg']:.1f}°, rate {rate}, {missed}; {close}."
 
 
 def _incline_picture(folder: Path) -> Path:

@@ -25,7 +25,9 @@ PIVOT = "PIVOT"
 
 
 def options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("scene", metavar="SCENE", help="a scene file (TOML), or the folder that holds scene.toml")
+    parser.add_argument(
+        "scene", metavar="SCENE", help="a scene file (TOML), the folder that holds scene.toml, or a results folder"
+    )
     parser.add_argument("-o", "--output", metavar="DIR", help="folder for the files (default export/NAME)")
     parser.add_argument("--format", metavar="NAMES", default=",".join(FORMATS), help="default %(default)s")
     parser.add_argument("--bodies", metavar="NAMES", help="only these bodies, with commas between them")
@@ -79,9 +81,11 @@ def _chosen(scene: Scene, names: list[str] | None) -> tuple[Body, ...]:
 
 
 def _name(scene: Scene) -> str:
+    from watchsim.mechanism.load import SCENE_FILES
+
     if scene.path is None:
         return "scene"
-    return scene.path.parent.resolve().name if scene.path.name == "scene.toml" else scene.path.stem
+    return scene.path.parent.resolve().name if scene.path.name in SCENE_FILES else scene.path.stem
 
 
 def _check_folder(target: Path, force: bool) -> frozenset[str]:

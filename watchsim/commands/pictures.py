@@ -70,7 +70,7 @@ def _plots(run: Trajectory) -> dict[str, Callable[[Path], object]]:
 
 def last_beats(run: Trajectory, share: float = 1.5) -> tuple[float, float]:
     """The last one and a half oscillations, or the last tenth where nothing keeps time, of the last stretch recorded."""
-    from watchsim.mechanism.check import frequency
+    from watchsim.mechanism.oscillation import frequency
     from watchsim.mechanism.roles import keeps_time
     from watchsim.render.poses import recorded
 

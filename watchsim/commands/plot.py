@@ -14,7 +14,12 @@ FORMATS = ("png", "svg", "pdf")
 def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("run_folder", metavar="RUN", help="a results folder")
     parser.add_argument("--bodies", metavar="NAMES", help="only these bodies, with commas between them")
-    parser.add_argument("--quantities", metavar="NAMES", default="angle,velocity", help="default %(default)s")
+    parser.add_argument(
+        "--quantities",
+        metavar="NAMES",
+        default="angle,velocity",
+        help="angle, velocity, acceleration, with commas (default %(default)s)",
+    )
     parser.add_argument("--window", metavar="FROM:TO", help='such as "179.4 s:179.75 s" (default: all that was recorded)')
     parser.add_argument("--format", metavar="NAMES", default="png", help="png, svg, pdf, with commas (default %(default)s)")
     parser.add_argument("-o", "--output", metavar="FILE", help="the file, ending optional (default RUN/plots/kinematics)")

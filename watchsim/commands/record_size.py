@@ -21,13 +21,13 @@ EVENT_BYTES = 52
 
 
 def record_size(scene: Scene, duration: float) -> float:
-    """About how many bytes of rows and events a run of `duration` (s) makes; 0 where nothing swings on a spring."""
-    from watchsim.mechanism.check import COORDINATES, frequency
+    """About how many bytes of rows and events a run of `duration` (s) makes; 0 where nothing swings."""
+    from watchsim.mechanism.check import COORDINATES
+    from watchsim.mechanism.oscillation import frequency, oscillators
 
     hertz = frequency(scene) or 0.0
     width = 1 + 3 * sum(COORDINATES[body.motion] for body in scene.bodies)
-    sprung = len({spring.body for spring in scene.springs})
-    return duration * hertz * sprung * (ROWS * width * 8 + EVENTS * EVENT_BYTES)
+    return duration * hertz * len(oscillators(scene)) * (ROWS * width * 8 + EVENTS * EVENT_BYTES)
 
 
 def bounded_record(scene: Scene, duration: float) -> Scene:

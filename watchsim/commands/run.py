@@ -21,7 +21,7 @@ from watchsim.commands.console import (
 )
 from watchsim.commands.destination import secured_folder, swept_run
 from watchsim.commands.record_size import bounded_record
-from watchsim.commands.write_run import Extras, goal_of, write
+from watchsim.commands.write_run import Extras, goal_of, report_text, write
 from watchsim.simulation.methods import EVENT_DRIVEN, METHODS
 
 if TYPE_CHECKING:
@@ -33,7 +33,12 @@ HELP = "simulate a scene and write a results folder"
 
 
 def options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("scene", metavar="SCENE", help="a scene file (TOML), or the folder that holds scene.toml")
+    parser.add_argument(
+        "scene",
+        metavar="SCENE",
+        nargs="?",
+        help="a scene file (TOML), the folder that holds scene.toml, or a results folder (default with --resume: its own)",
+    )
     parser.add_argument("-o", "--output", metavar="DIR", help="results folder (default results/NAME)")
     parser.add_argument(
         "--record",
@@ -60,9 +65,12 @@ def options(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from watchsim.analysis.results import check_folder
     from watchsim.commands.scenes import load_scene
+    from watchsim.mechanism.notes import notes
     from watchsim.units import TIME
 
-    scene = load_scene(args.scene, args.set)
+    if args.scene is None and args.resume is None:
+        raise InputError("run: name a scene file, or the folder that holds scene.toml.")
+    scene = load_scene(args.scene or args.resume, args.set)
     if args.record:
         scene = scene.set("run.record", [_record(what) for what in args.record])
     duration = None if args.duration is None else parse_positive("--duration", args.duration, TIME)
@@ -94,6 +102,8 @@ def run(args: argparse.Namespace) -> int:
         "--method": method != EVENT_DRIVEN,
     }
     changed = [name for name, value in given.items() if value]
+    for note in notes(scene):
+        say(f"Note: {note.message}. {note.fix}")
     extras = Extras(not args.no_plots, args.movie, args.gif, args.error_bars, args.profile)
     with stopping.keeping():
         trajectory = simulate_with_progress(scene, duration, args.tol, method=method, step=step, start=start)
@@ -103,13 +113,7 @@ def run(args: argparse.Namespace) -> int:
         for warning in summary["warnings"]:
             say(f"Warning: {warning}.")
     else:
-        from watchsim.analysis.summary import summary_text
-
-        print(summary_text(trajectory, summary))
-        if args.profile:
-            from watchsim.bench.profile import profile_text
-
-            print(profile_text(summary["profile"]))
+        print(report_text(trajectory, summary))
         print(f"Results: {folder}")
     return status(trajectory, summary)
 
@@ -207,8 +211,10 @@ def _record(what: str) -> object:
 
 def _name(scene: Scene) -> str:
     """A folder name for the results: the scene's folder, with the file's own name where it is not scene.toml."""
+    from watchsim.mechanism.load import SCENE_FILES
+
     path = scene.path
     if path is None:
         return "scene"
     folder = path.resolve().parent.name
-    return folder if path.stem == "scene" else f"{folder}_{path.stem}"
+    return folder if path.name in SCENE_FILES else f"{folder}_{path.stem}"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from watchsim.commands.console import InputError
@@ -22,8 +21,7 @@ def load_scene(name: str, changes: list[str] | None = None, overlap: bool = True
     from watchsim.mechanism.overlap import overlap_faults
     from watchsim.mechanism.override import assignments, changed
 
-    path = Path(name)
-    scene = load(path / "scene.toml" if path.is_dir() else path)
+    scene = load(name)
     if changes:
         scene = changed(scene, assignments(changes))
     faults = [*(overlap_faults(scene) if overlap else ()), *expectation_faults(scene)]

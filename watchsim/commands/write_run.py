@@ -32,20 +32,18 @@ class Extras:
 
 @dataclass(frozen=True, slots=True)
 class Goal:
-    """Where a run is to be kept, and the locked scene that lies beside it there, or anywhere else."""
+    """Where a run is to be kept, and what travels with it there, or anywhere else: the locked scene and its drawings."""
 
     folder: Path
     replace: bool
-    lock: str
-    lock_elsewhere: str  # names drawings by their absolute paths
+    scene: Mapping[str, str | bytes]  # name in the results folder -> content
 
 
 def goal_of(scene: Scene, folder: Path, replace: bool) -> Goal:
-    """To be made before the run: its drawings may be gone when it ends."""
-    from watchsim.mechanism.lock import lock_text
-    from watchsim.storage.write import real
+    """To be made before the run: its scene and drawings may be gone when it ends."""
+    from watchsim.mechanism.travelling import travelling
 
-    return Goal(folder, replace, lock_text(scene, real(folder)), lock_text(scene))
+    return Goal(folder, replace, travelling(scene))
 
 
 def write(run: Trajectory, goal: Goal, extras: Extras, changed: Sequence[str] = ()) -> dict[str, Any]:
@@ -62,13 +60,26 @@ def write(run: Trajectory, goal: Goal, extras: Extras, changed: Sequence[str] = 
         say("Interrupted: writing what was simulated; a second Ctrl-C gives it up ...")
     try:
         numbers = _numbers(run, extras, changed)
-        beside: dict[str, Any] = dict(tables(run))
+        said = [*(f"Note: {note}" for note in numbers["notes"]), report_text(run, numbers)]
+        beside: dict[str, Any] = {**goal.scene, **tables(run), "report.txt": "\n".join(said) + "\n"}
     except Exception:
         say(f"The numbers of this run could not be made. Its motion is kept in {_bare(run, goal)}")
         raise
     drawn = pictures(run, extras.plots, extras.movie, extras.gif)
     _save(run, goal, numbers, beside, drawn)
     return numbers
+
+
+def report_text(run: Trajectory, summary: dict[str, Any]) -> str:
+    """What the terminal says of a run, which report.txt keeps."""
+    from watchsim.analysis.summary import summary_text
+
+    text = summary_text(run, summary)
+    if "profile" in summary:
+        from watchsim.bench.profile import profile_text
+
+        text += "\n" + profile_text(summary["profile"])
+    return text
 
 
 def _numbers(run: Trajectory, extras: Extras, changed: Sequence[str]) -> dict[str, Any]:
@@ -99,14 +110,14 @@ def _with_error_bars(run: Trajectory) -> dict[str, Any]:
 
 
 def _save(run: Trajectory, goal: Goal, numbers: Mapping[str, Any], beside: dict[str, Any], drawn: dict[str, Any]) -> None:
-    from watchsim.analysis.results import filler, write_results
+    from watchsim.analysis.results import LOCK, filler, write_results
     from watchsim.storage.rescue import write_elsewhere
 
     try:
-        write_results(run, goal.folder, numbers, goal.lock, extra={**beside, **drawn}, force=goal.replace)
+        write_results(run, goal.folder, numbers, str(beside[LOCK]), extra={**beside, **drawn}, force=goal.replace)
     except OSError as error:
         # Without pictures, which take most of the room, and which can be drawn later.
-        place = write_elsewhere(goal.folder.name, filler(run, numbers, goal.lock_elsewhere, beside), "the results")
+        place = write_elsewhere(goal.folder.name, filler(run, numbers, beside), "the results")
         raise InputError(f"{error}.\nThe results were saved, without pictures, in {place}") from error
     except Exception:
         say(f"The results could not be written as they should. The motion is kept in {_bare(run, goal)}")
@@ -118,4 +129,4 @@ def _bare(run: Trajectory, goal: Goal) -> Path:
     from watchsim.analysis.results import bare_filler
     from watchsim.storage.rescue import write_elsewhere
 
-    return write_elsewhere(goal.folder.name, bare_filler(run, goal.lock_elsewhere), "the motion")
+    return write_elsewhere(goal.folder.name, bare_filler(run, goal.scene), "the motion")

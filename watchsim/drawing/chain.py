@@ -21,6 +21,7 @@ from watchsim.drawing.nesting import nested
 from watchsim.drawing.nodes import TIGHT, Join, Nodes
 from watchsim.drawing.outline import Outline
 from watchsim.drawing.tidy import unique_loops, with_length, without_doubles, without_slits
+from watchsim.drawing.twins import twins
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line, Point
 
@@ -78,6 +79,7 @@ def chain_layer(layer: str, strokes: Sequence[Stroke], snap: float, deviation: f
     notes += open_ends([path.steps for path in still_open], meeting.loose, pieces, nodes)
     chains = [assembled(travelled(path, pieces), layer, False) for path in still_open]
     notes += crossings([*outlines, *chains], deviation)
+    notes += twins([outline.loop for outline in outlines])
     loops = nested([outline.loop for outline in outlines])
     if loops is None:
         loops = [outline.loop for outline in outlines]

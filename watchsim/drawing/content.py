@@ -51,3 +51,4 @@ class Content:
     ignored: dict[str, int] = field(default_factory=dict)
     drawn: Drawn = field(default_factory=Drawn)
     findings: tuple[Finding, ...] = ()
+    data: bytes = field(default=b"", repr=False, compare=False)

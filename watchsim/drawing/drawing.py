@@ -19,6 +19,7 @@ class Drawing:
     millimetres and a finding of severity "error" says so. `units_from` is "header", "option" or "page" (None when unknown).
     `layers` lists all visible layers with geometry. `points` are (layer, x, y). `fitted` counts curves turned into arcs and
     a bound of their deviation in metres. `drawn` is what the file holds before doubles are taken out and curves are fitted.
+    `data` is the file itself, byte by byte.
     """
 
     path: Path
@@ -35,6 +36,7 @@ class Drawing:
     ignored: dict[str, int] = field(default_factory=dict)
     drawn: Drawn = field(default_factory=Drawn)
     findings: tuple[Finding, ...] = ()
+    data: bytes = field(default=b"", repr=False, compare=False)
 
     @property
     def profile(self) -> Profile:

@@ -1,84 +1,113 @@
-"""Is this arc drawn with straight pieces?
+"""Is this curve drawn with straight pieces, and how far off are they?
 
-Facets are not arcs: a locking face of facets pushes in steps. They are imported as drawn, and reported.
+Facets are not arcs: a locking face of facets pushes in steps. They are imported as drawn. Where they leave the smooth curve
+through their corners by more than a fitted curve may, they are reported, once for each outline.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
 
 from watchsim.drawing.findings import Finding
 from watchsim.geometry.loop import Loop
-from watchsim.geometry.primitives import Edge, Line
+from watchsim.geometry.primitives import Line, Point
+
+Array = NDArray[np.float64]
 
 FEWEST = 6  # pieces in a row
 SHARPEST = math.radians(31.0)  # turn from piece to piece: a twelve-sided nut is still taken for a circle
-BLUNTEST = math.radians(0.05)
-EQUAL = 0.02  # relative difference of lengths and of turns
+SMOOTH = 2.0  # times: the curvature of a curve changes by no more from corner to corner
+EQUAL = 0.02  # relative difference of radii in an arc
+VISIBLE = 1e-7  # m: what splines and ellipses may be off by, too
+
+
+class Row(NamedTuple):
+    """Straight pieces that stand for one curve: their number, the largest rise (m) and where, the radii at their corners."""
+
+    pieces: int
+    rise: float
+    place: Point
+    radii: Array
 
 
 def facets(loops: Iterable[Loop]) -> list[Finding]:
-    """A warning for each run of equal straight pieces with equal turns."""
-    return [facet_finding(loop, run) for loop in loops for run in runs(loop)]
+    """A warning for each outline with straight pieces that stand for a curve and are visibly off it."""
+    found = ((loop, [row for row in rows(loop) if row.rise > VISIBLE]) for loop in loops)
+    return [facet_finding(loop, off) for loop, off in found if off]
 
 
-def runs(loop: Loop) -> list[list[Line]]:
-    """The rows of at least FEWEST lines that turn alike."""
-    edges: Sequence[Edge] = loop.edges
-    if loop.closed:
-        edges = (*edges[first_break(edges) :], *edges[: first_break(edges)])
-    found: list[list[Line]] = []
-    row: list[Line] = []
-    turn = 0.0
-    for edge in edges:
-        if not isinstance(edge, Line):
-            row = closed_row(found, row, [])
+def rows(loop: Loop) -> list[Row]:
+    """The rows of at least FEWEST lines through whose corners a smooth curve goes."""
+    edges = loop.edges
+    count = len(edges)
+    if count < FEWEST or sum(isinstance(edge, Line) for edge in edges) < FEWEST:
+        return []
+    # A piece that is no line has no length here, so that no curve goes on through its ends.
+    ways = np.array([(e.x1 - e.x0, e.y1 - e.y0) if isinstance(e, Line) else (0.0, 0.0) for e in edges])
+    bends = curvatures(ways)
+    if not loop.closed:
+        bends[-1] = np.nan
+    length = np.hypot(*ways.T)
+    found = []
+    for first, joints in smooth_rows(bends):
+        whole = joints == count
+        at = (first + np.arange(joints)) % count  # joint k lies between the pieces k and k + 1
+        pieces = at if whole else (first + np.arange(joints + 1)) % count
+        if len(pieces) < FEWEST:
             continue
-        step = turn_between(row[-1], edge) if row else 0.0
-        if row and alike(row[-1], edge, step) and (len(row) == 1 or abs(step - turn) <= EQUAL * abs(turn)):
-            row.append(edge)
-        else:
-            row = closed_row(found, row, [row[-1], edge] if row and alike(row[-1], edge, step) else [edge])
-        turn = step
-    closed_row(found, row, [])
+        bend = np.abs(bends[at])
+        both = 0.5 * (bend + np.roll(bend, 1)) if whole else 0.5 * (np.append(bend, bend[-1]) + np.append(bend[0], bend))
+        half = 0.5 * length[pieces] * both  # sine of half the angle that the piece spans
+        rise = (1.0 - np.sqrt(np.maximum(1.0 - half * half, 0.0))) / both
+        worst = int(np.argmax(rise))
+        found.append(Row(len(pieces), float(rise[worst]), edges[int(pieces[worst])].point(0.5), 1.0 / bend))
     return found
 
 
-def closed_row(found: list[list[Line]], row: list[Line], following: list[Line]) -> list[Line]:
-    """Keeps a row that is long enough; returns the beginning of the next one."""
-    if len(row) >= FEWEST:
-        found.append(row)
-    return following
+def curvatures(ways: Array) -> Array:
+    """Of the curve through the corner after each piece, 1/m, positive to the left; nan where it is none.
+
+    It is that of the circle through three corners, whatever the lengths of the two pieces.
+    """
+    after = np.roll(ways, -1, axis=0)
+    length = np.hypot(*ways.T)
+    span = np.hypot(*(ways + after).T)
+    turn = np.arctan2(ways[:, 0] * after[:, 1] - ways[:, 1] * after[:, 0], np.sum(ways * after, axis=1))
+    smooth = (length > 0.0) & (np.roll(length, -1) > 0.0) & (turn != 0.0) & (np.abs(turn) < SHARPEST)
+    return np.where(smooth, 2.0 * np.sin(turn) / np.where(smooth, span, 1.0), np.nan)
 
 
-def first_break(edges: Sequence[Edge]) -> int:
-    """Where a closed loop is best cut open: at an edge that does not continue the one before."""
-    for k, edge in enumerate(edges):
-        before = edges[k - 1]
-        if not isinstance(edge, Line) or not isinstance(before, Line) or not alike(before, edge, turn_between(before, edge)):
-            return k
-    return 0
+def smooth_rows(bends: Array) -> list[tuple[int, int]]:
+    """(first joint, number of joints) of the longest rows of joints, around the outline, whose curvatures go on smoothly."""
+    count = len(bends)
+    following = np.roll(bends, -1)
+    with np.errstate(invalid="ignore"):
+        ratio = following / bends
+    goes_on = (ratio <= SMOOTH) & (ratio >= 1.0 / SMOOTH)  # False for nan
+    if goes_on.all():
+        return [(0, count)]
+    breaks = np.flatnonzero(~goes_on)  # the row ends with this joint
+    sizes = np.diff(np.append(breaks, breaks[0] + count))
+    return [((int(k) + 1) % count, int(size)) for k, size in zip(breaks, sizes, strict=True) if size >= FEWEST - 1]
 
 
-def turn_between(a: Line, b: Line) -> float:
-    """The change of direction in radians, positive to the left."""
-    (ax, ay), (bx, by) = a.tangent(0.0), b.tangent(0.0)
-    return math.atan2(ax * by - ay * bx, ax * bx + ay * by)
-
-
-def alike(a: Line, b: Line, turn: float) -> bool:
-    return BLUNTEST < abs(turn) < SHARPEST and abs(a.length - b.length) <= EQUAL * max(a.length, b.length)
-
-
-def facet_finding(loop: Loop, row: Sequence[Line]) -> Finding:
-    """The warning with radius and rise of the facets."""
-    turn, length = abs(turn_between(row[0], row[1])), row[0].length
-    radius = length / (2.0 * math.sin(0.5 * turn))
-    rise = radius * (1.0 - math.cos(0.5 * turn))
-    x, y = row[len(row) // 2].point(0.5)
+def facet_finding(loop: Loop, off: list[Row]) -> Finding:
+    """The warning with the number of pieces, the curve they stand for, and by how much they miss it."""
+    worst = max(off, key=lambda row: row.rise)
+    pieces = sum(row.pieces for row in off)
+    radii = worst.radii
+    equal = float(np.ptp(radii)) <= EQUAL * float(radii.max())
+    curve = f"an arc of radius {1e3 * float(np.median(radii)):.4g} mm" if equal else "a curve"
+    if len(off) > 1:
+        curve = f"curves at {len(off)} places"
     message = (
-        f"{len(row)} equal straight pieces stand for an arc of radius {1e3 * radius:.4g} mm (each is up to {1e6 * rise:.3g} µm "
-        "off); contacts will run over its corners"
+        f"{pieces} straight pieces stand for {curve} (up to {1e6 * worst.rise:.3g} µm off); contacts run over their corners"
     )
-    return Finding("facets", "warning", message, "Draw an ARC or CIRCLE instead.", loop.layer, 1e3 * x, 1e3 * y)
+    fix = f"Draw {'ARCs or CIRCLEs' if len(off) > 1 else 'an ARC or CIRCLE' if equal else 'a SPLINE or ARCs'} instead."
+    x, y = worst.place
+    return Finding("facets", "warning", message, fix, loop.layer, 1e3 * x, 1e3 * y)

@@ -6,7 +6,7 @@ Loose ends are paired with their nearest partner, so that each gap is named once
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,7 +32,7 @@ def open_ends(chains: Sequence[Sequence[int]], loose: Sequence[int], strokes: Se
         return []
     near = near_pairs([nodes.ends[end] for end in loose])
     stray = stray_lines([steps[0] // 2 for steps in chains if len(steps) == 1], loose, near, strokes)
-    pairs = paired(loose, near, stray)
+    pairs = paired(loose, near, stray, chains_of(chains, strokes))
     meant = {number for number in stray if last_word(strokes[number].layer) in MARKS}
     return [stray_finding(strokes[number]) for number in stray if number not in meant] + [
         gap_finding(a, b, strokes, nodes) for a, b in pairs
@@ -79,15 +79,47 @@ def stray_lines(
     return {number: None for number in stray if {2 * number, 2 * number + 1} <= ends}
 
 
-def paired(loose: Sequence[int], near: Sequence[tuple[float, int, int]], stray: dict[int, None]) -> list[tuple[int, int]]:
-    """Loose ends in pairs, nearest first; an odd one out has the partner -1."""
-    free = {i for i, end in enumerate(loose) if end // 2 not in stray}
+def chains_of(chains: Sequence[Sequence[int]], strokes: Sequence[Stroke]) -> dict[int, tuple[int, float]]:
+    """Number and length (m) of the chain that each stroke belongs to."""
+    found = {}
+    for number, steps in enumerate(chains):
+        length = sum(strokes[step // 2].edge.length for step in steps)
+        found.update({step // 2: (number, length) for step in steps})
+    return found
+
+
+def paired(
+    loose: Sequence[int],
+    near: Sequence[tuple[float, int, int]],
+    stray: dict[int, None],
+    owners: Mapping[int, tuple[int, float]],
+) -> list[tuple[int, int]]:
+    """Loose ends in pairs, nearest first; an odd one out has the partner -1.
+
+    The two ends of one chain belong together however far apart they are, ends of two chains only where the gap is small
+    beside both: else they are ends of different parts.
+    """
+    free = {i: end for i, end in enumerate(loose) if end // 2 not in stray}
     pairs = []
-    for _, i, j in near:
-        if i in free and j in free:
-            free -= {i, j}
-            pairs.append((loose[i], loose[j]))
-    return pairs + [(loose[i], -1) for i in sorted(free)]
+    for gap, i, j in near:
+        if i in free and j in free and related(gap, owners.get(loose[i] // 2), owners.get(loose[j] // 2)):
+            pairs.append((free.pop(i), free.pop(j)))
+    left: dict[int, int] = {}
+    for i, end in sorted(free.items()):
+        chain = owners.get(end // 2, (-1 - i, 0.0))[0]
+        if chain in left:
+            other = left.pop(chain)
+            pairs.append((loose[other], end))
+        else:
+            left[chain] = i
+    return pairs + [(loose[i], -1) for i in sorted(left.values())]
+
+
+def related(gap: float, one: tuple[int, float] | None, other: tuple[int, float] | None) -> bool:
+    """May a gap of that width lie between ends of these two chains (number, length)?"""
+    if one is None or other is None or one[0] == other[0]:
+        return True
+    return gap <= STRAY * min(one[1], other[1])
 
 
 def stray_finding(stroke: Stroke) -> Finding:

@@ -9,6 +9,7 @@ import math
 import re
 from collections.abc import Iterable, Sequence
 
+from watchsim.drawing.circles import circle_lines, circle_reports
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.findings import ORDER, Finding
 from watchsim.drawing.gaps import shown
@@ -19,6 +20,7 @@ from watchsim.geometry.mass import area
 from watchsim.geometry.primitives import Arc, Point
 
 TOLD = re.compile(r"\([-−]?\d[^()]*, [-−]?\d[^()]*\)")  # coordinates in a message
+FEW = 8  # points of a layer written out
 SHOWN = 12  # findings of one code written out in the text
 SAID = {"material": "", "bore": " taken out", "mark": ", no material"}
 NOTHING = 1e-12  # m; deviations below are those of floating point
@@ -50,6 +52,7 @@ def inspect_report(drawing: Drawing) -> dict[str, object]:
         "arcs": arcs,
         "length_mm": 1e3 * total_length(everything),
         "area_mm2": 1e6 * material_area(drawing.loops),
+        "circles": circle_reports(drawing.loops),
     }
 
 
@@ -166,9 +169,16 @@ def layer_lines(drawing: Drawing) -> list[str]:
         if len(points) == 1:
             words.append(f"a point at ({1e3 * points[0][0]:.6g}, {1e3 * points[0][1]:.6g}) mm")
         elif points:
-            words.append(plural(len(points), "point"))
+            words.append(plural(len(points), "point") + _places(points))
         result.append(f"    {layer:<{width}}  {', '.join(words)}")
+        result += [f"    {'':<{width}}  {line}" for line in circle_lines(loops)]
     return ["  layers:", *result] if result else []
+
+
+def _places(points: Sequence[Point]) -> str:
+    """Where several points lie, as far as they can be read at a glance."""
+    places = ", ".join(f"({1e3 * x:.6g}, {1e3 * y:.6g})" for x, y in points[:FEW])
+    return f" at {places}{' mm' if len(points) <= FEW else ' mm, ...'}"
 
 
 def _place(finding: Finding) -> str:
@@ -190,7 +200,7 @@ def finding_lines(findings: Iterable[Finding]) -> list[str]:
         seen[finding.code] = seen.get(finding.code, 0) + 1
         if seen[finding.code] <= SHOWN:
             where = f" [layer {finding.layer}]" if finding.layer is not None else ""
-            result.append(f"    {number:>3} {finding.severity}, {finding.code}{where}: {finding.message}{_place(finding)}")
+            result.append(f"    {number:>3}. {finding.severity} ({finding.code}){where}: {finding.message}{_place(finding)}")
             result += [f"        {finding.fix}"] if finding.fix and finding.fix not in fixes else []
             fixes.add(finding.fix)
     result += [f"        and {count - SHOWN} more of {code}" for code, count in seen.items() if count > SHOWN]

@@ -61,6 +61,7 @@ def read(path: Path | str, units: str | None = None, snap: float = SNAP, fit: fl
         ignored=content.ignored,
         drawn=content.drawn,
         findings=tuple(findings),
+        data=content.data,
     )
 
 
@@ -101,7 +102,7 @@ def read_content(path: Path, ending: str, units: str | None, fit: float) -> Cont
     if form != ending[:3]:
         message = f"the name ends in .{ending} but the file is {form.upper()} inside; it is read as such"
         content = replace(content, findings=(Finding("format", "warning", message), *content.findings))
-    return replace(content, format=form)
+    return replace(content, format=form, data=data)
 
 
 def format_of(data: bytes, ending: str) -> str:

@@ -14,6 +14,7 @@ from xml.parsers import expat
 
 from watchsim.drawing.findings import Finding
 
+NONE = ""  # no namespace
 SVG = "http://www.w3.org/2000/svg"
 PREFIXES = {"http://www.w3.org/1999/xlink": "xlink", "http://www.inkscape.org/namespaces/inkscape": "inkscape"}
 DEEPEST = 256  # elements within elements
@@ -91,7 +92,20 @@ def read_tree(data: bytes) -> Tree:
         findings.append(Finding("unreadable", "error", f"this is no SVG file ({error})"))
     findings += builder.findings
     sheets = tuple(node.text for node in builder.styles)
+    if builder.nameless and builder.root is not None:
+        findings.append(_nameless(builder))
     return Tree(builder.root, builder.by_id, sheets, tuple(findings), tuple(builder.remarks))
+
+
+def _nameless(builder: _Builder) -> Finding:
+    """Browsers and drawing programs draw only what is in the namespace of SVG."""
+    whole = builder.nameless == builder.count
+    what = (
+        "the file names no namespace: browsers draw nothing of it"
+        if whole
+        else (f"{builder.nameless} of {builder.count} elements are in no namespace: browsers do not draw them")
+    )
+    return Finding("namespace", "warning", f"{what}; here they are read", f'Write xmlns="{SVG}" in the svg element.')
 
 
 def unpacked(data: bytes, findings: list[Finding]) -> bytes:
@@ -141,7 +155,8 @@ class _Builder:
         self.end = 0
         self.depth = 0
         self.count = 0
-        self.spaces: list[dict[str, str]] = [{"": SVG}]
+        self.spaces: list[dict[str, str]] = [{"": NONE}]
+        self.nameless = 0
         self.by_id: dict[str, Node] = {}
         self.styles: list[Node] = []
         self.findings: list[Finding] = []
@@ -202,8 +217,9 @@ class _Builder:
             raise SvgError(f"it holds more than {MOST_ELEMENTS} elements")
         spaces = self.spaces[-1]
         if any(key.startswith("xmlns") for key in attributes):
-            spaces = {**spaces, **{key[6:]: value for key, value in attributes.items() if key.startswith("xmlns")}}
+            spaces = {**spaces, **{key[6:]: value or NONE for key, value in attributes.items() if key.startswith("xmlns")}}
         self.spaces.append(spaces)
+        self.nameless += ":" not in tag and spaces[""] == NONE
         node = Node(_resolved(tag, spaces), _prefixed(attributes, spaces), self.parser.CurrentLineNumber, self.here)
         if self.here is None:
             self.root = node
@@ -243,7 +259,7 @@ def _was_recoded(data: bytes) -> bool:
 def _resolved(tag: str, spaces: dict[str, str]) -> str:
     prefix, _, local = tag.rpartition(":")
     space = spaces.get(prefix)
-    if space in (SVG, ""):
+    if space in (SVG, NONE):
         return local
     return tag if space is None else f"*:{local}"
 

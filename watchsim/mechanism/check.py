@@ -12,16 +12,16 @@ from typing import Any
 from watchsim.drawing.findings import Finding
 from watchsim.geometry.extent import extents
 from watchsim.mechanism.body import Body
-from watchsim.mechanism.carry import at_start, is_still
-from watchsim.mechanism.force import Damping, Spring
+from watchsim.mechanism.carry import Weighed
+from watchsim.mechanism.force_lines import force_lines, length, place, turned
+from watchsim.mechanism.notes import notes
+from watchsim.mechanism.oscillation import frequency, loads
 from watchsim.mechanism.overlap import overlaps
 from watchsim.mechanism.pair_count import PairCount, pair_lines, pairs_entry
-from watchsim.mechanism.roles import keeps_time
 from watchsim.mechanism.scene import Scene
 from watchsim.mechanism.solid import HAIRSPRING, LYING, PLATE, UPRIGHT, Solid, total
-from watchsim.units import show, to
+from watchsim.units import metric, show, to
 
-DIGITS = 9  # of places: a nanometre still shows at a position of a metre
 POISED = 1e-9  # of a body's size: below that, a centre of mass beside the pivot is rounding
 LENGTHS, MASSES, INERTIAS = ("mm", "m"), ("mg", "g", "kg"), ("mg·cm²", "g·cm²", "kg·m²")
 COORDINATES = {"fixed": 0, "pivot": 1, "slide": 1, "free": 3}
@@ -31,28 +31,20 @@ def check_report(scene: Scene, pairs: Sequence[PairCount]) -> dict[str, Any]:
     """What `check --json` prints; `pairs` holds the numbers of each pair of bodies that may touch."""
     hertz = frequency(scene)
     return {
-        "bodies": {body.name: _body_entry(body) for body in scene.bodies},
+        "bodies": {
+            body.name: {**_body_entry(body), **_loaded_entry(body, load)}
+            for body, load in zip(scene.bodies, loads(scene.bodies)[1], strict=True)
+        },
         "theory": {"frequency_hz": hertz, "vph": None if hertz is None else 7200.0 * hertz},
         "pairs": pairs_entry(pairs),
         "statics": {},
-        "findings": [
-            finding.as_dict() for finding in (*scene.findings, *_overlap_findings(scene), *_poised(scene), *_weightless(scene))
-        ],
+        "findings": [finding.as_dict() for finding in (*scene.findings, *_overlap_findings(scene), *notes(scene))],
     }
-
-
-def frequency(scene: Scene) -> float | None:
-    """Undamped frequency (Hz) of the first sprung body; None where no body has a spring."""
-    if not scene.springs:
-        return None
-    body = scene.body(scene.springs[0].body)
-    stiffness = sum(spring.stiffness for spring in scene.springs if spring.body == body.name)
-    return math.sqrt(stiffness / _moving_mass(body)) / math.tau
 
 
 def check_text(report: Mapping[str, Any], scene: Scene) -> str:
     """The same for people, in watch units."""
-    parts = [scene.title, *_body_lines(scene), *_distance_lines(scene), *_force_lines(scene), *_contact_lines(scene)]
+    parts = [scene.title, *_body_lines(scene), *force_lines(scene)]
     if scene.contacts and all(finding["code"] != "overlap" for finding in report["findings"]):
         parts.append("  nothing overlaps at the start, among all pairs that may touch")
     parts += pair_lines(report["pairs"])
@@ -70,6 +62,13 @@ def _body_entry(body: Body) -> dict[str, Any]:
         "coordinates": COORDINATES[body.motion],
         **({"on": body.on} if body.on is not None else {}),
     }
+
+
+def _loaded_entry(body: Body, load: Weighed) -> dict[str, Any]:
+    """Of a body that carries others: what moves with its coordinate, about its origin."""
+    if body.motion == "fixed" or (load.mass, load.inertia) == (body.mass, body.inertia):
+        return {}
+    return {"loaded_mass_kg": load.mass, "loaded_inertia_kg_m2": load.inertia}
 
 
 def _solid_entry(solid: Solid) -> dict[str, Any]:
@@ -91,31 +90,11 @@ def _overlap_findings(scene: Scene) -> Iterator[Finding]:
         yield Finding("overlap", "error", str(overlap), "Move or turn one of them.", x_mm=x, y_mm=y)
 
 
-def _poised(scene: Scene) -> Iterator[Finding]:
-    """Gravity turns a pivoted body only if its mass is known; saying nothing must not pass for poise."""
-    for body in scene.bodies if any(scene.gravity) else ():
-        if body.motion == "pivot" and body.mass == 0.0:
-            message = f"{body.name} has no mass, so gravity does not turn it: it counts as poised"
-            yield Finding("poised", "notice", message, f"Give mass or solids under [bodies.{body.name}] if it is not.")
-
-
-def _weightless(scene: Scene) -> Iterator[Finding]:
-    """A carrier must swing what it carries; saying nothing must not pass for no mass."""
-    for body in scene.bodies:
-        if body.on is not None and body.motion == "pivot" and body.mass == 0.0 and not is_still(scene, scene.body(body.on)):
-            message = f"{body.name} has no mass, so it adds nothing to what {body.on} weighs"
-            cure = f"Give mass or solids under [bodies.{body.name}] unless the inertia of {body.on} holds it already."
-            yield Finding("weightless", "notice", message, cure)
-
-
-def _moving_mass(body: Body) -> float:
-    return body.mass if body.motion == "slide" else body.inertia
-
-
 def _body_lines(scene: Scene) -> Iterator[str]:
     width = max(len(body.name) for body in scene.bodies)
-    for body in scene.bodies:
+    for body, load in zip(scene.bodies, loads(scene.bodies)[1], strict=True):
         yield f"  {body.name:{width}}  {body.motion:5}  " + ", ".join((_place(body), _size(body), *_weights(body)))
+        yield from _load_lines(scene, body, load)
         yield from _solid_lines(body)
         yield from _poise_lines(scene, body)
 
@@ -162,9 +141,9 @@ def _poise_lines(scene: Scene, body: Body) -> Iterator[str]:
     if body.motion != "pivot" or body.mass == 0.0 or distance <= POISED * (_reach(body) or distance):
         return
     pull = math.hypot(*scene.gravity)
-    what = f"its centre of mass lies {show(distance, 'mm' if distance >= 0.1e-3 else 'µm', 4)} beside the pivot"
+    what = f"its centre of mass lies {length(distance)} beside the pivot"
     if pull > 0.0:
-        yield f"      {what}: gravity turns it with up to {show(body.mass * distance * pull, 'nN·m')}"
+        yield f"      {what}: gravity turns it with up to {metric(body.mass * distance * pull, 'N·m')}"
     else:
         yield f"      {what}; the scene has no gravity, so this does nothing"
 
@@ -176,9 +155,8 @@ def _reach(body: Body) -> float:
 
 
 def _place(body: Body) -> str:
-    x, y = body.position
     on = f"on {body.on} " if body.on is not None else ""
-    return f"{on}at ({show(x, 'mm', DIGITS)}, {show(y, 'mm', DIGITS)}), turned by {show(body.angle, '°')}"
+    return f"{on}at ({place(body.position[0])}, {place(body.position[1])}), turned by {turned(body.angle)}"
 
 
 def _size(body: Body) -> str:
@@ -190,66 +168,22 @@ def _size(body: Body) -> str:
 
 
 def _weights(body: Body) -> Iterator[str]:
-    if body.motion != "fixed" and body.mass > 0.0:
+    if (body.motion != "fixed" or body.on is not None) and body.mass > 0.0:
         yield f"mass {_fitting(body.mass, MASSES)}"
     if body.motion in ("pivot", "free"):
         yield f"inertia {_fitting(body.inertia, INERTIAS)}"
 
 
+def _load_lines(scene: Scene, body: Body, load: Weighed) -> Iterator[str]:
+    """What a body weighs together with what it carries."""
+    carried = [other.name for other in scene.bodies if other.on == body.name and other.mass > 0.0]
+    if body.motion == "fixed" or not carried:
+        return
+    weights = [f"mass {_fitting(load.mass, MASSES)}"] if load.mass > 0.0 else []
+    weights += [f"inertia {_fitting(load.inertia, INERTIAS)}"] if body.motion != "slide" else []
+    yield f"      with {' and '.join(carried)}: {', '.join(weights)}"
+
+
 def _fitting(value: float, units: tuple[str, ...]) -> str:
     """In the first unit that needs at most four digits before the point."""
     return show(value, next((unit for unit in units if abs(to(value, unit)) < 1e4), units[-1]), 5)
-
-
-def _distance_lines(scene: Scene) -> Iterator[str]:
-    """Between the pivots of bodies that are declared to touch."""
-    seen, start = set(), at_start(scene)
-    for contact in scene.contacts:
-        names = tuple(dict.fromkeys(side.body for side in contact.sides))
-        first, second = (start.body(name) for name in names)
-        if frozenset(names) not in seen and first.motion == second.motion == "pivot":
-            seen.add(frozenset(names))
-            yield f"  centre distance {names[0]} - {names[1]}: {show(math.dist(first.position, second.position), 'mm', DIGITS)}"
-
-
-def _force_lines(scene: Scene) -> Iterator[str]:
-    for spring in scene.springs:
-        yield f"  spring on {spring.body}: {_spring(scene, spring)}"
-    for torque in scene.torques:
-        unit = "mN" if scene.body(torque.body).motion == "slide" else "µN·m"
-        text = show(torque.value, unit) if not torque.table else f"{len(torque.table)} values over {torque.over}"
-        yield f"  drive on {torque.body}: {text}"
-    for damping in scene.damping:
-        yield f"  damping on {damping.body}: {_damping(scene, damping)}"
-
-
-def _spring(scene: Scene, spring: Spring) -> str:
-    body = scene.body(spring.body)
-    linear = body.motion == "slide"
-    hertz = math.sqrt(spring.stiffness / _moving_mass(body)) / math.tau
-    stiffness, rest = show(spring.stiffness, "N/m" if linear else "µN·m/rad"), show(spring.rest, "mm" if linear else "°")
-    beats = f" = {show(hertz, 'vph')}" if keeps_time(scene) else " while it touches nothing"
-    return f"{stiffness}, {show(hertz, 'Hz')}{beats}, at rest at {rest}"
-
-
-def _damping(scene: Scene, damping: Damping) -> str:
-    body, viscous, quadratic = scene.body(damping.body), damping.viscous, damping.quadratic
-    linear = body.motion == "slide"
-    parts = [show(viscous, "N·s/m" if linear else "nN·m·s/rad")] if viscous else []
-    stiffness = sum(spring.stiffness for spring in scene.springs if spring.body == body.name)
-    if viscous and stiffness:
-        parts.append(f"Q = {math.sqrt(stiffness * _moving_mass(body)) / viscous:.6g}")
-    if quadratic:
-        parts.append(show(quadratic, "N·s²/m²" if linear else "nN·m·s²/rad²"))
-    if damping.coulomb:
-        parts.append(f"dry friction {show(damping.coulomb, 'mN' if linear else 'nN·m')}")
-    return ", ".join(parts) or "none"
-
-
-def _contact_lines(scene: Scene) -> Iterator[str]:
-    for contact in scene.contacts:
-        first, second = contact.sides
-        text = f"friction {contact.friction:g}, restitution {contact.restitution:g}"
-        if contact.tangential_restitution:
-            text += f", tangential {contact.tangential_restitution:g} ({scene.tangential_law})"
-        yield f"  contact {first} - {second}: {text}"

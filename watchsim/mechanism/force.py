@@ -10,11 +10,12 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Spring:
-    """-stiffness (q - rest): N·m/rad or N/m."""
+    """-stiffness (q - rest): N·m/rad or N/m. `frequency` (Hz) where that is how it was given."""
 
     body: str
     stiffness: float
     rest: float = 0.0
+    frequency: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,6 +24,7 @@ from watchsim.mechanism.model import (
     Records,
     records,
 )
+from watchsim.mechanism.oscillation import oscillators
 from watchsim.mechanism.scene import Scene
 
 OVER = {"constant": CONSTANT, "angle": OVER_ANGLE, "time": OVER_TIME}
@@ -44,7 +45,7 @@ class _Targets:
         self.scene, self.rows = scene, rows
         numbers = {body.name: i for i, body in enumerate(scene.bodies)}
         acting = dict.fromkeys(
-            [one.body for one in scene.springs] + [one.body for one in scene.torques] + [one.body for one in scene.damping]
+            [one.body for one in oscillators(scene)] + [one.body for one in scene.torques] + [one.body for one in scene.damping]
         )
         self.slices, self.rides = slices, {name: hung[numbers[name]] for name in acting}
         jointed = [name for name in acting if self.rides[name].turns_with >= 0]
@@ -87,6 +88,7 @@ def forced_coordinates(scene: Scene, hung: tuple[Ride, ...], slices: dict[str, s
         rest = spring.rest + targets.offset(spring.body)
         row.rest = (row.stiffness * row.rest + spring.stiffness * rest) / total
         row.stiffness = total
+    stiffest = _watch(scene, targets)
     for damping in scene.damping:
         row = targets.row(damping.body)
         row.viscous += damping.viscous
@@ -102,10 +104,22 @@ def forced_coordinates(scene: Scene, hung: tuple[Ride, ...], slices: dict[str, s
     for i, row in enumerate(rows):
         row.linear = row.quadratic == 0.0 and row.weight_x == 0.0 and row.weight_y == 0.0 and i not in tabled | jointed
     light = 1.0 / (1.0 / rows.mass[joints.coordinate] + 1.0 / rows.mass[joints.on])
-    fastest = float(np.sqrt(np.max([*(rows.stiffness / rows.mass), *(joints.stiffness / light)], initial=0.0)))
+    fastest = float(np.sqrt(np.max([*(rows.stiffness / rows.mass), stiffest, *(joints.stiffness / light)], initial=0.0)))
     push = [*(np.abs(rows.force) / (rows.mass * rows.scale)), *(np.abs(joints.force) / light)]
     rows.rate = fastest or float(np.sqrt(np.max(push, initial=0.0))) or 1.0
     return Forced((rows, joints, tables, knots), fastest)
+
+
+def _watch(scene: Scene, targets: _Targets) -> float:
+    """Marks the coordinates that swing, with their rest positions; returns the largest stiffness over inertia among them."""
+    largest = 0.0
+    for one in oscillators(scene):
+        if targets.on(one.body) < 0:
+            row = targets.row(one.body)
+            plain = one.weight == 0.0 and scene.body(one.body).motion == "pivot"
+            row.watched, row.level = 1, row.rest if plain else one.rest + targets.offset(one.body)
+            largest = max(largest, (one.spring + one.weight) / one.inertia)
+    return largest
 
 
 def _inertias(scene: Scene, body: Body, number: int, weighed: Weighed, ride: Ride, rows: Records, size: float) -> None:

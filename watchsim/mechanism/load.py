@@ -14,11 +14,12 @@ from typing import Any
 
 from watchsim.mechanism.errors import Fault, Faults, SceneError
 from watchsim.mechanism.locate import key_lines
+from watchsim.mechanism.oscillation import frequency
 from watchsim.mechanism.read_bodies import read_bodies
 from watchsim.mechanism.read_carriers import note_carriers
 from watchsim.mechanism.read_contacts import read_contacts
 from watchsim.mechanism.read_forces import read_damping, read_springs, read_torques
-from watchsim.mechanism.read_settings import read_expectations, read_heading, read_lift_angle, read_run
+from watchsim.mechanism.read_settings import read_expectations, read_heading, read_run, read_timegrapher
 from watchsim.mechanism.scene import Scene
 from watchsim.mechanism.schema import LOCK, SECTIONS, nearest
 from watchsim.mechanism.table import Table
@@ -30,11 +31,16 @@ else:
 
 DEEPEST = 20  # tables and lists within each other
 TOO_DEEP = f"tables and lists are nested more than {DEEPEST} deep, and nothing in a scene is"
+FAR_OFF = 0.1  # of the frequency of small swings: what a rate may be measured against
+SCENE_FILES = ("scene.toml", "scene.lock.toml")  # in a folder, the first that is there
 
 
 def load(path: str | Path) -> Scene:
-    """The scene of a TOML file, in SI units. SceneError lists everything that is wrong with it."""
-    path = Path(path)
+    """The scene of a TOML file or of the folder that holds one, in SI units. SceneError lists all that is wrong with it.
+
+    Of a folder it is `scene.toml`, else `scene.lock.toml`, the scene of a results folder.
+    """
+    path = _scene_file(Path(path))
     text = _text(path)
     try:
         mapping = parsed(text)
@@ -64,18 +70,19 @@ def from_mapping(mapping: dict[str, Any], path: Path | None, faults: Faults | No
     folder = path.parent if path else Path()
     _note_sections(mapping, faults)
     heading = read_heading(mapping, faults)
-    bodies, findings, sound = read_bodies(mapping.get("bodies", {}), folder, faults)
+    read = read_bodies(mapping.get("bodies", {}), folder, faults)
+    bodies, sound = read.bodies, read.sound
     springs = read_springs(mapping, bodies, faults)
     torques = read_torques(mapping, bodies, faults)
-    damping = read_damping(mapping, bodies, springs, faults)
+    damping = read_damping(mapping, bodies, springs, heading.gravity, faults)
     contacts = read_contacts(mapping, bodies, sound, heading.tangential_law, faults)
     note_carriers(bodies, damping, contacts, faults)
     duration, record, tolerance = read_run(mapping, faults)
-    lift_angle = read_lift_angle(mapping, faults)
+    lift_angle, nominal = read_timegrapher(mapping, faults)
     expect = read_expectations(mapping, faults)
     _check_lock(mapping, folder, faults)
     faults.raise_any()
-    return Scene(
+    scene = Scene(
         title=heading.title or (path.parent.name if path else ""),
         bodies=bodies,
         springs=springs,
@@ -89,11 +96,26 @@ def from_mapping(mapping: dict[str, Any], path: Path | None, faults: Faults | No
         record=record,
         tolerance=tolerance,
         lift_angle=lift_angle,
+        nominal=nominal,
         expect=expect,
         path=path,
         source=mapping,
-        findings=findings,
+        findings=read.findings,
+        drawings=read.drawings,
     )
+    _check_nominal(scene, faults)
+    faults.raise_any()
+    return scene
+
+
+def _scene_file(path: Path) -> Path:
+    if not path.is_dir():
+        return path
+    found = next((path / name for name in SCENE_FILES if (path / name).is_file()), None)
+    if found is None:
+        message = f"this folder holds no scene: neither {' nor '.join(SCENE_FILES)} is in it"
+        raise SceneError([Fault("", message, place=str(path))])
+    return found
 
 
 def _text(path: Path) -> str:
@@ -125,15 +147,27 @@ def _note_sections(mapping: Mapping[str, Any], faults: Faults) -> None:
         faults.add("bodies", "a scene needs at least one body, such as [bodies.wheel]")
 
 
+def _check_nominal(scene: Scene, faults: Faults) -> None:
+    """A rate is measured against a frequency near that of the oscillator; anything else is a slip."""
+    if scene.nominal is None:
+        return
+    natural = frequency(scene)
+    if natural is None:
+        faults.add("timegrapher.frequency", "nothing in this scene swings on a spring or by gravity, so it has no rate")
+    elif abs(scene.nominal / natural - 1.0) > FAR_OFF:
+        seen = f"the oscillator makes small swings at {natural:.6g} Hz ({7200.0 * natural:.6g} vph)"
+        faults.add("timegrapher.frequency", f"{seen}, more than {100 * FAR_OFF:.0f} % off: look at mass, inertia and spring")
+
+
 def _check_lock(mapping: Mapping[str, Any], folder: Path, faults: Faults) -> None:
     """A locked scene promises that its drawings are still the ones that were simulated."""
     if "lock" not in mapping:
         return
     table = Table(mapping["lock"], "lock", LOCK, faults)
     digests = table.mapping.get("drawings", {})
-    for name, digest in digests.items() if isinstance(digests, dict) else ():
+    for name, expected in digests.items() if isinstance(digests, dict) else ():
         path = folder / name
-        if path.is_file() and file_digest(path) != digest:
+        if path.is_file() and file_digest(path) != expected:
             faults.add(
                 f"lock.drawings.{name}", "the drawing was changed after this scene was locked. Load the original scene file"
             )
@@ -141,4 +175,9 @@ def _check_lock(mapping: Mapping[str, Any], folder: Path, faults: Faults) -> Non
 
 def file_digest(path: Path) -> str:
     """SHA-256 of the file, hexadecimal."""
-    return hashlib.sha256(path.read_bytes()).hexdigest()
+    return digest(path.read_bytes())
+
+
+def digest(data: bytes) -> str:
+    """SHA-256, hexadecimal."""
+    return hashlib.sha256(data).hexdigest()

@@ -9,12 +9,13 @@ from __future__ import annotations
 import copy
 import os
 import platform
+from collections.abc import Mapping
 from importlib import metadata
 from pathlib import Path
 from typing import Any
 
 from watchsim.mechanism.body import Body
-from watchsim.mechanism.load import file_digest
+from watchsim.mechanism.load import digest, file_digest
 from watchsim.mechanism.scene import Scene
 from watchsim.mechanism.schema import SCHEMA
 from watchsim.mechanism.toml import toml_text
@@ -23,16 +24,23 @@ PACKAGES = ("watchsim", "numpy", "scipy", "numba", "shapely", "ezdxf", "trimesh"
 HEADER = "# Completed by watchsim: all defaults written out. Loads again to the scene that was simulated.\n\n"
 
 
-def lock_text(scene: Scene, folder: Path | None = None) -> str:
-    """TOML of the completed scene. Drawings are named relative to `folder`, where the text will be kept; else absolute."""
+def lock_text(scene: Scene, folder: Path | None = None, kept: Mapping[str, str] | None = None) -> str:
+    """TOML of the completed scene. Drawings are named relative to `folder`, where the text will be kept; else absolute.
+
+    Those in `kept` travel with the text: name in the scene file -> name beside the text (see mechanism/travelling.py).
+    """
     source = {key: value for key, value in copy.deepcopy(scene.source).items() if key != "lock"}
     here = scene.path.parent if scene.path else Path()
     ordered = {"scene": _heading(source, scene)}
     ordered["bodies"] = {body.name: _completed(source["bodies"][body.name], body, here, folder) for body in scene.bodies}
+    _travel(ordered["bodies"], source["bodies"], kept or {})
     ordered.update((key, value) for key, value in source.items() if key not in ordered)
     _complete_forces(ordered, scene)
     ordered["run"] = {"duration": _si(scene.duration, "s"), "tolerance": scene.tolerance, **source.get("run", {})}
-    ordered["lock"] = {"versions": versions(), "drawings": _digests(ordered["bodies"], folder or Path())}
+    ordered["lock"] = {
+        "versions": versions(),
+        "drawings": _digests(ordered["bodies"], folder or Path(), _bytes(scene, kept or {})),
+    }
     return HEADER + toml_text(ordered)
 
 
@@ -90,10 +98,24 @@ def _drawing_path(path: Path, folder: Path | None) -> str:
     return Path(os.path.relpath(path, folder) if folder else path.resolve()).as_posix()
 
 
-def _digests(bodies: dict[str, Any], folder: Path) -> dict[str, str]:
+def _travel(bodies: dict[str, Any], source: Mapping[str, Any], kept: Mapping[str, str]) -> None:
+    """Names the drawings that travel with the text by where they will be."""
+    for name, entry in bodies.items():
+        drawing = source[name].get("drawing")
+        if drawing in kept:
+            entry["drawing"] = kept[drawing]
+
+
+def _bytes(scene: Scene, kept: Mapping[str, str]) -> dict[str, bytes]:
+    return {there: scene.drawings[name] for name, there in kept.items()}
+
+
+def _digests(bodies: dict[str, Any], folder: Path, known: Mapping[str, bytes]) -> dict[str, str]:
     names = dict.fromkeys(entry["drawing"] for entry in bodies.values() if "drawing" in entry)
     # The folder may not exist yet: `..` after it cannot be followed, only resolved in words.
-    return {name: file_digest(Path(os.path.normpath(folder / name))) for name in names}
+    return {
+        name: digest(known[name]) if name in known else file_digest(Path(os.path.normpath(folder / name))) for name in names
+    }
 
 
 def _si(value: float, unit: str) -> str:

@@ -47,6 +47,8 @@ COORDINATE = np.dtype(
         ("quadratic", "f8"),
         ("stiffness", "f8"),
         ("rest", "f8"),
+        ("level", "f8"),  # where it stands in balance: passages of it are events
+        ("watched", "i8"),  # 1: its turning points and passages are events
         ("weight_x", "f8"),  # gravity torque on an excentric rotor: cos(q) weight_y - sin(q) weight_x, see forces.py
         ("weight_y", "f8"),
         ("load", "f8"),  # magnitude of drive and weight whatever the angle: the scale of their rounding, N or N·m

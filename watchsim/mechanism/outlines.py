@@ -12,16 +12,16 @@ from pathlib import Path
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.findings import Finding
 from watchsim.geometry.loop import Loop
-from watchsim.geometry.primitives import Arc, Point
+from watchsim.geometry.primitives import Point
 from watchsim.mechanism.material import ADVICE, Side, face_layers, faces
+from watchsim.mechanism.pivot import given_pivot, marked_pivot
 from watchsim.mechanism.schema import SHAPES, nearest
 from watchsim.mechanism.shapes import shape_loops
 from watchsim.mechanism.solid_layers import hollow, set_apart, weighed
-from watchsim.mechanism.table import NAN, UNREADABLE, Table
+from watchsim.mechanism.table import UNREADABLE, Table
 
 _SETTING = re.compile(r'(\b[Ss]et \w+ = "[^"]*"(?: \(or "[^"]*"\))?)')  # the reader does not know whose drawing it reads
 OPEN = ("open-outline", "stray-line")  # findings about open chains
-SAME_POINT = 1e-9  # m; two circles on the pivot layer this close mark one pivot
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,8 @@ class Outlines:
 
     `loops` can touch, `rest` are closed outlines on layers left out, `aside` those that solids use as sections and
     hairsprings, `bores` those that solids take out and nothing fills, `chains` the open lines. `pivot` is None when nobody said
-    where it is. `errors` are what is wrong on layers left out.
+    where it is. `errors` are what is wrong on layers left out. `drawn` is what the scene asks to draw besides, None where it
+    does not say. `data` is the drawing file, None without one.
     `sound` is False after a fault: questions about layers are then not worth asking.
     """
 
@@ -43,6 +44,8 @@ class Outlines:
     bores: tuple[Loop, ...] = ()
     chains: tuple[Loop, ...] = ()
     errors: tuple[Finding, ...] = ()
+    data: bytes | None = None
+    drawn: tuple[Loop, ...] | None = None
 
     @property
     def all(self) -> tuple[Loop, ...]:
@@ -54,14 +57,14 @@ def read_outlines(table: Table, folder: Path) -> Outlines:
     sources = [key for key in ("drawing", *SHAPES) if key in table]
     for extra in sources[1:]:
         table.fault(extra, f"a body has one outline: leave out {extra} or {sources[0]}")
-    for key in ("layers", "units", "snap", "material"):
+    for key in ("layers", "draw", "units", "snap", "material"):
         if key in table and sources and sources[0] != "drawing":
             table.fault(key, f"belongs to a drawing; this body is a {sources[0]}")
     if "drawing" in table:
         return _from_drawing(table, folder)
     known = len(table.faults.found)
     loops = shape_loops(table, sources[0]) if sources else ()
-    return Outlines(loops, pivot=_given_pivot(table), sound=len(table.faults.found) == known)
+    return Outlines(loops, pivot=given_pivot(table), sound=len(table.faults.found) == known)
 
 
 def _from_drawing(table: Table, folder: Path) -> Outlines:
@@ -69,8 +72,8 @@ def _from_drawing(table: Table, folder: Path) -> Outlines:
     known = len(table.faults.found)
     marked = isinstance(table.mapping.get("pivot"), str)
     if drawing is None:
-        return Outlines(pivot=UNREADABLE if marked else _given_pivot(table), sound=False)
-    pivot = _marked_pivot(table, drawing) if marked else _given_pivot(table)
+        return Outlines(pivot=UNREADABLE if marked else given_pivot(table), sound=False)
+    pivot = marked_pivot(table, drawing) if marked else given_pivot(table)
     apart, drilled = frozenset(set_apart(table.mapping)), frozenset(hollow(table.mapping))
     sides = {layer: side for layer, side in face_layers(table, drawing, table.texts("layers")).items() if layer not in apart}
     layers = _layers(table, drawing, sides, apart | drilled)
@@ -80,6 +83,7 @@ def _from_drawing(table: Table, folder: Path) -> Outlines:
     return Outlines(
         loops=touchable + tuple(faces(table, drawing, sides)),
         rest=tuple(loop for loop in closed if loop.layer not in (*layers, *apart, *drilled)),
+        drawn=_drawn(table, drawing, layers),
         pivot=pivot,
         findings=findings,
         sound=len(table.faults.found) == known,
@@ -87,7 +91,24 @@ def _from_drawing(table: Table, folder: Path) -> Outlines:
         bores=tuple(loop for loop in closed if loop.layer in drilled - apart),
         chains=drawing.open_chains,
         errors=tuple(f for f in drawing.findings if f.severity == "error" and f.layer in apart and f.layer not in layers),
+        data=drawing.data,
     )
+
+
+def _drawn(table: Table, drawing: Drawing, layers: tuple[str, ...]) -> tuple[Loop, ...] | None:
+    """What lies on the layers of `draw`; each that is not there, or can touch, is a fault."""
+    if "draw" not in table:
+        return None
+    names = table.texts("draw", "ARMS")
+    for i, layer in enumerate(names):
+        key = f"{table.path}.draw.{i}"
+        if layer not in drawing.layers:
+            table.faults.add(key, f"the drawing has no such layer. {_there(layer, drawing)}", f' = "{layer}"')
+        elif layer in layers:
+            table.faults.add(key, "this layer can touch, and is drawn anyway: leave it out here", f' = "{layer}"')
+        elif all(loop.layer != layer for loop in drawing.loops):
+            table.faults.add(key, "there is no closed outline on this layer, and open lines have no inside to draw")
+    return tuple(loop for loop in drawing.loops if loop.layer in names and loop.closed)
 
 
 def _open(table: Table, folder: Path) -> Drawing | None:
@@ -192,40 +213,6 @@ def _sorted_out(
         else:
             severity = "warning" if finding.severity == "error" else finding.severity
             yield replace(finding, severity=severity, message=f"{drawing.path.name}: {finding.message}")
-
-
-def _given_pivot(table: Table) -> Point | None:
-    if isinstance(table.mapping.get("pivot"), str):
-        table.fault("pivot", 'without a drawing there is no layer to look for; write pivot = ["0 mm", "0 mm"]', with_value=True)
-        return UNREADABLE
-    return table.pair("pivot") if "pivot" in table else None
-
-
-def _marked_pivot(table: Table, drawing: Drawing) -> Point:
-    """The one point or circle centre on the layer named by `pivot`."""
-    layer = table.text("pivot")
-    marks: list[Point] = []
-    for point in _marks(drawing, layer):
-        if all(math.dist(point, other) > SAME_POINT for other in marks):
-            marks.append(point)
-    if len(marks) == 1:
-        return marks[0]
-    if marks:
-        places = ", ".join(f"({x * 1e3:.3f}, {y * 1e3:.3f})" for x, y in marks[:4])
-        table.fault("pivot", f"{len(marks)} points or circles are on this layer, at {places} mm: leave one", with_value=True)
-    elif layer not in drawing.layers and layer not in {point[0] for point in drawing.points}:
-        table.fault("pivot", f"the drawing has no such layer. {_there(layer, drawing)}", with_value=True)
-    else:
-        table.fault("pivot", "neither a point nor a circle is on this layer", with_value=True)
-    return (NAN, NAN)
-
-
-def _marks(drawing: Drawing, layer: str) -> Iterator[Point]:
-    yield from ((x, y) for name, x, y in drawing.points if name == layer)
-    for loop in drawing.loops:
-        first = loop.edges[0]
-        if loop.layer == layer and len(loop.edges) == 1 and isinstance(first, Arc) and first.is_circle:
-            yield (first.x, first.y)
 
 
 def _arrow(path: Path, layer: str | None = None) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -22,35 +23,51 @@ from watchsim.mechanism.weight import Inertias, read_inertias
 from watchsim.units import SPEED
 
 REFUSED = ("adjust",)
+AS_DRAWN = "as drawn"
 
 
-def read_bodies(mapping: object, folder: Path, faults: Faults) -> tuple[tuple[Body, ...], tuple[Finding, ...], frozenset[str]]:
-    """All bodies, what their drawings said besides errors, and the names of bodies whose outlines are sound."""
+@dataclass(frozen=True)
+class ReadBodies:
+    """All bodies, what their drawings said besides errors, the names of bodies whose outlines are sound, and the drawings as
+    they were read: name in the scene file -> bytes."""
+
+    bodies: tuple[Body, ...] = ()
+    findings: tuple[Finding, ...] = ()
+    sound: frozenset[str] = frozenset()
+    drawings: Mapping[str, bytes] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class _Read:
+    """One table with what its drawing and its solids gave; `path` is the drawing, `shared` if several bodies use it."""
+
+    name: str
+    table: Table
+    motion: str
+    outlines: Outlines
+    inertias: Inertias
+    path: Path | None
+    shared: bool
+
+
+def read_bodies(mapping: object, folder: Path, faults: Faults) -> ReadBodies:
+    """Every body of the scene file; faults go to `faults`."""
     if not isinstance(mapping, dict):
         faults.add("bodies", "write one table per body, such as [bodies.wheel]", shown(mapping))
-        return (), (), frozenset()
+        return ReadBodies()
     for name, entry in mapping.items():
         if not isinstance(entry, dict):
             where = f"bodies.{name}"
             faults.add(where, "stands where bodies stand: a body has a name and a table, such as [bodies.wheel]", shown(entry))
     mapping = {name: entry for name, entry in mapping.items() if isinstance(entry, dict)}
     users = Counter(_drawing_path(entry, folder) for entry in mapping.values())
-    bodies: list[Body] = []
-    findings: list[Finding] = []
-    sound: set[str] = set()
-    for name, entry in mapping.items():
-        motion = motion_of(mapping, name)
-        table = Table(entry, f"bodies.{name}", BODY, faults, motion)
-        if "." in name or not name:
-            table.fault("", "a body's name must not be empty or contain a point: paths such as bodies.lever.angle use it")
-        outlines = read_outlines(table, folder)
-        shared = users[_drawing_path(entry, folder)] > 1
-        inertias = read_inertias(table, motion, outlines, _bores_elsewhere(mapping, name, folder) if shared else frozenset())
-        rest = () if shared else outlines.rest
-        bodies.append(_body(name, table, motion, (outlines, inertias), rest, _carrier(table, name, mapping)))
-        findings.extend((*outlines.findings, *inertias.findings))
-        sound.update([name] if outlines.sound else [])
-    return tuple(bodies), tuple(dict.fromkeys(findings)), frozenset(sound)
+    read = [_read(mapping, name, folder, users, faults) for name in mapping]
+    places = {one.name: one for one in read}
+    bodies = [_body(one, _position(one, places), _carrier(one.table, one.name, mapping)) for one in read]
+    findings = [finding for one in read for finding in (*one.outlines.findings, *one.inertias.findings)]
+    sound = {one.name for one in read if one.outlines.sound}
+    drawings = {one.table.text("drawing"): one.outlines.data for one in read if one.outlines.data is not None}
+    return ReadBodies(tuple(bodies), tuple(dict.fromkeys(findings)), frozenset(sound), drawings)
 
 
 def motion_of(bodies: Mapping[str, Any], name: object) -> str:
@@ -72,20 +89,52 @@ def _bores_elsewhere(bodies: Mapping[str, Any], name: str, folder: Path) -> froz
     return frozenset(layer for entry in others for layer in bored(entry))
 
 
-def _body(
-    name: str, table: Table, motion: str, drawn: tuple[Outlines, Inertias], rest: tuple[Loop, ...], on: str | None
-) -> Body:
-    """Everything is read even after a fault, so that all faults of a body are found at once."""
-    outlines, inertias = drawn
+def _read(mapping: Mapping[str, Any], name: str, folder: Path, users: Counter[Path | None], faults: Faults) -> _Read:
+    """What one table says and its drawing holds. Everything is read even after a fault, so that all are found at once."""
+    motion = motion_of(mapping, name)
+    table = Table(mapping[name], f"bodies.{name}", BODY, faults, motion)
+    if "." in name or not name:
+        table.fault("", "a body's name must not be empty or contain a point: paths such as bodies.lever.angle use it")
+    path = _drawing_path(mapping[name], folder)
+    outlines = read_outlines(table, folder)
+    shared = users[path] > 1
+    inertias = read_inertias(table, motion, outlines, _bores_elsewhere(mapping, name, folder) if shared else frozenset())
+    return _Read(name, table, motion, outlines, inertias, path, shared and path is not None)
+
+
+def _position(one: _Read, read: Mapping[str, _Read]) -> Point:
+    """Where the body's origin sits in the movement, or on its carrier; "as drawn" where that is in the drawing.
+
+    Bodies of one drawing are an assembly, drawn in place: as drawn unless the scene says otherwise.
+    """
+    table, carrier = one.table, read.get(str(one.table.mapping.get("on")))
+    if "position" in table and table.mapping["position"] != AS_DRAWN:
+        if isinstance(table.mapping["position"], str):
+            table.fault("position", f'write ["1 mm", "0 mm"], or "{AS_DRAWN}"', with_value=True)
+            return (NAN, NAN)
+        return table.pair("position")
+    together = carrier is None or carrier.path == one.path
+    if "position" in table and (one.path is None or not together):
+        why = "has no drawing" if one.path is None else f"is not in the drawing of {table.mapping.get('on')}, which carries it"
+        table.fault("position", f"the body {why}: give its coordinates", with_value=True)
+    if one.path is None or not together or not ("position" in table or one.shared):
+        return (0.0, 0.0)
+    (x, y), (x0, y0) = one.inertias.origin, carrier.inertias.origin if carrier else (0.0, 0.0)
+    return (x - x0, y - y0)
+
+
+def _body(one: _Read, position: Point, on: str | None) -> Body:
+    table, motion, outlines, inertias = one.table, one.motion, one.outlines, one.inertias
     table.one_of("motion", MOTIONS, "pivot")
     for key in REFUSED:
         if key in table:
             table.refuse(key)
     shift = (-inertias.origin[0], -inertias.origin[1])
+    rest = outlines.drawn if outlines.drawn is not None else () if one.shared else outlines.rest
     return Body(
-        name=name,
+        name=one.name,
         motion=motion,
-        position=table.pair("position"),
+        position=position,
         angle=table.quantity("angle"),
         velocity=_velocity(table, motion),
         axis=_axis(table, motion),

@@ -9,9 +9,11 @@ from itertools import pairwise
 from typing import Any
 
 from watchsim import units
+from watchsim.geometry.primitives import Point
 from watchsim.mechanism.body import Body
 from watchsim.mechanism.errors import Faults
 from watchsim.mechanism.force import Damping, Spring, Torque
+from watchsim.mechanism.oscillation import Oscillator, loads, oscillator
 from watchsim.mechanism.schema import DAMPING, SPRING, TORQUE, Keys, nearest
 from watchsim.mechanism.table import NAN, Table, shown
 
@@ -24,22 +26,16 @@ class Entry:
 
     table: Table
     body: Body | None
+    mass: float  # what the body's coordinate weighs with what it carries, kg or kg·m²; NaN after a fault
 
     @property
     def name(self) -> str:
         return self.body.name if self.body else ""
 
-    @property
-    def mass(self) -> float:
-        """What the body's coordinate weighs, kg or kg·m²; NaN after a fault."""
-        if self.body is None:
-            return NAN
-        return self.body.inertia if self.body.motion == "pivot" else self.body.mass
-
 
 def read_springs(mapping: Mapping[str, Any], bodies: tuple[Body, ...], faults: Faults) -> tuple[Spring, ...]:
     entries = _entries(mapping, "springs", SPRING, bodies, faults)
-    return tuple(Spring(entry.name, _stiffness(entry), entry.table.quantity("rest")) for entry in entries)
+    return tuple(_spring(entry) for entry in entries)
 
 
 def read_torques(mapping: Mapping[str, Any], bodies: tuple[Body, ...], faults: Faults) -> tuple[Torque, ...]:
@@ -47,9 +43,13 @@ def read_torques(mapping: Mapping[str, Any], bodies: tuple[Body, ...], faults: F
 
 
 def read_damping(
-    mapping: Mapping[str, Any], bodies: tuple[Body, ...], springs: tuple[Spring, ...], faults: Faults
+    mapping: Mapping[str, Any], bodies: tuple[Body, ...], springs: tuple[Spring, ...], gravity: Point, faults: Faults
 ) -> tuple[Damping, ...]:
-    return tuple(_damping(entry, springs) for entry in _entries(mapping, "damping", DAMPING, bodies, faults))
+    found = []
+    for entry in _entries(mapping, "damping", DAMPING, bodies, faults):
+        swinging = oscillator(bodies, springs, gravity, entry.name) if "q_factor" in entry.table else None
+        found.append(_damping(entry, swinging))
+    return tuple(found)
 
 
 def listed(mapping: Mapping[str, Any], section: str, faults: Faults) -> list[Any]:
@@ -63,12 +63,22 @@ def listed(mapping: Mapping[str, Any], section: str, faults: Faults) -> list[Any
 
 def _entries(mapping: Mapping[str, Any], section: str, keys: Keys, bodies: tuple[Body, ...], faults: Faults) -> Iterator[Entry]:
     known = {body.name: body for body in bodies}
-    for i, element in enumerate(listed(mapping, section, faults)):
+    elements = listed(mapping, section, faults)
+    masses = _masses(bodies) if elements else {}
+    for i, element in enumerate(elements):
         name = element.get("body") if isinstance(element, dict) else None
         body = known.get(name) if isinstance(name, str) else None
         table = Table(element, f"{section}.{i}", keys, faults, body.motion if body else "pivot")
         _note_body(table, known)
-        yield Entry(table, body)
+        yield Entry(table, body, masses.get(body.name, NAN) if body else NAN)
+
+
+def _masses(bodies: tuple[Body, ...]) -> dict[str, float]:
+    """What the coordinate of each body weighs: turning its inertia, sliding its mass."""
+    weighed = loads(bodies)[1]
+    return {
+        body.name: load.inertia if body.motion == "pivot" else load.mass for body, load in zip(bodies, weighed, strict=True)
+    }
 
 
 def _note_body(table: Table, known: Mapping[str, Body]) -> None:
@@ -79,6 +89,12 @@ def _note_body(table: Table, known: Mapping[str, Body]) -> None:
         table.fault("body", f"there is no such body. {nearest(name, known)}", with_value=True)
     elif name in known and known[name].motion not in COORDINATE:
         table.fault("body", f'acts on a pivoted or a sliding body, and motion of {name} is "{known[name].motion}"', True)
+
+
+def _spring(entry: Entry) -> Spring:
+    stiffness = _stiffness(entry)
+    frequency = math.sqrt(stiffness / entry.mass) / math.tau if "frequency" in entry.table and stiffness > 0.0 else None
+    return Spring(entry.name, stiffness, entry.table.quantity("rest"), frequency)
 
 
 def _stiffness(entry: Entry) -> float:
@@ -136,7 +152,7 @@ def _row(table: Table, i: int, row: object, dimensions: tuple[units.Dimension, u
     return (x, y)
 
 
-def _damping(entry: Entry, springs: tuple[Spring, ...]) -> Damping:
+def _damping(entry: Entry, swinging: Oscillator | None) -> Damping:
     table = entry.table
     if table.is_table and not any(key in table for key in ("q_factor", "viscous", "quadratic", "coulomb")):
         choices = 'q_factor = 250, viscous = "0.6 nN·m·s/rad", quadratic = "1 nN·m·s²/rad²" or coulomb = "10 nN·m"'
@@ -144,20 +160,18 @@ def _damping(entry: Entry, springs: tuple[Spring, ...]) -> Damping:
     for key in ("viscous", "quadratic", "coulomb"):
         if table.quantity(key) < 0.0:
             table.fault(key, "negative damping would drive the body", with_value=True)
-    viscous = _from_quality(entry, springs) if "q_factor" in table else table.quantity("viscous")
+    viscous = _from_quality(entry, swinging) if "q_factor" in table else table.quantity("viscous")
     return Damping(entry.name, viscous, table.quantity("quadratic"), table.quantity("coulomb"))
 
 
-def _from_quality(entry: Entry, springs: tuple[Spring, ...]) -> float:
-    """Viscous damping c = sqrt(k J) / Q of a sprung body."""
+def _from_quality(entry: Entry, swinging: Oscillator | None) -> float:
+    """Viscous damping c = sqrt(k J) / Q of a body that a spring or gravity pulls back."""
     table = entry.table
     if "viscous" in table:
         table.fault("q_factor", "q_factor and viscous say the same thing: leave one out")
     quality = table.positive("q_factor", "it is the quality factor of the oscillation, about 250 for a balance")
-    own = [spring.stiffness for spring in springs if spring.body == entry.name]
-    if entry.body and not own:
-        table.fault(
-            "q_factor", f"{entry.name} has no spring, so it has no quality factor. Add one under [[springs]] or write viscous"
-        )
-    product = sum(own) * entry.mass
+    if entry.body and swinging is None:
+        seen = f"neither a spring nor gravity pulls {entry.name} back, so it has no quality factor"
+        table.fault("q_factor", f"{seen}. Add a spring under [[springs]], or gravity and mass; or write viscous")
+    product = swinging.stiffness * swinging.inertia if swinging else NAN
     return math.sqrt(product) / quality if product > 0.0 and quality > 0.0 else NAN

@@ -64,9 +64,14 @@ def read_run(mapping: Mapping[str, Any], faults: Faults) -> tuple[float, Recordi
     return duration, read_record(table), tolerance
 
 
-def read_lift_angle(mapping: Mapping[str, Any], faults: Faults) -> float | None:
-    """Radians, None where the scene does not say."""
+def read_timegrapher(mapping: Mapping[str, Any], faults: Faults) -> tuple[float | None, float | None]:
+    """Lift angle (rad) and frequency (Hz), None where the scene does not say."""
     table = Table(mapping.get("timegrapher", {}), "timegrapher", TIMEGRAPHER, faults)
+    frequency = table.positive("frequency", "the rate is measured against it") if "frequency" in table else None
+    return _lift_angle(table), frequency
+
+
+def _lift_angle(table: Table) -> float | None:
     if "lift_angle" not in table:
         return None
     angle = table.positive("lift_angle", "it is the arc of the balance during which it touches the lever")

@@ -1,13 +1,14 @@
 """Which body is the oscillator, which the escape wheel, which the lever?
 
-Names in a scene are free, so the roles follow from what the bodies do: the oscillator hangs on a spring, the wheel is driven,
-the lever touches both.
+Names in a scene are free, so the roles follow from what the bodies do: the oscillator swings on a spring or as a pendulum,
+the wheel is driven, the lever touches both.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
+from watchsim.mechanism.oscillation import oscillators
 from watchsim.mechanism.scene import Scene
 
 
@@ -21,8 +22,8 @@ class Roles:
 
 
 def roles(scene: Scene) -> Roles:
-    """The first sprung body, the first driven pivoted body besides it, and a moving body in contact with both."""
-    oscillator = scene.springs[0].body if scene.springs else None
+    """The first that swings, the first driven pivoted body besides it, and a moving body in contact with both."""
+    oscillator = next((one.body for one in oscillators(scene)), None)
     driven = (torque.body for torque in scene.torques if torque.body != oscillator)
     wheel = next((name for name in driven if scene.body(name).motion == "pivot"), None)
     if oscillator is None or wheel is None:
@@ -30,6 +31,11 @@ def roles(scene: Scene) -> Roles:
     both = partners(scene, oscillator) & partners(scene, wheel) - {oscillator, wheel}
     moving = (body.name for body in scene.bodies if body.motion == "pivot" and body.name in both)
     return Roles(oscillator, wheel, next(moving, None))
+
+
+def swings(scene: Scene) -> bool:
+    """Does anything swing, on a spring or by gravity?"""
+    return bool(oscillators(scene))
 
 
 def keeps_time(scene: Scene) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -30,8 +31,10 @@ class Scene:
 
     `tangential_law` ("coulomb", "pg1996" or "shifted") says what friction does in the expansion of impacts, `nu` belongs to
     pg1996 (docs/laws.md).
-    `source` is the TOML mapping it was made from, `path` its file, `findings` what the drawings said besides errors; two
-    scenes are equal when everything else is.
+    `nominal` (Hz) is what the rate is measured against, where the scene says so.
+    `source` is the TOML mapping it was made from, `path` its file, `findings` what the drawings said besides errors,
+    `drawings` the files themselves as they were read, by their names in the scene file; two scenes are equal when everything
+    else is.
     """
 
     title: str
@@ -47,10 +50,16 @@ class Scene:
     record: Recording = EVERYTHING
     tolerance: float = 1e-9
     lift_angle: float | None = None
+    nominal: float | None = None
     expect: tuple[Expectation, ...] = ()
     path: Path | None = field(default=None, compare=False)
     source: dict[str, Any] = field(default_factory=dict, repr=False, compare=False)
     findings: tuple[Finding, ...] = field(default=(), repr=False, compare=False)
+    drawings: Mapping[str, bytes] = field(default_factory=dict, repr=False, compare=False)
+
+    def __repr__(self) -> str:
+        names = ", ".join(body.name for body in self.bodies)
+        return f"<Scene {self.title!r}: {names}; {len(self.contacts)} contacts declared>"
 
     def body(self, name: str) -> Body:
         """The body of that name; KeyError if there is none."""

@@ -36,7 +36,7 @@ SCENE: Keys = {
 }
 SHAPES = ("circle", "polygon", "line")
 BODY: Keys = {
-    **{"drawing": PLAIN, "layers": PLAIN, "units": PLAIN, "snap": LENGTH, "material": LENGTH},
+    **{"drawing": PLAIN, "layers": PLAIN, "draw": PLAIN, "units": PLAIN, "snap": LENGTH, "material": LENGTH},
     **{"circle": LENGTH, "polygon": LENGTH, "line": LENGTH},
     **{"pivot": LENGTH, "position": LENGTH, "motion": PLAIN, "axis": NUMBER, "angle": ANGLE},
     **{"velocity": Key(units.SPIN, units.SPEED), "spin": Key(units.SPIN)},
@@ -64,7 +64,7 @@ DAMPING: Keys = {
 }
 CONTACT: Keys = {"between": PLAIN, "friction": NUMBER, "restitution": NUMBER, "tangential_restitution": NUMBER}
 RUN: Keys = {"duration": Key(units.TIME), "record": Key(units.TIME), "tolerance": NUMBER}
-TIMEGRAPHER: Keys = {"lift_angle": ANGLE}
+TIMEGRAPHER: Keys = {"lift_angle": ANGLE, "frequency": Key(units.FREQUENCY)}
 EXPECTATION: Keys = {"value": PLAIN, "tolerance": PLAIN}
 LOCK: Keys = {"versions": PLAIN, "drawings": PLAIN}
 

@@ -27,7 +27,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-QUANTITIES = ("angle", "velocity")
+QUANTITIES = ("angle", "velocity", "acceleration")
+USUAL = QUANTITIES[:2]
 PANEL = (6.0, 2.1)  # inches
 FLAT = 1e-6  # a range smaller than this part of the value (or of 1 unit) is shown as flat, not magnified
 STYLES = ("-", "--")  # of x and y
@@ -45,20 +46,27 @@ class Channel:
     legend: tuple[str, ...] = ()
 
 
-ROTATION = ({"angle": "°", "velocity": "°/s"}, {"angle": "angle", "velocity": "angular velocity"})
-TRAVEL = ({"angle": "mm", "velocity": "mm/s"}, {"angle": "position", "velocity": "velocity"})
+ROTATION = (
+    {"angle": "°", "velocity": "°/s", "acceleration": "°/s²"},
+    {"angle": "angle", "velocity": "angular velocity", "acceleration": "angular acceleration"},
+)
+TRAVEL = (
+    {"angle": "mm", "velocity": "mm/s", "acceleration": "mm/s²"},
+    {"angle": "position", "velocity": "velocity", "acceleration": "acceleration"},
+)
 
 
 def plot_kinematics(
     run: Trajectory,
     bodies: Sequence[str] | None = None,
-    quantities: Sequence[str] = QUANTITIES,
+    quantities: Sequence[str] = USUAL,
     window: Sequence[float] | None = None,
 ) -> Figure:
     """One panel per moving body and quantity over a common time axis; a figure to save as PNG, SVG or PDF.
 
     bodies      names; default all that move
-    quantities  "angle" (°; sliding and free bodies: their position in mm too), "velocity" (°/s, mm/s)
+    quantities  "angle" (°; sliding and free bodies: their position in mm too), "velocity" (°/s, mm/s), "acceleration" (°/s²,
+                mm/s²; it jumps with every force, and what happens within an impact has none)
     window      (from, to) in seconds; default all that was recorded
 
     Between rows the curve follows the trajectory's own interpolation; at an impact the velocity jumps. ValueError naming
@@ -70,7 +78,7 @@ def plot_kinematics(
 class Kinematics:
     """The panels of `plot_kinematics`, which can show one window after another: most of a plot's cost is making them."""
 
-    def __init__(self, run: Trajectory, bodies: Sequence[str] | None = None, quantities: Sequence[str] = QUANTITIES) -> None:
+    def __init__(self, run: Trajectory, bodies: Sequence[str] | None = None, quantities: Sequence[str] = USUAL) -> None:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
 
@@ -92,11 +100,11 @@ class Kinematics:
     def show(self, window: Sequence[float] | None = None) -> Figure:
         """The figure, now of this window (s); default all that was recorded."""
         span = stretch(self.run, window)
-        t, q, u = dense(self.run, span)
+        t, *motion = dense(self.run, span)
         told = clock(span)
         x = (t - told.base) * told.factor
         for axes, channel, quantity in self._each():
-            values = channel.factor * (q if quantity == "angle" else u)[:, channel.columns]
+            values = channel.factor * motion[QUANTITIES.index(quantity)][:, channel.columns]
             for line, column in zip(axes.get_lines(), values.T, strict=True):
                 line.set_data(x, column)
             _limits(axes, values, quantity == "angle" and channel.units is ROTATION[0])

@@ -111,8 +111,8 @@ def swept(run: Trajectory, body: Body, window: Window) -> Array:
     return np.column_stack((np.tile(body.position, (len(angles), 1)), angles))
 
 
-def dense(run: Trajectory, window: Window, least: int = 2000) -> tuple[Array, Array, Array]:
-    """t (m,), q and u (m, n) over the window: every row, and points between rows wherever they are far apart.
+def dense(run: Trajectory, window: Window, least: int = 2000) -> tuple[Array, Array, Array, Array]:
+    """t (m,), q, u and a (m, n) over the window: every row, and points between rows wherever they are far apart.
 
     At an impact both rows of that instant are kept, so that a jump stays a jump. Stretches that were not recorded are NaN.
     """
@@ -125,16 +125,14 @@ def dense(run: Trajectory, window: Window, least: int = 2000) -> tuple[Array, Ar
     rank = np.arange(len(left)) - np.repeat(np.cumsum(extra) - extra, extra) + 1
     between = times[left] + gaps[left] * rank / (extra[left] + 1)
     added = np.concatenate(([start], between, [stop]))
-    q, u = run.sample(added)
+    between_rows = (*run.sample(added), run.acceleration(added))
     t = np.concatenate((run.t[inside], added))
     order = np.argsort(t, kind="stable")
-    t, q, u = t[order], np.concatenate((run.q[inside], q))[order], np.concatenate((run.u[inside], u))[order]
-    return t, *_masked(run, t, q, u)
-
-
-def _masked(run: Trajectory, t: Array, q: Array, u: Array) -> tuple[Array, Array]:
+    t = t[order]
+    rows = (run.q[inside], run.u[inside], run.a[inside])
+    q, u, a = (np.concatenate(parts)[order] for parts in zip(rows, between_rows, strict=True))
     spans = recorded(run)
-    if len(spans) == 1:
-        return q, u
-    known = np.any([(t >= low) & (t <= high) for low, high in spans], axis=0)
-    return np.where(known[:, None], q, np.nan), np.where(known[:, None], u, np.nan)
+    if len(spans) > 1:
+        known = np.any([(t >= low) & (t <= high) for low, high in spans], axis=0)[:, None]
+        q, u, a = (np.where(known, values, np.nan) for values in (q, u, a))
+    return t, q, u, a

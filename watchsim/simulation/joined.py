@@ -7,7 +7,7 @@ import dataclasses
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.mechanism.check import frequency
+from watchsim.mechanism.oscillation import frequency
 from watchsim.mechanism.recording import ALL, STATISTICS
 from watchsim.simulation.kept import stretch_rows, tail_length, within
 from watchsim.simulation.trajectory import Trajectory

@@ -32,8 +32,8 @@ def _passages(model, state, h, work, q, u, record):
     """Turning points and rest passages of sprung bodies within the step that ends at (q, u): the step is a parabola."""
     for i in range(len(u)):
         coordinate = model.coordinates[i]
-        if coordinate.stiffness != 0.0:
-            _keep_of(model, state, h, (i, -1, coordinate.rest), (state.q, work.u, q, u), record)
+        if coordinate.watched == 1:
+            _keep_of(model, state, h, (i, -1, coordinate.level), (state.q, work.u, q, u), record)
     for j in range(len(model.joints)):
         joint = model.joints[j]
         if joint.stiffness != 0.0:

@@ -76,9 +76,9 @@ def keep_passages(model, state, step, end, record):
     now, n = state.clock[0], len(model.coordinates)
     for spring in range(n + len(model.joints)):
         if spring < n:
-            if model.coordinates[spring].stiffness == 0.0:
+            if model.coordinates[spring].watched == 0:
                 continue
-            i, on, rest = spring, -1, model.coordinates[spring].rest
+            i, on, rest = spring, -1, model.coordinates[spring].level
         else:
             joint = model.joints[spring - n]
             if joint.stiffness == 0.0:

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from watchsim.contact.cells import CellFinder
 from watchsim.dynamics.forces import stored_energy
-from watchsim.mechanism.check import frequency
 from watchsim.mechanism.compile import Compiled
+from watchsim.mechanism.oscillation import frequency
 from watchsim.mechanism.recording import Recording
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation.advance import EVENTS_PER_CONTACT, ROWS_PER_STEP, WORK, advance

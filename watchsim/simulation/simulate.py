@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Iterable
+from pathlib import Path
 
 from watchsim.mechanism.compile import compile_scene
 from watchsim.mechanism.recording import Recording, Window, as_recording
@@ -18,7 +19,7 @@ from watchsim.units import TIME, UnitError, parse
 
 
 def simulate(
-    scene: Scene,
+    scene: Scene | str | Path,
     duration: float | str | None = None,
     tolerance: float | None = None,
     record: Recording | str | Iterable[Window] | None = None,
@@ -30,6 +31,8 @@ def simulate(
     start: Trajectory | SavedState | None = None,
 ) -> Trajectory:
     """Simulate `scene` from 0 to `duration` at a relative error `tolerance` per step (both default to the scene's own).
+
+    scene     a scene, or the file or folder that holds one
 
     duration  seconds, or a text with its unit such as "5 s"; so is `step`
     record    what is kept: windows (s) of rows, "events", "statistics" or a `Recording`; default the scene's, else everything
@@ -44,6 +47,10 @@ def simulate(
     bodies overlap at the start by more than the rounding of drawings.
     """
     begun = time.perf_counter()
+    if not isinstance(scene, Scene):
+        from watchsim.mechanism.load import load
+
+        scene = load(scene)
     duration = scene.duration if duration is None else _seconds("duration", duration)
     step = None if step is None else _seconds("step", step)
     tolerance = scene.tolerance if tolerance is None else float(tolerance)

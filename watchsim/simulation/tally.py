@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.mechanism.check import frequency
+from watchsim.mechanism.oscillation import nominal_frequency
+from watchsim.mechanism.roles import roles
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation.event_kinds import EVENT_DTYPE, EventKind
 from watchsim.simulation.half_swings import first_noises, half_swings, since_two_before, unevenness
@@ -36,10 +37,10 @@ class Tally:
 
     def __init__(self, scene: Scene, pairs: Sequence[Pair]) -> None:
         self.body, self.half_period = -1, 0.0
-        if scene.springs:
-            name = scene.springs[0].body
+        name = roles(scene).oscillator
+        if name is not None:
             self.body = [body.name for body in scene.bodies].index(name)
-            self.half_period = 0.5 / (frequency(scene) or np.inf)
+            self.half_period = 0.5 / (nominal_frequency(scene) or np.inf)
             self._noisy = np.append(as_pairs(pairs).of_body(name), False)
         self.kinds = np.zeros(max(EventKind) + 1, np.int64)
         self.beats = np.zeros(2, np.int64)  # half swings, and those with a tick

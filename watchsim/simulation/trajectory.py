@@ -85,6 +85,10 @@ class Trajectory:
             view.flags.writeable = False
             object.__setattr__(self, name, view)
 
+    def __repr__(self) -> str:
+        kinds = f"{len(self.t)} rows of {self.q.shape[1]} coordinates, {len(self.events)} events"
+        return f"<Trajectory of {self.scene.title!r}: {self.simulated:g} s, {kinds}; {self.stop.sentence}>"
+
     @cached_property
     def _noise(self) -> Array:
         """(n,): how exact each coordinate is at its rows."""
@@ -112,6 +116,21 @@ class Trajectory:
         h = np.where(last, 1.0, h)
         q, u = between(s, h, (self.q[i], self.u[i], self.a[i]), (self.q[j], self.u[j], self.a[j]), self._noise)
         return np.where(last, self.q[j], q), np.where(last, self.u[j], u)
+
+    def acceleration(self, times: Array) -> Array:
+        """(len(times), n): accelerations, of the cubics through u and a of two rows; as `sample`."""
+        if len(self.t) == 0:
+            raise ValueError("no row of this run was kept, so where its bodies were is not known")
+        i = np.clip(np.searchsorted(self.t, times, side="right") - 1, 0, max(len(self.t) - 2, 0))
+        j = np.minimum(i + 1, len(self.t) - 1)
+        h = (self.t[j] - self.t[i])[:, None]
+        last = h <= 0.0
+        h = np.where(last, 1.0, h)
+        s = np.where(last, 1.0, np.clip((times - self.t[i])[:, None] / h, 0.0, 1.0))
+        way = (self.u[j] - self.u[i]) / h
+        left, right = self.a[i], self.a[j]
+        cubic = left + s * (6.0 * way - 4.0 * left - 2.0 * right + s * (3.0 * (left + right) - 6.0 * way))
+        return np.where(last, right, cubic)
 
     def pose(self, body: str, t: float) -> tuple[float, float, float]:
         """x, y (m) and angle (rad) of the body's frame in the movement at time `t`."""

@@ -1,0 +1,33 @@
+"""Does the picture of speed over error show each engine's figures in the panel of its scene?"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from matplotlib.figure import Figure
+
+from watchsim.render.speed import plot_speed
+
+
+def row(scene: str, method: str, time: float, error: float, note: str = "") -> dict[str, object]:
+    times = {"wall_s_per_simulated_s": time, "wall_least": 0.9 * time, "wall_largest": 1.3 * time}
+    return {"scene": scene, "method": method, **times, "error_state": None, "error_amplitude_deg": error, "note": note}
+
+
+def test_every_figure_in_its_place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    saved: list[Figure] = []
+    monkeypatch.setattr(Figure, "savefig", lambda self, path: saved.append(self))
+    rows = [
+        *(row("a", "pfeiffer-glocker", 0.004, 1e-5), row("a", "pfeiffer-glocker", 0.005, 0.0), row("a", "moreau", 0.5, 0.01)),
+        *(row("a", "moreau", 0.9, 0.02, "does not run"), row("b", "pfeiffer-glocker", 0.1, 1e-3), row("b", "moreau", 0.2, 0.3)),
+        row("alone", "pfeiffer-glocker", 1.0, 1.0),
+    ]
+    plot_speed(rows, tmp_path / "speed.png")
+    panels = saved[0].axes
+    assert [axes.get_title(loc="left") for axes in panels] == ["a", "b"]
+    points = [[(*bars[0].get_xdata(), *bars[0].get_ydata()) for bars in axes.containers] for axes in panels]
+    assert points == [[(1e-5, 1e-14, 0.004, 0.005), (0.01, 0.5)], [(1e-3, 0.1), (0.3, 0.2)]]
+    low, high = panels[0].containers[1].lines[2][0].get_segments()[0][:, 1]
+    assert (low, high) == pytest.approx((0.45, 0.65))
+    assert panels[0].get_ylabel() and not panels[1].get_ylabel()

@@ -1,0 +1,49 @@
+"""Is each planted fault one small change that still is Python, and are texts, types and messages left alone?"""
+
+from __future__ import annotations
+
+import ast
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+if not (ROOT / "scripts").is_dir():
+    pytest.skip("the scripts are not here", allow_module_level=True)
+sys.path.insert(0, str(ROOT / "scripts"))
+
+from faults import faults  # noqa: E402
+
+TEXT = '''"""Numbers 1 and 2."""
+Side = str | float
+def f(x: float, n: int = 3) -> float | None:
+    """Less than 4."""
+    if not x < 0.5 and n == 3:
+        raise ValueError(f"{n + 1} is too much, {7}")
+    return -x * max(x, 2.0) + abs(x) / 3
+'''
+EXPECTED = {
+    *(("3", "4"), ("not x < 0.5 and n == 3", "(not x < 0.5 or n == 3)"), ("not x < 0.5", "(x < 0.5)"), ("x < 0.5", "x >= 0.5")),
+    *(("0.5", "0.625"), ("n == 3", "n != 3"), ("-x * max(x, 2.0) + abs(x) / 3", "(-x * max(x, 2.0) - abs(x) / 3)")),
+    *(("-x * max(x, 2.0)", "(-x / max(x, 2.0))"), ("-x", "(x)"), ("max(x, 2.0)", "min(x, 2.0)"), ("2.0", "2.5")),
+    *(("abs(x) / 3", "(abs(x) * 3)"), ("abs(x)", "(x)")),
+}
+
+
+def test_what_is_planted_and_what_is_not() -> None:
+    assert {(one.before, one.after) for one in faults(TEXT)} == EXPECTED
+
+
+@pytest.mark.parametrize(
+    "name", ["drawing/shapes.py", "analysis/timegrapher.py", "render/movie.py", "dynamics/impact.py", "units.py"]
+)
+def test_every_fault_is_one_change_of_a_real_file(name: str) -> None:
+    source = (ROOT / "watchsim" / name).read_text(encoding="utf-8")
+    found = list(faults(source))
+    assert len(found) > 20
+    for one in found:
+        assert ast.dump(ast.parse(one.source)) != ast.dump(ast.parse(source)), (one.line, one.before)
+        line = source.encode().splitlines()[one.line - 1]
+        assert line[one.column :].decode().startswith(one.before.splitlines()[0])
+        assert len(one.source) == len(source) + len(one.after) - len(one.before)
