@@ -40,7 +40,7 @@ def options_for(size: float, tolerance: float, max_step: float) -> Options:
         tolerance=tolerance,
         gap_zero=1e-13 * size,
         # Alike for all tolerances: which contacts share an impact must not depend on how exactly it is computed.
-        gap_close=1e-9 * size,
+        gap_close=2e-10 * size,
         # A corner that lands flat comes within its primitives only when it has landed: as far behind as drift has let it.
         behind=max(2e-10, min(20.0 * tolerance, 2e-5)) * size,
         extent=4.0 * JOINT * size,

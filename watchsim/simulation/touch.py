@@ -180,6 +180,13 @@ def _next_stretch(model, options, k, left, scratch):
 
 
 @kernel
+def _margins(model, options, k, scratch):
+    """How far inside each of its primitives contact k lies, with the extent beyond their ends that still counts."""
+    inside_a, inside_b = extent_margins(model, k, scratch.pose)
+    return inside_a + options.extent, inside_b + options.extent
+
+
+@kernel
 def _time_immovable(model, options, k, rate, bend, scratch):
     """Until when contact k, without a gap, need not be looked at because no motion closes it; 0 where one does.
 
@@ -226,8 +233,7 @@ def crossing(model, state, options, k, start, end, scratch):
         fresh = False
         leaving = gap > zero or rate > options.speed_zero
         clear = clear or (outside and leaving)  # a contact that has just rebounded returns to this gap by falling only
-        inside_a, inside_b = extent_margins(model, k, scratch.pose)
-        inside_a, inside_b = inside_a + options.extent, inside_b + options.extent
+        inside_a, inside_b = _margins(model, options, k, scratch)
         beside = _time_outside(model, k, inside_a, inside_b, (closing, swing), distance)
         # Positions jump where drift is taken back: a gap may have closed by that.
         near = gap <= zero if outside else gap >= -options.behind
@@ -254,8 +260,7 @@ def crossing(model, state, options, k, start, end, scratch):
         else:
             clear = clear and leaving if outside else clear
             safe = _time_to_zero(gap, rate, outside, (closing, bend, distance), options)
-            if near and not leaving:
-                safe = max(safe, _time_immovable(model, options, k, rate, bend, scratch))
+            safe = max(safe, _time_immovable(model, options, k, rate, bend, scratch) if near and not leaving else 0.0)
             # Beside its primitives the gap may pass through zero: which side it is on afterwards is found anew.
             fresh = beside > safe
             # Never less than the rounding of time itself.
