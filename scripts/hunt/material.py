@@ -71,10 +71,17 @@ def _placed(points: NDArray[np.float64], pose: tuple[float, float, float]) -> ND
     return points @ np.array([[c, s], [-s, c]]) + np.array([x, y])
 
 
+SLIVER = 16.0  # times area over circumference: more than the depth of any overlap that is not a sliver
+
+
 def _depth(a: shapely.Polygon, b: shapely.Polygon) -> float:
-    """How far the boundary of one reaches into the other."""
+    """How far the boundary of one reaches into the other; no more than a few times how thick the overlap is on average.
+
+    Flush faces overlap by a sliver of rounding, whose corners shapely may put anywhere along them.
+    """
     common = shapely.intersection(a, b)
     if common.area == 0.0:
         return 0.0
     vertices = shapely.points(shapely.get_coordinates(common))
-    return float(np.maximum(shapely.distance(vertices, a.boundary), shapely.distance(vertices, b.boundary)).max())
+    reach = np.maximum(shapely.distance(vertices, a.boundary), shapely.distance(vertices, b.boundary)).max()
+    return float(min(reach, SLIVER * common.area / common.length))

@@ -12,7 +12,6 @@ from hunt_mechanisms import judged_file
 SCENES = sorted((hunt_path.ROOT / "tests" / "data" / "hunt").glob("*.toml"))
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
 def test_mended(path):
     verdict = judged_file(path)
