@@ -13,8 +13,9 @@ import pytest
 from interpreter import ROOT
 
 from watchsim.analysis.results import read_results
+from watchsim.profiles_path import profiles_dir
 
-LEVER = ROOT / "profiles" / "bench_lever"
+LEVER = profiles_dir() / "bench_lever"
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of Unix")
 
 # A process of the command line in which `moment` is a function of the package before whose call the signal comes.

@@ -17,9 +17,10 @@ from watchsim.analysis import results
 from watchsim.analysis.results import read_results
 from watchsim.cli import main
 from watchsim.commands import write_run
+from watchsim.profiles_path import profiles_dir
 from watchsim.simulation.run import Run
 
-LEVER = str(ROOT / "profiles" / "bench_lever")
+LEVER = str(profiles_dir() / "bench_lever")
 SHORT = ["run", LEVER, "--duration", "0.05 s", "--no-plots"]
 
 

@@ -72,10 +72,9 @@ def seen(scene: Scene, world: float, drawn: tuple[float, ...]) -> Seen:
             moved.append(q[0] - given.angle)
         else:
             moved.append(q[0])
-    turns = run.events[run.events["kind"] == EventKind.TURN]["value"]
-    if len(turns):
-        swinging = turned.body(turned.springs[0].body)
-        turns = turns - (swinging.angle if swinging.motion == "pivot" else 0.0)
+    events = run.events[run.events["kind"] == EventKind.TURN]
+    drawn_at = np.array([body.angle if body.motion == "pivot" else 0.0 for body in turned.bodies])
+    turns = events["value"] - drawn_at[events["body"]]
     bad = "" if run.stop == Stop.DURATION else run.stop.name
     if abs(run.energy["residual_relative"]) > 1e-6:
         bad += f" residual {run.energy['residual_relative']:.1e}"

@@ -23,7 +23,7 @@ from watchsim.simulation import dop853
 from watchsim.simulation import run as running
 from watchsim.simulation.integrator import dense_value
 from watchsim.simulation.options import options_for
-from watchsim.simulation.run import Run
+from watchsim.simulation.run import Run, new_until
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
 
@@ -89,7 +89,8 @@ def errors(h: float, monkeypatch: pytest.MonkeyPatch) -> tuple[float, float]:
 def middle_error(h: float) -> float:
     scene = dataclasses.replace(rolling_in_a_bowl(), duration=1.0)
     run = Run(scene, compile_scene(scene), 1e-9, Recording())
-    while run._advance(np.array([0.4, 0.9, 1.0]), run.record) != Stop.SLICE:
+    until = new_until(0.4, 0.9, 1.0, 1e9)
+    while run._advance(until, run.record) != Stop.SLICE:
         run.flush()
     step = run.scratch.step
     start, length = step.span

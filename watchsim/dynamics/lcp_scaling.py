@@ -71,13 +71,12 @@ def _balance(A, n, work):
         for i in range(n):
             row = column = 0.0
             for j in range(n):
-                if j == i:
+                # What rounding leaves of a zero says nothing about units; the mutual coefficient does not depend on them.
+                mutual = abs(A[i, j]) * abs(A[j, i]) * (s[i] * s[j]) ** 2
+                if j == i or 0.0 < mutual < ROUNDING * ROUNDING:
                     continue
-                # What rounding leaves of a zero says nothing about units.
-                if abs(A[i, j]) * s[i] * s[j] > ROUNDING:
-                    row = max(row, abs(A[i, j]) * c[j])
-                if abs(A[j, i]) * s[i] * s[j] > ROUNDING:
-                    column = max(column, abs(A[j, i]) * r[j])
+                row = max(row, abs(A[i, j]) * c[j])
+                column = max(column, abs(A[j, i]) * r[j])
             row, column = row * r[i], column * c[i]
             if row > 0.0 and column > 0.0:
                 factor = _power_of_two(math.sqrt(column / row))
