@@ -72,7 +72,9 @@ def seen(scene: Scene, world: float, drawn: tuple[float, ...]) -> Seen:
             moved.append(q[0] - given.angle)
         else:
             moved.append(q[0])
-    events = run.events[run.events["kind"] == EventKind.TURN]
+    # Of bodies on springs: a pendulum that an impact stops turns back or not by rounding.
+    sprung = [k for k, body in enumerate(turned.bodies) if any(spring.body == body.name for spring in turned.springs)]
+    events = run.events[(run.events["kind"] == EventKind.TURN) & np.isin(run.events["body"], sprung)]
     drawn_at = np.array([body.angle if body.motion == "pivot" else 0.0 for body in turned.bodies])
     turns = events["value"] - drawn_at[events["body"]]
     bad = "" if run.stop == Stop.DURATION else run.stop.name
