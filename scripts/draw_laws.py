@@ -17,7 +17,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-from watchsim.analysis.bare_contacts import BareContacts
+from watchsim.verification.bare_contacts import BareContacts
 
 IMAGES = Path(__file__).resolve().parents[1] / "docs" / "images"
 INK, GREY = "#1f2933", "#9aa5b1"

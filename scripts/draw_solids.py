@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 import watchsim as ws
-from watchsim.geometry.export import Placed
-from watchsim.mechanism.levels import slabs
+from watchsim.geometry.solids.meshes import Placed
 from watchsim.render.palette import BACKGROUND
-from watchsim.render.solids import placed_solids
+from watchsim.render.placed_solids import placed_solids
+from watchsim.scene.layer_heights import slabs
 
 Array = NDArray[np.float64]
 

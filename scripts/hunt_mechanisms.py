@@ -27,7 +27,7 @@ from hunt.pool import answers
 from hunt.shrink import shrunk
 from hunt.write import write_scene
 
-from watchsim.mechanism.load import load
+from watchsim.scene.file.load import load
 
 CLEAN = ("fine", "sensitive")
 KINDS = ("fine", "sensitive", "wrong", "gave up", "hanging", "crashed")

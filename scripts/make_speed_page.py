@@ -19,16 +19,16 @@ import time
 from pathlib import Path
 from typing import Any
 
+from watchsim.bench.comparison_table import table
+from watchsim.bench.engines.world import is_installed
 from watchsim.bench.growth import Study, studies
-from watchsim.bench.profile import profile_of, profile_text
-from watchsim.bench.report import table
+from watchsim.bench.profile.run_profile import profile_of, profile_text
 from watchsim.bench.scenarios import Scenario, scenarios
-from watchsim.bench.whole import whole
-from watchsim.bench.world import is_installed
+from watchsim.bench.wall_clock import whole
 from watchsim.commands.bench import measured, write
-from watchsim.mechanism.load import load
 from watchsim.profiles_path import profiles_dir
-from watchsim.render.speed import plot_speed
+from watchsim.render.speed_plot import plot_speed
+from watchsim.scene.file.load import load
 from watchsim.simulation.methods import MOREAU
 from watchsim.simulation.simulate import simulate
 

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from watchsim.analysis.verify import verify
+from watchsim.verification.all_checks import verify
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 BLUE, RED, GREY = "#2b6ca3", "#b5382a", "#8a8f94"

@@ -20,8 +20,8 @@ sys.path[:0] = [str(ROOT), str(ROOT / "tests"), str(ROOT / "tests" / "simulation
 from cam_scenes import DRIVE, ECCENTRIC, RATE, cam_scene  # noqa: E402
 from reference.cam import Piece, follow, oval  # noqa: E402
 
+from watchsim.simulation.record.trajectory import EventKind  # noqa: E402
 from watchsim.simulation.simulate import simulate  # noqa: E402
-from watchsim.simulation.trajectory import EventKind  # noqa: E402
 
 OVAL = oval(0.6e-3, 1.5e-3, 0.4e-3)
 JOINT = 1e-6  # rad: nearer to a step of curvature the force may be that of either side

@@ -21,7 +21,7 @@ sys.path[:0] = [str(ROOT), str(ROOT / "tests"), str(ROOT / "tests" / "contact")]
 from naive.exact_distance import exact_distance, exact_gap, nasty_pairs  # noqa: E402
 from test_exact_gaps import chain, contact_row, round_side  # noqa: E402
 
-from watchsim.contact.outlines import distance, gap  # noqa: E402
+from watchsim.contact.distance import distance, gap  # noqa: E402
 
 
 def main() -> int:

@@ -18,14 +18,14 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
-from watchsim.contact.cells import CellFinder  # noqa: E402
+from watchsim.candidates.cell_lookup import UNKNOWN, candidate, candidates  # noqa: E402
+from watchsim.candidates.cell_table import CellFinder  # noqa: E402
 from watchsim.contact.gaps import extent_margins, normal_gap  # noqa: E402
-from watchsim.contact.lookup import UNKNOWN, candidate, candidates  # noqa: E402
 from watchsim.contact.poses import place, poses  # noqa: E402
 from watchsim.jit import entry, kernel  # noqa: E402
 from watchsim.mechanism.compile import compile_scene  # noqa: E402
-from watchsim.mechanism.load import load  # noqa: E402
-from watchsim.mechanism.model import CellsRef, ModelRef  # noqa: E402
+from watchsim.model.records import CellsRef, ModelRef  # noqa: E402
+from watchsim.scene.file.load import load  # noqa: E402
 from watchsim.simulation.simulate import simulate  # noqa: E402
 
 STATES, REPEATS = 200, 2000

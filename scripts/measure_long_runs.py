@@ -18,17 +18,17 @@ import numpy as np
 from numpy.typing import NDArray
 from one_day import whole_day
 
-from watchsim.analysis.beats import DAY, beats
-from watchsim.analysis.wheel import missed_beats
-from watchsim.mechanism.load import load
-from watchsim.mechanism.recording import EVERYTHING
-from watchsim.mechanism.roles import roles
-from watchsim.mechanism.scene import Scene
+from watchsim.analysis.timing.beats import DAY, beats
+from watchsim.analysis.timing.escape_wheel import missed_beats
 from watchsim.profiles_path import profiles_dir
+from watchsim.scene.file.load import load
+from watchsim.scene.recording import EVERYTHING
+from watchsim.scene.roles import roles
+from watchsim.scene.scene import Scene
 from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.trajectory import Trajectory
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "long-runs.md"

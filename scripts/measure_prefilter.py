@@ -19,12 +19,12 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
-from watchsim.contact.known import forget  # noqa: E402
+from watchsim.candidates.pair_cache import forget  # noqa: E402
 from watchsim.mechanism.compile import compile_scene  # noqa: E402
-from watchsim.mechanism.load import load  # noqa: E402
-from watchsim.mechanism.recording import EVERYTHING  # noqa: E402
-from watchsim.mechanism.scene import Scene  # noqa: E402
-from watchsim.simulation.run import Run  # noqa: E402
+from watchsim.scene.file.load import load  # noqa: E402
+from watchsim.scene.recording import EVERYTHING  # noqa: E402
+from watchsim.scene.scene import Scene  # noqa: E402
+from watchsim.simulation.runner import Run  # noqa: E402
 from watchsim.simulation.state import N_GAPS  # noqa: E402
 from watchsim.simulation.stops import Stop  # noqa: E402
 

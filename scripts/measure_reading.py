@@ -202,7 +202,7 @@ def table(results: dict[str, np.ndarray], megabytes: dict[str, float], empty: fl
 def curves_text(repeats: int) -> str:
     """What curves take that are neither straight nor round, from drawings of different size."""
     from watchsim.drawing.read import read
-    from watchsim.geometry.fit import MANY
+    from watchsim.geometry.fitting.fit import MANY
 
     rows = []
     with tempfile.TemporaryDirectory() as folder:

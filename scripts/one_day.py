@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.scene import Scene
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
 

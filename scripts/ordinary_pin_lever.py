@@ -18,10 +18,10 @@ from gear_scenes import through  # noqa: E402
 
 from watchsim.geometry.loop import Loop  # noqa: E402
 from watchsim.geometry.primitives import Line  # noqa: E402
-from watchsim.mechanism.load import load  # noqa: E402
-from watchsim.mechanism.scene import Scene  # noqa: E402
+from watchsim.scene.file.load import load  # noqa: E402
+from watchsim.scene.scene import Scene  # noqa: E402
+from watchsim.simulation.record.trajectory import EventKind  # noqa: E402
 from watchsim.simulation.simulate import simulate  # noqa: E402
-from watchsim.simulation.trajectory import EventKind  # noqa: E402
 
 SHARED = [
     place for place in (ROOT.parent / "shared", ROOT.parents[1] / "shared") if (place / "drawings" / "pin_lever").exists()

@@ -30,15 +30,24 @@ ENOUGH = 0.95
 PATIENCE = 5.0  # times what the tests take without a fault; an endless loop is noticed, too
 LEAST = 120.0  # s
 AREAS = {  # name -> (files, tests)
-    "reader": (("drawing/*.py",), ("tests/drawing",)),
-    "geometry": (("geometry/*.py",), ("tests/geometry", "tests/drawing/test_chain.py", "tests/drawing/test_splines.py")),
-    "scene": (("mechanism/*.py", "units.py"), ("tests/mechanism", "tests/test_units.py")),
-    "analysis": (("analysis/*.py",), ("tests/analysis",)),
+    "reader": (("drawing/**/*.py",), ("tests/drawing",)),
+    "geometry": (("geometry/**/*.py",), ("tests/geometry", "tests/drawing/test_chain.py", "tests/drawing/test_splines.py")),
+    "scene": (("scene/**/*.py", "mechanism/*.py", "units.py"), ("tests/mechanism", "tests/test_units.py")),
+    "analysis": (("analysis/**/*.py", "results/*.py", "verification/**/*.py"), ("tests/analysis",)),
     "pictures": (
-        ("render/movie.py", "render/poses.py", "render/speed.py", "render/readouts.py", "render/encoder.py"),
+        (
+            "render/run_movie.py",
+            "render/frame/pose_history.py",
+            "render/speed_plot.py",
+            "render/frame/readouts.py",
+            "render/encoder.py",
+        ),
         ("tests/render",),
     ),
-    "kernels": (("dynamics/*.py", "contact/*.py", "simulation/*.py"), ("tests/dynamics", "tests/contact", "tests/simulation")),
+    "kernels": (
+        ("dynamics/**/*.py", "candidates/*.py", "contact/*.py", "simulation/**/*.py"),
+        ("tests/dynamics", "tests/contact", "tests/simulation"),
+    ),
 }
 
 

@@ -19,21 +19,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.contact.known import forget
+from watchsim.candidates.pair_cache import forget
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line
-from watchsim.mechanism.body import Body
 from watchsim.mechanism.compile import compile_scene
-from watchsim.mechanism.load import load
-from watchsim.mechanism.model import ARC, CORNER, Records
-from watchsim.mechanism.recording import EVERYTHING
-from watchsim.mechanism.scene import Scene
-from watchsim.simulation.run import Run
-from watchsim.simulation.saved import SavedState
+from watchsim.model.records import ARC, CORNER, Records
+from watchsim.scene.body import Body
+from watchsim.scene.file.load import load
+from watchsim.scene.recording import EVERYTHING
+from watchsim.scene.scene import Scene
+from watchsim.simulation.record.saved_state import SavedState
+from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.simulation.runner import Run
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.state import N_GAPS
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.trajectory import Trajectory
 
 ROOT = Path(__file__).resolve().parents[1]
 DURATION = 0.5  # s, four beats

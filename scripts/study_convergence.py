@@ -15,16 +15,16 @@ from pathlib import Path
 
 import numpy as np
 
-from watchsim.analysis.closed_forms import Incline, incline_state
-from watchsim.analysis.hard_cases import dry_balance
-from watchsim.analysis.repeated_impacts import pulled_block
-from watchsim.mechanism.force import Damping
-from watchsim.mechanism.load import load
-from watchsim.mechanism.recording import EVERYTHING
-from watchsim.mechanism.scene import Scene
 from watchsim.profiles_path import profiles_dir
+from watchsim.scene.file.load import load
+from watchsim.scene.force import Damping
+from watchsim.scene.recording import EVERYTHING
+from watchsim.scene.scene import Scene
+from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.trajectory import Trajectory
+from watchsim.verification.closed_forms import Incline, incline_state
+from watchsim.verification.hard_cases import dry_balance
+from watchsim.verification.repeated_impacts import pulled_block
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "convergence.md"
 PICTURE = "convergence.png"

@@ -15,10 +15,10 @@ from balance_sizes import by_hand
 from measure_inertia import moments
 
 import watchsim as ws
-from watchsim.geometry.export import plate
 from watchsim.geometry.loop import Loop
-from watchsim.geometry.mass import section
 from watchsim.geometry.primitives import TURN, Arc, Line
+from watchsim.geometry.solids.mass import section
+from watchsim.geometry.solids.meshes import plate
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCUMENT = ROOT / "docs" / "mass-and-inertia.md"

@@ -45,11 +45,11 @@ def test_importing_costs_no_numba() -> None:
 
 
 def test_a_kernel_can_be_made_callable(tmp_path: Path) -> None:
-    code = "from watchsim.jit import callable_kernel; from watchsim.dynamics.lcp_scaling import _power_of_two as f; "
+    code = "from watchsim.jit import callable_kernel; from watchsim.dynamics.lcp.scaling import _power_of_two as f; "
     code += "print(callable_kernel(f)(6.5))"
     assert python(code, WATCHSIM_CACHE=str(tmp_path), NUMBA_DISABLE_JIT="0") == "8.0"
 
 
 def test_other_numba_users_keep_their_cache_folder(tmp_path: Path) -> None:
-    code = "import numba, watchsim.dynamics.lcp; print(numba.config.CACHE_DIR)"
+    code = "import numba, watchsim.dynamics.lcp.lemke_pivoting; print(numba.config.CACHE_DIR)"
     assert python(code, WATCHSIM_CACHE=str(tmp_path), NUMBA_CACHE_DIR="theirs") == "theirs"

@@ -36,7 +36,14 @@ def test_what_is_planted_and_what_is_not() -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["drawing/shapes.py", "analysis/timegrapher.py", "render/movie.py", "dynamics/impact.py", "units.py"]
+    "name",
+    [
+        "drawing/curves/plane_shapes.py",
+        "analysis/timing/timegrapher.py",
+        "render/run_movie.py",
+        "dynamics/impact.py",
+        "units.py",
+    ],
 )
 def test_every_fault_is_one_change_of_a_real_file(name: str) -> None:
     source = (ROOT / "watchsim" / name).read_text(encoding="utf-8")

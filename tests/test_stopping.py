@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 from interpreter import ROOT
 
-from watchsim.analysis.results import read_results
 from watchsim.profiles_path import profiles_dir
+from watchsim.results.folder import read_results
 
 LEVER = profiles_dir() / "bench_lever"
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of Unix")
@@ -50,10 +50,10 @@ def stopped(arguments: list[str], home: str, name: str, number: int, times: int 
 
 
 KEPT = [
-    ("watchsim.simulation.run", "Run._slices"),
-    ("watchsim.simulation.run", "Run.trajectory"),
+    ("watchsim.simulation.runner", "Run._slices"),
+    ("watchsim.simulation.runner", "Run.trajectory"),
     ("watchsim.analysis.summary", "tables"),
-    ("watchsim.analysis.results", "write_events"),
+    ("watchsim.results.folder", "write_events"),
     ("watchsim.storage.write", "sync_tree"),
     ("watchsim.storage.write", "sync_name"),
 ]
@@ -76,7 +76,11 @@ def test_what_was_simulated_is_kept(home: str, name: str, number: int, tmp_path:
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize(
     ("home", "name"),
-    [("watchsim.cli", "main"), ("watchsim.commands.scenes", "load_scene"), ("watchsim.simulation.run", "Run.warm_up")],
+    [
+        ("watchsim.cli", "main"),
+        ("watchsim.commands.common.inputs", "load_scene"),
+        ("watchsim.simulation.runner", "Run.warm_up"),
+    ],
 )
 def test_where_nothing_was_made_it_ends_at_once(home: str, name: str, number: int, tmp_path: Path) -> None:
     done = stopped(["run", str(LEVER), "--duration", "0.3 s", "-o", str(tmp_path / "out")], home, name, number)
@@ -89,7 +93,7 @@ def test_a_second_one_stops_at_once(tmp_path: Path) -> None:
     """In the middle of writing: what stood there stays, and nothing else does."""
     folder = tmp_path / "out"
     arguments = ["run", str(LEVER), "--duration", "0.3 s", "--no-plots", "-o", str(folder)]
-    done = stopped([*arguments], "watchsim.analysis.results", "json_text", signal.SIGINT, times=2)
+    done = stopped([*arguments], "watchsim.results.folder", "json_text", signal.SIGINT, times=2)
     assert done.returncode == 130 and (folder / "summary.json").is_file(), "json_text is called once"
     before = (folder / "trajectory.npz").read_bytes()
     done = stopped([*arguments, "--force"], "watchsim.storage.disk", "sync_file", signal.SIGTERM, times=2)
@@ -100,7 +104,7 @@ def test_a_second_one_stops_at_once(tmp_path: Path) -> None:
 
 def test_a_movie_under_way_is_given_up(tmp_path: Path) -> None:
     folder = tmp_path / "out"
-    home = ("watchsim.render.stage", "Stage.draw")
+    home = ("watchsim.render.frame.stage", "Stage.draw")
     done = stopped(["run", str(LEVER), "--duration", "0.3 s", "--movie", "-o", str(folder)], *home, signal.SIGINT)
     assert done.returncode == 130 and not (folder / "movie.mp4").exists()
     assert (folder / "plots" / "kinematics.png").is_file() and (folder / "summary.json").is_file()
@@ -112,7 +116,7 @@ def test_a_movie_under_way_is_given_up(tmp_path: Path) -> None:
 def test_what_the_shell_has_switched_off_stays_off(tmp_path: Path) -> None:
     """`nohup watchsim run ... &`"""
     code = "import signal; signal.signal(signal.SIGHUP, signal.SIG_IGN); signal.signal(signal.SIGINT, signal.SIG_IGN)\n"
-    code += CODE.format(home="watchsim.analysis.results", name="write_events", number=int(signal.SIGHUP), times=1, pause=0.5)
+    code += CODE.format(home="watchsim.results.folder", name="write_events", number=int(signal.SIGHUP), times=1, pause=0.5)
     arguments = ["run", str(LEVER), "--duration", "0.1 s", "--no-plots", "-o", str(tmp_path / "out")]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run([sys.executable, "-c", code, *arguments], env=environment, capture_output=True, check=False)

@@ -11,57 +11,57 @@ from typing import TYPE_CHECKING, Any
 __version__ = "0.1.0"
 
 _HOMES = {
-    "load": "watchsim.mechanism.load",
-    "Scene": "watchsim.mechanism.scene",
-    "SceneError": "watchsim.mechanism.errors",
+    "load": "watchsim.scene.file.load",
+    "Scene": "watchsim.scene.scene",
+    "SceneError": "watchsim.scene.errors",
     "read": "watchsim.drawing.read",
     "Drawing": "watchsim.drawing.drawing",
-    "distance": "watchsim.contact.outlines",
-    "gap": "watchsim.contact.outlines",
-    "kinematics": "watchsim.contact.outlines",
+    "distance": "watchsim.contact.distance",
+    "gap": "watchsim.contact.distance",
+    "kinematics": "watchsim.contact.distance",
     "Profile": "watchsim.drawing.profile",
     "simulate": "watchsim.simulation.simulate",
-    "Trajectory": "watchsim.simulation.trajectory",
-    "EventKind": "watchsim.simulation.trajectory",
+    "Trajectory": "watchsim.simulation.record.trajectory",
+    "EventKind": "watchsim.simulation.record.trajectory",
     "Stop": "watchsim.simulation.stops",
-    "beats": "watchsim.analysis.beats",
-    "forces": "watchsim.analysis.forces",
+    "beats": "watchsim.analysis.timing.beats",
+    "forces": "watchsim.analysis.contact_forces",
     "summary": "watchsim.analysis.summary",
-    "read_results": "watchsim.analysis.results",
-    "write_results": "watchsim.analysis.results",
-    "verify": "watchsim.analysis.verify",
+    "read_results": "watchsim.results.folder",
+    "write_results": "watchsim.results.folder",
+    "verify": "watchsim.verification.all_checks",
     "plot_kinematics": "watchsim.render.plots",
-    "movie": "watchsim.render.movie",
-    "frame": "watchsim.render.movie",
+    "movie": "watchsim.render.run_movie",
+    "frame": "watchsim.render.run_movie",
     "profiles_dir": "watchsim.profiles_path",
 }
 
 __all__ = [*_HOMES, "__version__"]  # noqa: PLE0604 - the keys are the public names
 
 if TYPE_CHECKING:
-    from watchsim.analysis.beats import beats as beats
-    from watchsim.analysis.forces import forces as forces
-    from watchsim.analysis.results import read_results as read_results
-    from watchsim.analysis.results import write_results as write_results
+    from watchsim.analysis.contact_forces import forces as forces
     from watchsim.analysis.summary import summary as summary
-    from watchsim.analysis.verify import verify as verify
-    from watchsim.contact.outlines import distance as distance
-    from watchsim.contact.outlines import gap as gap
-    from watchsim.contact.outlines import kinematics as kinematics
+    from watchsim.analysis.timing.beats import beats as beats
+    from watchsim.contact.distance import distance as distance
+    from watchsim.contact.distance import gap as gap
+    from watchsim.contact.distance import kinematics as kinematics
     from watchsim.drawing.drawing import Drawing as Drawing
     from watchsim.drawing.profile import Profile as Profile
     from watchsim.drawing.read import read as read
-    from watchsim.mechanism.errors import SceneError as SceneError
-    from watchsim.mechanism.load import load as load
-    from watchsim.mechanism.scene import Scene as Scene
     from watchsim.profiles_path import profiles_dir as profiles_dir
-    from watchsim.render.movie import frame as frame
-    from watchsim.render.movie import movie as movie
     from watchsim.render.plots import plot_kinematics as plot_kinematics
+    from watchsim.render.run_movie import frame as frame
+    from watchsim.render.run_movie import movie as movie
+    from watchsim.results.folder import read_results as read_results
+    from watchsim.results.folder import write_results as write_results
+    from watchsim.scene.errors import SceneError as SceneError
+    from watchsim.scene.file.load import load as load
+    from watchsim.scene.scene import Scene as Scene
+    from watchsim.simulation.record.trajectory import EventKind as EventKind
+    from watchsim.simulation.record.trajectory import Trajectory as Trajectory
     from watchsim.simulation.simulate import simulate as simulate
     from watchsim.simulation.stops import Stop as Stop
-    from watchsim.simulation.trajectory import EventKind as EventKind
-    from watchsim.simulation.trajectory import Trajectory as Trajectory
+    from watchsim.verification.all_checks import verify as verify
 
 
 def __getattr__(name: str) -> Any:

@@ -11,7 +11,7 @@ import importlib
 import sys
 
 from watchsim import __version__, stopping
-from watchsim.commands.console import BAD_INPUT, FAULT, INTERRUPTED, InputError, say
+from watchsim.commands.common.console import BAD_INPUT, FAULT, INTERRUPTED, InputError, say
 
 COMMANDS = ("demo", "inspect", "check", "run", "plot", "movie", "verify", "bench", "export")
 
@@ -55,7 +55,7 @@ def main(argv: list[str] | None = None) -> int:
 
 def _failed(error: Exception, argv: list[str]) -> int:
     """Say what is wrong, and whose fault it is."""
-    from watchsim.commands.fault_report import is_refusal, report
+    from watchsim.commands.common.fault_report import is_refusal, report
 
     if isinstance(error, BrokenPipeError):  # the reader of our output has gone: leave without a word
         return BAD_INPUT

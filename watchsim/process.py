@@ -31,7 +31,7 @@ def process() -> NoReturn:
     # Nearly all objects of a short run are imported modules, which stay to the end: looking for garbage among them every few
     # hundred objects, and once more at the end, would take a sixth of its time.
     gc.set_threshold(GARBAGE)
-    from watchsim.commands.streams import open_streams
+    from watchsim.commands.common.streams import open_streams
 
     open_streams()
     from watchsim.cli import main

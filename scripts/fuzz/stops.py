@@ -52,7 +52,7 @@ def start(arguments: list[str], place: Path) -> subprocess.Popen[str]:
 
 def faults(place: Path, before: dict[str, bytes]) -> list[str]:
     """What is wrong with what lies there."""
-    from watchsim.analysis.results import read_results
+    from watchsim.results.folder import read_results
     from watchsim.storage.scratch import PREFIX
 
     found = [f"leftover {path.relative_to(place)}" for path in place.rglob(f"{PREFIX}*")]

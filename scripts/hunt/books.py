@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 
 from hunt.impulses import Touches
 from hunt.material import Material, reach
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.scene import Scene
 from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 

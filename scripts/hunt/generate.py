@@ -7,7 +7,7 @@ from collections.abc import Callable
 from hunt import pivots, sliders
 from hunt.dice import Dice
 from hunt.material import apart
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.scene import Scene
 
 FAMILIES: dict[str, tuple[Callable[[Dice], Scene], int]] = {  # with their weights
     "blade": (pivots.blade, 10),

@@ -15,8 +15,8 @@ from scipy.optimize import nnls
 
 from hunt.material import reach
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point, moved
-from watchsim.mechanism.body import Body
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.body import Body
+from watchsim.scene.scene import Scene
 
 Array = NDArray[np.float64]
 

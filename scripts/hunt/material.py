@@ -9,9 +9,9 @@ import shapely
 from numpy.typing import NDArray
 
 from watchsim.geometry.polyline import polyline
-from watchsim.mechanism.body import Body
 from watchsim.mechanism.overlap import overlaps
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.body import Body
+from watchsim.scene.scene import Scene
 
 DEVIATION = 1e-6  # of the scene's size: of the polylines for arcs
 Poses = dict[str, tuple[float, float, float]]

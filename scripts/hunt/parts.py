@@ -7,11 +7,11 @@ from itertools import combinations
 
 from hunt.dice import Dice
 from watchsim.geometry.loop import Loop
-from watchsim.geometry.mass import mass_properties
 from watchsim.geometry.primitives import Point
-from watchsim.mechanism.body import Body
-from watchsim.mechanism.force import Contact, Damping, Side, Spring, Torque
-from watchsim.mechanism.scene import Scene
+from watchsim.geometry.solids.mass import mass_properties
+from watchsim.scene.body import Body
+from watchsim.scene.force import Contact, Damping, Side, Spring, Torque
+from watchsim.scene.scene import Scene
 
 MM = 1e-3
 GRAVITY = (0.0, -9.81)

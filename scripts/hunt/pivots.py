@@ -19,8 +19,8 @@ from hunt.shapes import (
     turned_points,
 )
 from watchsim.geometry.primitives import TURN
-from watchsim.mechanism.force import Damping, Spring, Torque
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.force import Damping, Spring, Torque
+from watchsim.scene.scene import Scene
 
 
 def blade(dice: Dice) -> Scene:

@@ -14,9 +14,9 @@ from typing import Any
 from hunt.judge import Verdict, judged
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Line
-from watchsim.mechanism.body import Body
 from watchsim.mechanism.overlap import overlaps
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.body import Body
+from watchsim.scene.scene import Scene
 
 BUDGET = 40.0  # s
 SHORTEST = 1e-2  # of the duration: below that runs are so short that anything is large against them

@@ -8,9 +8,9 @@ from hunt.dice import Dice
 from hunt.parts import MM, fixed, free, pivoted, scene, sliding
 from hunt.shapes import box, circle, kinked_bar, polygon, ragged, wavy_bar
 from watchsim.geometry.loop import Loop
-from watchsim.mechanism.body import Body
-from watchsim.mechanism.force import Damping, Spring, Torque
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.body import Body
+from watchsim.scene.force import Damping, Spring, Torque
+from watchsim.scene.scene import Scene
 
 
 def kink(dice: Dice) -> Scene:

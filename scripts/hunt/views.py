@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from hunt.material import apart
 from watchsim.geometry.primitives import Point
-from watchsim.mechanism.body import Body
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.body import Body
+from watchsim.scene.scene import Scene
 
 Array = NDArray[np.float64]
 

@@ -9,12 +9,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from watchsim.drawing.write_dxf import dxf_text
+from watchsim.drawing.dxf.write_dxf import dxf_text
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Line
-from watchsim.mechanism.body import Body
-from watchsim.mechanism.scene import Scene
-from watchsim.mechanism.toml import toml_text
+from watchsim.scene.body import Body
+from watchsim.scene.file.keys.write_toml import toml_text
+from watchsim.scene.scene import Scene
 
 
 def write_scene(scene: Scene, path: Path) -> Path:

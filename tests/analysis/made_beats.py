@@ -14,12 +14,12 @@ import numpy as np
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Line
-from watchsim.mechanism.body import Body
-from watchsim.mechanism.force import Contact, Side, Spring, Torque
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.body import Body
+from watchsim.scene.force import Contact, Side, Spring, Torque
+from watchsim.scene.scene import Scene
 from watchsim.simulation.event_kinds import EVENT_DTYPE, EventKind
+from watchsim.simulation.record.trajectory import Pair, Trajectory
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.trajectory import Pair, Trajectory
 
 HERTZ = 4.0
 PERIOD = 1.0 / HERTZ

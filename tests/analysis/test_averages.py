@@ -9,8 +9,8 @@ import pytest
 from analysis.made_beats import DEGREE, PERIOD, Events, balance_only, steady_swings
 from render.fake_runs import disc_run
 
-from watchsim.analysis.averages import averages, headline, last_window, mean_and_error, mean_over
-from watchsim.analysis.beats import beats
+from watchsim.analysis.timing.averages import averages, headline, last_window, mean_and_error, mean_over
+from watchsim.analysis.timing.beats import beats
 from watchsim.simulation.event_kinds import EventKind
 
 

@@ -22,7 +22,7 @@ from analysis.made_beats import (
 from reference.oscillator import Oscillator, motion
 from render.fake_runs import disc_run
 
-from watchsim.analysis.beats import beats
+from watchsim.analysis.timing.beats import beats
 from watchsim.simulation.event_kinds import EventKind
 
 

@@ -15,12 +15,12 @@ import numpy as np
 import pytest
 
 import watchsim as ws
-from watchsim.analysis.averages import mean_over
-from watchsim.analysis.beats import beats
-from watchsim.analysis.phases import phases
 from watchsim.analysis.summary import summary, summary_text, tables
-from watchsim.mechanism.load import load
+from watchsim.analysis.timing.averages import mean_over
+from watchsim.analysis.timing.beats import beats
+from watchsim.analysis.timing.phases import phases
 from watchsim.profiles_path import profiles_dir
+from watchsim.scene.file.load import load
 from watchsim.simulation.simulate import simulate
 
 NAMES = ["unlock", "catch-up", "impulse", "drop", "run to banking", "locked"]

@@ -8,7 +8,7 @@ import pytest
 from mpmath import mpf
 from reference.incline_closed_form import accumulation, first_impact, reference, rolling_begins, settled
 
-from watchsim.analysis.closed_forms import Incline, incline_state
+from watchsim.verification.closed_forms import Incline, incline_state
 
 FRICTIONS = ("0.3", "0.13", "0.10", "0.02", "0")
 TIMES = (

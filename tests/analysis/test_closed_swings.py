@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from reference import oscillator, pendulum
 
-from watchsim.analysis.closed_swings import Damped, Stopped, damped_state, stopped_state, touch_times, turning_time
+from watchsim.verification.closed_swings import Damped, Stopped, damped_state, stopped_state, touch_times, turning_time
 
 BALANCE = Damped(inertia=1.2e-9, stiffness=7.58e-7, viscous=6e-10, torque=2e-8, angle=4.7, rate=10.0)
 PENDULUM = Stopped(w=22.1, angle=1.3, restitution=0.7)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from watchsim.analysis.expectations import judge, unit_of
-from watchsim.mechanism.scene import Expectation
+from watchsim.scene.scene import Expectation
 
 NUMBERS = {
     "amplitude_deg": 290.7,

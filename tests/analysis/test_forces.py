@@ -10,8 +10,8 @@ import pytest
 
 import watchsim as ws
 from watchsim.mechanism.compile import compile_scene
-from watchsim.mechanism.load import load
 from watchsim.profiles_path import profiles_dir
+from watchsim.scene.file.load import load
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.simulate import simulate
 

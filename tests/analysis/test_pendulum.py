@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 from scipy.special import ellipk
 
-from watchsim.analysis.beats import DAY, beats
 from watchsim.analysis.summary import summary, summary_text
+from watchsim.analysis.timing.beats import DAY, beats
 from watchsim.cli import main
-from watchsim.commands.console import FINE
-from watchsim.mechanism.load import load
+from watchsim.commands.common.console import FINE
+from watchsim.scene.file.load import load
 from watchsim.simulation.simulate import simulate
 
 TEXT = """

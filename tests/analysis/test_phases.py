@@ -11,9 +11,9 @@ import pytest
 from analysis.made_beats import BANKED, CATCH, DEGREE, DROP, ENTRY, LOCK, OMEGA, UNLOCKED, lever_run, lever_scene
 from render.fake_runs import disc_run
 
-from watchsim.analysis.beat_tables import PHASE_COLUMNS, beats_csv, phases_csv
-from watchsim.analysis.beats import beats
-from watchsim.analysis.phases import phases
+from watchsim.analysis.timing.beat_tables import PHASE_COLUMNS, beats_csv, phases_csv
+from watchsim.analysis.timing.beats import beats
+from watchsim.analysis.timing.phases import phases
 
 NAMES = ("unlock", "catch-up", "impulse", "drop", "run to banking", "locked")
 PLACES = (ENTRY, UNLOCKED, CATCH, DROP, LOCK, BANKED)

@@ -10,10 +10,10 @@ import pytest
 from watchsim.analysis.promised import expectation_faults
 from watchsim.analysis.summary import summary
 from watchsim.cli import main
-from watchsim.commands.console import BAD_INPUT
-from watchsim.mechanism.load import load
-from watchsim.mechanism.scene import Expectation
+from watchsim.commands.common.console import BAD_INPUT
 from watchsim.profiles_path import profiles_dir
+from watchsim.scene.file.load import load
+from watchsim.scene.scene import Expectation
 from watchsim.simulation.simulate import simulate
 
 SCENE = profiles_dir() / "bench_lever" / "scene.toml"

@@ -12,10 +12,11 @@ import numpy as np
 import pytest
 from render.fake_runs import watch_run
 
-from watchsim.analysis import archive, results
-from watchsim.analysis.archive import read_trajectory, write_trajectory
-from watchsim.analysis.results import check_folder, read_results, write_results
-from watchsim.analysis.tables import json_text
+from watchsim.results import archive
+from watchsim.results import folder as results
+from watchsim.results.archive import read_trajectory, write_trajectory
+from watchsim.results.folder import check_folder, read_results, write_results
+from watchsim.results.tables import json_text
 
 SUMMARY = {"amplitude_deg": np.float64(270.5), "rate_s_per_d": math.nan, "impacts": np.int64(3), "stop": "DURATION"}
 
@@ -187,8 +188,8 @@ def test_json_is_strict():
 
 
 def test_results_of_a_scene_file_can_be_read_back(tmp_path):
-    lock = pytest.importorskip("watchsim.mechanism.lock")
-    load = pytest.importorskip("watchsim.mechanism.load")
+    lock = pytest.importorskip("watchsim.results.provenance")
+    load = pytest.importorskip("watchsim.scene.file.load")
     scene_file = tmp_path / "scene.toml"
     scene_file.write_text(
         '[scene]\ntitle = "T"\nschema = 1\n[bodies.a]\ncircle = "2 mm"\ninertia = "1 mg·cm²"\n'

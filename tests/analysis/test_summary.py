@@ -15,7 +15,7 @@ from watchsim.analysis.energy import energy_shares
 from watchsim.analysis.headlines import expected_text, with_scatter
 from watchsim.analysis.summary import summary, summary_text, tables
 from watchsim.mechanism.compile import scene_size
-from watchsim.mechanism.scene import Expectation
+from watchsim.scene.scene import Expectation
 from watchsim.simulation.methods import MOREAU
 from watchsim.simulation.stops import Stop
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 from analysis.made_beats import lever_scene, polygon, star
 
-from watchsim.analysis.teeth import pitch, tooth_count
+from watchsim.analysis.timing.teeth import pitch, tooth_count
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc
 

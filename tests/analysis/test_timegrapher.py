@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from analysis.made_beats import DEGREE, IMPULSE, LOCKING, OMEGA, PERIOD, PIN, balance_only, lever_run, steady_swings
 
-from watchsim.analysis.beats import beats
-from watchsim.analysis.timegrapher import amplitude_deg, intervals, timegrapher
+from watchsim.analysis.timing.beats import beats
+from watchsim.analysis.timing.timegrapher import amplitude_deg, intervals, timegrapher
 from watchsim.simulation.event_kinds import EventKind
 
 

@@ -8,14 +8,14 @@ from dataclasses import replace
 
 import pytest
 
-from watchsim.analysis.benchmarks import Check, inclines, swings
-from watchsim.analysis.compared import compared
-from watchsim.analysis.edge_cases import edge_cases
-from watchsim.analysis.hard_cases import hard_cases
-from watchsim.analysis.random_problems import random_rows
-from watchsim.analysis.repeated_impacts import repeated_impacts
-from watchsim.analysis.verify import rows_of, verify_text
 from watchsim.profiles_path import profiles_dir
+from watchsim.verification.all_checks import rows_of, verify_text
+from watchsim.verification.benchmarks import Check, inclines, swings
+from watchsim.verification.compared import compared
+from watchsim.verification.edge_cases import edge_cases
+from watchsim.verification.hard_cases import hard_cases
+from watchsim.verification.random_problems import random_rows
+from watchsim.verification.repeated_impacts import repeated_impacts
 
 FIELDS = ["name", "quantity", "expected", "got", "error", "tolerance", "ok", "source"]
 

@@ -11,13 +11,13 @@ import pytest
 from analysis.made_beats import DEGREE, lever_run, lever_scene
 from render.fake_runs import disc_run, watch_run
 
-from watchsim.analysis.beats import beats
-from watchsim.analysis.recorded import is_recorded
-from watchsim.analysis.standstill import standstill
 from watchsim.analysis.summary import summary, summary_text
-from watchsim.analysis.wheel import advance, missed_beats, progress
-from watchsim.commands.pictures import filmed, last_beats
-from watchsim.mechanism.roles import Roles, drive_direction, keeps_time, partners, roles
+from watchsim.analysis.timing.beats import beats
+from watchsim.analysis.timing.escape_wheel import advance, missed_beats, progress
+from watchsim.analysis.timing.rows_at_hand import is_recorded
+from watchsim.analysis.timing.standstill import standstill
+from watchsim.commands.common.run_pictures import filmed, last_beats
+from watchsim.scene.roles import Roles, drive_direction, keeps_time, partners, roles
 
 
 def test_roles_follow_from_springs_drives_and_contacts():

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from watchsim.analysis.woodpecker.cycle import find_cycle
-from watchsim.analysis.woodpecker.motion import moments, phase_of
-from watchsim.analysis.woodpecker.rows import woodpecker_rows
-from watchsim.analysis.woodpecker.toy import LOWER, UPPER, Toy, modal, start
 from watchsim.contact.index_sets import BACKWARD, OPEN
+from watchsim.verification.woodpecker.cycle import find_cycle
+from watchsim.verification.woodpecker.exact_motion import moments, phase_of
+from watchsim.verification.woodpecker.toy import LOWER, UPPER, Toy, modal, start
+from watchsim.verification.woodpecker.woodpecker_rows import woodpecker_rows
 
 STICKS = (10.496956, 30.073403, 49.633109)  # mm down the page: where the sleeve's lower edge sticks in the animation
 

@@ -6,12 +6,12 @@ import dataclasses
 import json
 
 from watchsim.bench.compare import compare, missing_engines
-from watchsim.bench.report import table
+from watchsim.bench.comparison_table import table
+from watchsim.bench.engines.world import is_installed
 from watchsim.bench.scenarios import scenarios
-from watchsim.bench.world import is_installed
 from watchsim.cli import main
 from watchsim.commands import bench
-from watchsim.commands.console import FINE
+from watchsim.commands.common.console import FINE
 
 KEYS = {"scene", "method", "setting", "wall_s_per_simulated_s", "error_rate_s_per_d", "error_amplitude_deg", "error_state"}
 

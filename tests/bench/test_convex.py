@@ -5,11 +5,11 @@ from itertools import pairwise
 
 import pytest
 
-from watchsim.bench.convex import Circle, convex_pieces
+from watchsim.bench.engines.convex import Circle, convex_pieces
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Line
-from watchsim.mechanism.load import load
 from watchsim.profiles_path import profiles_dir
+from watchsim.scene.file.load import load
 
 
 def area(points):

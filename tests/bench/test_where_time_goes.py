@@ -13,21 +13,22 @@ from clocked import clocked_loop
 from naive.lcp_oracle import solutions
 
 from watchsim.analysis.promised import COUNTS
-from watchsim.bench.again import problems_again
-from watchsim.bench.moments import SAMPLE, Kind, Walk
-from watchsim.bench.problems import problems_met, size_name
-from watchsim.bench.profile import WORDS, profile_of, profile_text
-from watchsim.contact.known import forget
-from watchsim.dynamics.lcp import lcp_work
+from watchsim.bench.profile.lcp_costs import problems_met, size_name
+from watchsim.bench.profile.moments import SAMPLE, Kind, Walk
+from watchsim.bench.profile.repeated_work import problems_again
+from watchsim.bench.profile.run_profile import WORDS, profile_of, profile_text
+from watchsim.candidates.pair_cache import forget
+from watchsim.dynamics.lcp.lemke_pivoting import lcp_work
 from watchsim.mechanism.compile import compile_scene
-from watchsim.mechanism.load import load
-from watchsim.mechanism.recording import Recording
-from watchsim.mechanism.scene import Scene
 from watchsim.profiles_path import profiles_dir
-from watchsim.simulation import advance, run
+from watchsim.scene.file.load import load
+from watchsim.scene.recording import Recording
+from watchsim.scene.scene import Scene
+from watchsim.simulation import advance
+from watchsim.simulation import runner as run
+from watchsim.simulation.record.trajectory import EVENT_DTYPE, Trajectory
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.trajectory import EVENT_DTYPE, Trajectory
 
 RUNS = [("incline", 3.0), ("bench_lever", 10.0), ("swiss_lever", 10.0)]
 SMOOTH = ("step", "flight")

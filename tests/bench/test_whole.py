@@ -8,8 +8,8 @@ import time
 import pytest
 
 from watchsim.bench.scenarios import scenarios
-from watchsim.bench.whole import whole
-from watchsim.contact import known
+from watchsim.bench.wall_clock import whole
+from watchsim.candidates import pair_cache
 from watchsim.simulation.methods import EVENT_DRIVEN, MOREAU
 
 
@@ -29,9 +29,9 @@ def test_the_first_run_knows_no_cell() -> None:
     settled = next(one for one in scenarios() if one.name == "bench_lever, settled")
     short = dataclasses.replace(settled, duration=0.05)
     whole(short, EVENT_DRIVEN, 1e-9)
-    after = {key: len(one) for key, one in known._store.items()}
+    after = {key: len(one) for key, one in pair_cache._store.items()}
     whole(dataclasses.replace(settled, duration=0.02), EVENT_DRIVEN, 1e-9)
-    assert sum(len(one) for one in known._store.values()) <= sum(after.values())
+    assert sum(len(one) for one in pair_cache._store.values()) <= sum(after.values())
 
 
 def test_a_scene_without_a_file_cannot_be_read() -> None:

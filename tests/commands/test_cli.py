@@ -11,8 +11,8 @@ import imageio.v3 as imageio
 import numpy as np
 import pytest
 
-from watchsim.analysis.results import read_results
 from watchsim.cli import COMMANDS, main
+from watchsim.results.folder import read_results
 
 ROOT = Path(__file__).resolve().parents[2]
 LEVER = ROOT / "profiles" / "bench_lever" / "scene.toml"
@@ -264,7 +264,7 @@ def test_a_picture_goes_nowhere_else(
 def test_an_interrupt_is_no_result(
     command: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from watchsim.simulation.run import Run
+    from watchsim.simulation.runner import Run
 
     def stopped(*_: object) -> None:
         raise KeyboardInterrupt

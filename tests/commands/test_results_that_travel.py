@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from watchsim.analysis.results import read_results
 from watchsim.cli import main
-from watchsim.commands.console import BAD_INPUT, FINE
-from watchsim.mechanism.load import load
-from watchsim.mechanism.travelling import kept_names, travelling
+from watchsim.commands.common.console import BAD_INPUT, FINE
 from watchsim.profiles_path import profiles_dir
+from watchsim.results.folder import read_results
+from watchsim.results.scene_copy import kept_names, travelling
+from watchsim.scene.file.load import load
 
 
 @pytest.fixture

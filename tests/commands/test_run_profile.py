@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from watchsim.cli import main
-from watchsim.commands.console import BAD_INPUT, FINE
+from watchsim.commands.common.console import BAD_INPUT, FINE
 
 SCENE = str(Path(__file__).resolve().parents[2] / "profiles" / "incline" / "scene.toml")
 WORDS = {"step": "steps of coupled bodies", "impact": "impacts", "lcp_to_4": "problems of 3 and 4 unknowns"}

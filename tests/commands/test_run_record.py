@@ -9,13 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from watchsim.analysis.results import read_results
 from watchsim.cli import main
-from watchsim.commands.console import BAD_INPUT, FINE
-from watchsim.commands.pictures import last_beats
-from watchsim.commands.record_size import bounded_record, record_size
-from watchsim.commands.scenes import load_scene
+from watchsim.commands.common.console import BAD_INPUT, FINE
+from watchsim.commands.common.inputs import load_scene
+from watchsim.commands.common.record_size import bounded_record, record_size
+from watchsim.commands.common.run_pictures import last_beats
 from watchsim.profiles_path import profiles_dir
+from watchsim.results.folder import read_results
 from watchsim.simulation.simulate import simulate
 
 SCENE = str(profiles_dir() / "bench_lever")

@@ -15,11 +15,11 @@ from watchsim.contact.poses import place, poses
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line, Point
 from watchsim.jit import callable_kernel
-from watchsim.mechanism.body import Body
 from watchsim.mechanism.compile import Compiled, compile_scene
-from watchsim.mechanism.force import Contact, Side
-from watchsim.mechanism.model import ARC, CORNER, LINE
-from watchsim.mechanism.scene import Scene
+from watchsim.model.records import ARC, CORNER, LINE
+from watchsim.scene.body import Body
+from watchsim.scene.force import Contact, Side
+from watchsim.scene.scene import Scene
 
 MOTIONS = ("pivot", "slide", "free", "fixed")
 DEGREES = {"pivot": 1, "slide": 1, "free": 3, "fixed": 0}

@@ -12,9 +12,8 @@ import pytest
 from pair_scenes import DEGREES, outline
 from true_contacts import touches
 
-from watchsim.contact.cells import CellFinder, PairCells
-from watchsim.contact.known import forget
-from watchsim.contact.lookup import (
+from watchsim.candidates import cell_grid
+from watchsim.candidates.cell_lookup import (
     ALL,
     LISTED,
     MARGIN,
@@ -26,13 +25,14 @@ from watchsim.contact.lookup import (
     find_slot,
     time_in_cell,
 )
+from watchsim.candidates.cell_table import CellFinder, PairCells
+from watchsim.candidates.pair_cache import forget
 from watchsim.jit import callable_kernel
-from watchsim.mechanism import choose_cells
-from watchsim.mechanism.body import Body
 from watchsim.mechanism.compile import Compiled, compile_scene
-from watchsim.mechanism.force import Contact, Side
-from watchsim.mechanism.model import Cells
-from watchsim.mechanism.scene import Scene
+from watchsim.model.records import Cells
+from watchsim.scene.body import Body
+from watchsim.scene.force import Contact, Side
+from watchsim.scene.scene import Scene
 
 _candidates, _candidate, _time_in_cell = (callable_kernel(kernel) for kernel in (candidates, candidate, time_in_cell))
 
@@ -50,7 +50,7 @@ CASES = {
 @pytest.fixture(autouse=True)
 def _cells_however_few(monkeypatch: pytest.MonkeyPatch) -> None:
     """Cells are chosen even where few contacts can be reached; nothing is known from other tests."""
-    monkeypatch.setattr(choose_cells, "FEW_CONTACTS", 0)
+    monkeypatch.setattr(cell_grid, "FEW_CONTACTS", 0)
     forget()
 
 

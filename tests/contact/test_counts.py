@@ -11,10 +11,10 @@ import shapely
 from shapely.affinity import rotate, translate
 
 import watchsim as ws
-from watchsim.contact.counts import modelled_pairs
 from watchsim.geometry.polyline import polyline
 from watchsim.mechanism.compile import compile_scene
-from watchsim.mechanism.pair_count import PairCount, pair_lines, pairs_entry
+from watchsim.mechanism.count_pairs import modelled_pairs
+from watchsim.mechanism.pair_table import PairCount, pair_lines, pairs_entry
 
 PROFILES = Path(__file__).resolve().parents[2] / "profiles"
 

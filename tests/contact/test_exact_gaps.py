@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from naive.exact_distance import Pair, exact_distance, exact_gap, mp, nasty_pairs
 
-from watchsim.contact.outlines import distance, gap, kinematics
+from watchsim.contact.distance import distance, gap, kinematics
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line
 

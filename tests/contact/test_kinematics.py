@@ -16,7 +16,7 @@ from watchsim.contact.gaps import normal_gap
 from watchsim.geometry.primitives import Arc, Edge
 from watchsim.jit import callable_kernel
 from watchsim.mechanism.compile import Compiled
-from watchsim.mechanism.model import ARC, CORNER, LINE
+from watchsim.model.records import ARC, CORNER, LINE
 
 PAIRS = [(a, b) for a, b in itertools.product(MOTIONS, MOTIONS) if (a, b) != ("fixed", "fixed")]
 STEP = 1e-3  # of a five-point quotient: its error is of order STEP^4

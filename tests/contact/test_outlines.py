@@ -10,7 +10,7 @@ from naive.distance_oracle import nearest
 from pair_scenes import outline
 
 import watchsim
-from watchsim.contact.outlines import distance, gap, kinematics
+from watchsim.contact.distance import distance, gap, kinematics
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line
 

@@ -10,15 +10,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from true_contacts import touches
 
-from watchsim.contact.cells import CellFinder
-from watchsim.contact.lookup import candidate, candidates
+from watchsim.candidates.cell_lookup import candidate, candidates
+from watchsim.candidates.cell_table import CellFinder
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line, moved
 from watchsim.jit import callable_kernel
-from watchsim.mechanism.body import Body
 from watchsim.mechanism.compile import Compiled, compile_scene
-from watchsim.mechanism.force import Contact, Side
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.body import Body
+from watchsim.scene.force import Contact, Side
+from watchsim.scene.scene import Scene
 
 _candidates, _candidate = callable_kernel(candidates), callable_kernel(candidate)
 

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from pair_scenes import body_pose
 
 from watchsim.mechanism.compile import Compiled
-from watchsim.mechanism.model import FULL, LINE
-from watchsim.mechanism.scene import Scene
+from watchsim.model.records import FULL, LINE
+from watchsim.scene.scene import Scene
 
 Array = NDArray[np.float64]
 STEPS = 40  # of the search for a pose that touches

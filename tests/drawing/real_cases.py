@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 
 from watchsim.drawing.content import Stroke
 from watchsim.drawing.drawing import Drawing
-from watchsim.drawing.inspect import inspect_report
+from watchsim.drawing.inspection import inspect_report
 from watchsim.drawing.read import read, read_content
 from watchsim.geometry.extent import extents
 from watchsim.geometry.loop import Loop

@@ -8,8 +8,8 @@ import pytest
 
 from watchsim.geometry.extent import extents
 from watchsim.geometry.loop import Loop
-from watchsim.geometry.mass import section
 from watchsim.geometry.primitives import Arc, Line
+from watchsim.geometry.solids.mass import section
 
 TINY = 1e-12
 

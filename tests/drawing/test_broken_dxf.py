@@ -9,7 +9,7 @@ import dxf_text as d
 import pytest
 
 from watchsim.drawing.drawing import Drawing
-from watchsim.drawing.inspect import inspect_report, inspect_text
+from watchsim.drawing.inspection import inspect_report, inspect_text
 from watchsim.drawing.read import LARGEST_FILE, read
 
 Reader = Callable[..., Drawing]

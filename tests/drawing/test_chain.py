@@ -12,13 +12,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from watchsim.drawing.chain import chain
+from watchsim.drawing.chaining.chain import chain
 from watchsim.drawing.content import Stroke
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.findings import Finding
 from watchsim.geometry.loop import Loop
-from watchsim.geometry.mass import area
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point
+from watchsim.geometry.solids.mass import area
 
 Reader = Callable[..., Drawing]
 SQUARE = [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0)]

@@ -11,9 +11,9 @@ import pytest
 from shapely import LineString, distance
 from shapely import points as shapely_points
 
-from watchsim.drawing.copies import Follower
+from watchsim.drawing.curves.plane_shapes import Spline
+from watchsim.drawing.curves.spline_copies import Follower
 from watchsim.drawing.drawing import Drawing
-from watchsim.drawing.shapes import Spline
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.polyline import polyline
 

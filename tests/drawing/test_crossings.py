@@ -9,10 +9,10 @@ from collections.abc import Callable
 import dxf_text as d
 import pytest
 
-from watchsim.drawing.crossings import crossings
+from watchsim.drawing.chaining.crossings import crossings
+from watchsim.drawing.chaining.outline_source import Outline
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.findings import Finding
-from watchsim.drawing.outline import Outline
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line, moved
 

@@ -8,8 +8,8 @@ from collections.abc import Callable
 import dxf_text as d
 import pytest
 
-from watchsim.drawing import nesting
-from watchsim.drawing.chain import chain
+from watchsim.drawing.chaining import nesting
+from watchsim.drawing.chaining.chain import chain
 from watchsim.drawing.content import Stroke
 from watchsim.drawing.drawing import Drawing
 from watchsim.geometry import near_edges

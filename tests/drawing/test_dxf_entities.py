@@ -13,8 +13,8 @@ from ezdxf.math import ConstructionEllipse
 from watchsim.drawing.drawing import Drawing
 from watchsim.geometry.extent import extents
 from watchsim.geometry.loop import Loop
-from watchsim.geometry.mass import area
 from watchsim.geometry.primitives import TURN, Arc, Line
+from watchsim.geometry.solids.mass import area
 
 Reader = Callable[..., Drawing]
 MM = 1e-3

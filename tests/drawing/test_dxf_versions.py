@@ -18,7 +18,7 @@ from ezdxf.document import Drawing as EzDrawing
 from scipy import constants as c
 
 from watchsim.drawing.drawing import Drawing
-from watchsim.drawing.dxf_units import INSUNITS
+from watchsim.drawing.length_units import INSUNITS
 from watchsim.drawing.read import read
 from watchsim.geometry.extent import extents, total_length
 

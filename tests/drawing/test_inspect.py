@@ -11,7 +11,7 @@ import pytest
 
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.findings import Finding
-from watchsim.drawing.inspect import finding_lines, inspect_report, inspect_text
+from watchsim.drawing.inspection import finding_lines, inspect_report, inspect_text
 
 Reader = Callable[..., Drawing]
 

@@ -7,7 +7,7 @@ import random
 
 import pytest
 
-from watchsim.drawing.nodes import Grid
+from watchsim.drawing.chaining.nodes import Grid
 
 
 @pytest.mark.parametrize("reach", [1e-9, 1e-6, 3e-6])

@@ -13,8 +13,8 @@ from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.read import read
 from watchsim.geometry.extent import extents
 from watchsim.geometry.loop import Loop
-from watchsim.geometry.mass import mass_properties
 from watchsim.geometry.primitives import Arc, Line
+from watchsim.geometry.solids.mass import mass_properties
 
 
 @pytest.fixture(scope="module")

@@ -17,8 +17,8 @@ from hypothesis import strategies as st
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.read import read
 from watchsim.geometry.loop import Loop
-from watchsim.geometry.mass import section
 from watchsim.geometry.primitives import Arc, Line
+from watchsim.geometry.solids.mass import section
 
 SAME = 1e-12
 

@@ -13,9 +13,9 @@ from scipy.interpolate import CubicSpline
 
 from watchsim.drawing.drawing import Drawing
 from watchsim.geometry.loop import Loop
-from watchsim.geometry.mass import area
 from watchsim.geometry.polyline import polyline
 from watchsim.geometry.primitives import TURN, Arc, Line
+from watchsim.geometry.solids.mass import area
 
 Reader = Callable[..., Drawing]
 

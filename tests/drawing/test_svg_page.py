@@ -8,7 +8,7 @@ import pytest
 import svg_text as s
 
 from watchsim.drawing.drawing import Drawing
-from watchsim.drawing.inspect import inspect_report
+from watchsim.drawing.inspection import inspect_report
 from watchsim.geometry.extent import extents
 from watchsim.geometry.primitives import Arc
 

@@ -11,11 +11,11 @@ from hypothesis import HealthCheck, given, settings
 from made_outlines import parts
 from same_outlines import compare, same_edge
 
+from watchsim.drawing.dxf.write_dxf import dxf_text
 from watchsim.drawing.read import read
-from watchsim.drawing.write_dxf import dxf_text
 from watchsim.geometry.loop import Loop
-from watchsim.geometry.mass import section
 from watchsim.geometry.primitives import TURN, Arc, Line
+from watchsim.geometry.solids.mass import section
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -15,10 +15,10 @@ from made_outlines import parts
 from same_outlines import compare, same_edge
 
 from watchsim.drawing.read import read
-from watchsim.drawing.write_svg import svg_text
+from watchsim.drawing.svg.write_svg import svg_text
 from watchsim.geometry.loop import Loop
-from watchsim.geometry.mass import section
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point
+from watchsim.geometry.solids.mass import section
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from naive import svg_curve

@@ -15,11 +15,11 @@ from watchsim.dynamics.delassus import contact_work
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Line
 from watchsim.jit import callable_kernel
-from watchsim.mechanism.body import Body
 from watchsim.mechanism.compile import Compiled, compile_scene
-from watchsim.mechanism.force import Contact, Side
-from watchsim.mechanism.model import LINE
-from watchsim.mechanism.scene import Scene
+from watchsim.model.records import LINE
+from watchsim.scene.body import Body
+from watchsim.scene.force import Contact, Side
+from watchsim.scene.scene import Scene
 
 R, M, KAPPA, G = 0.05, 2.0, 0.4, 9.81
 J = KAPPA * M * R * R

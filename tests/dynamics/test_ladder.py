@@ -9,7 +9,15 @@ from random_contacts import random_case
 
 from watchsim.dynamics.coulomb import add_element, fill_matrix, fill_rhs
 from watchsim.dynamics.delassus import ContactWork, contact_work
-from watchsim.dynamics.ladder import COPOSITIVE, FAILED, LEMKE, _detour, _solve_copositive, enumerate_modes, solve_contacts
+from watchsim.dynamics.solver_fallbacks import (
+    COPOSITIVE,
+    FAILED,
+    LEMKE,
+    _detour,
+    _solve_copositive,
+    enumerate_modes,
+    solve_contacts,
+)
 from watchsim.jit import callable_kernel
 
 _add, _fill, _load, _solve, _copositive, _other_paths, _enumerate = (

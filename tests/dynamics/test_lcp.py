@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from naive.lcp_oracle import residual, solutions
 
-from watchsim.dynamics.lcp import OK, RAY, enumerate_lcp, lcp_work, lemke, solve_lcp
+from watchsim.dynamics.lcp.lemke_pivoting import OK, RAY, enumerate_lcp, lcp_work, lemke, solve_lcp
 
 SIZE = 12
 WORK = lcp_work(SIZE)

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from scipy.interpolate import BSpline
 
-from watchsim.geometry.bspline import beziers
-from watchsim.geometry.bundle import Bundle
-from watchsim.geometry.curve import Curve
+from watchsim.geometry.fitting.bspline import beziers
+from watchsim.geometry.fitting.bundle import Bundle
+from watchsim.geometry.fitting.curve import Curve
 
 
 @pytest.mark.parametrize("degree", [1, 2, 3, 5, 11, 24])

@@ -10,8 +10,8 @@ import pytest
 
 from watchsim.drawing.read import read
 from watchsim.geometry.loop import Loop
-from watchsim.geometry.mass import section
 from watchsim.geometry.primitives import TURN, Arc, Line
+from watchsim.geometry.solids.mass import section
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts"))

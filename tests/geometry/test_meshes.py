@@ -11,11 +11,11 @@ import pytest
 import trimesh
 
 from watchsim.drawing.read import read
-from watchsim.geometry.export import Piece, Placed, glb, laid, plate, revolved, stl, turned_about
 from watchsim.geometry.loop import Loop
-from watchsim.geometry.mass import mass_properties
 from watchsim.geometry.primitives import TURN, Arc, Line
-from watchsim.geometry.revolution import turned
+from watchsim.geometry.solids.mass import mass_properties
+from watchsim.geometry.solids.meshes import Piece, Placed, glb, laid, plate, revolved, stl, turned_about
+from watchsim.geometry.solids.revolution import turned
 
 ROOT = Path(__file__).resolve().parents[2]
 PIN_LEVER = ROOT.parent / "shared" / "drawings" / "pin_lever" / "siconos_pin_lever_wheel.dxf"

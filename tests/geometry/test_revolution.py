@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import TURN, Arc, Line, Point
-from watchsim.geometry.revolution import Turned, turned
+from watchsim.geometry.solids.revolution import Turned, turned
 
 X_AXIS = ((0.0, 0.0), (1.0, 0.0))
 TINY = 1e-12

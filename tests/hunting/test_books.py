@@ -16,8 +16,8 @@ from hunt.material import Material
 from hunt.parts import GRAVITY, fixed, free, pivoted, sliding
 from hunt.shapes import box, circle
 
-from watchsim.mechanism.force import Contact, Side, Spring
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.force import Contact, Side, Spring
+from watchsim.scene.scene import Scene
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
 

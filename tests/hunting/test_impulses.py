@@ -12,8 +12,8 @@ from hunt.parts import fixed, free
 from hunt.shapes import box, circle
 
 from watchsim.geometry.primitives import Arc, Line
-from watchsim.mechanism.force import Contact, Side
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.force import Contact, Side
+from watchsim.scene.scene import Scene
 
 
 @pytest.mark.parametrize("angle", [0.0, 1.0, 2.5, 4.0])

@@ -16,8 +16,8 @@ from hunt.pool import answers
 from hunt.shapes import box, circle
 from hunt.views import views
 
-from watchsim.mechanism.force import Contact, Side
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.force import Contact, Side
+from watchsim.scene.scene import Scene
 from watchsim.simulation.simulate import simulate
 
 

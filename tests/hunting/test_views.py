@@ -13,7 +13,7 @@ from hunt.material import Material, apart, start_pose
 from hunt.views import View, perturbed
 from hunt.write import write_scene
 
-from watchsim.mechanism.load import load
+from watchsim.scene.file.load import load
 from watchsim.simulation.simulate import simulate
 
 VIEW = View(2.1, True, {"b0": 0.7, "b1": 3.0, "s0": 1.0, "a": 2.0, "p0": 1.1, "bar": 0.4})

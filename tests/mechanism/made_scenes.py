@@ -9,7 +9,7 @@ from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.findings import Finding
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Line
-from watchsim.mechanism import outlines
+from watchsim.scene.file.outlines import body_outlines
 
 GOOD = """\
 [scene]
@@ -109,7 +109,7 @@ class Desk:
         self.folder = folder
         self.drawings: dict[str, Drawing] = {}
         self.asked: list[tuple[str, str | None, float]] = []
-        monkeypatch.setattr(outlines, "cached_drawing", self._read)
+        monkeypatch.setattr(body_outlines, "cached_drawing", self._read)
         self.put(wheel_drawing())
 
     def _read(self, path, units, snap, _stamp):

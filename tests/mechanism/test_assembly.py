@@ -10,13 +10,13 @@ import pytest
 from made_scenes import circle, square
 
 from watchsim.cli import main
-from watchsim.commands.console import FINE
-from watchsim.drawing.write_dxf import dxf_text
+from watchsim.commands.common.console import FINE
+from watchsim.drawing.dxf.write_dxf import dxf_text
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc
-from watchsim.mechanism.errors import SceneError
-from watchsim.mechanism.load import load
-from watchsim.mechanism.lock import lock_text
+from watchsim.results.provenance import lock_text
+from watchsim.scene.errors import SceneError
+from watchsim.scene.file.load import load
 
 MM = 1e-3
 WHEEL, LEVER = (1.0 * MM, 2.0 * MM), (1.5 * MM, 9.0 * MM)

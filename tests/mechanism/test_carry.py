@@ -7,15 +7,15 @@ import math
 import numpy as np
 import pytest
 
-from watchsim.mechanism.body import Body
-from watchsim.mechanism.carry import at_start, is_still, rides, start_poses, weigh
-from watchsim.mechanism.check import check_report, check_text
 from watchsim.mechanism.compile import compile_scene
-from watchsim.mechanism.errors import SceneError
-from watchsim.mechanism.force import Damping, Spring
-from watchsim.mechanism.load import load
-from watchsim.mechanism.lock import lock_text
-from watchsim.mechanism.scene import Scene
+from watchsim.mechanism.static_check import check_report, check_text
+from watchsim.results.provenance import lock_text
+from watchsim.scene.body import Body
+from watchsim.scene.carriers import at_start, is_still, rides, start_poses, weigh
+from watchsim.scene.errors import SceneError
+from watchsim.scene.file.load import load
+from watchsim.scene.force import Damping, Spring
+from watchsim.scene.scene import Scene
 
 CARRIAGE = """
 [scene]

@@ -12,11 +12,11 @@ from simulation.moving_scenes import profile
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Line, moved
-from watchsim.mechanism.body import Body
 from watchsim.mechanism.compile import Compiled, compile_scene
-from watchsim.mechanism.force import Contact, Side
-from watchsim.mechanism.model import ARC, CORNER, LINE
-from watchsim.mechanism.scene import Scene
+from watchsim.model.records import ARC, CORNER, LINE
+from watchsim.scene.body import Body
+from watchsim.scene.force import Contact, Side
+from watchsim.scene.scene import Scene
 
 TWO_PIECES = (Piece(0.2e-3, 0.05e-3, 1.1e-3, 0.0, math.pi), Piece(0.2e-3, 0.05e-3, 1.1e-3, math.pi, 2.0 * math.pi))
 

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from watchsim.geometry.regions import region
-from watchsim.mechanism.levels import Slab, slabs
-from watchsim.mechanism.load import load
+from watchsim.geometry.solids.enclosed_area import region
+from watchsim.scene.file.load import load
+from watchsim.scene.layer_heights import Slab, slabs
 
 ROOT = Path(__file__).resolve().parents[2]
 HEAD = '[bodies.wheel]\ncircle = "3 mm"\ninertia = "1 mg·cm²"\n'

@@ -5,10 +5,10 @@ import math
 import pytest
 from made_scenes import drawing, square
 
-from watchsim.mechanism.force import Side
-from watchsim.mechanism.load import load
-from watchsim.mechanism.recording import Recording
-from watchsim.mechanism.scene import Expectation
+from watchsim.scene.file.load import load
+from watchsim.scene.force import Side
+from watchsim.scene.recording import Recording
+from watchsim.scene.scene import Expectation
 
 
 def test_all_values_arrive_in_si(desk):

@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from watchsim.mechanism.errors import SceneError
-from watchsim.mechanism.load import load, tomllib
-from watchsim.mechanism.lock import lock_text
-from watchsim.mechanism.toml import toml_text
+from watchsim.results.provenance import lock_text
+from watchsim.scene.errors import SceneError
+from watchsim.scene.file.keys.write_toml import toml_text
+from watchsim.scene.file.load import load, tomllib
 
 FREE = """
 [bodies.disc]

@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from watchsim.geometry.primitives import Arc, Line
-from watchsim.mechanism.errors import SceneError
-from watchsim.mechanism.load import load
 from watchsim.mechanism.overlap import overlaps
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.errors import SceneError
+from watchsim.scene.file.load import load
+from watchsim.scene.scene import Scene
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "drawing"))
 import dxf_text as d

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from watchsim.cli import main
-from watchsim.commands.console import BAD_INPUT, FINE
-from watchsim.mechanism.load import load
+from watchsim.commands.common.console import BAD_INPUT, FINE
 from watchsim.mechanism.notes import notes
+from watchsim.scene.file.load import load
 
 HEAD = '[scene]\nschema = 1\ngravity = ["0 m/s²", "-9.81 m/s²"]\n'
 FLAT = "[scene]\nschema = 1\n"

@@ -9,11 +9,11 @@ import pytest
 from scipy.optimize import brentq
 
 from watchsim.cli import main
-from watchsim.commands.console import FINE
-from watchsim.mechanism.errors import SceneError
-from watchsim.mechanism.load import load
-from watchsim.mechanism.oscillation import frequency, nominal_frequency, oscillators
-from watchsim.mechanism.roles import keeps_time, roles
+from watchsim.commands.common.console import FINE
+from watchsim.scene.errors import SceneError
+from watchsim.scene.file.load import load
+from watchsim.scene.oscillation import frequency, nominal_frequency, oscillators
+from watchsim.scene.roles import keeps_time, roles
 
 G = 9.81
 HEAD = f'[scene]\nschema = 1\ngravity = ["0 m/s²", "-{G} m/s²"]\n'

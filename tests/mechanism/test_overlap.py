@@ -6,11 +6,11 @@ import pytest
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Line
-from watchsim.mechanism.body import Body
-from watchsim.mechanism.force import Contact, Side
-from watchsim.mechanism.load import load
 from watchsim.mechanism.overlap import overlap_faults, overlaps
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.body import Body
+from watchsim.scene.file.load import load
+from watchsim.scene.force import Contact, Side
+from watchsim.scene.scene import Scene
 
 
 def circle(radius, x=0.0, y=0.0, hole=False):

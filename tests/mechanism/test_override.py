@@ -5,9 +5,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from watchsim.mechanism.errors import SceneError
-from watchsim.mechanism.load import load
-from watchsim.mechanism.override import assignments, changed
+from watchsim.scene.errors import SceneError
+from watchsim.scene.file.load import load
+from watchsim.scene.file.override import assignments, changed
 
 
 @pytest.fixture

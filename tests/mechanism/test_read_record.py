@@ -2,11 +2,11 @@
 
 import pytest
 
-from watchsim.mechanism.errors import Faults
-from watchsim.mechanism.read_record import read_record
-from watchsim.mechanism.recording import Recording, as_recording
-from watchsim.mechanism.schema import RUN
-from watchsim.mechanism.table import Table
+from watchsim.scene.errors import Faults
+from watchsim.scene.file.keys.key_values import Table
+from watchsim.scene.file.keys.schema import RUN
+from watchsim.scene.file.readers.read_record import read_record
+from watchsim.scene.recording import Recording, as_recording
 
 WINDOWS = ((179.0, 180.0), (1.0, 2.0))
 

@@ -4,9 +4,9 @@ import json
 
 import pytest
 
-from watchsim.mechanism.check import check_report, check_text
-from watchsim.mechanism.load import load
-from watchsim.mechanism.pair_count import PairCount
+from watchsim.mechanism.pair_table import PairCount
+from watchsim.mechanism.static_check import check_report, check_text
+from watchsim.scene.file.load import load
 
 PAIRS = (PairCount(("wheel", "lever"), 120, 17, 3, 5, 2),)
 

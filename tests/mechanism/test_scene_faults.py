@@ -6,8 +6,8 @@ from made_scenes import drawing, square
 from watchsim.drawing.findings import Finding
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Line
-from watchsim.mechanism.errors import SceneError
-from watchsim.mechanism.load import load
+from watchsim.scene.errors import SceneError
+from watchsim.scene.file.load import load
 
 POLYGON = 'polygon = [["-1 mm", "0 mm"], ["1 mm", "0 mm"], ["0 mm", "3 mm"]]'
 SOLID = '[[bodies.wheel.solids]]\nlayer = "TEETH"\nthickness = "0.12 mm"\ndensity = "7.85 g/cm³"\n'
@@ -249,12 +249,12 @@ def test_a_drawing_without_units_is_refused_whatever_the_layers(desk, good):
 
 
 def test_units_the_reader_does_not_know(desk, good, monkeypatch):
-    from watchsim.mechanism import outlines
+    from watchsim.scene.file.outlines import body_outlines
 
     def broken(*_):
         raise ValueError('"furlong" is not a unit known here')
 
-    monkeypatch.setattr(outlines, "cached_drawing", broken)
+    monkeypatch.setattr(body_outlines, "cached_drawing", broken)
     (fault,) = faults_of(desk, good.replace('pivot = "PIVOT"', 'pivot = "PIVOT"\nunits = "furlong"'))
     assert (fault.key, fault.message) == ("bodies.wheel.units", '"furlong" is not a unit known here')
 

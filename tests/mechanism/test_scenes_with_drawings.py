@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from watchsim.mechanism.errors import SceneError
-from watchsim.mechanism.load import load
-from watchsim.mechanism.lock import lock_text
 from watchsim.mechanism.overlap import overlaps
+from watchsim.results.provenance import lock_text
+from watchsim.scene.errors import SceneError
+from watchsim.scene.file.load import load
 
 ROOT = Path(__file__).resolve().parents[2]
 SHARED = ROOT.parent / "shared"

@@ -5,8 +5,8 @@ import math
 import pytest
 
 from watchsim.geometry.primitives import Arc
-from watchsim.mechanism.errors import SceneError
-from watchsim.mechanism.load import load
+from watchsim.scene.errors import SceneError
+from watchsim.scene.file.load import load
 
 ROLLER = """<svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"
  {page} viewBox="0 0 10 10">

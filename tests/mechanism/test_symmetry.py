@@ -7,11 +7,11 @@ import math
 import numpy as np
 import pytest
 
+from watchsim.candidates.symmetry import turn_symmetry
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line, moved
-from watchsim.mechanism.features import features
-from watchsim.mechanism.model import Records
-from watchsim.mechanism.symmetry import turn_symmetry
+from watchsim.mechanism.contact_features import features
+from watchsim.model.records import Records
 
 TOLERANCE = 1e-6
 

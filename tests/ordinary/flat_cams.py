@@ -11,9 +11,9 @@ from reference.flat_cam import Curve, FlatCam, end_state, point
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Line
-from watchsim.mechanism.body import Body
-from watchsim.mechanism.force import Contact, Side, Spring, Torque
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.body import Body
+from watchsim.scene.force import Contact, Side, Spring, Torque
+from watchsim.scene.scene import Scene
 from watchsim.simulation.simulate import simulate
 
 DURATION = 0.25  # s: about a turn

@@ -10,9 +10,9 @@ from reference.kinked_bar import Bar, Motion, motion
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Line
-from watchsim.mechanism.body import Body
-from watchsim.mechanism.force import Contact, Side, Torque
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.body import Body
+from watchsim.scene.force import Contact, Side, Torque
+from watchsim.scene.scene import Scene
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
 

@@ -16,9 +16,9 @@ from simulation.moving_scenes import box, circle, ground, polygon, profile, touc
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Line, Point
-from watchsim.mechanism.body import Body
-from watchsim.mechanism.force import Damping, Spring, Torque
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.body import Body
+from watchsim.scene.force import Damping, Spring, Torque
+from watchsim.scene.scene import Scene
 
 TOLERANCE = 1e-11
 G = (0.0, -9.81)

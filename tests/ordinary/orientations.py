@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.geometry.primitives import Point
-from watchsim.mechanism.body import Body
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.body import Body
+from watchsim.scene.scene import Scene
+from watchsim.simulation.record.trajectory import EventKind
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.trajectory import EventKind
 
 Numbers = NDArray[np.float64]
 

@@ -12,7 +12,7 @@ import pytest
 
 import watchsim as ws
 from watchsim.analysis.summary import summary_text
-from watchsim.simulation.trajectory import EventKind, Trajectory
+from watchsim.simulation.record.trajectory import EventKind, Trajectory
 
 HERE = Path(__file__).resolve().parent
 DRAWINGS = HERE.parents[2] / "shared" / "drawings" / "pin_lever"

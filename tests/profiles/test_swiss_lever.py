@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import watchsim as ws
-from watchsim.simulation.trajectory import EventKind, Trajectory
+from watchsim.simulation.record.trajectory import EventKind, Trajectory
 
 PITCH = 2.0 * np.pi / 15
 

@@ -8,10 +8,10 @@ import numpy as np
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Line, Point
-from watchsim.mechanism.body import Body
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.body import Body
+from watchsim.scene.scene import Scene
+from watchsim.simulation.record.trajectory import EVENT_DTYPE, EventKind, Pair, Trajectory
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.trajectory import EVENT_DTYPE, EventKind, Pair, Trajectory
 
 MM = 1e-3
 TURN = 2.0 * math.pi

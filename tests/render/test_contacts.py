@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from render.fake_runs import MM, circle, disc_run
 
-from watchsim.mechanism.body import Body
 from watchsim.mechanism.compile import compile_scene
-from watchsim.mechanism.force import Contact, Side
-from watchsim.mechanism.scene import Scene
-from watchsim.render.contacts import ContactMarks
-from watchsim.render.movie import frame
-from watchsim.render.poses import poses
-from watchsim.simulation.trajectory import EVENT_DTYPE, EventKind
+from watchsim.render.frame.pose_history import poses
+from watchsim.render.frame.touching_points import ContactMarks
+from watchsim.render.run_movie import frame
+from watchsim.scene.body import Body
+from watchsim.scene.force import Contact, Side
+from watchsim.scene.scene import Scene
+from watchsim.simulation.record.trajectory import EVENT_DTYPE, EventKind
 
 
 def with_contact(run, bodies, moments):

@@ -10,13 +10,13 @@ import pytest
 import trimesh
 
 from watchsim.cli import main
-from watchsim.drawing.write_dxf import dxf_text
+from watchsim.drawing.dxf.write_dxf import dxf_text
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import TURN, Arc, Line
-from watchsim.mechanism.levels import slabs
-from watchsim.mechanism.load import load
-from watchsim.mechanism.scene import Scene
-from watchsim.render.solids import placed_solids
+from watchsim.render.placed_solids import placed_solids
+from watchsim.scene.file.load import load
+from watchsim.scene.layer_heights import slabs
+from watchsim.scene.scene import Scene
 
 SCENE = """\
 [bodies.lever]

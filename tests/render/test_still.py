@@ -9,11 +9,11 @@ import numpy as np
 from matplotlib.colors import to_rgb
 
 import watchsim as ws
-from watchsim.contact.counts import modelled_pairs
 from watchsim.mechanism.compile import compile_scene
-from watchsim.mechanism.model import LINE
+from watchsim.mechanism.count_pairs import modelled_pairs
+from watchsim.model.records import LINE
 from watchsim.render import still as module
-from watchsim.render.stage import Stage, pose_matrix
+from watchsim.render.frame.stage import Stage, pose_matrix
 
 LEVER = Path(__file__).resolve().parents[2] / "profiles" / "bench_lever" / "scene.toml"
 

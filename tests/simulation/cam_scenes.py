@@ -9,9 +9,9 @@ from reference.cam import Drive, Piece, start
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc
-from watchsim.mechanism.body import Body
-from watchsim.mechanism.force import Contact, Side, Spring, Torque
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.body import Body
+from watchsim.scene.force import Contact, Side, Spring, Torque
+from watchsim.scene.scene import Scene
 
 DRIVE = Drive(inertia=2e-8, torque=1e-8, roller=0.4e-3, mass=1e-5, stiffness=2.0, rest=-2e-3)
 RATE = 25.0

@@ -9,11 +9,11 @@ from pathlib import Path
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line, Point
-from watchsim.mechanism.body import Body
-from watchsim.mechanism.force import Contact, Side
-from watchsim.mechanism.load import load
-from watchsim.mechanism.scene import Scene
-from watchsim.simulation.trajectory import EventKind, Trajectory
+from watchsim.scene.body import Body
+from watchsim.scene.file.load import load
+from watchsim.scene.force import Contact, Side
+from watchsim.scene.scene import Scene
+from watchsim.simulation.record.trajectory import EventKind, Trajectory
 
 PROFILES = Path(__file__).resolve().parents[2] / "profiles"
 

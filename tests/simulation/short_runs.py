@@ -14,15 +14,15 @@ from typing import Any
 import numpy as np
 from moving_scenes import profile
 
-from watchsim.analysis.benchmarks import Benchmark
-from watchsim.analysis.hard_cases import dry_balance, painleve_rods, pins_on_rollers, superball, wedges
-from watchsim.analysis.repeated_impacts import cradle, groove, pulled_block, rocking_block
-from watchsim.mechanism.force import Damping
-from watchsim.mechanism.recording import EVERYTHING
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.force import Damping
+from watchsim.scene.recording import EVERYTHING
+from watchsim.scene.scene import Scene
+from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.state import COUNT_NAMES
-from watchsim.simulation.trajectory import Trajectory
+from watchsim.verification.benchmarks import Benchmark
+from watchsim.verification.hard_cases import dry_balance, painleve_rods, pins_on_rollers, superball, wedges
+from watchsim.verification.repeated_impacts import cradle, groove, pulled_block, rocking_block
 
 Short = tuple[Scene, float, dict[str, Any]]  # the scene, how long, how
 WORK = ("steps", "rejected_steps", "evaluations", "gap_evaluations", "flights", "cells_looked_up")

@@ -7,9 +7,9 @@ import dataclasses
 import numpy as np
 import pytest
 
-from watchsim.mechanism.force import Damping
-from watchsim.mechanism.load import load
 from watchsim.profiles_path import profiles_dir
+from watchsim.scene.file.load import load
+from watchsim.scene.force import Damping
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
 

@@ -10,10 +10,10 @@ import shapely
 from moving_scenes import profile
 from naive.distance_oracle import chords
 
-from watchsim.mechanism.force import Side
+from watchsim.scene.force import Side
+from watchsim.simulation.record.trajectory import EventKind, Trajectory
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.trajectory import EventKind, Trajectory
 
 HALF_PITCH = math.pi / 15.0
 AMPLITUDE_DEG, PERIOD = 290.73, 0.25006568  # window 13 s to 15 s, an independent Moreau stepping to 5e-7 s

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from moving_scenes import profile
 
+from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.trajectory import Trajectory
 
 RATE = 25.0  # 1/s, of the balance, which swings through some radians: slower speeds are compared with it
 

@@ -14,12 +14,12 @@ from scipy.optimize import brentq, minimize_scalar
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Line
-from watchsim.mechanism.body import Body
-from watchsim.mechanism.force import Damping, Spring, Torque
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.body import Body
+from watchsim.scene.force import Damping, Spring, Torque
+from watchsim.scene.scene import Scene
+from watchsim.simulation.record.trajectory import EventKind, Trajectory
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.trajectory import EventKind, Trajectory
 
 CARRIAGE, MASS, ARM, DISC, STIFF = 3e-9, 2e-5, 4e-3, 1.2e-9, 7.58e-7
 JOINED = CARRIAGE + MASS * ARM**2

@@ -11,14 +11,14 @@ from moving_scenes import circle, ground, profile, tip, touching
 from mpmath import mp, mpf
 
 from watchsim.jit import callable_kernel
-from watchsim.mechanism.body import Body
 from watchsim.mechanism.compile import compile_scene
-from watchsim.mechanism.force import Contact, Damping, Side, Spring, Torque
-from watchsim.mechanism.scene import Scene
-from watchsim.simulation.free import turning_time
+from watchsim.scene.body import Body
+from watchsim.scene.force import Contact, Damping, Side, Spring, Torque
+from watchsim.scene.scene import Scene
+from watchsim.simulation.motion.free_motion import turning_time
+from watchsim.simulation.record.trajectory import EventKind
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.trajectory import EventKind
 
 _turning_time = callable_kernel(turning_time)
 

@@ -9,13 +9,13 @@ from reference import block, oscillator, pendulum, rolling
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import TURN, Arc, Line
-from watchsim.mechanism.body import Body
-from watchsim.mechanism.force import Contact, Damping, Side, Spring, Torque
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.body import Body
+from watchsim.scene.force import Contact, Damping, Side, Spring, Torque
+from watchsim.scene.scene import Scene
 from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.trajectory import Trajectory
 
 SLOPE = math.radians(20.0)
 GROUND = Body("ground", "fixed", loops=(Loop((Line(9.0, 0.0, -9.0, 0.0),), closed=False),))

@@ -11,7 +11,7 @@ import numpy as np
 
 SCRIPT = """
 from watchsim.dynamics import acceleration, impact
-from watchsim.dynamics.lcp import RAY
+from watchsim.dynamics.lcp.lemke_pivoting import RAY
 
 def unsolvable(work, m, elements):
     work.note[4] = RAY

@@ -11,11 +11,11 @@ from moving_scenes import circle, of_kind, tip, touching
 from reference import pendulum
 from scipy.integrate import solve_ivp
 
-from watchsim.mechanism.body import Body
-from watchsim.mechanism.force import Damping, Spring, Torque
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.body import Body
+from watchsim.scene.force import Damping, Spring, Torque
+from watchsim.scene.scene import Scene
+from watchsim.simulation.record.trajectory import EventKind
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.trajectory import EventKind
 
 J = 0.4
 ANGLES = ((-1.0, 0.5), (0.0, -1.0), (0.7, 2.0), (3.0, -2.5))

@@ -11,13 +11,13 @@ from reference import oscillator
 from reference.oscillator import Oscillator
 
 from watchsim.jit import callable_kernel
-from watchsim.mechanism.body import Body
 from watchsim.mechanism.compile import compile_scene
-from watchsim.mechanism.force import Damping, Spring, Torque
-from watchsim.mechanism.scene import Scene
-from watchsim.simulation.free import acceleration_bound, flow
+from watchsim.scene.body import Body
+from watchsim.scene.force import Damping, Spring, Torque
+from watchsim.scene.scene import Scene
+from watchsim.simulation.motion.free_motion import acceleration_bound, flow
+from watchsim.simulation.record.trajectory import EventKind
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.trajectory import EventKind
 
 _flow, _bound = callable_kernel(flow), callable_kernel(acceleration_bound)
 

@@ -14,11 +14,11 @@ from reference.valley import Path, force, height, incline, speed
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line
-from watchsim.mechanism.body import Body
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.body import Body
+from watchsim.scene.scene import Scene
+from watchsim.simulation.record.trajectory import EventKind, Trajectory
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.trajectory import EventKind, Trajectory
 
 OVAL = oval(0.6e-3, 1.5e-3, 0.4e-3)
 AWAY = 1e-6  # m: rows nearer to a joint than that may be from either side of it

@@ -11,12 +11,12 @@ from moving_scenes import box, circle, ground, on_slope, polygon, profile, touch
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Line
-from watchsim.mechanism.body import Body
-from watchsim.mechanism.recording import Recording
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.body import Body
+from watchsim.scene.recording import Recording
+from watchsim.scene.scene import Scene
+from watchsim.simulation.record.trajectory import EventKind, Trajectory
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.trajectory import EventKind, Trajectory
 
 NANO = (1e-9, 1e-10, 1e-11, 1e-12)
 

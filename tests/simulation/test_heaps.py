@@ -10,9 +10,9 @@ from moving_scenes import box, circle, ground
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Line
-from watchsim.mechanism.body import Body
-from watchsim.mechanism.force import Contact, Side
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.body import Body
+from watchsim.scene.force import Contact, Side
+from watchsim.scene.scene import Scene
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
 

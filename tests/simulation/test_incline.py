@@ -8,9 +8,9 @@ import pytest
 from moving_scenes import of_kind, profile
 from reference import incline_closed_form as closed_form
 
+from watchsim.simulation.record.trajectory import EventKind, Trajectory
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.trajectory import EventKind, Trajectory
 
 FILES = {"0.3": "scene.toml", "0.13": "scene_mu013.toml", "0.10": "scene_mu010.toml"}
 TIMES = ("0.1", "0.3", "0.5", "1", "2", "3")

@@ -14,16 +14,16 @@ from scipy.integrate import DOP853, solve_ivp
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Line
 from watchsim.jit import callable_kernel
-from watchsim.mechanism.body import Body
 from watchsim.mechanism.compile import compile_scene
-from watchsim.mechanism.force import Damping, Torque
-from watchsim.mechanism.recording import Recording
-from watchsim.mechanism.scene import Scene
-from watchsim.simulation import dop853
-from watchsim.simulation import run as running
-from watchsim.simulation.integrator import dense_value
+from watchsim.scene.body import Body
+from watchsim.scene.force import Damping, Torque
+from watchsim.scene.recording import Recording
+from watchsim.scene.scene import Scene
+from watchsim.simulation import runner as running
+from watchsim.simulation.motion import dop853
+from watchsim.simulation.motion.integrator import dense_value
 from watchsim.simulation.options import options_for
-from watchsim.simulation.run import Run, new_until
+from watchsim.simulation.runner import Run, new_until
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
 

@@ -10,11 +10,11 @@ import numpy as np
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Line
 from watchsim.jit import callable_kernel
-from watchsim.mechanism.body import Body
 from watchsim.mechanism.compile import Compiled, compile_scene
-from watchsim.mechanism.force import Contact, Side
-from watchsim.mechanism.scene import Scene
-from watchsim.simulation.islands import island_of, label_islands, sort_by_island
+from watchsim.scene.body import Body
+from watchsim.scene.force import Contact, Side
+from watchsim.scene.scene import Scene
+from watchsim.simulation.motion.contact_islands import island_of, label_islands, sort_by_island
 from watchsim.simulation.simulate import simulate
 
 _label, _sort = callable_kernel(label_islands), callable_kernel(sort_by_island)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from watchsim.mechanism.recording import Recording
+from watchsim.scene.recording import Recording
 from watchsim.simulation.event_kinds import EVENT_DTYPE
-from watchsim.simulation.kept import Kept
+from watchsim.simulation.record.row_selection import Kept
 
 TAIL = 1.95  # s
 

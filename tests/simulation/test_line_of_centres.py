@@ -9,12 +9,12 @@ import pytest
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Line
-from watchsim.mechanism.body import Body
-from watchsim.mechanism.force import Contact, Side, Torque
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.body import Body
+from watchsim.scene.force import Contact, Side, Torque
+from watchsim.scene.scene import Scene
+from watchsim.simulation.record.trajectory import EventKind
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.trajectory import EventKind
 
 MM = 1e-3
 

@@ -11,13 +11,13 @@ from moving_scenes import box, ground, on_slope, profile, touching
 from reference import incline_closed_form as closed_form
 
 from watchsim.jit import callable_kernel
-from watchsim.mechanism.body import Body
-from watchsim.mechanism.scene import Scene
-from watchsim.simulation.moreau_laws import laws
-from watchsim.simulation.moreau_prox import relax
+from watchsim.scene.body import Body
+from watchsim.scene.scene import Scene
+from watchsim.simulation.moreau.percussion_laws import laws
+from watchsim.simulation.moreau.prox_relaxation import relax
+from watchsim.simulation.record.trajectory import EventKind, Trajectory
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.trajectory import EventKind, Trajectory
 
 FILES = {"0.3": "scene.toml", "0.13": "scene_mu013.toml", "0.10": "scene_mu010.toml"}
 _relax = callable_kernel(relax)

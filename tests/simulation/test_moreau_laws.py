@@ -12,12 +12,12 @@ from test_dry_bearings import driven, rotor
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Line
-from watchsim.mechanism.body import Body
-from watchsim.mechanism.force import Contact, Damping, Side
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.body import Body
+from watchsim.scene.force import Contact, Damping, Side
+from watchsim.scene.scene import Scene
+from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.trajectory import Trajectory
 
 
 def stepped(scene: Scene, duration: float, step: float) -> Trajectory:

@@ -12,15 +12,15 @@ import numpy as np
 import pytest
 import shapely
 
+from watchsim.candidates import cell_grid
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.polyline import polyline
 from watchsim.geometry.primitives import Arc, Line
-from watchsim.mechanism import choose_cells
-from watchsim.mechanism.body import Body
-from watchsim.mechanism.force import Contact, Side
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.body import Body
+from watchsim.scene.force import Contact, Side
+from watchsim.scene.scene import Scene
+from watchsim.simulation.record.trajectory import EventKind
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.trajectory import EventKind
 
 DURATION, FINER = 1.0, 1000
 CELLED = (
@@ -121,7 +121,7 @@ def test_the_first_touch_is_the_one_that_brute_force_sees(motions: tuple[str, st
 @pytest.mark.parametrize("motions", CELLED)
 def test_cells_change_no_bit_of_random_collisions(motions: tuple[str, str], monkeypatch: pytest.MonkeyPatch) -> None:
     """Cells are used however few contacts there are; without them every pair is looked at in every step."""
-    monkeypatch.setattr(choose_cells, "FEW_CONTACTS", 0)
+    monkeypatch.setattr(cell_grid, "FEW_CONTACTS", 0)
     rng = np.random.default_rng(sum(map(ord, "".join(motions))) + 1)
     events = compared = 0
     while compared < 8 or events < 20:

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from reference import pendulum
 
-from watchsim.mechanism.load import load
+from watchsim.scene.file.load import load
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
 

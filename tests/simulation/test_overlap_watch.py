@@ -14,19 +14,19 @@ import pytest
 import short_runs
 from moving_scenes import box, circle, profile
 
-from watchsim.analysis.results import read_results, write_results
 from watchsim.analysis.summary import summary, summary_text
 from watchsim.commands import run as command
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Line
-from watchsim.mechanism.body import Body
-from watchsim.mechanism.force import Contact, Side
-from watchsim.mechanism.recording import Recording
-from watchsim.mechanism.scene import Scene
-from watchsim.simulation import overlap_pairs
-from watchsim.simulation.overlap_pairs import PairOfLayers
-from watchsim.simulation.overlap_watch import BLOCK, EARLY, chosen_moves
-from watchsim.simulation.run import Run
+from watchsim.results.folder import read_results, write_results
+from watchsim.scene.body import Body
+from watchsim.scene.force import Contact, Side
+from watchsim.scene.recording import Recording
+from watchsim.scene.scene import Scene
+from watchsim.simulation.record import overlap_instants
+from watchsim.simulation.record.overlap_instants import PairOfLayers
+from watchsim.simulation.record.overlap_watch import BLOCK, EARLY, chosen_moves
+from watchsim.simulation.runner import Run
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
 
@@ -107,7 +107,7 @@ def test_fixed_steps_report_what_they_overlap_and_fail_by_more() -> None:
 
 def test_being_watched_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     watched = simulate(profile("bench_lever"), 0.3)
-    monkeypatch.setattr("watchsim.simulation.overlap_watch.OverlapWatch.see", lambda *_: None)
+    monkeypatch.setattr("watchsim.simulation.record.overlap_watch.OverlapWatch.see", lambda *_: None)
     alone = simulate(profile("bench_lever"), 0.3)
     assert np.array_equal(watched.q, alone.q) and np.array_equal(watched.u, alone.u)
 
@@ -127,7 +127,7 @@ def test_what_was_found_is_carried_on_written_and_said(tmp_path, capsys: pytest.
 
 
 def test_results_without_it_can_still_be_read(tmp_path) -> None:
-    from watchsim.mechanism.lock import lock_text
+    from watchsim.results.provenance import lock_text
 
     done = dataclasses.replace(simulate(profile("incline"), 0.1), overlap={})
     write_results(done, tmp_path / "run", {}, lock_text(done.scene, (tmp_path / "run").absolute()))
@@ -138,7 +138,7 @@ def pair(first: tuple[Loop, ...], second: tuple[Loop, ...], depth: float = 1e-6)
     return PairOfLayers(0, (Side("a"), Side("b")), (first, second), depth, depth / 8)
 
 
-def at(*poses: tuple[float, float, float]) -> overlap_pairs.Poses:
+def at(*poses: tuple[float, float, float]) -> overlap_instants.Poses:
     x, y, angle = np.array(poses).T
     return x + 1j * y, np.exp(1j * angle)
 

@@ -11,7 +11,7 @@ import pytest
 from moving_scenes import profile
 
 from watchsim.mechanism.compile import Compiled, compile_scene
-from watchsim.simulation.pairs import Pair, Pairs, as_pairs, pairs_of
+from watchsim.simulation.record.contact_names import Pair, Pairs, as_pairs, pairs_of
 
 WORDS = ("corner", "line", "arc")
 

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from watchsim.simulation import path
-from watchsim.simulation.integrator import dense_value
+from watchsim.simulation.motion import step_path
+from watchsim.simulation.motion.integrator import dense_value
 
 NUMBERS = st.lists(st.floats(-1.0, 1.0), min_size=8, max_size=8)
 
@@ -38,14 +38,14 @@ def _coefficients(numbers: list[float]) -> np.polynomial.Polynomial:
 @given(NUMBERS, st.floats(1e-6, 1e3))
 def test_the_bound_holds_everywhere_in_the_step(numbers: list[float], length: float) -> None:
     step = _step(numbers, length)
-    _plain(path.bound_accelerations)(step, 1)
+    _plain(step_path.bound_accelerations)(step, 1)
     bend = np.abs(_coefficients(numbers).deriv(2)(np.linspace(0.0, 1.0, 2001))) / length**2
     assert bend.max() <= step.bound[0] * (1.0 + 1e-9) + 1e-12 / length**2
 
 
 @given(NUMBERS, st.floats(0.0, 1.0))
 def test_value_and_slope_are_the_polynomials(numbers: list[float], share: float) -> None:
-    value, slope = _plain(path._polynomial)(_step(numbers, 2.0), 0, 2.0 * share)
+    value, slope = _plain(step_path._polynomial)(_step(numbers, 2.0), 0, 2.0 * share)
     expected = _coefficients(numbers)
     assert value == pytest.approx(expected(share), abs=1e-13)
     assert value == pytest.approx(_plain(dense_value)(_step(numbers, 2.0), 0, 2.0 * share), abs=1e-14)
@@ -55,5 +55,5 @@ def test_value_and_slope_are_the_polynomials(numbers: list[float], share: float)
 def test_the_bound_is_not_crude_for_a_smooth_path() -> None:
     """For a parabola it is exact."""
     step = _step([0.0, 1.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0], 0.1)
-    _plain(path.bound_accelerations)(step, 1)
+    _plain(step_path.bound_accelerations)(step, 1)
     assert step.bound[0] == pytest.approx(1.0 / 0.01, rel=1e-12)

@@ -15,13 +15,14 @@ import pytest
 import short_runs
 from moving_scenes import profile
 
-from watchsim.analysis.state_file import read_state, write_state
-from watchsim.contact import cells, known
-from watchsim.mechanism.recording import Recording
-from watchsim.mechanism.scene import Scene
+from watchsim.candidates import cell_table
+from watchsim.candidates import pair_cache as known
+from watchsim.results.state_file import read_state, write_state
+from watchsim.scene.recording import Recording
+from watchsim.scene.scene import Scene
+from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.trajectory import Trajectory
 
 
 def assert_same(one: Trajectory, other: Trajectory) -> None:
@@ -83,8 +84,8 @@ def test_however_slices_end(method: dict[str, Any], monkeypatch: pytest.MonkeyPa
     """After each step, after seven, or after as many as take a tenth of a second: the same bits."""
     whole = simulate(profile("bench_lever"), 0.3, **method)
     for steps in (1.0, 7.0):
-        monkeypatch.setattr("watchsim.simulation.run.FEWEST_STEPS", steps)
-        monkeypatch.setattr("watchsim.simulation.run.MOST_STEPS", steps)
+        monkeypatch.setattr("watchsim.simulation.runner.FEWEST_STEPS", steps)
+        monkeypatch.setattr("watchsim.simulation.runner.MOST_STEPS", steps)
         assert_same(simulate(profile("bench_lever"), 0.3, **method), whole)
 
 
@@ -164,7 +165,7 @@ def test_the_order_in_which_cells_are_learned_does_not_matter(monkeypatch: pytes
     known._store.clear()
     plain = simulate(scene, 0.3)
     known._store.clear()
-    monkeypatch.setattr(cells, "AROUND", {1: 0, 2: 0, 3: 0})
+    monkeypatch.setattr(cell_table, "AROUND", {1: 0, 2: 0, 3: 0})
     other = simulate(scene, 0.3)
     assert 0 < other.counts["cells_asked"] < plain.counts["cells_asked"]
     assert_same(plain, other)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from watchsim.bench.growth import side_by_side
-from watchsim.mechanism.load import load
 from watchsim.profiles_path import profiles_dir
+from watchsim.scene.file.load import load
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
 

@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 from moving_scenes import box, circle, ground, mirrored, of_kind, profile, touching, turned
 
-from watchsim.contact.known import forget
-from watchsim.mechanism.body import Body
-from watchsim.mechanism.force import Spring, Torque
-from watchsim.mechanism.recording import Recording
-from watchsim.mechanism.scene import Scene
-from watchsim.simulation import run as simulating
+from watchsim.candidates.pair_cache import forget
+from watchsim.scene.body import Body
+from watchsim.scene.force import Spring, Torque
+from watchsim.scene.recording import Recording
+from watchsim.scene.scene import Scene
+from watchsim.simulation import runner as simulating
+from watchsim.simulation.record.trajectory import EventKind, Trajectory
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.trajectory import EventKind, Trajectory
 
 NAMES = ("kind", "contact", "body")
 # s: a contact without gap or speed that begins to close is noticed after sqrt(2 gap_zero / acceleration).

@@ -11,12 +11,12 @@ from reference import rolling
 from reference.block import block, stops_at
 from reference.rolling import Disc
 
-from watchsim.mechanism.body import Body
-from watchsim.mechanism.force import Damping, Spring, Torque
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.body import Body
+from watchsim.scene.force import Damping, Spring, Torque
+from watchsim.scene.scene import Scene
+from watchsim.simulation.record.trajectory import EventKind
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.trajectory import EventKind
 
 SIDE = 0.1
 

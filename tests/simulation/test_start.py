@@ -13,12 +13,12 @@ from moving_scenes import box, circle, profile
 from watchsim.cli import main
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Line
-from watchsim.mechanism.body import Body
-from watchsim.mechanism.errors import SceneError
-from watchsim.mechanism.force import Contact, Side, Torque
-from watchsim.mechanism.load import load
 from watchsim.mechanism.overlap import ROUNDING, overlaps
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.body import Body
+from watchsim.scene.errors import SceneError
+from watchsim.scene.file.load import load
+from watchsim.scene.force import Contact, Side, Torque
+from watchsim.scene.scene import Scene
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
 

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from moving_scenes import profile
 
-from watchsim.analysis.beats import beats
 from watchsim.analysis.summary import summary
-from watchsim.mechanism.recording import EVERYTHING, Recording
-from watchsim.simulation import run as running
-from watchsim.simulation.run import ROWS
+from watchsim.analysis.timing.beats import beats
+from watchsim.scene.recording import EVERYTHING, Recording
+from watchsim.simulation import runner as running
+from watchsim.simulation.record.tally import Tally
+from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.simulation.runner import ROWS
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.tally import Tally
-from watchsim.simulation.trajectory import Trajectory
 
 DURATION = 6.0
 CLOCKS = ("wall_s", "compile_s", "realtime_factor")

@@ -13,12 +13,12 @@ from scipy.optimize import minimize_scalar
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Line
-from watchsim.mechanism.body import Body
-from watchsim.mechanism.force import Damping, Spring
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.body import Body
+from watchsim.scene.force import Damping, Spring
+from watchsim.scene.scene import Scene
+from watchsim.simulation.record.trajectory import EventKind
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.trajectory import EventKind
 
 NANOMETRE = 1e-9
 QUADRATIC = 1e-16  # too weak to matter, but enough to take the exact flights away
@@ -209,7 +209,7 @@ def test_many_balls_in_a_row_on_the_ground() -> None:
 
 LONG_FLIGHT = """
 from moving_scenes import profile
-from watchsim.mechanism import choose_cells
+from watchsim.candidates import cell_grid
 from watchsim.simulation.simulate import simulate
 choose_cells.FEW_CONTACTS = 10**9
 print(simulate(profile("bench_lever"), 0.05).stop.name)

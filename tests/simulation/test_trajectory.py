@@ -7,10 +7,10 @@ import math
 import numpy as np
 import pytest
 
-from watchsim.mechanism.body import Body
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.body import Body
+from watchsim.scene.scene import Scene
+from watchsim.simulation.record.trajectory import EVENT_DTYPE, Trajectory
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.trajectory import EVENT_DTYPE, Trajectory
 
 BODIES = (
     Body("rotor", "pivot", (1.0, 2.0)),

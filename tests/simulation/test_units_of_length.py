@@ -10,11 +10,11 @@ from moving_scenes import profile
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Edge
-from watchsim.mechanism.body import Body
-from watchsim.mechanism.force import Damping
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.body import Body
+from watchsim.scene.force import Damping
+from watchsim.scene.scene import Scene
+from watchsim.simulation.record.trajectory import EventKind
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.trajectory import EventKind
 
 
 def _edge(edge: Edge, k: float) -> Edge:

@@ -14,18 +14,18 @@ from moving_scenes import box, circle, ground, profile, touching
 
 from watchsim import jit
 from watchsim.jit import callable_kernel
-from watchsim.mechanism.body import Body
 from watchsim.mechanism.compile import compile_scene
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.body import Body
+from watchsim.scene.scene import Scene
 from watchsim.simulation.advance import BEARING, KINDS, TOUCHED
-from watchsim.simulation.books import ledger_fails, what_alternates
-from watchsim.simulation.bracket import LOOK_EVERY, MOST, is_slow, next_time
-from watchsim.simulation.coupled import NORMAL
-from watchsim.simulation.explained import is_explained
-from watchsim.simulation.once import FIRMER, begin_instant, decide_once, forget_decisions
-from watchsim.simulation.once import MOST as MOST_LENIENT
+from watchsim.simulation.energy_ledger import ledger_fails, what_alternates
+from watchsim.simulation.events.impulse_check import is_explained
+from watchsim.simulation.events.mode_recurrence import FIRMER, begin_instant, decide_once, forget_decisions
+from watchsim.simulation.events.mode_recurrence import MOST as MOST_LENIENT
+from watchsim.simulation.motion.coupled_motion import NORMAL
+from watchsim.simulation.motion.root_bracket import LOOK_EVERY, MOST, is_slow, next_time
 from watchsim.simulation.options import options_for
-from watchsim.simulation.run import pairs_of
+from watchsim.simulation.runner import pairs_of
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.state import RECENT, new_state
 from watchsim.simulation.stops import Stop
@@ -34,7 +34,7 @@ ROOT = Path(jit.__file__).resolve().parents[1]
 SABOTAGE = """
 import sys
 import watchsim.simulation.advance as advance
-import watchsim.simulation.settle as settle
+import watchsim.simulation.events.after_event as settle
 from moving_scenes import profile
 from watchsim.simulation.simulate import simulate
 

@@ -1,1 +1,5 @@
-"""From a trajectory to numbers: beats, rates, energy, phases."""
+"""From a trajectory to numbers: energy, forces, expectations, and the summary of them all.
+
+In: a `Trajectory`. Out: plain numbers in SI with names; `summary` gathers them. Imports `results` for the tables, and
+`simulation` and all below for the records; never a picture.
+"""

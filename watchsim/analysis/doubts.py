@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from watchsim.mechanism.compile import scene_size
 from watchsim.simulation.methods import MOREAU
-from watchsim.simulation.trajectory import Trajectory
+from watchsim.simulation.record.trajectory import Trajectory
 
 UNSOLVED = 1e-6  # share of a contact problem's largest term: what rounding leaves lies far below
 COARSE = 5e-3  # overlap as a share of the mechanism's size, beyond which a step has lost the shapes that touch

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from watchsim.mechanism.roles import keeps_time, roles
-from watchsim.simulation.frames import frames
-from watchsim.simulation.trajectory import Trajectory
+from watchsim.scene.roles import keeps_time, roles
+from watchsim.simulation.record.body_frames import frames
+from watchsim.simulation.record.trajectory import Trajectory
 
 
 def efficiency(run: Trajectory) -> float | None:

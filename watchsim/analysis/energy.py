@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from watchsim.simulation.trajectory import Trajectory
+from watchsim.simulation.record.trajectory import Trajectory
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,10 +11,10 @@ from collections.abc import Mapping
 from typing import Any
 
 from watchsim.simulation.methods import MOREAU
-from watchsim.simulation.run import Progress
+from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.simulation.runner import Progress
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.trajectory import Trajectory
 
 TIGHTER, TIGHTEST = 0.01, 1e-13
 NUMBERS = ("amplitude_deg", "period_s", "rate_s_per_d", "beat_error_ms")

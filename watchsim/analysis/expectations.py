@@ -11,8 +11,8 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from watchsim.mechanism.scene import Expectation
-from watchsim.mechanism.schema import ALIKE
+from watchsim.scene.file.keys.schema import ALIKE
+from watchsim.scene.scene import Expectation
 from watchsim.units import known_unit
 
 WATCH_KEYS = {

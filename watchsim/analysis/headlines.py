@@ -9,9 +9,9 @@ from typing import Any
 
 from watchsim.analysis.doubts import UNSOLVED
 from watchsim.analysis.energy import energy_shares
-from watchsim.mechanism.roles import keeps_time
+from watchsim.scene.roles import keeps_time
 from watchsim.simulation.methods import MOREAU
-from watchsim.simulation.trajectory import Trajectory
+from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.units import metric
 
 LABEL = 13

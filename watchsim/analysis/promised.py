@@ -10,13 +10,13 @@ import numpy as np
 from watchsim.analysis.expectations import WATCH_KEYS, mistakes
 from watchsim.analysis.summary import summary
 from watchsim.mechanism.compile import compile_scene
-from watchsim.mechanism.errors import Fault, Faults
-from watchsim.mechanism.locate import key_lines
-from watchsim.mechanism.roles import keeps_time, partners, roles
-from watchsim.mechanism.scene import Expectation, Scene
+from watchsim.scene.errors import Fault, Faults
+from watchsim.scene.file.keys.locate import key_lines
+from watchsim.scene.roles import keeps_time, partners, roles
+from watchsim.scene.scene import Expectation, Scene
+from watchsim.simulation.record.trajectory import EVENT_DTYPE, Trajectory
 from watchsim.simulation.state import COUNT_NAMES
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.trajectory import EVENT_DTYPE, Trajectory
 
 COUNTS = (*COUNT_NAMES, "cells", "cells_asked", "declared_pairs", "sweeps")
 LOOKED = ("worst_m", "resolution_m", "allowed_m", "looks", "t_s", "x_mm", "y_mm")

@@ -12,25 +12,25 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.analysis.averages import Averages, averages, last_window
-from watchsim.analysis.beat_tables import beats_csv, phases_csv
-from watchsim.analysis.beats import Beats, beats
 from watchsim.analysis.doubts import doubts
 from watchsim.analysis.efficiency import efficiency
 from watchsim.analysis.expectations import judged
 from watchsim.analysis.headlines import headlines
-from watchsim.analysis.no_timing import why_no_timing
-from watchsim.analysis.standstill import standstill
-from watchsim.analysis.tables import plain
-from watchsim.analysis.timegrapher import timegrapher
-from watchsim.analysis.wheel import missed_beats
-from watchsim.analysis.whole_run import whole_run
-from watchsim.mechanism.lock import versions
+from watchsim.analysis.timing.averages import Averages, averages, last_window
+from watchsim.analysis.timing.beat_tables import beats_csv, phases_csv
+from watchsim.analysis.timing.beats import Beats, beats
+from watchsim.analysis.timing.escape_wheel import missed_beats
+from watchsim.analysis.timing.no_timing import why_no_timing
+from watchsim.analysis.timing.standstill import standstill
+from watchsim.analysis.timing.timegrapher import timegrapher
+from watchsim.analysis.timing.whole_run import whole_run
 from watchsim.mechanism.notes import notes
-from watchsim.mechanism.roles import keeps_time, roles, swings
+from watchsim.results.provenance import versions
+from watchsim.results.tables import plain
+from watchsim.scene.roles import keeps_time, roles, swings
 from watchsim.simulation.event_kinds import EventKind
-from watchsim.simulation.frames import frames, speeds
-from watchsim.simulation.trajectory import Trajectory
+from watchsim.simulation.record.body_frames import frames, speeds
+from watchsim.simulation.record.trajectory import Trajectory
 
 AVERAGED = ("amplitude_deg", "period_s", "rate_s_per_d", "beat_error_ms")
 LEDGER = {"in_J": 0.0, "dissipated": {}, "stored_J": 0.0, "residual_J": 0.0, "residual_relative": 0.0}
@@ -43,9 +43,9 @@ def summary(run: Trajectory) -> dict[str, Any]:
     single contacts are the smallest possible ones.
 
     Besides the promised names: `frequency_hz`, `vph`, `window_s` (over which was averaged), `beats` (half swings in all),
-    `whole_run` (mean, spread and extremes over all of them, see analysis/whole_run.py), `kept` (all, events or statistics),
+    `whole_run` (mean, spread and extremes of them all, see analysis/timing/whole_run.py), `kept` (all, events or statistics),
     `missed_beats`, `stopped` and `stopped_message` (the watch no longer ticks), `scene_file`, `stop_message`,
-    `events_by_kind`, `counts`, `overlap` (what looking at the outlines themselves found, see simulation/overlap_watch.py),
+    `events_by_kind`, `counts`, `overlap` (what looking at the outlines found, see simulation/record/overlap_watch.py),
     `step_s` (of a method with fixed steps), `worst_complementarity_residual` (worst violation of a complementarity condition,
     as a share of the problem's largest term), `warnings` (sentences, see analysis/doubts.py), `notes` (what the scene leaves
     unsaid or says without effect, see mechanism/notes.py), `timing_message` (why there is no amplitude or rate), `efficiency`

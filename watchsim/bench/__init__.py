@@ -1,1 +1,5 @@
-"""Speed against error: this solver, its twin and other engines on the same scenes."""
+"""Speed against error: this solver, its twin and other engines on the same scenes.
+
+In: scenarios. Out: error and time for each setting of each engine, in tables. `compare` is the door. Imports `verification`,
+`analysis` and all below.
+"""

@@ -6,11 +6,11 @@ import statistics
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from watchsim.analysis.closed_forms import incline_state
+from watchsim.bench.engines.world import is_installed, version_of
 from watchsim.bench.outcomes import Outcome, cpu_seconds, outcome
 from watchsim.bench.scenarios import ENGINES, REFERENCE_TOLERANCE, Scenario
-from watchsim.bench.world import is_installed, version_of
 from watchsim.simulation.methods import EVENT_DRIVEN, MOREAU
+from watchsim.verification.closed_forms import incline_state
 
 REPEATS = 5
 ANOTHER_WAY = 30.0  # degrees of amplitude: not a matter of accuracy any more

@@ -13,14 +13,14 @@ import numpy as np
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc
-from watchsim.mechanism.body import Body
 from watchsim.mechanism.compile import compile_scene
-from watchsim.mechanism.force import Contact
-from watchsim.mechanism.load import load
-from watchsim.mechanism.recording import Recording
-from watchsim.mechanism.scene import Scene
 from watchsim.profiles_path import profiles_dir
-from watchsim.simulation.run import Run
+from watchsim.scene.body import Body
+from watchsim.scene.file.load import load
+from watchsim.scene.force import Contact
+from watchsim.scene.recording import Recording
+from watchsim.scene.scene import Scene
+from watchsim.simulation.runner import Run
 from watchsim.simulation.stops import Stop
 
 DISTANCE = 0.03  # m between levers side by side

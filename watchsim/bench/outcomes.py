@@ -10,18 +10,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from watchsim.analysis.averages import mean_over
-from watchsim.analysis.beats import DAY
+from watchsim.analysis.timing.averages import mean_over
+from watchsim.analysis.timing.beats import DAY
+from watchsim.bench.engines.world import build
 from watchsim.bench.scenarios import Scenario
 from watchsim.bench.swings import swing
-from watchsim.bench.world import build
 from watchsim.mechanism.compile import compile_scene
-from watchsim.mechanism.recording import Recording
+from watchsim.scene.recording import Recording
 from watchsim.simulation.methods import EVENT_DRIVEN, MOREAU
-from watchsim.simulation.moreau import MoreauRun
-from watchsim.simulation.run import Run
+from watchsim.simulation.moreau.time_stepping import MoreauRun
+from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.simulation.runner import Run
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.trajectory import Trajectory
 
 SAMPLE = 2e-4  # s between looks at other engines; a swing of 4 Hz has 1250
 ENOUGH = 0.9  # of the half swings: fewer, and the watch did not run

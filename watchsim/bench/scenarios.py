@@ -9,13 +9,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from watchsim.analysis.averages import Window
-from watchsim.analysis.closed_forms import Incline
-from watchsim.bench.world import MODULES, Setup
-from watchsim.mechanism.load import load
-from watchsim.mechanism.scene import Scene
+from watchsim.analysis.timing.averages import Window
+from watchsim.bench.engines.world import MODULES, Setup
 from watchsim.profiles_path import profiles_dir
+from watchsim.scene.file.load import load
+from watchsim.scene.scene import Scene
 from watchsim.simulation.methods import EVENT_DRIVEN, MOREAU
+from watchsim.verification.closed_forms import Incline
 
 REFERENCE_TOLERANCE = 1e-13
 ENGINES = tuple(MODULES)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.simulation.event_kinds import EVENT_DTYPE, EventKind
-from watchsim.simulation.half_swings import half_swings, since_two_before
+from watchsim.simulation.record.half_swings import half_swings, since_two_before
 
 Array = NDArray[np.float64]
 

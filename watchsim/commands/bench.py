@@ -9,7 +9,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from watchsim.commands.console import FINE, announce_compile, print_json, say
+from watchsim.commands.common.console import FINE, announce_compile, print_json, say
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -27,7 +27,7 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from watchsim.bench.compare import missing_engines
-    from watchsim.commands.destination import secured_file, secured_folder
+    from watchsim.commands.common.output_place import secured_file, secured_folder
 
     folder = Path(args.output)
     if not folder.is_dir():
@@ -42,7 +42,7 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         print_json(rows)
     else:
-        from watchsim.bench.report import table
+        from watchsim.bench.comparison_table import table
 
         print(table(rows, references))
     say(f"Results: {args.output}")
@@ -73,9 +73,9 @@ def measured(
 
 def write(folder: Path, rows: list[dict[str, Any]], references: list[dict[str, Any]]) -> None:
     """bench.json, bench.md and bench.png."""
-    from watchsim.analysis.tables import json_text
-    from watchsim.bench.report import table
-    from watchsim.render.speed import plot_speed
+    from watchsim.bench.comparison_table import table
+    from watchsim.render.speed_plot import plot_speed
+    from watchsim.results.tables import json_text
     from watchsim.storage.write import write_file
 
     folder.mkdir(exist_ok=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from watchsim.commands.console import BAD_INPUT, FINE, check_picture, print_json, say
+from watchsim.commands.common.console import BAD_INPUT, FINE, check_picture, print_json, say
 
 HELP = "everything short of simulating: units, overlap at the start, mass, frequency, what can touch"
 
@@ -22,13 +22,13 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from watchsim.commands.destination import secured_file
-    from watchsim.commands.scenes import load_scene
-    from watchsim.contact.counts import modelled_pairs
+    from watchsim.commands.common.inputs import load_scene
+    from watchsim.commands.common.output_place import secured_file
     from watchsim.drawing.findings import Finding
-    from watchsim.mechanism.check import check_report, check_text
     from watchsim.mechanism.compile import compile_scene
-    from watchsim.simulation.start import refusals
+    from watchsim.mechanism.count_pairs import modelled_pairs
+    from watchsim.mechanism.static_check import check_report, check_text
+    from watchsim.simulation.start_clearance import refusals
 
     if args.png:
         check_picture(args.png, args.scene)

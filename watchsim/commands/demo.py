@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from watchsim import stopping
-from watchsim.commands.console import FINE, MISSED, announce_compile
+from watchsim.commands.common.console import FINE, MISSED, announce_compile
 
 HELP = "the incline check and a ticking Swiss lever: numbers, plots, MP4 and GIF"
 DURATION = 10.0
@@ -23,14 +23,14 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from watchsim.analysis.results import check_folder
     from watchsim.analysis.summary import summary_text
-    from watchsim.analysis.verify import incline_rows, verify_text
-    from watchsim.commands.destination import secured_file, secured_folder
+    from watchsim.commands.common.inputs import load_scene
+    from watchsim.commands.common.output_place import secured_file, secured_folder
+    from watchsim.commands.common.write_run import Extras, goal_of, write
     from watchsim.commands.run import simulate_with_progress, status
-    from watchsim.commands.scenes import load_scene
-    from watchsim.commands.write_run import Extras, goal_of, write
     from watchsim.profiles_path import profiles_dir
+    from watchsim.results.folder import check_folder
+    from watchsim.verification.all_checks import incline_rows, verify_text
 
     start = time.monotonic()
     parent = Path(args.output)
@@ -83,7 +83,7 @@ def _ticking(summary: Mapping[str, Any]) -> str:
 
 def _incline_picture(folder: Path) -> Path:
     """The kinematic plot of the bouncing disc, the first picture a newcomer sees."""
-    from watchsim.commands.scenes import load_scene
+    from watchsim.commands.common.inputs import load_scene
     from watchsim.profiles_path import profiles_dir
     from watchsim.render.plots import plot_kinematics
     from watchsim.simulation.simulate import simulate

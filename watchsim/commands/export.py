@@ -9,14 +9,14 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from watchsim.commands.console import FINE, InputError, parse_names, parse_positive, print_json, say
+from watchsim.commands.common.console import FINE, InputError, parse_names, parse_positive, print_json, say
 
 if TYPE_CHECKING:
-    from watchsim.geometry.export import Placed
-    from watchsim.mechanism.body import Body
-    from watchsim.mechanism.levels import Slab
-    from watchsim.mechanism.scene import Scene
+    from watchsim.geometry.solids.meshes import Placed
     from watchsim.render.palette import Finish
+    from watchsim.scene.body import Body
+    from watchsim.scene.layer_heights import Slab
+    from watchsim.scene.scene import Scene
 
 HELP = "outlines as DXF and SVG, bodies as GLB and STL"
 FORMATS = ("dxf", "svg", "glb", "stl")
@@ -42,8 +42,8 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from watchsim.commands.destination import secured_folder
-    from watchsim.commands.scenes import load_scene
+    from watchsim.commands.common.inputs import load_scene
+    from watchsim.commands.common.output_place import secured_folder
     from watchsim.storage.write import write_folder
     from watchsim.units import LENGTH
 
@@ -71,7 +71,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _chosen(scene: Scene, names: list[str] | None) -> tuple[Body, ...]:
-    from watchsim.mechanism.schema import nearest
+    from watchsim.scene.file.keys.schema import nearest
 
     known = [body.name for body in scene.bodies]
     for name in names or ():
@@ -81,7 +81,7 @@ def _chosen(scene: Scene, names: list[str] | None) -> tuple[Body, ...]:
 
 
 def _name(scene: Scene) -> str:
-    from watchsim.mechanism.load import SCENE_FILES
+    from watchsim.scene.file.load import SCENE_FILES
 
     if scene.path is None:
         return "scene"
@@ -109,9 +109,9 @@ def _contents(
     scene: Scene, bodies: Sequence[Body], formats: Sequence[str], thickness: float, deviation: float
 ) -> tuple[dict[str, bytes], dict[str, Any]]:
     """The files by name, and what the manifest tells about them."""
-    from watchsim.geometry.export import glb, stl
-    from watchsim.mechanism.levels import slabs
+    from watchsim.geometry.solids.meshes import glb, stl
     from watchsim.render.palette import looks
+    from watchsim.scene.layer_heights import slabs
 
     worn = looks(scene)
     found: dict[str, bytes] = {}
@@ -122,7 +122,7 @@ def _contents(
                 found[f"{stems[body.name]}.{name}"] = text.encode()
     stacked = tuple(slab for slab in slabs(scene, thickness) if slab.body in stems)
     if "glb" in formats or "stl" in formats:
-        from watchsim.render.solids import placed_solids
+        from watchsim.render.placed_solids import placed_solids
 
         placed: list[Placed] = placed_solids(scene, stacked, deviation)
         for part in placed:
@@ -139,8 +139,8 @@ def _contents(
 
 def _drawings(body: Body, look: Finish, formats: Sequence[str]) -> Iterator[tuple[str, str]]:
     """The outlines of one body in its own frame, the pivot at the origin and marked."""
-    from watchsim.drawing.write_dxf import dxf_text
-    from watchsim.drawing.write_svg import svg_text
+    from watchsim.drawing.dxf.write_dxf import dxf_text
+    from watchsim.drawing.svg.write_svg import svg_text
     from watchsim.render.palette import finish
 
     loops = (*body.loops, *body.decoration)

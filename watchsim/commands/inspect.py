@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from watchsim.commands.console import BAD_INPUT, FINE, InputError, check_picture, parse_positive, print_json, say
+from watchsim.commands.common.console import BAD_INPUT, FINE, InputError, check_picture, parse_positive, print_json, say
 
 if TYPE_CHECKING:
     from watchsim.drawing.drawing import Drawing
@@ -31,8 +31,8 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from watchsim.commands.destination import secured_file
-    from watchsim.drawing.inspect import inspect_report, inspect_text
+    from watchsim.commands.common.output_place import secured_file
+    from watchsim.drawing.inspection import inspect_report, inspect_text
     from watchsim.drawing.read import read
     from watchsim.units import LENGTH
 

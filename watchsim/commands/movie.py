@@ -6,7 +6,7 @@ import argparse
 from fractions import Fraction
 from pathlib import Path
 
-from watchsim.commands.console import FINE, InputError, Progress, parse_names, parse_window, say
+from watchsim.commands.common.console import FINE, InputError, Progress, parse_names, parse_window, say
 
 HELP = "MP4 or GIF of a results folder, by the file's ending"
 
@@ -23,10 +23,10 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from watchsim.commands.destination import secured_file, swept_run
-    from watchsim.commands.scenes import read_run
+    from watchsim.commands.common.inputs import read_run
+    from watchsim.commands.common.output_place import secured_file, swept_run
     from watchsim.render.encoder import check_path
-    from watchsim.render.movie import movie
+    from watchsim.render.run_movie import movie
 
     speed, size = _speed(args.speed), _size(args.size)
     if size and any(side % 2 for side in size):

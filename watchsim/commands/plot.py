@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from watchsim.commands.console import FINE, InputError, parse_names, parse_window
+from watchsim.commands.common.console import FINE, InputError, parse_names, parse_window
 
 HELP = "kinematic plots of a results folder"
 FORMATS = ("png", "svg", "pdf")
@@ -26,8 +26,8 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from watchsim.commands.destination import secured_file, swept_run
-    from watchsim.commands.scenes import read_run
+    from watchsim.commands.common.inputs import read_run
+    from watchsim.commands.common.output_place import secured_file, swept_run
     from watchsim.render.plots import plot_kinematics
     from watchsim.storage.write import write_file
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from watchsim import stopping
-from watchsim.commands.console import (
+from watchsim.commands.common.console import (
     FINE,
     GAVE_UP,
     MISSED,
@@ -19,14 +19,14 @@ from watchsim.commands.console import (
     print_json,
     say,
 )
-from watchsim.commands.destination import secured_folder, swept_run
-from watchsim.commands.record_size import bounded_record
-from watchsim.commands.write_run import Extras, goal_of, report_text, write
+from watchsim.commands.common.output_place import secured_folder, swept_run
+from watchsim.commands.common.record_size import bounded_record
+from watchsim.commands.common.write_run import Extras, goal_of, report_text, write
 from watchsim.simulation.methods import EVENT_DRIVEN, METHODS
 
 if TYPE_CHECKING:
-    from watchsim.mechanism.scene import Scene
-    from watchsim.simulation.trajectory import Trajectory
+    from watchsim.scene.scene import Scene
+    from watchsim.simulation.record.trajectory import Trajectory
 
 FAR = 1e8  # a balance has a thousand times the inertia of a lever
 HELP = "simulate a scene and write a results folder"
@@ -63,9 +63,9 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from watchsim.analysis.results import check_folder
-    from watchsim.commands.scenes import load_scene
+    from watchsim.commands.common.inputs import load_scene
     from watchsim.mechanism.notes import notes
+    from watchsim.results.folder import check_folder
     from watchsim.units import TIME
 
     if args.scene is None and args.resume is None:
@@ -141,7 +141,7 @@ def _earlier(folder: str, scene: Scene) -> Trajectory:
     """The run to go on from, its scene replaced by the one given, which must be the same (see `simulate`)."""
     import dataclasses
 
-    from watchsim.analysis.results import read_results
+    from watchsim.results.folder import read_results
 
     run = read_results(folder)
     if run.end_state is None:
@@ -197,8 +197,8 @@ def _check_windows(scene: Scene, duration: float, asked: bool) -> None:
 
 def _record(what: str) -> object:
     """A window as the scene file has it, or the word; InputError where it is neither."""
-    from watchsim.mechanism.read_record import is_stride
-    from watchsim.mechanism.recording import EVERY, KEPT
+    from watchsim.scene.file.readers.read_record import is_stride
+    from watchsim.scene.recording import EVERY, KEPT
 
     if ":" in what:
         parse_window(what, "--record")
@@ -211,7 +211,7 @@ def _record(what: str) -> object:
 
 def _name(scene: Scene) -> str:
     """A folder name for the results: the scene's folder, with the file's own name where it is not scene.toml."""
-    from watchsim.mechanism.load import SCENE_FILES
+    from watchsim.scene.file.load import SCENE_FILES
 
     path = scene.path
     if path is None:

@@ -13,7 +13,7 @@ import math
 
 from watchsim.contact.poses import point_of
 from watchsim.jit import kernel
-from watchsim.mechanism.model import FULL, LINE
+from watchsim.model.records import FULL, LINE
 
 
 @kernel

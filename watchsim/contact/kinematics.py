@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from watchsim.contact.gaps import margins_of, shape_of_contact
 from watchsim.jit import by_reference, kernel
-from watchsim.mechanism.model import FREE, PIVOT, SLIDE, Records, records
+from watchsim.model.records import FREE, PIVOT, SLIDE, Records, records
 
 KINEMATICS = np.dtype(
     [

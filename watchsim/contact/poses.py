@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from watchsim.jit import kernel
-from watchsim.mechanism.model import FIXED, PIVOT, SLIDE, records
+from watchsim.model.records import FIXED, PIVOT, SLIDE, records
 
 POSE = np.dtype(
     [

@@ -11,14 +11,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from watchsim.drawing.crossings import SHALLOW, Layer, all_meetings, crosses
-from watchsim.drawing.outline import Outline
+from watchsim.drawing.chaining.crossings import SHALLOW, Layer, all_meetings, crosses
+from watchsim.drawing.chaining.outline_source import Outline
 from watchsim.geometry.boxes import Boxes
 from watchsim.geometry.extent import extents
 from watchsim.geometry.inside import Inside
 from watchsim.geometry.loop import Loop
-from watchsim.geometry.mass import area
 from watchsim.geometry.primitives import Point
+from watchsim.geometry.solids.mass import area
 
 DEEPER = 4.0  # than what crosses without being a crossing: a point that far inside is inside
 

@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from watchsim.drawing.material import MARKS, last_word
+from watchsim.drawing.drawn_material import MARKS, last_word
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Point
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from watchsim.geometry.loop import Loop
-from watchsim.geometry.mass import MassProperties, Section, mass_properties, section
+from watchsim.geometry.solids.mass import MassProperties, Section, mass_properties, section
 
 SNAP = 1e-6  # m
 Path2D = Any  # a trimesh.path.Path2D
@@ -45,7 +45,7 @@ class Profile:
 
         trimesh keeps an arc as three points; it refuses to draw arcs of less than 0.7 degrees, though it holds them.
         """
-        from watchsim.geometry.export import path2d
+        from watchsim.geometry.solids.meshes import path2d
 
         return path2d((*self.loops, *self.chains))
 
@@ -56,9 +56,9 @@ class Profile:
         `units` names the unit of the path where it does not say it itself. Raises ValueError where nobody does, for entities
         that are neither lines nor arcs, and where more than two edges meet in one point.
         """
-        from watchsim.drawing.chain import chain
+        from watchsim.drawing.chaining.chain import chain
         from watchsim.drawing.content import Stroke
-        from watchsim.geometry.export import edges_of
+        from watchsim.geometry.solids.meshes import edges_of
 
         strokes: list[Stroke] = []
         for number, (layer, edges) in enumerate(edges_of(path, _scale(path, units))):

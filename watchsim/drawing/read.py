@@ -13,10 +13,10 @@ from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
-from watchsim.drawing.chain import chain
+from watchsim.drawing.chaining.chain import chain
 from watchsim.drawing.content import Content
 from watchsim.drawing.drawing import Drawing
-from watchsim.drawing.dxf import read_dxf
+from watchsim.drawing.dxf.dxf_file import read_dxf
 from watchsim.drawing.facets import facets
 from watchsim.drawing.findings import Finding
 from watchsim.geometry.extent import extents
@@ -94,7 +94,7 @@ def read_content(path: Path, ending: str, units: str | None, fit: float) -> Cont
         return Content(findings=(Finding("unreadable", "error", f"{path}: {reason}"),))
     form = format_of(data, ending[:3])
     if form == "svg":
-        from watchsim.drawing.svg import read_svg
+        from watchsim.drawing.svg.svg_file import read_svg
 
         content = read_svg(data, units, fit)
     else:

@@ -9,9 +9,9 @@ from __future__ import annotations
 from watchsim.contact.index_sets import BACKWARD, FORWARD, OPEN, STICK
 from watchsim.dynamics.coulomb import add_element, fill_matrix, fill_rhs, read_forces
 from watchsim.dynamics.delassus import apply, fill_bearings, fill_delassus
-from watchsim.dynamics.ladder import solve_contacts
-from watchsim.dynamics.linear import RANK, solve_small, unit_scale
-from watchsim.dynamics.redundant import smallest_forces
+from watchsim.dynamics.redundant_contacts import smallest_forces
+from watchsim.dynamics.small_systems import RANK, solve_small, unit_scale
+from watchsim.dynamics.solver_fallbacks import solve_contacts
 from watchsim.jit import kernel
 
 ROUNDING = 1e-11  # accelerations below this share of the terms they are the sum of count as zero

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.contact.index_sets import STICK
-from watchsim.dynamics.lcp import LcpWork, lcp_work
+from watchsim.dynamics.lcp.lemke_pivoting import LcpWork, lcp_work
 from watchsim.jit import by_reference, kernel
 
 Array = NDArray[np.float64]
@@ -48,7 +48,7 @@ class ContactWork(NamedTuple):
     other_x: Array
     scale: Array
     order: Integers
-    row: Integers  # (side,) of G, by row of a correction (simulation/drift.py)
+    row: Integers  # (side,) of G, by row of a correction (simulation/motion/drift_projection.py)
     h: Array  # (n,)
     rungs: Integers  # problems solved since last asked, by Rung; the last one counts those without a solution
     sizes: Integers  # the same problems by their number of unknowns, see `LARGEST`

@@ -10,8 +10,8 @@ from __future__ import annotations
 from watchsim.dynamics.acceleration import gap_accelerations
 from watchsim.dynamics.coulomb import add_element, element_row, fill_matrix, fill_rhs, read_forces
 from watchsim.dynamics.delassus import apply, contact_velocities, fill_delassus
-from watchsim.dynamics.expansion import interval
-from watchsim.dynamics.ladder import LEMKE, keep_basis, solve_contacts
+from watchsim.dynamics.expansion_friction import interval
+from watchsim.dynamics.solver_fallbacks import LEMKE, keep_basis, solve_contacts
 from watchsim.jit import kernel
 
 LEVEL_COMPRESSION, LEVEL_EXPANSION = 2, 3

@@ -11,16 +11,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from watchsim.mechanism.body import Body
-from watchsim.mechanism.carry import Ride, rides
-from watchsim.mechanism.cell_frame import angle_of, choose_frames
-from watchsim.mechanism.choose_cells import choose_cells
-from watchsim.mechanism.declared import declared_contacts, near_contacts
-from watchsim.mechanism.features import features
-from watchsim.mechanism.force import Side
-from watchsim.mechanism.forced import forced_coordinates
-from watchsim.mechanism.model import BODY, MOTION_CODE, PRIMITIVE, Model, Records, frozen, records
-from watchsim.mechanism.scene import Scene
+from watchsim.candidates.cell_frame import angle_of, choose_frames
+from watchsim.candidates.cell_grid import choose_cells
+from watchsim.mechanism.contact_features import features
+from watchsim.mechanism.coordinates import forced_coordinates
+from watchsim.mechanism.declared_pairs import declared_contacts, near_contacts
+from watchsim.model.records import BODY, MOTION_CODE, PRIMITIVE, Model, Records, frozen, records
+from watchsim.scene.body import Body
+from watchsim.scene.carriers import Ride, rides
+from watchsim.scene.force import Side
+from watchsim.scene.scene import Scene
 
 CLEARANCE = 2e-3  # of the size: a pair that comes this close counts as touching. More than any tolerance of a run
 

@@ -9,12 +9,12 @@ import math
 from collections.abc import Iterator
 
 from watchsim.drawing.findings import Finding
-from watchsim.mechanism.body import Body
-from watchsim.mechanism.carry import is_still
-from watchsim.mechanism.force_lines import length
-from watchsim.mechanism.oscillation import loads, oscillators
-from watchsim.mechanism.roles import keeps_time, partners, roles
-from watchsim.mechanism.scene import Scene
+from watchsim.mechanism.scene_in_words import length
+from watchsim.scene.body import Body
+from watchsim.scene.carriers import is_still
+from watchsim.scene.oscillation import loads, oscillators
+from watchsim.scene.roles import keeps_time, partners, roles
+from watchsim.scene.scene import Scene
 
 AT_REST = 1e-9  # rad or m, and per s: nearer than that to its rest position a body stands there
 POISED = 1e-9  # of a body's radius of gyration

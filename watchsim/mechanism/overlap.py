@@ -17,13 +17,13 @@ from numpy.typing import NDArray
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Edge, Point
-from watchsim.mechanism.carry import start_poses
-from watchsim.mechanism.errors import Fault
-from watchsim.mechanism.force import Side
-from watchsim.mechanism.locate import key_lines
+from watchsim.mechanism.material_polygons import chord_points, material, placed, refined_points
 from watchsim.mechanism.overlap_depth import COARSE, face_depth, face_line, regions_depth
-from watchsim.mechanism.polygons import chord_points, material, placed, refined_points
-from watchsim.mechanism.scene import Scene
+from watchsim.scene.carriers import start_poses
+from watchsim.scene.errors import Fault
+from watchsim.scene.file.keys.locate import key_lines
+from watchsim.scene.force import Side
+from watchsim.scene.scene import Scene
 
 Floats = NDArray[np.float64]
 Pose = tuple[float, float, float]

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point
-from watchsim.mechanism.polygons import chord_points
+from watchsim.mechanism.material_polygons import chord_points
 
 Floats = NDArray[np.float64]
 COARSE = 5e-8  # m, of chords where two outlines do not come close

@@ -1,1 +1,5 @@
-"""From a trajectory to pictures: plots, frames, movies."""
+"""From a trajectory to pictures: plots, stills, movies.
+
+In: a `Trajectory`, a `Scene` or a `Drawing`. Out: PNG, MP4, GIF. The only package that imports matplotlib and imageio.
+Imports `simulation`, `mechanism`, `drawing` and below; no number is made here.
+"""

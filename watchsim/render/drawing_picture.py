@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from watchsim.drawing.drawing import Drawing
-from watchsim.drawing.material import layer_roles
+from watchsim.drawing.drawn_material import layer_roles
 from watchsim.geometry.extent import Box, extents
 from watchsim.geometry.polyline import polyline
 from watchsim.geometry.primitives import Arc

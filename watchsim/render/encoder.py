@@ -15,7 +15,7 @@ from typing import IO
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.render.colours import Palette
+from watchsim.render.gif_colours import Palette
 from watchsim.storage.write import write_file
 
 Pixels = NDArray[np.uint8]

@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.mechanism.body import Body
+from watchsim.render.frame.pose_history import choose, dense, stretch
+from watchsim.render.frame.readouts import clock
 from watchsim.render.palette import FAINT, GRID, INK, looks
 from watchsim.render.plot_margins import GAP, LABEL_SIZE, POINT, TICK_SIZE, TITLE_PAD, TITLE_SIZE, place_panels
-from watchsim.render.poses import choose, dense, stretch
-from watchsim.render.readouts import clock
-from watchsim.simulation.trajectory import Trajectory
+from watchsim.scene.body import Body
+from watchsim.simulation.record.trajectory import Trajectory
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -8,16 +8,16 @@ from pathlib import Path
 
 import numpy as np
 
-from watchsim.contact.counts import ModelledPairs
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.compile import Compiled
-from watchsim.mechanism.scene import Scene
-from watchsim.render.edges import Edges
+from watchsim.mechanism.count_pairs import ModelledPairs
 from watchsim.render.fault_circles import FAULT
-from watchsim.render.poses import poses
-from watchsim.render.stage import Stage
+from watchsim.render.frame.coloured_edges import Edges
+from watchsim.render.frame.pose_history import poses
+from watchsim.render.frame.stage import Stage
+from watchsim.scene.scene import Scene
+from watchsim.simulation.record.trajectory import EVENT_DTYPE, Trajectory
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.trajectory import EVENT_DTYPE, Trajectory
 from watchsim.storage.write import write_file
 
 SIZE = (1280, 720)

@@ -8,28 +8,36 @@ from __future__ import annotations
 
 import math
 
+from watchsim.candidates.cell_lookup import time_through_cells
 from watchsim.contact.kinematics import ClosedRef
-from watchsim.contact.lookup import time_through_cells
 from watchsim.contact.poses import place
+from watchsim.dynamics.applied_forces import next_knot
 from watchsim.dynamics.delassus import ContactWorkRef, fill_inverse
-from watchsim.dynamics.forces import next_knot
-from watchsim.dynamics.lcp import LcpWorkRef
+from watchsim.dynamics.lcp.lemke_pivoting import LcpWorkRef
 from watchsim.jit import entry, inlined, kernel
-from watchsim.mechanism.model import CellsRef, ModelRef
-from watchsim.simulation.closed import refresh
-from watchsim.simulation.coupled import motion
-from watchsim.simulation.drift import IN_STEPS, project_positions, project_velocities
-from watchsim.simulation.explained import is_explained, kinetic_energy
-from watchsim.simulation.flight import FLIGHT_PHASE, add_flight_sums, begin_flight, can_fly, flight_length, keep_flight_rows
-from watchsim.simulation.integrator import coupled_step, dense_value
-from watchsim.simulation.islands import place_contacts
-from watchsim.simulation.keep import keep_row
-from watchsim.simulation.leave import first_leave, first_turn
-from watchsim.simulation.once import begin_instant, decide_once, forget_decisions
+from watchsim.model.records import CellsRef, ModelRef
+from watchsim.simulation.events.after_event import settle
+from watchsim.simulation.events.closed_contacts import refresh
+from watchsim.simulation.events.contact_mode_end import first_leave, first_turn
+from watchsim.simulation.events.impulse_check import is_explained, kinetic_energy
+from watchsim.simulation.events.mode_recurrence import begin_instant, decide_once, forget_decisions
+from watchsim.simulation.events.time_of_impact import first_touch
+from watchsim.simulation.motion.contact_islands import place_contacts
+from watchsim.simulation.motion.coupled_motion import motion
+from watchsim.simulation.motion.drift_projection import IN_STEPS, project_positions, project_velocities
+from watchsim.simulation.motion.free_flight import (
+    FLIGHT_PHASE,
+    add_flight_sums,
+    begin_flight,
+    can_fly,
+    flight_length,
+    keep_flight_rows,
+)
+from watchsim.simulation.motion.integrator import coupled_step, dense_value
+from watchsim.simulation.motion.row_times import keep_inner_rows
+from watchsim.simulation.motion.turning_points import keep_passages
 from watchsim.simulation.options import FINEST_ROWS, OptionsRef
-from watchsim.simulation.passages import keep_passages
-from watchsim.simulation.rows import keep_inner_rows
-from watchsim.simulation.settle import settle
+from watchsim.simulation.record.write_buffers import keep_row
 from watchsim.simulation.state import (
     DAMPING,
     DRIVE,
@@ -52,7 +60,6 @@ from watchsim.simulation.state import (
     StepRef,
 )
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.touch import first_touch
 
 RUNNING, SLICE, CELL_UNKNOWN, BUFFER_FULL = int(Stop.RUNNING), int(Stop.SLICE), int(Stop.CELL_UNKNOWN), int(Stop.BUFFER_FULL)
 DURATION, STEP_TOO_SMALL, NOT_FINITE = int(Stop.DURATION), int(Stop.STEP_TOO_SMALL), int(Stop.NOT_FINITE)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from watchsim.jit import by_reference
-from watchsim.mechanism.features import JOINT
+from watchsim.mechanism.contact_features import JOINT
 
 FINEST_ROWS, COARSEST_ROWS = 0.0125, 0.1  # rad
 

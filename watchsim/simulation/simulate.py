@@ -8,13 +8,13 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from watchsim.mechanism.compile import compile_scene
-from watchsim.mechanism.recording import Recording, Window, as_recording
-from watchsim.mechanism.scene import Scene
-from watchsim.simulation.joined import joined
+from watchsim.scene.recording import Recording, Window, as_recording
+from watchsim.scene.scene import Scene
 from watchsim.simulation.methods import EVENT_DRIVEN, METHODS, MOREAU, USUAL_STEP
-from watchsim.simulation.run import Progress, Run
-from watchsim.simulation.saved import SavedState
-from watchsim.simulation.trajectory import Trajectory
+from watchsim.simulation.record.joined_runs import joined
+from watchsim.simulation.record.saved_state import SavedState
+from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.simulation.runner import Progress, Run
 from watchsim.units import TIME, UnitError, parse
 
 
@@ -48,7 +48,7 @@ def simulate(
     """
     begun = time.perf_counter()
     if not isinstance(scene, Scene):
-        from watchsim.mechanism.load import load
+        from watchsim.scene.file.load import load
 
         scene = load(scene)
     duration = scene.duration if duration is None else _seconds("duration", duration)
@@ -58,7 +58,7 @@ def simulate(
     compiled = compile_scene(scene, prefilter)
     recording = as_recording(record) or scene.record
     if method == MOREAU:
-        from watchsim.simulation.moreau import MoreauRun
+        from watchsim.simulation.moreau.time_stepping import MoreauRun
 
         run: Run = MoreauRun(scene, compiled, tolerance, recording, USUAL_STEP if step is None else float(step))
     else:

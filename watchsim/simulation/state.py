@@ -14,7 +14,7 @@ from watchsim.contact.kinematics import Closed, closed_contacts
 from watchsim.contact.poses import poses
 from watchsim.dynamics.delassus import LARGEST, ContactWork, contact_work
 from watchsim.jit import by_reference
-from watchsim.mechanism.model import Model, Records
+from watchsim.model.records import Model, Records
 from watchsim.simulation.event_kinds import EVENT_DTYPE
 
 Array = NDArray[np.float64]
@@ -79,9 +79,9 @@ class State(NamedTuple):
     u: Array
     a: Array
     mode: NDArray[np.int8]  # by permanent number of the contact
-    grip: NDArray[np.int8]  # by coordinate: what dry friction in its bearing does, see dynamics/dry.py
+    grip: NDArray[np.int8]  # by coordinate: what dry friction in its bearing does, see dynamics/bearing_friction.py
     awake: NDArray[np.int8]  # by coordinate; 0: asleep on its contacts
-    active: Integers  # closed contacts of awake bodies, then those of sleeping ones, by island (islands.py)
+    active: Integers  # closed contacts of awake bodies, then those of sleeping ones, by island (contact_islands.py)
     upto: Integers  # by place in `active`, of awake bodies: the place behind the last contact of the same island
     numbers: (
         # How many awake, how many asleep, 1 if an event waits, events at this instant, the contact that touched or -1, how many
@@ -93,7 +93,7 @@ class State(NamedTuple):
     sums: Array
     counts: Integers
     worst: Array  # deepest penetration met, m; highest kinetic energy, J
-    decided: Integers  # keys of the sets of modes decided at this instant, see once.py
+    decided: Integers  # keys of the sets of modes decided at this instant, see mode_recurrence.py
     lenience: Array  # by how much more than usual forces and slips may miss their laws until the next instant
 
 
@@ -126,7 +126,7 @@ class Scratch(NamedTuple):
     work: ContactWork
     pose: Any
     pace: Array  # largest magnitude of each velocity at the instant being settled
-    zero: Array  # by row of `closed`: the gap rate that counts as zero, see rate_zero.py
+    zero: Array  # by row of `closed`: the gap rate that counts as zero, see zero_rates.py
     restitution: Array
     impulse: Array  # of the last impact, N and T by row
     rates: Array  # contact rates after it
@@ -140,7 +140,7 @@ class Scratch(NamedTuple):
     upto: Integers  # by place in `listed`
     engaged: NDArray[np.int8]  # bodies that the active contacts join
     doubt: Integers  # candidates that may close within a stretch
-    monitors: Array  # at the state last evaluated, by code (coupled.py)
+    monitors: Array  # at the state last evaluated, by code (coupled_motion.py)
     codes: Integers  # of those that fired
     trial: NDArray[np.int8]
     grip: NDArray[np.int8]

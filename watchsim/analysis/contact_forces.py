@@ -1,0 +1,219 @@
+"""Which forces act at contacts and pivots, at any time of a run?
+
+A run keeps where its bodies were and which contact had which mode. Between events the forces follow from these: a contact in
+force does not accelerate apart, a sticking one does not slip, a sliding one rubs (docs/method.md 2.4).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.contact.index_sets import OPEN, STICK
+from watchsim.contact.kinematics import Closed, closed_contacts
+from watchsim.contact.poses import poses
+from watchsim.dynamics.equations_of_motion import balance
+from watchsim.mechanism.compile import Compiled, compile_scene
+from watchsim.scene.oscillation import loads
+from watchsim.scene.recording import STATISTICS
+from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.methods import EVENT_DRIVEN
+from watchsim.simulation.record.trajectory import Array, Trajectory
+
+MODES = (EventKind.CLOSE, EventKind.OPEN, EventKind.STICK, EventKind.SLIDE, EventKind.HANDOVER)
+SLACK = 1e-9  # of the largest force: rounding
+GENTLE = 1e-4  # of a system scaled to 1: how much small forces are preferred
+SMALLEST = 1e-12  # of the largest: what counts in a system of redundant contacts
+
+
+@dataclass(frozen=True)
+class Forces:
+    """At times t (n,), s. Contacts are those that were in force at any of them, in the order of `pairs`.
+
+    pairs       row of `Trajectory.pairs` of each contact (k,)
+    normal      how hard it presses, N (n, k); 0 where it is open
+    tangential  along t, the normal turned by +90°, on body A, N (n, k)
+    direction   the normal, out of body B's material (n, k, 2); nan where it is open
+    point       where it touches, m (n, k, 2); nan where it is open
+    pivots      name of a pivoted body -> force on it from its bearing in the movement, N (n, 2)
+    """
+
+    t: Array
+    pairs: NDArray[np.int64]
+    normal: Array
+    tangential: Array
+    direction: Array
+    point: Array
+    pivots: dict[str, Array]
+
+
+@dataclass(frozen=True)
+class _Instant:
+    """Contacts in force with their forces (m, 2), normals (m, 2) and points (m, 2); accelerations of the coordinates (n,)."""
+
+    ids: NDArray[np.int64]
+    force: Array
+    normal: Array
+    point: Array
+    acceleration: Array
+
+
+def forces(run: Trajectory, times: Iterable[float] | None = None) -> Forces:
+    """Forces at these times (s), by default at all rows; after an impact where one happens at that time.
+
+    Where contacts are redundant the smallest forces are told. ValueError for a run by fixed steps, whose contacts have
+    impulses only, and where events were not kept.
+    """
+    if run.method != EVENT_DRIVEN:
+        raise ValueError(f"forces need a run by events; {run.method} knows impulses over its steps only")
+    if run.keep == STATISTICS:
+        raise ValueError('forces need all events of a run: simulate with record = "events", "all" or windows')
+    t = np.array(run.t if times is None else list(times), float)
+    q, u = run.sample(t)
+    compiled = compile_scene(run.scene)
+    absolute, speed = _absolute(compiled, q, False), _absolute(compiled, u, True)
+    found = [_instant(compiled, *row) for row in zip(t, absolute, speed, _modes(run, t), strict=True)]
+    pairs = np.array(sorted({int(k) for one in found for k in one.ids}), np.int64)
+    shape = (len(t), len(pairs))
+    out = Forces(t, pairs, np.zeros(shape), np.zeros(shape), np.full((*shape, 2), np.nan), np.full((*shape, 2), np.nan), {})
+    for row, one in enumerate(found):
+        columns = np.searchsorted(pairs, one.ids)
+        out.normal[row, columns], out.tangential[row, columns] = one.force.T
+        out.direction[row, columns], out.point[row, columns] = one.normal, one.point
+    out.pivots.update(_pivots(run, compiled, out, absolute, speed, np.array([one.acceleration for one in found])))
+    return out
+
+
+def _absolute(compiled: Compiled, values: Array, rates: bool) -> Array:
+    """Coordinates in the movement from those that the trajectory gives: the inverse of `Compiled.relative`."""
+    out = np.array(values)
+    for own, on, angle in compiled.against:  # carriers come before what they carry
+        out[:, own] += (out[:, on] if on >= 0 else 0.0) + (0.0 if rates else angle)
+    return out
+
+
+def _modes(run: Trajectory, times: Array) -> Iterator[dict[int, int]]:
+    """Contact -> mode of what is in force, at each of the times."""
+    told = run.events[np.isin(run.events["kind"], MODES)]
+    modes: dict[int, int] = {}
+    done = 0
+    found: dict[int, dict[int, int]] = {}
+    for place in np.argsort(times, kind="stable").tolist():
+        stop = int(np.searchsorted(told["t"], times[place], side="right"))
+        for event in told[done:stop]:
+            _change(modes, event)
+        done = stop
+        found[place] = dict(modes)
+    return (found[place] for place in range(len(times)))
+
+
+def _change(modes: dict[int, int], event: Any) -> None:
+    kind, contact, value = int(event["kind"]), int(event["contact"]), event["value"]
+    if kind == EventKind.HANDOVER:
+        modes[contact] = modes.pop(int(value), STICK)
+    elif kind == EventKind.STICK:
+        modes[contact] = STICK
+    elif kind == EventKind.OPEN or (kind == EventKind.CLOSE and int(value) == OPEN):
+        modes.pop(contact, None)
+    else:
+        modes[contact] = int(value)
+
+
+def _instant(compiled: Compiled, t: float, q: Array, u: Array, modes: dict[int, int]) -> _Instant:
+    """Forces of the contacts in `modes` at one state."""
+    model, ids = compiled.model, np.array(sorted(modes), np.int64)
+    closed, normal, h = closed_contacts(max(1, len(ids))), np.zeros((len(ids), 2)), np.zeros(len(q))
+    balance(model, float(t), q, u, ids, poses(len(model.bodies)), closed, normal, h)
+    mobility = 1.0 / model.coordinates.mass
+    dry = model.coordinates.coulomb
+    held = (dry > 0.0) & (u == 0.0)
+    mobility[held] = 0.0
+    h -= np.where(held, 0.0, dry * np.sign(u))
+    rows = len(ids)
+    w_n, w_t = (_dense(closed, values, rows, len(q)) for values in (closed.w_N, closed.w_T))
+    kin = closed.kin[:rows]
+    if not rows:
+        return _Instant(ids, np.zeros((0, 2)), normal, np.zeros((0, 2)), mobility * h)
+    # Unknowns: the normal force of each contact, and the tangential one of those that stick.
+    sticks = [i for i, k in enumerate(ids) if modes[int(k)] == STICK]
+    friction = np.array([model.laws[model.contacts[k].group].friction for k in ids])
+    slide = np.array([0.0 if modes[int(k)] == STICK else -friction[i] * modes[int(k)] for i, k in enumerate(ids)])
+    hold, bar = np.vstack((w_n, w_t[sticks])), np.concatenate((kin.bar_N, kin.bar_T[sticks]))
+    system, right = hold * mobility, -bar - hold @ (mobility * h)
+
+    def loaded(force: Array) -> Array:
+        return force[:, 0] @ w_n + force[:, 1] @ w_t
+
+    unknown = _least(system @ np.vstack((w_n + slide[:, None] * w_t, w_t[sticks])).T, right)
+    force = np.column_stack((unknown[:rows], slide * unknown[:rows]))
+    force[sticks, 1] = unknown[rows:]
+    if np.any(np.abs(force[:, 1]) > friction * force[:, 0] + SLACK * np.abs(force).max()):
+        # Redundant contacts: among all that balance, forces that press and stay within their cones of friction.
+        edges = np.array([[1.0, slide[i]] if i not in sticks else [1.0, friction[i]] for i in range(rows)])
+        more = np.column_stack((np.ones(len(sticks)), -friction[sticks]))
+        owner = np.concatenate((np.arange(rows), np.array(sticks, int)))
+        corners = np.vstack((edges, more))
+        ways = corners[:, :1] * w_n[owner] + corners[:, 1:] * w_t[owner]
+        share = _pressing(system @ ways.T, right)
+        force = np.zeros((rows, 2))
+        np.add.at(force, owner, share[:, None] * corners)
+    return _Instant(ids, force, normal, np.column_stack((kin.x, kin.y)), mobility * (h + loaded(force)))
+
+
+def _dense(closed: Closed, values: Array, rows: int, width: int) -> Array:
+    out = np.zeros((rows, width))
+    for row in range(rows):
+        for slot in range(closed.slots[row]):
+            out[row, closed.coord[row, slot]] += values[row, slot]
+    return out
+
+
+def _least(system: Array, right: Array) -> Array:
+    """The smallest solution, of a system scaled to a unit diagonal: contacts have lever arms of millimetres."""
+    scale = np.sqrt(np.abs(np.diag(system)))
+    scale = np.where(scale > 0.0, 1.0 / np.where(scale > 0.0, scale, 1.0), 1.0)
+    scaled: Array = np.linalg.lstsq(system * np.outer(scale, scale), right * scale, rcond=SMALLEST)[0]
+    return scaled * scale
+
+
+def _pressing(system: Array, right: Array) -> Array:
+    """A solution without negative shares, near the smallest; as near to one as can be where rounding leaves none."""
+    from scipy.optimize import nnls
+
+    high = 1.0 / np.maximum(np.abs(system).max(axis=1), np.finfo(float).tiny)
+    scaled, target = system * high[:, None], right * high
+    count = scaled.shape[1]
+    near, _ = nnls(np.vstack((scaled, GENTLE * np.eye(count))), np.append(target, np.zeros(count)))
+    used = near > SMALLEST * near.max(initial=0.0)
+    # The push towards small forces leaves the balance off by its square; among those in use the rest is put right.
+    near[used] += np.linalg.lstsq(scaled[:, used], target - scaled @ near, rcond=SMALLEST)[0]
+    return near
+
+
+def _pivots(run: Trajectory, compiled: Compiled, found: Forces, q: Array, u: Array, a: Array) -> Iterator[tuple[str, Array]]:
+    """What the bearings in the movement take: change of momentum less weight less contacts, of a body with all it carries."""
+    hung, weighed = loads(run.scene.bodies)
+    on_a, on_b = _bodies_of(compiled, found.pairs)
+    across = np.stack((-found.direction[:, :, 1], found.direction[:, :, 0]), axis=2)
+    pressed = np.nan_to_num(found.normal[:, :, None] * found.direction + found.tangential[:, :, None] * across)
+    for i, (body, ride, load) in enumerate(zip(run.scene.bodies, hung, weighed, strict=True)):
+        if body.motion != "pivot" or ride.host >= 0:
+            continue
+        own = [k for k, other in enumerate(hung) if k == i or other.part_of == i or other.host == i]
+        sign = np.isin(on_a, own).astype(float) - np.isin(on_b, own).astype(float)
+        first = compiled.slices[body.name].start
+        angle, spin, turn = q[:, first], u[:, first], a[:, first]
+        c, s = np.cos(angle), np.sin(angle)
+        moment = np.stack((c * load.moment[0] - s * load.moment[1], s * load.moment[0] + c * load.moment[1]), axis=1)
+        change = turn[:, None] * np.stack((-moment[:, 1], moment[:, 0]), axis=1) - (spin * spin)[:, None] * moment
+        yield body.name, change - load.mass * np.array(run.scene.gravity) - np.einsum("k,nkx->nx", sign, pressed)
+
+
+def _bodies_of(compiled: Compiled, pairs: NDArray[np.int64]) -> tuple[Array, Array]:
+    """The bodies of the model on both sides of each contact."""
+    contacts, primitives = compiled.model.contacts[pairs], compiled.model.primitives
+    return primitives.body[contacts.a], primitives.body[contacts.b]

@@ -1,0 +1,126 @@
+"""How far does the oscillator swing, how fast, and how evenly?
+
+A half swing goes from one turning point through the rest position to the next. Everything follows from the times and values of
+turning points and passages, which are events of the run: found to rounding, whatever rows were recorded.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from watchsim.analysis.timing.body_contacts import Events
+from watchsim.analysis.timing.rows_at_hand import nominal_period
+from watchsim.analysis.timing.ticks import ticks
+from watchsim.scene.recording import STATISTICS
+from watchsim.scene.roles import roles
+from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.record.half_swings import half_swings, since_two_before, unevenness
+from watchsim.simulation.record.trajectory import Array, Trajectory
+
+DAY = 86400.0
+HEARD = 0.8  # share of the half swings that must have a tick, for the ticks to be what the beat error is measured by
+
+
+@dataclass(frozen=True)
+class Beats:
+    """One entry per half swing, in order of time; lengths n, SI units, nan where a value needs half swings before the first.
+
+    t           passage through the rest position, s
+    start, end  the turning points before and after it, s
+    start_at, end_at  the coordinate there, rad (m where `angular` is False)
+    tick        first noise, s: the impulse pin meets the fork; nan where nothing was heard
+    period_s    from the passage two half swings ago to this one, s
+    before      half swings of the run before the first one here, where not all events were kept
+    """
+
+    body: str
+    angular: bool
+    nominal_period: float
+    t: Array
+    start: Array
+    end: Array
+    start_at: Array
+    end_at: Array
+    tick: Array
+    period_s: Array
+    before: int = 0
+
+    def __len__(self) -> int:
+        return len(self.t)
+
+    @property
+    def amplitude(self) -> Array:
+        """Half the way between the two turning points, rad or m."""
+        return 0.5 * np.abs(self.end_at - self.start_at)
+
+    @property
+    def amplitude_deg(self) -> Array:
+        """Amplitude in degrees; nan for a body that slides."""
+        return np.degrees(self.amplitude) if self.angular else np.full(len(self), np.nan)
+
+    @property
+    def rate_s_per_d(self) -> Array:
+        """Seconds gained per day against the nominal frequency."""
+        return DAY * (self.nominal_period / self.period_s - 1.0)
+
+    @property
+    def mark(self) -> Array:
+        """What the beat error is measured by, s: the ticks where they are heard, else the passages."""
+        return self.tick if len(self) and np.isfinite(self.tick).mean() >= HEARD else self.t
+
+    @property
+    def half_period_s(self) -> Array:
+        """From the beat before to this one, mark to mark."""
+        return np.diff(self.mark, prepend=np.nan)
+
+    @property
+    def beat_error_ms(self) -> Array:
+        """|T1 - T2|/2 of the two half periods that end with this beat, ms."""
+        return 500.0 * np.abs(unevenness(self.mark))
+
+
+def beats(run: Trajectory, body: str | None = None) -> Beats:
+    """The half swings of the oscillator, or of the body named; empty with fewer than three turning points.
+
+    ValueError where neither a spring nor gravity pulls the body back, KeyError where there is no such body.
+    """
+    name = _swinging(run, body)
+    period, angular = nominal_period(run, name), run.scene.body(name).motion == "pivot"
+    index = [one.name for one in run.scene.bodies].index(name)
+    own = _unbroken(run)
+    own = own[own["body"] == index]
+    crossings, turns = own[own["kind"] == EventKind.CROSS], own[own["kind"] == EventKind.TURN]
+    complete, before, after = half_swings(crossings, turns)
+    t, start, end = crossings["t"], turns["t"][before], turns["t"][after]
+    counted = run.sums.get("half_swings", len(complete)) if run.keep == STATISTICS and body is None else len(complete)
+    return Beats(
+        name,
+        angular,
+        period,
+        t=t[complete],
+        start=start,
+        end=end,
+        start_at=turns["value"][before],
+        end_at=turns["value"][after],
+        tick=ticks(run, name, start, end, 0.5 * period),
+        period_s=since_two_before(t)[complete],
+        before=max(0, counted - len(complete)),
+    )
+
+
+def _unbroken(run: Trajectory) -> Events:
+    """The events; where a recording has gaps, those after the last of them."""
+    if run.keep != STATISTICS or not run.spans:
+        return run.events
+    return run.events[run.events["t"] >= run.spans[-1][0]]
+
+
+def _swinging(run: Trajectory, body: str | None) -> str:
+    if body is not None:
+        return run.scene.body(body).name
+    found = roles(run.scene).oscillator
+    if found is None:
+        raise ValueError("no body of this scene swings on a spring or by gravity, so nothing beats")
+    return found

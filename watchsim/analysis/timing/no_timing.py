@@ -1,0 +1,57 @@
+"""Why does a run give no amplitude, or no rate?"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from watchsim.analysis.timing.beats import Beats
+from watchsim.scene.oscillation import oscillators
+from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.record.half_swings import FEWEST_TURNS
+from watchsim.simulation.record.trajectory import Trajectory
+
+
+def why_no_timing(run: Trajectory, found: Beats | None, numbers: Mapping[str, Any], start: float = 0.0) -> str | None:
+    """A sentence for people; None where amplitude and rate are known, or where nothing could keep time anyway.
+
+    The averages were taken from `start` (s) on.
+    """
+    if numbers["amplitude_deg"] is not None and numbers["rate_s_per_d"] is not None:
+        return None
+    if found is None:
+        return _nothing_swings(run)
+    what = "rate" if numbers["amplitude_deg"] is not None or not found.angular else "amplitude and rate"
+    if numbers["rate_s_per_d"] is not None:
+        return f"no amplitude in degrees: {found.body} slides"
+    return f"no {what}: {_missing(run, found, start)}"
+
+
+def _nothing_swings(run: Trajectory) -> str | None:
+    scene = run.scene
+    if not any(body.motion == "pivot" for body in scene.bodies):
+        return None
+    hanging = "and there is no gravity" if not any(scene.gravity) else "and none that is not driven hangs beside its pivot"
+    return f"no amplitude and rate: no body has a spring, {hanging}"
+
+
+def _missing(run: Trajectory, found: Beats, start: float) -> str:
+    """What is too little for a period: two passages in one direction and three turning points make one."""
+    one = next((one for one in oscillators(run.scene) if one.body == found.body), None)
+    if one is not None and one.hertz is None:
+        return f"gravity topples {found.body} from its rest position"
+    own = [body.name for body in run.scene.bodies].index(found.body)
+    events = run.events[run.events["body"] == own]
+    passages, turns = int((events["kind"] == EventKind.CROSS).sum()), int((events["kind"] == EventKind.TURN).sum())
+    if not passages and run.simulated > found.nominal_period:
+        return f"{found.body} never passed its rest position"
+    if turns < FEWEST_TURNS and run.simulated > 2.0 * found.nominal_period:
+        return f"{found.body} turned back {_times(turns)} in {run.simulated:.4g} s"
+    need = 2.0 * found.nominal_period
+    if run.simulated < need:
+        return f"the run of {run.simulated:.4g} s is too short: {found.body} needs {need:.4g} s for two oscillations"
+    return f"the last {run.simulated - start:.4g} s hold too few whole swings of {found.body}"
+
+
+def _times(count: int) -> str:
+    return {0: "not once", 1: "only once", 2: "only twice"}.get(count, f"only {count} times")

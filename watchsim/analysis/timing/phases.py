@@ -1,0 +1,150 @@
+"""What happens between two beats, when, and how far does each part turn meanwhile?
+
+The timeline of a lever-like escapement, read from contact events and the wheel's progress, so that it holds for any shapes:
+
+unlock          from the pin's first touch of the fork until the wheel stands furthest back (draw makes it recoil; a dead-beat
+                wheel waits) and is let go
+catch-up        the wheel runs freely until it touches the next face
+impulse         from there until the last touch before the drop
+drop            the long free run that ends near where the wheel comes to rest
+run to banking  from the lock, the end of the drop, until the lever first meets its banking
+locked          until the next touch of pin and fork
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.analysis.timing.beats import Beats, beats
+from watchsim.analysis.timing.body_contacts import between, contact_events, held, involves
+from watchsim.analysis.timing.escape_wheel import progress
+from watchsim.analysis.timing.rows_at_hand import is_recorded
+from watchsim.scene.roles import Roles, roles
+from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.record.trajectory import Array, Trajectory
+
+Marks = tuple[float, float, float, float]
+
+TOUCH = (EventKind.IMPACT, EventKind.CLOSE)
+NEAR_REST = 0.1  # of the wheel's advance in the beat: a free run that ends so near to rest may be the drop
+STANDING = 1e-6  # of the same: the wheel has not moved
+
+
+@dataclass(frozen=True, slots=True)
+class Phase:
+    """A stretch of a beat, s; angles at its start and turns during it, rad, of wheel, lever and oscillator.
+
+    `beat` counts the half swings from 1 as in beats.csv.
+    """
+
+    beat: int
+    name: str
+    start: float
+    end: float
+    angles: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    turns: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class _Contacts:
+    """Contact events of the wheel: times, its progress, how many contacts hold after each, which are touches; and when the
+    lever touches its banking."""
+
+    times: Array
+    angle: Array
+    held: NDArray[np.int64]
+    touching: NDArray[np.bool_]
+    banking: Array
+
+
+def phases(run: Trajectory, found: Beats | None = None) -> list[Phase]:
+    """The phases of all beats that were recorded whole; empty where the scene is no lever escapement.
+
+    A beat in which the wheel does not advance, or in which a phase cannot be told, has no rows.
+    """
+    parts = roles(run.scene)
+    if parts.wheel is None or parts.lever is None or parts.oscillator is None or len(run.t) == 0:
+        return []
+    found = found or beats(run)
+    contacts, told = _contacts(run, parts), _told(run, found)
+    at_entry, at_end = (progress(run, parts.wheel, np.where(told, t, run.t[0])) for t in (found.tick, found.end))
+    ways = zip(at_entry.tolist(), at_end.tolist(), strict=True)
+    rows = [phase for i, way in enumerate(ways) if told[i] for phase in _beat(found, contacts, i, way)]
+    return _with_angles(run, parts, rows)
+
+
+def _told(run: Trajectory, found: Beats) -> NDArray[np.bool_]:
+    """The beats that have a tick and were recorded from there to their end."""
+    heard = np.isfinite(found.tick)
+    return heard & is_recorded(run, np.where(heard, found.tick, 0.0)) & is_recorded(run, found.end)
+
+
+def _contacts(run: Trajectory, parts: Roles) -> _Contacts:
+    assert parts.wheel and parts.lever
+    wheel = contact_events(run, involves(parts.wheel), *TOUCH, EventKind.OPEN)
+    fixed = {body.name for body in run.scene.bodies if body.motion == "fixed"}
+    banking = contact_events(run, between(parts.lever, fixed), *TOUCH)["t"]
+    times = np.ascontiguousarray(wheel["t"])
+    touching = np.isin(wheel["kind"], TOUCH)
+    return _Contacts(times, progress(run, parts.wheel, times), held(wheel), touching, np.ascontiguousarray(banking))
+
+
+def _beat(found: Beats, contacts: _Contacts, i: int, way: tuple[float, float]) -> Iterator[Phase]:
+    """The phases of beat `i`, without angles; `way`: the wheel's progress from its tick to its end."""
+    entry, end = found.tick[i], found.end[i]
+    first, last = np.searchsorted(contacts.times, (entry, end), side="left")
+    marks = _release_and_lock(contacts, slice(first, last), *way)
+    if marks is None:
+        return
+    unlocked, caught, let_off, lock = marks
+    names = ("unlock", "catch-up", "impulse", "drop")
+    times = (entry, unlocked, caught, let_off, lock)
+    for name, (t0, t1) in zip(names, pairwise(times), strict=True):
+        yield Phase(i + 1, name, float(t0), float(t1))
+    resting = lock
+    met = int(np.searchsorted(contacts.banking, lock, side="left"))
+    if met < len(contacts.banking) and contacts.banking[met] <= end:
+        resting = float(contacts.banking[met])
+        yield Phase(i + 1, "run to banking", lock, resting)
+    if i + 1 < len(found) and np.isfinite(found.tick[i + 1]):
+        yield Phase(i + 1, "locked", resting, float(found.tick[i + 1]))
+
+
+def _release_and_lock(contacts: _Contacts, own: slice, at_entry: float, at_end: float) -> Marks | None:
+    """Release, first touch after it, last touch before the drop, and lock (s), among the wheel's events `own` of one beat."""
+    times, angle, holding = contacts.times[own], contacts.angle[own], contacts.held[own]
+    way = at_end - at_entry
+    if len(times) < 3 or not way > 0.0:
+        return None
+    # Free runs: no contact holds from one event to the next, and time passes.
+    free = (holding[:-1] == 0) & (np.diff(times) > 0.0)
+    dropping = free & (angle[1:] >= at_end - NEAR_REST * way)
+    if not dropping.any():
+        return None
+    drop = int(np.argmax(np.where(dropping, np.diff(angle), -np.inf)))
+    released = int(np.flatnonzero(angle[: drop + 1] <= angle[: drop + 1].min() + STANDING * way)[-1])
+    caught = np.flatnonzero(contacts.touching[own][released + 1 : drop + 1])
+    if len(caught) == 0:
+        return None
+    return float(times[released]), float(times[released + 1 + caught[0]]), float(times[drop]), float(times[drop + 1])
+
+
+def _with_angles(run: Trajectory, parts: Roles, rows: list[Phase]) -> list[Phase]:
+    """The rows with the angles of wheel, lever and oscillator, without those that end outside what was recorded."""
+    if not rows:
+        return []
+    starts, ends = np.array([row.start for row in rows]), np.array([row.end for row in rows])
+    kept = is_recorded(run, starts) & is_recorded(run, ends)
+    columns = [run.slices[name].start for name in (parts.wheel, parts.lever, parts.oscillator) if name]
+    first, last = run.sample(starts)[0][:, columns], run.sample(ends)[0][:, columns]
+    turns = last - first
+    return [
+        Phase(row.beat, row.name, row.start, row.end, tuple(first[k].tolist()), tuple(turns[k].tolist()))
+        for k, row in enumerate(rows)
+        if kept[k]
+    ]

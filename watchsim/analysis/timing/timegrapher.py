@@ -1,0 +1,71 @@
+"""What would a timegrapher show?
+
+It hears noises only. From the first of a beat (the pin meets the fork, A) to the last loud one (a tooth meets the locking
+face, C) the balance is taken to swing through the lift angle, so that the amplitude is λ / (2 sin(π f Δt)). In truth C comes
+before the end of the lift, so that an instrument reads more than the true amplitude, which stands beside it in the summary.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from watchsim.analysis.timing.averages import Window, averages, last_window, mean_and_error
+from watchsim.analysis.timing.beats import DAY, Beats
+from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.record.trajectory import Array, Trajectory
+
+LOUD = 1.0 / 3.0  # of the energy of the beat's loudest noise; a tooth's rebounds from the stone are fainter
+LONGEST = 1.0 / 3.0  # of half a period; later noises, such as a knock at the turning point, are not the escapement's
+
+
+def timegrapher(run: Trajectory, found: Beats, window: Window | None = None) -> dict[str, Any] | None:
+    """Readings over `window` (s; default the last one), null where not to be had; None where no beat is heard.
+
+    `lift_angle_deg`, `interval_ms` from A to C, `amplitude_deg`, and from A alone `rate_s_per_d` and `beat_error_ms`.
+    """
+    start, end = window or last_window(run, found.nominal_period)
+    inside = (found.tick >= start) & (found.tick <= end)
+    if not inside.any():
+        return None
+    between = found.tick - np.concatenate([np.full(2, np.nan), found.tick])[: len(found)]
+    period, _ = mean_and_error(between[inside & (found.tick - between >= start)])
+    interval, _ = mean_and_error(intervals(run, found)[inside])
+    lift = run.scene.lift_angle
+    return {
+        "lift_angle_deg": None if lift is None else math.degrees(lift),
+        "interval_ms": None if interval is None else 1e3 * interval,
+        "amplitude_deg": amplitude_deg(lift, interval, found.nominal_period),
+        "rate_s_per_d": None if period is None else DAY * (found.nominal_period / period - 1.0),
+        "beat_error_ms": averages(found, (start, end)).beat_error_ms,
+    }
+
+
+def amplitude_deg(lift: float | None, interval: float | None, period: float) -> float | None:
+    """Amplitude (degrees) from the lift angle (rad), the interval from A to C and the nominal period (s)."""
+    if lift is None or interval is None or not 0.0 < interval < 0.5 * period:
+        return None
+    return math.degrees(lift / (2.0 * math.sin(math.pi * interval / period)))
+
+
+def intervals(run: Trajectory, found: Beats) -> Array:
+    """From noise A to noise C of each beat, s; nan where one of them is missing."""
+    times, energies = noises(run)
+    out = np.full(len(found), np.nan)
+    latest = np.minimum(found.end, found.tick + LONGEST * 0.5 * found.nominal_period)
+    for i in np.flatnonzero(np.isfinite(found.tick)):
+        first, last = np.searchsorted(times, (found.tick[i], latest[i]), side="right")
+        if last > first:
+            loud = np.flatnonzero(energies[first:last] >= LOUD * energies[first:last].max())
+            out[i] = times[first + loud[-1]] - found.tick[i]
+    return out
+
+
+def noises(run: Trajectory) -> tuple[Array, Array]:
+    """Instants with impacts (s) and the energy lost in all impacts of each (J)."""
+    impacts = run.events[run.events["kind"] == EventKind.IMPACT]
+    times, place = np.unique(impacts["t"], return_inverse=True)
+    energies: Array = np.bincount(place, weights=impacts["energy_lost"], minlength=len(times)).astype(float)
+    return times, energies

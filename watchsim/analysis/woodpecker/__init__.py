@@ -1,1 +1,0 @@
-"""Does the woodpecker toy come out?"""

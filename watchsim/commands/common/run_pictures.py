@@ -1,0 +1,111 @@
+"""Which plots and movies come with a run, and what if one of them cannot be drawn?"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from watchsim import stopping
+from watchsim.commands.common.console import Progress, say
+
+if TYPE_CHECKING:
+    from watchsim.simulation.record.trajectory import Trajectory
+
+
+class LeftOut(Exception):
+    """The process is to stop: a picture under way is given up, it can be drawn later."""
+
+
+MOST_PLOTTED = 12  # bodies, in the plots that come with a run; each costs a fiftieth of a second and an inch of paper
+WHOLE_RUN = 10.0  # s that the movie of a whole run takes
+
+
+def pictures(run: Trajectory, plots: bool, movie: bool, gif: bool) -> dict[str, Callable[[Path], object]]:
+    """Name in the results folder -> what draws it into the file it is given."""
+    found = _plots(run) if plots else {}
+    if movie:
+        found["movie.mp4"] = lambda path: _movie(run, path, slow=1 / 20)
+    if gif:
+        found["movie.gif"] = lambda path: _movie(run, path, slow=1 / 40)
+    return {name: _drawn(draw) for name, draw in found.items()}
+
+
+def _drawn(draw: Callable[[Path], object]) -> Callable[[Path], None]:
+    """The same, but a picture that cannot be drawn costs a line, not the run."""
+
+    def attempt(path: Path) -> None:
+        if stopping.requested():
+            return
+        try:
+            draw(path)
+        except LeftOut:
+            path.unlink(missing_ok=True)
+        except Exception as error:
+            path.unlink(missing_ok=True)
+            say(f"{path.name} could not be drawn: {error}")
+
+    return attempt
+
+
+def _plots(run: Trajectory) -> dict[str, Callable[[Path], object]]:
+    """Kinematic plots: all that was recorded, and the last beats."""
+    from watchsim.render.plots import Kinematics, write_png
+
+    if len(run.t) < 2:
+        return {}
+    moving = [body.name for body in run.scene.bodies if body.motion != "fixed"]
+    if len(moving) > MOST_PLOTTED:
+        say(f"Plots of {MOST_PLOTTED} of {len(moving)} moving bodies; watchsim plot RUN --bodies NAMES draws others.")
+    shown_bodies = moving[:MOST_PLOTTED]
+    windows = {"plots/kinematics.png": None, "plots/last_beats.png": last_beats(run)}
+    shown = functools.cache(lambda: Kinematics(run, shown_bodies))
+
+    def plot(window: tuple[float, float] | None) -> Any:
+        return lambda path: write_png(shown().show(window), path)
+
+    return {name: plot(window) for name, window in windows.items()}
+
+
+def last_beats(run: Trajectory, share: float = 1.5) -> tuple[float, float]:
+    """The last one and a half oscillations, or the last tenth where nothing keeps time, of the last stretch recorded."""
+    from watchsim.render.frame.pose_history import recorded
+    from watchsim.scene.oscillation import frequency
+    from watchsim.scene.roles import keeps_time
+
+    start, end = recorded(run)[-1]
+    hertz = frequency(run.scene) if keeps_time(run.scene) else None
+    length = share / hertz if hertz else 0.1 * (end - start)
+    return max(start, end - length), end
+
+
+def filmed(run: Trajectory, slow: float) -> tuple[tuple[float, float], float]:
+    """What a movie shows, and how fast: the last oscillation at the speed `slow`; where nothing keeps time, all of it.
+
+    All means the last stretch that was recorded without a gap, in WHOLE_RUN seconds.
+    """
+    from watchsim.render.frame.pose_history import recorded
+    from watchsim.scene.roles import keeps_time
+
+    if keeps_time(run.scene):
+        return last_beats(run, 1.1), slow
+    start, end = recorded(run)[-1]
+    return (start, end), (end - start) / WHOLE_RUN
+
+
+def _movie(run: Trajectory, path: Path, slow: float) -> None:
+    from watchsim.render.run_movie import movie
+
+    window, speed = filmed(run, slow)
+    progress = Progress(f"{path.name}, frames:")
+
+    def drawn(done: int, whole: int) -> None:
+        if stopping.requested():
+            raise LeftOut
+        progress(done, whole)
+
+    try:
+        movie(run, path, window=window, speed=speed, progress=drawn)
+    finally:
+        progress.close()

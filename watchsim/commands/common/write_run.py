@@ -1,0 +1,132 @@
+"""How does a finished run get onto the disk, whatever happens?
+
+It may have taken a night. So what it needs from the disk is read before it begins; where its place can no longer be written it
+goes to another one; and what a fault of this program leaves of its numbers and pictures does not keep the motion from it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from watchsim import stopping
+from watchsim.commands.common.console import InputError, Progress, say
+
+if TYPE_CHECKING:
+    from watchsim.scene.scene import Scene
+    from watchsim.simulation.record.trajectory import Trajectory
+
+
+@dataclass(frozen=True, slots=True)
+class Extras:
+    """What a results folder is to hold besides the motion and its numbers."""
+
+    plots: bool = True
+    movie: bool = False
+    gif: bool = False
+    error_bars: bool = False
+    profile: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Goal:
+    """Where a run is to be kept, and what travels with it there, or anywhere else: the locked scene and its drawings."""
+
+    folder: Path
+    replace: bool
+    scene: Mapping[str, str | bytes]  # name in the results folder -> content
+
+
+def goal_of(scene: Scene, folder: Path, replace: bool) -> Goal:
+    """To be made before the run: its scene and drawings may be gone when it ends."""
+    from watchsim.results.scene_copy import travelling
+
+    return Goal(folder, replace, travelling(scene))
+
+
+def write(run: Trajectory, goal: Goal, extras: Extras, changed: Sequence[str] = ()) -> dict[str, Any]:
+    """Write the results folder; returns the summary as written.
+
+    `changed` holds the options by which the run is another than the scene's own: its expectations are then not judged.
+    InputError where the results had to go elsewhere.
+    """
+    from watchsim.analysis.summary import tables
+    from watchsim.commands.common.run_pictures import pictures
+    from watchsim.simulation.stops import Stop
+
+    if run.stop == Stop.INTERRUPTED:
+        say("Interrupted: writing what was simulated; a second Ctrl-C gives it up ...")
+    try:
+        numbers = _numbers(run, extras, changed)
+        said = [*(f"Note: {note}" for note in numbers["notes"]), report_text(run, numbers)]
+        beside: dict[str, Any] = {**goal.scene, **tables(run), "report.txt": "\n".join(said) + "\n"}
+    except Exception:
+        say(f"The numbers of this run could not be made. Its motion is kept in {_bare(run, goal)}")
+        raise
+    drawn = pictures(run, extras.plots, extras.movie, extras.gif)
+    _save(run, goal, numbers, beside, drawn)
+    return numbers
+
+
+def report_text(run: Trajectory, summary: dict[str, Any]) -> str:
+    """What the terminal says of a run, which report.txt keeps."""
+    from watchsim.analysis.summary import summary_text
+
+    text = summary_text(run, summary)
+    if "profile" in summary:
+        from watchsim.bench.profile.run_profile import profile_text
+
+        text += "\n" + profile_text(summary["profile"])
+    return text
+
+
+def _numbers(run: Trajectory, extras: Extras, changed: Sequence[str]) -> dict[str, Any]:
+    from watchsim.analysis.expectations import not_judged
+    from watchsim.analysis.summary import summary
+    from watchsim.results.tables import plain
+
+    numbers: dict[str, Any] = plain(_with_error_bars(run) if extras.error_bars and not stopping.requested() else summary(run))
+    if changed:
+        numbers["expect"] = [not_judged(entry, changed) for entry in numbers["expect"]]
+    if extras.profile:
+        from watchsim.bench.profile.run_profile import profile_of
+
+        numbers["profile"] = plain(profile_of(run))
+    return numbers
+
+
+def _with_error_bars(run: Trajectory) -> dict[str, Any]:
+    """The summary with errors from a second, more exact run."""
+    from watchsim.analysis.error_bars import more_exact, with_error_bars
+    from watchsim.analysis.summary import summary
+
+    progress = Progress("once more, more exactly; simulated s:")
+    try:
+        return with_error_bars(summary(run), summary(more_exact(run, progress)))
+    finally:
+        progress.close()
+
+
+def _save(run: Trajectory, goal: Goal, numbers: Mapping[str, Any], beside: dict[str, Any], drawn: dict[str, Any]) -> None:
+    from watchsim.results.folder import LOCK, filler, write_results
+    from watchsim.storage.rescue import write_elsewhere
+
+    try:
+        write_results(run, goal.folder, numbers, str(beside[LOCK]), extra={**beside, **drawn}, force=goal.replace)
+    except OSError as error:
+        # Without pictures, which take most of the room, and which can be drawn later.
+        place = write_elsewhere(goal.folder.name, filler(run, numbers, beside), "the results")
+        raise InputError(f"{error}.\nThe results were saved, without pictures, in {place}") from error
+    except Exception:
+        say(f"The results could not be written as they should. The motion is kept in {_bare(run, goal)}")
+        raise
+
+
+def _bare(run: Trajectory, goal: Goal) -> Path:
+    """Save the motion alone, which everything else can be made from."""
+    from watchsim.results.folder import bare_filler
+    from watchsim.storage.rescue import write_elsewhere
+
+    return write_elsewhere(goal.folder.name, bare_filler(run, goal.scene), "the motion")

@@ -1,0 +1,146 @@
+"""Which generalized forces h(t, q, u) act, apart from contacts?"""
+
+from __future__ import annotations
+
+import math
+
+from watchsim.candidates.cell_lookup import along
+from watchsim.jit import entry, kernel
+from watchsim.model.records import OVER_TIME
+
+
+@kernel
+def table_value(model, table, x):
+    """Linear interpolation in one table; beyond its ends the end values."""
+    first, last = table.start, table.start + table.count - 1
+    if x <= model.knots[first, 0]:
+        return model.knots[first, 1]
+    if x >= model.knots[last, 0]:
+        return model.knots[last, 1]
+    while last - first > 1:
+        middle = (first + last) // 2
+        if model.knots[middle, 0] <= x:
+            first = middle
+        else:
+            last = middle
+    fraction = (x - model.knots[first, 0]) / (model.knots[last, 0] - model.knots[first, 0])
+    return model.knots[first, 1] + fraction * (model.knots[last, 1] - model.knots[first, 1])
+
+
+@kernel
+def driving_force(model, i, q):
+    """Constant force of coordinate i, plus gravity on an excentric rotor: torque m (r × g) with r turned by q."""
+    coordinate = model.coordinates[i]
+    force = coordinate.force
+    if coordinate.weight_x != 0.0 or coordinate.weight_y != 0.0:
+        force += math.cos(q) * coordinate.weight_y - math.sin(q) * coordinate.weight_x
+    return force
+
+
+@kernel
+def damping_force(model, i, u):
+    """-c u - c2 u|u| of coordinate i; dry friction is in bearing_friction.py."""
+    coordinate = model.coordinates[i]
+    return -u * (coordinate.viscous + coordinate.quadratic * abs(u))
+
+
+@kernel
+def stretch(joint, q):
+    """How far the spring between a carried body and its carrier is wound, rad."""
+    return q[joint.coordinate] - q[joint.on] - joint.rest
+
+
+@kernel
+def joint_damping(joint, u):
+    """-c w - c2 w|w| with the turning rate w of a carried body against its carrier."""
+    w = u[joint.coordinate] - u[joint.on]
+    return -w * (joint.viscous + joint.quadratic * abs(w))
+
+
+@kernel
+def table_force(model, j, t, q):
+    """What table j gives at time t and coordinates q."""
+    table = model.tables[j]
+    return table_value(model, table, t if table.over == OVER_TIME else along(q, table.coordinate, table.on))
+
+
+@kernel
+def forces(model, t, q, u, out_h):
+    """h for all coordinates: drive, springs, damping. What acts at the pivot of a carried body acts back on its carrier."""
+    for i in range(len(model.coordinates)):
+        coordinate = model.coordinates[i]
+        out_h[i] = (
+            driving_force(model, i, q[i]) - coordinate.stiffness * (q[i] - coordinate.rest) + damping_force(model, i, u[i])
+        )
+    for j in range(len(model.joints)):
+        joint = model.joints[j]
+        torque = joint.force - joint.stiffness * stretch(joint, q) + joint_damping(joint, u)
+        out_h[joint.coordinate] += torque
+        out_h[joint.on] -= torque
+    for j in range(len(model.tables)):
+        table, force = model.tables[j], table_force(model, j, t, q)
+        out_h[table.coordinate] += force
+        if table.on >= 0:
+            out_h[table.on] -= force
+
+
+@kernel
+def drive_power(model, t, q, u):
+    """Power of everything that is neither a spring nor damping (motor torques, gravity), W."""
+    power = 0.0
+    for i in range(len(model.coordinates)):
+        power += u[i] * driving_force(model, i, q[i])
+    for j in range(len(model.joints)):
+        joint = model.joints[j]
+        power += (u[joint.coordinate] - u[joint.on]) * joint.force
+    for j in range(len(model.tables)):
+        table = model.tables[j]
+        power += along(u, table.coordinate, table.on) * table_force(model, j, t, q)
+    return power
+
+
+@kernel
+def damping_power(model, u):
+    """Power taken by viscous and quadratic damping, W; never negative."""
+    power = 0.0
+    for i in range(len(model.coordinates)):
+        power -= u[i] * damping_force(model, i, u[i])
+    for j in range(len(model.joints)):
+        joint = model.joints[j]
+        power -= (u[joint.coordinate] - u[joint.on]) * joint_damping(joint, u)
+    return power
+
+
+@kernel
+def joint_energy(model, q):
+    """Energy in the springs between carried bodies and their carriers, J."""
+    energy = 0.0
+    for j in range(len(model.joints)):
+        joint = model.joints[j]
+        energy += 0.5 * joint.stiffness * stretch(joint, q) ** 2
+    return energy
+
+
+@entry
+def stored_energy(model, q, u):
+    """Kinetic energy and energy in springs, J."""
+    energy = 0.0
+    for i in range(len(model.coordinates)):
+        coordinate = model.coordinates[i]
+        way = q[i] - coordinate.rest
+        energy += 0.5 * (coordinate.mass * u[i] * u[i] + coordinate.stiffness * way * way)
+    return energy + joint_energy(model, q)
+
+
+@kernel
+def next_knot(model, t):
+    """Time of the first knot after t of all tables over time; infinity if there is none. A step must not jump over it."""
+    first = math.inf
+    for j in range(len(model.tables)):
+        table = model.tables[j]
+        if table.over == OVER_TIME:
+            for i in range(table.start, table.start + table.count):
+                if model.knots[i, 0] > t * (1.0 + 1e-15):
+                    first = min(first, model.knots[i, 0])
+                    break
+    return first

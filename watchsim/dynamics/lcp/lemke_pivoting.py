@@ -1,0 +1,238 @@
+"""Which x solves y = A x + b, y >= 0, x >= 0, y.x = 0?
+
+Lemke's method with the lexicographic ratio test, which cannot cycle (Cottle, Pang, Stone: The Linear Complementarity
+Problem, ch. 4). Rows and columns are first scaled by powers of two, which changes neither the solutions nor a single
+bit of rounding, so that masses of 1e-12 and forces of 1e6 look alike. The basis Lemke ends with is solved afresh from
+the data. It knows no mechanics.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.dynamics.lcp.basis import PIVOT, is_solution, solve_active
+from watchsim.dynamics.lcp.scaling import scale, unscale
+from watchsim.jit import by_reference, entry, kernel
+
+OK, RAY, MAX_ITER, INEXACT = 0, 1, 2, 3
+
+UNEVEN, PERIOD = 5, 7  # for unlike entries of d on other paths
+ENUMERATED_SIZE = 12  # 2^12 small eliminations: some milliseconds
+TIE = 1e-10  # ratios closer than this are equal; 1e-12 sends 1 in 1000 singular problems down a ray
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+
+class LcpWork(NamedTuple):
+    """Scratch for problems up to a size; see `lcp_work`."""
+
+    matrix: Array  # scaled A
+    load: Array  # scaled b
+    row_scale: Array
+    column_scale: Array
+    tableau: Array  # columns: y, x, z0, right-hand side
+    basis: Integers  # variable of each row: y_i is i, x_i is n + i, z0 is 2 n
+    is_active: Integers  # 1 where x_i may be positive
+    square: Array  # elimination of the active block, right-hand side last
+    order: Integers  # the unknown of each of its columns
+    trial: Array  # scaled x
+    worst: Array  # (1,) worst violation of the conditions in any accepted solution, see `is_solution`
+
+
+LcpWorkRef = by_reference(LcpWork, __name__)
+
+
+def lcp_work(size: int) -> LcpWork:
+    """Scratch for problems of up to `size` unknowns."""
+    return LcpWork(
+        matrix=np.zeros((size, size)),
+        load=np.zeros(size),
+        row_scale=np.ones(size),
+        column_scale=np.ones(size),
+        tableau=np.zeros((size, 2 * size + 2)),
+        basis=np.zeros(size, np.int64),
+        is_active=np.zeros(size, np.int64),
+        square=np.zeros((size, size + 1)),
+        order=np.zeros(size, np.int64),
+        trial=np.zeros(size),
+        worst=np.zeros(1),
+    )
+
+
+@entry
+def solve_lcp(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> int:
+    """Solve the leading n×n problem into out_x[:n]: Lemke, checked, then enumeration up to ENUMERATED_SIZE unknowns.
+
+    OK: out_x solves the problem to rounding. RAY, MAX_ITER, INEXACT: why Lemke failed, and enumeration found nothing.
+    """
+    status = lemke_checked(A, b, n, work, out_x)
+    if status != OK and n <= ENUMERATED_SIZE and enumerate_lcp(A, b, n, work, out_x) == OK:
+        return OK
+    return status
+
+
+@kernel
+def lemke_checked(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> int:
+    """Lemke's method; OK only if what it ended with solves the problem to rounding, else INEXACT, RAY or MAX_ITER."""
+    return lemke_on_path(A, b, n, 0, work, out_x)
+
+
+@kernel
+def lemke_on_path(A: Array, b: Array, n: int, path: int, work: LcpWork, out_x: Array) -> int:
+    """The same on another path: the numbers of the paths have no meaning, but 0 is the usual one."""
+    status: int = _follow(A, b, n, path, work, out_x)
+    if status == OK and not (_is_trivial(b, n) or is_solution(n, work)):
+        return INEXACT
+    return status
+
+
+@entry
+def lemke(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> int:
+    """Lemke's method on the leading n×n problem; out_x[:n] is set when the status is OK (unchecked), else zero."""
+    return _follow(A, b, n, 0, work, out_x)
+
+
+@kernel
+def _follow(A: Array, b: Array, n: int, path: int, work: LcpWork, out_x: Array) -> int:
+    for i in range(n):
+        out_x[i], work.is_active[i] = 0.0, 0
+    if _is_trivial(b, n):
+        return OK
+    magnitude = scale(A, b, n, work)
+    status = _pivot_to_end(n, path, work)
+    if status == OK:
+        _solve_basis(n, work)
+        unscale(n, magnitude, work, out_x)
+    return status
+
+
+@entry
+def enumerate_lcp(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> int:
+    """Try every set of active indices, the empty one first; OK with out_x[:n], or RAY when none solves the problem."""
+    magnitude = scale(A, b, n, work)
+    for chosen in range(1 << n):
+        for i in range(n):
+            work.is_active[i] = (chosen >> i) & 1
+        solve_active(n, work)
+        if is_solution(n, work):
+            unscale(n, magnitude, work, out_x)
+            return OK
+    for i in range(n):
+        out_x[i] = 0.0
+    return RAY
+
+
+@kernel
+def _is_trivial(b: Array, n: int) -> bool:
+    """True when x = 0 solves the problem."""
+    for i in range(n):
+        if not b[i] >= 0.0:
+            return False
+    return True
+
+
+@kernel
+def _pivot_to_end(n: int, path: int, work: LcpWork) -> int:
+    """Lemke's path on y - A x - d z0 = b, from z0 large enough to the basis that z0 leaves."""
+    z0 = 2 * n
+    row = _start(n, path, work)
+    entering = z0
+    for _ in range(50 + 20 * n):
+        leaving = work.basis[row]
+        _pivot(n, row, entering, work)
+        if leaving == z0:
+            return OK
+        entering = leaving + n if leaving < n else leaving - n
+        row = _leaving_row(n, entering, work)
+        if row < 0:
+            return RAY
+    return MAX_ITER
+
+
+@kernel
+def _start(n: int, path: int, work: LcpWork) -> int:
+    """Set up the tableau; returns the row z0 enters in: the most negative load over d, the last of equals (lexicographic).
+
+    Any d > 0 will do (Cottle, Pang, Stone, 4.4); path 0 takes ones.
+    """
+    row, lowest = 0, math.inf
+    for i in range(n):
+        work.basis[i] = i
+        for j in range(n):
+            work.tableau[i, j] = 0.0
+            work.tableau[i, n + j] = -work.matrix[i, j]
+        work.tableau[i, i] = 1.0
+        cover = 1.0 + path * ((UNEVEN * i + path) % PERIOD) / PERIOD
+        work.tableau[i, 2 * n] = -cover
+        work.tableau[i, 2 * n + 1] = work.load[i]
+        if work.load[i] / cover <= lowest:
+            row, lowest = i, work.load[i] / cover
+    return row
+
+
+@kernel
+def _pivot(n: int, row: int, column: int, work: LcpWork) -> None:
+    """Gauss-Jordan step: `column` becomes the unit vector of `row` and enters the basis."""
+    T = work.tableau
+    factor = 1.0 / T[row, column]
+    for j in range(2 * n + 2):
+        T[row, j] *= factor
+    T[row, column] = 1.0
+    for i in range(n):
+        factor = T[i, column]
+        if i != row and factor != 0.0:
+            for j in range(2 * n + 2):
+                T[i, j] -= factor * T[row, j]
+            T[i, column] = 0.0
+    work.basis[row] = column
+
+
+@kernel
+def _leaving_row(n: int, column: int, work: LcpWork) -> int:
+    """Row of the lexicographically smallest ratio, z0's row among equals; -1 when the column bounds nothing (a ray)."""
+    largest = 1.0
+    for i in range(n):
+        largest = max(largest, work.tableau[i, column])
+    found = False
+    best = column  # any integer: numba would compile the comparison twice for a literal
+    for i in range(n):
+        if work.tableau[i, column] > PIVOT * largest and (not found or _is_smaller(n, i, best, column, work)):
+            found = True
+            best = i
+    return best if found else -1
+
+
+@kernel
+def _is_smaller(n: int, i: int, k: int, column: int, work: LcpWork) -> bool:
+    """True when row i leaves before row k: compare right-hand sides over the pivots, then z0, then the inverse basis."""
+    T = work.tableau
+    left, right = T[i, 2 * n + 1] / T[i, column], T[k, 2 * n + 1] / T[k, column]
+    if abs(left - right) > TIE * max(1.0, abs(left)):
+        return left < right
+    if work.basis[i] == 2 * n or work.basis[k] == 2 * n:
+        return work.basis[i] == 2 * n
+    for j in range(n):
+        left, right = T[i, j] / T[i, column], T[k, j] / T[k, column]
+        if abs(left - right) > TIE * max(1.0, abs(left)):
+            return left < right
+    return False
+
+
+@kernel
+def _solve_basis(n: int, work: LcpWork) -> None:
+    """The x of the final basis: solved afresh from the scaled data, or, if that block is singular, read off the tableau."""
+    for i in range(n):
+        work.is_active[i] = 0
+    for row in range(n):
+        if n <= work.basis[row] < 2 * n:
+            work.is_active[work.basis[row] - n] = 1
+    if solve_active(n, work) and is_solution(n, work):
+        return
+    for row in range(n):
+        if n <= work.basis[row] < 2 * n:
+            work.trial[work.basis[row] - n] = max(0.0, work.tableau[row, 2 * n + 1])

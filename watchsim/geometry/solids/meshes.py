@@ -1,0 +1,191 @@
+"""How do outlines and solids become trimesh's paths and meshes, and the other way round?
+
+Everything here is in millimetres: trimesh's own tolerances are absolute and made for numbers of that size. GLB files, which
+are in metres by their standard, are scaled as they are written.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import cast
+
+import numpy as np
+import trimesh
+from numpy.typing import NDArray
+from trimesh.path import Path2D, entities
+from trimesh.visual import TextureVisuals
+from trimesh.visual.material import PBRMaterial
+
+from watchsim.geometry.loop import Loop
+from watchsim.geometry.polyline import chords, polyline
+from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point
+from watchsim.geometry.solids.enclosed_area import pieces, region
+
+MM = 1e3
+SAME_VERTEX = 1e-12  # m: two edges this close share a vertex, so that trimesh sees the outline closed
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A named mesh (mm, in the frame of its body) with its colour "#rrggbb" and how metallic (0 to 1) it looks."""
+
+    name: str
+    mesh: trimesh.Trimesh
+    colour: str
+    metallic: float
+
+
+@dataclass(frozen=True)
+class Placed:
+    """The pieces of one body and where the body stands: position in metres, angle in radians."""
+
+    name: str
+    pieces: Sequence[Piece]
+    position: Point = (0.0, 0.0)
+    angle: float = 0.0
+
+
+def plate(loops: Iterable[Loop], bottom: float, thickness: float, deviation: float) -> trimesh.Trimesh | None:
+    """The outlines (metres, holes kept) from the height `bottom` up by `thickness` metres; None where they have no area."""
+    parts = [
+        trimesh.creation.extrude_polygon(part, MM * thickness, engine="earcut") for part in pieces(region(loops, deviation, MM))
+    ]
+    if not parts:
+        return None
+    mesh = _together(parts)
+    mesh.apply_translation((0.0, 0.0, MM * bottom))
+    return mesh
+
+
+def revolved(profile: Iterable[Loop], deviation: float) -> trimesh.Trimesh | None:
+    """A half profile (metres, its axis along x, material at y >= 0) turned about the z axis: x becomes the height."""
+    closed = [loop for loop in profile if loop.closed]
+    widest = max((float(polyline(loop, deviation)[:, 1].max()) for loop in closed), default=0.0)
+    if not widest > 0.0:
+        return None
+    sections = chords(Arc(0.0, 0.0, widest, 0.0, TURN), deviation)
+    parts = []
+    for part in pieces(region(closed, deviation, MM)):
+        for number, ring in enumerate((part.exterior, *part.interiors)):
+            line = np.asarray(ring.coords)[:, ::-1].copy()  # (radius, height)
+            line[:, 0] = np.maximum(line[:, 0], 0.0)
+            if ring.is_ccw == (number == 0):  # revolve wants outer rings clockwise as seen here
+                line = line[::-1]
+            parts.append(trimesh.creation.revolve(line, sections=sections))
+    return _together(parts) if parts else None
+
+
+def laid(mesh: trimesh.Trimesh, foot: Point, direction: Point, height: float) -> trimesh.Trimesh:
+    """The turned mesh with its axis in the plane through `foot` (metres) along `direction`, at the height `height` (metres)."""
+    (x, y), (ux, uy) = foot, direction
+    matrix = np.array([[0.0, uy, ux, MM * x], [0.0, -ux, uy, MM * y], [1.0, 0.0, 0.0, MM * height], [0.0, 0.0, 0.0, 1.0]])
+    return mesh.copy().apply_transform(matrix)
+
+
+def turned_about(mesh: trimesh.Trimesh, pivot: Point, angle: float) -> trimesh.Trimesh:
+    """A copy turned by `angle` radians about the upright line through `pivot` (metres)."""
+    return mesh.copy().apply_transform(_pose(pivot, angle) @ _pose((-pivot[0], -pivot[1]), 0.0))
+
+
+def glb(bodies: Sequence[Placed]) -> bytes:
+    """A binary glTF scene in metres: one node per body at its pose, below it one per piece, with colours."""
+    scene = trimesh.Scene()
+    for body in bodies:
+        pose = _pose(body.position, body.angle)
+        pose[:3, 3] /= MM
+        scene.graph.update(frame_from=scene.graph.base_frame, frame_to=body.name, matrix=pose)
+        for piece in body.pieces:
+            mesh = piece.mesh.copy()
+            mesh.apply_scale(1.0 / MM)
+            mesh.visual = TextureVisuals(material=_material(piece))
+            name = f"{body.name}.{piece.name}"
+            scene.add_geometry(mesh, node_name=name, geom_name=name, parent_node_name=body.name)
+    return trimesh.exchange.gltf.export_glb(scene)
+
+
+def stl(body: Placed) -> bytes:
+    """A binary STL file of all pieces of one body, millimetres, in the body's frame."""
+    return trimesh.exchange.stl.export_stl(_together([piece.mesh for piece in body.pieces]))
+
+
+def _together(parts: list[trimesh.Trimesh]) -> trimesh.Trimesh:
+    return cast(trimesh.Trimesh, trimesh.util.concatenate(parts))
+
+
+def _material(piece: Piece) -> PBRMaterial:
+    rgb = [int(piece.colour[k : k + 2], 16) for k in (1, 3, 5)]
+    return PBRMaterial(baseColorFactor=[*rgb, 255], metallicFactor=piece.metallic, roughnessFactor=0.45)
+
+
+def _pose(position: Point, angle: float) -> NDArray[np.float64]:
+    c, s = math.cos(angle), math.sin(angle)
+    x, y = MM * position[0], MM * position[1]
+    return np.array([[c, -s, 0.0, x], [s, c, 0.0, y], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
+
+
+def path2d(chains: Iterable[Loop]) -> Path2D:
+    """The edges as trimesh lines and three-point arcs, millimetres, layers kept, full circles closed."""
+    vertices: list[Point] = []
+    found: list[entities.Entity] = []
+
+    def vertex(p: Point) -> int:
+        vertices.append((MM * p[0], MM * p[1]))
+        return len(vertices) - 1
+
+    for chain in chains:
+        first = last = -1
+        for k, edge in enumerate(chain.edges):
+            if isinstance(edge, Arc) and edge.is_circle:
+                thirds = [vertex(edge.point(third / 3.0)) for third in range(3)]
+                found.append(entities.Arc(thirds, closed=True, layer=chain.layer))
+                continue
+            start = last if k and math.dist(chain.edges[k - 1].end, edge.start) <= SAME_VERTEX else vertex(edge.start)
+            first = start if first < 0 else first
+            back = k == len(chain.edges) - 1 and chain.closed and math.dist(edge.end, chain.edges[0].start) <= SAME_VERTEX
+            middle = [vertex(edge.point(0.5))] if isinstance(edge, Arc) else []
+            last = first if back and k else vertex(edge.end)
+            kind = entities.Arc if middle else entities.Line
+            found.append(kind([start, *middle, last], layer=chain.layer))
+    made = Path2D(entities=found, vertices=np.array(vertices, float).reshape(-1, 2), process=False)
+    made.units = "mm"
+    return made
+
+
+def edges_of(path: Path2D, scale: float) -> list[tuple[str, list[Edge]]]:
+    """For every entity of the path its layer and its lines and arcs; `scale` is metres per unit of the path.
+
+    ValueError for what is neither: curves, texts, arcs through three points in a line.
+    """
+    found = []
+    points = scale * np.asarray(path.vertices, float)
+    for number, entity in enumerate(path.entities):
+        corners = [(float(x), float(y)) for x, y in points[entity.points]]
+        edges: list[Edge] = []
+        if isinstance(entity, entities.Arc):
+            edges = [_arc(corners, bool(entity.closed), number)]
+        elif isinstance(entity, entities.Line):
+            edges = [Line(*a, *b) for a, b in pairwise(corners) if a != b]
+        else:
+            kind = type(entity).__name__
+            raise ValueError(f"entity {number} of the path is a {kind}: only lines and arcs make an outline")
+        found.append(("0" if entity.layer is None else str(entity.layer), edges))
+    return found
+
+
+def _arc(points: Sequence[Point], closed: bool, number: int) -> Arc:
+    """The arc from the first of three points through the second to the third; all the way round if `closed`."""
+    (ax, ay), (bx, by), (cx, cy) = points
+    ux, uy, vx, vy = ax - bx, ay - by, cx - bx, cy - by
+    doubled = 2.0 * (ux * vy - uy * vx)
+    if doubled == 0.0:
+        raise ValueError(f"entity {number} of the path is an arc through three points in a straight line")
+    uu, vv = ux * ux + uy * uy, vx * vx + vy * vy
+    x, y = bx + (vy * uu - uy * vv) / doubled, by + (ux * vv - vx * uu) / doubled
+    side = -math.copysign(1.0, doubled)
+    start, middle, end = (math.atan2(q - y, p - x) for p, q in points)
+    radius = math.fsum(math.dist(p, (x, y)) for p in points) / 3.0
+    sweep = TURN if closed else side * (middle - start) % TURN + side * (end - middle) % TURN
+    return Arc(x, y, radius, start, side * sweep)

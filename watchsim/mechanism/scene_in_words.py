@@ -1,0 +1,107 @@
+"""How are the places, springs, drives, damping and contacts of a scene told to people, in the units they choose?"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from watchsim.scene.carriers import at_start
+from watchsim.scene.force import Damping, Spring
+from watchsim.scene.oscillation import Oscillator, oscillator, oscillators
+from watchsim.scene.roles import keeps_time
+from watchsim.scene.scene import Scene
+from watchsim.units import metric, show, to
+
+NANOMETRES = 6  # decimals of a millimetre: rounding of a position does not look like a place
+SMALL = 0.1e-3  # m: less is not told in millimetres
+
+
+def force_lines(scene: Scene) -> Iterator[str]:
+    """A line for each centre distance, spring, drive, damper and contact, and for what swings by its weight."""
+    yield from _distance_lines(scene)
+    yield from _force_lines(scene)
+    yield from _contact_lines(scene)
+
+
+def place(value: float) -> str:
+    """A coordinate, to the nanometre: "7.131281 mm"."""
+    return f"{round(to(value, 'mm'), NANOMETRES) + 0.0:.{NANOMETRES}f}".rstrip("0").rstrip(".") + " mm"
+
+
+def length(value: float) -> str:
+    """A small or large distance: "12.5 mm", "3.71 nm"."""
+    return show(value, "mm", 4) if SMALL <= abs(value) < 1.0 else metric(value, "m", 4)
+
+
+def turned(value: float) -> str:
+    """An angle in degrees, without the digits of rounding."""
+    return f"{round(math.degrees(value), 9) + 0.0:.6g}°"
+
+
+def _distance_lines(scene: Scene) -> Iterator[str]:
+    """Between the pivots of bodies that are declared to touch."""
+    seen, start = set(), at_start(scene)
+    for contact in scene.contacts:
+        names = tuple(dict.fromkeys(side.body for side in contact.sides))
+        first, second = (start.body(name) for name in names)
+        if frozenset(names) not in seen and first.motion == second.motion == "pivot":
+            seen.add(frozenset(names))
+            yield f"  centre distance {names[0]} - {names[1]}: {place(math.dist(first.position, second.position))}"
+
+
+def _force_lines(scene: Scene) -> Iterator[str]:
+    for spring in scene.springs:
+        yield f"  spring on {spring.body}: {_spring(scene, spring)}"
+    yield from (_swing(scene, one) for one in oscillators(scene) if one.weight)
+    for torque in scene.torques:
+        unit = "N" if scene.body(torque.body).motion == "slide" else "N·m"
+        text = metric(torque.value, unit) if not torque.table else f"{len(torque.table)} values over {torque.over}"
+        yield f"  drive on {torque.body}: {text}"
+    for damping in scene.damping:
+        yield f"  damping on {damping.body}: {_damping(scene, damping)}"
+
+
+def _swing(scene: Scene, one: Oscillator) -> str:
+    """What gravity adds to the springs of a body, and how fast the two make it swing."""
+    by = "gravity alone" if not one.spring else "its springs and gravity together"
+    if one.hertz is None:
+        return f"  {one.body} does not swing: gravity topples it from {turned(one.rest)}"
+    beats = f" = {show(one.hertz, 'vph')}" if keeps_time(scene) else ""
+    return (
+        f"  {one.body} makes small swings at {show(one.hertz, 'Hz')}{beats} about {turned(one.rest)} by {by}, "
+        f"{metric(one.gravity, 'N·m/rad')} of it from gravity"
+    )
+
+
+def _spring(scene: Scene, spring: Spring) -> str:
+    body = scene.body(spring.body)
+    linear = body.motion == "slide"
+    swinging = oscillator(scene.bodies, (spring,), (0.0, 0.0), spring.body)
+    hertz = swinging.hertz if swinging and swinging.hertz else math.nan
+    stiffness = metric(spring.stiffness, "N/m" if linear else "N·m/rad")
+    rest = place(spring.rest) if linear else turned(spring.rest)
+    beats = f" = {show(hertz, 'vph')}" if keeps_time(scene) else " while it touches nothing"
+    return f"{stiffness}, {show(hertz, 'Hz')}{beats}, at rest at {rest}"
+
+
+def _damping(scene: Scene, damping: Damping) -> str:
+    viscous, quadratic = damping.viscous, damping.quadratic
+    linear = scene.body(damping.body).motion == "slide"
+    parts = [metric(viscous, "N·s/m" if linear else "N·m·s/rad")] if viscous else []
+    swinging = oscillator(scene.bodies, scene.springs, scene.gravity, damping.body)
+    if viscous and swinging and swinging.hertz:
+        parts.append(f"Q = {math.sqrt(swinging.stiffness * swinging.inertia) / viscous:.6g}")
+    if quadratic:
+        parts.append(metric(quadratic, "N·s²/m²" if linear else "N·m·s²/rad²"))
+    if damping.coulomb:
+        parts.append(f"dry friction {metric(damping.coulomb, 'N' if linear else 'N·m')}")
+    return ", ".join(parts) or "none"
+
+
+def _contact_lines(scene: Scene) -> Iterator[str]:
+    for contact in scene.contacts:
+        first, second = contact.sides
+        text = f"friction {contact.friction:g}, restitution {contact.restitution:g}"
+        if contact.tangential_restitution:
+            text += f", tangential {contact.tangential_restitution:g} ({scene.tangential_law})"
+        yield f"  contact {first} - {second}: {text}"

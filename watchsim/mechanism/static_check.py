@@ -1,0 +1,189 @@
+"""What does a scene amount to before anything is simulated?
+
+Echoes units, sizes, centre distances, mass, inertia and frequency, so that a wrong unit or a slipped digit is seen.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from watchsim.drawing.findings import Finding
+from watchsim.geometry.extent import extents
+from watchsim.mechanism.notes import notes
+from watchsim.mechanism.overlap import overlaps
+from watchsim.mechanism.pair_table import PairCount, pair_lines, pairs_entry
+from watchsim.mechanism.scene_in_words import force_lines, length, place, turned
+from watchsim.scene.body import Body
+from watchsim.scene.carriers import Weighed
+from watchsim.scene.oscillation import frequency, loads
+from watchsim.scene.scene import Scene
+from watchsim.scene.solid import HAIRSPRING, LYING, PLATE, UPRIGHT, Solid, total
+from watchsim.units import metric, show, to
+
+POISED = 1e-9  # of a body's size: below that, a centre of mass beside the pivot is rounding
+LENGTHS, MASSES, INERTIAS = ("mm", "m"), ("mg", "g", "kg"), ("mg·cm²", "g·cm²", "kg·m²")
+COORDINATES = {"fixed": 0, "pivot": 1, "slide": 1, "free": 3}
+
+
+def check_report(scene: Scene, pairs: Sequence[PairCount]) -> dict[str, Any]:
+    """What `check --json` prints; `pairs` holds the numbers of each pair of bodies that may touch."""
+    hertz = frequency(scene)
+    return {
+        "bodies": {
+            body.name: {**_body_entry(body), **_loaded_entry(body, load)}
+            for body, load in zip(scene.bodies, loads(scene.bodies)[1], strict=True)
+        },
+        "theory": {"frequency_hz": hertz, "vph": None if hertz is None else 7200.0 * hertz},
+        "pairs": pairs_entry(pairs),
+        "statics": {},
+        "findings": [finding.as_dict() for finding in (*scene.findings, *_overlap_findings(scene), *notes(scene))],
+    }
+
+
+def check_text(report: Mapping[str, Any], scene: Scene) -> str:
+    """The same for people, in watch units."""
+    parts = [scene.title, *_body_lines(scene), *force_lines(scene)]
+    if scene.contacts and all(finding["code"] != "overlap" for finding in report["findings"]):
+        parts.append("  nothing overlaps at the start, among all pairs that may touch")
+    parts += pair_lines(report["pairs"])
+    parts += [f"{finding['severity']}: {finding['message']}. {finding['fix']}".rstrip() for finding in report["findings"]]
+    return "\n".join(parts)
+
+
+def _body_entry(body: Body) -> dict[str, Any]:
+    return {
+        "mass_kg": body.mass,
+        "inertia_kg_m2": body.inertia,
+        "centre_of_mass_m": list(body.centre_of_mass),
+        "solids": [_solid_entry(solid) for solid in body.solids],
+        "position_m": list(body.position),
+        "coordinates": COORDINATES[body.motion],
+        **({"on": body.on} if body.on is not None else {}),
+    }
+
+
+def _loaded_entry(body: Body, load: Weighed) -> dict[str, Any]:
+    """Of a body that carries others: what moves with its coordinate, about its origin."""
+    if body.motion == "fixed" or (load.mass, load.inertia) == (body.mass, body.inertia):
+        return {}
+    return {"loaded_mass_kg": load.mass, "loaded_inertia_kg_m2": load.inertia}
+
+
+def _solid_entry(solid: Solid) -> dict[str, Any]:
+    """Inertia about the origin of the body's frame, like that of the body."""
+    return {
+        "layer": solid.layer,
+        "kind": solid.kind,
+        "count": solid.count,
+        "bores": list(solid.bores),
+        "mass_kg": solid.weight.mass,
+        "centre_of_mass_m": list(solid.weight.centre),
+        "inertia_kg_m2": solid.weight.about((0.0, 0.0)),
+    }
+
+
+def _overlap_findings(scene: Scene) -> Iterator[Finding]:
+    for overlap in overlaps(scene):
+        x, y = (1e3 * value for value in overlap.place)
+        yield Finding("overlap", "error", str(overlap), "Move or turn one of them.", x_mm=x, y_mm=y)
+
+
+def _body_lines(scene: Scene) -> Iterator[str]:
+    width = max(len(body.name) for body in scene.bodies)
+    for body, load in zip(scene.bodies, loads(scene.bodies)[1], strict=True):
+        yield f"  {body.name:{width}}  {body.motion:5}  " + ", ".join((_place(body), _size(body), *_weights(body)))
+        yield from _load_lines(scene, body, load)
+        yield from _solid_lines(body)
+        yield from _poise_lines(scene, body)
+
+
+def _solid_lines(body: Body) -> Iterator[str]:
+    """Every solid with what it adds, and their sum: what a designer checks a wrong density by."""
+    if not body.solids:
+        return
+    rows = [
+        (solid.name + (f" × {solid.count}" if solid.count > 1 else ""), _kind(solid), solid.weight) for solid in body.solids
+    ]
+    whole = total(body.solids)
+    if whole is not None:
+        rows.append(("together", "", whole))
+    width, kinds = max(len(row[0]) for row in rows), max(len(row[1]) for row in rows)
+    for name, kind, weight in rows:
+        x, y = (_millimetres(value) for value in weight.centre)
+        inertia = _fitting(weight.about((0.0, 0.0)), INERTIAS)
+        yield f"      {name:{width}}  {kind:{kinds}}  {_fitting(weight.mass, MASSES):>12}  {inertia:>16}  centre ({x}, {y}) mm"
+
+
+def _millimetres(value: float) -> str:
+    """To the nanometre, so that rounding does not look like a place."""
+    return f"{round(to(value, 'mm'), 6) + 0.0:.6f}".rstrip("0").rstrip(".")
+
+
+def _kind(solid: Solid) -> str:
+    """Of what shape, in words."""
+    return {
+        PLATE: f"plate of {show(solid.thickness, 'mm')}" + _less(len(solid.drilled)),
+        UPRIGHT: "turned, upright on the pivot",
+        LYING: "turned, lying",
+        HAIRSPRING: "hairspring, one third",
+    }[solid.kind]
+
+
+def _less(bores: int) -> str:
+    return f" less {bores} bore{'' if bores == 1 else 's'}" if bores else ""
+
+
+def _poise_lines(scene: Scene, body: Body) -> Iterator[str]:
+    """What a centre of mass beside the pivot does: gravity turns the body; the pull on the pivot itself moves nothing."""
+    distance = math.hypot(*body.centre_of_mass)
+    if body.motion != "pivot" or body.mass == 0.0 or distance <= POISED * (_reach(body) or distance):
+        return
+    pull = math.hypot(*scene.gravity)
+    what = f"its centre of mass lies {length(distance)} beside the pivot"
+    if pull > 0.0:
+        yield f"      {what}: gravity turns it with up to {metric(body.mass * distance * pull, 'N·m')}"
+    else:
+        yield f"      {what}; the scene has no gravity, so this does nothing"
+
+
+def _reach(body: Body) -> float:
+    """Half the larger side of the box around everything drawn."""
+    box = extents((*body.loops, *body.decoration))
+    return 0.5 * max(box[2] - box[0], box[3] - box[1]) if box else 0.0
+
+
+def _place(body: Body) -> str:
+    on = f"on {body.on} " if body.on is not None else ""
+    return f"{on}at ({place(body.position[0])}, {place(body.position[1])}), turned by {turned(body.angle)}"
+
+
+def _size(body: Body) -> str:
+    """Width and height of all outlines as drawn."""
+    box = extents(body.loops)
+    if box is None:
+        return "no outline"
+    return f"{_fitting(box[2] - box[0], LENGTHS)} × {_fitting(box[3] - box[1], LENGTHS)}"
+
+
+def _weights(body: Body) -> Iterator[str]:
+    if (body.motion != "fixed" or body.on is not None) and body.mass > 0.0:
+        yield f"mass {_fitting(body.mass, MASSES)}"
+    if body.motion in ("pivot", "free"):
+        yield f"inertia {_fitting(body.inertia, INERTIAS)}"
+
+
+def _load_lines(scene: Scene, body: Body, load: Weighed) -> Iterator[str]:
+    """What a body weighs together with what it carries."""
+    carried = [other.name for other in scene.bodies if other.on == body.name and other.mass > 0.0]
+    if body.motion == "fixed" or not carried:
+        return
+    weights = [f"mass {_fitting(load.mass, MASSES)}"] if load.mass > 0.0 else []
+    weights += [f"inertia {_fitting(load.inertia, INERTIAS)}"] if body.motion != "slide" else []
+    yield f"      with {' and '.join(carried)}: {', '.join(weights)}"
+
+
+def _fitting(value: float, units: tuple[str, ...]) -> str:
+    """In the first unit that needs at most four digits before the point."""
+    return show(value, next((unit for unit in units if abs(to(value, unit)) < 1e4), units[-1]), 5)

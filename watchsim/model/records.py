@@ -1,0 +1,203 @@
+"""What do the kernels read?
+
+A scene compiled once into flat, read-only record arrays in SI units. Record fields read like the theory
+(`model.primitives[k].radius`) with the compiler on and off.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.jit import by_reference
+
+Records = Any  # a numpy recarray; numba infers the record type
+
+FIXED, PIVOT, SLIDE, FREE = 0, 1, 2, 3
+MOTION_CODE = {"fixed": FIXED, "pivot": PIVOT, "slide": SLIDE, "free": FREE}
+
+CORNER, LINE, ARC = 0, 1, 2
+KIND_WORD = ("corner", "line", "arc")
+
+CONSTANT, OVER_ANGLE, OVER_TIME = 0, 1, 2
+
+BODY = np.dtype(
+    [
+        ("motion", "i8"),
+        ("first", "i8"),  # its first coordinate, -1 when fixed
+        ("x", "f8"),
+        ("y", "f8"),
+        ("angle", "f8"),
+        ("axis_x", "f8"),
+        ("axis_y", "f8"),
+        ("c", "f8"),  # cosine and sine of `angle`
+        ("s", "f8"),
+        ("carrier", "i8"),  # the moving body in whose frame (x, y) lies, -1: the movement
+    ]
+)
+
+COORDINATE = np.dtype(
+    [
+        ("mass", "f8"),  # kg or kg·m²
+        ("force", "f8"),  # constant part, N or N·m
+        ("viscous", "f8"),
+        ("coulomb", "f8"),  # dry friction of the bearing, N or N·m
+        ("quadratic", "f8"),
+        ("stiffness", "f8"),
+        ("rest", "f8"),
+        ("level", "f8"),  # where it stands in balance: passages of it are events
+        ("watched", "i8"),  # 1: its turning points and passages are events
+        ("weight_x", "f8"),  # gravity torque on an excentric rotor: cos(q) weight_y - sin(q) weight_x, see applied_forces.py
+        ("weight_y", "f8"),
+        ("load", "f8"),  # magnitude of drive and weight whatever the angle: the scale of their rounding, N or N·m
+        ("scale", "f8"),  # 1 rad, or the scene's size for a length
+        ("rate", "f8"),  # 1/s: scale × rate is the velocity that error control treats as small
+        ("linear", "i8"),  # 1: exact flight is possible (constant force, spring, viscous and dry damping only)
+        ("body", "i8"),
+    ]
+)
+
+# What acts at the pivot of a body that is carried by a turning one: on its coordinate, and back on that of its carrier.
+# Angles are differences of the two; the fields of `coordinate` itself are then zero.
+JOINT = np.dtype(
+    [
+        ("coordinate", "i8"),
+        ("on", "i8"),  # the carrier's angle
+        ("force", "f8"),
+        ("viscous", "f8"),
+        ("quadratic", "f8"),
+        ("coulomb", "f8"),  # always 0
+        ("stiffness", "f8"),
+        ("rest", "f8"),
+    ]
+)
+
+TABLE = np.dtype(
+    [
+        ("coordinate", "i8"),
+        ("over", "i8"),
+        ("start", "i8"),
+        ("count", "i8"),
+        ("on", "i8"),  # the carrier's angle, as of a joint; -1: none
+    ]
+)
+
+PRIMITIVE = np.dtype(
+    [
+        ("kind", "i8"),
+        ("body", "i8"),
+        ("x", "f8"),  # corner, arc centre or start of the line, in the body's frame
+        ("y", "f8"),
+        ("tx", "f8"),  # line: direction of travel, material on its left
+        ("ty", "f8"),
+        ("length", "f8"),  # line: its length; corner: the shorter neighbour (turns angles into lengths)
+        ("radius", "f8"),
+        ("side", "f8"),  # arc: +1 convex, -1 concave (material outside)
+        ("px", "f8"),  # a point on it: the corner, the line's start, the middle of the arc
+        ("py", "f8"),
+        ("nx", "f8"),  # outward unit normal there; of a corner, the middle of its fan of normals
+        ("ny", "f8"),
+        ("half_cos", "f8"),  # arc or corner: cosine and sine of half the angle that its normals fill
+        ("half_sin", "f8"),
+        ("extent", "i8"),  # PART, or FULL circle
+        # Neighbours on the outline, where a body that touches one from outside cannot touch the other: at corners, and where
+        # lines and convex arcs join smoothly. -1: none.
+        ("before", "i8"),
+        ("after", "i8"),
+    ]
+)
+PART, FULL = 0, 1
+
+CONTACT = np.dtype(
+    [
+        ("a", "i8"),  # primitive that plays the circle: a convex arc or a corner
+        ("b", "i8"),  # the line or arc that it meets
+        ("group", "i8"),
+        ("curvature", "f8"),  # K of B's curve with A's radius r added: 0 for a line, else s/(R + s r), 1/m
+        ("reduced", "f8"),  # reduced radius r R/(R + s r) of the two, r for a line, m
+    ]
+)
+COULOMB, PG1996, SHIFTED = 0, 1, 2
+TANGENTIAL_CODE = {"coulomb": COULOMB, "pg1996": PG1996, "shifted": SHIFTED}
+LAW = np.dtype(
+    [
+        ("friction", "f8"),
+        ("restitution", "f8"),
+        ("tangential", "f8"),  # tangential restitution
+        ("kind", "i8"),  # which tangential law of the expansion
+        ("nu", "f8"),  # of pg1996
+    ]
+)
+
+BODY_PAIR = np.dtype(
+    [
+        ("a", "i8"),
+        ("b", "i8"),
+        ("start", "i8"),  # its contacts are start..stop of `contacts`
+        ("stop", "i8"),
+        ("near_start", "i8"),  # those that can ever touch are near_start..near_stop of `near`
+        ("near_stop", "i8"),
+        ("listed", "i8"),  # 0: all of `near` are candidates in every cell, nothing is asked
+        ("clearance", "f8"),  # m: primitives count as able to touch when they come this close
+        ("axes", "i8"),  # 0: no cells, all of `near` are candidates; else the number of cell coordinates
+        ("c0", "i8"),  # cell coordinates and their cell sizes; a pivot's index wraps after `wrap` cells (0: no wrap)
+        ("c1", "i8"),
+        ("c2", "i8"),
+        ("on0", "i8"),  # the cell coordinate is c less this coordinate, -1: none
+        ("on1", "i8"),
+        ("on2", "i8"),
+        ("size0", "f8"),
+        ("size1", "f8"),
+        ("size2", "f8"),
+        ("wrap0", "i8"),
+        ("wrap1", "i8"),
+        ("wrap2", "i8"),
+        ("fold0", "i8"),  # by 1/fold of a turn the body's outline comes back onto itself
+        ("fold1", "i8"),
+        ("fold2", "i8"),
+        ("frame", "i8"),  # the body that carries both, in whose frame the cells are told, -1: the movement
+    ]
+)
+
+
+class Model(NamedTuple):
+    """Everything the event loop reads; all arrays read-only."""
+
+    bodies: Records
+    coordinates: Records
+    joints: Records
+    tables: Records
+    knots: NDArray[np.float64]  # (knots, 2) abscissa, value of all tables
+    primitives: Records
+    contacts: Records
+    laws: Records
+    pairs: Records
+    near: NDArray[np.int64]  # contacts that can ever touch, by pair of bodies
+
+
+ModelRef = by_reference(Model, __name__)
+
+
+class Cells(NamedTuple):
+    """Open-addressing table: (pair, cell indices) -> candidate contacts `entries[start : start + count]`."""
+
+    keys: NDArray[np.int64]  # -1: free slot
+    start: NDArray[np.int64]
+    count: NDArray[np.int64]  # type: ignore[assignment]  # hides tuple.count, which nobody needs here
+    entries: NDArray[np.int64]
+
+
+CellsRef = by_reference(Cells, __name__)
+
+
+def records(dtype: np.dtype[Any], rows: int) -> Records:
+    """A zeroed recarray."""
+    return np.zeros(rows, dtype).view(np.recarray)
+
+
+def frozen(array: Any) -> Any:
+    """The same array, read-only."""
+    array.flags.writeable = False
+    return array

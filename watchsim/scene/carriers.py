@@ -1,0 +1,232 @@
+"""Which body carries which, and where do their frames and angles hang?
+
+A body's place, angle and velocity are told relative to its carrier. The model knows one level of carriers: the origin of a
+carried body is a point fixed in one moving body, its host. What is exact in that form and keeps the mass matrix constant and
+diagonal (docs/method.md 2.1) is resolved here, the rest is refused by name.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from watchsim.geometry.primitives import Point
+from watchsim.scene.body import Body
+from watchsim.scene.scene import Scene
+
+NOWHERE = -2
+POISED = 1e-6  # of a body's reach: a centre of mass nearer to the pivot than that lies on it
+Complain = Callable[[str, str], None]  # takes the name of a body and what is wrong with how it is carried
+
+
+@dataclass(frozen=True, slots=True)
+class Ride:
+    """How one body hangs in the model. Bodies are numbered as in the scene; -1 stands for the movement itself.
+
+    part_of     the body of the model that its outlines belong to: itself, or what it is rigidly joined to
+    host        the moving body in which its frame's origin is a fixed point
+    place       that point in the host's frame (m)
+    turns_with  the moving body against whose angle its own is told
+    angle       added to that (rad): its own angle is this one plus q of `turns_with` plus the angle in the scene
+    start, spin the angle and the turning rate that it has at the start in the movement (rad, rad/s)
+    """
+
+    part_of: int
+    host: int = -1
+    place: Point = (0.0, 0.0)
+    turns_with: int = -1
+    angle: float = 0.0
+    start: float = 0.0
+    spin: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Weighed:
+    """Mass (kg), its first moment (kg·m) and its inertia (kg·m²) about the origin of a body's frame."""
+
+    mass: float = 0.0
+    moment: Point = (0.0, 0.0)
+    inertia: float = 0.0
+
+    def plus(self, other: Weighed) -> Weighed:
+        moment = (self.moment[0] + other.moment[0], self.moment[1] + other.moment[1])
+        return Weighed(self.mass + other.mass, moment, self.inertia + other.inertia)
+
+
+def rides(bodies: tuple[Body, ...], complain: Complain | None = None) -> tuple[Ride, ...]:
+    """How each of these bodies hangs. What cannot be simulated exactly goes to `complain`, without one it is a ValueError."""
+    names = {body.name: i for i, body in enumerate(bodies)}
+    found: dict[int, Ride] = {}
+    for i in carriers_first(bodies, complain or _refuse):
+        found[i] = _ride(bodies, i, names.get(str(bodies[i].on), -1), found, complain or _refuse)
+    return tuple(found.get(i, Ride(i)) for i in range(len(bodies)))
+
+
+def _refuse(name: str, message: str) -> None:
+    raise ValueError(f"{name}: {message}")
+
+
+def carriers_first(bodies: tuple[Body, ...], complain: Complain) -> list[int]:
+    """The numbers of the bodies, each after its carrier; one that carries itself, however indirectly, is left out."""
+    names = {body.name: i for i, body in enumerate(bodies)}
+    order: list[int] = []
+    left = list(range(len(bodies)))
+    while left:
+        ready = [i for i in left if bodies[i].on not in names or names[str(bodies[i].on)] in order]
+        if not ready:
+            for i in left:
+                complain(bodies[i].name, "it would carry itself, by way of the bodies that carry it")
+            break
+        order += ready
+        left = [i for i in left if i not in ready]
+    return order
+
+
+def carried_last(bodies: tuple[Body, ...]) -> list[Body]:
+    """The bodies, each after its carrier."""
+    return [bodies[i] for i in carriers_first(bodies, _refuse)]
+
+
+def _ride(bodies: tuple[Body, ...], i: int, c: int, found: dict[int, Ride], complain: Complain) -> Ride:
+    """The ride of body i on body c (-1: none)."""
+    body = bodies[i]
+    alone = Ride(i, place=body.position, start=body.angle, spin=_spin(body))
+    if c not in found:
+        return alone
+    if body.motion not in ("pivot", "fixed"):
+        complain(body.name, f'motion = "{body.motion}" on a carrier is not simulated. A carried body is pivoted or fixed there')
+        return alone
+    below = found[c]
+    base = below.part_of
+    inside = body.position if base == c else _moved(body.position, below.place, below.angle)
+    turns_with, angle = _reference(bodies[base], base, below)
+    start, spin = below.start + body.angle, below.spin + _spin(body)
+    if body.motion == "fixed" and bodies[base].motion != "fixed":
+        # Rigid with what carries it: its outlines become outlines of that body, in its frame.
+        turned = body.angle if base == c else below.angle + body.angle
+        return Ride(base, base, inside, turns_with, turned, start, spin)
+    host, place = _point(bodies[base], base, found[base], inside)
+    if host == NOWHERE:
+        complain(body.name, _chain(body.name, bodies[base], bodies[found[base].host].name))
+        return alone
+    return Ride(i, host, place, turns_with, angle, start, spin)
+
+
+def _spin(body: Body) -> float:
+    return {"pivot": body.velocity[-1], "free": body.velocity[-1]}.get(body.motion, 0.0) if body.velocity else 0.0
+
+
+def _chain(name: str, carrier: Body, host: str) -> str:
+    return (
+        f"{carrier.name} is itself carried by {host} and turns on it: a body carried in two steps has a mass matrix that "
+        f'changes with the angles, which is not simulated. Pivot {name} at the centre of {carrier.name} (position = ["0 mm", '
+        f'"0 mm"]), carry it by {host}, or make {carrier.name} fixed there'
+    )
+
+
+def _point(base: Body, number: int, ride: Ride, point: Point) -> tuple[int, Point]:
+    """(host, place) of a point of a body of the model; host NOWHERE where it moves with more than one body."""
+    if base.motion == "fixed":
+        return -1, _moved(point, ride.place, ride.start)
+    if base.motion == "pivot" and point == (0.0, 0.0):
+        return ride.host, ride.place
+    return (number, point) if ride.host < 0 else (NOWHERE, point)
+
+
+def _reference(base: Body, number: int, below: Ride) -> tuple[int, float]:
+    """The moving body with which a carrier that is part of `base` turns, and the angle from that one's to its own."""
+    if base.motion in ("fixed", "slide"):
+        return -1, below.start
+    return number, (0.0 if below.part_of == number and below.host != number else below.angle)
+
+
+def _moved(point: Point, origin: Point, angle: float) -> Point:
+    c, s = math.cos(angle), math.sin(angle)
+    return origin[0] + c * point[0] - s * point[1], origin[1] + s * point[0] + c * point[1]
+
+
+def weigh(bodies: tuple[Body, ...], hung: tuple[Ride, ...], complain: Complain | None = None) -> tuple[Weighed, ...]:
+    """What each body of the model weighs with all that it carries, about the origin of its own frame.
+
+    Rigid parts count whole, pivoted bodies as a mass at their pivot; those must be poised there.
+    """
+    complain = complain or _refuse
+    found = [Weighed() for _ in bodies]
+    for body, ride in zip(bodies, hung, strict=True):
+        found[ride.part_of] = found[ride.part_of].plus(_own(body, ride))
+    for i, (body, ride) in enumerate(zip(bodies, hung, strict=True)):
+        if ride.host < 0 or ride.part_of != i:
+            continue
+        if not _is_poised(bodies, hung, i, found[i]):
+            complain(body.name, _not_poised(body, found[i]))
+        (x, y), mass = ride.place, found[i].mass
+        found[ride.host] = found[ride.host].plus(Weighed(mass, (mass * x, mass * y), mass * (x * x + y * y)))
+    for i, body in enumerate(bodies):
+        carries = any(ride.host == i or (ride.part_of == i and k != i) for k, ride in enumerate(hung))
+        if body.motion == "free" and carries and not _is_poised(bodies, hung, i, found[i]):
+            place = ", ".join(f"{1e3 * part / found[i].mass:.4g}" for part in found[i].moment)
+            complain(
+                body.name,
+                f"with what it carries, its centre of mass moves to ({place}) mm of its frame, and a free body must have it at "
+                "the origin. Place what it carries so that it balances",
+            )
+    return tuple(found)
+
+
+def _own(body: Body, ride: Ride) -> Weighed:
+    """A body without its loads, in the frame of the body it is part of."""
+    (cx, cy), mass = body.centre_of_mass, body.mass
+    if body.motion == "free" or body.motion == "slide":
+        return Weighed(mass, (0.0, 0.0), body.inertia)
+    own = Weighed(mass, (mass * cx, mass * cy), body.inertia)
+    if body.motion == "pivot" or ride.host < 0:
+        return own
+    x, y = _moved(body.centre_of_mass, ride.place, ride.angle)
+    about_centre = body.inertia - mass * (cx * cx + cy * cy)
+    return Weighed(mass, (mass * x, mass * y), about_centre + mass * (x * x + y * y))
+
+
+def _is_poised(bodies: tuple[Body, ...], hung: tuple[Ride, ...], i: int, weighed: Weighed) -> bool:
+    parts = [body for body, ride in zip(bodies, hung, strict=True) if ride.part_of == i]
+    reach = max((math.hypot(*edge.point(0.5)) for body in parts for loop in body.loops for edge in loop.edges), default=0.0)
+    reach = max(reach, *(math.hypot(*ride.place) for ride in hung if ride.part_of == i or ride.host == i), 0.0)
+    # What could not be read is not a number, and no reason for a second complaint.
+    return not math.hypot(*weighed.moment) > POISED * weighed.mass * reach
+
+
+def _not_poised(body: Body, weighed: Weighed) -> str:
+    off = 1e6 * math.hypot(*weighed.moment) / weighed.mass
+    return (
+        f"its centre of mass lies {off:.4g} µm beside its pivot. A carried body must be poised: its pull would change the mass "
+        "matrix with its angle, which is not simulated. Balance it with another entry of solids, or write mass and "
+        "inertia instead: then it counts as poised"
+    )
+
+
+def is_still(scene: Scene, body: Body) -> bool:
+    """Can the body never move? True for a fixed one that nothing, or only what is fixed, carries."""
+    while body.motion == "fixed" and body.on is not None:
+        body = scene.body(body.on)
+    return body.motion == "fixed"
+
+
+def start_poses(scene: Scene) -> dict[str, tuple[float, float, float]]:
+    """x, y (m) and angle (rad) of every body's frame in the movement at the start."""
+    found: dict[str, tuple[float, float, float]] = {}
+    for i in carriers_first(scene.bodies, _refuse):
+        body = scene.bodies[i]
+        x, y, angle = found.get(str(body.on), (0.0, 0.0, 0.0)) if body.on else (0.0, 0.0, 0.0)
+        found[body.name] = (
+            (*_moved(body.position, (x, y), angle), angle + body.angle) if body.on else (*body.position, body.angle)
+        )
+    return found
+
+
+def at_start(scene: Scene) -> Scene:
+    """The scene with every body's position and angle told in the movement and nothing carried, to draw or measure the start."""
+    if all(body.on is None for body in scene.bodies):
+        return scene
+    poses = start_poses(scene)
+    bodies = tuple(replace(body, position=poses[body.name][:2], angle=poses[body.name][2], on=None) for body in scene.bodies)
+    return replace(scene, bodies=bodies)

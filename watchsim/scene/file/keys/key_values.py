@@ -1,0 +1,137 @@
+"""What do the values of one TOML table mean?
+
+A view of one table that turns values into SI numbers and notes every fault with its dotted key. A value that could not
+be read comes back as NaN, which fails no comparison made afterwards: one mistake gives one fault.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from watchsim import units
+from watchsim.geometry.primitives import Point
+from watchsim.scene.errors import Faults
+from watchsim.scene.file.keys.schema import UNSUPPORTED, Keys, nearest
+from watchsim.scene.file.keys.write_toml import value_text
+from watchsim.units import NUMBER, Dimension, UnitError, parse
+
+NAN = math.nan
+FURTHEST = 1e9  # m or rad: beyond, the places of what is a micrometre small are lost to rounding
+SMALLEST, LARGEST = 1e-100, 1e50  # SI: products and powers of what is read must stay numbers
+TOO_SMALL, TOO_LARGE = "is too small to compute with", "is too large to compute with"
+UNREADABLE: Point = (NAN, NAN)
+
+
+def shown(value: object) -> str:
+    """' = value' as it stands in the file, shortened."""
+    try:
+        text = value_text(value)
+    except (TypeError, ValueError):  # a number of thousands of digits
+        text = repr(value)
+    return f" = {text if len(text) <= 60 else text[:57] + '...'}"
+
+
+class Table:
+    """One table of the scene at the dotted `path`; unknown keys are noted as soon as it is made."""
+
+    def __init__(self, mapping: object, path: str, keys: Keys, faults: Faults, motion: str = "pivot") -> None:
+        self.mapping: dict[str, Any] = mapping if isinstance(mapping, dict) else {}
+        self.is_table = isinstance(mapping, dict)  # otherwise that has been noted, and is enough
+        self.path, self.keys, self.faults, self.motion = path, keys, faults, motion
+        if not self.is_table:
+            faults.add(path, "a table of keys is needed here", shown(mapping))
+        for key in self.mapping:
+            if key not in keys:
+                faults.add(f"{path}.{key}", f"unknown key. {nearest(key, keys)}")
+
+    def __contains__(self, key: str) -> bool:
+        return key in self.mapping
+
+    def fault(self, key: str, message: str, with_value: bool = False) -> None:
+        """Notes a fault at `key` of this table; an empty key means the table itself."""
+        path = f"{self.path}.{key}" if key else self.path
+        self.faults.add(path, message, shown(self.mapping.get(key)) if with_value else "")
+
+    def refuse(self, key: str) -> None:
+        self.fault(key, UNSUPPORTED[key], with_value=True)
+
+    def text(self, key: str, default: str = "") -> str:
+        value = self.mapping.get(key, default)
+        if isinstance(value, str):
+            return value
+        self.fault(key, "a text in quotes is needed here", with_value=True)
+        return default
+
+    def needed_text(self, key: str, example: str) -> str:
+        if key not in self:
+            self.fault(key, f'missing. Write e.g. {key} = "{example}"')
+        return self.text(key)
+
+    def one_of(self, key: str, choices: Sequence[str], default: str) -> str:
+        value = self.text(key, default)
+        if value in choices:
+            return value
+        self.fault(key, f"not one of {', '.join(choices)}. {nearest(value, choices)}", with_value=True)
+        return default
+
+    def texts(self, key: str, example: str = "TEETH") -> tuple[str, ...]:
+        value = self.mapping.get(key, [])
+        if isinstance(value, (list, tuple)) and all(isinstance(item, str) for item in value):
+            return tuple(value)
+        self.fault(key, f'a list of texts is needed here, such as {key} = ["{example}"]', with_value=True)
+        return ()
+
+    def tables(self, key: str) -> list[Any]:
+        value = self.mapping.get(key, [])
+        if isinstance(value, (list, tuple)):
+            return list(value)
+        self.fault(key, f"a list of tables is needed here: write [[{self.path}.{key}]] with double brackets")
+        return []
+
+    def dimension(self, key: str) -> Dimension:
+        return self.keys[key].dimension_for(self.motion) or NUMBER
+
+    def quantity(self, key: str, default: float = 0.0) -> float:
+        """The SI value of one number, `default` where the key is absent, NaN where it cannot be read."""
+        return self.parsed(key, self.mapping[key], self.dimension(key)) if key in self else default
+
+    def positive(self, key: str, why: str) -> float:
+        """A quantity that must be above zero; NaN where it is not."""
+        value = self.quantity(key, NAN)
+        if value <= 0.0:
+            self.fault(key, f"must be above zero: {why}", with_value=True)
+            return NAN
+        if value < SMALLEST:
+            self.fault(key, TOO_SMALL, with_value=True)
+            return NAN
+        return value
+
+    def pair(self, key: str, default: Point = (0.0, 0.0)) -> Point:
+        return self.point(key, self.mapping[key], self.dimension(key)) if key in self else default
+
+    def point(self, path: str, value: object, dimension: Dimension) -> Point:
+        """Two numbers in a list, at `path` below this table."""
+        if not isinstance(value, (list, tuple)) or len(value) != 2:
+            self.faults.add(
+                f"{self.path}.{path}", f"two values are needed here, such as {_pair_example(dimension)}", shown(value)
+            )
+            return UNREADABLE
+        first, second = (self.parsed(f"{path}.{i}", item, dimension) for i, item in enumerate(value))
+        return (first, second)
+
+    def parsed(self, path: str, value: object, dimension: Dimension) -> float:
+        try:
+            number = parse(value, dimension)
+            if abs(number) <= (FURTHEST if dimension in (units.LENGTH, units.ANGLE) else LARGEST):
+                return number
+            self.faults.add(f"{self.path}.{path}", TOO_LARGE, shown(value))
+        except UnitError as error:
+            self.faults.add(f"{self.path}.{path}", str(error), shown(value))
+        return NAN
+
+
+def _pair_example(dimension: Dimension) -> str:
+    unit = dimension.usual[1]
+    return "[1.0, 0.0]" if dimension is NUMBER else f'["1 {unit}", "0 {unit}"]'

@@ -1,0 +1,183 @@
+"""How does a scene file become a scene?
+
+Everything is read before anything is refused: one SceneError lists all faults with file, line, key and cure.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from watchsim.scene.errors import Fault, Faults, SceneError
+from watchsim.scene.file.keys.key_values import Table
+from watchsim.scene.file.keys.locate import key_lines
+from watchsim.scene.file.keys.schema import LOCK, SECTIONS, nearest
+from watchsim.scene.file.readers.read_bodies import read_bodies
+from watchsim.scene.file.readers.read_carriers import note_carriers
+from watchsim.scene.file.readers.read_contacts import read_contacts
+from watchsim.scene.file.readers.read_forces import read_damping, read_springs, read_torques
+from watchsim.scene.file.readers.read_settings import read_expectations, read_heading, read_run, read_timegrapher
+from watchsim.scene.oscillation import frequency
+from watchsim.scene.scene import Scene
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+DEEPEST = 20  # tables and lists within each other
+TOO_DEEP = f"tables and lists are nested more than {DEEPEST} deep, and nothing in a scene is"
+FAR_OFF = 0.1  # of the frequency of small swings: what a rate may be measured against
+SCENE_FILES = ("scene.toml", "scene.lock.toml")  # in a folder, the first that is there
+
+
+def load(path: str | Path) -> Scene:
+    """The scene of a TOML file or of the folder that holds one, in SI units. SceneError lists all that is wrong with it.
+
+    Of a folder it is `scene.toml`, else `scene.lock.toml`, the scene of a results folder.
+    """
+    path = _scene_file(Path(path))
+    text = _text(path)
+    try:
+        mapping = parsed(text)
+    except ValueError as error:
+        raise SceneError([_syntax_fault(path, text, str(error))]) from error
+    return from_mapping(mapping, path, Faults(str(path), key_lines(text)))
+
+
+def parsed(text: str) -> dict[str, Any]:
+    """The mapping that a TOML text holds; ValueError where it is none, or one that no scene can be."""
+    try:
+        mapping = tomllib.loads(text)
+    except RecursionError:
+        raise ValueError(TOO_DEEP) from None
+    level: list[Any] = [mapping]
+    for _ in range(DEEPEST):
+        level = [item for value in level for item in (value.values() if isinstance(value, dict) else value)]
+        level = [item for item in level if isinstance(item, (dict, list))]
+        if not level:
+            return mapping
+    raise ValueError(TOO_DEEP)
+
+
+def from_mapping(mapping: dict[str, Any], path: Path | None, faults: Faults | None = None) -> Scene:
+    """The scene of a TOML mapping; `path` is the file it stands for, drawings are looked for beside it."""
+    faults = faults or Faults(str(path) if path else "scene")
+    folder = path.parent if path else Path()
+    _note_sections(mapping, faults)
+    heading = read_heading(mapping, faults)
+    read = read_bodies(mapping.get("bodies", {}), folder, faults)
+    bodies, sound = read.bodies, read.sound
+    springs = read_springs(mapping, bodies, faults)
+    torques = read_torques(mapping, bodies, faults)
+    damping = read_damping(mapping, bodies, springs, heading.gravity, faults)
+    contacts = read_contacts(mapping, bodies, sound, heading.tangential_law, faults)
+    note_carriers(bodies, damping, contacts, faults)
+    duration, record, tolerance = read_run(mapping, faults)
+    lift_angle, nominal = read_timegrapher(mapping, faults)
+    expect = read_expectations(mapping, faults)
+    _check_lock(mapping, folder, faults)
+    faults.raise_any()
+    scene = Scene(
+        title=heading.title or (path.parent.name if path else ""),
+        bodies=bodies,
+        springs=springs,
+        torques=torques,
+        damping=damping,
+        contacts=contacts,
+        gravity=heading.gravity,
+        tangential_law=heading.tangential_law,
+        nu=heading.nu,
+        duration=duration,
+        record=record,
+        tolerance=tolerance,
+        lift_angle=lift_angle,
+        nominal=nominal,
+        expect=expect,
+        path=path,
+        source=mapping,
+        findings=read.findings,
+        drawings=read.drawings,
+    )
+    _check_nominal(scene, faults)
+    faults.raise_any()
+    return scene
+
+
+def _scene_file(path: Path) -> Path:
+    if not path.is_dir():
+        return path
+    found = next((path / name for name in SCENE_FILES if (path / name).is_file()), None)
+    if found is None:
+        message = f"this folder holds no scene: neither {' nor '.join(SCENE_FILES)} is in it"
+        raise SceneError([Fault("", message, place=str(path))])
+    return found
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8-sig")
+    except FileNotFoundError:
+        message = "there is no such scene file"
+    except UnicodeDecodeError as error:
+        message = f"not UTF-8: byte {error.start} is 0x{error.object[error.start]:02x}. Save the file as UTF-8"
+    except OSError as error:
+        message = f"cannot be read: {error.strerror or error}"
+    raise SceneError([Fault("", message, place=str(path))])
+
+
+def _syntax_fault(path: Path, text: str, complaint: str) -> Fault:
+    """TOML's own complaint, its line moved to where all faults have it."""
+    found = re.search(r" \(at line (\d+), column \d+\)", complaint)
+    line = int(found[1]) if found else len(text.splitlines())
+    what = re.sub(r" \(at .*\)", "", complaint)
+    message = f"not valid TOML: {what}. Texts and quantities stand in quotes; plain numbers, true, false and lists do not"
+    return Fault("", message, place=f"{path}:{line}")
+
+
+def _note_sections(mapping: Mapping[str, Any], faults: Faults) -> None:
+    for section in mapping:
+        if section not in SECTIONS:
+            faults.add(section, f"unknown section. {nearest(section, SECTIONS)}")
+    if not mapping.get("bodies"):
+        faults.add("bodies", "a scene needs at least one body, such as [bodies.wheel]")
+
+
+def _check_nominal(scene: Scene, faults: Faults) -> None:
+    """A rate is measured against a frequency near that of the oscillator; anything else is a slip."""
+    if scene.nominal is None:
+        return
+    natural = frequency(scene)
+    if natural is None:
+        faults.add("timegrapher.frequency", "nothing in this scene swings on a spring or by gravity, so it has no rate")
+    elif abs(scene.nominal / natural - 1.0) > FAR_OFF:
+        seen = f"the oscillator makes small swings at {natural:.6g} Hz ({7200.0 * natural:.6g} vph)"
+        faults.add("timegrapher.frequency", f"{seen}, more than {100 * FAR_OFF:.0f} % off: look at mass, inertia and spring")
+
+
+def _check_lock(mapping: Mapping[str, Any], folder: Path, faults: Faults) -> None:
+    """A locked scene promises that its drawings are still the ones that were simulated."""
+    if "lock" not in mapping:
+        return
+    table = Table(mapping["lock"], "lock", LOCK, faults)
+    digests = table.mapping.get("drawings", {})
+    for name, expected in digests.items() if isinstance(digests, dict) else ():
+        path = folder / name
+        if path.is_file() and file_digest(path) != expected:
+            faults.add(
+                f"lock.drawings.{name}", "the drawing was changed after this scene was locked. Load the original scene file"
+            )
+
+
+def file_digest(path: Path) -> str:
+    """SHA-256 of the file, hexadecimal."""
+    return digest(path.read_bytes())
+
+
+def digest(data: bytes) -> str:
+    """SHA-256, hexadecimal."""
+    return hashlib.sha256(data).hexdigest()

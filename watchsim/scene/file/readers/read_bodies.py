@@ -1,0 +1,195 @@
+"""How is a body of the scene file read?"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from watchsim.drawing.findings import Finding
+from watchsim.geometry.loop import Loop
+from watchsim.geometry.primitives import Point
+from watchsim.scene.body import MOTIONS, Body
+from watchsim.scene.errors import Faults
+from watchsim.scene.file.keys.key_values import NAN, Table, shown
+from watchsim.scene.file.keys.schema import BODY, nearest
+from watchsim.scene.file.outlines.body_outlines import Outlines, read_outlines
+from watchsim.scene.file.outlines.solid_layers import bored
+from watchsim.scene.file.readers.body_weight import Inertias, read_inertias
+from watchsim.scene.solid import more_seen
+from watchsim.units import SPEED
+
+REFUSED = ("adjust",)
+AS_DRAWN = "as drawn"
+
+
+@dataclass(frozen=True)
+class ReadBodies:
+    """All bodies, what their drawings said besides errors, the names of bodies whose outlines are sound, and the drawings as
+    they were read: name in the scene file -> bytes."""
+
+    bodies: tuple[Body, ...] = ()
+    findings: tuple[Finding, ...] = ()
+    sound: frozenset[str] = frozenset()
+    drawings: Mapping[str, bytes] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class _Read:
+    """One table with what its drawing and its solids gave; `path` is the drawing, `shared` if several bodies use it."""
+
+    name: str
+    table: Table
+    motion: str
+    outlines: Outlines
+    inertias: Inertias
+    path: Path | None
+    shared: bool
+
+
+def read_bodies(mapping: object, folder: Path, faults: Faults) -> ReadBodies:
+    """Every body of the scene file; faults go to `faults`."""
+    if not isinstance(mapping, dict):
+        faults.add("bodies", "write one table per body, such as [bodies.wheel]", shown(mapping))
+        return ReadBodies()
+    for name, entry in mapping.items():
+        if not isinstance(entry, dict):
+            where = f"bodies.{name}"
+            faults.add(where, "stands where bodies stand: a body has a name and a table, such as [bodies.wheel]", shown(entry))
+    mapping = {name: entry for name, entry in mapping.items() if isinstance(entry, dict)}
+    users = Counter(_drawing_path(entry, folder) for entry in mapping.values())
+    read = [_read(mapping, name, folder, users, faults) for name in mapping]
+    places = {one.name: one for one in read}
+    bodies = [_body(one, _position(one, places), _carrier(one.table, one.name, mapping)) for one in read]
+    findings = [finding for one in read for finding in (*one.outlines.findings, *one.inertias.findings)]
+    sound = {one.name for one in read if one.outlines.sound}
+    drawings = {one.table.text("drawing"): one.outlines.data for one in read if one.outlines.data is not None}
+    return ReadBodies(tuple(bodies), tuple(dict.fromkeys(findings)), frozenset(sound), drawings)
+
+
+def motion_of(bodies: Mapping[str, Any], name: object) -> str:
+    """The motion a body asks for, "pivot" where it says nothing readable."""
+    entry = bodies.get(name) if isinstance(bodies, Mapping) and isinstance(name, str) else None
+    motion = entry.get("motion", "pivot") if isinstance(entry, Mapping) else "pivot"
+    return motion if motion in MOTIONS else "pivot"
+
+
+def _drawing_path(entry: object, folder: Path) -> Path | None:
+    name = entry.get("drawing") if isinstance(entry, dict) else None
+    return folder / name if isinstance(name, str) else None
+
+
+def _bores_elsewhere(bodies: Mapping[str, Any], name: str, folder: Path) -> frozenset[str]:
+    """The layers that other bodies of the same drawing name as bores."""
+    path = _drawing_path(bodies[name], folder)
+    others = [entry for other, entry in bodies.items() if other != name and _drawing_path(entry, folder) == path]
+    return frozenset(layer for entry in others for layer in bored(entry))
+
+
+def _read(mapping: Mapping[str, Any], name: str, folder: Path, users: Counter[Path | None], faults: Faults) -> _Read:
+    """What one table says and its drawing holds. Everything is read even after a fault, so that all are found at once."""
+    motion = motion_of(mapping, name)
+    table = Table(mapping[name], f"bodies.{name}", BODY, faults, motion)
+    if "." in name or not name:
+        table.fault("", "a body's name must not be empty or contain a point: paths such as bodies.lever.angle use it")
+    path = _drawing_path(mapping[name], folder)
+    outlines = read_outlines(table, folder)
+    shared = users[path] > 1
+    inertias = read_inertias(table, motion, outlines, _bores_elsewhere(mapping, name, folder) if shared else frozenset())
+    return _Read(name, table, motion, outlines, inertias, path, shared and path is not None)
+
+
+def _position(one: _Read, read: Mapping[str, _Read]) -> Point:
+    """Where the body's origin sits in the movement, or on its carrier; "as drawn" where that is in the drawing.
+
+    Bodies of one drawing are an assembly, drawn in place: as drawn unless the scene says otherwise.
+    """
+    table, carrier = one.table, read.get(str(one.table.mapping.get("on")))
+    if "position" in table and table.mapping["position"] != AS_DRAWN:
+        if isinstance(table.mapping["position"], str):
+            table.fault("position", f'write ["1 mm", "0 mm"], or "{AS_DRAWN}"', with_value=True)
+            return (NAN, NAN)
+        return table.pair("position")
+    together = carrier is None or carrier.path == one.path
+    if "position" in table and (one.path is None or not together):
+        why = "has no drawing" if one.path is None else f"is not in the drawing of {table.mapping.get('on')}, which carries it"
+        table.fault("position", f"the body {why}: give its coordinates", with_value=True)
+    if one.path is None or not together or not ("position" in table or one.shared):
+        return (0.0, 0.0)
+    (x, y), (x0, y0) = one.inertias.origin, carrier.inertias.origin if carrier else (0.0, 0.0)
+    return (x - x0, y - y0)
+
+
+def _body(one: _Read, position: Point, on: str | None) -> Body:
+    table, motion, outlines, inertias = one.table, one.motion, one.outlines, one.inertias
+    table.one_of("motion", MOTIONS, "pivot")
+    for key in REFUSED:
+        if key in table:
+            table.refuse(key)
+    shift = (-inertias.origin[0], -inertias.origin[1])
+    rest = outlines.drawn if outlines.drawn is not None else () if one.shared else outlines.rest
+    return Body(
+        name=one.name,
+        motion=motion,
+        position=position,
+        angle=table.quantity("angle"),
+        velocity=_velocity(table, motion),
+        axis=_axis(table, motion),
+        mass=inertias.mass,
+        inertia=inertias.inertia,
+        centre_of_mass=inertias.centre,
+        loops=_shifted(outlines.loops, shift),
+        decoration=(*_shifted(rest, shift), *more_seen(inertias.solids, {loop.layer for loop in outlines.loops})),
+        solids=inertias.solids,
+        on=on,
+    )
+
+
+def _carrier(table: Table, name: str, bodies: Mapping[str, Any]) -> str | None:
+    """The name of the body that carries this one; None without, or where there is no such body."""
+    if "on" not in table:
+        return None
+    on = table.text("on")
+    if on in bodies and on != name:
+        return on
+    if on:
+        others = [other for other in bodies if other != name]
+        complaint = "a body cannot carry itself" if on == name else f"there is no such body. {nearest(on, others)}"
+        table.fault("on", complaint, with_value=True)
+    return None
+
+
+def _shifted(loops: tuple[Loop, ...], shift: Point) -> tuple[Loop, ...]:
+    return tuple(loop.moved(0.0, shift) for loop in loops)
+
+
+def _velocity(table: Table, motion: str) -> tuple[float, ...]:
+    if "spin" in table and motion != "free":
+        table.fault("spin", 'belongs to motion = "free"; here the key is velocity')
+    if motion == "free":
+        velocity = table.point("velocity", table.mapping["velocity"], SPEED) if "velocity" in table else (0.0, 0.0)
+        return (*velocity, table.quantity("spin"))
+    if motion == "fixed":
+        if "velocity" in table:
+            table.fault("velocity", "a fixed body does not move", with_value=True)
+        return ()
+    return (table.quantity("velocity"),)
+
+
+def _axis(table: Table, motion: str) -> Point:
+    """Unit direction of a sliding body."""
+    if motion != "slide":
+        if "axis" in table:
+            table.fault("axis", 'belongs to motion = "slide"')
+        return (1.0, 0.0)
+    if "axis" not in table:
+        table.fault("", "a sliding body needs its direction. Write e.g. axis = [1.0, 0.0]")
+    x, y = table.pair("axis", (NAN, NAN))
+    length = math.hypot(x, y)
+    if length == 0.0:
+        table.fault("axis", "a direction of length zero points nowhere", with_value=True)
+        return (NAN, NAN)
+    return (x / length, y / length)

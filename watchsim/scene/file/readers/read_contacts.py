@@ -1,0 +1,136 @@
+"""How are the contacts of the scene file read?"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from watchsim.scene.body import Body
+from watchsim.scene.errors import Faults
+from watchsim.scene.file.keys.key_values import Table
+from watchsim.scene.file.keys.schema import CONTACT, nearest
+from watchsim.scene.file.readers.read_forces import listed
+from watchsim.scene.force import Contact, Side
+
+NOWHERE = Side("")
+
+
+@dataclass(frozen=True, slots=True)
+class Known:
+    """The bodies that may be named, those whose outlines were read without a fault, and the tangential law of the scene."""
+
+    bodies: Mapping[str, Body]
+    sound: frozenset[str]
+    law: str
+
+
+def read_contacts(
+    mapping: Mapping[str, Any], bodies: tuple[Body, ...], sound: frozenset[str], law: str, faults: Faults
+) -> tuple[Contact, ...]:
+    """All declared contacts; unknown bodies and layers, a body with itself and pairs declared twice are faults."""
+    known = Known({body.name: body for body in bodies}, sound, law)
+    tables = [Table(one, f"contacts.{i}", CONTACT, faults) for i, one in enumerate(listed(mapping, "contacts", faults))]
+    contacts = tuple(_contact(table, known) for table in tables)
+    _note_repeated(tables, contacts, known)
+    return contacts
+
+
+def _contact(table: Table, known: Known) -> Contact:
+    sides = _sides(table, known)
+    friction = table.quantity("friction")
+    if friction < 0.0:
+        table.fault("friction", "a negative friction coefficient would drive the bodies", with_value=True)
+    for key in ("restitution", "tangential_restitution"):
+        value = table.quantity(key)
+        if value < 0.0 or value > 1.0:
+            table.fault(key, "must lie between 0 (no rebound) and 1 (nothing lost)", with_value=True)
+    contact = Contact(sides, friction, table.quantity("restitution"), table.quantity("tangential_restitution"))
+    if 0.0 < contact.tangential_restitution <= 1.0:
+        _note_law(table, contact, known.law)
+    return contact
+
+
+def _note_law(table: Table, contact: Contact, law: str) -> None:
+    """Not every law gives tangential impulses back."""
+    if law == "coulomb":
+        cure = 'write tangential_law = "pg1996" (or "shifted") under [scene]'
+        message = f'the law "coulomb" gives no tangential impulse back: {cure}'
+        table.fault("tangential_restitution", message, with_value=True)
+    elif law == "shifted" and contact.tangential_restitution > contact.restitution:
+        message = f'must not be above restitution ({contact.restitution:g}) with tangential_law = "shifted"'
+        table.fault("tangential_restitution", message, with_value=True)
+
+
+def _sides(table: Table, known: Known) -> tuple[Side, Side]:
+    names = table.texts("between")
+    if len(names) != 2:
+        if table.is_table:
+            table.fault(
+                "between" if "between" in table else "", 'two sides are needed: between = ["wheel.TEETH", "lever.STONES"]'
+            )
+        return NOWHERE, NOWHERE
+    first, second = (_side(table, i, name, known) for i, name in enumerate(names))
+    if first.body and first.body == second.body:
+        table.fault("between", f"{first.body} cannot touch itself: a body is rigid", with_value=True)
+    elif first.body and second.body and all(_is_fixed(known.bodies[side.body]) for side in (first, second)):
+        table.fault("between", f"{first.body} and {second.body} are both fixed, so this contact does nothing", with_value=True)
+    return first, second
+
+
+def _is_fixed(body: Body) -> bool:
+    return body.motion == "fixed" and body.on is None
+
+
+def _side(table: Table, i: int, name: str, known: Known) -> Side:
+    """ "lever" or "lever.STONES"; a layer name may contain points."""
+    body_name, _, layer = name.partition(".")
+    body = known.bodies.get(body_name)
+    key = f"{table.path}.between.{i}"
+    if body is None:
+        table.faults.add(key, f'there is no body "{body_name}". {nearest(body_name, known.bodies)}', f' = "{name}"')
+        return NOWHERE
+    if body_name in known.sound:
+        if not body.loops:
+            table.faults.add(key, f"{body_name} has no outline that could touch: give it a drawing or a shape", f' = "{name}"')
+        elif layer and layer not in body.layers:
+            _note_layer(table, key, body, layer)
+    return Side(body_name, layer or None)
+
+
+def _note_layer(table: Table, key: str, body: Body, layer: str) -> None:
+    shown = f' = "{body.name}.{layer}"'
+    if any(layer in solid.bores for solid in body.solids):
+        table.faults.add(
+            key, "this layer is taken out as a bore; to be touched, draw the bore on the layer of its plate", shown
+        )
+        return
+    if layer in {loop.layer for loop in body.decoration}:
+        table.faults.add(key, f'layer {layer} is left out by layers under [bodies.{body.name}]: add "{layer}" there', shown)
+        return
+    hint = nearest(layer, body.layers)
+    there = f" Layers of {body.name}: {', '.join(body.layers)}." if hint.startswith("Did") else ""
+    table.faults.add(key, f"{body.name} has no such layer. {hint}{there}", shown)
+
+
+def _note_repeated(tables: list[Table], contacts: tuple[Contact, ...], known: Known) -> None:
+    """Two declarations for one pair of outlines would make the pair touch twice."""
+    first: dict[frozenset[Side], int] = {}
+    for i, (table, contact) in enumerate(zip(tables, contacts, strict=True)):
+        pairs = _covered(contact, known)
+        if earlier := [first[pair] for pair in pairs if pair in first]:
+            table.fault("between", f"contacts.{min(earlier)} declares this pair already: leave one out", with_value=True)
+        for pair in pairs:
+            first.setdefault(pair, i)
+
+
+def _covered(contact: Contact, known: Known) -> set[frozenset[Side]]:
+    first, second = (_layers(side, known) for side in contact.sides)
+    return {frozenset((a, b)) for a in first for b in second}
+
+
+def _layers(side: Side, known: Known) -> tuple[Side, ...]:
+    if not side.body:
+        return ()
+    layers = (side.layer,) if side.layer else known.bodies[side.body].layers
+    return tuple(Side(side.body, layer) for layer in layers)

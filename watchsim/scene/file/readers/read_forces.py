@@ -1,0 +1,177 @@
+"""How are springs, torques and damping of the scene file read?"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+from watchsim import units
+from watchsim.geometry.primitives import Point
+from watchsim.scene.body import Body
+from watchsim.scene.errors import Faults
+from watchsim.scene.file.keys.key_values import NAN, Table, shown
+from watchsim.scene.file.keys.schema import DAMPING, SPRING, TORQUE, Keys, nearest
+from watchsim.scene.force import Damping, Spring, Torque
+from watchsim.scene.oscillation import Oscillator, loads, oscillator
+
+COORDINATE = {"pivot": "inertia", "slide": "mass"}
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """One element of [[springs]], [[torques]] or [[damping]] with the body it names (None after a fault)."""
+
+    table: Table
+    body: Body | None
+    mass: float  # what the body's coordinate weighs with what it carries, kg or kg·m²; NaN after a fault
+
+    @property
+    def name(self) -> str:
+        return self.body.name if self.body else ""
+
+
+def read_springs(mapping: Mapping[str, Any], bodies: tuple[Body, ...], faults: Faults) -> tuple[Spring, ...]:
+    entries = _entries(mapping, "springs", SPRING, bodies, faults)
+    return tuple(_spring(entry) for entry in entries)
+
+
+def read_torques(mapping: Mapping[str, Any], bodies: tuple[Body, ...], faults: Faults) -> tuple[Torque, ...]:
+    return tuple(_torque(entry) for entry in _entries(mapping, "torques", TORQUE, bodies, faults))
+
+
+def read_damping(
+    mapping: Mapping[str, Any], bodies: tuple[Body, ...], springs: tuple[Spring, ...], gravity: Point, faults: Faults
+) -> tuple[Damping, ...]:
+    found = []
+    for entry in _entries(mapping, "damping", DAMPING, bodies, faults):
+        swinging = oscillator(bodies, springs, gravity, entry.name) if "q_factor" in entry.table else None
+        found.append(_damping(entry, swinging))
+    return tuple(found)
+
+
+def listed(mapping: Mapping[str, Any], section: str, faults: Faults) -> list[Any]:
+    """The elements of an array of tables; a single table in its place is a fault."""
+    value = mapping.get(section, [])
+    if isinstance(value, (list, tuple)):
+        return list(value)
+    faults.add(section, f"write [[{section}]] with double brackets: there can be several", shown(value) if value else "")
+    return []
+
+
+def _entries(mapping: Mapping[str, Any], section: str, keys: Keys, bodies: tuple[Body, ...], faults: Faults) -> Iterator[Entry]:
+    known = {body.name: body for body in bodies}
+    elements = listed(mapping, section, faults)
+    masses = _masses(bodies) if elements else {}
+    for i, element in enumerate(elements):
+        name = element.get("body") if isinstance(element, dict) else None
+        body = known.get(name) if isinstance(name, str) else None
+        table = Table(element, f"{section}.{i}", keys, faults, body.motion if body else "pivot")
+        _note_body(table, known)
+        yield Entry(table, body, masses.get(body.name, NAN) if body else NAN)
+
+
+def _masses(bodies: tuple[Body, ...]) -> dict[str, float]:
+    """What the coordinate of each body weighs: turning its inertia, sliding its mass."""
+    weighed = loads(bodies)[1]
+    return {
+        body.name: load.inertia if body.motion == "pivot" else load.mass for body, load in zip(bodies, weighed, strict=True)
+    }
+
+
+def _note_body(table: Table, known: Mapping[str, Body]) -> None:
+    if not table.is_table:
+        return
+    name = table.needed_text("body", next(iter(known), "balance"))
+    if name not in known and (name or table.mapping.get("body") == ""):
+        table.fault("body", f"there is no such body. {nearest(name, known)}", with_value=True)
+    elif name in known and known[name].motion not in COORDINATE:
+        table.fault("body", f'acts on a pivoted or a sliding body, and motion of {name} is "{known[name].motion}"', True)
+
+
+def _spring(entry: Entry) -> Spring:
+    stiffness = _stiffness(entry)
+    frequency = math.sqrt(stiffness / entry.mass) / math.tau if "frequency" in entry.table and stiffness > 0.0 else None
+    return Spring(entry.name, stiffness, entry.table.quantity("rest"), frequency)
+
+
+def _stiffness(entry: Entry) -> float:
+    """Of a spring given by its stiffness, or by the frequency at which it makes its body swing."""
+    table = entry.table
+    if "stiffness" in table and "frequency" in table:
+        table.fault("frequency", "stiffness and frequency say the same thing: leave one out")
+        return NAN
+    if "frequency" in table:
+        frequency = table.positive("frequency", "it is the frequency of the free oscillation")
+        return entry.mass * (math.tau * frequency) ** 2
+    if "stiffness" not in table and table.is_table:
+        table.fault("", 'a spring needs frequency = "28800 vph" or stiffness = "0.758 µN·m/rad"')
+    return table.positive("stiffness", "a spring pulls back")
+
+
+def _torque(entry: Entry) -> Torque:
+    table = entry.table
+    if "table" not in table:
+        if "value" not in table and table.is_table:
+            table.fault("", 'missing: value = "-1.0 µN·m", or a table over angle or time')
+        if "over" in table:
+            table.fault("over", "belongs to a table; a value is constant")
+        return Torque(entry.name, table.quantity("value"))
+    if "value" in table:
+        table.fault("value", "a torque is either a value or a table: leave one out")
+    sliding = table.motion == "slide"
+    choices = ("travel", "time") if sliding else ("angle", "time")
+    if "over" not in table:
+        table.fault("", f'a table needs over = "{choices[0]}" or over = "time"')
+    over = table.one_of("over", choices, choices[0])
+    abscissa = units.TIME if over == "time" else units.LENGTH if sliding else units.ANGLE
+    return Torque(entry.name, over="time" if over == "time" else "angle", table=_rows(table, abscissa))
+
+
+def _rows(table: Table, abscissa: units.Dimension) -> tuple[tuple[float, float], ...]:
+    """(abscissa, value) pairs with ascending abscissae."""
+    value, ordinate = table.mapping["table"], table.keys["value"].dimension_for(table.motion) or units.TORQUE
+    if not isinstance(value, (list, tuple)) or len(value) < 2:
+        example = f'[["0 {abscissa.usual[1]}", "0 {ordinate.usual[1]}"], ["1 {abscissa.usual[1]}", "1 {ordinate.usual[1]}"]]'
+        table.fault("table", f"a list of at least two pairs is needed here, such as table = {example}", with_value=True)
+        return ()
+    rows = tuple(_row(table, i, row, (abscissa, ordinate)) for i, row in enumerate(value))
+    for i, (before, after) in enumerate(pairwise(rows)):
+        if after[0] <= before[0]:
+            table.fault(f"table.{i + 1}", "its first column must ascend")
+    return rows
+
+
+def _row(table: Table, i: int, row: object, dimensions: tuple[units.Dimension, units.Dimension]) -> tuple[float, float]:
+    if not isinstance(row, (list, tuple)) or len(row) != 2:
+        table.faults.add(f"{table.path}.table.{i}", "two values are needed in each row", shown(row))
+        return (NAN, NAN)
+    x, y = (table.parsed(f"table.{i}.{j}", item, dimensions[j]) for j, item in enumerate(row))
+    return (x, y)
+
+
+def _damping(entry: Entry, swinging: Oscillator | None) -> Damping:
+    table = entry.table
+    if table.is_table and not any(key in table for key in ("q_factor", "viscous", "quadratic", "coulomb")):
+        choices = 'q_factor = 250, viscous = "0.6 nN·m·s/rad", quadratic = "1 nN·m·s²/rad²" or coulomb = "10 nN·m"'
+        table.fault("", f"missing: {choices}")
+    for key in ("viscous", "quadratic", "coulomb"):
+        if table.quantity(key) < 0.0:
+            table.fault(key, "negative damping would drive the body", with_value=True)
+    viscous = _from_quality(entry, swinging) if "q_factor" in table else table.quantity("viscous")
+    return Damping(entry.name, viscous, table.quantity("quadratic"), table.quantity("coulomb"))
+
+
+def _from_quality(entry: Entry, swinging: Oscillator | None) -> float:
+    """Viscous damping c = sqrt(k J) / Q of a body that a spring or gravity pulls back."""
+    table = entry.table
+    if "viscous" in table:
+        table.fault("q_factor", "q_factor and viscous say the same thing: leave one out")
+    quality = table.positive("q_factor", "it is the quality factor of the oscillation, about 250 for a balance")
+    if entry.body and swinging is None:
+        seen = f"neither a spring nor gravity pulls {entry.name} back, so it has no quality factor"
+        table.fault("q_factor", f"{seen}. Add a spring under [[springs]], or gravity and mass; or write viscous")
+    product = swinging.stiffness * swinging.inertia if swinging else NAN
+    return math.sqrt(product) / quality if product > 0.0 and quality > 0.0 else NAN

@@ -1,0 +1,118 @@
+"""How are the title, the run, the timegrapher and the expectations of the scene file read?"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from watchsim import units
+from watchsim.geometry.primitives import Point
+from watchsim.model.records import TANGENTIAL_CODE
+from watchsim.scene.errors import Faults
+from watchsim.scene.file.keys.key_values import Table, shown
+from watchsim.scene.file.keys.schema import EXPECTATION, RUN, SCENE, SCHEMA, TIMEGRAPHER
+from watchsim.scene.file.readers.read_record import read_record
+from watchsim.scene.recording import Recording
+from watchsim.scene.scene import Expectation
+from watchsim.units import Dimension, UnitError, known_unit, parse, split
+
+DURATION = 1.0
+TOLERANCE = 1e-9
+TOLERANCES = (1e-13, 1e-2)
+WATCH_QUANTITIES = {
+    "amplitude": units.ANGLE,
+    "rate": units.RATE,
+    "period": units.TIME,
+    "beat_error": units.TIME,
+    "frequency": units.FREQUENCY,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Heading:
+    """Title, gravity (m/s²) and the tangential law of impacts with its nu."""
+
+    title: str
+    gravity: Point
+    tangential_law: str
+    nu: float
+
+
+def read_heading(mapping: Mapping[str, Any], faults: Faults) -> Heading:
+    table = Table(mapping.get("scene", {}), "scene", SCENE, faults)
+    schema = table.mapping.get("schema", SCHEMA)
+    if schema != SCHEMA:
+        table.fault("schema", f"this program reads schema {SCHEMA}", with_value=True)
+    law, nu = table.one_of("tangential_law", tuple(TANGENTIAL_CODE), "coulomb"), table.quantity("nu")
+    if nu < 0.0 or nu > 1.0:
+        table.fault("nu", "must lie between 0 and 1", with_value=True)
+    elif nu > 0.0 and law != "pg1996":
+        table.fault("nu", f'belongs to tangential_law = "pg1996"; the law here is {law}. Leave it out', with_value=True)
+    return Heading(table.text("title"), table.pair("gravity"), law, nu)
+
+
+def read_run(mapping: Mapping[str, Any], faults: Faults) -> tuple[float, Recording, float]:
+    """Duration (s), what to keep, tolerance."""
+    table = Table(mapping.get("run", {}), "run", RUN, faults)
+    duration = table.positive("duration", "it is how long to simulate") if "duration" in table else DURATION
+    tolerance = table.quantity("tolerance", TOLERANCE)
+    low, high = TOLERANCES
+    if tolerance < low or tolerance > high:
+        table.fault("tolerance", f"must lie between {low:g} and {high:g}; {TOLERANCE:g} is usual", with_value=True)
+    return duration, read_record(table), tolerance
+
+
+def read_timegrapher(mapping: Mapping[str, Any], faults: Faults) -> tuple[float | None, float | None]:
+    """Lift angle (rad) and frequency (Hz), None where the scene does not say."""
+    table = Table(mapping.get("timegrapher", {}), "timegrapher", TIMEGRAPHER, faults)
+    frequency = table.positive("frequency", "the rate is measured against it") if "frequency" in table else None
+    return _lift_angle(table), frequency
+
+
+def _lift_angle(table: Table) -> float | None:
+    if "lift_angle" not in table:
+        return None
+    angle = table.positive("lift_angle", "it is the arc of the balance during which it touches the lever")
+    if angle >= math.tau:
+        table.fault("lift_angle", "must be below a full turn", with_value=True)
+    return angle
+
+
+def read_expectations(mapping: Mapping[str, Any], faults: Faults) -> tuple[Expectation, ...]:
+    entries = mapping.get("expect", {})
+    if not isinstance(entries, dict):
+        faults.add("expect", 'write e.g. "amplitude" = { value = "275°", tolerance = "1°" } below [expect]', shown(entries))
+        return ()
+    found = (_expectation(key, Table(entry, f"expect.{key}", EXPECTATION, faults)) for key, entry in entries.items())
+    return tuple(one for one in found if one)
+
+
+def _expectation(key: str, table: Table) -> Expectation | None:
+    """In the unit of its value; the tolerance may have another unit of the same kind."""
+    missing = [name for name in ("value", "tolerance") if name not in table]
+    for name in missing if table.is_table else ():
+        table.fault("", f'{name} is missing. Write e.g. {{ value = "275°", tolerance = "1°" }}')
+    if missing:
+        return None
+    try:
+        number, unit = split(table.mapping["value"])
+        dimension = WATCH_QUANTITIES.get(key) or _kind(unit)
+        parse(table.mapping["value"], dimension)
+    except UnitError as error:
+        table.fault("value", str(error), with_value=True)
+        return None
+    return Expectation(key, float(number), _tolerance(table, unit, dimension), unit)
+
+
+def _kind(unit: str) -> Dimension:
+    """What a quantity nobody knows beforehand must be: whatever its own unit says."""
+    return Dimension(f"value in {unit}", (known_unit(unit).powers,), unit, (unit, unit)) if unit else units.NUMBER
+
+
+def _tolerance(table: Table, unit: str, dimension: Dimension) -> float:
+    value = table.parsed("tolerance", table.mapping["tolerance"], dimension)
+    if value <= 0.0:
+        table.fault("tolerance", "must be above zero", with_value=True)
+    return value / known_unit(unit).factor

@@ -1,0 +1,63 @@
+"""Which body is the oscillator, which the escape wheel, which the lever?
+
+Names in a scene are free, so the roles follow from what the bodies do: the oscillator swings on a spring or as a pendulum,
+the wheel is driven, the lever touches both.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from watchsim.scene.oscillation import oscillators
+from watchsim.scene.scene import Scene
+
+
+@dataclass(frozen=True, slots=True)
+class Roles:
+    """Names of bodies; None where a scene has no such part."""
+
+    oscillator: str | None
+    wheel: str | None
+    lever: str | None
+
+
+def roles(scene: Scene) -> Roles:
+    """The first that swings, the first driven pivoted body besides it, and a moving body in contact with both."""
+    oscillator = next((one.body for one in oscillators(scene)), None)
+    driven = (torque.body for torque in scene.torques if torque.body != oscillator)
+    wheel = next((name for name in driven if scene.body(name).motion == "pivot"), None)
+    if oscillator is None or wheel is None:
+        return Roles(oscillator, wheel, None)
+    both = partners(scene, oscillator) & partners(scene, wheel) - {oscillator, wheel}
+    moving = (body.name for body in scene.bodies if body.motion == "pivot" and body.name in both)
+    return Roles(oscillator, wheel, next(moving, None))
+
+
+def swings(scene: Scene) -> bool:
+    """Does anything swing, on a spring or by gravity?"""
+    return bool(oscillators(scene))
+
+
+def keeps_time(scene: Scene) -> bool:
+    """True for an oscillator that swings alone or is kept going by an escapement; False for a ratchet's click on its spring.
+
+    A driven wheel makes an escapement where a lever stands between it and the oscillator, or where the scene names a lift
+    angle; a wheel that touches the sprung body itself may as well be held by it.
+    """
+    found = roles(scene)
+    return found.oscillator is not None and (found.wheel is None or found.lever is not None or scene.lift_angle is not None)
+
+
+def partners(scene: Scene, name: str) -> set[str]:
+    """The bodies that a declared contact lets touch body `name`."""
+    pairs = [{side.body for side in contact.sides} for contact in scene.contacts]
+    return set().union(*(pair - {name} for pair in pairs if name in pair))
+
+
+def drive_direction(scene: Scene, name: str) -> float:
+    """+1 or -1: the way the torques on body `name` turn it (the mean of a table)."""
+    total = 0.0
+    for torque in scene.torques:
+        if torque.body == name:
+            total += sum(value for _, value in torque.table) / len(torque.table) if torque.table else torque.value
+    return -1.0 if total < 0.0 else 1.0

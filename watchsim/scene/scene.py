@@ -1,0 +1,80 @@
+"""What did the user declare?"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from watchsim.drawing.findings import Finding
+from watchsim.geometry.primitives import Point
+from watchsim.scene.body import Body
+from watchsim.scene.force import Contact, Damping, Spring, Torque
+from watchsim.scene.recording import EVERYTHING, Recording
+
+
+@dataclass(frozen=True, slots=True)
+class Expectation:
+    """A number the scene promises, in the units it was written in."""
+
+    key: str
+    value: float
+    tolerance: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A mechanism in SI units, ready to be compiled.
+
+    `tangential_law` ("coulomb", "pg1996" or "shifted") says what friction does in the expansion of impacts, `nu` belongs to
+    pg1996 (docs/laws.md).
+    `nominal` (Hz) is what the rate is measured against, where the scene says so.
+    `source` is the TOML mapping it was made from, `path` its file, `findings` what the drawings said besides errors,
+    `drawings` the files themselves as they were read, by their names in the scene file; two scenes are equal when everything
+    else is.
+    """
+
+    title: str
+    bodies: tuple[Body, ...]
+    springs: tuple[Spring, ...] = ()
+    torques: tuple[Torque, ...] = ()
+    damping: tuple[Damping, ...] = ()
+    contacts: tuple[Contact, ...] = ()
+    gravity: Point = (0.0, 0.0)
+    tangential_law: str = "coulomb"
+    nu: float = 0.0
+    duration: float = 1.0
+    record: Recording = EVERYTHING
+    tolerance: float = 1e-9
+    lift_angle: float | None = None
+    nominal: float | None = None
+    expect: tuple[Expectation, ...] = ()
+    path: Path | None = field(default=None, compare=False)
+    source: dict[str, Any] = field(default_factory=dict, repr=False, compare=False)
+    findings: tuple[Finding, ...] = field(default=(), repr=False, compare=False)
+    drawings: Mapping[str, bytes] = field(default_factory=dict, repr=False, compare=False)
+
+    def __repr__(self) -> str:
+        names = ", ".join(body.name for body in self.bodies)
+        return f"<Scene {self.title!r}: {names}; {len(self.contacts)} contacts declared>"
+
+    def body(self, name: str) -> Body:
+        """The body of that name; KeyError if there is none."""
+        return self._by_name[name]
+
+    @cached_property
+    def _by_name(self) -> dict[str, Body]:
+        return {body.name: body for body in self.bodies}
+
+    def set(self, key: str, value: object) -> Scene:
+        """A copy with one key of the scene file changed, everything else checked again.
+
+        `key` is a dotted path such as "torques.0.value", "bodies.lever.position.1"; `value` a text as in the file
+        ("-1.2 µN·m") or a number in SI units. Raises SceneError for an unknown path or a value that does not fit.
+        """
+        from watchsim.scene.file.override import changed
+
+        return changed(self, {key: value})

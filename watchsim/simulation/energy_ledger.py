@@ -1,0 +1,51 @@
+"""Does the energy ledger of a run close, and what do its watchdogs say in words?"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from typing import Any
+
+from watchsim.simulation.advance import BEARING, KINDS, TOUCHED
+from watchsim.simulation.motion.coupled_motion import EXTENT, NORMAL, PARADOX, TANGENTIAL
+from watchsim.simulation.record.trajectory import Pair
+from watchsim.simulation.state import RECENT, Scratch, State
+
+LEAST_SHARE = 1e-6  # of the energy turned over: a larger residual is no rounding
+PER_TOLERANCE = 1e3  # times the tolerance per step, which the user asks for: a residual of that size was asked for
+MANY = 6  # different causes named
+
+_WORDS = {
+    NORMAL: "the force ends at {}",
+    TANGENTIAL: "slip or grip ends at {}",
+    EXTENT: "an edge ends at {}",
+    PARADOX: "no finite force holds {}",
+    TOUCHED: "{} touch",
+}
+
+
+def ledger_fails(energy: dict[str, Any], held: float, tolerance: float) -> bool:
+    """True if the residual of the ledger is more than rounding; `held` (J): the most energy that was ever in the motion."""
+    turned_over = held + abs(energy["in_J"]) + abs(energy["stored_J"]) + sum(energy["dissipated"].values())
+    return bool(abs(energy["residual_J"]) > max(LEAST_SHARE, PER_TOLERANCE * tolerance) * turned_over)
+
+
+def what_alternates(state: State, scratch: Scratch, pairs: Sequence[Pair], bodies: Sequence[str]) -> str:
+    """What ended the last steps, most frequent first, with bodies and edges; "" where nothing did."""
+    last = min(int(scratch.recent[RECENT]), RECENT)
+    counted = Counter(scratch.recent[:last].tolist())
+    words = [f"{_cause(code, pairs, bodies)} ({times}×)" for code, times in counted.most_common(MANY)]
+    return f"what alternates: {'; '.join(words)}" if words else ""
+
+
+def _cause(code: int, pairs: Sequence[Pair], bodies: Sequence[str]) -> str:
+    number, kind = divmod(code, KINDS)
+    if kind == BEARING:
+        return f"dry friction in the bearing of {bodies[number]} holds or lets go"
+    return _WORDS[kind].format(pairs[number])
+
+
+def touching(state: State, pairs: Sequence[Pair]) -> str:
+    """The contacts in force, in words."""
+    ids = state.active[: state.numbers[0]].tolist()
+    return "in contact: " + "; ".join(str(pairs[k]) for k in ids[:MANY]) if ids else ""

@@ -1,0 +1,165 @@
+"""Is this the same contact on a neighbouring primitive, and how does a contact pass from one to the next?
+
+Where two primitives join smoothly, or an arc of the touching body ends in its corner, both sides have the same contact point
+and the same normal. Then the contact goes on with its mode: no impact, no release.
+"""
+
+from __future__ import annotations
+
+import math
+
+from watchsim.candidates.cell_lookup import LISTED, UNKNOWN, candidate, candidates
+from watchsim.contact.gaps import contact_point, extent_margin, normal_gap
+from watchsim.contact.index_sets import OPEN
+from watchsim.contact.kinematics import contact_kinematics
+from watchsim.contact.poses import place
+from watchsim.dynamics.small_systems import copy
+from watchsim.jit import kernel
+from watchsim.simulation.motion.drift_projection import IN_STEPS, project_velocities
+from watchsim.simulation.record.write_buffers import keep_event
+from watchsim.simulation.state import N_LOOKUPS
+
+HANDOVER_EVENT = 6
+LEFT = 1.5  # times the extent beyond the primitive's end: the contact has left it; touching ends at 1, the monitor at 2
+NEAR = 100.0  # times the extent: contact points this close are one
+FAR = 1e4  # times the extent: points further apart than that never are
+TURN = 1e-5  # rad. Large: shallow corners count as smooth; small: drawings that are tangent to a nanometre only get impacts
+SHARP = 1e-2  # rad: no joint that turns by more is smooth
+
+
+@kernel
+def same_contact(model, k, other, options, pose):
+    """True if contacts k and `other` touch the same two bodies at one point with one normal."""
+    way, turn = room_to_differ(model, k, other, options, pose)
+    return way >= 0.0 and turn >= 0.0
+
+
+@kernel
+def room_to_differ(model, k, other, options, pose):
+    """How much further apart the points of two contacts may come (m), their normals turn (rad), before they are no longer one.
+
+    Negative where they are two already.
+    """
+    one, two = model.contacts[k], model.contacts[other]
+    a, b = model.primitives[one.a].body, model.primitives[one.b].body
+    c, d = model.primitives[two.a].body, model.primitives[two.b].body
+    if not ((a == c and b == d) or (a == d and b == c)):
+        return -1.0, -1.0
+    # The circle may be on either body: normals point out of the other one.
+    sign = 1.0 if a == c else -1.0
+    _, _, nx, ny = normal_gap(model, k, pose)
+    _, _, mx, my = normal_gap(model, other, pose)
+    # One of them may be beyond its joint by some extents, and its normal turned by the curvature of that way.
+    turn = min(TURN + 4.0 * options.extent * max(abs(one.curvature), abs(two.curvature)), SHARP)
+    turned = math.sqrt((nx - sign * mx) ** 2 + (ny - sign * my) ** 2)
+    x, y = contact_point(model, k, pose)
+    X, Y = contact_point(model, other, pose)
+    radius = max(model.primitives[one.a].radius, model.primitives[two.a].radius)
+    near = min(NEAR * options.extent + turn * radius, FAR * options.extent)
+    return near - math.sqrt((x - X) ** 2 + (y - Y) ** 2), turn - turned
+
+
+@kernel
+def is_beside_active(model, state, k):
+    """True if open contact k is beside a contact in force that excludes it: one primitive the same, the others neighbours.
+
+    What touches an outline from outside near a convex corner, or near a smooth joint of lines and convex arcs, does so in
+    one point. The contact in force ends, with an event, before its neighbour can begin.
+    """
+    one = model.contacts[k]
+    for j in range(state.numbers[0]):
+        two = model.contacts[state.active[j]]
+        if one.a == two.a:
+            mine, its = one.b, two.b
+        elif one.b == two.b:
+            mine, its = one.a, two.a
+        elif one.a == two.b:
+            mine, its = one.b, two.a
+        elif one.b == two.a:
+            mine, its = one.a, two.b
+        else:
+            continue
+        if model.primitives[mine].before == its or model.primitives[mine].after == its:
+            return True
+    return False
+
+
+@kernel
+def continues_active(model, state, options, k, pose):
+    """True if open contact k is a contact in force, seen from a neighbouring primitive."""
+    way, _ = room_beside_active(model, state, options, k, pose)
+    return way >= 0.0
+
+
+@kernel
+def room_beside_active(model, state, options, k, pose):
+    """`room_to_differ` from the contact in force that open contact k continues; negative where it continues none."""
+    for j in range(state.numbers[0] + state.numbers[1]):
+        way, turn = room_to_differ(model, k, state.active[j], options, pose)
+        if way >= 0.0 and turn >= 0.0:
+            return way, turn
+    return -1.0, -1.0
+
+
+@kernel
+def _pair_of(model, k):
+    p = 0
+    while not model.pairs[p].start <= k < model.pairs[p].stop:
+        p += 1
+    return p
+
+
+@kernel
+def _successor(model, cells, state, options, k, scratch):
+    """The open contact that goes on where contact k ends: its number, -1 for none, -2 where the cell is unknown."""
+    p = _pair_of(model, k)
+    how, start, count = candidates(model, cells, p, state.q)
+    if how == UNKNOWN:
+        scratch.unknown[0] = p
+        copy(state.q, scratch.at)
+        return -2
+    if how == LISTED:
+        state.counts[N_LOOKUPS] += 1
+    best, deepest = -1, -options.extent
+    for slot in range(start, start + count):
+        j = candidate(model, cells, how, slot)
+        if state.mode[j] != OPEN:
+            continue
+        gap, _, _, _ = normal_gap(model, j, scratch.pose)
+        if abs(gap) > options.gap_close:
+            continue
+        margin = extent_margin(model, j, scratch.pose)
+        if margin >= deepest and same_contact(model, j, k, options, scratch.pose):
+            best, deepest = j, margin
+    return best
+
+
+@kernel
+def hand_over(model, cells, state, options, scratch, record):
+    """Pass contacts that left their primitives to their neighbours. Poses must be current; False where a cell is unknown."""
+    moved = False
+    for j in range(state.numbers[0] + state.numbers[1]):
+        k = state.active[j]
+        if extent_margin(model, k, scratch.pose) >= -LEFT * options.extent:
+            continue
+        successor = _successor(model, cells, state, options, k, scratch)
+        if successor == -2:
+            return False
+        if successor >= 0:
+            state.mode[successor], state.mode[k] = state.mode[k], OPEN
+            state.active[j] = successor
+            keep_event(state, record, HANDOVER_EVENT, successor, -1, float(k))
+            moved = True
+    if moved:
+        _follow(model, state, scratch)
+    return True
+
+
+@kernel
+def _follow(model, state, scratch):
+    """Take back what the way beyond the primitive's end has done to the velocities: normals differ by the turn there."""
+    m = state.numbers[0]
+    for i in range(m):
+        contact_kinematics(model, state.active[i], scratch.pose, i, scratch.closed)
+    project_velocities(scratch.closed, m, state.mode, IN_STEPS, scratch.work, state.u)
+    place(model, state.q, state.u, scratch.pose)

@@ -1,0 +1,43 @@
+"""Can any motion change the gap of a contact?
+
+Not that of a disc about its own pivot against a bar that slides past it: the normal force has no lever arm on either body, so
+that it can neither stop nor be stopped by anything. Such a contact is left out until its lever arms are more than rounding.
+"""
+
+from __future__ import annotations
+
+from watchsim.contact.index_sets import OPEN
+from watchsim.contact.kinematics import contact_kinematics
+from watchsim.jit import kernel
+from watchsim.simulation.record.write_buffers import OPEN_EVENT, keep_event
+
+# sine² of the angle between a face and the motion: drawings are rounded to a nanometre, which over a millimetre is a millionth
+IMMOVABLE = 1e-12
+
+
+@kernel
+def is_immovable(model, closed, i):
+    """True if the gap of row i of `closed` changes by next to nothing however its bodies move."""
+    across, along = 0.0, 0.0
+    for slot in range(closed.slots[i]):
+        inverse = 1.0 / model.coordinates[closed.coord[i, slot]].mass
+        across += closed.w_N[i, slot] ** 2 * inverse
+        along += closed.w_T[i, slot] ** 2 * inverse
+    return across <= IMMOVABLE * along
+
+
+@kernel
+def drop_immovable(model, state, m, scratch, record):
+    """Leave the immovable ones out of the m contacts in `scratch.closed`; returns how many are left."""
+    closed, kept = scratch.closed, 0
+    for i in range(m):
+        k = closed.ids[i]
+        if is_immovable(model, closed, i):
+            if state.mode[k] != OPEN:
+                state.mode[k] = OPEN
+                keep_event(state, record, OPEN_EVENT, k, -1, 0.0)
+            continue
+        if kept < i:
+            contact_kinematics(model, k, scratch.pose, kept, closed)
+        kept += 1
+    return kept

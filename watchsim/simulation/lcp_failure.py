@@ -1,0 +1,62 @@
+"""What is known about a complementarity problem that nothing solved?
+
+All that is needed to look at it elsewhere: the matrices, the contacts in words, and the state it arose in.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from watchsim.dynamics.acceleration import LEVEL_ACCELERATION
+from watchsim.dynamics.impact import LEVEL_COMPRESSION, LEVEL_EXPANSION
+from watchsim.dynamics.lcp.lemke_pivoting import INEXACT, MAX_ITER, RAY
+from watchsim.simulation.record.contact_names import Pair
+from watchsim.simulation.state import Scratch, State
+
+LEVELS = {LEVEL_ACCELERATION: "acceleration", LEVEL_COMPRESSION: "compression", LEVEL_EXPANSION: "expansion"}
+LEMKE_ENDS = {RAY: "ray", MAX_ITER: "too many pivots", INEXACT: "not a solution"}
+ADVICE = (
+    "Less friction at the contacts named here: near mu |b| = |a| of a rotor's lever arms bodies jam.",
+    "Restitution 0 at these contacts: then only the compression must be solved.",
+    "A tighter tolerance, or a start a little away from this position.",
+)
+
+
+def failure_of(state: State, scratch: Scratch, pairs: Sequence[Pair]) -> dict[str, Any]:
+    """The last problem posed, as plain values. Units SI.
+
+    level       of the problem: acceleration, compression or expansion
+    contacts    bodies and primitives in words with contact number, mode, gap rate and slip; two rows of G each, N then T
+    G, b        Delassus matrix and the accelerations or velocities of its rows without contact forces
+    A, rhs      of y = A x + rhs in the scaling of dynamics/coulomb.py
+    """
+    work = scratch.work
+    m, elements, bearings, level, lemke = (int(value) for value in work.note)
+    closed = scratch.rest if level == LEVEL_ACCELERATION else scratch.closed
+    rows, n = 2 * m + bearings, m + 2 * elements
+    return {
+        "level": LEVELS.get(level, "none"),
+        "lemke_ended_with": LEMKE_ENDS.get(lemke, "a solution"),
+        "what_to_try": list(ADVICE),
+        "t": float(state.clock[0]),
+        "q": state.q.tolist(),
+        "u": state.u.tolist(),
+        "contacts": [_contact(int(k), closed.kin[row], state, pairs) for row, k in enumerate(closed.ids[:m])],
+        "bearings": work.dry[:bearings].tolist(),
+        "G": work.G[:rows, :rows].tolist(),
+        "b": work.b[:rows].tolist(),
+        "A": work.A[:n, :n].tolist(),
+        "rhs": work.rhs[:n].tolist(),
+    }
+
+
+def _contact(k: int, kinematics: Any, state: State, pairs: Sequence[Pair]) -> dict[str, Any]:
+    return {
+        "number": k,
+        "between": str(pairs[k]),
+        "mode": int(state.mode[k]),
+        "gap_m": float(kinematics.g),
+        "gap_rate_m_per_s": float(kinematics.gN_dot),
+        "slip_m_per_s": float(kinematics.gT_dot),
+    }

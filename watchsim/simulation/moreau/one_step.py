@@ -1,0 +1,201 @@
+"""What does one step of Moreau's time stepping do?
+
+The contacts closed at the middle of the step take part. First what approaches is stopped and thrown back (compression and
+expansion, Poisson's law); then forces and contacts act together over the step, at its middle (theta = 1/2), without
+restitution; then penetration is taken back a little at a time, without touching velocities (docs/method.md 6).
+"""
+
+from __future__ import annotations
+
+import math
+
+from watchsim.candidates.cell_lookup import UNKNOWN, candidate, candidates
+from watchsim.contact.gaps import extent_margin, normal_gap
+from watchsim.contact.kinematics import contact_kinematics
+from watchsim.contact.poses import place, point_of
+from watchsim.dynamics.applied_forces import driving_force, joint_damping, joint_energy, stretch, table_force
+from watchsim.dynamics.small_systems import copy
+from watchsim.jit import kernel
+from watchsim.simulation.events.immovable import is_immovable
+from watchsim.simulation.moreau.mobility import fill_mobility, push, rates_of
+from watchsim.simulation.moreau.percussion_laws import cone
+from watchsim.simulation.moreau.percussions import friction_cones, solve_percussions
+from watchsim.simulation.moreau.prox_relaxation import relax
+from watchsim.simulation.state import CORRECTION, DAMPING, DRIVE, FRICTION
+
+TAKEN_BACK = 0.2  # share of a penetration beyond `slop` taken back in a step
+YIELD = 1e-3  # share by which a contact's own push yields: of what is wedged in from two sides, both keep some
+
+
+@kernel
+def closed_at_middle(model, cells, state, options, h, work):
+    """The contacts without a gap at the middle of the step, with kinematics, into `work.closed`.
+
+    Returns their number, -1 when a cell is unknown, -2 when there are too many.
+    """
+    for i in range(len(state.q)):
+        work.q[i] = state.q[i] + 0.5 * h * state.u[i]
+    place(model, work.q, state.u, work.pose)
+    m = 0
+    for p in range(len(model.pairs)):
+        how, start, count = candidates(model, cells, p, work.q)
+        if how == UNKNOWN:
+            work.unknown[0] = p
+            copy(work.q, work.at)
+            return -1
+        for place_in_list in range(start, start + count):
+            k = candidate(model, cells, how, place_in_list)
+            gap, _, _, _ = normal_gap(model, k, work.pose)
+            if gap > options.gap_close or (state.mode[k] == 0 and gap < -_believable(model, options, k, h, work)):
+                continue
+            if extent_margin(model, k, work.pose) >= -options.extent:
+                if m == len(work.closed.ids):
+                    return -2
+                contact_kinematics(model, k, work.pose, m, work.closed)
+                if is_immovable(model, work.closed, m):
+                    continue
+                m += 1
+    return m
+
+
+@kernel
+def _believable(model, options, k, h, work):
+    """How deep a contact that was open may be now; deeper, it is the far side of a part."""
+    contact = model.contacts[k]
+    a, b = model.primitives[contact.a], model.primitives[contact.b]
+    pa, pb = work.pose[a.body], work.pose[b.body]
+    ax, ay = point_of(pa, a.x, a.y)
+    dx, dy = pa.x + ax - pb.x, pa.y + ay - pb.y
+    vx = pa.vx - pa.w * ay - pb.vx + pb.w * dy
+    vy = pa.vy + pa.w * ax - pb.vy - pb.w * dx
+    # A neighbour on the outline takes over what the last contact had.
+    return 2.0 * (h * math.sqrt(vx * vx + vy * vy) + work.depth[0]) + options.gap_close
+
+
+@kernel
+def _free_velocity(model, state, h, work):
+    """Velocities after the step without contacts: springs and damping at its middle, drives at the middle's place."""
+    for i in range(len(work.u)):
+        coordinate = model.coordinates[i]
+        work.force[i] = driving_force(model, i, work.q[i])
+        work.damping[i] = coordinate.viscous + coordinate.quadratic * abs(work.u[i])
+    for j in range(len(model.tables)):
+        table, force = model.tables[j], table_force(model, j, state.clock[0] + 0.5 * h, work.q)
+        work.force[table.coordinate] += force
+        if table.on >= 0:
+            work.force[table.on] -= force
+    for j in range(len(model.joints)):
+        joint = model.joints[j]
+        work.force[joint.coordinate] += joint.force
+        work.force[joint.on] -= joint.force
+    for i in range(len(work.u)):
+        coordinate = model.coordinates[i]
+        change = 0.5 * h * work.damping[i] + 0.25 * h * h * coordinate.stiffness
+        work.mass[i] = coordinate.mass + change
+        work.inverse[i] = 1.0 / work.mass[i]
+        pull = work.force[i] - coordinate.stiffness * (state.q[i] - coordinate.rest)
+        work.free[i] = ((coordinate.mass - change) * work.u[i] + h * pull) * work.inverse[i]
+    # Two coordinates at once would fill the matrix: what acts between them is taken at the middle as the last step foresees it.
+    for i in range(len(work.u)):
+        work.at[i] = work.u[i] + 0.5 * h * state.a[i]
+    for j in range(len(model.joints)):
+        joint = model.joints[j]
+        work.joint[j] = joint_damping(joint, work.at)
+        torque = work.joint[j] - joint.stiffness * stretch(joint, work.q)
+        work.free[joint.coordinate] += h * torque * work.inverse[joint.coordinate]
+        work.free[joint.on] -= h * torque * work.inverse[joint.on]
+
+
+@kernel
+def _begin_percussions(model, m, h, work):
+    """The laws of contacts and bearings in this step, and a first guess; returns the number of bearings."""
+    laws, bearings = work.laws, len(work.dry)
+    fill_mobility(work, m, bearings)
+    rates_of(work, m, bearings, work.free, laws.b)
+    friction_cones(model, m, work)
+    for i in range(m):
+        # Last step's percussions are a good guess at this one's.
+        last = work.memory[work.closed.ids[i]]
+        laws.P[2 * i], laws.P[2 * i + 1] = last[0], last[1]
+    for k in range(bearings):
+        j = work.dry[k]
+        most = h * model.coordinates[j].coulomb
+        laws.ends[m + k, 0], laws.ends[m + k, 2] = -most, most
+        laws.P[2 * m + k] = -math.copysign(most, work.u[j]) if work.u[j] != 0.0 else 0.0
+    return bearings
+
+
+@kernel
+def act(model, state, m, h, work, out_u):
+    """Velocities at the end of the step: forces, contacts and dry bearings together, without restitution."""
+    laws = work.laws
+    _free_velocity(model, state, h, work)
+    copy(work.free, out_u)
+    if m == 0 and len(work.dry) == 0:
+        return
+    bearings = _begin_percussions(model, m, h, work)
+    solve_percussions(state, m, bearings, work)
+    push(work, m, bearings, laws.P, out_u)
+    rates_of(work, m, bearings, work.u, laws.b)
+    rates_of(work, m, bearings, out_u, work.rates)
+    for i in range(m):
+        N, T = 2 * i, 2 * i + 1
+        state.sums[CORRECTION] -= 0.5 * laws.P[N] * (laws.b[N] + work.rates[N])
+        state.sums[FRICTION] -= 0.5 * laws.P[T] * (laws.b[T] + work.rates[T])
+    for row in range(2 * m, 2 * m + bearings):
+        state.sums[DAMPING] -= 0.5 * laws.P[row] * (laws.b[row] + work.rates[row])
+
+
+@kernel
+def move(model, state, options, m, h, work, u):
+    """Positions at the end of the step, with the sums of work; `u` holds the velocities there."""
+    for i in range(len(u)):
+        coordinate = model.coordinates[i]
+        mean = 0.5 * (work.u[i] + u[i])
+        state.q[i] += h * mean
+        state.sums[DRIVE] += h * mean * work.force[i]
+        state.sums[DAMPING] += h * work.damping[i] * mean * mean
+        state.a[i] = (u[i] - work.u[i]) / h
+        work.free[i] = coordinate.stiffness * (state.q[i] - coordinate.rest) ** 2
+    for j in range(len(model.joints)):
+        joint = model.joints[j]
+        way = 0.5 * h * (work.u[joint.coordinate] + u[joint.coordinate] - work.u[joint.on] - u[joint.on])
+        state.sums[DAMPING] -= work.joint[j] * way
+        spent = joint.stiffness * way * (stretch(joint, state.q) - 0.5 * way - stretch(joint, work.q))
+        state.sums[CORRECTION] -= spent
+    wound = joint_energy(model, state.q)
+    _take_back(state, options, m, work)
+    state.sums[CORRECTION] -= joint_energy(model, state.q) - wound
+    for i in range(len(u)):
+        coordinate = model.coordinates[i]
+        after = coordinate.stiffness * (state.q[i] - coordinate.rest) ** 2
+        state.sums[CORRECTION] -= 0.5 * (after - work.free[i])
+
+
+@kernel
+def _take_back(state, options, m, work):
+    """A share of the penetrations at the middle, by the smallest change of positions; remember who is closed."""
+    laws = work.laws
+    state.mode[:] = 0
+    work.memory[:] = 0.0
+    work.depth[0] = 0.0
+    slop = 0.5 * options.gap_close
+    any_deep = False
+    for i in range(m):
+        k = work.closed.ids[i]
+        state.mode[k] = 1
+        work.memory[k, 0], work.memory[k, 1] = laws.P[2 * i], laws.P[2 * i + 1]
+        depth = -work.closed.kin[i].g
+        work.depth[0] = max(work.depth[0], depth)
+        laws.b[2 * i], laws.b[2 * i + 1] = -TAKEN_BACK * max(0.0, depth - slop), 0.0
+        laws.low[i] = 0.0
+        cone(laws.ends, i, 0.0)
+        any_deep = any_deep or depth > slop
+    state.worst[0] = max(state.worst[0], work.depth[0])
+    if not any_deep:
+        return
+    for i in range(m):
+        laws.P[2 * i], laws.P[2 * i + 1] = 0.0, 0.0
+        laws.G[2 * i, 2 * i] *= 1.0 + YIELD
+    relax(laws, m, 0)
+    push(work, m, 0, laws.P, state.q)

@@ -1,0 +1,74 @@
+"""What does Moreau's time stepping keep from step to step, and where does it work?"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.contact.kinematics import Closed, closed_contacts
+from watchsim.contact.poses import poses
+from watchsim.jit import by_reference
+from watchsim.model.records import Model
+from watchsim.simulation.moreau.percussion_laws import Laws, laws
+from watchsim.simulation.state import room_for
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+
+class MoreauWork(NamedTuple):
+    """Room to work in; `memory` (percussions of the last step by contact), `depth`, `sweeps` and `worst` belong to the state.
+
+    Rows of `rates` and `more` are those of `laws`: N, T of each of the m closed contacts, then the bearings.
+    """
+
+    closed: Closed
+    laws: Laws
+    memory: Array  # (contacts, 2)
+    depth: Array  # deepest penetration of the last step, m
+    pose: object
+    q: Array  # at the middle of the step
+    u: Array  # after the impacts, before the forces
+    free: Array  # with the forces, without contacts
+    force: Array  # drives and gravity at the middle
+    damping: Array
+    joint: Array  # torque of the damping between a carried body and its carrier
+    mass: Array
+    inverse: Array
+    change: Array  # of velocities, by one percussion
+    rates: Array
+    more: Array
+    restitution: Array
+    dry: Integers  # coordinate of each bearing with dry friction
+    unknown: Integers
+    at: Array
+    sweeps: Integers
+    worst: Array  # residual of the laws
+
+
+MoreauWorkRef = by_reference(MoreauWork, __name__)
+
+
+def moreau_work(model: Model) -> MoreauWork:
+    """Room for one model."""
+    n, room = len(model.coordinates), room_for(model)
+    dry = np.flatnonzero(model.coordinates.coulomb > 0.0)
+    rows = 2 * room + len(dry)
+    vectors = {name: np.zeros(n) for name in ("q", "u", "free", "force", "damping", "joint", "mass", "inverse", "change", "at")}
+    by_row = {name: np.zeros(rows) for name in ("rates", "more")}
+    return MoreauWork(
+        memory=np.zeros((len(model.contacts), 2)),
+        depth=np.zeros(1),
+        pose=poses(len(model.bodies)),
+        closed=closed_contacts(room),
+        laws=laws(room, len(dry)),
+        restitution=np.zeros(room),
+        dry=dry,
+        unknown=np.zeros(1, np.int64),
+        sweeps=np.zeros(1, np.int64),
+        worst=np.zeros(1),
+        **vectors,
+        **by_row,
+    )

@@ -1,0 +1,66 @@
+"""How does Moreau's time stepping run on the same model? The independent twin of the event-driven solver."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.mechanism.compile import Compiled
+from watchsim.scene.recording import Recording
+from watchsim.scene.scene import Scene
+from watchsim.simulation.methods import MOREAU
+from watchsim.simulation.moreau.step_work import moreau_work
+from watchsim.simulation.moreau.steps import EVENTS_PER_CONTACT, ROWS_PER_STEP, advance_fixed
+from watchsim.simulation.runner import EVENTS, ROWS, Run
+from watchsim.simulation.state import CORRECTION, new_record, room_for
+from watchsim.simulation.stops import Stop
+
+ROWS_PER_QUARTER = 300  # of the fastest spring's period; of the scene's duration where there is no spring
+
+
+class MoreauRun(Run):
+    """Fixed steps of `step` seconds; impacts, friction and forces once for each."""
+
+    method = MOREAU
+
+    def __init__(self, scene: Scene, compiled: Compiled, tolerance: float, recording: Recording, step: float) -> None:
+        super().__init__(scene, compiled, tolerance, recording)
+        self.step = step
+        self.pace = np.array([step, max(step, self.options.max_step / ROWS_PER_QUARTER)])
+        self.work = moreau_work(compiled.model)
+        self.record = new_record(
+            compiled.model, ROWS + ROWS_PER_STEP, EVENTS + EVENTS_PER_CONTACT * room_for(compiled.model), self.record.windows
+        )
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        return {**super().arrays(), "memory": self.work.memory, "depth": self.work.depth, "sweeps": self.work.sweeps}
+
+    def _worst_residual(self) -> NDArray[np.float64]:
+        return self.work.worst
+
+    def settings(self) -> dict[str, Any]:
+        return {**super().settings(), "step": self.step}
+
+    def _advance(self, until: NDArray[np.float64], record: Any) -> Stop:
+        model = self.compiled.model
+        # Of fixed length, so that their number is a time.
+        before = float(self.state.clock[0])
+        until[0] = min(until[0], before + until[3] * self.pace[0])
+        code = advance_fixed(model, self.finder.cells, self.state, self.options, until, self.pace, self.work, record)
+        until[3] -= round((float(self.state.clock[0]) - before) / self.pace[0])
+        return Stop(int(code))
+
+    def _learn(self) -> None:
+        self.finder.learn(int(self.work.unknown[0]), self.work.at.copy())
+
+    def _counts(self) -> dict[str, int]:
+        return {**super()._counts(), "sweeps": int(self.work.sweeps[0])}
+
+    def _ledger_fails(self) -> bool:
+        """Never: the error of the ledger goes with the step, which the user has chosen."""
+        return False
+
+    def _dissipated(self) -> dict[str, float]:
+        return {**super()._dissipated(), "stepping": float(self.state.sums[CORRECTION])}

@@ -1,0 +1,100 @@
+"""How is drift off the contacts taken back?
+
+Closed contacts are brought to zero gap, and their gap rates (with the slip of sticking ones) to zero, by the smallest
+change in the metric of the mass matrix: dq = -M⁻¹ W (Wᵀ M⁻¹ W)⁺ g.
+
+What is taken back is rounding, so the change must be of its size. Where two force directions are nearly parallel, or one has
+next to no lever arm (friction on the line of centres), zeroing both rates would move the bodies by far more than the rates
+themselves: directions that the others nearly determine are left as they are (docs/method.md 2.10).
+"""
+
+from __future__ import annotations
+
+from watchsim.contact.index_sets import OPEN, STICK
+from watchsim.dynamics.delassus import apply, fill_delassus
+from watchsim.dynamics.small_systems import solve_small, unit_scale
+from watchsim.jit import kernel
+
+# sine² of the angle below which a direction counts as one of the others, or as immovable
+IN_STEPS = 1e-6  # what a step leaves. Large: drift piles up between nearly parallel faces; small: its rounding is magnified
+AT_EVENTS = 1e-2  # rates that count as zero. Large: sets are resolved by impulses without need; small: bodies are stopped
+SLIP_LAST = 0.5  # weight of slips against gap rates: where they compete, the gap rate is made exact
+
+
+@kernel
+def project_positions(closed, m, both, work, out_q):
+    """Close the gaps of the first m contacts (only negative ones unless `both`); returns the deepest penetration found, m."""
+    deepest, furthest = 0.0, 0.0
+    for i in range(m):
+        deepest = max(deepest, -closed.kin[i].g)
+        furthest = max(furthest, abs(closed.kin[i].g))
+    if furthest == 0.0 or (deepest == 0.0 and not both):
+        return deepest
+    fill_delassus(closed, m, work)
+    for i in range(m):
+        for j in range(m):
+            work.A[i, j] = work.G[2 * i, 2 * j]
+        work.rhs[i] = -closed.kin[i].g if both or closed.kin[i].g < 0.0 else 0.0
+        work.scale[i] = _scale_of(work, 2 * i, IN_STEPS)
+    solve_small(work.A, work.rhs, m, work.scale, work.order, work.x, IN_STEPS)
+    for i in range(m):
+        work.more[2 * i], work.more[2 * i + 1] = work.x[i], 0.0
+    apply(closed, m, work.more, work.inverse, out_q)
+    return deepest
+
+
+@kernel
+def project_velocities(closed, m, mode, independent, work, out_u):
+    """Make the gap rates of the first m contacts in force, and the slip of the sticking ones, zero.
+
+    `independent`: IN_STEPS or AT_EVENTS.
+    """
+    find_correction(closed, m, mode, independent, work)
+    apply(closed, m, work.more, work.inverse, out_u)
+
+
+@kernel
+def find_correction(closed, m, mode, independent, work):
+    """The impulses of `project_velocities` into `work.more`; fills `work.G`."""
+    fill_delassus(closed, m, work)
+    n = 0
+    for i in range(m):
+        state = mode[closed.ids[i]]
+        work.more[2 * i], work.more[2 * i + 1] = 0.0, 0.0
+        if state != OPEN:
+            n = _add_row(work, 2 * i, -closed.kin[i].gN_dot, n, independent)
+        if state == STICK:
+            n = _add_row(work, 2 * i + 1, -closed.kin[i].gT_dot, n, independent)
+    for i in range(n):
+        for j in range(n):
+            work.A[i, j] = work.G[work.row[i], work.row[j]]
+    solve_small(work.A, work.rhs, n, work.scale, work.order, work.x, independent)
+    for i in range(n):
+        work.more[work.row[i]] = work.x[i]
+
+
+@kernel
+def rate_left(closed, m, i, work):
+    """Gap rate of contact i after the correction just found."""
+    rate = closed.kin[i].gN_dot
+    for row in range(2 * m):
+        rate += work.G[2 * i, row] * work.more[row]
+    return rate
+
+
+@kernel
+def _add_row(work, row, rate, n, independent):
+    """Append the row of G with what its rate shall change by; returns the new number of rows."""
+    work.row[n], work.rhs[n], work.scale[n] = row, rate, _scale_of(work, row, independent)
+    return n + 1
+
+
+@kernel
+def _scale_of(work, row, independent):
+    """Unit diagonal for what can be moved, less for slips; zero for what next to no impulse along its direction moves."""
+    normal = row - row % 2
+    easiest = work.G[normal, normal] + work.G[normal + 1, normal + 1]
+    own = work.G[row, row]
+    if own <= independent * easiest:
+        return 0.0
+    return unit_scale(own) if row == normal else SLIP_LAST * unit_scale(own)

@@ -1,0 +1,130 @@
+"""How is one smooth step made where contacts couple bodies?
+
+Explicit Runge-Kutta of order 8 with error control and a continuous extension of order 7 (Hairer, Noersett & Wanner 1993,
+II.5, II.6), in which events are found without stepping again.
+"""
+
+from __future__ import annotations
+
+import math
+
+from watchsim.jit import kernel
+from watchsim.simulation.motion.coupled_motion import engage, motion
+from watchsim.simulation.motion.dop853 import E3, E5, STAGES, A, C, D
+from watchsim.simulation.motion.step_path import bound_accelerations
+from watchsim.simulation.state import COUPLED, N_REJECTED, N_STEPS, SUMS
+
+# Safety is smaller than usual: the motion of coupled bodies grows sharper from step to step, and repeating a step costs more
+# than shortening it.
+SAFETY, SHRINK, GROW = 0.78, 0.2, 6.0
+SMALLEST = 1e-14  # shortest step, as a share of the longest allowed one
+
+
+@kernel
+def _stage(model, state, options, s, h, scratch):
+    """Derivative of stage s into `stages[s]`."""
+    step = scratch.step
+    width = len(step.y0)
+    for i in range(width):
+        total = 0.0
+        for j in range(s):
+            if A[s, j] != 0.0:
+                total += A[s, j] * step.stages[j, i]
+        scratch.y[i] = step.y0[i] + h * total
+    motion(model, state, options, step.span[0] + C[s] * h, scratch.y, scratch)
+    for i in range(width):
+        step.stages[s, i] = scratch.dy[i]
+
+
+@kernel
+def _error(model, options, h, step):
+    """Estimated error of the step over the tolerance; above 1 it must be repeated."""
+    n = len(model.coordinates)
+    five, three = 0.0, 0.0
+    for i in range(2 * n):
+        coordinate = model.coordinates[i % n]
+        scale = coordinate.scale
+        if i >= n:
+            scale = max(scale * coordinate.rate, abs(step.y0[i]), abs(step.y1[i]))
+        e5, e3 = 0.0, 0.0
+        for s in range(STAGES + 1):
+            e5 += E5[s] * step.stages[s, i]
+            e3 += E3[s] * step.stages[s, i]
+        five += (e5 / scale) ** 2
+        three += (e3 / scale) ** 2
+    if five == 0.0:
+        return 0.0
+    return abs(h) * five / math.sqrt((five + 0.01 * three) * 2 * n) / options.tolerance
+
+
+@kernel
+def _extend(model, state, options, h, scratch):
+    """Coefficients of the continuous extension into `dense`."""
+    step = scratch.step
+    for s in range(STAGES + 1, STAGES + 4):
+        _stage(model, state, options, s, h, scratch)
+    for i in range(len(step.y0)):
+        change = step.y1[i] - step.y0[i]
+        first, last = h * step.stages[0, i], h * step.stages[STAGES, i]
+        step.dense[0, i] = change
+        step.dense[1, i] = first - change
+        step.dense[2, i] = 2.0 * change - last - first
+        for row in range(4):
+            total = 0.0
+            for s in range(STAGES + 4):
+                total += D[row, s] * step.stages[s, i]
+            step.dense[3 + row, i] = h * total
+
+
+@kernel
+def coupled_step(model, state, options, longest, scratch):
+    """One accepted step of at most `longest` seconds from the state, left in `scratch.step`; False if it gets too small.
+
+    `scratch.alarm` is the smallest monitor met at its stages. Proposes the next length in `state.clock[1]`.
+    """
+    step = scratch.step
+    n = len(model.coordinates)
+    step.kind[0], step.span[0] = COUPLED, state.clock[0]
+    for i in range(n):
+        step.q[i], step.u[i] = state.q[i], state.u[i]
+        step.y0[i], step.y0[n + i] = state.q[i], state.u[i]
+    for i in range(SUMS):
+        step.y0[2 * n + i] = 0.0
+    engage(model, state, scratch)
+    h = min(state.clock[1], longest)
+    shrunk = False
+    while True:
+        scratch.alarm[0] = math.inf
+        for s in range(STAGES + 1):
+            _stage(model, state, options, s, h, scratch)
+        for i in range(len(step.y0)):
+            step.y1[i] = scratch.y[i]
+        error = _error(model, options, h, step)
+        factor = min(GROW, max(SHRINK, SAFETY * error**-0.125)) if error > 0.0 else GROW
+        if error <= 1.0:
+            break
+        if not h > SMALLEST * options.max_step:
+            return False
+        state.counts[N_REJECTED] += 1
+        shrunk = True
+        h *= min(1.0, factor) if error < math.inf else SHRINK
+    _extend(model, state, options, h, scratch)
+    step.span[1] = h
+    proposed = h * (min(1.0, factor) if shrunk else factor)
+    if not shrunk:  # a step cut short by `longest` says nothing against a longer next one
+        proposed = max(proposed, min(state.clock[1], h * GROW))
+    state.clock[1] = min(options.max_step, proposed)
+    bound_accelerations(step, n)
+    state.counts[N_STEPS] += 1
+    return True
+
+
+@kernel
+def dense_value(step, i, tau):
+    """Component i of y at time tau after the start of a coupled step."""
+    x = tau / step.span[1]
+    w = 1.0 - x
+    d = step.dense
+    return step.y0[i] + x * (
+        d[0, i] + w * (d[1, i] + x * (d[2, i] + w * (d[3, i] + x * (d[4, i] + w * (d[5, i] + x * d[6, i])))))
+    )

@@ -1,0 +1,85 @@
+"""Along which path do bodies move within a step, and how sharply can it bend?
+
+In a coupled step the motion is the continuous extension: a polynomial of degree 7 in the time of the step. Its velocity is
+the derivative of that polynomial, and its acceleration is bounded by the Bernstein coefficients of the second derivative.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.contact.poses import place_body
+from watchsim.jit import kernel
+from watchsim.model.records import FREE
+from watchsim.simulation.motion.free_motion import flow
+from watchsim.simulation.state import FLIGHT
+
+DEGREE = 7
+# The continuous extension is y0 + sum of dense[t] x^a (1 - x)^b, with these exponents (a, b).
+TERMS = ((1, 0), (1, 1), (2, 1), (2, 2), (3, 2), (3, 3), (4, 3))
+
+
+def _second_derivative() -> NDArray[np.float64]:
+    """Bernstein coefficients (of degree 5, by row) of the second derivative of each term, by the definition of the basis."""
+    terms = np.array(
+        [
+            [math.comb(DEGREE - a - b, k - a) / math.comb(DEGREE, k) if k >= a else 0.0 for a, b in TERMS]
+            for k in range(DEGREE + 1)
+        ]
+    )
+    return np.asarray(DEGREE * (DEGREE - 1) * np.diff(terms, n=2, axis=0))
+
+
+BEND = _second_derivative()
+
+
+@kernel
+def bound_accelerations(step, n):
+    """Bounds of |q''| over the coupled step, for its n coordinates, into `step.bound`: no Bernstein polynomial exceeds them."""
+    h = step.span[1]
+    for i in range(n):
+        largest = 0.0
+        for row in range(DEGREE - 1):
+            total = 0.0
+            for term in range(DEGREE):
+                total += BEND[row, term] * step.dense[term, i]
+            largest = max(largest, abs(total))
+        step.bound[i] = largest / (h * h)
+
+
+@kernel
+def _polynomial(step, i, tau):
+    """Coordinate i of a coupled step and its derivative at time tau."""
+    h, d = step.span[1], step.dense
+    x = tau / h
+    w = 1.0 - x
+    value, slope = d[5, i] + x * d[6, i], d[6, i]
+    value, slope = d[4, i] + w * value, w * slope - value
+    value, slope = d[3, i] + x * value, x * slope + value
+    value, slope = d[2, i] + w * value, w * slope - value
+    value, slope = d[1, i] + x * value, x * slope + value
+    value, slope = d[0, i] + w * value, w * slope - value
+    return step.y0[i] + x * value, (x * slope + value) / h
+
+
+@kernel
+def body_on_path(model, state, b, tau, scratch):
+    """Bring body b's coordinates (in scratch.q, scratch.u) and pose to time tau of the step; u is exactly q'."""
+    step, part = scratch.step, b
+    while part >= 0:  # the body, then its carrier
+        body = model.bodies[part]
+        part = body.carrier
+        if body.first < 0:
+            continue
+        for j in range(3 if body.motion == FREE else 1):
+            i = body.first + j
+            if state.awake[i] == 0:
+                scratch.q[i], scratch.u[i] = state.q[i], 0.0
+            elif step.kind[0] == FLIGHT:
+                scratch.q[i], scratch.u[i] = flow(model.coordinates[i], state.grip[i], step.q[i], step.u[i], tau)
+            else:
+                scratch.q[i], scratch.u[i] = _polynomial(step, i, tau)
+    place_body(model, b, scratch.q, scratch.u, scratch.pose)

@@ -1,0 +1,168 @@
+"""What comes out of a simulation?
+
+A frozen value: rows of time, coordinates, velocities and accelerations, and a table of events. Everything after it
+(beats, plots, movies) is a function of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.scene.recording import ALL, Window
+from watchsim.scene.scene import Scene
+from watchsim.simulation.event_kinds import EVENT_DTYPE as EVENT_DTYPE
+from watchsim.simulation.event_kinds import EventKind as EventKind
+from watchsim.simulation.record.body_frames import frames
+from watchsim.simulation.record.contact_names import Pair as Pair
+from watchsim.simulation.record.saved_state import SavedState
+from watchsim.simulation.stops import Stop
+
+Array = NDArray[np.float64]
+
+NOISE = 0.5  # tolerances: by so much positions at rows may be off, each for itself
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """The motion of a scene. Arrays have one row per accepted step (two rows with the same time at an impact).
+
+    t (rows,) s; q, u, a (rows, n) coordinates, velocities, accelerations in SI; `slices[body]` says which columns belong
+    to a body (fixed bodies have none). Those of a carried body are relative to its carrier; `pose` is in the movement.
+    `energy` holds joules: in_J, stored_J, dissipated {cause: J}, residual_J.
+    `counts` holds events, impacts, steps, lcp_failures and the like; `worst_penetration` is metres;
+    `worst_residual` the worst violation of a complementarity condition, as a share of the problem's largest term.
+    `overlap` is what looking at the outlines themselves has found, apart from all gap functions (see
+    simulation/record/overlap_watch.py): worst_m, between, t_s, x_mm, y_mm, looks, and what was looked for and allowed.
+    `keep` and `spans` say what was kept (see scene/recording.py): `spans` the stretches of time (s) with rows, () for a
+    run that was made by hand. `sums` holds sums over all events of the whole run, kept or not (see simulation/record/tally.py).
+    `failure` is the complementarity problem on which the solver gave up (see simulation/lcp_failure.py), None otherwise.
+    """
+
+    scene: Scene
+    t: Array
+    q: Array
+    u: Array
+    a: Array
+    slices: dict[str, slice]
+    events: NDArray[Any]
+    pairs: Sequence[Pair]
+    stop: Stop
+    stop_message: str = ""
+    simulated: float = 0.0
+    wall: float = 0.0
+    compile: float = 0.0
+    method: str = "pfeiffer-glocker"
+    tolerance: float = 1e-9
+    worst_penetration: float = 0.0
+    worst_residual: float = 0.0
+    overlap: dict[str, Any] = field(default_factory=dict)
+    energy: dict[str, Any] = field(default_factory=dict)
+    counts: dict[str, int] = field(default_factory=dict)
+    step: float | None = None  # s, of a method with fixed steps
+    end_q: Array = field(default_factory=lambda: np.zeros(0))  # at `simulated`, whether rows are kept there or not
+    end_u: Array = field(default_factory=lambda: np.zeros(0))
+    keep: str = ALL
+    spans: tuple[Window, ...] = ()
+    sums: dict[str, Any] = field(default_factory=dict)
+    end_state: SavedState | None = field(default=None, repr=False, compare=False)  # to go on from, see `simulate`
+    failure: dict[str, Any] | None = field(default=None, repr=False)
+
+    @property
+    def worst_overlap(self) -> float:
+        """The deepest overlap of bodies that looking at their outlines has found, m; 0: none as deep as the resolution."""
+        return float(self.overlap.get("worst_m", 0.0))
+
+    def __post_init__(self) -> None:
+        """A frozen value to the last element; views, so that whoever made the arrays may go on with them."""
+        for name in ("t", "q", "u", "a", "events", "end_q", "end_u"):
+            view = getattr(self, name)[...]
+            view.flags.writeable = False
+            object.__setattr__(self, name, view)
+
+    def __repr__(self) -> str:
+        kinds = f"{len(self.t)} rows of {self.q.shape[1]} coordinates, {len(self.events)} events"
+        return f"<Trajectory of {self.scene.title!r}: {self.simulated:g} s, {kinds}; {self.stop.sentence}>"
+
+    @cached_property
+    def _noise(self) -> Array:
+        """(n,): how exact each coordinate is at its rows."""
+        return NOISE * self.tolerance * np.max(np.abs(self.q), axis=0, initial=0.0)
+
+    def at(self, t: float) -> tuple[Array, Array]:
+        """q and u at time `t` (after the impact where one happens at `t`).
+
+        Positions by the quintics through q, u, a of two rows; velocities by the cubics through u, a, with what is missing to
+        the way between the rows where that is more than the error of positions: within ten tolerances of the coordinate's
+        largest value times its own rate. Times outside are clamped.
+        """
+        q, u = self.sample(np.array([t]))
+        return q[0], u[0]
+
+    def sample(self, times: Array) -> tuple[Array, Array]:
+        """q and u, each (len(times), n), at all those times; as `at`. ValueError where no row was kept."""
+        if len(self.t) == 0:
+            raise ValueError("no row of this run was kept, so where its bodies were is not known")
+        i = np.clip(np.searchsorted(self.t, times, side="right") - 1, 0, max(len(self.t) - 2, 0))
+        j = np.minimum(i + 1, len(self.t) - 1)
+        h = (self.t[j] - self.t[i])[:, None]
+        last = h <= 0.0  # two rows of one instant at the very end: take the one after the impact
+        s = np.where(last, 1.0, np.clip((times - self.t[i])[:, None] / np.where(last, 1.0, h), 0.0, 1.0))
+        h = np.where(last, 1.0, h)
+        q, u = between(s, h, (self.q[i], self.u[i], self.a[i]), (self.q[j], self.u[j], self.a[j]), self._noise)
+        return np.where(last, self.q[j], q), np.where(last, self.u[j], u)
+
+    def acceleration(self, times: Array) -> Array:
+        """(len(times), n): accelerations, of the cubics through u and a of two rows; as `sample`."""
+        if len(self.t) == 0:
+            raise ValueError("no row of this run was kept, so where its bodies were is not known")
+        i = np.clip(np.searchsorted(self.t, times, side="right") - 1, 0, max(len(self.t) - 2, 0))
+        j = np.minimum(i + 1, len(self.t) - 1)
+        h = (self.t[j] - self.t[i])[:, None]
+        last = h <= 0.0
+        h = np.where(last, 1.0, h)
+        s = np.where(last, 1.0, np.clip((times - self.t[i])[:, None] / h, 0.0, 1.0))
+        way = (self.u[j] - self.u[i]) / h
+        left, right = self.a[i], self.a[j]
+        cubic = left + s * (6.0 * way - 4.0 * left - 2.0 * right + s * (3.0 * (left + right) - 6.0 * way))
+        return np.where(last, right, cubic)
+
+    def pose(self, body: str, t: float) -> tuple[float, float, float]:
+        """x, y (m) and angle (rad) of the body's frame in the movement at time `t`."""
+        return self.pose_of(body, self.at(t)[0] if self.slices else np.zeros(0))
+
+    @property
+    def end(self) -> tuple[Array, Array] | None:
+        """q and u at `simulated`, whether rows were kept there or not; None for a run that was made by hand without rows."""
+        if len(self.end_q):
+            return self.end_q, self.end_u
+        return (self.q[-1], self.u[-1]) if len(self.t) else None
+
+    def pose_of(self, body: str, coordinates: Array) -> tuple[float, float, float]:
+        """The same where all coordinates are given."""
+        x, y, angle = frames(self.scene, self.slices, coordinates[None])[body][0].tolist()
+        return x, y, angle
+
+
+def between(s: Array, h: Array, left: tuple[Array, ...], right: tuple[Array, ...], noise: Array) -> tuple[Array, Array]:
+    """q and u at fractions `s` of intervals of length h with (q, u, a) at both ends; `noise` is the error of q.
+
+    The derivative of the quintic in q is the cubic in u and a bump, which makes up for the way that the cubic misses. Over a
+    short time an error of q of the size of the tolerance would make much of it; rows are close enough for the cubic there.
+    """
+    q0, u0, a0 = left[0], h * left[1], h * h * left[2]
+    q1, u1, a1 = right[0], h * right[1], h * h * right[2]
+    d = q1 - q0
+    c3 = 10.0 * d - 6.0 * u0 - 4.0 * u1 - 1.5 * a0 + 0.5 * a1
+    c4 = -15.0 * d + 8.0 * u0 + 7.0 * u1 + 1.5 * a0 - a1
+    c5 = 6.0 * d - 3.0 * (u0 + u1) - 0.5 * (a0 - a1)
+    q = q0 + s * (u0 + s * (0.5 * a0 + s * (c3 + s * (c4 + s * c5))))
+    cubic = u0 + s * (a0 + s * (3.0 * (u1 - u0) - 2.0 * a0 - a1 + s * (2.0 * (u0 - u1) + a0 + a1)))
+    missed = d - 0.5 * (u0 + u1) - (a0 - a1) / 12.0
+    bump = 30.0 * np.where(np.abs(missed) > noise, missed, 0.0) * (s * (1.0 - s)) ** 2
+    return q, (cubic + bump) / h

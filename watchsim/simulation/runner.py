@@ -1,0 +1,340 @@
+"""How does a simulation run from Python, whatever the stepping?
+
+The compiled loop is called slice by slice; unknown cells, full buffers, progress and interrupts are dealt with between
+slices. A frozen trajectory is handed back.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.candidates.cell_table import CellFinder
+from watchsim.dynamics.applied_forces import stored_energy
+from watchsim.mechanism.compile import Compiled
+from watchsim.scene.oscillation import frequency
+from watchsim.scene.recording import Recording
+from watchsim.scene.scene import Scene
+from watchsim.simulation.advance import EVENTS_PER_CONTACT, ROWS_PER_STEP, WORK, advance
+from watchsim.simulation.energy_ledger import ledger_fails, touching, what_alternates
+from watchsim.simulation.interrupts import held_interrupts
+from watchsim.simulation.lcp_failure import failure_of
+from watchsim.simulation.methods import EVENT_DRIVEN
+from watchsim.simulation.options import Options, options_for
+from watchsim.simulation.record.contact_names import pairs_of
+from watchsim.simulation.record.overlap_watch import OverlapWatch
+from watchsim.simulation.record.row_selection import Kept, tail_length
+from watchsim.simulation.record.saved_state import SavedState, save_state
+from watchsim.simulation.record.tally import Tally
+from watchsim.simulation.record.trajectory import EVENT_DTYPE, EventKind, Trajectory
+from watchsim.simulation.start_clearance import clear_start
+from watchsim.simulation.start_clearance import warm_up as warm_up_start
+from watchsim.simulation.state import (
+    COUNT_NAMES,
+    DAMPING,
+    DRIVE,
+    FRICTION,
+    IMPACTS,
+    State,
+    new_record,
+    new_scratch,
+    new_state,
+    room_for,
+)
+from watchsim.simulation.stops import Stop
+
+Progress = Callable[[float, float], None]  # simulated time, duration
+
+ROWS, EVENTS = 20000, 20000
+ADVICE = "Try a tighter tolerance; if that does not help, this is a fault of the program, and the scene shows it"
+SLICE_WALL = 0.1  # s between looks at the clock
+FEWEST_STEPS, MOST_STEPS = 16.0, 4000.0  # of a slice; steps may become much slower from one to the next
+
+_warm: set[type[Run]] = set()  # ways of stepping whose kernels are loaded
+
+
+def natural_step(compiled: Compiled, longest: float) -> float:
+    """Longest step: a quarter of the fastest spring's period, so that no turning point hides between two others."""
+    return min(longest, 0.5 * math.pi / compiled.fastest) if compiled.fastest else longest
+
+
+def new_until(end: float = 0.0, duration: float = 0.0, last: float = 0.0, steps: float = 0.0) -> NDArray[np.float64]:
+    """How far `advance` is to run: end of the slice (s), of the run (s), 1 if the last step may be cut short, steps."""
+    return np.array([end, duration, last, steps, *(0.0 for _ in WORK)])
+
+
+class Run:
+    """A run under way: the loop's arrays and what has been kept. By events; see `moreau.MoreauRun` for fixed steps.
+
+    The step of a scene without springs is bounded by the duration the scene gives, not by the asked one: how far a run is
+    to go must not change a bit of it.
+    """
+
+    method = EVENT_DRIVEN
+    step: float | None = None  # s, where steps are fixed
+
+    def __init__(self, scene: Scene, compiled: Compiled, tolerance: float, recording: Recording) -> None:
+        model = compiled.model
+        self.scene, self.compiled, self.tolerance = scene, compiled, tolerance
+        self.options: Options = options_for(compiled.size, tolerance, natural_step(compiled, scene.duration))
+        self.state: State = new_state(model, compiled.q, compiled.u)
+        self.state.clock[1] = 1e-3 * self.options.max_step
+        self.finder = CellFinder(model)
+        self.scratch = new_scratch(model)
+        self.pairs = pairs_of(compiled)
+        self.kept, self.tally = Kept(recording, tail_length(frequency(scene))), Tally(scene, self.pairs)
+        # A step wider, for the rows next to a window.
+        windows = np.array(self.kept.windows, float).reshape(-1, 2) + self.options.max_step * np.array([-1.0, 1.0])
+        self.record = new_record(model, ROWS + ROWS_PER_STEP, EVENTS + EVENTS_PER_CONTACT * room_for(model), windows)
+        self.watch = OverlapWatch(scene, compiled, self.method, self.kept.windows)
+        self.stored_at_start = stored_energy(model, self.state.q, self.state.u)
+        self.saved: SavedState | None = None
+        self._parts_before = 0  # what was flushed before the state was saved
+
+    def begin(self) -> None:
+        """Begin at the scene's start; SceneError where bodies overlap there (see `start.clear_start`)."""
+        q, taken_back = clear_start(self.scene, self.compiled, self.finder, self.options)
+        if taken_back > 0.0:
+            self.state.q[:], self.state.worst[0] = q, taken_back
+            self.stored_at_start = stored_energy(self.compiled.model, q, self.state.u)
+
+    def begin_from(self, saved: SavedState) -> None:
+        """Take up a saved state; ValueError where it is not one of this model with these settings."""
+        saved.check(self.compiled, self.settings())
+        saved.restore(self.arrays())
+        self.stored_at_start = saved.stored_at_start
+        self.tally.restore(saved.tally)
+        self.kept.go_on(saved.recorded)
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """Everything the future depends on, besides the model and the settings."""
+        return {**self.state._asdict(), "worst_residual": self._worst_residual(), "overlap": self.watch.found}
+
+    def _worst_residual(self) -> NDArray[np.float64]:
+        """(1,): the worst violation of a complementarity condition so far."""
+        worst: NDArray[np.float64] = self.scratch.work.lcp.worst
+        return worst
+
+    def settings(self) -> dict[str, Any]:
+        """What must be the same when a saved state is taken up."""
+        return {"method": self.method, **{name: float(value) for name, value in self.options._asdict().items()}}
+
+    def save(self) -> SavedState:
+        """The state now, with the sums over all events so far."""
+        self.flush()
+        self.watch.see()
+        self._parts_before = self.kept.parts
+        state = save_state(self.compiled, self.settings(), self.arrays(), self.stored_at_start, self.tally.arrays())
+        return dataclasses.replace(state, recorded=self.kept.unfinished())
+
+    def flush(self) -> None:
+        """Empty the buffers: count the events, keep what the recording wants."""
+        rows, events = self.record.used
+        self.tally.fold(self.record.events[:events])
+        self.watch.see_rows(self.record.rows[:rows])
+        self.kept.flush(self.record.rows[:rows], self.record.events[:events])
+        self.record.used[:] = 0
+
+    def warm_up(self) -> None:
+        """Load or compile the kernels, once in a process: a call that returns at once because it has no room to record."""
+        if type(self) not in _warm:
+            nowhere = new_record(self.compiled.model, 0, 0, self.record.windows)
+            self._advance(new_until(), nowhere)
+            _warm.add(type(self))
+        warm_up_start(self.scene, self.compiled.model)
+
+    def _advance(self, until: NDArray[np.float64], record: Any) -> Stop:
+        code = advance(self.compiled.model, self.finder.cells, self.state, self.options, until, self.scratch, record)
+        return Stop(int(code))
+
+    def _learn(self) -> None:
+        """Look up the cell that the loop has met."""
+        self.finder.learn(int(self.scratch.unknown[0]), self.scratch.at.copy())
+
+    def to_the_end(self, duration: float, progress: Progress | None) -> Stop:
+        """Run until the duration is over or something ends the run for good."""
+        try:
+            with held_interrupts() as interrupted:
+                stop = self._slices(duration, progress, interrupted)
+        except KeyboardInterrupt:
+            stop = Stop.INTERRUPTED
+        except OverflowError:  # so far away that no cell has a number
+            stop = Stop.NOT_FINITE
+        except MemoryError:
+            stop = Stop.OUT_OF_MEMORY
+        if self.saved is None:
+            self.saved = self.save()
+        self.flush()
+        self._look()
+        if stop not in (Stop.DURATION, Stop.INTERRUPTED):
+            return stop
+        if self._overlaps():
+            return Stop.OVERLAP
+        return Stop.LEDGER if self._ledger_fails() else stop
+
+    def _ledger_fails(self) -> bool:
+        """Is the residual of the energy ledger more than rounding?"""
+        coordinates = self.compiled.model.coordinates
+        # What moves more slowly than that is computed less closely: see the error control of integrator.py.
+        usual = float(0.5 * np.sum(coordinates.mass * (coordinates.scale * coordinates.rate) ** 2))
+        return ledger_fails(self._energy(), max(float(self.state.worst[1]), self.stored_at_start, usual), self.tolerance)
+
+    def _details(self, stop: Stop) -> str:
+        """What is known of where and why, behind a colon; "" where the cause says it all."""
+        if stop == Stop.OVERLAP:
+            words = self.watch.words()
+        elif stop == Stop.LEDGER:
+            energy = self._energy()
+            words = f"{energy['residual_J']:.3g} J are unaccounted for, of {energy['in_J']:.3g} J put in. {ADVICE}"
+        elif stop == Stop.UNEXPLAINED:
+            words = ". ".join(filter(None, (touching(self.state, self.pairs), ADVICE)))
+        elif stop == Stop.TOO_MANY_EVENTS:
+            bodies = [self.scene.bodies[coordinate.body].name for coordinate in self.compiled.model.coordinates]
+            words = what_alternates(self.state, self.scratch, self.pairs, bodies)
+        else:
+            words = ""
+        return f": {words}" if words else ""
+
+    def _look(self) -> None:
+        """Look at the state now for bodies inside each other."""
+        self.watch.see((self.state.clock[:1].copy(), self.state.q[None].copy()))
+
+    def _overlaps(self) -> bool:
+        return self.watch.fails(float(self.state.worst[0]))
+
+    def _slices(self, duration: float, progress: Progress | None, interrupted: Callable[[], bool]) -> Stop:
+        """Slice after slice of about `SLICE_WALL`, with what has to be done between them."""
+        length = 1e-5 * duration  # grows tenfold at most: a long slice would be deaf
+        steps = FEWEST_STEPS  # where events crowd, time is no measure of work
+        until = new_until(0.0, duration)
+        look = self.watch.next_look(float(self.state.clock[0]))
+        while True:
+            start, begun = time.perf_counter(), float(self.state.clock[0])
+            until[0] = min(duration, begun + length, look)
+            until[3] = steps
+            stop = self._advance(until, self.record)
+            if stop == Stop.CELL_UNKNOWN:
+                self._learn()
+            elif stop == Stop.BUFFER_FULL:
+                self.flush()
+            elif stop == Stop.LAST_STEP:
+                # The next step is cut short by the end. Who goes on later must go on from here, to take it whole.
+                self.saved, until[2] = self.save(), 1.0
+            elif stop != Stop.SLICE:
+                return stop
+            else:
+                pace = SLICE_WALL / max(time.perf_counter() - start, 1e-4)
+                if until[3] > 0.0:
+                    done = float(self.state.clock[0]) - begun
+                    length = min(max(done * pace, 1e-9 * duration), 10.0 * length)
+                steps = min(max(pace * (steps - until[3]), 1.0), 2.0 * steps, MOST_STEPS)
+            if self.state.clock[0] >= look:
+                self._look()
+                look = self.watch.next_look(float(self.state.clock[0]))
+            if self._ledger_fails():
+                return Stop.LEDGER
+            if self._overlaps():
+                return Stop.OVERLAP
+            if progress is not None:
+                progress(float(self.state.clock[0]), duration)
+            if interrupted():
+                return Stop.INTERRUPTED
+
+    def _all_kept(self, parts: int | None = None) -> tuple[NDArray[np.float64], NDArray[Any]]:
+        """Rows and events of the first `parts` flushes, default all."""
+        rows, events = self.kept.closed(float(self.state.clock[0]), parts)
+        nothing = np.zeros((0, 1 + 3 * len(self.state.q)))
+        return nothing if rows is None else rows, np.zeros(0, EVENT_DTYPE) if events is None else events
+
+    def trajectory(self, stop: Stop, wall: float, compile_time: float) -> Trajectory:
+        """Everything kept, as a frozen value."""
+        n = len(self.state.q)
+        compiled = self.compiled
+        rows, events = self._all_kept()
+        words = self._details(stop)
+        saved = self.saved
+        if saved is not None:
+            before = [len(part) for part in self._all_kept(self._parts_before)]
+            stays = self.kept.for_good(float(self.state.clock[0]), self._parts_before)
+            recorded = {**saved.recorded, "stays": stays}
+            saved = dataclasses.replace(saved, rows=before[0], events=before[1], recorded=recorded)
+        return Trajectory(
+            scene=self.scene,
+            t=rows[:, 0],
+            q=compiled.relative(rows[:, 1 : 1 + n]),
+            u=compiled.relative(rows[:, 1 + n : 1 + 2 * n], rates=True),
+            a=compiled.relative(rows[:, 1 + 2 * n :], rates=True),
+            slices=compiled.slices,
+            events=_as_told(events, compiled),
+            pairs=self.pairs,
+            stop=stop,
+            stop_message=f"t = {self.state.clock[0]:.9g} s: {stop.sentence}{words}",
+            simulated=float(self.state.clock[0]),
+            wall=wall,
+            compile=compile_time,
+            method=self.method,
+            tolerance=self.tolerance,
+            worst_penetration=float(self.state.worst[0]),
+            worst_residual=float(self._worst_residual()[0]),
+            overlap=self.watch.result(float(self.state.worst[0])),
+            energy=self._energy(),
+            counts=self._counts(),
+            step=self.step,
+            end_q=compiled.relative(self.state.q[None])[0].copy(),
+            end_u=compiled.relative(self.state.u[None], rates=True)[0].copy(),
+            keep=self.kept.recording.keep,
+            spans=self.kept.spans(float(self.state.clock[0])),
+            sums=self.tally.finished(),
+            end_state=saved,
+            failure=failure_of(self.state, self.scratch, self.pairs) if stop == Stop.LCP_FAILED else None,
+        )
+
+    def _counts(self) -> dict[str, int]:
+        counts = {name: int(value) for name, value in zip(COUNT_NAMES, self.state.counts, strict=True)}
+        counts["cells"] = self.finder.number
+        counts["cells_asked"] = self.finder.learned
+        counts["declared_pairs"] = len(self.compiled.model.contacts)
+        return counts
+
+    def _dissipated(self) -> dict[str, float]:
+        sums = self.state.sums
+        return {"friction": float(sums[FRICTION]), "damping": float(sums[DAMPING]), "impacts": float(sums[IMPACTS])}
+
+    def _energy(self) -> dict[str, Any]:
+        """The ledger: work in = stored + dissipated + residual, J."""
+        sums = self.state.sums
+        at_end = stored_energy(self.compiled.model, self.state.q, self.state.u)
+        stored = at_end - self.stored_at_start
+        dissipated = self._dissipated()
+        residual = sums[DRIVE] - stored - sum(dissipated.values())
+        # A swing that loses nothing gets nothing and stores nothing more: what it turns over is the scale of its rounding.
+        held = max(at_end, self.stored_at_start, _turned_over(self.compiled.model.coordinates))
+        scale = max(abs(sums[DRIVE]), abs(stored), sum(dissipated.values()), held)
+        return {
+            "in_J": float(sums[DRIVE]),
+            "dissipated": dissipated,
+            "stored_J": float(stored),
+            "residual_J": float(residual),
+            "residual_relative": float(abs(residual) / scale) if scale else 0.0,
+        }
+
+
+def _turned_over(coordinates: Any) -> float:
+    """What constant forces give to springs and take back in each swing, J."""
+    sprung = coordinates[coordinates.stiffness > 0.0]
+    return float(np.max(2.0 * sprung.force**2 / sprung.stiffness, initial=0.0))
+
+
+def _as_told(events: NDArray[Any], compiled: Compiled) -> NDArray[Any]:
+    """The events, angles of turning points told as the scene tells them."""
+    told = [(compiled.model.coordinates[own].body, angle) for own, _, angle in compiled.against if angle != 0.0]
+    events = events.copy() if told else events
+    for body, angle in told:
+        events["value"][(events["kind"] == EventKind.TURN) & (events["body"] == body)] -= angle
+    return events

@@ -1,0 +1,146 @@
+"""Do random impacts and complementarity problems come out, each against an answer found another way?"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.dynamics.lcp.lemke_pivoting import OK, lcp_work, solve_lcp
+from watchsim.verification.bare_contacts import BareContacts
+from watchsim.verification.compared import Row, compared
+
+Array = NDArray[np.float64]
+Problem = tuple[Array, Array]
+FEW, MANY = 2000, 100_000  # problems of each kind: at every `verify`, and with --slow
+LARGEST = 5  # unknowns of a complementarity problem: all its bases are tried where no solution is found
+ZERO = 1e-9  # of the oracle: violations and determinants below count as zero
+
+
+def random_rows(count: int) -> list[Row]:
+    """Impacts of one contact and complementarity problems of four families, so many of each."""
+    return [*impact_rows(count), *lcp_rows(count)]
+
+
+def impact_rows(count: int) -> list[Row]:
+    """One contact with friction on three coordinates: velocities and impulses against the closed form."""
+    rng = np.random.default_rng(210)
+    worst, unsolved = 0.0, 0
+    for _ in range(count):
+        W, mass = rng.normal(size=(2, 3)), 10.0 ** rng.uniform(-1.0, 1.0, 3)
+        mu, eps, u = rng.uniform(0.0, 0.8), rng.uniform(), rng.normal(size=3)
+        G, rates = W / mass @ W.T, W @ u
+        if rates[0] >= 0.0 or mu * abs(G[0, 1]) >= 0.99 * G[0, 0]:
+            continue  # nothing to do, or near jamming, where the answer is as large as one likes
+        case = BareContacts(mass, W, np.array([mu]), np.array([eps]))
+        status, after, force = case.impact(u)
+        unsolved += status != 0
+        truth = single_impact(G, rates, mu, eps)
+        wanted = u + W.T @ truth / mass
+        # Where the approach is the small difference of large terms, their rounding sets the scale of the impulse.
+        scale = max(np.abs(truth).max(), np.abs(W[0]) @ np.abs(u) / G[0, 0])
+        worst = max(
+            worst, float(np.abs(force - truth).max() / scale), float(np.abs(after - wanted).max() / np.abs(wanted).max())
+        )
+    name, source = f"impact of one contact, {count} at random", "closed form: compression sticks or slips, friction clipped"
+    return [
+        compared(name, "left unsolved", 0.0, float(unsolved), 0.0, source),
+        compared(name, "largest relative error of velocity or impulse", 0.0, worst, 1e-12, source),
+    ]
+
+
+def single_impact(G: Array, rates: Array, mu: float, eps: float) -> Array:
+    """Impulses (normal, tangential) of Poisson's law with Coulomb friction; G (2, 2) and the rates before are N, T."""
+    Lam = -np.linalg.solve(G, rates)
+    if abs(Lam[1]) > mu * Lam[0]:
+        for s in (1.0, -1.0):
+            normal = -rates[0] / (G[0, 0] - s * mu * G[0, 1])
+            Lam = np.array([normal, -s * mu * normal])
+            if s * (rates[1] + G[1] @ Lam) >= 0.0:
+                break
+    more = eps * Lam[0]
+    slip = rates[1] + G[1] @ Lam + G[1, 0] * more
+    return Lam + np.array([more, np.clip(-slip / G[1, 1], -mu * more, mu * more)])
+
+
+def anything(rng: np.random.Generator, n: int) -> Problem:
+    """No structure: none, one or many solutions."""
+    return rng.normal(size=(n, n)), rng.normal(size=n)
+
+
+def degenerate(rng: np.random.Generator, n: int) -> Problem:
+    """Small integers, many of them zero: ties everywhere, singular blocks."""
+    return rng.integers(-1, 2, size=(n, n)).astype(float), rng.integers(-1, 2, size=n).astype(float)
+
+
+def badly_scaled(rng: np.random.Generator, n: int) -> Problem:
+    """One solution, coefficients from 1e-12 to 1e12: between a wheel and a balance."""
+    M, K, unit = rng.normal(size=(n, n)), rng.normal(size=(n, n)), 10.0 ** rng.uniform(-6.0, 6.0, n)
+    return (M @ M.T + 0.1 * np.eye(n) + K - K.T) * np.outer(unit, unit), rng.normal(size=n) * unit
+
+
+def infeasible(rng: np.random.Generator, n: int) -> Problem:
+    """One row that nothing can make positive."""
+    A, b = anything(rng, n)
+    i = rng.integers(n)
+    A[i], b[i] = -np.abs(A[i]), -abs(b[i])
+    return A, b
+
+
+def lcp_rows(count: int) -> list[Row]:
+    """Claimed solutions that are none, and problems given up that have one, by family."""
+    families: tuple[Callable[[np.random.Generator, int], Problem], ...] = (anything, degenerate, badly_scaled, infeasible)
+    rows = []
+    for family in families:
+        rng, work = np.random.default_rng(1996), lcp_work(LARGEST)
+        wrong, missed, given_up = 0, 0, 0
+        for _ in range(count):
+            n = int(rng.integers(1, LARGEST + 1))
+            A, b = family(rng, n)
+            x = np.zeros(n)
+            if solve_lcp(A, b, n, work, x) == OK:
+                wrong += not is_solution(A, b, x)
+            else:
+                given_up += 1
+                missed += has_solution(A, b)
+        name = f"complementarity problems, {count}, {family.__name__.replace('_', ' ')}"
+        source = "conditions evaluated with numpy; all bases tried one by one where none was found"
+        rows.append(compared(name, "claimed solutions that are none", 0.0, float(wrong), 0.0, source))
+        rows.append(compared(name, f"of {given_up} given up, those with a solution", 0.0, float(missed), 0.0, source))
+    return rows
+
+
+def scales(A: Array) -> Array:
+    """(n,) powers of two that make the rows and columns of a badly scaled matrix of order one: x = scale x'."""
+    diagonal = np.abs(np.diag(A))
+    if np.any(diagonal == 0.0) or diagonal.max() < 1e3 * diagonal.min():
+        return np.ones(len(A))
+    return np.array([2.0 ** -round(0.5 * math.log2(value)) for value in diagonal])
+
+
+def is_solution(A: Array, b: Array, x: Array) -> bool:
+    """True if x, A x + b >= 0 and one of each pair is zero, to ZERO of the largest terms of each row."""
+    s = scales(A)
+    A, b, x = A * np.outer(s, s), b * s, x / s
+    terms = np.abs(A) @ np.abs(x) + np.abs(b)
+    violation = np.abs(np.minimum(x, A @ x + b))
+    return bool(np.all(np.isfinite(x)) and np.all(violation <= ZERO * np.maximum(1.0, terms.max(initial=0.0))))
+
+
+def has_solution(A: Array, b: Array) -> bool:
+    """True if one of the regular complementary bases gives a solution."""
+    n = len(b)
+    for chosen in itertools.product((False, True), repeat=n):
+        active = np.array(chosen, dtype=bool)
+        block = A[np.ix_(active, active)]
+        if active.any() and abs(np.linalg.det(block)) < ZERO:
+            continue
+        x = np.zeros(n)
+        if active.any():
+            x[active] = np.linalg.solve(block, -b[active])
+        if is_solution(A, b, x):
+            return True
+    return False
