@@ -1,6 +1,6 @@
 """Which sizes has the balance of profiles/balance, and what does it weigh by the formulas of a handbook?
 
-Millimetres; nothing here knows the package. The drawing (draw_balance.py) and the table in docs/mass-and-inertia.md
+Millimetres; nothing here knows the package. The drawing (draw_balance.py) and the table in docs/guide/mass-and-inertia.md
 (tabulate_inertia.py) are made from it.
 """
 

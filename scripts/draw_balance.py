@@ -1,4 +1,4 @@
-"""What is the drawing of the balance whose mass and inertia docs/mass-and-inertia.md adds up?
+"""What is the drawing of the balance whose mass and inertia docs/guide/mass-and-inertia.md adds up?
 
     python scripts/draw_balance.py [folder]
 

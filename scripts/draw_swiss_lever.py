@@ -4,7 +4,7 @@
 
 Writes escape_wheel, lever, roller and banking as DXF (default folder: profiles/swiss_lever): lines, arcs and circles on
 named layers, millimetres, one point on the layer PIVOT each. The scene (profiles/swiss_lever/scene.toml) is written by
-hand; scripts/measure_lever.py measures what was drawn.
+hand; scripts/checks/measure_lever.py measures what was drawn.
 """
 
 from __future__ import annotations

@@ -15,24 +15,24 @@ echo "== all tests"
 "$environment/bin/pytest" -n auto --dist worksteal -m "slow or not slow" --durations=20
 
 echo "== small faults planted in the code"
-"$environment/bin/python" scripts/plant_faults.py --count 60 --minutes 240 --output "$scratch/faults.jsonl"
+"$environment/bin/python" scripts/checks/plant_faults.py --count 60 --minutes 240 --output "$scratch/faults.jsonl"
 
 # numba reads past the end of an array without a word unless asked; machine code with the checks in it is kept apart.
 echo "== kernels with index checks"
-NUMBA_BOUNDSCHECK=1 WATCHSIM_CACHE="$scratch/checked" "$environment/bin/pytest" tests/contact tests/dynamics tests/simulation
+NUMBA_BOUNDSCHECK=1 WATCHSIM_CACHE="$scratch/checked" "$environment/bin/pytest" tests/candidates tests/contact tests/dynamics tests/simulation
 
 echo "== an hour of each lever, a locked day, and the other method"
-mkdir -p "$scratch/images"
-"$environment/bin/python" scripts/measure_long_runs.py --page "$scratch/long-runs.md"
-"$environment/bin/python" scripts/study_convergence.py --quick --page "$scratch/convergence.md"
-cat "$scratch/long-runs.md" "$scratch/convergence.md"
+mkdir -p "$scratch/images" "$scratch/reports"
+"$environment/bin/python" scripts/reports/measure_long_runs.py --page "$scratch/reports/long-runs.md"
+"$environment/bin/python" scripts/reports/study_convergence.py --quick --page "$scratch/reports/convergence.md"
+cat "$scratch/reports/long-runs.md" "$scratch/reports/convergence.md"
 
 echo "== kinks, orientations, curves of many arcs"
-"$environment/bin/python" scripts/measure_ordinary_mechanisms.py --page "$scratch/ordinary-mechanisms.md"
+"$environment/bin/python" scripts/reports/ordinary/measure_ordinary_mechanisms.py --page "$scratch/ordinary-mechanisms.md"
 cat "$scratch/ordinary-mechanisms.md"
 
 echo "== random mechanisms, others every night"
-"$environment/bin/python" scripts/hunt_mechanisms.py --seed "$(date +%Y%m%d)" --count 1000 --jobs "$(nproc)"
+"$environment/bin/python" scripts/hunt/hunt_mechanisms.py --seed "$(date +%Y%m%d)" --count 1000 --jobs "$(nproc)"
 echo "== killed, interrupted, damaged, out of room"
 for signal in KILL INT TERM; do "$environment/bin/python" scripts/fuzz/stops.py --signal "$signal" --count 70; done
 "$environment/bin/python" scripts/fuzz/disk.py
@@ -41,5 +41,5 @@ for signal in KILL INT TERM; do "$environment/bin/python" scripts/fuzz/stops.py 
 
 echo "== benchmarks and demo"
 "$environment/bin/watchsim" verify --slow
-"$environment/bin/python" scripts/measure_grid.py "$scratch/grid.csv"
+"$environment/bin/python" scripts/checks/measure_grid.py "$scratch/grid.csv"
 "$environment/bin/watchsim" demo -o "$scratch/demo"

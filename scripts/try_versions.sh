@@ -12,7 +12,7 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 interpreters=("$@")
 [ $# -gt 0 ] || interpreters=(python3.10 python3.11 python3.12 python3.13 python3.14)
-tests=(tests/storage tests/commands tests/test_package.py tests/test_stopping.py tests/test_cache_files.py tests/analysis/test_results.py)
+tests=(tests/storage tests/commands tests/test_package.py tests/test_stopping.py tests/test_cache_files.py tests/results/test_results.py)
 failed=0
 
 try() { # interpreter, word, constraints

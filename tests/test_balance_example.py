@@ -1,4 +1,4 @@
-"""Are the numbers of docs/mass-and-inertia.md those of the package, and those of the handbook?"""
+"""Are the numbers of docs/guide/mass-and-inertia.md those of the package, and those of the handbook?"""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import watchsim as ws
 from watchsim.mechanism.static_check import check_report, check_text
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT / "scripts"))
+sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "scripts" / "reports")]
 
 import tabulate_inertia  # noqa: E402
 from balance_sizes import Hand, by_hand  # noqa: E402

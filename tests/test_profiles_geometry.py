@@ -1,6 +1,7 @@
 """Are the profiles drawn as they claim: units, outlines, lock, lift, drop, draw, freedoms, and a start that is clear?
 
-The parts are turned against one another with shapely (scripts/measure_lever.py), which shares nothing with the simulation.
+The parts are turned against one another with shapely (scripts/checks/measure_lever.py), which shares nothing with the
+simulation.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from shapely.affinity import rotate
 
 ROOT = Path(__file__).resolve().parents[1]
 PROFILES, SHARED = ROOT / "profiles", ROOT.parent / "shared"
-sys.path.insert(0, str(ROOT / "scripts"))
+sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "scripts" / "checks")]
 
 import draw_balance  # noqa: E402
 import draw_bench_lever  # noqa: E402

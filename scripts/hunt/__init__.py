@@ -1,1 +1,1 @@
-"""Random planar mechanisms, and a judge that needs no reference solution. See docs/hunt.md."""
+"""Random planar mechanisms, and a judge that needs no reference solution. See docs/reports/hunt.md."""

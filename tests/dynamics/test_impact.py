@@ -85,7 +85,7 @@ def complementary(x: np.ndarray, y: np.ndarray) -> bool:
 
 @pytest.mark.parametrize(("m", "n"), [(2, 3), (2, 6), (3, 3), (3, 6), (4, 3)])
 def test_several_contacts_obey_the_laws_of_both_phases(m: int, n: int) -> None:
-    """Equal restitution and friction up to 0.6: solvable, and no draw may gain energy (docs/method.md 2.7)."""
+    """Equal restitution and friction up to 0.6: solvable, and no draw may gain energy (docs/theory/method.md 2.7)."""
     rng = np.random.default_rng(100 * m + n)
     solved = 0
     for _ in range(150):

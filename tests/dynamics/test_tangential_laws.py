@@ -50,7 +50,7 @@ def test_one_contact_in_closed_form_many_times(law: str) -> None:
 
 
 def bounds(case: Case, N_C: np.ndarray, T_C: np.ndarray, N_E: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Least and greatest tangential impulse of the expansion, from the words of docs/laws.md."""
+    """Least and greatest tangential impulse of the expansion, from the words of docs/theory/laws.md."""
     cone, returned = case.mu * N_E, case.eps * case.tangential * T_C
     if case.law == "pg1996":
         # A contact that took no part in the compression has half its cone.

@@ -14,7 +14,7 @@ from watchsim.geometry.primitives import TURN, Arc, Line
 from watchsim.geometry.solids.mass import section
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts"))
+sys.path.insert(0, str(ROOT / "scripts" / "checks"))
 
 from measure_inertia import moments  # noqa: E402
 

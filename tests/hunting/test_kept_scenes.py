@@ -1,13 +1,13 @@
 """Does the judge find nothing wrong any more with what the hunt once found?
 
-Each scene of tests/data/hunt was made by `scripts/hunt_mechanisms.py --keep --shrink` where the solver was wrong.
+Each scene of tests/data/hunt was made by `scripts/hunt/hunt_mechanisms.py --keep --shrink` where the solver was wrong.
 """
 
 from __future__ import annotations
 
 import hunt_path
 import pytest
-from hunt_mechanisms import judged_file
+from hunt.hunt_mechanisms import judged_file
 
 SCENES = sorted((hunt_path.ROOT / "tests" / "data" / "hunt").glob("*.toml"))
 

@@ -1,7 +1,7 @@
 """Which forces act at contacts and pivots, at any time of a run?
 
 A run keeps where its bodies were and which contact had which mode. Between events the forces follow from these: a contact in
-force does not accelerate apart, a sticking one does not slip, a sliding one rubs (docs/method.md 2.4).
+force does not accelerate apart, a sticking one does not slip, a sliding one rubs (docs/theory/method.md 2.4).
 """
 
 from __future__ import annotations

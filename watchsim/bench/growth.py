@@ -1,6 +1,6 @@
 """How does the time of a simulation grow with what is asked of it: simulated time, bodies, arcs of the outlines?
 
-Declared pairs have a study of their own (docs/complexity.md). The motion stays the same in every row of a study.
+Declared pairs have a study of their own (docs/reports/complexity.md). The motion stays the same in every row of a study.
 """
 
 from __future__ import annotations

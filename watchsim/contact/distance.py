@@ -2,7 +2,7 @@
 
 For researchers who need the geometry without a simulation. A pose is (x, y, angle) of the outline's frame in metres and
 radians, a velocity (vx, vy, ω). Outlines are closed loops with the material on their left (holes run clockwise) or open
-chains, which have a side but no inside. Formulas: docs/contact-geometry.md.
+chains, which have a side but no inside. Formulas: docs/theory/contact-geometry.md.
 """
 
 from __future__ import annotations

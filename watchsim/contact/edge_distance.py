@@ -1,8 +1,8 @@
 """How far is an edge from a point, or from another edge?
 
 Lines and arcs alike are given by their middle, the normal there, a curvature (0 for a line) and half their length, so that
-no centre enters and nothing is lost where arcs are flat (docs/method.md 2.2). Distances are between points that both edges
-have; sides of material do not matter here.
+no centre enters and nothing is lost where arcs are flat (docs/theory/method.md 2.2). Distances are between points that both
+edges have; sides of material do not matter here.
 """
 
 from __future__ import annotations

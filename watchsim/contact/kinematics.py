@@ -1,7 +1,7 @@
 """How do gaps change with motion?
 
 For each closed contact: gap and rates, force directions w_N and w_T, and the bar terms of
-g_N'' = w_N·u' + w̄_N and g_T'' = w_T·u' + w̄_T, in closed form (docs/method.md; Pfeiffer & Glocker 1996, ch. 4).
+g_N'' = w_N·u' + w̄_N and g_T'' = w_T·u' + w̄_T, in closed form (docs/theory/method.md; Pfeiffer & Glocker 1996, ch. 4).
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """What are the contact forces and accelerations now?
 
 Inside a mode an equality system; at an event the acceleration-level LCP, which decides detachment and stick-slip of contacts
-and of bearings with dry friction (Pfeiffer & Glocker 1996, ch. 5; docs/method.md 2.4, 2.5).
+and of bearings with dry friction (Pfeiffer & Glocker 1996, ch. 5; docs/theory/method.md 2.4, 2.5).
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 Their matrix. Every friction force lies in an interval from c - L x_N to c - L x_N + l x_N + l_0, where x_N is the normal
 force of its contact: L = mu, l = 2 mu, c = l_0 = 0 for a contact at the acceleration level and in the compression; c = -T,
 l_0 = 2 T for a bearing with dry friction T; the laws of the expansion are in expansion_friction.py. With x_+ the distance from
-the lower end, the law turns into complementarity with a slip measure (docs/method.md 2.5, 2.6):
+the lower end, the law turns into complementarity with a slip measure (docs/theory/method.md 2.5, 2.6):
 
     [ y_N ]   [ G_NN - G_NT L   G_NT   0 ] [ x_N  ]
     [ y_+ ] = [ G_TN - G_TT L   G_TT   1 ] [ x_+  ] + b

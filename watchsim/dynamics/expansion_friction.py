@@ -1,7 +1,7 @@
 """In which interval may the friction impulse of the expansion lie?
 
 From c - L Lambda_NP to c - L Lambda_NP + l Lambda_NP + l_0, where Lambda_NP is what the normal impulse has beyond eps_N times
-that of the compression: the laws `coulomb`, `pg1996` and `shifted` of docs/laws.md.
+that of the compression: the laws `coulomb`, `pg1996` and `shifted` of docs/theory/laws.md.
 """
 
 from __future__ import annotations

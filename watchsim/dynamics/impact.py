@@ -2,7 +2,8 @@
 
 Two phases over all closed contacts at once: compression ends when no contact approaches any more; expansion gives back
 at least the share eps_N of each compression impulse (Poisson). Friction acts in both, on impulses: Coulomb's law in the
-compression, the scene's tangential law in the expansion (Pfeiffer & Glocker 1996, ch. 8; docs/method.md 2.6, docs/laws.md).
+compression, the scene's tangential law in the expansion (Pfeiffer & Glocker 1996, ch. 8; docs/theory/method.md 2.6,
+docs/theory/laws.md).
 """
 
 from __future__ import annotations

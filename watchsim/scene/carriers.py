@@ -2,7 +2,7 @@
 
 A body's place, angle and velocity are told relative to its carrier. The model knows one level of carriers: the origin of a
 carried body is a point fixed in one moving body, its host. What is exact in that form and keeps the mass matrix constant and
-diagonal (docs/method.md 2.1) is resolved here, the rest is refused by name.
+diagonal (docs/theory/method.md 2.1) is resolved here, the rest is refused by name.
 """
 
 from __future__ import annotations

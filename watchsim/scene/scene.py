@@ -30,7 +30,7 @@ class Scene:
     """A mechanism in SI units, ready to be compiled.
 
     `tangential_law` ("coulomb", "pg1996" or "shifted") says what friction does in the expansion of impacts, `nu` belongs to
-    pg1996 (docs/laws.md).
+    pg1996 (docs/theory/laws.md).
     `nominal` (Hz) is what the rate is measured against, where the scene says so.
     `source` is the TOML mapping it was made from, `path` its file, `findings` what the drawings said besides errors,
     `drawings` the files themselves as they were read, by their names in the scene file; two scenes are equal when everything

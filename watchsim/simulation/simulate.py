@@ -38,7 +38,7 @@ def simulate(
     record    what is kept: windows (s) of rows, "events", "statistics" or a `Recording`; default the scene's, else everything
     progress  called as progress(simulated, duration) about ten times a second
     prefilter off: every declared pair of primitives is looked at in every step; slow, the same events
-    method    "pfeiffer-glocker" (by events) or "moreau" (fixed steps of `step` seconds, default 10 µs), see docs/method.md
+    method    "pfeiffer-glocker" (by events) or "moreau" (fixed steps of `step` seconds, default 10 µs): docs/theory/method.md
     start     go on from here instead of from the scene's start: a trajectory (the result then holds both parts), or its
               `end_state` (the result holds what follows). The same bits come out as from one run, whatever was cut where.
 

@@ -1,8 +1,8 @@
 """What happens at an impact?
 
 All closed contacts of the island take part. The energy is checked; where the law would gain any, the documented rule applies
-(docs/method.md 2.7); rebounds that would accumulate within `accumulation_time` are ended by an inelastic solution, and so
-is chatter between contacts (chatter.py).
+(docs/theory/method.md 2.7); rebounds that would accumulate within `accumulation_time` are ended by an inelastic solution, and
+so is chatter between contacts (chatter.py).
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 Decisions are made from accelerations, modes end by forces, slips and ways, and where all of these are rounding the two can
 contradict each other for ever. So no set of modes is decided twice at one instant on the same terms: at the second time what
 counts as zero for forces and slips is made ten times larger, until time has gone on. There are finitely many sets of modes and
-finitely many such terms, so that every instant comes to an end (docs/method.md 3.5).
+finitely many such terms, so that every instant comes to an end (docs/theory/method.md 3.5).
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 The contacts closed at the middle of the step take part. First what approaches is stopped and thrown back (compression and
 expansion, Poisson's law); then forces and contacts act together over the step, at its middle (theta = 1/2), without
-restitution; then penetration is taken back a little at a time, without touching velocities (docs/method.md 6).
+restitution; then penetration is taken back a little at a time, without touching velocities (docs/theory/method.md 6).
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """How are impacts resolved in Moreau's time stepping?
 
 In two phases: what approaches is stopped (compression, Coulomb's law), then thrown back (expansion, Poisson's law with the
-scene's tangential law). Where that gains energy, less is thrown back (docs/method.md 2.7).
+scene's tangential law). Where that gains energy, less is thrown back (docs/theory/method.md 2.7).
 """
 
 from __future__ import annotations

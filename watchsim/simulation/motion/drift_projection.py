@@ -5,7 +5,7 @@ change in the metric of the mass matrix: dq = -M⁻¹ W (Wᵀ M⁻¹ W)⁺ g.
 
 What is taken back is rounding, so the change must be of its size. Where two force directions are nearly parallel, or one has
 next to no lever arm (friction on the line of centres), zeroing both rates would move the bodies by far more than the rates
-themselves: directions that the others nearly determine are left as they are (docs/method.md 2.10).
+themselves: directions that the others nearly determine are left as they are (docs/theory/method.md 2.10).
 """
 
 from __future__ import annotations

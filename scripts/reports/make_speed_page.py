@@ -1,0 +1,202 @@
+"""How fast is the solver, how exact, and how does its time grow? Writes docs/reports/speed.md and docs/images/speed.png.
+
+    python scripts/reports/make_speed_page.py [--from FOLDER]
+
+Runs `watchsim bench` and the studies of growth, some minutes on one core. `--from` takes the results of an earlier
+`watchsim bench`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import platform
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+from watchsim.bench.comparison_table import table
+from watchsim.bench.engines.world import is_installed
+from watchsim.bench.growth import Study, studies
+from watchsim.bench.profile.run_profile import profile_of, profile_text
+from watchsim.bench.scenarios import Scenario, scenarios
+from watchsim.bench.wall_clock import whole
+from watchsim.commands.bench import measured, write
+from watchsim.profiles_path import profiles_dir
+from watchsim.render.speed_plot import plot_speed
+from watchsim.scene.file.load import load
+from watchsim.simulation.methods import MOREAU
+from watchsim.simulation.simulate import simulate
+
+ROOT = Path(__file__).resolve().parents[2]
+OWN = "pfeiffer-glocker"
+SETTLED = "bench_lever, settled"
+PROFILED = {"incline": 3.0, "bench_lever": 10.0, "swiss_lever": 10.0}  # s simulated
+
+PAGE = """# Speed against error
+
+How long does a simulated second take, and how far off is what comes out? Written by `scripts/reports/make_speed_page.py` from
+`watchsim bench`, on one core of one machine ({machine}), all in one run. Times are of the processor, of the stepping alone
+(reading, compiling and setting up are left out for all engines): the median of several runs, with the smallest and the largest.
+Levers run for 3 s from the start, amplitude and rate are averaged from 1 s to 3 s; the disc's place is compared at 3 s. In this
+time the details of the first beats dominate: the settled lever runs for 15 s and is averaged over the last two.
+
+![Time per simulated second over error](../images/speed.png)
+
+What counts as true is the closed form, or the tightest run of the event-driven solver; another method confirms it. The levers
+of the other engines are polygons. They know Newton's law of impact, watchsim has Poisson's: with restitution above zero they
+need not come to the same amplitude.
+
+## Beside the other engines
+
+{ratios}
+
+## All figures
+
+{table}
+
+## Whole runs, by the clock
+
+From the drawing to the last of {simulated:g} s of the settled lever, compiled code loaded before: getting ready (reading; for
+other engines making polygons) and stepping. The first run of a geometry learns its cells.
+
+{wholes}
+
+The whole command `watchsim run profiles/swiss_lever --duration "180 s" --no-plots`, from typing it to the prompt, everything
+recorded and written: {command}.
+
+## Where the time goes
+
+Each count times the cost of one piece of that work, measured by itself in the middle of the run, beside the time of the
+stepping (`watchsim run --profile`): how far from the floor. No work is in two lines:
+
+- a step is what it takes besides accelerations and gaps: Runge-Kutta sums, the estimate of the error, attempts that are
+  rejected, the polynomial in between, taking back drift, recording; a flight is the same in closed form;
+- gaps are the whole search for the next contact, but for looking up cells;
+- an instant is the settling of an event, but for its impacts, complementarity problems and look-ups; an impact is without its
+  problems;
+- calls of the loop come from Python, which saves and tallies between them;
+- the rest is what goes on in between, and what the same work takes more in the midst of other work.
+
+Cells are learnt once for a geometry: the stepping told here knows them all, the last line is of a run that knows none. A test
+compares the shares with those of clocks within the loop (`tests/bench/test_where_time_goes.py`).
+
+{profiles}
+
+## How the time grows
+
+{growth}
+
+Declared pairs of primitives: [complexity](complexity.md).
+"""
+
+
+def ratios(rows: list[dict[str, Any]]) -> str:
+    """The coarsest event-driven run within 10⁻³ degrees against the most exact run of every other engine."""
+    lines = ["| scene | watchsim | error | other engine | error | times faster |", "|---|---:|---:|---|---:|---:|"]
+    for scene in dict.fromkeys(row["scene"] for row in rows):
+        here = [row for row in rows if row["scene"] == scene and row["error_amplitude_deg"] is not None and not row["note"]]
+        exact = [row for row in here if row["method"] == OWN and row["error_amplitude_deg"] <= 1e-3]
+        if not exact:
+            continue
+        own = exact[0]
+        for method in dict.fromkeys(row["method"] for row in here if row["method"] != OWN):
+            best = min((row for row in here if row["method"] == method), key=lambda row: row["error_amplitude_deg"])
+            time, other = own["wall_s_per_simulated_s"], best["wall_s_per_simulated_s"]
+            cells = (
+                scene,
+                f"{time:.4f} s",
+                f"{own['error_amplitude_deg']:.0e}°",
+                f"{method}, step {1e6 * best['setting']:g} µs",
+            )
+            lines.append("| " + " | ".join((*cells, f"{best['error_amplitude_deg']:.2g}°", f"{other / time:.0f}")) + " |")
+    return "\n".join(lines)
+
+
+def wholes(scenario: Scenario) -> str:
+    """A table of whole runs, each engine at its most exact setting but watchsim at its usual one."""
+    lines = ["| engine | first run: ready | stepping | again: ready | stepping |", "|---|---:|---:|---:|---:|"]
+    settings = {name: values[-1] for name, values in scenario.settings.items() if is_installed_or_own(name)}
+    settings[OWN] = 1e-9
+    for method, setting in settings.items():
+        one = whole(scenario, method, setting)
+        times = (one.first_ready, one.first_stepping, one.again_ready, one.again_stepping)
+        how = f"tolerance {setting:g}" if method == OWN else f"step {1e6 * setting:g} µs"
+        lines.append(f"| {method}, {how} | " + " | ".join(f"{seconds:.3f} s" for seconds in times) + " |")
+    return "\n".join(lines)
+
+
+def is_installed_or_own(method: str) -> bool:
+    return method in (OWN, MOREAU) or is_installed(method)
+
+
+def command() -> str:
+    """What the whole command takes, the best of three, and how much of it is stepping."""
+    scene = str(profiles_dir() / "swiss_lever")
+    best, stepping = math.inf, 0.0
+    with tempfile.TemporaryDirectory() as folder:
+        for k in range(3):
+            words = [sys.executable, "-m", "watchsim", "run", scene, "--duration", "180 s", "--no-plots", "-o", f"{folder}/{k}"]
+            begun = time.perf_counter()
+            subprocess.run(words, check=True, capture_output=True)
+            taken = time.perf_counter() - begun
+            if taken < best:
+                numbers = json.loads(Path(folder, str(k), "summary.json").read_text(encoding="utf-8"))
+                best, stepping = taken, numbers["wall_s"]
+    return f"{best:.2f} s, of which stepping {stepping:.2f} s"
+
+
+def profiled(name: str, duration: float) -> str:
+    """The profile of a run of that many seconds."""
+    run = simulate(load(profiles_dir() / name / "scene.toml"), duration, record="statistics")
+    return f"`{name}`:\n\n```\n{profile_text(profile_of(run))}\n```"
+
+
+def growth(found: list[Study]) -> str:
+    """A table of each study with its exponent."""
+    parts = []
+    for study in found:
+        parts.append(
+            f"**{study.what}**: " + ", ".join(f"{n:g}: {t:.4f} s" for n, t in zip(study.sizes, study.seconds, strict=True))
+        )
+        if study.exponent is not None:
+            parts.append(f"Time grows with the power {study.exponent:.2f} (last three points).")
+        if study.stopped:
+            parts.append(f"Larger ones do not run: {study.stopped}.")
+        parts.append("")
+    return "\n".join(parts).rstrip()
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--from", dest="folder", metavar="FOLDER", type=Path, help="results of an earlier `watchsim bench`")
+    parser.add_argument("-o", "--output", type=Path, default=ROOT / "bench", help="where the results go (default bench)")
+    args = parser.parse_args()
+    if args.folder:
+        kept = json.loads((args.folder / "bench.json").read_text(encoding="utf-8"))
+        rows, references = kept["rows"], kept["references"]
+    else:
+        rows, references = measured(False, None, lambda words: print(words, file=sys.stderr, flush=True))
+        write(args.output, rows, references)
+    settled = next(one for one in scenarios() if one.name == SETTLED)
+    plot_speed(rows, ROOT / "docs" / "images" / "speed.png")
+    text = PAGE.format(
+        machine=f"{platform.machine()}, Python {platform.python_version()}",
+        ratios=ratios(rows),
+        table=table(rows, references).rstrip(),
+        simulated=settled.duration,
+        wholes=wholes(settled),
+        command=command(),
+        profiles="\n\n".join(profiled(name, duration) for name, duration in PROFILED.items()),
+        growth=growth(studies()),
+    )
+    (ROOT / "docs" / "reports" / "speed.md").write_text(text, encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

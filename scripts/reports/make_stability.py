@@ -1,0 +1,170 @@
+"""What does the solver do on hard cases? Writes docs/reports/stability.md with its pictures from measured rows.
+
+    python scripts/reports/make_stability.py GRID.csv [--slow]
+
+GRID.csv is made by scripts/checks/measure_grid.py. The rows are those of `watchsim verify`, with --slow of `watchsim verify
+--slow`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import datetime
+from itertools import groupby
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from watchsim.verification.all_checks import verify
+
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+BLUE, RED, GREY = "#2b6ca3", "#b5382a", "#8a8f94"
+
+
+def number(value: float) -> str:
+    """Up to ten digits; what rounding leaves of zero in two."""
+    return f"{value:.10g}" if abs(value) >= 1e-6 or value == 0.0 else f"{value:.1e}"
+
+
+def table(rows: list[dict[str, Any]]) -> list[str]:
+    """Expected, got, error, tolerance, by case, with its source."""
+    lines = []
+    for name, group in groupby(rows, key=lambda row: row["name"]):
+        found = list(group)
+        lines += [f"### {name[0].upper() + name[1:]}", "", f"Source: {found[0]['source']}.", ""]
+        lines += ["| | expected | got | error | allowed |", "|---|---|---|---|---|"]
+        for row in found:
+            error = f"{row['error']:.1e}" + ("" if row["ok"] else " **wrong**")
+            lines.append(
+                f"| {row['quantity']} | {number(row['expected'])} | {number(row['got'])} | {error} | {row['tolerance']:.0e} |"
+            )
+        lines.append("")
+    return lines
+
+
+def margins(rows: list[dict[str, Any]], path: Path) -> None:
+    """Error of every number as a share of what it may be, by case."""
+    import matplotlib.pyplot as plt
+
+    names = list(dict.fromkeys(row["name"] for row in rows))
+    figure, axis = plt.subplots(figsize=(9.0, 0.19 * len(names) + 1.0), constrained_layout=True)
+    exact, worst = 1e-11, 10.0
+    for row in rows:
+        share = row["error"] / row["tolerance"] if row["tolerance"] > 0.0 else (0.0 if row["ok"] else worst)
+        colour = RED if not row["ok"] else GREY if share == 0.0 else BLUE
+        place = min(max(share, exact), worst)
+        axis.plot(place, names.index(row["name"]), "o", color=colour, markersize=4, alpha=0.7)
+    axis.axvline(1.0, color=RED, linewidth=1.0)
+    axis.set_xscale("log")
+    axis.set_yticks(range(len(names)), names, fontsize=7)
+    axis.set_ylim(len(names) - 0.4, -0.6)
+    axis.set_xlabel("error over the error allowed; grey: exact", fontsize=8)
+    axis.tick_params(axis="x", labelsize=8)
+    axis.grid(True, axis="x", color="0.92")
+    for side in ("top", "right"):
+        axis.spines[side].set_visible(False)
+    figure.savefig(path, dpi=110)
+    plt.close(figure)
+
+
+def grid_picture(grid: list[dict[str, str]], path: Path) -> None:
+    """Amplitude and impacts over restitution and friction."""
+    import matplotlib.pyplot as plt
+    from matplotlib.colors import LogNorm
+
+    eps = sorted({float(row["restitution"]) for row in grid})
+    mus = sorted({float(row["friction"]) for row in grid})
+    amplitude, impacts = np.full((len(eps), len(mus)), np.nan), np.full((len(eps), len(mus)), np.nan)
+    for row in grid:
+        i, j = eps.index(float(row["restitution"])), mus.index(float(row["friction"]))
+        amplitude[i, j] = float(row["amplitude_deg"] or np.nan)
+        impacts[i, j] = float(row["impacts"])
+    figure, axes = plt.subplots(1, 2, figsize=(9.6, 4.2), constrained_layout=True)
+    step = 0.5 * (mus[1] - mus[0])
+    edges = (mus[0] - step, mus[-1] + step, eps[0] - step, eps[-1] + step)
+    for axis, values, title, norm in (
+        (axes[0], amplitude, "amplitude in the first second, °", None),
+        (axes[1], np.maximum(impacts, 1.0), "impacts in the first second", LogNorm()),
+    ):
+        image = axis.imshow(values, origin="lower", extent=edges, aspect="equal", cmap="cividis", norm=norm)
+        figure.colorbar(image, ax=axis, shrink=0.85)
+        axis.set(xlabel="friction", ylabel="restitution", title=title)
+    for row in grid:
+        if row["sound"] != "1":
+            for axis in axes:
+                axis.plot(float(row["friction"]), float(row["restitution"]), "x", color=RED)
+    figure.savefig(path, dpi=110)
+    plt.close(figure)
+
+
+def grid_text(grid: list[dict[str, str]]) -> list[str]:
+    """What the runs of the grid came to."""
+    ends = {end: sum(row["end"] == end for row in grid) for end in sorted({row["end"] for row in grid})}
+    unsound = [row for row in grid if row["sound"] != "1"]
+    rungs = ("lcp_lemke", "lcp_copositive", "lcp_detours", "lcp_enumerated", "lcp_inexact", "lcp_failures")
+    counts = ("impacts", *rungs, "energy_rescues", "jams", "accumulations")
+    total = {key: sum(int(row[key]) for row in grid) for key in counts}
+    lines = [
+        f"{len(grid)} runs of `profiles/bench_lever` for a second each, every contact with the same restitution and friction",
+        "from 0 to 1 (`scripts/checks/measure_grid.py`). A cross would mark a run that gave up, lost track of its energy, or",
+        "gained any. White: without any loss in its contacts the train only rattles, and there is no beat with an amplitude.",
+        "",
+        "![amplitude and impacts over restitution and friction](../images/stability_grid.png)",
+        "",
+        "| | |",
+        "|---|---|",
+        *(f"| runs ended by {end} | {count} |" for end, count in ends.items()),
+        f"| unsound runs | {len(unsound)} |",
+        f"| worst energy residual over the energy put in | {max(float(row['ledger']) for row in grid):.1e} |",
+        f"| largest gain of an impact, J | {max(float(row['largest_gain_J']) for row in grid):.1e} |",
+        *(f"| {key.replace('_', ' ')} | {value:,} |" for key, value in total.items()),
+        "",
+    ]
+    if unsound:
+        lines += ["| restitution | friction | end | simulated, s | ledger | gain, J |", "|---|---|---|---|---|---|"]
+        columns = ("restitution", "friction", "end", "simulated_s", "ledger", "largest_gain_J")
+        lines += ["| " + " | ".join(row[column] for column in columns) + " |" for row in unsound]
+        lines.append("")
+    return lines
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("grid", type=Path, help="table that scripts/checks/measure_grid.py has written")
+    parser.add_argument("--slow", action="store_true", help="the large numbers of random problems too")
+    args = parser.parse_args()
+    with args.grid.open(encoding="utf-8") as file:
+        grid = list(csv.DictReader(file))
+    rows = verify(args.slow)
+    images = DOCS / "images"
+    margins(rows, images / "stability_margins.png")
+    grid_picture(grid, images / "stability_grid.png")
+    wrong = sum(not row["ok"] for row in rows)
+    lines = [
+        "# Stability on hard cases",
+        "",
+        f"Made by `scripts/reports/make_stability.py` on {datetime.date.today():%Y-%m-%d}; not edited by hand.",
+        f"{len(rows)} numbers of `watchsim verify`, each against an answer found another way: a closed form, a law of",
+        f"conservation, another algorithm, a published run. {'All agree.' if not wrong else f'{wrong} of them are wrong.'}",
+        "",
+        "![errors of all numbers](../images/stability_margins.png)",
+        "",
+        "How the laws and the rules of the solver are defined stands in [laws](../theory/laws.md) and",
+        "[method](../theory/method.md). How fast Moreau's time stepping comes to the same answers is measured by",
+        "`scripts/reports/study_convergence.py`.",
+        "",
+        "## The bench lever over restitution and friction",
+        "",
+        *grid_text(grid),
+        "## Case by case",
+        "",
+        *table(rows),
+    ]
+    (DOCS / "reports" / "stability.md").write_text("\n".join(lines).rstrip() + "\n", encoding="utf-8")
+    raise SystemExit(bool(wrong))
+
+
+if __name__ == "__main__":
+    main()

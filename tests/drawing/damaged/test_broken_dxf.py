@@ -1,0 +1,210 @@
+"""Does a broken file give findings, never a traceback and never a drawing with something missing in silence?"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import dxf_text as d
+import pytest
+
+from watchsim.drawing.drawing import Drawing
+from watchsim.drawing.inspection import inspect_report, inspect_text
+from watchsim.drawing.read import LARGEST_FILE, read
+
+Reader = Callable[..., Drawing]
+DATA = Path(__file__).resolve().parents[2] / "data"
+
+
+def errors(drawing: Drawing) -> dict[str, str]:
+    return {finding.code: finding.message for finding in drawing.findings if finding.severity == "error"}
+
+
+@pytest.mark.parametrize(
+    ("data", "word"),
+    [
+        (b"", "empty"),
+        (b"\n  \r\n", "empty"),
+        (b"hello world\nthis is a letter\n", "no DXF file"),
+        (bytes(range(256)) * 20, "no DXF file"),
+        (b"AC1027\x00\x01\x02", "DWG"),
+        (b"AutoCAD Binary DXF\r\n\x1a\x00\xff\xff\xff", "no DXF file"),
+        (b"\x89PNG\r\n\x1a\n" + bytes(100), "no DXF file"),
+        (b"<html></html>", "no DXF file"),
+    ],
+)
+def test_what_is_no_dxf(read_bytes: Reader, data: bytes, word: str) -> None:
+    drawing = read_bytes(data)
+    assert word in errors(drawing)["unreadable"]
+    assert not drawing.loops
+    assert inspect_report(drawing)["lines"] == 0
+    assert word in inspect_text(drawing)
+
+
+def test_files_that_are_not_there_or_not_read(tmp_path: Path) -> None:
+    assert "no such file" in errors(read(tmp_path / "none.dxf"))["unreadable"]
+    (tmp_path / "folder.dxf").mkdir()
+    assert "is a folder" in errors(read(tmp_path / "folder.dxf"))["unreadable"]
+    assert "no such file" in errors(read(tmp_path / "wheel.svg"))["unreadable"]
+    assert "wheel.step" in errors(read(tmp_path / "wheel.step"))["format"]
+    with pytest.raises(ValueError, match="positive"):
+        read(tmp_path / "none.dxf", snap=0.0)
+
+
+@pytest.mark.parametrize("name", ["open_outline", "truncated", "two_faults", "no_units", "lost_boundary", "bad_number"])
+def test_small_files_that_broke_importers(name: str) -> None:
+    expected = {
+        "open_outline": {"open-outline"},
+        "truncated": {"truncated", "open-outline"},
+        "two_faults": {"damaged", "block-missing"},
+        "no_units": {"units-missing"},
+        "lost_boundary": {"damaged", "open-outline"},
+        "bad_number": {"damaged"},
+    }
+    assert set(errors(read(DATA / f"{name}.dxf"))) == expected[name]
+
+
+def test_truncated_files_name_the_last_whole_entity(read_bytes: Reader) -> None:
+    whole = d.dxf(
+        d.line((0, 0), (1, 0), handle="A1") + d.line((1, 0), (1, 1), handle="A2") + d.line((1, 1), (0, 0), handle="A3")
+    )
+    cut = whole[: whole.index(b"A3") + 20]
+    assert "LINE #A2" in errors(read_bytes(cut))["truncated"]
+    for length in range(1, len(whole) - 4, 3):
+        found = errors(read_bytes(whole[:length]))
+        assert found, f"cut after {length} bytes and nothing said"
+
+
+def test_missing_endsec_is_said(read_bytes: Reader) -> None:
+    whole = d.dxf(d.circle(0, 0, 1)).decode()
+    broken = whole[: whole.rindex("0\nENDSEC")] + "0\nEOF\n"
+    assert "ENTITIES has no ENDSEC" in errors(read_bytes(broken.encode()))["truncated"]
+
+
+def test_trash_after_the_end_is_only_a_notice(read_bytes: Reader) -> None:
+    drawing = read_bytes(d.dxf(d.circle(0, 0, 1)) + b"\x1a some remains\n\x00\x01")
+    assert [(finding.code, finding.severity) for finding in drawing.findings] == [("trash", "notice")]
+    assert len(drawing.loops) == 1
+
+
+@pytest.mark.parametrize(
+    ("entity", "word"),
+    [
+        (d.record("CIRCLE", (10, 0.0), (20, 0.0)), "group 40 is missing"),
+        (d.record("CIRCLE", (10, 0.0), (20, 0.0), (40, "one")), 'group 40 is "one"'),
+        (d.record("CIRCLE", (10, 0.0), (20, 0.0), (40, "nan")), "no sensible number"),
+        (d.record("CIRCLE", (10, 1e300), (20, 0.0), (40, 1.0)), "no sensible number"),
+        (d.record("LINE", (10, 0.0), (20, 0.0), (11, 1.0)), "group 21 is missing"),
+        (d.record("LINE", *d.point(10, (0, 0)), *d.point(10, (0, 0)), *d.point(11, (0, 0))), "stands there 2 times"),
+        (d.record("LWPOLYLINE", (90, 3), (10, 0.0), (20, 0.0), (10, 1.0), (20, 1.0)), "announces 3 corners and holds 2"),
+        (d.record("LWPOLYLINE", (10, 0.0), (10, 1.0), (20, 1.0)), "without its y coordinate"),
+        (d.record("LWPOLYLINE", (20, 0.0), (10, 1.0), (20, 1.0)), "does not belong"),
+        (d.record("LWPOLYLINE", (70, 1)), "no corners"),
+        (d.record("ELLIPSE", *d.point(10, (0, 0)), *d.point(11, (0, 0)), (40, 0.5)), "no length"),
+        (d.record("SPLINE", (71, 3)), "neither control points"),
+        (d.insert("B", (0, 0), (41, 0.0)), "nothing would be left"),
+        (d.insert("B", (0, 0), (70, 30000), (71, 30000)), "too many"),
+    ],
+)
+def test_damaged_entities_are_errors_and_the_rest_is_read(read_bytes: Reader, entity: str, word: str) -> None:
+    drawing = read_bytes(d.dxf(d.circle(50, 0, 1) + entity, blocks=d.block("B", d.circle(0, 0, 1))))
+    assert word in errors(drawing)["damaged"]
+    assert len(drawing.loops) == 1
+
+
+def test_blocks_that_multiply_are_stopped(read_bytes: Reader) -> None:
+    levels = "".join(
+        d.block(f"L{k}", d.insert(f"L{k + 1}", (0, 0), (70, 30), (71, 30), (44, 1.0), (45, 1.0))) for k in range(6)
+    )
+    drawing = read_bytes(d.dxf(d.insert("L0", (0, 0)), blocks=levels + d.block("L6", "")))
+    assert "too-large" in errors(drawing)
+
+
+def test_more_pieces_than_a_drawing_can_have_are_refused_whole(read_bytes: Reader) -> None:
+    """Half a drawing would be worse than none, and takes long to look through."""
+    comb = "".join(d.line((k, 0), (k, 1)) for k in range(600))
+    drawing = read_bytes(d.dxf(d.insert("B", (0, 0), (70, 450), (44, 1e3)), blocks=d.block("B", comb)))
+    assert "nothing was read" in errors(drawing)["too-large"]
+    assert not drawing.open_chains and drawing.units == "mm"
+
+
+def test_a_file_too_large_for_a_drawing_is_not_even_opened(tmp_path: Path) -> None:
+    path = tmp_path / "map.dxf"
+    with path.open("wb") as file:
+        file.truncate(LARGEST_FILE + 1)
+    assert "75 MB" in errors(read(path))["too-large"]
+
+
+def test_strange_groups_are_a_warning(read_bytes: Reader) -> None:
+    drawing = read_bytes(d.dxf(d.circle(0, 0, 1, (43, 2.0))))
+    assert [(finding.code, finding.severity) for finding in drawing.findings] == [("strange-group", "warning")]
+
+
+def test_an_unknown_type_of_entity_is_a_warning(read_bytes: Reader) -> None:
+    drawing = read_bytes(d.dxf(d.circle(0, 0, 1) + d.record("CJRCLE", *d.point(10, (0, 0)), (40, 2.0))))
+    assert drawing.ignored == {"CJRCLE": 1}
+    assert [(finding.code, finding.severity) for finding in drawing.findings] == [("ignored", "warning")]
+
+
+def test_only_hidden_or_only_text_is_empty(read_bytes: Reader) -> None:
+    tables = d.layers(("A", -7, 0))
+    assert "empty" in errors(read_bytes(d.dxf(d.circle(0, 0, 1, layer="A"), tables=tables)))
+    assert "1 × TEXT" in errors(read_bytes(d.dxf(d.record("TEXT", (1, "x")))))["empty"]
+    assert "empty" in errors(read_bytes(d.dxf("")))
+
+
+def test_what_a_damaged_boundary_swallows_is_said(read_bytes: Reader) -> None:
+    """The group code 0 before an entity became something else: it is part of the record before it."""
+    corners = "".join(d.record("VERTEX", *d.point(10, p)) for p in ((0, 0), (4, 0), (4, 4)))
+    polyline = d.record("POLYLINE", (66, 1), (70, 1)) + corners + d.record("SEQEND")
+    swallowed = d.circle(9, 0, 1).replace("0\n", "62\n", 1)
+    after_row = read_bytes(d.dxf(polyline + swallowed))
+    assert [finding.code for finding in after_row.findings] == ["strange-group"]
+    after_text = read_bytes(d.dxf(d.circle(0, 0, 1) + d.record("TEXT", *d.point(10, (0, 0)), (40, 1.0), (1, "x")) + swallowed))
+    assert "names two layers" in errors(after_text)["damaged"]
+
+
+def test_a_section_that_swallows_its_first_entity_is_said(read_bytes: Reader) -> None:
+    data = d.dxf(d.circle(0, 0, 1) + d.circle(9, 0, 1)).replace(b"ENTITIES\n0\n", b"ENTITIES\n70\n")
+    assert "section ENTITIES begins with groups of something else" in errors(read_bytes(data))["damaged"]
+    block = d.block("B", d.circle(0, 0, 1) + d.circle(5, 0, 1)).replace("0\nCIRCLE", "70\nCIRCLE", 1)
+    messages = [finding.message for finding in read_bytes(d.dxf(d.insert("B", (0, 0)), blocks=block)).findings]
+    assert any("names two layers" in message for message in messages)
+
+
+def test_a_drawing_of_a_few_micrometres_is_told_of(read_bytes: Reader) -> None:
+    drawing = read_bytes(d.dxf(d.circle(0, 0, 0.004)))
+    assert [(finding.code, finding.severity) for finding in drawing.findings] == [("tiny", "warning")]
+    assert not read_bytes(d.dxf(d.circle(0, 0, 0.05))).findings
+
+
+def test_entities_outside_their_sections_are_said(read_bytes: Reader) -> None:
+    tables = "0\nSECTION\n2\nTABLES\n" + d.circle(5, 0, 1) + "0\nENDSEC\n"
+    assert "stands in section TABLES" in errors(read_bytes(d.dxf(d.circle(0, 0, 1), tables=tables)))["damaged"]
+
+
+def test_a_block_that_is_there_twice_is_said(read_bytes: Reader) -> None:
+    blocks = d.block("B", d.circle(0, 0, 1)) + d.block("b", "")
+    assert 'block "b" is there already' in errors(read_bytes(d.dxf(d.insert("B", (0, 0)), blocks=blocks)))["damaged"]
+
+
+def test_entities_after_the_end_are_an_error(read_bytes: Reader) -> None:
+    """Two files in one, or an EOF gone astray: what is drawn behind it must not get lost in silence."""
+    drawing = read_bytes(d.dxf(d.circle(0, 0, 1)) + d.line((0, 0), (1, 0)).encode() + d.circle(5, 0, 1).encode())
+    assert "2 entities (LINE)" in errors(drawing)["trash"]
+    assert len(drawing.loops) == 1
+
+
+def test_polylines_of_one_corner_are_told(read_bytes: Reader) -> None:
+    drawing = read_bytes(d.dxf(d.circle(0, 0, 1) + d.lwpolyline([(3, 4)], False)))
+    (finding,) = drawing.findings
+    assert finding.code == "zero-length" and finding.message.startswith("LWPOLYLINE")
+    assert (finding.x_mm, finding.y_mm) == pytest.approx((3.0, 4.0))
+
+
+@pytest.mark.parametrize(("tag", "word"), [((70, 0), "0 columns"), ((71, -3), "-3 rows"), ((66, 1), "attributes")])
+def test_inserts_with_something_amiss_are_told(read_bytes: Reader, tag: d.Tag, word: str) -> None:
+    drawing = read_bytes(d.dxf(d.insert("B", (0, 0), tag), blocks=d.block("B", d.circle(0, 0, 1))))
+    (finding,) = drawing.findings
+    assert (finding.code, finding.severity) == ("strange-group", "warning") and word in finding.message
+    assert len(drawing.loops) == 1
