@@ -188,7 +188,8 @@ def table(results: dict[str, np.ndarray], megabytes: dict[str, float], empty: fl
         "# How fast drawings are read\n\n"
         "Made by `scripts/reports/measure_reading.py`: the whole command `watchsim inspect FILE` in a fresh process,\n"
         "processor time in seconds, the least of a few runs. Outlines are cut into single entities and shuffled. "
-        f"The exponent is fitted from {FITTED_FROM} edges on, after\nsubtracting the {empty:.2f} s of a drawing of one circle.\n\n"
+        f"The exponent is fitted from {FITTED_FROM} edges on, after\nsubtracting the {empty:.2f} s of a drawing "
+        "of one circle.\n\n"
     )
     sizes = next(iter(results.values()))[:, 0]
     rows = ["| Edges | " + " | ".join(f"{int(n):,}".replace(",", " ") for n in sizes) + " | largest file | exponent |"]
