@@ -9,6 +9,7 @@ from __future__ import annotations
 from watchsim.contact.index_sets import BACKWARD, FORWARD, OPEN, STICK
 from watchsim.dynamics.coulomb import add_element, fill_matrix, fill_rhs, read_forces
 from watchsim.dynamics.delassus import apply, fill_bearings, fill_delassus
+from watchsim.dynamics.handedness import restore_directions, reverse_directions
 from watchsim.dynamics.ladder import solve_contacts
 from watchsim.dynamics.linear import RANK, solve_small, unit_scale
 from watchsim.dynamics.redundant import smallest_forces
@@ -108,6 +109,9 @@ def decide_modes(model, closed, m, bearings, speed_zero, work, out_grip, out_mod
     fill_bearings(closed, m, bearings, work)
     gap_accelerations(model, closed, m, work, work.b, work.size)
     elements = _elements(model, closed, m, bearings, speed_zero, work)
+    _free_bearings(work, m, bearings)
+    rows = 2 * m + bearings
+    reverse_directions(work, m, rows, elements, work.b)
     fill_matrix(work, m, elements)
     _load(work, m, elements, bearings)
     fill_rhs(work, m, elements, work.more)
@@ -121,6 +125,7 @@ def decide_modes(model, closed, m, bearings, speed_zero, work, out_grip, out_mod
             return NO_FORCE
     for i in range(m):
         out_mode[closed.ids[i]] = _mode_of(closed, i, m, elements, bearings, work)
+    restore_directions(work, rows, work.b)
     for i in range(m):
         if out_mode[closed.ids[i]] == OPEN:
             work.force[2 * i], work.force[2 * i + 1] = 0.0, 0.0
@@ -147,12 +152,17 @@ def _elements(model, closed, m, bearings, speed_zero, work):
 
 
 @kernel
-def _load(work, m, elements, bearings):
-    """Accelerations without contact forces, bearings at the lower end of their friction, into `more`; also theirs in `b`."""
+def _free_bearings(work, m, bearings):
+    """The accelerations of the bearings without friction and contact forces into `b`, their magnitudes into `size`."""
     for p in range(bearings):
         i = work.dry[p]
         work.b[2 * m + p] = work.h[i] * work.inverse[i]
         work.size[2 * m + p] = abs(work.b[2 * m + p])
+
+
+@kernel
+def _load(work, m, elements, bearings):
+    """Accelerations without contact forces, bearings at the lower end of their friction, into `more`."""
     for row in range(2 * m + bearings):
         work.more[row] = work.b[row]
         for p in range(bearings):
@@ -203,9 +213,12 @@ def _mode_of(closed, i, m, elements, bearings, work):
     terms = abs(work.force[2 * i + 1]) + work.drag[i] * work.force[2 * i]
     size = ROUNDING * (work.size[2 * i + 1] + work.G[2 * i + 1, 2 * i + 1] * terms)
     e = work.tangent[i]
+    is_reversed = work.hand[2 * i + 1] < 0.0
     if slip > size and work.x[m + e] == 0.0:
-        return FORWARD
-    return BACKWARD if slip < -size and work.x[m + elements + e] > 0.0 else STICK
+        return BACKWARD if is_reversed else FORWARD
+    if slip < -size and work.x[m + elements + e] > 0.0:
+        return FORWARD if is_reversed else BACKWARD
+    return STICK
 
 
 @kernel
