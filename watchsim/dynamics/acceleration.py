@@ -44,6 +44,15 @@ def gap_accelerations(model, closed, m, work, out_b, out_size):
 
 
 @kernel
+def row_terms(work, rows, row):
+    """The sum of the magnitudes of its terms: the scale of its rounding."""
+    total = work.size[row]
+    for j in range(rows):
+        total += abs(work.G[row, j] * work.force[j])
+    return total
+
+
+@kernel
 def accelerate(closed, m, work, out_a):
     """u' = M⁻¹ (h + W lambda) from `work.h` and `work.force`; 0 where dry friction holds."""
     for j in range(len(out_a)):
@@ -82,6 +91,8 @@ def solve_mode(model, closed, m, mode, work):
         work.force[2 * i] = work.x[i]
         t = work.tangent[i]
         work.force[2 * i + 1] = work.x[t] if t >= 0 else -work.drag[i] * work.x[i]
+    for row in range(2 * m):
+        work.size[row] = row_terms(work, 2 * m, row)
     return rank == n
 
 
@@ -204,14 +215,14 @@ def _mode_of(closed, i, m, elements, bearings, work):
     whose friction is at the other end is what the LCP may miss.
     """
     rows = 2 * m + bearings
-    if work.x[i] <= 0.0 and _row_acceleration(work, rows, 2 * i) > ROUNDING * work.size[2 * i]:
+    if work.x[i] <= 0.0 and _row_acceleration(work, rows, 2 * i) > ROUNDING * row_terms(work, rows, 2 * i):
         return OPEN
     if work.tangent[i] < 0:
         return BACKWARD if closed.kin[i].gT_dot < 0.0 else FORWARD
     slip = _row_acceleration(work, rows, 2 * i + 1)
     # lambda_T is the difference of terms as large as the friction cone.
     terms = abs(work.force[2 * i + 1]) + work.drag[i] * work.force[2 * i]
-    size = ROUNDING * (work.size[2 * i + 1] + work.G[2 * i + 1, 2 * i + 1] * terms)
+    size = ROUNDING * (row_terms(work, rows, 2 * i + 1) + work.G[2 * i + 1, 2 * i + 1] * terms)
     e = work.tangent[i]
     is_reversed = work.hand[2 * i + 1] < 0.0
     if slip > size and work.x[m + e] == 0.0:
@@ -228,7 +239,7 @@ def _decide_grips(model, m, bearings, work, out_grip):
     for p in range(bearings):
         i, row = work.dry[p], 2 * m + p
         moves = _row_acceleration(work, rows, row)
-        terms = work.size[row] + work.inverse[i] * model.coordinates[i].coulomb
+        terms = row_terms(work, rows, row) + work.inverse[i] * model.coordinates[i].coulomb
         if abs(moves) > ROUNDING * terms:
             out_grip[i] = FORWARD if moves > 0.0 else BACKWARD
             work.h[i] -= out_grip[i] * model.coordinates[i].coulomb
