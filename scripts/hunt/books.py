@@ -31,7 +31,6 @@ AUDITED = 6  # jumps of a run
 LOOKS = 8  # for overlap, evenly spread over the run
 SHIFT = 1e-6  # of the size: what a correction may move, at tolerances up to 1e-8
 OPPOSED = 1e-13  # rounding of forces that cancel, as a share of what they would give without each other
-LOOKS_PER_STEP = 3000  # at each pair; ten are usual
 MANY = 20_000  # events
 SUDDEN = (EventKind.IMPACT, EventKind.ACCUMULATION, EventKind.JAM)
 
@@ -90,10 +89,6 @@ def faults(run: Trajectory, material: Material) -> Iterator[str]:
     if len(run.t) == 0:
         return
     loose = max(1.0, run.tolerance / 1e-8)
-    looks, done = run.counts["gap_evaluations"], run.counts["events"] + run.counts["steps"] + run.counts["flights"]
-    turns = np.abs(np.diff(run.q, axis=0)).sum() / (2.0 * np.pi)  # a wheel that runs away is looked at in every turn
-    if looks > LOOKS_PER_STEP * (done + turns + 10) * max(run.counts["declared_pairs"], 1):
-        yield f"hanging: {looks} gap evaluations for {done} steps and events of {run.counts['declared_pairs']} pairs"
     scene, m = run.scene, masses(run.scene)
     kinetic = 0.5 * (run.u**2) @ m
     turned_over = max(float(kinetic.max()), abs(run.energy["in_J"]), sum(run.energy["dissipated"].values()))
