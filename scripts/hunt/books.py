@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 
 RESIDUAL = 1e-6  # of the energy turned over, at tolerances up to 1e-8
 OVERLAP = 2e-5  # of the size: what counts as material inside material, at tolerances up to 1e-8
-JUMP = 1e-5  # of the largest speed, in the metric of the masses: smaller jumps are corrections
+JUMP = 3e-5  # of the largest speed, in the metric of the masses: joints up to 1e-5 rad are handed over as tangent, without impact
 NEAR = 1e-6  # of the size: outlines this close touch
 OUTSIDE = 1e-3  # share of a jump that no impulses of the contacts explain
 AUDITED = 6  # jumps of a run
