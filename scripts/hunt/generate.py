@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
+from dataclasses import replace
 
 from hunt import pivots, sliders
 from hunt.dice import Dice
@@ -27,6 +29,7 @@ FAMILIES: dict[str, tuple[Callable[[Dice], Scene], int]] = {  # with their weigh
     "pressed": (sliders.pressed, 6),
 }
 ATTEMPTS = 200
+TURNS = 30.0  # of what nothing stops: a body that misses what it should meet turns ever faster
 
 
 def mechanism(seed: int, number: int, family: str | None = None) -> Scene:
@@ -36,5 +39,15 @@ def mechanism(seed: int, number: int, family: str | None = None) -> Scene:
     for _ in range(ATTEMPTS):
         scene = FAMILIES[dice.pick(names)][0](dice)
         if apart(scene):
-            return scene
+            return replace(scene, duration=min(scene.duration, *_runaway(scene)))
     raise RuntimeError(f"no start without overlap in {ATTEMPTS} attempts for number {number} of seed {seed}")
+
+
+def _runaway(scene: Scene) -> list[float]:
+    """The times (s) in which constant torques give their bodies so many turns from rest if nothing stops them."""
+    found = [math.inf]
+    for torque in scene.torques:
+        body = scene.body(torque.body)
+        if body.motion == "pivot" and torque.value != 0.0:
+            found.append(math.sqrt(2.0 * TURNS * 2.0 * math.pi * body.inertia / abs(torque.value)))
+    return found

@@ -112,7 +112,7 @@ def main() -> int:
             report(str(path), *found[-1])
     else:
         numbers = [args.only] if args.only is not None else range(args.start, args.start + args.count)
-        mechanism(args.seed, args.start)
+        judged(mechanism(1, 0), 0, True)  # compiles once, for all processes
 
         def work(number: int) -> Any:
             return verdict_of(number, args)

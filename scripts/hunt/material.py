@@ -79,7 +79,10 @@ def _depth(a: shapely.Polygon, b: shapely.Polygon) -> float:
 
     Flush faces overlap by a sliver of rounding, whose corners shapely may put anywhere along them.
     """
-    common = shapely.intersection(a, b)
+    found = shapely.get_parts(shapely.intersection(a, b))
+    inside = shapely.point_on_surface(found)
+    # GEOS may take one polygon for what two flush ones have in common.
+    common = shapely.union_all(found[(shapely.distance(inside, a) == 0.0) & (shapely.distance(inside, b) == 0.0)])
     if common.area == 0.0:
         return 0.0
     vertices = shapely.points(shapely.get_coordinates(common))

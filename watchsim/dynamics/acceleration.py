@@ -9,6 +9,7 @@ from __future__ import annotations
 from watchsim.contact.index_sets import BACKWARD, FORWARD, OPEN, STICK
 from watchsim.dynamics.coulomb import add_element, fill_matrix, fill_rhs, read_forces
 from watchsim.dynamics.delassus import apply, fill_bearings, fill_delassus
+from watchsim.dynamics.handedness import restore_directions, reverse_directions
 from watchsim.dynamics.redundant_contacts import smallest_forces
 from watchsim.dynamics.small_systems import RANK, solve_small, unit_scale
 from watchsim.dynamics.solver_fallbacks import solve_contacts
@@ -40,6 +41,15 @@ def gap_accelerations(model, closed, m, work, out_b, out_size):
             size_T += abs(closed.w_T[i, k]) * terms
         out_b[2 * i], out_b[2 * i + 1] = normal, tangential
         out_size[2 * i], out_size[2 * i + 1] = size_N, size_T
+
+
+@kernel
+def row_terms(work, rows, row):
+    """The sum of the magnitudes of its terms: the scale of its rounding."""
+    total = work.size[row]
+    for j in range(rows):
+        total += abs(work.G[row, j] * work.force[j])
+    return total
 
 
 @kernel
@@ -81,6 +91,8 @@ def solve_mode(model, closed, m, mode, work):
         work.force[2 * i] = work.x[i]
         t = work.tangent[i]
         work.force[2 * i + 1] = work.x[t] if t >= 0 else -work.drag[i] * work.x[i]
+    for row in range(2 * m):
+        work.size[row] = row_terms(work, 2 * m, row)
     return rank == n
 
 
@@ -108,6 +120,9 @@ def decide_modes(model, closed, m, bearings, speed_zero, work, out_grip, out_mod
     fill_bearings(closed, m, bearings, work)
     gap_accelerations(model, closed, m, work, work.b, work.size)
     elements = _elements(model, closed, m, bearings, speed_zero, work)
+    _free_bearings(work, m, bearings)
+    rows = 2 * m + bearings
+    reverse_directions(work, m, rows, elements, work.b)
     fill_matrix(work, m, elements)
     _load(work, m, elements, bearings)
     fill_rhs(work, m, elements, work.more)
@@ -121,6 +136,7 @@ def decide_modes(model, closed, m, bearings, speed_zero, work, out_grip, out_mod
             return NO_FORCE
     for i in range(m):
         out_mode[closed.ids[i]] = _mode_of(closed, i, m, elements, bearings, work)
+    restore_directions(work, rows, work.b)
     for i in range(m):
         if out_mode[closed.ids[i]] == OPEN:
             work.force[2 * i], work.force[2 * i + 1] = 0.0, 0.0
@@ -147,12 +163,17 @@ def _elements(model, closed, m, bearings, speed_zero, work):
 
 
 @kernel
-def _load(work, m, elements, bearings):
-    """Accelerations without contact forces, bearings at the lower end of their friction, into `more`; also theirs in `b`."""
+def _free_bearings(work, m, bearings):
+    """The accelerations of the bearings without friction and contact forces into `b`, their magnitudes into `size`."""
     for p in range(bearings):
         i = work.dry[p]
         work.b[2 * m + p] = work.h[i] * work.inverse[i]
         work.size[2 * m + p] = abs(work.b[2 * m + p])
+
+
+@kernel
+def _load(work, m, elements, bearings):
+    """Accelerations without contact forces, bearings at the lower end of their friction, into `more`."""
     for row in range(2 * m + bearings):
         work.more[row] = work.b[row]
         for p in range(bearings):
@@ -194,18 +215,21 @@ def _mode_of(closed, i, m, elements, bearings, work):
     whose friction is at the other end is what the LCP may miss.
     """
     rows = 2 * m + bearings
-    if work.x[i] <= 0.0 and _row_acceleration(work, rows, 2 * i) > ROUNDING * work.size[2 * i]:
+    if work.x[i] <= 0.0 and _row_acceleration(work, rows, 2 * i) > ROUNDING * row_terms(work, rows, 2 * i):
         return OPEN
     if work.tangent[i] < 0:
         return BACKWARD if closed.kin[i].gT_dot < 0.0 else FORWARD
     slip = _row_acceleration(work, rows, 2 * i + 1)
     # lambda_T is the difference of terms as large as the friction cone.
     terms = abs(work.force[2 * i + 1]) + work.drag[i] * work.force[2 * i]
-    size = ROUNDING * (work.size[2 * i + 1] + work.G[2 * i + 1, 2 * i + 1] * terms)
+    size = ROUNDING * (row_terms(work, rows, 2 * i + 1) + work.G[2 * i + 1, 2 * i + 1] * terms)
     e = work.tangent[i]
+    is_reversed = work.hand[2 * i + 1] < 0.0
     if slip > size and work.x[m + e] == 0.0:
-        return FORWARD
-    return BACKWARD if slip < -size and work.x[m + elements + e] > 0.0 else STICK
+        return BACKWARD if is_reversed else FORWARD
+    if slip < -size and work.x[m + elements + e] > 0.0:
+        return FORWARD if is_reversed else BACKWARD
+    return STICK
 
 
 @kernel
@@ -215,7 +239,7 @@ def _decide_grips(model, m, bearings, work, out_grip):
     for p in range(bearings):
         i, row = work.dry[p], 2 * m + p
         moves = _row_acceleration(work, rows, row)
-        terms = work.size[row] + work.inverse[i] * model.coordinates[i].coulomb
+        terms = row_terms(work, rows, row) + work.inverse[i] * model.coordinates[i].coulomb
         if abs(moves) > ROUNDING * terms:
             out_grip[i] = FORWARD if moves > 0.0 else BACKWARD
             work.h[i] -= out_grip[i] * model.coordinates[i].coulomb

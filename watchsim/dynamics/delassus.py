@@ -40,6 +40,7 @@ class ContactWork(NamedTuple):
     width: Array  # (blocks,) length of an element's interval per normal force
     span: Array  # (blocks,) constant part of its length
     shift: Array  # (blocks,) constant part of its lower end
+    hand: Array  # (rows,) -1 where a direction of friction is reversed, else 1
     A: Array
     rhs: Array
     x: Array
@@ -80,6 +81,7 @@ def contact_work(room: int, coordinates: int) -> ContactWork:
         width=np.zeros(blocks),
         span=np.zeros(blocks),
         shift=np.zeros(blocks),
+        hand=np.ones(rows),
         A=np.zeros((side, side)),
         rhs=np.zeros(side),
         x=np.zeros(side),

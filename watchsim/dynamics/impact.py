@@ -12,6 +12,7 @@ from watchsim.dynamics.acceleration import gap_accelerations
 from watchsim.dynamics.coulomb import add_element, element_row, fill_matrix, fill_rhs, read_forces
 from watchsim.dynamics.delassus import apply, contact_velocities, fill_delassus
 from watchsim.dynamics.expansion_friction import interval
+from watchsim.dynamics.handedness import restore_directions, reverse_directions
 from watchsim.dynamics.solver_fallbacks import LEMKE, keep_basis, solve_contacts
 from watchsim.jit import kernel
 
@@ -40,12 +41,16 @@ def _begin(model, closed, m, work):
 
 @kernel
 def _compress(model, closed, m, u, jam, work):
-    """Impulses of the compression into `work.force`; rates before it are in `work.b`. Returns (LCP status, elements)."""
+    """Impulses of the compression into `work.force`, rates before it into `work.b`. Returns (LCP status, elements).
+
+    From here on until `restore_directions` some directions of friction are reversed.
+    """
     for j in range(len(model.coordinates)):
         work.inverse[j] = 1.0 / model.coordinates[j].mass
     elements = _begin(model, closed, m, work)
     fill_delassus(closed, m, work)
     contact_velocities(closed, m, u, work.b)
+    reverse_directions(work, m, 2 * m, elements, work.b)
     fill_matrix(work, m, elements)
     fill_rhs(work, m, elements, work.b)
     nudged = _nudge(m, jam, work)
@@ -160,6 +165,7 @@ def impact(model, closed, m, restitution, jam, work, out_u):
             return status
         for row in range(2 * m):
             work.force[row] += work.more[row]
+    restore_directions(work, 2 * m, work.b)
     apply(closed, m, work.force, work.inverse, out_u)
     return 0
 
@@ -177,11 +183,13 @@ def plastic_impact(model, closed, m, time, u, work):
     gap_accelerations(model, closed, m, work, work.more, work.size)
     for row in range(2 * m):
         work.b[row] += time * work.more[row]
+    reverse_directions(work, m, 2 * m, elements, work.b)
     fill_matrix(work, m, elements)
     fill_rhs(work, m, elements, work.b)
     work.note[0], work.note[1], work.note[2], work.note[3] = m, elements, 0, LEVEL_COMPRESSION
     status, _ = solve_contacts(work, m, elements)
     read_forces(work, m, elements, work.force)
+    restore_directions(work, 2 * m, work.b)
     return status
 
 

@@ -31,8 +31,7 @@ def regions_depth(a: Any, b: Any, allowed: float) -> tuple[float, Point]:
     """
     import shapely
 
-    common = shapely.intersection(a, b)
-    parts = [part for part in shapely.get_parts(common) if part.area > 0.0]
+    parts = common_parts(a, b, allowed)
     if not parts:
         line = shapely.shortest_line(a, b)
         if line is None or line.is_empty or line.length > allowed:
@@ -45,6 +44,18 @@ def regions_depth(a: Any, b: Any, allowed: float) -> tuple[float, Point]:
     if _width(widest) > depths[worst]:
         return _width(widest), widest.representative_point().coords[0]
     return float(depths[worst]), (float(points[worst, 0]), float(points[worst, 1]))
+
+
+def common_parts(a: Any, b: Any, allowed: float) -> list[Any]:
+    """The polygons that two regions have in common.
+
+    Where faces coincide to rounding, GEOS 3.14 may answer with all of one region: what is common lies in both, to `allowed` (m).
+    """
+    import shapely
+
+    parts = [part for part in shapely.get_parts(shapely.intersection(a, b)) if part.area > 0.0]
+    inside = [part.representative_point() for part in parts]
+    return [part for part, p in zip(parts, inside, strict=True) if max(a.distance(p), b.distance(p)) <= allowed]
 
 
 def _width(region: Any) -> float:

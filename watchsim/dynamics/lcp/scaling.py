@@ -63,25 +63,35 @@ def _largest_mutual(A, i, n, s):
 
 @kernel
 def _balance(A, n, work):
-    """Make the largest coefficients of row i and of column i alike, keeping R_i C_i (Osborne 1960)."""
+    """Make the largest coefficients of row i and of column i alike, keeping R_i C_i (Osborne 1960).
+
+    All at once in each sweep, with half the exponent: the result does not depend on the order of the unknowns.
+    """
     r, c, s = work.row_scale, work.column_scale, work.trial
     for i in range(n):
         s[i] = c[i]
     for _ in range(SWEEPS):
         for i in range(n):
-            row = column = 0.0
-            for j in range(n):
-                # What rounding leaves of a zero says nothing about units; the mutual coefficient does not depend on them.
-                mutual = abs(A[i, j]) * abs(A[j, i]) * (s[i] * s[j]) ** 2
-                if j == i or 0.0 < mutual < ROUNDING * ROUNDING:
-                    continue
-                row = max(row, abs(A[i, j]) * c[j])
-                column = max(column, abs(A[j, i]) * r[j])
-            row, column = row * r[i], column * c[i]
-            if row > 0.0 and column > 0.0:
-                factor = _power_of_two(math.sqrt(column / row))
-                r[i] *= factor
-                c[i] /= factor
+            work.load[i] = _unbalance(A, n, i, work)
+        for i in range(n):
+            r[i] *= work.load[i]
+            c[i] /= work.load[i]
+
+
+@kernel
+def _unbalance(A, n, i, work):
+    """The power of two nearest (largest of column i / largest of row i)^(1/4)."""
+    r, c, s = work.row_scale, work.column_scale, work.trial
+    row = column = 0.0
+    for j in range(n):
+        # What rounding leaves of a zero says nothing about units; the mutual coefficient does not depend on them.
+        mutual = abs(A[i, j]) * abs(A[j, i]) * (s[i] * s[j]) ** 2
+        if j == i or 0.0 < mutual < ROUNDING * ROUNDING:
+            continue
+        row = max(row, abs(A[i, j]) * c[j])
+        column = max(column, abs(A[j, i]) * r[j])
+    row, column = row * r[i], column * c[i]
+    return _power_of_two(math.sqrt(math.sqrt(column / row))) if row > 0.0 and column > 0.0 else 1.0
 
 
 @kernel
