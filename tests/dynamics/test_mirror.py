@@ -16,7 +16,7 @@ PROBLEMS = 300
 
 
 def problem(rng: np.random.Generator) -> tuple[BareContacts, BareContacts, np.ndarray, np.ndarray]:
-    """Contacts, their mirror image in another order, the reversal of its tangents, and which of ours each of its contacts is."""
+    """Contacts, their mirror image in another order, the signs of its tangents, and which of ours each of its contacts is."""
     m = int(rng.integers(2, 4))
     n = int(rng.integers(2, 4))
     mass = rng.uniform(0.5, 2.0, n)

@@ -49,7 +49,7 @@ def regions_depth(a: Any, b: Any, allowed: float) -> tuple[float, Point]:
 def common_parts(a: Any, b: Any, allowed: float) -> list[Any]:
     """The polygons that two regions have in common.
 
-    Where faces coincide to rounding, GEOS 3.14 may answer with all of one region: what is common lies in both, to `allowed` (m).
+    Where faces coincide to rounding, GEOS 3.14 may answer with all of one region: what is common lies in both, to `allowed` m.
     """
     import shapely
 
