@@ -17,8 +17,8 @@ import numpy as np
 from watchsim.results.tables import plain
 from watchsim.scene.scene import Scene
 from watchsim.simulation.record.contact_names import Pair, Pairs, as_pairs
-from watchsim.simulation.stops import Stop
 from watchsim.simulation.record.trajectory import EVENT_DTYPE, EventKind, Trajectory
+from watchsim.simulation.stops import Stop
 
 FORMAT = 4
 OLDER = 3  # in which every pair was written out in words

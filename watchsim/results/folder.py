@@ -15,9 +15,9 @@ from pathlib import Path
 from typing import Any
 
 from watchsim.results.archive import read_trajectory, write_trajectory
+from watchsim.results.scene_copy import LOCK, locked_drawings, travelling
 from watchsim.results.state_file import read_state, write_state
 from watchsim.results.tables import json_text, write_events
-from watchsim.results.scene_copy import LOCK, locked_drawings, travelling
 from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.storage.scratch import PREFIX
 from watchsim.storage.write import real, write_folder

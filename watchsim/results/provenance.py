@@ -15,10 +15,10 @@ from pathlib import Path
 from typing import Any
 
 from watchsim.scene.body import Body
-from watchsim.scene.file.load import digest, file_digest
-from watchsim.scene.scene import Scene
 from watchsim.scene.file.keys.schema import SCHEMA
 from watchsim.scene.file.keys.write_toml import toml_text
+from watchsim.scene.file.load import digest, file_digest
+from watchsim.scene.scene import Scene
 
 PACKAGES = ("watchsim", "numpy", "scipy", "numba", "shapely", "ezdxf", "trimesh")
 HEADER = "# Completed by watchsim: all defaults written out. Loads again to the scene that was simulated.\n\n"
