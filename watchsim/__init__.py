@@ -29,6 +29,7 @@ _HOMES = {
     "summary": "watchsim.analysis.summary",
     "read_results": "watchsim.analysis.results",
     "write_results": "watchsim.analysis.results",
+    "verdict": "watchsim.analysis.verdicts.verdict",
     "verify": "watchsim.analysis.verify",
     "plot_kinematics": "watchsim.render.plots",
     "movie": "watchsim.render.movie",
@@ -44,6 +45,7 @@ if TYPE_CHECKING:
     from watchsim.analysis.results import read_results as read_results
     from watchsim.analysis.results import write_results as write_results
     from watchsim.analysis.summary import summary as summary
+    from watchsim.analysis.verdicts.verdict import verdict as verdict
     from watchsim.analysis.verify import verify as verify
     from watchsim.contact.outlines import distance as distance
     from watchsim.contact.outlines import gap as gap

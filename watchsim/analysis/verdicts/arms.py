@@ -8,7 +8,7 @@ import numpy as np
 
 from watchsim.contact.kinematics import closed_contacts
 from watchsim.contact.poses import poses
-from watchsim.mechanism.compile import compile_scene
+from watchsim.mechanism.compile import Compiled
 from watchsim.simulation.balance import balance
 from watchsim.simulation.trajectory import Array, Pair, Trajectory
 
@@ -42,9 +42,8 @@ class Arms:
         return float(self.normal[row, column]), float(self.across[row, column])
 
 
-def arms(run: Trajectory, t: float, contacts: list[int]) -> Arms:
+def arms(run: Trajectory, compiled: Compiled, t: float, contacts: list[int]) -> Arms:
     """Of the contacts with these numbers at a recorded time; loads are those of bodies that stand still."""
-    compiled = compile_scene(run.scene)
     q, u = (np.array(row) for row in run.at(t))
     places = {body.name: run.pose_of(body.name, q) for body in run.scene.bodies}
     for own, on, angle in compiled.against:  # coordinates in the movement

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from watchsim.analysis.averages import last_window
-from watchsim.analysis.verdicts.lean import teeth
 from watchsim.analysis.verdicts.unlocked import unlocked
 from watchsim.analysis.verdicts.watch import Watch
 from watchsim.analysis.verdicts.words import BACKWARDS, Verdict, torque_text, when
@@ -25,13 +24,13 @@ def _against_drive(watch: Watch) -> Verdict | None:
     if first - last < 2.0 * watch.least_advance:
         return None
     drive = watch.drive(end)
-    words = f"from {when(start)} on {watch.wheel} has turned back by {np.degrees(first - last):.3g}°, against its drive of {torque_text(drive)}"
+    words = f"{when(start)}  the watch runs backwards: since then {watch.wheel} has turned by {np.degrees(first - last):.3g}° "
+    words += f"against its drive of {torque_text(drive)}"
     return Verdict(BACKWARDS, words, start, watch.wheel, torque=drive)
 
 
 def _against_teeth(watch: Watch) -> Verdict | None:
-    known = teeth(watch.run.scene, watch.wheel)
-    if known is None or known.direction * watch.direction >= 0.0:
+    if watch.teeth is None or watch.teeth.direction * watch.direction >= 0.0:
         return None
     found = unlocked(watch)
     if not found:
@@ -39,7 +38,7 @@ def _against_teeth(watch: Watch) -> Verdict | None:
     t, pair, _ = found[0]
     drive = watch.drive(t)
     words = (
-        f"the drive of {torque_text(drive)} turns {watch.wheel} against the lean of its teeth: nothing locks, at {when(t)} it drives "
-        f"{watch.lever} off its banking ({pair}). Turn the sign of the torque"
+        f"{when(t)}  the watch runs backwards: its drive of {torque_text(drive)} turns {watch.wheel} against the lean of its teeth, which do "
+        f"not lock but push {watch.lever} off its banking ({pair}). Change the sign of the torque"
     )
     return Verdict(BACKWARDS, words, t, watch.wheel, pair, drive, len(found))

@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass
 
 from watchsim.analysis.verdicts.arms import Arms
-from watchsim.analysis.verdicts.lean import teeth
 from watchsim.analysis.verdicts.watch import Watch
 
 DRIVING = 0.05  # of the distance from the lever's pivot: with a longer arm the wheel drives the pallet out
@@ -38,6 +37,5 @@ def face(watch: Watch, found: Arms, row: int) -> Face:
     pallet = "entry" if watch.direction * from_line < 0.0 else "exit"
     out = math.copysign(1.0, (ly - y) * (x - wx) + (x - lx) * (y - wy))
     arm, _ = found.of(row, watch.lever)
-    known = teeth(watch.run.scene, watch.wheel)
-    tooth = None if known is None else known.number(math.atan2(y - wy, x - wx) - turned)
+    tooth = None if watch.teeth is None else watch.teeth.number(math.atan2(y - wy, x - wx) - turned)
     return Face(tooth, pallet, out * arm > DRIVING * math.hypot(x - lx, y - ly), out)

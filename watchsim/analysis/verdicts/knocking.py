@@ -30,7 +30,8 @@ def knocking(watch: Watch) -> Verdict | None:
     drive, means = watch.drive(t), averages(watch.found, (start, end))
     where = degrees(abs(float(_angles(watch, blows["t"][-1:])[0])))
     other = pair.body_a if pair.body_b == watch.oscillator else pair.body_b
-    words = f"{watch.oscillator} knocks on {other} from outside at {where}, {times(len(swing))} since {when(t)} ({pair}), under {torque_text(drive)} at {watch.wheel}"
+    words = f"{when(t)}  the watch knocks: {watch.oscillator} strikes {other} from outside at {where}, {times(len(swing))} ({pair})"
+    words += f", under {torque_text(drive)} at {watch.wheel}"
     if means.rate_s_per_d is not None and means.rate_s_per_d > 0.0:
         words += f"; the watch gallops, {means.rate_s_per_d:+.3g} s/d"
     return Verdict(KNOCKS, words, t, watch.oscillator, str(pair), drive, len(swing))
@@ -58,9 +59,9 @@ def _turns_back(watch: Watch, blows: Events, number: int) -> bool:
     """Does the normal of this contact have an arm on the oscillator? Judged at one of its blows; believed where none was recorded."""
     at = blows["t"][blows["contact"] == number]
     at = at[watch.recorded(at)]
-    if not len(at):
+    if not len(at) or not watch.has_shapes:
         return True
-    found = arms(watch.run, float(at[0]), [number])
+    found = arms(watch.run, watch.compiled, float(at[0]), [number])
     x, y, _ = found.places[watch.oscillator]
     far = math.hypot(found.point[0, 0] - x, found.point[0, 1] - y)
     return abs(found.of(0, watch.oscillator)[0]) > SQUARE * far

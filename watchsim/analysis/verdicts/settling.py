@@ -24,7 +24,7 @@ def unsettled(watch: Watch) -> Verdict | None:
     """None where the amplitude will change by less than 0.2 %."""
     found = watch.found
     if len(found) < FEWEST:
-        words = f"not settled: {len(found)} half swings are too few to tell whether the watch ticks"
+        words = f"not settled yet: {len(found)} half swings are too few to tell how the watch goes"
         return Verdict(UNSETTLED, words, body=watch.oscillator)
     stretch = 2 * (min(len(found), LONGEST) // 6)  # half swings of both directions in each
     parts = found.amplitude_deg[-3 * stretch :].reshape(3, stretch)
@@ -39,7 +39,7 @@ def unsettled(watch: Watch) -> Verdict | None:
     if left <= SETTLED * whole:
         return None
     per_second = steps[1] / (stretch * 0.5 * found.nominal_period)
-    words = f"not settled: the amplitude {'rises' if per_second > 0.0 else 'falls'} by {abs(per_second):.2g}° per second"
+    words = f"not settled yet: the amplitude {'rises' if per_second > 0.0 else 'falls'} by {abs(per_second):.2g}° per second"
     words += f", on its way to about {goal:.0f}°" if goal is not None and goal > 0.0 else ""
     words += _rate(watch)
     return Verdict(UNSETTLED, words, float(found.t[-1]), watch.oscillator, torque=watch.drive(watch.run.simulated))

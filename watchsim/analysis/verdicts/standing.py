@@ -20,12 +20,12 @@ def standing(watch: Watch) -> Verdict | None:
     stands = standstill(watch.run, watch.found)
     if stands is None:
         return None
-    words, pair = f"{when(stands.since)}  the watch stands", None
-    if watch.lever is not None and watch.recorded(np.array([watch.run.simulated])).all():
+    why, pair = "", None
+    if watch.lever is not None and watch.has_shapes and watch.recorded(np.array([watch.run.simulated])).all():
         why, pair = _why(watch, watch.lever)
-        words += f": {why}" if why else ""
     last = f". Last amplitude {watch.found.amplitude_deg[-1]:.3g}°" if len(watch.found) else ""
-    return Verdict(STOPS, words + last, stands.since, watch.wheel, pair, watch.drive(watch.run.simulated))
+    words = f"{when(stands.since)}  the watch stands: " + (why + last if why else stands.message)
+    return Verdict(STOPS, words, stands.since, watch.wheel, pair, watch.drive(watch.run.simulated))
 
 
 def _why(watch: Watch, lever: str) -> tuple[str, str | None]:
@@ -37,7 +37,7 @@ def _why(watch: Watch, lever: str) -> tuple[str, str | None]:
     pins = [number for number in holding if sides[number] == {watch.oscillator, lever}]
     if not teeth:
         return f"{watch.wheel} touches nothing that holds it" if not any(watch.wheel in both for both in sides.values()) else "", None
-    found = arms(run, end, [teeth[0], *pins])
+    found = arms(run, watch.compiled, end, [teeth[0], *pins])
     rests, pair = face(watch, found, 0), str(found.pairs[0])
     moving = _still_moving(watch)
     if not pins or moving:

@@ -12,7 +12,9 @@ from watchsim.analysis.beats import Beats
 from watchsim.analysis.recorded import is_recorded
 from watchsim.analysis.teeth import pitch
 from watchsim.analysis.touches import Events, between, contact_events
+from watchsim.analysis.verdicts.lean import Teeth, teeth
 from watchsim.analysis.wheel import progress
+from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.mechanism.oscillation import oscillators
 from watchsim.mechanism.roles import drive_direction, keeps_time, roles
 from watchsim.simulation.event_kinds import EventKind
@@ -44,6 +46,19 @@ class Watch:
     @cached_property
     def fixed(self) -> set[str]:
         return {body.name for body in self.run.scene.bodies if body.motion == "fixed"}
+
+    @cached_property
+    def compiled(self) -> Compiled:
+        return compile_scene(self.run.scene)
+
+    @property
+    def has_shapes(self) -> bool:
+        """Whether the contacts of the run are those of its scene's outlines, so that their arms can be told."""
+        return len(self.run.pairs) == len(self.compiled.model.contacts)
+
+    @cached_property
+    def teeth(self) -> Teeth | None:
+        return teeth(self.run.scene, self.wheel)
 
     @property
     def least_advance(self) -> float:

@@ -10,6 +10,17 @@ from watchsim.units import metric
 TICKS, STOPS, KNOCKS, TRIPS = "ticks", "stops", "knocks", "trips"
 OVERBANKS, BACKWARDS, UNSETTLED = "overbanks", "backwards", "unsettled"
 VERDICTS = (TICKS, STOPS, KNOCKS, TRIPS, OVERBANKS, BACKWARDS, UNSETTLED)
+SPOKEN = {BACKWARDS: "runs backwards", UNSETTLED: "has not settled"}  # after "the watch"; others as they are
+BESIDE = {  # a number that would pass for good otherwise
+    STOPS: "before it stopped",
+    KNOCKS: "while it knocks",
+    TRIPS: "while it trips",
+    OVERBANKS: "before it overbanked",
+    BACKWARDS: "running backwards",
+    UNSETTLED: "not settled",
+}
+
+WATCHES = (1e-9, 1e-3)  # N·m
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,8 +57,9 @@ def when(t: float) -> str:
 
 
 def torque_text(value: float) -> str:
-    """Without its sign: what counts is how much."""
-    return metric(abs(value), "N·m", 3)
+    """Without its sign: what counts is how much. In µN·m, as torques of watches are told, but for those of clocks."""
+    size = abs(value)
+    return f"{1e6 * size:.3g} µN·m" if WATCHES[0] <= size < WATCHES[1] else metric(size, "N·m", 3)
 
 
 def degrees(value: float) -> str:
