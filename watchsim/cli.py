@@ -1,7 +1,7 @@
 """What can be typed? Parse, call, print.
 
-Exit status: 0 fine; 1 ran, but an expectation was missed or the watch does not work; 2 bad input, or nowhere to write; 3 the solver
-gave up; 4 a fault of the program itself; 130, 143 stopped by Ctrl-C, SIGTERM.
+Exit status: 0 fine; 1 ran, but an expectation was missed or the watch does not work; 2 bad input, or nowhere to write; 3 the
+solver gave up; 4 a fault of the program itself; 130, 143 stopped by Ctrl-C, SIGTERM.
 """
 
 from __future__ import annotations

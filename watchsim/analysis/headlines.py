@@ -40,7 +40,14 @@ PLAIN = 1e-6  # errors below are written with an exponent
 
 def headlines(run: Trajectory, numbers: Mapping[str, Any]) -> str:
     """The headline numbers in watchmakers' units, a line each; `numbers` as from `watchsim.analysis.summary.summary(run)`."""
-    parts = [*_verdict(numbers), *_timing(numbers), *_places(run, numbers), *_contacts(numbers), *_energy(run), *_solver(run, numbers)]
+    parts = [
+        *_verdict(numbers),
+        *_timing(numbers),
+        *_places(run, numbers),
+        *_contacts(numbers),
+        *_energy(run),
+        *_solver(run, numbers),
+    ]
     lines = [f"  {label:{LABEL}}{text}" for label, text in (*parts, *_verdicts(numbers))]
     return "\n".join([run.scene.title, *lines])
 

@@ -34,7 +34,7 @@ class Ringing:
         place = np.ceil(times * SAMPLES).astype(np.int64)
         late = place / SAMPLES - times
         own = place - self.sampled
-        if len(own) and not (0 <= own.min() and own.max() < count):
+        if len(own) and not (own.min() >= 0 and own.max() < count):
             raise ValueError("a blow lies outside the block of sound it was given with")
         out = np.zeros(count)
         for k, (hertz, decay, share) in enumerate(TONES):

@@ -33,7 +33,7 @@ class Loop:
 
 @dataclass(frozen=True)
 class Score:
-    """`times` (s since the sound begins) and `energies` (J) of the blows of a run that are known, until `known`; then `loop`."""
+    """`times` (s since the sound begins) and `energies` (J) of the blows of a run, which are known until `known`; then `loop`."""
 
     times: Array
     energies: Array
@@ -76,12 +76,16 @@ def score(run: Trajectory, duration: float | None = None) -> Score:
 def _loop(run: Trajectory, begun: float) -> Loop:
     scene = run.scene
     if not swings(scene) or not keeps_time(scene):
-        raise ValueError(f"the run holds {run.simulated - begun:.4g} s of sound; nothing in it beats that could go on for longer")
+        raise ValueError(
+            f"the run holds {run.simulated - begun:.4g} s of sound; nothing in it beats that could go on for longer"
+        )
     found = beats(run)
     heard = np.isfinite(found.tick)
     ticks = found.tick - begun - BEFORE * 0.5 * found.nominal_period
     if not len(found) or not heard[-LEAST_TICKS:].all() or len(found) < LEAST_TICKS:
-        raise ValueError(f"the run holds {run.simulated - begun:.4g} s of sound; its last beats are silent, so it cannot go on for longer")
+        raise ValueError(
+            f"the run holds {run.simulated - begun:.4g} s of sound; its last beats are silent, so it cannot go on for longer"
+        )
     # Ticks of one direction of swing, back from the last.
     same = np.arange(len(found) - 1, -1, -2)
     same = same[: np.argmin(heard[same]) if not heard[same].all() else len(same)][::-1]

@@ -38,7 +38,7 @@ def _against_teeth(watch: Watch) -> Verdict | None:
     t, pair, _ = found[0]
     drive = watch.drive(t)
     words = (
-        f"{when(t)}  the watch runs backwards: its drive of {torque_text(drive)} turns {watch.wheel} against the lean of its teeth, which do "
-        f"not lock but push {watch.lever} off its banking ({pair}). Change the sign of the torque"
+        f"{when(t)}  the watch runs backwards: its drive of {torque_text(drive)} turns {watch.wheel} against the lean of its "
+        f"teeth, which do not lock but push {watch.lever} off its banking ({pair}). Change the sign of the torque"
     )
     return Verdict(BACKWARDS, words, t, watch.wheel, pair, drive, len(found))

@@ -15,11 +15,13 @@ from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.trajectory import Array
 
 OUTSIDE = math.pi  # rad from rest: so far round the impulse pin cannot be in the slot
-SQUARE = 0.05  # of the distance from the staff: with less of an arm a blow does not turn the oscillator back (a dart on its roller)
+SQUARE = (
+    0.05  # of the distance from the staff: with less of an arm a blow does not turn the oscillator back (a dart on its roller)
+)
 
 
 def knocking(watch: Watch) -> Verdict | None:
-    """In the second half of the run, or in its last window: a blow by the lever more than half a turn from rest, or by a stop."""
+    """In the second half of the run, or its last window: a blow by the lever more than half a turn from rest, or by a stop."""
     blows = knocks(watch)
     start, end = last_window(watch.run, watch.found.nominal_period)
     if not len(blows) or blows["t"][-1] < min(start, 0.5 * end):
@@ -30,7 +32,9 @@ def knocking(watch: Watch) -> Verdict | None:
     drive, means = watch.drive(t), averages(watch.found, (start, end))
     where = degrees(abs(float(_angles(watch, blows["t"][-1:])[0])))
     other = pair.body_a if pair.body_b == watch.oscillator else pair.body_b
-    words = f"{when(t)}  the watch knocks: {watch.oscillator} strikes {other} from outside at {where}, {times(len(swing))} ({pair})"
+    words = (
+        f"{when(t)}  the watch knocks: {watch.oscillator} strikes {other} from outside at {where}, {times(len(swing))} ({pair})"
+    )
     words += f", under {torque_text(drive)} at {watch.wheel}"
     if means.rate_s_per_d is not None and means.rate_s_per_d > 0.0:
         words += f"; the watch gallops, {means.rate_s_per_d:+.3g} s/d"
@@ -56,7 +60,7 @@ def _stop(watch: Watch, number: int) -> bool:
 
 
 def _turns_back(watch: Watch, blows: Events, number: int) -> bool:
-    """Does the normal of this contact have an arm on the oscillator? Judged at one of its blows; believed where none was recorded."""
+    """Has the normal of this contact an arm on the oscillator? Judged at one of its blows; believed where none was recorded."""
     at = blows["t"][blows["contact"] == number]
     at = at[watch.recorded(at)]
     if not len(at) or not watch.has_shapes:

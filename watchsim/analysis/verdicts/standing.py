@@ -36,7 +36,9 @@ def _why(watch: Watch, lever: str) -> tuple[str, str | None]:
     teeth = [number for number in holding if sides[number] == {watch.wheel, lever}]
     pins = [number for number in holding if sides[number] == {watch.oscillator, lever}]
     if not teeth:
-        return f"{watch.wheel} touches nothing that holds it" if not any(watch.wheel in both for both in sides.values()) else "", None
+        return f"{watch.wheel} touches nothing that holds it" if not any(
+            watch.wheel in both for both in sides.values()
+        ) else "", None
     found = arms(run, watch.compiled, end, [teeth[0], *pins])
     rests, pair = face(watch, found, 0), str(found.pairs[0])
     moving = _still_moving(watch)
@@ -62,20 +64,22 @@ def _torques(watch: Watch, lever: str, found: Arms, rests: Face) -> str:
     """What the one side gives at the lever, and what the other needs: on lock the oscillator drives, on impulse the wheel."""
     by_wheel = at_lever(found, 0, watch.wheel, lever, rests.out)
     by_pin = [at_lever(found, row, watch.oscillator, lever, rests.out) for row in range(1, len(found.pairs))]
-    pushes = [value for value in by_pin if value is not None]
-    given = max(pushes, key=abs) if pushes else 0.0
-    if rests.impulse:
-        if by_wheel is None:
-            return "friction jams it there"
-        return (
-            f"the wheel's torque at the lever, {torque_text(by_wheel)}, is below the {torque_text(given)} needed to lift {watch.oscillator} "
-            "(set on impulse)"
-        )
     if by_wheel is None:
         return "friction jams it there"
+    given = max((value for value in by_pin if value is not None), key=abs, default=0.0)
+    if rests.impulse:
+        less, more = _told_apart(by_wheel, given)
+        return f"the torque of {watch.wheel} at {lever}, {less}, is below the {more} needed to move {watch.oscillator} (set on impulse)"
     if given <= 0.0:
         return f"{watch.oscillator} does not push {lever} out (set on lock)"
-    return (
-        f"the {watch.oscillator}'s torque at the lever, {torque_text(given)}, is below the {torque_text(by_wheel)} needed to unlock "
-        "(set on lock)"
-    )
+    less, more = _told_apart(given, by_wheel)
+    return f"the torque of {watch.oscillator} at {lever}, {less}, is below the {more} needed to unlock (set on lock)"
+
+
+def _told_apart(first: float, second: float) -> tuple[str, str]:
+    """With as many digits as it takes."""
+    for digits in (2, 3, 5):
+        texts = torque_text(first, digits), torque_text(second, digits)
+        if texts[0] != texts[1]:
+            break
+    return texts

@@ -36,8 +36,8 @@ def _run_past(watch: Watch) -> Verdict | None:
     starts = watch.found.start[(moved.half_swings[tripped] - watch.found.before).astype(int) - 1]
     t, pair = _slip(watch, float(starts[0]), float(ends[0]))
     drive = watch.drive(t)
-    words = f"{when(t)}  the watch trips: {watch.wheel} ran past {watch.lever or watch.oscillator} {times(len(tripped))}, the first time"
-    words += (f" from {pair}" if pair else " then") + f", under {torque_text(drive)}"
+    words = f"{when(t)}  the watch trips: {watch.wheel} ran past {watch.lever or watch.oscillator} {times(len(tripped))}"
+    words += (f", first from {pair}" if pair else "") + f", under {torque_text(drive)}"
     return Verdict(TRIPS, words, t, watch.wheel, pair, drive, len(tripped))
 
 
@@ -60,7 +60,7 @@ def _mislocked(watch: Watch) -> Verdict | None:
     t, pair, face = found[0]
     drive = watch.drive(t)
     words = (
-        f"{when(t)}  the watch trips, {times(len(found))}: {face} ({pair}) while {watch.oscillator} is away, and drives {watch.lever} "
-        f"off its banking with {torque_text(drive)} at {watch.wheel}. The lock is too shallow"
+        f"{when(t)}  the watch trips, {times(len(found))}: {face} ({pair}) while {watch.oscillator} is away, and drives "
+        f"{watch.lever} off its banking with {torque_text(drive)} at {watch.wheel}. The lock is too shallow"
     )
     return Verdict(TRIPS, words, t, watch.wheel, pair, drive, len(found))

@@ -13,15 +13,18 @@ ticks       none of these
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from watchsim.analysis.beats import Beats, beats
 from watchsim.analysis.verdicts.backwards import backwards
-from watchsim.analysis.verdicts.knocking import knocking
+from watchsim.analysis.verdicts.knocking import knocking, knocks
 from watchsim.analysis.verdicts.overbanking import overbanking
 from watchsim.analysis.verdicts.settling import unsettled
 from watchsim.analysis.verdicts.standing import standing
 from watchsim.analysis.verdicts.tripping import tripping
 from watchsim.analysis.verdicts.watch import Watch, watch_of
-from watchsim.analysis.verdicts.words import NOTHING, TICKS, Verdict
+from watchsim.analysis.verdicts.words import NOTHING, TICKS, Verdict, when
+from watchsim.analysis.wheel import missed_beats
 from watchsim.mechanism.roles import swings
 from watchsim.simulation.trajectory import Trajectory
 
@@ -46,4 +49,14 @@ def _judged(watch: Watch) -> Verdict:
         answer = question(watch)
         if answer is not None:
             return answer
-    return Verdict(TICKS, "the watch ticks")
+    return Verdict(TICKS, "the watch ticks" + "".join(f", {one}" for one in _but(watch)))
+
+
+def _but(watch: Watch) -> Iterator[str]:
+    """What did not go well before."""
+    blows = knocks(watch)
+    if len(blows):
+        yield f"after it knocked until {when(float(blows['t'][-1]))}"
+    missed = missed_beats(watch.run, watch.wheel, watch.found)
+    if missed:
+        yield f"but missed {missed} {'beat' if missed == 1 else 'beats'}"
