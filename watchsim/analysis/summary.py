@@ -47,7 +47,7 @@ def summary(run: Trajectory) -> dict[str, Any]:
     Besides the promised names: `frequency_hz`, `vph`, `window_s` (over which was averaged), `beats` (half swings in all),
     `whole_run` (mean, spread and extremes over all of them, see analysis/whole_run.py), `kept` (all, events or statistics),
     `verdict`, `verdict_message` and `verdict_details` (what the watch does, see analysis/verdicts/verdict.py; null where
-    nothing keeps time), `missed_beats`, `stopped` and `stopped_message` (the watch no longer ticks), `scene_file`, `stop_message`,
+    nothing keeps time), `missed_beats`, `stopped` and `stopped_message` (the wheel stands), `scene_file`, `stop_message`,
     `events_by_kind`, `counts`, `overlap` (what looking at the outlines themselves found, see simulation/overlap_watch.py),
     `step_s` (of a method with fixed steps), `worst_complementarity_residual` (worst violation of a complementarity condition,
     as a share of the problem's largest term), `warnings` (sentences, see analysis/doubts.py), `notes` (what the scene leaves

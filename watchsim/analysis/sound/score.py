@@ -33,7 +33,7 @@ class Loop:
 
 @dataclass(frozen=True)
 class Score:
-    """`times` (s since the sound begins) and `energies` (J) of the blows of a run, which are known until `known`; then `loop`."""
+    """`times` (s since the sound begins) and `energies` (J) of a run's blows, known until `known`; then `loop`."""
 
     times: Array
     energies: Array

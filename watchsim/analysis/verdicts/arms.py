@@ -15,7 +15,8 @@ from watchsim.simulation.trajectory import Array, Pair, Trajectory
 
 @dataclass(frozen=True)
 class Arms:
-    """Of k contacts at time `t`: forces N along the normal and T across it act on coordinate j as N·normal[:, j] + T·across[:, j].
+    """Of k contacts at time `t`: forces N along the normal and T across it act on coordinate j
+    with N·normal[:, j] and T·across[:, j].
 
     normal, across  (k, n): w_N and w_T, m for turning bodies
     point, way      (k, 2): where they touch, m, and the normal out of body B, in the movement

@@ -32,11 +32,11 @@ def overbanking(watch: Watch) -> Verdict | None:
         return None
     over, pair = _went_over(watch), str(run.pairs[contact])
     drive = watch.drive(over)
-    angle = degrees(float(watch.angle(watch.oscillator, np.array([t]))[0]))
+    angle = degrees(float(watch.angle(watch.oscillator, np.array([t]))[0]) - watch.rest)
     words = (
-        f"{when(over)}  the watch overbanks: {watch.lever} went over while {watch.oscillator} was away, which now strikes it from "
-        f"outside at {angle} ({pair}); {watch.wheel}, under {torque_text(drive)}, is not unlocked. No guard pin or horn kept "
-        f"{watch.lever} at its banking"
+        f"{when(over)}  the watch overbanks: {watch.lever} went over while {watch.oscillator} was away, which now strikes "
+        f"it from outside at {angle} ({pair}); {watch.wheel}, under {torque_text(drive)}, is not unlocked. "
+        f"No guard pin or horn kept {watch.lever} at its banking"
     )
     return Verdict(OVERBANKS, words, over, watch.lever, pair, drive)
 

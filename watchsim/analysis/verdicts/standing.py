@@ -43,7 +43,7 @@ def _why(watch: Watch, lever: str) -> tuple[str, str | None]:
     rests, pair = face(watch, found, 0), str(found.pairs[0])
     moving = _still_moving(watch)
     if not pins or moving:
-        return f"{rests}; {_without_pin(watch, moving)}", pair
+        return f"{rests}; {_without_pin(watch, moving, rests)}", pair
     return f"{rests}; {_torques(watch, lever, found, rests)}", pair
 
 
@@ -53,10 +53,11 @@ def _still_moving(watch: Watch) -> bool:
     return bool(np.ptp(run.q[late, run.slices[watch.oscillator].start], axis=0) > HELD)
 
 
-def _without_pin(watch: Watch, moving: bool) -> str:
-    at = degrees(float(watch.angle(watch.oscillator, np.array([watch.run.simulated]))[0]))
+def _without_pin(watch: Watch, moving: bool, rests: Face) -> str:
+    at = degrees(float(watch.angle(watch.oscillator, np.array([watch.run.simulated]))[0]) - watch.rest)
     if moving:
-        return f"{watch.oscillator} still swings, now at {at}, but too little to unlock it"
+        why = f"and {watch.wheel} does not drive it on" if rests.impulse else "but too little to unlock it"
+        return f"{watch.oscillator} still swings, now at {at}, {why}"
     return f"{watch.oscillator} is at rest at {at} and does not touch {watch.lever}"
 
 
@@ -69,7 +70,8 @@ def _torques(watch: Watch, lever: str, found: Arms, rests: Face) -> str:
     given = max((value for value in by_pin if value is not None), key=abs, default=0.0)
     if rests.impulse:
         less, more = _told_apart(by_wheel, given)
-        return f"the torque of {watch.wheel} at {lever}, {less}, is below the {more} needed to move {watch.oscillator} (set on impulse)"
+        needed = f"is below the {more} needed to move {watch.oscillator} (set on impulse)"
+        return f"the torque of {watch.wheel} at {lever}, {less}, {needed}"
     if given <= 0.0:
         return f"{watch.oscillator} does not push {lever} out (set on lock)"
     less, more = _told_apart(given, by_wheel)

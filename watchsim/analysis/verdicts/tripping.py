@@ -60,7 +60,7 @@ def _mislocked(watch: Watch) -> Verdict | None:
     t, pair, face = found[0]
     drive = watch.drive(t)
     words = (
-        f"{when(t)}  the watch trips, {times(len(found))}: {face} ({pair}) while {watch.oscillator} is away, and drives "
+        f"{when(t)}  the watch trips, {times(len(found))} since: {face} ({pair}) while {watch.oscillator} is away, and drives "
         f"{watch.lever} off its banking with {torque_text(drive)} at {watch.wheel}. The lock is too shallow"
     )
     return Verdict(TRIPS, words, t, watch.wheel, pair, drive, len(found))

@@ -18,30 +18,39 @@ from watchsim.analysis.verdicts.watch import Watch
 from watchsim.simulation.event_kinds import EventKind
 
 GRAZING = 0.05  # of the distance from the staff: a dart on its roller has less of an arm, a pin in the fork more
+MANY = 8  # turning points
 
 
 def unlocked(watch: Watch) -> list[tuple[float, str, Face]]:
-    """Of the turning points in the last window: time (s), contact in words and face of each tooth that drives the lever off."""
+    """Of the turning points in the last window: time (s), contact in words and face of each tooth that drives the lever off.
+
+    A small swing turns back while the fork still holds the pin, on an impulse face too: that counts only where it is so always.
+    """
     if watch.lever is None or not len(watch.found) or not watch.has_shapes:
         return []
     start, _ = last_window(watch.run, watch.found.nominal_period)
     times = watch.found.end[watch.found.end >= start]
     times = times[watch.recorded(times)]
-    pallets = set(np.unique(watch.events(watch.lever, {watch.wheel}, *EventKind)["contact"]).tolist())
-    forks = set(np.unique(watch.events(watch.lever, {watch.oscillator}, *EventKind)["contact"]).tolist())
-    bankings = set(np.unique(watch.events(watch.lever, watch.fixed, *EventKind)["contact"]).tolist())
-    found = []
+    pallets, forks, bankings = (_numbers(watch, others) for others in ({watch.wheel}, {watch.oscillator}, watch.fixed))
+    free, engaged = [], []
     for t, holding in zip(times.tolist(), in_force(watch.run, times.tolist()), strict=True):
-        own = [number for number in holding if number in pallets]
+        own, pins = ([number for number in holding if number in some] for some in (pallets, forks))
         if not own or bankings.intersection(holding):
             continue
-        pins = [number for number in holding if number in forks]
         told = arms(watch.run, watch.compiled, t, [*own, *pins])
+        driven = [(t, str(told.pairs[row]), one) for row in range(len(own)) if (one := face(watch, told, row)).impulse]
         if any(_engaged(watch, told, row) for row in range(len(own), len(told.pairs))):
-            continue  # a small swing turns back while the fork still holds the pin
-        faces = [face(watch, told, row) for row in range(len(own))]
-        found += [(t, str(pair), one) for pair, one in zip(told.pairs, faces, strict=False) if one.impulse]
-    return found
+            engaged += driven
+        else:
+            free += driven
+    always = len(times) >= MANY and len(engaged) + len(free) >= len(times)
+    return sorted(free + engaged, key=lambda one: one[0]) if always else free
+
+
+def _numbers(watch: Watch, others: set[str]) -> set[int]:
+    """Of the lever's contacts with some bodies, those that ever had an event."""
+    assert watch.lever is not None
+    return set(np.unique(watch.events(watch.lever, others, *EventKind)["contact"]).tolist())
 
 
 def _engaged(watch: Watch, told: Arms, row: int) -> bool:
