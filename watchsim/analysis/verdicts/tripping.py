@@ -61,6 +61,6 @@ def _mislocked(watch: Watch) -> Verdict | None:
     drive = watch.drive(t)
     words = (
         f"{when(t)}  the watch trips, {times(len(found))} since: {face} ({pair}) while {watch.oscillator} is away, and drives "
-        f"{watch.lever} off its banking with {torque_text(drive)} at {watch.wheel}. The lock is too shallow"
+        f"{watch.lever} off its banking with {torque_text(drive)} at {watch.wheel}. The lock there is too shallow"
     )
     return Verdict(TRIPS, words, t, watch.wheel, pair, drive, len(found))
