@@ -107,9 +107,7 @@ def turned_over(scene: Scene) -> Scene:
         return replace(torque, value=-torque.value, table=tuple((at, -value) for at, value in torque.table))
 
     springs = tuple(replace(spring, rest=-spring.rest) for spring in scene.springs)
-    return replace(
-        scene, bodies=tuple(map(over, scene.bodies)), springs=springs, torques=tuple(map(against, scene.torques))
-    )
+    return replace(scene, bodies=tuple(map(over, scene.bodies)), springs=springs, torques=tuple(map(against, scene.torques)))
 
 
 def _across(point: Point) -> Point:

@@ -106,7 +106,9 @@ def test_text_of_a_watch_that_stopped():
     text = summary_text(promising(lever_run(20, missed=range(10, 20))))
     stopped = next(line for line in text.splitlines() if line.startswith("  verdict"))
     # The run ends at a turning point, which is not to be taken for a held balance.
-    assert stopped.startswith("  verdict      t = 1.19") and "the watch stands: the escape wheel stands since t = 1.19" in stopped
+    assert (
+        stopped.startswith("  verdict      t = 1.19") and "the watch stands: the escape wheel stands since t = 1.19" in stopped
+    )
     assert "balance swinging, now at −270°; last amplitude 270°; in contact: wheel.TEETH corner 3" in stopped
     assert "missed beats 10 in 19 half swings: half pitches the wheel fell short or ran ahead" in text
 

@@ -1,7 +1,7 @@
 """What does a timegrapher write on its paper?
 
 A dot per beat: by how much the beat came early against a clock of the nominal frequency. Beats of one direction of swing make
-one line and those of the other a second; their slope is the rate, and their distance twice the beat error.
+one line and those of the other a second; their slope is the rate, and their distance the beat error.
 """
 
 from __future__ import annotations

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from analysis.made_beats import DEGREE, Events, PERIOD, balance_only
+from analysis.made_beats import DEGREE, PERIOD, Events, balance_only
 
 from watchsim.analysis.beats import beats
 from watchsim.analysis.verdicts.settling import unsettled

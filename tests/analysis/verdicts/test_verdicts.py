@@ -41,8 +41,14 @@ FAULTS = {
         *(swiss(bodies_wheel_position_1="-0.04 mm"), 3.0, "trips", "wheel", ("TEETH", "STONES"), 1e-6),
         ("impulse face", "while balance is away"),
     ),
-    "a tooth gone": (*(toothless(unguarded(swiss()), 7), 3.0, "trips", "wheel", ("TEETH", "STONES"), 1e-6), ("ran past lever",)),
-    "a locking chipped": (*(chipped(swiss(), 7, 1e-4), 6.0, "trips", "wheel", ("TEETH", "STONES"), 1e-6), ("tooth 8 rests on",)),
+    "a tooth gone": (
+        *(toothless(unguarded(swiss()), 7), 3.0, "trips", "wheel", ("TEETH", "STONES"), 1e-6),
+        ("ran past lever",),
+    ),
+    "a locking chipped": (
+        *(chipped(swiss(), 7, 1e-4), 6.0, "trips", "wheel", ("TEETH", "STONES"), 1e-6),
+        ("tooth 8 rests on",),
+    ),
     "no guard pin": (
         *(knocked(unguarded(swiss()), 2.05, -2e-6), 4.0, "overbanks", "lever", ("PIN", "FORK"), 1e-6),
         ("t = 2.05", "from outside at −21.8°", "guard pin"),
@@ -154,7 +160,9 @@ def driven_spring() -> Scene:
     return Scene("no escapement", bodies, (Spring("fly", 1e-6),), (Torque("motor", 1e-9),))
 
 
-@pytest.mark.parametrize("scene", [load(profiles_dir() / "balance"), load(profiles_dir() / "incline"), pendulum(), driven_spring()])
+@pytest.mark.parametrize(
+    "scene", [load(profiles_dir() / "balance"), load(profiles_dir() / "incline"), pendulum(), driven_spring()]
+)
 def test_what_is_no_watch_has_no_verdict(scene):
     found = judged(scene, 1.0)
     assert found.name is None and found.message is None and found.works

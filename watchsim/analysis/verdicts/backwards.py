@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from watchsim.analysis.averages import last_window
+from watchsim.analysis.verdicts.running_free import running_free
 from watchsim.analysis.verdicts.unlocked import unlocked
 from watchsim.analysis.verdicts.watch import Watch
 from watchsim.analysis.verdicts.words import BACKWARDS, Verdict, torque_text, when
@@ -32,13 +33,17 @@ def _against_drive(watch: Watch) -> Verdict | None:
 def _against_teeth(watch: Watch) -> Verdict | None:
     if watch.teeth is None or watch.teeth.direction * watch.direction >= 0.0:
         return None
-    found = unlocked(watch)
-    if not found:
+    free, found = running_free(watch), unlocked(watch)
+    if free is not None:
+        (t, how), pair = free, None
+    elif found:
+        t, pair, _ = found[0]
+        how = f"they do not lock but push {watch.lever} off its banking ({pair})"
+    else:
         return None
-    t, pair, _ = found[0]
     drive = watch.drive(t)
     words = (
         f"{when(t)}  the watch runs backwards: its drive of {torque_text(drive)} turns {watch.wheel} against the lean of its "
-        f"teeth, which do not lock but push {watch.lever} off its banking ({pair}). Change the sign of the torque"
+        f"teeth; {how}. Change the sign of the torque"
     )
-    return Verdict(BACKWARDS, words, t, watch.wheel, pair, drive, len(found))
+    return Verdict(BACKWARDS, words, t, watch.wheel, pair, drive, len(found) or None)

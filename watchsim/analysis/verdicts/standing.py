@@ -36,9 +36,8 @@ def _why(watch: Watch, lever: str) -> tuple[str, str | None]:
     teeth = [number for number in holding if sides[number] == {watch.wheel, lever}]
     pins = [number for number in holding if sides[number] == {watch.oscillator, lever}]
     if not teeth:
-        return f"{watch.wheel} touches nothing that holds it" if not any(
-            watch.wheel in both for both in sides.values()
-        ) else "", None
+        held = not watch.has_modes or any(watch.wheel in both for both in sides.values())
+        return "" if held else f"{watch.wheel} touches nothing that holds it", None
     found = arms(run, watch.compiled, end, [teeth[0], *pins])
     rests, pair = face(watch, found, 0), str(found.pairs[0])
     moving = _still_moving(watch)

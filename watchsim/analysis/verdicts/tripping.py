@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from watchsim.analysis.verdicts.running_free import running_free
 from watchsim.analysis.verdicts.unlocked import unlocked
 from watchsim.analysis.verdicts.watch import Watch
 from watchsim.analysis.verdicts.words import TRIPS, Verdict, times, torque_text, when
@@ -18,7 +19,17 @@ def tripping(watch: Watch) -> Verdict | None:
 
     Besides: teeth that come to rest on an impulse face, though they do not run past it (mislocking).
     """
-    return _run_past(watch) or _mislocked(watch)
+    return _running_free(watch) or _run_past(watch) or _mislocked(watch)
+
+
+def _running_free(watch: Watch) -> Verdict | None:
+    free = running_free(watch)
+    if free is None:
+        return None
+    t, how = free
+    drive = watch.drive(t)
+    words = f"{when(t)}  the watch trips: {how}, and nothing locks it, under {torque_text(drive)}"
+    return Verdict(TRIPS, words, t, watch.wheel, None, drive)
 
 
 def _run_past(watch: Watch) -> Verdict | None:

@@ -29,8 +29,8 @@ def unlocked(watch: Watch) -> list[tuple[float, str, Face]]:
     if watch.lever is None or not len(watch.found) or not watch.has_shapes:
         return []
     start, _ = last_window(watch.run, watch.found.nominal_period)
-    times = watch.found.end[watch.found.end >= start]
-    times = times[watch.recorded(times)]
+    times = watch.found.end[watch.recorded(watch.found.end)]
+    times = times[times >= start] if len(times) and times[-1] >= start else times[-MANY:]
     pallets, forks, bankings = (_numbers(watch, others) for others in ({watch.wheel}, {watch.oscillator}, watch.fixed))
     free, engaged = [], []
     for t, holding in zip(times.tolist(), in_force(watch.run, times.tolist()), strict=True):

@@ -16,8 +16,10 @@ from watchsim.analysis.verdicts.lean import Teeth, teeth
 from watchsim.analysis.wheel import progress
 from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.mechanism.oscillation import oscillators
+from watchsim.mechanism.recording import STATISTICS
 from watchsim.mechanism.roles import drive_direction, keeps_time, roles
 from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.methods import EVENT_DRIVEN
 from watchsim.simulation.trajectory import Array, Trajectory
 
 SMALLEST_ADVANCE = 0.01  # rad, for a wheel whose pitch is not known
@@ -55,6 +57,11 @@ class Watch:
     def has_shapes(self) -> bool:
         """Whether the contacts of the run are those of its scene's outlines, so that their arms can be told."""
         return len(self.run.pairs) == len(self.compiled.model.contacts)
+
+    @property
+    def has_modes(self) -> bool:
+        """Whether the events say at any time which contacts are in force."""
+        return self.run.method == EVENT_DRIVEN and self.run.keep != STATISTICS
 
     @cached_property
     def teeth(self) -> Teeth | None:
