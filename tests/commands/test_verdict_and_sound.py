@@ -51,9 +51,7 @@ def test_no_watch_no_verdict(tmp_path: Path, capsys: pytest.CaptureFixture[str])
     assert [numbers[key] for key in ("verdict", "verdict_message", "verdict_details")] == [None, None, None]
 
 
-def test_a_run_is_heard_for_as_long_as_is_asked(
-    knocking: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_run_is_heard_for_as_long_as_is_asked(knocking: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["sound", str(knocking)]) == 0
     assert capsys.readouterr().out.strip() == str(knocking / "tick.wav")
     target = tmp_path / "long.wav"

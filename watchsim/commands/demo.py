@@ -81,7 +81,8 @@ def _ticking(summary: Mapping[str, Any]) -> str:
     missed = f"{summary['missed_beats'] or 'none'} missed in {summary['beats']} half swings"
     rate = f"{summary['rate_s_per_d']:+.1f} s/d".replace("-", "−")
     close = f"the energy account closes to {summary['energy']['residual_relative']:.0e}"
-    return f"It ticks: amplitude {summary['amplitude_deg']:.1f}°, rate {rate}, {missed}; {close}."
+    yet = " (not settled yet)" if summary["verdict"] == "unsettled" else ""
+    return f"It ticks{yet}: amplitude {summary['amplitude_deg']:.1f}°, rate {rate}, {missed}; {close}."
 
 
 def _incline_picture(folder: Path) -> Path:

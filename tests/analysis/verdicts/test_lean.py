@@ -33,7 +33,7 @@ def leaning(lean: float, count: int = 15, turned: float = 0.0):
 @pytest.mark.parametrize("lean", [-0.35, -0.1, 0.1, 0.35])
 @pytest.mark.parametrize("turned", [0.0, 2.0])
 def test_pointed_teeth(lean, turned):
-    """At a share h of their height the middle of the teeth is at lean · h: between the halves, weighed by width, less than half."""
+    """At a share h of their height the middle of the teeth is at lean · h: half the lean lies between the halves, or less."""
     found = teeth(with_rim(leaning(lean, turned=turned)), "wheel")
     assert found.direction == math.copysign(1.0, lean)
     assert 0.25 * abs(lean) < abs(found.lean) / found.pitch < 0.6 * abs(lean)

@@ -36,9 +36,9 @@ class Teeth:
         return 0.0 if abs(self.lean) < UPRIGHT * self.pitch else math.copysign(1.0, self.lean)
 
     def number(self, angle: float) -> int:
-        """Of the tooth at an angle (rad) in the wheel's frame: counted anticlockwise, from 1 at or after the x axis."""
+        """Of the tooth at an angle (rad) in the wheel's frame: counted anticlockwise from 1, the one nearest to the x axis."""
         count = round(math.tau / self.pitch)
-        return (round((angle - self.first % self.pitch) / self.pitch) % count) + 1
+        return round((angle - math.remainder(self.first, self.pitch)) / self.pitch) % count + 1
 
 
 def teeth(scene: Scene, wheel: str) -> Teeth | None:
