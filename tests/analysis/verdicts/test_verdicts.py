@@ -11,16 +11,20 @@ from analysis.made_faults import chipped, knocked, renamed, swiss, toothless, tu
 
 from watchsim.analysis.beats import beats
 from watchsim.analysis.verdicts.arms import arms
+from watchsim.analysis.verdicts.backwards import _against_teeth
 from watchsim.analysis.verdicts.faces import face
 from watchsim.analysis.verdicts.in_force import in_force
 from watchsim.analysis.verdicts.knocking import _angles, knocks
 from watchsim.analysis.verdicts.statics import at_lever
+from watchsim.analysis.verdicts.tripping import tripping
+from watchsim.analysis.verdicts.unlocked import unlocked
 from watchsim.analysis.verdicts.verdict import verdict
 from watchsim.analysis.verdicts.watch import watch_of
 from watchsim.analysis.verdicts.words import Verdict
 from watchsim.mechanism.body import Body
 from watchsim.mechanism.force import Damping, Spring, Torque
 from watchsim.mechanism.load import load
+from watchsim.mechanism.roles import roles
 from watchsim.mechanism.scene import Scene
 from watchsim.profiles_path import profiles_dir
 from watchsim.simulation.simulate import simulate
@@ -141,6 +145,43 @@ def test_the_torque_needed_to_unlock_is_where_it_unlocks(share):
 def test_without_rows_events_alone_say_that_it_knocks():
     run = simulate(swiss(torques_0_value=STRONG), 5.0, record="statistics")
     assert verdict(run).name == "knocks"
+
+
+def test_the_last_rows_that_were_kept_say_that_nothing_locks():
+    scene = swiss(bodies_wheel_position_1="-0.04 mm")
+    assert verdict(simulate(scene, 4.0, record=[(1.0, 1.5)])).name == "trips"
+
+
+def test_a_lever_without_banking_need_not_lock():
+    run = simulate(swiss(bodies_wheel_position_1="-0.04 mm"), 3.0)
+    free = replace(run.scene, contacts=tuple(one for one in run.scene.contacts if all(s.body != "banking" for s in one.sides)))
+    watch = watch_of(replace(run, scene=free), beats(run))
+    assert unlocked(watch_of(run, beats(run))) and not unlocked(watch)
+
+
+def test_a_reversed_wheel_that_nothing_holds_runs_through():
+    bench = load(profiles_dir() / "bench_lever").set("torques.0.value", "1 µN·m")
+    run = simulate(bench, 2.0)
+    found = verdict(run)
+    assert found.name == "backwards" and "wheel runs through, " in found.message
+    # Teeth without a lean have no wrong way: then it is a lever that stops nothing.
+    upright = watch_of(run, beats(run))
+    upright.__dict__["teeth"] = None
+    assert _against_teeth(upright) is None and "nothing locks it" in tripping(upright).message
+
+
+def test_a_wheel_that_the_balance_drives_back_runs_backwards():
+    """A drive of next to nothing, a lever that pushes: made by hand, since real wheels are held by their lever."""
+    run = lever_run(40)
+    back = replace(run, q=run.q * np.array([1.0, 1.0, -1.0]))
+    found = verdict(back)
+    assert found.name == "backwards" and "against its drive of 1 µN·m" in found.message
+
+
+def test_the_wheel_is_the_body_whose_lever_meets_the_balance():
+    """Whatever torque is listed first."""
+    shaken = knocked(swiss(), 2.05, -2e-6)
+    assert roles(replace(shaken, torques=shaken.torques[::-1])) == roles(swiss())
 
 
 def test_made_runs_have_no_shapes_to_ask():

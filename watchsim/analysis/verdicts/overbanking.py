@@ -14,7 +14,7 @@ from watchsim.simulation.event_kinds import EventKind
 def overbanking(watch: Watch) -> Verdict | None:
     """The oscillator no longer passes its rest position, since it presses the lever onto the banking it stands at."""
     run = watch.run
-    if watch.lever is None or not watch.has_shapes:
+    if watch.lever is None or not watch.has_banking:
         return None
     own = [body.name for body in run.scene.bodies].index(watch.oscillator)
     passed = run.events["t"][(run.events["body"] == own) & (run.events["kind"] == EventKind.CROSS)]
@@ -28,7 +28,7 @@ def overbanking(watch: Watch) -> Verdict | None:
     t, contact = float(met["t"][-1]), int(met["contact"][-1])
     bankings = set(np.unique(watch.events(watch.lever, watch.fixed, *EventKind)["contact"]).tolist())
     banked = [number for number in in_force(run, [t])[0] if number in bankings]
-    if not banked or not _pressed_on(arms(run, watch.compiled, t, [contact, *banked]), watch.lever):
+    if not banked or not watch.has_shapes or not _pressed_on(arms(run, watch.compiled, t, [contact, *banked]), watch.lever):
         return None
     over, pair = _went_over(watch), str(run.pairs[contact])
     drive = watch.drive(over)

@@ -1,7 +1,8 @@
 """Which teeth are not locked while the oscillator is away?
 
 Between two beats a tooth should rest on a locking face and hold, or draw, the lever on its banking. A tooth that landed on an
-impulse face, or a wheel that turns the wrong way, drives the lever off instead, until its dart rubs on the roller.
+impulse face, or a wheel that turns the wrong way, drives the lever off instead, until its dart rubs on the roller. Where a
+lever has no banking, as in clocks with recoil, nothing can be said.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ def unlocked(watch: Watch) -> list[tuple[float, str, Face]]:
 
     A small swing turns back while the fork still holds the pin, on an impulse face too: that counts only where it is so always.
     """
-    if watch.lever is None or not len(watch.found) or not watch.has_shapes:
+    if watch.lever is None or not len(watch.found) or not watch.has_banking:
         return []
     start, _ = last_window(watch.run, watch.found.nominal_period)
     times = watch.found.end[watch.recorded(watch.found.end)]
@@ -37,6 +38,8 @@ def unlocked(watch: Watch) -> list[tuple[float, str, Face]]:
         own, pins = ([number for number in holding if number in some] for some in (pallets, forks))
         if not own or bankings.intersection(holding):
             continue
+        if not watch.has_shapes:
+            return []
         told = arms(watch.run, watch.compiled, t, [*own, *pins])
         driven = [(t, str(told.pairs[row]), one) for row in range(len(own)) if (one := face(watch, told, row)).impulse]
         if any(_engaged(watch, told, row) for row in range(len(own), len(told.pairs))):

@@ -17,7 +17,7 @@ from watchsim.analysis.wheel import progress
 from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.mechanism.oscillation import oscillators
 from watchsim.mechanism.recording import STATISTICS
-from watchsim.mechanism.roles import drive_direction, keeps_time, roles
+from watchsim.mechanism.roles import drive_direction, keeps_time, partners, roles
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.methods import EVENT_DRIVEN
 from watchsim.simulation.trajectory import Array, Trajectory
@@ -57,6 +57,11 @@ class Watch:
     def has_shapes(self) -> bool:
         """Whether the contacts of the run are those of its scene's outlines, so that their arms can be told."""
         return len(self.run.pairs) == len(self.compiled.model.contacts)
+
+    @property
+    def has_banking(self) -> bool:
+        """Whether the lever may touch something fixed."""
+        return self.lever is not None and bool(partners(self.run.scene, self.lever) & self.fixed)
 
     @property
     def has_modes(self) -> bool:
