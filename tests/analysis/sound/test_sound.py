@@ -9,7 +9,7 @@ from functools import cache
 import numpy as np
 import pytest
 from analysis.made_beats import IMPULSE, LOCKING, PIN, balance_only, steady_swings
-from analysis.made_faults import chipped, eccentric, swiss
+from analysis.made_faults import chipped, eccentric, knocked, swiss, unguarded
 from analysis.sound.listening import listen, share_of_period
 
 from watchsim.analysis.beats import beats
@@ -132,6 +132,14 @@ def test_what_is_longer_than_the_run_goes_on_without_a_jump(tmp_path):
     assert found.onsets[-1] > 64.8
 
 
+@pytest.mark.parametrize("record", ["statistics", "events", [(1.0, 1.5)]])
+def test_whatever_was_kept_of_the_run_is_heard(record, tmp_path):
+    run = simulate(swiss(), 6.0, record=record)
+    for duration, count in ((None, 24 if record == "statistics" else 48), (20.0, 160)):
+        found = listen(sound(run, tmp_path / "tick.wav", duration))
+        assert len(found.onsets) == count and np.ptp(np.diff(found.onsets)) < 3.0 / SAMPLES
+
+
 def test_the_loop_repeats_to_rounding():
     run = ticking(20.0)
     heard_of = score(run, 1e4)
@@ -152,6 +160,10 @@ def test_what_cannot_sound_is_refused(tmp_path):
         sound(silent, tmp_path / "a.wav")
     with pytest.raises(ValueError, match="cannot go on"):
         sound(silent, tmp_path / "a.wav", 60.0)
+    with pytest.raises(ValueError, match="at its end it is silent"):  # it stands since two seconds
+        sound(simulate(knocked(unguarded(swiss()), 2.05, -2e-6), 4.0), tmp_path / "a.wav", 60.0)
+    with pytest.raises(ValueError, match="too few beats"):
+        sound(simulate(swiss(), 0.4), tmp_path / "a.wav", 60.0)
     with pytest.raises(ValueError, match="nothing in it beats"):
         sound(simulate(load(profiles_dir() / "incline"), 0.5), tmp_path / "a.wav", 60.0)
     with pytest.raises(ValueError, match=r"\.wav"):

@@ -20,6 +20,7 @@ from watchsim.simulation.trajectory import Array, Trajectory
 
 BEFORE = 0.02  # of a half period before a beat's first noise: nothing sounds there
 LEAST_TICKS = 3
+SILENT = 1.5  # periods since the last tick: the watch stands
 
 
 @dataclass(frozen=True)
@@ -74,18 +75,16 @@ def score(run: Trajectory, duration: float | None = None) -> Score:
 
 
 def _loop(run: Trajectory, begun: float) -> Loop:
-    scene = run.scene
+    scene, holds = run.scene, f"the run holds {run.simulated - begun:.4g} s of sound"
     if not swings(scene) or not keeps_time(scene):
-        raise ValueError(
-            f"the run holds {run.simulated - begun:.4g} s of sound; nothing in it beats that could go on for longer"
-        )
+        raise ValueError(f"{holds}; nothing in it beats that could go on for longer")
     found = beats(run)
+    if len(found) < LEAST_TICKS:
+        raise ValueError(f"{holds}, too few beats to go on with")
     heard = np.isfinite(found.tick)
     ticks = found.tick - begun - BEFORE * 0.5 * found.nominal_period
-    if not len(found) or not heard[-LEAST_TICKS:].all() or len(found) < LEAST_TICKS:
-        raise ValueError(
-            f"the run holds {run.simulated - begun:.4g} s of sound; its last beats are silent, so it cannot go on for longer"
-        )
+    if not heard[-LEAST_TICKS:].all() or run.simulated - found.tick[-1] > SILENT * found.nominal_period:
+        raise ValueError(f"{holds}; at its end it is silent, so it cannot go on for longer")
     # Ticks of one direction of swing, back from the last.
     same = np.arange(len(found) - 1, -1, -2)
     same = same[: np.argmin(heard[same]) if not heard[same].all() else len(same)][::-1]
