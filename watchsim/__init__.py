@@ -29,10 +29,13 @@ _HOMES = {
     "summary": "watchsim.analysis.summary",
     "read_results": "watchsim.results.folder",
     "write_results": "watchsim.results.folder",
+    "verdict": "watchsim.analysis.verdicts.verdict",
     "verify": "watchsim.verification.all_checks",
     "plot_kinematics": "watchsim.render.plots",
     "movie": "watchsim.render.run_movie",
     "frame": "watchsim.render.run_movie",
+    "plot_tape": "watchsim.render.tape",
+    "sound": "watchsim.analysis.sound.wav",
     "profiles_dir": "watchsim.profiles_path",
 }
 
@@ -40,8 +43,10 @@ __all__ = [*_HOMES, "__version__"]  # noqa: PLE0604 - the keys are the public na
 
 if TYPE_CHECKING:
     from watchsim.analysis.contact_forces import forces as forces
+    from watchsim.analysis.sound.wav import sound as sound
     from watchsim.analysis.summary import summary as summary
     from watchsim.analysis.timing.beats import beats as beats
+    from watchsim.analysis.verdicts.verdict import verdict as verdict
     from watchsim.contact.distance import distance as distance
     from watchsim.contact.distance import gap as gap
     from watchsim.contact.distance import kinematics as kinematics
@@ -52,6 +57,7 @@ if TYPE_CHECKING:
     from watchsim.render.plots import plot_kinematics as plot_kinematics
     from watchsim.render.run_movie import frame as frame
     from watchsim.render.run_movie import movie as movie
+    from watchsim.render.tape import plot_tape as plot_tape
     from watchsim.results.folder import read_results as read_results
     from watchsim.results.folder import write_results as write_results
     from watchsim.scene.errors import SceneError as SceneError

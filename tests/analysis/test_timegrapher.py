@@ -86,3 +86,25 @@ def test_a_noise_counts_from_a_third_of_the_loudest_on(share, heard):
     last = 24.0 if heard else 20.0
     expected = (math.asin(26.0 / 270.0) + math.asin(last / 270.0)) / OMEGA
     assert intervals(run, beats(run)) == pytest.approx(expected, rel=1e-9)
+
+
+def test_a_swing_that_hardly_leaves_the_lift_has_no_reading():
+    """Instruments show nothing below some 80°; λ = 52°."""
+    for amplitude, shown in ((77.0, False), (79.0, True)):
+        run = heard_run(amplitude, 26.0)
+        read = timegrapher(run, beats(run))
+        assert (read["amplitude_deg"] is not None) == shown
+        assert shown or "hardly leaves the lift of 52°" in read["message"]
+
+
+def test_a_last_noise_that_wanders_gives_no_amplitude():
+    steady, wandering = heard_run(270.0, 22.0), steady_swings(40, 270.0 * DEGREE)
+    for k in range(40):
+        middle = (k + 0.5) * 0.5 * PERIOD
+        for pair, place, lost in ((PIN, -26.0, 1e-9), (LOCKING, (-10.0, 26.0)[k % 3 == 0], 2e-8)):
+            wandering.touch(middle + math.asin(place / 270.0) / OMEGA, EventKind.IMPACT, pair, lost)
+    read = timegrapher(balance_only(wandering, 5.0), beats(balance_only(wandering, 5.0)))
+    assert read["amplitude_deg"] is None and "at another time in each beat" in read["message"]
+    assert "so it reads high" in timegrapher(steady, beats(steady))["message"]
+    exact = heard_run(270.0, 26.0)
+    assert timegrapher(exact, beats(exact))["message"] is None

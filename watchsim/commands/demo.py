@@ -73,12 +73,16 @@ def _agreement(rows: Sequence[Mapping[str, Any]]) -> str:
 
 def _ticking(summary: Mapping[str, Any]) -> str:
     """The verdict on the watch in a line."""
-    if summary["stopped"] or summary["amplitude_deg"] is None or summary["rate_s_per_d"] is None:
-        return f"It does NOT tick: {summary['stopped_message'] or summary['timing_message'] or summary['stop_message']}."
+    about = summary["verdict_details"]
+    works = about is not None and about["works"]
+    if not works or summary["amplitude_deg"] is None or summary["rate_s_per_d"] is None:
+        why = None if works else summary["verdict_message"]
+        return f"It does NOT work: {why or summary['timing_message'] or summary['stop_message']}."
     missed = f"{summary['missed_beats'] or 'none'} missed in {summary['beats']} half swings"
     rate = f"{summary['rate_s_per_d']:+.1f} s/d".replace("-", "−")
     close = f"the energy account closes to {summary['energy']['residual_relative']:.0e}"
-    return f"It ticks: amplitude {summary['amplitude_deg']:.1f}°, rate {rate}, {missed}; {close}."
+    yet = " (not settled yet)" if summary["verdict"] == "unsettled" else ""
+    return f"It ticks{yet}: amplitude {summary['amplitude_deg']:.1f}°, rate {rate}, {missed}; {close}."
 
 
 def _incline_picture(folder: Path) -> Path:

@@ -20,15 +20,21 @@ def options(parser: argparse.ArgumentParser) -> None:
         default="angle,velocity",
         help="angle, velocity, acceleration, with commas (default %(default)s)",
     )
+    parser.add_argument(
+        "--tape", action="store_true", help="the paper of a timegrapher, and rate, amplitude and beat error over time"
+    )
     parser.add_argument("--window", metavar="FROM:TO", help='such as "179.4 s:179.75 s" (default: all that was recorded)')
     parser.add_argument("--format", metavar="NAMES", default="png", help="png, svg, pdf, with commas (default %(default)s)")
-    parser.add_argument("-o", "--output", metavar="FILE", help="the file, ending optional (default RUN/plots/kinematics)")
+    parser.add_argument(
+        "-o", "--output", metavar="FILE", help="the file, ending optional (default RUN/plots/kinematics, or tape)"
+    )
 
 
 def run(args: argparse.Namespace) -> int:
     from watchsim.commands.common.inputs import read_run
     from watchsim.commands.common.output_place import secured_file, swept_run
     from watchsim.render.plots import plot_kinematics
+    from watchsim.render.tape import plot_tape
     from watchsim.storage.write import write_file
 
     formats = parse_names(args.format) or []
@@ -39,14 +45,17 @@ def run(args: argparse.Namespace) -> int:
     trajectory = read_run(args.run_folder)
     quantities = tuple(parse_names(args.quantities) or ())
     window = parse_window(args.window)
-    target = Path(args.output) if args.output else Path(args.run_folder) / "plots" / "kinematics"
+    target = Path(args.output) if args.output else Path(args.run_folder) / "plots" / ("tape" if args.tape else "kinematics")
     if target.suffix[1:] in FORMATS:
         formats = [target.suffix[1:]] if args.format == "png" else formats
         target = target.with_suffix("")
     if not args.output:
         target.parent.mkdir(exist_ok=True)
     paths = [secured_file(target.parent / f"{target.name}.{name}", "the plot") for name in formats]
-    figure = plot_kinematics(trajectory, parse_names(args.bodies), quantities, window)
+    if args.tape:
+        figure = plot_tape(trajectory, window)
+    else:
+        figure = plot_kinematics(trajectory, parse_names(args.bodies), quantities, window)
     for path in paths:
         write_file(path, figure.savefig, "the plot")
         print(path)

@@ -22,15 +22,22 @@ class Roles:
 
 
 def roles(scene: Scene) -> Roles:
-    """The first that swings, the first driven pivoted body besides it, and a moving body in contact with both."""
+    """The first that swings, a driven pivoted body besides it, and a moving body in contact with both.
+
+    Of several driven bodies the wheel is the first that has such a lever, whatever the order of the torques: a lever may be
+    knocked by a torque of its own.
+    """
     oscillator = next((one.body for one in oscillators(scene)), None)
-    driven = (torque.body for torque in scene.torques if torque.body != oscillator)
-    wheel = next((name for name in driven if scene.body(name).motion == "pivot"), None)
-    if oscillator is None or wheel is None:
-        return Roles(oscillator, wheel, None)
+    driven = [torque.body for torque in scene.torques if torque.body != oscillator]
+    wheels = [name for name in driven if scene.body(name).motion == "pivot"]
+    found = [(wheel, None if oscillator is None else _lever(scene, oscillator, wheel)) for wheel in wheels]
+    wheel, lever = next((one for one in found if one[1] is not None), found[0] if found else (None, None))
+    return Roles(oscillator, wheel, lever)
+
+
+def _lever(scene: Scene, oscillator: str, wheel: str) -> str | None:
     both = partners(scene, oscillator) & partners(scene, wheel) - {oscillator, wheel}
-    moving = (body.name for body in scene.bodies if body.motion == "pivot" and body.name in both)
-    return Roles(oscillator, wheel, next(moving, None))
+    return next((body.name for body in scene.bodies if body.motion == "pivot" and body.name in both), None)
 
 
 def swings(scene: Scene) -> bool:

@@ -62,7 +62,7 @@ def standstill(run: Trajectory, found: Beats) -> Standstill | None:
 def _circumstances(run: Trajectory, found: Beats, oscillator: str) -> str:
     """Where the oscillator is, how far it last swung, and what touches what."""
     words = ""
-    if len(run.t) and found.angular:
+    if found.angular and is_recorded(run, np.array([run.simulated])).all():
         column = run.slices[oscillator].start
         angle = f"{math.degrees(run.q[-1, column]):.4g}°".replace("-", "−")
         moved = np.flatnonzero(np.abs(run.q[:, column] - run.q[-1, column]) > VISIBLE)

@@ -7,6 +7,7 @@ those with n a multiple of Z are not zero. That holds for pointed teeth, club te
 from __future__ import annotations
 
 import math
+from collections import deque
 
 import numpy as np
 
@@ -19,14 +20,29 @@ SPACING = 1.0 / 400.0  # of the wheel's radius, between sampled points
 NOTICEABLE = 0.05  # share of the largest moment; smaller ones are inaccuracies of the drawing
 ROUND = 1e-6  # share of the length's own moment; a wheel without larger ones is a plain disc
 
+_recent: deque[tuple[list[Loop], int]] = deque(maxlen=4)  # several questions about one run ask for the same wheel
+
 
 def pitch(scene: Scene, wheel: str) -> float | None:
     """Angle (rad) from tooth to tooth, of the outlines with which body `wheel` touches others; None without equal teeth."""
+    loops = toothed_loops(scene, wheel)
+    count = next((known for others, known in _recent if _same(others, loops)), None)
+    if count is None:
+        count = tooth_count(loops)
+        _recent.appendleft((loops, count))
+    return math.tau / count if count > 1 else None
+
+
+def _same(first: list[Loop], second: list[Loop]) -> bool:
+    return len(first) == len(second) and all(one is other for one, other in zip(first, second, strict=True))
+
+
+def toothed_loops(scene: Scene, wheel: str) -> list[Loop]:
+    """The outlines with which body `wheel` touches others."""
     body = scene.body(wheel)
     sides = [side for contact in scene.contacts for side in contact.sides if side.body == wheel]
     layers = {layer for side in sides for layer in ([side.layer] if side.layer is not None else body.layers)}
-    count = tooth_count([loop for loop in body.loops if loop.layer in layers and loop.closed and not loop.hole])
-    return math.tau / count if count > 1 else None
+    return [loop for loop in body.loops if loop.layer in layers and loop.closed and not loop.hole]
 
 
 def tooth_count(loops: list[Loop]) -> int:

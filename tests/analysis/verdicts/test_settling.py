@@ -1,0 +1,55 @@
+"""Is it foretold where the amplitude settles?"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from analysis.made_beats import DEGREE, PERIOD, Events, balance_only
+
+from watchsim.analysis.timing.beats import beats
+from watchsim.analysis.verdicts.settling import unsettled
+from watchsim.analysis.verdicts.watch import watch_of
+from watchsim.simulation.event_kinds import EventKind
+
+
+def swung(amplitude, count=160):
+    """Half swings of amplitude(t) degrees."""
+    events = Events()
+    for k in range(count):
+        way = 1.0 if k % 2 == 0 else -1.0
+        middle, end = (k + 0.5) * 0.5 * PERIOD, (k + 1) * 0.5 * PERIOD
+        events.passage(middle, EventKind.CROSS, way)
+        events.passage(end, EventKind.TURN, way * amplitude(end) * DEGREE)
+    run = balance_only(events, count * 0.5 * PERIOD)
+    return unsettled(watch_of(run, beats(run)))
+
+
+@pytest.mark.parametrize(("start", "goal", "constant"), [(200.0, 280.0, 8.0), (300.0, 260.0, 20.0), (100.0, 240.0, 5.0)])
+def test_an_exponential_is_followed_to_its_end(start, goal, constant):
+    said = swung(lambda t: goal + (start - goal) * math.exp(-t / constant))
+    word = "rises" if goal > start else "falls"
+    assert said.name == "unsettled" and said.works and word in said.message
+    told = float(said.message.split("about ")[1].split("°")[0])
+    assert told == pytest.approx(goal, abs=0.6)
+
+
+def test_what_has_settled_has_settled():
+    assert swung(lambda t: 280.0 + 80.0 * math.exp(-t / 2.0)) is None
+    assert swung(lambda t: 280.0) is None
+
+
+def test_a_wheel_out_of_round_is_no_drift():
+    """Fifteen oscillations to a turn: the amplitude goes up and down for ever."""
+    assert swung(lambda t: 280.0 + 2.0 * math.sin(math.tau * t / (15.0 * PERIOD)), 480) is None
+
+
+def test_chance_is_no_drift():
+    rng = np.random.default_rng(3)
+    assert sum(swung(lambda t: 280.0 + rng.normal(0.0, 1.0)) is not None for _ in range(40)) <= 2
+
+
+def test_a_steady_loss_has_no_end_foretold():
+    said = swung(lambda t: 280.0 - 3.0 * t)
+    assert "falls by 3° per second" in said.message and "on its way" not in said.message
