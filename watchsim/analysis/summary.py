@@ -45,10 +45,10 @@ def summary(run: Trajectory) -> dict[str, Any]:
     single contacts are the smallest possible ones.
 
     Besides the promised names: `frequency_hz`, `vph`, `window_s` (over which was averaged), `beats` (half swings in all),
-    `whole_run` (mean, spread and extremes over all of them, see analysis/timing/whole_run.py), `kept` (all, events or statistics),
+    `whole_run` (mean, spread and extremes of all, see analysis/timing/whole_run.py), `kept` (all, events or statistics),
     `verdict`, `verdict_message` and `verdict_details` (what the watch does, see analysis/verdicts/verdict.py; null where
     nothing keeps time), `missed_beats`, `stopped` and `stopped_message` (the wheel stands), `scene_file`, `stop_message`,
-    `events_by_kind`, `counts`, `overlap` (what looking at the outlines themselves found, see simulation/record/overlap_watch.py),
+    `events_by_kind`, `counts`, `overlap` (what looking at the outlines found, see simulation/record/overlap_watch.py),
     `step_s` (of a method with fixed steps), `worst_complementarity_residual` (worst violation of a complementarity condition,
     as a share of the problem's largest term), `warnings` (sentences, see analysis/doubts.py), `notes` (what the scene leaves
     unsaid or says without effect, see mechanism/notes.py), `timing_message` (why there is no amplitude or rate), `efficiency`
