@@ -24,9 +24,10 @@ sys.path.insert(0, str(ROOT / "scripts"))
 import draw_balance  # noqa: E402
 import draw_bench_lever  # noqa: E402
 import draw_swiss_lever  # noqa: E402
-from draw_swiss_design import Swiss  # noqa: E402
 from measure_lever import measure  # noqa: E402
 from measure_shapes import placed, read_layout, tomllib  # noqa: E402
+
+from watchsim.construction.swiss_lever.points import Swiss  # noqa: E402
 
 needs_pin_lever = pytest.mark.skipif(not (SHARED / "drawings" / "pin_lever").exists(), reason="the drawing is not here")
 needs_bench = pytest.mark.skipif(not (SHARED / "scenes" / "bench_lever.json").exists(), reason="the scene is not here")
