@@ -126,7 +126,7 @@ def test_swiss_lock_run_lift_and_drop_are_the_design(swiss):
         assert beat.bank == pytest.approx(design.bank, abs=1e-3)
         assert beat.lock == pytest.approx(design.lock, abs=1e-3)
         assert beat.run == pytest.approx(design.run, abs=1e-3)
-        assert beat.drop == pytest.approx(design.drop, abs=1e-3)
+        assert beat.drop == pytest.approx(design.drop_inside, abs=1e-3)
         assert beat.unlock == pytest.approx(design.lock + design.run, abs=1e-3)
         assert beat.lift_stone + beat.lift_tooth == pytest.approx(design.lift, abs=1e-3)
         assert beat.lift_stone > 4.5

@@ -6,7 +6,7 @@ import inspect
 
 from watchsim.construction.design import Design
 from watchsim.designs.drawn import Drawn
-from watchsim.mechanism.designed import chosen
+from watchsim.mechanism.dimensions import chosen
 
 
 class Maker:
