@@ -28,6 +28,11 @@ class Drawn:
         """The outlines of each drawing by its file name without ending, millimetres."""
         return dict(self.design.draw(self.values))
 
+    @property
+    def dimensions(self) -> dict[str, str]:
+        """Every dimension with its unit, as in the [design] table of a scene."""
+        return {one.name: one.shown(getattr(self.values, one.name)) for one in self.design.dimensions}
+
     def files(self) -> dict[str, bytes]:
         """Name -> content of everything that `write` writes."""
         drawings = {f"{name}.dxf": sheet.dxf() for name, sheet in self.sheets.items()}
@@ -35,19 +40,21 @@ class Drawn:
 
     def scene(self) -> Scene:
         """The scene, ready to be simulated; its dimensions can be changed: scene.set("design.lock", "2°")."""
-        numbers = {one.name: one.shown(getattr(self.values, one.name)) for one in self.design.dimensions}
-        return from_mapping({"design": {"of": self.design.name, **numbers}}, None)
+        return from_mapping({"design": {"of": self.design.name, **self.dimensions}}, None)
 
-    def write(self, folder: str | Path) -> Path:
-        """Drawings and scene.toml in `folder`, whole or not at all; FileExistsError where it is there already."""
+    def write(self, folder: str | Path, force: bool = False) -> Path:
+        """Drawings and scene.toml in `folder`, whole or not at all. FileExistsError where something is there already;
+        `force` replaces files of the same names and keeps the others."""
         target = Path(folder)
-        if target.exists():
-            raise FileExistsError(f"{target} is there already. Name a new folder")
+        if target.is_file():
+            raise FileExistsError(f"{target} is a file; drawings and scene need a folder of their own")
+        if not force and target.is_dir() and next(target.iterdir(), None) is not None:
+            raise FileExistsError(f"{target} exists already and is left alone. Choose another folder, or replace with --force")
         files = self.files()
 
         def fill(place: Path) -> None:
             for name, data in files.items():
                 (place / name).write_bytes(data)
 
-        write_folder(target, fill, lambda name: name in files, "the design")
+        write_folder(target, fill, files.__contains__, "the design")
         return target
