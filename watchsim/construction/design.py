@@ -37,6 +37,14 @@ class Conflict:
     message: str
 
 
+class Impossible(ValueError):
+    """A construction that has no solution; `dimension` is the one to change first ("" if none stands out)."""
+
+    def __init__(self, dimension: str, message: str) -> None:
+        self.dimension = dimension
+        super().__init__(message)
+
+
 def no_conflicts(_values: Values) -> tuple[Conflict, ...]:
     """Of a design whose limits say it all."""
     return ()
@@ -79,10 +87,17 @@ class Design:
         out = [conflict for name, number in chosen.items() for conflict in _beyond(self._known(name), number)]
         if out:
             return tuple(out)
+        found = []
         try:
-            return tuple(self.conflicts(self.chosen(chosen)))
-        except ValueError as error:  # square root of a negative number, no fillet fits
-            return (Conflict("", f"these dimensions cannot be drawn together: {error}"),)
+            values = self.chosen(chosen)
+            found += self.conflicts(values)
+            if not found:
+                self.draw(values)
+        except Impossible as error:
+            found.append(Conflict(error.dimension, str(error)))
+        except ValueError as error:  # the square root of a negative number, a fillet that does not fit
+            found.append(Conflict("", f"these dimensions cannot be drawn together: {error}"))
+        return tuple(found)
 
     def chosen(self, chosen: Mapping[str, float]) -> Values:
         """The values with these numbers in place of the defaults."""
