@@ -9,11 +9,13 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 
+from watchsim.construction.sound import drawing_of
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.findings import Finding
+from watchsim.drawing.read import SNAP
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Point
-from watchsim.mechanism.made import Made, made_drawing
+from watchsim.mechanism.made import Made
 from watchsim.mechanism.material import ADVICE, Side, face_layers, faces
 from watchsim.mechanism.pivot import given_pivot, marked_pivot
 from watchsim.mechanism.schema import SHAPES, nearest
@@ -119,10 +121,10 @@ def _open(table: Table, folder: Path, made: Made) -> Drawing | None:
             table.fault("drawing", "the name of a file is needed here", with_value=True)
         return None
     path = folder / name
-    snap = table.positive("snap", "it is the gap that may be closed") if "snap" in table else 1e-6
+    snap = table.positive("snap", "it is the gap that may be closed") if "snap" in table else SNAP
     units = table.text("units") or None
     if name in made and not math.isnan(snap):
-        return made_drawing(name, made[name], snap)
+        return drawing_of(made[name], name, snap)
     if not path.is_file() or math.isnan(snap):
         if not path.is_file():
             table.fault("drawing", f"there is no such file{_similar(path)} (looked for {path})", with_value=True)

@@ -82,7 +82,8 @@ def body(design: Swiss) -> Loop:
         (Line(*right_root, half, bend), 1.2 * scale),
         (Line(half, bend, half, neck), 0.0),
     ]
-    return Loop(tuple(fillet_chain([edge for edge, _ in parts], [radius for _, radius in parts], closed=True)), "ARMS")
+    edges, radii = [edge for edge, _ in parts], [radius for _, radius in parts]
+    return Loop(tuple(fillet_chain(edges, radii, closed=True, yielding=True)), "ARMS")
 
 
 def neck_height(design: Swiss) -> float:

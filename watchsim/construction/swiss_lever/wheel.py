@@ -22,6 +22,7 @@ CLUB = 0.085  # straight back of the club, from the heel
 CLUB_LEAN = 14.0  # of that back, from the radius, towards the toe, degrees
 RIM_INNER, HUB_RADIUS, BORE_RADIUS = 1.66, 0.42, 0.11
 ARMS, ARM_WIDTH, WINDOW_FILLET = 4, 0.17, 0.09
+DEEP = 1.11  # how far a hollow may lean over the thickness of the tooth
 FEW = 15  # teeth, up to which the gaps are as drawn here
 
 
@@ -52,21 +53,33 @@ def contour(design: Swiss) -> Loop:
 
 def tooth_and_gap(design: Swiss) -> list[Edge]:
     """From the foot of the locking face over toe and heel to the foot of the next tooth's locking face."""
-    toe = polar(design.tip_radius, 0.0)
-    heel = polar(design.heel_radius, design.tooth_width)
-    back = along(heel, design.tooth_width + 180.0 - CLUB_LEAN, CLUB * gap_scale(design))
-    neck, sweep_end = concave_back(design, back)
+    toe, heel, back = toe_heel_back(design)
+    lean, neck, sweep_end = behind(design, back)
     foot, toe_root = locking_foot(design)
     next_start = turned(toe_root.start, 360.0 / design.teeth)
     floor = arc_between(sweep_end, next_start, (0.0, 0.0), True)
-    return [
-        toe_root,
-        Line(*foot, *toe),
-        Line(*toe, *heel),
-        Line(*heel, *back),
-        neck,
-        floor,
-    ]
+    return [toe_root, Line(*foot, *toe), Line(*toe, *heel), Line(*heel, *back), *lean, neck, floor]
+
+
+def toe_heel_back(design: Swiss) -> tuple[Point, Point, Point]:
+    """The corners of a tooth's head."""
+    heel = polar(design.heel_radius, design.tooth_width)
+    back = along(heel, design.tooth_width + 180.0 - CLUB_LEAN, CLUB * gap_scale(design))
+    return polar(design.tip_radius, 0.0), heel, back
+
+
+def behind(design: Swiss, back: Point) -> tuple[list[Edge], Arc, Point]:
+    """From the head's back to the floor of the gap: a hollow, and before it a straight piece parallel to the locking face where
+    the tooth is so narrow that the hollow would cut through it. Also where it reaches the floor."""
+    depth = math.hypot(*back) - root_radius(design)
+    inward = math.radians(180.0 - design.undercut)
+    thickness = back[1] * -math.cos(inward) - (design.tip_radius - back[0]) * math.sin(inward)
+    allowed = DEEP * thickness / math.sin(inward)
+    if depth <= allowed:
+        return [], *concave_back(design, back, HEEL_ROOT * gap_scale(design))
+    start = along(back, 180.0 - design.undercut, (depth - max(allowed, 0.0)) / -math.cos(inward))
+    left = math.hypot(*start) - root_radius(design)
+    return [Line(*back, *start)], *concave_back(design, start, left)
 
 
 def locking_foot(design: Swiss) -> tuple[Point, Arc]:
@@ -79,9 +92,9 @@ def locking_foot(design: Swiss) -> tuple[Point, Arc]:
     return rest.start, root
 
 
-def concave_back(design: Swiss, back: Point) -> tuple[Arc, Point]:
-    """The hollow from the club's back into the gap's floor: an arc through `back`, tangent to the floor from outside."""
-    root, hollow = root_radius(design), HEEL_ROOT * gap_scale(design)
+def concave_back(design: Swiss, back: Point, hollow: float) -> tuple[Arc, Point]:
+    """The hollow into the gap's floor: an arc of that radius through `back`, tangent to the floor from outside; and its end."""
+    root = root_radius(design)
     reach, distance = root + hollow, math.hypot(*back)
     cosine = (distance**2 + reach**2 - hollow**2) / (2.0 * distance * reach)
     bearing = angle_of(back) + math.degrees(math.acos(cosine))
@@ -123,9 +136,7 @@ def _on_root(face: Line, root: float) -> Point:
 
 def tooth_gap(design: Swiss) -> float:
     """Degrees of floor between two teeth, negative where the hollow behind one runs into the foot of the next."""
-    heel = polar(design.heel_radius, design.tooth_width)
-    back = along(heel, design.tooth_width + 180.0 - CLUB_LEAN, CLUB * gap_scale(design))
-    _, sweep_end = concave_back(design, back)
+    _, _, sweep_end = behind(design, toe_heel_back(design)[2])
     _, toe_root = locking_foot(design)
     ahead = angle_of(turned(toe_root.start, 360.0 / design.teeth)) - angle_of(sweep_end)
     return (ahead + 180.0) % 360.0 - 180.0
