@@ -17,6 +17,7 @@ from watchsim.construction.swiss_lever.wheel import tooth_gap
 
 LEAST_STONE, LEAST_GAP, LEAST_LIFT = 0.8, 1.0, 0.2  # degrees
 SPANS = (15.0, 55.0)  # degrees, half of what the pallets embrace
+WHEELS = (0.25, 1.2)  # tip radius by centre distance of lever and balance
 LEAST_HORN = 4.0  # degrees of a horn's arc
 
 
@@ -39,6 +40,12 @@ def _counts(values: SwissLever) -> Iterator[Conflict]:
         least, most = (2.0 * one for one in SPANS)
         words = f"with {values.teeth} teeth the pallets embrace {2.0 * span:.4g}°; {least:g}° to {most:g}° can be drawn"
         yield Conflict("embraced", words)
+
+
+    if not WHEELS[0] <= values.tip_radius / values.lever_to_balance <= WHEELS[1]:
+        least, most = (one * values.lever_to_balance for one in WHEELS)
+        words = f"with {values.lever_to_balance:g} mm from lever to balance must be from {least:.3g} mm to {most:.3g} mm"
+        yield Conflict("tip_radius", f"{words}: the lever would have no room for its arms or its stem")
 
 
 def _angles(values: SwissLever) -> Iterator[Conflict]:

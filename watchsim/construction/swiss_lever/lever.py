@@ -97,7 +97,7 @@ def _holder_left(slot: Slot, root: Point) -> list[tuple[Edge, float]]:
     top_in, top_out = slot.at(end, slot.width * 0.5), slot.at(end, -slot.wall_out)
     low_out, low_in = slot.at(slot.exposed, -slot.wall_out), slot.at(slot.exposed, slot.width + slot.wall_in)
     return [
-        (_bow(root, top_in, -1.8 * slot.scale), 0.2 * slot.scale),
+        (_bow(root, top_in, -1.8 * slot.scale, 0.085 * slot.scale), 0.2 * slot.scale),
         (Line(*top_in, *top_out), 0.12 * slot.scale),
         (Line(*top_out, *low_out), 0.04 * slot.scale),
         *_mouth(slot, low_out, low_in),
@@ -113,13 +113,14 @@ def _holder_right(slot: Slot, root: Point, scale: float) -> list[tuple[Edge, flo
         *_mouth(slot, low_in, low_out),
         (Line(*low_out, *top_out), 0.12 * slot.scale),
         (Line(*top_out, *top_in), 0.2 * slot.scale),
-        (_bow(top_in, root, -2.6 * slot.scale), 0.3 * scale),
+        (_bow(top_in, root, -2.6 * slot.scale, 0.116 * slot.scale), 0.3 * scale),
     ]
 
 
-def _bow(start: Point, end: Point, radius: float) -> Arc:
-    """An arc of that radius, or of a larger one where the way is too long for it."""
-    return arc_of_radius(start, end, math.copysign(max(abs(radius), 0.65 * math.dist(start, end)), radius))
+def _bow(start: Point, end: Point, radius: float, deepest: float) -> Arc:
+    """An arc of that radius, or a flatter one where it would be deeper over its chord than `deepest`: a longer arm stays stout."""
+    flat = math.dist(start, end) ** 2 / (8.0 * deepest)
+    return arc_of_radius(start, end, math.copysign(max(abs(radius), flat), radius))
 
 
 def _mouth(slot: Slot, first: Point, last: Point) -> list[tuple[Edge, float]]:
@@ -137,9 +138,9 @@ def _underside(entry: Slot, exit_: Slot, scale: float) -> list[tuple[Edge, float
     end = exit_.at(exit_.exposed, -exit_.wall_in)
     left, right = polar(HUB_RADIUS * scale, 210.0), polar(HUB_RADIUS * scale, 325.0)
     return [
-        (_bow(start, left, -0.75 * entry.scale), 0.08 * scale),
+        (_bow(start, left, -0.75 * entry.scale, 0.077 * entry.scale), 0.08 * scale),
         (arc_between(left, right, (0.0, 0.0), True), 0.08 * scale),
-        (_bow(right, end, -1.6 * entry.scale), 0.04 * exit_.scale),
+        (_bow(right, end, -1.6 * entry.scale, 0.103 * entry.scale), 0.04 * exit_.scale),
     ]
 
 
