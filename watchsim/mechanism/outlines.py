@@ -15,6 +15,7 @@ from watchsim.drawing.findings import Finding
 from watchsim.drawing.read import SNAP
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Point
+from watchsim.mechanism.adjust import adjusted
 from watchsim.mechanism.made import Made
 from watchsim.mechanism.material import ADVICE, Side, face_layers, faces
 from watchsim.mechanism.pivot import given_pivot, marked_pivot
@@ -60,7 +61,7 @@ def read_outlines(table: Table, folder: Path, made: Made) -> Outlines:
     sources = [key for key in ("drawing", *SHAPES) if key in table]
     for extra in sources[1:]:
         table.fault(extra, f"a body has one outline: leave out {extra} or {sources[0]}")
-    for key in ("layers", "draw", "units", "snap", "material"):
+    for key in ("layers", "draw", "units", "snap", "material", "adjust"):
         if key in table and sources and sources[0] != "drawing":
             table.fault(key, f"belongs to a drawing; this body is a {sources[0]}")
     if "drawing" in table:
@@ -76,6 +77,7 @@ def _from_drawing(table: Table, folder: Path, made: Made) -> Outlines:
     marked = isinstance(table.mapping.get("pivot"), str)
     if drawing is None:
         return Outlines(pivot=UNREADABLE if marked else given_pivot(table), sound=False)
+    drawing = adjusted(table, drawing)
     pivot = marked_pivot(table, drawing) if marked else given_pivot(table)
     apart, drilled = frozenset(set_apart(table.mapping)), frozenset(hollow(table.mapping))
     sides = {layer: side for layer, side in face_layers(table, drawing, table.texts("layers")).items() if layer not in apart}
