@@ -15,6 +15,7 @@ from watchsim.mechanism.designed import with_design
 from watchsim.mechanism.errors import Fault, Faults, SceneError
 from watchsim.mechanism.locate import key_lines
 from watchsim.mechanism.oscillation import frequency
+from watchsim.mechanism.parsed import parsed
 from watchsim.mechanism.read_bodies import read_bodies
 from watchsim.mechanism.read_carriers import note_carriers
 from watchsim.mechanism.read_contacts import read_contacts
@@ -22,7 +23,6 @@ from watchsim.mechanism.read_forces import read_damping, read_springs, read_torq
 from watchsim.mechanism.read_settings import read_expectations, read_heading, read_run, read_timegrapher
 from watchsim.mechanism.scene import Scene, Written
 from watchsim.mechanism.schema import LOCK, SECTIONS, nearest
-from watchsim.mechanism.parsed import parsed
 from watchsim.mechanism.table import Table
 
 FAR_OFF = 0.1  # of the frequency of small swings: what a rate may be measured against
