@@ -8,6 +8,7 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -56,6 +57,7 @@ def from_mapping(
     if "design" in mapping:
         written = Written(mapping, dict(changes or {}))
         mapping, made = with_design(written, faults)
+        written = replace(written, made=frozenset(made))
     _note_sections(mapping, faults)
     heading = read_heading(mapping, faults)
     read = read_bodies(mapping.get("bodies", {}), folder, faults, made)
