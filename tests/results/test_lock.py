@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from watchsim.results.provenance import lock_text
 from watchsim.scene.errors import SceneError
 from watchsim.scene.file.keys.write_toml import toml_text
-from watchsim.scene.file.load import load, tomllib
+from watchsim.scene.file.load import load
+from watchsim.scene.file.parsed import tomllib
 
 FREE = """
 [bodies.disc]

@@ -9,7 +9,7 @@ from __future__ import annotations
 from pathlib import Path, PurePath
 
 from watchsim.results.provenance import lock_text
-from watchsim.scene.file.load import parsed
+from watchsim.scene.file.parsed import parsed
 from watchsim.scene.scene import Scene
 
 LOCK, FOLDER = "scene.lock.toml", "drawings"
