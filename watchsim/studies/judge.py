@@ -1,0 +1,75 @@
+"""What does a mechanism without a cycle do instead?
+
+An ordinary run from where the search for a cycle ended, and what can be said of it. The only place that knows how a run is judged.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from watchsim.analysis.averages import Averages, averages
+from watchsim.analysis.beats import beats
+from watchsim.analysis.standstill import standstill
+from watchsim.analysis.wheel import progress
+from watchsim.dynamics.forces import stored_energy
+from watchsim.mechanism.recording import Recording
+from watchsim.mechanism.roles import roles
+from watchsim.simulation.run import Run
+from watchsim.simulation.state import State
+from watchsim.simulation.stops import Stop
+from watchsim.simulation.trajectory import Trajectory
+from watchsim.studies.loop import Loop
+from watchsim.studies.return_map import BACKWARDS, KNOCKS, STOPS, TRIPS, UNSETTLED
+
+WORDS = {
+    STOPS: "the swing does not unlock the wheel any more",
+    TRIPS: "the wheel runs through: it passes more than one tooth in an oscillation",
+    BACKWARDS: "the wheel turns against its drive",
+    KNOCKS: "the oscillator swings so far that it is struck on its way out, and no regular swing balances the drive",
+    UNSETTLED: "no regular oscillation was found",
+}
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """`verdict` is None where nothing can be said, such as when the solver gave up."""
+
+    verdict: str | None
+    message: str
+
+
+def run_from(loop: Loop, state: State | None, duration: float) -> Trajectory:
+    """An ordinary run of so many seconds from a state with time 0; None: from the scene's start. KeyboardInterrupt ends it."""
+    run = Run(loop.scene, loop.compiled, loop.tolerance, Recording())
+    run.warm_up()
+    if state is None:
+        run.begin()
+    else:
+        for name, array in state._asdict().items():
+            getattr(run.state, name)[...] = array
+        run.stored_at_start = float(stored_energy(run.compiled.model, run.state.q, run.state.u))
+    stop = run.to_the_end(duration, None)
+    if stop == Stop.INTERRUPTED:
+        raise KeyboardInterrupt
+    loop.simulated += float(run.state.clock[0])
+    return run.trajectory(stop, 0.0, 0.0)
+
+
+def judged(run: Trajectory, suspicion: str) -> Judgement:
+    """What the mechanism does in that run; `suspicion` is what the search for a cycle met."""
+    if run.stop.gave_up:
+        return Judgement(None, run.stop_message)
+    found = beats(run)
+    stands = standstill(run, found)
+    if stands is not None:
+        return Judgement(STOPS, stands.message)
+    wheel = roles(run.scene).wheel
+    if wheel is not None and len(run.t) and progress(run, wheel, run.t[-1:])[0] - progress(run, wheel, run.t[:1])[0] < 0.0:
+        return Judgement(BACKWARDS, WORDS[BACKWARDS])
+    return Judgement(suspicion, WORDS.get(suspicion, suspicion))
+
+
+def late_means(run: Trajectory) -> Averages:
+    """Means over the last third of a run, with their scatter."""
+    found = beats(run)
+    return averages(found, (2.0 * run.simulated / 3.0, run.simulated))

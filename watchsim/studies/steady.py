@@ -1,0 +1,207 @@
+"""What does the watch settle to, without waiting until it has?
+
+The limit cycle is a fixed point of the return map (return_map.py), found by shooting (shooting.py) and closed over a whole turn of
+the wheel (polish.py). Where there is none, an ordinary run tells what happens instead (judge.py).
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import time
+from pathlib import Path
+
+import numpy as np
+
+from watchsim.analysis.beats import DAY
+from watchsim.mechanism.scene import Scene
+from watchsim.studies.cycle import Cycle
+from watchsim.studies.judge import judged, late_means, run_from
+from watchsim.studies.loop import Loop
+from watchsim.studies.parts import Parts, is_driven, parts_of, why_no_section
+from watchsim.studies.polish import FINER, Polished, polished
+from watchsim.studies.return_map import KNOCKS, UNSETTLED, Return, ReturnMap
+from watchsim.studies.section import NoSection, Section, first_section, section_at
+from watchsim.studies.shooting import Fixed, Lost, fixed_point
+
+REST = 1e-9  # rad or m per scale: bodies that stand still come back so closely, or the section is moved on
+SECTIONS = 6  # of them at most
+AFTERWARDS = 24  # periods of the run that tells what happens where there is no cycle
+LONGEST = 120.0  # s, of a run that stands in for a cycle
+FEWEST = 40  # periods of it
+SETTLED = 1e-4  # of the amplitude: what such a run may still scatter and drift
+LOSSLESS = 1e-9  # of the amplitude, in one oscillation
+TICKS = "ticks"
+FINEST = 1e-13  # tolerance of a run
+
+
+def steady(scene: Scene | str | Path, *, tolerance: float | None = None, amplitude: float | None = None) -> Cycle:
+    """The limit cycle that the scene's start leads to: amplitude, rate, beat error and stability, each with its error.
+
+    scene      a scene, or the file or folder that holds one
+    tolerance  relative error per step (default the scene's own)
+    amplitude  rad (m), where the search is to begin instead of at the first turning point of the scene's own start
+
+    Where there is no cycle `found` is False, and `verdict` and `message` say what there is instead. ValueError for a bad
+    argument; SceneError where bodies overlap at the start.
+    """
+    begun = time.perf_counter()
+    if not isinstance(scene, Scene):
+        from watchsim.mechanism.load import load
+
+        scene = load(scene)
+    tolerance = scene.tolerance if tolerance is None else float(tolerance)
+    if not FINEST <= tolerance <= 1e-2:
+        raise ValueError(f"the tolerance must lie between {FINEST:g} and 1e-2, not {tolerance}")
+    if amplitude is not None and not (amplitude > 0.0 and math.isfinite(amplitude)):
+        raise ValueError(f"the amplitude must be a positive number of rad (m), not {amplitude}")
+    loop = Loop(scene, tolerance)
+    ready = time.perf_counter()
+    loop.warm_up()
+    warm = time.perf_counter()
+    cycle = _searched(loop, amplitude)
+    wall = time.perf_counter() - begun - (warm - ready)
+    return dataclasses.replace(cycle, simulated_s=loop.simulated, cells_s=loop.finder.seconds, wall_s=wall)
+
+
+def _searched(loop: Loop, amplitude: float | None) -> Cycle:
+    parts = parts_of(loop.scene, loop.compiled)
+    if parts is None:
+        return Cycle(False, None, "nothing in this scene swings on a spring or by gravity, so nothing repeats itself")
+    if why := why_no_section(loop.compiled, parts):
+        return _by_run(loop, parts, why)
+    state = loop.begin()
+    section = first_section(loop, parts, state)
+    if isinstance(section, NoSection):
+        if section.still or not is_driven(loop.scene):
+            return _instead(loop, parts, None, "stops", section.time)
+        return _by_run(loop, parts, "at no turning point of the oscillator does everything else stand still")
+    if not is_driven(loop.scene):
+        return _alone(ReturnMap(loop, parts, section))
+    return _shot(loop, parts, section, section.amplitude if amplitude is None else amplitude)
+
+
+def _shot(loop: Loop, parts: Parts, section: Section, amplitude: float) -> Cycle:
+    """By shooting from that section and amplitude; the section moves on until what stands still comes back to its place."""
+    finer = Loop(loop.scene, max(FINER * loop.tolerance, FINEST), loop.compiled)
+    for _ in range(SECTIONS):
+        oscillate = ReturnMap(loop, parts, section)
+        found = fixed_point(oscillate, amplitude)
+        if isinstance(found, Lost):
+            return _lost(loop, parts, section, found)
+        again = _moved_on(oscillate, found)
+        if again is None:
+            break
+        section, amplitude = again, found.amplitude
+    exact = polished(oscillate, found, finer)
+    loop.simulated += finer.simulated
+    if isinstance(exact, Return):
+        return _lost(loop, parts, section, Lost(found.amplitude, exact.trouble, False))
+    if not abs(exact.multiplier) < 1.0:
+        return _unstable(loop, parts, section, found, exact)
+    return _told(loop, parts, exact)
+
+
+def _moved_on(oscillate: ReturnMap, found: Fixed) -> Section | None:
+    """A section an oscillation later where bodies at rest have not come back to their places; None where they have."""
+    got = oscillate(found.amplitude)
+    if got.state is None:
+        return None
+    parts, loop = oscillate.parts, oscillate.loop
+    away = np.abs(got.state.q - oscillate.section.state.q) / loop.compiled.model.coordinates.scale
+    away[parts.coordinate] = 0.0
+    if parts.wheel >= 0:
+        away[parts.wheel] = 0.0
+    if (away <= REST).all():
+        return None
+    return section_at(loop, parts, got.state, got.time)
+
+
+def _told(loop: Loop, parts: Parts, exact: Polished) -> Cycle:
+    """A cycle in watchmakers' units."""
+    means, degrees = exact.means, _in_degrees(loop, parts)
+    rate_of = DAY * parts.nominal / means.period**2
+    return Cycle(
+        found=True,
+        verdict=TICKS if parts.wheel >= 0 else None,
+        amplitude_deg=degrees(means.amplitude),
+        amplitude_deg_error=degrees(exact.amplitude_error),
+        period_s=means.period,
+        period_s_error=exact.period_error,
+        rate_s_per_d=DAY * (parts.nominal / means.period - 1.0),
+        rate_s_per_d_error=rate_of * exact.period_error,
+        beat_error_ms=1e3 * means.beat_error,
+        beat_error_ms_error=1e3 * exact.beat_error_error,
+        multipliers=(exact.multiplier,),
+        multipliers_error=(exact.multiplier_error,),
+        oscillations=exact.per,
+        tooth_spread_deg=degrees(means.spread),
+    )
+
+
+def _in_degrees(loop: Loop, parts: Parts):  # type: ignore[no-untyped-def]
+    angular = loop.scene.bodies[parts.body].motion == "pivot"
+    return math.degrees if angular else lambda _: None
+
+
+def _lost(loop: Loop, parts: Parts, section: Section, lost: Lost) -> Cycle:
+    """The orbit left the region where the mechanism works as it should: what happens there."""
+    if lost.trouble not in ("", UNSETTLED):
+        return _instead(loop, parts, section.at(parts, lost.amplitude), lost.trouble, AFTERWARDS * parts.period)
+    return _by_run(loop, parts, "the search for a limit cycle came to no end")
+
+
+def _instead(loop: Loop, parts: Parts, state, suspicion: str, duration: float) -> Cycle:  # type: ignore[no-untyped-def]
+    found = judged(run_from(loop, state, duration), suspicion)
+    return Cycle(False, found.verdict, found.message)
+
+
+def _unstable(loop: Loop, parts: Parts, section: Section, found: Fixed, exact: Polished) -> Cycle:
+    """A cycle that the mechanism leaves at the slightest disturbance: what it does then."""
+    told = _told(loop, parts, exact)
+    how = "from one oscillation to the next it swings too far and too little in turn" if exact.multiplier < 0.0 else "it leaves it"
+    message = f"there is a cycle, but an unstable one, multiplier {exact.multiplier:.3g}: {how}"
+    return dataclasses.replace(told, found=False, verdict=UNSETTLED, message=message)
+
+
+def _alone(oscillate: ReturnMap) -> Cycle:
+    """What swings without a drive."""
+    start = oscillate.section.amplitude
+    got = oscillate(start)
+    if got.trouble:
+        return Cycle(False, None, "nothing drives it, and its swing dies away within an oscillation")
+    ratio = got.amplitude / start
+    if abs(1.0 - ratio) <= LOSSLESS:
+        message = "nothing drives it and nothing brakes it: it keeps any amplitude that it is given"
+    elif ratio > 1.0:
+        message = f"nothing drives it, and yet its swing grows by {100.0 * (ratio - 1.0):.3g} % in an oscillation"
+    else:
+        quality = math.pi / -math.log(ratio)
+        lost = f"{100.0 * (1.0 - ratio):.3g} % of its swing in an oscillation of {got.time:.9g} s"
+        message = f"nothing drives it: it loses {lost} (Q = {quality:.4g}), and comes to rest"
+    return Cycle(False, None, message, multipliers=(ratio,))
+
+
+def _by_run(loop: Loop, parts: Parts, why: str) -> Cycle:
+    """What an ordinary run settles to, where there is no section to shoot from."""
+    duration = min(max(loop.scene.duration, FEWEST * parts.period), max(LONGEST, FEWEST * parts.period))
+    run = run_from(loop, None, duration)
+    seen = judged(run, UNSETTLED)
+    means = late_means(run)
+    message = f"{why}; this is the end of a run of {run.simulated:.4g} s"
+    if means.amplitude_deg is None or seen.verdict != UNSETTLED:
+        return Cycle(False, seen.verdict, seen.message if seen.verdict != UNSETTLED else message)
+    settled = (means.amplitude_deg_error or math.inf) <= SETTLED * means.amplitude_deg
+    return Cycle(
+        found=settled,
+        verdict=(TICKS if parts.wheel >= 0 else None) if settled else UNSETTLED,
+        message=message if settled else f"{message}, which has not settled",
+        amplitude_deg=means.amplitude_deg,
+        amplitude_deg_error=means.amplitude_deg_error,
+        period_s=means.period_s,
+        period_s_error=means.period_s_error,
+        rate_s_per_d=means.rate_s_per_d,
+        rate_s_per_d_error=means.rate_s_per_d_error,
+        beat_error_ms=means.beat_error_ms,
+        beat_error_ms_error=means.beat_error_ms_error,
+    )
