@@ -30,6 +30,11 @@ _HOMES = {
     "read_results": "watchsim.analysis.results",
     "write_results": "watchsim.analysis.results",
     "verify": "watchsim.analysis.verify",
+    "steady": "watchsim.studies.steady",
+    "Cycle": "watchsim.studies.cycle",
+    "sweep": "watchsim.studies.sweep",
+    "sensitivity": "watchsim.studies.sensitivity",
+    "plot_sweep": "watchsim.render.study",
     "plot_kinematics": "watchsim.render.plots",
     "movie": "watchsim.render.movie",
     "frame": "watchsim.render.movie",
@@ -58,10 +63,15 @@ if TYPE_CHECKING:
     from watchsim.render.movie import frame as frame
     from watchsim.render.movie import movie as movie
     from watchsim.render.plots import plot_kinematics as plot_kinematics
+    from watchsim.render.study import plot_sweep as plot_sweep
     from watchsim.simulation.simulate import simulate as simulate
     from watchsim.simulation.stops import Stop as Stop
     from watchsim.simulation.trajectory import EventKind as EventKind
     from watchsim.simulation.trajectory import Trajectory as Trajectory
+    from watchsim.studies.cycle import Cycle as Cycle
+    from watchsim.studies.sensitivity import sensitivity as sensitivity
+    from watchsim.studies.steady import steady as steady
+    from watchsim.studies.sweep import sweep as sweep
 
 
 def __getattr__(name: str) -> Any:

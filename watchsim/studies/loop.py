@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from watchsim.contact.cells import CellFinder
 from watchsim.mechanism.compile import Compiled, compile_scene
+from watchsim.mechanism.errors import SceneError
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation.advance import EVENTS_PER_CONTACT, ROWS_PER_STEP, advance
 from watchsim.simulation.options import options_for
@@ -22,6 +23,7 @@ from watchsim.simulation.start import clear_start
 from watchsim.simulation.start import warm_up as warm_up_start
 from watchsim.simulation.state import State, new_record, new_scratch, new_state, room_for
 from watchsim.simulation.stops import Stop
+from watchsim.studies.beginning import freed_start
 
 Events = NDArray[Any]
 
@@ -41,12 +43,13 @@ class SolverGaveUp(Exception):
 class Loop:
     """The compiled loop of one scene at one tolerance; states are values that it is given."""
 
-    def __init__(self, scene: Scene, tolerance: float, compiled: Compiled | None = None) -> None:
+    def __init__(self, scene: Scene, tolerance: float, like: Loop | None = None) -> None:
+        """`like` is a loop of the same scene at another tolerance: what it knows need not be found again."""
         self.scene, self.tolerance = scene, tolerance
-        self.compiled = compiled or compile_scene(scene)
+        self.compiled: Compiled = like.compiled if like else compile_scene(scene)
         model = self.compiled.model
         self.options = options_for(self.compiled.size, tolerance, natural_step(self.compiled, scene.duration))
-        self.finder = CellFinder(model)
+        self.finder = like.finder if like else CellFinder(model)
         self._scratch = new_scratch(model)
         self._record = new_record(model, ROWS_PER_STEP + 64, EVENTS + EVENTS_PER_CONTACT * room_for(model), NO_ROWS)
         self.simulated = 0.0  # s, over all states
@@ -58,8 +61,14 @@ class Loop:
         warm_up_start(self.scene, self.compiled.model)
 
     def begin(self) -> State:
-        """The state at the scene's start; SceneError where bodies overlap there."""
-        q, _ = clear_start(self.scene, self.compiled, self.finder, self.options)
+        """The state at the scene's start; SceneError where bodies overlap there, but for a little (see beginning.py)."""
+        try:
+            q, _ = clear_start(self.scene, self.compiled, self.finder, self.options)
+        except SceneError:
+            freed = freed_start(self.compiled, self.options)
+            if freed is None:
+                raise
+            q = freed
         state = new_state(self.compiled.model, q, self.compiled.u)
         state.clock[1] = 1e-3 * self.options.max_step
         return state

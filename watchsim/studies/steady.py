@@ -83,7 +83,7 @@ def _searched(loop: Loop, amplitude: float | None) -> Cycle:
 
 def _shot(loop: Loop, parts: Parts, section: Section, amplitude: float) -> Cycle:
     """By shooting from that section and amplitude; the section moves on until what stands still comes back to its place."""
-    finer = Loop(loop.scene, max(FINER * loop.tolerance, FINEST), loop.compiled)
+    finer = Loop(loop.scene, max(FINER * loop.tolerance, FINEST), like=loop)
     for _ in range(SECTIONS):
         oscillate = ReturnMap(loop, parts, section)
         found = fixed_point(oscillate, amplitude)

@@ -1,0 +1,91 @@
+"""What does the watch do at one point of a study?
+
+A question is a scene and how it is answered; an answer is a row of plain numbers. A point that cannot be computed has its reason
+in the row and stops nobody.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from watchsim.analysis.averages import mean_over
+from watchsim.mechanism.errors import SceneError
+from watchsim.mechanism.override import changed
+from watchsim.mechanism.roles import roles
+from watchsim.mechanism.scene import Scene
+from watchsim.simulation.simulate import simulate
+from watchsim.simulation.stops import Stop
+from watchsim.studies.axes import Value
+from watchsim.studies.judge import judged
+from watchsim.studies.outputs import OUTPUTS
+from watchsim.studies.return_map import UNSETTLED
+from watchsim.studies.steady import TICKS, steady
+
+Row = dict[str, Any]
+SETTLED = 1e-3  # of the amplitude: what the end of a run may scatter and drift
+
+
+@dataclass(frozen=True)
+class Question:
+    """`by_shooting`: the limit cycle, else a run of `duration` s (None: the scene's). `amplitude` (rad, m): where to begin."""
+
+    scene: Scene
+    by_shooting: bool = True
+    duration: float | None = None
+    tolerance: float | None = None
+    amplitude: float | None = None
+
+
+def answer(question: Question, changes: Mapping[str, Value], interrupted: Callable[[], bool] = lambda: False) -> Row:
+    """The row of one point: every output with its error (None where there is none), `verdict` and `message`.
+
+    KeyboardInterrupt where it was cut short by `interrupted`.
+    """
+    row: Row = {name: None for one in OUTPUTS.values() for name in ((one.column, f"{one.column}_error"))}
+    row.update(verdict=None, message="")
+    try:
+        scene = changed(question.scene, changes) if changes else question.scene
+        row.update(_by_shooting(question, scene) if question.by_shooting else _by_run(question, scene, interrupted))
+    except SceneError as error:
+        row["message"] = " ".join(str(error).split())
+    return row
+
+
+def _by_shooting(question: Question, scene: Scene) -> Row:
+    cycle = steady(scene, tolerance=question.tolerance, amplitude=question.amplitude)
+    numbers = cycle.numbers()
+    row: Row = {"verdict": cycle.verdict, "message": cycle.message}
+    for one in OUTPUTS.values():
+        if one.column in numbers and cycle.found:
+            row[one.column], row[f"{one.column}_error"] = numbers[one.column], numbers[f"{one.column}_error"]
+    row["multiplier"] = max(cycle.multipliers, key=abs, default=None)
+    row["multiplier_error"] = max(cycle.multipliers_error, default=None)
+    return row
+
+
+def _by_run(question: Question, scene: Scene, interrupted: Callable[[], bool]) -> Row:
+    def look(_done: float, _whole: float) -> None:
+        if interrupted():
+            raise KeyboardInterrupt
+
+    run = simulate(scene, question.duration, question.tolerance, record="statistics", progress=look)
+    if run.stop == Stop.INTERRUPTED:
+        raise KeyboardInterrupt
+    if run.stop.gave_up:
+        return {"verdict": None, "message": run.stop_message}
+    if roles(scene).oscillator is None:
+        return {"message": "nothing in this scene swings on a spring or by gravity"}
+    means = mean_over(run)
+    row: Row = {
+        name: getattr(means, name)
+        for one in OUTPUTS.values()
+        for name in (one.column, f"{one.column}_error")
+        if hasattr(means, name)
+    }
+    seen = judged(run, UNSETTLED)
+    row.update(verdict=seen.verdict, message=seen.message)
+    if seen.verdict == UNSETTLED and means.amplitude_deg and (means.amplitude_deg_error or 1e9) <= SETTLED * means.amplitude_deg:
+        row.update(verdict=TICKS, message="")
+    return row
