@@ -7,7 +7,7 @@ from typing import Any
 
 JSON_NAMES = (
     *("found", "verdict", "message", "amplitude_deg", "amplitude_deg_error", "period_s", "period_s_error"),
-    *("rate_s_per_d", "rate_s_per_d_error", "beat_error_ms", "beat_error_ms_error", "multipliers", "multipliers_error"),
+    *("rate_s_per_d", "rate_s_per_d_error", "beat_error_ms", "beat_error_ms_error", "uneven_ms", "multipliers", "multipliers_error"),
     *("oscillations", "tooth_spread_deg", "simulated_s", "cells_s", "wall_s"),
 )
 
@@ -22,6 +22,7 @@ class Cycle:
     amplitude_deg  mean of all half swings of the cycle, each half the way between its turning points; period_s, rate_s_per_d
                    against the nominal frequency and beat_error_ms as in `watchsim.beats`. None without a cycle, or for a body
                    that slides (amplitude)
+    uneven_ms      the beat error with a sign: positive where half periods that end in a swing upwards are the longer ones
     ..._error      how far off the number may be: the tolerance of the solver, what the search left over, and the scatter from
                    tooth to tooth divided by the root of their number
     multipliers    of the return map: what is left of a small disturbance after one oscillation (of one turn of the wheel where
@@ -43,6 +44,7 @@ class Cycle:
     rate_s_per_d_error: float | None = None
     beat_error_ms: float | None = None
     beat_error_ms_error: float | None = None
+    uneven_ms: float | None = None
     multipliers: tuple[float, ...] = ()
     multipliers_error: tuple[float, ...] = ()
     oscillations: int = 1

@@ -20,11 +20,15 @@ from watchsim.studies.section import turns
 
 
 class Measures(NamedTuple):
-    """Means over a cycle; SI. `spread` is the largest minus the smallest amplitude of whole oscillations."""
+    """Means over a cycle; SI. `spread` is the largest minus the smallest amplitude of whole oscillations.
+
+    `uneven`  half of the half period that ends in a swing upwards less the one that ends in a swing downwards; the beat error is
+              its magnitude
+    """
 
     amplitude: float
     period: float
-    beat_error: float
+    uneven: float
     spread: float
 
 
@@ -39,7 +43,7 @@ def measures(events: Events, parts: Parts, start: float, time: float) -> Measure
     around = np.concatenate([marks[-2:] - time, marks])
     uneven = np.sign(ways) * unevenness(around)[2:]
     period = time / (len(ways) // 2)
-    return Measures(float(amplitude.mean()), period, 0.5 * abs(float(uneven.mean())), float(np.ptp(whole)))
+    return Measures(float(amplitude.mean()), period, 0.5 * float(uneven.mean()), float(np.ptp(whole)))
 
 
 def _marks(events: Events, parts: Parts, ends: Array) -> Array:

@@ -36,6 +36,7 @@ class Question:
     duration: float | None = None
     tolerance: float | None = None
     amplitude: float | None = None
+    brief: bool = False  # one oscillation on the cycle, without errors
 
 
 def answer(question: Question, changes: Mapping[str, Value], interrupted: Callable[[], bool] = lambda: False) -> Row:
@@ -54,12 +55,13 @@ def answer(question: Question, changes: Mapping[str, Value], interrupted: Callab
 
 
 def _by_shooting(question: Question, scene: Scene) -> Row:
-    cycle = steady(scene, tolerance=question.tolerance, amplitude=question.amplitude)
+    cycle = steady(scene, tolerance=question.tolerance, amplitude=question.amplitude, brief=question.brief)
     numbers = cycle.numbers()
     row: Row = {"verdict": cycle.verdict, "message": cycle.message}
     for one in OUTPUTS.values():
         if one.column in numbers and cycle.found:
             row[one.column], row[f"{one.column}_error"] = numbers[one.column], numbers[f"{one.column}_error"]
+    row["uneven_ms"] = cycle.uneven_ms if cycle.found else None
     row["multiplier"] = max(cycle.multipliers, key=abs, default=None)
     row["multiplier_error"] = max(cycle.multipliers_error, default=None)
     return row

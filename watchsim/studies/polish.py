@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import math
+
 import numpy as np
 
 from watchsim.studies.loop import Loop
@@ -28,15 +30,21 @@ class Slope(NamedTuple):
 
 
 class Polished(NamedTuple):
-    """A cycle over `oscillations`: means over it, their errors (SI), and its multiplier over `per` oscillations."""
+    """Means over a cycle, their errors (SI), and its multiplier over `per` oscillations; None for what was not asked for."""
 
     means: Measures
-    amplitude_error: float
-    period_error: float
-    beat_error_error: float
-    multiplier: float
-    multiplier_error: float
-    per: int
+    amplitude_error: float | None = None
+    period_error: float | None = None
+    beat_error_error: float | None = None
+    multiplier: float | None = None
+    multiplier_error: float | None = None
+    per: int = 1
+
+
+def glanced(oscillate: ReturnMap, found: Fixed) -> Polished:
+    """The cycle by the one oscillation at the fixed point."""
+    got = oscillate(found.amplitude)
+    return Polished(measures(got.events, oscillate.parts, _start(oscillate, found.amplitude), got.time))
 
 
 def slope_at(oscillate: ReturnMap, amplitude: float, oscillations: int = 1) -> Slope | Return:
@@ -96,7 +104,7 @@ def polished(oscillate: ReturnMap, found: Fixed, finer: Loop) -> Polished | Retu
         whole, error, per = unequal.multiplier, unequal.error, number
     shift, period_shift = _tolerance_shift(oscillate, amplitude, slope, finer)
     means = measures(turn.events, oscillate.parts, _start(oscillate, amplitude), turn.time)
-    scatter = means.spread / np.sqrt(number) if per == 1 else 0.0
+    scatter = means.spread / math.sqrt(number) if per == 1 else 0.0
     amplitude_error = abs(left) + shift + scatter
     return Polished(
         means,

@@ -27,7 +27,8 @@ from watchsim.studies.sweep import Progress, computed, study_of
 from watchsim.units import known_unit
 
 AGREED = 0.01  # share of a derivative by which its two steps may differ
-NOISE = {"amplitude_deg": 1e-9, "rate_s_per_d": 1e-6, "beat_error_ms": 1e-9, "period_s": 1e-13, "multiplier": 1e-7}
+NOISE = {"amplitude_deg": 1e-9, "rate_s_per_d": 1e-6, "uneven_ms": 1e-9, "period_s": 1e-13, "multiplier": 1e-7}
+SMOOTH = {"beat_error_ms": "uneven_ms"}  # the beat error is a magnitude: what is differentiated keeps its sign
 CENTRAL, FORWARD, BACKWARD = (-1.0, 1.0), (1.0, 2.0), (-1.0, -2.0)  # in steps: where a difference looks
 
 
@@ -112,7 +113,7 @@ def sensitivity(
     """Derivatives on the limit cycle by all numbers of the scene, or by those at `keys`; other arguments as of `sweep`.
 
     Springs count by their stiffness and damping by its coefficient, also where the scene gives frequency and Q, and the rate is
-    against the nominal frequency of the scene as it is. ValueError where the scene has no limit cycle.
+    against the nominal frequency of the scene as it is. The derivative of the beat error is that of `Cycle.uneven_ms`. ValueError where the scene has no limit cycle.
     """
     if not isinstance(scene, Scene):
         from watchsim.mechanism.load import load
@@ -138,7 +139,9 @@ def found(
     cycle = steady(scene, tolerance=tolerance)
     if not cycle.found or cycle.amplitude_deg is None:
         raise ValueError(f"this watch has no limit cycle whose sensitivity could be told: {cycle.message or cycle.verdict}")
-    question = Question(scene, True, None, tolerance, float(np.radians(cycle.amplitude_deg)))
+    # One oscillation tells all where the teeth are alike, but for the multiplier.
+    brief = cycle.oscillations == 1 and all(one.name != "multiplier" for one in outputs)
+    question = Question(scene, True, None, tolerance, float(np.radians(cycle.amplitude_deg)), brief)
     points = [point for quantity in asked for point in _points(quantity)]
     rows = _rows(question, points, executor, folder, resume, progress)
     level = _level(cycle, outputs)
@@ -209,14 +212,14 @@ def _rows(
 
 def _level(cycle: Cycle, outputs: tuple[Output, ...]) -> dict[str, float | None]:
     numbers = {**cycle.numbers(), "multiplier": max(cycle.multipliers, key=abs, default=None)}
-    return {one.column: numbers[one.column] for one in outputs}
+    return {one.column: numbers[SMOOTH.get(one.column, one.column)] for one in outputs}
 
 
 def _effect(
     quantity: Quantity, rows: Mapping[float, Row], level: Mapping[str, float | None], outputs: tuple[Output, ...]
 ) -> Effect:
     messages = [row["message"] or row["verdict"] for row in rows.values() if row[outputs[0].column] is None]
-    by = {one.column: _derivative(quantity, rows, one.column, level[one.column]) for one in outputs}
+    by = {one.column: _derivative(quantity, rows, SMOOTH.get(one.column, one.column), level[one.column]) for one in outputs}
     message = str(messages[0]) if messages else ""
     if not message and not all(one.agrees for one in by.values()):
         off = ", ".join(one.label for one in outputs if not by[one.column].agrees)

@@ -19,7 +19,7 @@ from watchsim.studies.cycle import Cycle
 from watchsim.studies.judge import judged, late_means, run_from
 from watchsim.studies.loop import Loop
 from watchsim.studies.parts import Parts, is_driven, parts_of, why_no_section
-from watchsim.studies.polish import FINER, Polished, polished
+from watchsim.studies.polish import FINER, Polished, glanced, polished
 from watchsim.studies.return_map import KNOCKS, UNSETTLED, Return, ReturnMap
 from watchsim.studies.section import NoSection, Section, first_section, section_at
 from watchsim.studies.shooting import Fixed, Lost, fixed_point
@@ -35,12 +35,15 @@ TICKS = "ticks"
 FINEST = 1e-13  # tolerance of a run
 
 
-def steady(scene: Scene | str | Path, *, tolerance: float | None = None, amplitude: float | None = None) -> Cycle:
+def steady(
+    scene: Scene | str | Path, *, tolerance: float | None = None, amplitude: float | None = None, brief: bool = False
+) -> Cycle:
     """The limit cycle that the scene's start leads to: amplitude, rate, beat error and stability, each with its error.
 
     scene      a scene, or the file or folder that holds one
     tolerance  relative error per step (default the scene's own)
     amplitude  rad (m), where the search is to begin instead of at the first turning point of the scene's own start
+    brief      one oscillation on the cycle is enough: without errors, multipliers and a look at all teeth of the wheel
 
     Where there is no cycle `found` is False, and `verdict` and `message` say what there is instead. ValueError for a bad
     argument; SceneError where bodies overlap at the start.
@@ -59,12 +62,12 @@ def steady(scene: Scene | str | Path, *, tolerance: float | None = None, amplitu
     ready = time.perf_counter()
     loop.warm_up()
     warm = time.perf_counter()
-    cycle = _searched(loop, amplitude)
+    cycle = _searched(loop, amplitude, brief)
     wall = time.perf_counter() - begun - (warm - ready)
     return dataclasses.replace(cycle, simulated_s=loop.simulated, cells_s=loop.finder.seconds, wall_s=wall)
 
 
-def _searched(loop: Loop, amplitude: float | None) -> Cycle:
+def _searched(loop: Loop, amplitude: float | None, brief: bool) -> Cycle:
     parts = parts_of(loop.scene, loop.compiled)
     if parts is None:
         return Cycle(False, None, "nothing in this scene swings on a spring or by gravity, so nothing repeats itself")
@@ -78,12 +81,11 @@ def _searched(loop: Loop, amplitude: float | None) -> Cycle:
         return _by_run(loop, parts, "at no turning point of the oscillator does everything else stand still")
     if not is_driven(loop.scene):
         return _alone(ReturnMap(loop, parts, section))
-    return _shot(loop, parts, section, section.amplitude if amplitude is None else amplitude)
+    return _shot(loop, parts, section, section.amplitude if amplitude is None else amplitude, brief)
 
 
-def _shot(loop: Loop, parts: Parts, section: Section, amplitude: float) -> Cycle:
+def _shot(loop: Loop, parts: Parts, section: Section, amplitude: float, brief: bool) -> Cycle:
     """By shooting from that section and amplitude; the section moves on until what stands still comes back to its place."""
-    finer = Loop(loop.scene, max(FINER * loop.tolerance, FINEST), like=loop)
     for _ in range(SECTIONS):
         oscillate = ReturnMap(loop, parts, section)
         found = fixed_point(oscillate, amplitude)
@@ -93,11 +95,14 @@ def _shot(loop: Loop, parts: Parts, section: Section, amplitude: float) -> Cycle
         if again is None:
             break
         section, amplitude = again, found.amplitude
+    if brief:
+        return _told(loop, parts, glanced(oscillate, found))
+    finer = Loop(loop.scene, max(FINER * loop.tolerance, FINEST), like=loop)
     exact = polished(oscillate, found, finer)
     loop.simulated += finer.simulated
     if isinstance(exact, Return):
         return _lost(loop, parts, section, Lost(found.amplitude, exact.trouble, False))
-    if not abs(exact.multiplier) < 1.0:
+    if exact.multiplier is None or not abs(exact.multiplier) < 1.0:
         return _unstable(loop, parts, section, found, exact)
     return _told(loop, parts, exact)
 
@@ -125,15 +130,16 @@ def _told(loop: Loop, parts: Parts, exact: Polished) -> Cycle:
         found=True,
         verdict=TICKS if parts.wheel >= 0 else None,
         amplitude_deg=degrees(means.amplitude),
-        amplitude_deg_error=degrees(exact.amplitude_error),
+        amplitude_deg_error=None if exact.amplitude_error is None else degrees(exact.amplitude_error),
         period_s=means.period,
         period_s_error=exact.period_error,
         rate_s_per_d=DAY * (parts.nominal / means.period - 1.0),
-        rate_s_per_d_error=rate_of * exact.period_error,
-        beat_error_ms=1e3 * means.beat_error,
-        beat_error_ms_error=1e3 * exact.beat_error_error,
-        multipliers=(exact.multiplier,),
-        multipliers_error=(exact.multiplier_error,),
+        rate_s_per_d_error=None if exact.period_error is None else rate_of * exact.period_error,
+        beat_error_ms=1e3 * abs(means.uneven),
+        beat_error_ms_error=None if exact.beat_error_error is None else 1e3 * exact.beat_error_error,
+        uneven_ms=1e3 * means.uneven,
+        multipliers=(exact.multiplier,) if exact.multiplier is not None else (),
+        multipliers_error=(exact.multiplier_error,) if exact.multiplier_error is not None else (),
         oscillations=exact.per,
         tooth_spread_deg=degrees(means.spread),
     )
@@ -159,8 +165,9 @@ def _instead(loop: Loop, parts: Parts, state, suspicion: str, duration: float) -
 def _unstable(loop: Loop, parts: Parts, section: Section, found: Fixed, exact: Polished) -> Cycle:
     """A cycle that the mechanism leaves at the slightest disturbance: what it does then."""
     told = _told(loop, parts, exact)
-    how = "from one oscillation to the next it swings too far and too little in turn" if exact.multiplier < 0.0 else "it leaves it"
-    message = f"there is a cycle, but an unstable one, multiplier {exact.multiplier:.3g}: {how}"
+    multiplier = exact.multiplier or 0.0
+    how = "it swings too far and too little in turn" if multiplier < 0.0 else "it runs away from it"
+    message = f"there is a cycle, but an unstable one (multiplier {multiplier:.3g}): disturbed, {how}"
     return dataclasses.replace(told, found=False, verdict=UNSETTLED, message=message)
 
 

@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+from watchsim.studies.sensitivity import Sensitivity
 from watchsim.studies.sweep import Sweep
 
 Table = dict[str, list[Any]]  # column -> values
@@ -26,7 +27,7 @@ def csv_text(table: Table) -> str:
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(table)
     for row in zip(*table.values(), strict=True):
-        writer.writerow(["" if value is None else repr(value) if isinstance(value, float) else value for value in row])
+        writer.writerow(["" if value is None else repr(float(value)) if isinstance(value, float) else value for value in row])
     return out.getvalue()
 
 
@@ -48,3 +49,9 @@ def _typed(arrow: Any, values: Sequence[Any]) -> Any:
     """A column of numbers stays one where some or all of them are missing."""
     text = any(isinstance(value, str) for value in values)
     return arrow.array(values, type=arrow.string() if text else arrow.float64())
+
+
+def sensitivity_table(found: Sensitivity) -> Table:
+    """One line per quantity, the greatest effect first."""
+    rows = found.rows()
+    return {name: [row[name] for row in rows] for name in (rows[0] if rows else ("key",))}
