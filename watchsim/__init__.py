@@ -29,6 +29,7 @@ _HOMES = {
     "summary": "watchsim.analysis.summary",
     "read_results": "watchsim.analysis.results",
     "write_results": "watchsim.analysis.results",
+    "verdict": "watchsim.analysis.verdicts.verdict",
     "verify": "watchsim.analysis.verify",
     "steady": "watchsim.studies.steady",
     "Cycle": "watchsim.studies.cycle",
@@ -38,6 +39,8 @@ _HOMES = {
     "plot_kinematics": "watchsim.render.plots",
     "movie": "watchsim.render.movie",
     "frame": "watchsim.render.movie",
+    "plot_tape": "watchsim.render.tape",
+    "sound": "watchsim.analysis.sound.wav",
     "profiles_dir": "watchsim.profiles_path",
 }
 
@@ -48,7 +51,9 @@ if TYPE_CHECKING:
     from watchsim.analysis.forces import forces as forces
     from watchsim.analysis.results import read_results as read_results
     from watchsim.analysis.results import write_results as write_results
+    from watchsim.analysis.sound.wav import sound as sound
     from watchsim.analysis.summary import summary as summary
+    from watchsim.analysis.verdicts.verdict import verdict as verdict
     from watchsim.analysis.verify import verify as verify
     from watchsim.contact.outlines import distance as distance
     from watchsim.contact.outlines import gap as gap
@@ -64,6 +69,7 @@ if TYPE_CHECKING:
     from watchsim.render.movie import movie as movie
     from watchsim.render.plots import plot_kinematics as plot_kinematics
     from watchsim.render.study import plot_sweep as plot_sweep
+    from watchsim.render.tape import plot_tape as plot_tape
     from watchsim.simulation.simulate import simulate as simulate
     from watchsim.simulation.stops import Stop as Stop
     from watchsim.simulation.trajectory import EventKind as EventKind

@@ -1,6 +1,6 @@
 """What can be typed? Parse, call, print.
 
-Exit status: 0 fine; 1 ran, but an expectation was missed or the watch stopped; 2 bad input, or nowhere to write; 3 the solver
+Exit status: 0 fine; 1 ran, but an expectation was missed or the watch does not work; 2 bad input, or nowhere to write; 3 the solver
 gave up; 4 a fault of the program itself; 130, 143 stopped by Ctrl-C, SIGTERM.
 """
 
@@ -13,7 +13,7 @@ import sys
 from watchsim import __version__, stopping
 from watchsim.commands.console import BAD_INPUT, FAULT, INTERRUPTED, InputError, say
 
-COMMANDS = ("demo", "inspect", "check", "run", "plot", "movie", "steady", "sweep", "verify", "bench", "export")
+COMMANDS = ("demo", "inspect", "check", "run", "plot", "movie", "sound", "steady", "sweep", "verify", "bench", "export")
 
 
 def parser() -> argparse.ArgumentParser:

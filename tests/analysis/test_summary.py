@@ -91,7 +91,7 @@ def test_text_of_a_watch():
     for part in (
         *("amplitude    270.000000°, scatter", "rate         0 s/d", "28800.00 vph, averaged from 3.333 s to 5 s"),
         *(
-            "would show 289° with a lift angle of 52°",
+            "would show 289°, +0.0 s/d, 0.00 ms with a lift angle of 52°",
             "none in 39 half swings",
             "240, 48 per second",
             "overlapped by up to 300 pm",
@@ -104,9 +104,9 @@ def test_text_of_a_watch():
 
 def test_text_of_a_watch_that_stopped():
     text = summary_text(promising(lever_run(20, missed=range(10, 20))))
-    stopped = next(line for line in text.splitlines() if line.startswith("  stopped"))
+    stopped = next(line for line in text.splitlines() if line.startswith("  verdict"))
     # The run ends at a turning point, which is not to be taken for a held balance.
-    assert stopped.startswith("  stopped      the escape wheel stands since t = 1.19")
+    assert stopped.startswith("  verdict      t = 1.19") and "the watch stands: the escape wheel stands since t = 1.19" in stopped
     assert "balance swinging, now at −270°; last amplitude 270°; in contact: wheel.TEETH corner 3" in stopped
     assert "missed beats 10 in 19 half swings: half pitches the wheel fell short or ran ahead" in text
 

@@ -9,6 +9,7 @@ from typing import Any
 
 from watchsim.analysis.doubts import UNSOLVED
 from watchsim.analysis.energy import energy_shares
+from watchsim.analysis.verdicts.words import BESIDE
 from watchsim.mechanism.roles import keeps_time
 from watchsim.simulation.methods import MOREAU
 from watchsim.simulation.trajectory import Trajectory
@@ -34,13 +35,12 @@ RULES = (
 )
 NO_PENETRATION = 1e-12  # m; less is not worth a digit, neither of depths nor of errors
 SCATTER = "scatter: how much the beats of that time scatter and drift; the error of the computation is another (--error-bars)"
-ALIKE = 0.5  # °; nearer than that a timegrapher shows the true amplitude
 PLAIN = 1e-6  # errors below are written with an exponent
 
 
 def headlines(run: Trajectory, numbers: Mapping[str, Any]) -> str:
     """The headline numbers in watchmakers' units, a line each; `numbers` as from `watchsim.analysis.summary.summary(run)`."""
-    parts = [*_timing(numbers), *_places(run, numbers), *_contacts(numbers), *_energy(run), *_solver(run, numbers)]
+    parts = [*_verdict(numbers), *_timing(numbers), *_places(run, numbers), *_contacts(numbers), *_energy(run), *_solver(run, numbers)]
     lines = [f"  {label:{LABEL}}{text}" for label, text in (*parts, *_verdicts(numbers))]
     return "\n".join([run.scene.title, *lines])
 
@@ -68,13 +68,19 @@ def _signed(value: float, decimals: int) -> str:
     return f"−{text[1:]}" if text.startswith("-") and float(text) != 0.0 else text.lstrip("-")
 
 
+def _verdict(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """What the watch does, first of all; nothing where nothing keeps time."""
+    if numbers.get("verdict") is not None:
+        yield "verdict", numbers["verdict_message"]
+
+
 def _timing(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     """Lines of the oscillator; none where there is none."""
+    beside = BESIDE.get(numbers.get("verdict") or "")
     for name, label, unit in AVERAGED:
         if numbers[name] is not None:
-            yield label, with_scatter(numbers[name], numbers[f"{name}_error"], unit)
-        if name == "amplitude_deg":
-            yield from _heard(numbers)
+            yield label, with_scatter(numbers[name], numbers[f"{name}_error"], unit) + (f", {beside}" if beside else "")
+    yield from _heard(numbers)
     if numbers["timing_message"] is not None:
         yield "timing", numbers["timing_message"]
     if numbers["vph"] is not None:
@@ -90,15 +96,21 @@ def _timing(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
 
 
 def _heard(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """The amplitude that a timegrapher shows, and why it is another one."""
-    heard, true = numbers["timegrapher"], numbers["amplitude_deg"]
-    if heard is None or heard["amplitude_deg"] is None:
+    """What a timegrapher shows, and why it is something else."""
+    heard = numbers["timegrapher"]
+    if heard is None:
         return
-    shown = heard["amplitude_deg"]
-    yield "timegrapher", f"would show {shown:.0f}° with a lift angle of {heard['lift_angle_deg']:.4g}°"
-    if true is not None and abs(shown - true) >= ALIKE:
-        side = "before the lift is over, so it reads high" if shown > true else "after the lift is over, so it reads low"
-        yield "", f"it takes the lift to end with the last loud noise of a beat, which comes {side}"
+    shown = [
+        None if heard["amplitude_deg"] is None else f"{heard['amplitude_deg']:.0f}°",
+        None if heard["rate_s_per_d"] is None else f"{heard['rate_s_per_d']:+.1f} s/d".replace("-", "−"),
+        None if heard["beat_error_ms"] is None else f"{heard['beat_error_ms']:.2f} ms",
+    ]
+    listed = ", ".join(one for one in shown if one is not None)
+    if listed:
+        lift = heard["lift_angle_deg"]
+        yield "timegrapher", f"would show {listed}" + ("" if lift is None else f" with a lift angle of {lift:.4g}°")
+    if heard.get("message"):
+        yield "" if listed else "timegrapher", heard["message"]
 
 
 def _places(run: Trajectory, numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
@@ -215,11 +227,9 @@ def _compared(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
 
 
 def _verdicts(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """What is to be doubted, whether the watch stands, and expectations."""
+    """What is to be doubted, and expectations."""
     for warning in numbers.get("warnings", ()):
         yield "WARNING", warning
-    if numbers["stopped"]:
-        yield "stopped", numbers["stopped_message"]
     for entry in numbers["expect"]:
         if entry["ok"] is not None:
             yield "expected", f"{expected_text(entry)}: {'kept' if entry['ok'] else 'MISSED'}"

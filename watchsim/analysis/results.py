@@ -25,9 +25,9 @@ from watchsim.storage.write import real, write_folder
 SUMMARY, TRAJECTORY, EVENTS = "summary.json", "trajectory.npz", "events.csv"
 STATE = "state.npz"
 FAILURE = "lcp_failure.json"  # only where the solver gave up on a complementarity problem
-LATER = ("beats.csv", "phases.csv", "report.txt", "movie.mp4", "movie.gif", "report.html", "import.png")
+LATER = ("beats.csv", "phases.csv", "report.txt", "movie.mp4", "movie.gif", "tick.wav", "report.html", "import.png")
 OURS = frozenset((SUMMARY, LOCK, TRAJECTORY, EVENTS, STATE, FAILURE, *LATER))
-PLOTS = re.compile(r"(plots|drawings|plots/(kinematics|last_beats)\.(png|svg|pdf))")
+PLOTS = re.compile(r"(plots|drawings|plots/(kinematics|last_beats|tape)\.(png|svg|pdf))")
 
 Extra = Mapping[str, str | bytes | Callable[[Path], object]]
 

@@ -23,6 +23,8 @@ from watchsim.analysis.no_timing import why_no_timing
 from watchsim.analysis.standstill import standstill
 from watchsim.analysis.tables import plain
 from watchsim.analysis.timegrapher import timegrapher
+from watchsim.analysis.verdicts.verdict import verdict
+from watchsim.analysis.verdicts.words import NOTHING, Verdict
 from watchsim.analysis.wheel import missed_beats
 from watchsim.analysis.whole_run import whole_run
 from watchsim.mechanism.lock import versions
@@ -44,7 +46,8 @@ def summary(run: Trajectory) -> dict[str, Any]:
 
     Besides the promised names: `frequency_hz`, `vph`, `window_s` (over which was averaged), `beats` (half swings in all),
     `whole_run` (mean, spread and extremes over all of them, see analysis/whole_run.py), `kept` (all, events or statistics),
-    `missed_beats`, `stopped` and `stopped_message` (the watch no longer ticks), `scene_file`, `stop_message`,
+    `verdict`, `verdict_message` and `verdict_details` (what the watch does, see analysis/verdicts/verdict.py; null where nothing
+    keeps time), `missed_beats`, `stopped` and `stopped_message` (the watch no longer ticks), `scene_file`, `stop_message`,
     `events_by_kind`, `counts`, `overlap` (what looking at the outlines themselves found, see simulation/overlap_watch.py),
     `step_s` (of a method with fixed steps), `worst_complementarity_residual` (worst violation of a complementarity condition,
     as a share of the problem's largest term), `warnings` (sentences, see analysis/doubts.py), `notes` (what the scene leaves
@@ -132,6 +135,7 @@ def _timing(run: Trajectory) -> dict[str, Any]:
             "missed_beats": None,
             "stopped": False,
             "stopped_message": None,
+            **_judgement(NOTHING),
         }
         values = _timing_of(None) | nothing
         return {**values, "timing_message": why_no_timing(run, None, values)}
@@ -148,6 +152,16 @@ def _timing(run: Trajectory) -> dict[str, Any]:
         "missed_beats": _missed(run, found),
         "stopped": stands is not None,
         "stopped_message": stands.message if stands else None,
+        **_judgement(verdict(run, found)),
+    }
+
+
+def _judgement(found: Verdict) -> dict[str, Any]:
+    about = {"t_s": found.t, "body": found.body, "pair": found.pair, "torque_Nm": found.torque, "count": found.count}
+    return {
+        "verdict": found.name,
+        "verdict_message": found.message,
+        "verdict_details": None if found.name is None else {**about, "works": found.works},
     }
 
 

@@ -22,11 +22,16 @@ ROUND = 1e-6  # share of the length's own moment; a wheel without larger ones is
 
 def pitch(scene: Scene, wheel: str) -> float | None:
     """Angle (rad) from tooth to tooth, of the outlines with which body `wheel` touches others; None without equal teeth."""
+    count = tooth_count(toothed_loops(scene, wheel))
+    return math.tau / count if count > 1 else None
+
+
+def toothed_loops(scene: Scene, wheel: str) -> list[Loop]:
+    """The outlines with which body `wheel` touches others."""
     body = scene.body(wheel)
     sides = [side for contact in scene.contacts for side in contact.sides if side.body == wheel]
     layers = {layer for side in sides for layer in ([side.layer] if side.layer is not None else body.layers)}
-    count = tooth_count([loop for loop in body.loops if loop.layer in layers and loop.closed and not loop.hole])
-    return math.tau / count if count > 1 else None
+    return [loop for loop in body.loops if loop.layer in layers and loop.closed and not loop.hole]
 
 
 def tooth_count(loops: list[Loop]) -> int:

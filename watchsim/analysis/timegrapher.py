@@ -3,6 +3,7 @@
 It hears noises only. From the first of a beat (the pin meets the fork, A) to the last loud one (a tooth meets the locking
 face, C) the balance is taken to swing through the lift angle, so that the amplitude is λ / (2 sin(π f Δt)). In truth C comes
 before the end of the lift, so that an instrument reads more than the true amplitude, which stands beside it in the summary.
+It reads nothing where the swing hardly leaves the lift: the end of the noises then is not that of a beat.
 """
 
 from __future__ import annotations
@@ -18,13 +19,17 @@ from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.trajectory import Array, Trajectory
 
 LOUD = 1.0 / 3.0  # of the energy of the beat's loudest noise; a tooth's rebounds from the stone are fainter
+LEAST = 1.5  # lift angles that the amplitude must be: instruments begin to show it at some 80°
+ALIKE = 0.5  # °; nearer than that it shows the true amplitude
+UNEVEN = 0.2  # of the interval from A to C: with more scatter there is no amplitude to be read
 LONGEST = 1.0 / 3.0  # of half a period; later noises, such as a knock at the turning point, are not the escapement's
 
 
 def timegrapher(run: Trajectory, found: Beats, window: Window | None = None) -> dict[str, Any] | None:
     """Readings over `window` (s; default the last one), null where not to be had; None where no beat is heard.
 
-    `lift_angle_deg`, `interval_ms` from A to C, `amplitude_deg`, and from A alone `rate_s_per_d` and `beat_error_ms`.
+    `lift_angle_deg`, `interval_ms` from A to C, `amplitude_deg`, and from A alone `rate_s_per_d` and `beat_error_ms`;
+    `message`: why the amplitude is not the true one, or is not shown.
     """
     start, end = window or last_window(run, found.nominal_period)
     inside = (found.tick >= start) & (found.tick <= end)
@@ -32,15 +37,39 @@ def timegrapher(run: Trajectory, found: Beats, window: Window | None = None) -> 
         return None
     between = found.tick - np.concatenate([np.full(2, np.nan), found.tick])[: len(found)]
     period, _ = mean_and_error(between[inside & (found.tick - between >= start)])
-    interval, _ = mean_and_error(intervals(run, found)[inside])
-    lift = run.scene.lift_angle
+    heard = intervals(run, found)[inside]
+    interval, _ = mean_and_error(heard)
+    lift, means = run.scene.lift_angle, averages(found, (start, end))
+    true = means.amplitude_deg
+    shown = amplitude_deg(lift, interval, found.nominal_period)
+    refused = None if shown is None else _refused(math.degrees(lift or 0.0), true, heard)
+    if refused is not None:
+        shown = None
     return {
         "lift_angle_deg": None if lift is None else math.degrees(lift),
         "interval_ms": None if interval is None else 1e3 * interval,
-        "amplitude_deg": amplitude_deg(lift, interval, found.nominal_period),
+        "amplitude_deg": shown,
         "rate_s_per_d": None if period is None else DAY * (found.nominal_period / period - 1.0),
-        "beat_error_ms": averages(found, (start, end)).beat_error_ms,
+        "beat_error_ms": means.beat_error_ms,
+        "message": refused or _why_another(shown, true),
     }
+
+
+def _refused(lift: float, true: float | None, heard: Array) -> str | None:
+    """Why an instrument could not tell the amplitude; `lift` and `true` in degrees."""
+    if true is not None and true < LEAST * lift:
+        return f"it could not tell the amplitude: a swing of {true:.0f}° hardly leaves the lift of {lift:.4g}°"
+    heard = heard[np.isfinite(heard)]
+    if np.std(heard) > UNEVEN * np.mean(heard):
+        return "it could not tell the amplitude: the last loud noise comes at another time in each beat"
+    return None
+
+
+def _why_another(shown: float | None, true: float | None) -> str | None:
+    if shown is None or true is None or abs(shown - true) < ALIKE:
+        return None
+    side = "before the lift is over, so it reads high" if shown > true else "after the lift is over, so it reads low"
+    return f"its amplitude takes the lift to end with the last loud noise of a beat, which comes {side}"
 
 
 def amplitude_deg(lift: float | None, interval: float | None, period: float) -> float | None:

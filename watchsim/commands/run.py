@@ -152,6 +152,7 @@ def _earlier(folder: str, scene: Scene) -> Trajectory:
 def status(run: Trajectory, summary: dict[str, Any]) -> int:
     """Exit status of a finished run; says why on stderr where it is not 0."""
     from watchsim.analysis.headlines import expected_text
+    from watchsim.analysis.verdicts.words import SPOKEN
     from watchsim.simulation.stops import Stop
 
     if run.stop.is_wrong:
@@ -171,9 +172,11 @@ def status(run: Trajectory, summary: dict[str, Any]) -> int:
     missed = [entry for entry in summary["expect"] if entry["ok"] is False]
     for entry in missed:
         say(expected_text(entry))
-    if summary.get("stopped"):
-        say("The watch has stopped ticking.")
-    return MISSED if missed or summary.get("stopped") else FINE
+    about = summary.get("verdict_details")
+    if about is not None and not about["works"]:
+        say(f"The watch does not work: it {SPOKEN.get(summary['verdict'], summary['verdict'])}.")
+        return MISSED
+    return MISSED if missed else FINE
 
 
 def _unlike(scene: Scene) -> str:

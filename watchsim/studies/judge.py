@@ -1,40 +1,40 @@
 """What does a mechanism without a cycle do instead?
 
-An ordinary run from where the search for a cycle ended, and what can be said of it. The only place that knows how a run is judged.
+An ordinary run from where the search for a cycle ended, and the verdict on it. The only place that knows how a run is judged.
 """
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 from watchsim.analysis.averages import Averages, averages
 from watchsim.analysis.beats import beats
-from watchsim.analysis.standstill import standstill
-from watchsim.analysis.wheel import progress
+from watchsim.analysis.verdicts.verdict import verdict
+from watchsim.analysis.verdicts.words import BACKWARDS, KNOCKS, STOPS, TICKS, TRIPS, UNSETTLED
 from watchsim.dynamics.forces import stored_energy
 from watchsim.mechanism.recording import Recording
-from watchsim.mechanism.roles import roles
 from watchsim.simulation.run import Run
 from watchsim.simulation.state import State
 from watchsim.simulation.stops import Stop
 from watchsim.simulation.trajectory import Trajectory
 from watchsim.studies.loop import Loop
-from watchsim.studies.return_map import BACKWARDS, KNOCKS, STOPS, TRIPS, UNSETTLED
 
+# What the search has met, where the run shows no more than that.
 WORDS = {
     STOPS: "the swing does not unlock the wheel any more",
     TRIPS: "the wheel runs through: it passes more than one tooth in an oscillation",
     BACKWARDS: "the wheel turns against its drive",
     KNOCKS: "the oscillator swings so far that it is struck on its way out, and no regular swing balances the drive",
-    UNSETTLED: "no regular oscillation was found",
 }
+WHEN = re.compile(r"^t = \S+ s  ")  # counted from the start of a run that nobody has asked for
 
 
 @dataclass(frozen=True)
 class Judgement:
-    """`verdict` is None where nothing can be said, such as when the solver gave up."""
+    """`name` is a verdict; None where nothing can be said, such as when the solver gave up."""
 
-    verdict: str | None
+    name: str | None
     message: str
 
 
@@ -55,18 +55,15 @@ def run_from(loop: Loop, state: State | None, duration: float) -> Trajectory:
     return run.trajectory(stop, 0.0, 0.0)
 
 
-def judged(run: Trajectory, suspicion: str) -> Judgement:
-    """What the mechanism does in that run; `suspicion` is what the search for a cycle met."""
+def judged(run: Trajectory, suspicion: str = "", since_start: bool = False) -> Judgement:
+    """What the mechanism does in that run; `suspicion` is what the search for a cycle met, `since_start` whether times mean anything."""
     if run.stop.gave_up:
         return Judgement(None, run.stop_message)
-    found = beats(run)
-    stands = standstill(run, found)
-    if stands is not None:
-        return Judgement(STOPS, stands.message)
-    wheel = roles(run.scene).wheel
-    if wheel is not None and len(run.t) and progress(run, wheel, run.t[-1:])[0] - progress(run, wheel, run.t[:1])[0] < 0.0:
-        return Judgement(BACKWARDS, WORDS[BACKWARDS])
-    return Judgement(suspicion, WORDS.get(suspicion, suspicion))
+    found = verdict(run)
+    if found.name in (TICKS, UNSETTLED, None) and suspicion in WORDS:
+        return Judgement(suspicion, WORDS[suspicion])
+    message = found.message or ""
+    return Judgement(found.name, message if since_start else WHEN.sub("", message))
 
 
 def late_means(run: Trajectory) -> Averages:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from watchsim.analysis.averages import mean_over
+from watchsim.analysis.verdicts.words import TICKS
 from watchsim.mechanism.errors import SceneError
 from watchsim.mechanism.override import changed
 from watchsim.mechanism.roles import roles
@@ -20,11 +21,9 @@ from watchsim.simulation.stops import Stop
 from watchsim.studies.axes import Value
 from watchsim.studies.judge import judged
 from watchsim.studies.outputs import OUTPUTS
-from watchsim.studies.return_map import UNSETTLED
-from watchsim.studies.steady import TICKS, steady
+from watchsim.studies.steady import steady
 
 Row = dict[str, Any]
-SETTLED = 1e-3  # of the amplitude: what the end of a run may scatter and drift
 
 
 @dataclass(frozen=True)
@@ -86,8 +85,6 @@ def _by_run(question: Question, scene: Scene, interrupted: Callable[[], bool]) -
         for name in (one.column, f"{one.column}_error")
         if hasattr(means, name)
     }
-    seen = judged(run, UNSETTLED)
-    row.update(verdict=seen.verdict, message=seen.message)
-    if seen.verdict == UNSETTLED and means.amplitude_deg and (means.amplitude_deg_error or 1e9) <= SETTLED * means.amplitude_deg:
-        row.update(verdict=TICKS, message="")
+    seen = judged(run, since_start=True)
+    row.update(verdict=seen.name, message="" if seen.name in (TICKS, None) else seen.message)
     return row

@@ -25,7 +25,7 @@ BOUNDED = {"friction": (0.0, None), "restitution": (0.0, 1.0), "tangential_resti
 class Quantity:
     """One number of a scene: its dotted path, its SI value, and what it is. `step` is the larger of the two by which it is varied.
 
-    `low` and `high` bound it; `change` is what a maker may get wrong: 1 % of it, 10 µm or 0.1°, in SI, told by `change_words`.
+    `low` and `high` bound it; `change` is what a maker may get wrong: 1 % more, 10 µm or 0.1°, in SI, told by `change_words`.
     """
 
     key: str
@@ -113,5 +113,5 @@ def _change(value: float, dimension: Dimension) -> tuple[float, str]:
     if dimension is ANGLE:
         return parse(f"{USUAL_ANGLE}°", ANGLE), "0.1°"
     if value:
-        return PERCENT * abs(value), "1 %"
+        return PERCENT * value, "1 %"
     return (PERCENT, "0.01") if dimension is NUMBER else (1.0, f"1 {dimension.si}")

@@ -7,7 +7,7 @@ from typing import Any
 
 from watchsim.studies.axes import Axis
 from watchsim.studies.outputs import Output
-from watchsim.studies.sensitivity import Sensitivity
+from watchsim.studies.sensitivity import Effect, Sensitivity
 from watchsim.studies.sweep import Sweep
 from watchsim.units import to
 
@@ -29,8 +29,8 @@ def sensitivity_text(found: Sensitivity) -> str:
     """The table for people: what 1 %, 10 µm or 0.1° do, the greatest effect first."""
     head = ["by", "value", "change", *(_title(one) for one in found.outputs), ""]
     body = []
-    for row in found.rows():
-        effects = [_effect(row[f"{one.column}_per_change"], row[f"{one.column}_agrees"]) for one in found.outputs]
+    for effect, row in zip(found.effects, found.rows(), strict=True):
+        effects = [_effect(effect, one.column) for one in found.outputs]
         unit = f" {row['unit']}" if row["unit"] not in ("", "°", "%") else row["unit"]
         body.append([row["key"], f"{row['value']:.5g}{unit}", row["change"], *effects, row["message"]])
     level = f"{found.cycle.amplitude_deg:.3f}°, {found.cycle.rate_s_per_d:.3f} s/d, {found.cycle.beat_error_ms:.4f} ms"
@@ -60,11 +60,14 @@ def _number(value: float | None, decimals: int) -> str:
     return "" if value is None else f"{value:.{decimals}f}".replace("-", "−")
 
 
-def _effect(value: float | None, agrees: bool) -> str:
+def _effect(effect: Effect, column: str) -> str:
+    """The effect of the usual change; "0" below rounding, with a question mark where two step sizes disagree."""
+    value, derivative = effect.of(column, effect.quantity.change), effect.by[column]
     if value is None:
         return ""
-    text = f"{value:+.3g}".replace("-", "−")
-    return text if agrees else f"{text} ?"
+    if abs(value) <= derivative.rounding * abs(effect.quantity.change):
+        return "0"
+    return f"{value:+.3g}".replace("-", "−") + ("" if derivative.agrees else " ?")
 
 
 def _table(head: Sequence[str], body: list[list[str]]) -> list[str]:

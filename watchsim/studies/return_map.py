@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from watchsim.analysis.verdicts.words import BACKWARDS, KNOCKS, STOPS, TRIPS, UNSETTLED
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.state import State
 from watchsim.studies.loop import Events, Loop, SolverGaveUp
@@ -19,8 +20,6 @@ from watchsim.studies.section import Section, is_clear, turns
 EARLY, LATE = 0.03, 0.06  # of a period: how long before its end an oscillation is looked at, and for how long after
 NEAR = 0.05  # of a pitch: by how much the wheel may miss a whole number of teeth
 FAR, LIFT = 2.0, 0.3  # times where the lift begins, and of the amplitude: what is struck further out is no lift
-
-STOPS, TRIPS, BACKWARDS, KNOCKS, UNSETTLED = "stops", "trips", "backwards", "knocks", "unsettled"
 
 
 class Return(NamedTuple):

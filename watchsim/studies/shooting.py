@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from watchsim.studies.return_map import UNSETTLED, Return
+from watchsim.analysis.verdicts.words import UNSETTLED
+from watchsim.studies.return_map import Return
 
 EXACT = 2e-14  # of the amplitude: less than rounding
 ENOUGH = 1e-10  # of the amplitude: what must be reached

@@ -14,13 +14,14 @@ from pathlib import Path
 import numpy as np
 
 from watchsim.analysis.beats import DAY
+from watchsim.analysis.verdicts.words import STOPS, TICKS, UNSETTLED
 from watchsim.mechanism.scene import Scene
 from watchsim.studies.cycle import Cycle
 from watchsim.studies.judge import judged, late_means, run_from
 from watchsim.studies.loop import Loop
 from watchsim.studies.parts import Parts, is_driven, parts_of, why_no_section
 from watchsim.studies.polish import FINER, Polished, glanced, polished
-from watchsim.studies.return_map import KNOCKS, UNSETTLED, Return, ReturnMap
+from watchsim.studies.return_map import Return, ReturnMap
 from watchsim.studies.section import NoSection, Section, first_section, section_at
 from watchsim.studies.shooting import Fixed, Lost, fixed_point
 
@@ -31,7 +32,6 @@ LONGEST = 120.0  # s, of a run that stands in for a cycle
 FEWEST = 40  # periods of it
 SETTLED = 1e-4  # of the amplitude: what such a run may still scatter and drift
 LOSSLESS = 1e-9  # of the amplitude, in one oscillation
-TICKS = "ticks"
 FINEST = 1e-13  # tolerance of a run
 
 
@@ -77,7 +77,7 @@ def _searched(loop: Loop, amplitude: float | None, brief: bool) -> Cycle:
     section = first_section(loop, parts, state)
     if isinstance(section, NoSection):
         if section.still or not is_driven(loop.scene):
-            return _instead(loop, parts, None, "stops", section.time)
+            return _instead(loop, parts, None, STOPS, section.time)
         return _by_run(loop, parts, "at no turning point of the oscillator does everything else stand still")
     if not is_driven(loop.scene):
         return _alone(ReturnMap(loop, parts, section))
@@ -158,8 +158,8 @@ def _lost(loop: Loop, parts: Parts, section: Section, lost: Lost) -> Cycle:
 
 
 def _instead(loop: Loop, parts: Parts, state, suspicion: str, duration: float) -> Cycle:  # type: ignore[no-untyped-def]
-    found = judged(run_from(loop, state, duration), suspicion)
-    return Cycle(False, found.verdict, found.message)
+    found = judged(run_from(loop, state, duration), suspicion, since_start=state is None)
+    return Cycle(False, found.name, found.message)
 
 
 def _unstable(loop: Loop, parts: Parts, section: Section, found: Fixed, exact: Polished) -> Cycle:
@@ -193,11 +193,11 @@ def _by_run(loop: Loop, parts: Parts, why: str) -> Cycle:
     """What an ordinary run settles to, where there is no section to shoot from."""
     duration = min(max(loop.scene.duration, FEWEST * parts.period), max(LONGEST, FEWEST * parts.period))
     run = run_from(loop, None, duration)
-    seen = judged(run, UNSETTLED)
+    seen = judged(run, since_start=True)
     means = late_means(run)
     message = f"{why}; this is the end of a run of {run.simulated:.4g} s"
-    if means.amplitude_deg is None or seen.verdict != UNSETTLED:
-        return Cycle(False, seen.verdict, seen.message if seen.verdict != UNSETTLED else message)
+    if means.amplitude_deg is None or seen.name not in (TICKS, UNSETTLED, None):
+        return Cycle(False, seen.name, seen.message or message)
     settled = (means.amplitude_deg_error or math.inf) <= SETTLED * means.amplitude_deg
     return Cycle(
         found=settled,

@@ -1,0 +1,1 @@
+"""Does the watch work, and if not, what is wrong with it?"""

@@ -1,0 +1,81 @@
+"""Does the oscillator swing so far that it strikes the lever from outside?"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from watchsim.analysis.averages import averages, last_window
+from watchsim.analysis.touches import Events
+from watchsim.analysis.verdicts.arms import arms
+from watchsim.analysis.verdicts.watch import Watch
+from watchsim.analysis.verdicts.words import KNOCKS, Verdict, degrees, times, torque_text, when
+from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.trajectory import Array
+
+OUTSIDE = math.pi  # rad from rest: so far round the impulse pin cannot be in the slot
+SQUARE = 0.05  # of the distance from the staff: with less of an arm a blow does not turn the oscillator back (a dart on its roller)
+
+
+def knocking(watch: Watch) -> Verdict | None:
+    """In the second half of the run, or in its last window: a blow by the lever more than half a turn from rest, or by a stop."""
+    blows = knocks(watch)
+    start, end = last_window(watch.run, watch.found.nominal_period)
+    if not len(blows) or blows["t"][-1] < min(start, 0.5 * end):
+        return None
+    swing = np.unique(np.searchsorted(watch.found.t, blows["t"]))
+    t = float(blows["t"][0])
+    pair = watch.run.pairs[int(blows["contact"][0])]
+    drive, means = watch.drive(t), averages(watch.found, (start, end))
+    where = degrees(abs(float(_angles(watch, blows["t"][-1:])[0])))
+    other = pair.body_a if pair.body_b == watch.oscillator else pair.body_b
+    words = f"{when(t)}  the watch knocks: {watch.oscillator} strikes {other} from outside at {where}, {times(len(swing))} ({pair})"
+    words += f", under {torque_text(drive)} at {watch.wheel}"
+    if means.rate_s_per_d is not None and means.rate_s_per_d > 0.0:
+        words += f"; the watch gallops, {means.rate_s_per_d:+.3g} s/d"
+    return Verdict(KNOCKS, words, t, watch.oscillator, str(pair), drive, len(swing))
+
+
+def knocks(watch: Watch) -> Events:
+    """The impacts that turn the oscillator back from outside, in order of time."""
+    if not len(watch.found):
+        return watch.run.events[:0]
+    others = watch.fixed | ({watch.lever} if watch.lever else set())
+    blows = watch.events(watch.oscillator, others, EventKind.IMPACT)
+    blows = blows[(blows["t"] >= watch.found.start[0]) & (blows["t"] <= watch.found.end[-1])]
+    stops = {number for number in np.unique(blows["contact"]).tolist() if _stop(watch, number)}
+    blows = blows[(np.abs(_angles(watch, blows["t"])) > OUTSIDE) | np.isin(blows["contact"], list(stops))]
+    square = {number for number in np.unique(blows["contact"]).tolist() if _turns_back(watch, blows, number)}
+    return blows[np.isin(blows["contact"], list(square))]
+
+
+def _stop(watch: Watch, number: int) -> bool:
+    pair = watch.run.pairs[number]
+    return bool({pair.body_a, pair.body_b} & watch.fixed)
+
+
+def _turns_back(watch: Watch, blows: Events, number: int) -> bool:
+    """Does the normal of this contact have an arm on the oscillator? Judged at one of its blows; believed where none was recorded."""
+    at = blows["t"][blows["contact"] == number]
+    at = at[watch.recorded(at)]
+    if not len(at) or not watch.has_shapes:
+        return True
+    found = arms(watch.run, watch.compiled, float(at[0]), [number])
+    x, y, _ = found.places[watch.oscillator]
+    far = math.hypot(found.point[0, 0] - x, found.point[0, 1] - y)
+    return abs(found.of(0, watch.oscillator)[0]) > SQUARE * far
+
+
+def _angles(watch: Watch, times: Array) -> Array:
+    """How far the oscillator is from rest, rad; from its half swings, as a sine, where rows were not kept."""
+    found = watch.found
+    i = np.clip(np.searchsorted(found.end, times), 0, len(found) - 1)
+    late = times >= found.t[i]
+    reach, turn = np.where(late, found.end_at[i], found.start_at[i]), np.where(late, found.end[i], found.start[i])
+    share = np.clip((times - found.t[i]) / np.where(turn == found.t[i], np.inf, turn - found.t[i]), 0.0, 1.0)
+    angles: Array = (reach - watch.rest) * np.sin(0.5 * math.pi * share)
+    kept = watch.recorded(times)
+    if kept.any():
+        angles[kept] = watch.angle(watch.oscillator, times[kept]) - watch.rest
+    return angles

@@ -1,0 +1,111 @@
+"""Which parts of a run make a watch, and where do they stand at any time?"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.analysis.beats import Beats
+from watchsim.analysis.recorded import is_recorded
+from watchsim.analysis.teeth import pitch
+from watchsim.analysis.touches import Events, between, contact_events
+from watchsim.analysis.verdicts.lean import Teeth, teeth
+from watchsim.analysis.wheel import progress
+from watchsim.mechanism.compile import Compiled, compile_scene
+from watchsim.mechanism.oscillation import oscillators
+from watchsim.mechanism.roles import drive_direction, keeps_time, roles
+from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.trajectory import Array, Trajectory
+
+SMALLEST_ADVANCE = 0.01  # rad, for a wheel whose pitch is not known
+
+
+@dataclass(frozen=True)
+class Watch:
+    """Oscillator, driven wheel and (where there is one) lever of a run, by name, and its half swings."""
+
+    run: Trajectory
+    found: Beats
+    oscillator: str
+    wheel: str
+    lever: str | None
+
+    @cached_property
+    def pitch(self) -> float | None:
+        """rad from tooth to tooth; None where that is not known."""
+        return pitch(self.run.scene, self.wheel)
+
+    @cached_property
+    def rest(self) -> float:
+        """Coordinate (rad) at which the oscillator rests."""
+        return next(one.rest for one in oscillators(self.run.scene) if one.body == self.oscillator)
+
+    @cached_property
+    def fixed(self) -> set[str]:
+        return {body.name for body in self.run.scene.bodies if body.motion == "fixed"}
+
+    @cached_property
+    def compiled(self) -> Compiled:
+        return compile_scene(self.run.scene)
+
+    @property
+    def has_shapes(self) -> bool:
+        """Whether the contacts of the run are those of its scene's outlines, so that their arms can be told."""
+        return len(self.run.pairs) == len(self.compiled.model.contacts)
+
+    @cached_property
+    def teeth(self) -> Teeth | None:
+        return teeth(self.run.scene, self.wheel)
+
+    @property
+    def least_advance(self) -> float:
+        """rad: a wheel that went less far has not passed a tooth."""
+        return SMALLEST_ADVANCE if self.pitch is None else 0.25 * self.pitch
+
+    def angle(self, body: str, times: Array) -> Array:
+        """Coordinate (rad) of a body at recorded times (s)."""
+        angles: Array = self.run.sample(times)[0][:, self.run.slices[body].start]
+        return angles
+
+    def progress(self, times: Array) -> Array:
+        """How far (rad) the wheel has turned with its drive since the start, at recorded times (s)."""
+        return progress(self.run, self.wheel, times)
+
+    def recorded(self, times: Array) -> NDArray[np.bool_]:
+        return is_recorded(self.run, times)
+
+    def events(self, first: str, others: set[str], *kinds: EventKind) -> Events:
+        """Contact events of body `first` with any of the others."""
+        return contact_events(self.run, between(first, others), *kinds)
+
+    def drive(self, t: float) -> float:
+        """N·m on the wheel at time `t` (s); tables over angle are read where the wheel was, 0 where that was not recorded."""
+        total = 0.0
+        for torque in self.run.scene.torques:
+            if torque.body != self.wheel:
+                continue
+            if not torque.table:
+                total += torque.value
+            elif torque.over == "time":
+                total += float(np.interp(t, *np.array(torque.table).T))
+            elif self.recorded(np.array([t])).all():
+                total += float(np.interp(self.angle(self.wheel, np.array([t]))[0], *np.array(torque.table).T))
+        return total
+
+    @cached_property
+    def direction(self) -> float:
+        """+1 or -1: the way the drive turns the wheel."""
+        return drive_direction(self.run.scene, self.wheel)
+
+
+def watch_of(run: Trajectory, found: Beats) -> Watch | None:
+    """None where no driven wheel keeps an oscillator going."""
+    parts = roles(run.scene)
+    if parts.oscillator is None or parts.wheel is None or not keeps_time(run.scene) or not found.angular:
+        return None
+    if found.body != parts.oscillator:
+        return None
+    return Watch(run, found, parts.oscillator, parts.wheel, parts.lever)
