@@ -1,8 +1,8 @@
 """watchsim sweep SCENE KEY=FROM:TO:N ...: how do amplitude, rate and beat error depend on the scene's numbers?
 
 KEY is any path of the scene as in --set, with units: "torques.0.value=-0.6:-1.4:9 µN·m" or "contacts.0.friction=0.1,0.12,0.15".
-Each point is the limit cycle itself (--steady, the default), or the end of a run (--duration). With --sensitivity: the derivatives
-by every number of the scene, or by the KEYs that are named.
+Each point is the limit cycle itself (--steady, the default), or the end of a run (--duration). With --sensitivity: the
+derivatives by every number of the scene, or by the KEYs that are named.
 """
 
 from __future__ import annotations
@@ -27,8 +27,6 @@ from watchsim.commands.console import (
 )
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from watchsim.mechanism.scene import Scene
     from watchsim.studies.executor import Executor
     from watchsim.studies.outputs import Output
@@ -40,7 +38,9 @@ FIGURES = (".png", ".svg")
 
 def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("scene", metavar="SCENE", help="a scene file (TOML), or the folder that holds scene.toml")
-    parser.add_argument("keys", metavar="KEY=FROM:TO:N", nargs="*", help="a key of the scene and its values; several make a grid")
+    parser.add_argument(
+        "keys", metavar="KEY=FROM:TO:N", nargs="*", help="a key of the scene and its values; several make a grid"
+    )
     parser.add_argument("-o", "--output", metavar="DIR", help="results folder (default results/NAME-sweep)")
     parser.add_argument(
         "--outputs",
@@ -51,7 +51,9 @@ def options(parser: argparse.ArgumentParser) -> None:
     how = parser.add_mutually_exclusive_group()
     how.add_argument("--steady", action="store_true", help="each point by its limit cycle (the default)")
     how.add_argument("--duration", metavar="TIME", help='each point by a run of that length instead, such as "60 s"')
-    parser.add_argument("--sensitivity", action="store_true", help="derivatives by every number of the scene, or by the KEYs named")
+    parser.add_argument(
+        "--sensitivity", action="store_true", help="derivatives by every number of the scene, or by the KEYs named"
+    )
     parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], help="change a value of the scene")
     parser.add_argument("--tol", metavar="X", type=float, help="relative error per step (default: the scene's, 1e-9)")
     parser.add_argument("--workers", metavar="N", type=int, help="processes (default: as many as there are processors)")
@@ -86,7 +88,9 @@ def _sweep(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...]) 
     from watchsim.units import TIME
 
     if not args.keys:
-        raise InputError('sweep: name a key and its values, such as "torques.0.value=-0.6:-1.4:9 µN·m", or ask for --sensitivity.')
+        raise InputError(
+            'sweep: name a key and its values, such as "torques.0.value=-0.6:-1.4:9 µN·m", or ask for --sensitivity.'
+        )
     axes = axes_from_texts(scene, args.keys)
     duration = None if args.duration is None else parse_positive("--duration", args.duration, TIME)
     points = 1
@@ -204,7 +208,7 @@ def _folder(args: argparse.Namespace, scene: Scene) -> Path:
     return folder
 
 
-def _figure_of_sweep(done: Any) -> Figure | None:
+def _figure_of_sweep(done: Any) -> Any:
     from watchsim.render.study import plot_sweep
 
     try:
@@ -214,13 +218,13 @@ def _figure_of_sweep(done: Any) -> Figure | None:
         return None
 
 
-def _figure_of_sensitivity(done: Any) -> Figure | None:
+def _figure_of_sensitivity(done: Any) -> Any:
     from watchsim.render.effects import plot_sensitivity
 
     return plot_sensitivity(done) if done.effects else None
 
 
-def _write(folder: Path, numbers: dict[str, Any], table: dict[str, list[Any]], figure: Figure | None) -> None:
+def _write(folder: Path, numbers: dict[str, Any], table: dict[str, list[Any]], figure: Any) -> None:
     """sweep.json, sweep.csv, sweep.parquet where pyarrow is installed, sweep.png and sweep.svg."""
     from watchsim.analysis.tables import json_text
     from watchsim.storage.write import write_file

@@ -71,7 +71,9 @@ def _bars(axes: Axes, shown: list[Effect], output: Output) -> None:
         axes.text(*place, text, va="center", ha="left" if side > 0 else "right", fontsize=7, color=INK)
     axes.set_xlim(-1.25 * longest, 1.25 * longest)
     axes.axvline(0.0, color=FAINT, linewidth=0.8)
-    axes.set_title(f"change of {output.label} ({output.unit})" if output.unit else output.label, fontsize=9, loc="left", color=INK)
+    axes.set_title(
+        f"change of {output.label} ({output.unit})" if output.unit else output.label, fontsize=9, loc="left", color=INK
+    )
     axes.grid(True, axis="x", color=GRID, linewidth=0.7)
     axes.set_axisbelow(True)
     axes.spines[["top", "right", "left"]].set_visible(False)

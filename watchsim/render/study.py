@@ -1,7 +1,7 @@
 """How is a sweep drawn?
 
-One key: a curve with error bars for each output. Two keys: a family of curves where one of them has few values, else a map. Points
-without a number are marked where they lie, with what happens there.
+One key: a curve with error bars for each output. Two keys: a family of curves where one of them has few values, else a map.
+Points without a number are marked where they lie, with what happens there.
 """
 
 from __future__ import annotations
@@ -47,15 +47,15 @@ def plot_sweep(sweep: Sweep) -> Figure:
     panels = figure.subplots(len(sweep.outputs), 1, sharex=True, squeeze=False)[:, 0]
     figure.suptitle(sweep.title, x=0.01, ha="left", fontsize=11, weight="bold", color=INK)
     along, other = _roles(sweep, numeric)
-    is_map = other is not None and other.is_numeric and len(other.values) > FAMILY
+    field = other if other is not None and other.is_numeric and len(other.values) > FAMILY else None
     for axes, output in zip(panels, sweep.outputs, strict=True):
-        if is_map:
-            _map(figure, axes, sweep, along, other, output)
+        if field is not None:
+            _map(figure, axes, sweep, along, field, output)
         else:
             _curves(axes, sweep, along, other, output)
-        _dress(axes, grid=not is_map)
+        _dress(axes, grid=field is None)
     panels[-1].set_xlabel(_label(along), color=INK)
-    if other is not None and not is_map:
+    if other is not None and field is None:
         handles, labels = panels[0].get_legend_handles_labels()
         figure.legend(
             handles, labels, title=_label(other), loc="outside right upper", frameon=False, fontsize=8, title_fontsize=8
@@ -118,7 +118,7 @@ def _map(figure: Figure, axes: Axes, sweep: Sweep, along: Axis, other: Axis, out
     axes.set_facecolor(GRID)  # where there is no number
     bar = figure.colorbar(mesh, ax=axes)
     bar.set_label(f"{output.label} ({output.unit})" if output.unit else output.label, color=INK)
-    bar.outline.set_visible(False)  # type: ignore[operator]
+    bar.outline.set_visible(False)
     axes.set_ylabel(_label(other), color=INK)
 
 

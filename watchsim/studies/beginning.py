@@ -1,8 +1,8 @@
 """Where does a study begin when a changed dimension has pushed bodies into each other?
 
 A scene is drawn so that bodies touch at the start: a tooth at its locking face, the lever at its banking. Shift a pivot by a
-micrometre, and they overlap. A limit cycle does not depend on the start, so the coordinates may give way: by the smallest change
-that leaves no gap negative.
+micrometre, and they overlap. A limit cycle does not depend on the start, so the coordinates may give way: by the smallest
+change that leaves no gap negative.
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
 """How do the machines of a cluster share the points of a study?
 
-Through dask.distributed, the extra `cluster`: a scheduler that somebody has started, and workers on which this package is installed.
+Through dask.distributed, the extra `cluster`: a scheduler that somebody has started, and workers on which this package is
+installed.
 """
 
 from __future__ import annotations

@@ -84,7 +84,9 @@ class Journal:
 
 def _compare(earlier: Study, now: Study, folder: Path) -> None:
     """ValueError with every difference between two studies."""
-    differences = [f"{name} {_difference(earlier.get(name), now.get(name))}" for name in now if earlier.get(name) != now.get(name)]
+    differences = [
+        f"{name} {_difference(earlier.get(name), now.get(name))}" for name in now if earlier.get(name) != now.get(name)
+    ]
     if differences:
         raise ValueError(
             f"--resume {folder}: this folder holds another study: {'; '.join(differences)}. Go on with what it was made with, "

@@ -1,7 +1,7 @@
 """How is the event loop driven from a given state, without keeping rows?
 
-What `simulate` does around the compiled loop, reduced to what a return map needs: states that can be copied, changed and taken up
-again, and the events of an oscillation.
+What `simulate` does around the compiled loop, reduced to what a return map needs: states that can be copied, changed and taken
+up again, and the events of an oscillation.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class Loop:
         self.compiled: Compiled = like.compiled if like else compile_scene(scene)
         model = self.compiled.model
         self.options = options_for(self.compiled.size, tolerance, natural_step(self.compiled, scene.duration))
-        self.finder = like.finder if like else CellFinder(model)
+        self.finder: CellFinder = like.finder if like else CellFinder(model)
         self._scratch = new_scratch(model)
         self._record = new_record(model, ROWS_PER_STEP + 64, EVENTS + EVENTS_PER_CONTACT * room_for(model), NO_ROWS)
         self.simulated = 0.0  # s, over all states
@@ -86,7 +86,7 @@ class Loop:
             if stop == Stop.CELL_UNKNOWN:
                 self.finder.learn(int(self._scratch.unknown[0]), self._scratch.at.copy())
                 continue
-            rows, events = self._record.used
+            events = int(self._record.used[1])
             parts.append(self._record.events[:events].copy())
             self._record.used[:] = 0
             if stop == Stop.DURATION or (stop == Stop.SLICE and state.clock[0] >= time):
@@ -104,4 +104,4 @@ class Loop:
 
 def copied(state: State) -> State:
     """The same state in arrays of its own."""
-    return State(*(array.copy() for array in state))
+    return State._make(array.copy() for array in state)

@@ -1,7 +1,7 @@
 """What are amplitude, period and beat error over a cycle that closes?
 
-The same definitions as for the beats of a run, over exactly one turn of the wheel: half swings from turning point to turning point,
-noises with the silence before them. As the cycle closes, the first half swing has its predecessors too.
+The same definitions as for the beats of a run, over exactly one turn of the wheel: half swings from turning point to turning
+point, noises with the silence before them. As the cycle closes, the first half swing has its predecessors too.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ from watchsim.studies.section import turns
 class Measures(NamedTuple):
     """Means over a cycle; SI. `spread` is the largest minus the smallest amplitude of whole oscillations.
 
-    `uneven`  half of the half period that ends in a swing upwards less the one that ends in a swing downwards; the beat error is
-              its magnitude
+    uneven  half of: the half period that ends in a swing upwards, less the one that ends in a swing downwards; the beat error
+            is its magnitude
     """
 
     amplitude: float

@@ -1,7 +1,7 @@
 """What does the watch do at one point of a study?
 
-A question is a scene and how it is answered; an answer is a row of plain numbers. A point that cannot be computed has its reason
-in the row and stops nobody.
+A question is a scene and how it is answered; an answer is a row of plain numbers. A point that cannot be computed has its
+reason in the row and stops nobody.
 """
 
 from __future__ import annotations

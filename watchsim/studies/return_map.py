@@ -1,7 +1,7 @@
 """Where does the oscillator turn next time, when it turned at this amplitude?
 
-One oscillation, from a turning point to the next one on the same side, and what else must be true of it: two turning points, each
-reached in free flight, and the wheel one tooth further.
+One oscillation, from a turning point to the next one on the same side, and what else must be true of it: two turning points,
+each reached in free flight, and the wheel one tooth further.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import numpy as np
 from watchsim.analysis.verdicts.words import BACKWARDS, KNOCKS, STOPS, TRIPS, UNSETTLED
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.state import State
-from watchsim.studies.loop import Events, Loop, SolverGaveUp
+from watchsim.studies.loop import Events, Loop, SolverGaveUp, copied
 from watchsim.studies.parts import Parts
 from watchsim.studies.section import Section, is_clear, turns
 
@@ -61,7 +61,7 @@ class ReturnMap:
         seen = len(turns(events, self.parts))
         advance = self._advance(state)
         clear = is_clear(self.loop, self.parts, state)
-        kept = state._replace(**{name: array.copy() for name, array in state._asdict().items()})
+        kept = copied(state)
         events = np.concatenate([events, self.loop.on(state, end + LATE * self.period)])
         own = turns(events, self.parts)
         trouble = self._trouble(seen, own, events, oscillations, advance)

@@ -1,7 +1,7 @@
 """What matters in this watch?
 
-The derivatives of amplitude, rate and beat error by every number of the scene, by differences between limit cycles. Each is taken
-with two steps; where they disagree the row says so.
+The derivatives of amplitude, rate and beat error by every number of the scene, by differences between limit cycles. Each is
+taken with two steps; where they disagree the row says so.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ class Sensitivity:
     wall_s: float
 
     def rows(self) -> list[Row]:
-        """One flat row per quantity: key, value and step in the unit people read, effects per 1 %, per unit and per usual change."""
+        """One flat row per quantity: key and value in the unit people read, effects per usual change, per 1 % and per unit."""
         return [self._row(effect) for effect in self.effects]
 
     def numbers(self) -> dict[str, Any]:
@@ -113,7 +113,8 @@ def sensitivity(
     """Derivatives on the limit cycle by all numbers of the scene, or by those at `keys`; other arguments as of `sweep`.
 
     Springs count by their stiffness and damping by its coefficient, also where the scene gives frequency and Q, and the rate is
-    against the nominal frequency of the scene as it is. The derivative of the beat error is that of `Cycle.uneven_ms`. ValueError where the scene has no limit cycle.
+    against the nominal frequency of the scene as it is. The derivative of the beat error is that of
+    `Cycle.uneven_ms`. ValueError where the scene has no limit cycle.
     """
     if not isinstance(scene, Scene):
         from watchsim.mechanism.load import load
@@ -246,4 +247,3 @@ def _derivative(quantity: Quantity, rows: Mapping[float, Row], column: str, leve
 
 def _size(effect: Effect, column: str) -> float:
     return abs(effect.of(column, effect.quantity.change) or 0.0)
-

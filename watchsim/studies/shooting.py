@@ -1,7 +1,7 @@
 """At which amplitude does an oscillation end as it began?
 
-Orbits of a smooth map of one number run monotonically to the next fixed point, or out of the region where the mechanism works as
-it should. So the search goes where the map goes, by Newton's steps with slopes between the last two points, and keeps brackets.
+Orbits of a smooth map of one number run monotonically to the next fixed point, or out of the region where the mechanism works
+as it should. So the search goes where the map goes, by Newton's steps with slopes between the last two points, and keeps brackets.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class Fixed(NamedTuple):
 
 
 class Lost(NamedTuple):
-    """No fixed point on the way: at `amplitude` (None: the map itself came to no end) there is `trouble`; up or down from the start."""
+    """No fixed point on the way: at `amplitude` there is `trouble`; `rising` where that lies above the start."""
 
     amplitude: float
     trouble: str

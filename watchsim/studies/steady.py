@@ -1,7 +1,7 @@
 """What does the watch settle to, without waiting until it has?
 
-The limit cycle is a fixed point of the return map (return_map.py), found by shooting (shooting.py) and closed over a whole turn of
-the wheel (polish.py). Where there is none, an ordinary run tells what happens instead (judge.py).
+The limit cycle is a fixed point of the return map (return_map.py), found by shooting (shooting.py) and closed over a whole turn
+of the wheel (polish.py). Where there is none, an ordinary run tells what happens instead (judge.py).
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ import numpy as np
 from watchsim.analysis.beats import DAY
 from watchsim.analysis.verdicts.words import STOPS, TICKS, UNSETTLED
 from watchsim.mechanism.scene import Scene
+from watchsim.simulation.state import State
 from watchsim.studies.cycle import Cycle
 from watchsim.studies.judge import judged, late_means, run_from
 from watchsim.studies.loop import Loop
@@ -77,7 +78,7 @@ def _searched(loop: Loop, amplitude: float | None, brief: bool) -> Cycle:
     section = first_section(loop, parts, state)
     if isinstance(section, NoSection):
         if section.still or not is_driven(loop.scene):
-            return _instead(loop, parts, None, STOPS, section.time)
+            return _instead(loop, None, STOPS, section.time)
         return _by_run(loop, parts, "at no turning point of the oscillator does everything else stand still")
     if not is_driven(loop.scene):
         return _alone(ReturnMap(loop, parts, section))
@@ -85,26 +86,32 @@ def _searched(loop: Loop, amplitude: float | None, brief: bool) -> Cycle:
 
 
 def _shot(loop: Loop, parts: Parts, section: Section, amplitude: float, brief: bool) -> Cycle:
-    """By shooting from that section and amplitude; the section moves on until what stands still comes back to its place."""
-    for _ in range(SECTIONS):
-        oscillate = ReturnMap(loop, parts, section)
-        found = fixed_point(oscillate, amplitude)
-        if isinstance(found, Lost):
-            return _lost(loop, parts, section, found)
-        again = _moved_on(oscillate, found)
-        if again is None:
-            break
-        section, amplitude = again, found.amplitude
+    """By shooting from that section and amplitude."""
+    oscillate, found = _fixed(loop, parts, section, amplitude)
+    if isinstance(found, Lost):
+        return _lost(oscillate, found)
     if brief:
         return _told(loop, parts, glanced(oscillate, found))
     finer = Loop(loop.scene, max(FINER * loop.tolerance, FINEST), like=loop)
     exact = polished(oscillate, found, finer)
     loop.simulated += finer.simulated
     if isinstance(exact, Return):
-        return _lost(loop, parts, section, Lost(found.amplitude, exact.trouble, False))
+        return _lost(oscillate, Lost(found.amplitude, exact.trouble, False))
     if exact.multiplier is None or not abs(exact.multiplier) < 1.0:
-        return _unstable(loop, parts, section, found, exact)
+        return _unstable(loop, parts, exact)
     return _told(loop, parts, exact)
+
+
+def _fixed(loop: Loop, parts: Parts, section: Section, amplitude: float) -> tuple[ReturnMap, Fixed | Lost]:
+    """The fixed point; the section moves on until what stands still at it comes back to its place."""
+    for _ in range(SECTIONS):
+        oscillate = ReturnMap(loop, parts, section)
+        found = fixed_point(oscillate, amplitude)
+        again = None if isinstance(found, Lost) else _moved_on(oscillate, found)
+        if again is None:
+            break
+        section, amplitude = again, found.amplitude
+    return oscillate, found
 
 
 def _moved_on(oscillate: ReturnMap, found: Fixed) -> Section | None:
@@ -124,45 +131,50 @@ def _moved_on(oscillate: ReturnMap, found: Fixed) -> Section | None:
 
 def _told(loop: Loop, parts: Parts, exact: Polished) -> Cycle:
     """A cycle in watchmakers' units."""
-    means, degrees = exact.means, _in_degrees(loop, parts)
-    rate_of = DAY * parts.nominal / means.period**2
+    means = exact.means
     return Cycle(
         found=True,
         verdict=TICKS if parts.wheel >= 0 else None,
-        amplitude_deg=degrees(means.amplitude),
-        amplitude_deg_error=None if exact.amplitude_error is None else degrees(exact.amplitude_error),
+        amplitude_deg=_degrees(loop, parts, means.amplitude),
+        amplitude_deg_error=_degrees(loop, parts, exact.amplitude_error),
         period_s=means.period,
         period_s_error=exact.period_error,
         rate_s_per_d=DAY * (parts.nominal / means.period - 1.0),
-        rate_s_per_d_error=None if exact.period_error is None else rate_of * exact.period_error,
+        rate_s_per_d_error=_times(DAY * parts.nominal / means.period**2, exact.period_error),
         beat_error_ms=1e3 * abs(means.uneven),
-        beat_error_ms_error=None if exact.beat_error_error is None else 1e3 * exact.beat_error_error,
+        beat_error_ms_error=_times(1e3, exact.beat_error_error),
         uneven_ms=1e3 * means.uneven,
-        multipliers=(exact.multiplier,) if exact.multiplier is not None else (),
-        multipliers_error=(exact.multiplier_error,) if exact.multiplier_error is not None else (),
+        multipliers=() if exact.multiplier is None else (exact.multiplier,),
+        multipliers_error=() if exact.multiplier_error is None else (exact.multiplier_error,),
         oscillations=exact.per,
-        tooth_spread_deg=degrees(means.spread),
+        tooth_spread_deg=_degrees(loop, parts, means.spread),
     )
 
 
-def _in_degrees(loop: Loop, parts: Parts):  # type: ignore[no-untyped-def]
+def _degrees(loop: Loop, parts: Parts, value: float | None) -> float | None:
+    """None for a body that slides."""
     angular = loop.scene.bodies[parts.body].motion == "pivot"
-    return math.degrees if angular else lambda _: None
+    return math.degrees(value) if angular and value is not None else None
 
 
-def _lost(loop: Loop, parts: Parts, section: Section, lost: Lost) -> Cycle:
+def _times(factor: float, value: float | None) -> float | None:
+    return None if value is None else factor * value
+
+
+def _lost(oscillate: ReturnMap, lost: Lost) -> Cycle:
     """The orbit left the region where the mechanism works as it should: what happens there."""
+    loop, parts, section = oscillate.loop, oscillate.parts, oscillate.section
     if lost.trouble not in ("", UNSETTLED):
-        return _instead(loop, parts, section.at(parts, lost.amplitude), lost.trouble, AFTERWARDS * parts.period)
+        return _instead(loop, section.at(parts, lost.amplitude), lost.trouble, AFTERWARDS * parts.period)
     return _by_run(loop, parts, "the search for a limit cycle came to no end")
 
 
-def _instead(loop: Loop, parts: Parts, state, suspicion: str, duration: float) -> Cycle:  # type: ignore[no-untyped-def]
+def _instead(loop: Loop, state: State | None, suspicion: str, duration: float) -> Cycle:
     found = judged(run_from(loop, state, duration), suspicion, since_start=state is None)
     return Cycle(False, found.name, found.message)
 
 
-def _unstable(loop: Loop, parts: Parts, section: Section, found: Fixed, exact: Polished) -> Cycle:
+def _unstable(loop: Loop, parts: Parts, exact: Polished) -> Cycle:
     """A cycle that the mechanism leaves at the slightest disturbance: what it does then."""
     told = _told(loop, parts, exact)
     multiplier = exact.multiplier or 0.0

@@ -37,7 +37,7 @@ class Sweep:
     wall_s: float
 
     def column(self, name: str) -> list[Any]:
-        """The values of a key, an output ("amplitude") or a column ("amplitude_deg_error") in all rows; KeyError for none such."""
+        """The values of a key, an output ("amplitude") or a column ("amplitude_deg_error") in all rows; KeyError for no such."""
         names = {one.name: one.column for one in self.outputs}
         return [row[names.get(name, name)] for row in self.rows]
 
@@ -67,11 +67,11 @@ def sweep(
 ) -> Sweep:
     """Every combination of the values: the limit cycle of each, or with `steady` off the end of a run of `duration`.
 
-    values     dotted path of the scene -> SI numbers, or texts with units: {"torques.0.value": np.linspace(-0.8e-6, -1.4e-6, 13)}
+    values     dotted path of the scene -> SI numbers, or texts with units: {"contacts.0.friction": [0.1, 0.12, 0.15]}
     outputs    of amplitude, rate, beat_error, period, multiplier
     duration   seconds, or a text with its unit (default the scene's)
-    workers    processes (more than one only where this is called under `if __name__ == "__main__":`); `scheduler` the address of
-               a dask.distributed scheduler instead
+    workers    processes (more than one only where this is called under `if __name__ == "__main__":`); `scheduler` the
+               address of a dask.distributed scheduler instead
     folder     where finished rows are kept one by one (rows.jsonl); with `resume` those that are there already are taken up
     progress   called as progress(points done, points)
 
