@@ -6,7 +6,7 @@ KEY=FROM:TO:N or KEY=A,B,C, with the unit behind the last number or behind each 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -58,8 +58,7 @@ def axes_from_texts(scene: Scene, texts: Iterable[str]) -> tuple[Axis, ...]:
             axes.append(_axis(scene, key, told))
         except UnitError as error:
             faults.append(Fault(key or text, str(error), f" = {told}" if told else "", place="sweep"))
-    _raise(faults)
-    return checked(scene, axes)
+    return checked(scene, axes, faults)
 
 
 def axes_from_values(scene: Scene, values: Mapping[str, Sequence[Any]]) -> tuple[Axis, ...]:
@@ -71,13 +70,12 @@ def axes_from_values(scene: Scene, values: Mapping[str, Sequence[Any]]) -> tuple
             axes.append(_made(key, [_si(value, dimension) for value in listed], dimension))
         except (UnitError, TypeError) as error:
             faults.append(Fault(key, str(error), place="sweep"))
-    _raise(faults)
-    return checked(scene, axes)
+    return checked(scene, axes, faults)
 
 
-def checked(scene: Scene, axes: Sequence[Axis]) -> tuple[Axis, ...]:
-    """The axes, where each key is one of the scene and takes its first value; SceneError lists all faults."""
-    faults: list[Fault] = []
+def checked(scene: Scene, axes: Sequence[Axis], found: Sequence[Fault] = ()) -> tuple[Axis, ...]:
+    """The axes, where each key is one of the scene and takes its first value; SceneError lists all faults, those `found` too."""
+    faults = list(found)
     for i, axis in enumerate(axes):
         if any(axis.key == earlier.key for earlier in axes[:i]):
             faults.append(Fault(axis.key, "is given twice; name each key once", place="sweep"))
@@ -85,11 +83,12 @@ def checked(scene: Scene, axes: Sequence[Axis]) -> tuple[Axis, ...]:
         try:
             scene.set(axis.key, axis.values[0])
         except SceneError as error:
-            faults += error.faults
+            faults += (replace(fault, place="sweep") for fault in error.faults)
     points = int(np.prod([len(axis.values) for axis in axes], dtype=float)) if axes else 0
     if points > MOST:
         faults.append(Fault(axes[0].key, f"these are {points} points; a sweep takes at most {MOST}", place="sweep"))
-    _raise(faults)
+    if faults:
+        raise SceneError(faults)
     return tuple(axes)
 
 
@@ -147,8 +146,3 @@ def _made(key: str, values: list[Any], dimension: Dimension | None) -> Axis:
     if dimension is None or dimension is NUMBER:
         return Axis(key, tuple(values))
     return Axis(key, tuple(values), dimension.si, dimension.usual[1])
-
-
-def _raise(faults: list[Fault]) -> None:
-    if faults:
-        raise SceneError(faults)

@@ -90,7 +90,7 @@ def _compare(earlier: Study, now: Study, folder: Path) -> None:
     if differences:
         raise ValueError(
             f"--resume {folder}: this folder holds another study: {'; '.join(differences)}. Go on with what it was made with, "
-            "or choose another folder"
+            "or choose another folder."
         )
 
 

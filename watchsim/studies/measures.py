@@ -48,8 +48,7 @@ def measures(events: Events, parts: Parts, start: float, time: float) -> Measure
 
 def _marks(events: Events, parts: Parts, ends: Array) -> Array:
     """What the beat error is measured by: first noises where they are heard, else passages; one for each half swing."""
-    struck = (events["kind"] == EventKind.IMPACT) & (events["contact"] >= 0)
-    noises = events["t"][struck & parts.touching[np.maximum(events["contact"], 0)]]
+    noises = events["t"][(events["kind"] == EventKind.IMPACT) & parts.touching[events["contact"]]]
     heard = first_noises(noises, ends[:-1], ends[1:], 0.5 * parts.period)
     passages = events["t"][(events["kind"] == EventKind.CROSS) & (events["body"] == parts.body)]
     if len(passages) != len(heard) or np.isfinite(heard).mean() >= HEARD:

@@ -22,7 +22,7 @@ class Parts:
     coordinate  of the oscillator; `body` its number in the scene; `level` where it stands in balance
     wheel       coordinate of the escape wheel, -1 without one; `sense` the way it is driven; `pitch` None without equal teeth
     period      of small swings; `nominal` what the rate is measured against
-    touching    by contact: True where it touches the oscillator
+    touching    by contact: True where it touches the oscillator; a last False stands for no contact (-1)
     """
 
     coordinate: int
@@ -49,7 +49,7 @@ def parts_of(scene: Scene, compiled: Compiled) -> Parts | None:
     body, model = names.index(found.oscillator), compiled.model
     coordinate = compiled.slices[found.oscillator].start
     owner = model.primitives.body
-    touching = (owner[model.contacts.a] == body) | (owner[model.contacts.b] == body)
+    touching = np.append((owner[model.contacts.a] == body) | (owner[model.contacts.b] == body), False)
     escapes = found.wheel is not None and found.lever is not None
     return Parts(
         coordinate,

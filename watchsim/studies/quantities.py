@@ -25,7 +25,8 @@ BOUNDED = {"friction": (0.0, None), "restitution": (0.0, 1.0), "tangential_resti
 class Quantity:
     """One number of a scene: its dotted path, its SI value, and what it is.
 
-    `step` is the larger of the two by which it is varied; `low` and `high` bound it; `change` is what a maker may get wrong: 1 % more, 10 µm or 0.1°, in SI, told by `change_words`.
+    `step` is the larger of the two by which it is varied; `low` and `high` bound it; `change` is what a maker may get wrong:
+    1 % more, 10 µm or 0.1°, in SI, told by `change_words`.
     """
 
     key: str

@@ -104,8 +104,7 @@ def knocked(events: Events, own: Events, parts: Parts) -> bool:
     The first noise of a beat is heard where the lift begins, on the way in; the lift ends as far on the other side. How far
     from the rest position a noise was heard follows from its time: between passage and turning point nearly a sine.
     """
-    struck = (events["kind"] == EventKind.IMPACT) & (events["contact"] >= 0)
-    noises = events["t"][struck & parts.touching[np.maximum(events["contact"], 0)]]
+    noises = events["t"][(events["kind"] == EventKind.IMPACT) & parts.touching[events["contact"]]]
     passages = events["t"][(events["kind"] == EventKind.CROSS) & (events["body"] == parts.body)]
     reached = np.append(0.0, own["t"])
     for passage in passages:

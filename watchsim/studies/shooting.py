@@ -1,7 +1,8 @@
 """At which amplitude does an oscillation end as it began?
 
 Orbits of a smooth map of one number run monotonically to the next fixed point, or out of the region where the mechanism works
-as it should. So the search goes where the map goes, by Newton's steps with slopes between the last two points, and keeps brackets.
+as it should. So the search goes where the map goes, by Newton's steps with slopes between the last two points, and keeps
+brackets.
 """
 
 from __future__ import annotations

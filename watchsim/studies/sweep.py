@@ -37,7 +37,7 @@ class Sweep:
     wall_s: float
 
     def column(self, name: str) -> list[Any]:
-        """The values of a key, an output ("amplitude") or a column ("amplitude_deg_error") in all rows; KeyError for no such."""
+        """The values of a key, an output ("amplitude") or a column ("amplitude_deg_error") in all rows; else KeyError."""
         names = {one.name: one.column for one in self.outputs}
         return [row[names.get(name, name)] for row in self.rows]
 
