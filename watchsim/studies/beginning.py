@@ -15,7 +15,7 @@ from watchsim.mechanism.model import frozen
 from watchsim.simulation.options import Options
 from watchsim.simulation.take_back import kinematics_at, overlapping_rows, taken_back_from
 
-DEEPEST = (1e-6, 1e-5, 5e-5)  # m: how deep an overlap may be; tried in turn, since far behind a face other faces are near
+DEEPEST = (1e-6, 1e-5)  # m: how deep an overlap may be; tried in turn, since far behind a face other faces are near
 
 
 def freed_start(compiled: Compiled, options: Options) -> NDArray[np.float64] | None:

@@ -6,9 +6,10 @@ installed.
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator
 
-from watchsim.studies.executor import Points, WorkersLost
+from watchsim.studies.executor import LOOK, Points, WorkersLost
 from watchsim.studies.point import Question, Row, answer
 
 TIMEOUT = 10.0  # s to reach the scheduler
@@ -35,13 +36,16 @@ class Cluster:
         try:
             shared = client.scatter(question, broadcast=True)
             futures = [client.submit(_work, number, shared, dict(changes), pure=False) for number, changes in points]
-            for _, made in self._distributed.as_completed(futures, with_results=True):
-                if interrupted():
-                    client.cancel(futures)
-                    return
-                yield made
-        except self._distributed.scheduler.KilledWorker as error:
-            raise WorkersLost(f"workers of the cluster were ended: {error}") from error
+            ready = self._distributed.as_completed(futures, loop=client.loop, with_results=True)
+            while ready.count() and not interrupted():
+                if not ready.has_ready():
+                    time.sleep(LOOK)
+                    continue
+                for _, made in ready.next_batch(block=False):
+                    yield made
+            client.cancel(futures)
+        except self._distributed.KilledWorker as error:
+            raise WorkersLost(f"workers of the cluster were ended from outside: {error}") from error
         finally:
             client.close()
 
