@@ -16,7 +16,7 @@ SECTIONS = ("scene", "bodies", "springs", "torques", "damping", "contacts", "des
 # What is no dimension of the mechanism: how a drawing is read, how a body starts, vertices, and what must stay a whole number.
 LEFT_OUT = {"schema", "snap", "material", "axis", "polygon", "line", "count", "turns", "velocity", "spin", "table", "pivot"}
 RELATIVE = 1e-3  # of a value: the larger of the two steps
-SHORT, SLIGHT, SMALL = 5e-7, 2e-4, 1e-3  # steps of lengths (m), angles (rad) and of numbers that are zero
+SHORT, SLIGHT, SMALL = 5e-7, 2e-4, 1e-4  # steps of lengths (m), angles (rad) and of numbers that are zero
 PERCENT, USUAL_LENGTH, USUAL_ANGLE = 0.01, 1e-5, 0.1  # what is compared: 1 %, 10 µm, 0.1°
 BOUNDED = {"friction": (0.0, None), "restitution": (0.0, 1.0), "tangential_restitution": (0.0, 1.0), "coulomb": (0.0, None)}
 

@@ -143,7 +143,7 @@ def found(
     # One oscillation tells all where the teeth are alike, but for the multiplier.
     brief = cycle.oscillations == 1 and all(one.name != "multiplier" for one in outputs)
     question = Question(scene, True, None, tolerance, float(np.radians(cycle.amplitude_deg)), brief)
-    points = [point for quantity in asked for point in _points(quantity)]
+    points = [point for quantity in asked for point in points_of(quantity)]
     rows = _rows(question, points, executor, folder, resume, progress)
     level = _level(cycle, outputs)
     by_key: dict[str, dict[float, Row]] = {}
@@ -151,7 +151,7 @@ def found(
         key, value = points[number]
         by_key.setdefault(key, {})[value] = row
     whole = len(rows) == len(points)
-    effects = [_effect(one, by_key[one.key], level, outputs) for one in asked if len(by_key.get(one.key, {})) == 4]
+    effects = [effect_of(one, by_key[one.key], level, outputs) for one in asked if len(by_key.get(one.key, {})) == 4]
     effects.sort(key=lambda effect: -_size(effect, outputs[0].column))
     return Sensitivity(scene.title, cycle, outputs, tuple(effects), whole, time.perf_counter() - begun)
 
@@ -181,7 +181,7 @@ def _stencil(quantity: Quantity) -> tuple[float, float]:
     return CENTRAL
 
 
-def _points(quantity: Quantity) -> list[tuple[str, float]]:
+def points_of(quantity: Quantity) -> list[tuple[str, float]]:
     """Where the quantity is varied to: two values for each of the two steps."""
     stencil = _stencil(quantity)
     return [(quantity.key, quantity.value + at * step) for step in _steps(quantity) for at in stencil]
@@ -216,7 +216,7 @@ def _level(cycle: Cycle, outputs: tuple[Output, ...]) -> dict[str, float | None]
     return {one.column: numbers[SMOOTH.get(one.column, one.column)] for one in outputs}
 
 
-def _effect(
+def effect_of(
     quantity: Quantity, rows: Mapping[float, Row], level: Mapping[str, float | None], outputs: tuple[Output, ...]
 ) -> Effect:
     messages = [row["message"] or row["verdict"] for row in rows.values() if row[outputs[0].column] is None]

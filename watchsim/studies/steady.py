@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from watchsim.analysis.beats import DAY
-from watchsim.analysis.verdicts.words import STOPS, TICKS, UNSETTLED
+from watchsim.analysis.verdicts.words import STOPS, TICKS, UNSETTLED, VERDICTS
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation.state import State
 from watchsim.studies.cycle import Cycle
@@ -164,9 +164,10 @@ def _times(factor: float, value: float | None) -> float | None:
 def _lost(oscillate: ReturnMap, lost: Lost) -> Cycle:
     """The orbit left the region where the mechanism works as it should: what happens there."""
     loop, parts, section = oscillate.loop, oscillate.parts, oscillate.section
-    if lost.trouble not in ("", UNSETTLED):
-        return _instead(loop, section.at(parts, lost.amplitude), lost.trouble, AFTERWARDS * parts.period)
-    return _by_run(loop, parts, "the search for a limit cycle came to no end")
+    state = section.at(parts, lost.amplitude)
+    if lost.trouble in VERDICTS and lost.trouble != UNSETTLED:
+        return _instead(loop, state, lost.trouble, AFTERWARDS * parts.period)
+    return _by_run(loop, parts, "the search for a limit cycle came to no end", state)
 
 
 def _instead(loop: Loop, state: State | None, suspicion: str, duration: float) -> Cycle:
@@ -201,11 +202,11 @@ def _alone(oscillate: ReturnMap) -> Cycle:
     return Cycle(False, None, message, multipliers=(ratio,))
 
 
-def _by_run(loop: Loop, parts: Parts, why: str) -> Cycle:
-    """What an ordinary run settles to, where there is no section to shoot from."""
+def _by_run(loop: Loop, parts: Parts, why: str, state: State | None = None) -> Cycle:
+    """What an ordinary run settles to, from the scene's start or from that state."""
     duration = min(max(loop.scene.duration, FEWEST * parts.period), max(LONGEST, FEWEST * parts.period))
-    run = run_from(loop, None, duration)
-    seen = judged(run, since_start=True)
+    run = run_from(loop, state, duration)
+    seen = judged(run, since_start=state is None)
     means = late_means(run)
     message = f"{why}; this is the end of a run of {run.simulated:.4g} s"
     if means.amplitude_deg is None or seen.name not in (TICKS, UNSETTLED, None):
