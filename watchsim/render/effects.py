@@ -17,6 +17,8 @@ MOST = 30  # bars in a panel
 UP, DOWN = "#1f4e79", "#b5452c"
 WIDTH, ROW = 4.2, 0.24  # inches, of a panel and of a bar
 LEAST = 1e-4  # of the longest bar: shorter ones are none
+TOLD = 1e-3  # of the longest bar: shorter ones have no number beside them
+ROOM = 1.4  # longest bars, on either side
 
 
 def plot_sensitivity(found: Sensitivity) -> Figure:
@@ -65,11 +67,13 @@ def _bars(axes: Axes, shown: list[Effect], output: Output) -> None:
     longest = max((abs(value) for value in values), default=0.0) or 1.0
     for bar, value, hatch in zip(bars, values, hatches, strict=True):
         bar.set_hatch(hatch)
-        text = f"{value:+.2g}".replace("-", "−") if value else "0"
+        if abs(value) < TOLD * longest:
+            continue
         side = 1.0 if value >= 0.0 else -1.0
-        place = (value + 0.015 * side * longest, bar.get_y() + 0.5 * bar.get_height())
+        place = (value + 0.02 * side * longest, bar.get_y() + 0.5 * bar.get_height())
+        text = f"{value:+.3g}".replace("-", "−")
         axes.text(*place, text, va="center", ha="left" if side > 0 else "right", fontsize=7, color=INK)
-    axes.set_xlim(-1.25 * longest, 1.25 * longest)
+    axes.set_xlim(-ROOM * longest, ROOM * longest)
     axes.axvline(0.0, color=FAINT, linewidth=0.8)
     axes.set_title(
         f"change of {output.label} ({output.unit})" if output.unit else output.label, fontsize=9, loc="left", color=INK

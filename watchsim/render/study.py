@@ -89,11 +89,11 @@ def _curves(axes: Axes, sweep: Sweep, along: Axis, other: Axis | None, output: O
         colour = CURVES[i % len(CURVES)]
         label = f"{_shown(other, value):.6g}" if other and other.is_numeric else str(value)
         axes.errorbar(x, y, yerr=bars, color=colour, marker="o", markersize=3.5, linewidth=1.2, capsize=2.0, label=label)
-        _failures(axes, [row for row in rows if row[output.column] is None], along)
+        _failures(axes, [row for row in rows if row[output.column] is None], along, colour if other else CONTACT)
     axes.set_ylabel(f"{output.label} ({output.unit})" if output.unit else output.label, color=INK)
 
 
-def _failures(axes: Axes, rows: Sequence[Any], along: Axis) -> None:
+def _failures(axes: Axes, rows: Sequence[Any], along: Axis, colour: str) -> None:
     """Crosses at the lower edge, named once per verdict."""
     from matplotlib.transforms import blended_transform_factory
 
@@ -101,7 +101,7 @@ def _failures(axes: Axes, rows: Sequence[Any], along: Axis) -> None:
     told: set[str] = set()
     for row in rows:
         x, verdict = _shown(along, row[along.key]), row["verdict"] or "no result"
-        axes.plot([x], [0.04], marker="x", color=CONTACT, markersize=5, transform=edge, clip_on=False, linestyle="none")
+        axes.plot([x], [0.04], marker="x", color=colour, markersize=5, transform=edge, clip_on=False, linestyle="none")
         if verdict not in told:
             style: dict[str, Any] = {"color": CONTACT, "fontsize": 8, "ha": "center", "va": "bottom"}
             axes.text(x, 0.09, verdict, transform=edge, **style)
@@ -116,6 +116,8 @@ def _map(figure: Figure, axes: Axes, sweep: Sweep, along: Axis, other: Axis, out
             field[y.index(_shown(other, row[other.key])), x.index(_shown(along, row[along.key]))] = row[output.column]
     mesh = axes.pcolormesh(x, y, np.ma.masked_invalid(field), cmap=MAP, shading="nearest")
     axes.set_facecolor(GRID)  # where there is no number
+    if reasons := sorted({row["verdict"] or "no result" for row in sweep.rows if row[output.column] is None}):
+        axes.set_title(f"grey: {', '.join(reasons)}", loc="right", fontsize=8, color=INK)
     bar = figure.colorbar(mesh, ax=axes)
     bar.set_label(f"{output.label} ({output.unit})" if output.unit else output.label, color=INK)
     bar.outline.set_visible(False)

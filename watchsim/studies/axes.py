@@ -15,9 +15,10 @@ from watchsim.mechanism.errors import Fault, SceneError
 from watchsim.mechanism.read_bodies import motion_of
 from watchsim.mechanism.scene import Scene
 from watchsim.mechanism.schema import LISTED, NAMED, key_at
-from watchsim.units import NUMBER, Dimension, UnitError, parse, split
+from watchsim.units import DIMENSIONS, NUMBER, Dimension, UnitError, known_unit, parse, split
 
 MOST = 100_000  # points of a sweep
+DESIGN = "design"  # the table of a scene that is made from a design
 
 Value = float | str
 
@@ -74,7 +75,7 @@ def axes_from_values(scene: Scene, values: Mapping[str, Sequence[Any]]) -> tuple
 
 
 def checked(scene: Scene, axes: Sequence[Axis], found: Sequence[Fault] = ()) -> tuple[Axis, ...]:
-    """The axes, where each key is one of the scene and takes its first value; SceneError lists all faults, those `found` too."""
+    """The axes, where each key is one of the scene and takes its first value; SceneError lists all faults and those `found`."""
     faults = list(found)
     for i, axis in enumerate(axes):
         if any(axis.key == earlier.key for earlier in axes[:i]):
@@ -95,6 +96,8 @@ def checked(scene: Scene, axes: Sequence[Axis], found: Sequence[Fault] = ()) -> 
 def dimension_of(scene: Scene, key: str) -> Dimension | None:
     """What kind of quantity the scene holds at a dotted path; None where it is no quantity, or there is no such path."""
     path = tuple(key.split("."))
+    if path[0] == DESIGN and len(path) == 2:
+        return _of_design(scene, path[1])
     found = key_at(path)
     if found is None:
         return None
@@ -104,6 +107,17 @@ def dimension_of(scene: Scene, key: str) -> Dimension | None:
         number = int(path[1]) if path[1].isdigit() else len(entries)
         name = entries[number].get("body") if number < len(entries) else None
     return found.dimension_for(motion_of(scene.source.get("bodies", {}), name))
+
+
+def _of_design(scene: Scene, name: str) -> Dimension | None:
+    """What a dimension of the scene's design measures: a scene that is made from one holds all of them with their units."""
+    table = scene.source.get(DESIGN)
+    value = table.get(name) if isinstance(table, dict) else None
+    try:
+        powers = known_unit(split(value)[1]).powers
+    except UnitError:
+        return None
+    return next((one for one in DIMENSIONS if powers in one.powers), None)
 
 
 def _axis(scene: Scene, key: str, told: str) -> Axis:

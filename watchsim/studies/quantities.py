@@ -9,10 +9,10 @@ from typing import Any
 from watchsim.mechanism.body import Body
 from watchsim.mechanism.oscillation import nominal_frequency
 from watchsim.mechanism.scene import Scene
-from watchsim.studies.axes import dimension_of
+from watchsim.studies.axes import DESIGN, dimension_of
 from watchsim.units import ANGLE, LENGTH, NUMBER, Dimension, UnitError, parse
 
-SECTIONS = ("scene", "bodies", "springs", "torques", "damping", "contacts", "design")
+SECTIONS = ("scene", "bodies", "springs", "torques", "damping", "contacts", DESIGN)
 # What is no dimension of the mechanism: how a drawing is read, how a body starts, vertices, and what must stay a whole number.
 LEFT_OUT = {"schema", "snap", "material", "axis", "polygon", "line", "count", "turns", "velocity", "spin", "table", "pivot"}
 RELATIVE = 1e-3  # of a value: the larger of the two steps
@@ -76,6 +76,8 @@ def quantity_at(scene: Scene, key: str, value: Any) -> Quantity | None:
         number = parse(value, dimension)
     except UnitError:
         return None
+    if path[0] == DESIGN and dimension is NUMBER and number.is_integer():
+        return None  # a count, as of teeth
     change, words = _change(number, dimension)
     return Quantity(key, number, dimension, _step(number, dimension), change, words, *BOUNDED.get(path[-1], (None, None)))
 
