@@ -17,7 +17,7 @@ MOST = 30  # bars in a panel
 UP, DOWN = "#1f4e79", "#b5452c"
 WIDTH, ROW = 4.2, 0.24  # inches, of a panel and of a bar
 LEAST = 1e-4  # of the longest bar: shorter ones are none
-TOLD = 1e-3  # of the longest bar: shorter ones have no number beside them
+TOLD = 1e-4  # of the longest bar: shorter ones have no number beside them
 ROOM = 1.4  # longest bars, on either side
 
 
