@@ -31,6 +31,11 @@ _HOMES = {
     "write_results": "watchsim.results.folder",
     "verdict": "watchsim.analysis.verdicts.verdict",
     "verify": "watchsim.verification.all_checks",
+    "steady": "watchsim.studies.steady",
+    "Cycle": "watchsim.studies.cycle",
+    "sweep": "watchsim.studies.sweep",
+    "sensitivity": "watchsim.studies.sensitivity",
+    "plot_sweep": "watchsim.render.study",
     "plot_kinematics": "watchsim.render.plots",
     "movie": "watchsim.render.run_movie",
     "frame": "watchsim.render.run_movie",
@@ -60,6 +65,7 @@ if TYPE_CHECKING:
     from watchsim.render.plots import plot_kinematics as plot_kinematics
     from watchsim.render.run_movie import frame as frame
     from watchsim.render.run_movie import movie as movie
+    from watchsim.render.study import plot_sweep as plot_sweep
     from watchsim.render.tape import plot_tape as plot_tape
     from watchsim.results.folder import read_results as read_results
     from watchsim.results.folder import write_results as write_results
@@ -70,6 +76,10 @@ if TYPE_CHECKING:
     from watchsim.simulation.record.trajectory import Trajectory as Trajectory
     from watchsim.simulation.simulate import simulate as simulate
     from watchsim.simulation.stops import Stop as Stop
+    from watchsim.studies.cycle import Cycle as Cycle
+    from watchsim.studies.sensitivity import sensitivity as sensitivity
+    from watchsim.studies.steady import steady as steady
+    from watchsim.studies.sweep import sweep as sweep
     from watchsim.verification.all_checks import verify as verify
 
 

@@ -1,0 +1,241 @@
+"""watchsim sweep SCENE KEY=FROM:TO:N ...: how do amplitude, rate and beat error depend on the scene's numbers?
+
+KEY is any path of the scene as in --set, with units: "torques.0.value=-0.6:-1.4:9 µN·m" or "contacts.0.friction=0.1,0.12,0.15".
+Each point is the limit cycle itself (--steady, the default), or the end of a run (--duration). With --sensitivity: the
+derivatives by every number of the scene, or by the KEYs that are named.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from watchsim import stopping
+from watchsim.commands.common.console import (
+    FINE,
+    GAVE_UP,
+    MISSED,
+    InputError,
+    Progress,
+    announce_compile,
+    parse_names,
+    parse_positive,
+    print_json,
+    say,
+)
+
+if TYPE_CHECKING:
+    from watchsim.scene.scene import Scene
+    from watchsim.studies.executor import Executor
+    from watchsim.studies.outputs import Output
+
+HELP = "parameter study: table and plot; or what matters in a watch (--sensitivity)"
+FILES = ("rows.jsonl", "sweep.csv", "sweep.json", "sweep.parquet", "sweep.png", "sweep.svg")
+FIGURES = (".png", ".svg")
+
+
+def options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("scene", metavar="SCENE", help="a scene file (TOML), or the folder that holds scene.toml")
+    parser.add_argument(
+        "keys", metavar="KEY=FROM:TO:N", nargs="*", help="a key of the scene and its values; several make a grid"
+    )
+    parser.add_argument("-o", "--output", metavar="DIR", help="results folder (default results/NAME-sweep)")
+    parser.add_argument(
+        "--outputs",
+        metavar="NAMES",
+        default="amplitude,rate,beat_error",
+        help="of amplitude, rate, beat_error, period, multiplier, with commas (default %(default)s)",
+    )
+    how = parser.add_mutually_exclusive_group()
+    how.add_argument("--steady", action="store_true", help="each point by its limit cycle (the default)")
+    how.add_argument("--duration", metavar="TIME", help='each point by a run of that length instead, such as "60 s"')
+    parser.add_argument(
+        "--sensitivity", action="store_true", help="derivatives by every number of the scene, or by the KEYs named"
+    )
+    parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], help="change a value of the scene")
+    parser.add_argument("--tol", metavar="X", type=float, help="relative error per step (default: the scene's, 1e-9)")
+    parser.add_argument("--workers", metavar="N", type=int, help="processes (default: as many as there are processors)")
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="of dask.distributed, to compute on a cluster")
+    parser.add_argument("--resume", action="store_true", help="go on with what the results folder holds")
+    parser.add_argument("--force", action="store_true", help="begin anew in a results folder that exists")
+    parser.add_argument("--no-plots", action="store_true", help="write no plots")
+    parser.add_argument("--json", action="store_true", help="print one JSON object")
+
+
+def run(args: argparse.Namespace) -> int:
+    from watchsim.commands.common.inputs import load_scene
+    from watchsim.studies.outputs import outputs_named
+
+    outputs = outputs_named(parse_names(args.outputs) or ())
+    if args.tol is not None and not 1e-13 <= args.tol <= 1e-2:
+        raise InputError(f"--tol {args.tol:g}: must lie between 1e-13 and 1e-2.")
+    if args.workers is not None and args.workers < 1:
+        raise InputError(f"--workers {args.workers}: at least one process must work.")
+    if args.sensitivity and args.duration:
+        raise InputError("--sensitivity is taken on limit cycles; leave --duration out.")
+    scene = load_scene(args.scene, args.set)
+    study = _sensitivity if args.sensitivity else _sweep
+    return study(args, scene, outputs)
+
+
+def _sweep(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...]) -> int:
+    from watchsim.studies.axes import axes_from_texts
+    from watchsim.studies.point import Question
+    from watchsim.studies.sweep import swept
+    from watchsim.studies.table import sweep_table
+    from watchsim.units import TIME
+
+    if not args.keys:
+        raise InputError(
+            'sweep: name a key and its values, such as "torques.0.value=-0.6:-1.4:9 µN·m", or ask for --sensitivity.'
+        )
+    axes = axes_from_texts(scene, args.keys)
+    duration = None if args.duration is None else parse_positive("--duration", args.duration, TIME)
+    points = 1
+    for axis in axes:
+        points *= len(axis.values)
+    question = Question(scene, args.duration is None, duration, args.tol)
+    folder = _folder(args, scene)
+    with stopping.keeping():
+        done = _watched(
+            lambda progress: swept(
+                question, axes, outputs, _executor(args, points), folder=folder, resume=args.resume, progress=progress
+            )
+        )
+        _write(folder, done.numbers(), sweep_table(done), None if args.no_plots else _figure_of_sweep(done))
+    if args.json:
+        from watchsim.results.tables import plain
+
+        print_json(plain(done.numbers()))
+    else:
+        from watchsim.studies.report import sweep_text
+
+        print(sweep_text(done))
+        print(f"Results: {folder}")
+    without = sum(row[outputs[0].column] is None for row in done.rows)
+    if without:
+        say(f"{without} of {len(done.rows)} points have no {outputs[0].label}; the column message says why.")
+    return _status(done.whole, folder, MISSED if without == len(done.rows) else FINE)
+
+
+def _sensitivity(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...]) -> int:
+    from watchsim.studies.sensitivity import found
+    from watchsim.studies.table import sensitivity_table
+
+    folder = _folder(args, scene)
+    with stopping.keeping():
+        done = _watched(
+            lambda progress: found(
+                scene, args.keys or None, outputs, _executor(args, None), args.tol, folder, args.resume, progress
+            )
+        )
+        _write(folder, done.numbers(), sensitivity_table(done), None if args.no_plots else _figure_of_sensitivity(done))
+    if args.json:
+        from watchsim.results.tables import plain
+
+        print_json(plain(done.numbers()))
+    else:
+        from watchsim.studies.report import sensitivity_text
+
+        print(sensitivity_text(done))
+        print(f"Results: {folder}")
+    return _status(done.whole, folder, FINE)
+
+
+def _status(whole: bool, folder: Path, fine: int) -> int:
+    if whole:
+        return fine
+    say(f"Interrupted. Finished points are kept in {folder}; --resume goes on with the others.")
+    return stopping.status()
+
+
+def _executor(args: argparse.Namespace, points: int | None) -> Executor:
+    from watchsim.jit import is_cached
+    from watchsim.studies.executor import chosen
+    from watchsim.studies.sweep import processors
+
+    workers = args.workers or processors()
+    if points is not None:
+        workers = min(workers, points)
+    announce_compile()
+    if workers > 1 and args.scheduler is None and not is_cached("advance.advance"):
+        _compile_once()
+    return chosen(workers, args.scheduler)
+
+
+def _compile_once() -> None:
+    """Before several processes do it all at once."""
+    from watchsim.profiles_path import profiles_dir
+    from watchsim.scene.file.load import load
+    from watchsim.studies.loop import Loop
+
+    Loop(load(profiles_dir() / "balance"), 1e-9).warm_up()
+
+
+def _watched(compute: Callable[[Progress], Any]) -> Any:
+    """With a progress line; a worker that was killed is no fault of the program."""
+    from watchsim.studies.executor import WorkersLost
+
+    progress = Progress("points:")
+    try:
+        return compute(progress)
+    except WorkersLost as error:
+        progress.close()
+        say(f"{error}. Finished points are kept; --resume goes on with the others, --workers 1 needs least memory.")
+        raise SystemExit(GAVE_UP) from error
+    finally:
+        progress.close()
+
+
+def _folder(args: argparse.Namespace, scene: Scene) -> Path:
+    """The results folder, made if it is not there; refused where it holds something else."""
+    from watchsim.commands.common.output_place import secured_folder
+
+    name = scene.path.parent.name if scene.path else "scene"
+    what = "sensitivity" if args.sensitivity else "sweep"
+    folder = Path(args.output or Path("results") / f"{name}-{what}")
+    secured_folder(folder, "results", default=not args.output)
+    if folder.is_dir() and any(folder.iterdir()) and not args.resume:
+        if not args.force:
+            raise InputError(
+                f"{folder} exists already. Go on with it (--resume), begin anew in it (--force), or choose another folder (-o)."
+            )
+        for old in FILES:
+            (folder / old).unlink(missing_ok=True)
+    folder.mkdir(exist_ok=True)
+    return folder
+
+
+def _figure_of_sweep(done: Any) -> Any:
+    from watchsim.render.study import plot_sweep
+
+    try:
+        return plot_sweep(done) if done.rows else None
+    except ValueError as error:
+        say(f"No plot: {error}.")
+        return None
+
+
+def _figure_of_sensitivity(done: Any) -> Any:
+    from watchsim.render.effects import plot_sensitivity
+
+    return plot_sensitivity(done) if done.effects else None
+
+
+def _write(folder: Path, numbers: dict[str, Any], table: dict[str, list[Any]], figure: Any) -> None:
+    """sweep.json, sweep.csv, sweep.parquet where pyarrow is installed, sweep.png and sweep.svg."""
+    from watchsim.results.tables import json_text
+    from watchsim.storage.write import write_file
+    from watchsim.studies.table import csv_text, parquet_writer
+
+    text = json_text(numbers)
+    write_file(folder / "sweep.json", lambda path: path.write_text(text, encoding="utf-8"), "the numbers")
+    write_file(folder / "sweep.csv", lambda path: path.write_text(csv_text(table), encoding="utf-8"), "the table")
+    write = parquet_writer(table)
+    if write is not None:
+        write_file(folder / "sweep.parquet", write, "the table")
+    if figure is not None and not stopping.requested():
+        for ending in FIGURES:
+            write_file(folder / f"sweep{ending}", figure.savefig, "the plot")

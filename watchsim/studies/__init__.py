@@ -1,0 +1,1 @@
+"""What is the watch's own answer? Limit cycles, sweeps over parameters, sensitivities: many short simulations, one table."""

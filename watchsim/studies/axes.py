@@ -1,0 +1,162 @@
+"""Which values of which key does a sweep go through?
+
+KEY=FROM:TO:N or KEY=A,B,C, with the unit behind the last number or behind each of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from watchsim.scene.errors import Fault, SceneError
+from watchsim.scene.file.keys.schema import LISTED, NAMED, key_at
+from watchsim.scene.file.readers.read_bodies import motion_of
+from watchsim.scene.scene import Scene
+from watchsim.units import DIMENSIONS, NUMBER, Dimension, UnitError, known_unit, parse, split
+
+MOST = 100_000  # points of a sweep
+DESIGN = "design"  # the table of a scene that is made from a design
+
+Value = float | str
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One key of the scene and its values: SI numbers, or texts as in the file where the key holds no quantity."""
+
+    key: str
+    values: tuple[Value, ...]
+    si: str = ""  # unit of the values, "" for plain numbers and texts
+    usual: str = ""  # unit in which people read them
+
+    @property
+    def column(self) -> str:
+        """Name of the column in a table, with its unit."""
+        return f"{self.key}_{slug(self.si)}" if self.si else self.key
+
+    @property
+    def is_numeric(self) -> bool:
+        return all(not isinstance(value, str) for value in self.values)
+
+
+def slug(unit: str) -> str:
+    """A unit as the end of a column's name: "N·m/rad" is "N_m_per_rad"."""
+    plain = unit.replace("·", "_").replace("/", "_per_").replace("²", "2").replace("³", "3").replace("°", "deg")
+    return plain.replace("µ", "u").strip("_")
+
+
+def axes_from_texts(scene: Scene, texts: Iterable[str]) -> tuple[Axis, ...]:
+    """The axes of KEY=... texts; SceneError lists all that is wrong with them."""
+    axes, faults = [], []
+    for text in texts:
+        key, equals, told = (part.strip() for part in text.partition("="))
+        try:
+            if not equals or not key or not told:
+                raise UnitError('write KEY=FROM:TO:N or KEY=A,B,C, such as "torques.0.value=-0.6:-1.4:9 µN·m"')
+            axes.append(_axis(scene, key, told))
+        except UnitError as error:
+            faults.append(Fault(key or text, str(error), f" = {told}" if told else "", place="sweep"))
+    return checked(scene, axes, faults)
+
+
+def axes_from_values(scene: Scene, values: Mapping[str, Sequence[Any]]) -> tuple[Axis, ...]:
+    """The axes of a mapping from keys to values: SI numbers, or texts with their units."""
+    axes, faults = [], []
+    for key, listed in values.items():
+        dimension = dimension_of(scene, key)
+        try:
+            axes.append(_made(key, [_si(value, dimension) for value in listed], dimension))
+        except (UnitError, TypeError) as error:
+            faults.append(Fault(key, str(error), place="sweep"))
+    return checked(scene, axes, faults)
+
+
+def checked(scene: Scene, axes: Sequence[Axis], found: Sequence[Fault] = ()) -> tuple[Axis, ...]:
+    """The axes, where each key is one of the scene and takes its first value; SceneError lists all faults and those `found`."""
+    faults = list(found)
+    for i, axis in enumerate(axes):
+        if any(axis.key == earlier.key for earlier in axes[:i]):
+            faults.append(Fault(axis.key, "is given twice; name each key once", place="sweep"))
+            continue
+        try:
+            scene.set(axis.key, axis.values[0])
+        except SceneError as error:
+            faults += (replace(fault, place="sweep") for fault in error.faults)
+    points = int(np.prod([len(axis.values) for axis in axes], dtype=float)) if axes else 0
+    if points > MOST:
+        faults.append(Fault(axes[0].key, f"these are {points} points; a sweep takes at most {MOST}", place="sweep"))
+    if faults:
+        raise SceneError(faults)
+    return tuple(axes)
+
+
+def dimension_of(scene: Scene, key: str) -> Dimension | None:
+    """What kind of quantity the scene holds at a dotted path; None where it is no quantity, or there is no such path."""
+    path = tuple(key.split("."))
+    if path[0] == DESIGN and len(path) == 2:
+        return _of_design(scene, path[1])
+    found = key_at(path)
+    if found is None:
+        return None
+    name: object = path[1] if path[0] in NAMED else None
+    if path[0] in LISTED:
+        entries = scene.source.get(path[0], [])
+        number = int(path[1]) if path[1].isdigit() else len(entries)
+        name = entries[number].get("body") if number < len(entries) else None
+    return found.dimension_for(motion_of(scene.source.get("bodies", {}), name))
+
+
+def _of_design(scene: Scene, name: str) -> Dimension | None:
+    """What a dimension of the scene's design measures: a scene that is made from one holds all of them with their units."""
+    table = scene.source.get(DESIGN)
+    value = table.get(name) if isinstance(table, dict) else None
+    try:
+        powers = known_unit(split(value)[1]).powers
+    except UnitError:
+        return None
+    return next((one for one in DIMENSIONS if powers in one.powers), None)
+
+
+def _axis(scene: Scene, key: str, told: str) -> Axis:
+    dimension = dimension_of(scene, key)
+    parts = [part.strip() for part in told.split(":")]
+    if dimension is not None and len(parts) == 3:
+        count, unit = split(parts[2])
+        start, end = (_quantity(part, unit, dimension) for part in parts[:2])
+        if not count.isdigit() or int(count) < 1:
+            raise UnitError(f'"{parts[2]}": how many values must be a whole number from 1 on')
+        if int(count) > MOST:
+            raise UnitError(f"{count} values are more than the {MOST} a sweep takes")
+        if int(count) == 1 and start != end:
+            raise UnitError("one value cannot go from one number to another; write at least 2, or the value itself")
+        return _made(key, [float(value) for value in np.linspace(start, end, int(count))], dimension)
+    if dimension is not None and len(parts) != 1:
+        raise UnitError("write FROM:TO:N, such as 0.1:0.2:5, or values with commas between them")
+    items = [item.strip() for item in told.split(",")]
+    if dimension is None:
+        return _made(key, items, None)
+    unit = split(items[-1])[1]
+    return _made(key, [_quantity(item, unit, dimension) for item in items], dimension)
+
+
+def _quantity(text: str, unit: str, dimension: Dimension) -> float:
+    """A number with its own unit, else with `unit`."""
+    number, own = split(text)
+    return parse(text if own or not unit else f"{number} {unit}", dimension)
+
+
+def _si(value: Any, dimension: Dimension | None) -> Value:
+    if isinstance(value, str):
+        return parse(value, dimension) if dimension is not None else value
+    return float(value)
+
+
+def _made(key: str, values: list[Any], dimension: Dimension | None) -> Axis:
+    if not values:
+        raise UnitError("no values are given")
+    if dimension is None or dimension is NUMBER:
+        return Axis(key, tuple(values))
+    return Axis(key, tuple(values), dimension.si, dimension.usual[1])

@@ -1,0 +1,79 @@
+"""What of a mechanism does a return map look at?"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.analysis.timing.teeth import pitch
+from watchsim.mechanism.compile import Compiled
+from watchsim.model.records import OVER_TIME
+from watchsim.scene.oscillation import frequency, nominal_frequency
+from watchsim.scene.roles import drive_direction, roles
+from watchsim.scene.scene import Scene
+
+
+@dataclass(frozen=True)
+class Parts:
+    """The oscillator and, where there is one, the escape wheel; SI.
+
+    coordinate  of the oscillator; `body` its number in the scene; `level` where it stands in balance
+    wheel       coordinate of the escape wheel, -1 without one; `sense` the way it is driven; `pitch` None without equal teeth
+    period      of small swings; `nominal` what the rate is measured against
+    touching    by contact: True where it touches the oscillator; a last False stands for no contact (-1)
+    """
+
+    coordinate: int
+    body: int
+    level: float
+    wheel: int
+    sense: float
+    pitch: float | None
+    period: float
+    nominal: float
+    touching: NDArray[np.bool_]
+
+    @property
+    def teeth(self) -> int | None:
+        return round(2.0 * np.pi / self.pitch) if self.pitch else None
+
+
+def parts_of(scene: Scene, compiled: Compiled) -> Parts | None:
+    """None where nothing swings on its own."""
+    found, hertz = roles(scene), frequency(scene)
+    if found.oscillator is None or hertz is None:
+        return None
+    names = [body.name for body in scene.bodies]
+    body, model = names.index(found.oscillator), compiled.model
+    coordinate = compiled.slices[found.oscillator].start
+    owner = model.primitives.body
+    touching = np.append((owner[model.contacts.a] == body) | (owner[model.contacts.b] == body), False)
+    escapes = found.wheel is not None and found.lever is not None
+    return Parts(
+        coordinate,
+        body,
+        float(model.coordinates[coordinate].level),
+        compiled.slices[found.wheel].start if found.wheel else -1,
+        drive_direction(scene, found.wheel) if found.wheel else 1.0,
+        pitch(scene, found.wheel) if found.wheel and escapes else None,
+        1.0 / hertz,
+        1.0 / (nominal_frequency(scene) or hertz),
+        touching,
+    )
+
+
+def is_driven(scene: Scene) -> bool:
+    """Does a torque or a force put work in?"""
+    return any(torque.table or torque.value for torque in scene.torques)
+
+
+def why_no_section(compiled: Compiled, parts: Parts) -> str:
+    """Why no turning point can stand for the whole state; "" where one can."""
+    model = compiled.model
+    if any(table.over == OVER_TIME for table in model.tables):
+        return "a torque over time drives the mechanism, so that no state of it comes back"
+    if any(own == parts.coordinate for own, _, _ in compiled.against) or model.coordinates[parts.coordinate].watched == 0:
+        return "the oscillator rides on a moving body"
+    return ""
