@@ -26,6 +26,9 @@ def run(args: argparse.Namespace) -> int:
     from watchsim.commands.scenes import load_scene
     from watchsim.contact.counts import modelled_pairs
     from watchsim.drawing.findings import Finding
+    from watchsim.escapement.measure import measure
+    from watchsim.escapement.report import statics, text
+    from watchsim.escapement.rules import judgements
     from watchsim.mechanism.check import check_report, check_text
     from watchsim.mechanism.compile import compile_scene
     from watchsim.simulation.start import refusals
@@ -40,6 +43,9 @@ def run(args: argparse.Namespace) -> int:
     for met, words in refusals(scene, compiled):
         x, y = (1e3 * value for value in met.place)
         report["findings"].append(Finding("overlap", "error", words, "", x_mm=x, y_mm=y).as_dict())
+    function = measure(scene, compiled)
+    report["statics"] = statics(function)
+    report["findings"] += [judgement.as_dict() for judgement in judgements(scene, function)]
     if args.png:
         from watchsim.render.still import still
 
@@ -49,5 +55,5 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         print_json(report)
     else:
-        print(check_text(report, scene))
+        print(check_text(report, scene, text(function)))
     return BAD_INPUT if any(finding["severity"] == "error" for finding in report["findings"]) else FINE

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,8 +13,9 @@ from watchsim.escapement.pallets import Passage
 from watchsim.escapement.parts import Parts
 from watchsim.escapement.quantity import Quantity, over_teeth, single
 
-STEP = math.radians(0.25)  # of the lever as the pin pushes it
-BACK = math.radians(1.0)  # of the balance: so far behind the last touch it is let go again, or half its play in the slot
+STEP = math.radians(0.25)  # of the lever as the pin carries it
+BACK = math.radians(1.0)  # of the balance: a pin that has one wall only stands half as far from it
+WALLS = math.radians(40.0)  # of the balance: what is further away is no wall of the slot
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,7 +25,32 @@ class Entry:
 
     angle: float
     way: float
+    contact: int
     knock: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Slot:
+    """The balance angles at which the pin touches the wall ahead of it and the one behind it; None where there is none."""
+
+    front: Touch | None
+    back: Touch | None
+
+    @property
+    def any(self) -> Touch:
+        wall = self.front or self.back
+        assert wall is not None
+        return wall
+
+    def free(self, way: float) -> float:
+        """A balance angle close to the wall ahead, or to the one behind where there is none ahead, that touches neither.
+
+        Close, because what is far behind the pin may be no wall of the slot but a horn that comes up later.
+        """
+        if self.front is None:
+            return self.any.angle + way * 0.5 * BACK
+        room = BACK if self.back is None else min(BACK, abs(self.front.angle - self.back.angle))
+        return self.front.angle - way * 0.5 * room
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +58,7 @@ class Fork:
     """The beat from the upper bank to the lower one first, then the one back. rad.
 
     lift_angle   of the balance, from the pin's meeting the fork on one bank to its leaving it on the other
-    unlocking    of the balance, the part of it until the tooth leaves the locking face
+    unlocking    of the balance, the part of it until the tooth leaves the locking face, driven by the pin
     impulse_end  of the balance, the part of it until the tooth is let off, the pin driven by the fork
     pin_shake    of the lever, with the pin in the middle of the slot
     knocking     amplitude from rest at which the pin strikes the outside of the fork; nan where it never does
@@ -81,7 +108,7 @@ class Balance:
         """Where the pin comes into the fork of a lever on the bank of that side; None where it pushes it the same way from
         both sides, or not at all."""
         far = self.rest + math.pi
-        unlocks: list[tuple[float, float]] = []
+        unlocks: list[tuple[float, float, int]] = []
         knocks: list[float] = []
         for way in (1.0, -1.0):
             touch = self.balance(lever, far, way)
@@ -89,30 +116,41 @@ class Balance:
                 continue
             # The lever gives way in the direction in which the gap opens.
             if side * self.rates(touch, lever)[0] < 0.0:
-                unlocks.append((touch.angle, way))
+                unlocks.append((touch.angle, way, touch.contact))
             else:
                 knocks.append(touch.angle)
         if len(unlocks) != 1:
             return None
         return Entry(*unlocks[0], knocks[0] if knocks else None)
 
-    def pushed(self, entry: Entry, lever: float, end: float) -> Touch:
-        """Where the balance stands when it has pushed the lever from `lever` to `end`."""
-        steps = max(1, math.ceil(abs(end - lever) / STEP))
-        angle, back = entry.angle, BACK
-        for a in np.linspace(lever, end, steps + 1)[1:].tolist():
-            touch = self.balance(a, angle - entry.way * back, entry.way, math.pi)
-            if touch is None:
-                raise ValueError(f"the pin passes the fork at {math.degrees(a):.2f}° of the lever without moving it")
-            behind = self.balance(a, touch.angle, -entry.way)
-            angle = touch.angle
-            back = BACK if behind is None else min(BACK, 0.5 * abs(behind.angle - angle))
-        return touch
+    def carried(self, entry: Entry, start: float, ends: Iterable[float]) -> dict[float, Slot]:
+        """Where the pin may stand in the slot as the lever goes from its bank at `start` through all angles `ends`.
 
-    def play(self, lever: float, near: float) -> tuple[Touch, Touch] | None:
-        """First touches of the balance on both sides of an angle at which it is free."""
-        down, up = self.balance(lever, near, -1.0), self.balance(lever, near, 1.0)
-        return None if down is None or up is None else (down, up)
+        ValueError where the pin leaves the fork on the way.
+        """
+        found: dict[float, Slot] = {}
+        lever, free, rate = start, entry.angle - entry.way * 0.5 * BACK, self._shift(Touch(entry.angle, entry.contact), start)
+        for end in sorted(ends, key=lambda angle: abs(angle - start)):
+            steps = max(1, math.ceil(abs(end - lever) / STEP))
+            for a in np.linspace(lever, end, steps + 1).tolist():
+                free += rate * (a - lever)
+                lever = a
+                slot = self._slot(entry, a, free)
+                free, rate = slot.free(entry.way), self._shift(slot.any, a)
+            found[end] = slot
+        return found
+
+    def _slot(self, entry: Entry, lever: float, free: float) -> Slot:
+        """The walls of the slot around a pin at balance angle `free`."""
+        front, back = (self.balance(lever, free, sense * entry.way, WALLS) for sense in (1.0, -1.0))
+        if front is None and back is None:
+            raise ValueError(f"the pin is clear of the fork with the lever at {math.degrees(lever):.2f}°")
+        return Slot(front, back)
+
+    def _shift(self, wall: Touch, lever: float) -> float:
+        """Turn of the balance by turn of the lever that keeps a wall touching."""
+        of_lever, of_balance = self.rates(wall, lever)
+        return -of_lever / of_balance
 
 
 def fork(balance: Balance, banks: tuple[float, float], beats: list[Passage], entries: tuple[Entry, Entry]) -> Fork:
@@ -126,12 +164,13 @@ def fork(balance: Balance, banks: tuple[float, float], beats: list[Passage], ent
         error = balance.error(touch, bank)
         # Within half a turn of each other: where the pin leaves is where it enters for the way back.
         lifts.append(single(_within(own.way * (other.angle - own.angle)), 2.0 * error))
-        teeth = [one for one in beats if one.side == side][: len(beats) // 2]
-        first = [balance.pushed(own, bank, one.unlocked.lever) for one in _different(teeth)]
-        last = [_driven(balance, own, bank, one.let_off.lever) for one in _different(teeth)]
-        numbers = [one.tooth for one in _different(teeth)]
-        unlocks.append(over_teeth([own.way * (t.angle - own.angle) for t in first], [2.0 * error] * len(first), numbers))
-        ends.append(over_teeth([own.way * (t.angle - own.angle) for t in last], [2.0 * error] * len(last), numbers))
+        teeth = _different([one for one in beats if one.side == side][: len(beats) // 2])
+        numbers = [one.tooth for one in teeth]
+        slots = balance.carried(own, bank, {angle for one in teeth for angle in (one.unlocked.lever, one.let_off.lever)})
+        first = [_angle(slots[one.unlocked.lever].front) for one in teeth]
+        last = [_angle(slots[one.let_off.lever].back) for one in teeth]
+        unlocks.append(over_teeth([own.way * (angle - own.angle) for angle in first], [2.0 * error] * len(first), numbers))
+        ends.append(over_teeth([own.way * (angle - own.angle) for angle in last], [2.0 * error] * len(last), numbers))
         knock = math.nan if own.knock is None else _turns(-own.way * (own.knock - balance.rest))
         knocks.append(single(knock, error))
         rests.append(single(_within(own.angle - balance.rest), error))
@@ -149,21 +188,17 @@ def _different(beats: list[Passage]) -> list[Passage]:
     return kept
 
 
-def _driven(balance: Balance, entry: Entry, bank: float, lever: float) -> Touch:
-    """Where the fork has driven the pin when the lever stands at `lever`: the wall behind the pin touches it."""
-    front = balance.pushed(entry, bank, lever)
-    behind = balance.balance(lever, front.angle, -entry.way)
-    return front if behind is None else behind
+def _angle(touch: Touch | None) -> float:
+    return math.nan if touch is None else touch.angle
 
 
 def pin_shake(balance: Balance, banks: tuple[float, float], entry: Entry) -> Quantity:
     """Play of the lever with the pin in the middle of the slot, the lever in the middle."""
     middle = 0.5 * (banks[0] + banks[1])
-    front = balance.pushed(entry, banks[0], middle)
-    back = balance.balance(middle, front.angle, -entry.way)
-    if back is None:
+    slot = balance.carried(entry, banks[0], [middle])[middle]
+    if slot.front is None or slot.back is None:
         return single(math.nan, math.nan)
-    theta = 0.5 * (front.angle + back.angle)
+    theta = 0.5 * (slot.front.angle + slot.back.angle)
     ends = [balance.lever(middle, theta, sense) for sense in (1.0, -1.0)]
     if ends[0] is None or ends[1] is None:
         return single(math.nan, math.nan)
@@ -182,5 +217,5 @@ def _within(angle: float) -> float:
 
 
 def _turns(angle: float) -> float:
-    """The same direction from 0 to a whole turn."""
-    return angle % math.tau
+    """The same direction, a quarter of a turn or more away: a pin that knocks has gone most of the way round."""
+    return (angle - 0.5 * math.pi) % math.tau + 0.5 * math.pi

@@ -87,6 +87,10 @@ class Hands:
         describe(self.model, contact, q, self._pose, self._row)
         return float(self._row[0])
 
+    def flat_of(self, contact: int) -> int:
+        """The body that holds the line or the rounder arc of a contact, out of whose material its normal points."""
+        return int(self._owner[self._pairs[contact][1]])
+
     def body(self, name: str) -> int:
         """The number in the model of a pivoted body."""
         return int(self.model.coordinates.body[self.coordinate(name)])

@@ -39,13 +39,16 @@ class Safety:
 
 
 def safety(balance: Balance, bank: float, side: float, entry: Entry) -> Safety | None:
-    """Of the lever on the bank of that side; None where nothing but the pin's own slot could stop it."""
+    """Of the lever on the bank of that side; None where the scene declares nothing besides the fork that could stop it."""
     hands = balance.hands
     far = balance.rest + math.pi
     groups = np.array(hands.model.contacts.group)[balance.parts.to_balance]
     stop = balance.lever(bank, far, -side)
-    if stop is None:
+    if stop is None and len(np.unique(groups)) < 2:
         return None
+    if stop is None:
+        free = single(math.inf, 0.0)
+        return Safety(free, single(math.nan, math.nan), free, math.pi, math.nan)
     own = int(hands.model.contacts.group[stop.contact])
     guarding, horns = balance.parts.to_balance[groups == own], balance.parts.to_balance[groups != own]
 
