@@ -15,6 +15,7 @@ from watchsim.escapement.quantity import Quantity, over_teeth, single
 
 STEP = math.radians(0.25)  # of the lever as the pin carries it
 BACK = math.radians(1.0)  # of the balance: a pin that has one wall only stands half as far from it
+FARTHEST = math.radians(40.0)  # of the lever
 WALLS = math.radians(40.0)  # of the balance: what is further away is no wall of the slot
 
 
@@ -91,10 +92,10 @@ class Balance:
         """The first touch of the balance, turned from `start`."""
         return self.hands.touch(self.parts.balance, self.parts.to_balance, self.at(lever, start), sense, reach)
 
-    def lever(self, start: float, balance: float, sense: float, ids: Integers | None = None, reach: float = 0.7) -> Touch | None:
+    def lever(self, start: float, balance: float, sense: float, ids: Integers | None = None) -> Touch | None:
         """The first touch of the lever with the balance, turned from `start`."""
         ids = self.parts.to_balance if ids is None else ids
-        return self.hands.touch(self.parts.lever, ids, self.at(start, balance), sense, reach)
+        return self.hands.touch(self.parts.lever, ids, self.at(start, balance), sense, FARTHEST)
 
     def rates(self, touch: Touch, lever: float) -> tuple[float, float]:
         """How fast the gap opens as lever and balance turn, m/rad."""
@@ -174,8 +175,8 @@ def fork(balance: Balance, banks: tuple[float, float], beats: list[Passage], ent
         knock = math.nan if own.knock is None else _turns(-own.way * (own.knock - balance.rest))
         knocks.append(single(knock, error))
         rests.append(single(_within(own.angle - balance.rest), error))
-    pairs = [(values[0], values[1]) for values in (lifts, unlocks, ends, knocks, rests)]
-    return Fork(*pairs, pin_shake=pin_shake(balance, banks, upper), entries=entries)
+    made = [(values[0], values[1]) for values in (lifts, unlocks, ends, knocks, rests)]
+    return Fork(made[0], made[1], made[2], made[3], made[4], pin_shake(balance, banks, upper), entries)
 
 
 def _different(beats: list[Passage]) -> list[Passage]:

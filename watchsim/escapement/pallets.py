@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
+from itertools import pairwise
 
 from watchsim.escapement.hands import Hands
 from watchsim.escapement.quantity import Quantity, over_teeth
@@ -70,7 +71,7 @@ def passages(wheel: Wheel, banks: tuple[float, float], start: Rest, teeth: int) 
     for beat in range(2 * teeth + 1):
         side = 1.0 if beat % 2 == 0 else -1.0
         sweep = wheel.lead(rest, banks[1] if side > 0.0 else banks[0])
-        found.append(_passage(sweep, side, beat // 2 + 1))
+        found.append(_passage(sweep, side, beat // 2 % teeth + 1))
         last = sweep.last
         assert last is not None  # _passage refuses a wheel that runs free
         rest = last
@@ -116,7 +117,7 @@ def _locking(stretches: Sequence[Stretch]) -> Sequence[Stretch]:
 def pallet(wheel: Wheel, beats: Sequence[Passage], side: float, detached: bool) -> Pallet:
     """The numbers of the stone that locks on the bank of that side."""
     hands, pivot = wheel.hands, wheel.hands.pivot(wheel.parts.lever, wheel.at(0.0, 0.0))
-    pairs = [(one, before) for before, one in zip(beats, beats[1:], strict=False) if one.side == side]
+    pairs = [(one, before) for before, one in pairwise(beats) if one.side == side]
     own, before = [one for one, _ in pairs], [earlier for _, earlier in pairs]
     teeth = [one.tooth for one in own]
     way = wheel.parts.way
@@ -140,7 +141,7 @@ def pallet(wheel: Wheel, beats: Sequence[Passage], side: float, detached: bool) 
         lock=mean(lambda one, earlier: side * (earlier.let_off.lever - one.unlocked.lever), of_lever),
         run=mean(lambda _, earlier: side * (earlier.end - earlier.let_off.lever), of_lever) if detached else none,
         draw=mean(lambda one, _: draw_angle(wheel, one.start, pivot, side), of_draw),
-        draw_end=mean(lambda one, _: draw_angle(wheel, _at_face(one), pivot, side), of_draw),
+        draw_end=mean(lambda one, _: draw_angle(wheel, one.unlocked, pivot, side), of_draw),
         recoil=mean(lambda one, _: way * (one.start.wheel - one.unlocked.wheel), of_wheel),
         lift=mean(lambda one, _: side * (one.unlocked.lever - one.let_off.lever), of_lever),
         lift_stone=mean(lambda one, _: sum(s.turn for s in one.driven if s.first.on_stone), of_lever),
@@ -148,11 +149,6 @@ def pallet(wheel: Wheel, beats: Sequence[Passage], side: float, detached: bool) 
         drop=mean(lambda one, _: way * (one.landed.wheel - one.let_off.wheel), of_wheel),
         shake=mean(lambda one, _: one.room, of_wheel),
     )
-
-
-def _at_face(one: Passage) -> Rest:
-    """The last place on the locking face."""
-    return one.unlocked
 
 
 def draw_angle(wheel: Wheel, rest: Rest, pivot: tuple[float, float], side: float) -> float:
@@ -171,7 +167,3 @@ def _error_of_change(rest: Rest) -> float:
 def _face_error(hands: Hands, primitive: int) -> float:
     p = hands.model.primitives[primitive]
     return 2.0 * hands.resolution / max(float(p.length), float(p.radius))
-
-
-def names() -> tuple[str, ...]:
-    return tuple(field.name for field in fields(Pallet))

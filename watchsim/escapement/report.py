@@ -112,11 +112,11 @@ def text(function: Function) -> Iterator[str]:
             f"  geometry of function: {parts.wheel} turns {direction(function)}, {function.teeth} teeth; "
             f"angles at each part's own pivot, exact to {_worst_error(function):.0e}°"
         )
-        yield f"      {'':22}{'entry stone':>14}{'exit stone':>14}"
+        yield f"      {'':24}{'entry stone':>14}{'exit stone':>14}"
         for name, words in WORDS.items():
             pair = [getattr(one, name) for one in function.pallets]
             if any(math.isfinite(one.value) for one in pair):
-                yield f"      {words:22}" + "".join(f"{_told(one.value):>14}" for one in pair) + _worst_tooth(pair)
+                yield f"      {words:24}" + "".join(f"{_told(one.value):>14}" for one in pair) + _worst_tooth(pair)
     if function.fork is not None:
         yield from _fork_lines(function)
     for what, why in function.missing:
@@ -128,14 +128,14 @@ def _fork_lines(function: Function) -> Iterator[str]:
     yield f"    {function.parts.balance}, from the pin's meeting the fork"
     for name, words in BALANCE_WORDS.items():
         pair = [getattr(function.fork, name)[_beat(function, k)] for k in (0, 1)]
-        yield f"      {words:22}" + "".join(f"{_told(one.value):>14}" for one in pair)
-    yield f"      {'shake of the pin':22}{_told(function.fork.pin_shake.value):>14}"
+        yield f"      {words:24}" + "".join(f"{_told(one.value):>14}" for one in pair)
+    yield f"      {'shake of the pin':24}{_told(function.fork.pin_shake.value):>14}"
     if function.safety is not None:
         yield f"    freedom of {function.parts.lever} on its bank"
         guards = [guard(function, k) for k in (0, 1)]
         for name, words in (("guard", "guard pin"), ("horn", "horns"), ("worst", "largest anywhere")):
             values = [getattr(one, name).value for one in guards]
-            yield f"      {words:22}" + "".join(f"{_told(value):>14}" for value in values)
+            yield f"      {words:24}" + "".join(f"{_told(value):>14}" for value in values)
 
 
 def _told(value: float) -> str:

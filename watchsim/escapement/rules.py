@@ -47,7 +47,8 @@ class Judgement:
     def as_dict(self) -> dict[str, object]:
         """As other findings, with value, limit, rule and source."""
         plain = Finding(self.code, self.severity, self.message, self.fix).as_dict()
-        return {**plain, "value_deg": self.value if math.isfinite(self.value) else None, "limit_deg": self.limit, "rule": self.rule, "source": self.source}
+        value = self.value if math.isfinite(self.value) else None
+        return {**plain, "value_deg": value, "limit_deg": self.limit, "rule": self.rule, "source": self.source}
 
 
 def judgements(scene: Scene, function: Function) -> tuple[Judgement, ...]:
@@ -85,12 +86,12 @@ def _stone(name: str, one: Pallet, friction: float, detached: bool) -> Iterator[
         yield Judgement("lock", "warning", lock, LEAST_LOCK, f"the {name} stone {what}", fix, "lock of ¾° or more", FINE_WORK)
     if detached and (run := _least(one.run)) < LEAST_RUN:
         message = f"the run on the {name} stone is {run:.2f}°: the lever hardly moves on after the drop"
-        yield Judgement(
-            "run", "warning", run, LEAST_RUN, message, "Open the banking.", "some run, ¼° as a rule", PLAYTNER
-        )
+        yield Judgement("run", "warning", run, LEAST_RUN, message, "Open the banking.", "some run, ¼° as a rule", PLAYTNER)
     if math.degrees(one.lock.spread) > SPREAD:
         worst = math.degrees(one.lock.worst)
-        message = f"tooth {one.lock.tooth} locks by {worst:.2f}° on the {name} stone, the mean is {math.degrees(one.lock.value):.2f}°"
+        message = (
+            f"tooth {one.lock.tooth} locks by {worst:.2f}° on the {name} stone, the mean is {math.degrees(one.lock.value):.2f}°"
+        )
         fix = "Look at the teeth, and at the pivot of the wheel."
         yield Judgement(
             "uneven-teeth", "warning", math.degrees(one.lock.spread), SPREAD, message, fix, "all teeth lock alike", PLAYTNER
@@ -107,9 +108,7 @@ def _drops(pallets: tuple[Pallet, Pallet]) -> Iterator[Judgement]:
     if abs(inside - outside) > UNEQUAL_DROP:
         message = f"the drops differ: {inside:.2f}° inside, {outside:.2f}° outside"
         fix = "Move the stones together where the inside drop is the larger, apart where the outside drop is."
-        yield Judgement(
-            "unequal-drops", "notice", abs(inside - outside), UNEQUAL_DROP, message, fix, "equal drops", PLAYTNER
-        )
+        yield Judgement("unequal-drops", "notice", abs(inside - outside), UNEQUAL_DROP, message, fix, "equal drops", PLAYTNER)
 
 
 def _fork(scene: Scene, made: Fork) -> Iterator[Judgement]:
@@ -149,10 +148,11 @@ def _freedoms(function: Function) -> Iterator[Judgement]:
         worst, at = math.degrees(freedom.worst.value), math.degrees(freedom.worst_at)
         if worst < lock:
             continue
+        where = f"with the balance at {at:.0f}°"
         if math.isinf(worst):
-            message = f"with the balance at {at:.0f}° nothing keeps the lever on the bank of the {name} stone: it can overbank"
+            message = f"{where} nothing keeps the lever on the bank of the {name} stone: it can overbank"
         else:
-            message = f"with the balance at {at:.0f}° the lever is free by {worst:.2f}°, more than the {name} stone's total lock, {lock:.2f}°"
+            message = f"{where} the lever is free by {worst:.2f}°; the {name} stone's total lock is {lock:.2f}°"
         fix = "Lengthen dart or horns, or close the banking."
         rule = "all freedoms less than the total lock, so that draw brings the lever back"
         yield Judgement("freedom", "warning", worst, lock, message, fix, rule, PLAYTNER)

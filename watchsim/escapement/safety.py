@@ -7,6 +7,7 @@ total lock, the tooth stays on the locking face and draw brings the lever back.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -47,8 +48,8 @@ def safety(balance: Balance, bank: float, side: float, entry: Entry) -> Safety |
     if stop is None and len(np.unique(groups)) < 2:
         return None
     if stop is None:
-        free = single(math.inf, 0.0)
-        return Safety(free, single(math.nan, math.nan), free, math.pi, math.nan)
+        never = single(math.inf, 0.0)
+        return Safety(never, single(math.nan, math.nan), never, math.pi, math.nan)
     own = int(hands.model.contacts.group[stop.contact])
     guarding, horns = balance.parts.to_balance[groups == own], balance.parts.to_balance[groups != own]
 
@@ -87,7 +88,7 @@ def _outside(entry: Entry, far: float) -> list[float]:
     return [entry.angle - entry.way * (i * SCAN + FINE) for i in range(count)]
 
 
-def _peak(function, places: list[float], values: list[float]) -> tuple[float, float]:  # type: ignore[no-untyped-def]
+def _peak(function: Callable[[float], float], places: list[float], values: list[float]) -> tuple[float, float]:
     """Place and height of the largest value, by golden section between the neighbours of the highest place."""
     i = max(range(len(values)), key=values.__getitem__)
     if not math.isfinite(values[i]):

@@ -97,7 +97,7 @@ class Wheel:
         return q
 
     def rest(self, lever: float, wheel: float, led: float, ids: Integers | None = None) -> Rest | None:
-        """Where the wheel, let go at `wheel`, rests; None where it is free for more than a pitch. `led`: ±1, the lever's way."""
+        """Where the wheel, let go at `wheel`, rests; None where it is free for a pitch. `led`: ±1, the lever's way."""
         q = self.at(lever, wheel)
         ids = self.parts.to_wheel if ids is None else ids
         touch = self.hands.touch(self.parts.wheel, ids, q, self.parts.way, 1.2 * self.pitch)

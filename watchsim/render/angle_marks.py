@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 THIN, SIZE = 0.6, 7.0  # pt
+HEAD = "-|>,head_width=0.12,head_length=0.3"
 HALO = {"boxstyle": "round,pad=0.12", "facecolor": "white", "edgecolor": "none", "alpha": 0.85}
 
 
@@ -32,7 +33,7 @@ def arc(axes: Axes, centre: Point, radius: float, angles: tuple[float, float], c
     turn = np.linspace(*angles, 60)
     x, y = centre[0] + radius * np.cos(turn), centre[1] + radius * np.sin(turn)
     axes.plot(x, y, color=colour, linewidth=THIN, zorder=6)
-    arrow = {"arrowstyle": "-|>,head_width=0.12,head_length=0.3", "color": colour, "linewidth": THIN, "shrinkA": 0, "shrinkB": 0}
+    arrow = {"arrowstyle": HEAD, "color": colour, "linewidth": THIN, "shrinkA": 0, "shrinkB": 0}
     k = max(0, len(turn) - 12)
     axes.annotate("", xy=(x[-1], y[-1]), xytext=(x[k], y[k]), arrowprops=arrow, zorder=6)
 

@@ -49,7 +49,7 @@ def function_sheet(scene: Scene, compiled: Compiled, function: Function, width: 
     figure = Figure(figsize=(width * MM, height * MM), dpi=DPI, facecolor="white")
     FigureCanvasAgg(figure)
     figure.text(MARGIN / width, 1.0 - 4.5 / height, scene.title, fontsize=10.0, weight="bold", va="center")
-    words = f"geometry of function, measured from the drawing; wheel {direction(function)}, {function.teeth} teeth"
+    words = f"geometry of function as drawn; wheel {direction(function)}, {function.teeth} teeth"
     figure.text(MARGIN / width, 1.0 - 9.0 / height, words, fontsize=6.5, va="center", color="#444444")
     for view, (left, top, wide, tall) in zip(made, places, strict=True):
         axes = figure.add_axes((left / width, 1.0 - (top + tall) / height, wide / width, tall / height))

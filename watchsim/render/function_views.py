@@ -102,9 +102,10 @@ def locked(axes: Axes, views: Views, k: int, aspect: float) -> None:
     inward = -1.0 if (pivot[0] - toe[0]) * met.normal[0] + (pivot[1] - toe[1]) * met.normal[1] > 0.0 else 1.0
     far = arm + inward * 0.62 * half * aspect * (1.0 if _is_stone(views, start.contact, views.names[1]) else -1.0)
     out = math.degrees(at) + 90.0 * side
-    across = (math.cos(math.radians(out)), math.sin(math.radians(out)))
-    mark(axes, pivot, far, (at, dropped_at), f"run {degrees(numbers.run.value)}", LEVER_INK, (-20.0 * across[0], -20.0 * across[1]))
-    mark(axes, pivot, far, (dropped_at, corner), f"lock {degrees(numbers.lock.value)}", LEVER_INK, (24.0 * across[0], 24.0 * across[1]))
+    across = np.array((math.cos(math.radians(out)), math.sin(math.radians(out))))
+    words = f"run {degrees(numbers.run.value)}", f"lock {degrees(numbers.lock.value)}"
+    mark(axes, pivot, far, (at, dropped_at), words[0], LEVER_INK, -20.0 * across)
+    mark(axes, pivot, far, (dropped_at, corner), words[1], LEVER_INK, 24.0 * across)
     draw_mark(axes, toe, pivot, met.normal, numbers.draw.value, half)
     axes.set_title(f"{STONES[k]} stone, lever on its bank", fontsize=8.0, loc="left", pad=3.0)
 
@@ -114,12 +115,10 @@ def _is_stone(views: Views, contact: int, lever: str) -> bool:
     return bool(views.hands.flat_of(contact) == views.hands.body(lever))
 
 
-def mark(
-    axes: Axes, centre: Point, radius: float, angles: tuple[float, float], words: str, colour: str, aside: tuple[float, float]
-) -> None:
+def mark(axes: Axes, centre: Point, radius: float, angles: tuple[float, float], words: str, colour: str, aside: Array) -> None:
     """An arc about a far centre, its words beside it."""
     arc(axes, centre, radius, angles, colour)
-    pointed(axes, polar(centre, radius, 0.5 * (angles[0] + angles[1])), words, aside, colour)
+    pointed(axes, polar(centre, radius, 0.5 * (angles[0] + angles[1])), words, (float(aside[0]), float(aside[1])), colour)
 
 
 def draw_mark(axes: Axes, toe: Point, pivot: Point, normal: Point, draw: float, half: float) -> None:
@@ -157,7 +156,7 @@ def dropped(axes: Axes, views: Views, k: int, aspect: float) -> None:
     views.posed.outline(axes, after, [views.names[0]], WHEEL_INK)
     left, lands = ((1e3 * one.x, 1e3 * one.y) for one in (passage.let_off, passage.landed))
     centre = (0.5 * (left[0] + lands[0]), 0.5 * (left[1] + lands[1]))
-    half = 0.62 * max(abs(left[1] - lands[1]), abs(left[0] - lands[0]) / aspect)
+    half = 0.72 * max(abs(left[1] - lands[1]), abs(left[0] - lands[0]) / aspect)
     frame(axes, centre, (half * aspect, half))
     assert function.parts is not None
     radius = math.dist(lands, pivot)
@@ -180,7 +179,7 @@ def lift(axes: Axes, views: Views, aspect: float) -> None:
     assert function.fork is not None and function.banks is not None and function.passages is not None
     k = 0 if function.sides[0] > 0.0 else 1
     made, entry, leave = function.fork, function.fork.entries[k], function.fork.entries[1 - k]
-    wheel, lever, balance = views.names
+    _, lever, balance = views.names
     here, there = function.banks[k], function.banks[1 - k]
     rest_wheel = function.passages[0].start.wheel
     views.posed.draw(axes, views.coordinates(here, rest_wheel, entry.angle), [lever, balance])
@@ -204,7 +203,7 @@ def lift(axes: Axes, views: Views, aspect: float) -> None:
         axes, polar(pivot, 1.28 * radius, at + 0.5 * entry.way * made.unlocking[k].value),
         f"unlocking {degrees(made.unlocking[k].value)}", (-30.0 if math.cos(at) < 0.0 else 30.0, 14.0), LEVER_INK,
     )  # fmt: skip
-    axes.set_title("the pin enters the fork (filled) and leaves it (dashed)", fontsize=8.0, loc="left", pad=3.0)
+    axes.set_title("pin entering the fork (filled), leaving it (dashed)", fontsize=8.0, loc="left", pad=3.0)
 
 
 def whole(axes: Axes, views: Views, aspect: float) -> None:
@@ -226,7 +225,7 @@ def whole(axes: Axes, views: Views, aspect: float) -> None:
     assert function.parts is not None
     reach = 0.55 * math.dist((1e3 * start.x, 1e3 * start.y), wheel)
     arc(axes, wheel, reach, (-2.1, -2.1 + 1.1 * function.parts.way) if function.parts.way > 0 else (-1.0, -2.1), WHEEL_INK)
-    axes.set_title(f"{STONES[0]} stone locked, lever on its bank", fontsize=8.0, loc="left", pad=3.0)
+    axes.set_title(f"{STONES[0]} stone locked", fontsize=8.0, loc="left", pad=3.0)
 
 
 def shape(views: Views) -> float:

@@ -15,6 +15,7 @@ from watchsim.simulation.frames import frames
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.path import Path
 
 Array = NDArray[np.float64]
 
@@ -46,7 +47,7 @@ class Posed:
         for _, path in self._placed(q, bodies):
             axes.add_patch(PathPatch(path, fill=False, edgecolor=colour, linewidth=0.5, linestyle=(0, (4, 2)), zorder=3))
 
-    def _placed(self, q: Array, bodies: Iterable[str] | None) -> Iterable[tuple[Part, object]]:
+    def _placed(self, q: Array, bodies: Iterable[str] | None) -> Iterable[tuple[Part, Path]]:
         from matplotlib.transforms import Affine2D
 
         wanted = None if bodies is None else set(bodies)
