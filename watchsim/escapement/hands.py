@@ -21,7 +21,7 @@ from watchsim.mechanism.features import JOINT
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-ROOM = 1e-9  # of the scene's size: a contact counts so far beyond the ends of its primitives, so that joints are tight
+ROOM = 1e-10  # of the scene's size: a contact counts so far beyond the ends of its primitives, so that joints are tight
 SLACK = 1e-5  # rad: a body that the drawing puts against another stands nearer to it than that
 
 

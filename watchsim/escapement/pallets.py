@@ -127,10 +127,11 @@ def pallet(wheel: Wheel, beats: Sequence[Passage], side: float, detached: bool) 
         return over_teeth(values, [error(one) for one in own], teeth)
 
     def of_lever(one: Passage) -> float:
-        return 2.0 * WIDTH + _error_of_change(one.unlocked) + _error_of_change(one.let_off)
+        return change_error(wheel, one.unlocked) + change_error(wheel, one.let_off)
 
     def of_wheel(one: Passage) -> float:
-        return 2.0 * (one.start.error + one.let_off.error + one.landed.error) + WIDTH * abs(one.let_off.slope)
+        places = one.start, one.unlocked, one.let_off, one.landed
+        return sum(place.error + change_error(wheel, place) * abs(place.slope) for place in places)
 
     def of_draw(one: Passage) -> float:
         return _face_error(hands, one.start.stone if one.start.on_stone else one.start.tooth)
@@ -159,9 +160,12 @@ def draw_angle(wheel: Wheel, rest: Rest, pivot: tuple[float, float], side: float
     return math.asin(max(-1.0, min(1.0, side * opening / arm)))
 
 
-def _error_of_change(rest: Rest) -> float:
-    """Of the lever's angle at which one face follows another: the wheel's error by how much the two slopes can differ."""
-    return rest.error / max(abs(rest.slope), 0.1)
+def change_error(wheel: Wheel, rest: Rest) -> float:
+    """Of the lever's angle at which a corner comes to the end of a face, rad: a contact counts a little beyond it."""
+    hands = wheel.hands
+    x, y = hands.pivot(wheel.parts.lever, wheel.at(0.0, 0.0))
+    # The corner slides at a third of the arm at least, unless draw or lift are steeper than any escapement's.
+    return WIDTH + 3.0 * (hands.room + hands.resolution) / math.hypot(rest.x - x, rest.y - y)
 
 
 def _face_error(hands: Hands, primitive: int) -> float:

@@ -25,7 +25,8 @@ class Parts:
     """Names of the parts; `way` is the direction the drive turns the wheel in (±1, + is counter-clockwise).
 
     `lever` is the oscillator itself in an escapement whose anchor swings with it: `detached` is then False.
-    `to_wheel`, `to_banking`, `to_balance` are the model's contacts of the lever.
+    `to_wheel`, `to_banking`, `to_balance` are the model's contacts of the lever; `guarded` says that the scene declares more
+    than one of lever and balance: besides fork and pin, a safety action.
     """
 
     wheel: str
@@ -35,6 +36,7 @@ class Parts:
     to_wheel: Integers
     to_banking: Integers
     to_balance: Integers
+    guarded: bool
 
     @property
     def detached(self) -> bool:
@@ -58,7 +60,9 @@ def parts_of(scene: Scene, compiled: Compiled) -> Parts | str:
     still = {body.name for body in scene.bodies if body.name not in chain and _stands(scene, body.name, lever)}
     banking = _between(scene, compiled, lever, still) if lever != found.oscillator else np.zeros(0, np.int64)
     fork = _between(scene, compiled, lever, {found.oscillator}) if lever != found.oscillator else np.zeros(0, np.int64)
-    return Parts(wheel, lever, found.oscillator, way, _between(scene, compiled, lever, {wheel}), banking, fork)
+    declared = [one for one in scene.contacts if {side.body for side in one.sides} == {lever, found.oscillator}]
+    to_wheel = _between(scene, compiled, lever, {wheel})
+    return Parts(wheel, lever, found.oscillator, way, to_wheel, banking, fork, len(declared) > 1)
 
 
 def _stands(scene: Scene, name: str, lever: str) -> bool:

@@ -103,7 +103,7 @@ def _degrees(value: float) -> float | None:
 
 
 def text(function: Function) -> Iterator[str]:
-    """The same for people."""
+    """The same for people; nothing of a scene without such parts."""
     if function.parts is None:
         return
     parts = function.parts

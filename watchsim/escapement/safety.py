@@ -45,7 +45,7 @@ def safety(balance: Balance, bank: float, side: float, entry: Entry) -> Safety |
     far = balance.rest + math.pi
     groups = np.array(hands.model.contacts.group)[balance.parts.to_balance]
     stop = balance.lever(bank, far, -side)
-    if stop is None and len(np.unique(groups)) < 2:
+    if stop is None and not balance.parts.guarded:
         return None
     if stop is None:
         never = single(math.inf, 0.0)

@@ -9,6 +9,7 @@ import math
 import os
 from collections.abc import Callable
 from pathlib import Path
+from textwrap import wrap
 from typing import TYPE_CHECKING
 
 from watchsim.escapement.hands import Hands
@@ -30,6 +31,7 @@ MARGIN, GAP, TITLE, HEAD = 3.0, 4.0, 11.0, 3.5  # mm
 FIRST, PANEL = 80.0, 58.0  # mm, height of the first row and of the others
 ROW = 3.4  # mm, of the table
 DPI = 300
+SENTENCE = 56  # characters
 
 
 def function_sheet(scene: Scene, compiled: Compiled, function: Function, width: float = FULL) -> Figure:
@@ -42,7 +44,7 @@ def function_sheet(scene: Scene, compiled: Compiled, function: Function, width: 
     views = Views(Posed(scene, compiled), function, Hands(compiled))
     columns = 2 if width > 1.5 * COLUMN else 1
     made = _views(views)
-    lines = [line for line in text(function) if line.strip()][1:]
+    lines = [part for line in list(text(function))[1:] for part in _wrapped(line)]
     places, foot = _places(len(made), width, shape(views))
     blocks = _blocks(lines, columns)
     height = foot + ROW * max(len(block) for block in blocks) + 2.0 * MARGIN
@@ -91,6 +93,13 @@ def _views(views: Views) -> list[Callable[[Axes, float], None]]:
     for k in (0, 1):
         made.append(lambda axes, aspect, k=k: dropped(axes, views, k, aspect))  # type: ignore[misc]
     return made
+
+
+def _wrapped(line: str) -> list[str]:
+    """Lines of the table as they are; sentences in lines short enough for the page."""
+    if line.startswith("    "):
+        return [line]
+    return [f"    {part}" for part in wrap(line.strip(), SENTENCE)]
 
 
 def _blocks(lines: list[str], columns: int) -> list[list[str]]:
