@@ -11,6 +11,7 @@ import numpy as np
 
 from watchsim.analysis.forces import Forces, forces
 from watchsim.analysis.timeline.flows import NODES, WEIGHTS
+from watchsim.analysis.timeline.rows import pair_name
 from watchsim.simulation.frames import frames, speeds
 from watchsim.simulation.trajectory import Array, Trajectory
 
@@ -25,7 +26,7 @@ def friction_by_pair(run: Trajectory, ends: Sequence[float]) -> list[dict[str, f
     found = forces(run, times)
     taken = weights[:, None] * _powers(run, found)
     stretch = np.searchsorted(np.asarray(ends), times, side="right") - 1
-    names = [_pair(run, int(k)) for k in found.pairs]
+    names = [pair_name(run, int(k)) for k in found.pairs]
     out: list[dict[str, float]] = [{} for _ in range(len(ends) - 1)]
     for k, name in enumerate(names):
         for i, one in enumerate(out):
@@ -33,11 +34,6 @@ def friction_by_pair(run: Trajectory, ends: Sequence[float]) -> list[dict[str, f
             if value != 0.0:
                 one[name] = one.get(name, 0.0) + value
     return out
-
-
-def _pair(run: Trajectory, contact: int) -> str:
-    pair = run.pairs[contact]
-    return "-".join(sorted((pair.body_a, pair.body_b), key=[body.name for body in run.scene.bodies].index))
 
 
 def _powers(run: Trajectory, found: Forces) -> Array:

@@ -7,7 +7,7 @@ the forces at the contacts, so that the books are checked.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from watchsim.analysis.beats import Beats
 from watchsim.analysis.phases import Phase, phases
 from watchsim.analysis.timeline.flows import Flows, flows
+from watchsim.analysis.touches import between, contact_events
 from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.mechanism.recording import STATISTICS
 from watchsim.mechanism.roles import Roles, drive_direction, roles
@@ -85,92 +86,97 @@ def timeline(run: Trajectory, found: Beats | None = None, window: Sequence[float
     first = max(0, int(np.searchsorted(run.t, told[0].start, side="left")) - 1)
     last = min(len(run.t), int(np.searchsorted(run.t, told[-1].end, side="right")) + 1)
     made = flows(run, compiled, slice(first, last))
-    losses = _losses(run)
-    sides = {row.beat: _pallet(run, compiled, parts, row) for row in told if row.name == "unlock"}
-    return [_stage(run, parts, compiled, made, losses, row, sides.get(row.beat, "")) for row in told]
+    stones = _pallets(run, compiled, parts, [row for row in told if row.name == "unlock"])
+    return list(_stages(run, parts, compiled, made, told, stones))
 
 
-@dataclass(frozen=True)
-class _Losses:
-    t: Array
-    lost: Array
-    pair: tuple[str, ...]
+def _stages(
+    run: Trajectory, parts: Roles, compiled: Compiled, made: Flows, told: list[Phase], stones: dict[int, str]
+) -> Iterator[Stage]:
+    """Column by column: every number is a difference between two rows."""
+    starts, ends = np.array([row.start for row in told]), np.array([row.end for row in told])
+    # The impacts of the lock belong to the drop that ends with them, all others to the phase that they begin.
+    locked = np.array([row.name == "run to banking" for row in told])
+    locking = np.array([row.name == "drop" for row in told])
+    i, j = _rows(made.t, starts, locked), _rows(made.t, ends, locking)
+    names = [name for name in (parts.wheel, parts.lever, parts.oscillator) if name]
+    columns = [run.slices[name].start for name in names]
+    balance = columns[2]
+    c = compiled.model.coordinates[balance]
+
+    def change(values: Array) -> Array:
+        return np.asarray(values[j] - values[i])
+
+    damping = change(made.damped)
+    to_balance = change(made.own[:, balance]) + damping[:, balance] - change(made.driven[:, balance])
+    impulse = c.mass * change(made.u[:, balance]) + c.viscous * change(made.q[:, balance])
+    impulse += c.stiffness * (change(made.swept[:, balance]) - c.rest * change(made.t)) - c.force * change(made.t)
+    impacts = _impacts(run, starts, ends, locked, locking)
+    rates_i, rates_j = (compiled.relative(made.u[k], rates=True)[:, columns].tolist() for k in (i, j))
+    angles = compiled.relative(made.q[j])[:, columns].tolist()
+    books = (change(made.drive), change(made.stored), to_balance, damping.sum(axis=1), impulse)
+    for k, (row, supplied, stored, gained, damped, push) in enumerate(zip(told, *(b.tolist() for b in books), strict=True)):
+        energy = Energies(supplied, stored, gained, damped, supplied - stored - damped - sum(impacts[k].values()), impacts[k])
+        triples = (tuple(values[k]) for values in (rates_i, angles, rates_j))
+        yield Stage(row, stones.get(row.beat, ""), *triples, push, energy)
 
 
-def _losses(run: Trajectory) -> _Losses:
+def _rows(t: Array, times: Array, after: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """The rows at some times: the first of several, or the last."""
+    k = np.where(after, np.searchsorted(t, times, side="right") - 1, np.searchsorted(t, times, side="left"))
+    return np.clip(k, 0, len(t) - 1)
+
+
+def _impacts(
+    run: Trajectory, starts: Array, ends: Array, locked: NDArray[np.bool_], locking: NDArray[np.bool_]
+) -> list[dict[str, float]]:
+    """What impacts took in each stretch, by pair of bodies, J."""
     own = run.events[np.isin(run.events["kind"], LOSSES)]
-    names = {k: _bodies(run, k) for k in np.unique(own["contact"]).tolist()}
-    return _Losses(own["t"], own["energy_lost"], tuple(names[k] for k in own["contact"].tolist()))
+    names = {k: pair_name(run, k) for k in np.unique(own["contact"]).tolist()}
+    pairs, lost = [names[k] for k in own["contact"].tolist()], own["energy_lost"].tolist()
+    t = np.ascontiguousarray(own["t"])
+    low = np.where(locked, np.searchsorted(t, starts, side="right"), np.searchsorted(t, starts, side="left"))
+    high = np.where(locking, np.searchsorted(t, ends, side="right"), np.searchsorted(t, ends, side="left"))
+    found: list[dict[str, float]] = []
+    for first, last in zip(low.tolist(), high.tolist(), strict=True):
+        one: dict[str, float] = {}
+        for pair, value in zip(pairs[first:last], lost[first:last], strict=True):
+            one[pair] = one.get(pair, 0.0) + value
+        found.append(one)
+    return found
 
 
-def _bodies(run: Trajectory, contact: int) -> str:
+def pair_name(run: Trajectory, contact: int) -> str:
+    """The two bodies of a contact, in the order of the scene."""
     pair = run.pairs[contact]
     return "-".join(sorted((pair.body_a, pair.body_b), key=[body.name for body in run.scene.bodies].index))
 
 
-def _stage(
-    run: Trajectory, parts: Roles, compiled: Compiled, made: Flows, losses: _Losses, row: Phase, pallet: str
-) -> Stage:
-    # The impacts of the lock belong to the drop that ends with them, all others to the phase that they begin.
-    i = _row(made.t, row.start, after=row.name == "run to banking")
-    j = _row(made.t, row.end, after=row.name == "drop")
-    low = np.searchsorted(losses.t, row.start, side="right" if row.name == "run to banking" else "left")
-    high = np.searchsorted(losses.t, row.end, side="right" if row.name == "drop" else "left")
-    impacts: dict[str, float] = {}
-    for k in range(int(low), int(high)):
-        impacts[losses.pair[k]] = impacts.get(losses.pair[k], 0.0) + float(losses.lost[k])
-    names = (parts.wheel, parts.lever, parts.oscillator)
-    columns = [run.slices[name].start for name in names if name]
-    balance = columns[2]
-    c = compiled.model.coordinates[balance]
-    supplied, stored = float(made.drive[j] - made.drive[i]), float(made.stored[j] - made.stored[i])
-    damping = float((made.damped[j] - made.damped[i]).sum())
-    gained = float(made.own[j, balance] - made.own[i, balance])
-    to_balance = gained + float(made.damped[j, balance] - made.damped[i, balance])
-    to_balance -= float(made.driven[j, balance] - made.driven[i, balance])
-    turned, time = float(made.q[j, balance] - made.q[i, balance]), float(made.t[j] - made.t[i])
-    swept = float(made.swept[j, balance] - made.swept[i, balance])
-    impulse = c.mass * float(made.u[j, balance] - made.u[i, balance]) + c.viscous * turned
-    impulse += c.stiffness * (swept - c.rest * time) - c.force * time
-    friction = supplied - stored - damping - sum(impacts.values())
-    energy = Energies(supplied, stored, to_balance, damping, friction, impacts)
-    rates = compiled.relative(made.u[[i, j]], rates=True)[:, columns]
-    angles = compiled.relative(made.q[[j]])[0, columns]
-    return Stage(row, pallet, _triple(rates[0]), _triple(angles), _triple(rates[1]), float(impulse), energy)
-
-
-def _triple(values: Array) -> Triple:
-    first, second, third = values.tolist()
-    return first, second, third
-
-
-def _row(t: NDArray[np.float64], time: float, after: bool) -> int:
-    """The row at a time: the first of several, or the last."""
-    k = int(np.searchsorted(t, time, side="right")) - 1 if after else int(np.searchsorted(t, time, side="left"))
-    return min(max(k, 0), len(t) - 1)
-
-
-def _pallet(run: Trajectory, compiled: Compiled, parts: Roles, row: Phase) -> str:
-    """The stone on which the wheel rested before it was unlocked: that of the last contact of wheel and lever before."""
+def _pallets(run: Trajectory, compiled: Compiled, parts: Roles, unlocking: list[Phase]) -> dict[int, str]:
+    """For each beat the stone on which the wheel rested before: that of the last contact of wheel and lever until then."""
     assert parts.wheel and parts.lever
-    events = run.events[(run.events["contact"] >= 0) & (run.events["t"] <= row.start)]
-    for contact in events["contact"][::-1].tolist():
-        pair = run.pairs[contact]
-        if {pair.body_a, pair.body_b} == {parts.wheel, parts.lever}:
-            return _side(run, compiled, parts, contact, row.start)
-    return ""
+    events = contact_events(run, between(parts.lever, {parts.wheel}))
+    known = events[events["contact"] < len(compiled.model.contacts)]
+    last = np.searchsorted(known["t"], [row.start for row in unlocking], side="right") - 1
+    found: dict[int, str] = {}
+    sides: dict[int, str] = {}
+    for row, k in zip(unlocking, last.tolist(), strict=True):
+        if k >= 0:
+            contact = int(known["contact"][k])
+            p = compiled.model.contacts[contact]
+            stone = int(p.a if compiled.owners[int(p.a)] == parts.lever else p.b)
+            if stone not in sides:
+                sides[stone] = _side(run, compiled, parts, stone, row.start)
+            found[row.beat] = sides[stone]
+    return found
 
 
-def _side(run: Trajectory, compiled: Compiled, parts: Roles, contact: int, time: float) -> str:
+def _side(run: Trajectory, compiled: Compiled, parts: Roles, stone: int, time: float) -> str:
     """Entry where the stone lies before the line from wheel to lever, in the wheel's sense of turning."""
     assert parts.wheel and parts.lever
-    model = compiled.model
-    table = model.contacts[contact]
     x0, y0, _ = run.pose(parts.wheel, time)
     x1, y1, angle = run.pose(parts.lever, time)
-    owners = compiled.owners
-    k = int(table.a if owners[int(table.a)] == parts.lever else table.b)
-    p = model.primitives[k]
+    p = compiled.model.primitives[stone]
     c, s = math.cos(angle), math.sin(angle)
     x, y = x1 + c * p.px - s * p.py, y1 + s * p.px + c * p.py
     turn = (x1 - x0) * (y - y0) - (y1 - y0) * (x - x0)
