@@ -39,10 +39,14 @@ def swiss_scene(folder: Path, design: Swiss) -> Scene:
 def turned_scene(scene: Scene, angle: float, shift: Point = (0.0, 0.0)) -> Scene:
     """The whole movement turned by `angle` (rad) about the origin and shifted (m)."""
     c, s = math.cos(angle), math.sin(angle)
+
+    def image(x: float, y: float) -> Point:
+        return c * x - s * y + shift[0], s * x + c * y + shift[1]
+
     bodies = tuple(
         replace(
             body,
-            position=(c * body.position[0] - s * body.position[1] + shift[0], s * body.position[0] + c * body.position[1] + shift[1]),
+            position=image(*body.position),
             angle=body.angle + angle,
         )
         for body in scene.bodies

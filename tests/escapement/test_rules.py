@@ -10,8 +10,8 @@ import pytest
 from draw_swiss_design import Swiss
 from escapement.made import swiss_scene
 
-from watchsim.commands.console import BAD_INPUT, FINE
 from watchsim.cli import main
+from watchsim.commands.console import BAD_INPUT, FINE
 from watchsim.escapement.measure import measure
 from watchsim.escapement.rules import judgements
 from watchsim.mechanism.load import load

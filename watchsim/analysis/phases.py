@@ -167,7 +167,5 @@ def _with_angles(run: Trajectory, parts: Roles, rows: list[Phase]) -> list[Phase
     first, last = run.sample(starts)[0][:, columns], run.sample(ends)[0][:, columns]
     turns = last - first
     return [
-        replace(row, angles=tuple(first[k].tolist()), turns=tuple(turns[k].tolist()))
-        for k, row in enumerate(rows)
-        if kept[k]
+        replace(row, angles=tuple(first[k].tolist()), turns=tuple(turns[k].tolist())) for k, row in enumerate(rows) if kept[k]
     ]

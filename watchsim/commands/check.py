@@ -6,14 +6,13 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from watchsim.commands.console import BAD_INPUT, FINE, InputError, check_picture, parse_positive, print_json, say
+from watchsim.commands.console import BAD_INPUT, FINE, InputError, check_picture, parse_width, print_json, say
 
 if TYPE_CHECKING:
     from watchsim.escapement.measure import Function
     from watchsim.mechanism.compile import Compiled
     from watchsim.mechanism.scene import Scene
 
-NARROWEST, WIDEST = 0.06, 0.42  # m
 SHEETS = (".png", ".svg", ".pdf")
 HELP = "everything short of simulating: units, overlap at the start, mass, frequency, what can touch"
 
@@ -47,11 +46,8 @@ def run(args: argparse.Namespace) -> int:
     from watchsim.mechanism.check import check_report, check_text
     from watchsim.mechanism.compile import compile_scene
     from watchsim.simulation.start import refusals
-    from watchsim.units import LENGTH
 
-    width = parse_positive("--width", args.width, LENGTH)
-    if not NARROWEST <= width <= WIDEST:
-        raise InputError(f'--width "{args.width}": a sheet is {1e3 * NARROWEST:g} mm to {1e3 * WIDEST:g} mm wide.')
+    width = parse_width(args.width)
     sheets = [Path(args.sheet)] if args.sheet else []
     if args.png:
         check_picture(args.png, args.scene)

@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 
 MM = 1.0 / 25.4  # inches
 FULL, COLUMN = 170.0, 85.0  # mm
-PANEL, TOP, FOOT, LEFT, RIGHT, BETWEEN = 26.0, 34.0, 10.0, 15.0, 3.0, 11.0
+PANEL, TOP, FOOT, LEFT, RIGHT, BETWEEN = 25.0, 31.0, 5.0, 13.5, 3.0, 11.0
 SIZE, SMALL = 6.5, 6.0  # pt
 SHADES = {
     "unlock": "#f3c6c6",
@@ -105,21 +105,20 @@ def _column(
     for k, name in enumerate(names):
         column, colour = run.slices[name].start, worn[name].line
         for axes, values, unit in (
-            (panels[2 * k], np.degrees(q[:, column]), "angle (°)"),
-            (panels[2 * k + 1], 1e-3 * np.degrees(u[:, column]), "velocity (1000 °/s)"),
+            (panels[2 * k], np.degrees(q[:, column]), f"{name} (°)"),
+            (panels[2 * k + 1], 1e-3 * np.degrees(u[:, column]), f"{name} (1000 °/s)"),
         ):
             axes.plot(x, values, color=colour, linewidth=0.9, solid_joinstyle="round", zorder=3)
             _dress(axes, (1e3 * (span[0] - zero), 1e3 * (span[1] - zero)), values)
             if first:
-                axes.set_ylabel(unit, fontsize=SMALL, color=INK, labelpad=2.0)
-                axes.yaxis.set_label_coords(-11.5 * MM / (axes.get_position().width * axes.figure.get_figwidth()), 0.5)
-        panels[2 * k].set_title(name, fontsize=SIZE, loc="left", color=colour, weight="bold", pad=1.5)
+                axes.set_ylabel(unit, fontsize=SMALL, color=colour, weight="bold")
+                axes.yaxis.set_label_coords(-10.5 * MM / (_width(axes)), 0.5)
     for axes in panels:
         _shade(axes, told if beat is None else [beat], zero, whole=beat is None)
     for axes in panels[:-1]:
         axes.set_xticklabels([])
-    stone = f" ({beat.stages[0].pallet} stone)" if beat is not None and beat.stages[0].pallet else ""
-    words = f"ms after t = {zero:.4f} s" if beat is None else f"ms after the first touch{stone}"
+    stone = f", {beat.stages[0].pallet} stone" if beat is not None and beat.stages[0].pallet else ""
+    words = f"ms after t = {zero:.4f} s" if beat is None else f"ms from first touch{stone}"
     panels[-1].set_xlabel(words, fontsize=SMALL, color=INK, labelpad=1.5)
     if beat is not None:
         _names(panels[0], beat, zero)
@@ -163,16 +162,21 @@ def _names(axes: Axes, beat: Beat, zero: float) -> None:
     low, high = axes.get_xlim()
     stages = [stage for stage in beat.stages if stage.name != "locked"]
     middles = [500.0 * (stage.phase.start + stage.phase.end - 2.0 * zero) for stage in stages]
-    least = 4.2 * (high - low) / (axes.get_position().width * axes.figure.get_figwidth() / MM)
+    least = 4.2 * (high - low) / (_width(axes) / MM)
     for stage, middle, place in zip(stages, middles, _spread(middles, least), strict=True):
         words = title(stage)
         where, top = (middle - low) / (high - low), (place - low) / (high - low)
         axes.plot(
-            (where, top), (1.0, 1.16), transform=axes.transAxes, color=FAINT, linewidth=0.5, clip_on=False, zorder=1
+            (where, top), (1.0, 1.14), transform=axes.transAxes, color=FAINT, linewidth=0.5, clip_on=False, zorder=1
         )  # fmt: skip
         axes.text(
-            top, 1.18, words, transform=axes.transAxes, rotation=90.0, fontsize=SMALL, ha="center", va="bottom", color=INK
+            top, 1.16, words, transform=axes.transAxes, rotation=90.0, fontsize=SMALL, ha="center", va="bottom", color=INK
         )  # fmt: skip
+
+
+def _width(axes: Axes) -> float:
+    """Of a panel, inches."""
+    return float(axes.get_window_extent().width) / DPI
 
 
 def _spread(places: list[float], least: float) -> list[float]:

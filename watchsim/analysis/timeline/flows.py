@@ -68,9 +68,7 @@ def flows(run: Trajectory, compiled: Compiled, rows: slice = slice(None)) -> Flo
     free = _in_flight(model, own, (q, u, a)) & (h > 0.0)[:, None]
     damped = np.where(free, own[:-1] - own[1:] + driven, damped)
     step = h[:, None]
-    swept = step * (
-        0.5 * (q[:-1] + q[1:]) + step * (0.1 * (u[:-1] - u[1:]) + step * (a[:-1] + a[1:]) / 120.0)
-    )
+    swept = step * (0.5 * (q[:-1] + q[1:]) + step * (0.1 * (u[:-1] - u[1:]) + step * (a[:-1] + a[1:]) / 120.0))
     driven, damped, swept = (_so_far(values) for values in (driven, damped, swept))
     return Flows(t, q, u, stored, own, driven.sum(axis=1), driven, damped, swept)
 

@@ -52,9 +52,9 @@ class Energies:
 class Stage:
     """A phase with everything told of it; triples are of wheel, lever and oscillator, rad and rad/s.
 
-    `pallet`: entry or exit, the stone that is unlocked in this beat; "" where that cannot be told. `impulse`: angular impulse of
-    all contacts on the oscillator, N·m·s. Rates at the start are before impacts at that time, but after the lock's at the end of
-    a drop and at the start of what follows.
+    `pallet`: entry or exit, the stone that is unlocked in this beat; "" where that cannot be told. `impulse`: angular impulse
+    of all contacts on the oscillator, N·m·s. Rates at the start are before impacts at that time, but after the lock's at the
+    end of a drop and at the start of what follows.
     """
 
     phase: Phase
@@ -117,8 +117,13 @@ def _stages(
     books = (change(made.drive), change(made.stored), to_balance, damping.sum(axis=1), impulse)
     for k, (row, supplied, stored, gained, damped, push) in enumerate(zip(told, *(b.tolist() for b in books), strict=True)):
         energy = Energies(supplied, stored, gained, damped, supplied - stored - damped - sum(impacts[k].values()), impacts[k])
-        triples = (tuple(values[k]) for values in (rates_i, angles, rates_j))
-        yield Stage(row, stones.get(row.beat, ""), *triples, push, energy)
+        first, place, last = (_triple(values[k]) for values in (rates_i, angles, rates_j))
+        yield Stage(row, stones.get(row.beat, ""), first, place, last, push, energy)
+
+
+def _triple(values: list[float]) -> Triple:
+    first, second, third = values
+    return first, second, third
 
 
 def _rows(t: Array, times: Array, after: NDArray[np.bool_]) -> NDArray[np.int64]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 from watchsim.analysis.timeline.oscillation import Beat, shown_beats
 from watchsim.analysis.timeline.rows import Stage
@@ -28,9 +28,9 @@ def title(stage: Stage) -> str:
     return f"{words} on {stage.phase.on}" if stage.phase.on else words
 
 
-def timeline_text(run: Trajectory, window: Sequence[float] | None = None) -> str:
-    """Both tables of the beats that begin within a window (s), by default of the last oscillation; ValueError as there."""
-    told = shown_beats(run, window)
+def timeline_text(run: Trajectory, told: list[Beat] | None = None) -> str:
+    """Both tables of some beats (see `shown_beats`), by default of the last oscillation; ValueError as there."""
+    told = told or shown_beats(run)
     return "\n".join([*_motion(run, told), "", *_energy(told)])
 
 
@@ -68,7 +68,14 @@ def _heading(beat: Beat) -> str:
 def _energy(told: list[Beat]) -> Iterator[str]:
     rubbed = sorted({pair for beat in told for one in beat.friction for pair in one})
     struck = sorted({pair for beat in told for stage in beat.stages for pair in stage.energy.impacts})
-    columns = ["supplied", "to balance", "stored", "damping", *(f"f {pair}" for pair in rubbed), *(f"i {pair}" for pair in struck)]
+    columns = [
+        "supplied",
+        "to balance",
+        "stored",
+        "damping",
+        *(f"f {pair}" for pair in rubbed),
+        *(f"i {pair}" for pair in struck),
+    ]
     wide = [max(11, len(name) + 2) for name in columns]
     yield "energy in nJ; f: friction, i: impacts; to balance: work of all contacts on the oscillator; impulse on it in nN·m·s"
     yield f"{'':{WIDTH}}{'impulse':>9}" + "".join(f"{name:>{w}}" for name, w in zip(columns, wide, strict=True))
