@@ -4,36 +4,21 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from pathlib import Path
 
-import draw_swiss_lever
-from draw_swiss_design import Swiss
-
+from watchsim.construction import known
+from watchsim.construction.swiss_lever.follow import swiss
+from watchsim.construction.swiss_lever.points import Swiss
+from watchsim.designs.maker import Maker
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.body import Body
 from watchsim.mechanism.force import Side
-from watchsim.mechanism.load import load
 from watchsim.mechanism.scene import Scene
-from watchsim.profiles_path import profiles_dir
-
-CLEAR = 0.3  # degrees of the wheel, before the locking
 
 
-def swiss_scene(folder: Path, design: Swiss) -> Scene:
-    """The profile's scene with drawings of that design; lever on the entry bank, a tooth just before the entry stone."""
-    draw_swiss_lever.draw(folder, design)
-    text = (profiles_dir() / "swiss_lever" / "scene.toml").read_text(encoding="utf-8")
-    (folder / "scene.toml").write_text(text, encoding="utf-8")
-    toe = design.locked_toe(1) + CLEAR
-    scene = load(folder / "scene.toml")
-    for key, value in {
-        "bodies.lever.position": ["0 mm", f"{design.lever_pivot[1]!r} mm"],
-        "bodies.balance.position": ["0 mm", f"{design.balance_pivot[1]!r} mm"],
-        "bodies.lever.angle": f"{design.bank - 1e-3!r}°",
-        "bodies.wheel.angle": f"{toe!r}°",
-    }.items():
-        scene = scene.set(key, value)
-    return scene
+def swiss_scene(**dimensions: object) -> tuple[Scene, Swiss]:
+    """A Swiss lever of chosen dimensions, and the points it was constructed by (millimetres, degrees)."""
+    drawn = Maker(known.design("swiss_lever"))(**dimensions)
+    return drawn.scene(), swiss(drawn.values)
 
 
 def turned_scene(scene: Scene, angle: float, shift: Point = (0.0, 0.0)) -> Scene:

@@ -7,10 +7,9 @@ from dataclasses import fields, replace
 
 import measure_lever
 import pytest
-from draw_swiss_design import Swiss
-from draw_swiss_roller import banking
 from escapement.made import mirrored_scene, renamed_scene, swiss_scene, turned_scene
 
+from watchsim.construction.swiss_lever.roller import banking
 from watchsim.escapement.measure import Function, measure
 from watchsim.escapement.pallets import Pallet
 from watchsim.escapement.quantity import Quantity
@@ -21,11 +20,11 @@ from watchsim.profiles_path import profiles_dir
 
 SWISS = profiles_dir() / "swiss_lever" / "scene.toml"
 BENCH = profiles_dir() / "bench_lever" / "scene.toml"
-DESIGNS = {
-    "as drawn": Swiss(),
-    "deep lock": Swiss(lock=2.2, run=0.3, draw=11.0, banking_height=2.3),
-    "20 teeth": Swiss(teeth=20, half_span=31.5, tooth_width=3.2, lift=6.0, drop=0.9, heel_radius=2.44),
-    "wide drop": Swiss(lift=7.0, drop=1.5, draw=14.5, banking_height=2.4),
+DESIGNS: dict[str, dict[str, object]] = {
+    "as drawn": {},
+    "deep lock": {"lock": "2.2°", "run": "0.3°", "draw": "11°"},
+    "20 teeth": {"teeth": 20, "embraced": 3.5, "tooth_width": "3.2°", "drop_inside": "0.9°", "drop_outside": "0.9°"},
+    "unequal drops": {"drop_inside": "1°", "drop_outside": "1.6°", "lift_angle": "46°", "guard_freedom": "0.9°"},
 }
 
 
@@ -55,31 +54,38 @@ def numbers(function: Function) -> dict[str, float]:
 
 
 @pytest.mark.parametrize("name", DESIGNS)
-def test_measured_is_what_was_chosen(name, tmp_path):
-    design = DESIGNS[name]
-    function = measure(swiss_scene(tmp_path, design))
-    assert function.missing == () and function.teeth == design.teeth and function.pallets and function.banks
-    assert math.degrees(function.banks[0] - function.banks[1]) == pytest.approx(2.0 * design.bank, abs=1e-3)
-    for one in function.pallets:
-        # The decimals of a drawing move what they make by some 1e-6°, the banking by more: it is met far from the pivot.
-        assert degrees(one.lock) == pytest.approx(design.lock, abs=1e-5)
-        assert degrees(one.run) == pytest.approx(design.run, abs=1e-3)
-        assert degrees(one.total_lock) == pytest.approx(design.lock + design.run, abs=1e-3)
-        assert degrees(one.lift) == pytest.approx(design.lift, abs=1e-5)
-        assert degrees(one.lift_stone) + degrees(one.lift_tooth) == pytest.approx(design.lift, abs=1e-5)
-        assert degrees(one.drop) == pytest.approx(design.drop, abs=1e-5)
+def test_measured_is_what_was_chosen(name):
+    """The drawing's decimals move what they make by some 1e-8°."""
+    scene, design = swiss_scene(**DESIGNS[name])
+    function = measure(scene)
+    assert function.missing == () and function.teeth == design.teeth
+    assert function.pallets and function.banks and function.fork and function.safety
+    assert math.degrees(function.banks[0] - function.banks[1]) == pytest.approx(2.0 * design.bank, abs=1e-6)
+    told = {key: float(str(value).rstrip("°")) for key, value in DESIGNS[name].items()}
+    for one, drop in zip(function.pallets, ("drop_inside", "drop_outside"), strict=True):
+        assert degrees(one.lock) == pytest.approx(told.get("lock", 1.5), abs=1e-6)
+        assert degrees(one.run) == pytest.approx(told.get("run", 0.5), abs=1e-6)
+        assert degrees(one.total_lock) == pytest.approx(told.get("lock", 1.5) + told.get("run", 0.5), abs=1e-6)
+        assert degrees(one.lift) == pytest.approx(7.5, abs=1e-6)
+        assert degrees(one.lift_stone) + degrees(one.lift_tooth) == pytest.approx(7.5, abs=1e-6)
+        assert degrees(one.drop) == pytest.approx(told.get(drop, 1.2), abs=1e-6)
         assert one.lock.spread < 1e-7 and one.drop.spread < 1e-7
+    assert degrees(function.pallets[0].lift_stone) == pytest.approx(4.8, abs=1e-6)
+    for one in function.fork.lift_angle:
+        assert degrees(one) == pytest.approx(told.get("lift_angle", 51.2), abs=1e-6)
+    for guard in function.safety:
+        assert degrees(guard.guard) == pytest.approx(told.get("guard_freedom", 0.765), abs=1e-6)
 
 
 @pytest.mark.parametrize("name", DESIGNS)
-def test_draw_and_recoil_follow_from_the_construction(name, tmp_path):
+def test_draw_and_recoil_follow_from_the_construction(name):
     """The face leans by the draw from the radius of the wheel at the corner; the toe stands beside that corner."""
-    design = DESIGNS[name]
-    function = measure(swiss_scene(tmp_path, design))
+    scene, design = swiss_scene(**DESIGNS[name])
+    function = measure(scene)
     assert function.pallets
     for side, one in zip((1, -1), function.pallets, strict=True):
         # At the corner the line to the lever's pivot is square to the radius: the face has turned with the lever since.
-        assert degrees(one.draw_end) == pytest.approx(design.draw + side * (design.lock + design.run), abs=1e-3)
+        assert degrees(one.draw_end) == pytest.approx(design.draw + side * (design.lock + design.run), abs=1e-6)
         corner = design.in_movement(design.locking_corner(side), side * design.bank)
         towards = math.radians(design.face_direction(side) + side * design.bank)
         x, y = corner
@@ -90,9 +96,9 @@ def test_draw_and_recoil_follow_from_the_construction(name, tmp_path):
         px, py = design.lever_pivot
         square = math.atan2(toe[1] - py, toe[0] - px) + 0.5 * math.pi
         draw = (math.degrees(towards - square) + 90.0) % 180.0 - 90.0
-        assert degrees(one.draw) == pytest.approx(abs(draw), abs=1e-3)
+        assert degrees(one.draw) == pytest.approx(abs(draw), abs=1e-6)
         recoil = 90.0 + side * design.half_span - math.degrees(math.atan2(toe[1], toe[0]))
-        assert degrees(one.recoil) == pytest.approx(recoil, abs=1e-3)
+        assert degrees(one.recoil) == pytest.approx(recoil, abs=1e-6)
 
 
 @pytest.mark.parametrize("scene", [SWISS, BENCH], ids=lambda path: path.parent.name)
@@ -214,10 +220,10 @@ def test_without_banking_it_is_said(swiss):
     assert function.pallets is None and "no banking" in function.missing[0][1]
 
 
-def test_a_lever_that_is_held_too_close_lets_off_nothing(tmp_path):
+def test_a_lever_that_is_held_too_close_lets_off_nothing():
     """Banking pins drawn for a smaller travel: the tooth is never let off."""
-    scene = swiss_scene(tmp_path, Swiss())
-    narrow = Swiss(run=-0.6)
+    scene, design = swiss_scene()
+    narrow = replace(design, run=-0.6)
     pins = tuple(
         replace(loop, edges=tuple(replace(e, x=1e-3 * e.x, y=1e-3 * e.y, radius=1e-3 * e.radius) for e in loop.edges))
         for loop in banking(narrow)

@@ -9,9 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from watchsim.escapement.hands import Array, Hands, Integers, Touch
-from watchsim.escapement.pallets import Passage
+from watchsim.escapement.pallets import Passage, change_error
 from watchsim.escapement.parts import Parts
 from watchsim.escapement.quantity import Quantity, over_teeth, single
+from watchsim.escapement.sweep import Rest
 
 STEP = math.radians(0.25)  # of the lever as the pin carries it
 BACK = math.radians(1.0)  # of the balance: a pin that has one wall only stands half as far from it
@@ -37,21 +38,20 @@ class Slot:
     front: Touch | None
     back: Touch | None
 
-    @property
-    def any(self) -> Touch:
-        wall = self.front or self.back
-        assert wall is not None
-        return wall
+    def nearest(self, near: float) -> Touch:
+        """The wall nearest to a balance angle."""
+        walls = [wall for wall in (self.front, self.back) if wall is not None]
+        return min(walls, key=lambda wall: abs(wall.angle - near))
 
-    def free(self, way: float) -> float:
-        """A balance angle close to the wall ahead, or to the one behind where there is none ahead, that touches neither.
+    def free(self, near: float) -> float:
+        """A balance angle close to the wall nearest to `near` that touches neither.
 
-        Close, because what is far behind the pin may be no wall of the slot but a horn that comes up later.
+        Close, because what is far away may be no wall of the slot but a horn that comes up later.
         """
-        if self.front is None:
-            return self.any.angle + way * 0.5 * BACK
-        room = BACK if self.back is None else min(BACK, abs(self.front.angle - self.back.angle))
-        return self.front.angle - way * 0.5 * room
+        walls = [wall.angle for wall in (self.front, self.back) if wall is not None]
+        wall = min(walls, key=lambda angle: abs(angle - near))
+        room = min([BACK, *(abs(other - wall) for other in walls if other != wall)])
+        return wall + math.copysign(0.5 * room, near - wall)
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,7 +137,7 @@ class Balance:
                 free += rate * (a - lever)
                 lever = a
                 slot = self._slot(entry, a, free)
-                free, rate = slot.free(entry.way), self._shift(slot.any, a)
+                free, rate = slot.free(free), self._shift(slot.nearest(free), a)
             found[end] = slot
         return found
 
@@ -148,6 +148,12 @@ class Balance:
             raise ValueError(f"the pin is clear of the fork with the lever at {math.degrees(lever):.2f}°")
         return Slot(front, back)
 
+    def carried_error(self, slot: Slot, rest: Rest) -> float:
+        """Of a balance angle, by how well the lever's angle is known at which the wheel goes from face to face, rad."""
+        wall = slot.front or slot.back
+        assert wall is not None
+        return change_error(self.hands, self.parts, rest) * abs(self._shift(wall, rest.lever))
+
     def _shift(self, wall: Touch, lever: float) -> float:
         """Turn of the balance by turn of the lever that keeps a wall touching."""
         of_lever, of_balance = self.rates(wall, lever)
@@ -157,7 +163,11 @@ class Balance:
 def fork(balance: Balance, banks: tuple[float, float], beats: list[Passage], entries: tuple[Entry, Entry]) -> Fork:
     """All of it. ValueError in words where the pin cannot carry the lever over."""
     upper, lower = entries
-    lifts, unlocks, ends, knocks, rests = [], [], [], [], []
+    lifts: list[Quantity] = []
+    unlocks: list[Quantity] = []
+    ends: list[Quantity] = []
+    knocks: list[Quantity] = []
+    rests: list[Quantity] = []
     for side, own, other in ((1.0, upper, lower), (-1.0, lower, upper)):
         bank = banks[0] if side > 0.0 else banks[1]
         touch = balance.balance(bank, balance.rest + math.pi, own.way)
@@ -170,8 +180,12 @@ def fork(balance: Balance, banks: tuple[float, float], beats: list[Passage], ent
         slots = balance.carried(own, bank, {angle for one in teeth for angle in (one.unlocked.lever, one.let_off.lever)})
         first = [_angle(slots[one.unlocked.lever].front) for one in teeth]
         last = [_angle(slots[one.let_off.lever].back) for one in teeth]
-        unlocks.append(over_teeth([own.way * (angle - own.angle) for angle in first], [2.0 * error] * len(first), numbers))
-        ends.append(over_teeth([own.way * (angle - own.angle) for angle in last], [2.0 * error] * len(last), numbers))
+        for out, angles, places in (
+            (unlocks, first, [one.unlocked for one in teeth]),
+            (ends, last, [one.let_off for one in teeth]),
+        ):
+            errors = [2.0 * error + balance.carried_error(slots[place.lever], place) for place in places]
+            out.append(over_teeth([own.way * (angle - own.angle) for angle in angles], errors, numbers))
         knock = math.nan if own.knock is None else _turns(-own.way * (own.knock - balance.rest))
         knocks.append(single(knock, error))
         rests.append(single(_within(own.angle - balance.rest), error))

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from watchsim.escapement.hands import Hands
+from watchsim.escapement.parts import Parts
 from watchsim.escapement.quantity import Quantity, over_teeth
 from watchsim.escapement.sweep import LEVEL, WIDTH, LetOff, Rest, Stretch, Sweep, Wheel
 
@@ -127,11 +128,11 @@ def pallet(wheel: Wheel, beats: Sequence[Passage], side: float, detached: bool) 
         return over_teeth(values, [error(one) for one in own], teeth)
 
     def of_lever(one: Passage) -> float:
-        return change_error(wheel, one.unlocked) + change_error(wheel, one.let_off)
+        return change_error(hands, wheel.parts, one.unlocked) + change_error(hands, wheel.parts, one.let_off)
 
     def of_wheel(one: Passage) -> float:
         places = one.start, one.unlocked, one.let_off, one.landed
-        return sum(place.error + change_error(wheel, place) * abs(place.slope) for place in places)
+        return sum(place.error + change_error(hands, wheel.parts, place) * abs(place.slope) for place in places)
 
     def of_draw(one: Passage) -> float:
         return _face_error(hands, one.start.stone if one.start.on_stone else one.start.tooth)
@@ -160,10 +161,9 @@ def draw_angle(wheel: Wheel, rest: Rest, pivot: tuple[float, float], side: float
     return math.asin(max(-1.0, min(1.0, side * opening / arm)))
 
 
-def change_error(wheel: Wheel, rest: Rest) -> float:
+def change_error(hands: Hands, parts: Parts, rest: Rest) -> float:
     """Of the lever's angle at which a corner comes to the end of a face, rad: a contact counts a little beyond it."""
-    hands = wheel.hands
-    x, y = hands.pivot(wheel.parts.lever, wheel.at(0.0, 0.0))
+    x, y = hands.pivot(parts.lever, hands.compiled.q)
     # The corner slides at a third of the arm at least, unless draw or lift are steeper than any escapement's.
     return WIDTH + 3.0 * (hands.room + hands.resolution) / math.hypot(rest.x - x, rest.y - y)
 
