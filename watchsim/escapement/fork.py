@@ -17,6 +17,8 @@ from watchsim.escapement.sweep import Rest
 STEP = math.radians(0.25)  # of the lever as the pin carries it
 BACK = math.radians(1.0)  # of the balance: a pin that has one wall only stands half as far from it
 FARTHEST = math.radians(40.0)  # of the lever
+SLOT = math.radians(6.0)  # of the balance: walls that are closer are those of the slot
+FINER = 5.0  # times as small steps, where the pin was lost
 WALLS = math.radians(40.0)  # of the balance: what is further away is no wall of the slot
 
 
@@ -44,10 +46,12 @@ class Slot:
         return min(walls, key=lambda wall: abs(wall.angle - near))
 
     def free(self, near: float) -> float:
-        """A balance angle close to the wall nearest to `near` that touches neither.
+        """A balance angle in the middle of the slot, or close to the wall nearest to `near` where the other is far away.
 
-        Close, because what is far away may be no wall of the slot but a horn that comes up later.
+        What is far away may be no wall of the slot but a horn that comes up later.
         """
+        if self.front is not None and self.back is not None and abs(self.front.angle - self.back.angle) < SLOT:
+            return 0.5 * (self.front.angle + self.back.angle)
         walls = [wall.angle for wall in (self.front, self.back) if wall is not None]
         wall = min(walls, key=lambda angle: abs(angle - near))
         room = min([BACK, *(abs(other - wall) for other in walls if other != wall)])
@@ -129,10 +133,17 @@ class Balance:
 
         ValueError where the pin leaves the fork on the way.
         """
+        wanted = list(ends)
+        try:
+            return self._carried(entry, start, wanted, STEP)
+        except ValueError:
+            return self._carried(entry, start, wanted, STEP / FINER)
+
+    def _carried(self, entry: Entry, start: float, ends: list[float], step: float) -> dict[float, Slot]:
         found: dict[float, Slot] = {}
         lever, free, rate = start, entry.angle - entry.way * 0.5 * BACK, self._shift(Touch(entry.angle, entry.contact), start)
         for end in sorted(ends, key=lambda angle: abs(angle - start)):
-            steps = max(1, math.ceil(abs(end - lever) / STEP))
+            steps = max(1, math.ceil(abs(end - lever) / step))
             for a in np.linspace(lever, end, steps + 1).tolist():
                 free += rate * (a - lever)
                 lever = a
