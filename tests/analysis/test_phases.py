@@ -11,7 +11,7 @@ import pytest
 from analysis.made_beats import BANKED, CATCH, DEGREE, DROP, ENTRY, LOCK, OMEGA, UNLOCKED, lever_run, lever_scene
 from render.fake_runs import disc_run
 
-from watchsim.analysis.timing.beat_tables import PHASE_COLUMNS, beats_csv, phases_csv
+from watchsim.analysis.beat_tables import PHASE_COLUMNS, beats_csv, phases_csv
 from watchsim.analysis.timing.beats import beats
 from watchsim.analysis.timing.phases import phases
 

@@ -75,8 +75,8 @@ def forces(run: Trajectory, times: Iterable[float] | None = None) -> Forces:
     t = np.array(run.t if times is None else list(times), float)
     q, u = run.sample(t)
     compiled = compile_scene(run.scene)
-    absolute, speed = _absolute(compiled, q, False), _absolute(compiled, u, True)
-    found = [_instant(compiled, *row) for row in zip(t, absolute, speed, _modes(run, t), strict=True)]
+    where, speed = absolute(compiled, q, False), absolute(compiled, u, True)
+    found = [_instant(compiled, *row) for row in zip(t, where, speed, _modes(run, t), strict=True)]
     pairs = np.array(sorted({int(k) for one in found for k in one.ids}), np.int64)
     shape = (len(t), len(pairs))
     out = Forces(t, pairs, np.zeros(shape), np.zeros(shape), np.full((*shape, 2), np.nan), np.full((*shape, 2), np.nan), {})
@@ -84,11 +84,11 @@ def forces(run: Trajectory, times: Iterable[float] | None = None) -> Forces:
         columns = np.searchsorted(pairs, one.ids)
         out.normal[row, columns], out.tangential[row, columns] = one.force.T
         out.direction[row, columns], out.point[row, columns] = one.normal, one.point
-    out.pivots.update(_pivots(run, compiled, out, absolute, speed, np.array([one.acceleration for one in found])))
+    out.pivots.update(_pivots(run, compiled, out, where, speed, np.array([one.acceleration for one in found])))
     return out
 
 
-def _absolute(compiled: Compiled, values: Array, rates: bool) -> Array:
+def absolute(compiled: Compiled, values: Array, rates: bool) -> Array:
     """Coordinates in the movement from those that the trajectory gives: the inverse of `Compiled.relative`."""
     out = np.array(values)
     for own, on, angle in compiled.against:  # carriers come before what they carry

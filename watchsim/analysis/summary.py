@@ -12,12 +12,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from watchsim.analysis.beat_tables import beats_csv, phases_csv
 from watchsim.analysis.doubts import doubts
 from watchsim.analysis.efficiency import efficiency
 from watchsim.analysis.expectations import judged
 from watchsim.analysis.headlines import headlines
 from watchsim.analysis.timing.averages import Averages, averages, last_window
-from watchsim.analysis.timing.beat_tables import beats_csv, phases_csv
 from watchsim.analysis.timing.beats import Beats, beats
 from watchsim.analysis.timing.escape_wheel import missed_beats
 from watchsim.analysis.timing.no_timing import why_no_timing

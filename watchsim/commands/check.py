@@ -4,9 +4,16 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from watchsim.commands.common.console import BAD_INPUT, FINE, check_picture, print_json, say
+from watchsim.commands.common.console import BAD_INPUT, FINE, InputError, check_picture, parse_width, print_json, say
 
+if TYPE_CHECKING:
+    from watchsim.escapement.measure import Function
+    from watchsim.mechanism.compile import Compiled
+    from watchsim.scene.scene import Scene
+
+SHEETS = (".png", ".svg", ".pdf")
 HELP = "everything short of simulating: units, overlap at the start, mass, frequency, what can touch"
 
 
@@ -17,7 +24,14 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], help="change a value of the scene")
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of text")
     parser.add_argument(
-        "--png", metavar="FILE", help="where to write a picture of the start position, what can ever touch in colour"
+        "--png",
+        metavar="FILE",
+        help="where to write a picture of the start position, what can ever touch in colour; of an escapement also "
+        "FILE_function.png, its geometry of function",
+    )
+    parser.add_argument("--sheet", metavar="FILE", help="where to write the geometry of function alone (.png, .svg or .pdf)")
+    parser.add_argument(
+        "--width", metavar="LENGTH", default="170 mm", help='of that sheet (default "%(default)s", or "85 mm" for a column)'
     )
 
 
@@ -25,14 +39,23 @@ def run(args: argparse.Namespace) -> int:
     from watchsim.commands.common.inputs import load_scene
     from watchsim.commands.common.output_place import secured_file
     from watchsim.drawing.findings import Finding
+    from watchsim.escapement.measure import measure
+    from watchsim.escapement.report import statics, text
+    from watchsim.escapement.rules import judgements
     from watchsim.mechanism.compile import compile_scene
     from watchsim.mechanism.count_pairs import modelled_pairs
     from watchsim.mechanism.static_check import check_report, check_text
     from watchsim.simulation.start_clearance import refusals
 
+    width = parse_width(args.width)
+    sheets = [Path(args.sheet)] if args.sheet else []
     if args.png:
         check_picture(args.png, args.scene)
         secured_file(Path(args.png), "the picture")
+    for path in sheets:
+        if path.suffix.lower() not in SHEETS:
+            raise InputError(f"--sheet {path}: its name must end in {', '.join(SHEETS)}.")
+        secured_file(path, "the sheet")
     scene = load_scene(args.scene, args.set, overlap=False)
     compiled = compile_scene(scene)
     pairs = modelled_pairs(compiled, [body.name for body in scene.bodies])
@@ -40,14 +63,32 @@ def run(args: argparse.Namespace) -> int:
     for met, words in refusals(scene, compiled):
         x, y = (1e3 * value for value in met.place)
         report["findings"].append(Finding("overlap", "error", words, "", x_mm=x, y_mm=y).as_dict())
+    function = measure(scene, compiled)
+    report["statics"] = statics(function)
+    report["findings"] += [judgement.as_dict() for judgement in judgements(scene, function)]
     if args.png:
         from watchsim.render.still import still
 
         places = [(1e-3 * f["x_mm"], 1e-3 * f["y_mm"]) for f in report["findings"] if f["code"] == "overlap"]
         still(scene, args.png, compiled, pairs, places)
+        if function.pallets is not None:
+            sheets.append(Path(args.png).with_name(f"{Path(args.png).stem}_function.png"))
         say(f"Picture: {args.png}")
+    for path in sheets:
+        _sheet(scene, compiled, function, path, width)
     if args.json:
         print_json(report)
     else:
-        print(check_text(report, scene))
+        print(check_text(report, scene, text(function)))
     return BAD_INPUT if any(finding["severity"] == "error" for finding in report["findings"]) else FINE
+
+
+def _sheet(scene: Scene, compiled: Compiled, function: Function, path: Path, width: float) -> None:
+    from watchsim.render.function_sheet import function_sheet, write_sheet
+
+    try:
+        figure = function_sheet(scene, compiled, function, 1e3 * width)
+    except ValueError as error:
+        raise InputError(f"--sheet {path}: {error}.") from error
+    write_sheet(path, figure)
+    say(f"Sheet: {path}")

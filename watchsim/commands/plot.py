@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from watchsim.commands.common.console import FINE, InputError, parse_names, parse_window
+from watchsim.commands.common.console import FINE, InputError, parse_names, parse_width, parse_window
 
 HELP = "kinematic plots of a results folder"
 FORMATS = ("png", "svg", "pdf")
@@ -24,17 +24,21 @@ def options(parser: argparse.ArgumentParser) -> None:
         "--tape", action="store_true", help="the paper of a timegrapher, and rate, amplitude and beat error over time"
     )
     parser.add_argument("--window", metavar="FROM:TO", help='such as "179.4 s:179.75 s" (default: all that was recorded)')
+    parser.add_argument(
+        "--phases", action="store_true", help="the timeline: tables of motion and energy, and a plot with the phases of a beat"
+    )
+    parser.add_argument(
+        "--width", metavar="LENGTH", default="170 mm", help='of that plot (default "%(default)s", or "85 mm" for a column)'
+    )
     parser.add_argument("--format", metavar="NAMES", default="png", help="png, svg, pdf, with commas (default %(default)s)")
     parser.add_argument(
-        "-o", "--output", metavar="FILE", help="the file, ending optional (default RUN/plots/kinematics, or tape)"
+        "-o", "--output", metavar="FILE", help="the file, ending optional (default RUN/plots/kinematics, phases or tape)"
     )
 
 
 def run(args: argparse.Namespace) -> int:
     from watchsim.commands.common.inputs import read_run
     from watchsim.commands.common.output_place import secured_file, swept_run
-    from watchsim.render.plots import plot_kinematics
-    from watchsim.render.tape import plot_tape
     from watchsim.storage.write import write_file
 
     formats = parse_names(args.format) or []
@@ -45,7 +49,8 @@ def run(args: argparse.Namespace) -> int:
     trajectory = read_run(args.run_folder)
     quantities = tuple(parse_names(args.quantities) or ())
     window = parse_window(args.window)
-    target = Path(args.output) if args.output else Path(args.run_folder) / "plots" / ("tape" if args.tape else "kinematics")
+    usual = "phases" if args.phases else "tape" if args.tape else "kinematics"
+    target = Path(args.output) if args.output else Path(args.run_folder) / "plots" / usual
     if target.suffix[1:] in FORMATS:
         formats = [target.suffix[1:]] if args.format == "png" else formats
         target = target.with_suffix("")
@@ -53,8 +58,24 @@ def run(args: argparse.Namespace) -> int:
         target.parent.mkdir(exist_ok=True)
     paths = [secured_file(target.parent / f"{target.name}.{name}", "the plot") for name in formats]
     if args.tape:
+        from watchsim.render.tape import plot_tape
+
         figure = plot_tape(trajectory, window)
+    elif args.phases:
+        from watchsim.analysis.timeline.oscillation import shown_beats
+        from watchsim.analysis.timeline.table import timeline_text
+        from watchsim.render.phase_plot import phase_plot
+
+        width = parse_width(args.width)
+        try:
+            told = shown_beats(trajectory, window)
+        except ValueError as error:
+            raise InputError(f"--phases: {error}.") from error
+        print(timeline_text(trajectory, told))
+        figure = phase_plot(trajectory, window, 1e3 * width, told)
     else:
+        from watchsim.render.plots import plot_kinematics
+
         figure = plot_kinematics(trajectory, parse_names(args.bodies), quantities, window)
     for path in paths:
         write_file(path, figure.savefig, "the plot")

@@ -6,7 +6,7 @@ Echoes units, sizes, centre distances, mass, inertia and frequency, so that a wr
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from watchsim.drawing.findings import Finding
@@ -42,12 +42,12 @@ def check_report(scene: Scene, pairs: Sequence[PairCount]) -> dict[str, Any]:
     }
 
 
-def check_text(report: Mapping[str, Any], scene: Scene) -> str:
-    """The same for people, in watch units."""
+def check_text(report: Mapping[str, Any], scene: Scene, function: Iterable[str] = ()) -> str:
+    """The same for people, in watch units; `function` are the lines about the geometry of function."""
     parts = [scene.title, *_body_lines(scene), *force_lines(scene)]
     if scene.contacts and all(finding["code"] != "overlap" for finding in report["findings"]):
         parts.append("  nothing overlaps at the start, among all pairs that may touch")
-    parts += pair_lines(report["pairs"])
+    parts += [*pair_lines(report["pairs"]), *function]
     parts += [f"{finding['severity']}: {finding['message']}. {finding['fix']}".rstrip() for finding in report["findings"]]
     return "\n".join(parts)
 

@@ -5,7 +5,8 @@ The timeline of a lever-like escapement, read from contact events and the wheel'
 unlock          from the pin's first touch of the fork until the wheel stands furthest back (draw makes it recoil; a dead-beat
                 wheel waits) and is let go
 catch-up        the wheel runs freely until it touches the next face
-impulse         from there until the last touch before the drop
+impulse         from there until the last touch before the drop; one row for each kind of face that is pushed: with the tooth's
+                corner on the stone, with the stone's corner on the tooth, or by the wheel on the balance itself
 drop            the long free run that ends near where the wheel comes to rest
 run to banking  from the lock, the end of the drop, until the lever first meets its banking
 locked          until the next touch of pin and fork
@@ -14,7 +15,7 @@ locked          until the next touch of pin and fork
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -26,7 +27,7 @@ from watchsim.analysis.timing.escape_wheel import progress
 from watchsim.analysis.timing.rows_at_hand import is_recorded
 from watchsim.scene.roles import Roles, roles
 from watchsim.simulation.event_kinds import EventKind
-from watchsim.simulation.record.trajectory import Array, Trajectory
+from watchsim.simulation.record.trajectory import Array, Pair, Trajectory
 
 Marks = tuple[float, float, float, float]
 
@@ -39,7 +40,7 @@ STANDING = 1e-6  # of the same: the wheel has not moved
 class Phase:
     """A stretch of a beat, s; angles at its start and turns during it, rad, of wheel, lever and oscillator.
 
-    `beat` counts the half swings from 1 as in beats.csv.
+    `beat` counts the half swings from 1 as in beats.csv. `on` says of an impulse on what: stone, tooth or balance.
     """
 
     beat: int
@@ -48,17 +49,19 @@ class Phase:
     end: float
     angles: tuple[float, float, float] = (0.0, 0.0, 0.0)
     turns: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    on: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class _Contacts:
-    """Contact events of the wheel: times, its progress, how many contacts hold after each, which are touches; and when the
-    lever touches its banking."""
+    """Contact events of the wheel: times, its progress, how many contacts hold after each, which are touches, and on what; and
+    when the lever touches its banking."""
 
     times: Array
     angle: Array
     held: NDArray[np.int64]
     touching: NDArray[np.bool_]
+    on: tuple[str, ...]
     banking: Array
 
 
@@ -91,7 +94,16 @@ def _contacts(run: Trajectory, parts: Roles) -> _Contacts:
     banking = contact_events(run, between(parts.lever, fixed), *TOUCH)["t"]
     times = np.ascontiguousarray(wheel["t"])
     touching = np.isin(wheel["kind"], TOUCH)
-    return _Contacts(times, progress(run, parts.wheel, times), held(wheel), touching, np.ascontiguousarray(banking))
+    faces = {contact: _face(run.pairs[contact], parts) for contact in np.unique(wheel["contact"]).tolist()}
+    on = tuple(faces[contact] for contact in wheel["contact"].tolist())
+    return _Contacts(times, progress(run, parts.wheel, times), held(wheel), touching, on, np.ascontiguousarray(banking))
+
+
+def _face(pair: Pair, parts: Roles) -> str:
+    """On what the wheel presses in a contact: a face of the lever, one of its own teeth, or the oscillator."""
+    if parts.oscillator in (pair.body_a, pair.body_b):
+        return "balance"
+    return "tooth" if pair.body_b == parts.wheel else "stone"  # the second of a pair holds the line or the rounder arc
 
 
 def _beat(found: Beats, contacts: _Contacts, i: int, way: tuple[float, float]) -> Iterator[Phase]:
@@ -102,10 +114,12 @@ def _beat(found: Beats, contacts: _Contacts, i: int, way: tuple[float, float]) -
     if marks is None:
         return
     unlocked, caught, let_off, lock = marks
-    names = ("unlock", "catch-up", "impulse", "drop")
-    times = (entry, unlocked, caught, let_off, lock)
-    for name, (t0, t1) in zip(names, pairwise(times), strict=True):
-        yield Phase(i + 1, name, float(t0), float(t1))
+    yield Phase(i + 1, "unlock", float(entry), unlocked)
+    yield Phase(i + 1, "catch-up", unlocked, caught)
+    changes = [*_impulses(contacts, slice(first, last), caught, let_off), (let_off, "")]
+    for (t0, on), (t1, _) in pairwise(changes):
+        yield Phase(i + 1, "impulse", t0, t1, on=on)
+    yield Phase(i + 1, "drop", let_off, lock)
     resting = lock
     met = int(np.searchsorted(contacts.banking, lock, side="left"))
     if met < len(contacts.banking) and contacts.banking[met] <= end:
@@ -113,6 +127,15 @@ def _beat(found: Beats, contacts: _Contacts, i: int, way: tuple[float, float]) -
         yield Phase(i + 1, "run to banking", lock, resting)
     if i + 1 < len(found) and np.isfinite(found.tick[i + 1]):
         yield Phase(i + 1, "locked", resting, float(found.tick[i + 1]))
+
+
+def _impulses(contacts: _Contacts, own: slice, caught: float, let_off: float) -> Iterator[tuple[float, str]]:
+    """When the wheel begins to press on what, from `caught` to `let_off` (s)."""
+    last = ""
+    for t, touching, on in zip(contacts.times[own].tolist(), contacts.touching[own], contacts.on[own], strict=True):
+        if touching and caught <= t < let_off and on != last:
+            yield t, on
+            last = on
 
 
 def _release_and_lock(contacts: _Contacts, own: slice, at_entry: float, at_end: float) -> Marks | None:
@@ -144,7 +167,5 @@ def _with_angles(run: Trajectory, parts: Roles, rows: list[Phase]) -> list[Phase
     first, last = run.sample(starts)[0][:, columns], run.sample(ends)[0][:, columns]
     turns = last - first
     return [
-        Phase(row.beat, row.name, row.start, row.end, tuple(first[k].tolist()), tuple(turns[k].tolist()))
-        for k, row in enumerate(rows)
-        if kept[k]
+        replace(row, angles=tuple(first[k].tolist()), turns=tuple(turns[k].tolist())) for k, row in enumerate(rows) if kept[k]
     ]

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from watchsim.units import Dimension
 
+NARROWEST, WIDEST = 0.06, 0.42  # m, of pictures for print
 FINE, MISSED, BAD_INPUT, GAVE_UP, FAULT, INTERRUPTED = 0, 1, 2, 3, 4, 130
 
 
@@ -108,6 +109,16 @@ def check_picture(target: str, source: str) -> None:
         raise InputError(f"--png {target}: is the input itself, which would be lost. Choose another name.")
     if not path.parent.is_dir():
         raise InputError(f"--png {target}: there is no folder {path.parent}; create it first.")
+
+
+def parse_width(text: str) -> float:
+    """The width of a picture for print (--width), m."""
+    from watchsim.units import LENGTH
+
+    width = parse_positive("--width", text, LENGTH)
+    if not NARROWEST <= width <= WIDEST:
+        raise InputError(f'--width "{text}": a picture for print is {1e3 * NARROWEST:g} mm to {1e3 * WIDEST:g} mm wide.')
+    return width
 
 
 def parse_names(text: str | None) -> list[str] | None:

@@ -9,8 +9,8 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
+from watchsim.analysis.timeline.rows import Stage, can_be_told, timeline
 from watchsim.analysis.timing.beats import Beats
-from watchsim.analysis.timing.phases import phases
 from watchsim.simulation.record.trajectory import Trajectory
 
 BEAT_COLUMNS = ("beat", "t_s", "tick_s", "turn_s", "turn_at", "amplitude", "period_s", "rate_s_per_d", "beat_error_ms")
@@ -18,6 +18,9 @@ PARTS = ("wheel", "lever", "balance")
 PHASE_COLUMNS = (
     *("beat", "phase", "t_s", "duration_ms"),
     *(f"{part}_{what}_deg" for part in PARTS for what in ("angle", "turn")),
+    *("on", "stone"),
+    *(f"{part}_{what}_deg_per_s" for part in PARTS for what in ("start_rate", "end_rate")),
+    *("impulse_on_balance_N_m_s", "supplied_J", "stored_J", "to_balance_J", "damping_J", "friction_J", "impacts_J"),
 )
 
 
@@ -35,13 +38,23 @@ def beats_csv(found: Beats) -> str:
 
 
 def phases_csv(run: Trajectory, found: Beats) -> str:
-    """One row per phase: beat (as in beats.csv), name, start, duration, and for wheel, lever and balance the angle at its start
-    and the turn during it."""
-    rows = []
-    for phase in phases(run, found):
-        turned = [math.degrees(x) for pair in zip(phase.angles, phase.turns, strict=True) for x in pair]
-        rows.append([phase.beat, phase.name, phase.start, 1e3 * (phase.end - phase.start), *turned])
-    return _text(PHASE_COLUMNS, rows)
+    """One row per phase: beat (as in beats.csv), name, start, duration, for wheel, lever and balance the angle at its start and
+    the turn during it, on what an impulse acts, which stone is unlocked in the beat, angular velocities, the angular impulse of
+    all contacts on the oscillator, and where the energy went (see analysis/timeline/rows.py).
+
+    Energies and impulse are empty for a run by fixed steps, whose contacts have no smooth forces.
+    """
+    known = can_be_told(run)
+    return _text(PHASE_COLUMNS, [_phase_row(stage, known) for stage in timeline(run, found)])
+
+
+def _phase_row(stage: Stage, known: bool) -> list[object]:
+    phase, e = stage.phase, stage.energy
+    turned = [math.degrees(x) for pair in zip(phase.angles, phase.turns, strict=True) for x in pair]
+    rates = [math.degrees(x) for pair in zip(stage.start_rates, stage.end_rates, strict=True) for x in pair]
+    energies = [stage.impulse, e.supplied, e.stored, e.to_balance, e.damping, e.friction, sum(e.impacts.values())]
+    times = [phase.start, 1e3 * (phase.end - phase.start)]
+    return [phase.beat, phase.name, *times, *turned, phase.on, stage.pallet, *rates, *(energies if known else [math.nan] * 7)]
 
 
 def _text(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:

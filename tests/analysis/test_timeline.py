@@ -1,0 +1,199 @@
+"""Do the books of every phase close, and do its times and angles agree with what the events say?"""
+
+from __future__ import annotations
+
+import csv
+import math
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from watchsim.analysis.beat_tables import phases_csv
+from watchsim.analysis.timeline.oscillation import shown_beats
+from watchsim.analysis.timeline.rows import timeline
+from watchsim.analysis.timeline.table import timeline_text
+from watchsim.analysis.timing.beats import beats
+from watchsim.cli import main
+from watchsim.commands.common.console import BAD_INPUT, FINE
+from watchsim.profiles_path import profiles_dir
+from watchsim.render.phase_plot import phase_plot
+from watchsim.scene.file.load import load
+from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.simulation.simulate import simulate
+
+
+@pytest.fixture(scope="module")
+def swiss() -> Trajectory:
+    return simulate(load(profiles_dir() / "swiss_lever" / "scene.toml"), duration=1.4)
+
+
+def test_energies_of_all_phases_are_the_ledger_of_the_run(bench_lever):
+    """From the first phase to the last they follow without a gap; before and after them the balance alone turns freely."""
+    run = bench_lever
+    told = timeline(run)
+    assert all(a.phase.end == b.phase.start for a, b in pairwise(told))
+    # What the run lost in impacts and friction, it lost in phases, but for the beat before the first and after the last.
+    start, end = told[0].phase.start, told[-1].phase.end
+    inside = (run.events["t"] >= start) & (run.events["t"] < end)
+    impacts = sum(sum(one.energy.impacts.values()) for one in told)
+    assert impacts == pytest.approx(float(run.events["energy_lost"][inside].sum()), rel=1e-12)
+    wheel = run.slices["wheel"].start
+    turned = run.sample(np.array([start, end]))[0][:, wheel]
+    assert sum(one.energy.supplied for one in told) == pytest.approx(-6e-6 * float(turned[1] - turned[0]), rel=1e-12)
+
+
+def test_phases_of_a_run_and_the_rest_of_it_add_up_to_its_ledger(bench_lever):
+    """The same run over two durations: the difference of its ledgers is what happened between."""
+    run = bench_lever
+    told = timeline(run)
+    first, last = told[0].phase.start, told[-1].phase.end
+    # Just before the impacts with which the first beat begins, and with which the one after the last does.
+    early, late = (simulate(run.scene, duration=t - 1e-9) for t in (first, last))
+    for cause in ("friction", "damping", "impacts"):
+        between = late.energy["dissipated"][cause] - early.energy["dissipated"][cause]
+        own = {
+            "friction": sum(one.energy.friction for one in told),
+            "damping": sum(one.energy.damping for one in told),
+            "impacts": sum(sum(one.energy.impacts.values()) for one in told),
+        }[cause]
+        # The ledgers of the solver close to their residuals.
+        close = 1e-9 * late.energy["in_J"] + abs(late.energy["residual_J"]) + abs(early.energy["residual_J"])
+        assert own == pytest.approx(between, abs=close)
+    stored = sum(one.energy.stored for one in told)
+    assert stored == pytest.approx(late.energy["stored_J"] - early.energy["stored_J"], abs=close)
+
+
+@pytest.mark.parametrize("name", ["swiss", "bench_lever"])
+def test_the_books_of_a_beat_close(name, request):
+    """Friction as worked out from forces and slip is what the balance of energies lacks, phase by phase."""
+    run = request.getfixturevalue(name)
+    for beat in shown_beats(run):
+        supplied = sum(stage.energy.supplied for stage in beat.stages)
+        assert abs(beat.residual) < 1e-9 * supplied
+        for stage, friction in zip(beat.stages, beat.friction, strict=True):
+            assert stage.energy.friction == pytest.approx(sum(friction.values()), abs=2e-9 * supplied)
+            assert all(value > -1e-20 for value in friction.values())
+
+
+def test_the_oscillator_gets_what_it_gains_and_loses(swiss):
+    """Over a beat: work of the contacts = gain + damping; the impulse is the change of momentum that no spring explains."""
+    run, c = swiss, swiss.slices["balance"].start
+    spring, inertia = 1.2e-9 * (8.0 * math.pi) ** 2, 1.2e-9
+    viscous = inertia * 8.0 * math.pi / 250.0
+    for beat in shown_beats(run):
+        t = np.linspace(beat.start, beat.end, 20001) - 1e-10  # before the impacts with which beats begin
+        q, u = run.sample(t)
+        gain = 0.5 * np.diff(inertia * u[[0, -1], c] ** 2 + spring * q[[0, -1], c] ** 2)[0]
+        damping = viscous * np.trapezoid(u[:, c] ** 2, t) if hasattr(np, "trapezoid") else viscous * np.trapz(u[:, c] ** 2, t)
+        assert sum(one.energy.to_balance for one in beat.stages) == pytest.approx(gain + damping, abs=2e-13)
+        swept = float(np.sum(0.5 * (q[1:, c] + q[:-1, c]) * np.diff(t)))
+        push = inertia * (u[-1, c] - u[0, c]) + viscous * (q[-1, c] - q[0, c]) + spring * swept
+        assert sum(one.impulse for one in beat.stages) == pytest.approx(push, abs=1e-14)
+
+
+def test_signs_of_the_work(swiss):
+    """Unlocking costs the balance, impulses pay it; wheel and drive do the opposite."""
+    for beat in shown_beats(swiss):
+        by = {(stage.name, stage.phase.on): stage.energy for stage in beat.stages}
+        assert by["unlock", ""].to_balance < 0.0 and by["unlock", ""].supplied < 0.0  # recoil winds the drive
+        assert by["impulse", "stone"].to_balance > 0.0 and by["impulse", "tooth"].to_balance > 0.0
+        assert abs(by["locked", ""].to_balance) < 1e-15
+        assert by["drop", ""].impacts["wheel-lever"] > 0.0
+
+
+def test_times_are_those_of_the_events(swiss):
+    """Read a second time, straight from the event table, without the code that makes the phases."""
+    run = swiss
+    pairs = [run.pairs[k] if k >= 0 else None for k in run.events["contact"].tolist()]
+    rows = list(zip(run.events["t"].tolist(), run.events["kind"].tolist(), pairs, strict=True))
+
+    def times(first: str, second: str, kinds: tuple[EventKind, ...], flat: str | None = None) -> np.ndarray:
+        bodies = {first, second}
+        return np.array(
+            [t for t, kind, pair in rows if pair and kind in kinds and {pair.body_a, pair.body_b} == bodies
+             and (flat is None or pair.body_b == flat)]
+        )  # fmt: skip
+
+    pin = times("lever", "balance", (EventKind.IMPACT,))
+    banking = times("lever", "banking", (EventKind.IMPACT, EventKind.CLOSE))
+    lifted = times("wheel", "lever", (EventKind.OPEN,), flat="wheel")
+    for beat in shown_beats(run):
+        at = {(stage.name, stage.phase.on): stage.phase for stage in beat.stages}
+        assert at["unlock", ""].start == pin[pin > beat.start - 0.05][0]
+        assert at["run to banking", ""].end == banking[banking > at["drop", ""].end][0]
+        # The discharge corner of the stone leaves the tooth's face as the wheel is let off.
+        assert at["drop", ""].start == lifted[lifted > at["impulse", "tooth"].start][0]
+        # The wheel stands furthest back when it is let go.
+        column = run.slices["wheel"].start
+        inside = (run.t >= beat.start) & (run.t <= at["drop", ""].end)
+        assert run.t[inside][np.argmax(run.q[inside, column])] == pytest.approx(at["unlock", ""].end, abs=1e-12)
+
+
+def test_angles_are_those_of_the_drawing(swiss):
+    """Static geometry (docs/guide/glossary.md): 25.587° pin meets fork, 2° total lock, 11.125° of the balance to unlock."""
+    for beat in shown_beats(swiss):
+        start, end = beat.stages[0].phase, beat.stages[1].phase
+        assert abs(math.degrees(start.angles[2])) == pytest.approx(25.5866, abs=1e-3)
+        assert abs(math.degrees(start.turns[1])) == pytest.approx(2.0, abs=1e-4)
+        assert abs(math.degrees(end.angles[2] - start.angles[2])) == pytest.approx(11.1255, abs=2e-3)
+    assert {beat.stages[0].pallet for beat in shown_beats(swiss)} == {"entry", "exit"}
+    # At -5° the exit stone locks: the lever of this drawing turns counter-clockwise to put the entry stone deep.
+    for beat in shown_beats(swiss):
+        assert (math.degrees(beat.stages[0].phase.angles[1]) > 0.0) is (beat.stages[0].pallet == "entry")
+
+
+def test_the_table_in_the_results_folder(swiss):
+    rows = list(csv.DictReader(phases_csv(swiss, beats(swiss)).splitlines()))
+    total = {
+        name: sum(float(row[f"{name}_J"]) for row in rows) for name in ("supplied", "stored", "damping", "friction", "impacts")
+    }
+    assert total["supplied"] == pytest.approx(sum(total[name] for name in total if name != "supplied"), abs=1e-18)
+    assert {row["on"] for row in rows if row["phase"] == "impulse"} == {"stone", "tooth"}
+    assert {row["stone"] for row in rows} == {"entry", "exit"}
+
+
+def test_fixed_steps_have_no_energies(swiss):
+    rows = list(csv.DictReader(phases_csv(replace(swiss, method="moreau"), beats(swiss)).splitlines()))
+    assert rows and all(row["friction_J"] == "" and row["balance_turn_deg"] != "" for row in rows)
+
+
+def test_the_printed_table(swiss):
+    text = timeline_text(swiss)
+    assert "entry stone" in text and "exit stone" in text and "impulse on tooth" in text
+    assert text.count("the books close to") == 2 and max(len(line) for line in text.splitlines()) < 170
+
+
+@pytest.mark.parametrize("width", [170.0, 85.0])
+def test_the_plot_is_as_wide_as_asked_and_nothing_is_cut_off(swiss, width):
+    figure = phase_plot(swiss, width=width)
+    assert figure.get_figwidth() * 25.4 == pytest.approx(width)
+    figure.canvas.draw()
+    box = figure.bbox
+    for axes in figure.axes:
+        for text in (*axes.texts, axes.xaxis.label, axes.yaxis.label):
+            extent = text.get_window_extent()
+            assert box.x0 <= extent.x0 and extent.x1 <= box.x1 and box.y0 <= extent.y0 and extent.y1 <= box.y1, text
+
+
+def test_the_command(tmp_path, capsys):
+    folder = tmp_path / "run"
+    scene = str(profiles_dir() / "swiss_lever")
+    assert main(["run", scene, "--duration", "1.4 s", "--no-plots", "-o", str(folder)]) == FINE
+    capsys.readouterr()
+    assert main(["plot", str(folder), "--phases", "--window", "1.0 s:1.35 s", "--format", "png,pdf"]) == FINE
+    out = capsys.readouterr().out
+    assert (
+        "impulse on stone" in out and (folder / "plots" / "phases.png").exists() and (folder / "plots" / "phases.pdf").exists()
+    )
+    assert main(["plot", str(folder), "--phases", "--window", "0 s:0.05 s"]) == BAD_INPUT
+    assert "no beat" in capsys.readouterr().err
+
+
+def test_what_has_no_beats_says_so():
+    run = simulate(load(profiles_dir() / "incline" / "scene.toml"), duration=0.1)
+    assert timeline(run) == []
+    with pytest.raises(ValueError, match="nothing in this scene swings"):
+        shown_beats(run)

@@ -1,0 +1,8 @@
+"""The drawings' scripts, by which scenes of chosen dimensions are drawn."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))

@@ -1,0 +1,130 @@
+"""Which of the watchmaker's rules does a drawing break, and is each said with its value and source?"""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+
+import pytest
+from escapement.made import swiss_scene
+
+from watchsim.cli import main
+from watchsim.commands.common.console import BAD_INPUT, FINE
+from watchsim.escapement.measure import measure
+from watchsim.escapement.rules import judgements
+from watchsim.profiles_path import profiles_dir
+from watchsim.scene.file.load import load
+
+SWISS = profiles_dir() / "swiss_lever" / "scene.toml"
+
+
+def codes(scene) -> set[str]:
+    return {one.code for one in judgements(scene, measure(scene))}
+
+
+def test_the_profile_keeps_all_rules():
+    assert codes(load(SWISS)) == set()
+
+
+BROKEN = {
+    "draw": {"draw": "6°"},
+    "lock": {"lock": "0.5°"},
+    "drop": {"drop_outside": "0.5°"},
+    "unequal-drops": {"drop_inside": "1.9°"},
+    "run": {"run": "0.05°"},
+    "pin-shake": {"shake": "0.005 mm"},
+}
+
+
+@pytest.mark.parametrize("code", BROKEN)
+def test_each_broken_rule_is_found(code):
+    scene, _ = swiss_scene(**BROKEN[code])
+    found = [one for one in judgements(scene, measure(scene)) if one.code == code]
+    assert found and all(one.rule and one.source and one.message for one in found)
+    assert all(math.isfinite(one.limit) for one in found)
+
+
+def test_friction_decides_about_draw():
+    """The least draw is 11° at the exit stone's corner: it holds up to a coefficient of tan 11°."""
+    scene = load(SWISS)
+    limit = math.tan(math.radians(11.0))
+    for friction, broken in ((limit - 1e-4, False), (limit + 1e-4, True)):
+        assert ("draw" in codes(scene.set("contacts.0.friction", friction))) is broken
+
+
+def test_lift_angle_and_beat():
+    scene = load(SWISS)
+    assert "lift-angle" in codes(scene.set("timegrapher.lift_angle", "44°"))
+    assert "out-of-beat" in codes(scene.set("springs.0.rest", "3°"))
+
+
+def shorter_dart(way: float):
+    """The profile with its dart drawn back, m."""
+    scene = load(SWISS)
+    lever = scene.body("lever")
+    shifted = tuple(loop.moved(0.0, (0.0, -way)) if loop.layer == "DART" else loop for loop in lever.loops)
+    return replace(scene, bodies=tuple(replace(body, loops=shifted) if body is lever else body for body in scene.bodies))
+
+
+def test_a_dart_that_is_too_short_leaves_too_much_freedom():
+    changed = shorter_dart(0.07e-3)
+    found = [one for one in judgements(changed, measure(changed)) if one.code == "freedom"]
+    assert found and all(one.limit == pytest.approx(2.0, abs=1e-3) and 2.0 < one.value < 4.0 for one in found)
+
+
+def test_a_lever_without_a_guard_that_reaches_can_overbank():
+    changed = shorter_dart(0.3e-3)
+    found = [one for one in judgements(changed, measure(changed)) if one.code == "freedom"]
+    assert found and all("overbank" in one.message for one in found)
+    assert all(one.as_dict()["value_deg"] is None for one in found)
+
+
+def test_the_command_prints_numbers_with_errors(capsys):
+    assert main(["check", str(SWISS), "--json"]) == FINE
+    statics = json.loads(capsys.readouterr().out)["statics"]
+    assert statics["roles"] == {"wheel": "wheel", "lever": "lever", "balance": "balance"}
+    assert statics["direction"] == "clockwise" and statics["teeth"] == 15 and statics["missing"] == []
+    for stone in ("entry", "exit"):
+        assert statics[stone]["lock_deg"] == pytest.approx(1.5, abs=1e-5)
+        assert statics[stone]["drop_deg"] == pytest.approx(1.2, abs=1e-5)
+        assert statics[stone]["lift_angle_deg"] == pytest.approx(51.173, abs=1e-3)
+        values = {name for name in statics[stone] if name.endswith("_deg") and name != "worst_freedom_at_deg"}
+        assert all(0.0 < statics[stone][f"{name}_error"] < 1e-5 for name in values)
+
+
+def test_the_command_says_what_does_not_apply(capsys):
+    assert main(["check", str(profiles_dir() / "incline" / "scene.toml"), "--json"]) == FINE
+    statics = json.loads(capsys.readouterr().out)["statics"]
+    assert statics["roles"] is None and statics["entry"] is None
+    assert "no escapement" in statics["missing"][0]["why"]
+    assert main(["check", str(profiles_dir() / "bench_lever" / "scene.toml")]) == FINE
+    assert "freedoms of guard pin and horns: not measured" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("ending", ["pdf", "svg"])
+def test_the_sheet(ending, tmp_path, capsys):
+    path = tmp_path / f"sheet.{ending}"
+    assert main(["check", str(SWISS), "--sheet", str(path), "--width", "85 mm"]) == FINE
+    start = path.read_bytes()[:400]
+    assert {"pdf": b"%PDF", "svg": b"<svg"}[ending] in start + path.read_bytes()[:2000]
+    assert "entry stone" in capsys.readouterr().out
+
+
+def test_the_picture_has_the_sheet_beside_it(tmp_path, capsys):
+    assert main(["check", str(SWISS), "--png", str(tmp_path / "start.png")]) == FINE
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["start.png", "start_function.png"]
+    assert capsys.readouterr().err.count("start") == 2
+
+
+@pytest.mark.parametrize("options", [["--sheet", "a.txt"], ["--sheet", "a.png", "--width", "3 mm"], ["--width", "wide"]])
+def test_wrong_options_are_refused(options, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["check", str(SWISS), *options]) == BAD_INPUT
+    assert capsys.readouterr().out == ""
+
+
+def test_no_sheet_of_what_is_no_escapement(tmp_path, capsys):
+    scene = profiles_dir() / "incline" / "scene.toml"
+    assert main(["check", str(scene), "--sheet", str(tmp_path / "a.png")]) == BAD_INPUT
+    assert not (tmp_path / "a.png").exists()

@@ -1,0 +1,193 @@
+"""What happens in every phase of a beat: angles, velocities, impulse on the balance, and where the energy went?
+
+Energies of a phase add up by themselves but for friction, which is what is left; `friction.py` works it out a second time from
+the forces at the contacts, so that the books are checked.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.analysis.timeline.flows import Flows, flows
+from watchsim.analysis.timing.beats import Beats
+from watchsim.analysis.timing.body_contacts import between, contact_events
+from watchsim.analysis.timing.phases import Phase, phases
+from watchsim.mechanism.compile import Compiled, compile_scene
+from watchsim.scene.recording import STATISTICS
+from watchsim.scene.roles import Roles, drive_direction, roles
+from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.methods import EVENT_DRIVEN
+from watchsim.simulation.record.trajectory import Array, Trajectory
+
+LOSSES = (EventKind.IMPACT, EventKind.JAM)
+Triple = tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Energies:
+    """Of one phase, J. supplied = stored + damping + friction + impacts.
+
+    supplied    work of the drive and of weights
+    stored      gain of kinetic energy and of springs
+    to_balance  work of all contacts on the oscillator
+    damping     taken by the air, by bearings
+    friction    taken at the contacts: what is left of the books
+    impacts     by pair of bodies
+    """
+
+    supplied: float
+    stored: float
+    to_balance: float
+    damping: float
+    friction: float
+    impacts: dict[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Stage:
+    """A phase with everything told of it; triples are of wheel, lever and oscillator, rad and rad/s.
+
+    `pallet`: entry or exit, the stone that is unlocked in this beat; "" where that cannot be told. `impulse`: angular impulse
+    of all contacts on the oscillator, N·m·s. Rates at the start are before impacts at that time, but after the lock's at the
+    end of a drop and at the start of what follows.
+    """
+
+    phase: Phase
+    pallet: str
+    start_rates: Triple
+    end_angles: Triple
+    end_rates: Triple
+    impulse: float
+    energy: Energies
+
+    @property
+    def beat(self) -> int:
+        return self.phase.beat
+
+    @property
+    def name(self) -> str:
+        return self.phase.name
+
+
+def timeline(run: Trajectory, found: Beats | None = None, window: Sequence[float] | None = None) -> list[Stage]:
+    """The phases of all beats recorded whole, or of those that begin within a window (s); empty without an escapement."""
+    told = phases(run, found)
+    if window is not None:
+        inside = {row.beat for row in told if row.name == "unlock" and window[0] <= row.start <= window[1]}
+        told = [row for row in told if row.beat in inside]
+    if not told:
+        return []
+    parts, compiled = roles(run.scene), compile_scene(run.scene)
+    first = max(0, int(np.searchsorted(run.t, told[0].start, side="left")) - 1)
+    last = min(len(run.t), int(np.searchsorted(run.t, told[-1].end, side="right")) + 1)
+    made = flows(run, compiled, slice(first, last))
+    stones = _pallets(run, compiled, parts, [row for row in told if row.name == "unlock"])
+    return list(_stages(run, parts, compiled, made, told, stones))
+
+
+def _stages(
+    run: Trajectory, parts: Roles, compiled: Compiled, made: Flows, told: list[Phase], stones: dict[int, str]
+) -> Iterator[Stage]:
+    """Column by column: every number is a difference between two rows."""
+    starts, ends = np.array([row.start for row in told]), np.array([row.end for row in told])
+    # The impacts of the lock belong to the drop that ends with them, all others to the phase that they begin.
+    locked = np.array([row.name == "run to banking" for row in told])
+    locking = np.array([row.name == "drop" for row in told])
+    i, j = _rows(made.t, starts, locked), _rows(made.t, ends, locking)
+    names = [name for name in (parts.wheel, parts.lever, parts.oscillator) if name]
+    columns = [run.slices[name].start for name in names]
+    balance = columns[2]
+    c = compiled.model.coordinates[balance]
+
+    def change(values: Array) -> Array:
+        return np.asarray(values[j] - values[i])
+
+    damping = change(made.damped)
+    to_balance = change(made.own[:, balance]) + damping[:, balance] - change(made.driven[:, balance])
+    impulse = c.mass * change(made.u[:, balance]) + c.viscous * change(made.q[:, balance])
+    impulse += c.stiffness * (change(made.swept[:, balance]) - c.rest * change(made.t)) - c.force * change(made.t)
+    impacts = _impacts(run, starts, ends, locked, locking)
+    rates_i, rates_j = (compiled.relative(made.u[k], rates=True)[:, columns].tolist() for k in (i, j))
+    angles = compiled.relative(made.q[j])[:, columns].tolist()
+    books = (change(made.drive), change(made.stored), to_balance, damping.sum(axis=1), impulse)
+    for k, (row, supplied, stored, gained, damped, push) in enumerate(zip(told, *(b.tolist() for b in books), strict=True)):
+        energy = Energies(supplied, stored, gained, damped, supplied - stored - damped - sum(impacts[k].values()), impacts[k])
+        first, place, last = (_triple(values[k]) for values in (rates_i, angles, rates_j))
+        yield Stage(row, stones.get(row.beat, ""), first, place, last, push, energy)
+
+
+def _triple(values: list[float]) -> Triple:
+    first, second, third = values
+    return first, second, third
+
+
+def _rows(t: Array, times: Array, after: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """The rows at some times: the first of several, or the last."""
+    k = np.where(after, np.searchsorted(t, times, side="right") - 1, np.searchsorted(t, times, side="left"))
+    return np.clip(k, 0, len(t) - 1)
+
+
+def _impacts(
+    run: Trajectory, starts: Array, ends: Array, locked: NDArray[np.bool_], locking: NDArray[np.bool_]
+) -> list[dict[str, float]]:
+    """What impacts took in each stretch, by pair of bodies, J."""
+    own = run.events[np.isin(run.events["kind"], LOSSES)]
+    names = {k: pair_name(run, k) for k in np.unique(own["contact"]).tolist()}
+    pairs, lost = [names[k] for k in own["contact"].tolist()], own["energy_lost"].tolist()
+    t = np.ascontiguousarray(own["t"])
+    low = np.where(locked, np.searchsorted(t, starts, side="right"), np.searchsorted(t, starts, side="left"))
+    high = np.where(locking, np.searchsorted(t, ends, side="right"), np.searchsorted(t, ends, side="left"))
+    found: list[dict[str, float]] = []
+    for first, last in zip(low.tolist(), high.tolist(), strict=True):
+        one: dict[str, float] = {}
+        for pair, value in zip(pairs[first:last], lost[first:last], strict=True):
+            one[pair] = one.get(pair, 0.0) + value
+        found.append(one)
+    return found
+
+
+def pair_name(run: Trajectory, contact: int) -> str:
+    """The two bodies of a contact, in the order of the scene."""
+    pair = run.pairs[contact]
+    return "-".join(sorted((pair.body_a, pair.body_b), key=[body.name for body in run.scene.bodies].index))
+
+
+def _pallets(run: Trajectory, compiled: Compiled, parts: Roles, unlocking: list[Phase]) -> dict[int, str]:
+    """For each beat the stone on which the wheel rested before: that of the last contact of wheel and lever until then."""
+    assert parts.wheel and parts.lever
+    events = contact_events(run, between(parts.lever, {parts.wheel}))
+    known = events[events["contact"] < len(compiled.model.contacts)]
+    last = np.searchsorted(known["t"], [row.start for row in unlocking], side="right") - 1
+    found: dict[int, str] = {}
+    sides: dict[int, str] = {}
+    for row, k in zip(unlocking, last.tolist(), strict=True):
+        if k >= 0:
+            contact = int(known["contact"][k])
+            p = compiled.model.contacts[contact]
+            stone = int(p.a if compiled.owners[int(p.a)] == parts.lever else p.b)
+            if stone not in sides:
+                sides[stone] = _side(run, compiled, parts, stone, row.start)
+            found[row.beat] = sides[stone]
+    return found
+
+
+def _side(run: Trajectory, compiled: Compiled, parts: Roles, stone: int, time: float) -> str:
+    """Entry where the stone lies before the line from wheel to lever, in the wheel's sense of turning."""
+    assert parts.wheel and parts.lever
+    x0, y0, _ = run.pose(parts.wheel, time)
+    x1, y1, angle = run.pose(parts.lever, time)
+    p = compiled.model.primitives[stone]
+    c, s = math.cos(angle), math.sin(angle)
+    x, y = x1 + c * p.px - s * p.py, y1 + s * p.px + c * p.py
+    turn = (x1 - x0) * (y - y0) - (y1 - y0) * (x - x0)
+    return "entry" if drive_direction(run.scene, parts.wheel) * turn < 0.0 else "exit"
+
+
+def can_be_told(run: Trajectory) -> bool:
+    """Do rows and events of this run carry energies: by events, and with all of them kept?"""
+    return run.method == EVENT_DRIVEN and run.keep != STATISTICS

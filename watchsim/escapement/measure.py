@@ -1,0 +1,151 @@
+"""What is the geometry of function of a scene: everything that can be measured by turning its parts by hand?"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from watchsim.analysis.timing.teeth import pitch
+from watchsim.escapement.fork import Balance, Fork, fork
+from watchsim.escapement.hands import SLACK, Hands
+from watchsim.escapement.pallets import NotMeasured, Pallet, Passage, pallet, passages
+from watchsim.escapement.parts import Parts, parts_of
+from watchsim.escapement.safety import Safety, safety
+from watchsim.escapement.sweep import Rest, Wheel
+from watchsim.mechanism.compile import Compiled, compile_scene
+from watchsim.scene.oscillation import oscillators
+from watchsim.scene.scene import Scene
+
+FARTHEST = math.radians(60.0)  # an anchor or a lever is not turned further
+
+
+@dataclass(frozen=True)
+class Function:
+    """The geometry of function; None, with a reason in `missing`, for what does not apply.
+
+    `pallets` are entry and exit: the stone a tooth meets first and second on its way. `sides` says on which bank (±1, + is
+    counter-clockwise) each of them locks, `banks` are the lever's angles there; `lever_rest` is the angle half way between
+    them. `passages` are the first tooth's, for pictures: entry, exit.
+    """
+
+    parts: Parts | None
+    teeth: int | None = None
+    banks: tuple[float, float] | None = None
+    pallets: tuple[Pallet, Pallet] | None = None
+    sides: tuple[float, float] = (1.0, -1.0)
+    passages: tuple[Passage, Passage] | None = None
+    fork: Fork | None = None
+    safety: tuple[Safety, Safety] | None = None
+    missing: tuple[tuple[str, str], ...] = ()
+
+
+def measure(scene: Scene, compiled: Compiled | None = None) -> Function:
+    """Measure a scene; never raises for a mechanism that has no such geometry."""
+    compiled = compiled or compile_scene(scene)
+    parts = parts_of(scene, compiled)
+    if isinstance(parts, str):
+        return Function(None, missing=(("geometry of function", f"no escapement with a lever or an anchor: {parts}"),))
+    missing: list[tuple[str, str]] = []
+    hands = Hands(compiled)
+    whole = pitch(scene, parts.wheel)
+    if whole is None or not len(parts.to_wheel):
+        why = f"{parts.wheel} has no equal teeth" if whole is None else f"{parts.wheel} and {parts.lever} never touch"
+        return Function(parts, missing=(("geometry of function", why),))
+    teeth, wheel = round(math.tau / whole), Wheel(hands, parts, whole)
+    try:
+        start = _start(wheel, hands)
+        banks = _banks(hands, parts, wheel, start)
+        first = wheel.lead(start, banks[0]).last if start.lever != banks[0] else start
+        if first is None:
+            raise NotMeasured("the wheel runs free as the lever goes to its bank")
+        beats = passages(wheel, banks, first, teeth)
+    except NotMeasured as reason:
+        return Function(parts, teeth, missing=(("lock, draw, lift, drop", str(reason)),))
+    entry_side = _entry_side(wheel, beats[0])
+    sides = (entry_side, -entry_side)
+    pallets = (pallet(wheel, beats, sides[0], parts.detached), pallet(wheel, beats, sides[1], parts.detached))
+    shown = [next(one for one in beats if one.side == side) for side in sides]
+    if not parts.detached:
+        missing.append(("total lock, run, fork and safety action", f"{parts.lever} swings with the oscillator: no banking"))
+        return Function(parts, teeth, None, pallets, sides, (shown[0], shown[1]), missing=tuple(missing))
+    made, guards = None, None
+    try:
+        made, guards = _roller(scene, hands, parts, banks, beats)
+    except NotMeasured as reason:
+        missing.append(("lift angle of the balance, shake of the pin, safety action", str(reason)))
+    if made is not None and guards is None:
+        missing.append(("freedoms of guard pin and horns", f"nothing but the pin stops {parts.lever} between its banks"))
+    return Function(parts, teeth, banks, pallets, sides, (shown[0], shown[1]), made, guards, tuple(missing))
+
+
+def _start(wheel: Wheel, hands: Hands) -> Rest:
+    """A tooth resting on a stone with the lever where the scene puts it."""
+    q = hands.compiled.q
+    lever, angle = float(q[hands.coordinate(wheel.parts.lever)]), float(q[hands.coordinate(wheel.parts.wheel)])
+    rest = wheel.rest(lever, angle - wheel.parts.way * SLACK, 1.0)
+    if rest is None:
+        raise NotMeasured(f"{wheel.parts.wheel} runs free: no tooth rests on {wheel.parts.lever} as the scene puts it")
+    return rest
+
+
+def _banks(hands: Hands, parts: Parts, wheel: Wheel, start: Rest) -> tuple[float, float]:
+    """The lever's angles on its upper and its lower bank; for an anchor, a little beyond where teeth are let off."""
+    if not parts.detached:
+        return _beyond_let_off(wheel, start)
+    if not len(parts.to_banking):
+        raise NotMeasured(f"nothing that stands still may touch {parts.lever}: no banking")
+    found = []
+    q = wheel.at(start.lever, start.wheel)
+    for sense in (1.0, -1.0):
+        touch = hands.touch(parts.lever, parts.to_banking, q, sense, FARTHEST, SLACK)
+        if touch is None:
+            raise NotMeasured(f"{parts.lever} never meets its banking on one side")
+        found.append(touch.angle)
+    return found[0], found[1]
+
+
+def _beyond_let_off(wheel: Wheel, start: Rest) -> tuple[float, float]:
+    """Half as far again as from let-off to let-off."""
+    ends = []
+    for sense in (1.0, -1.0):
+        sweep = wheel.lead(start, start.lever + sense * FARTHEST / 4.0)
+        if not sweep.let_offs:
+            raise NotMeasured("turning the anchor lets off no tooth")
+        ends.append(sweep.let_offs[0].last.lever)
+    more = 0.5 * (ends[0] - ends[1])
+    return ends[0] + more, ends[1] - more
+
+
+def _entry_side(wheel: Wheel, beat: Passage) -> float:
+    """On which bank the entry stone locks: the one that a tooth passes before the line from wheel to lever."""
+    ox, oy = wheel.hands.pivot(wheel.parts.wheel, wheel.at(0.0, 0.0))
+    px, py = wheel.hands.pivot(wheel.parts.lever, wheel.at(0.0, 0.0))
+    x, y = beat.start.x - ox, beat.start.y - oy
+    turn = (px - ox) * y - (py - oy) * x
+    return beat.side if wheel.parts.way * turn < 0.0 else -beat.side
+
+
+def _roller(
+    scene: Scene, hands: Hands, parts: Parts, banks: tuple[float, float], beats: list[Passage]
+) -> tuple[Fork, tuple[Safety, Safety] | None]:
+    if not len(parts.to_balance):
+        raise NotMeasured(f"{parts.lever} and {parts.balance} never touch")
+    rest = next((one.rest for one in oscillators(scene) if one.body == parts.balance), 0.0)
+    balance = Balance(hands, parts, rest)
+    upper, lower = balance.entry(banks[0], 1.0), balance.entry(banks[1], -1.0)
+    if upper is None or lower is None:
+        raise NotMeasured(f"{parts.balance} does not meet {parts.lever} on its bank from one side only")
+    try:
+        made = fork(balance, banks, beats, (upper, lower))
+    except ValueError as reason:
+        raise NotMeasured(str(reason)) from reason
+    guards = [safety(balance, bank, side, one) for bank, side, one in zip(banks, (1.0, -1.0), (upper, lower), strict=True)]
+    if guards[0] is None or guards[1] is None:
+        return made, None
+    return made, (guards[0], guards[1])
+
+
+def finite(value: float) -> bool:
+    return bool(np.isfinite(value))

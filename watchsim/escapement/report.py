@@ -1,0 +1,158 @@
+"""How is the geometry of function told: `statics` of `check --json`, and lines for people?"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import fields
+from typing import Any
+
+from watchsim.escapement.measure import Function
+from watchsim.escapement.pallets import Pallet
+from watchsim.escapement.quantity import Quantity
+from watchsim.escapement.safety import Safety
+
+STONES = ("entry", "exit")
+OF_BALANCE = ("lift_angle", "unlocking", "impulse_end", "knocking", "from_rest")
+NOTICEABLE = math.radians(1e-3)  # teeth that differ by less are alike
+WORDS = {
+    "total_lock": "total lock",
+    "lock": "lock",
+    "run": "run",
+    "draw": "draw on the bank",
+    "draw_end": "draw at the corner",
+    "recoil": "recoil of the wheel",
+    "lift": "lift",
+    "lift_stone": "  on the stone",
+    "lift_tooth": "  on the tooth",
+    "drop": "drop of the wheel",
+    "shake": "shake of the wheel",
+}
+BALANCE_WORDS = {
+    "lift_angle": "lift angle",
+    "unlocking": "  unlocked after",
+    "impulse_end": "  let off after",
+    "from_rest": "  pin meets the fork at",
+    "knocking": "knocks at",
+}
+
+
+def statics(function: Function) -> dict[str, Any]:
+    """Degrees; beside each value its error and, of what depends on a tooth, the worst tooth. Null where it does not apply.
+
+    Under `entry` and `exit` stand the numbers of the stone and of the beat in which it is unlocked; `missing` says what was not
+    measured and why.
+    """
+    parts = function.parts
+    found: dict[str, Any] = {
+        "roles": None if parts is None else {"wheel": parts.wheel, "lever": parts.lever, "balance": parts.balance},
+        "direction": None if parts is None else direction(function),
+        "teeth": function.teeth,
+        "lever_travel_deg": None if function.banks is None else math.degrees(function.banks[0] - function.banks[1]),
+        "missing": [{"what": what, "why": why} for what, why in function.missing],
+    }
+    for k, name in enumerate(STONES):
+        found[name] = _of_stone(function, k)
+    made = function.fork
+    found["pin_shake_deg"] = None if made is None else _degrees(made.pin_shake.value)
+    found["pin_shake_deg_error"] = None if made is None else _degrees(made.pin_shake.error)
+    return found
+
+
+def direction(function: Function) -> str:
+    return "clockwise" if function.parts is not None and function.parts.way < 0.0 else "counter-clockwise"
+
+
+def _of_stone(function: Function, k: int) -> dict[str, Any] | None:
+    if function.pallets is None:
+        return None
+    stone: dict[str, Any] = {}
+    for field in fields(Pallet):
+        stone |= _entries(field.name, getattr(function.pallets[k], field.name))
+    if function.fork is not None:
+        for name in OF_BALANCE:
+            stone |= _entries(name, getattr(function.fork, name)[_beat(function, k)])
+    guards = guard(function, k)
+    if guards is not None:
+        stone |= _entries("guard_freedom", guards.guard) | _entries("horn_freedom", guards.horn)
+        stone |= _entries("worst_freedom", guards.worst)
+        stone["worst_freedom_at_deg"] = _degrees(guards.worst_at)
+        stone["guard_clearance_mm"] = 1e3 * guards.guard_clearance
+    return stone
+
+
+def _beat(function: Function, k: int) -> int:
+    """Row of the pairs told by upper and lower bank that belongs to the entry (0) or exit (1) stone."""
+    return 0 if function.sides[k] > 0.0 else 1
+
+
+def guard(function: Function, k: int) -> Safety | None:
+    """The safety action while the entry (0) or exit (1) stone is locked."""
+    return None if function.safety is None else function.safety[_beat(function, k)]
+
+
+def _entries(name: str, one: Quantity) -> dict[str, Any]:
+    told: dict[str, Any] = {f"{name}_deg": _degrees(one.value), f"{name}_deg_error": _degrees(one.error)}
+    if one.tooth is not None:
+        told |= {f"{name}_deg_worst": _degrees(one.worst), f"{name}_deg_worst_tooth": one.tooth}
+    return told
+
+
+def _degrees(value: float) -> float | None:
+    return math.degrees(value) if math.isfinite(value) else None
+
+
+def text(function: Function) -> Iterator[str]:
+    """The same for people; nothing of a scene without such parts."""
+    if function.parts is None:
+        return
+    parts = function.parts
+    if function.pallets is not None:
+        yield (
+            f"  geometry of function: {parts.wheel} turns {direction(function)}, {function.teeth} teeth; "
+            f"angles at each part's own pivot, exact to {_worst_error(function):.0e}°"
+        )
+        yield f"      {'':24}{'entry stone':>14}{'exit stone':>14}"
+        for name, words in WORDS.items():
+            pair = [getattr(one, name) for one in function.pallets]
+            if any(math.isfinite(one.value) for one in pair):
+                yield f"      {words:24}" + "".join(f"{_told(one.value):>14}" for one in pair) + _worst_tooth(pair)
+    if function.fork is not None:
+        yield from _fork_lines(function)
+    for what, why in function.missing:
+        yield f"  {what}: not measured, {why}"
+
+
+def _fork_lines(function: Function) -> Iterator[str]:
+    assert function.fork is not None and function.parts is not None
+    yield f"    {function.parts.balance}, from the pin's meeting the fork"
+    for name, words in BALANCE_WORDS.items():
+        pair = [getattr(function.fork, name)[_beat(function, k)] for k in (0, 1)]
+        yield f"      {words:24}" + "".join(f"{_told(one.value):>14}" for one in pair)
+    yield f"      {'shake of the pin':24}{_told(function.fork.pin_shake.value):>14}"
+    if function.safety is not None:
+        yield f"    freedom of {function.parts.lever} on its bank"
+        guards = [guard(function, k) for k in (0, 1)]
+        for name, words in (("guard", "guard pin"), ("horn", "horns"), ("worst", "largest anywhere")):
+            values = [getattr(one, name).value for one in guards]
+            yield f"      {words:24}" + "".join(f"{_told(value):>14}" for value in values)
+
+
+def _told(value: float) -> str:
+    return "never" if math.isinf(value) else "-" if math.isnan(value) else f"{value * 180.0 / math.pi + 0.0:.3f}°"
+
+
+def _worst_tooth(pair: list[Quantity]) -> str:
+    """Words where the teeth are not alike."""
+    words = [
+        f"{_told(one.worst)} at tooth {one.tooth} ({name})"
+        for name, one in zip(STONES, pair, strict=True)
+        if one.tooth is not None and one.spread > NOTICEABLE
+    ]
+    return f"   worst: {', '.join(words)}" if words else ""
+
+
+def _worst_error(function: Function) -> float:
+    assert function.pallets is not None
+    errors = [getattr(one, field.name).error for one in function.pallets for field in fields(Pallet)]
+    return math.degrees(max(error for error in errors if math.isfinite(error)))
