@@ -24,8 +24,8 @@ from watchsim.simulation.simulate import simulate
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "parameter-sets.md"
 LAST = 30  # beats at the end over which phases are averaged
-# Of the model, one beat lying flat: (start of the phase, what happens, ms after the jewel's entry, balance angle in degrees
-# from the middle of its lift: the model counts from its rest, 1.5° off).
+# Of the model, one beat lying flat: (start of the phase, what happens, ms after the jewel's entry, the balance's angle in
+# degrees from the middle of its lift: the model counts from its rest, 1.5° off).
 PUBLISHED = (
     ("unlock", "the jewel meets the fork", 0.0, -24.5),
     ("catch-up", "unlocked", 1.653, -16.12),
@@ -111,8 +111,7 @@ def page() -> str:
         "## Set A: 3 Hz, beside the public model it is taken from",
         "",
         "The model (Artianwe/timex-skeleton-twin, a Miyota 82S0 class watch) computes with idealised phases; here the same",
-        "numbers drive drawn parts.",
-        "No number was fitted. The model does not say how its tooth and stone share the lift.",
+        "numbers drive drawn parts. No number was fitted. The model does not say how its tooth and stone share the lift.",
         "",
         "| | here | model |",
         "|---|---|---|",
