@@ -11,6 +11,7 @@ import contextlib
 import os
 import shutil
 import tempfile
+import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -28,7 +29,11 @@ LOCK, NEW, OLD, JOURNAL = "lock", "new", "old", "journal.json"
 ABANDONED = 86400.0  # s after which a scratch folder belongs to nobody, where the system knows no locks
 ATTEMPTS = 100
 
+PATIENCE = 5.0  # s that an exchange of folders may take before a process that is to end at once leaves it as it is
+
 _live: dict[Path, Scratch] = {}
+exchanging = threading.Lock()  # held by whoever puts one folder in the place of another: nothing is cleared meanwhile
+_leaving = threading.Event()
 
 
 class Scratch:
@@ -65,6 +70,8 @@ class Scratch:
 def make(parent: Path) -> Scratch:
     """A new scratch folder in `parent`; OSError where there can be none."""
     for _ in range(ATTEMPTS):
+        if _leaving.is_set():
+            threading.Event().wait()  # the process ends
         place = Path(tempfile.mkdtemp(prefix=PREFIX, dir=parent))
         try:
             lock = _taken(place / LOCK)
@@ -161,6 +168,11 @@ def _is_abandoned(place: Path) -> bool:
 @stopping.before_leaving
 def abandon() -> None:
     """Take away the scratch folders of this process, as it leaves at once; what is complete stays for the next command."""
+    if not exchanging.acquire(timeout=PATIENCE):
+        return
+    _leaving.set()
     for scratch in list(_live.values()):
-        if not scratch.recoverable:
+        for _ in range(ATTEMPTS):  # the main thread may still be writing into it
+            if scratch.recoverable or not scratch.place.exists():
+                break
             scratch.clear()
