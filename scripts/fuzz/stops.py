@@ -14,6 +14,7 @@ traceback, no leftover.
 from __future__ import annotations
 
 import argparse
+import contextlib
 import os
 import random
 import shutil
@@ -80,7 +81,7 @@ def faults(place: Path, before: dict[str, bytes]) -> list[str]:
     from watchsim.analysis.results import read_results
     from watchsim.storage.scratch import PREFIX
 
-    found = [f"leftover {path.relative_to(place)}" for path in place.rglob(f"{PREFIX}*")]
+    found = [f"leftover {path.relative_to(place)}: {sorted(map(str, path.rglob('*')))}" for path in place.rglob(f"{PREFIX}*")]
     if not (place / "old" / "mine.txt").is_file():
         found.append("the user's own file is gone")
     for folder in (place / "old", place / "new"):
@@ -115,7 +116,9 @@ def one(
     arguments = COMMANDS_AND_DEMO[name]
     process = start(arguments, place, fresh)
     share = rng.random() * 1.1
-    time.sleep(0.12 * fresh + share * usual[name, fresh])  # before that the interpreter itself is starting
+    if isinstance(process, subprocess.Popen):
+        _await_the_first_line(process)
+    time.sleep(share * usual[name, fresh])
     alive = process.poll() is None
     process.send_signal(which)
     said = "".join(process.communicate())
@@ -139,6 +142,17 @@ def one(
     return name, str(process.returncode), wrong
 
 
+def _await_the_first_line(process: subprocess.Popen[str]) -> None:
+    """Wait until the interpreter has started and the first line of the package has run: from then on SIGTERM is in hand."""
+    bit = 1 << (signal.SIGTERM - 1)
+    while process.poll() is None:
+        with contextlib.suppress(OSError):
+            status = Path(f"/proc/{process.pid}/status").read_text()
+            if any(int(line.split()[1], 16) & bit for line in status.splitlines() if line.startswith(("SigBlk", "SigCgt"))):
+                return
+        time.sleep(0.002)
+
+
 def _usual(arguments: list[str], fresh: bool, made: Path, place: Path) -> float:
     """How long the command takes here, s."""
     shutil.rmtree(place, ignore_errors=True)
@@ -158,6 +172,7 @@ def main() -> None:
     parser.add_argument("--first", type=int, default=0)
     args = parser.parse_args()
     which = getattr(signal, f"SIG{args.signal}")
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell may have switched it off for what runs behind
     ended: Counter[str] = Counter()
     wrong_rounds = 0
     begun = time.perf_counter()

@@ -10,15 +10,17 @@ import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from watchsim.analysis.tables import plain
 from watchsim.mechanism.scene import Scene
 from watchsim.simulation.pairs import Pair, Pairs, as_pairs
 from watchsim.simulation.stops import Stop
 from watchsim.simulation.trajectory import EVENT_DTYPE, EventKind, Trajectory
+from watchsim.storage.columns import blocks
 
 FORMAT = 4
 OLDER = 3  # in which every pair was written out in words
@@ -45,7 +47,15 @@ def write_trajectory(run: Trajectory, path: Path) -> None:
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
         for name, array in arrays.items():
             with archive.open(f"{name}.npy", "w", force_zip64=True) as file:
-                np.lib.format.write_array(file, np.ascontiguousarray(array), allow_pickle=False)
+                write_array(file, array)
+
+
+def write_array(file: IO[bytes], array: NDArray[Any]) -> None:
+    """As `numpy.lib.format.write_array`, in pieces that are let go: an array may lie in a file, and be larger than memory."""
+    whole = np.ascontiguousarray(array)
+    np.lib.format.write_array_header_1_0(file, np.lib.format.header_data_from_array_1_0(whole))
+    for (part,) in blocks(whole):
+        file.write(part.tobytes())
 
 
 def read_trajectory(path: Path, scene: Scene) -> Trajectory:

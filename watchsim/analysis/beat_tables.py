@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from watchsim.analysis.beats import Beats
-from watchsim.analysis.phases import phases
+from watchsim.analysis.phases import Phase, each_phase
 from watchsim.simulation.trajectory import Trajectory
 
 BEAT_COLUMNS = ("beat", "t_s", "tick_s", "turn_s", "turn_at", "amplitude", "period_s", "rate_s_per_d", "beat_error_ms")
@@ -37,16 +37,17 @@ def beats_csv(found: Beats) -> str:
 def phases_csv(run: Trajectory, found: Beats) -> str:
     """One row per phase: beat (as in beats.csv), name, start, duration, and for wheel, lever and balance the angle at its start
     and the turn during it."""
-    rows = []
-    for phase in phases(run, found):
-        turned = [math.degrees(x) for pair in zip(phase.angles, phase.turns, strict=True) for x in pair]
-        rows.append([phase.beat, phase.name, phase.start, 1e3 * (phase.end - phase.start), *turned])
-    return _text(PHASE_COLUMNS, rows)
+    return _text(PHASE_COLUMNS, (_phase_row(phase) for phase in each_phase(run, found)))
+
+
+def _phase_row(phase: Phase) -> list[object]:
+    turned = [math.degrees(x) for pair in zip(phase.angles, phase.turns, strict=True) for x in pair]
+    return [phase.beat, phase.name, phase.start, 1e3 * (phase.end - phase.start), *turned]
 
 
 def _text(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
     out = io.StringIO()
     table = csv.writer(out, lineterminator="\n")
     table.writerow(header)
-    table.writerows([["" if isinstance(x, float) and not math.isfinite(x) else x for x in row] for row in rows])
+    table.writerows(["" if isinstance(x, float) and not math.isfinite(x) else x for x in row] for row in rows)
     return out.getvalue()

@@ -10,14 +10,14 @@ import contextlib
 import math
 import mmap
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import IO, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-MOST = 24e6  # bytes of columns in memory before they are written out
+MOST = 10e6  # bytes of columns in memory before they are written out
 BLOCK = 1 << 16  # rows that are worked on at a time, where a column need not lie in memory
 
 Arrays = Sequence[NDArray[Any]]
@@ -93,6 +93,13 @@ def mapping(array: NDArray[Any]) -> mmap.mmap | None:
 def is_mapped(array: NDArray[Any]) -> bool:
     """True for an array that lies in a file."""
     return mapping(array) is not None
+
+
+def blocks(*arrays: NDArray[Any], length: int = BLOCK) -> Iterator[tuple[NDArray[Any], ...]]:
+    """The arrays piece by piece, in step; each piece is let go when the next one is asked for."""
+    for first in range(0, len(arrays[0]), length):
+        yield tuple(array[first : first + length] for array in arrays)
+        let_go(*arrays)
 
 
 def let_go(*arrays: NDArray[Any]) -> None:

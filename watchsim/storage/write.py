@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from watchsim.storage.disk import reason, sync_file, sync_folder, sync_name, sync_tree, write_bytes
-from watchsim.storage.scratch import Scratch, exchanging, leftovers, scratch_in
+from watchsim.storage.scratch import Scratch, guard, leftovers, scratch_in
 
 Ours = Callable[[str], bool]  # of a path in the folder, with slashes: is it a file of ours, which may be replaced?
 
@@ -104,7 +104,7 @@ def _note(scratch: Scratch, place: Path) -> None:
 
 def _exchange(scratch: Scratch, place: Path, ours: Ours) -> None:
     """Put the new folder in the place of the old one, which comes back where that fails half way."""
-    with exchanging:
+    with guard:
         if not place.exists():
             scratch.new.rename(place)
             return
@@ -116,10 +116,10 @@ def _exchange(scratch: Scratch, place: Path, ours: Ours) -> None:
             scratch.old.rename(place)
             scratch.recoverable = False
             raise
-    sync_name(place)
-    with contextlib.suppress(OSError):  # what somebody has put into the old folder since
-        _take_along(scratch.old, place, ours)
-    scratch.recoverable = False
+        sync_name(place)
+        with contextlib.suppress(OSError):  # what somebody has put into the old folder since
+            _take_along(scratch.old, place, ours)
+        scratch.recoverable = False
 
 
 def sweep(parent: Path) -> list[str]:
