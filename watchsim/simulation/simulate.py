@@ -79,7 +79,7 @@ def simulate(
     wall = time.perf_counter() - warm + ready - begun
     made = run.trajectory(stop, wall, compile_time=warm - ready)
     if isinstance(start, Trajectory):
-        return joined(start, made)
+        return joined(start, made, None if stream is None else Path(stream))
     return made
 
 

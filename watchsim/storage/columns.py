@@ -17,7 +17,7 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import NDArray
 
-MOST = 10e6  # bytes of columns in memory before they are written out
+MOST = 32e6  # bytes of columns in memory before they are written out
 BLOCK = 1 << 16  # rows that are worked on at a time, where a column need not lie in memory
 
 Arrays = Sequence[NDArray[Any]]
@@ -70,6 +70,16 @@ class Columns:
             self.most = math.inf
             return False
         return True
+
+
+def one_behind_the_other(first: Arrays, second: Arrays, folder: Path | None) -> Arrays:
+    """Of each column the second behind the first; in files in `folder`, where there is one and they are long."""
+    columns = Columns()
+    columns.folder = folder
+    for arrays in (first, second):
+        for part in blocks(*arrays):
+            columns.append(part)
+    return columns.all() or first
 
 
 def _mapped(file: IO[bytes], rows: int, like: NDArray[Any]) -> NDArray[Any]:
