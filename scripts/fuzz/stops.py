@@ -33,6 +33,7 @@ from warm import Forked, load  # noqa: E402
 
 LEVER = str(ROOT / "profiles" / "bench_lever")
 LONG = "2 s"
+PF_EXITING = 4  # Linux, include/linux/sched.h
 STATUS = {signal.SIGKILL: -9, signal.SIGINT: 130, signal.SIGTERM: 143}
 FRESH = 4  # each so many-th round is a process of its own
 COMMANDS = {
@@ -119,8 +120,8 @@ def one(
     if isinstance(process, subprocess.Popen):
         _await_the_first_line(process)
     time.sleep(share * usual[name, fresh])
-    alive = process.poll() is None
     process.send_signal(which)
+    alive = process.poll() is None and not _is_ending(process.pid)
     said = "".join(process.communicate())
     wrong = [] if process.returncode in (STATUS[signal.Signals(which)], 0) else [f"exit status {process.returncode}"]
     if alive and process.returncode == 0 and which != signal.SIGKILL:
@@ -151,6 +152,13 @@ def _await_the_first_line(process: subprocess.Popen[str]) -> None:
             if any(int(line.split()[1], 16) & bit for line in status.splitlines() if line.startswith(("SigBlk", "SigCgt"))):
                 return
         time.sleep(0.002)
+
+
+def _is_ending(number: int) -> bool:
+    """Whether the process is past its last instruction: the system is taking it apart."""
+    with contextlib.suppress(OSError):
+        return bool(int(Path(f"/proc/{number}/stat").read_text().rsplit(")", 1)[1].split()[6]) & PF_EXITING)
+    return True
 
 
 def _usual(arguments: list[str], fresh: bool, made: Path, place: Path) -> float:

@@ -47,8 +47,8 @@ class Forked:
         sys.stdout.flush()
         # Signals wait until the command hears them, as they do for a process whose interpreter has begun with them held back.
         signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
-        self.number = os.fork()
-        if self.number == 0:
+        self.pid = os.fork()
+        if self.pid == 0:
             self._become(arguments, place)
         signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)
         self.returncode: int | None
@@ -70,18 +70,18 @@ class Forked:
     def poll(self) -> int | None:
         """The exit status, as of a subprocess; None while it runs."""
         if self.returncode is None:
-            number, status = os.waitpid(self.number, os.WNOHANG)
+            number, status = os.waitpid(self.pid, os.WNOHANG)
             self._ended(status if number else None)
         return self.returncode
 
     def send_signal(self, which: int) -> None:
         if self.poll() is None:
-            os.kill(self.number, which)
+            os.kill(self.pid, which)
 
     def communicate(self) -> tuple[str, str]:
         """Wait for the end; what was said."""
         if self.returncode is None:
-            self._ended(os.waitpid(self.number, 0)[1])
+            self._ended(os.waitpid(self.pid, 0)[1])
         return self.said.read_text(errors="replace"), ""
 
     def _ended(self, status: int | None) -> None:
