@@ -17,6 +17,7 @@ from watchsim.analysis.averages import Window, averages, last_window, mean_and_e
 from watchsim.analysis.beats import DAY, Beats
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.trajectory import Array, Trajectory
+from watchsim.storage.columns import blocks
 
 LOUD = 1.0 / 3.0  # of the energy of the beat's loudest noise; a tooth's rebounds from the stone are fainter
 LONGEST = 1.0 / 3.0  # of half a period; later noises, such as a knock at the turning point, are not the escapement's
@@ -68,10 +69,14 @@ def intervals(run: Trajectory, found: Beats, chosen: NDArray[np.bool_] | None = 
 
 def noises(run: Trajectory, start: float = -np.inf, end: float = np.inf) -> tuple[Array, Array]:
     """Instants with impacts (s) from `start` to `end` and the energy lost in all impacts of each (J)."""
-    first = int(np.searchsorted(run.events["t"], start, side="left"))
-    last = int(np.searchsorted(run.events["t"], end, side="right"))
-    impacts = run.events[first:last]
-    impacts = impacts[impacts["kind"] == EventKind.IMPACT]
+    found = [_noisy(part, start, end) for (part,) in blocks(run.events)]
+    impacts = np.concatenate(found) if found else run.events
     times, place = np.unique(impacts["t"], return_inverse=True)
     energies: Array = np.bincount(place, weights=impacts["energy_lost"], minlength=len(times)).astype(float)
     return times, energies
+
+
+def _noisy(events: NDArray[Any], start: float, end: float) -> NDArray[Any]:
+    """The impacts among events, from `start` to `end`."""
+    times = events["t"]
+    return events[(events["kind"] == EventKind.IMPACT) & (times >= start) & (times <= end)]

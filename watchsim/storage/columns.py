@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 MOST = 32e6  # bytes of columns in memory before they are written out
+NEXT = 4e6  # bytes that are written out together from then on
 BLOCK = 1 << 16  # rows that are worked on at a time, where a column need not lie in memory
 
 Arrays = Sequence[NDArray[Any]]
@@ -43,6 +44,7 @@ class Columns:
         self._held += sum(array.nbytes for array in copies)
         if self.folder is not None and self._held > self.most and self._written(self._parts):
             self._filed, self._parts, self._held = self.rows, [], 0
+            self.most = min(self.most, NEXT)
 
     def all(self, behind: Sequence[Arrays] = ()) -> list[NDArray[Any]]:
         """Every column as one array, with what is given behind it; mapped where there are files."""
