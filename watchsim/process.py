@@ -43,4 +43,5 @@ def process() -> NoReturn:
     atexit._run_exitfuncs()
     for stream in (sys.stdout, sys.stderr):
         stream.flush()
-    os._exit(stopping.status() if stopping.requested() else status)
+    number = stopping.last_word()
+    os._exit(128 + number if number else status)

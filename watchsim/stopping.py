@@ -18,6 +18,8 @@ from collections.abc import Callable, Iterator
 from typing import NoReturn, TypeVar
 
 SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP")
+MARK = 0  # among the numbers of signals: all that came before has been heard
+PATIENCE = 1.0  # s that a thread may take to hear
 WORDS = {"SIGINT": "Interrupted.", "SIGTERM": "Terminated.", "SIGHUP": "Hung up."}
 
 Hook = TypeVar("Hook", bound=Callable[[], None])
@@ -33,6 +35,8 @@ class _Listener:
         self.installed = False
         self.lock = threading.Lock()
         self.hooks: list[Callable[[], None]] = []
+        self.wakeup: int | None = None  # where the numbers of signals are written to
+        self.up_to_date = threading.Event()  # all that came before the mark has been heard
 
 
 _listener = _Listener()
@@ -41,13 +45,24 @@ _listener = _Listener()
 def install() -> None:
     """Hear the signals from now on, but for those that whoever started the process has switched off (nohup, &)."""
     read, wakeup = _ends()
-    _listener.installed = True
+    _listener.installed, _listener.wakeup = True, wakeup
     signal.set_wakeup_fd(wakeup, warn_on_full_buffer=False)
-    for name in SIGNALS:
-        number = getattr(signal, name, None)
-        if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
+    for number in _numbers():
+        if signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, _leave_it_to_the_thread)
     threading.Thread(target=_listen, args=(read,), daemon=True, name="signals").start()
+
+
+def _write(number: int, content: bytes) -> None:
+    """Write to what `_ends` gave."""
+    if os.name != "nt":
+        os.write(number, content)
+        return
+    import socket
+
+    with contextlib.closing(socket.socket(fileno=number)) as sender:
+        sender.send(content)
+        sender.detach()
 
 
 def _ends() -> tuple[Callable[[], bytes], int]:
@@ -72,6 +87,21 @@ def installed() -> bool:
 def requested() -> int:
     """The number of the signal that asks this process to stop; 0 for none."""
     return _listener.number
+
+
+def last_word() -> int:
+    """The number of the signal that came until now, for a process that is done: one on its way to the thread counts, too."""
+    if _listener.wakeup is None:
+        return _listener.number
+    heard = [number for number in _numbers() if signal.getsignal(number) is not signal.SIG_IGN]
+    blocks = hasattr(signal, "pthread_sigmask")
+    if blocks:
+        signal.pthread_sigmask(signal.SIG_BLOCK, heard)
+    with contextlib.suppress(OSError):
+        _write(_listener.wakeup, bytes([MARK]))
+        _listener.up_to_date.wait(PATIENCE)
+    late = signal.sigpending() if blocks else set()
+    return _listener.number or next((number for number in heard if number in late), 0)
 
 
 def status() -> int:
@@ -109,14 +139,23 @@ def before_leaving(hook: Hook) -> Hook:
     return hook
 
 
+def _numbers() -> list[signal.Signals]:
+    """Of the signals that there are on this system."""
+    return [getattr(signal, name) for name in SIGNALS if hasattr(signal, name)]
+
+
 def _leave_it_to_the_thread(*_: object) -> None:
     """Python writes the signal's number to the socket only where there is a handler."""
 
 
 def _listen(read: Callable[[], bytes]) -> None:
+    if hasattr(signal, "pthread_sigmask"):  # they are for the main thread, which can then hold them back
+        signal.pthread_sigmask(signal.SIG_BLOCK, _numbers())
     while True:
         for number in read():
-            if number in {getattr(signal, name, None) for name in SIGNALS}:
+            if number == MARK:
+                _listener.up_to_date.set()
+            elif number in _numbers():
                 _hear(number)
 
 

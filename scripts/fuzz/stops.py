@@ -1,8 +1,9 @@
 """Is anything lost when a command is killed, interrupted or terminated at a random moment?
 
-Starts commands again and again (`run`, `run --force`, `run --resume`, `plot`, `movie`, `export`, `check --png`), sends each one
-a signal at a random moment of its life, and looks at what it leaves. Rounds are numbered: number k takes the same command, and
-the same share of that command's usual time, on every machine.
+Starts commands again and again (those of COMMANDS), sends each one a signal at a random moment of its life, and looks at what
+it leaves. Rounds are numbered: number k takes the same command, and the same share of that command's usual time, on every
+machine. Each fourth one is a process of its own, with an interpreter that starts and loads; the others are copies of a process
+that has loaded everything (see warm.py).
 
 KILL: no half file under a final name, no leftover after the next command's sweep, the user's own file is there; each fifth time
 the next command is run as well, and must be fine.
@@ -13,6 +14,7 @@ traceback, no leftover.
 from __future__ import annotations
 
 import argparse
+import contextlib
 import os
 import random
 import shutil
@@ -22,29 +24,54 @@ import sys
 import tempfile
 import time
 from collections import Counter
+from collections.abc import Mapping
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT))
+sys.path[:0] = [str(ROOT), str(Path(__file__).parent)]
+from warm import Forked, load  # noqa: E402
+
 LEVER = str(ROOT / "profiles" / "bench_lever")
 LONG = "2 s"
+PF_EXITING = 4  # Linux, include/linux/sched.h
 STATUS = {signal.SIGKILL: -9, signal.SIGINT: 130, signal.SIGTERM: 143}
+FRESH = 4  # each so many-th round is a process of its own
 COMMANDS = {
     "run": ["run", LEVER, "--duration", LONG, "-o", "new"],
+    "long": ["run", LEVER, "--duration", "60 s", "--record", "all", "--no-plots", "-o", "new"],
+    "steps": [
+        "run",
+        LEVER,
+        "--duration",
+        "0.3 s",
+        "--method",
+        "moreau",
+        "--no-plots",
+        "--set",
+        "run.tolerance=1e-6",
+        "-o",
+        "new",
+    ],
     "force": ["run", LEVER, "--duration", LONG, "-o", "old", "--force"],
     "resume": ["run", LEVER, "--duration", "1 s", "--resume", "old"],
     "movie": ["movie", "old", "--window", "0.01 s:0.19 s", "--speed", "1/5", "--size", "320x180"],
     "plot": ["plot", "old", "--format", "png,svg,pdf"],
     "export": ["export", LEVER, "-o", "parts"],
     "picture": ["check", LEVER, "--png", "start.png"],
+    "drawing": ["inspect", f"{LEVER}/wheel.dxf", "--png", "start.png"],
 }
+DEMO, SELDOM = "demo", 50  # which takes as long as all the others
+COMMANDS_AND_DEMO = {**COMMANDS, DEMO: ["demo", "-o", "shown"]}
+KEEPING = ("run", "long", "steps", "resume", "force")
 
 
 def environment() -> dict[str, str]:
     return {**os.environ, "PYTHONPATH": str(ROOT)}
 
 
-def start(arguments: list[str], place: Path) -> subprocess.Popen[str]:
+def start(arguments: list[str], place: Path, fresh: bool) -> subprocess.Popen[str] | Forked:
+    if not fresh:
+        return Forked(arguments, place, place.parent / "said.txt")
     command = [sys.executable, "-m", "watchsim", *arguments]
     pipe = subprocess.PIPE
     return subprocess.Popen(command, cwd=place, env=environment(), stdout=pipe, stderr=pipe, text=True)
@@ -55,7 +82,7 @@ def faults(place: Path, before: dict[str, bytes]) -> list[str]:
     from watchsim.results.folder import read_results
     from watchsim.storage.scratch import PREFIX
 
-    found = [f"leftover {path.relative_to(place)}" for path in place.rglob(f"{PREFIX}*")]
+    found = [f"leftover {path.relative_to(place)}: {sorted(map(str, path.rglob('*')))}" for path in place.rglob(f"{PREFIX}*")]
     if not (place / "old" / "mine.txt").is_file():
         found.append("the user's own file is gone")
     for folder in (place / "old", place / "new"):
@@ -67,6 +94,7 @@ def faults(place: Path, before: dict[str, bytes]) -> list[str]:
     for path, ends in (
         (place / "old" / "movie.mp4", b"moov"),
         (place / "start.png", b"IEND"),
+        (place / "shown" / "swiss_lever" / "movie.mp4", b"moov"),
         (place / "old/plots/kinematics.pdf", b"%%EOF"),
     ):
         if path.exists() and ends not in path.read_bytes():
@@ -76,42 +104,73 @@ def faults(place: Path, before: dict[str, bytes]) -> list[str]:
     return found
 
 
-def one(number: int, which: int, made: Path, usual: dict[str, float], place: Path) -> tuple[str, str, list[str]]:
+def one(
+    number: int, which: int, made: Path, usual: Mapping[tuple[str, bool], float], place: Path
+) -> tuple[str, str, list[str]]:
     """Round `number` with signal `which`: the command, how it ended, what is wrong."""
     from watchsim.storage.write import sweep
 
     rng = random.Random(f"{number}")
-    name = list(COMMANDS)[number % len(COMMANDS)]
+    name, fresh = (DEMO, False) if number % SELDOM == 1 else (list(COMMANDS)[number % len(COMMANDS)], number % FRESH == 0)
     shutil.rmtree(place, ignore_errors=True)
     shutil.copytree(made, place)
-    process = start(COMMANDS[name], place)
+    arguments = COMMANDS_AND_DEMO[name]
+    process = start(arguments, place, fresh)
     share = rng.random() * 1.1
-    time.sleep(0.12 + share * usual[name])  # before that the interpreter itself is starting
-    alive = process.poll() is None
+    if isinstance(process, subprocess.Popen):
+        _await_the_first_line(process)
+    time.sleep(share * usual[name, fresh])
     process.send_signal(which)
+    alive = process.poll() is None and not _is_ending(process.pid)
     said = "".join(process.communicate())
     wrong = [] if process.returncode in (STATUS[signal.Signals(which)], 0) else [f"exit status {process.returncode}"]
     if alive and process.returncode == 0 and which != signal.SIGKILL:
         wrong.append("swallowed")
     if "Traceback" in said or "Error" in said:
         wrong.append(said)
-    if (
-        process.returncode in (130, 143)
-        and "Results:" not in said
-        and name in ("run", "resume", "force")
-        and "writing what was" in said
-    ):
+    if process.returncode in (130, 143) and "Results:" not in said and name in KEEPING and "writing what was" in said:
         wrong.append("results were announced and not written")
-    for folder in (place, place / "old", place / "old" / "plots"):
+    for folder in (place, place / "old", place / "old" / "plots", place / "shown"):
         if which == signal.SIGKILL:  # what the next command does first
             sweep(folder)
     wrong += faults(place, {"old/trajectory.npz": b""})
     if number % 5 == 0 and which == signal.SIGKILL:
-        again = start([*COMMANDS[name], *(["--force"] if name in ("run", "export") else [])], place)
+        replacing = ["--force"] if "-o" in arguments and "--force" not in arguments else []
+        again = start([*arguments, *replacing], place, fresh)
         said = "".join(again.communicate())
         if again.returncode != 0 or list(place.rglob(".watchsim-*")):
             wrong.append(f"the next command: {again.returncode} {said}")
     return name, str(process.returncode), wrong
+
+
+def _await_the_first_line(process: subprocess.Popen[str]) -> None:
+    """Wait until the interpreter has started and the first line of the package has run: from then on SIGTERM is in hand."""
+    bit = 1 << (signal.SIGTERM - 1)
+    while process.poll() is None:
+        with contextlib.suppress(OSError):
+            status = Path(f"/proc/{process.pid}/status").read_text()
+            if any(int(line.split()[1], 16) & bit for line in status.splitlines() if line.startswith(("SigBlk", "SigCgt"))):
+                return
+        time.sleep(0.002)
+
+
+def _is_ending(number: int) -> bool:
+    """Whether the process is past its last instruction: the system is taking it apart."""
+    with contextlib.suppress(OSError):
+        return bool(int(Path(f"/proc/{number}/stat").read_text().rsplit(")", 1)[1].split()[6]) & PF_EXITING)
+    return True
+
+
+def _usual(arguments: list[str], fresh: bool, made: Path, place: Path) -> float:
+    """How long the command takes here, s."""
+    shutil.rmtree(place, ignore_errors=True)
+    shutil.copytree(made, place)
+    since = time.perf_counter()
+    process = start(arguments, place, fresh)
+    said = "".join(process.communicate())
+    if process.returncode != 0:
+        raise SystemExit(f"{' '.join(arguments)}: {process.returncode} {said}")
+    return time.perf_counter() - since
 
 
 def main() -> None:
@@ -121,6 +180,7 @@ def main() -> None:
     parser.add_argument("--first", type=int, default=0)
     args = parser.parse_args()
     which = getattr(signal, f"SIG{args.signal}")
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell may have switched it off for what runs behind
     ended: Counter[str] = Counter()
     wrong_rounds = 0
     begun = time.perf_counter()
@@ -132,23 +192,21 @@ def main() -> None:
             cwd=made, env=environment(), check=True, capture_output=True,
         )  # fmt: skip
         (made / "old" / "mine.txt").write_text("mine")
-        usual = {}
-        for name, arguments in COMMANDS.items():
-            shutil.rmtree(place, ignore_errors=True)
-            shutil.copytree(made, place)
-            since = time.perf_counter()
-            start(arguments, place).communicate()
-            usual[name] = time.perf_counter() - since
-        print({name: round(seconds, 2) for name, seconds in usual.items()}, flush=True)
+        load(COMMANDS, made, place)
+        kinds = [(name, fresh) for name in COMMANDS for fresh in (True, False)] + [(DEMO, False)]
+        usual = {(name, fresh): _usual(COMMANDS_AND_DEMO[name], fresh, made, place) for name, fresh in kinds}
+        print({f"{name}{' fresh' * fresh}": round(seconds, 2) for (name, fresh), seconds in usual.items()}, flush=True)
         for number in range(args.first, args.first + args.count):
             name, status, wrong = one(number, which, made, usual, place)
-            ended[f"{name} {status}"] += 1
+            ended[status] += 1
             if wrong:
                 wrong_rounds += 1
                 print(f"{number} ({name}): {wrong}", flush=True)
     took = time.perf_counter() - begun
-    print(f"{args.count} rounds of {args.signal} from number {args.first}: {wrong_rounds} wrong; {took:.0f} s")
-    print(dict(sorted(ended.items())))
+    print(
+        f"{args.count} rounds of {args.signal} from number {args.first}: {wrong_rounds} wrong; "
+        f"ended with {dict(sorted(ended.items()))}; {took:.0f} s"
+    )
     sys.exit(bool(wrong_rounds))
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import json
 from pathlib import Path
 
@@ -12,27 +11,51 @@ import pytest
 from watchsim.cli import main
 from watchsim.commands.common.console import BAD_INPUT, FINE
 from watchsim.commands.common.inputs import load_scene
-from watchsim.commands.common.record_size import bounded_record, record_size
+from watchsim.commands.common.record_size import record_size, room_for
 from watchsim.commands.common.run_pictures import last_beats
 from watchsim.profiles_path import profiles_dir
 from watchsim.results.folder import read_results
 from watchsim.simulation.simulate import simulate
+from watchsim.storage.destination import LEAST_ROOM
 
 SCENE = str(profiles_dir() / "bench_lever")
 
 
-def test_a_long_run_keeps_no_more_than_memory_should_hold(capsys: pytest.CaptureFixture[str]) -> None:
-    """The estimate holds for what is measured, within a factor of two; what was requested is done as requested."""
+def test_a_long_run_says_what_it_records(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    """The estimate holds for what is measured, within a factor of two; so much room the disk must have."""
     scene = load_scene(SCENE)
     run = simulate(scene, 3.0)
     made = run.events.nbytes + 8 * len(run.t) * (1 + 3 * run.q.shape[1])
-    assert 0.5 < record_size(scene, 3.0) / made < 2.0
-    plain = dataclasses.replace(scene, source={**scene.source, "run": {"duration": "1 s"}})
-    assert bounded_record(plain, 10.0) is plain and capsys.readouterr().err == ""
-    assert bounded_record(plain, 3600.0).record.keep == "statistics"
-    assert "--record all keeps everything" in capsys.readouterr().err
-    asked = plain.set("run.record", "all")
-    assert bounded_record(asked, 3600.0) is asked and "three times that" in capsys.readouterr().err
+    whole = scene.set("run.record", "all")
+    assert 0.5 < record_size(whole, 3.0) / made < 2.0
+    assert record_size(whole, 30.0) == pytest.approx(10.0 * record_size(whole, 3.0))
+    assert room_for(whole, 5.0, tmp_path) == LEAST_ROOM and capsys.readouterr().err == ""
+    assert room_for(whole, 3600.0, tmp_path) > 2.0 * record_size(whole, 3600.0) > 1e9
+    assert f"in files beside {tmp_path}" in capsys.readouterr().err
+    less = {what: record_size(scene.set("run.record", what), 3600.0) for what in ("events", "every 10", "statistics")}
+    assert less["statistics"] == 0.0 < less["events"] < record_size(whole, 3600.0)
+    assert less["every 10"] - less["events"] == pytest.approx(0.1 * (record_size(whole, 3600.0) - less["events"]))
+    window = scene.set("run.record", [["10 s", "13 s"], "statistics"])
+    assert record_size(window, 3600.0) == pytest.approx(record_size(whole, 3.0))
+
+
+def test_a_run_in_files_is_the_run_in_memory(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Every file of the results, but for the times on the clock; nothing is left beside them."""
+    folders = {name: tmp_path / name / "run" for name in ("memory", "files")}
+    for name, folder in folders.items():
+        if name == "files":
+            monkeypatch.setattr("watchsim.storage.columns.MOST", 1e4)
+        folder.parent.mkdir()
+        assert main(["run", SCENE, "--duration", "3 s", "--record", "all", "-o", str(folder)]) == FINE
+        assert main(["run", SCENE, "--duration", "4 s", "--resume", str(folder)]) == FINE
+        assert [path.name for path in folder.parent.iterdir()] == ["run"]
+    runs = [read_results(folder) for folder in folders.values()]
+    for column in ("t", "q", "u", "a", "events"):
+        first, second = (getattr(run, column) for run in runs)
+        assert len(first) > 1000 and first.tobytes() == second.tobytes()
+    for table in ("events.csv", "beats.csv", "phases.csv", "plots/kinematics.png", "plots/last_beats.png"):
+        first, second = ((folder / table).read_bytes() for folder in folders.values())
+        assert first == second, table
 
 
 def summary_of(folder: Path, *options: str) -> dict[str, object]:

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from watchsim.analysis.timeline.rows import Stage, can_be_told, timeline
+from watchsim.analysis.timeline.rows import Stage, can_be_told, each_stage
 from watchsim.analysis.timing.beats import Beats
 from watchsim.simulation.record.trajectory import Trajectory
 
@@ -45,7 +45,7 @@ def phases_csv(run: Trajectory, found: Beats) -> str:
     Energies and impulse are empty for a run by fixed steps, whose contacts have no smooth forces.
     """
     known = can_be_told(run)
-    return _text(PHASE_COLUMNS, [_phase_row(stage, known) for stage in timeline(run, found)])
+    return _text(PHASE_COLUMNS, (_phase_row(stage, known) for stage in each_stage(run, found)))
 
 
 def _phase_row(stage: Stage, known: bool) -> list[object]:
@@ -61,5 +61,5 @@ def _text(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
     out = io.StringIO()
     table = csv.writer(out, lineterminator="\n")
     table.writerow(header)
-    table.writerows([["" if isinstance(x, float) and not math.isfinite(x) else x for x in row] for row in rows])
+    table.writerows(["" if isinstance(x, float) and not math.isfinite(x) else x for x in row] for row in rows)
     return out.getvalue()

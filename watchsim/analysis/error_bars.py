@@ -8,6 +8,7 @@ not settled yet is another error; of the two the larger is given.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 from watchsim.simulation.methods import MOREAU
@@ -20,11 +21,12 @@ TIGHTER, TIGHTEST = 0.01, 1e-13
 NUMBERS = ("amplitude_deg", "period_s", "rate_s_per_d", "beat_error_ms")
 
 
-def more_exact(run: Trajectory, progress: Progress | None = None) -> Trajectory:
+def more_exact(run: Trajectory, progress: Progress | None = None, stream: Path | None = None) -> Trajectory:
     """The same motion once more, more exactly."""
     if run.method == MOREAU and run.step is not None:
-        return simulate(run.scene, run.simulated, run.tolerance, progress=progress, method=MOREAU, step=0.5 * run.step)
-    return simulate(run.scene, run.simulated, max(TIGHTER * run.tolerance, TIGHTEST), progress=progress)
+        step = 0.5 * run.step
+        return simulate(run.scene, run.simulated, run.tolerance, progress=progress, method=MOREAU, step=step, stream=stream)
+    return simulate(run.scene, run.simulated, max(TIGHTER * run.tolerance, TIGHTEST), progress=progress, stream=stream)
 
 
 def with_error_bars(numbers: Mapping[str, Any], other: Mapping[str, Any]) -> dict[str, Any]:

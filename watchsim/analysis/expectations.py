@@ -28,6 +28,8 @@ ENDINGS = {
     **{"_deg": "°", "_rad": "rad", "_vph": "vph", "_hz": "Hz", "_ms": "ms", "_s": "s", "_m": "m", "_J": "J"},
 }
 ERROR = "_error"
+KNOWN = f"Known are {', '.join(WATCH_KEYS)} and the names in summary.json."
+MOST_ADVISED = 20  # wrong keys for which a similar one is looked for: each takes a hundredth of a second
 
 
 def judge(expectation: Expectation, numbers: Mapping[str, Any]) -> dict[str, Any]:
@@ -70,7 +72,12 @@ def mistake(expectation: Expectation, numbers: Mapping[str, Any]) -> str:
 def mistakes(expectations: Sequence[Expectation], numbers: Mapping[str, Any]) -> list[str]:
     """`mistake` of each."""
     known = dict(_numbers(numbers))
-    return [_mistake(expectation, known) for expectation in expectations]
+    found: list[str] = []
+    wrong = 0
+    for expectation in expectations:
+        found.append(_mistake(expectation, known, advised=wrong < MOST_ADVISED))
+        wrong += bool(found[-1])
+    return found
 
 
 def judged(expectations: Sequence[Expectation], numbers: Mapping[str, Any]) -> list[dict[str, Any]]:
@@ -79,14 +86,20 @@ def judged(expectations: Sequence[Expectation], numbers: Mapping[str, Any]) -> l
     return [_judged(expectation, known) for expectation in expectations]
 
 
-def _mistake(expectation: Expectation, known: Mapping[str, float | None]) -> str:
+def _mistake(expectation: Expectation, known: Mapping[str, float | None], advised: bool = True) -> str:
     name = _name(expectation)
-    if name not in known and not any(name.startswith(f"{whole}.") for whole, value in known.items() if value is None):
-        return f'"{expectation.key}" is no number of the results. {_advice(expectation.key, known)}'
+    if name not in known and not _within_null(name, known):
+        return f'"{expectation.key}" is no number of the results. {_advice(expectation.key, known) if advised else KNOWN}'
     source = unit_of(name)
     if expectation.unit and known_unit(source).powers != known_unit(expectation.unit).powers:
         return f'"{expectation.key}" is in {source or "plain numbers"}, which cannot be compared with {expectation.unit}'
     return ""
+
+
+def _within_null(name: str, known: Mapping[str, float | None]) -> bool:
+    """Whether something above the dotted name is null, and may hold numbers in another run."""
+    parts = name.split(".")
+    return any(known.get(".".join(parts[:k]), 0.0) is None for k in range(1, len(parts)))
 
 
 def _name(expectation: Expectation) -> str:
@@ -122,4 +135,4 @@ def _numbers(mapping: Mapping[str, Any], above: str = "") -> list[tuple[str, flo
 def _advice(key: str, known: Mapping[str, Any]) -> str:
     names = [*WATCH_KEYS, *known]
     near = difflib.get_close_matches(key, names, n=1, cutoff=ALIKE)
-    return f'Did you mean "{near[0]}"?' if near else f"Known are {', '.join(WATCH_KEYS)} and the names in summary.json."
+    return f'Did you mean "{near[0]}"?' if near else KNOWN

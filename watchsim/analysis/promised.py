@@ -5,6 +5,8 @@ Worth asking before a long run: the names are those of the summary of a run that
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 
 from watchsim.analysis.expectations import WATCH_KEYS, mistakes
@@ -38,7 +40,7 @@ def expectation_faults(scene: Scene) -> list[Fault]:
     """A fault for each expectation that no run of the scene can answer."""
     if not scene.expect:
         return []
-    numbers = summary(_not_begun(scene))
+    numbers = summary(_not_begun(dataclasses.replace(scene, expect=())))
     lines = key_lines(scene.path.read_text(encoding="utf-8-sig")) if scene.path and scene.path.is_file() else {}
     faults = Faults(str(scene.path or "scene"), lines)
     for expectation, wrong in zip(scene.expect, mistakes(scene.expect, numbers), strict=True):

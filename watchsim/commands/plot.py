@@ -4,16 +4,23 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from watchsim.commands.common.console import FINE, InputError, parse_names, parse_width, parse_window
+from watchsim.commands.common.console import FINE, InputError, parse_names, parse_width, parse_window, say
+
+if TYPE_CHECKING:
+    from watchsim.simulation.record.trajectory import Trajectory
 
 HELP = "kinematic plots of a results folder"
 FORMATS = ("png", "svg", "pdf")
+ALL, MOST = "all", 50  # bodies: each costs some hundredths of a second and two inches of paper
 
 
 def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("run_folder", metavar="RUN", help="a results folder")
-    parser.add_argument("--bodies", metavar="NAMES", help="only these bodies, with commas between them")
+    parser.add_argument(
+        "--bodies", metavar="NAMES", help=f"only these bodies, with commas between them, or {ALL} (default: the first {MOST})"
+    )
     parser.add_argument(
         "--quantities",
         metavar="NAMES",
@@ -76,8 +83,19 @@ def run(args: argparse.Namespace) -> int:
     else:
         from watchsim.render.plots import plot_kinematics
 
-        figure = plot_kinematics(trajectory, parse_names(args.bodies), quantities, window)
+        figure = plot_kinematics(trajectory, _bodies(trajectory, args.bodies), quantities, window)
     for path in paths:
         write_file(path, figure.savefig, "the plot")
         print(path)
     return FINE
+
+
+def _bodies(run: Trajectory, asked: str | None) -> list[str] | None:
+    """The names asked for; the first of those that move where nothing is asked, which is said where there are more."""
+    moving = list(run.slices)
+    if asked == ALL and ALL not in moving:
+        return None
+    if asked is not None or len(moving) <= MOST:
+        return parse_names(asked)
+    say(f"{MOST} of {len(moving)} moving bodies are plotted; --bodies NAMES plots others, --bodies {ALL} all of them.")
+    return moving[:MOST]

@@ -20,7 +20,7 @@ from watchsim.commands.common.console import (
     say,
 )
 from watchsim.commands.common.output_place import secured_folder, swept_run
-from watchsim.commands.common.record_size import bounded_record
+from watchsim.commands.common.record_size import room_for
 from watchsim.commands.common.write_run import Extras, goal_of, report_text, write
 from watchsim.simulation.methods import EVENT_DRIVEN, METHODS
 
@@ -75,7 +75,6 @@ def run(args: argparse.Namespace) -> int:
         scene = scene.set("run.record", [_record(what) for what in args.record])
     duration = None if args.duration is None else parse_positive("--duration", args.duration, TIME)
     step = None if args.step is None else parse_positive("--step", args.step, TIME)
-    scene = bounded_record(scene, scene.duration if duration is None else duration)
     _check_windows(scene, scene.duration if duration is None else duration, asked=bool(args.record))
     if args.tol is not None and not 1e-13 <= args.tol <= 1e-2:
         raise InputError(f"--tol {args.tol:g}: must lie between 1e-13 and 1e-2.")
@@ -90,7 +89,8 @@ def run(args: argparse.Namespace) -> int:
         args.tol = args.tol or start.tolerance
     if args.profile and method != EVENT_DRIVEN:
         raise InputError(f"--profile: only the method {EVENT_DRIVEN} has a profile, not {method}.")
-    secured_folder(folder, "results", default=not (args.output or args.resume))
+    room = room_for(scene, scene.duration if duration is None else duration, folder)
+    secured_folder(folder, "results", room, default=not (args.output or args.resume))
     check_folder(folder, replace)
     goal = goal_of(scene, folder, replace)
     # What a scene promises, it promises as it is written.
@@ -106,7 +106,7 @@ def run(args: argparse.Namespace) -> int:
         say(f"Note: {note.message}. {note.fix}")
     extras = Extras(not args.no_plots, args.movie, args.gif, args.error_bars, args.profile)
     with stopping.keeping():
-        trajectory = simulate_with_progress(scene, duration, args.tol, method=method, step=step, start=start)
+        trajectory = simulate_with_progress(scene, duration, args.tol, folder, method=method, step=step, start=start)
         summary = write(trajectory, goal, extras, changed)
     if args.json:
         print_json(summary)
@@ -122,17 +122,20 @@ def simulate_with_progress(
     scene: Scene,
     duration: float | None,
     tolerance: float | None,
+    folder: Path,
     method: str = EVENT_DRIVEN,
     step: float | None = None,
     start: Trajectory | None = None,
 ) -> Trajectory:
-    """Simulate with a progress line on a terminal; the first run on a machine says that it compiles."""
+    """Simulate for results in `folder`, with a progress line on a terminal; a first run says that it compiles."""
     from watchsim.simulation.simulate import simulate
+    from watchsim.storage.write import real
 
     announce_compile()
     progress = Progress("simulated s:")
     try:
-        return simulate(scene, duration, tolerance, progress=progress, method=method, step=step, start=start)
+        beside = real(folder).parent
+        return simulate(scene, duration, tolerance, progress=progress, method=method, step=step, start=start, stream=beside)
     finally:
         progress.close()
 

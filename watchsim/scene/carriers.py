@@ -162,9 +162,9 @@ def weigh(bodies: tuple[Body, ...], hung: tuple[Ride, ...], complain: Complain |
             complain(body.name, _not_poised(body, found[i]))
         (x, y), mass = ride.place, found[i].mass
         found[ride.host] = found[ride.host].plus(Weighed(mass, (mass * x, mass * y), mass * (x * x + y * y)))
+    carrying = {ride.host for ride in hung} | {ride.part_of for k, ride in enumerate(hung) if ride.part_of != k}
     for i, body in enumerate(bodies):
-        carries = any(ride.host == i or (ride.part_of == i and k != i) for k, ride in enumerate(hung))
-        if body.motion == "free" and carries and not _is_poised(bodies, hung, i, found[i]):
+        if body.motion == "free" and i in carrying and not _is_poised(bodies, hung, i, found[i]):
             place = ", ".join(f"{1e3 * part / found[i].mass:.4g}" for part in found[i].moment)
             complain(
                 body.name,

@@ -9,7 +9,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -29,7 +29,7 @@ from watchsim.simulation.methods import EVENT_DRIVEN
 from watchsim.simulation.options import Options, options_for
 from watchsim.simulation.record.contact_names import pairs_of
 from watchsim.simulation.record.overlap_watch import OverlapWatch
-from watchsim.simulation.record.row_selection import Kept, tail_length
+from watchsim.simulation.record.row_selection import Kept, columns_of, tail_length
 from watchsim.simulation.record.saved_state import SavedState, save_state
 from watchsim.simulation.record.tally import Tally
 from watchsim.simulation.record.trajectory import EVENT_DTYPE, EventKind, Trajectory
@@ -88,7 +88,8 @@ class Run:
         self.finder = CellFinder(model)
         self.scratch = new_scratch(model)
         self.pairs = pairs_of(compiled)
-        self.kept, self.tally = Kept(recording, tail_length(frequency(scene))), Tally(scene, self.pairs)
+        self.kept = Kept(recording, tail_length(frequency(scene)), self._rows_told, lambda events: _as_told(events, compiled))
+        self.tally = Tally(scene, self.pairs)
         # A step wider, for the rows next to a window.
         windows = np.array(self.kept.windows, float).reshape(-1, 2) + self.options.max_step * np.array([-1.0, 1.0])
         self.record = new_record(model, ROWS + ROWS_PER_STEP, EVENTS + EVENTS_PER_CONTACT * room_for(model), windows)
@@ -246,32 +247,36 @@ class Run:
             if interrupted():
                 return Stop.INTERRUPTED
 
-    def _all_kept(self, parts: int | None = None) -> tuple[NDArray[np.float64], NDArray[Any]]:
-        """Rows and events of the first `parts` flushes, default all."""
-        rows, events = self.kept.closed(float(self.state.clock[0]), parts)
-        nothing = np.zeros((0, 1 + 3 * len(self.state.q)))
-        return nothing if rows is None else rows, np.zeros(0, EVENT_DTYPE) if events is None else events
+    def _rows_told(self, rows: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
+        """t, q, u, a of rows, as the scene tells them."""
+        t, q, u, a = columns_of(rows)
+        relative = self.compiled.relative
+        return t, relative(q), relative(u, rates=True), relative(a, rates=True)
+
+    def _all_kept(self) -> tuple[Sequence[NDArray[np.float64]], NDArray[Any]]:
+        """t, q, u, a and the events."""
+        nothing = columns_of(np.zeros((0, 1 + 3 * len(self.state.q))))
+        return self.kept.closed(float(self.state.clock[0])) or (nothing, np.zeros(0, EVENT_DTYPE))
 
     def trajectory(self, stop: Stop, wall: float, compile_time: float) -> Trajectory:
         """Everything kept, as a frozen value."""
-        n = len(self.state.q)
         compiled = self.compiled
-        rows, events = self._all_kept()
+        (t, q, u, a), events = self._all_kept()
         words = self._details(stop)
         saved = self.saved
         if saved is not None:
-            before = [len(part) for part in self._all_kept(self._parts_before)]
+            before = self.kept.counts(float(self.state.clock[0]), self._parts_before)
             stays = self.kept.for_good(float(self.state.clock[0]), self._parts_before)
             recorded = {**saved.recorded, "stays": stays}
             saved = dataclasses.replace(saved, rows=before[0], events=before[1], recorded=recorded)
         return Trajectory(
             scene=self.scene,
-            t=rows[:, 0],
-            q=compiled.relative(rows[:, 1 : 1 + n]),
-            u=compiled.relative(rows[:, 1 + n : 1 + 2 * n], rates=True),
-            a=compiled.relative(rows[:, 1 + 2 * n :], rates=True),
+            t=t,
+            q=q,
+            u=u,
+            a=a,
             slices=compiled.slices,
-            events=_as_told(events, compiled),
+            events=events,
             pairs=self.pairs,
             stop=stop,
             stop_message=f"t = {self.state.clock[0]:.9g} s: {stop.sentence}{words}",

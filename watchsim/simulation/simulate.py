@@ -29,6 +29,7 @@ def simulate(
     method: str = EVENT_DRIVEN,
     step: float | str | None = None,
     start: Trajectory | SavedState | None = None,
+    stream: str | Path | None = None,
 ) -> Trajectory:
     """Simulate `scene` from 0 to `duration` at a relative error `tolerance` per step (both default to the scene's own).
 
@@ -41,6 +42,8 @@ def simulate(
     method    "pfeiffer-glocker" (by events) or "moreau" (fixed steps of `step` seconds, default 10 µs): docs/theory/method.md
     start     go on from here instead of from the scene's start: a trajectory (the result then holds both parts), or its
               `end_state` (the result holds what follows). The same bits come out as from one run, whatever was cut where.
+    stream    a folder in whose file system rows and events are held where they would take more than some 50 MB of memory: in
+              files without a name, which vanish with the last array of the trajectory that looks into them
 
     KeyboardInterrupt ends the run and keeps what was simulated. A solver that cannot go on does not raise: see
     `Trajectory.stop`. ValueError for a bad argument, and for a `start` of another scene or other settings; SceneError where
@@ -63,6 +66,8 @@ def simulate(
         run: Run = MoreauRun(scene, compiled, tolerance, recording, USUAL_STEP if step is None else float(step))
     else:
         run = Run(scene, compiled, tolerance, recording)
+    if stream is not None:
+        run.kept.stream(Path(stream))
     if start is not None:
         _take_up(run, start, duration)
     ready = time.perf_counter()
@@ -74,7 +79,7 @@ def simulate(
     wall = time.perf_counter() - warm + ready - begun
     made = run.trajectory(stop, wall, compile_time=warm - ready)
     if isinstance(start, Trajectory):
-        return joined(start, made)
+        return joined(start, made, None if stream is None else Path(stream))
     return made
 
 

@@ -11,6 +11,7 @@ import contextlib
 import os
 import shutil
 import tempfile
+import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -28,7 +29,11 @@ LOCK, NEW, OLD, JOURNAL = "lock", "new", "old", "journal.json"
 ABANDONED = 86400.0  # s after which a scratch folder belongs to nobody, where the system knows no locks
 ATTEMPTS = 100
 
+PATIENCE = 5.0  # s that an exchange of folders may take before a process that is to end at once leaves it as it is
+
 _live: dict[Path, Scratch] = {}
+# Held by whoever puts one folder in the place of another, or makes a scratch folder, and for good by a process that leaves.
+guard = threading.Lock()
 
 
 class Scratch:
@@ -41,8 +46,8 @@ class Scratch:
 
     def close(self) -> None:
         """Take it away, the lock last: nobody else looks into it before."""
-        _live.pop(self.place, None)
         self.clear()
+        _live.pop(self.place, None)
         if self._lock is not None:
             self._lock.close()
 
@@ -65,17 +70,18 @@ class Scratch:
 def make(parent: Path) -> Scratch:
     """A new scratch folder in `parent`; OSError where there can be none."""
     for _ in range(ATTEMPTS):
-        place = Path(tempfile.mkdtemp(prefix=PREFIX, dir=parent))
-        try:
-            lock = _taken(place / LOCK)
-        except OSError as error:
-            shutil.rmtree(place, ignore_errors=True)
-            if isinstance(error, FileNotFoundError):
-                continue  # somebody who was clearing up took it for a leftover before it was locked
-            raise
-        scratch = Scratch(place, lock)
-        _live[place] = scratch
-        return scratch
+        with guard:
+            place = Path(tempfile.mkdtemp(prefix=PREFIX, dir=parent))
+            try:
+                lock = _taken(place / LOCK)
+            except OSError as error:
+                shutil.rmtree(place, ignore_errors=True)
+                if isinstance(error, FileNotFoundError):
+                    continue  # somebody who was clearing up took it for a leftover before it was locked
+                raise
+            scratch = Scratch(place, lock)
+            _live[place] = scratch
+            return scratch
     raise OSError(f"no scratch folder could be made in {parent}")
 
 
@@ -161,6 +167,10 @@ def _is_abandoned(place: Path) -> bool:
 @stopping.before_leaving
 def abandon() -> None:
     """Take away the scratch folders of this process, as it leaves at once; what is complete stays for the next command."""
+    if not guard.acquire(timeout=PATIENCE):
+        return
     for scratch in list(_live.values()):
-        if not scratch.recoverable:
+        for _ in range(ATTEMPTS):  # the main thread may still be writing into it
+            if scratch.recoverable or not scratch.place.exists():
+                break
             scratch.clear()

@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from watchsim.storage.disk import reason, sync_file, sync_folder, sync_name, sync_tree, write_bytes
-from watchsim.storage.scratch import Scratch, leftovers, scratch_in
+from watchsim.storage.scratch import Scratch, guard, leftovers, scratch_in
 
 Ours = Callable[[str], bool]  # of a path in the folder, with slashes: is it a file of ours, which may be replaced?
 
@@ -104,21 +104,22 @@ def _note(scratch: Scratch, place: Path) -> None:
 
 def _exchange(scratch: Scratch, place: Path, ours: Ours) -> None:
     """Put the new folder in the place of the old one, which comes back where that fails half way."""
-    if not place.exists():
-        scratch.new.rename(place)
-        return
-    place.rename(scratch.old)
-    scratch.recoverable = True  # if this process should be stopped before it is through
-    try:
-        scratch.new.rename(place)
-    except BaseException:
-        scratch.old.rename(place)
+    with guard:
+        if not place.exists():
+            scratch.new.rename(place)
+            return
+        place.rename(scratch.old)
+        scratch.recoverable = True  # if this process should be stopped before it is through
+        try:
+            scratch.new.rename(place)
+        except BaseException:
+            scratch.old.rename(place)
+            scratch.recoverable = False
+            raise
+        sync_name(place)
+        with contextlib.suppress(OSError):  # what somebody has put into the old folder since
+            _take_along(scratch.old, place, ours)
         scratch.recoverable = False
-        raise
-    sync_name(place)
-    with contextlib.suppress(OSError):  # what somebody has put into the old folder since
-        _take_along(scratch.old, place, ours)
-    scratch.recoverable = False
 
 
 def sweep(parent: Path) -> list[str]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import groupby, islice
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +17,7 @@ from numpy.typing import NDArray
 from watchsim.analysis.timeline.flows import Flows, flows
 from watchsim.analysis.timing.beats import Beats
 from watchsim.analysis.timing.body_contacts import between, contact_events
-from watchsim.analysis.timing.phases import Phase, phases
+from watchsim.analysis.timing.phases import Phase, each_phase
 from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.scene.recording import STATISTICS
 from watchsim.scene.roles import Roles, drive_direction, roles
@@ -25,6 +26,7 @@ from watchsim.simulation.methods import EVENT_DRIVEN
 from watchsim.simulation.record.trajectory import Array, Trajectory
 
 LOSSES = (EventKind.IMPACT, EventKind.JAM)
+BEATS_AT_ONCE = 2000  # some tens of megabytes
 Triple = tuple[float, float, float]
 
 
@@ -76,18 +78,21 @@ class Stage:
 
 def timeline(run: Trajectory, found: Beats | None = None, window: Sequence[float] | None = None) -> list[Stage]:
     """The phases of all beats recorded whole, or of those that begin within a window (s); empty without an escapement."""
-    told = phases(run, found)
-    if window is not None:
-        inside = {row.beat for row in told if row.name == "unlock" and window[0] <= row.start <= window[1]}
-        told = [row for row in told if row.beat in inside]
-    if not told:
-        return []
+    return list(each_stage(run, found, window))
+
+
+def each_stage(run: Trajectory, found: Beats | None = None, window: Sequence[float] | None = None) -> Iterator[Stage]:
+    """The same one after the other: the rows of a long run are read a few beats at a time."""
     parts, compiled = roles(run.scene), compile_scene(run.scene)
-    first = max(0, int(np.searchsorted(run.t, told[0].start, side="left")) - 1)
-    last = min(len(run.t), int(np.searchsorted(run.t, told[-1].end, side="right")) + 1)
-    made = flows(run, compiled, slice(first, last))
-    stones = _pallets(run, compiled, parts, [row for row in told if row.name == "unlock"])
-    return list(_stages(run, parts, compiled, made, told, stones))
+    beats_told = (list(rows) for _, rows in groupby(each_phase(run, found), key=lambda row: row.beat))
+    wanted = (rows for rows in beats_told if window is None or window[0] <= rows[0].start <= window[1])
+    while some := list(islice(wanted, BEATS_AT_ONCE)):
+        told = [row for rows in some for row in rows]
+        first = max(0, int(np.searchsorted(run.t, told[0].start, side="left")) - 1)
+        last = min(len(run.t), int(np.searchsorted(run.t, told[-1].end, side="right")) + 1)
+        made = flows(run, compiled, slice(first, last))
+        stones = _pallets(run, compiled, parts, [row for row in told if row.name == "unlock"])
+        yield from _stages(run, parts, compiled, made, told, stones)
 
 
 def _stages(

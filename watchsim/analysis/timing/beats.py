@@ -18,6 +18,7 @@ from watchsim.scene.roles import roles
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.record.half_swings import half_swings, since_two_before, unevenness
 from watchsim.simulation.record.trajectory import Array, Trajectory
+from watchsim.storage.columns import blocks
 
 DAY = 86400.0
 HEARD = 0.8  # share of the half swings that must have a tick, for the ticks to be what the beat error is measured by
@@ -89,8 +90,7 @@ def beats(run: Trajectory, body: str | None = None) -> Beats:
     name = _swinging(run, body)
     period, angular = nominal_period(run, name), run.scene.body(name).motion == "pivot"
     index = [one.name for one in run.scene.bodies].index(name)
-    own = _unbroken(run)
-    own = own[own["body"] == index]
+    own = np.concatenate([part[part["body"] == index] for (part,) in blocks(_unbroken(run))] or [run.events])
     crossings, turns = own[own["kind"] == EventKind.CROSS], own[own["kind"] == EventKind.TURN]
     complete, before, after = half_swings(crossings, turns)
     t, start, end = crossings["t"], turns["t"][before], turns["t"][after]

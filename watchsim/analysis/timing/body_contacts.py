@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,19 +10,36 @@ from numpy.typing import NDArray
 
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.record.trajectory import Pair, Trajectory
+from watchsim.storage.columns import blocks
 
 Events = NDArray[Any]
+Column = NDArray[Any]
+Bits = NDArray[np.bool_]
 
 
 def contact_events(run: Trajectory, wanted: Callable[[Pair], bool], *kinds: EventKind) -> Events:
     """The rows of the event table that concern the wanted pairs of primitives, of those kinds (all if none are named)."""
-    events = run.events
-    contacts, row = np.unique(events["contact"], return_inverse=True)
-    # Events without a contact have the number -1.
-    mask = np.array([contact >= 0 and wanted(run.pairs[contact]) for contact in contacts.tolist()], bool)[row]
+    found = [part[_concerned(run, part, wanted, kinds)] for (part,) in blocks(run.events)]
+    return np.concatenate(found) if found else run.events
+
+
+def contact_columns(run: Trajectory, wanted: Callable[[Pair], bool], names: Sequence[str], *kinds: EventKind) -> list[Column]:
+    """Only these columns of the same rows: of a long run there are millions."""
+    found = [part[list(names)][_concerned(run, part, wanted, kinds)] for (part,) in blocks(run.events)]
+    return [np.concatenate([part[name] for part in found] or [run.events[name]]) for name in names]
+
+
+def _concerned(run: Trajectory, events: Events, wanted: Callable[[Pair], bool], kinds: tuple[EventKind, ...]) -> Bits:
+    # Events without a contact have the number -1, that of the last place.
+    is_wanted = np.zeros(len(run.pairs) + 1, bool)
+    for contact in np.flatnonzero(np.bincount(events["contact"] + 1)).tolist():
+        is_wanted[contact - 1] = contact > 0 and wanted(run.pairs[contact - 1])
+    mask: Bits = is_wanted[events["contact"]]
     if kinds:
-        mask &= np.isin(events["kind"], kinds)
-    return events[mask]
+        of_kind = np.zeros(max(EventKind) + 1, bool)
+        of_kind[list(kinds)] = True
+        mask &= of_kind[events["kind"]]
+    return mask
 
 
 def involves(*names: str) -> Callable[[Pair], bool]:
@@ -35,9 +52,8 @@ def between(first: str, others: set[str]) -> Callable[[Pair], bool]:
     return lambda pair: (pair.body_a == first and pair.body_b in others) or (pair.body_b == first and pair.body_a in others)
 
 
-def held(events: Events) -> NDArray[np.int64]:
-    """How many contacts hold after each of these events."""
-    kinds = events["kind"]
+def held(kinds: Column) -> NDArray[np.int64]:
+    """How many contacts hold after each of the events of these kinds."""
     return np.cumsum((kinds == EventKind.CLOSE).astype(np.int64) - (kinds == EventKind.OPEN))
 
 

@@ -16,13 +16,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from itertools import islice, pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.analysis.timing.beats import Beats, beats
-from watchsim.analysis.timing.body_contacts import between, contact_events, held, involves
+from watchsim.analysis.timing.body_contacts import between, contact_columns, held, involves
 from watchsim.analysis.timing.escape_wheel import progress
 from watchsim.analysis.timing.rows_at_hand import is_recorded
 from watchsim.scene.roles import Roles, roles
@@ -33,6 +33,7 @@ Marks = tuple[float, float, float, float]
 
 TOUCH = (EventKind.IMPACT, EventKind.CLOSE)
 NEAR_REST = 0.1  # of the wheel's advance in the beat: a free run that ends so near to rest may be the drop
+AT_ONCE = 4000  # phases whose angles are looked up together
 STANDING = 1e-6  # of the same: the wheel has not moved
 
 
@@ -70,15 +71,21 @@ def phases(run: Trajectory, found: Beats | None = None) -> list[Phase]:
 
     A beat in which the wheel does not advance, or in which a phase cannot be told, has no rows.
     """
+    return list(each_phase(run, found))
+
+
+def each_phase(run: Trajectory, found: Beats | None = None) -> Iterator[Phase]:
+    """The same one after the other: a long run has a great many."""
     parts = roles(run.scene)
     if parts.wheel is None or parts.lever is None or parts.oscillator is None or len(run.t) == 0:
-        return []
+        return
     found = found or beats(run)
     contacts, told = _contacts(run, parts), _told(run, found)
     at_entry, at_end = (progress(run, parts.wheel, np.where(told, t, run.t[0])) for t in (found.tick, found.end))
     ways = zip(at_entry.tolist(), at_end.tolist(), strict=True)
-    rows = [phase for i, way in enumerate(ways) if told[i] for phase in _beat(found, contacts, i, way)]
-    return _with_angles(run, parts, rows)
+    rows = (phase for i, way in enumerate(ways) if told[i] for phase in _beat(found, contacts, i, way))
+    while some := list(islice(rows, AT_ONCE)):
+        yield from _with_angles(run, parts, some)
 
 
 def _told(run: Trajectory, found: Beats) -> NDArray[np.bool_]:
@@ -89,14 +96,12 @@ def _told(run: Trajectory, found: Beats) -> NDArray[np.bool_]:
 
 def _contacts(run: Trajectory, parts: Roles) -> _Contacts:
     assert parts.wheel and parts.lever
-    wheel = contact_events(run, involves(parts.wheel), *TOUCH, EventKind.OPEN)
+    times, kinds, which = contact_columns(run, involves(parts.wheel), ["t", "kind", "contact"], *TOUCH, EventKind.OPEN)
     fixed = {body.name for body in run.scene.bodies if body.motion == "fixed"}
-    banking = contact_events(run, between(parts.lever, fixed), *TOUCH)["t"]
-    times = np.ascontiguousarray(wheel["t"])
-    touching = np.isin(wheel["kind"], TOUCH)
-    faces = {contact: _face(run.pairs[contact], parts) for contact in np.unique(wheel["contact"]).tolist()}
-    on = tuple(faces[contact] for contact in wheel["contact"].tolist())
-    return _Contacts(times, progress(run, parts.wheel, times), held(wheel), touching, on, np.ascontiguousarray(banking))
+    (banking,) = contact_columns(run, between(parts.lever, fixed), ["t"], *TOUCH)
+    faces = {contact: _face(run.pairs[contact], parts) for contact in np.unique(which).tolist()}
+    on = tuple(faces[contact] for contact in which.tolist())
+    return _Contacts(times, progress(run, parts.wheel, times), held(kinds), kinds != EventKind.OPEN, on, banking)
 
 
 def _face(pair: Pair, parts: Roles) -> str:
@@ -159,8 +164,6 @@ def _release_and_lock(contacts: _Contacts, own: slice, at_entry: float, at_end: 
 
 def _with_angles(run: Trajectory, parts: Roles, rows: list[Phase]) -> list[Phase]:
     """The rows with the angles of wheel, lever and oscillator, without those that end outside what was recorded."""
-    if not rows:
-        return []
     starts, ends = np.array([row.start for row in rows]), np.array([row.end for row in rows])
     kept = is_recorded(run, starts) & is_recorded(run, ends)
     columns = [run.slices[name].start for name in (parts.wheel, parts.lever, parts.oscillator) if name]

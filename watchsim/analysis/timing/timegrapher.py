@@ -12,11 +12,13 @@ import math
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from watchsim.analysis.timing.averages import Window, averages, last_window, mean_and_error
 from watchsim.analysis.timing.beats import DAY, Beats
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.record.trajectory import Array, Trajectory
+from watchsim.storage.columns import blocks
 
 LOUD = 1.0 / 3.0  # of the energy of the beat's loudest noise; a tooth's rebounds from the stone are fainter
 LEAST = 1.5  # lift angles that the amplitude must be: instruments begin to show it at some 80°
@@ -37,7 +39,7 @@ def timegrapher(run: Trajectory, found: Beats, window: Window | None = None) -> 
         return None
     between = found.tick - np.concatenate([np.full(2, np.nan), found.tick])[: len(found)]
     period, _ = mean_and_error(between[inside & (found.tick - between >= start)])
-    heard = intervals(run, found)[inside]
+    heard = intervals(run, found, inside)
     interval, _ = mean_and_error(heard)
     lift, means = run.scene.lift_angle, averages(found, (start, end))
     true = means.amplitude_deg
@@ -79,22 +81,31 @@ def amplitude_deg(lift: float | None, interval: float | None, period: float) -> 
     return math.degrees(lift / (2.0 * math.sin(math.pi * interval / period)))
 
 
-def intervals(run: Trajectory, found: Beats) -> Array:
-    """From noise A to noise C of each beat, s; nan where one of them is missing."""
-    times, energies = noises(run)
+def intervals(run: Trajectory, found: Beats, chosen: NDArray[np.bool_] | None = None) -> Array:
+    """From noise A to noise C of each chosen beat (default all), s; nan where one of them is missing."""
+    heard = np.isfinite(found.tick) if chosen is None else chosen & np.isfinite(found.tick)
     out = np.full(len(found), np.nan)
     latest = np.minimum(found.end, found.tick + LONGEST * 0.5 * found.nominal_period)
-    for i in np.flatnonzero(np.isfinite(found.tick)):
+    if heard.any():
+        times, energies = noises(run, float(found.tick[heard].min()), float(latest[heard].max()))
+    for i in np.flatnonzero(heard):
         first, last = np.searchsorted(times, (found.tick[i], latest[i]), side="right")
         if last > first:
             loud = np.flatnonzero(energies[first:last] >= LOUD * energies[first:last].max())
             out[i] = times[first + loud[-1]] - found.tick[i]
-    return out
+    return out if chosen is None else out[chosen]
 
 
-def noises(run: Trajectory) -> tuple[Array, Array]:
-    """Instants with impacts (s) and the energy lost in all impacts of each (J)."""
-    impacts = run.events[run.events["kind"] == EventKind.IMPACT]
+def noises(run: Trajectory, start: float = -np.inf, end: float = np.inf) -> tuple[Array, Array]:
+    """Instants with impacts (s) from `start` to `end` and the energy lost in all impacts of each (J)."""
+    found = [_noisy(part, start, end) for (part,) in blocks(run.events)]
+    impacts = np.concatenate(found) if found else run.events
     times, place = np.unique(impacts["t"], return_inverse=True)
     energies: Array = np.bincount(place, weights=impacts["energy_lost"], minlength=len(times)).astype(float)
     return times, energies
+
+
+def _noisy(events: NDArray[Any], start: float, end: float) -> NDArray[Any]:
+    """The impacts among events, from `start` to `end`."""
+    times = events["t"]
+    return events[(events["kind"] == EventKind.IMPACT) & (times >= start) & (times <= end)]

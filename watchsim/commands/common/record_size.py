@@ -1,49 +1,55 @@
-"""How much would a run keep, and what if that is more than memory should hold?
+"""How much will a run record, and where is that held until it is written?
 
-Kept rows and events lie in memory until the run ends, and some three times over while it is written. A run of an hour would
-take more than a gigabyte, for curves that nobody looks at. Where nobody has said what to keep, such a run keeps its last
-seconds, and the sums over all of it, which are made in any case.
+Rows and events lie in memory while they are few. What is more goes to files without a name beside the results, so that a run of
+hours takes no more memory than one of minutes, and keeps the same.
 """
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from watchsim.commands.common.console import say
+from watchsim.storage.columns import MOST
+from watchsim.storage.destination import LEAST_ROOM
 from watchsim.storage.disk import size_text
 
 if TYPE_CHECKING:
+    from watchsim.scene.recording import Recording
     from watchsim.scene.scene import Scene
 
-MOST = 100e6  # bytes that a run keeps unless it was requested: with the program itself less than 500 MB at any time
+IN_MEMORY = 2.0 * MOST  # bytes: of rows and of events
 ROWS, EVENTS = 500, 160  # of a period of an escapement, measured: 395 and 156 (Swiss lever), 479 and 125 (bench lever)
 EVENT_BYTES = 52
+WRITTEN = 2.2  # times what is recorded: the files in which it is held, the packed ones, and the table of events
 
 
 def record_size(scene: Scene, duration: float) -> float:
-    """About how many bytes of rows and events a run of `duration` (s) makes; 0 where nothing swings."""
+    """About how many bytes of rows and events are kept of a run of `duration` (s); 0 where nothing swings."""
     from watchsim.mechanism.static_check import COORDINATES
     from watchsim.scene.oscillation import frequency, oscillators
 
     hertz = frequency(scene) or 0.0
     width = 1 + 3 * sum(COORDINATES[body.motion] for body in scene.bodies)
-    return duration * hertz * len(oscillators(scene)) * (ROWS * width * 8 + EVENTS * EVENT_BYTES)
+    rows, events = kept_times(scene.record, duration)
+    return hertz * len(oscillators(scene)) * (rows * ROWS * width * 8 + events * EVENTS * EVENT_BYTES)
 
 
-def bounded_record(scene: Scene, duration: float) -> Scene:
-    """The scene, its recording bounded where it says nothing about it and would fill the memory; says so."""
-    from watchsim.scene.recording import EVERYTHING
+def kept_times(record: Recording, duration: float) -> tuple[float, float]:
+    """For how long (s) rows are kept, but for the last seconds, and for how long events."""
+    from watchsim.scene.recording import STATISTICS
 
+    inside = sum(max(0.0, min(stop, duration) - max(start, 0.0)) for start, stop in record.row_windows)
+    return min(inside, duration) / record.stride, inside if record.keep == STATISTICS else duration
+
+
+def room_for(scene: Scene, duration: float, folder: Path) -> float:
+    """The bytes that the disk of `folder` should have; says so where they are more than memory should hold."""
     size = record_size(scene, duration)
-    if size <= MOST:
-        return scene
-    if "record" in scene.source.get("run", {}):
-        if scene.record == EVERYTHING:
-            say(f"Note: all rows of this run may take {size_text(size)} of memory, and three times that while it is written.")
-        return scene
-    say(
-        f"Note: all rows of this run would take some {size_text(size)} of memory, more than {size_text(MOST)}. Kept are its "
-        "last seconds, and sums over all of it; --record all keeps everything, --record FROM:TO a window, --record events all "
-        "events."
-    )
-    return scene.set("run.record", "statistics")
+    if size > IN_MEMORY:
+        say(
+            f"Note: rows and events of this run take some {size_text(size)}. More than {size_text(IN_MEMORY)} are not held in "
+            f"memory but in files beside {folder}, until the results are written. --record statistics keeps the last seconds "
+            'and sums over the whole run, --record "every 10" each tenth row, --record FROM:TO a window.'
+        )
+    return max(LEAST_ROOM, WRITTEN * size)

@@ -59,7 +59,7 @@ def write(run: Trajectory, goal: Goal, extras: Extras, changed: Sequence[str] = 
     if run.stop == Stop.INTERRUPTED:
         say("Interrupted: writing what was simulated; a second Ctrl-C gives it up ...")
     try:
-        numbers = _numbers(run, extras, changed)
+        numbers = _numbers(run, extras, changed, goal.folder)
         said = [*(f"Note: {note}" for note in numbers["notes"]), report_text(run, numbers)]
         beside: dict[str, Any] = {**goal.scene, **tables(run), "report.txt": "\n".join(said) + "\n"}
     except Exception:
@@ -82,12 +82,14 @@ def report_text(run: Trajectory, summary: dict[str, Any]) -> str:
     return text
 
 
-def _numbers(run: Trajectory, extras: Extras, changed: Sequence[str]) -> dict[str, Any]:
+def _numbers(run: Trajectory, extras: Extras, changed: Sequence[str], folder: Path) -> dict[str, Any]:
     from watchsim.analysis.expectations import not_judged
     from watchsim.analysis.summary import summary
     from watchsim.results.tables import plain
 
-    numbers: dict[str, Any] = plain(_with_error_bars(run) if extras.error_bars and not stopping.requested() else summary(run))
+    numbers: dict[str, Any] = plain(
+        _with_error_bars(run, folder) if extras.error_bars and not stopping.requested() else summary(run)
+    )
     if changed:
         numbers["expect"] = [not_judged(entry, changed) for entry in numbers["expect"]]
     if extras.profile:
@@ -97,14 +99,15 @@ def _numbers(run: Trajectory, extras: Extras, changed: Sequence[str]) -> dict[st
     return numbers
 
 
-def _with_error_bars(run: Trajectory) -> dict[str, Any]:
+def _with_error_bars(run: Trajectory, folder: Path) -> dict[str, Any]:
     """The summary with errors from a second, more exact run."""
     from watchsim.analysis.error_bars import more_exact, with_error_bars
     from watchsim.analysis.summary import summary
+    from watchsim.storage.write import real
 
     progress = Progress("once more, more exactly; simulated s:")
     try:
-        return with_error_bars(summary(run), summary(more_exact(run, progress)))
+        return with_error_bars(summary(run), summary(more_exact(run, progress, real(folder).parent)))
     finally:
         progress.close()
 

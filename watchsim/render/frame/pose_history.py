@@ -11,6 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from watchsim.render.thinned import taken, thinned
 from watchsim.scene.body import Body
 from watchsim.simulation.record.body_frames import frames as body_frames
 from watchsim.simulation.record.trajectory import Trajectory
@@ -112,13 +113,14 @@ def swept(run: Trajectory, body: Body, window: Window) -> Array:
 
 
 def dense(run: Trajectory, window: Window, least: int = 2000) -> tuple[Array, Array, Array, Array]:
-    """t (m,), q, u and a (m, n) over the window: every row, and points between rows wherever they are far apart.
+    """t (m,), q, u and a (m, n) over the window: every row that a picture shows, and points between rows far apart.
 
     At an impact both rows of that instant are kept, so that a jump stays a jump. Stretches that were not recorded are NaN.
     """
     start, stop = window
-    inside = np.flatnonzero((run.t > start) & (run.t < stop))
-    times = np.concatenate(([start], run.t[inside], [stop]))
+    inside = thinned(run, window)
+    at_rows = taken(run.t, inside)
+    times = np.concatenate(([start], at_rows, [stop]))
     gaps = np.diff(times)
     extra = np.maximum(np.ceil(gaps * (least / (stop - start))).astype(int) - 1, 0)
     left = np.repeat(np.arange(len(gaps)), extra)
@@ -126,10 +128,10 @@ def dense(run: Trajectory, window: Window, least: int = 2000) -> tuple[Array, Ar
     between = times[left] + gaps[left] * rank / (extra[left] + 1)
     added = np.concatenate(([start], between, [stop]))
     between_rows = (*run.sample(added), run.acceleration(added))
-    t = np.concatenate((run.t[inside], added))
+    t = np.concatenate((at_rows, added))
     order = np.argsort(t, kind="stable")
     t = t[order]
-    rows = (run.q[inside], run.u[inside], run.a[inside])
+    rows = (taken(run.q, inside), taken(run.u, inside), taken(run.a, inside))
     q, u, a = (np.concatenate(parts)[order] for parts in zip(rows, between_rows, strict=True))
     spans = recorded(run)
     if len(spans) > 1:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,13 +12,15 @@ from watchsim.scene.oscillation import frequency
 from watchsim.scene.recording import ALL, STATISTICS
 from watchsim.simulation.record.row_selection import stretch_rows, tail_length, within
 from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.storage.columns import one_behind_the_other
 
 
-def joined(first: Trajectory, rest: Trajectory) -> Trajectory:
+def joined(first: Trajectory, rest: Trajectory, folder: Path | None = None) -> Trajectory:
     """`first` up to its saved state and `rest`, which went on from there.
 
     What `first` holds beyond that state is the step its end cut short; `rest` holds the same stretch in whole steps.
-    Sums and counts run through the saved state, so those of `rest` are those of both. Times on the clock add up.
+    Sums and counts run through the saved state, so those of `rest` are those of both. Times on the clock add up. Rows and
+    events go to files in `folder` where they are many.
     """
     saved, later = first.end_state, rest.end_state
     if saved is None:
@@ -28,13 +31,16 @@ def joined(first: Trajectory, rest: Trajectory) -> Trajectory:
     if later is not None:
         recorded = {**later.recorded, "stays": np.append(stays[:cut], later.recorded.get("stays", np.ones(later.rows, bool)))}
         later = dataclasses.replace(later, rows=cut + later.rows, events=saved.events + later.events, recorded=recorded)
+    before = [array[:cut] for array in (first.t, first.q, first.u, first.a)]
+    t, q, u, a = one_behind_the_other(before, (rest.t, rest.q, rest.u, rest.a), folder)
+    (events,) = one_behind_the_other([first.events[: saved.events]], [rest.events], folder)
     whole = dataclasses.replace(
         rest,
-        t=np.concatenate([first.t[:cut], rest.t]),
-        q=np.concatenate([first.q[:cut], rest.q]),
-        u=np.concatenate([first.u[:cut], rest.u]),
-        a=np.concatenate([first.a[:cut], rest.a]),
-        events=np.concatenate([first.events[: saved.events], rest.events]),
+        t=t,
+        q=q,
+        u=u,
+        a=a,
+        events=events,
         wall=first.wall + rest.wall,
         compile=first.compile + rest.compile,
         end_state=later,

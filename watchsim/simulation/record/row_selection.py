@@ -3,11 +3,14 @@
 Those within the windows asked for, and where a recording has a tail, those of the last seconds of the run, whenever it ends.
 Of rows also the one before and the one after each of these stretches, so that the motion is known up to its very ends, however
 short it is.
+
+Parts about which nothing is open any more are put behind each other, and may go to files (see storage/columns.py).
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,9 +18,11 @@ from numpy.typing import NDArray
 
 from watchsim.scene.recording import ALL, STATISTICS, WHOLE_RUN, Recording, Window
 from watchsim.simulation.event_kinds import EVENT_DTYPE
+from watchsim.storage.columns import Columns
 
 Array = NDArray[np.float64]
 Bits = NDArray[np.bool_]
+Events = NDArray[Any]
 
 USUAL_WINDOW = 2.0  # s, over which headline numbers are averaged
 USUAL_PERIODS = 8  # where that is longer
@@ -25,16 +30,31 @@ MORE_PERIODS = 4  # what the first of these half swings needs from before
 
 
 class Kept:
-    """Rows and events flushed so far, in parts; `tail` is in seconds."""
+    """Rows and events flushed so far, in parts; `tail` is in seconds.
 
-    def __init__(self, recording: Recording, tail: float) -> None:
+    `told` makes t, q, u, a of rows, and `events_told` events as they are to be kept.
+    """
+
+    def __init__(
+        self,
+        recording: Recording,
+        tail: float,
+        told: Callable[[Array], Sequence[Array]] | None = None,
+        events_told: Callable[[Events], Events] | None = None,
+    ) -> None:
         self.recording, self.tail = recording, tail
-        self._rows: list[tuple[Array, Bits]] = []  # with those that stay for good
-        self._events: list[tuple[NDArray[Any], Bits]] = []
-        self._trimmed = 0  # parts that hold nothing of the tail any more
-        self._gone = 0  # earlier parts of which nothing stayed
+        self._told = told or columns_of
+        self._events_told = events_told or (lambda events: events)
+        self._done, self._done_events = Columns(), Columns()  # what stays of earlier parts
+        self._ends: list[tuple[int, int]] = []  # how many rows and events that are, after each of them
+        self._rows: list[tuple[Array, Bits]] = []  # of later parts, with those that stay for good
+        self._events: list[tuple[Events, Bits]] = []
         self._met = 0  # rows met within the windows
         self._last = (0, np.nan, True)  # the last row met: part, time (s), whether within a window
+
+    def stream(self, folder: Path) -> None:
+        """From now on hold rows and events in files in `folder` where they are many."""
+        self._done.folder = self._done_events.folder = folder
 
     @property
     def windows(self) -> tuple[Window, ...]:
@@ -44,14 +64,13 @@ class Kept:
     @property
     def parts(self) -> int:
         """How often something was flushed."""
-        return self._gone + len(self._rows)
+        return len(self._ends) + len(self._rows)
 
     def unfinished(self) -> dict[str, NDArray[Any]]:
         """What decides about the rows that come next: how many were met, when the last one was, and itself where it waits."""
         part, time, inside = self._last
-        rows, stays = (
-            self._rows[part - self._gone] if self.parts > part >= self._gone else (np.zeros((0, 0)), np.zeros(0, bool))
-        )
+        waiting = part - len(self._ends)
+        rows, stays = self._rows[waiting] if 0 <= waiting < len(self._rows) else (np.zeros((0, 0)), np.zeros(0, bool))
         waits = len(rows) > 0 and not stays[-1]
         return {
             "met": np.array(self._met),
@@ -73,7 +92,7 @@ class Kept:
         else:
             self._last = 0, time, True
 
-    def flush(self, rows: Array, events: NDArray[Any]) -> None:
+    def flush(self, rows: Array, events: Events) -> None:
         """Keep copies of what is wanted of the next rows and events, and forget earlier ones that were only of the tail."""
         row_stays, event_stays = self._stays(rows[:, 0]), np.ones(len(events), bool)
         if self.recording.keep == STATISTICS:
@@ -84,8 +103,8 @@ class Kept:
             rows, row_stays = rows[waits], row_stays[waits]
         self._rows.append((rows.copy(), row_stays))
         self._events.append((events.copy(), event_stays))
-        if self.recording.has_tail and len(rows):
-            self._forget(float(rows[-1, 0]) - self.tail)
+        while self._is_decided():
+            self._finish()
 
     def _stays(self, times: Array) -> Bits:
         """Rows within the windows, each so many-th, and those next to a window."""
@@ -101,58 +120,78 @@ class Kept:
             across = _across(np.append(last, times), windows)
             stays |= ~inside & (across | np.append(across[1:], False))
             if across[0] and not last_inside:
-                self._rows[part - self._gone][1][-1] = True
+                self._rows[part - len(self._ends)][1][-1] = True
             self._last = self.parts, float(times[-1]), bool(inside[-1])
         return stays
 
-    def _forget(self, before: float) -> None:
-        """Leave only what stays for good of the parts that lie before that time (s), but for the last of them."""
-        while self._trimmed + 1 < len(self._rows):
-            for rows, _ in self._rows[self._trimmed : self._trimmed + 2]:
-                if not len(rows) or rows[-1, 0] >= before:
-                    return
-            if np.max(self._events[self._trimmed][0]["t"], initial=-np.inf) >= before:
-                return
-            stayed = 0
-            for kept in (self._rows, self._events):
-                part, stays = kept[self._trimmed]
-                kept[self._trimmed] = part[stays], stays[stays]
-                stayed += int(stays.sum())
-            if stayed:
-                self._trimmed += 1
-            else:
-                del self._rows[self._trimmed], self._events[self._trimmed]
-                self._gone += 1
+    def _is_decided(self) -> bool:
+        """Whether nothing that comes can make another row or event of the earliest open part stay."""
+        if len(self._rows) < 2:
+            return False
+        if not self.recording.has_tail:
+            return len(self._ends) < self._last[0]
+        before = self._last[1] - self.tail
+        for rows, _ in self._rows[:2]:
+            if not len(rows) or rows[-1, 0] >= before:
+                return False
+        return bool(np.max(self._events[0][0]["t"], initial=-np.inf) < before)
+
+    def _finish(self) -> None:
+        """Leave only what stays for good of the earliest open part."""
+        rows, row_stays = self._rows.pop(0)
+        events, event_stays = self._events.pop(0)
+        if row_stays.any():
+            self._done.append(self._told(rows[row_stays]))
+        if event_stays.any():
+            self._done_events.append([self._events_told(events[event_stays])])
+        self._ends.append((self._done.rows, self._done_events.rows))
 
     def for_good(self, end: float, parts: int) -> Bits:
-        """Which of the rows that `closed` gives stay however long the run goes on."""
-        count = max(parts - self._gone, 0)
-        if not self._rows[:count]:
-            return np.zeros(0, bool)
-        stays = np.concatenate([bits for _, bits in self._rows])
-        return stays[self._chosen(end, count)]
+        """Which of the rows of the first `parts` flushes that `closed` gives stay however long the run goes on."""
+        done, waiting = self._parted(parts)
+        stays = _joined_bits([bits for _, bits in self._rows[:waiting]])
+        return np.append(np.ones(done[0], bool), stays[self._chosen(end)[: len(stays)]])
 
-    def closed(self, end: float, parts: int | None = None) -> tuple[Array | None, NDArray[Any] | None]:
-        """All that is kept of a run that ends at `end` (s), from the first `parts` flushes (default all); None for nothing."""
-        since = end - self.tail if self.recording.has_tail else np.inf
-        parts = None if parts is None else max(parts - self._gone, 0)
-        if not self._rows[:parts]:
-            return None, None
-        rows = np.concatenate([rows for rows, _ in self._rows])
-        events = [part[stays | (part["t"] >= since)] for part, stays in self._events[:parts]]
-        return rows[self._chosen(end, parts)], np.concatenate(events)
+    def counts(self, end: float, parts: int) -> tuple[int, int]:
+        """How many of the rows and events that `closed` gives are of the first `parts` flushes."""
+        done, waiting = self._parted(parts)
+        rows = self._chosen(end)[: sum(len(rows) for rows, _ in self._rows[:waiting])]
+        events = sum(int(bits.sum()) for bits in self._chosen_events(end)[:waiting])
+        return done[0] + int(rows.sum()), done[1] + events
 
-    def _chosen(self, end: float, parts: int | None) -> Bits:
-        """Which of all rows `closed` gives."""
-        since = end - self.tail if self.recording.has_tail else np.inf
-        times = np.concatenate([rows[:, 0] for rows, _ in self._rows])
-        stays = np.concatenate([bits for _, bits in self._rows])
+    def _parted(self, parts: int) -> tuple[tuple[int, int], int]:
+        """How many rows and events are done of the first `parts` flushes, and how many of these are open."""
+        done = min(parts, len(self._ends))
+        return (self._ends[done - 1] if done else (0, 0)), parts - done
+
+    def closed(self, end: float) -> tuple[Sequence[Array], Events] | None:
+        """All that is kept of a run that ends at `end` (s): t, q, u, a, and events; None for nothing."""
+        if not self._rows:
+            return None
+        rows = np.concatenate([rows for rows, _ in self._rows])[self._chosen(end)]
+        events = [part[bits] for (part, _), bits in zip(self._events, self._chosen_events(end), strict=True)]
+        told = self._events_told(np.concatenate(events))
+        return self._done.all([self._told(rows)]), self._done_events.all([[told]])[0]
+
+    def _chosen(self, end: float) -> Bits:
+        """Which rows of the open parts are kept of a run that ends now."""
+        since = self._since(end)
+        times = np.concatenate([np.zeros(0), *(rows[:, 0] for rows, _ in self._rows)])
+        stays = _joined_bits([bits for _, bits in self._rows])
         first = int(np.searchsorted(times, since))
         stays[first:] = True
         if 0 < first < len(times) and times[first] > since:
             stays[first - 1] = True
-        stays[sum(len(part) for part, _ in self._rows[:parts]) :] = False
         return stays
+
+    def _chosen_events(self, end: float) -> list[Bits]:
+        """The same of events, part by part."""
+        since = self._since(end)
+        return [stays | (part["t"] >= since) for part, stays in self._events]
+
+    def _since(self, end: float) -> float:
+        """The time (s) from which all is kept."""
+        return end - self.tail if self.recording.has_tail else np.inf
 
     def spans(self, end: float) -> tuple[Window, ...]:
         """The stretches of time whose rows are kept."""
@@ -160,6 +199,16 @@ class Kept:
         if self.recording.has_tail:
             ends.append((max(0.0, end - self.tail), end))
         return tuple((start, stop) for start, stop in _joined(ends) if start < stop)
+
+
+def columns_of(rows: Array) -> Sequence[Array]:
+    """t, q, u, a of rows."""
+    n = (rows.shape[1] - 1) // 3
+    return rows[:, 0], rows[:, 1 : 1 + n], rows[:, 1 + n : 1 + 2 * n], rows[:, 1 + 2 * n :]
+
+
+def _joined_bits(parts: list[Bits]) -> Bits:
+    return np.concatenate([np.zeros(0, bool), *parts])
 
 
 def stretch_rows(times: Array, spans: tuple[Window, ...]) -> Bits:

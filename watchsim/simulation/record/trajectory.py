@@ -22,9 +22,11 @@ from watchsim.simulation.record.body_frames import frames
 from watchsim.simulation.record.contact_names import Pair as Pair
 from watchsim.simulation.record.saved_state import SavedState
 from watchsim.simulation.stops import Stop
+from watchsim.storage.columns import blocks, is_mapped, let_go
 
 Array = NDArray[np.float64]
 
+AT_ONCE = 1000  # times that are looked up together where rows lie in a file: those of a stretch of it, in order
 NOISE = 0.5  # tolerances: by so much positions at rows may be off, each for itself
 
 
@@ -92,7 +94,10 @@ class Trajectory:
     @cached_property
     def _noise(self) -> Array:
         """(n,): how exact each coordinate is at its rows."""
-        return NOISE * self.tolerance * np.max(np.abs(self.q), axis=0, initial=0.0)
+        most: Array = np.zeros(self.q.shape[1])
+        for (part,) in blocks(self.q):
+            most = np.maximum(most, np.max(np.abs(part), axis=0, initial=0.0))
+        return NOISE * self.tolerance * most
 
     def at(self, t: float) -> tuple[Array, Array]:
         """q and u at time `t` (after the impact where one happens at `t`).
@@ -108,6 +113,9 @@ class Trajectory:
         """q and u, each (len(times), n), at all those times; as `at`. ValueError where no row was kept."""
         if len(self.t) == 0:
             raise ValueError("no row of this run was kept, so where its bodies were is not known")
+        if len(times) > AT_ONCE and is_mapped(self.q):
+            found = [self.sample(part) for (part,) in blocks(times, length=AT_ONCE)]
+            return np.concatenate([q for q, _ in found]), np.concatenate([u for _, u in found])
         i = np.clip(np.searchsorted(self.t, times, side="right") - 1, 0, max(len(self.t) - 2, 0))
         j = np.minimum(i + 1, len(self.t) - 1)
         h = (self.t[j] - self.t[i])[:, None]
@@ -115,7 +123,9 @@ class Trajectory:
         s = np.where(last, 1.0, np.clip((times - self.t[i])[:, None] / np.where(last, 1.0, h), 0.0, 1.0))
         h = np.where(last, 1.0, h)
         q, u = between(s, h, (self.q[i], self.u[i], self.a[i]), (self.q[j], self.u[j], self.a[j]), self._noise)
-        return np.where(last, self.q[j], q), np.where(last, self.u[j], u)
+        q, u = np.where(last, self.q[j], q), np.where(last, self.u[j], u)
+        let_go(self.q, self.u, self.a)
+        return q, u
 
     def acceleration(self, times: Array) -> Array:
         """(len(times), n): accelerations, of the cubics through u and a of two rows; as `sample`."""

@@ -61,7 +61,10 @@ def read_bodies(mapping: object, folder: Path, faults: Faults, made: Made | None
             faults.add(where, "stands where bodies stand: a body has a name and a table, such as [bodies.wheel]", shown(entry))
     mapping = {name: entry for name, entry in mapping.items() if isinstance(entry, dict)}
     users = Counter(_drawing_path(entry, folder) for entry in mapping.values())
-    read = [_read(mapping, name, folder, users, faults, made or {}) for name in mapping]
+    bores: dict[Path | None, Counter[str]] = {path: Counter() for path in users}  # drawing -> layers, by so many bodies
+    for entry in mapping.values():
+        bores[_drawing_path(entry, folder)].update(set(bored(entry)))
+    read = [_read(mapping, name, folder, users, bores, faults, made or {}) for name in mapping]
     places = {one.name: one for one in read}
     bodies = [_body(one, _position(one, places), _carrier(one.table, one.name, mapping)) for one in read]
     findings = [finding for one in read for finding in (*one.outlines.findings, *one.inertias.findings)]
@@ -82,15 +85,20 @@ def _drawing_path(entry: object, folder: Path) -> Path | None:
     return folder / name if isinstance(name, str) else None
 
 
-def _bores_elsewhere(bodies: Mapping[str, Any], name: str, folder: Path) -> frozenset[str]:
-    """The layers that other bodies of the same drawing name as bores."""
-    path = _drawing_path(bodies[name], folder)
-    others = [entry for other, entry in bodies.items() if other != name and _drawing_path(entry, folder) == path]
-    return frozenset(layer for entry in others for layer in bored(entry))
+def _bores_elsewhere(entry: Mapping[str, Any], bores: Counter[str]) -> frozenset[str]:
+    """The layers that other bodies of the same drawing name as bores; `bores` counts the bodies that name each."""
+    own = set(bored(entry))
+    return frozenset(layer for layer, bodies in bores.items() if bodies > (layer in own))
 
 
 def _read(
-    mapping: Mapping[str, Any], name: str, folder: Path, users: Counter[Path | None], faults: Faults, made: Made
+    mapping: Mapping[str, Any],
+    name: str,
+    folder: Path,
+    users: Counter[Path | None],
+    bores: Mapping[Path | None, Counter[str]],
+    faults: Faults,
+    made: Made,
 ) -> _Read:
     """What one table says and its drawing holds. Everything is read even after a fault, so that all are found at once."""
     motion = motion_of(mapping, name)
@@ -100,7 +108,7 @@ def _read(
     path = _drawing_path(mapping[name], folder)
     outlines = read_outlines(table, folder, made)
     shared = users[path] > 1
-    inertias = read_inertias(table, motion, outlines, _bores_elsewhere(mapping, name, folder) if shared else frozenset())
+    inertias = read_inertias(table, motion, outlines, _bores_elsewhere(mapping[name], bores[path]) if shared else frozenset())
     return _Read(name, table, motion, outlines, inertias, path, shared and path is not None)
 
 

@@ -1,0 +1,123 @@
+"""Where do rows go that are more than memory should hold?
+
+Into files without a name: the system takes them away when the process ends, however it ends. They are read through the page
+cache, as arrays that are mapped; what was read can be let go again, so that it does not count as memory of the process.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import mmap
+import tempfile
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import IO, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+MOST = 32e6  # bytes of columns in memory before they are written out
+NEXT = 4e6  # bytes that are written out together from then on
+BLOCK = 1 << 16  # rows that are worked on at a time, where a column need not lie in memory
+
+Arrays = Sequence[NDArray[Any]]
+
+
+class Columns:
+    """Columns that grow together, in memory; once there is a `folder`, no more than `most` bytes of them."""
+
+    def __init__(self) -> None:
+        self.folder: Path | None = None
+        self.most = MOST
+        self.rows = 0
+        self._parts: list[Arrays] = []  # in memory, behind what is in the files
+        self._held = 0
+        self._files: list[IO[bytes]] = []
+        self._filed = 0  # rows in the files
+
+    def append(self, arrays: Arrays) -> None:
+        """Put copies of the arrays, one per column and of one length, behind what is there."""
+        copies = [np.array(array, order="C") for array in arrays]
+        self._parts.append(copies)
+        self.rows += len(copies[0])
+        self._held += sum(array.nbytes for array in copies)
+        if self.folder is not None and self._held > self.most and self._written(self._parts):
+            self._filed, self._parts, self._held = self.rows, [], 0
+            self.most = min(self.most, NEXT)
+
+    def all(self, behind: Sequence[Arrays] = ()) -> list[NDArray[Any]]:
+        """Every column as one array, with what is given behind it; mapped where there are files."""
+        parts = [*self._parts, *behind]
+        count = self._filed + sum(len(part[0]) for part in parts)
+        if self._filed and self._written(parts):
+            return [_mapped(file, count, like) for file, like in zip(self._files, self._likes, strict=True)]
+        if self._filed:  # the disk is full: what is not in the files must be in memory
+            before = [_mapped(file, self._filed, like) for file, like in zip(self._files, self._likes, strict=True)]
+            parts = [before, *parts]
+        return [np.concatenate([part[k] for part in parts]) for k in range(len(parts[0]))] if parts else []
+
+    def _written(self, parts: Sequence[Arrays]) -> bool:
+        """Write the parts behind what is in the files; False where that fails: from then on all is held in memory."""
+        try:
+            if not self._files:
+                self._files = [tempfile.TemporaryFile(dir=self.folder) for _ in parts[0]]  # noqa: SIM115 - as long as this is
+                self._likes = [array[:0] for array in parts[0]]
+            for k, (file, like) in enumerate(zip(self._files, self._likes, strict=True)):
+                file.seek(self._filed * like.dtype.itemsize * math.prod(like.shape[1:]))
+                for part in parts:
+                    file.write(np.ascontiguousarray(part[k]).reshape(-1).view(np.uint8).data)
+                file.flush()
+        except OSError:
+            self.most = math.inf
+            return False
+        return True
+
+
+def one_behind_the_other(first: Arrays, second: Arrays, folder: Path | None) -> Arrays:
+    """Of each column the second behind the first; in files in `folder`, where there is one and they are long."""
+    columns = Columns()
+    columns.folder = folder
+    for arrays in (first, second):
+        for part in blocks(*arrays):
+            columns.append(part)
+    return columns.all() or first
+
+
+def _mapped(file: IO[bytes], rows: int, like: NDArray[Any]) -> NDArray[Any]:
+    """The first rows of a file as an array; `like` has its type and width."""
+    shape = (rows, *like.shape[1:])
+    length = math.prod(shape) * like.dtype.itemsize
+    if not length:
+        return np.zeros(shape, like.dtype)
+    content = mmap.mmap(file.fileno(), length, access=mmap.ACCESS_READ)
+    return np.frombuffer(content, like.dtype).reshape(shape)
+
+
+def mapping(array: NDArray[Any]) -> mmap.mmap | None:
+    """The mapping that an array looks into, however often it was sliced; None for one in memory."""
+    base: Any = array
+    while base is not None and not isinstance(base, mmap.mmap):
+        base = base.obj if isinstance(base, memoryview) else getattr(base, "base", None)
+    return base
+
+
+def is_mapped(array: NDArray[Any]) -> bool:
+    """True for an array that lies in a file."""
+    return mapping(array) is not None
+
+
+def blocks(*arrays: NDArray[Any], length: int = BLOCK) -> Iterator[tuple[NDArray[Any], ...]]:
+    """The arrays piece by piece, in step; each piece is let go when the next one is asked for."""
+    for first in range(0, len(arrays[0]), length):
+        yield tuple(array[first : first + length] for array in arrays)
+        let_go(*arrays)
+
+
+def let_go(*arrays: NDArray[Any]) -> None:
+    """Have what was read of mapped arrays count no longer as memory of this process; it is read again where it is needed."""
+    for array in arrays:
+        content = mapping(array)
+        if content is not None and hasattr(content, "madvise") and hasattr(mmap, "MADV_DONTNEED"):
+            with contextlib.suppress(OSError, ValueError):
+                content.madvise(mmap.MADV_DONTNEED)
