@@ -33,6 +33,7 @@ _HOMES = {
     "plot_kinematics": "watchsim.render.plots",
     "movie": "watchsim.render.movie",
     "frame": "watchsim.render.movie",
+    "report": "watchsim.report.report",
     "profiles_dir": "watchsim.profiles_path",
 }
 
@@ -58,6 +59,7 @@ if TYPE_CHECKING:
     from watchsim.render.movie import frame as frame
     from watchsim.render.movie import movie as movie
     from watchsim.render.plots import plot_kinematics as plot_kinematics
+    from watchsim.report.report import report as report
     from watchsim.simulation.simulate import simulate as simulate
     from watchsim.simulation.stops import Stop as Stop
     from watchsim.simulation.trajectory import EventKind as EventKind

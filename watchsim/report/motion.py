@@ -1,0 +1,131 @@
+"""Which rows of a run must a page hold, so that every outline stands where the run has it?
+
+Each body keeps rows of its own: a locked wheel needs none while the balance swings. Between rows the page interpolates as
+`Trajectory.sample` does, by quintics through q, u and a.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.mechanism.body import Body
+from watchsim.render.parts import loops_of, outline
+from watchsim.render.poses import Window
+from watchsim.render.view import COARSE, size_of
+from watchsim.report.packed import doubles, floats
+from watchsim.report.thinning import kept_rows
+from watchsim.simulation.trajectory import Array, Trajectory, between
+
+FINE, COARSEST = 2e-6, 1e-3  # of the picture's size: what outlines may be off, at first, and where there is too much to keep
+STEP = 4.0  # from one try to the next coarser one
+MOST = 360_000  # bytes of motion, before they are put into text
+SLOPE, CURVE = 1e-4, 2e-3  # of their largest values: what velocities and accelerations may be off where FINE holds
+
+
+class TooMuch(ValueError):
+    """The window holds more motion than a page can."""
+
+
+@dataclass(frozen=True)
+class Channel:
+    """Rows of one body: t (s), and for its coordinates q - base, u, a, (rows, 3n)."""
+
+    body: str
+    t: Array
+    base: Array
+    values: Array
+
+    @property
+    def bytes(self) -> int:
+        return 8 * len(self.t) + 4 * self.values.size
+
+    def packed(self) -> dict[str, object]:
+        return {"t": doubles(self.t), "base": self.base.tolist(), "rows": floats(self.values)}
+
+
+def channels(run: Trajectory, window: Window, size: float) -> tuple[list[Channel], float]:
+    """Rows of every moving body for a window, and how far outlines are off at most (m); `size` (m) is the picture's.
+
+    TooMuch where that would be more than a thousandth of the picture.
+    """
+    share = FINE
+    while share <= COARSEST:
+        found, taken = [], 0
+        for body in run.scene.bodies:
+            if body.name in run.slices:
+                found.append(_channel(run, body, window, share * size, share / FINE))
+                taken += found[-1].bytes
+        if taken <= MOST:
+            return found, share * size
+        share *= STEP
+    raise TooMuch(
+        f"{window[0]:.9g} s to {window[1]:.9g} s hold more motion than a page can ({taken / 1e6:.2g} MB of it); "
+        "choose a shorter window"
+    )
+
+
+def _channel(run: Trajectory, body: Body, window: Window, off: float, looser: float) -> Channel:
+    """The rows of one body; outlines may be off by `off` metres, velocities by `looser` times their share."""
+    first = max(int(np.searchsorted(run.t, window[0], side="right")) - 1, 0)
+    last = min(int(np.searchsorted(run.t, window[1], side="left")) + 1, len(run.t))
+    own = run.slices[body.name]
+    t, q, u, a = run.t[first:last], run.q[first:last, own], run.u[first:last, own], run.a[first:last, own]
+    middle = 0.5 * (t[:-1] + t[1:])
+    q_mid, u_mid = (values[:, own] for values in run.sample(middle))
+    weight = _weights(run, body)
+    largest = [np.maximum(np.abs(values).max(axis=0, initial=0.0), 1e-300) for values in (u, a)]
+    noise = np.zeros(q.shape[1])
+
+    def fits(i: int, j: int) -> bool:
+        h = t[j] - t[i]
+        times = np.concatenate((t[i + 1 : j], middle[i:j]))
+        s = ((times - t[i]) / h)[:, None]
+        told, rate = between(s, np.full_like(s, h), (q[i], u[i], a[i]), (q[j], u[j], a[j]), noise)
+        if np.max(np.abs(told - np.concatenate((q[i + 1 : j], q_mid[i:j]))) @ weight) > off:
+            return False
+        if np.any(np.abs(rate - np.concatenate((u[i + 1 : j], u_mid[i:j]))) > looser * SLOPE * largest[0]):
+            return False
+        pull = _acceleration(s[: j - i - 1], h, (u[i], a[i]), (u[j], a[j]))
+        return not np.any(np.abs(pull - a[i + 1 : j]) > looser * CURVE * largest[1])
+
+    jumps = np.flatnonzero(np.diff(t) <= 0.0)
+    kept = kept_rows(len(t), fits, (*jumps.tolist(), *(jumps + 1).tolist()))
+    kept = _without_repeats(kept, t, q, u, a)
+    base = q[0] if len(q) else np.zeros(q.shape[1])
+    return Channel(body.name, t[kept], base, np.hstack((q[kept] - base, u[kept], a[kept])))
+
+
+def _acceleration(s: Array, h: float, left: tuple[Array, Array], right: tuple[Array, Array]) -> Array:
+    """The slope of the cubic in u: what the page draws as force or torque."""
+    way = (right[0] - left[0]) / h
+    return left[1] + s * (6.0 * way - 4.0 * left[1] - 2.0 * right[1] + s * (3.0 * (left[1] + right[1]) - 6.0 * way))
+
+
+def _without_repeats(kept: NDArray[np.int64], t: Array, q: Array, u: Array, a: Array) -> NDArray[np.int64]:
+    """Without the rows of events at which this body did not notice anything, if those around them tell the same rest."""
+    if len(kept) < 3:
+        return kept
+    values = np.hstack((q[kept], u[kept], a[kept]))
+    same = np.all(values[1:] == values[:-1], axis=1) & np.all(u[kept][1:] == 0.0, axis=1) & np.all(a[kept][1:] == 0.0, axis=1)
+    inner = np.concatenate(([False], same[:-1] & same[1:], [False]))
+    return kept[~inner]
+
+
+def _weights(run: Trajectory, body: Body) -> Array:
+    """How far (m) an outline of the body, or of one that it carries, moves per unit of each coordinate."""
+    if body.motion == "slide":
+        return np.ones(1)
+    arm = max(_reach(run, body), 1e-12)
+    return np.array([arm]) if body.motion == "pivot" else np.array([1.0, 1.0, arm])
+
+
+def _reach(run: Trajectory, body: Body) -> float:
+    """The largest distance (m) of a point that moves with the body from its origin."""
+    loops = loops_of(body)
+    points = outline(loops, COARSE * size_of(body)) if loops else np.zeros((1, 2))
+    carried = (one for one in run.scene.bodies if one.on == body.name)
+    loads = [float(np.hypot(*one.position)) + _reach(run, one) for one in carried]
+    return max(float(np.hypot(points[:, 0], points[:, 1]).max()), *loads, 0.0)

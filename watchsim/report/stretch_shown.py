@@ -1,0 +1,26 @@
+"""Which stretch of a run does its page play?"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from watchsim.mechanism.oscillation import frequency
+from watchsim.mechanism.roles import keeps_time
+from watchsim.render.poses import Window, recorded, stretch
+from watchsim.simulation.trajectory import Trajectory
+
+BEATS = 10
+
+
+def shown(run: Trajectory, window: Sequence[float] | None) -> Window:
+    """As asked; by default the last ten beats, or all of the last unbroken stretch where nothing keeps time.
+
+    ValueError where the window is empty or was not recorded.
+    """
+    if window is not None:
+        return stretch(run, window)
+    start, end = recorded(run)[-1]
+    hertz = frequency(run.scene) if keeps_time(run.scene) else None
+    if hertz:
+        start = max(start, end - 0.5 * BEATS / hertz)
+    return stretch(run, (start, end)) if start < end else stretch(run, None)
