@@ -13,7 +13,7 @@ from watchsim.report.html import Markup, element
 from watchsim.simulation.trajectory import Array
 
 WIDTH, HEIGHT = 560.0, 230.0
-LEFT, RIGHT, TOP, BOTTOM = 62.0, 12.0, 12.0, 40.0
+LEFT, RIGHT, TOP, BOTTOM = 70.0, 12.0, 12.0, 44.0
 DOT = 2.4
 MOST = 1200  # dots of one series
 
@@ -108,7 +108,7 @@ def _labels(x_label: str, y_label: str) -> tuple[Markup, Markup]:
 
 def bars(entries: Sequence[tuple[str, float, str]], told: str) -> Markup:
     """A labelled bar for each (name, share of 1, value in words); negative shares run to the left of the zero line."""
-    row, names, room = 30.0, 168.0, WIDTH - 168.0 - 110.0
+    row, names, room = 30.0, 205.0, WIDTH - 205.0 - 150.0
     low, high = min(0.0, *(share for _, share, _ in entries)), max(1e-9, *(share for _, share, _ in entries))
     zero = names - room * low / (high - low)
     parts: list[Markup] = []

@@ -248,11 +248,12 @@ def _judgement(numbers: Mapping[str, Any]) -> Iterator[Markup]:
     warnings = [element("li", f"Warning: {text}.", class_="warning") for text in numbers.get("warnings") or ()]
     warnings += [element("li", f"Note: {text}.") for text in numbers.get("notes") or ()]
     if rows or warnings:
-        told = table(("", "promise of the scene"), rows, "Promises", numeric=False) if rows else None
+        told = table(("judged", "promise of the scene"), rows, "What the scene promises", numeric=False) if rows else None
         yield _section("judged", "Promises and notes", element("ul", *warnings) if warnings else None, told)
 
 
 def _parameters(run: Trajectory) -> Iterator[Markup]:
     rows = parameters(run.scene)
     if rows:
-        yield _section("parameters", "Parameters", table(("key", "value"), rows, "As in the scene file", numeric=False))
+        listed = (element("div", element("dt", key), element("dd", value)) for key, value in rows)
+        yield _section("parameters", "Parameters", element("dl", *listed))

@@ -20,11 +20,10 @@ class Curves {
         { title: "Angle", unit: "°", lines: [line("", 0, 0, DEGREES, "line")] },
         { title: "Velocity", unit: "°/s", lines: [line("", 0, 1, DEGREES, "line")] },
       ];
-      const lines = [], push = this.torque(b);
-      if (mass) lines.push(line("net", 0, 2, mass, "line"));
-      if (push) lines.push({ name: "from contacts", colour: "accent", area: true, value: push.value, points: push.points });
-      if (lines.length) plots.push({ title: "Torque", unit: "N·m", metric: true, lines });
-      else plots.push({ title: "Acceleration", unit: "rad/s²", lines: [line("", 0, 2, 1, "line")] });
+      const push = this.torque(b);
+      if (push) plots.push({ title: "Torque from contacts", unit: "N·m", metric: true, lines: [{ name: "", colour: "accent", area: true, value: push.value, points: push.points }] });
+      if (mass) plots.push({ title: "Net torque", unit: "N·m", metric: true, lines: [line("", 0, 2, mass, "line")] });
+      if (!push && !mass) plots.push({ title: "Acceleration", unit: "rad/s²", lines: [line("", 0, 2, 1, "line")] });
       return plots;
     }
     if (body.motion === "slide") return [

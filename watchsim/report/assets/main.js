@@ -59,13 +59,14 @@ let toldAt = "", announced = "";
 const words = () => {
   $("time").textContent = timeText(player.t);
   const rate = clock.rate(player.t);
-  $("pace").textContent = player.playing || player.adaptive ? speedText(rate) : speedText(SPEEDS[player.speedIndex]);
+  const pace = speedText(rate);
+  $("pace").textContent = pace.startsWith("1/") ? `${pace} of true speed` : pace;
   const phase = player.phase(), line = `${phase}|${player.note}`;
   if (line !== toldAt) {
     toldAt = line;
-    const strong = document.createElement("b");
-    strong.textContent = phase;
-    $("said").replaceChildren(strong, ...(player.note && player.note !== phase ? [document.createElement("br"), player.note] : []));
+    const strong = document.createElement("b"), note = document.createElement("span");
+    strong.textContent = phase; note.textContent = player.note;
+    $("said").replaceChildren(...(phase ? [strong, document.createElement("br")] : []), ...(player.note && player.note !== phase ? [note] : []));
   }
   if (!player.playing) {
     const told = [timeText(player.t), phase, player.note === phase ? "" : player.note].filter(Boolean).join(", ");
@@ -240,10 +241,16 @@ const toPaper = () => {
     const b = 3 * data.parts[Number(group.dataset.part)].body, c = Math.cos(poses[b + 2]), s = Math.sin(poses[b + 2]);
     group.setAttribute("transform", `matrix(${c} ${s} ${-s} ${c} ${1e3 * poses[b]} ${1e3 * poses[b + 1]})`);
   }
+  root.classList.add("paper"); // the plots take the size that they have there
   plots.draw(player.t, look);
 };
+const toScreen = () => {
+  root.classList.remove("paper");
+  if (themeBefore) setTheme(themeBefore);
+  themeBefore = null;
+};
 window.addEventListener("beforeprint", toPaper);
-window.addEventListener("afterprint", () => { if (themeBefore) setTheme(themeBefore); themeBefore = null; });
+window.addEventListener("afterprint", toScreen);
 
 const preferred = window.matchMedia("(prefers-color-scheme: dark)");
 preferred.addEventListener("change", () => { if (!themeBefore) setTheme(preferred.matches ? "dark" : "light"); });

@@ -149,7 +149,7 @@ class Plots {
       if (line.area) { ctx.lineTo(panel.x(to), panel.y(0)); ctx.lineTo(panel.x(from), panel.y(0)); ctx.closePath(); ctx.globalAlpha = 0.25; ctx.fillStyle = look[line.colour]; ctx.fill(); ctx.globalAlpha = 1; }
     });
     ctx.restore();
-    panel.digits = clamp(2 - Math.floor(Math.log10(high - low)), 0, 6);
+    panel.digits = clamp(3 - Math.floor(Math.log10(high - low)), 0, 6);
     panel.fresh = true;
   }
 
@@ -157,7 +157,7 @@ class Plots {
     const size = Math.max(Math.abs(low), Math.abs(high)), [factor, prefix] = panel.metric ? PREFIXES.find(([least]) => size >= least) ?? [1e-12, "p"] : [1, ""];
     ctx.font = `11.5px ${look.font}`; ctx.fillStyle = look.faint; ctx.strokeStyle = look.grid; ctx.lineWidth = 1;
     ctx.textAlign = "right"; ctx.textBaseline = "middle";
-    const step = roundStep((high - low) / factor / Math.max(2, Math.floor(height / 42)));
+    const step = roundStep((high - low) / factor / Math.max(3, Math.floor(height / 30)));
     for (let k = Math.ceil(low / factor / step); k * step <= high / factor; k++) {
       const y = Math.round(panel.y(k * step * factor)) + 0.5;
       ctx.beginPath(); ctx.moveTo(PAD.left, y); ctx.lineTo(width - PAD.right, y); ctx.stroke();
