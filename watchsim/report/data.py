@@ -25,9 +25,8 @@ WIDE, HIGH = 1280.0, 720.0  # of the picture by which up and the part to follow 
 
 
 def picture_size(run: Trajectory, window: Window) -> float:
-    """The larger side (m) of the room that all is seen in."""
-    points, _, _ = room_of(run, window, None)
-    return float(np.ptp(points, axis=0).max())
+    """The width (m) of what is in sight."""
+    return WIDE / view(run, window, Frame(0.0, 0.0, WIDE, HIGH), None, None).scale
 
 
 def player_data(

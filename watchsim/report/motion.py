@@ -19,7 +19,8 @@ from watchsim.report.packed import doubles, floats
 from watchsim.report.thinning import kept_rows
 from watchsim.simulation.trajectory import Array, Trajectory, between
 
-FINE, COARSEST = 2e-6, 1e-3  # of the picture's size: what outlines may be off, at first, and where there is too much to keep
+FINE, COARSEST = 5e-7, 1e-3  # of the picture's size: what outlines may be off, at first, and where there is too much to keep
+LEAST_ARM = 0.25  # of the picture's size
 STEP = 4.0  # from one try to the next coarser one
 MOST = 360_000  # bytes of motion, before they are put into text
 SLOPE, CURVE = 1e-4, 2e-3  # of their largest values: what velocities and accelerations may be off where FINE holds
@@ -56,7 +57,7 @@ def channels(run: Trajectory, window: Window, size: float) -> tuple[list[Channel
         found, taken = [], 0
         for body in run.scene.bodies:
             if body.name in run.slices:
-                found.append(_channel(run, body, window, share * size, share / FINE))
+                found.append(_channel(run, body, window, share * size, share / FINE, LEAST_ARM * size))
                 taken += found[-1].bytes
         if taken <= MOST:
             return found, share * size
@@ -67,15 +68,18 @@ def channels(run: Trajectory, window: Window, size: float) -> tuple[list[Channel
     )
 
 
-def _channel(run: Trajectory, body: Body, window: Window, off: float, looser: float) -> Channel:
-    """The rows of one body; outlines may be off by `off` metres, velocities by `looser` times their share."""
+def _channel(run: Trajectory, body: Body, window: Window, off: float, looser: float, least: float) -> Channel:
+    """The rows of one body; outlines may be off by `off` metres, velocities by `looser` times their share.
+
+    Angles are kept as if every body reached at least `least` metres: they are read as numbers, too.
+    """
     first = max(int(np.searchsorted(run.t, window[0], side="right")) - 1, 0)
     last = min(int(np.searchsorted(run.t, window[1], side="left")) + 1, len(run.t))
     own = run.slices[body.name]
     t, q, u, a = run.t[first:last], run.q[first:last, own], run.u[first:last, own], run.a[first:last, own]
     middle = 0.5 * (t[:-1] + t[1:])
     q_mid, u_mid = (values[:, own] for values in run.sample(middle))
-    weight = _weights(run, body)
+    weight = _weights(run, body, least)
     largest = [np.maximum(np.abs(values).max(axis=0, initial=0.0), 1e-300) for values in (u, a)]
     noise = np.zeros(q.shape[1])
 
@@ -114,11 +118,11 @@ def _without_repeats(kept: NDArray[np.int64], t: Array, q: Array, u: Array, a: A
     return kept[~inner]
 
 
-def _weights(run: Trajectory, body: Body) -> Array:
+def _weights(run: Trajectory, body: Body, least: float) -> Array:
     """How far (m) an outline of the body, or of one that it carries, moves per unit of each coordinate."""
     if body.motion == "slide":
         return np.ones(1)
-    arm = max(_reach(run, body), 1e-12)
+    arm = max(_reach(run, body), least)
     return np.array([arm]) if body.motion == "pivot" else np.array([1.0, 1.0, arm])
 
 

@@ -14,17 +14,19 @@ import numpy as np
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc
 from watchsim.mechanism.scene import Scene
-from watchsim.render.parts import Part, parts
+from watchsim.render.parts import Part, loops_of, parts
 from watchsim.report.packed import floats, small
 
 MOVE, LINE, ARC, CLOSE = range(4)
 ROUGH = 1e-3  # of the picture: chords where only the order and the nesting of parts matter
-HATCH = 0.012  # of the picture: distance of hatch strokes
+HATCH = 0.01  # of the picture: distance of hatch strokes
+MOST_STROKES = 4000  # along the longest open outline
 
 
 def drawn_parts(scene: Scene, size: float) -> tuple[Part, ...]:
     """All parts of a scene, largest first; `size` (m) is that of the picture."""
-    return parts(scene, ROUGH * size, HATCH * size)
+    longest = max((loop.length for body in scene.bodies for loop in loops_of(body) if not loop.closed), default=0.0)
+    return parts(scene, ROUGH * size, max(HATCH * size, longest / MOST_STROKES))
 
 
 def packed_part(part: Part, bodies: Sequence[str]) -> dict[str, object]:

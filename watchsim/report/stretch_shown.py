@@ -10,6 +10,7 @@ from watchsim.render.poses import Window, recorded, stretch
 from watchsim.simulation.trajectory import Trajectory
 
 BEATS = 10
+WHOLE = 0.95  # of what was recorded: nearly all of it is shown as all of it
 
 
 def shown(run: Trajectory, window: Sequence[float] | None) -> Window:
@@ -21,6 +22,7 @@ def shown(run: Trajectory, window: Sequence[float] | None) -> Window:
         return stretch(run, window)
     start, end = recorded(run)[-1]
     hertz = frequency(run.scene) if keeps_time(run.scene) else None
-    if hertz:
-        start = max(start, end - 0.5 * BEATS / hertz)
+    beats = 0.5 * BEATS / hertz if hertz else 0.0
+    if 0.0 < beats < WHOLE * (end - start):
+        start = end - beats
     return stretch(run, (start, end)) if start < end else stretch(run, None)

@@ -43,7 +43,7 @@ class Contact {
   }
 }
 
-const LONG_ARROW = 0.22, USUAL = 0.97;
+const LONG_ARROW = 0.22, USUAL = 0.97, NO_FORCE = 1e-13; // N; less is rounding
 
 class Contacts {
   constructor(data) {
@@ -52,7 +52,7 @@ class Contacts {
     const sizes = this.all.flatMap((one) => (one.force ? Array.from({ length: one.t.length }, (_, i) => Math.hypot(one.force[2 * i], one.force[2 * i + 1])) : []));
     sizes.sort((x, y) => x - y);
     this.usual = sizes.length ? sizes[Math.floor(USUAL * (sizes.length - 1))] || sizes[sizes.length - 1] : 0;
-    this.known = this.usual > 0;
+    this.known = this.usual > NO_FORCE;
   }
 
   // On which of its two bodies a force is drawn: the one chosen, else the one nearer to the balance.

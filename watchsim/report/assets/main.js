@@ -9,7 +9,7 @@ const player = new Player(data, { motion, view, scenery, contacts, clock, sound 
 const curves = new Curves(data, motion, contacts, view);
 const plots = new Plots($("plots"), data, curves, (t) => { player.toggle(false); player.seek(t); });
 const stage = $("stage"), ctx = stage.getContext("2d");
-let look = {}, dirty = true, fps = 0;
+let look = {}, dirty = true, fps = 0, drawn = 0; // frames a second, and ms that the last one took to draw
 player.changed = () => { dirty = true; };
 
 // Colours come from the style sheet, so that page and pictures change together.
@@ -124,9 +124,11 @@ const frame = (now) => {
   if (player.tick(seconds)) { plots.hold(player.t); dirty = true; }
   if (dirty || plots.dirty) {
     dirty = plots.dirty = false;
+    const begun = performance.now();
     player.draw(ctx, look);
     words();
     plots.draw(player.t, look);
+    drawn = performance.now() - begun;
     const key = `${plots.range}|${look.dark}|${$("track").clientWidth}|${window.devicePixelRatio}`;
     if (key !== trackKey) { trackKey = key; drawTrack(); }
   }
@@ -257,6 +259,17 @@ preferred.addEventListener("change", () => { if (!themeBefore) setTheme(preferre
 setTheme(preferred.matches ? "dark" : "light");
 const first = data.ranks.find((b) => motion.rows[b]) ?? curves.movers[0];
 if (first === undefined) document.querySelector(".plots").hidden = true; else showPlots(first);
+// For scripts that drive a page: seek to an instant, set the view, ask where a point of a body is seen (CSS pixels).
+window.watchsim = {
+  window: data.window,
+  seek: (t) => { player.toggle(false); player.seek(t); player.draw(ctx, look); },
+  mark: (points, forces) => { player.points = points; player.arrows = forces; dirty = true; },
+  look: (centre, scale, turn) => { view.turn = turn; view.zoom = scale / view.base; view.anchor = null; view.shift = [0, 0]; view.aim(motion.poses(player.t)); view.shift = [centre[0] - view.centre[0], centre[1] - view.centre[1]]; dirty = true; },
+  seen: (name, points) => { const poses = motion.poses(player.t), b = data.bodies.findIndex((body) => body.name === name); view.aim(poses); return points.map(([x, y]) => view.screen(...view.point(poses, b, x, y))); },
+  closed: (t) => { const poses = motion.poses(t); return contacts.all.filter((one) => one.holds(t)).map((one) => ({ name: one.name, force: one.press(t), place: one.touch(view, poses).slice(0, 2) })); },
+  value: (plot, t) => curves.of(plots.body)[plot].lines[0].value(t),
+  pace: () => ({ fps, drawn }),
+};
 new ResizeObserver(resize).observe($("picture"));
 window.addEventListener("resize", resize);
 resize();

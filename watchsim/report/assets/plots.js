@@ -109,7 +109,7 @@ class Plots {
           ctx.beginPath(); ctx.arc(x, y, 3.4, 0, 2 * Math.PI); ctx.fillStyle = look[line.colour]; ctx.fill(); ctx.strokeStyle = look.paper; ctx.lineWidth = 1.2; ctx.stroke();
         }
         const span = document.createElement("span");
-        span.textContent = `${line.name ? `${line.name} ` : ""}${panel.metric ? metric(value, panel.unit) : `${minus(value.toFixed(panel.digits))} ${panel.unit}`.replace(" °", "°")}`;
+        span.textContent = `${line.name ? `${line.name} ` : ""}${panel.metric ? metric(Math.abs(value) < 1e-6 * panel.size ? 0 : value, panel.unit) : `${minus(value.toFixed(panel.digits))} ${panel.unit}`.replace(" °", "°")}`;
         span.style.color = panel.lines.length > 1 ? look[line.colour] : "";
         return span;
       });
@@ -150,6 +150,7 @@ class Plots {
     });
     ctx.restore();
     panel.digits = clamp(3 - Math.floor(Math.log10(high - low)), 0, 6);
+    panel.size = high - low;
     panel.fresh = true;
   }
 
