@@ -32,7 +32,7 @@ def opened(path: Path, width: int = 1280, height: int = 900, scheme: str = "ligh
         page.on("pageerror", lambda error: said.append(str(error)))
         page.on("request", lambda request: asked.append(request.url))
         page.goto(path.absolute().as_uri())
-        page.wait_for_function("window.watchsim !== undefined")
+        assert page.evaluate("window.watchsim !== undefined"), said
         page.said, page.asked = said, asked
         try:
             yield page

@@ -57,7 +57,9 @@ def strays(one: Any, other: Any, colour: str) -> int:
 
 
 def enlarged(page: Any) -> None:
-    page.add_style_tag(content=f"#picture {{ position: fixed; inset: 0; width: {SIZE[0]}px; height: {SIZE[1]}px; border: 0; z-index: 9 }}")
+    page.add_style_tag(
+        content=f"#picture {{ position: fixed; inset: 0; width: {SIZE[0]}px; height: {SIZE[1]}px; border: 0; z-index: 9 }}"
+    )
     page.wait_for_timeout(200)
 
 
@@ -71,7 +73,8 @@ def seconds_of_loading(page: Any) -> float:
 
     before = spent()
     page.reload()
-    page.wait_for_function("window.watchsim !== undefined && document.getElementById('time').textContent !== ''")
+    while not page.text_content("#time"):  # the first frame has been drawn
+        page.wait_for_timeout(10)
     after = spent()
     return after - before if after >= before else after
 
@@ -154,14 +157,20 @@ def test_values_and_forces_are_those_of_the_run(run: Trajectory, written: Path) 
     own = run.slices["balance"].start
     told = forces(run, times)
     with opened(written) as page:
-        angle, velocity, moment = (np.array(page.evaluate("([k, ts]) => ts.map((t) => watchsim.value(k, t))", [k, times.tolist()])) for k in range(3))
+        angle, velocity, moment = (
+            np.array(page.evaluate("([k, ts]) => ts.map((t) => watchsim.value(k, t))", [k, times.tolist()])) for k in range(3)
+        )
         closed = page.evaluate("ts => ts.map((t) => watchsim.closed(t))", times.tolist())
     assert np.abs(angle - np.degrees(q[:, own])).max() < 3e-4
     assert np.abs(velocity - np.degrees(u[:, own])).max() < 2e-4 * np.degrees(np.abs(u[:, own]).max())
     pivot = np.array(run.scene.body("balance").position)
     expected = np.zeros(len(times))
     for i in range(len(times)):
-        held = {run.pairs[int(k)]: (told.normal[i, j], told.point[i, j], told.direction[i, j], told.tangential[i, j]) for j, k in enumerate(told.pairs) if np.isfinite(told.point[i, j, 0])}
+        held = {
+            run.pairs[int(k)]: (told.normal[i, j], told.point[i, j], told.direction[i, j], told.tangential[i, j])
+            for j, k in enumerate(told.pairs)
+            if np.isfinite(told.point[i, j, 0])
+        }
         assert len(closed[i]) == len(held), times[i]
         sizes = sorted(one["force"][0] for one in closed[i])
         assert np.allclose(sizes, sorted(float(value[0]) for value in held.values()), atol=0.004 * told.normal.max())
@@ -221,11 +230,15 @@ def test_a_click_follows_a_part(run: Trajectory, written: Path) -> None:
 
 
 def test_an_audit_of_accessibility_passes(written: Path) -> None:
-    audit = pytest.importorskip("axe_playwright_python.sync_playwright", reason="axe is not installed: pip install 'watchsim[browser]'")
+    audit = pytest.importorskip(
+        "axe_playwright_python.sync_playwright", reason="axe is not installed: pip install 'watchsim[browser]'"
+    )
     for width, scheme in ((1280, "light"), (1280, "dark"), (360, "light")):
         with opened(written, width, 800, scheme) as page:
             found = audit.Axe().run(page).response["violations"]
-            assert not found, json.dumps([(one["id"], [node["html"][:120] for node in one["nodes"]]) for one in found], indent=1)
+            assert not found, json.dumps(
+                [(one["id"], [node["html"][:120] for node in one["nodes"]]) for one in found], indent=1
+            )
 
 
 def test_focus_goes_through_the_page_in_its_order(written: Path) -> None:
@@ -233,7 +246,9 @@ def test_focus_goes_through_the_page_in_its_order(written: Path) -> None:
         seen = []
         for _ in range(60):
             page.keyboard.press("Tab")
-            place = page.evaluate("(() => { const e = document.activeElement, b = e.getBoundingClientRect(); return [e.id || e.className || e.textContent, b.width] })()")
+            place = page.evaluate(
+                "(() => { const e = document.activeElement, b = e.getBoundingClientRect(); return [e.id || e.className || e.textContent, b.width] })()"
+            )
             seen.append(place[0])
         wanted = ("theme", "print", "stage", "back", "play", "next", "speed", "adapt", "scrub", "whose")
         places = [seen.index(name) for name in wanted]

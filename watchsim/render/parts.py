@@ -110,9 +110,7 @@ def _inner_point(line: Array) -> Point:
     return (0.5 * float(crossed[0] + crossed[1]), float(y))
 
 
-def _solids(
-    body: Body, look: Finish, outer: list[tuple[Loop, Array]], owners: list[list[tuple[Loop, Array]]]
-) -> list[Part]:
+def _solids(body: Body, look: Finish, outer: list[tuple[Loop, Array]], owners: list[list[tuple[Loop, Array]]]) -> list[Part]:
     layers = dict.fromkeys(loop.layer for loop, _ in outer)
     made = []
     for layer in layers:

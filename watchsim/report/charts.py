@@ -117,7 +117,9 @@ def bars(entries: Sequence[tuple[str, float, str]], told: str) -> Markup:
         left = zero if share >= 0.0 else zero - width
         parts += (
             element("text", name, x=names - 8, y=y + 0.5 * row, dy="0.34em", text_anchor="end"),
-            element("rect", x=f"{left:.2f}", y=y + 5, width=f"{max(width, 0.8):.2f}", height=row - 10, rx=2, class_=f"s{k % 8}"),
+            element(
+                "rect", x=f"{left:.2f}", y=y + 5, width=f"{max(width, 0.8):.2f}", height=row - 10, rx=2, class_=f"s{k % 8}"
+            ),
             element("text", value, x=f"{zero + (width if share >= 0 else 0) + 7:.2f}", y=y + 0.5 * row, dy="0.34em"),
         )
     picture = element("svg", *parts, viewBox=f"0 0 {WIDTH:g} {row * len(entries):g}", role="img", aria_label=told)

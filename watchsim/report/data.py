@@ -54,8 +54,6 @@ def player_data(
     }
 
 
-
-
 def _body(scene: Scene, body: Body, look: Finish, rows: dict[str, object] | None) -> dict[str, Any]:
     carries = any(other.on == body.name for other in scene.bodies)
     told: dict[str, Any] = {

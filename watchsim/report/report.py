@@ -1,6 +1,6 @@
 """How does a run become a page that can be sent?
 
-    report(run, "watch.html")
+report(run, "watch.html")
 """
 
 from __future__ import annotations

@@ -95,14 +95,20 @@ def _computed(numbers: Mapping[str, Any]) -> str:
 
 
 def _cards(numbers: Mapping[str, Any]) -> Iterator[Markup]:
-    for name, label, unit in (("amplitude_deg", "Amplitude", "°"), ("rate_s_per_d", "Rate", " s/d"), ("beat_error_ms", "Beat error", " ms")):
+    for name, label, unit in (
+        ("amplitude_deg", "Amplitude", "°"),
+        ("rate_s_per_d", "Rate", " s/d"),
+        ("beat_error_ms", "Beat error", " ms"),
+    ):
         if numbers.get(name) is not None:
             yield _card(label, *_with_error(float(numbers[name]), numbers.get(f"{name}_error"), unit))
     if numbers.get("vph") is not None:
         yield _card("Frequency", f"{numbers['vph']:.2f} vph", f"{numbers['frequency_hz']:.6f} Hz")
     heard = numbers.get("timegrapher")
     if heard and heard.get("amplitude_deg") is not None:
-        yield _card("Timegrapher shows", f"{heard['amplitude_deg']:.0f}°", f"with a lift angle of {heard['lift_angle_deg']:.4g}°")
+        yield _card(
+            "Timegrapher shows", f"{heard['amplitude_deg']:.0f}°", f"with a lift angle of {heard['lift_angle_deg']:.4g}°"
+        )
     if numbers.get("missed_beats") is not None:
         yield _card("Missed beats", str(numbers["missed_beats"]), f"in {numbers['beats']} beats")
     if numbers.get("efficiency") is not None:
@@ -133,7 +139,10 @@ def _charts(run: Trajectory, found: Beats) -> Iterator[Markup]:
         "div",
         element("h3", "Paper tape"),
         scatter(
-            [Dots(name, found.mark[own], 1e3 * tape[own], f"d{k}") for k, (name, own) in enumerate(zip(SIDES, sides, strict=True))],
+            [
+                Dots(name, found.mark[own], 1e3 * tape[own], f"d{k}")
+                for k, (name, own) in enumerate(zip(SIDES, sides, strict=True))
+            ],
             "time (s)",
             "gained (ms)",
             f"Paper tape: time gained against {1.0 / found.nominal_period:.6g} Hz, beat by beat, "
@@ -177,7 +186,11 @@ def _phases(phases: list[Phase]) -> Iterator[Markup]:
         rows = [_phase_row(name, [phase for phase in own if phase.name == name]) for name in ORDER]
         rows = [row for row in rows if row]
         if rows:
-            lengths = [(name, 1e3 * float(np.mean([p.end - p.start for p in own if p.name == name]))) for name in ORDER if any(p.name == name for p in own)]
+            lengths = [
+                (name, 1e3 * float(np.mean([p.end - p.start for p in own if p.name == name])))
+                for name in ORDER
+                if any(p.name == name for p in own)
+            ]
             told = f"Phases of {title}: " + ", ".join(f"{name} {length:.3g} ms" for name, length in lengths)
             head = ("phase", "lasts (ms)", "balance at (°)", "balance turns (°)", "lever turns (°)", "wheel turns (°)")
             parts += [strip(lengths, "ms", told), table(head, rows, f"{title.capitalize()}: means of {_count(own)} beats")]
@@ -202,7 +215,9 @@ def _mean(values: Array) -> str:
     spread = float(np.std(values))
     decimals = min(decimals_for(spread), 4) if spread > 0.0 else 4
     decimals = max(decimals, 2)
-    return f"{signed(float(np.mean(values)), decimals)}" + (f" ± {spread:.{decimals}f}" if spread >= 0.5 * 10.0**-decimals else "")
+    return f"{signed(float(np.mean(values)), decimals)}" + (
+        f" ± {spread:.{decimals}f}" if spread >= 0.5 * 10.0**-decimals else ""
+    )
 
 
 def _energy(run: Trajectory) -> Iterator[Markup]:
@@ -242,7 +257,10 @@ def _flat(path: str, value: Any) -> Iterator[tuple[str, str]]:
 def _judgement(numbers: Mapping[str, Any]) -> Iterator[Markup]:
     entries = numbers.get("expect") or []
     rows = [
-        (element("span", {True: "✓ kept", False: "✗ missed", None: "not judged"}[entry["ok"]], class_=f"ok-{entry['ok']}"), expected_text(entry))
+        (
+            element("span", {True: "✓ kept", False: "✗ missed", None: "not judged"}[entry["ok"]], class_=f"ok-{entry['ok']}"),
+            expected_text(entry),
+        )
         for entry in entries
     ]
     warnings = [element("li", f"Warning: {text}.", class_="warning") for text in numbers.get("warnings") or ()]
