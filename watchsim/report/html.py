@@ -62,3 +62,8 @@ def table(head: Iterable[Content], rows: Iterable[Iterable[Content]], caption: s
     parts = (element("caption", caption), element("thead", header), element("tbody", *body))
     # What is wider than a telephone is scrolled in its own frame, by keyboard too.
     return element("div", element("table", *parts, class_=kind), class_="scroll", tabindex=0, role="region", aria_label=caption)
+
+
+def section(name: str, title: str, *content: Content) -> Markup:
+    """A part of the page under a heading."""
+    return element("section", element("h2", title, id=f"h-{name}"), *content, aria_labelledby=f"h-{name}", class_=name)

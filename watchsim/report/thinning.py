@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +16,7 @@ def kept_rows(count: int, fits: Callable[[int, int], bool], ends: Iterable[int] 
     """
     forced = sorted({0, count - 1, *ends}) if count else []
     kept = set(forced)
-    open_parts = [(i, j) for i, j in zip(forced, forced[1:], strict=False) if j > i + 1]
+    open_parts = [(i, j) for i, j in pairwise(forced) if j > i + 1]
     while open_parts:
         i, j = open_parts.pop()
         if fits(i, j):
