@@ -1,4 +1,4 @@
-"""Which browser opens pages in tests? Debian's Chromium, driven by playwright; without them such tests are skipped, and say so."""
+"""Which browser opens pages in tests? Debian's Chromium, driven by playwright; without them such tests are skipped."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ from watchsim.report.outlines import path_data
 from watchsim.report.page import SCRIPTS
 from watchsim.report.report import page_text, report
 from watchsim.report.stretch_shown import shown
-from watchsim.report.thinning import kept_rows
+from watchsim.render.thinning import kept_rows
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.trajectory import Trajectory
 

@@ -12,7 +12,7 @@ from watchsim.analysis.forces import Forces, forces
 from watchsim.render.contacts import ContactMarks, Side
 from watchsim.render.poses import Window
 from watchsim.report.packed import doubles, floats
-from watchsim.report.thinning import kept_rows
+from watchsim.render.thinning import kept_rows
 from watchsim.simulation.trajectory import Array, Trajectory
 
 EVENLY = 600  # instants besides those of rows and events at which forces are asked for
