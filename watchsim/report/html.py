@@ -10,7 +10,7 @@ import json
 from collections.abc import Iterable
 from typing import Any
 
-VOID = frozenset(("input", "meta", "path", "rect", "line", "circle", "polyline"))
+VOID = frozenset(("img", "input", "meta", "path", "rect", "line", "circle", "polyline"))
 
 
 class Markup(str):

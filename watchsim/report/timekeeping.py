@@ -51,7 +51,7 @@ def _cards(numbers: Mapping[str, Any]) -> Iterator[Markup]:
     """What a watchmaker reads first."""
     for name, label, unit in AVERAGED:
         if numbers.get(name) is not None:
-            yield _card(label, *_with_error(float(numbers[name]), numbers.get(f"{name}_error"), unit))
+            yield _card(label, *with_error(float(numbers[name]), numbers.get(f"{name}_error"), unit))
     if numbers.get("vph") is not None:
         yield _card("Frequency", f"{numbers['vph']:.2f} vph", f"{numbers['frequency_hz']:.6f} Hz")
     heard = numbers.get("timegrapher")
@@ -64,7 +64,7 @@ def _cards(numbers: Mapping[str, Any]) -> Iterator[Markup]:
         yield _card("Efficiency", f"{100.0 * numbers['efficiency']:.1f} %", "of the drive's work reaches the oscillator")
 
 
-def _with_error(value: float, error: float | None, unit: str) -> tuple[str, str | None]:
+def with_error(value: float, error: float | None, unit: str) -> tuple[str, str | None]:
     """The value with as many digits as its scatter leaves it, at least two."""
     if error is None:
         return f"{signed(value, 3)}{unit}", None
@@ -85,18 +85,18 @@ def _charts(run: Trajectory, found: Beats) -> Iterator[Markup]:
     tape = 1e3 * _tape(found)
     least, most = (float(bound(tape)) for bound in (np.nanmin, np.nanmax))
     told = f"Time gained against {1.0 / found.nominal_period:.6g} Hz, beat by beat: from {least:.3g} ms to {most:.3g} ms."
-    yield _half("Paper tape", scatter(_both(found, found.mark, tape), "time (s)", "gained (ms)", told))
+    yield _half("Paper tape", scatter(both_ways(found, found.mark, tape), "time (s)", "gained (ms)", told))
     unit, scale = ("°", float(np.degrees(1.0))) if found.angular else ("mm", 1e3)
     swing = scale * found.amplitude
     told = f"Amplitude of {len(found)} beats: {swing[0]:.4g} {unit} at first, {swing[-1]:.4g} {unit} at the end."
-    yield _half("Amplitude", scatter(_both(found, found.t, swing), "time (s)", f"amplitude ({unit})", told))
+    yield _half("Amplitude", scatter(both_ways(found, found.t, swing), "time (s)", f"amplitude ({unit})", told))
 
 
 def _half(title: str, chart: Markup) -> Markup:
     return element("div", element("h3", title), chart, class_="half")
 
 
-def _both(found: Beats, x: Array, y: Array) -> list[Dots]:
+def both_ways(found: Beats, x: Array, y: Array) -> list[Dots]:
     """Beats in which the balance turns one way and the other, numbered as in beats.csv."""
     odd = (found.before + 1 + np.arange(len(found))) % 2 == 1
     return [Dots(name, x[own], y[own], look) for name, own, look in (("odd beats", odd, "d0"), ("even beats", ~odd, "d1"))]
