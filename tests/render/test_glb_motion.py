@@ -60,7 +60,9 @@ def played(data: bytes) -> dict[tuple[str, str], tuple[np.ndarray, np.ndarray]]:
     return found
 
 
-@pytest.mark.parametrize(("profile", "window"), [("swiss_lever", (0.1, 0.4)), ("carriage", (0.1, 0.3)), ("incline", (0.0, 1.0))])
+@pytest.mark.parametrize(
+    ("profile", "window"), [("swiss_lever", (0.1, 0.4)), ("carriage", (0.1, 0.3)), ("incline", (0.0, 1.0))]
+)
 def test_the_animation_is_the_motion(profile: str, window: tuple[float, float]) -> None:
     run = simulate(load(PROFILES / profile / "scene.toml"), duration=window[1])
     solids = placed_solids(run.scene, slabs(run.scene, 0.2e-3), 2e-6)

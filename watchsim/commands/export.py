@@ -38,7 +38,9 @@ def options(parser: argparse.ArgumentParser) -> None:
         "--deviation", metavar="LENGTH", default="0.2 µm", help='of chords from arcs in GLB and STL (default "%(default)s")'
     )
     parser.add_argument(
-        "--window", metavar="FROM:TO", help="of a results folder: what scene.glb plays (default: the last beats, or the whole run)"
+        "--window",
+        metavar="FROM:TO",
+        help="of a results folder: what scene.glb plays (default: the last beats, or the whole run)",
     )
     parser.add_argument("--speed", metavar="X", help="at which it plays: 1 is real time (default 1/20; a whole run in 10 s)")
     parser.add_argument("--json", action="store_true", help="print what was written as one JSON object")

@@ -29,7 +29,7 @@ NAMED = 8  # bodies
 DOTS = 120  # of a chart
 STYLE = Markup(
     "<style>.watchsim{display:flex;gap:18px;align-items:flex-start;flex-wrap:wrap;font-variant-numeric:tabular-nums}"
-    ".watchsim p{margin:0 0 4px}.watchsim img,.watchsim .chart svg{max-width:420px;width:100%;height:auto}"
+    ".watchsim>div{max-width:340px}.watchsim p{margin:0 0 4px}.watchsim img,.watchsim .chart svg{max-width:420px;width:100%;height:auto}"
     ".watchsim text{fill:currentColor;font-size:13px}.watchsim .grid{stroke:#8884}.watchsim .axis{stroke:#888}"
     ".watchsim .d0{fill:#2f57a6}.watchsim .d1{fill:#b0183c}.watchsim figure{margin:0}.watchsim .key svg{width:10px;margin:0 5px}"
     ".watchsim .key{font-size:12px}</style>"
@@ -40,7 +40,10 @@ def scene_html(scene: Scene) -> str:
     """Title, bodies, contacts, frequency, and the mechanism at its start."""
     names = [body.name for body in scene.bodies]
     told = f"{', '.join(names[:NAMED])}{f' and {len(names) - NAMED} more' if len(names) > NAMED else ''}"
-    lines = [f"{_count(len(names), 'body', 'bodies')}: {told}", _count(len(scene.contacts), "contact", "contacts") + " declared"]
+    lines = [
+        f"{_count(len(names), 'body', 'bodies')}: {told}",
+        _count(len(scene.contacts), "contact", "contacts") + " declared",
+    ]
     hertz = frequency(scene) if swings(scene) else None
     if hertz:
         lines.append(f"{hertz:.6g} Hz, {7200.0 * hertz:.6g} vph")
@@ -64,7 +67,10 @@ def beats_html(found: Beats) -> str:
         return _card(f"Beats of {found.body}", [_count(len(found), "half swing", "half swings")], None)
     unit, scale = ("°", float(np.degrees(1.0))) if found.angular else ("mm", 1e3)
     step = -(-len(found) // DOTS) | 1  # odd, so that both directions stay in sight
-    dots = [type(one)(one.name, one.x[::step], one.y[::step], one.look) for one in both_ways(found, found.t, scale * found.amplitude)]
+    dots = [
+        type(one)(one.name, one.x[::step], one.y[::step], one.look)
+        for one in both_ways(found, found.t, scale * found.amplitude)
+    ]
     chart = scatter(dots, "time (s)", f"amplitude ({unit})", f"Amplitude of {len(found)} half swings")
     return _card(f"Beats of {found.body}", repr(found).strip("<>").split(": ", 1)[1].split("; "), chart)
 
