@@ -25,13 +25,13 @@ from watchsim.geometry.polyline import polyline
 from watchsim.geometry.primitives import Arc, Line
 from watchsim.mechanism.load import load
 from watchsim.profiles_path import profiles_dir
+from watchsim.render.thinning import kept_rows
 from watchsim.report.html import element, embedded, joined
 from watchsim.report.motion import TooMuch, channels
 from watchsim.report.outlines import path_data
 from watchsim.report.page import SCRIPTS
 from watchsim.report.report import page_text, report
 from watchsim.report.stretch_shown import shown
-from watchsim.render.thinning import kept_rows
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.trajectory import Trajectory
 

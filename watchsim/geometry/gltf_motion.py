@@ -20,7 +20,7 @@ MOST_TURN = 1.5  # rad between two keys: beyond π the shortest turn would go th
 
 @dataclass(frozen=True)
 class Track:
-    """Keys of one node: times t (n,) in s from 0 and rising, places (n, 2) in m, angles (n,) in rad, without jumps of a turn."""
+    """Keys of one node: times t (n,) in s from 0 and rising, places (n, 2) in m, angles (n,) in rad without jumps by a turn."""
 
     name: str
     t: Array

@@ -80,6 +80,7 @@ class Kinematics:
 
     def __init__(self, run: Trajectory, bodies: Sequence[str] | None = None, quantities: Sequence[str] = USUAL) -> None:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
+
         from watchsim.render.shown_figure import ShownFigure
 
         self.run, self._quantities = run, _quantities(quantities)

@@ -28,11 +28,12 @@ COLOURS = 40  # of a picture: a palette makes it small
 NAMED = 8  # bodies
 DOTS = 120  # of a chart
 STYLE = Markup(
-    "<style>.watchsim{display:flex;gap:18px;align-items:flex-start;flex-wrap:wrap;font-variant-numeric:tabular-nums}"
-    ".watchsim>div{max-width:340px}.watchsim p{margin:0 0 4px}.watchsim img,.watchsim .chart svg{max-width:420px;width:100%;height:auto}"
+    "<style>.watchsim{display:flex;gap:18px;align-items:flex-start;flex-wrap:wrap}"
+    ".watchsim>div{max-width:340px}.watchsim p{margin:0 0 4px}"
+    ".watchsim img,.watchsim .chart svg{max-width:420px;width:100%;height:auto}"
     ".watchsim text{fill:currentColor;font-size:13px}.watchsim .grid{stroke:#8884}.watchsim .axis{stroke:#888}"
-    ".watchsim .d0{fill:#2f57a6}.watchsim .d1{fill:#b0183c}.watchsim figure{margin:0}.watchsim .key svg{width:10px;margin:0 5px}"
-    ".watchsim .key{font-size:12px}</style>"
+    ".watchsim .d0{fill:#2f57a6}.watchsim .d1{fill:#b0183c}.watchsim figure{margin:0}"
+    ".watchsim .key{font-size:12px}.watchsim .key svg{width:10px;margin:0 5px}</style>"
 )
 
 

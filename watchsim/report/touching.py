@@ -11,21 +11,21 @@ from numpy.typing import NDArray
 from watchsim.analysis.forces import Forces, forces
 from watchsim.render.contacts import ContactMarks, Side
 from watchsim.render.poses import Window
-from watchsim.report.packed import doubles, floats
 from watchsim.render.thinning import kept_rows
+from watchsim.report.packed import doubles, floats
 from watchsim.simulation.trajectory import Array, Trajectory
 
 EVENLY = 600  # instants besides those of rows and events at which forces are asked for
 MOST = 6000  # instants in all
 JUST = 1e-7  # of the time between two events: so long before the second the first one's contacts still hold
 OFF = 2e-3  # of a contact's largest force: what a force may be off between the instants that are kept
-PAIRS = 400  # contacts with forces: of a heap of bodies only so many are told
+CROWD = 16.0  # contacts closed at a time, on average: forces of a heap take minutes, and nobody could read them
 
 
 def touching(run: Trajectory, window: Window) -> list[dict[str, Any]]:
     """For every contact that is closed some time in the window: its two sides, from when to when, and forces there.
 
-    Forces are left out where the run does not tell them (steps of fixed length, events not kept).
+    Forces are left out of a heap, and where the run does not tell them (steps of fixed length, events not kept).
     """
     try:
         marks = ContactMarks(run)
@@ -33,7 +33,7 @@ def touching(run: Trajectory, window: Window) -> list[dict[str, Any]]:
         return []
     closed = {number: marks.stretches(number, window) for number in marks.numbers}
     closed = {number: found for number, found in closed.items() if found}
-    told = _forces(run, window, closed) if len(closed) <= PAIRS else None
+    told = None if _crowd(closed, window) > CROWD else _forces(run, window, closed)
     names = [body.name for body in run.scene.bodies]
     return [
         {
@@ -44,6 +44,11 @@ def touching(run: Trajectory, window: Window) -> list[dict[str, Any]]:
         }
         for number, stretches in closed.items()
     ]
+
+
+def _crowd(closed: dict[int, list[Window]], window: Window) -> float:
+    """How many contacts are closed at a time, on average."""
+    return sum(end - start for stretches in closed.values() for start, end in stretches) / (window[1] - window[0])
 
 
 def _sides(sides: tuple[Side, Side], names: Sequence[str]) -> dict[str, Any]:
