@@ -52,34 +52,55 @@ def channels(run: Trajectory, window: Window, size: float) -> tuple[list[Channel
 
     TooMuch where that would be more than a thousandth of the picture.
     """
+    first = max(int(np.searchsorted(run.t, window[0], side="right")) - 1, 0)
+    last = min(int(np.searchsorted(run.t, window[1], side="left")) + 1, len(run.t))
+    t = run.t[first:last]
+    middle = 0.5 * (t[:-1] + t[1:])
+    halfway = run.sample(middle)
+    told = [
+        _Told(
+            body, t, *(values[first:last, own] for values in (run.q, run.u, run.a)), middle, *(v[:, own] for v in between_rows)
+        )
+        for body in run.scene.bodies
+        if (own := run.slices.get(body.name)) is not None
+    ]
     share = FINE
     while share <= COARSEST:
         found, taken = [], 0
-        for body in run.scene.bodies:
-            if body.name in run.slices:
-                found.append(_channel(run, body, window, share * size, share / FINE, LEAST_ARM * size))
-                taken += found[-1].bytes
+        for one in told:
+            found.append(_channel(one, _weights(run, one.body, LEAST_ARM * size), share * size, share / FINE))
+            taken += found[-1].bytes
+            if taken > MOST:
+                break
         if taken <= MOST:
             return found, share * size
         share *= STEP
     raise TooMuch(
-        f"{window[0]:.9g} s to {window[1]:.9g} s hold more motion than a page can ({taken / 1e6:.2g} MB of it); "
+        f"{window[0]:.9g} s to {window[1]:.9g} s hold more motion than a page can, which is {MOST / 1e3:.0f} kB of it; "
         "choose a shorter window"
     )
 
 
-def _channel(run: Trajectory, body: Body, window: Window, off: float, looser: float, least: float) -> Channel:
+@dataclass(frozen=True)
+class _Told:
+    """What the run says of one body: q, u, a (rows, n) at times t, and q, u midway between rows."""
+
+    body: Body
+    t: Array
+    q: Array
+    u: Array
+    a: Array
+    middle: Array
+    q_middle: Array
+    u_middle: Array
+
+
+def _channel(told: _Told, weight: Array, off: float, looser: float) -> Channel:
     """The rows of one body; outlines may be off by `off` metres, velocities by `looser` times their share.
 
-    Angles are kept as if every body reached at least `least` metres: they are read as numbers, too.
+    `weight` says how many metres an outline moves per unit of each coordinate.
     """
-    first = max(int(np.searchsorted(run.t, window[0], side="right")) - 1, 0)
-    last = min(int(np.searchsorted(run.t, window[1], side="left")) + 1, len(run.t))
-    own = run.slices[body.name]
-    t, q, u, a = run.t[first:last], run.q[first:last, own], run.u[first:last, own], run.a[first:last, own]
-    middle = 0.5 * (t[:-1] + t[1:])
-    q_mid, u_mid = (values[:, own] for values in run.sample(middle))
-    weight = _weights(run, body, least)
+    t, q, u, a, middle = told.t, told.q, told.u, told.a, told.middle
     largest = [np.maximum(np.abs(values).max(axis=0, initial=0.0), 1e-300) for values in (u, a)]
     noise = np.zeros(q.shape[1])
 
@@ -87,19 +108,19 @@ def _channel(run: Trajectory, body: Body, window: Window, off: float, looser: fl
         h = t[j] - t[i]
         times = np.concatenate((t[i + 1 : j], middle[i:j]))
         s = ((times - t[i]) / h)[:, None]
-        told, rate = between(s, np.full_like(s, h), (q[i], u[i], a[i]), (q[j], u[j], a[j]), noise)
-        if np.max(np.abs(told - np.concatenate((q[i + 1 : j], q_mid[i:j]))) @ weight) > off:
+        place, rate = between(s, np.full_like(s, h), (q[i], u[i], a[i]), (q[j], u[j], a[j]), noise)
+        if np.max(np.abs(place - np.concatenate((q[i + 1 : j], told.q_middle[i:j]))) @ weight) > off:
             return False
-        if np.any(np.abs(rate - np.concatenate((u[i + 1 : j], u_mid[i:j]))) > looser * SLOPE * largest[0]):
+        if np.any(np.abs(rate - np.concatenate((u[i + 1 : j], told.u_middle[i:j]))) > looser * SLOPE * largest[0]):
             return False
         pull = _acceleration(s[: j - i - 1], h, (u[i], a[i]), (u[j], a[j]))
         return not np.any(np.abs(pull - a[i + 1 : j]) > looser * CURVE * largest[1])
 
     jumps = np.flatnonzero(np.diff(t) <= 0.0)
     kept = kept_rows(len(t), fits, (*jumps.tolist(), *(jumps + 1).tolist()))
-    kept = _without_repeats(kept, t, q, u, a)
+    kept = _without_repeats(kept, q, u, a)
     base = q[0] if len(q) else np.zeros(q.shape[1])
-    return Channel(body.name, t[kept], base, np.hstack((q[kept] - base, u[kept], a[kept])))
+    return Channel(told.body.name, t[kept], base, np.hstack((q[kept] - base, u[kept], a[kept])))
 
 
 def _acceleration(s: Array, h: float, left: tuple[Array, Array], right: tuple[Array, Array]) -> Array:
@@ -108,7 +129,7 @@ def _acceleration(s: Array, h: float, left: tuple[Array, Array], right: tuple[Ar
     return left[1] + s * (6.0 * way - 4.0 * left[1] - 2.0 * right[1] + s * (3.0 * (left[1] + right[1]) - 6.0 * way))
 
 
-def _without_repeats(kept: NDArray[np.int64], t: Array, q: Array, u: Array, a: Array) -> NDArray[np.int64]:
+def _without_repeats(kept: NDArray[np.int64], q: Array, u: Array, a: Array) -> NDArray[np.int64]:
     """Without the rows of events at which this body did not notice anything, if those around them tell the same rest."""
     if len(kept) < 3:
         return kept
@@ -119,7 +140,10 @@ def _without_repeats(kept: NDArray[np.int64], t: Array, q: Array, u: Array, a: A
 
 
 def _weights(run: Trajectory, body: Body, least: float) -> Array:
-    """How far (m) an outline of the body, or of one that it carries, moves per unit of each coordinate."""
+    """How far (m) an outline of the body, or of one that it carries, moves per unit of each coordinate.
+
+    Angles count as if every body reached at least `least` metres: they are read as numbers, too.
+    """
     if body.motion == "slide":
         return np.ones(1)
     arm = max(_reach(run, body), least)

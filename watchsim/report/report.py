@@ -84,14 +84,15 @@ def page_text(run: Trajectory, window: Sequence[float] | None = None, numbers: M
 def _motion(run: Trajectory, window: Sequence[float] | None) -> tuple[Window, list[Channel], float]:
     """What is shown, its rows, and how exact they are (m); a window nobody asked for is halved until it fits."""
     span = shown(run, window)
+    size = picture_size(run, span)
     for _ in range(HALVINGS):
         try:
-            return span, *channels(run, span, picture_size(run, span))
+            return span, *channels(run, span, size)
         except TooMuch:
             if window is not None:
                 raise
             span = (0.5 * (span[0] + span[1]), span[1])
-    return span, *channels(run, span, picture_size(run, span))
+    return span, *channels(run, span, size)
 
 
 def _opening(found: list[Phase], span: Window) -> float:
