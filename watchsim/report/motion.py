@@ -58,9 +58,7 @@ def channels(run: Trajectory, window: Window, size: float) -> tuple[list[Channel
     middle = 0.5 * (t[:-1] + t[1:])
     halfway = run.sample(middle)
     told = [
-        _Told(
-            body, t, *(values[first:last, own] for values in (run.q, run.u, run.a)), middle, *(v[:, own] for v in between_rows)
-        )
+        _Told(body, t, *(rows[first:last, own] for rows in (run.q, run.u, run.a)), middle, *(mid[:, own] for mid in halfway))
         for body in run.scene.bodies
         if (own := run.slices.get(body.name)) is not None
     ]
@@ -106,6 +104,8 @@ def _channel(told: _Told, weight: Array, off: float, looser: float) -> Channel:
 
     def fits(i: int, j: int) -> bool:
         h = t[j] - t[i]
+        if h <= 0.0:
+            return True  # rows of one instant, between which nothing of note has happened to this body
         times = np.concatenate((t[i + 1 : j], middle[i:j]))
         s = ((times - t[i]) / h)[:, None]
         place, rate = between(s, np.full_like(s, h), (q[i], u[i], a[i]), (q[j], u[j], a[j]), noise)
@@ -116,7 +116,10 @@ def _channel(told: _Told, weight: Array, off: float, looser: float) -> Channel:
         pull = _acceleration(s[: j - i - 1], h, (u[i], a[i]), (u[j], a[j]))
         return not np.any(np.abs(pull - a[i + 1 : j]) > looser * CURVE * largest[1])
 
-    jumps = np.flatnonzero(np.diff(t) <= 0.0)
+    # Both rows of an impact that this body has felt; those of the others' are rows like any.
+    felt = np.any(np.abs(np.diff(u, axis=0)) > looser * SLOPE * largest[0], axis=1)
+    felt |= np.any(np.abs(np.diff(a, axis=0)) > looser * CURVE * largest[1], axis=1)
+    jumps = np.flatnonzero((np.diff(t) <= 0.0) & felt)
     kept = kept_rows(len(t), fits, (*jumps.tolist(), *(jumps + 1).tolist()))
     kept = _without_repeats(kept, q, u, a)
     base = q[0] if len(q) else np.zeros(q.shape[1])
