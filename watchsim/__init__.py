@@ -41,6 +41,7 @@ _HOMES = {
     "frame": "watchsim.render.run_movie",
     "plot_tape": "watchsim.render.tape",
     "sound": "watchsim.analysis.sound.wav",
+    "report": "watchsim.report.report",
     "profiles_dir": "watchsim.profiles_path",
 }
 
@@ -67,6 +68,7 @@ if TYPE_CHECKING:
     from watchsim.render.run_movie import movie as movie
     from watchsim.render.study import plot_sweep as plot_sweep
     from watchsim.render.tape import plot_tape as plot_tape
+    from watchsim.report.report import report as report
     from watchsim.results.folder import read_results as read_results
     from watchsim.results.folder import write_results as write_results
     from watchsim.scene.errors import SceneError as SceneError

@@ -13,7 +13,22 @@ import sys
 from watchsim import __version__, stopping
 from watchsim.commands.common.console import BAD_INPUT, FAULT, INTERRUPTED, InputError, say
 
-COMMANDS = ("demo", "new", "inspect", "check", "run", "plot", "movie", "sound", "steady", "sweep", "verify", "bench", "export")
+COMMANDS = (
+    "demo",
+    "new",
+    "inspect",
+    "check",
+    "run",
+    "plot",
+    "movie",
+    "report",
+    "sound",
+    "steady",
+    "sweep",
+    "verify",
+    "bench",
+    "export",
+)
 
 
 def parser() -> argparse.ArgumentParser:

@@ -1,4 +1,4 @@
-"""watchsim export SCENE: the bodies of a scene for other programs: outlines as DXF and SVG, solids as GLB and STL."""
+"""watchsim export SCENE: bodies for other programs: outlines as DXF and SVG, solids as GLB and STL; a run moves in its GLB."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from watchsim.commands.common.console import FINE, InputError, parse_names, parse_positive, print_json, say
+from watchsim.commands.common.console import FINE, InputError, parse_names, parse_positive, parse_window, print_json, say
 
 if TYPE_CHECKING:
-    from watchsim.geometry.solids.meshes import Placed
+    from watchsim.geometry.gltf_motion import Track
     from watchsim.render.palette import Finish
     from watchsim.scene.body import Body
     from watchsim.scene.layer_heights import Slab
@@ -37,6 +37,12 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--deviation", metavar="LENGTH", default="0.2 µm", help='of chords from arcs in GLB and STL (default "%(default)s")'
     )
+    parser.add_argument(
+        "--window",
+        metavar="FROM:TO",
+        help="of a results folder: what scene.glb plays (default: the last beats, or the whole run)",
+    )
+    parser.add_argument("--speed", metavar="X", help="at which it plays: 1 is real time (default 1/20; a whole run in 10 s)")
     parser.add_argument("--json", action="store_true", help="print what was written as one JSON object")
     parser.add_argument("--force", action="store_true", help="replace an export that exists")
 
@@ -57,7 +63,8 @@ def run(args: argparse.Namespace) -> int:
     folder = Path(args.output) if args.output else Path("export") / _name(scene)
     secured_folder(folder, "exported files", default=not args.output)
     replaced = _check_folder(folder.absolute(), args.force)
-    contents, manifest = _contents(scene, bodies, formats, thickness, deviation)
+    motion = _motion(args, formats)
+    contents, manifest = _contents(scene, bodies, formats, thickness, deviation, motion)
     manifest["files"] = [*contents, MANIFEST]
     contents[MANIFEST] = (json.dumps(manifest, indent=1, ensure_ascii=False) + "\n").encode()
 
@@ -68,6 +75,31 @@ def run(args: argparse.Namespace) -> int:
     write_folder(folder, fill, replaced.__contains__, "the export")
     _tell(manifest, folder, args.json)
     return FINE
+
+
+def _motion(args: argparse.Namespace, formats: Sequence[str]) -> list[Track]:
+    """How the bodies move, where a results folder was given; InputError where a window or speed was asked of anything else."""
+    from watchsim.commands.common.inputs import read_run
+    from watchsim.commands.common.run_pictures import filmed
+    from watchsim.commands.movie import parse_speed
+    from watchsim.results.folder import TRAJECTORY
+
+    is_run = (Path(args.scene) / TRAJECTORY).is_file()
+    asked = [option for option in ("window", "speed") if getattr(args, option) is not None]
+    if asked and not (is_run and "glb" in formats):
+        raise InputError(f"--{asked[0]}: only a results folder has a motion, and only GLB files hold it.")
+    if not is_run or "glb" not in formats:
+        return []
+    from watchsim.render.keyframes import keyframes
+
+    run = read_run(args.scene)
+    if len(run.t) < 2:
+        say("No rows of this run were kept, so scene.glb stands still.")
+        return []
+    window, speed = filmed(run, 1.0 / 20.0)
+    if args.window is not None:
+        window = parse_window(args.window) or window
+    return keyframes(run, window, speed if args.speed is None else parse_speed(args.speed))
 
 
 def _chosen(scene: Scene, names: list[str] | None) -> tuple[Body, ...]:
@@ -106,7 +138,12 @@ def _check_folder(target: Path, force: bool) -> frozenset[str]:
 
 
 def _contents(
-    scene: Scene, bodies: Sequence[Body], formats: Sequence[str], thickness: float, deviation: float
+    scene: Scene,
+    bodies: Sequence[Body],
+    formats: Sequence[str],
+    thickness: float,
+    deviation: float,
+    motion: Sequence[Track] = (),
 ) -> tuple[dict[str, bytes], dict[str, Any]]:
     """The files by name, and what the manifest tells about them."""
     from watchsim.geometry.solids.meshes import glb, stl
@@ -121,17 +158,17 @@ def _contents(
             for name, text in _drawings(body, worn[body.name], formats):
                 found[f"{stems[body.name]}.{name}"] = text.encode()
     stacked = tuple(slab for slab in slabs(scene, thickness) if slab.body in stems)
-    if "glb" in formats or "stl" in formats:
+    if "glb" in formats:
         from watchsim.render.placed_solids import placed_solids
 
-        placed: list[Placed] = placed_solids(scene, stacked, deviation)
-        for part in placed:
-            if "glb" in formats:
-                found[f"{stems[part.name]}.glb"] = glb([type(part)(part.name, part.pieces)])
-            if "stl" in formats:
-                found[f"{stems[part.name]}.stl"] = stl(part)
-        if "glb" in formats and placed:
-            found["scene.glb"] = glb(placed)
+        placed = placed_solids(scene, stacked, deviation)
+        found.update((f"{stems[part.name]}.glb", glb([type(part)(part.name, part.pieces)])) for part in placed)
+        if placed:
+            found["scene.glb"] = glb(placed, motion)
+    if "stl" in formats:
+        from watchsim.render.placed_solids import closed_solids
+
+        found.update((f"{stems[part.name]}.stl", stl(part)) for part in closed_solids(scene, stacked, deviation))
     if not found:
         raise InputError("these bodies have no outlines: there is nothing to export.")
     return found, _manifest(scene, bodies, stacked, thickness)

@@ -28,7 +28,7 @@ def run(args: argparse.Namespace) -> int:
     from watchsim.render.encoder import check_path
     from watchsim.render.run_movie import movie
 
-    speed, size = _speed(args.speed), _size(args.size)
+    speed, size = parse_speed(args.speed), _size(args.size)
     if size and any(side % 2 for side in size):
         say(f"Note: sides of a movie are even numbers of pixels; {args.size} is rounded up.")
     window = parse_window(args.window)
@@ -54,7 +54,8 @@ def run(args: argparse.Namespace) -> int:
     return FINE
 
 
-def _speed(text: str) -> float:
+def parse_speed(text: str) -> float:
+    """A positive number or fraction."""
     try:
         value = float(Fraction(text))
     except (ValueError, ZeroDivisionError) as error:

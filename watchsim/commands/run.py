@@ -57,6 +57,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--json", action="store_true", help="print the summary as one JSON object")
     parser.add_argument("--movie", action="store_true", help="write movie.mp4 too: the last beats slowly, or the whole run")
     parser.add_argument("--gif", action="store_true", help="write movie.gif too")
+    parser.add_argument("--report", action="store_true", help="write report.html too: player, timing sheet, plots in one page")
     parser.add_argument("--no-plots", action="store_true", help="write no plots, which take a third of the time of a short run")
     parser.add_argument("--profile", action="store_true", help="count what was done, and say where the time went")
     parser.add_argument("--force", action="store_true", help="replace a results folder that exists")
@@ -104,7 +105,7 @@ def run(args: argparse.Namespace) -> int:
     changed = [name for name, value in given.items() if value]
     for note in notes(scene):
         say(f"Note: {note.message}. {note.fix}")
-    extras = Extras(not args.no_plots, args.movie, args.gif, args.error_bars, args.profile)
+    extras = Extras(not args.no_plots, args.movie, args.gif, args.error_bars, args.profile, args.report)
     with stopping.keeping():
         trajectory = simulate_with_progress(scene, duration, args.tol, folder, method=method, step=step, start=start)
         summary = write(trajectory, goal, extras, changed)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from watchsim.geometry.primitives import TURN
-from watchsim.geometry.solids.meshes import Piece, Placed, laid, plate, revolved, turned_about
+from watchsim.geometry.solids.meshes import Piece, Placed, laid, plate, revolved, turned_about, united
 from watchsim.render.palette import BLUED, BRASS, GILT, PLATE, RUBY, STEEL, Finish, finish, looks
 from watchsim.scene.body import Body
 from watchsim.scene.carriers import at_start
@@ -27,6 +27,37 @@ def placed_solids(scene: Scene, slabs: tuple[Slab, ...], deviation: float) -> li
         if pieces:
             found.append(Placed(body.name, _named_apart(pieces), body.position, body.angle))
     return found
+
+
+def closed_solids(scene: Scene, slabs: tuple[Slab, ...], deviation: float) -> list[Placed]:
+    """The same for programs that want closed surfaces: plates of a body that lie at one height and meet become one.
+
+    Colours are lost, which such files do not hold anyway.
+    """
+    found = []
+    for body in placed_solids(scene, tuple(slab for slab in slabs if not _is_plate(slab)), deviation) + _bare(scene, slabs):
+        levels: dict[tuple[float, float], list[Slab]] = {}
+        for slab in slabs:
+            if slab.body == body.name and _is_plate(slab):
+                levels.setdefault((slab.middle - 0.5 * slab.thickness, slab.thickness), []).append(slab)
+        pieces = list(body.pieces)
+        for (bottom, thickness), layers in levels.items():
+            mesh = united([slab.loops for slab in layers], bottom, thickness, deviation)
+            if mesh is not None:
+                pieces.append(Piece("+".join(slab.layer for slab in layers), mesh, PLATE.fill, METAL))
+        if pieces:
+            found.append(Placed(body.name, pieces, body.position, body.angle))
+    return found
+
+
+def _bare(scene: Scene, slabs: tuple[Slab, ...]) -> list[Placed]:
+    """The bodies that have nothing but plates."""
+    turned = {slab.body for slab in slabs if not _is_plate(slab)}
+    return [Placed(body.name, (), body.position, body.angle) for body in at_start(scene).bodies if body.name not in turned]
+
+
+def _is_plate(slab: Slab) -> bool:
+    return slab.solid is None or slab.solid.kind not in (UPRIGHT, LYING)
 
 
 def _pieces(slab: Slab, body: Body, own: Finish, deviation: float) -> Iterator[Piece]:

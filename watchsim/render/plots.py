@@ -80,14 +80,15 @@ class Kinematics:
 
     def __init__(self, run: Trajectory, bodies: Sequence[str] | None = None, quantities: Sequence[str] = USUAL) -> None:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
-        from matplotlib.figure import Figure
+
+        from watchsim.render.shown_figure import ShownFigure
 
         self.run, self._quantities = run, _quantities(quantities)
         self._channels = [channel for body in choose(run, bodies) for channel in _channels(run, body)]
         if not self._channels:
             raise ValueError("nothing to plot: no body of this run moves")
         rows, columns = len(self._channels), len(self._quantities)
-        self.figure = Figure(figsize=(PANEL[0] * columns, PANEL[1] * rows + 1.0), dpi=150)
+        self.figure: Figure = ShownFigure(figsize=(PANEL[0] * columns, PANEL[1] * rows + 1.0), dpi=150)
         FigureCanvasAgg(self.figure)
         self._panels = self.figure.subplots(rows, columns, sharex=True, squeeze=False)
         below = 1.0 - GAP * POINT / self.figure.get_figheight()

@@ -41,14 +41,14 @@ def still(
     )
     if overlaps:
         picked = (*picked, Edges(model, np.zeros(0, np.int64), FAULT, "bodies overlap"))
-    run = _at_rest(scene, compiled)
+    run = at_rest(scene, compiled)
     stage = Stage(run, SIZE, (0.0, 1.0), picked=picked)
     frames = {name: rows[0] for name, rows in poses(run, np.zeros(1)).items()}
     pixels = stage.draw(0.0, frames, np.array(overlaps).reshape(-1, 2), FAULT)[..., :3]
     write_file(Path(path), lambda scratch: imageio.imwrite(scratch, pixels), "the picture")
 
 
-def _at_rest(scene: Scene, compiled: Compiled) -> Trajectory:
+def at_rest(scene: Scene, compiled: Compiled) -> Trajectory:
     """A run in which nothing moves."""
     q = compiled.relative(np.stack([compiled.q, compiled.q]))
     rest = np.zeros_like(q)

@@ -8,6 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from watchsim.displays import notebook_html
 from watchsim.drawing.findings import Finding
 from watchsim.geometry.primitives import Point
 from watchsim.scene.body import Body
@@ -71,6 +72,9 @@ class Scene:
     def __repr__(self) -> str:
         names = ", ".join(body.name for body in self.bodies)
         return f"<Scene {self.title!r}: {names}; {len(self.contacts)} contacts declared>"
+
+    def _repr_html_(self) -> str:
+        return notebook_html(self)
 
     def body(self, name: str) -> Body:
         """The body of that name; KeyError if there is none."""

@@ -13,6 +13,7 @@ import numpy as np
 from watchsim.analysis.timing.body_contacts import Events
 from watchsim.analysis.timing.rows_at_hand import nominal_period
 from watchsim.analysis.timing.ticks import ticks
+from watchsim.displays import notebook_html
 from watchsim.scene.recording import STATISTICS
 from watchsim.scene.roles import roles
 from watchsim.simulation.event_kinds import EventKind
@@ -47,6 +48,17 @@ class Beats:
     tick: Array
     period_s: Array
     before: int = 0
+
+    def __repr__(self) -> str:
+        count = f"{len(self)} half {'swing' if len(self) == 1 else 'swings'}"
+        if not len(self):
+            return f"<Beats of {self.body!r}: {count}>"
+        swing = f"{self.amplitude_deg[-1]:.2f}°" if self.angular else f"{1e3 * self.amplitude[-1]:.4g} mm"
+        last = f"the last one {swing}, {self.rate_s_per_d[-1]:.2f} s/d, beat error {self.beat_error_ms[-1]:.2g} ms"
+        return f"<Beats of {self.body!r}: {count} from {self.start[0]:.6g} s to {self.end[-1]:.6g} s; {last}>"
+
+    def _repr_html_(self) -> str:
+        return notebook_html(self)
 
     def __len__(self) -> int:
         return len(self.t)

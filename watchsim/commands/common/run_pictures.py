@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -30,6 +30,17 @@ def pictures(run: Trajectory, plots: bool, movie: bool, gif: bool) -> dict[str, 
     if gif:
         found["movie.gif"] = lambda path: _movie(run, path, slow=1 / 40)
     return {name: _drawn(draw) for name, draw in found.items()}
+
+
+def page(run: Trajectory, numbers: Mapping[str, Any]) -> dict[str, Callable[[Path], object]]:
+    """The same for report.html; `numbers` are those of summary.json."""
+
+    def write(path: Path) -> None:
+        from watchsim.report.report import page_text
+
+        path.write_bytes(page_text(run, numbers=numbers).encode("utf-8", "replace"))
+
+    return {"report.html": _drawn(write)}
 
 
 def _drawn(draw: Callable[[Path], object]) -> Callable[[Path], None]:

@@ -28,6 +28,7 @@ class Extras:
     gif: bool = False
     error_bars: bool = False
     profile: bool = False
+    report: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +54,7 @@ def write(run: Trajectory, goal: Goal, extras: Extras, changed: Sequence[str] = 
     InputError where the results had to go elsewhere.
     """
     from watchsim.analysis.summary import tables
-    from watchsim.commands.common.run_pictures import pictures
+    from watchsim.commands.common.run_pictures import page, pictures
     from watchsim.simulation.stops import Stop
 
     if run.stop == Stop.INTERRUPTED:
@@ -65,7 +66,7 @@ def write(run: Trajectory, goal: Goal, extras: Extras, changed: Sequence[str] = 
     except Exception:
         say(f"The numbers of this run could not be made. Its motion is kept in {_bare(run, goal)}")
         raise
-    drawn = pictures(run, extras.plots, extras.movie, extras.gif)
+    drawn = pictures(run, extras.plots, extras.movie, extras.gif) | (page(run, numbers) if extras.report else {})
     _save(run, goal, numbers, beside, drawn)
     return numbers
 

@@ -6,6 +6,7 @@ are in metres by their standard, are scaled as they are written.
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -13,12 +14,14 @@ from itertools import pairwise
 from typing import cast
 
 import numpy as np
+import shapely
 import trimesh
 from numpy.typing import NDArray
 from trimesh.path import Path2D, entities
 from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 
+from watchsim.geometry.gltf_motion import Track, add_motion
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.polyline import chords, polyline
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point
@@ -50,9 +53,13 @@ class Placed:
 
 def plate(loops: Iterable[Loop], bottom: float, thickness: float, deviation: float) -> trimesh.Trimesh | None:
     """The outlines (metres, holes kept) from the height `bottom` up by `thickness` metres; None where they have no area."""
-    parts = [
-        trimesh.creation.extrude_polygon(part, MM * thickness, engine="earcut") for part in pieces(region(loops, deviation, MM))
-    ]
+    return united([loops], bottom, thickness, deviation)
+
+
+def united(layers: Iterable[Iterable[Loop]], bottom: float, thickness: float, deviation: float) -> trimesh.Trimesh | None:
+    """A plate of several layers, each with its own holes, without walls where they meet; None where they have no area."""
+    whole = shapely.union_all([region(loops, deviation, MM) for loops in layers])
+    parts = [trimesh.creation.extrude_polygon(part, MM * thickness, engine="earcut") for part in pieces(whole)]
     if not parts:
         return None
     mesh = _together(parts)
@@ -90,8 +97,11 @@ def turned_about(mesh: trimesh.Trimesh, pivot: Point, angle: float) -> trimesh.T
     return mesh.copy().apply_transform(_pose(pivot, angle) @ _pose((-pivot[0], -pivot[1]), 0.0))
 
 
-def glb(bodies: Sequence[Placed]) -> bytes:
-    """A binary glTF scene in metres: one node per body at its pose, below it one per piece, with colours."""
+def glb(bodies: Sequence[Placed], motion: Sequence[Track] = ()) -> bytes:
+    """A binary glTF scene in metres: one node per body at its pose, below it one per piece, with colours.
+
+    `motion` moves the nodes of the bodies that it names.
+    """
     scene = trimesh.Scene()
     for body in bodies:
         pose = _pose(body.position, body.angle)
@@ -103,7 +113,9 @@ def glb(bodies: Sequence[Placed]) -> bytes:
             mesh.visual = TextureVisuals(material=_material(piece))
             name = f"{body.name}.{piece.name}"
             scene.add_geometry(mesh, node_name=name, geom_name=name, parent_node_name=body.name)
-    return trimesh.exchange.gltf.export_glb(scene)
+    known = {body.name for body in bodies}
+    moving = [track for track in motion if track.name in known]
+    return trimesh.exchange.gltf.export_glb(scene, buffer_postprocessor=functools.partial(add_motion, moving))
 
 
 def stl(body: Placed) -> bytes:

@@ -30,7 +30,10 @@ HATCH_SLANT = 0.7  # tangential lean of a hatch stroke per unit of depth
 
 @dataclass(frozen=True)
 class Part:
-    """A shape in its body's frame (m). `faces` is filled, `strokes` (may be None) is only drawn; `area` (m²) orders parts."""
+    """A shape in its body's frame (m). `faces` is filled, `strokes` (may be None) is only drawn; `area` (m²) orders parts.
+
+    `outlines` are the loops that `faces` follows, with their arcs: outer ones counter-clockwise, holes clockwise.
+    """
 
     body: str
     faces: Path
@@ -38,6 +41,8 @@ class Part:
     area: float
     finish: Finish
     ground: bool = False
+    layer: str = ""
+    outlines: tuple[Loop, ...] = ()
 
 
 def parts(scene: Scene, deviation: float, spacing: float) -> tuple[Part, ...]:
@@ -72,13 +77,13 @@ def _of_body(body: Body, look: Finish, deviation: float, spacing: float) -> list
     roles = layer_roles(loop for loop in loops if loop.closed)
     lines = [(loop, polyline(loop, deviation)) for loop in loops]
     outer = [(loop, line) for loop, line in lines if loop.closed and not loop.hole and roles[loop.layer] == "material"]
-    owners: list[list[Array]] = [[line] for _, line in outer]
+    owners: list[list[tuple[Loop, Array]]] = [[own] for own in outer]
     ground = [(loop, line) for loop, line in lines if not loop.closed]
     for loop, line in lines:
         if loop.closed and (loop.hole or roles[loop.layer] == "bore"):
             owner = _owner(line, [points for _, points in outer])
             if owner is not None:
-                owners[owner].append(line)
+                owners[owner].append((loop, line))
             elif loop.hole:
                 ground.append((loop, line))
     return [*_solids(body, look, outer, owners), *_grounds(body, look, ground, spacing)]
@@ -105,20 +110,21 @@ def _inner_point(line: Array) -> Point:
     return (0.5 * float(crossed[0] + crossed[1]), float(y))
 
 
-def _solids(body: Body, look: Finish, outer: list[tuple[Loop, Array]], owners: list[list[Array]]) -> list[Part]:
+def _solids(body: Body, look: Finish, outer: list[tuple[Loop, Array]], owners: list[list[tuple[Loop, Array]]]) -> list[Part]:
     layers = dict.fromkeys(loop.layer for loop, _ in outer)
     made = []
     for layer in layers:
         members = [i for i, (loop, _) in enumerate(outer) if loop.layer == layer]
-        lines = [_oriented(line, hole=k > 0) for i in members for k, line in enumerate(owners[i])]
+        followed = [_oriented(*own, hole=k > 0) for i in members for k, own in enumerate(owners[i])]
         area = max(abs(signed_area(outer[i][1])) for i in members)
-        made.append(Part(body.name, compound(lines), None, area, finish(body, layer, look)))
+        faces, outlines = compound([line for _, line in followed]), tuple(loop for loop, _ in followed)
+        made.append(Part(body.name, faces, None, area, finish(body, layer, look), layer=layer, outlines=outlines))
     return made
 
 
-def _oriented(line: Array, hole: bool) -> Array:
+def _oriented(loop: Loop, line: Array, hole: bool) -> tuple[Loop, Array]:
     """Outer outlines counter-clockwise, holes clockwise: the fill is by winding number, so overlapping pieces unite."""
-    return line[::-1] if (signed_area(line) < 0.0) != hole else line
+    return (loop.reversed(), line[::-1]) if (signed_area(line) < 0.0) != hole else (loop, line)
 
 
 def compound(lines: Sequence[Array]) -> Path:
@@ -137,7 +143,8 @@ def _grounds(body: Body, look: Finish, chains: list[tuple[Loop, Array]], spacing
         codes = np.full(len(line), Path.LINETO, dtype=np.uint8)
         codes[0] = Path.MOVETO
         own = finish(body, loop.layer, look)
-        made.append(Part(body.name, Path(line, codes), hatching(line, spacing), math.inf, own, ground=True))
+        faces, strokes = Path(line, codes), hatching(line, spacing)
+        made.append(Part(body.name, faces, strokes, math.inf, own, ground=True, layer=loop.layer, outlines=(loop,)))
     return made
 
 

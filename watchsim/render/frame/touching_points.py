@@ -32,7 +32,7 @@ class ContactMarks:
         if len(told) and told["contact"].max() >= len(model.contacts):
             raise ValueError("contacts cannot be marked: the events of this run do not belong to its scene")
         self._history: dict[int, tuple[Array, NDArray[np.bool_]]] = {}
-        self._sides: dict[int, tuple[_Side, _Side]] = {}
+        self._sides: dict[int, tuple[Side, Side]] = {}
         for k in map(int, np.unique(told["contact"])):
             events, contact = told[told["contact"] == k], model.contacts[k]
             self._history[k] = np.array(events["t"]), events["closes"]
@@ -42,6 +42,28 @@ class ContactMarks:
         """The numbers of the contacts that are closed at `t` (s)."""
         last = ((k, int(times.searchsorted(t, side="right")) - 1, closes) for k, (times, closes) in self._history.items())
         return [k for k, row, closes in last if row >= 0 and closes[row]]
+
+    @property
+    def numbers(self) -> tuple[int, ...]:
+        """The contacts that are closed at any time of the run."""
+        return tuple(self._history)
+
+    def stretches(self, number: int, window: tuple[float, float]) -> list[tuple[float, float]]:
+        """From when to when (s) that contact is closed, as far as it lies in the window."""
+        start, stop = window
+        found: list[tuple[float, float]] = []
+        since: float | None = None
+        for t, closes in zip(*(column.tolist() for column in self._history[number]), strict=True):
+            if since is not None and t > since:
+                found.append((since, t))
+            since = t if closes else None
+        if since is not None:
+            found.append((since, stop))
+        return [(max(low, start), min(high, stop)) for low, high in found if low < stop and high > start]
+
+    def sides(self, number: int) -> tuple[Side, Side]:
+        """The two primitives of that contact: a circle or corner, and what it touches."""
+        return self._sides[number]
 
     def points(self, t: float, frames: dict[str, Array]) -> Array:
         """(n, 2) points of the contacts closed at `t`, metres, for the poses x, y, angle of that instant."""
@@ -60,7 +82,7 @@ def _told(events: NDArray[Any]) -> NDArray[Any]:
 
 
 @dataclass(frozen=True)
-class _Side:
+class Side:
     """A primitive in its body's frame: a circle's centre, radius and side; a line has its outward normal instead."""
 
     body: str
@@ -71,14 +93,14 @@ class _Side:
     normal: Point | None
 
 
-def _side(primitive: Records, names: list[str]) -> _Side:
+def _side(primitive: Records, names: list[str]) -> Side:
     # Outward normal of a line: the direction of travel turned by -90 degrees.
     normal = (float(primitive.ty), -float(primitive.tx)) if primitive.kind == LINE else None
     x, y, radius, side = (float(primitive[name]) for name in ("x", "y", "radius", "side"))
-    return _Side(names[primitive.body], x, y, radius, side, normal)
+    return Side(names[primitive.body], x, y, radius, side, normal)
 
 
-def _touch(a: _Side, b: _Side, frames: dict[str, Array]) -> Point:
+def _touch(a: Side, b: Side, frames: dict[str, Array]) -> Point:
     """From the circle's centre towards B's material by its radius, against B's outward normal."""
     x, y = _world(frames[a.body], a.x, a.y)
     bx, by, turn = frames[b.body]

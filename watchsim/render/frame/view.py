@@ -68,17 +68,21 @@ class View:
 
 def view(run: Trajectory, window: Window, frame: Frame, zoom: Sequence[str] | None, turn: float | None) -> View:
     """Frame the bodies of a run over a window; `zoom` names those to frame, `turn` (radians) overrides the choice of up."""
-    bodies = _shown(run, zoom)
-    frames = {body.name: swept(run, body, window) for body in bodies}
-    room = {body.name: _room(body, frames[body.name]) for body in bodies}
-    traveller = _traveller(bodies, frames)
-    points = np.concatenate(list(room.values()))
-    if zoom is None:
-        points = np.concatenate((points, _ground_below(run, points)))
+    points, frames, traveller = room_of(run, window, zoom)
     angle = _upright(run, points, frame, traveller) if turn is None else turn
     if traveller is not None:
         return _following(traveller, frames[traveller.name], frame, angle)
     return _fitted(points, frame, angle)
+
+
+def room_of(run: Trajectory, window: Window, zoom: Sequence[str] | None) -> tuple[Array, dict[str, Array], Body | None]:
+    """(n, 2) points that bound all that is to be seen over a window, the poses they come from, and a body to follow, if any."""
+    bodies = _shown(run, zoom)
+    frames = {body.name: swept(run, body, window) for body in bodies}
+    points = np.concatenate([_room(body, frames[body.name]) for body in bodies])
+    if zoom is None:
+        points = np.concatenate((points, _ground_below(run, points)))
+    return points, frames, _traveller(bodies, frames)
 
 
 def _shown(run: Trajectory, zoom: Sequence[str] | None) -> list[Body]:

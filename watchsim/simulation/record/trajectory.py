@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from watchsim.displays import notebook_html
 from watchsim.scene.recording import ALL, Window
 from watchsim.scene.scene import Scene
 from watchsim.simulation.event_kinds import EVENT_DTYPE as EVENT_DTYPE
@@ -90,6 +91,9 @@ class Trajectory:
     def __repr__(self) -> str:
         kinds = f"{len(self.t)} rows of {self.q.shape[1]} coordinates, {len(self.events)} events"
         return f"<Trajectory of {self.scene.title!r}: {self.simulated:g} s, {kinds}; {self.stop.sentence}>"
+
+    def _repr_html_(self) -> str:
+        return notebook_html(self)
 
     @cached_property
     def _noise(self) -> Array:

@@ -1,0 +1,120 @@
+"""Does a GLB file move as the run does, and are STL files closed?"""
+
+from __future__ import annotations
+
+import json
+import struct
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+from render.fake_runs import watch_run
+from scipy.spatial.transform import Rotation, Slerp
+
+from watchsim.cli import main
+from watchsim.geometry.gltf_motion import Track
+from watchsim.geometry.solids.meshes import glb
+from watchsim.profiles_path import profiles_dir
+from watchsim.render.frame.pose_history import poses
+from watchsim.render.keyframes import keyframes
+from watchsim.render.placed_solids import closed_solids, placed_solids
+from watchsim.results.folder import write_results
+from watchsim.scene.file.load import load
+from watchsim.scene.layer_heights import slabs
+from watchsim.simulation.simulate import simulate
+
+PROFILES = Path(str(profiles_dir()))
+
+
+def chunks(data: bytes) -> tuple[dict, bytes]:
+    """The JSON and the binary part of a GLB file (glTF 2.0 specification, 4.4)."""
+    magic, version, length = struct.unpack_from("<4sII", data)
+    assert (magic, version, length) == (b"glTF", 2, len(data))
+    size, kind = struct.unpack_from("<I4s", data, 12)
+    assert kind == b"JSON"
+    return json.loads(data[20 : 20 + size]), data[20 + size + 8 :]
+
+
+def values(tree: dict, blob: bytes, number: int) -> np.ndarray:
+    accessor = tree["accessors"][number]
+    view = tree["bufferViews"][accessor["bufferView"]]
+    width = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}[accessor["type"]]
+    found = np.frombuffer(blob, "<f4", accessor["count"] * width, view["byteOffset"]).reshape(-1, width)
+    assert found.min(axis=0) == pytest.approx(accessor["min"]) and found.max(axis=0) == pytest.approx(accessor["max"])
+    return found.astype(float)
+
+
+def played(data: bytes) -> dict[tuple[str, str], tuple[np.ndarray, np.ndarray]]:
+    """(body, what) -> times and values of the animation."""
+    tree, blob = chunks(data)
+    (animation,) = tree["animations"]
+    found = {}
+    for channel in animation["channels"]:
+        sampler = animation["samplers"][channel["sampler"]]
+        node = tree["nodes"][channel["target"]["node"]]
+        assert "matrix" not in node and sampler["interpolation"] == "LINEAR"
+        t = values(tree, blob, sampler["input"])[:, 0]
+        assert t[0] == 0.0 and np.all(np.diff(t) > 0.0)
+        found[node["name"], channel["target"]["path"]] = (t, values(tree, blob, sampler["output"]))
+    return found
+
+
+@pytest.mark.parametrize(
+    ("profile", "window"), [("swiss_lever", (0.1, 0.4)), ("carriage", (0.1, 0.3)), ("incline", (0.0, 1.0))]
+)
+def test_the_animation_is_the_motion(profile: str, window: tuple[float, float]) -> None:
+    run = simulate(load(PROFILES / profile / "scene.toml"), duration=window[1])
+    solids = placed_solids(run.scene, slabs(run.scene, 0.2e-3), 2e-6)
+    speed = 0.05
+    seen = played(glb(solids, keyframes(run, window, speed)))
+    times = np.random.default_rng(8).uniform(*window, 500)
+    frames = poses(run, times)
+    moving = {name for name, _ in seen}
+    assert moving == {solid.name for solid in solids if solid.name in run.slices or run.scene.body(solid.name).on}
+    for name in moving:
+        t, places = seen[name, "translation"]
+        along = np.stack([np.interp((times - window[0]) / speed, t, places[:, k]) for k in range(2)], axis=1)
+        travel = max(float(np.ptp(frames[name][:, :2], axis=0).max()), 1e-9)
+        assert np.abs(along - frames[name][:, :2]).max() < 5e-4 * travel + 2e-9 + 1e-7 * np.abs(frames[name][:, :2]).max()
+        t, turns = seen[name, "rotation"]
+        told = Slerp(t, Rotation.from_quat(turns))(np.clip((times - window[0]) / speed, 0.0, t[-1])).as_rotvec()[:, 2]
+        off = np.remainder(told - frames[name][:, 2] + np.pi, 2.0 * np.pi) - np.pi
+        assert np.abs(np.degrees(off)).max() < 0.05
+
+
+def test_a_track_that_turns_too_far_at_once_is_refused() -> None:
+    run = watch_run()
+    solids = placed_solids(run.scene, slabs(run.scene, 0.2e-3), 2e-6)
+    with pytest.raises(ValueError, match="give more of them"):
+        glb(solids, [Track("wheel", np.array([0.0, 1.0]), np.zeros((2, 2)), np.array([0.0, 3.0]))])
+    for speed in (0.0, -1.0, float("nan")):
+        with pytest.raises(ValueError, match="speed"):
+            keyframes(run, None, speed)
+
+
+def test_without_motion_nothing_is_animated() -> None:
+    run = watch_run()
+    tree, _ = chunks(glb(placed_solids(run.scene, slabs(run.scene, 0.2e-3), 2e-6)))
+    assert "animations" not in tree
+
+
+@pytest.mark.parametrize("profile", ["swiss_lever", "bench_lever", "balance"])
+def test_stl_files_are_closed(profile: str, tmp_path: Path) -> None:
+    scene = load(PROFILES / profile / "scene.toml")
+    assert main(["export", str(PROFILES / profile), "-o", str(tmp_path / "out"), "--format", "stl"]) == 0
+    for solid in closed_solids(scene, slabs(scene, 0.2e-3), 2e-7):
+        mesh = trimesh.load(tmp_path / "out" / f"{solid.name}.stl")
+        assert mesh.is_watertight and mesh.volume > 0.0, solid.name
+
+
+def test_export_of_a_run_moves_and_of_a_scene_does_not(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    run = simulate(load(PROFILES / "bench_lever" / "scene.toml"), duration=0.5)
+    folder = write_results(run, tmp_path / "run")
+    options = ["--format", "glb", "--window", "0.2 s:0.4 s", "--speed", "1/10"]
+    assert main(["export", str(folder), "-o", str(tmp_path / "out"), *options]) == 0
+    seen = played((tmp_path / "out" / "scene.glb").read_bytes())
+    assert {name for name, _ in seen} == {"wheel", "lever", "balance"}
+    assert all(t[-1] == pytest.approx(2.0, rel=1e-6) for t, _ in seen.values())
+    assert main(["export", str(PROFILES / "bench_lever"), "-o", str(tmp_path / "still"), *options]) == 2
+    assert "only a results folder has a motion" in capsys.readouterr().err

@@ -1,0 +1,44 @@
+"""watchsim report RUN: one self-contained HTML page: a player, linked plots, the timing sheet, the files."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+from watchsim.commands.common.console import FINE, parse_window
+
+HELP = "one self-contained HTML page: player, timing sheet, plots"
+
+
+def options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("run_folder", metavar="RUN", help="a results folder")
+    parser.add_argument(
+        "--window", metavar="FROM:TO", help='what the player shows, such as "179 s:180 s" (default: the last ten beats, or all)'
+    )
+    parser.add_argument("-o", "--output", metavar="FILE", help="the page (default RUN/report.html)")
+
+
+def run(args: argparse.Namespace) -> int:
+    from watchsim.commands.common.inputs import read_run
+    from watchsim.commands.common.output_place import secured_file, swept_run
+    from watchsim.report.report import check_page, report
+
+    window = parse_window(args.window)
+    swept_run(args.run_folder)
+    trajectory = read_run(args.run_folder)
+    target = secured_file(check_page(args.output or Path(args.run_folder) / "report.html"), "the page")
+    print(report(trajectory, target, window, numbers=_numbers(args.run_folder)))
+    return FINE
+
+
+def _numbers(folder: str) -> dict[str, Any] | None:
+    """The summary as the run wrote it, which knows its error bars and promises; None where it cannot be read."""
+    from watchsim.results.folder import SUMMARY
+
+    try:
+        found = json.loads((Path(folder) / SUMMARY).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    return found if isinstance(found, dict) and "energy" in found else None

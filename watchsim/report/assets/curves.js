@@ -1,0 +1,107 @@
+// What is plotted of a body, as lists of points that keep jumps and spikes.
+const DEGREES = 180 / Math.PI;
+
+class Curves {
+  constructor(data, motion, contacts, view) {
+    Object.assign(this, { bodies: data.bodies, motion, contacts, view });
+    this.torques = new Map();
+  }
+
+  // Bodies that can be plotted.
+  get movers() { return this.bodies.map((_, b) => b).filter((b) => this.motion.rows[b]); }
+
+  // The plots of a body: each a title, a unit and its lines; a line has a value at any time and its own points in a range.
+  of(b) {
+    const body = this.bodies[b], rows = this.motion.rows[b];
+    const line = (name, k, what, factor, colour) => ({ name, colour, value: (t) => factor * rows.at(t, k, what), points: (from, to, step) => sampled(rows, k, what, factor, from, to, step) });
+    const mass = body.inertia;
+    if (body.motion === "pivot") {
+      const plots = [
+        { title: "Angle", unit: "°", lines: [line("", 0, 0, DEGREES, "line")] },
+        { title: "Velocity", unit: "°/s", lines: [line("", 0, 1, DEGREES, "line")] },
+      ];
+      const push = this.torque(b);
+      if (push) plots.push({ title: "Torque from contacts", unit: "N·m", metric: true, lines: [{ name: "", colour: "accent", area: true, value: push.value, points: push.points }] });
+      if (mass) plots.push({ title: "Net torque", unit: "N·m", metric: true, lines: [line("", 0, 2, mass, "line")] });
+      if (!push && !mass) plots.push({ title: "Acceleration", unit: "rad/s²", lines: [line("", 0, 2, 1, "line")] });
+      return plots;
+    }
+    if (body.motion === "slide") return [
+      { title: "Travel", unit: "mm", lines: [line("", 0, 0, 1e3, "line")] },
+      { title: "Velocity", unit: "mm/s", lines: [line("", 0, 1, 1e3, "line")] },
+      mass ? { title: "Net force", unit: "N", metric: true, lines: [line("", 0, 2, mass, "line")] } : { title: "Acceleration", unit: "m/s²", lines: [line("", 0, 2, 1, "line")] },
+    ];
+    return [
+      { title: "Place", unit: "mm", lines: [line("x", 0, 0, 1e3, "line"), line("y", 1, 0, 1e3, "accent")] },
+      { title: "Velocity", unit: "mm/s", lines: [line("x", 0, 1, 1e3, "line"), line("y", 1, 1, 1e3, "accent")] },
+      { title: "Angle", unit: "°", lines: [line("", 2, 0, DEGREES, "line")] },
+    ];
+  }
+
+  // The moment of all contact forces about a pivot (N·m), at the instants for which forces are known.
+  torque(b) {
+    if (this.torques.has(b)) return this.torques.get(b);
+    const own = this.contacts.all.filter((one) => one.force && (one.a[0] === b || one.b[0] === b));
+    if (!own.length) { this.torques.set(b, null); return null; }
+    const value = (t) => {
+      const poses = this.motion.poses(t);
+      let sum = 0;
+      for (const one of own) {
+        if (!one.holds(t)) continue;
+        const [x, y, nx, ny] = one.touch(this.view, poses), force = one.on(b, t, nx, ny);
+        if (force) sum += (x - poses[3 * b]) * force[1] - (y - poses[3 * b + 1]) * force[0];
+      }
+      return sum;
+    };
+    // At both ends of every closed stretch the moment may jump: it is asked for on both sides.
+    const times = [];
+    for (const one of own) {
+      times.push(...one.t);
+      for (let i = 0; i < one.closed.length; i++) { const d = 1e-9 * Math.max(1, Math.abs(one.closed[i])); times.push(one.closed[i] - d, one.closed[i]); }
+    }
+    const t = Float64Array.from(new Set(times)).sort(), y = Float64Array.from(t, value);
+    const points = (from, to) => {
+      const found = [[from, value(from)]];
+      for (let i = upTo(t, from); i < t.length && t[i] < to; i++) found.push([t[i], y[i]]);
+      found.push([to, value(to)]);
+      return found;
+    };
+    const made = { value, points };
+    this.torques.set(b, made);
+    return made;
+  }
+}
+
+// Points of a coordinate between two times: every row, and as many between that none are more than `step` apart.
+const sampled = (rows, k, what, factor, from, to, step) => {
+  const found = [[from, factor * rows.at(from, k, what)]], t = rows.t;
+  let last = from;
+  const fill = (until) => {
+    const parts = Math.min(Math.ceil((until - last) / step), 4000);
+    for (let p = 1; p < parts; p++) { const at = last + ((until - last) * p) / parts; found.push([at, factor * rows.at(at, k, what)]); }
+  };
+  for (let i = upTo(t, from); i < t.length && t[i] < to; i++) {
+    fill(t[i]);
+    found.push([t[i], factor * rows.stored(i, k, what)]);
+    last = t[i];
+  }
+  fill(to);
+  found.push([to, factor * rows.at(to, k, what)]);
+  return found;
+};
+
+// At most four points a pixel: first, least, largest, last, so that no spike is lost.
+const thinned = (points, from, to, width) => {
+  if (points.length <= 4 * width) return points;
+  const found = [];
+  let column = -1, first, least, most, last;
+  const flush = () => { if (column >= 0) { const own = [first, least, most, last]; own.sort((p, q) => p[2] - q[2]); own.forEach((p, i) => { if (i === 0 || p !== own[i - 1]) found.push(p); }); } };
+  points.forEach((p, index) => {
+    const c = Math.floor(((p[0] - from) / (to - from)) * width);
+    p[2] = index;
+    if (c !== column) { flush(); column = c; first = least = most = last = p; }
+    else { if (p[1] < least[1]) least = p; if (p[1] > most[1]) most = p; last = p; }
+  });
+  flush();
+  return found;
+};

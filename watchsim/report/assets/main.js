@@ -1,0 +1,276 @@
+// Everything together: what is on the page, and what keys and fingers do.
+const $ = (id) => document.getElementById(id);
+const root = document.documentElement;
+root.classList.add("scripted");
+const data = JSON.parse($("data").textContent);
+
+const motion = new Motion(data), view = new View(data), scenery = new Scenery(data), contacts = new Contacts(data), clock = new Clock(data), sound = new Sound(data);
+const player = new Player(data, { motion, view, scenery, contacts, clock, sound });
+const curves = new Curves(data, motion, contacts, view);
+const plots = new Plots($("plots"), data, curves, (t) => { player.toggle(false); player.seek(t); });
+const stage = $("stage"), ctx = stage.getContext("2d");
+let look = {}, dirty = true, fps = 0, drawn = 0; // frames a second, and ms that the last one took to draw
+player.changed = () => { dirty = true; };
+
+// Colours come from the style sheet, so that page and pictures change together.
+const readLook = () => {
+  const style = getComputedStyle(root), colour = (name) => style.getPropertyValue(`--${name}`).trim(), dark = root.dataset.theme === "dark";
+  const body = data.bodies[plots.body ?? 0];
+  look = {
+    dark, paper: colour("card"), ink: colour("ink"), faint: colour("faint"), grid: colour("line"), edgeLine: colour("edge"), accent: colour("accent"), cursor: colour("cursor"),
+    contact: colour("contact"), force: colour("force"), shade: colour("shade"), ground: dark ? "#a9a498" : "#55524b", edge: dark ? "#d9d6cf" : "#23272c",
+    line: body ? (dark ? body.fill : body.line) : colour("ink"), phases: [0, 1, 2, 3, 4].map((k) => colour(`s${k}`)), font: style.fontFamily || "sans-serif",
+  };
+};
+const setTheme = (name) => {
+  root.dataset.theme = name;
+  $("theme").setAttribute("aria-pressed", String(name === "dark"));
+  readLook(); plots.stale(); dirty = true;
+};
+
+// Time as the plots tell it.
+const span = player.end - player.start;
+const timeText = (t) => {
+  const scale = timeScale(player.start, player.end), visible = (plots.range[1] - plots.range[0]) * scale.factor;
+  const value = minus(((t - scale.base) * scale.factor).toFixed(clamp(3 - Math.floor(Math.log10(visible)), 0, 6)));
+  return scale.base ? `${Number(scale.base.toPrecision(9))} s + ${value} ${scale.unit}` : `${value} ${scale.unit}`;
+};
+
+const drawTrack = () => {
+  const track = $("track"), width = track.clientWidth, height = track.clientHeight, ratio = window.devicePixelRatio || 1, inset = 6;
+  if (!width) return;
+  track.width = Math.round(width * ratio); track.height = Math.round(height * ratio);
+  const c = track.getContext("2d"), x = (t) => inset + ((t - player.start) / span) * (width - 2 * inset);
+  c.setTransform(ratio, 0, 0, ratio, 0, 0);
+  const [from, to] = plots.range;
+  if (to - from < span * 0.999) { c.fillStyle = look.grid; c.fillRect(x(from), 0, Math.max(x(to) - x(from), 2), height); }
+  for (const [name, first, last] of data.phases) {
+    if (!(name in PHASES)) continue;
+    c.fillStyle = look.phases[PHASES[name]];
+    c.fillRect(x(Math.max(first, player.start)), 6, Math.max(x(Math.min(last, player.end)) - x(Math.max(first, player.start)), 0.6), height - 20);
+  }
+  c.fillStyle = look.faint; c.globalAlpha = 0.75;
+  for (const t of player.times) c.fillRect(x(t) - 0.4, height - 12, 0.8, 9);
+  c.globalAlpha = 1;
+};
+
+// The words beside the picture.
+let toldAt = "", announced = "";
+const words = () => {
+  $("time").textContent = timeText(player.t);
+  const rate = clock.rate(player.t);
+  const pace = speedText(rate);
+  $("pace").textContent = pace.startsWith("1/") ? `${pace} of true speed` : pace;
+  const phase = player.phase(), line = `${phase}|${player.note}`;
+  if (line !== toldAt) {
+    toldAt = line;
+    const strong = document.createElement("b"), note = document.createElement("span");
+    strong.textContent = phase; note.textContent = player.note;
+    $("said").replaceChildren(...(phase ? [strong, document.createElement("br")] : []), ...(player.note && player.note !== phase ? [note] : []));
+  }
+  if (!player.playing) {
+    const told = [timeText(player.t), phase, player.note === phase ? "" : player.note].filter(Boolean).join(", ");
+    if (told !== announced) { announced = told; $("now").textContent = told; }
+  }
+  $("scrub").value = String(Math.round((10000 * (player.t - player.start)) / span));
+  $("scrub").setAttribute("aria-valuetext", timeText(player.t));
+  $("play").setAttribute("aria-label", player.playing ? "Pause" : "Play");
+  $("sign").setAttribute("d", player.playing ? "M4 3h4v14H4zM12 3h4v14h-4z" : "M5 3v14l12-7z");
+  $("speed").value = String(player.speedIndex);
+  for (const [id, on] of [["adapt", player.adaptive], ["touch", player.points], ["push", player.arrows], ["tick", sound.on]]) $(id).setAttribute("aria-pressed", String(on));
+  const followed = player.chosen >= 0 && view.anchor !== null;
+  $("release").hidden = !followed;
+  if (followed) $("release").textContent = `Following ${data.bodies[player.chosen].name} ✕`;
+  for (const chip of chips) {
+    chip.button.setAttribute("aria-pressed", String(player.faded.has(chip.b)));
+    chip.value.textContent = chip.read ? chip.read(player.t) : "";
+  }
+};
+
+// A button for every part: its colour, its name, what it reads now.
+const MANY = 60;
+const chips = data.bodies.slice(0, MANY).map((body, b) => {
+  const button = document.createElement("button"), square = document.createElement("i"), value = document.createElement("small"), rows = motion.rows[b];
+  button.type = "button"; button.title = `Fade ${body.name}`;
+  square.style.background = body.fill; square.style.borderColor = body.line;
+  button.append(square, body.name, value);
+  button.addEventListener("click", () => player.fade(b));
+  $("parts").append(button);
+  if (!rows) { value.remove(); return { b, button, value }; }
+  const slide = body.motion === "slide", k = body.motion === "free" ? 2 : 0, factor = slide ? 1e3 : DEGREES;
+  return { b, button, value, read: (t) => `${minus((factor * rows.at(t, k, 0)).toFixed(slide ? 3 : 2))}${slide ? " mm" : "°"}` };
+});
+
+const showPlots = (b) => {
+  if (!motion.rows[b]) return;
+  plots.show(b);
+  $("whose").value = String(b);
+  readLook(); plots.stale(); dirty = true;
+};
+
+const resize = () => {
+  const ratio = window.devicePixelRatio || 1, width = stage.clientWidth, height = stage.clientHeight;
+  if (!width || !height) return;
+  stage.width = Math.round(width * ratio); stage.height = Math.round(height * ratio);
+  view.resize(width, height, ratio);
+  plots.stale(); dirty = true;
+};
+
+let last = 0, trackKey = "";
+const frame = (now) => {
+  const seconds = Math.min((now - last) / 1000, 0.1);
+  if (last && now > last) fps = 0.95 * fps + 0.05 * (1000 / (now - last));
+  last = now;
+  if (player.tick(seconds)) { plots.hold(player.t); dirty = true; }
+  if (dirty || plots.dirty) {
+    dirty = plots.dirty = false;
+    const begun = performance.now();
+    player.draw(ctx, look);
+    words();
+    plots.draw(player.t, look);
+    drawn = performance.now() - begun;
+    const key = `${plots.range}|${look.dark}|${$("track").clientWidth}|${window.devicePixelRatio}`;
+    if (key !== trackKey) { trackKey = key; drawTrack(); }
+  }
+  requestAnimationFrame(frame);
+};
+
+// Fingers and mouse on the picture: drag moves, two fingers or the wheel zoom, a tap chooses a part.
+const held = new Map();
+let moved = 0;
+const place = (event) => { const box = stage.getBoundingClientRect(); return [event.clientX - box.left, event.clientY - box.top]; };
+stage.addEventListener("pointerdown", (event) => { stage.setPointerCapture(event.pointerId); held.set(event.pointerId, place(event)); moved = held.size > 1 ? 99 : 0; });
+stage.addEventListener("pointermove", (event) => {
+  const before = held.get(event.pointerId);
+  if (!before) return;
+  const now = place(event), others = [...held].filter(([id]) => id !== event.pointerId).map(([, at]) => at);
+  held.set(event.pointerId, now);
+  moved += Math.abs(now[0] - before[0]) + Math.abs(now[1] - before[1]);
+  if (moved < 5) return;
+  if (others.length) {
+    const [ox, oy] = others[0], apart = ([x, y]) => Math.max(Math.hypot(x - ox, y - oy), 10);
+    view.pan((now[0] - before[0]) / 2, (now[1] - before[1]) / 2);
+    view.zoomAt(apart(now) / apart(before), 0.5 * (now[0] + ox), 0.5 * (now[1] + oy));
+  } else view.pan(now[0] - before[0], now[1] - before[1]);
+  dirty = true;
+});
+stage.addEventListener("pointerup", (event) => {
+  held.delete(event.pointerId);
+  if (moved >= 5) return;
+  const poses = motion.poses(player.t), [x, y] = place(event);
+  view.aim(poses);
+  const b = scenery.hit(ctx, view, poses, x, y, player.faded);
+  if (b < 0) { release(); return; }
+  const at = view.world(x, y);
+  player.choose(b, view.within(poses, b, at));
+  showPlots(b);
+});
+stage.addEventListener("pointercancel", (event) => held.delete(event.pointerId));
+stage.addEventListener("wheel", (event) => { event.preventDefault(); view.zoomAt(0.9982 ** event.deltaY, ...place(event)); dirty = true; }, { passive: false });
+
+// The picture stays where it is when a part is let go.
+const release = () => {
+  const at = view.centre.slice();
+  player.choose(-1);
+  view.aim(motion.poses(player.t));
+  view.shift = [at[0] - view.centre[0], at[1] - view.centre[1]];
+};
+const followNext = () => {
+  const movers = curves.movers, b = movers[(movers.indexOf(player.chosen) + 1) % movers.length];
+  if (b === undefined) return;
+  player.choose(b, [0, 0]);
+  showPlots(b);
+};
+const zoomBy = (factor) => { view.zoomAt(factor, 0.5 * view.width, 0.5 * view.height); dirty = true; };
+const fit = () => { view.reset(); player.chosen = -1; resize(); };
+const shift = (x, y) => { view.pan(x, y); dirty = true; };
+const nudge = (way) => { player.toggle(false); player.seek(player.t + (way * (plots.range[1] - plots.range[0])) / 500); };
+
+const toggles = {
+  adapt: () => player.setAdaptive(!player.adaptive),
+  touch: () => { player.points = !player.points; dirty = true; },
+  push: () => { player.arrows = !player.arrows; dirty = true; },
+  tick: () => { sound.turn(!sound.on); dirty = true; },
+  theme: () => setTheme(look.dark ? "light" : "dark"),
+};
+const presses = {
+  ...toggles, play: () => player.toggle(), back: () => player.step(-1), next: () => player.step(1), closer: () => zoomBy(1.5), wider: () => zoomBy(1 / 1.5), fit,
+  release, print: () => window.print(), narrow: () => plots.zoom(0.5, player.t), broad: () => plots.zoom(2, player.t), whole: () => plots.all(),
+};
+for (const [id, act] of Object.entries(presses)) $(id).addEventListener("click", act);
+
+const keys = {
+  " ": () => player.toggle(), ",": () => player.step(-1), ".": () => player.step(1), "[": () => player.stepPhase(-1), "]": () => player.stepPhase(1), "<": () => player.setSpeed(player.speedIndex - 1), ">": () => player.setSpeed(player.speedIndex + 1),
+  Home: () => player.seek(player.start), End: () => player.seek(player.end), "+": () => zoomBy(1.25), "=": () => zoomBy(1.25), "-": () => zoomBy(0.8), "\u2212": () => zoomBy(0.8), 0: fit,
+  n: followNext, Escape: release, x: () => player.chosen >= 0 && player.fade(player.chosen), a: toggles.adapt, c: toggles.touch, f: toggles.push, s: toggles.tick, t: toggles.theme,
+};
+const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+document.addEventListener("keydown", (event) => {
+  const target = event.target, typing = target instanceof HTMLSelectElement || (target instanceof HTMLInputElement && target.id !== "scrub");
+  if (event.ctrlKey || event.metaKey || typing) return;
+  const on = target instanceof HTMLButtonElement && (event.key === " " || event.key === "Enter");
+  const direction = arrows[event.key];
+  if (direction) {
+    const inPicture = target === stage, inScrub = target.id === "scrub";
+    if (event.altKey && inPicture) shift(-40 * direction[0], 40 * direction[1]);
+    else if ((inPicture || target === document.body || inScrub) && direction[0]) nudge(direction[0] * (event.shiftKey ? 10 : 1));
+    else return;
+    event.preventDefault();
+    return;
+  }
+  const inPage = target !== stage && target.id !== "scrub" && (event.key === "Home" || event.key === "End" || (event.key === " " && target !== document.body));
+  const act = event.altKey || on || inPage ? null : keys[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+  if (act) { act(); event.preventDefault(); }
+});
+$("scrub").addEventListener("input", () => { player.toggle(false); player.seek(player.start + (span * Number($("scrub").value)) / 10000); });
+SPEEDS.forEach((speed, k) => { const option = new Option(k === SPEEDS.length - 1 ? "real time" : speedText(speed), String(k)); $("speed").add(option); });
+$("speed").addEventListener("change", () => player.setSpeed(Number($("speed").value)));
+for (const b of curves.movers) $("whose").add(new Option(data.bodies[b].name, String(b)));
+$("whose").addEventListener("change", () => showPlots(Number($("whose").value)));
+$("adapt").disabled = !clock.uneven;
+$("push").disabled = !contacts.known;
+$("tick").disabled = !sound.any;
+$("back").disabled = $("next").disabled = !data.events.length;
+offerFiles($("files"), data);
+
+// Paper: the still picture takes the poses of the instant shown, and dark pages are printed light.
+let themeBefore = null;
+const toPaper = () => {
+  themeBefore = root.dataset.theme;
+  setTheme("light");
+  const poses = motion.poses(player.t);
+  for (const group of document.querySelectorAll("#poster [data-part]")) {
+    const b = 3 * data.parts[Number(group.dataset.part)].body, c = Math.cos(poses[b + 2]), s = Math.sin(poses[b + 2]);
+    group.setAttribute("transform", `matrix(${c} ${s} ${-s} ${c} ${1e3 * poses[b]} ${1e3 * poses[b + 1]})`);
+  }
+  root.classList.add("paper"); // the plots take the size that they have there
+  plots.draw(player.t, look);
+};
+const toScreen = () => {
+  root.classList.remove("paper");
+  if (themeBefore) setTheme(themeBefore);
+  themeBefore = null;
+};
+window.addEventListener("beforeprint", toPaper);
+window.addEventListener("afterprint", toScreen);
+
+const preferred = window.matchMedia("(prefers-color-scheme: dark)");
+preferred.addEventListener("change", () => { if (!themeBefore) setTheme(preferred.matches ? "dark" : "light"); });
+setTheme(preferred.matches ? "dark" : "light");
+const first = data.ranks.find((b) => motion.rows[b]) ?? curves.movers[0];
+if (first === undefined) document.querySelector(".plots").hidden = true; else showPlots(first);
+// For scripts that drive a page: seek to an instant, set the view, ask where a point of a body is seen (CSS pixels).
+window.watchsim = {
+  window: data.window,
+  seek: (t) => { player.toggle(false); player.seek(t); player.draw(ctx, look); },
+  mark: (points, forces) => { player.points = points; player.arrows = forces; dirty = true; },
+  look: (centre, scale, turn) => { view.turn = turn; view.zoom = scale / view.base; view.anchor = null; view.shift = [0, 0]; view.aim(motion.poses(player.t)); view.shift = [centre[0] - view.centre[0], centre[1] - view.centre[1]]; dirty = true; },
+  seen: (name, points) => { const poses = motion.poses(player.t), b = data.bodies.findIndex((body) => body.name === name); view.aim(poses); return points.map(([x, y]) => view.screen(...view.point(poses, b, x, y))); },
+  closed: (t) => { const poses = motion.poses(t); return contacts.all.filter((one) => one.holds(t)).map((one) => ({ name: one.name, force: one.press(t), place: one.touch(view, poses).slice(0, 2) })); },
+  value: (plot, t) => curves.of(plots.body)[plot].lines[0].value(t),
+  pace: () => ({ fps, drawn }),
+};
+new ResizeObserver(resize).observe($("picture"));
+window.addEventListener("resize", resize);
+resize();
+requestAnimationFrame(frame);

@@ -1,0 +1,86 @@
+// The outlines of the drawing on a canvas: arcs stay arcs at any zoom.
+const MOVE = 0, LINE = 1, ARC = 2;
+const FADED = 0.14, THIN = 1.1, RING = 3.4;
+
+const pathOf = (part) => {
+  const path = new Path2D(), codes = bytesOf(part.codes), n = floats(part.numbers);
+  let at = 0;
+  for (const code of codes) {
+    if (code === MOVE) { path.moveTo(n[at], n[at + 1]); at += 2; }
+    else if (code === LINE) { path.lineTo(n[at], n[at + 1]); at += 2; }
+    else if (code === ARC) { path.arc(n[at], n[at + 1], n[at + 2], n[at + 3], n[at + 3] + n[at + 4], n[at + 4] < 0); at += 5; }
+    else path.closePath();
+  }
+  return path;
+};
+const strokesOf = (text) => {
+  const path = new Path2D(), n = floats(text);
+  for (let i = 0; i < n.length; i += 4) { path.moveTo(n[i], n[i + 1]); path.lineTo(n[i + 2], n[i + 3]); }
+  return path;
+};
+
+class Scenery {
+  constructor(data) {
+    this.bodies = data.bodies;
+    this.parts = data.parts.map((part) => ({ ...part, path: pathOf(part), strokes: part.ground ? strokesOf(part.ground) : null }));
+    // What never moves lies below what does.
+    this.still = this.parts.filter((part) => data.bodies[part.body].still);
+    this.moving = this.parts.filter((part) => !data.bodies[part.body].still);
+  }
+
+  // Everything at the poses given; `look` holds colours, what is faded, and the body chosen (or -1).
+  draw(ctx, view, poses, look) {
+    for (const part of this.still) this.part(ctx, view, poses, part, look);
+    ctx.fillStyle = look.shade;
+    for (const part of this.moving) {
+      if (part.strokes || look.faded.has(part.body)) continue;
+      view.place(ctx, poses, part.body, 2, 3);
+      ctx.fill(part.path);
+    }
+    for (const part of this.moving) this.part(ctx, view, poses, part, look);
+    this.bodies.forEach((body, b) => {
+      if (!body.spoke) return;
+      view.place(ctx, poses, b);
+      ctx.globalAlpha = look.faded.has(b) ? FADED : 1;
+      ctx.strokeStyle = look.edge; ctx.lineWidth = 2 / view.scale; ctx.lineCap = "round";
+      ctx.beginPath(); ctx.moveTo(body.spoke[0], 0); ctx.lineTo(body.spoke[1], 0); ctx.stroke();
+    });
+    ctx.globalAlpha = 1;
+    this.bodies.forEach((body, b) => { if (body.motion === "pivot") this.ring(ctx, view, poses, b, look); });
+  }
+
+  part(ctx, view, poses, part, look) {
+    const fixed = part.strokes !== null;
+    view.place(ctx, poses, part.body);
+    ctx.globalAlpha = look.faded.has(part.body) ? FADED : 1;
+    ctx.lineJoin = "round"; ctx.lineCap = "round";
+    if (!fixed) { ctx.fillStyle = part.fill; ctx.fill(part.path); }
+    if (fixed && part.strokes) { ctx.strokeStyle = look.ground; ctx.lineWidth = 0.9 / view.scale; ctx.stroke(part.strokes); }
+    ctx.strokeStyle = fixed ? look.ground : part.edge;
+    ctx.lineWidth = (fixed ? 1.9 : THIN) / view.scale;
+    ctx.stroke(part.path);
+    if (part.body === look.chosen) { ctx.strokeStyle = look.accent; ctx.lineWidth = 2 / view.scale; ctx.stroke(part.path); }
+    ctx.globalAlpha = 1;
+  }
+
+  ring(ctx, view, poses, b, look) {
+    const [x, y] = view.screen(poses[3 * b], poses[3 * b + 1]);
+    view.plain(ctx);
+    ctx.globalAlpha = look.faded.has(b) ? 0.4 : 1;
+    ctx.beginPath(); ctx.arc(x, y, RING, 0, 2 * Math.PI);
+    ctx.fillStyle = look.paper; ctx.fill();
+    ctx.strokeStyle = look.edge; ctx.lineWidth = 1.3; ctx.stroke();
+    ctx.globalAlpha = 1;
+  }
+
+  // The body whose face lies uppermost at a place of the screen (CSS pixels), faded ones last; -1 where there is none.
+  hit(ctx, view, poses, x, y, faded) {
+    const under = [...this.still, ...this.moving].filter((part) => {
+      if (part.strokes) return false;
+      view.place(ctx, poses, part.body);
+      return ctx.isPointInPath(part.path, x * view.ratio, y * view.ratio);
+    }).map((part) => part.body);
+    const clear = under.filter((b) => !faded.has(b));
+    return (clear.length ? clear : under).pop() ?? -1;
+  }
+}

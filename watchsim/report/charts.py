@@ -1,0 +1,147 @@
+"""How are the charts of the sheet drawn? As SVG in the page itself, in the colours of its style sheet."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from watchsim.render.frame.readouts import decimals_for, signed
+from watchsim.report.html import Markup, element
+from watchsim.simulation.record.trajectory import Array
+
+WIDTH, HEIGHT = 560.0, 230.0
+LEFT, RIGHT, TOP, BOTTOM = 70.0, 12.0, 12.0, 44.0
+DOT = 2.4
+MOST = 1200  # dots of one series
+
+
+@dataclass(frozen=True)
+class Dots:
+    """A series of points (n,), (n,), its name and the class that gives its colour."""
+
+    name: str
+    x: Array
+    y: Array
+    look: str
+
+
+def scatter(series: Sequence[Dots], x_label: str, y_label: str, told: str) -> Markup:
+    """Dots over labelled axes; `told` is what the chart says to those who cannot see it."""
+    clean = [_thinned(one) for one in series]
+    xs, ys = (np.concatenate([getattr(one, axis) for one in clean]) for axis in "xy")
+    x_axis, y_axis = _Axis(xs, LEFT, WIDTH - RIGHT, 7), _Axis(ys, HEIGHT - BOTTOM, TOP, 5)
+    marks = [
+        element("circle", cx=f"{x_axis(x):.1f}", cy=f"{y_axis(y):.1f}", r=DOT, class_=one.look)
+        for one in clean
+        for x, y in zip(one.x.tolist(), one.y.tolist(), strict=True)
+    ]
+    parts = (*_grid(x_axis, y_axis), *_labels(x_label, y_label), *marks)
+    picture = element("svg", *parts, viewBox=f"0 0 {WIDTH:g} {HEIGHT:g}", role="img", aria_label=told)
+    key = element("p", *(_key(one) for one in series), class_="key") if len(series) > 1 else None
+    return element("figure", picture, key, class_="chart")
+
+
+def _key(one: Dots) -> Markup:
+    dot = element("svg", element("circle", cx=5, cy=5, r=4, class_=one.look), viewBox="0 0 10 10", aria_hidden="true")
+    return element("span", dot, one.name)
+
+
+def _thinned(one: Dots) -> Dots:
+    known = np.isfinite(one.x) & np.isfinite(one.y)
+    x, y = one.x[known], one.y[known]
+    step = max(1, math.ceil(len(x) / MOST))
+    return Dots(one.name, x[::step], y[::step], one.look)
+
+
+class _Axis:
+    """Values to places between `first` and `last`, with round marks."""
+
+    def __init__(self, values: Array, first: float, last: float, marks: int) -> None:
+        low, high = (float(values.min()), float(values.max())) if len(values) else (0.0, 1.0)
+        # Rounding must not fill a chart: a hundred-millionth of the value counts as nothing.
+        least = max(1e-8 * max(abs(low), abs(high)), 1e-12)
+        if high - low < least:
+            low, high = low - 0.5 * max(0.02 * abs(low), least), high + 0.5 * max(0.02 * abs(high), least)
+        pad = 0.05 * (high - low)
+        self._low, self._high, self._first, self._last = low - pad, high + pad, first, last
+        self.step = round_step((self._high - self._low) / marks)
+        start = math.ceil(self._low / self.step)
+        self.marks = [k * self.step for k in range(start, math.floor(self._high / self.step) + 1)]
+
+    def __call__(self, value: float) -> float:
+        return self._first + (value - self._low) / (self._high - self._low) * (self._last - self._first)
+
+    def text(self, value: float) -> str:
+        return signed(value, decimals_for(self.step * 1.0001))
+
+
+def round_step(least: float) -> float:
+    """1, 2 or 5 times a power of ten, no smaller than `least`."""
+    power = 10.0 ** math.floor(math.log10(least))
+    return next(step * power for step in (1.0, 2.0, 5.0, 10.0) if step * power >= least * (1.0 - 1e-9))
+
+
+def _grid(x_axis: _Axis, y_axis: _Axis) -> list[Markup]:
+    parts = []
+    for value in y_axis.marks:
+        y = f"{y_axis(value):.1f}"
+        parts.append(element("line", x1=LEFT, x2=WIDTH - RIGHT, y1=y, y2=y, class_="grid"))
+        parts.append(element("text", y_axis.text(value), x=LEFT - 6, y=y, dy="0.32em", text_anchor="end"))
+    for value in x_axis.marks:
+        x = f"{x_axis(value):.1f}"
+        parts.append(element("line", x1=x, x2=x, y1=HEIGHT - BOTTOM, y2=HEIGHT - BOTTOM + 4, class_="axis"))
+        parts.append(element("text", x_axis.text(value), x=x, y=HEIGHT - BOTTOM + 17, text_anchor="middle"))
+    parts.append(element("line", x1=LEFT, x2=WIDTH - RIGHT, y1=HEIGHT - BOTTOM, y2=HEIGHT - BOTTOM, class_="axis"))
+    return parts
+
+
+def _labels(x_label: str, y_label: str) -> tuple[Markup, Markup]:
+    middle = 0.5 * (TOP + HEIGHT - BOTTOM)
+    return (
+        element("text", x_label, x=0.5 * (LEFT + WIDTH - RIGHT), y=HEIGHT - 5, text_anchor="middle"),
+        element("text", y_label, x=13, y=middle, text_anchor="middle", transform=f"rotate(-90 13 {middle:g})"),
+    )
+
+
+def bars(entries: Sequence[tuple[str, float, str]], told: str) -> Markup:
+    """A labelled bar for each (name, share of 1, value in words); negative shares run to the left of the zero line."""
+    row, names, room = 30.0, 205.0, WIDTH - 205.0 - 150.0
+    low, high = min(0.0, *(share for _, share, _ in entries)), max(1e-9, *(share for _, share, _ in entries))
+    zero = names - room * low / (high - low)
+    parts: list[Markup] = []
+    for k, (name, share, value) in enumerate(entries):
+        y, width = row * k, room * abs(share) / (high - low)
+        left = zero if share >= 0.0 else zero - width
+        parts += (
+            element("text", name, x=names - 8, y=y + 0.5 * row, dy="0.34em", text_anchor="end"),
+            element(
+                "rect", x=f"{left:.2f}", y=y + 5, width=f"{max(width, 0.8):.2f}", height=row - 10, rx=2, class_=f"s{k % 8}"
+            ),
+            element("text", value, x=f"{zero + (width if share >= 0 else 0) + 7:.2f}", y=y + 0.5 * row, dy="0.34em"),
+        )
+    picture = element("svg", *parts, viewBox=f"0 0 {WIDTH:g} {row * len(entries):g}", role="img", aria_label=told)
+    return element("figure", picture, class_="chart")
+
+
+def strip(entries: Sequence[tuple[str, float]], unit: str, told: str) -> Markup:
+    """Lengths one after the other along a scale from zero, in the colours that `entries` of the same order have elsewhere."""
+    whole = max(sum(length for _, length in entries), 1e-300)
+    scale = (WIDTH - 2.0 * RIGHT) / whole
+    x, height = RIGHT, 26.0
+    parts: list[Markup] = []
+    for k, (name, length) in enumerate(entries):
+        box = element("title", f"{name}: {length:.3g} {unit}")
+        width = max(length * scale, 0.5)
+        parts.append(element("rect", box, x=f"{x:.2f}", y=0, width=f"{width:.2f}", height=height, class_=f"s{k % 8}"))
+        x += length * scale
+    step = round_step(whole / 8.0)
+    for k in range(int(whole / step) + 1):
+        at = f"{RIGHT + k * step * scale:.2f}"
+        parts.append(element("line", x1=at, x2=at, y1=height, y2=height + 4, class_="axis"))
+        label = f"{signed(k * step, decimals_for(step * 1.0001))}{'' if k else f' {unit}'}"
+        parts.append(element("text", label, x=at, y=height + 17, text_anchor="middle" if k else "start"))
+    picture = element("svg", *parts, viewBox=f"0 0 {WIDTH:g} {height + 22:g}", role="img", aria_label=told)
+    return element("figure", picture, class_="chart")
