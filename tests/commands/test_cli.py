@@ -303,3 +303,17 @@ def test_a_body_without_weight_is_named_where_the_solver_gives_up(tmp_path: Path
 def test_a_missing_folder_is_named_once(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["plot", "nothere"]) == 2
     assert capsys.readouterr().err == "nothere: there is no such results folder\n"
+
+
+def test_report_writes_a_page_or_says_why_not(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = tmp_path / "run"
+    assert main(["run", str(LEVER), "--duration", "0.3 s", "--no-plots", "--report", "-o", str(folder)]) == 0
+    assert (folder / "report.html").read_text(encoding="utf-8").endswith("</html>\n")
+    page = tmp_path / "watch.html"
+    capsys.readouterr()
+    assert main(["report", str(folder), "-o", str(page), "--window", "0.1 s:0.2 s"]) == 0
+    assert capsys.readouterr().out.strip() == str(page) and page.is_file()
+    for wrong in (["-o", str(tmp_path / "watch.pdf")], ["--window", "5 s:6 s"], ["--window", "0.2 s:0.1 s"]):
+        assert main(["report", str(folder), *wrong]) == 2
+        assert "Traceback" not in capsys.readouterr().err
+    assert main(["report", str(tmp_path / "nothing")]) == 2

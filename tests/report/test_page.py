@@ -214,7 +214,7 @@ def test_outlines_of_the_still_picture_are_the_drawings(tmp_path: Path) -> None:
     file.write_text(
         f'<svg xmlns="http://www.w3.org/2000/svg" width="20mm" height="20mm" viewBox="0 0 20 20"><path d="{data}"/></svg>'
     )
-    back = read(file).profile.outlines
+    back = read(file).profile.loops
     areas = sorted(abs(_area(polyline(loop, 1e-8))) for loop in back)
     assert areas == pytest.approx(sorted(abs(_area(polyline(loop, 1e-8))) for loop in (shape, disc)), rel=1e-5)
 
