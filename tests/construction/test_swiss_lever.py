@@ -19,7 +19,7 @@ from watchsim.designs.drawn import Drawn
 from watchsim.mechanism.overlap import overlap_faults
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts"))
+sys.path.insert(0, str(ROOT / "scripts" / "checks"))
 
 from measure_lever import measure  # noqa: E402
 from try_designs import numbers  # noqa: E402

@@ -211,7 +211,7 @@ LONG_FLIGHT = """
 from moving_scenes import profile
 from watchsim.candidates import cell_grid
 from watchsim.simulation.simulate import simulate
-choose_cells.FEW_CONTACTS = 10**9
+cell_grid.FEW_CONTACTS = 10**9
 print(simulate(profile("bench_lever"), 0.05).stop.name)
 """
 

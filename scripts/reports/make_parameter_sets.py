@@ -1,6 +1,6 @@
-"""How near do the parameter sets come to what is published? Writes docs/parameter-sets.md.
+"""How near do the parameter sets come to what is published? Writes docs/reports/parameter-sets.md.
 
-    python scripts/make_parameter_sets.py [page]
+    python scripts/reports/make_parameter_sets.py [page]
 
 Runs the scenes of profiles/set_a and profiles/set_b and puts phase times, shares of energy and results beside those of the
 public model of set A (profiles/set_a/scene.toml names it). Nothing of that model is run here: its numbers are as published.
@@ -8,12 +8,12 @@ public model of set A (profiles/set_a/scene.toml names it). Nothing of that mode
 
 from __future__ import annotations
 
+import sys
 from collections import defaultdict
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from usage import arguments
 
 from watchsim.analysis.summary import summary
 from watchsim.analysis.timing.phases import Phase, phases
@@ -22,7 +22,7 @@ from watchsim.scene.file.load import load
 from watchsim.simulation.record.trajectory import EventKind, Trajectory
 from watchsim.simulation.simulate import simulate
 
-PAGE = Path(__file__).resolve().parents[1] / "docs" / "parameter-sets.md"
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "reports" / "parameter-sets.md"
 LAST = 30  # beats at the end over which phases are averaged
 # Of the model, one beat lying flat: (start of the phase, what happens, ms after the jewel's entry, the balance's angle in
 # degrees from the middle of its lift: the model counts from its rest, 1.5° off).
@@ -106,7 +106,7 @@ def page() -> str:
         "",
         "Two watches whose numbers are public, drawn by the draughtsman's rules: `profiles/set_a` and `profiles/set_b`. Each",
         "number stands in the scene with its source, and what is an estimate is called one. Written by",
-        "`scripts/make_parameter_sets.py`; runs of 30 s.",
+        "`scripts/reports/make_parameter_sets.py`; runs of 30 s.",
         "",
         "## Set A: 3 Hz, beside the public model it is taken from",
         "",
@@ -153,5 +153,8 @@ def page() -> str:
 
 
 if __name__ == "__main__":
+    sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+    from usage import arguments
+
     asked = arguments(__doc__, page=(PAGE, "the page"))
     Path(asked.page).write_text(page(), encoding="utf-8")

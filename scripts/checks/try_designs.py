@@ -1,6 +1,6 @@
 """Do random designs start without overlap, and do they tick?
 
-    python scripts/try_designs.py [designs] [simulated] [seed] [design]
+    python scripts/checks/try_designs.py [designs] [simulated] [seed] [design]
 
 Draws dimensions at random until so many designs (default 200) are accepted; refusals say why, and their reasons are counted.
 Each accepted design is drawn, read back from its drawings and looked at for overlap at the start; the first few (default 40)
@@ -15,8 +15,7 @@ import re
 import sys
 import time
 from collections import Counter
-
-from usage import arguments
+from pathlib import Path
 
 from watchsim.analysis.summary import summary
 from watchsim.construction import known
@@ -112,6 +111,9 @@ def main(count: int, simulated: int, seed: int, name: str) -> int:
 
 
 if __name__ == "__main__":
+    sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+    from usage import arguments
+
     asked = arguments(
         __doc__,
         designs=(200, "accepted designs"),

@@ -1,8 +1,8 @@
 """Are the dimensions that random designs of the Swiss lever were drawn to those that are measured in their drawings?
 
-    python scripts/compare_designs.py [designs] [seed]
+    python scripts/checks/compare_designs.py [designs] [seed]
 
-Draws dimensions at random (scripts/try_designs.py) until so many designs (default 200) are accepted, measures each (what
+Draws dimensions at random (scripts/checks/try_designs.py) until so many designs (default 200) are accepted, measures each (what
 `watchsim check` tells) and prints the largest difference of every dimension, with the design in which it occurs. Exits with 1
 where one differs by more than 0.01°.
 """
@@ -13,9 +13,9 @@ import math
 import random
 import sys
 from collections.abc import Iterator
+from pathlib import Path
 
 from try_designs import numbers
-from usage import arguments
 
 from watchsim.construction import known
 from watchsim.designs.drawn import Drawn
@@ -83,5 +83,8 @@ def main(count: int, seed: int) -> int:
 
 
 if __name__ == "__main__":
+    sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+    from usage import arguments
+
     given = arguments(__doc__, designs=(200, "how many designs"), seed=(1, "of the random numbers"))
     sys.exit(main(given.designs, given.seed))
