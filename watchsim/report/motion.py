@@ -57,11 +57,8 @@ def channels(run: Trajectory, window: Window, size: float) -> tuple[list[Channel
     t = run.t[first:last]
     middle = 0.5 * (t[:-1] + t[1:])
     halfway = run.sample(middle)
-    told = [
-        _Told(body, t, *(rows[first:last, own] for rows in (run.q, run.u, run.a)), middle, *(mid[:, own] for mid in halfway))
-        for body in run.scene.bodies
-        if (own := run.slices.get(body.name)) is not None
-    ]
+    kept = slice(first, last)
+    told = [_of(run, body, kept, middle, *halfway) for body in run.scene.bodies if body.name in run.slices]
     share = FINE
     while share <= COARSEST:
         found, taken = [], 0
@@ -91,6 +88,13 @@ class _Told:
     middle: Array
     q_middle: Array
     u_middle: Array
+
+
+def _of(run: Trajectory, body: Body, kept: slice, middle: Array, q_middle: Array, u_middle: Array) -> _Told:
+    """The columns of that body, of the rows `kept` and midway between them."""
+    own = run.slices[body.name]
+    rows = run.t[kept], run.q[kept, own], run.u[kept, own], run.a[kept, own]
+    return _Told(body, *rows, middle, q_middle[:, own], u_middle[:, own])
 
 
 def _channel(told: _Told, weight: Array, off: float, looser: float) -> Channel:
