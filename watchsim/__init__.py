@@ -33,7 +33,7 @@ _HOMES = {
     "plot_kinematics": "watchsim.render.plots",
     "movie": "watchsim.render.movie",
     "frame": "watchsim.render.movie",
-    "report": "watchsim.report.report",
+    "report": "watchsim.pages.report",
     "profiles_dir": "watchsim.profiles_path",
 }
 
@@ -55,11 +55,11 @@ if TYPE_CHECKING:
     from watchsim.mechanism.errors import SceneError as SceneError
     from watchsim.mechanism.load import load as load
     from watchsim.mechanism.scene import Scene as Scene
+    from watchsim.pages.report import report as report
     from watchsim.profiles_path import profiles_dir as profiles_dir
     from watchsim.render.movie import frame as frame
     from watchsim.render.movie import movie as movie
     from watchsim.render.plots import plot_kinematics as plot_kinematics
-    from watchsim.report.report import report as report
     from watchsim.simulation.simulate import simulate as simulate
     from watchsim.simulation.stops import Stop as Stop
     from watchsim.simulation.trajectory import EventKind as EventKind

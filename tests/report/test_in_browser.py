@@ -19,13 +19,13 @@ from scipy.ndimage import maximum_filter
 from watchsim.analysis.forces import forces
 from watchsim.geometry.polyline import polyline
 from watchsim.mechanism.load import load
+from watchsim.pages.report import report
 from watchsim.profiles_path import profiles_dir
 from watchsim.render.movie import frame
 from watchsim.render.palette import BLUED, BRASS, GILT, NIGHT, RUBY, STEEL
 from watchsim.render.parts import loops_of
 from watchsim.render.poses import poses
 from watchsim.render.stage import Stage
-from watchsim.report.report import report
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.trajectory import Trajectory
 

@@ -6,11 +6,11 @@ import math
 
 import numpy as np
 
+from watchsim.pages.html import Markup, element
+from watchsim.pages.outlines import path_data
 from watchsim.render.parts import Part
 from watchsim.render.poses import Window, poses
 from watchsim.render.view import Frame, View, room_of, view
-from watchsim.report.html import Markup, element
-from watchsim.report.outlines import path_data
 from watchsim.simulation.trajectory import Array, Trajectory
 
 MARGIN = 0.04

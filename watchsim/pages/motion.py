@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.mechanism.body import Body
+from watchsim.pages.packed import doubles, floats
 from watchsim.render.parts import loops_of, outline
 from watchsim.render.poses import Window
 from watchsim.render.thinning import kept_rows
 from watchsim.render.view import COARSE, size_of
-from watchsim.report.packed import doubles, floats
 from watchsim.simulation.trajectory import Array, Trajectory, between
 
 FINE, COARSEST = 5e-7, 1e-3  # of the picture's size: what outlines may be off, at first, and where there is too much to keep

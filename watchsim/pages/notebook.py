@@ -14,13 +14,13 @@ from watchsim.mechanism.compile import compile_scene
 from watchsim.mechanism.oscillation import frequency
 from watchsim.mechanism.roles import swings
 from watchsim.mechanism.scene import Scene
+from watchsim.pages.charts import scatter
+from watchsim.pages.html import Content, Markup, element, joined
+from watchsim.pages.stretch_shown import shown
+from watchsim.pages.timekeeping import both_ways, with_error
 from watchsim.render.poses import Window, poses
 from watchsim.render.stage import Stage
 from watchsim.render.still import at_rest
-from watchsim.report.charts import scatter
-from watchsim.report.html import Content, Markup, element, joined
-from watchsim.report.stretch_shown import shown
-from watchsim.report.timekeeping import both_ways, with_error
 from watchsim.simulation.trajectory import Trajectory
 
 SIZE = (560, 315)

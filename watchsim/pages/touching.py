@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.analysis.forces import Forces, forces
+from watchsim.pages.packed import doubles, floats
 from watchsim.render.contacts import ContactMarks, Side
 from watchsim.render.poses import Window
 from watchsim.render.thinning import kept_rows
-from watchsim.report.packed import doubles, floats
 from watchsim.simulation.trajectory import Array, Trajectory
 
 EVENLY = 600  # instants besides those of rows and events at which forces are asked for

@@ -11,14 +11,14 @@ from watchsim.mechanism.body import Body
 from watchsim.mechanism.carry import carried_last, is_still
 from watchsim.mechanism.roles import roles
 from watchsim.mechanism.scene import Scene
+from watchsim.pages.moments import busy, heard, instants, named
+from watchsim.pages.motion import Channel
+from watchsim.pages.outlines import packed_part
+from watchsim.pages.touching import touching
 from watchsim.render.palette import Finish, looks
 from watchsim.render.parts import Part, is_round, loops_of
 from watchsim.render.poses import Window
 from watchsim.render.view import Frame, View, room_of, size_of, view
-from watchsim.report.moments import busy, heard, instants, named
-from watchsim.report.motion import Channel
-from watchsim.report.outlines import packed_part
-from watchsim.report.touching import touching
 from watchsim.simulation.trajectory import Array, Trajectory
 
 WIDE, HIGH = 1280.0, 720.0  # of the picture by which up and the part to follow are chosen

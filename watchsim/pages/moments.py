@@ -10,8 +10,8 @@ import numpy as np
 
 from watchsim.analysis.phases import Phase
 from watchsim.analysis.timegrapher import noises
+from watchsim.pages.packed import doubles, floats
 from watchsim.render.poses import Window
-from watchsim.report.packed import doubles, floats
 from watchsim.simulation.trajectory import Array, EventKind, Trajectory
 from watchsim.units import metric
 

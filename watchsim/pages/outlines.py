@@ -14,8 +14,8 @@ import numpy as np
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc
 from watchsim.mechanism.scene import Scene
+from watchsim.pages.packed import floats, small
 from watchsim.render.parts import Part, loops_of, parts
-from watchsim.report.packed import floats, small
 
 MOVE, LINE, ARC, CLOSE = range(4)
 ROUGH = 1e-3  # of the picture: chords where only the order and the nesting of parts matter

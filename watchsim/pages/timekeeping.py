@@ -9,9 +9,9 @@ import numpy as np
 
 from watchsim.analysis.beats import Beats, beats
 from watchsim.mechanism.roles import swings
+from watchsim.pages.charts import Dots, scatter
+from watchsim.pages.html import Markup, element, section
 from watchsim.render.readouts import decimals_for, signed
-from watchsim.report.charts import Dots, scatter
-from watchsim.report.html import Markup, element, section
 from watchsim.simulation.trajectory import Array, Trajectory
 
 AVERAGED = (("amplitude_deg", "Amplitude", "°"), ("rate_s_per_d", "Rate", " s/d"), ("beat_error_ms", "Beat error", " ms"))
