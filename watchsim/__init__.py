@@ -41,7 +41,7 @@ _HOMES = {
     "frame": "watchsim.render.run_movie",
     "plot_tape": "watchsim.render.tape",
     "sound": "watchsim.analysis.sound.wav",
-    "report": "watchsim.report.report",
+    "report": "watchsim.pages.report",
     "profiles_dir": "watchsim.profiles_path",
 }
 
@@ -62,13 +62,13 @@ if TYPE_CHECKING:
     from watchsim.drawing.drawing import Drawing as Drawing
     from watchsim.drawing.profile import Profile as Profile
     from watchsim.drawing.read import read as read
+    from watchsim.pages.report import report as report
     from watchsim.profiles_path import profiles_dir as profiles_dir
     from watchsim.render.plots import plot_kinematics as plot_kinematics
     from watchsim.render.run_movie import frame as frame
     from watchsim.render.run_movie import movie as movie
     from watchsim.render.study import plot_sweep as plot_sweep
     from watchsim.render.tape import plot_tape as plot_tape
-    from watchsim.report.report import report as report
     from watchsim.results.folder import read_results as read_results
     from watchsim.results.folder import write_results as write_results
     from watchsim.scene.errors import SceneError as SceneError

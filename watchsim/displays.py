@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import importlib
 
-HOME = "watchsim.report.notebook"
+HOME = "watchsim.pages.notebook"
 
 
 def notebook_html(value: object) -> str:
-    """HTML for a value of a class that `watchsim.report.notebook` has a function for: NAME_html, in small letters."""
+    """HTML for a value of a class that `watchsim.pages.notebook` has a function for: NAME_html, in small letters."""
     draw = getattr(importlib.import_module(HOME), f"{type(value).__name__.lower()}_html")
     return str(draw(value))

@@ -49,7 +49,7 @@ def timeline(run: Trajectory) -> list[tuple[str, float, float, str]]:
     """For each mark of the model the words, our time and angle, and the model's; means over the last beats of both sides."""
     beats: dict[int, dict[str, Phase]] = defaultdict(dict)
     for phase in phases(run):
-        beats[phase.beat][phase.name] = phase
+        beats[phase.beat].setdefault(phase.name, phase)  # the impulse begins on the stone and goes on on the tooth
     last = [beats[number] for number in sorted(beats)[-LAST - 1 : -1]]
     rows = []
     for name, words, at, angle in PUBLISHED:

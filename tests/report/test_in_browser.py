@@ -18,13 +18,13 @@ from scipy.ndimage import maximum_filter
 
 from watchsim.analysis.contact_forces import forces
 from watchsim.geometry.polyline import polyline
+from watchsim.pages.report import report
 from watchsim.profiles_path import profiles_dir
 from watchsim.render.frame.filled_parts import loops_of
 from watchsim.render.frame.pose_history import poses
 from watchsim.render.frame.stage import Stage
 from watchsim.render.palette import BLUED, BRASS, GILT, NIGHT, RUBY, STEEL
 from watchsim.render.run_movie import frame
-from watchsim.report.report import report
 from watchsim.scene.file.load import load
 from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.simulation.simulate import simulate

@@ -5,6 +5,8 @@ from __future__ import annotations
 import base64
 import io
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import imageio.v3 as iio
@@ -85,3 +87,10 @@ def test_a_notebook_asks_for_these() -> None:
     assert shown["text/html"].startswith('<div class="watchsim">') and "image/png" not in shown
     shown, _ = formatter.format(ws.plot_kinematics(watch_run()))
     assert shown["image/png"]
+
+
+def test_the_function_is_not_hidden_by_a_package() -> None:
+    """`watchsim.report` is a function, whatever has been imported before."""
+    code = "import watchsim as ws; ws.load(ws.profiles_dir() / 'balance')._repr_html_(); print(callable(ws.report))"
+    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert told.stdout.strip() == "True"

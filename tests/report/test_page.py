@@ -23,14 +23,14 @@ from watchsim.drawing.read import read
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.polyline import polyline
 from watchsim.geometry.primitives import Arc, Line
+from watchsim.pages.html import element, embedded, joined
+from watchsim.pages.motion import TooMuch, channels
+from watchsim.pages.outlines import path_data
+from watchsim.pages.page import SCRIPTS
+from watchsim.pages.report import page_text, report
+from watchsim.pages.stretch_shown import shown
 from watchsim.profiles_path import profiles_dir
 from watchsim.render.thinning import kept_rows
-from watchsim.report.html import element, embedded, joined
-from watchsim.report.motion import TooMuch, channels
-from watchsim.report.outlines import path_data
-from watchsim.report.page import SCRIPTS
-from watchsim.report.report import page_text, report
-from watchsim.report.stretch_shown import shown
 from watchsim.scene.file.load import load
 from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.simulation.simulate import simulate
@@ -181,7 +181,7 @@ def test_rows_that_are_kept_tell_the_motion(lever: Trajectory) -> None:
 
 
 def test_too_much_motion_is_refused_or_cut(monkeypatch: pytest.MonkeyPatch, lever: Trajectory) -> None:
-    monkeypatch.setattr("watchsim.report.motion.MOST", 4_000)
+    monkeypatch.setattr("watchsim.pages.motion.MOST", 4_000)
     with pytest.raises(TooMuch, match="choose a shorter window"):
         page_text(lever, window=(0.0, 0.6))
     start, end = data_of(page_text(lever))["window"]
@@ -254,5 +254,5 @@ def test_the_same_run_makes_the_same_page() -> None:
 def test_every_script_is_in_the_page() -> None:
     from importlib import resources
 
-    names = {item.name for item in resources.files("watchsim.report.assets").iterdir() if item.name.endswith(".js")}
+    names = {item.name for item in resources.files("watchsim.pages.assets").iterdir() if item.name.endswith(".js")}
     assert names == {f"{name}.js" for name in SCRIPTS}

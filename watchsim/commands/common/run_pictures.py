@@ -36,7 +36,7 @@ def page(run: Trajectory, numbers: Mapping[str, Any]) -> dict[str, Callable[[Pat
     """The same for report.html; `numbers` are those of summary.json."""
 
     def write(path: Path) -> None:
-        from watchsim.report.report import page_text
+        from watchsim.pages.report import page_text
 
         path.write_bytes(page_text(run, numbers=numbers).encode("utf-8", "replace"))
 

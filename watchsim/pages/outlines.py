@@ -13,8 +13,8 @@ import numpy as np
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc
+from watchsim.pages.packed import floats, small
 from watchsim.render.frame.filled_parts import Part, loops_of, parts
-from watchsim.report.packed import floats, small
 from watchsim.scene.scene import Scene
 
 MOVE, LINE, ARC, CLOSE = range(4)

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from watchsim.analysis.timing.phases import Phase
+from watchsim.pages.charts import strip
+from watchsim.pages.html import Content, Markup, element, joined, section, table
 from watchsim.render.frame.readouts import decimals_for, signed
-from watchsim.report.charts import strip
-from watchsim.report.html import Content, Markup, element, joined, section, table
 from watchsim.simulation.record.trajectory import Array
 
 ORDER = ("unlock", "catch-up", "impulse", "drop", "run to banking")

@@ -11,13 +11,13 @@ import numpy as np
 from watchsim.analysis.timing.averages import averages, last_window
 from watchsim.analysis.timing.beats import Beats, beats
 from watchsim.mechanism.compile import compile_scene
+from watchsim.pages.charts import scatter
+from watchsim.pages.html import Content, Markup, element, joined
+from watchsim.pages.stretch_shown import shown
+from watchsim.pages.timekeeping import both_ways, with_error
 from watchsim.render.frame.pose_history import Window, poses
 from watchsim.render.frame.stage import Stage
 from watchsim.render.still import at_rest
-from watchsim.report.charts import scatter
-from watchsim.report.html import Content, Markup, element, joined
-from watchsim.report.stretch_shown import shown
-from watchsim.report.timekeeping import both_ways, with_error
 from watchsim.scene.oscillation import frequency
 from watchsim.scene.roles import swings
 from watchsim.scene.scene import Scene

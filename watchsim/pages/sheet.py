@@ -8,12 +8,12 @@ from typing import Any
 from watchsim.analysis.energy import energy_shares
 from watchsim.analysis.headlines import expected_text, headlines
 from watchsim.analysis.timing.phases import Phase
+from watchsim.pages.charts import bars
+from watchsim.pages.html import Markup, element, joined, section, table
+from watchsim.pages.parameters import parameters
+from watchsim.pages.phase_tables import phase_tables
+from watchsim.pages.timekeeping import timekeeping
 from watchsim.render.frame.readouts import signed
-from watchsim.report.charts import bars
-from watchsim.report.html import Markup, element, joined, section, table
-from watchsim.report.parameters import parameters
-from watchsim.report.phase_tables import phase_tables
-from watchsim.report.timekeeping import timekeeping
 from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.units import metric
 

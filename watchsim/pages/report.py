@@ -12,16 +12,16 @@ from typing import Any
 
 from watchsim.analysis.summary import summary
 from watchsim.analysis.timing.phases import Phase, phases
+from watchsim.pages.data import picture_size, player_data
+from watchsim.pages.files import packed_files
+from watchsim.pages.html import Markup, element, joined
+from watchsim.pages.motion import Channel, TooMuch, channels
+from watchsim.pages.outlines import drawn_parts
+from watchsim.pages.page import page
+from watchsim.pages.poster import poster
+from watchsim.pages.sheet import sheet, verdict
+from watchsim.pages.stretch_shown import shown
 from watchsim.render.frame.pose_history import Window, recorded
-from watchsim.report.data import picture_size, player_data
-from watchsim.report.files import packed_files
-from watchsim.report.html import Markup, element, joined
-from watchsim.report.motion import Channel, TooMuch, channels
-from watchsim.report.outlines import drawn_parts
-from watchsim.report.page import page
-from watchsim.report.poster import poster
-from watchsim.report.sheet import sheet, verdict
-from watchsim.report.stretch_shown import shown
 from watchsim.results.tables import plain
 from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.storage.write import write_file

@@ -10,8 +10,8 @@ import numpy as np
 
 from watchsim.analysis.timing.phases import Phase
 from watchsim.analysis.timing.timegrapher import noises
+from watchsim.pages.packed import doubles, floats
 from watchsim.render.frame.pose_history import Window
-from watchsim.report.packed import doubles, floats
 from watchsim.simulation.record.trajectory import Array, EventKind, Trajectory
 from watchsim.units import metric
 

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from watchsim.analysis.timing.beats import Beats, beats
+from watchsim.pages.charts import Dots, scatter
+from watchsim.pages.html import Markup, element, section
 from watchsim.render.frame.readouts import decimals_for, signed
-from watchsim.report.charts import Dots, scatter
-from watchsim.report.html import Markup, element, section
 from watchsim.scene.roles import swings
 from watchsim.simulation.record.trajectory import Array, Trajectory
 

@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 
 from watchsim.analysis.timing.phases import Phase
+from watchsim.pages.moments import busy, heard, instants, named
+from watchsim.pages.motion import Channel
+from watchsim.pages.outlines import packed_part
+from watchsim.pages.touching import touching
 from watchsim.render.frame.filled_parts import Part, is_round, loops_of
 from watchsim.render.frame.pose_history import Window
 from watchsim.render.frame.view import Frame, View, room_of, size_of, view
 from watchsim.render.palette import Finish, looks
-from watchsim.report.moments import busy, heard, instants, named
-from watchsim.report.motion import Channel
-from watchsim.report.outlines import packed_part
-from watchsim.report.touching import touching
 from watchsim.scene.body import Body
 from watchsim.scene.carriers import carried_last, is_still
 from watchsim.scene.roles import roles

@@ -162,7 +162,7 @@ class Plots {
     for (let k = Math.ceil(low / factor / step); k * step <= high / factor; k++) {
       const y = Math.round(panel.y(k * step * factor)) + 0.5;
       ctx.beginPath(); ctx.moveTo(PAD.left, y); ctx.lineTo(width - PAD.right, y); ctx.stroke();
-      ctx.fillText(minus((k * step).toFixed(decimals(step))), PAD.left - 6, y);
+      ctx.fillText(minus((k * step).toFixed(decimals(step))), PAD.left - 6, y, PAD.left - 8); // squeezed where it is too long
     }
     const scale = timeScale(...this.range), [from, to] = this.range.map((t) => (t - scale.base) * scale.factor);
     const tick = roundStep((to - from) / Math.max(2, Math.floor((width - PAD.left) / 90)));

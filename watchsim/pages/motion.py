@@ -11,11 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from watchsim.pages.packed import doubles, floats
 from watchsim.render.frame.filled_parts import loops_of, outline
 from watchsim.render.frame.pose_history import Window
 from watchsim.render.frame.view import COARSE, size_of
 from watchsim.render.thinning import kept_rows
-from watchsim.report.packed import doubles, floats
 from watchsim.scene.body import Body
 from watchsim.simulation.record.trajectory import Array, Trajectory, between
 
@@ -56,13 +56,9 @@ def channels(run: Trajectory, window: Window, size: float) -> tuple[list[Channel
     last = min(int(np.searchsorted(run.t, window[1], side="left")) + 1, len(run.t))
     t = run.t[first:last]
     middle = 0.5 * (t[:-1] + t[1:])
-    q, u, a = (rows[first:last] for rows in (run.q, run.u, run.a))
-    mid_q, mid_u = run.sample(middle)
-    told = [
-        _Told(body, t, q[:, own], u[:, own], a[:, own], middle, mid_q[:, own], mid_u[:, own])
-        for body in run.scene.bodies
-        if (own := run.slices.get(body.name)) is not None
-    ]
+    halfway = run.sample(middle)
+    kept = slice(first, last)
+    told = [_of(run, body, kept, middle, *halfway) for body in run.scene.bodies if body.name in run.slices]
     share = FINE
     while share <= COARSEST:
         found, taken = [], 0
@@ -92,6 +88,13 @@ class _Told:
     middle: Array
     q_middle: Array
     u_middle: Array
+
+
+def _of(run: Trajectory, body: Body, kept: slice, middle: Array, q_middle: Array, u_middle: Array) -> _Told:
+    """The columns of that body, of the rows `kept` and midway between them."""
+    own = run.slices[body.name]
+    rows = run.t[kept], run.q[kept, own], run.u[kept, own], run.a[kept, own]
+    return _Told(body, *rows, middle, q_middle[:, own], u_middle[:, own])
 
 
 def _channel(told: _Told, weight: Array, off: float, looser: float) -> Channel:

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.analysis.contact_forces import Forces, forces
+from watchsim.pages.packed import doubles, floats
 from watchsim.render.frame.pose_history import Window
 from watchsim.render.frame.touching_points import ContactMarks, Side
 from watchsim.render.thinning import kept_rows
-from watchsim.report.packed import doubles, floats
 from watchsim.simulation.record.trajectory import Array, Trajectory
 
 EVENLY = 600  # instants besides those of rows and events at which forces are asked for

@@ -12,9 +12,9 @@ from importlib import resources
 from string import Template
 from typing import Any
 
-from watchsim.report.html import Markup, embedded, joined
+from watchsim.pages.html import Markup, embedded, joined
 
-ASSETS = "watchsim.report.assets"
+ASSETS = "watchsim.pages.assets"
 SCRIPTS = ("bytes", "motion", "scene", "view", "contacts", "clock", "sound", "curves", "plots", "player", "files", "main")
 
 
