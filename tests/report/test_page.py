@@ -30,7 +30,7 @@ from watchsim.pages.page import SCRIPTS
 from watchsim.pages.report import page_text, report
 from watchsim.pages.stretch_shown import shown
 from watchsim.profiles_path import profiles_dir
-from watchsim.render.thinning import kept_rows
+from watchsim.render.fewest_rows import kept_rows
 from watchsim.scene.file.load import load
 from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.simulation.simulate import simulate

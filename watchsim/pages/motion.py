@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.pages.packed import doubles, floats
+from watchsim.render.fewest_rows import kept_rows
 from watchsim.render.frame.filled_parts import loops_of, outline
 from watchsim.render.frame.pose_history import Window
 from watchsim.render.frame.view import COARSE, size_of
-from watchsim.render.thinning import kept_rows
 from watchsim.scene.body import Body
 from watchsim.simulation.record.trajectory import Array, Trajectory, between
 

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from watchsim.analysis.contact_forces import Forces, forces
 from watchsim.pages.packed import doubles, floats
+from watchsim.render.fewest_rows import kept_rows
 from watchsim.render.frame.pose_history import Window
 from watchsim.render.frame.touching_points import ContactMarks, Side
-from watchsim.render.thinning import kept_rows
 from watchsim.simulation.record.trajectory import Array, Trajectory
 
 EVENLY = 600  # instants besides those of rows and events at which forces are asked for

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from watchsim.geometry.gltf_motion import MOST_TURN, Track
+from watchsim.render.fewest_rows import kept_rows
 from watchsim.render.frame.pose_history import Window, poses, stretch
-from watchsim.render.thinning import kept_rows
 from watchsim.scene.carriers import is_still
 from watchsim.simulation.record.trajectory import Array, Trajectory
 

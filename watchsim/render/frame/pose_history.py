@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.render.thinned import taken, thinned
+from watchsim.render.drawn_rows import taken, thinned
 from watchsim.scene.body import Body
 from watchsim.simulation.record.body_frames import frames as body_frames
 from watchsim.simulation.record.trajectory import Trajectory
