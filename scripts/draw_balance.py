@@ -28,8 +28,8 @@ from balance_sizes import (
     STAFF,
     STAFF_PLACE,
 )
-from draw_outline import angle_of, arc_between, circle, polar, turned
-from draw_sheet import add_circle, add_edge, add_loop, add_polygon, new_sheet, write
+from watchsim.construction.outline import angle_of, arc_between, circle, polar, turned
+from watchsim.drawing.sheet import add_circle, add_edge, add_loop, add_polygon, new_sheet, write
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Line, Point

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from draw_sheet import add_circle, add_polygon, new_sheet, write
+from watchsim.drawing.sheet import add_circle, add_polygon, new_sheet, write
 
 TEETH = (
     ((2.5, 0.0), (1.826397222, 0.523710976), (1.881509331, 0.264428892)),

@@ -3,37 +3,23 @@
     python scripts/draw_swiss_lever.py [folder]
 
 Writes escape_wheel, lever, roller and banking as DXF (default folder: profiles/swiss_lever): lines, arcs and circles on
-named layers, millimetres, one point on the layer PIVOT each. The scene (profiles/swiss_lever/scene.toml) is written by
-hand; scripts/measure_lever.py measures what was drawn.
+named layers, millimetres, one point on the layer PIVOT each. The construction is watchsim/construction/swiss_lever; the scene
+(profiles/swiss_lever/scene.toml) is written by hand; scripts/measure_lever.py measures what was drawn.
 """
 
 from __future__ import annotations
 
 from pathlib import Path
 
-from draw_sheet import add_loop, new_sheet, write
-from draw_swiss_body import lever
-from draw_swiss_design import Swiss
-from draw_swiss_roller import banking, roller
-from draw_swiss_wheel import wheel
-
-from watchsim.geometry.loop import Loop
+from watchsim.construction.swiss_lever.points import Swiss
+from watchsim.construction.swiss_lever.sheets import sheets
 
 
 def draw(folder: Path, design: Swiss | None = None) -> None:
     """Write the four drawings into `folder`."""
-    swiss = design or Swiss()
-    sheets = {"escape_wheel": wheel(swiss), "lever": lever(swiss), "roller": roller(swiss), "banking": banking(swiss)}
-    for name, loops in sheets.items():
-        draw_sheet(folder / f"{name}.dxf", loops)
-
-
-def draw_sheet(path: Path, loops: list[Loop]) -> None:
-    """One file with the loops on their layers and the pivot at the origin."""
-    sheet = new_sheet(tuple(dict.fromkeys(loop.layer for loop in loops)))
-    for loop in loops:
-        add_loop(sheet, loop)
-    write(sheet, path)
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, sheet in sheets(design or Swiss()).items():
+        (folder / f"{name}.dxf").write_bytes(sheet.dxf())
 
 
 if __name__ == "__main__":

@@ -24,9 +24,10 @@ sys.path.insert(0, str(ROOT / "scripts"))
 import draw_balance  # noqa: E402
 import draw_bench_lever  # noqa: E402
 import draw_swiss_lever  # noqa: E402
-from draw_swiss_design import Swiss  # noqa: E402
 from measure_lever import measure  # noqa: E402
 from measure_shapes import placed, read_layout, tomllib  # noqa: E402
+
+from watchsim.construction.swiss_lever.points import Swiss  # noqa: E402
 
 needs_pin_lever = pytest.mark.skipif(not (SHARED / "drawings" / "pin_lever").exists(), reason="the drawing is not here")
 needs_bench = pytest.mark.skipif(not (SHARED / "scenes" / "bench_lever.json").exists(), reason="the scene is not here")
@@ -125,7 +126,7 @@ def test_swiss_lock_run_lift_and_drop_are_the_design(swiss):
         assert beat.bank == pytest.approx(design.bank, abs=1e-3)
         assert beat.lock == pytest.approx(design.lock, abs=1e-3)
         assert beat.run == pytest.approx(design.run, abs=1e-3)
-        assert beat.drop == pytest.approx(design.drop, abs=1e-3)
+        assert beat.drop == pytest.approx(design.drop_inside, abs=1e-3)
         assert beat.unlock == pytest.approx(design.lock + design.run, abs=1e-3)
         assert beat.lift_stone + beat.lift_tooth == pytest.approx(design.lift, abs=1e-3)
         assert beat.lift_stone > 4.5

@@ -13,7 +13,7 @@ import sys
 from watchsim import __version__, stopping
 from watchsim.commands.console import BAD_INPUT, FAULT, INTERRUPTED, InputError, say
 
-COMMANDS = ("demo", "inspect", "check", "run", "plot", "movie", "verify", "bench", "export")
+COMMANDS = ("demo", "new", "inspect", "check", "run", "plot", "movie", "verify", "bench", "export")
 
 
 def parser() -> argparse.ArgumentParser:

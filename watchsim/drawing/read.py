@@ -8,7 +8,7 @@ from __future__ import annotations
 import gc
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -37,8 +37,19 @@ def read(path: Path | str, units: str | None = None, snap: float = SNAP, fit: fl
     if not snap > 0.0 or not fit > 0.0:
         raise ValueError(f"snap and fit must be positive lengths, not {snap:g} m and {fit:g} m")
     ending = path.suffix.lower().lstrip(".")
+    return assembled(path, ending, lambda: read_content(path, ending, units, fit), snap)
+
+
+def read_data(data: bytes, path: Path, units: str | None = None, snap: float = SNAP, fit: float = FIT) -> Drawing:
+    """The same of a file that is in memory; `path` is its name."""
+    ending = path.suffix.lower().lstrip(".")
+    return assembled(path, ending, lambda: content_of(data, ending, units, fit), snap)
+
+
+def assembled(path: Path, ending: str, reader: Callable[[], Content], snap: float) -> Drawing:
+    """The drawing of what the reader finds in the file."""
     with collector_paused():
-        content = read_content(path, ending, units, fit)
+        content = reader()
         chains = chain(content.strokes, snap, content.fitted_deviation)
         findings = [*content.findings, *chains.findings, *facets((*chains.loops, *chains.open_chains))]
     if not content.strokes and not any(finding.severity == "error" for finding in findings):
@@ -92,6 +103,11 @@ def read_content(path: Path, ending: str, units: str | None, fit: float) -> Cont
     except OSError as error:
         reason = "there is no such file" if isinstance(error, FileNotFoundError) else error.strerror or "it cannot be read"
         return Content(findings=(Finding("unreadable", "error", f"{path}: {reason}"),))
+    return content_of(data, ending, units, fit)
+
+
+def content_of(data: bytes, ending: str, units: str | None, fit: float) -> Content:
+    """What the reader for that ending and content finds in a file's bytes."""
     form = format_of(data, ending[:3])
     if form == "svg":
         from watchsim.drawing.svg import read_svg

@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import hashlib
 import re
-import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from watchsim.mechanism.designed import with_design
 from watchsim.mechanism.errors import Fault, Faults, SceneError
 from watchsim.mechanism.locate import key_lines
 from watchsim.mechanism.oscillation import frequency
@@ -20,17 +20,11 @@ from watchsim.mechanism.read_carriers import note_carriers
 from watchsim.mechanism.read_contacts import read_contacts
 from watchsim.mechanism.read_forces import read_damping, read_springs, read_torques
 from watchsim.mechanism.read_settings import read_expectations, read_heading, read_run, read_timegrapher
-from watchsim.mechanism.scene import Scene
+from watchsim.mechanism.scene import Scene, Written
 from watchsim.mechanism.schema import LOCK, SECTIONS, nearest
+from watchsim.mechanism.parsed import parsed
 from watchsim.mechanism.table import Table
 
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
-
-DEEPEST = 20  # tables and lists within each other
-TOO_DEEP = f"tables and lists are nested more than {DEEPEST} deep, and nothing in a scene is"
 FAR_OFF = 0.1  # of the frequency of small swings: what a rate may be measured against
 SCENE_FILES = ("scene.toml", "scene.lock.toml")  # in a folder, the first that is there
 
@@ -49,28 +43,22 @@ def load(path: str | Path) -> Scene:
     return from_mapping(mapping, path, Faults(str(path), key_lines(text)))
 
 
-def parsed(text: str) -> dict[str, Any]:
-    """The mapping that a TOML text holds; ValueError where it is none, or one that no scene can be."""
-    try:
-        mapping = tomllib.loads(text)
-    except RecursionError:
-        raise ValueError(TOO_DEEP) from None
-    level: list[Any] = [mapping]
-    for _ in range(DEEPEST):
-        level = [item for value in level for item in (value.values() if isinstance(value, dict) else value)]
-        level = [item for item in level if isinstance(item, (dict, list))]
-        if not level:
-            return mapping
-    raise ValueError(TOO_DEEP)
+def from_mapping(
+    mapping: dict[str, Any], path: Path | None, faults: Faults | None = None, changes: Mapping[str, object] | None = None
+) -> Scene:
+    """The scene of a TOML mapping; `path` is the file it stands for, drawings are looked for beside it.
 
-
-def from_mapping(mapping: dict[str, Any], path: Path | None, faults: Faults | None = None) -> Scene:
-    """The scene of a TOML mapping; `path` is the file it stands for, drawings are looked for beside it."""
+    `changes` are keys of a scene with a design that are changed after it has been put together.
+    """
     faults = faults or Faults(str(path) if path else "scene")
     folder = path.parent if path else Path()
+    written, made = None, None
+    if "design" in mapping:
+        written = Written(mapping, dict(changes or {}))
+        mapping, made = with_design(written, faults)
     _note_sections(mapping, faults)
     heading = read_heading(mapping, faults)
-    read = read_bodies(mapping.get("bodies", {}), folder, faults)
+    read = read_bodies(mapping.get("bodies", {}), folder, faults, made)
     bodies, sound = read.bodies, read.sound
     springs = read_springs(mapping, bodies, faults)
     torques = read_torques(mapping, bodies, faults)
@@ -102,6 +90,7 @@ def from_mapping(mapping: dict[str, Any], path: Path | None, faults: Faults | No
         source=mapping,
         findings=read.findings,
         drawings=read.drawings,
+        written=written,
     )
     _check_nominal(scene, faults)
     faults.raise_any()
@@ -143,7 +132,7 @@ def _note_sections(mapping: Mapping[str, Any], faults: Faults) -> None:
     for section in mapping:
         if section not in SECTIONS:
             faults.add(section, f"unknown section. {nearest(section, SECTIONS)}")
-    if not mapping.get("bodies"):
+    if not mapping.get("bodies") and "design" not in mapping:
         faults.add("bodies", "a scene needs at least one body, such as [bodies.wheel]")
 
 

@@ -17,7 +17,7 @@ from typing import Any
 from watchsim.mechanism.body import Body
 from watchsim.mechanism.load import digest, file_digest
 from watchsim.mechanism.scene import Scene
-from watchsim.mechanism.schema import SCHEMA
+from watchsim.mechanism.schema import DESIGN, SCHEMA
 from watchsim.mechanism.toml import toml_text
 
 PACKAGES = ("watchsim", "numpy", "scipy", "numba", "shapely", "ezdxf", "trimesh")
@@ -29,7 +29,7 @@ def lock_text(scene: Scene, folder: Path | None = None, kept: Mapping[str, str] 
 
     Those in `kept` travel with the text: name in the scene file -> name beside the text (see mechanism/travelling.py).
     """
-    source = {key: value for key, value in copy.deepcopy(scene.source).items() if key != "lock"}
+    source = {key: value for key, value in copy.deepcopy(scene.source).items() if key not in ("lock", DESIGN)}
     here = scene.path.parent if scene.path else Path()
     ordered = {"scene": _heading(source, scene)}
     ordered["bodies"] = {body.name: _completed(source["bodies"][body.name], body, here, folder) for body in scene.bodies}
@@ -39,6 +39,7 @@ def lock_text(scene: Scene, folder: Path | None = None, kept: Mapping[str, str] 
     ordered["run"] = {"duration": _si(scene.duration, "s"), "tolerance": scene.tolerance, **source.get("run", {})}
     ordered["lock"] = {
         "versions": versions(),
+        **({DESIGN: scene.source[DESIGN]} if DESIGN in scene.source else {}),
         "drawings": _digests(ordered["bodies"], folder or Path(), _bytes(scene, kept or {})),
     }
     return HEADER + toml_text(ordered)

@@ -13,6 +13,7 @@ from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.findings import Finding
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Point
+from watchsim.mechanism.made import Made, made_drawing
 from watchsim.mechanism.material import ADVICE, Side, face_layers, faces
 from watchsim.mechanism.pivot import given_pivot, marked_pivot
 from watchsim.mechanism.schema import SHAPES, nearest
@@ -52,8 +53,8 @@ class Outlines:
         return self.loops + self.rest + self.aside + self.bores
 
 
-def read_outlines(table: Table, folder: Path) -> Outlines:
-    """Outlines of one body from its `drawing` (relative to `folder`) or its shape; faults go to the table."""
+def read_outlines(table: Table, folder: Path, made: Made) -> Outlines:
+    """Outlines of one body from its `drawing` (in `made`, else relative to `folder`) or its shape; faults go to the table."""
     sources = [key for key in ("drawing", *SHAPES) if key in table]
     for extra in sources[1:]:
         table.fault(extra, f"a body has one outline: leave out {extra} or {sources[0]}")
@@ -61,14 +62,14 @@ def read_outlines(table: Table, folder: Path) -> Outlines:
         if key in table and sources and sources[0] != "drawing":
             table.fault(key, f"belongs to a drawing; this body is a {sources[0]}")
     if "drawing" in table:
-        return _from_drawing(table, folder)
+        return _from_drawing(table, folder, made)
     known = len(table.faults.found)
     loops = shape_loops(table, sources[0]) if sources else ()
     return Outlines(loops, pivot=given_pivot(table), sound=len(table.faults.found) == known)
 
 
-def _from_drawing(table: Table, folder: Path) -> Outlines:
-    drawing = _open(table, folder)
+def _from_drawing(table: Table, folder: Path, made: Made) -> Outlines:
+    drawing = _open(table, folder, made)
     known = len(table.faults.found)
     marked = isinstance(table.mapping.get("pivot"), str)
     if drawing is None:
@@ -111,7 +112,7 @@ def _drawn(table: Table, drawing: Drawing, layers: tuple[str, ...]) -> tuple[Loo
     return tuple(loop for loop in drawing.loops if loop.layer in names and loop.closed)
 
 
-def _open(table: Table, folder: Path) -> Drawing | None:
+def _open(table: Table, folder: Path, made: Made) -> Drawing | None:
     name = table.text("drawing")
     if not name:
         if table.mapping["drawing"] == "":
@@ -120,6 +121,8 @@ def _open(table: Table, folder: Path) -> Drawing | None:
     path = folder / name
     snap = table.positive("snap", "it is the gap that may be closed") if "snap" in table else 1e-6
     units = table.text("units") or None
+    if name in made and not math.isnan(snap):
+        return made_drawing(name, made[name], snap)
     if not path.is_file() or math.isnan(snap):
         if not path.is_file():
             table.fault("drawing", f"there is no such file{_similar(path)} (looked for {path})", with_value=True)

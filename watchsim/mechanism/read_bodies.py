@@ -14,6 +14,7 @@ from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.body import MOTIONS, Body
 from watchsim.mechanism.errors import Faults
+from watchsim.mechanism.made import Made
 from watchsim.mechanism.outlines import Outlines, read_outlines
 from watchsim.mechanism.schema import BODY, nearest
 from watchsim.mechanism.solid import more_seen
@@ -50,8 +51,8 @@ class _Read:
     shared: bool
 
 
-def read_bodies(mapping: object, folder: Path, faults: Faults) -> ReadBodies:
-    """Every body of the scene file; faults go to `faults`."""
+def read_bodies(mapping: object, folder: Path, faults: Faults, made: Made | None = None) -> ReadBodies:
+    """Every body of the scene file; faults go to `faults`. Drawings in `made` are taken from there, not from the folder."""
     if not isinstance(mapping, dict):
         faults.add("bodies", "write one table per body, such as [bodies.wheel]", shown(mapping))
         return ReadBodies()
@@ -61,7 +62,7 @@ def read_bodies(mapping: object, folder: Path, faults: Faults) -> ReadBodies:
             faults.add(where, "stands where bodies stand: a body has a name and a table, such as [bodies.wheel]", shown(entry))
     mapping = {name: entry for name, entry in mapping.items() if isinstance(entry, dict)}
     users = Counter(_drawing_path(entry, folder) for entry in mapping.values())
-    read = [_read(mapping, name, folder, users, faults) for name in mapping]
+    read = [_read(mapping, name, folder, users, faults, made or {}) for name in mapping]
     places = {one.name: one for one in read}
     bodies = [_body(one, _position(one, places), _carrier(one.table, one.name, mapping)) for one in read]
     findings = [finding for one in read for finding in (*one.outlines.findings, *one.inertias.findings)]
@@ -89,14 +90,16 @@ def _bores_elsewhere(bodies: Mapping[str, Any], name: str, folder: Path) -> froz
     return frozenset(layer for entry in others for layer in bored(entry))
 
 
-def _read(mapping: Mapping[str, Any], name: str, folder: Path, users: Counter[Path | None], faults: Faults) -> _Read:
+def _read(
+    mapping: Mapping[str, Any], name: str, folder: Path, users: Counter[Path | None], faults: Faults, made: Made
+) -> _Read:
     """What one table says and its drawing holds. Everything is read even after a fault, so that all are found at once."""
     motion = motion_of(mapping, name)
     table = Table(mapping[name], f"bodies.{name}", BODY, faults, motion)
     if "." in name or not name:
         table.fault("", "a body's name must not be empty or contain a point: paths such as bodies.lever.angle use it")
     path = _drawing_path(mapping[name], folder)
-    outlines = read_outlines(table, folder)
+    outlines = read_outlines(table, folder, made)
     shared = users[path] > 1
     inertias = read_inertias(table, motion, outlines, _bores_elsewhere(mapping, name, folder) if shared else frozenset())
     return _Read(name, table, motion, outlines, inertias, path, shared and path is not None)

@@ -26,6 +26,14 @@ class Expectation:
 
 
 @dataclass(frozen=True)
+class Written:
+    """Of a scene made from a design: what its file says, and the keys changed since (path -> value, in that order)."""
+
+    mapping: dict[str, Any]
+    changes: Mapping[str, object]
+
+
+@dataclass(frozen=True)
 class Scene:
     """A mechanism in SI units, ready to be compiled.
 
@@ -34,7 +42,7 @@ class Scene:
     `nominal` (Hz) is what the rate is measured against, where the scene says so.
     `source` is the TOML mapping it was made from, `path` its file, `findings` what the drawings said besides errors,
     `drawings` the files themselves as they were read, by their names in the scene file; two scenes are equal when everything
-    else is.
+    else is. `written` is there where a design stands in the file: `source` then holds the design's scene as well.
     """
 
     title: str
@@ -56,6 +64,7 @@ class Scene:
     source: dict[str, Any] = field(default_factory=dict, repr=False, compare=False)
     findings: tuple[Finding, ...] = field(default=(), repr=False, compare=False)
     drawings: Mapping[str, bytes] = field(default_factory=dict, repr=False, compare=False)
+    written: Written | None = field(default=None, repr=False, compare=False)
 
     def __repr__(self) -> str:
         names = ", ".join(body.name for body in self.bodies)

@@ -66,12 +66,13 @@ CONTACT: Keys = {"between": PLAIN, "friction": NUMBER, "restitution": NUMBER, "t
 RUN: Keys = {"duration": Key(units.TIME), "record": Key(units.TIME), "tolerance": NUMBER}
 TIMEGRAPHER: Keys = {"lift_angle": ANGLE, "frequency": Key(units.FREQUENCY)}
 EXPECTATION: Keys = {"value": PLAIN, "tolerance": PLAIN}
-LOCK: Keys = {"versions": PLAIN, "drawings": PLAIN}
+LOCK: Keys = {"versions": PLAIN, "drawings": PLAIN, "design": PLAIN}
 
 TABLES = {"scene": SCENE, "run": RUN, "timegrapher": TIMEGRAPHER, "lock": LOCK}  # [name]
 NAMED = {"bodies": BODY, "expect": EXPECTATION}  # [name.anything]
 LISTED = {"springs": SPRING, "torques": TORQUE, "damping": DAMPING, "contacts": CONTACT}  # [[name]]
-SECTIONS = (*TABLES, *NAMED, *LISTED)
+DESIGN = "design"  # [design], whose keys are the dimensions of the design it names
+SECTIONS = (*TABLES, DESIGN, *NAMED, *LISTED)
 
 # The one list of what a scene may ask for and the simulation does not do yet.
 UNSUPPORTED = {

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from pathlib import Path, PurePath
 
-from watchsim.mechanism.load import parsed
 from watchsim.mechanism.lock import lock_text
+from watchsim.mechanism.parsed import parsed
 from watchsim.mechanism.scene import Scene
 
 LOCK, FOLDER = "scene.lock.toml", "drawings"

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import math
 
-from draw_outline import arc_between, circle, fillet_chain, polar
-from draw_swiss_design import Swiss
+from watchsim.construction.outline import arc_between, circle, fillet_chain, polar
+from watchsim.construction.swiss_lever.points import Swiss
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Edge, Line

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import math
 
-from draw_outline import along, angle_of, arc_between, circle, fillet, fillet_chain, polar, turned
-from draw_swiss_design import Swiss
+from watchsim.construction.outline import along, angle_of, arc_between, circle, fillet, fillet_chain, polar, turned
+from watchsim.construction.swiss_lever.points import Swiss
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line, Point

@@ -10,8 +10,8 @@ from __future__ import annotations
 import math
 from itertools import pairwise
 
-from draw_outline import arc_between, arc_of_radius, circle, fillet_chain, polar
-from draw_swiss_design import Swiss
+from watchsim.construction.outline import arc_between, arc_of_radius, circle, fillet_chain, polar
+from watchsim.construction.swiss_lever.points import Swiss
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line, Point

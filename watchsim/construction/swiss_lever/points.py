@@ -1,4 +1,4 @@
-"""Which dimensions does the Swiss lever have, and which points follow from them?
+"""Which points of a Swiss lever follow from its numbers?
 
 The rules are the draughtsman's (H. R. Playtner, An Analysis of the Lever Escapement, 1910): the locking corners stand on
 the tip circle where its tangents from the pallet centre touch, each discharge corner stands where the heel leaves it
@@ -11,16 +11,19 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from draw_outline import along, angle_of, polar, turned
+from watchsim.construction.outline import along, angle_of, polar, turned
 
 from watchsim.geometry.primitives import Point
 
 
+WHEEL, LEVER = 2.4, 4.36  # mm: tip radius and centre distance of the design whose lesser lengths the others scale
+
+
 @dataclass(frozen=True)
 class Swiss:
-    """The numbers a designer chooses; everything else is a property."""
+    """The draughtsman's numbers; everything else is a property. Lesser lengths grow with wheel and centre distance."""
 
-    tip_radius: float = 2.4  # R, to the toe of a tooth
+    tip_radius: float = WHEEL  # R, to the toe of a tooth
     heel_radius: float = 2.452  # to the heel: shares the lift between tooth and stone
     teeth: int = 15
     tooth_width: float = 4.5  # toe to heel at the wheel's centre
@@ -29,25 +32,60 @@ class Swiss:
     lock: float = 1.5  # lever angle from drop to unlocked
     run: float = 0.5  # lever angle from drop to the bank
     lift: float = 7.5  # lever angle while the balance is driven, stone and tooth together
-    drop: float = 1.2  # wheel angle from let-off to lock
+    drop_inside: float = 1.2  # wheel angle from let-off at the entry stone to lock at the exit stone
+    drop_outside: float = 1.2  # wheel angle from let-off at the exit stone to lock at the entry stone
     draw: float = 13.0  # of the locking faces, with the lever on the bank
-    lever_to_balance: float = 4.36
+    lever_to_balance: float = LEVER
     slot_width: float = 0.34
-    slot_bottom: float = 3.5  # from the lever's pivot
     pin_radius: float = 0.16
     pin_ground: float = 3.0 / 7.0  # of the pin's diameter, to make it D-shaped
-    pin_edge: float = 0.02  # rounding of its two edges
     pin_reach: float = 0.75  # its flat, from the balance's centre
     horn_clearance: float = 0.042  # between the pin's edge and the horn it passes, lever on the bank
     horn_end: float = 62.0  # the horn reaches this far round the balance from the line of centres, lever on the bank
     safety_radius: float = 0.5
     crescent_half: float = 22.0  # half opening of the crescent at the balance's centre
-    crescent_depth: float = 0.17
-    dart_tip: float = 0.025  # its rounding
     dart_clearance: float = 0.034  # from the safety roller, lever on the bank
-    stem_half: float = 0.125  # half width of the lever's stem where the banking pins meet it
-    banking_height: float = 2.45  # of the banking pins above the lever's pivot, lever in the middle
-    banking_radius: float = 0.16
+
+    @property
+    def wheel_scale(self) -> float:
+        return self.tip_radius / WHEEL
+
+    @property
+    def lever_scale(self) -> float:
+        return self.lever_to_balance / LEVER
+
+    @property
+    def slot_bottom(self) -> float:
+        """From the lever's pivot."""
+        return 3.5 * self.lever_scale
+
+    @property
+    def pin_edge(self) -> float:
+        """Rounding of the pin's two edges."""
+        return 0.125 * self.pin_radius
+
+    @property
+    def crescent_depth(self) -> float:
+        return 0.34 * self.safety_radius
+
+    @property
+    def dart_tip(self) -> float:
+        """Rounding of its point."""
+        return 0.025 * self.lever_scale
+
+    @property
+    def stem_half(self) -> float:
+        """Half width of the lever's stem where the banking pins meet it."""
+        return 0.125 * self.lever_scale
+
+    @property
+    def banking_height(self) -> float:
+        """Of the banking pins above the lever's pivot, lever in the middle."""
+        return 2.45 * self.lever_scale
+
+    @property
+    def banking_radius(self) -> float:
+        return 0.16 * self.lever_scale
 
     @property
     def lever_pivot(self) -> Point:
@@ -104,13 +142,18 @@ class Swiss:
             low, high = (middle, high) if inside else (low, middle)
         return angle_of(along(corner, direction, low))
 
-    def discharge_corner(self, side: int) -> Point:
-        """In the lever's frame: where the heel stands at let-off when the next toe has the drop still to go."""
+    def heel_at_let_off(self, side: int) -> float:
+        """Polar angle in the movement of the heel that leaves a stone when the next toe has the drop still to go, degrees."""
         pitch = 360.0 / self.teeth
         spaces = 2.0 * self.half_span / pitch
         steps = math.floor(spaces) if side > 0 else -math.ceil(spaces)
-        toe = self.locked_toe(-side) + steps * pitch + self.drop
-        return self.in_lever(polar(self.heel_radius, toe + self.tooth_width), -side * self.let_off)
+        drop = self.drop_inside if side > 0 else self.drop_outside
+        toe = self.locked_toe(-side) + steps * pitch + drop
+        return toe + self.tooth_width
+
+    def discharge_corner(self, side: int) -> Point:
+        """In the lever's frame: where the heel stands at let-off."""
+        return self.in_lever(polar(self.heel_radius, self.heel_at_let_off(side)), -side * self.let_off)
 
     def balance_from_bank(self, side: int) -> Point:
         """The balance's centre in the lever's frame, lever on the entry (+1) or exit (-1) bank."""

@@ -1,12 +1,14 @@
-"""What does a sheet of the profiles look like as a DXF file?
+"""What does the sheet of a part look like as a DXF file?
 
-Millimetres, named layers, one point on the layer PIVOT, and nothing that changes from one writing to the next, so that
-a script run twice gives the same file.
+Millimetres as its draughtsman has them (write_dxf writes outlines in metres), named layers, one point on the layer PIVOT, and
+nothing that changes from one writing to the next: the same sheet gives the same file.
 """
 
 from __future__ import annotations
 
+import io
 import math
+from dataclasses import dataclass
 from pathlib import Path
 
 import ezdxf
@@ -17,6 +19,27 @@ from watchsim.geometry.primitives import Edge, Line, Point
 
 COLOURS = {"PIVOT": 1, "TEETH": 2, "STONES": 6, "PALLETS": 6, "PIN": 6, "FORK": 4, "DART": 3, "SAFETY": 3, "PINS": 5}
 PLAIN = 7
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """The outlines of one part, in millimetres, and its pivot (None: no point is drawn)."""
+
+    loops: tuple[Loop, ...]
+    pivot: Point | None = (0.0, 0.0)
+
+    @property
+    def layers(self) -> tuple[str, ...]:
+        return tuple(dict.fromkeys(loop.layer for loop in self.loops))
+
+    def dxf(self) -> bytes:
+        """The DXF file."""
+        document = new_sheet(self.layers, self.pivot)
+        for loop in self.loops:
+            add_loop(document, loop)
+        stream = io.StringIO()
+        document.write(stream)
+        return stream.getvalue().encode(document.output_encoding, "dxfreplace")
 
 
 def new_sheet(layers: tuple[str, ...], pivot: Point | None = (0.0, 0.0)) -> Drawing:

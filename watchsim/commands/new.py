@@ -1,0 +1,136 @@
+"""watchsim new DESIGN: drawings and a scene of a mechanism, drawn to your dimensions."""
+
+from __future__ import annotations
+
+import argparse
+import textwrap
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from watchsim.commands.console import FINE, InputError, print_json, say
+
+if TYPE_CHECKING:
+    from watchsim.construction.design import Design
+    from watchsim.construction.dimension import Dimension
+
+HELP = "draws a mechanism to your dimensions: drawings and a scene that runs"
+WIDTH = 110
+
+
+def options(parser: argparse.ArgumentParser) -> None:
+    parser.usage = 'watchsim new DESIGN [--DIMENSION VALUE ...] [-o DIR] [--list] [--json] [--force]'
+    parser.epilog = (
+        'For example: watchsim new swiss_lever --lock "2°" --draw "13.5°" --teeth 20 -o my_lever. '
+        "watchsim new --list tells the designs, watchsim new DESIGN --list their dimensions."
+    )
+    _common(parser)
+    parser.add_argument("design", metavar="DESIGN", nargs="?", help="the name of a design, such as swiss_lever")
+    parser.add_argument("rest", nargs=argparse.REMAINDER, help=argparse.SUPPRESS)
+
+
+def _common(parser: argparse.ArgumentParser) -> None:
+    unset: Any = argparse.SUPPRESS
+    parser.add_argument("-o", "--output", metavar="DIR", default=unset, help="folder for the files (default: the design's name)")
+    parser.add_argument("--list", action="store_true", default=unset, help="list designs, or the dimensions of a design")
+    parser.add_argument("--json", action="store_true", default=unset, help="print one JSON object instead of text")
+    parser.add_argument("--force", action="store_true", default=unset, help="replace drawings and scene of a folder that exists")
+
+
+def run(args: argparse.Namespace) -> int:
+    from watchsim.mechanism.designed import designed
+
+    asked = {"output": None, "list": False, "json": False, "force": False, **vars(args)}
+    if asked["design"] is None:
+        if not asked["list"]:
+            raise InputError("watchsim new: say which design. watchsim new --list tells what there is.")
+        _list_designs(asked["json"])
+        return FINE
+    design = designed(asked["design"])
+    given = _dimensions(design, asked["rest"], asked)
+    if asked["list"]:
+        _list_dimensions(design, asked["json"])
+    else:
+        _write(design, given, asked)
+    return FINE
+
+
+def _dimensions(design: Design, rest: list[str], asked: dict[str, Any]) -> dict[str, object]:
+    """The dimensions among the options behind the name of the design; the others go to `asked`."""
+    parser = argparse.ArgumentParser(prog=f"watchsim new {design.name}", description=f"{design.title}.", allow_abbrev=False)
+    _common(parser)
+    for one in design.dimensions:
+        told = f"{one.meaning} (default {one.shortly(one.default)})".replace("%", "%%")
+        parser.add_argument(one.option, metavar="VALUE", dest=f"dimension {one.name}", default=argparse.SUPPRESS, help=told)
+    found, unknown = parser.parse_known_args(rest)
+    if unknown:
+        raise InputError(f"watchsim new {design.name}: {_unknown(design, unknown[0])}")
+    values = vars(found)
+    asked.update({key: value for key, value in values.items() if not key.startswith("dimension ")})
+    return {key.partition(" ")[2]: value for key, value in values.items() if key.startswith("dimension ")}
+
+
+def _unknown(design: Design, word: str) -> str:
+    from watchsim.mechanism.schema import nearest
+
+    if not word.startswith("-"):
+        return f'"{word}" belongs to no option. Write --DIMENSION VALUE, such as {design.dimensions[0].option} {design.dimensions[0].default}.'
+    hint = nearest(word.partition("=")[0], [one.option for one in design.dimensions])
+    known = f"watchsim new {design.name} --list tells its dimensions."
+    return f"{word} is no dimension of this design. {hint if hint.startswith('Did') else known}"
+
+
+def _list_designs(as_json: bool) -> None:
+    from watchsim.construction import known
+
+    designs = [known.design(name) for name in known.NAMES]
+    if as_json:
+        print_json({"designs": [{"name": d.name, "title": d.title, "dimensions": len(d.dimensions)} for d in designs]})
+        return
+    for one in designs:
+        print(f"{one.name:16s} {one.title}, {len(one.dimensions)} dimensions")
+    say("watchsim new DESIGN --list tells the dimensions of one.")
+
+
+def _list_dimensions(design: Design, as_json: bool) -> None:
+    if as_json:
+        rows = [
+            {name: getattr(one, name) for name in ("name", "meaning", "unit", "default", "low", "high", "source")}
+            for one in design.dimensions
+        ]
+        print_json({"name": design.name, "title": design.title, "dimensions": rows})
+        return
+    print(f"{design.title}\n")
+    columns = [(one.option, one.shortly(one.default), _range(one), one.meaning, one.source) for one in design.dimensions]
+    wide = [max(len(row[i]) for row in columns) for i in range(3)]
+    left = sum(wide) + 6
+    for option, default, limits, meaning, source in columns:
+        head = f"{option:<{wide[0]}}  {default:<{wide[1]}}  {limits:<{wide[2]}}  "
+        lines = textwrap.wrap(f"{meaning}. [{source}]", max(WIDTH - left, 40))
+        print(head + lines[0])
+        for line in lines[1:]:
+            print(" " * left + line)
+
+
+def _range(one: Dimension) -> str:
+    return f"{one.shortly(one.low)} to {one.shortly(one.high)}"
+
+
+def _write(design: Design, given: dict[str, object], asked: dict[str, Any]) -> None:
+    from watchsim.commands.destination import secured_folder
+    from watchsim.designs.drawn import Drawn
+    from watchsim.mechanism.dimensions import chosen
+    from watchsim.mechanism.errors import SceneError
+    from watchsim.mechanism.overlap import overlap_faults
+
+    folder = Path(asked["output"] or design.name)
+    drawn = Drawn(design, chosen(design, given))
+    faults = overlap_faults(drawn.scene())
+    if faults:
+        raise SceneError(faults)
+    secured_folder(folder, "drawings and scene")
+    drawn.write(folder, force=asked["force"])
+    if asked["json"]:
+        print_json({"folder": str(folder), "files": list(drawn.files()), "dimensions": drawn.dimensions})
+        return
+    print(f"{folder}: {', '.join(drawn.files())}")
+    say(f"watchsim run {folder} simulates it; watchsim check {folder} --png start.png shows it.")

@@ -1,0 +1,105 @@
+"""What is a design: dimensions, and how drawings and a scene follow from them?
+
+A design is declared in three steps:
+
+    @dataclass(frozen=True)
+    class Pendulum:                                    # its values: one field per dimension, in the dimension's own unit
+        length: float = dim(200.0, "mm", 10.0, 2000.0, "from the pivot to the middle of the bob", "chosen")
+
+    def draw(values: Pendulum) -> dict[str, Sheet]: ...     # file name without ending -> outlines, millimetres
+    def scene(values: Pendulum) -> str: ...                 # commented TOML; `drawing = "bob.dxf"` names a sheet
+    def conflicts(values: Pendulum) -> Iterator[Conflict]: ...  # what cannot be drawn or cannot work, and why
+
+    DESIGN = Design("pendulum", "Simple pendulum", Pendulum, draw, scene, conflicts)
+
+and named in construction/known.py. Limits of single dimensions are checked before `conflicts` is asked, and nothing is drawn
+where either objects. Everything is a function of the values alone, so that equal values give equal bytes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from watchsim.construction.dimension import Dimension, dimensions_of
+from watchsim.drawing.sheet import Sheet
+
+Values = Any  # a frozen dataclass whose fields are declared with construction.dimension.dim
+
+
+@dataclass(frozen=True, slots=True)
+class Conflict:
+    """Why values cannot be drawn or cannot work; `dimension` is the one to change first ("" if none stands out)."""
+
+    dimension: str
+    message: str
+
+
+def no_conflicts(_values: Values) -> tuple[Conflict, ...]:
+    """Of a design whose limits say it all."""
+    return ()
+
+
+def told(values: Values) -> str:
+    """The dimensions as comments of a TOML file, those that differ from the default marked."""
+    lines = []
+    for one in dimensions_of(type(values)):
+        number = getattr(values, one.name)
+        usual = "" if number == one.default else f" (default {one.shortly(one.default)})"
+        lines.append(f"#   {one.name} = {one.shortly(number)}{usual}: {one.meaning}")
+    return "\n".join(lines)
+
+
+@dataclass(frozen=True)
+class Design:
+    """A mechanism with dimensions. `draw` gives the sheets by file name (without ".dxf"), `scene` the text of scene.toml."""
+
+    name: str
+    title: str
+    values: type[Any]
+    draw: Callable[[Any], Mapping[str, Sheet]]
+    scene: Callable[[Any], str]
+    conflicts: Callable[[Any], Iterable[Conflict]] = no_conflicts
+
+    @cached_property
+    def dimensions(self) -> tuple[Dimension, ...]:
+        return dimensions_of(self.values)
+
+    def dimension(self, name: str) -> Dimension:
+        """The dimension of that name; KeyError if there is none."""
+        return next(one for one in self.dimensions if one.name == name)
+
+    def refusals(self, chosen: Mapping[str, float]) -> tuple[Conflict, ...]:
+        """All that is wrong with these numbers (in the dimensions' own units; the others at their defaults).
+
+        KeyError for a name that is no dimension.
+        """
+        out = [conflict for name, number in chosen.items() for conflict in _beyond(self._known(name), number)]
+        if out:
+            return tuple(out)
+        try:
+            return tuple(self.conflicts(self.chosen(chosen)))
+        except ValueError as error:  # square root of a negative number, no fillet fits
+            return (Conflict("", f"these dimensions cannot be drawn together: {error}"),)
+
+    def chosen(self, chosen: Mapping[str, float]) -> Values:
+        """The values with these numbers in place of the defaults."""
+        return self.values(**{name: round(x) if self._known(name).count else float(x) for name, x in chosen.items()})
+
+    def _known(self, name: str) -> Dimension:
+        return self._by_name[name]
+
+    @cached_property
+    def _by_name(self) -> dict[str, Dimension]:
+        return {one.name: one for one in self.dimensions}
+
+
+def _beyond(dimension: Dimension, number: float) -> list[Conflict]:
+    low, high = dimension.shortly(dimension.low), dimension.shortly(dimension.high)
+    if dimension.count and number != round(number):
+        return [Conflict(dimension.name, f"must be a whole number from {low} to {high}: {dimension.meaning}")]
+    if dimension.low <= number <= dimension.high:
+        return []
+    return [Conflict(dimension.name, f"must be from {low} to {high}: {dimension.meaning}")]

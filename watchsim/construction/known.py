@@ -1,0 +1,19 @@
+"""Which designs are there? Each is loaded when it is asked for."""
+
+from __future__ import annotations
+
+import importlib
+
+from watchsim.construction.design import Design
+
+_HOMES = {
+    "swiss_lever": "watchsim.construction.swiss_lever.design",
+}
+
+NAMES = tuple(_HOMES)
+
+
+def design(name: str) -> Design:
+    """The design of that name; KeyError if there is none."""
+    found: Design = importlib.import_module(_HOMES[name]).DESIGN
+    return found

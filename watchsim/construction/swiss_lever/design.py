@@ -1,0 +1,19 @@
+"""What makes the Swiss lever a design?"""
+
+from __future__ import annotations
+
+from watchsim.construction.design import Design
+from watchsim.construction.swiss_lever.conflicts import conflicts
+from watchsim.construction.swiss_lever.dimensions import SwissLever
+from watchsim.construction.swiss_lever.follow import swiss
+from watchsim.construction.swiss_lever.scene_text import scene_text
+from watchsim.construction.swiss_lever.sheets import sheets
+from watchsim.drawing.sheet import Sheet
+
+
+def draw(values: SwissLever) -> dict[str, Sheet]:
+    """Its four sheets."""
+    return sheets(swiss(values))
+
+
+DESIGN = Design("swiss_lever", "Swiss lever escapement with its balance", SwissLever, draw, scene_text, conflicts)

@@ -1,0 +1,110 @@
+"""How is the value at one dotted path of a scene's mapping changed?"""
+
+from __future__ import annotations
+
+from numbers import Real
+from typing import Any
+
+from watchsim.mechanism.errors import Faults
+from watchsim.mechanism.read_bodies import motion_of
+from watchsim.mechanism.schema import LISTED, NAMED, SECTIONS, TABLES, key_at, nearest, siblings
+from watchsim.mechanism.table import shown
+from watchsim.units import NUMBER, Dimension
+
+# Keys that say the same thing: setting one takes the others away.
+INSTEAD_OF = {
+    "frequency": ("stiffness",),
+    "stiffness": ("frequency",),
+    "q_factor": ("viscous",),
+    "viscous": ("q_factor",),
+    "value": ("table", "over"),
+}
+
+
+def assign(mapping: dict[str, Any], key: str, value: object, faults: Faults) -> None:
+    path = tuple(key.split("."))
+    described = key_at(path)
+    if described is None or path[0] == "lock":
+        faults.add(key, f"unknown key. {_advice(path)}", shown(value))
+        return
+    holder, rest = _enter(mapping, path, faults)
+    if holder is None:
+        return
+    dimension = described.dimension_for(motion_of(mapping.get("bodies", {}), _body_name(path, holder)))
+    in_si = with_unit(value, dimension)
+    if len(rest) == 1:
+        for other in INSTEAD_OF.get(rest[0], ()) if path[0] in LISTED else ():
+            holder.pop(other, None)
+        holder[rest[0]] = in_si
+    else:
+        _assign_element(holder, rest, in_si, (key, dimension, faults))
+
+
+def _enter(mapping: dict[str, Any], path: tuple[str, ...], faults: Faults) -> tuple[dict[str, Any] | None, tuple[str, ...]]:
+    """The table that holds the key, and the rest of the path from the key on; None after a fault."""
+    section = path[0]
+    if section in TABLES:
+        return mapping.setdefault(section, {}), path[1:]
+    key = ".".join(path)
+    if section in NAMED:
+        if path[1] not in mapping.get(section, {}):
+            faults.add(key, f'there is no "{path[1]}" in {section}. {nearest(path[1], mapping.get(section, {}))}')
+            return None, ()
+        holder, rest = mapping[section][path[1]], path[2:]
+        if rest[0] != "solids" or len(rest) == 1:
+            return holder, rest
+        section, path = f"{section}.{path[1]}.solids", ("solids", *rest[1:])
+        elements = holder.get("solids", [])
+    else:
+        elements = mapping.get(section, [])
+    if not path[1].isdigit() or int(path[1]) >= len(elements):
+        faults.add(key, f"{section} has no entry {path[1]}: there are {len(elements)}, counted from 0")
+        return None, ()
+    return elements[int(path[1])], path[2:]
+
+
+def _assign_element(
+    holder: dict[str, Any], rest: tuple[str, ...], value: object, about: tuple[str, Dimension | None, Faults]
+) -> None:
+    """Sets one element of a list such as position.1; a pair that is not there yet begins as zeros."""
+    key, dimension, faults = about
+    zero = with_unit(0.0, dimension)
+    element = holder.setdefault(rest[0], [zero, zero])
+    for step in rest[1:-1]:
+        element = _step(element, step)
+    if not isinstance(element, list) or not rest[-1].isdigit() or int(rest[-1]) >= len(element):
+        faults.add(key, f"there is no element {'.'.join(rest[1:])} in it", shown(holder[rest[0]]))
+        return
+    element[int(rest[-1])] = value
+
+
+def _step(element: object, step: str) -> object:
+    inside = isinstance(element, list) and step.isdigit() and int(step) < len(element)
+    return element[int(step)] if isinstance(element, list) and inside else None
+
+
+def _body_name(path: tuple[str, ...], holder: dict[str, Any]) -> object:
+    return path[1] if path[0] == "bodies" else holder.get("body")
+
+
+def with_unit(value: object, dimension: Dimension | None) -> object:
+    """Numbers get the SI unit of their key, so that they are checked like everything in a file."""
+    if isinstance(value, (list, tuple)):
+        return [with_unit(item, dimension) for item in value]
+    if isinstance(value, bool) or not isinstance(value, Real):
+        return value
+    if dimension is None or dimension is NUMBER:
+        return int(value) if isinstance(value, int) else float(value)
+    return f"{float(value)!r} {dimension.si}"
+
+
+def _advice(path: tuple[str, ...]) -> str:
+    if path[0] not in SECTIONS:
+        return nearest(path[0], SECTIONS)
+    depth = 1 if path[0] in TABLES else 2
+    if path[2:3] == ("solids",) and len(path) > 4:
+        depth = 4
+    if len(path) <= depth:
+        kind = "the name of a body" if path[0] == "bodies" else "a number counted from 0" if path[0] in LISTED else "a key"
+        return f"Write {path[0]}, {kind} and a key, all joined by points." if depth > 1 else nearest("", siblings(path))
+    return nearest(path[depth], siblings(path))
