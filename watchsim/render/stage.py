@@ -7,6 +7,7 @@ the changing numbers are copied in. Frames do not depend on one another.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -23,6 +24,7 @@ from watchsim.render.layout import draw_key, draw_notes, draw_rules, draw_scale,
 from watchsim.render.palette import BACKGROUND, CONTACT, INK
 from watchsim.render.parts import Part, is_round, loops_of, parts
 from watchsim.render.poses import Window
+from watchsim.render.readouts import Clock
 from watchsim.render.view import size_of, view
 from watchsim.simulation.trajectory import Trajectory
 
@@ -41,7 +43,7 @@ class Stage:
     """Draws a run at any instant of a window, always in the same frame.
 
     `size` is (width, height) in pixels; `speed` and `step` (s between frames) are only told, not used. `picked` edges are
-    drawn over everything, with a key below the title.
+    drawn over everything, with a key below the title. `clock` tells something else than the time of the run.
     """
 
     def __init__(
@@ -55,11 +57,14 @@ class Stage:
         speed: float | None = None,
         step: float | None = None,
         picked: Sequence[Edges] = (),
+        clock: Clock | None = None,
     ) -> None:
         self._figure = Figure(figsize=((size[0] + 0.5) / DPI, (size[1] + 0.5) / DPI), dpi=DPI, facecolor=BACKGROUND)
         self._canvas = FigureCanvasAgg(self._figure)
         self._unit = min(size[0] / 1280.0, size[1] / 720.0)
         self._layout = lay_out(self._figure, run, window, step or (window[1] - window[0]) / 2000.0)
+        if clock is not None:
+            self._layout = replace(self._layout, clock=clock)
         self.view = view(run, window, self._layout.frame, zoom, turn)
         draw_scale(self._figure, self.view.scale)
         draw_notes(self._figure, self._layout.frame, speed, self.view.turn)
