@@ -103,7 +103,7 @@ REFUSED = [
     ("bodies.wheel.inertia", 0.0, "has no inertia"),
     ("bodies.wheel.drawing", "none.dxf", "there is no such file"),
     ("bodies.wheel.on", "fork", "there is no such body"),
-    ("bodies.wheel.adjust", "lever", "is not supported yet"),
+    ("bodies.wheel.adjust", "lever", "a table of layers is needed here"),
 ]
 
 

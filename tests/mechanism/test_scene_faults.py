@@ -61,7 +61,7 @@ ONE_FAULT = [
         "bodies.wheel.on",
         "there is no such body. Known here: lever, balance, banking",
     ),
-    ('pivot = "PIVOT"', 'pivot = "PIVOT"\nadjust = {}', "bodies.wheel.adjust", "turning or shifting one layer"),
+    ('pivot = "PIVOT"', 'pivot = "PIVOT"\nadjust = 3', "bodies.wheel.adjust", "a table of layers is needed here"),
     ('pivot = "PIVOT"', 'pivot = "PIVOT"\ncircle = "1 mm"', "bodies.wheel.circle", "one outline: leave out circle or drawing"),
     (WHEEL_INERTIA, "", "bodies.wheel", "the body can move (pivot) but has no inertia"),
     (WHEEL_INERTIA, 'inertia = "0 mg·cm²"\n', "bodies.wheel.inertia", "the body can move (pivot) but has no inertia"),

@@ -24,6 +24,7 @@ from functools import cached_property
 from typing import Any
 
 from watchsim.construction.dimension import Dimension, dimensions_of
+from watchsim.construction.sound import unsound
 from watchsim.drawing.sheet import Sheet
 
 Values = Any  # a frozen dataclass whose fields are declared with construction.dimension.dim
@@ -35,6 +36,14 @@ class Conflict:
 
     dimension: str
     message: str
+
+
+class Impossible(ValueError):
+    """A construction that has no solution; `dimension` is the one to change first ("" if none stands out)."""
+
+    def __init__(self, dimension: str, message: str) -> None:
+        self.dimension = dimension
+        super().__init__(message)
 
 
 def no_conflicts(_values: Values) -> tuple[Conflict, ...]:
@@ -79,10 +88,22 @@ class Design:
         out = [conflict for name, number in chosen.items() for conflict in _beyond(self._known(name), number)]
         if out:
             return tuple(out)
+        found = []
         try:
-            return tuple(self.conflicts(self.chosen(chosen)))
-        except ValueError as error:  # square root of a negative number, no fillet fits
-            return (Conflict("", f"these dimensions cannot be drawn together: {error}"),)
+            values = self.chosen(chosen)
+            found += self.conflicts(values)
+            if not found:
+                sheets = self.sheets(values)
+                found += [Conflict("", words) for name, sheet in sheets.items() for words in unsound(sheet, name)]
+        except Impossible as error:
+            found.append(Conflict(error.dimension, str(error)))
+        except ValueError as error:  # the square root of a negative number, a fillet that does not fit
+            found.append(Conflict("", f"these dimensions cannot be drawn together: {error}"))
+        return tuple(found)
+
+    def sheets(self, values: Values) -> dict[str, Sheet]:
+        """The sheets by the names that drawings have in a scene made from the design, such as "swiss_lever/lever.dxf"."""
+        return {f"{self.name}/{file}.dxf": sheet for file, sheet in self.draw(values).items()}
 
     def chosen(self, chosen: Mapping[str, float]) -> Values:
         """The values with these numbers in place of the defaults."""

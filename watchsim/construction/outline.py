@@ -12,6 +12,8 @@ from collections.abc import Sequence
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point
 
+SMALLER, SMALLEST = 0.8, 1e-3  # steps in which a fillet yields, and the least that is drawn
+
 
 def polar(radius: float, degrees: float, centre: Point = (0.0, 0.0)) -> Point:
     """The point at `radius` and `degrees` (counter-clockwise from +x) from `centre`."""
@@ -62,21 +64,24 @@ def rounded(corners: Sequence[tuple[float, float, float]]) -> list[Edge]:
     return fillet_chain(edges, [corners[(i + 1) % len(corners)][2] for i in range(len(corners))], closed=True)
 
 
-def fillet_chain(edges: Sequence[Edge], radii: Sequence[float], closed: bool = False) -> list[Edge]:
+def fillet_chain(edges: Sequence[Edge], radii: Sequence[float], closed: bool = False, yielding: bool = False) -> list[Edge]:
     """The chain with a fillet of radii[i] at the end of edges[i]; 0 leaves the corner sharp.
 
-    An open chain needs one radius fewer than edges, a closed one as many.
+    An open chain needs one radius fewer than edges, a closed one as many. A `yielding` chain takes a smaller fillet, or none,
+    where the one asked for does not fit between its neighbours.
     """
-    trimmed, fillets = list(edges), {}
+    rounding = _yielding if yielding else fillet
+    trimmed, fillets = list(edges), dict[int, Arc | None]()
     for i, radius in enumerate(radii):
         follower = (i + 1) % len(trimmed)
         if radius > 0.0 and (closed or follower > 0):
-            trimmed[i], fillets[i], trimmed[follower] = fillet(trimmed[i], trimmed[follower], radius)
+            trimmed[i], fillets[i], trimmed[follower] = rounding(trimmed[i], trimmed[follower], radius)
     chain: list[Edge] = []
     for i, edge in enumerate(trimmed):
         chain.append(edge)
-        if i in fillets:
-            chain.append(fillets[i])
+        corner = fillets.get(i)
+        if corner is not None:
+            chain.append(corner)
     return chain
 
 
@@ -94,6 +99,32 @@ def fillet(first: Edge, second: Edge, radius: float) -> tuple[Edge, Arc, Edge]:
     centre = min(candidates, key=lambda point: math.dist(point, first.end))
     start, end = _foot(first, centre), _foot(second, centre)
     return _cut(first, first.start, start), arc_between(start, end, centre, side > 0.0), _cut(second, end, second.end)
+
+
+def _yielding(first: Edge, second: Edge, radius: float) -> tuple[Edge, Arc | None, Edge]:
+    """The fillet, or the largest of smaller ones that leaves something of both edges; None where none does."""
+    while radius > SMALLEST:
+        try:
+            one, arc, other = fillet(first, second, radius)
+        except ValueError:
+            radius *= SMALLER
+            continue
+        if _shortened(first, one) and _shortened(second, other):
+            return one, arc, other
+        radius *= SMALLER
+    return first, None, second
+
+
+def _shortened(whole: Edge, rest: Edge) -> bool:
+    """Is the rest a part of the edge, and not most of its circle or its continuation backwards?"""
+    if isinstance(whole, Line) and isinstance(rest, Line):
+        ahead = sum(a * b for a, b in zip(whole.tangent(0.0), _way(rest), strict=True))
+        return 0.0 < ahead <= whole.length
+    return rest.length <= whole.length
+
+
+def _way(line: Line) -> Point:
+    return (line.x1 - line.x0, line.y1 - line.y0)
 
 
 def _offset(edge: Edge, distance: float) -> Edge:

@@ -51,6 +51,8 @@ def _enter(mapping: dict[str, Any], path: tuple[str, ...], faults: Faults) -> tu
             faults.add(key, f'there is no "{path[1]}" in {section}. {nearest(path[1], mapping.get(section, {}))}')
             return None, ()
         holder, rest = mapping[section][path[1]], path[2:]
+        if rest[0] == "adjust" and len(rest) > 1:
+            return _enter_adjust(holder, rest, key, faults)
         if rest[0] != "solids" or len(rest) == 1:
             return holder, rest
         section, path = f"{section}.{path[1]}.solids", ("solids", *rest[1:])
@@ -61,6 +63,25 @@ def _enter(mapping: dict[str, Any], path: tuple[str, ...], faults: Faults) -> tu
         faults.add(key, f"{section} has no entry {path[1]}: there are {len(elements)}, counted from 0")
         return None, ()
     return elements[int(path[1])], path[2:]
+
+
+def _enter_adjust(
+    holder: dict[str, Any], rest: tuple[str, ...], key: str, faults: Faults
+) -> tuple[dict[str, Any] | None, tuple[str, ...]]:
+    """The table for one layer of a drawing, or for one outline of it; a layer that has none yet gets an empty one."""
+    layers = holder.setdefault("adjust", {})
+    if len(rest) == 2 and isinstance(layers, dict):
+        return layers, rest[1:]
+    entry = layers.setdefault(rest[1], {}) if isinstance(layers, dict) else None
+    after = rest[2:] or ("",)
+    if after[0].isdigit() and len(after) > 1:
+        inside = isinstance(entry, list) and int(after[0]) < len(entry)
+        entry, after = (entry[int(after[0])] if isinstance(entry, list) and inside else None), after[1:]
+    if isinstance(entry, dict):
+        return entry, after
+    many = f": it has {len(entry)} entries, counted from 0" if isinstance(entry, list) else ""
+    faults.add(key, f"there is no such table under adjust{many}")
+    return None, ()
 
 
 def _assign_element(
@@ -102,8 +123,8 @@ def _advice(path: tuple[str, ...]) -> str:
     if path[0] not in SECTIONS:
         return nearest(path[0], SECTIONS)
     depth = 1 if path[0] in TABLES else 2
-    if path[2:3] == ("solids",) and len(path) > 4:
-        depth = 4
+    if path[2:3] in (("solids",), ("adjust",)) and len(path) > 4:
+        depth = 5 if path[2] == "adjust" and path[4].isdigit() and len(path) > 5 else 4
     if len(path) <= depth:
         kind = "the name of a body" if path[0] == "bodies" else "a number counted from 0" if path[0] in LISTED else "a key"
         return f"Write {path[0]}, {kind} and a key, all joined by points." if depth > 1 else nearest("", siblings(path))

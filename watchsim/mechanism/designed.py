@@ -79,8 +79,8 @@ def _drawn(name: str, values: Any) -> _Drawn:
     """Scene and sheets; the drawings are called after the design, so that a file beside the scene is never meant."""
     design = known.design(name)
     scene = parsed(design.scene(values))
-    sheets = {f"{file}.dxf": sheet for file, sheet in design.draw(values).items()}
+    sheets = design.sheets(values)
     for entry in scene["bodies"].values():
-        if entry.get("drawing") in sheets:
+        if f"{name}/{entry.get('drawing')}" in sheets:
             entry["drawing"] = f"{name}/{entry['drawing']}"
-    return _Drawn(scene, {f"{name}/{file}": sheet for file, sheet in sheets.items()})
+    return _Drawn(scene, sheets)

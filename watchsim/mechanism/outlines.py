@@ -9,11 +9,14 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 
+from watchsim.construction.sound import drawing_of
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.findings import Finding
+from watchsim.drawing.read import SNAP
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Point
-from watchsim.mechanism.made import Made, made_drawing
+from watchsim.mechanism.adjust import adjusted
+from watchsim.mechanism.made import Made
 from watchsim.mechanism.material import ADVICE, Side, face_layers, faces
 from watchsim.mechanism.pivot import given_pivot, marked_pivot
 from watchsim.mechanism.schema import SHAPES, nearest
@@ -58,7 +61,7 @@ def read_outlines(table: Table, folder: Path, made: Made) -> Outlines:
     sources = [key for key in ("drawing", *SHAPES) if key in table]
     for extra in sources[1:]:
         table.fault(extra, f"a body has one outline: leave out {extra} or {sources[0]}")
-    for key in ("layers", "draw", "units", "snap", "material"):
+    for key in ("layers", "draw", "units", "snap", "material", "adjust"):
         if key in table and sources and sources[0] != "drawing":
             table.fault(key, f"belongs to a drawing; this body is a {sources[0]}")
     if "drawing" in table:
@@ -74,6 +77,7 @@ def _from_drawing(table: Table, folder: Path, made: Made) -> Outlines:
     marked = isinstance(table.mapping.get("pivot"), str)
     if drawing is None:
         return Outlines(pivot=UNREADABLE if marked else given_pivot(table), sound=False)
+    drawing = adjusted(table, drawing)
     pivot = marked_pivot(table, drawing) if marked else given_pivot(table)
     apart, drilled = frozenset(set_apart(table.mapping)), frozenset(hollow(table.mapping))
     sides = {layer: side for layer, side in face_layers(table, drawing, table.texts("layers")).items() if layer not in apart}
@@ -119,10 +123,10 @@ def _open(table: Table, folder: Path, made: Made) -> Drawing | None:
             table.fault("drawing", "the name of a file is needed here", with_value=True)
         return None
     path = folder / name
-    snap = table.positive("snap", "it is the gap that may be closed") if "snap" in table else 1e-6
+    snap = table.positive("snap", "it is the gap that may be closed") if "snap" in table else SNAP
     units = table.text("units") or None
     if name in made and not math.isnan(snap):
-        return made_drawing(name, made[name], snap)
+        return drawing_of(made[name], name, snap)
     if not path.is_file() or math.isnan(snap):
         if not path.is_file():
             table.fault("drawing", f"there is no such file{_similar(path)} (looked for {path})", with_value=True)

@@ -73,9 +73,14 @@ def _has_holes(drawing: Drawing) -> bool:
     return any(loop.hole and circle_of(loop) is not None for loop in drawing.loops)
 
 
+def marks_on(drawing: Drawing, layer: str) -> list[Point]:
+    """The points and centres of circles on a layer, each once."""
+    return _distinct(_marks(drawing, layer))
+
+
 def _on_layer(table: Table, drawing: Drawing, layer: str) -> Point:
     """The one point or circle centre on that layer."""
-    marks = _distinct(_marks(drawing, layer))
+    marks = marks_on(drawing, layer)
     if len(marks) == 1:
         return marks[0]
     if marks:

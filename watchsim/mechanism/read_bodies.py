@@ -23,7 +23,6 @@ from watchsim.mechanism.table import NAN, Table, shown
 from watchsim.mechanism.weight import Inertias, read_inertias
 from watchsim.units import SPEED
 
-REFUSED = ("adjust",)
 AS_DRAWN = "as drawn"
 
 
@@ -129,9 +128,6 @@ def _position(one: _Read, read: Mapping[str, _Read]) -> Point:
 def _body(one: _Read, position: Point, on: str | None) -> Body:
     table, motion, outlines, inertias = one.table, one.motion, one.outlines, one.inertias
     table.one_of("motion", MOTIONS, "pivot")
-    for key in REFUSED:
-        if key in table:
-            table.refuse(key)
     shift = (-inertias.origin[0], -inertias.origin[1])
     rest = outlines.drawn if outlines.drawn is not None else () if one.shared else outlines.rest
     return Body(

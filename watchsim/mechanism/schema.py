@@ -1,4 +1,4 @@
-"""Which keys may a scene file hold, and which of them ask for what is not done yet?"""
+"""Which keys may a scene file hold?"""
 
 from __future__ import annotations
 
@@ -48,6 +48,10 @@ SOLID: Keys = {
     **{"bores": PLAIN, "turned": LENGTH, "lying": PLAIN},
     **{"hairspring": PLAIN, "inner": LENGTH, "outer": LENGTH, "turns": NUMBER, "length": LENGTH, "width": LENGTH},
 }
+ADJUST: Keys = {  # of one layer of a body's drawing, or of one outline of it
+    **{"turn": ANGLE, "about": LENGTH, "shift": LENGTH, "radial": LENGTH},
+    **{"along": LENGTH, "face": LENGTH, "near": LENGTH},
+}
 SPRING: Keys = {
     "body": PLAIN,
     "frequency": Key(units.FREQUENCY),
@@ -74,12 +78,6 @@ LISTED = {"springs": SPRING, "torques": TORQUE, "damping": DAMPING, "contacts": 
 DESIGN = "design"  # [design], whose keys are the dimensions of the design it names
 SECTIONS = (*TABLES, DESIGN, *NAMED, *LISTED)
 
-# The one list of what a scene may ask for and the simulation does not do yet.
-UNSUPPORTED = {
-    "adjust": "turning or shifting one layer of a drawing is not supported yet. Change the drawing and leave the key out",
-}
-
-
 def key_at(path: tuple[str, ...]) -> Key | None:
     """The description of a dotted path such as ("bodies", "lever", "position", "1"); None where no such key exists."""
     if not path:
@@ -92,6 +90,9 @@ def key_at(path: tuple[str, ...]) -> Key | None:
     if section in NAMED:
         if rest[1] == "solids" and len(rest) >= 4:
             return SOLID.get(rest[3])
+        if rest[1] == "adjust" and len(rest) >= 4:
+            inner = rest[4:] if rest[3].isdigit() else rest[3:]
+            return ADJUST.get(inner[0]) if inner else PLAIN
         return NAMED[section].get(rest[1])
     return LISTED[section].get(rest[1])
 
@@ -102,6 +103,8 @@ def siblings(path: tuple[str, ...]) -> tuple[str, ...]:
     if section in TABLES:
         return tuple(TABLES[section])
     if section in NAMED:
+        if path[2:3] == ("adjust",) and len(path) > 4:
+            return tuple(ADJUST)
         return tuple(SOLID if path[2:3] == ("solids",) and len(path) > 4 else NAMED[section])
     return tuple(LISTED[section]) if section in LISTED else SECTIONS
 

@@ -13,7 +13,7 @@ from typing import Any
 from watchsim import units
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.errors import Faults
-from watchsim.mechanism.schema import UNSUPPORTED, Keys, nearest
+from watchsim.mechanism.schema import Keys, nearest
 from watchsim.mechanism.toml import value_text
 from watchsim.units import NUMBER, Dimension, UnitError, parse
 
@@ -53,9 +53,6 @@ class Table:
         """Notes a fault at `key` of this table; an empty key means the table itself."""
         path = f"{self.path}.{key}" if key else self.path
         self.faults.add(path, message, shown(self.mapping.get(key)) if with_value else "")
-
-    def refuse(self, key: str) -> None:
-        self.fault(key, UNSUPPORTED[key], with_value=True)
 
     def text(self, key: str, default: str = "") -> str:
         value = self.mapping.get(key, default)

@@ -48,4 +48,4 @@ class SwissLever:
     torque: float = dim(1.0, "µN·m", 1e-3, 1e3, "of the train on the escape wheel", ESTIMATE)
     friction: float = dim(0.12, "", 0.0, 0.5, "coefficient of friction, in all contacts", "0.10 to 0.20, steel on oiled ruby")
     restitution: float = dim(0.2, "", 0.0, 0.9, "coefficient of restitution, in all contacts", ESTIMATE)
-    start: float = dim(270.0, "°", 60.0, 320.0, "balance, from rest, where it is let go", CHOSEN)
+    start: float = dim(270.0, "°", 60.0, 300.0, "balance, from rest, where it is let go", CHOSEN)

@@ -11,6 +11,7 @@ from dataclasses import replace
 
 from scipy.optimize import brentq
 
+from watchsim.construction.design import Impossible
 from watchsim.construction.outline import polar, turned
 from watchsim.construction.swiss_lever.dimensions import SwissLever
 from watchsim.construction.swiss_lever.jewel import gap_to_slot
@@ -60,8 +61,10 @@ def heel_radius(design: Swiss, lift_on_tooth: float) -> float:
     px, py = design.lever_pivot
     tx, ty = turned((px, py), lift_on_tooth)
     dx, dy = px - tx, py - ty
-    half = x * dx + y * dy
-    return -half + math.sqrt(half * half - (dx * dx + dy * dy) + design.tip_radius**2)
+    half, apart = x * dx + y * dy, math.hypot(dx, dy)
+    if not apart < design.tip_radius:
+        raise Impossible("lift_on_tooth", "the entry stone's corner never crosses the circle of the toes")
+    return -half + math.sqrt(half * half - apart**2 + design.tip_radius**2)
 
 
 def pin_reach(design: Swiss, lift_angle: float) -> float:
@@ -74,7 +77,8 @@ def pin_reach(design: Swiss, lift_angle: float) -> float:
         return gap_to_slot(replace(design, pin_reach=reach), -lift_angle / 2.0)
 
     if not gap(low) < 0.0 < gap(high):
-        raise ValueError(f"no jewel has a lift angle of {lift_angle:g}° with this lever")
+        words = f"no jewel between {low:.3g} mm and {high:.3g} mm from the balance has this lift angle with a lever that"
+        raise Impossible("lift_angle", f"{words} swings by {2.0 * design.bank:.4g}° and stands {away:g} mm off")
     return float(brentq(gap, low, high, xtol=FINE * away, rtol=1e-14))
 
 
@@ -84,6 +88,10 @@ def dart_clearance(design: Swiss, freedom: float) -> float:
     They meet where the point's centre, y above the pivot, is a roller and a point's radius from the balance.
     """
     away, reach = design.lever_to_balance, design.safety_radius + design.dart_tip
+    if not freedom < design.bank:
+        raise Impossible("guard_freedom", f"must be less than half of the lever's travel, {design.bank:.4g}°")
     meets, rests = math.radians(design.bank - freedom), math.radians(design.bank)
+    if not away * math.sin(meets) < reach:
+        raise Impossible("safety_ratio", "the dart swings past the safety roller: it must be larger, or the lever's travel smaller")
     y = away * math.cos(meets) - math.sqrt(reach**2 - (away * math.sin(meets)) ** 2)
     return math.sqrt(away**2 + y**2 - 2.0 * away * y * math.cos(rests)) - reach

@@ -16,7 +16,7 @@ from watchsim.construction.outline import along, angle_of, polar, turned
 from watchsim.geometry.primitives import Point
 
 
-WHEEL, LEVER = 2.4, 4.36  # mm: tip radius and centre distance of the design whose lesser lengths the others scale
+WHEEL, LEVER, REACH = 2.4, 4.36, 0.75  # mm: tip radius, centre distance, jewel of the design whose lesser lengths others scale
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Swiss:
     slot_width: float = 0.34
     pin_radius: float = 0.16
     pin_ground: float = 3.0 / 7.0  # of the pin's diameter, to make it D-shaped
-    pin_reach: float = 0.75  # its flat, from the balance's centre
+    pin_reach: float = REACH  # its flat, from the balance's centre
     horn_clearance: float = 0.042  # between the pin's edge and the horn it passes, lever on the bank
     horn_end: float = 62.0  # the horn reaches this far round the balance from the line of centres, lever on the bank
     safety_radius: float = 0.5
@@ -55,9 +55,14 @@ class Swiss:
         return self.lever_to_balance / LEVER
 
     @property
+    def reach_beyond(self) -> float:
+        """How much farther the jewel stands from the balance than in the design whose lesser lengths are scaled."""
+        return self.pin_reach - REACH * self.lever_scale
+
+    @property
     def slot_bottom(self) -> float:
         """From the lever's pivot."""
-        return 3.5 * self.lever_scale
+        return 3.5 * self.lever_scale - self.reach_beyond
 
     @property
     def pin_edge(self) -> float:
@@ -66,7 +71,8 @@ class Swiss:
 
     @property
     def crescent_depth(self) -> float:
-        return 0.34 * self.safety_radius
+        inside = self.lever_to_balance - self.dart_centre - self.dart_tip  # the dart's point in the middle of its way
+        return max(0.34 * self.safety_radius, self.safety_radius - inside + 0.03 * self.lever_scale)
 
     @property
     def dart_tip(self) -> float:
@@ -81,7 +87,7 @@ class Swiss:
     @property
     def banking_height(self) -> float:
         """Of the banking pins above the lever's pivot, lever in the middle."""
-        return 2.45 * self.lever_scale
+        return 2.45 * self.lever_scale - self.reach_beyond
 
     @property
     def banking_radius(self) -> float:

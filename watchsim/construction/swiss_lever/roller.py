@@ -22,11 +22,11 @@ CRESCENT_EDGE = 0.02
 def roller(design: Swiss) -> list[Loop]:
     """Table with the staff's hole, pin, safety roller."""
     return [
-        circle("TABLE", (0.0, 0.0), TABLE_RADIUS),
-        circle("TABLE", (0.0, 0.0), STAFF_RADIUS, hole=True),
+        circle("TABLE", (0.0, 0.0), TABLE_RADIUS * design.lever_scale + design.reach_beyond),
+        circle("TABLE", (0.0, 0.0), STAFF_RADIUS * design.lever_scale, hole=True),
         pin(design),
         safety(design),
-        circle("SAFETY", (0.0, 0.0), STAFF_RADIUS, hole=True),
+        circle("SAFETY", (0.0, 0.0), STAFF_RADIUS * design.lever_scale, hole=True),
     ]
 
 
@@ -50,7 +50,7 @@ def safety(design: Swiss) -> Loop:
         arc_between(right, left, (0.0, 0.0), True),
         arc_between(left, right, (0.0, -(bottom + hollow)), False),
     ]
-    return Loop(tuple(fillet_chain(edges, [CRESCENT_EDGE, CRESCENT_EDGE], closed=True)), "SAFETY")
+    return Loop(tuple(fillet_chain(edges, [CRESCENT_EDGE * design.lever_scale] * 2, closed=True)), "SAFETY")
 
 
 def banking(design: Swiss) -> list[Loop]:

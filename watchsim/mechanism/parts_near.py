@@ -1,0 +1,53 @@
+"""Which outlines of a layer are meant by a place near them, and which edge?"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from watchsim.drawing.track import nearest_fraction
+from watchsim.geometry.inside import winding
+from watchsim.geometry.loop import Loop
+from watchsim.geometry.primitives import Line, Point
+
+CLEARER = 2.0  # times: so much farther off than the nearest must the next one be
+
+
+def part_near(loops: Sequence[Loop], place: Point) -> tuple[tuple[int, ...], bool]:
+    """The numbers of the outline nearest to the place (of one that holds it, if any does) and of the holes in it, and whether
+    it is clearly the one that is meant."""
+    order = sorted(parts_of(loops), key=lambda part: _away(loops[part[0]], place))
+    if not order:
+        return (), False
+    clear = len(order) == 1 or _away(loops[order[1][0]], place) > CLEARER * _away(loops[order[0][0]], place)
+    return order[0], clear
+
+
+def parts_of(loops: Sequence[Loop]) -> list[tuple[int, ...]]:
+    """The numbers of each outer outline or open chain with those of the holes in it."""
+    outer = [k for k, loop in enumerate(loops) if not loop.hole]
+    owners = {k: _owner(loops, outer, loop) for k, loop in enumerate(loops) if loop.hole}
+    alone = [(k,) for k, owner in owners.items() if owner is None]
+    return [(k, *(hole for hole, owner in owners.items() if owner == k)) for k in outer] + alone
+
+
+def _away(loop: Loop, place: Point) -> float:
+    """Distance of the place from the outline, 0 inside of it."""
+    if loop.closed and winding(loop, place):
+        return 0.0
+    return min(math.dist(edge.point(nearest_fraction(edge, place)), place) for edge in loop.edges)
+
+
+def _owner(loops: Sequence[Loop], outer: Sequence[int], hole: Loop) -> int | None:
+    """The smallest outline around a hole."""
+    around = [k for k in outer if loops[k].closed and winding(loops[k], hole.edges[0].point(0.5))]
+    return min(around, key=lambda k: loops[k].length, default=None)
+
+
+def line_near(loops: Sequence[Loop], place: Point) -> tuple[Line, float] | None:
+    """The straight edge nearest to the place, and which fraction of it lies there; None without any."""
+    lines = [edge for loop in loops for edge in loop.edges if isinstance(edge, Line)]
+    if not lines:
+        return None
+    found = min(lines, key=lambda line: math.dist(line.point(nearest_fraction(line, place)), place))
+    return found, nearest_fraction(found, place)
