@@ -7,6 +7,7 @@ import importlib
 from watchsim.construction.design import Design
 
 _HOMES = {
+    "coaxial": "watchsim.construction.coaxial.design",
     "swiss_lever": "watchsim.construction.swiss_lever.design",
 }
 

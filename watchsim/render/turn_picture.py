@@ -48,13 +48,13 @@ def _figure(found: Turn) -> Figure:
     figure = Figure(figsize=SIZE, facecolor=BACKGROUND)
     FigureCanvasAgg(figure)
     rows = max(1, math.ceil(len(chosen) / ACROSS))
-    grid = figure.add_gridspec(rows + 1, ACROSS, height_ratios=[*([1.0] * rows), 1.1], left=0.06, right=0.94, bottom=0.07, top=0.9, hspace=0.2, wspace=0.06)  # fmt: skip
+    grid = figure.add_gridspec(rows + 1, ACROSS, height_ratios=[*([1.0] * rows), 1.1], left=0.06, right=0.94, bottom=0.07, top=0.9, hspace=0.24, wspace=0.06)  # fmt: skip
     shapes = parts(found.scene, 2e-7, 2e-4)
     box = _box(found)
     for number, (row, words) in enumerate(chosen):
         axes = figure.add_subplot(grid[number // ACROSS, number % ACROSS])
         _view(axes, found, row, shapes, box)
-        axes.set_title(f"{number + 1}   {words}", fontsize=9, color=INK, loc="left")
+        axes.set_title(f"{number + 1}   {words}", fontsize=9.5, color=INK, loc="left")
     plot = figure.add_subplot(grid[rows, :])
     _plot(plot, found, story, [row for row, _ in chosen])
     figure.text(0.06, 0.965, found.scene.title, fontsize=15, fontweight="bold", color=INK)
@@ -69,12 +69,20 @@ def _moments(found: Turn, story: list[Happening]) -> list[tuple[int, str]]:
     for kind in MOMENTS:
         for one in story:
             row = min(one.row, len(found.cycle.rows) - 1)
-            if one.kind != kind or len(picked) >= VIEWS or any(_beside(found, row, other, led) for other in picked):
+            if one.kind != kind or len(picked) >= VIEWS or _with_fixed(found, one) or any(_beside(found, row, other, led) for other in picked):
                 continue
             picked[row] = _words(found, one)
     if found.cycle.jam is not None or found.cycle.runaway is not None:
         picked[len(found.cycle.rows) - 1] = verdict(found)[0]
     return sorted(picked.items())
+
+
+def _with_fixed(found: Turn, one: Happening) -> bool:
+    """Is a fixed body what meets or parts?"""
+    if one.couple is None:
+        return False
+    couple = found.cycle.assembly.couples[one.couple]
+    return "fixed" in (found.scene.bodies[couple.a].motion, found.scene.bodies[couple.b].motion)
 
 
 def _beside(found: Turn, row: int, other: int, led: int) -> bool:
@@ -89,12 +97,17 @@ def _words(found: Turn, one: Happening) -> str:
     q = found.cycle.rows[min(one.row, len(found.cycle.rows) - 1)][found.cycle.led]
     body = found.scene.bodies[found.cycle.led]
     value = f"{math.degrees(q):.2f}°" if body.motion == "pivot" else f"{1e3 * q:.3f} mm"
-    here = f"{name} {value}".replace("-", "−")
+    here = f"{name} {value}".replace("-", "−") + "\n"
     if one.couple is None:
-        return f"{here}: furthest back"
+        return f"{here}{_pressed(found)} furthest back, by {math.degrees(one.way):.2f}°"
     couple = found.cycle.assembly.couples[one.couple]
     pair = f"{_short(couple.layers[0])} – {_short(couple.layers[1])}"
-    return f"{here}: " + {"free": f"after {math.degrees(one.way):.2f}° free, {pair}", "leaves": f"{pair} part"}.get(one.kind, f"{pair} meet")
+    words = {"free": f"{_pressed(found)} free for {math.degrees(one.way):.2f}°: {pair}", "leaves": f"{pair} part"}
+    return here + words.get(one.kind, f"{pair} meet")
+
+
+def _pressed(found: Turn) -> str:
+    return " and ".join(found.names[number] for number in found.cycle.pressed)
 
 
 def _short(layer: str) -> str:
@@ -148,7 +161,10 @@ def _plot(axes: Axes, found: Turn, story: list[Happening], moments: list[int]) -
         line = worn[body.name].line
         values = factor[number] * ((q[:, number] - q[0, number]) * cycle.pressed.get(number, 1.0) if pressed else q[:, number])
         words = f"{body.name}, on from where it stood ({unit[number]}), right" if pressed else f"{body.name} ({unit[number]}), left"
-        (right if pressed else axes).plot(factor[led] * q[:, led], values, color=line, linewidth=1.8, label=words)
+        back = max(found.cycle.turned[-2] - found.first, 0) if len(found.cycle.turned) > 2 else len(q)
+        side, x = right if pressed else axes, factor[led] * q[:, led]
+        side.plot(x[: back + 1], values[: back + 1], color=line, linewidth=1.8, label=words)
+        side.plot(x[back:], values[back:], color=line, linewidth=1.8, linestyle=(0, (4, 1.5)))
     for number, row in enumerate(moments):
         top = 1.0 if number % 2 == 0 else 0.95
         x = factor[led] * cycle.rows[row][led]
@@ -157,7 +173,7 @@ def _plot(axes: Axes, found: Turn, story: list[Happening], moments: list[int]) -
     here = [factor[led] * cycle.rows[min(one.row, len(cycle.rows) - 1)][led] for one in story] or list(factor[led] * q[:, led])
     room = BEFORE_AFTER if unit[led] == "°" else 0.05 * (max(here) - min(here) + 1e-3)
     axes.set_xlim(min(here) - room, max(here) + room)
-    axes.set_xlabel(f"{name} ({unit[led]}), out and back", color=INK)
+    axes.set_xlabel(f"{name} ({unit[led]}); dashed: on the way back", color=INK)
     for side in (axes, right):
         side.tick_params(colors=FAINT, labelcolor=INK)
         for spine in side.spines.values():
@@ -165,4 +181,4 @@ def _plot(axes: Axes, found: Turn, story: list[Happening], moments: list[int]) -
     axes.set_facecolor("white")
     axes.grid(color=GRID, linewidth=0.5)
     handles = [line for side in (axes, right) for line in side.get_lines() if not str(line.get_label()).startswith("_")]
-    axes.legend(handles=handles, fontsize=9, frameon=False, loc="lower left")
+    axes.legend(handles=handles, fontsize=9, frameon=False, loc="center left")

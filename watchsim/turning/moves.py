@@ -32,6 +32,7 @@ class Jam(Exception):
     def __init__(self, couple: Couple, place: Point, why: str) -> None:
         super().__init__(why)
         self.couple, self.place, self.why = couple, place, why
+        self.passed_on: list[Couple] = []  # through which couples the push came, the last first
 
 
 @dataclass
@@ -155,7 +156,11 @@ class Assembly:
             if not self.is_free(one):
                 if not was.distance > 0.0:
                     raise Jam(one, was.on_a, "they overlapped before")
-                self.push(one.b if one.a == number else one.a, one, was, depth + 1)
+                try:
+                    self.push(one.b if one.a == number else one.a, one, was, depth + 1)
+                except Jam as jam:
+                    jam.passed_on.append(couple)
+                    raise
 
 
 def assembly(scene: Scene) -> Assembly:

@@ -18,7 +18,9 @@ def verdict(found: Turn) -> tuple[str, str]:
     here = _coordinates_text(found, len(cycle.rows) - 1)
     if cycle.jam is not None:
         x, y = (1e3 * value for value in cycle.jam.place)
-        return JAMS, f"jams at {here}: {_names(found, cycle.jam.couple)} at ({x:.4f}, {y:.4f}) mm; {cycle.jam.why}"
+        way = ", ".join(_names(found, one) for one in dict.fromkeys(cycle.jam.passed_on))
+        through = f" (pushed through {way})" if way else ""
+        return JAMS, f"jams at {here}: {_names(found, cycle.jam.couple)} at ({x:.4f}, {y:.4f}) mm; {cycle.jam.why}{through}"
     if cycle.runaway is not None:
         return RUNS_AWAY, f"runs away at {here}: nothing holds {found.names[cycle.runaway]} there"
     if not closes(found):

@@ -74,8 +74,9 @@ def body(points: Points, fork: Fork) -> Loop:
         (polar(1.05 * HUB * s, 215.0), 0.2 * s),
         (middle.at(middle.length + 0.1 * s, -wall), 0.15 * s),
         *mouth(middle, EXPOSED_IMPULSE * s, s),
-        (middle.at(middle.length + 0.25 * s, middle.width + wall), 0.25 * s),
-        (second.at(0.52 * second.length, -wall - 0.04 * s), 0.12 * s),
+        (middle.at(middle.length + 0.3 * s, middle.width + wall), 0.3 * s),
+        (polar(1.35 * HUB * s, points.fork_bearing - 28.0), 0.3 * s),
+        (second.at(0.5 * second.length, -wall - 0.04 * s), 0.12 * s),
         *mouth(second, EXPOSED * s, s),
     ]
     places = [place for place, _ in corners]

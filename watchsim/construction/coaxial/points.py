@@ -60,6 +60,11 @@ class Points:
         self.pin_reach = self.lever_to_balance * sine(self.bank) / sine(half + self.bank)
         self.slot_width = 2.0 * values.pin_radius + values.shake
 
+    def balance_at(self, lever: float) -> float:
+        """Angle of the balance (unsigned) with its pin in the fork at a lever angle (unsigned)."""
+        sine_at_pin = self.lever_to_balance * sine(lever) / self.pin_reach
+        return math.degrees(math.asin(sine_at_pin)) - lever
+
     def in_lever(self, point: Point, lever: float) -> Point:
         """A point of the movement in the lever's own frame, with the lever at `lever` degrees."""
         return turned((point[0] - self.lever_pivot[0], point[1] - self.lever_pivot[1]), -lever)
@@ -77,10 +82,10 @@ class Points:
         """Direction of the locking face away from the wheel, in the lever's frame: leaning to the right by the draw."""
         return 90.0 + side * HALF_SPAN - self.values.draw - side * self.bank
 
-    def locked_tip(self, side: int) -> float:
-        """Polar angle of the tip that a locking face holds, lever on the bank."""
-        corner = self.in_movement(self.locking_corner(side), side * self.bank)
-        direction = self.face_direction(side) + side * self.bank
+    def locked_tip(self, side: int, lever: float) -> float:
+        """Polar angle of the tip that a locking face holds, lever at `lever` degrees to its side."""
+        corner = self.in_movement(self.locking_corner(side), side * lever)
+        direction = self.face_direction(side) + side * lever
         return angle_of(along(corner, direction, self._to_tip_circle(corner, direction)))
 
     def _to_tip_circle(self, start: Point, direction: float) -> float:

@@ -1,23 +1,21 @@
-"""Which scene does a co-axial escapement run in?"""
+"""What does the scene of a co-axial escapement say?"""
 
 from __future__ import annotations
 
 from watchsim.construction.coaxial.dimensions import Coaxial
-from watchsim.construction.coaxial.points import FIRST, HALF_SPAN, Points
+from watchsim.construction.coaxial.points import FIRST, Points
+from watchsim.construction.design import told
 
+CLEAR = 1e-4  # degrees by which lever and wheel stand off what they rest on
 
-def scene_text(values: Coaxial) -> str:
-    """The commented TOML of a 3.5 Hz watch with this escapement: locked on the first stone, the balance at the end of a swing."""
-    points = Points(values)
-    tip = points.locked_tip(FIRST)
-    px, py = points.lever_pivot
-    bx, by = points.balance_pivot
-    return f"""# A Daniels co-axial escapement for a 25 200 vph watch, drawn from its dimensions (watchsim new coaxial).
-# Eight and eight teeth. The large wheel locks on two stones of the lever and pushes the roller's stone (direct impulse,
-# balance counter-clockwise); the small one pushes the lever's third stone (indirect impulse, through fork and pin).
+TEXT = """\
+# A co-axial escapement after George Daniels: the large wheel locks on two stones of the lever and pushes the roller's stone
+# (direct impulse, balance counter-clockwise); the small one pushes the lever's third stone (indirect impulse, through fork and
+# pin). Drawn to these dimensions:
+{dimensions}
 
 [scene]
-title  = "Co-axial escapement, 3.5 Hz, 8 + 8 teeth"
+title  = "Co-axial escapement, {values.frequency:.0f} vph, 8 + 8 teeth"
 schema = 1
 
 [bodies.wheel]                       # turns clockwise; the inertia includes the train as felt here
@@ -25,24 +23,24 @@ drawing  = "escape_wheel.dxf"
 layers   = ["TEETH", "SMALL_TEETH"]
 pivot    = "PIVOT"
 position = ["0 mm", "0 mm"]
-angle    = "{tip + 2e-4:.4f}°"              # a tooth a hair off the first locking face
-inertia  = "0.1 mg·cm²"
+angle    = "{wheel_angle:.7f}°"      # a tooth a few nanometres off the first locking face
+inertia  = "{values.wheel_inertia:.15g} mg·cm²"
 
 [bodies.lever]
 drawing  = "lever.dxf"
 layers   = ["LOCKING_STONES", "IMPULSE_STONE", "FORK", "GUARD", "ARMS"]
 pivot    = "PIVOT"
-position = ["{px:.9g} mm", "{py:.12g} mm"]
-angle    = "{points.bank - 1e-4:.4f}°"                # a hair off the bank
-inertia  = "0.06 mg·cm²"
+position = ["0 mm", "{lever_y!r} mm"]
+angle    = "{lever_angle:.15g}°"     # a few nanometres off the bank
+inertia  = "{values.lever_inertia:.15g} mg·cm²"
 
 [bodies.balance]                     # hangs at the end of a swing, its pin far outside the fork
 drawing  = "roller.dxf"
 layers   = ["TABLE", "SAFETY", "PIN", "IMPULSE_STONE"]
 pivot    = "PIVOT"
-position = ["{bx:.12g} mm", "{by:.12g} mm"]
-angle    = "-290°"
-inertia  = "12 mg·cm²"
+position = ["{balance[0]!r} mm", "{balance[1]!r} mm"]
+angle    = "{start:.15g}°"
+inertia  = "{values.balance_inertia:.15g} mg·cm²"
 
 [bodies.banking]
 drawing  = "banking.dxf"
@@ -53,44 +51,66 @@ motion   = "fixed"
 
 [[springs]]
 body      = "balance"
-frequency = "25200 vph"              # 0.580 µN·m/rad
+frequency = "{values.frequency:.15g} vph"
 
 [[torques]]
 body  = "wheel"
-value = "-0.6 µN·m"
+value = "{torque:.15g} µN·m"
 
 [[damping]]
 body     = "balance"
-q_factor = 250
+q_factor = {values.q_factor!r}
 
 [[contacts]]                         # locking
 between     = ["wheel.TEETH", "lever.LOCKING_STONES"]
-friction    = 0.15
+friction    = {values.friction!r}
+restitution = {values.restitution!r}
 
 [[contacts]]                         # direct impulse
 between     = ["wheel.TEETH", "balance.IMPULSE_STONE"]
-friction    = 0.15
+friction    = {values.friction!r}
+restitution = {values.restitution!r}
 
 [[contacts]]                         # indirect impulse
 between     = ["wheel.SMALL_TEETH", "lever.IMPULSE_STONE"]
-friction    = 0.15
+friction    = {values.friction!r}
+restitution = {values.restitution!r}
 
 [[contacts]]                         # unlocking, and the indirect impulse handed on
 between     = ["lever.FORK", "balance.PIN"]
-friction    = 0.15
+friction    = {values.friction!r}
+restitution = {values.restitution!r}
 
 [[contacts]]                         # safety action: never meets in normal running
 between     = ["lever.GUARD", "balance.SAFETY"]
-friction    = 0.15
+friction    = {values.friction!r}
+restitution = {values.restitution!r}
 
 [[contacts]]
 between     = ["lever.ARMS", "banking.PINS"]
-friction    = 0.15
+friction    = {values.friction!r}
+restitution = {values.restitution!r}
 
 [run]
-duration  = "60 s"
+duration  = "10 s"
 tolerance = 1e-9
 
 [timegrapher]
-lift_angle = "{values.lift_angle:.6g}°"
+lift_angle = "{values.lift_angle:.15g}°"
 """
+
+
+def scene_text(values: Coaxial) -> str:
+    """The text of scene.toml: wheel locked on the first stone, lever on its bank, the balance about to be let go."""
+    points = Points(values)
+    lever = points.bank - CLEAR
+    return TEXT.format(
+        dimensions=told(values),
+        values=values,
+        wheel_angle=points.locked_tip(FIRST, lever) + CLEAR,
+        lever_y=points.lever_pivot[1],
+        lever_angle=round(lever, 10),
+        balance=points.balance_pivot,
+        start=-values.start,
+        torque=-values.torque,
+    )

@@ -19,7 +19,8 @@ LEVER_WIDTH, LEVER_LENGTH = 0.17, 0.52
 ROLLER_WIDTH, ROLLER_LENGTH = 0.22, 0.46
 EDGE = 0.03
 UNDER = 0.025  # by which the end of a locking stone stays off the tip circle behind its corner
-RELIEF = 10.0  # of the ends of impulse stones behind their tips, from the circle they run on, degrees
+RELIEF = 25.0  # of the ends of impulse stones behind their tips, from the circle they run on, degrees: the tooth that has given
+# its impulse waits behind the lever's stone
 
 
 @dataclass(frozen=True)

@@ -35,7 +35,7 @@ class ToothForm:
 def wheel(points: Points) -> list[Loop]:
     """Both wheels' contours, the windows between the arms and the bore."""
     s = points.scale
-    large = ToothForm(points.values.tip_radius, 1.45 * s, 0.02 * s, 0.34 * s, 38.0, 0.75 * s, 0.12 * s)
+    large = ToothForm(points.values.tip_radius, 1.5 * s, 0.02 * s, 0.42 * s, 41.0, 0.62 * s, 0.12 * s)
     small = ToothForm(points.small_radius, 0.68 * points.small_radius, 0.015 * s, 0.15 * s, 42.0, 0.25 * s, 0.05 * s)
     windows = [Loop(tuple(window(i, s)), "TEETH", hole=True) for i in range(ARMS)]
     bores = [circle(layer, (0.0, 0.0), BORE_RADIUS * s, hole=True) for layer in ("TEETH", "SMALL_TEETH")]
