@@ -20,7 +20,7 @@ from measure_safety import Safety, measure_safety
 from measure_shapes import Layout, first, placed, read_layout
 from shapely.geometry.base import BaseGeometry
 
-TEETH = 15
+TEETH = 15  # unless the caller says otherwise
 STEPS = (0.04, 2e-3, 5e-5)  # of the lever, in the scan of a beat: coarse, then finer up to the let-off
 LOST = 6.0  # the wheel turns this many lever steps without touching: it has been let off
 GRAIN = 40  # steps in which the wheel is turned over a reach
@@ -57,7 +57,8 @@ class Sweep:
 class Escapement:
     """Wheel, stones and banking: where they touch."""
 
-    def __init__(self, layout: Layout) -> None:
+    def __init__(self, layout: Layout, teeth: int = TEETH) -> None:
+        self.teeth = teeth
         self.layout = layout
         self.lever_at = layout.parts["lever"].position
         self.wheel_at = layout.parts["wheel"].position
@@ -100,7 +101,7 @@ class Escapement:
     def at_toe(self, q: float, stone: BaseGeometry) -> bool:
         """Does the wheel touch with a toe (a corner on the x axis of the wheel's frame, or a whole pitch from it)?"""
         x, y = shapely.shortest_line(self.wheel, self._seen(q, stone)).coords[0]
-        pitch = 360.0 / TEETH
+        pitch = 360.0 / self.teeth
         return abs((math.degrees(math.atan2(y, x)) + pitch / 2.0) % pitch - pitch / 2.0) < TOE
 
     def _seen(self, q: float, stone: BaseGeometry) -> BaseGeometry:
@@ -109,10 +110,10 @@ class Escapement:
         return placed(placed(stone, 0.0, (-x, -y)), -q, (0.0, 0.0))
 
 
-def measure(scene: Path) -> tuple[Beat, Beat, Safety]:
+def measure(scene: Path, teeth: int = TEETH) -> tuple[Beat, Beat, Safety]:
     """Entry beat, exit beat and safety action of a scene."""
     layout = read_layout(scene)
-    m = Escapement(layout)
+    m = Escapement(layout, teeth)
     paths = {side: follow(m, side) for side in (1, -1)}
     return _beat(m, paths, 1), _beat(m, paths, -1), measure_safety(layout, m.bank(1))
 

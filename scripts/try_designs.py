@@ -26,10 +26,10 @@ from watchsim.designs.drawn import Drawn
 from watchsim.mechanism.errors import SceneError
 from watchsim.mechanism.overlap import overlap_faults
 from watchsim.simulation.simulate import simulate
+from watchsim.simulation.stops import Stop
 
 SPREAD = 0.3  # of most dimensions, on both sides of the default
 SECONDS = 2.0
-FEWEST_BEATS = 2.0  # per period of the balance, below which it does not tick
 
 
 def numbers(design: Design, chance: random.Random) -> dict[str, float]:
@@ -70,12 +70,12 @@ def judged(design: Drawn) -> str:
     scene = design.scene()
     run = simulate(scene, duration=SECONDS)
     told = summary(run)
-    if told["stop"] != "duration" and run.stop_message:
-        return f"{told['stop']}: {run.stop_message}"
-    amplitude = told.get("amplitude_deg")
-    if amplitude is None:
-        return f"does not tick: no amplitude after {SECONDS:g} s"
-    return f"amplitude {amplitude:5.1f}°, rate {told['rate_s_per_d']:+8.1f} s/d, missed beats {told.get('missed_beats')}"
+    if run.stop is not Stop.DURATION:
+        return f"{run.stop.name.lower()}: {run.stop_message}"
+    if told["amplitude_deg"] is None:
+        return f"does not tick: {told['timing_message'] or told['stopped_message']}"
+    missed = f", {told['missed_beats']} beats missed" if told["missed_beats"] else ""
+    return f"ticks: amplitude {told['amplitude_deg']:5.1f}°, rate {told['rate_s_per_d']:+8.1f} s/d{missed}"
 
 
 def main(count: int, simulated: int, seed: int, name: str) -> int:

@@ -1,6 +1,6 @@
 """Are the lines of keys found in any TOML a person may write?"""
 
-from watchsim.mechanism.load import tomllib
+from watchsim.mechanism.parsed import tomllib
 from watchsim.mechanism.locate import key_lines
 
 TEXT = '''\

@@ -7,8 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from watchsim.mechanism.errors import SceneError
-from watchsim.mechanism.load import load, tomllib
+from watchsim.mechanism.load import load
 from watchsim.mechanism.lock import lock_text
+from watchsim.mechanism.parsed import tomllib
 from watchsim.mechanism.toml import toml_text
 
 FREE = """

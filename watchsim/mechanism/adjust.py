@@ -21,7 +21,7 @@ from watchsim.geometry.extent import extents
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.mass import section
 from watchsim.geometry.primitives import Point
-from watchsim.mechanism.parts_near import line_near, part_near, parts_of
+from watchsim.mechanism.parts_near import lines_near, part_near, parts_of
 from watchsim.mechanism.pivot import marks_on
 from watchsim.mechanism.schema import ADJUST, nearest
 from watchsim.mechanism.table import NAN, Table, shown
@@ -160,11 +160,12 @@ def _along(one: Table, part: list[Loop]) -> Point:
     distance, place = one.quantity("along"), one.pair("face")
     if not all(map(math.isfinite, (distance, *place))):
         return (NAN, NAN)
-    found = line_near(part, place)
-    if found is None:
-        one.fault("face", "the part has no straight edge", with_value=True)
+    found = lines_near(part, place)
+    if len(found) != 1:
+        several = "two edges meet there, or are as near: give a place on the one that is meant"
+        one.fault("face", several if found else "the part has no straight edge", with_value=True)
         return (NAN, NAN)
-    line, fraction = found
+    line, fraction = found[0]
     if fraction == 0.5:
         one.fault("face", "lies in the middle of the edge: which way? Give a place nearer to one end of it", with_value=True)
         return (NAN, NAN)

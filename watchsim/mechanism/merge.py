@@ -12,6 +12,7 @@ from typing import Any
 from watchsim.mechanism.assign import INSTEAD_OF
 from watchsim.mechanism.schema import LISTED, NAMED, SHAPES, TABLES
 
+INSTEAD = {**INSTEAD_OF, "table": ("value",)}
 OUTLINE = ("drawing", "layers", "draw", *SHAPES)
 
 
@@ -50,7 +51,7 @@ def _over_entries(ours: list[Any], entries: list[Any]) -> None:
             continue
         free.remove(at)
         for key in entry:
-            for other in INSTEAD_OF.get(key, ()):
+            for other in INSTEAD.get(key, ()):
                 ours[at].pop(other, None)
         ours[at].update(entry)
 

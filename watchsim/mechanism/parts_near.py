@@ -10,6 +10,7 @@ from watchsim.geometry.inside import winding
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Line, Point
 
+SAME = 1e-8  # m; edges as near as this to each other cannot be told apart by a place
 CLEARER = 2.0  # times: so much farther off than the nearest must the next one be
 
 
@@ -44,10 +45,8 @@ def _owner(loops: Sequence[Loop], outer: Sequence[int], hole: Loop) -> int | Non
     return min(around, key=lambda k: loops[k].length, default=None)
 
 
-def line_near(loops: Sequence[Loop], place: Point) -> tuple[Line, float] | None:
-    """The straight edge nearest to the place, and which fraction of it lies there; None without any."""
-    lines = [edge for loop in loops for edge in loop.edges if isinstance(edge, Line)]
-    if not lines:
-        return None
-    found = min(lines, key=lambda line: math.dist(line.point(nearest_fraction(line, place)), place))
-    return found, nearest_fraction(found, place)
+def lines_near(loops: Sequence[Loop], place: Point) -> list[tuple[Line, float]]:
+    """The straight edges nearest to the place, several where they meet there, and which fraction of each lies nearest."""
+    lines = [(edge, nearest_fraction(edge, place)) for loop in loops for edge in loop.edges if isinstance(edge, Line)]
+    away = [math.dist(line.point(fraction), place) for line, fraction in lines]
+    return [one for one, distance in zip(lines, away, strict=True) if distance <= min(away) + SAME]

@@ -1,0 +1,114 @@
+"""Is a Swiss lever drawn as its dimensions say? What is drawn is measured with shapely, which shares nothing with the drawing."""
+
+from __future__ import annotations
+
+import random
+import sys
+from pathlib import Path
+
+import pytest
+
+from watchsim.construction.known import design
+from watchsim.construction.sound import drawing_of
+from watchsim.construction.swiss_lever.points import Swiss
+from watchsim.construction.swiss_lever.sheets import sheets
+from watchsim.designs.drawn import Drawn
+from watchsim.mechanism.overlap import overlap_faults
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "scripts"))
+
+from measure_lever import measure  # noqa: E402
+from try_designs import numbers  # noqa: E402
+
+LEVER = design("swiss_lever")
+OTHERS = [
+    {"lock": 2.0, "draw": 10.0, "run": 0.3, "drop_inside": 0.9, "drop_outside": 1.6, "lift_angle": 46.0, "guard_freedom": 0.6},
+    {"teeth": 20, "embraced": 3.5, "tooth_width": 3.4, "drop_inside": 1.0, "lift_on_stone": 5.5},
+    {"teeth": 12, "embraced": 1.5, "lever_to_balance": 6.0, "crescent": 26.0, "tip_radius": 3.0},
+]
+
+
+@pytest.mark.parametrize("name", ["escape_wheel", "lever", "roller", "banking"])
+def test_the_profile_is_drawn_byte_by_byte(name):
+    assert sheets(Swiss())[name].dxf() == (ROOT / "profiles" / "swiss_lever" / f"{name}.dxf").read_bytes()
+
+
+def checked(chosen, folder):
+    values = LEVER.chosen(chosen)
+    place = Drawn(LEVER, values).write(folder / "lever")
+    entry, exit_, safety = measure(place / "scene.toml", values.teeth)
+    for beat in (entry, exit_):
+        assert beat.draw == pytest.approx(values.draw, abs=2e-3)
+        assert beat.lock == pytest.approx(values.lock, abs=1e-3)
+        assert beat.run == pytest.approx(values.run, abs=1e-3)
+        assert beat.lift_stone + beat.lift_tooth == pytest.approx(values.lift_on_stone + values.lift_on_tooth, abs=1e-3)
+        assert beat.spare_mm > 0.0
+    assert entry.drop == pytest.approx(values.drop_inside, abs=1e-3)
+    assert exit_.drop == pytest.approx(values.drop_outside, abs=1e-3)
+    assert entry.lift_tooth == pytest.approx(values.lift_on_tooth, abs=0.03), "the measurement finds a toe to 0.02°"
+    assert safety.lift_angle == pytest.approx(values.lift_angle, abs=2e-3)
+    assert safety.guard_freedom == pytest.approx(values.guard_freedom, abs=1e-3)
+    assert safety.horn_clearance_mm == pytest.approx(values.horn_clearance, abs=1e-4)
+    assert safety.beat_clearance_mm > 0.0
+
+
+def test_dimensions_are_those_measured_from_the_drawing(tmp_path):
+    checked(OTHERS[0], tmp_path)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("chosen", [{}, *OTHERS[1:]], ids=["default", "20 teeth", "12 teeth"])
+def test_dimensions_of_other_designs_are_those_measured(chosen, tmp_path):
+    checked(chosen, tmp_path)
+
+
+REFUSED = [
+    ({"lock": 9.0}, "lock", "must be from 0.1° to 4°"),
+    ({"teeth": 15.5}, "teeth", "a whole number from 9 to 30"),
+    ({"embraced": 3.0}, "embraced", "a whole number and a half"),
+    ({"teeth": 30}, "drop_inside", "leave 0.3° for the stone, which needs 0.8°"),
+    ({"guard_freedom": 2.1}, "guard_freedom", "must be less than the total lock, 2°"),
+    ({"lift_angle": 75.0, "lever_to_balance": 4.0, "crescent": 12.0}, "crescent", "must be at least"),
+    ({"tip_radius": 20.0}, "tip_radius", "must be from 1.09 mm to 5.23 mm"),
+    ({"horn_end": 35.0}, "horn_end", "for the horn beside the slot"),
+    ({"safety_ratio": 0.5, "lift_on_stone": 9.0, "lift_angle": 75.0}, "safety_ratio", "swings past"),
+]
+
+
+@pytest.mark.parametrize(("chosen", "name", "words"), REFUSED)
+def test_impossible_dimensions_are_refused_with_the_reason(chosen, name, words):
+    found = LEVER.refusals(chosen)
+    assert any(one.dimension == name and words in one.message for one in found), found
+
+
+def test_all_limits_are_checked_at_once():
+    assert {one.dimension for one in LEVER.refusals({"lock": 9.0, "draw": 1.0, "run": 50.0})} == {"lock", "draw", "run"}
+
+
+def test_every_default_lies_within_its_limits_and_is_drawn():
+    assert LEVER.refusals({}) == ()
+    assert all(one.low <= one.default <= one.high and one.meaning and one.source for one in LEVER.dimensions)
+
+
+def test_random_designs_are_refused_or_sound_and_clear():
+    chance = random.Random(7)
+    accepted = 0
+    for _ in range(24):
+        chosen = numbers(LEVER, chance)
+        refusals = LEVER.refusals(chosen)
+        assert all(one.message for one in refusals)
+        if not refusals:
+            accepted += 1
+            assert overlap_faults(Drawn(LEVER, LEVER.chosen(chosen)).scene()) == []
+    assert accepted >= 5
+
+
+def test_only_sheets_that_change_are_read_again():
+    before = drawing_of.cache_info().misses
+    LEVER.refusals({"torque": 1.23})
+    LEVER.refusals({"torque": 1.24})
+    assert drawing_of.cache_info().misses <= before + 4
+    now = drawing_of.cache_info().misses
+    LEVER.refusals({"crescent": 23.0})
+    assert drawing_of.cache_info().misses == now + 1
