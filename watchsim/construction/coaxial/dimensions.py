@@ -24,7 +24,7 @@ class Coaxial:
     tip_radius: float = dim(2.25, "mm", 1.2, 4.0, "large wheel, to the tips; all that is not named here scales with it", "a wheel of 4.5 mm across is quoted for a modern co-axial watch (R. W. Smith)")  # fmt: skip
     direct_reach: float = dim(9.5, "°", 7.0, 10.5, "turn of the wheel on either side of the balance's line of centres in which the tips of wheel and roller stone overlap; a quarter of the pitch less the freedom of the passing stone", LAYOUT)  # fmt: skip
     direct_lead: float = dim(11.25, "°", 10.8, 11.7, "from the tooth that will give the direct impulse to that line, wheel locked on the first stone; 11.25 puts the passing stone midway between two teeth", LAYOUT)  # fmt: skip
-    stone_reach: float = dim(1.0125, "mm", 0.5, 2.0, "from the balance's centre to the tip of the roller stone", LAYOUT)
+    stone_ratio: float = dim(0.45, "", 0.3, 0.7, "from the balance's centre to the tip of the roller stone, by the radius of the large wheel", LAYOUT)  # fmt: skip
     stone_lag: float = dim(8.0, "°", 0.0, 12.0, "of the roller stone behind the unlocking pin, in the turn of the direct impulse: less, and the impulse is short; more, and the tooth passes under the stone", RUNS)  # fmt: skip
     indirect_reach: float = dim(9.5, "°", 7.0, 13.0, "the same for the small wheel and the lever's impulse stone", LAYOUT)
     indirect_lever: float = dim(4.5, "°", 3.5, 8.0, "turn of the lever on either side of its line of centres in which they overlap", LAYOUT)  # fmt: skip

@@ -41,9 +41,11 @@ class Points:
         self.let_off = self.bank - values.run
         self.unlocked = self.let_off - values.lock
         """The lever angle (unsigned) at which a locking corner stands on the tip circle."""
-        self.direct_balance = math.degrees(math.asin(values.tip_radius * sine(values.direct_reach) / values.stone_reach))
+        self.stone_reach = values.stone_ratio * values.tip_radius
+        """From B to the tip of the roller stone."""
+        self.direct_balance = math.degrees(math.asin(values.tip_radius * sine(values.direct_reach) / self.stone_reach))
         """Turn of the balance on either side of the line of centres in which roller stone and tips overlap."""
-        apart = values.tip_radius * cosine(values.direct_reach) + values.stone_reach * cosine(self.direct_balance)
+        apart = values.tip_radius * cosine(values.direct_reach) + self.stone_reach * cosine(self.direct_balance)
         self.balance_bearing = 90.0 + HALF_SPAN - 2.0 * PITCH - values.direct_lead
         self.balance_pivot = polar(-apart, self.balance_bearing + 180.0)
         both = sine(values.indirect_reach + values.indirect_lever)

@@ -24,7 +24,7 @@ def roller(points: Points) -> list[Loop]:
     s, fork = points.scale, Fork(points)
     turn = math.radians(points.fork_bearing - 90.0)
     return [
-        circle("TABLE", (0.0, 0.0), TABLE_RADIUS * points.values.stone_reach / 1.0125),
+        circle("TABLE", (0.0, 0.0), TABLE_RADIUS * points.stone_reach / 1.0125),
         circle("TABLE", (0.0, 0.0), STAFF_RADIUS * s, hole=True),
         roller_stone(points).loop("IMPULSE_STONE", EDGE * s),
         pin(points, fork).moved(turn, (0.0, 0.0)),

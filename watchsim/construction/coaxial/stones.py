@@ -80,7 +80,7 @@ def roller_stone(points: Points) -> Stone:
     s = points.scale
     bearing = points.balance_bearing + 180.0 - points.values.stone_lag
     width = ROLLER_WIDTH * s
-    tip = polar(points.values.stone_reach, bearing)
+    tip = polar(points.stone_reach, bearing)
     return Stone(tip, bearing + 180.0, width, ROLLER_LENGTH * s, width * math.tan(math.radians(RELIEF)))
 
 
