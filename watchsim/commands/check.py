@@ -23,7 +23,9 @@ def options(parser: argparse.ArgumentParser) -> None:
         "--turn", action="store_true", help="turn the mechanism by hand, without forces: what meets what at which angle"
     )
     parser.add_argument(
-        "--swing", metavar="WAY", help='with --turn: how far the oscillator is led to either side, such as "200°" (default: the start)'
+        "--swing",
+        metavar="WAY",
+        help='with --turn: how far the oscillator is led to either side, such as "200°" (default: the start)',
     )
     parser.add_argument("--movie", metavar="FILE", help="with --turn: where to write it as a movie, file.mp4 or file.gif")
 

@@ -56,7 +56,9 @@ def _frames(found: Turn) -> tuple[Array, NDArray[np.int64]]:
     q, led = found.cycle.q, found.cycle.led
     out, source = [q[found.first]], [found.first]
     for row in range(found.first + 1, len(q)):
-        others = max((abs(q[row, n] - out[-1][n]) for n in range(q.shape[1]) if n != led and not math.isnan(q[row, n])), default=0.0)
+        others = max(
+            (abs(q[row, n] - out[-1][n]) for n in range(q.shape[1]) if n != led and not math.isnan(q[row, n])), default=0.0
+        )
         went = abs(q[row, led] - out[-1][led])
         leap = max((abs(q[row, n] - q[row - 1, n]) for n in found.cycle.pressed), default=0.0)
         if leap > 2.0 * LEAP:

@@ -69,7 +69,12 @@ def _moments(found: Turn, story: list[Happening]) -> list[tuple[int, str]]:
     for kind in MOMENTS:
         for one in story:
             row = min(one.row, len(found.cycle.rows) - 1)
-            if one.kind != kind or len(picked) >= VIEWS or _with_fixed(found, one) or any(_beside(found, row, other, led) for other in picked):
+            if (
+                one.kind != kind
+                or len(picked) >= VIEWS
+                or _with_fixed(found, one)
+                or any(_beside(found, row, other, led) for other in picked)
+            ):
                 continue
             picked[row] = _words(found, one)
     if found.cycle.jam is not None or found.cycle.runaway is not None:
@@ -89,7 +94,9 @@ def _beside(found: Turn, row: int, other: int, led: int) -> bool:
     """Would the two look alike?"""
     a, b = found.cycle.rows[row], found.cycle.rows[other]
     slack = math.radians(1.0) if found.scene.bodies[led].motion == "pivot" else 2e-5
-    return abs(a[led] - b[led]) < slack and math.copysign(1, row - found.cycle.turned[-1]) == math.copysign(1, other - found.cycle.turned[-1])
+    return abs(a[led] - b[led]) < slack and math.copysign(1, row - found.cycle.turned[-1]) == math.copysign(
+        1, other - found.cycle.turned[-1]
+    )
 
 
 def _words(found: Turn, one: Happening) -> str:
@@ -130,11 +137,15 @@ def _view(axes: Axes, found: Turn, row: int, shapes: tuple[Part, ...], box: tupl
         number = bodies[part.body]
         x, y, c, s = pose_of(found.scene.bodies[number], q[number])
         place = Affine2D(pose_matrix(np.array([x, y, math.atan2(s, c)]))) + axes.transData
-        axes.add_patch(PathPatch(part.faces, facecolor=part.finish.fill, edgecolor=part.finish.edge, linewidth=0.6, transform=place))
+        axes.add_patch(
+            PathPatch(part.faces, facecolor=part.finish.fill, edgecolor=part.finish.edge, linewidth=0.6, transform=place)
+        )
     for touch in found.cycle.touches[row]:
         axes.plot(*touch.place, "o", markersize=9, markerfacecolor="none", markeredgecolor=CONTACT, markeredgewidth=1.8)
     if found.cycle.jam is not None and row == len(found.cycle.rows) - 1:
-        axes.plot(*found.cycle.jam.place, "o", markersize=15, markerfacecolor="none", markeredgecolor="#c92a2a", markeredgewidth=2.5)
+        axes.plot(
+            *found.cycle.jam.place, "o", markersize=15, markerfacecolor="none", markeredgecolor="#c92a2a", markeredgewidth=2.5
+        )
     x, y, half = box
     axes.set_xlim(x - 1.25 * half, x + 1.25 * half)
     axes.set_ylim(y - half, y + half)
@@ -160,16 +171,20 @@ def _plot(axes: Axes, found: Turn, story: list[Happening], moments: list[int]) -
         pressed = number in cycle.pressed
         line = worn[body.name].line
         values = factor[number] * ((q[:, number] - q[0, number]) * cycle.pressed.get(number, 1.0) if pressed else q[:, number])
-        words = f"{body.name}, on from where it stood ({unit[number]}), right" if pressed else f"{body.name} ({unit[number]}), left"
+        words = (
+            f"{body.name}, on from where it stood ({unit[number]}), right" if pressed else f"{body.name} ({unit[number]}), left"
+        )
         back = max(found.cycle.turned[-2] - found.first, 0) if len(found.cycle.turned) > 2 else len(q)
         side, x = right if pressed else axes, factor[led] * q[:, led]
         side.plot(x[: back + 1], values[: back + 1], color=line, linewidth=1.8, label=words)
         side.plot(x[back:], values[back:], color=line, linewidth=1.8, linestyle=(0, (4, 1.5)))
     for number, row in enumerate(moments):
         top = 1.0 if number % 2 == 0 else 0.95
-        x = factor[led] * cycle.rows[row][led]
-        axes.axvline(x, color=GRID, linewidth=1.0, zorder=0)
-        axes.text(x, top, str(number + 1), fontsize=9, color=CONTACT, ha="center", va="top", transform=axes.get_xaxis_transform())
+        at = factor[led] * cycle.rows[row][led]
+        axes.axvline(at, color=GRID, linewidth=1.0, zorder=0)
+        axes.text(
+            at, top, str(number + 1), fontsize=9, color=CONTACT, ha="center", va="top", transform=axes.get_xaxis_transform()
+        )
     here = [factor[led] * cycle.rows[min(one.row, len(cycle.rows) - 1)][led] for one in story] or list(factor[led] * q[:, led])
     room = BEFORE_AFTER if unit[led] == "°" else 0.05 * (max(here) - min(here) + 1e-3)
     axes.set_xlim(min(here) - room, max(here) + room)

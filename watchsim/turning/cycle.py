@@ -91,12 +91,12 @@ class Cycle:
         nearest = min((self.assembly.room(couple) for couple in self.assembly.of(self.led)), default=math.inf)
         step = min(max(fine, 0.9 * nearest / reach), coarse, abs(end - now[self.led]))
         before = {touch.couple for touch in self.touches[-1]}
-        leaps, slides = len(self.leaps), None
+        leaps = len(self.leaps)
         while True:
             target = end if step >= abs(end - now[self.led]) else now[self.led] + sign * step
             failure: Jam | None = None
             try:
-                slides = self._lead(target)
+                self._lead(target)
                 self._press()
             except Jam as jam:
                 failure = jam
@@ -104,7 +104,7 @@ class Cycle:
             if (failure is None and not changed and len(self.leaps) == leaps) or step <= finest:
                 if failure is not None:
                     raise failure
-                self._note(slides)
+                self._note()
                 return
             step = max(0.5 * step, finest)
             self.assembly.q[:] = now
@@ -146,7 +146,7 @@ class Cycle:
         way, _ = self.assembly.go(other, math.copysign(YIELD / reach, rate))
         return way * reach > 0.02 * YIELD
 
-    def _note(self, _slides: None = None) -> None:
+    def _note(self) -> None:
         """Keep a row."""
         found = [(k, couple, self.assembly.near(couple)) for k, couple in enumerate(self.assembly.couples)]
         touching = [(k, couple, near) for k, couple, near in found if near.crossing or near.distance <= 2e-8]

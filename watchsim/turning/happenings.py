@@ -47,7 +47,8 @@ class Happening:
 
 def stretches(found: Turn) -> list[Stretch]:
     """All touches of the last cycle."""
-    cycle, out = found.cycle, []
+    cycle = found.cycle
+    out: list[Stretch] = []
     for k in range(len(cycle.assembly.couples)):
         rows = [row for row in range(found.first, len(cycle.rows)) if any(touch.couple == k for touch in cycle.touches[row])]
         if not rows:
@@ -61,7 +62,8 @@ def stretches(found: Turn) -> list[Stretch]:
 
 def passings(found: Turn) -> list[Passing]:
     """Where two layers pass closely: the smallest distance of each stretch apart that neither begins nor ends there."""
-    cycle, out = found.cycle, []
+    cycle = found.cycle
+    out: list[Passing] = []
     distances = np.array(cycle.distances)[found.first :]
     for k in range(len(cycle.assembly.couples)):
         d = distances[:, k]
@@ -75,7 +77,8 @@ def passings(found: Turn) -> list[Passing]:
 
 def happenings(found: Turn) -> list[Happening]:
     """The story of the last cycle."""
-    cycle, out = found.cycle, []
+    cycle = found.cycle
+    out: list[Happening] = []
     for one in stretches(found):
         place = {touch.couple: touch.place for touch in cycle.touches[one.first]}
         if one.first > found.first:
@@ -86,7 +89,11 @@ def happenings(found: Turn) -> list[Happening]:
         out += _faces(found, one)
     for leap in cycle.leaps:
         if leap.row >= found.first:
-            held = [touch for touch in cycle.touches[min(leap.row, len(cycle.rows) - 1)] if leap.body in _bodies(found, touch.couple)]
+            held = [
+                touch
+                for touch in cycle.touches[min(leap.row, len(cycle.rows) - 1)]
+                if leap.body in _bodies(found, touch.couple)
+            ]
             out.append(Happening("free", leap.row, held[0].couple if held else None, leap.way, held[0].place if held else None))
     out += _recoils(found)
     order = {"leaves": 0, "back": 1, "free": 2, "meets": 3, "face": 4}
@@ -95,7 +102,8 @@ def happenings(found: Turn) -> list[Happening]:
 
 def _faces(found: Turn, one: Stretch) -> list[Happening]:
     """Where a touch goes over from one edge to another and stays there."""
-    cycle, out = found.cycle, []
+    cycle = found.cycle
+    out: list[Happening] = []
     seen = [
         (row, touch.faces, touch.place)
         for row in range(one.first, one.last + 1)
@@ -117,7 +125,8 @@ def _bodies(found: Turn, couple: int) -> tuple[int, int]:
 
 def _recoils(found: Turn) -> list[Happening]:
     """Where a pressed body stands furthest back before it goes on."""
-    cycle, out = found.cycle, []
+    cycle = found.cycle
+    out: list[Happening] = []
     q = cycle.q
     for number, sign in cycle.pressed.items():
         way = sign * q[:, number]

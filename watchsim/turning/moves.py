@@ -137,7 +137,9 @@ class Assembly:
         if abs(rate) <= LEVERAGE * reach:
             raise Jam(couple, place, f"the push goes through the pivot of {self.bodies[number].name}")
         sign, start = math.copysign(1.0, rate), self.q[number]
-        others = [(one, self.near(one)) for one in self.of(number) if one is not couple and self.room(one) <= 10.0 * LARGEST_PUSH]
+        others = [
+            (one, self.near(one)) for one in self.of(number) if one is not couple and self.room(one) <= 10.0 * LARGEST_PUSH
+        ]
         low, high = 0.0, 1e-10 / reach
         while True:
             self.q[number] = start + sign * high

@@ -63,7 +63,9 @@ def turn(scene: Scene, swing: float | None = None) -> Turn:
     teeth = _teeth(scene, wheel)
     pitch = math.tau / teeth
     if oscillator is None:
-        springs = {names.index(one.body): math.copysign(1.0, one.rest - parts.q[names.index(one.body)]) for one in scene.springs}
+        springs = {
+            names.index(one.body): math.copysign(1.0, one.rest - parts.q[names.index(one.body)]) for one in scene.springs
+        }
         parts.stay.add(number)
         cycle = Cycle(parts, number, springs, pitch)
         cycle.follow([parts.q[number] + sign * pitch])
@@ -96,7 +98,8 @@ def _hangs(scene: Scene, led: int) -> bool:
 def _teeth(scene: Scene, wheel: str) -> int:
     """By how many parts of a turn the wheel's outer outlines come back onto themselves; what is cut out between arms is no tooth."""
     bodies = tuple(
-        replace(body, loops=tuple(loop for loop in body.loops if not loop.hole)) if body.name == wheel else body for body in scene.bodies
+        replace(body, loops=tuple(loop for loop in body.loops if not loop.hole)) if body.name == wheel else body
+        for body in scene.bodies
     )
     compiled = compile_scene(replace(scene, bodies=bodies))
     number = [body.name for body in scene.bodies].index(wheel)
@@ -110,12 +113,23 @@ def _refuse(scene: Scene) -> None:
     found = next(iter(oscillators(scene)), None)
     name = None if found is None else found.body
     if not any(torque.body != name for torque in scene.torques):
-        faults.append(Fault("torques", "nothing is driven: --turn presses a driven wheel against what holds it. Add [[torques]] on the wheel"))
+        faults.append(
+            Fault(
+                "torques",
+                "nothing is driven: --turn presses a driven wheel against what holds it. Add [[torques]] on the wheel",
+            )
+        )
     touching = {side.body for contact in scene.contacts for side in contact.sides}
     for body in scene.bodies:
         if body.motion == "free" and body.name in touching:
-            faults.append(Fault(f"bodies.{body.name}.motion", "free: --turn leads bodies along one coordinate; give it a pivot or an axis"))
+            faults.append(
+                Fault(
+                    f"bodies.{body.name}.motion", "free: --turn leads bodies along one coordinate; give it a pivot or an axis"
+                )
+            )
         if body.on is not None:
-            faults.append(Fault(f"bodies.{body.name}.on", f'"{body.on}": --turn does not know carried bodies; put them on the movement'))
+            faults.append(
+                Fault(f"bodies.{body.name}.on", f'"{body.on}": --turn does not know carried bodies; put them on the movement')
+            )
     if faults:
         raise SceneError(faults)

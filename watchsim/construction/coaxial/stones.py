@@ -72,7 +72,9 @@ def lever_stone(points: Points) -> Stone:
     s = points.scale
     bearing = -90.0 - points.values.indirect_offset
     width = LEVER_WIDTH * s
-    return Stone(polar(points.impulse_reach, bearing), bearing + 180.0, width, LEVER_LENGTH * s, width * math.tan(math.radians(RELIEF)))
+    return Stone(
+        polar(points.impulse_reach, bearing), bearing + 180.0, width, LEVER_LENGTH * s, width * math.tan(math.radians(RELIEF))
+    )
 
 
 def roller_stone(points: Points) -> Stone:
