@@ -3,8 +3,7 @@
     python scripts/draw_coaxial.py [folder]
 
 Writes escape_wheel, lever, roller and banking as DXF (default folder: profiles/coaxial), from the design's own dimensions. The
-scene (profiles/coaxial/scene.toml) is what `watchsim new coaxial` writes, with its length, its window and its expectations set by
-hand.
+scene (profiles/coaxial/scene.toml) is what `watchsim new coaxial` writes, with its length, window and expectations set by hand.
 """
 
 from __future__ import annotations

@@ -26,7 +26,9 @@ class ForceArrows:
         turned = np.stack((-found.direction[..., 1], found.direction[..., 0]), axis=-1)
         on_a = found.normal[..., None] * found.direction + found.tangential[..., None] * turned
         first = _first(run)
-        signs = np.array([1.0 if first(run.pairs[k].body_a) <= first(run.pairs[k].body_b) else -1.0 for k in found.pairs.tolist()])
+        signs = np.array(
+            [1.0 if first(run.pairs[k].body_a) <= first(run.pairs[k].body_b) else -1.0 for k in found.pairs.tolist()]
+        )
         self._force, self._point = signs[None, :, None] * on_a, found.point
         size = np.hypot(self._force[..., 0], self._force[..., 1])
         size = size[np.isfinite(size) & (size > 0.0)]

@@ -83,7 +83,9 @@ def movie(
     if gif:
         sampled = np.unique(np.linspace(0, len(plan.times) - 1, SAMPLES).astype(int))
         chosen = None if arrows is None else [arrows.at(k) for k in sampled]
-        palette = shared_palette([picture.copy() for picture in _pictures(stage, run, plan.times[sampled], contacts, None, chosen)])
+        palette = shared_palette(
+            [picture.copy() for picture in _pictures(stage, run, plan.times[sampled], contacts, None, chosen)]
+        )
     drawn = None if arrows is None else [arrows.at(k) for k in range(len(plan.times))]
     encode(_pictures(stage, run, plan.times, contacts, progress, drawn), target, pixels, plan.fps, palette)
     return target

@@ -209,7 +209,9 @@ class Stage:
         tips, neck = ends[shown], ends[shown] - way * np.minimum(head, 0.6 * reach)[:, None]
         wing = 0.45 * np.minimum(head, 0.6 * reach)[:, None] * side
         shafts = _polylines(np.stack((tips - way * reach[:, None], neck), axis=1))
-        heads = Path.make_compound_path(*(Path([a, b, c, a], CLOSED) for a, b, c in zip(tips, neck + wing, neck - wing, strict=True)))
+        heads = Path.make_compound_path(
+            *(Path([a, b, c, a], CLOSED) for a, b, c in zip(tips, neck + wing, neck - wing, strict=True))
+        )
         place, width = IdentityTransform(), max(2.2 * self._unit, 1.2)
         return [
             self._own(PathPatch(shafts, fill=False, edgecolor=FORCE, linewidth=width, transform=place)),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -54,7 +55,7 @@ def stretches(found: Turn) -> list[Stretch]:
         if not rows:
             continue
         cuts = [0, *(i for i in range(1, len(rows)) if rows[i] - rows[i - 1] > FORGOTTEN), len(rows)]
-        for begin, end in zip(cuts[:-1], cuts[1:], strict=True):
+        for begin, end in pairwise(cuts):
             first, last = rows[begin], rows[end - 1]
             out.append(Stretch(k, first, last, sum(cycle.slid[row][k] for row in range(first + 1, last + 1))))
     return sorted(out, key=lambda one: (one.first, one.last))
@@ -69,9 +70,9 @@ def passings(found: Turn) -> list[Passing]:
         d = distances[:, k]
         for row in range(1, len(d) - 1):
             around = d[max(0, row - 40) : row + 41]
-            if 2e-8 < d[row] < PASSING and d[row] == around.min() and d[row] < min(around[0], around[-1]):
-                if not any(one.couple == k and abs(one.distance - d[row]) < ALIKE for one in out):
-                    out.append(Passing(k, found.first + row, float(d[row])))
+            closest = 2e-8 < d[row] < PASSING and d[row] == around.min() and d[row] < min(around[0], around[-1])
+            if closest and not any(one.couple == k and abs(one.distance - d[row]) < ALIKE for one in out):
+                out.append(Passing(k, found.first + row, float(d[row])))
     return sorted(out, key=lambda one: one.distance)
 
 

@@ -53,7 +53,7 @@ class Assembly:
         a, b = self.q[couple.a], self.q[couple.b]
         known = self._known.get(id(couple))
         # Not equal where nan: a fixed body has no coordinate, but stays where it is.
-        if known is not None and (known[0] == a or a != a) and (known[1] == b or b != b):
+        if known is not None and (known[0] == a or math.isnan(a)) and (known[1] == b or math.isnan(b)):
             return known[2]
         near = couple.near(pose_of(self.bodies[couple.a], a), pose_of(self.bodies[couple.b], b))
         self._known[id(couple)] = a, b, near
@@ -73,7 +73,7 @@ class Assembly:
         known = self._known.get(id(couple))
         if known is not None:
             a, b, near = known
-            ways = (abs(self.q[n] - q) * self.speed(couple, n) for n, q in ((couple.a, a), (couple.b, b)) if q == q)
+            ways = (abs(self.q[n] - q) * self.speed(couple, n) for n, q in ((couple.a, a), (couple.b, b)) if not math.isnan(q))
             left = near.distance - sum(ways)
             if left > NEARBY:
                 return left
@@ -128,7 +128,7 @@ class Assembly:
         return gap / speed, min(gap / max(-rate, 0.02 * speed), 4.0 * NEARBY / speed)
 
     def push(self, number: int, couple: Couple, before: Near, depth: int = 0) -> None:
-        """Move body `number` by the least that frees `couple`, whose nearest points were `before`, and whatever it meets in turn."""
+        """Move body `number` by the least that frees `couple` (nearest points `before`), and whatever it meets in turn."""
         place = before.on_a
         if number in self.stay or depth > 3:
             raise Jam(couple, place, "neither can give way")

@@ -1,7 +1,7 @@
 """Which bodies are led and pressed when a scene is turned by hand, and how far?
 
-With an oscillator: it is led through one whole oscillation and the driven wheel is pressed. Without one: the driven wheel is led by
-one pitch, and what springs pull is pressed (a click on its ratchet).
+With an oscillator: it is led through one whole oscillation and the driven wheel is pressed. Without one: the driven wheel is led
+by one pitch, and what springs pull is pressed (a click on its ratchet).
 """
 
 from __future__ import annotations
@@ -96,7 +96,7 @@ def _hangs(scene: Scene, led: int) -> bool:
 
 
 def _teeth(scene: Scene, wheel: str) -> int:
-    """By how many parts of a turn the wheel's outer outlines come back onto themselves; what is cut out between arms is no tooth."""
+    """By how many parts of a turn the wheel's outer outlines come back onto themselves; windows between arms do not count."""
     bodies = tuple(
         replace(body, loops=tuple(loop for loop in body.loops if not loop.hole)) if body.name == wheel else body
         for body in scene.bodies

@@ -1,7 +1,7 @@
 """What are the outlines of the fork and of the guard pin of a co-axial escapement's lever?
 
-Drawn with the lever's pivot at the origin and the balance above, then turned to where the balance is. Millimetres. The right half
-is drawn, the left one is its mirror image.
+Drawn with the lever's pivot at the origin and the balance above, then turned to where the balance is. Millimetres. The right
+half is drawn, the left one is its mirror image.
 """
 
 from __future__ import annotations

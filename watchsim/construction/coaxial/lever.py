@@ -1,7 +1,7 @@
 """What is the outline of a co-axial escapement's lever?
 
-Two locking stones and an impulse stone in the slots of a body with hub, arms and tail (ARMS), a fork with horns (FORK) and a guard
-pin (GUARD). In the lever's own frame, millimetres: pivot at the origin, wheel below, balance to the right.
+Two locking stones and an impulse stone in the slots of a body with hub, arms and tail (ARMS), a fork with horns (FORK) and a
+guard pin (GUARD). In the lever's own frame, millimetres: pivot at the origin, wheel below, balance to the right.
 """
 
 from __future__ import annotations

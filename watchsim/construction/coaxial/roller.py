@@ -1,7 +1,7 @@
 """What are the outlines of a co-axial escapement's roller?
 
-The table (TABLE) carries the stone of the direct impulse (IMPULSE_STONE) and the D-shaped unlocking pin (PIN); in another plane the
-safety roller with its crescent (SAFETY). In the balance's own frame, millimetres: at angle 0 the pin points at the lever's pivot.
+The table (TABLE) carries the stone of the direct impulse (IMPULSE_STONE) and the D-shaped unlocking pin (PIN); in another plane
+the safety roller with its crescent (SAFETY). In the balance's own frame, millimetres: at angle 0 the pin points at the lever.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Where do the stones of a co-axial escapement stand, and what are their outlines?
 
-Three on the lever (two LOCKING_STONES, one IMPULSE_STONE) and one on the roller (IMPULSE_STONE): prisms with two rounded edges in
-their slots. In the frame of the part that holds them, millimetres.
+Three on the lever (two LOCKING_STONES, one IMPULSE_STONE) and one on the roller (IMPULSE_STONE): prisms with two rounded edges
+in their slots. In the frame of the part that holds them, millimetres.
 """
 
 from __future__ import annotations
