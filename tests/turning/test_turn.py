@@ -1,4 +1,4 @@
-"""Does a mechanism turned by hand do what its construction says? Angles are held against the circles and lines it was drawn from."""
+"""Does a mechanism turned by hand do what its construction says? Angles against the circles it was drawn from."""
 
 from __future__ import annotations
 
@@ -60,6 +60,37 @@ between = ["wheel", "post"]
 
 [[contacts]]
 between = ["balance", "post"]
+"""
+
+RATCHET = """\
+[scene]
+title = "Ratchet and click"
+schema = 1
+
+[bodies.wheel]
+polygon = [["1 mm", "0 mm"], ["0.5 mm", "0.5 mm"], ["0 mm", "0.55 mm"], ["0 mm", "1 mm"], ["-0.5 mm", "0.5 mm"],
+           ["-0.55 mm", "0 mm"], ["-1 mm", "0 mm"], ["-0.5 mm", "-0.5 mm"], ["0 mm", "-0.55 mm"], ["0 mm", "-1 mm"],
+           ["0.5 mm", "-0.5 mm"], ["0.55 mm", "0 mm"]]
+inertia = "0.1 mg·cm²"
+angle = "30°"
+
+[bodies.click]
+polygon = [["0 mm", "-0.05 mm"], ["0.9 mm", "-0.25 mm"], ["0.9 mm", "-0.15 mm"], ["0 mm", "0.05 mm"]]
+position = ["-0.95 mm", "1.05 mm"]
+angle = "20°"
+inertia = "0.05 mg·cm²"
+
+[[springs]]
+body = "click"
+stiffness = "1 µN·m/rad"
+rest = "-40°"
+
+[[torques]]
+body = "wheel"
+value = "-1 µN·m"
+
+[[contacts]]
+between = ["wheel", "click"]
 """
 
 
@@ -155,6 +186,17 @@ def test_a_post_in_the_way_jams_and_is_named(tmp_path):
     word, sentence = verdict(found)
     assert word == "jams"
     assert "balance" in sentence and "post" in sentence
+
+
+def test_a_ratchet_passes_its_click(tmp_path):
+    """No oscillator: the wheel is led by a pitch, and the spring presses the click on."""
+    (tmp_path / "scene.toml").write_text(RATCHET, encoding="utf-8")
+    found = turn(ws.load(tmp_path / "scene.toml"))
+    assert found.oscillator is None
+    assert verdict(found) == ("passes", "wheel passes: 1 of 4 teeth in a whole pitch")
+    click = [math.degrees(row[1]) for row in found.cycle.rows]
+    assert click[-1] == pytest.approx(click[0], abs=1e-3)
+    assert max(click) - min(click) > 10.0
 
 
 def test_what_cannot_be_turned_is_refused_in_one_go(tmp_path):

@@ -48,10 +48,10 @@ def turned_by_hand(scene: Scene, swing: str | None, movie: str | None, picture: 
 
 def _swing(scene: Scene, text: str) -> float:
     """How far the oscillator is led to either side, rad or m."""
-    from watchsim.mechanism.oscillation import oscillators
+    from watchsim.turning.turn import swinging
     from watchsim.units import ANGLE, LENGTH
 
-    found = next(iter(oscillators(scene)), None)
+    found = swinging(scene)
     if found is None:
         raise InputError(f'--swing "{text}": nothing swings in this scene; its wheel is led by one pitch.')
     return parse_positive("--swing", text, ANGLE if scene.body(found.body).motion == "pivot" else LENGTH)

@@ -1,7 +1,7 @@
 """Which arrows stand for the contact forces of a run at the instants of a movie?
 
-Each is drawn where the contact is, along the force on the body that receives it: the oscillator before the lever, the lever before
-the wheel, whatever moves before what is fixed.
+Each is drawn where the contact is, along the force on the body that receives it: the oscillator before the lever, the lever
+before the wheel, whatever moves before what is fixed.
 """
 
 from __future__ import annotations

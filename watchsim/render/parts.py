@@ -76,7 +76,7 @@ def _of_body(body: Body, look: Finish, deviation: float, spacing: float) -> list
     ground = [(loop, line) for loop, line in lines if not loop.closed]
     for loop, line in lines:
         if loop.closed and (loop.hole or roles[loop.layer] == "bore"):
-            # What lies around it on its own layer, if anything does: the hole of a wheel with a smaller wheel before it is its own.
+            # What lies around it on its own layer, if anything does: a window is not one of a smaller wheel on it.
             own = [i for i, (around, _) in enumerate(outer) if around.layer == loop.layer]
             owner = _owner(line, own, outer)
             if owner is None:

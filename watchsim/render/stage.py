@@ -94,8 +94,8 @@ class Stage:
     ) -> Pixels:
         """The picture (height, width, 4) of the instant `t`; the next call overwrites it.
 
-        `frames` gives every body's pose x, y, angle; `contacts` (n, 2) points to mark, in metres, in the colour `mark`; `arrows`
-        (n, 4) where arrows end, in metres, and what they point along, in parts of the longest.
+        `frames` gives every body's pose x, y, angle; `contacts` (n, 2) points to mark, in metres, in the colour `mark`;
+        `arrows` (n, 4) where arrows end, in metres, and what they point along, in parts of the longest.
         """
         self._canvas.restore_region(self._background)
         renderer = self._canvas.get_renderer()

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
 VIEWS, ACROSS = 8, 4
 SIZE, DPI = (16.0, 12.0), 110
+MARGINS = {"left": 0.06, "right": 0.94, "bottom": 0.07, "top": 0.9, "hspace": 0.24, "wspace": 0.06}
 ROOM = 1.15  # of the reach of what touches: half the side of a view
 BEFORE_AFTER = 12.0  # degrees of the led body that the plot shows beyond the first and last happening
 MOMENTS = ("free", "back", "leaves", "meets")  # in this order of importance
@@ -48,7 +49,7 @@ def _figure(found: Turn) -> Figure:
     figure = Figure(figsize=SIZE, facecolor=BACKGROUND)
     FigureCanvasAgg(figure)
     rows = max(1, math.ceil(len(chosen) / ACROSS))
-    grid = figure.add_gridspec(rows + 1, ACROSS, height_ratios=[*([1.0] * rows), 1.1], left=0.06, right=0.94, bottom=0.07, top=0.9, hspace=0.24, wspace=0.06)  # fmt: skip
+    grid = figure.add_gridspec(rows + 1, ACROSS, height_ratios=[*([1.0] * rows), 1.1], **MARGINS)
     shapes = parts(found.scene, 2e-7, 2e-4)
     box = _box(found)
     for number, (row, words) in enumerate(chosen):

@@ -1,7 +1,7 @@
 """How far apart are two layers that may touch, and how does that change with the two bodies' coordinates?
 
-By the exact distances of lines and arcs (contact.edges): nothing of the solver's gap functions or candidate cells enters, so what
-is seen here says something about a run.
+By the exact distances of lines and arcs (contact.edges): nothing of the solver's gap functions or candidate cells enters, so
+what is seen here says something about a run.
 """
 
 from __future__ import annotations

@@ -53,6 +53,7 @@ class Cycle:
     led: int
     pressed: dict[int, float]
     pitch: float
+    rests: dict[int, float] = field(default_factory=dict)  # where a spring no longer presses a body on
     rows: list[tuple[float, ...]] = field(default_factory=list)
     touches: list[tuple[Touch, ...]] = field(default_factory=list)
     distances: list[tuple[float, ...]] = field(default_factory=list)
@@ -124,8 +125,10 @@ class Cycle:
         for number, sign in self.pressed.items():
             gone = 0.0
             for _ in range(ROUNDS):
-                way, couple = self.assembly.go(number, sign * RUNAWAY * self.pitch)
+                way, couple = self.assembly.go(number, self._far(number, sign))
                 gone += way
+                if couple is None and number in self.rests:
+                    break
                 if couple is None or gone > self.pitch * RUNAWAY:
                     self.runaway = number
                     return
@@ -133,6 +136,12 @@ class Cycle:
                     self.leaps.append(Leap(len(self.rows), number, way))
                 if not self._yields(number, couple):
                     break
+
+    def _far(self, number: int, sign: float) -> float:
+        """How far a pressed body may go at once: to where its spring rests; without one, beyond a pitch it has run away."""
+        if number in self.rests:
+            return sign * max(0.0, sign * (self.rests[number] - self.assembly.q[number]))
+        return sign * RUNAWAY * self.pitch
 
     def _yields(self, number: int, couple: Couple) -> bool:
         """Drive what holds the pressed body a little out of the way; False where it stays."""

@@ -36,8 +36,8 @@ class Passing:
 
 @dataclass(frozen=True)
 class Happening:
-    """One line of the story: `kind` is meets, leaves, face (the touch goes over to another edge), free (the pressed body goes `way`
-    without being held) or back (it stands furthest back, having recoiled by `way`)."""
+    """One line of the story: `kind` is meets, leaves, face (the touch goes over to another edge), free (the pressed body goes
+    `way` without being held) or back (it stands furthest back, having recoiled by `way`)."""
 
     kind: str
     row: int

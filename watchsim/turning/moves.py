@@ -1,8 +1,8 @@
 """How are bodies moved against each other so that nothing ever overlaps?
 
-A state of coordinates is free of overlap from the start and stays so. Bodies go as far as the exact distance allows (a body whose
-points travel no faster than r per unit of its coordinate may move by distance / r), and what a moved body runs into is pushed
-away, along the one coordinate it has, by the least that frees the two.
+A state of coordinates is free of overlap from the start and stays so. Bodies go as far as the exact distance allows (a body
+whose points travel no faster than r per unit of its coordinate may move by distance / r), and what a moved body runs into is
+pushed away, along the one coordinate it has, by the least that frees the two.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ class Assembly:
         return [(couple, near) for couple, near in found if near.crossing or near.distance <= TOUCHING]
 
     def room(self, couple: Couple) -> float:
-        """A bound from below of the distance, without looking again while what was seen last tells that there is room enough."""
+        """A bound from below of the distance, without looking again while what was seen last tells of room enough."""
         known = self._known.get(id(couple))
         if known is not None:
             a, b, near = known
@@ -88,7 +88,7 @@ class Assembly:
         return next((couple for couple in self.of(number) if not self.is_free(couple)), None)
 
     def go(self, number: int, way: float) -> tuple[float, Couple | None]:
-        """Move a body by at most `way`, up to what it meets: how far it went, and the couple that stopped it (None: none did)."""
+        """Move a body by at most `way`, up to what it meets: how far it went, and what stopped it (None: nothing did)."""
         gone, sign, start = 0.0, math.copysign(1.0, way), self.q[number]
         for _ in range(ROUNDS):
             safe, bold, nearest = abs(way) - gone, abs(way) - gone, None

@@ -1,7 +1,7 @@
 """Which bodies are led and pressed when a scene is turned by hand, and how far?
 
-With an oscillator: it is led through one whole oscillation and the driven wheel is pressed. Without one: the driven wheel is led
-by one pitch, and what springs pull is pressed (a click on its ratchet).
+With an oscillator: it is led through one whole oscillation and the driven wheel is pressed. Without one: the driven wheel is
+led by one pitch, and what springs pull is pressed (a click on its ratchet).
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ import numpy as np
 
 from watchsim.mechanism.compile import CLEARANCE, compile_scene
 from watchsim.mechanism.errors import Fault, SceneError
-from watchsim.mechanism.oscillation import oscillators
-from watchsim.mechanism.roles import drive_direction
+from watchsim.mechanism.oscillation import Oscillator, oscillators
+from watchsim.mechanism.roles import drive_direction, keeps_time
 from watchsim.mechanism.scene import Scene
 from watchsim.mechanism.symmetry import turn_symmetry
 from watchsim.turning.cycle import Cycle
@@ -54,7 +54,7 @@ def turn(scene: Scene, swing: float | None = None) -> Turn:
     SceneError where nothing is driven, or where a part moves in a way that one coordinate does not tell.
     """
     _refuse(scene)
-    oscillator = next(iter(oscillators(scene)), None)
+    oscillator = swinging(scene)
     name = None if oscillator is None else oscillator.body
     wheel = next(torque.body for torque in scene.torques if torque.body != name)
     names = [body.name for body in scene.bodies]
@@ -63,11 +63,10 @@ def turn(scene: Scene, swing: float | None = None) -> Turn:
     teeth = _teeth(scene, wheel)
     pitch = math.tau / teeth
     if oscillator is None:
-        springs = {
-            names.index(one.body): math.copysign(1.0, one.rest - parts.q[names.index(one.body)]) for one in scene.springs
-        }
+        rests = {names.index(one.body): one.rest for one in scene.springs}
+        pressed = {i: math.copysign(1.0, rest - parts.q[i]) for i, rest in rests.items()}
         parts.stay.add(number)
-        cycle = Cycle(parts, number, springs, pitch)
+        cycle = Cycle(parts, number, pressed, pitch, rests)
         cycle.follow([parts.q[number] + sign * pitch])
         return Turn(scene, cycle, teeth, None, wheel, 0)
     led = names.index(oscillator.body)
@@ -80,6 +79,12 @@ def turn(scene: Scene, swing: float | None = None) -> Turn:
     cycle.follow([*ends, near, far])
     first = cycle.turned[len(ends)] if len(cycle.turned) > len(ends) else 0
     return Turn(scene, cycle, teeth, oscillator.body, wheel, first)
+
+
+def swinging(scene: Scene) -> Oscillator | None:
+    """The oscillator that an escapement keeps going; not the click that a spring presses on a ratchet."""
+    found = next(iter(oscillators(scene)), None)
+    return found if found is not None and (found.spring == 0.0 or keeps_time(scene)) else None
 
 
 def closes(found: Turn) -> bool:
@@ -110,7 +115,7 @@ def _teeth(scene: Scene, wheel: str) -> int:
 def _refuse(scene: Scene) -> None:
     """SceneError with all that keeps a scene from being turned by hand."""
     faults = []
-    found = next(iter(oscillators(scene)), None)
+    found = swinging(scene)
     name = None if found is None else found.body
     if not any(torque.body != name for torque in scene.torques):
         faults.append(

@@ -1,7 +1,7 @@
 """Which dimensions does a co-axial escapement have?
 
-Proportions after descriptions of the flat form (two coplanar impulses, three stones on the lever); no maker's drawing is public.
-Angles in degrees: of the wheel, where nothing else is said. Why limits are where they are: docs/coaxial.md, and
+Proportions after descriptions of the flat form (two coplanar impulses, three stones on the lever); no maker's drawing is
+public. Angles in degrees: of the wheel, where nothing else is said. Why limits are where they are: docs/coaxial.md, and
 `watchsim check --turn` of a design beyond them.
 """
 
