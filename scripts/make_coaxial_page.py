@@ -428,14 +428,15 @@ What changes when friction, restitution or torque do (settled, 90 s):
 
 {torque}
 
+Beyond 337° the pin strikes the outside of the fork: there the watch knocks, gains minutes, and its amplitude says nothing.
 The last table is isochronism as well: what changes the amplitude changes the rate by so much.
 
 In plain words: with the same energy both swing equally far, but lose it in different places. The lever rubs away a third of
-what it gets, on long ways and under load; the co-axial next to nothing, since its teeth push more than they slide. Its price is paid
-in impacts: at each beat the wheel starts from rest, runs after a stone that already moves fast, and strikes it. So the co-axial
-hardly notices whether its oil is fresh, where the amplitude of the lever follows friction closely; both follow the torque
-alike. A lighter wheel would catch up sooner and lose less: there lies what is still to be gained. All of this is for rigid parts, dry
-friction and inertias that are estimates.
+what it gets, on long ways and under load; the co-axial next to nothing, since its teeth push more than they slide. Its
+price is paid in impacts: at each beat the wheel starts from rest, runs after a stone that already moves fast, and strikes
+it. So the co-axial hardly notices whether its oil is fresh, where the amplitude of the lever follows friction closely; both
+follow the torque alike. A lighter wheel would catch up sooner and lose less: there lies what is still to be gained. All of
+this is for rigid parts, dry friction and inertias that are estimates.
 
 Random designs are tried with `python scripts/try_designs.py 100 100 1 coaxial`: each is refused with its reason, ticks, or does
 not and says why.

@@ -7,8 +7,8 @@ import importlib
 from watchsim.construction.design import Design
 
 _HOMES = {
-    "coaxial": "watchsim.construction.coaxial.design",
     "swiss_lever": "watchsim.construction.swiss_lever.design",
+    "coaxial": "watchsim.construction.coaxial.design",
 }
 
 NAMES = tuple(_HOMES)

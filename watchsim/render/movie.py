@@ -20,6 +20,7 @@ from watchsim.render.colours import shared_palette
 from watchsim.render.contacts import ContactMarks
 from watchsim.render.encoder import check_path, encode
 from watchsim.render.force_arrows import ForceArrows
+from watchsim.render.palette import CONTACT
 from watchsim.render.poses import Window, poses, stretch
 from watchsim.render.stage import Stage
 from watchsim.simulation.trajectory import Trajectory
@@ -153,6 +154,6 @@ def _pictures(
     for k, t in enumerate(times):
         frames = {name: rows[k] for name, rows in where.items()}
         points = marks.points(float(t), frames) if marks else None
-        yield stage.draw(float(t), frames, points, arrows=None if arrows is None else arrows[k])
+        yield stage.draw(float(t), frames, points, CONTACT, None if arrows is None else arrows[k])
         if progress is not None:
             progress(k + 1, len(times))
