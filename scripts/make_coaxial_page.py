@@ -29,6 +29,7 @@ TORQUES = (0.06, 0.1, 0.15, 0.2, 0.3, 0.4, 0.48, 0.6, 0.8, 1.0)  # µN·m
 STARTS = (60.0, 90.0, 120.0, 150.0, 180.0, 210.0, 240.0, 270.0, 290.0, 310.0, 330.0)  # degrees
 LONG, SHORT, SETTLE = 180.0, 4.0, 90.0  # s
 FRICTIONS, RESTITUTIONS, PULLS = (0.0, 0.05, 0.10, 0.15, 0.20), (0.0, 0.2, 0.4, 0.5), (0.6, 0.8, 1.0, 1.2, 1.4)
+INERTIAS = (0.05, 0.1, 0.15, 0.2)  # mg·cm²
 TORQUE = 0.48  # µN·m on the co-axial wheel
 PULL = TORQUE * 15.0 / 8.0  # on the lever's escape wheel: the same work in an oscillation
 NAMES = {"coaxial": "co-axial", "swiss_lever": "Swiss lever"}
@@ -227,6 +228,19 @@ def studies(both: dict[str, Scene]) -> tuple[str, str, str]:
     return tables[0], tables[1], tables[2]
 
 
+def wheels(scene: Scene) -> str:
+    """What the wheel's inertia does to the co-axial."""
+    lines = [
+        "| inertia of the wheel, mg·cm² | amplitude, ° | rate, s/d | efficiency | lost in impacts |",
+        "|---:|---:|---:|---:|---:|",
+    ]
+    for inertia in INERTIAS:
+        one = settled(scene.set("bodies.wheel.inertia", f"{inertia} mg·cm²"))
+        shares = f"{100 * one.efficiency:.1f} % | {100 * one.impacts:.1f} %"
+        lines.append(f"| {inertia:g} | {one.amplitude:.2f} | {one.rate:+.2f} | {shares} |")
+    return "\n".join(lines)
+
+
 def long_runs(scene: Scene) -> tuple[str, Trajectory]:
     """180 s from three starts."""
     lines = [
@@ -326,6 +340,7 @@ def main(folder: Path) -> None:
         friction=friction,
         restitution=restitution,
         torque=torque,
+        wheels=wheels(scene),
         dimensions=dimension_table(),
     )
     (folder / "coaxial.md").write_text(page, encoding="utf-8")
@@ -430,6 +445,10 @@ What changes when friction, restitution or torque do (settled, 90 s):
 
 Beyond 337° the pin strikes the outside of the fork: there the watch knocks, gains minutes, and its amplitude says nothing.
 The last table is isochronism as well: what changes the amplitude changes the rate by so much.
+
+The inertia of the co-axial wheel:
+
+{wheels}
 
 In plain words: with the same energy both swing equally far, but lose it in different places. The lever rubs away a third of
 what it gets, on long ways and under load; the co-axial next to nothing, since its teeth push more than they slide. Its
