@@ -179,6 +179,9 @@ def _plot(axes: Axes, found: Turn, story: list[Happening], moments: list[int]) -
         side, x = right if pressed else axes, factor[led] * q[:, led]
         side.plot(x[: back + 1], values[: back + 1], color=line, linewidth=1.8, label=words)
         side.plot(x[back:], values[back:], color=line, linewidth=1.8, linestyle=(0, (4, 1.5)))
+    for side in (axes, right):
+        if not side.get_lines():
+            side.set_yticks([])
     for number, row in enumerate(moments):
         top = 1.0 if number % 2 == 0 else 0.95
         at = factor[led] * cycle.rows[row][led]
