@@ -28,9 +28,9 @@ from balance_sizes import (
     STAFF,
     STAFF_PLACE,
 )
+
 from watchsim.construction.outline import angle_of, arc_between, circle, polar, turned
 from watchsim.drawing.sheet import add_circle, add_edge, add_loop, add_polygon, new_sheet, write
-
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Line, Point
 

@@ -2,7 +2,7 @@
 
     python scripts/try_designs.py [designs] [simulated] [seed] [design]
 
-Draws dimensions at random until so many designs (default 200) are accepted; every refusal says why, and the reasons are counted.
+Draws dimensions at random until so many designs (default 200) are accepted; refusals say why, and their reasons are counted.
 Each accepted design is drawn, read back from its drawings and looked at for overlap at the start; the first few (default 40)
 are simulated for 2 s, one line each. Exits with 1 where a drawing is not sound or bodies overlap.
 """

@@ -36,9 +36,12 @@ _HOMES = {
     "profiles_dir": "watchsim.profiles_path",
 }
 
-__all__ = [*_HOMES, "__version__"]  # noqa: PLE0604 - the keys are the public names
+_PACKAGES = ("designs",)  # whose names are used through them
+
+__all__ = [*_HOMES, *_PACKAGES, "__version__"]  # noqa: PLE0604 - the keys are the public names
 
 if TYPE_CHECKING:
+    from watchsim import designs as designs
     from watchsim.analysis.beats import beats as beats
     from watchsim.analysis.forces import forces as forces
     from watchsim.analysis.results import read_results as read_results
@@ -65,6 +68,8 @@ if TYPE_CHECKING:
 
 
 def __getattr__(name: str) -> Any:
+    if name in _PACKAGES:
+        return importlib.import_module(f"watchsim.{name}")
     if name not in _HOMES:
         raise AttributeError(f"module 'watchsim' has no attribute {name!r}")
     value = getattr(importlib.import_module(_HOMES[name]), name)

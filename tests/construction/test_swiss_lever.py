@@ -1,4 +1,7 @@
-"""Is a Swiss lever drawn as its dimensions say? What is drawn is measured with shapely, which shares nothing with the drawing."""
+"""Is a Swiss lever drawn as its dimensions say?
+
+What is drawn is measured with shapely, which shares nothing with the drawing.
+"""
 
 from __future__ import annotations
 

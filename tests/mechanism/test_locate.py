@@ -1,7 +1,7 @@
 """Are the lines of keys found in any TOML a person may write?"""
 
-from watchsim.mechanism.parsed import tomllib
 from watchsim.mechanism.locate import key_lines
+from watchsim.mechanism.parsed import tomllib
 
 TEXT = '''\
 # a comment with [brackets] and "quotes

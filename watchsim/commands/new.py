@@ -18,7 +18,7 @@ WIDTH = 110
 
 
 def options(parser: argparse.ArgumentParser) -> None:
-    parser.usage = 'watchsim new DESIGN [--DIMENSION VALUE ...] [-o DIR] [--list] [--json] [--force]'
+    parser.usage = "watchsim new DESIGN [--DIMENSION VALUE ...] [-o DIR] [--list] [--json] [--force]"
     parser.epilog = (
         'For example: watchsim new swiss_lever --lock "2°" --draw "13.5°" --teeth 20 -o my_lever. '
         "watchsim new --list tells the designs, watchsim new DESIGN --list their dimensions."
@@ -30,10 +30,14 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 def _common(parser: argparse.ArgumentParser) -> None:
     unset: Any = argparse.SUPPRESS
-    parser.add_argument("-o", "--output", metavar="DIR", default=unset, help="folder for the files (default: the design's name)")
+    parser.add_argument(
+        "-o", "--output", metavar="DIR", default=unset, help="folder for the files (default: the design's name)"
+    )
     parser.add_argument("--list", action="store_true", default=unset, help="list designs, or the dimensions of a design")
     parser.add_argument("--json", action="store_true", default=unset, help="print one JSON object instead of text")
-    parser.add_argument("--force", action="store_true", default=unset, help="replace drawings and scene of a folder that exists")
+    parser.add_argument(
+        "--force", action="store_true", default=unset, help="replace drawings and scene of a folder that exists"
+    )
 
 
 def run(args: argparse.Namespace) -> int:
@@ -73,7 +77,8 @@ def _unknown(design: Design, word: str) -> str:
     from watchsim.mechanism.schema import nearest
 
     if not word.startswith("-"):
-        return f'"{word}" belongs to no option. Write --DIMENSION VALUE, such as {design.dimensions[0].option} {design.dimensions[0].default}.'
+        first = design.dimensions[0]
+        return f'"{word}" belongs to no option. Write --DIMENSION VALUE, such as {first.option} {first.default}.'
     hint = nearest(word.partition("=")[0], [one.option for one in design.dimensions])
     known = f"watchsim new {design.name} --list tells its dimensions."
     return f"{word} is no dimension of this design. {hint if hint.startswith('Did') else known}"

@@ -88,7 +88,7 @@ class Design:
         out = [conflict for name, number in chosen.items() for conflict in _beyond(self._known(name), number)]
         if out:
             return tuple(out)
-        found = []
+        found: list[Conflict] = []
         try:
             values = self.chosen(chosen)
             found += self.conflicts(values)

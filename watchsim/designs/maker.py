@@ -36,8 +36,8 @@ class Maker:
 
 
 def _doc(design: Design) -> str:
-    rows = [
-        f"{one.name} = {one.shortly(one.default)}  ({one.shortly(one.low)} to {one.shortly(one.high)}): {one.meaning}. {one.source}"
-        for one in design.dimensions
-    ]
+    rows = []
+    for one in design.dimensions:
+        default, low, high = map(one.shortly, (one.default, one.low, one.high))
+        rows.append(f"{one.name} = {default}  ({low} to {high}): {one.meaning}. {one.source}")
     return "\n".join([f"{design.title}. Dimensions, each optional:", "", *rows])

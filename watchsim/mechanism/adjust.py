@@ -99,7 +99,9 @@ def _meant(one: Table, loops: list[Loop], layer: str) -> tuple[int, ...]:
         return ()
     found, clear = part_near([loops[k] for k in mine], place)
     if not clear:
-        one.fault("near", "two outlines of this layer are about as near: give a place in the one that is meant", with_value=True)
+        one.fault(
+            "near", "two outlines of this layer are about as near: give a place in the one that is meant", with_value=True
+        )
         return ()
     return tuple(mine[k] for k in found)
 
@@ -155,7 +157,9 @@ def _along(one: Table, part: list[Loop]) -> Point:
         return NOWHERE
     if "along" not in one or "face" not in one:
         here, missing = ("along", "face") if "along" in one else ("face", "along")
-        one.fault(here, f'belongs together with {missing}: along = "2 µm", face = [x, y], a place at that end of a straight edge')
+        one.fault(
+            here, f'belongs together with {missing}: along = "2 µm", face = [x, y], a place at that end of a straight edge'
+        )
         return (NAN, NAN)
     distance, place = one.quantity("along"), one.pair("face")
     if not all(map(math.isfinite, (distance, *place))):

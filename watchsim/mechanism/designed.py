@@ -6,7 +6,6 @@ says is written over that scene, and what was changed since over both.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any

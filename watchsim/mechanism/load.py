@@ -8,6 +8,7 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from watchsim.mechanism.designed import with_design
 from watchsim.mechanism.errors import Fault, Faults, SceneError
 from watchsim.mechanism.locate import key_lines
 from watchsim.mechanism.oscillation import frequency
+from watchsim.mechanism.parsed import parsed
 from watchsim.mechanism.read_bodies import read_bodies
 from watchsim.mechanism.read_carriers import note_carriers
 from watchsim.mechanism.read_contacts import read_contacts
@@ -22,7 +24,6 @@ from watchsim.mechanism.read_forces import read_damping, read_springs, read_torq
 from watchsim.mechanism.read_settings import read_expectations, read_heading, read_run, read_timegrapher
 from watchsim.mechanism.scene import Scene, Written
 from watchsim.mechanism.schema import LOCK, SECTIONS, nearest
-from watchsim.mechanism.parsed import parsed
 from watchsim.mechanism.table import Table
 
 FAR_OFF = 0.1  # of the frequency of small swings: what a rate may be measured against
@@ -56,6 +57,7 @@ def from_mapping(
     if "design" in mapping:
         written = Written(mapping, dict(changes or {}))
         mapping, made = with_design(written, faults)
+        written = replace(written, made=frozenset(made))
     _note_sections(mapping, faults)
     heading = read_heading(mapping, faults)
     read = read_bodies(mapping.get("bodies", {}), folder, faults, made)

@@ -31,7 +31,11 @@ def lock_text(scene: Scene, folder: Path | None = None, kept: Mapping[str, str] 
     """
     source = {key: value for key, value in copy.deepcopy(scene.source).items() if key not in ("lock", DESIGN)}
     here = scene.path.parent if scene.path else Path()
+    made = scene.written.made - set(kept or {}) if scene.written else frozenset[str]()
     ordered = {"scene": _heading(source, scene)}
+    if made:  # they have no files: the design makes them again
+        ordered[DESIGN] = scene.source[DESIGN]
+        source["bodies"] = {name: _undrawn(entry, made) for name, entry in source["bodies"].items()}
     ordered["bodies"] = {body.name: _completed(source["bodies"][body.name], body, here, folder) for body in scene.bodies}
     _travel(ordered["bodies"], source["bodies"], kept or {})
     ordered.update((key, value) for key, value in source.items() if key not in ordered)
@@ -39,10 +43,14 @@ def lock_text(scene: Scene, folder: Path | None = None, kept: Mapping[str, str] 
     ordered["run"] = {"duration": _si(scene.duration, "s"), "tolerance": scene.tolerance, **source.get("run", {})}
     ordered["lock"] = {
         "versions": versions(),
-        **({DESIGN: scene.source[DESIGN]} if DESIGN in scene.source else {}),
+        **({DESIGN: scene.source[DESIGN]} if DESIGN in scene.source and not made else {}),
         "drawings": _digests(ordered["bodies"], folder or Path(), _bytes(scene, kept or {})),
     }
     return HEADER + toml_text(ordered)
+
+
+def _undrawn(entry: dict[str, Any], made: frozenset[str]) -> dict[str, Any]:
+    return {key: value for key, value in entry.items() if key != "drawing" or value not in made}
 
 
 def versions() -> dict[str, str]:
@@ -103,7 +111,7 @@ def _travel(bodies: dict[str, Any], source: Mapping[str, Any], kept: Mapping[str
     """Names the drawings that travel with the text by where they will be."""
     for name, entry in bodies.items():
         drawing = source[name].get("drawing")
-        if drawing in kept:
+        if drawing is not None and drawing in kept:
             entry["drawing"] = kept[drawing]
 
 

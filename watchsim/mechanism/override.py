@@ -11,6 +11,7 @@ from watchsim.mechanism.load import from_mapping
 from watchsim.mechanism.parsed import parsed
 from watchsim.mechanism.scene import Scene
 
+
 def changed(scene: Scene, changes: Mapping[str, object]) -> Scene:
     """The scene with those dotted keys changed and everything checked again; SceneError lists what does not fit."""
     if scene.written is not None:

@@ -27,10 +27,12 @@ class Expectation:
 
 @dataclass(frozen=True)
 class Written:
-    """Of a scene made from a design: what its file says, and the keys changed since (path -> value, in that order)."""
+    """Of a scene made from a design: what its file says, the keys changed since (path -> value, in that order), and the names
+    of the drawings that the design makes."""
 
     mapping: dict[str, Any]
     changes: Mapping[str, object]
+    made: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True)

@@ -78,6 +78,7 @@ LISTED = {"springs": SPRING, "torques": TORQUE, "damping": DAMPING, "contacts": 
 DESIGN = "design"  # [design], whose keys are the dimensions of the design it names
 SECTIONS = (*TABLES, DESIGN, *NAMED, *LISTED)
 
+
 def key_at(path: tuple[str, ...]) -> Key | None:
     """The description of a dotted path such as ("bodies", "lever", "position", "1"); None where no such key exists."""
     if not path:

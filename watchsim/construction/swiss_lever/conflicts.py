@@ -34,13 +34,14 @@ def conflicts(values: SwissLever) -> Iterator[Conflict]:
 
 def _counts(values: SwissLever) -> Iterator[Conflict]:
     if values.embraced % 1.0 != 0.5:
-        yield Conflict("embraced", "must be a whole number and a half: one stone locks while the other stands between two teeth")
+        yield Conflict(
+            "embraced", "must be a whole number and a half: one stone locks while the other stands between two teeth"
+        )
     span = values.embraced * 180.0 / values.teeth
     if not SPANS[0] <= span <= SPANS[1]:
         least, most = (2.0 * one for one in SPANS)
         words = f"with {values.teeth} teeth the pallets embrace {2.0 * span:.4g}°; {least:g}° to {most:g}° can be drawn"
         yield Conflict("embraced", words)
-
 
     if not WHEELS[0] <= values.tip_radius / values.lever_to_balance <= WHEELS[1]:
         least, most = (one * values.lever_to_balance for one in WHEELS)
@@ -53,22 +54,26 @@ def _angles(values: SwissLever) -> Iterator[Conflict]:
     for name in ("drop_inside", "drop_outside"):
         stone = beat - values.tooth_width - getattr(values, name)
         if stone < LEAST_STONE:
-            words = f"with {values.teeth} teeth a beat is {beat:.4g}° of the wheel; a tooth of {values.tooth_width:g}° and this drop"
-            yield Conflict(name, f"{words} leave {stone:.4g}° for the stone, which needs {LEAST_STONE:g}°")
+            words = f"with {values.teeth} teeth a beat is {beat:.4g}° of the wheel; a tooth of {values.tooth_width:g}°"
+            yield Conflict(name, f"{words} and this drop leave {stone:.4g}° for the stone, which needs {LEAST_STONE:g}°")
     if values.guard_freedom >= values.lock + values.run:
-        words = f"must be less than the total lock, {values.lock + values.run:.4g}°: the dart is to stop the lever before it unlocks"
-        yield Conflict("guard_freedom", words)
+        words = f"must be less than the total lock, {values.lock + values.run:.4g}°"
+        yield Conflict("guard_freedom", f"{words}: the dart is to stop the lever before it unlocks")
 
 
 def _pallets(values: SwissLever, design: Swiss) -> Iterator[Conflict]:
     gap = tooth_gap(design)
     if gap < LEAST_GAP:
-        words = f"between two of {values.teeth} teeth there is no floor left: {gap:.3g}° of it, at least {LEAST_GAP:g}° are needed"
+        words = (
+            f"between two of {values.teeth} teeth there is no floor left: {gap:.3g}° of it, at least {LEAST_GAP:g}° are needed"
+        )
         yield Conflict("tooth_width", words)
     on_tooth = lift_on_tooth(design, -1)
     on_stone = design.lift - on_tooth
     if min(on_tooth, on_stone) < LEAST_LIFT:
-        words = f"the same teeth then give the exit stone {on_stone:.3g}° of lift on the stone and {on_tooth:.3g}° on the tooth;"
+        words = (
+            f"the same teeth then give the exit stone {on_stone:.3g}° of lift on the stone and {on_tooth:.3g}° on the tooth;"
+        )
         yield Conflict("lift_on_tooth", f"{words} each needs {LEAST_LIFT:g}°")
     thin = min(Slot(design, side).width for side in (1, -1))
     if thin < 0.04 * design.wheel_scale:
@@ -78,7 +83,9 @@ def _pallets(values: SwissLever, design: Swiss) -> Iterator[Conflict]:
 def _roller(values: SwissLever, design: Swiss) -> Iterator[Conflict]:
     staff = 0.16 * design.lever_scale
     if design.safety_radius - design.crescent_depth < 1.1 * staff:
-        yield Conflict("safety_ratio", f"the crescent would cut into the staff of {2.0 * staff:.3g} mm: the safety roller is too small")
+        yield Conflict(
+            "safety_ratio", f"the crescent would cut into the staff of {2.0 * staff:.3g} mm: the safety roller is too small"
+        )
     needed = crescent_needed(design)
     if values.crescent < needed:
         yield Conflict("crescent", f"must be at least {needed:.4g}°: the dart enters the roller that far beside the jewel")

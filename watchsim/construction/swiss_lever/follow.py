@@ -68,7 +68,7 @@ def heel_radius(design: Swiss, lift_on_tooth: float) -> float:
 
 
 def pin_reach(design: Swiss, lift_angle: float) -> float:
-    """Such that the jewel, half the lift angle before the line of centres, meets the far wall of the slot, lever on its bank."""
+    """Such that the jewel, half a lift angle before the middle, meets the far wall of the slot; lever on its bank."""
     away = design.lever_to_balance
     low = away * math.sin(math.radians(design.bank)) + design.slot_width / 2.0  # nearer, the horn would not reach the slot
     high = FARTHEST * away
@@ -92,6 +92,8 @@ def dart_clearance(design: Swiss, freedom: float) -> float:
         raise Impossible("guard_freedom", f"must be less than half of the lever's travel, {design.bank:.4g}°")
     meets, rests = math.radians(design.bank - freedom), math.radians(design.bank)
     if not away * math.sin(meets) < reach:
-        raise Impossible("safety_ratio", "the dart swings past the safety roller: it must be larger, or the lever's travel smaller")
+        raise Impossible(
+            "safety_ratio", "the dart swings past the safety roller: it must be larger, or the lever's travel smaller"
+        )
     y = away * math.cos(meets) - math.sqrt(reach**2 - (away * math.sin(meets)) ** 2)
     return math.sqrt(away**2 + y**2 - 2.0 * away * y * math.cos(rests)) - reach

@@ -12,7 +12,7 @@ STEPS = 60
 def crescent_needed(design: Swiss) -> float:
     """Half opening, degrees: the farthest the dart's point is beside the jewel while it is within the safety roller.
 
-    The lever follows the jewel with the play of the slot; the point's own breadth and the rounding of the crescent's edge count.
+    The lever follows the jewel with the play of the slot; breadth of the point and rounding of the crescent's edge count.
     """
     play = math.degrees((design.slot_width - 2.0 * design.pin_radius) / design.pin_reach)
     farthest = 0.0

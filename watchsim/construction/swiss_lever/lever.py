@@ -14,7 +14,6 @@ from itertools import pairwise
 from watchsim.construction.outline import arc_between, arc_of_radius, circle, fillet_chain, polar
 from watchsim.construction.swiss_lever.jewel import MOUTH
 from watchsim.construction.swiss_lever.points import Swiss
-
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line, Point
 
@@ -33,7 +32,13 @@ DART_SLOPE = 30.0  # half angle of its point
 def lever(design: Swiss) -> list[Loop]:
     """All outlines of the lever."""
     stones = [stone(design, 1), stone(design, -1)]
-    return [*stones, body(design), circle("ARMS", (0.0, 0.0), BORE_RADIUS * design.lever_scale, hole=True), fork(design), dart(design)]
+    return [
+        *stones,
+        body(design),
+        circle("ARMS", (0.0, 0.0), BORE_RADIUS * design.lever_scale, hole=True),
+        fork(design),
+        dart(design),
+    ]
 
 
 class Slot:
@@ -118,7 +123,7 @@ def _holder_right(slot: Slot, root: Point, scale: float) -> list[tuple[Edge, flo
 
 
 def _bow(start: Point, end: Point, radius: float, deepest: float) -> Arc:
-    """An arc of that radius, or a flatter one where it would be deeper over its chord than `deepest`: a longer arm stays stout."""
+    """An arc of that radius, or a flatter one where it would be deeper than `deepest`: a longer arm stays stout."""
     flat = math.dist(start, end) ** 2 / (8.0 * deepest)
     return arc_of_radius(start, end, math.copysign(max(abs(radius), flat), radius))
 

@@ -12,9 +12,7 @@ import math
 from dataclasses import dataclass
 
 from watchsim.construction.outline import along, angle_of, polar, turned
-
 from watchsim.geometry.primitives import Point
-
 
 WHEEL, LEVER, REACH = 2.4, 4.36, 0.75  # mm: tip radius, centre distance, jewel of the design whose lesser lengths others scale
 

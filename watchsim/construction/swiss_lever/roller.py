@@ -11,7 +11,6 @@ import math
 
 from watchsim.construction.outline import arc_between, circle, fillet_chain, polar
 from watchsim.construction.swiss_lever.points import Swiss
-
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Edge, Line
 

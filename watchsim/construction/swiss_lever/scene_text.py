@@ -111,7 +111,7 @@ def scene_text(values: SwissLever) -> str:
 
 
 def wheel_angle(design: Swiss) -> float:
-    """Of the wheel (degrees, tooth 0 on the x axis at 0) with a toe just off the entry stone's locking face, lever on its bank."""
+    """Of the wheel, °: a toe just off the entry stone's locking face, lever on its bank; at 0 one toe is on the x axis."""
     lever = design.bank - CLEAR
     corner = design.in_movement(design.locking_corner(1), lever)
     direction = design.face_direction(1) + lever

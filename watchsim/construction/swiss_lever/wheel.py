@@ -11,7 +11,6 @@ import math
 
 from watchsim.construction.outline import along, angle_of, arc_between, circle, fillet, fillet_chain, polar, turned
 from watchsim.construction.swiss_lever.points import Swiss
-
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line, Point
 
