@@ -106,7 +106,8 @@ def main(count: int, simulated: int, seed: int, name: str) -> int:
     for reason, times in reasons.most_common():
         print(f"  refused {times:4d} times for {reason}")
     for number, drawn in enumerate(accepted[:simulated]):
-        print(f"{number:3d} {drawn.values.teeth:3d} teeth  {judged(drawn)}", flush=True)
+        teeth = f"{drawn.values.teeth:3d} teeth  " if hasattr(drawn.values, "teeth") else ""
+        print(f"{number:3d} {teeth}{judged(drawn)}", flush=True)
     return 1 if faults else 0
 
 

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from watchsim.commands.common.console import BAD_INPUT, FINE, InputError, check_picture, parse_width, print_json, say
+from watchsim.commands.common.console import BAD_INPUT, FINE, MISSED, InputError, check_picture, parse_width, print_json, say
 
 if TYPE_CHECKING:
     from watchsim.escapement.measure import Function
     from watchsim.mechanism.compile import Compiled
+    from watchsim.mechanism.count_pairs import ModelledPairs
     from watchsim.scene.scene import Scene
 
 SHEETS = (".png", ".svg", ".pdf")
@@ -33,9 +35,20 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--width", metavar="LENGTH", default="170 mm", help='of that sheet (default "%(default)s", or "85 mm" for a column)'
     )
+    parser.add_argument(
+        "--turn", action="store_true", help="turn the mechanism by hand, without forces: what meets what at which angle"
+    )
+    parser.add_argument(
+        "--swing",
+        metavar="WAY",
+        help='with --turn: how far the oscillator is led to either side, such as "200°" (default: the start)',
+    )
+    parser.add_argument("--movie", metavar="FILE", help="with --turn: where to write it as a movie, file.mp4 or file.gif")
 
 
 def run(args: argparse.Namespace) -> int:
+    if not args.turn and (args.swing or args.movie):
+        raise InputError(f"{'--swing' if args.swing else '--movie'}: belongs to --turn, which is not asked for.")
     from watchsim.commands.common.inputs import load_scene
     from watchsim.commands.common.output_place import secured_file
     from watchsim.drawing.findings import Finding
@@ -66,11 +79,16 @@ def run(args: argparse.Namespace) -> int:
     function = measure(scene, compiled)
     report["statics"] = statics(function)
     report["findings"] += [judgement.as_dict() for judgement in judgements(scene, function)]
-    if args.png:
-        from watchsim.render.still import still
+    wrong = any(finding["severity"] == "error" for finding in report["findings"])
+    turned = None
+    if args.turn and not wrong:
+        from watchsim.commands.common.turned_by_hand import turned_by_hand
 
-        places = [(1e-3 * f["x_mm"], 1e-3 * f["y_mm"]) for f in report["findings"] if f["code"] == "overlap"]
-        still(scene, args.png, compiled, pairs, places)
+        turned = turned_by_hand(scene, args.swing, args.movie, args.png)
+        report["turn"] = turned.report
+    elif args.png:
+        _still(scene, compiled, pairs, report, args.png)
+    if args.png:
         if function.pallets is not None:
             sheets.append(Path(args.png).with_name(f"{Path(args.png).stem}_function.png"))
         say(f"Picture: {args.png}")
@@ -80,7 +98,18 @@ def run(args: argparse.Namespace) -> int:
         print_json(report)
     else:
         print(check_text(report, scene, text(function)))
-    return BAD_INPUT if any(finding["severity"] == "error" for finding in report["findings"]) else FINE
+        if turned is not None:
+            print(turned.text)
+    if wrong:
+        return BAD_INPUT
+    return MISSED if turned is not None and not turned.passes else FINE
+
+
+def _still(scene: Scene, compiled: Compiled, pairs: ModelledPairs, report: Mapping[str, Any], path: str) -> None:
+    from watchsim.render.still import still
+
+    places = [(1e-3 * f["x_mm"], 1e-3 * f["y_mm"]) for f in report["findings"] if f["code"] == "overlap"]
+    still(scene, path, compiled, pairs, places)
 
 
 def _sheet(scene: Scene, compiled: Compiled, function: Function, path: Path, width: float) -> None:

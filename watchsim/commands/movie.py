@@ -18,6 +18,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--fps", metavar="N", type=float, help="frames per second (default 60, GIF 25)")
     parser.add_argument("--size", metavar="WxH", help="pixels, such as 1280x720")
     parser.add_argument("--contacts", action="store_true", help="mark the contacts that are closed")
+    parser.add_argument("--forces", action="store_true", help="draw the forces of the contacts as arrows")
     parser.add_argument("--zoom", metavar="NAMES", help="frame only these bodies, with commas between them")
     parser.add_argument("-o", "--output", metavar="FILE", help="file.mp4 or file.gif (default RUN/movie.mp4)")
 
@@ -45,6 +46,7 @@ def run(args: argparse.Namespace) -> int:
             fps=args.fps,
             size=size,
             contacts=args.contacts,
+            forces=args.forces,
             zoom=parse_names(args.zoom),
             progress=progress,
         )

@@ -17,10 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.render.encoder import check_path, encode
+from watchsim.render.force_arrows import ForceArrows
 from watchsim.render.frame.pose_history import Window, poses, stretch
 from watchsim.render.frame.stage import Stage
 from watchsim.render.frame.touching_points import ContactMarks
 from watchsim.render.gif_colours import shared_palette
+from watchsim.render.palette import CONTACT
 from watchsim.simulation.record.trajectory import Trajectory
 
 Array = NDArray[np.float64]
@@ -50,6 +52,7 @@ def movie(
     fps: float | None = None,
     size: tuple[int, int] | None = None,
     contacts: bool = False,
+    forces: bool = False,
     zoom: Sequence[str] | None = None,
     turn: float | None = None,
     progress: Callable[[int, int], None] | None = None,
@@ -61,6 +64,7 @@ def movie(
     fps      frames per second; default 60, GIF 25 (a GIF keeps time in hundredths of a second: the nearest rate it can hold)
     size     (width, height) in pixels, rounded up to even numbers; default 1280 × 720, GIF 800 × 450
     contacts marks the contacts that are closed
+    forces   draws the forces of the contacts as arrows
     zoom     names of the bodies to frame; default all
     turn     radians by which the picture is turned; default: gravity down, or the quarter turn that fills the frame best
     progress called with (frames done, frames in all)
@@ -73,12 +77,18 @@ def movie(
     span = stretch(run, window, unbroken=True)
     plan = _plan(span, speed, fps if fps is not None else (GIF_FPS if gif else MP4_FPS), gif)
     pixels = _even(size if size is not None else (GIF_SIZE if gif else MP4_SIZE))
-    stage = Stage(run, pixels, span, zoom=zoom, turn=turn, speed=speed, step=speed / plan.fps)
+    arrows = ForceArrows(run, plan.times) if forces else None
+    told = None if arrows is None else arrows.meaning
+    stage = Stage(run, pixels, span, zoom=zoom, turn=turn, speed=speed, step=speed / plan.fps, arrows=told)
     palette = None
     if gif:
-        sampled = plan.times[np.unique(np.linspace(0, len(plan.times) - 1, SAMPLES).astype(int))]
-        palette = shared_palette([picture.copy() for picture in _pictures(stage, run, sampled, contacts, None)])
-    encode(_pictures(stage, run, plan.times, contacts, progress), target, pixels, plan.fps, palette)
+        sampled = np.unique(np.linspace(0, len(plan.times) - 1, SAMPLES).astype(int))
+        chosen = None if arrows is None else [arrows.at(k) for k in sampled]
+        palette = shared_palette(
+            [picture.copy() for picture in _pictures(stage, run, plan.times[sampled], contacts, None, chosen)]
+        )
+    drawn = None if arrows is None else [arrows.at(k) for k in range(len(plan.times))]
+    encode(_pictures(stage, run, plan.times, contacts, progress, drawn), target, pixels, plan.fps, palette)
     return target
 
 
@@ -131,13 +141,19 @@ def _even(size: tuple[int, int]) -> tuple[int, int]:
 
 
 def _pictures(
-    stage: Stage, run: Trajectory, times: Array, contacts: bool, progress: Callable[[int, int], None] | None
+    stage: Stage,
+    run: Trajectory,
+    times: Array,
+    contacts: bool,
+    progress: Callable[[int, int], None] | None,
+    arrows: Sequence[Array] | None = None,
 ) -> Iterator[Pixels]:
     """One picture after the other, each in the same memory."""
     where = poses(run, times)
     marks = ContactMarks(run) if contacts else None
     for k, t in enumerate(times):
         frames = {name: rows[k] for name, rows in where.items()}
-        yield stage.draw(float(t), frames, marks.points(float(t), frames) if marks else None)
+        points = marks.points(float(t), frames) if marks else None
+        yield stage.draw(float(t), frames, points, CONTACT, None if arrows is None else arrows[k])
         if progress is not None:
             progress(k + 1, len(times))

@@ -81,7 +81,11 @@ def _of_body(body: Body, look: Finish, deviation: float, spacing: float) -> list
     ground = [(loop, line) for loop, line in lines if not loop.closed]
     for loop, line in lines:
         if loop.closed and (loop.hole or roles[loop.layer] == "bore"):
-            owner = _owner(line, [points for _, points in outer])
+            # What lies around it on its own layer, if anything does: a window is not one of a smaller wheel on it.
+            own = [i for i, (around, _) in enumerate(outer) if around.layer == loop.layer]
+            owner = _owner(line, own, outer)
+            if owner is None:
+                owner = _owner(line, range(len(outer)), outer)
             if owner is not None:
                 owners[owner].append((loop, line))
             elif loop.hole:
@@ -89,11 +93,11 @@ def _of_body(body: Body, look: Finish, deviation: float, spacing: float) -> list
     return [*_solids(body, look, outer, owners), *_grounds(body, look, ground, spacing)]
 
 
-def _owner(hole: Array, outlines: Sequence[Array]) -> int | None:
-    """The smallest outline around a hole: a bore drawn on a layer of its own still empties the wheel."""
+def _owner(hole: Array, numbers: Iterable[int], outer: Sequence[tuple[Loop, Array]]) -> int | None:
+    """The smallest of those outlines around a hole: a bore drawn on a layer of its own still empties the wheel."""
     inside, least = _inner_point(hole), LARGER * abs(signed_area(hole))
-    areas = [abs(signed_area(line)) for line in outlines]
-    around = [i for i, line in enumerate(outlines) if areas[i] > least and Path(line).contains_point(inside)]
+    areas = {i: abs(signed_area(outer[i][1])) for i in numbers}
+    around = [i for i, area in areas.items() if area > least and Path(outer[i][1]).contains_point(inside)]
     return min(around, key=lambda i: areas[i], default=None)
 
 

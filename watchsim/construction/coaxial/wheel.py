@@ -1,0 +1,112 @@
+"""What is the outline of a co-axial escape wheel?
+
+Two wheels on one arbor: the large one (TEETH) locks and gives the direct impulse, the small one (SMALL_TEETH) the indirect one.
+Eight pointed teeth each, their fronts undercut so that only tips work, their backs hollow. In the wheel's own frame,
+millimetres; large tooth 0 has its tip on the x axis and the wheel turns clockwise.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from watchsim.construction.coaxial.points import PITCH, TEETH, Points
+from watchsim.construction.outline import along, angle_of, arc_between, circle, fillet_chain, polar, turned
+from watchsim.geometry.loop import Loop
+from watchsim.geometry.primitives import TURN, Edge, Line, Point
+
+ARMS, ARM_WIDTH, WINDOW_FILLET = 4, 0.16, 0.09
+RIM_INNER, HUB_RADIUS, BORE_RADIUS = 1.24, 0.42, 0.11
+
+
+@dataclass(frozen=True)
+class ToothForm:
+    """One wheel's teeth: radii of tips and of the gaps' floor, the tip's flat, the back's lean there, fillets."""
+
+    tip: float
+    root: float
+    land: float
+    back: float  # length of the straight back behind the flat
+    lean: float  # of that back from the radius, degrees
+    hollow: float  # radius behind that
+    front_fillet: float
+
+
+def wheel(points: Points) -> list[Loop]:
+    """Both wheels' contours, the windows between the arms and the bore."""
+    s = points.scale
+    large = ToothForm(points.values.tip_radius, 1.5 * s, 0.02 * s, 0.42 * s, 41.0, 0.62 * s, 0.12 * s)
+    small = ToothForm(points.small_radius, 0.68 * points.small_radius, 0.015 * s, 0.15 * s, 42.0, 0.25 * s, 0.05 * s)
+    windows = [Loop(tuple(window(i, s)), "TEETH", hole=True) for i in range(ARMS)]
+    bores = [circle(layer, (0.0, 0.0), BORE_RADIUS * s, hole=True) for layer in ("TEETH", "SMALL_TEETH")]
+    undercut = points.values.undercut
+    second = contour(small, undercut, "SMALL_TEETH").moved(math.radians(points.small_turn), (0.0, 0.0))
+    return [contour(large, undercut, "TEETH"), *windows, bores[0], second, bores[1]]
+
+
+def contour(form: ToothForm, undercut: float, layer: str) -> Loop:
+    """All teeth, counter-clockwise; one tooth and the gap behind it, turned eight times."""
+    tooth = Loop(tuple(tooth_and_gap(form, undercut)), layer)
+    edges = [edge for i in range(TEETH) for edge in tooth.moved(i * TURN / TEETH, (0.0, 0.0)).edges]
+    return Loop(tuple(edges), layer)
+
+
+def tooth_and_gap(form: ToothForm, undercut: float) -> list[Edge]:
+    """From the middle of the gap before the tooth over its tip to the middle of the next gap."""
+    tip = (form.tip, 0.0)
+    flat = math.degrees(form.land / form.tip)
+    heel = polar(form.tip, flat)
+    back = along(heel, flat + 180.0 - form.lean, form.back)
+    foot = along(tip, 180.0 - undercut, _reach(tip, 180.0 - undercut, form.root))
+    hollow, end = hollow_back(back, form.hollow, form.root)
+    before = polar(form.root, (angle_of(foot) + angle_of(end) - PITCH) / 2.0)
+    after = turned(before, PITCH)
+    chain: list[Edge] = [
+        arc_between(before, foot, (0.0, 0.0), True),
+        Line(*foot, *tip),
+        arc_between(tip, heel, (0.0, 0.0), True),
+        Line(*heel, *back),
+        hollow,
+        arc_between(end, after, (0.0, 0.0), True),
+    ]
+    return fillet_chain(chain, [form.front_fillet, 0.0, 0.0, 0.0, 0.0])
+
+
+def hollow_back(back: Point, radius: float, root: float) -> tuple[Edge, Point]:
+    """The hollow behind a tooth: an arc through `back` that runs tangentially into the gap's floor, and where it ends."""
+    reach, distance = root + radius, math.hypot(*back)
+    cosine = (distance**2 + reach**2 - radius**2) / (2.0 * distance * reach)
+    if not -1.0 <= cosine <= 1.0:
+        raise ValueError("the backs of the teeth do not reach the floor of their gaps")
+    bearing = angle_of(back) + math.degrees(math.acos(cosine))
+    return arc_between(back, polar(root, bearing), polar(reach, bearing), False), polar(root, bearing)
+
+
+def window(i: int, scale: float) -> list[Edge]:
+    """One opening between two arms, clockwise."""
+    first, last = _arm_sides(i, scale)
+    chain: list[Edge] = [
+        arc_between(last[1], first[1], (0.0, 0.0), False),
+        Line(*first[1], *first[0]),
+        arc_between(first[0], last[0], (0.0, 0.0), True),
+        Line(*last[0], *last[1]),
+    ]
+    return fillet_chain(chain, [WINDOW_FILLET * scale] * 4, closed=True)
+
+
+def _arm_sides(i: int, scale: float) -> tuple[tuple[Point, Point], tuple[Point, Point]]:
+    """Hub and rim ends of the arm edges that bound window i."""
+    pitch, half = 360.0 / ARMS, ARM_WIDTH * scale / 2.0
+    sides = []
+    for number, side in ((i, 1.0), (i + 1, -1.0)):
+        radii = (HUB_RADIUS * scale, RIM_INNER * scale)
+        ends = [turned((math.sqrt(r * r - half * half), side * half), number * pitch) for r in radii]
+        sides.append((ends[0], ends[1]))
+    return sides[0], sides[1]
+
+
+def _reach(start: Point, direction: float, radius: float) -> float:
+    """How far along `direction` the circle about the wheel's centre is first met."""
+    ux, uy = math.cos(math.radians(direction)), math.sin(math.radians(direction))
+    ahead = start[0] * ux + start[1] * uy
+    return -ahead - math.sqrt(ahead**2 + radius**2 - start[0] ** 2 - start[1] ** 2)
