@@ -12,6 +12,7 @@ from multiprocessing.connection import Connection, wait
 from typing import Any
 
 PATIENCE = 30.0  # s of processor time, for all runs of one mechanism
+ASLEEP = 20.0  # times as long on the clock: a busy machine hangs nothing, but what waits for ever uses no processor
 Work = Callable[[int], Any]
 
 
@@ -22,15 +23,16 @@ class _Worker:
         self.process = context.Process(target=_serve, args=(theirs, work), daemon=True)
         self.process.start()
         theirs.close()
-        self.number, self.since = -1, 0.0
+        self.number, self.since, self.given = -1, 0.0, 0.0
 
     def give(self, number: int) -> None:
-        self.number, self.since = number, self._processor_time()
+        self.number, self.since, self.given = number, self._processor_time(), time.perf_counter()
         self.line.send(number)
 
-    def spent(self) -> float:
-        """Processor time (s) since it was given its number: a busy machine makes no mechanism hang."""
-        return self._processor_time() - self.since
+    def hangs(self) -> bool:
+        """Has it had its number for too long?"""
+        waited = time.perf_counter() - self.given
+        return self._processor_time() - self.since > PATIENCE or waited > ASLEEP * PATIENCE
 
     def _processor_time(self) -> float:
         if self.process.pid is None or not hasattr(time, "clock_gettime"):
@@ -60,7 +62,7 @@ def answers(numbers: Iterable[int], work: Work, jobs: int) -> Iterator[tuple[int
     while workers:
         ready = wait([worker.line for worker in workers], timeout=1.0)
         for worker in list(workers):
-            if worker.line not in ready and worker.spent() <= PATIENCE:
+            if worker.line not in ready and not worker.hangs():
                 continue
             answer = _answer(worker) if worker.line in ready else None
             yield worker.number, answer

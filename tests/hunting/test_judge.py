@@ -105,7 +105,7 @@ def test_worker_that_dies_does_not_end_the_hunt():
 
 
 def test_worker_that_hangs_is_killed(monkeypatch):
-    monkeypatch.setattr(pool, "PATIENCE", 2.0)
+    monkeypatch.setattr(pool, "PATIENCE", 0.1)
     found = dict(answers(range(3), lambda number: time.sleep(1000.0) if number == 1 else number, 1))
     assert found == {0: 0, 1: None, 2: 2}
 

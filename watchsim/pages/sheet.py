@@ -51,7 +51,8 @@ def verdict(numbers: Mapping[str, Any]) -> Markup | None:
     if word is None:
         return None
     look, told = VERDICTS.get(str(word), ("open", str(word).capitalize()))
-    return element("p", element("strong", told), f" {message}" if message else None, class_=f"verdict {look}")
+    more = message if message and str(message).casefold() != told.casefold() else None
+    return element("p", element("strong", told), f" {more}" if more else None, class_=f"verdict {look}")
 
 
 def _energy(run: Trajectory) -> Iterator[Markup]:

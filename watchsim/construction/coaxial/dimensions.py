@@ -53,9 +53,7 @@ class Coaxial:
         25200.0, "vph", 14400.0, 36000.0, "of the balance, in beats per hour", "calibres 2500 and 8500 of Omega"
     )
     q_factor: float = dim(250.0, "", 50.0, 1000.0, "quality factor of the balance without the escapement", "often 200 to 300")
-    torque: float = dim(
-        0.48, "µN·m", 0.05, 20.0, "of the train on the escape wheel", "for 290°, docs/guide/coaxial.md"
-    )
+    torque: float = dim(0.48, "µN·m", 0.05, 20.0, "of the train on the escape wheel", "for 290°, docs/guide/coaxial.md")
     friction: float = dim(0.15, "", 0.0, 0.3, "coefficient of friction, in all contacts", "0.10 to 0.20, steel on ruby")
     restitution: float = dim(0.0, "", 0.0, 0.6, "coefficient of restitution, in all contacts", ESTIMATE)
     start: float = dim(290.0, "°", 60.0, 330.0, "balance, from rest, where it is let go", "chosen")
