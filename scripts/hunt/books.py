@@ -31,7 +31,7 @@ NEAR = 1e-6  # of the size: outlines this close touch
 OUTSIDE = 1e-3  # share of a jump that no impulses of the contacts explain
 AUDITED = 6  # jumps of a run
 LOOKS = 8  # for overlap, evenly spread over the run
-SHIFT = 1e-6  # of the size: what a correction may move, at tolerances up to 1e-8
+SHIFT = 1e3  # tolerances of the size: drift of one tolerance, between faces at the smallest angle that is corrected, 1e-3
 OPPOSED = 1e-13  # rounding of forces that cancel, as a share of what they would give without each other
 MANY = 20_000  # events
 SUDDEN = (EventKind.IMPACT, EventKind.ACCUMULATION, EventKind.JAM)
@@ -107,7 +107,7 @@ def faults(run: Trajectory, material: Material) -> Iterator[str]:
     if deep > OVERLAP * loose * material.size:
         share, told = deep / material.size, run.worst_penetration / material.size
         yield f"overlap: {share:.1e} of the size at t = {when:.6g} s, reported {told:.1e}"
-    yield from _shifts(run, SHIFT * loose * material.size)
+    yield from _shifts(run, SHIFT * max(run.tolerance, 1e-9) * material.size)
     yield from _jumps(run, m, float(kinetic.max()), loose)
 
 
