@@ -14,7 +14,7 @@ from watchsim.dynamics import acceleration, impact
 from watchsim.dynamics.lcp.lemke_pivoting import RAY
 
 def unsolvable(work, m, elements):
-    work.note[4] = RAY
+    work.posed.lemke = RAY
     work.rungs[5] += 1
     return RAY, 5
 

@@ -6,7 +6,6 @@ import os
 import subprocess
 import sys
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,6 +14,7 @@ from moving_scenes import box, circle, ground, profile, touching
 from watchsim import jit
 from watchsim.jit import callable_kernel
 from watchsim.mechanism.compile import compile_scene
+from watchsim.model.named_fields import blank
 from watchsim.scene.body import Body
 from watchsim.scene.scene import Scene
 from watchsim.simulation.advance import BEARING, KINDS, TOUCHED
@@ -27,7 +27,7 @@ from watchsim.simulation.motion.root_bracket import LOOK_EVERY, MOST, is_slow, n
 from watchsim.simulation.options import options_for
 from watchsim.simulation.runner import pairs_of
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.state import RECENT, new_state
+from watchsim.simulation.state import Ended, new_state
 from watchsim.simulation.stops import Stop
 
 ROOT = Path(jit.__file__).resolve().parents[1]
@@ -87,30 +87,30 @@ def test_no_set_of_modes_is_decided_twice_on_the_same_terms() -> None:
     once, forget, begin = (callable_kernel(kernel) for kernel in (decide_once, forget_decisions, begin_instant))
     seen: list[tuple[int, float]] = []
     for turn in range(1000):
-        state.numbers[0] = turn % 2
+        state.now.awake_contacts = turn % 2
         state.mode[0] = 1 + turn % 2
         if not once(state):
             break
-        terms = (turn % 2, float(state.lenience[0]))
+        terms = (turn % 2, float(state.now.lenience))
         seen.append(terms)
-    assert state.lenience[0] > MOST_LENIENT
+    assert state.now.lenience > MOST_LENIENT
     assert len(seen) < 40
     assert {lenience for _, lenience in seen} == {FIRMER**power for power in range(8)}
     begin(state)
-    assert state.lenience[0] == 1.0
+    assert state.now.lenience == 1.0
     assert once(state)
     forget(state)
     assert once(state)  # after an impact the same modes may come again
-    assert state.lenience[0] == 1.0
+    assert state.now.lenience == 1.0
 
 
 def test_what_alternates_is_named_with_bodies_and_edges() -> None:
     compiled = compile_scene(profile("bench_lever"))
     pairs, bodies = pairs_of(compiled), ["wheel", "lever", "balance"]
-    recent = np.zeros(RECENT + 1, np.int64)
-    recent[:4] = KINDS * 5 + NORMAL, KINDS * 5 + TOUCHED, KINDS * 5 + NORMAL, KINDS * 1 + BEARING
-    recent[RECENT] = 4
-    words = what_alternates(None, SimpleNamespace(recent=recent), pairs, bodies)
+    ended = blank(Ended)
+    ended.by[:4] = KINDS * 5 + NORMAL, KINDS * 5 + TOUCHED, KINDS * 5 + NORMAL, KINDS * 1 + BEARING
+    ended.number = 4
+    words = what_alternates(ended, pairs, bodies)
     assert f"the force ends at {pairs[5]} (2×)" in words
     assert f"{pairs[5]} touch (1×)" in words
     assert "the bearing of lever" in words

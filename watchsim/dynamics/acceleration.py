@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from watchsim.contact.index_sets import BACKWARD, FORWARD, OPEN, STICK
 from watchsim.dynamics.coulomb import add_element, fill_matrix, fill_rhs, read_forces
-from watchsim.dynamics.delassus import apply, fill_bearings, fill_delassus
+from watchsim.dynamics.delassus import apply, fill_bearings, fill_delassus, note_posed
 from watchsim.dynamics.handedness import restore_directions, reverse_directions
 from watchsim.dynamics.redundant_contacts import smallest_forces
 from watchsim.dynamics.small_systems import RANK, solve_small, unit_scale
@@ -126,7 +126,7 @@ def decide_modes(model, closed, m, bearings, speed_zero, work, out_grip, out_mod
     fill_matrix(work, m, elements)
     _load(work, m, elements, bearings)
     fill_rhs(work, m, elements, work.more)
-    work.note[0], work.note[1], work.note[2], work.note[3] = m, elements, bearings, LEVEL_ACCELERATION
+    note_posed(work, m, elements, bearings, LEVEL_ACCELERATION)
     status, _ = solve_contacts(work, m, elements)
     if status != 0:
         return status

@@ -13,9 +13,20 @@ from numpy.typing import NDArray
 from watchsim.contact.index_sets import STICK
 from watchsim.dynamics.lcp.lemke_pivoting import LcpWork, lcp_work
 from watchsim.jit import by_reference, kernel
+from watchsim.model.named_fields import blank
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
+
+
+class Posed:
+    """The last problem: what it was about, and how Lemke's method ended."""
+
+    contacts: int
+    elements: int
+    bearings: int
+    level: int
+    lemke: int
 
 
 class ContactWork(NamedTuple):
@@ -53,7 +64,7 @@ class ContactWork(NamedTuple):
     h: Array  # (n,)
     rungs: Integers  # problems solved since last asked, by Rung; the last one counts those without a solution
     sizes: Integers  # the same problems by their number of unknowns, see `LARGEST`
-    note: Integers  # of the last problem: contacts, elements, bearings, level, status of Lemke
+    posed: Posed
 
 
 ContactWorkRef = by_reference(ContactWork, __name__)
@@ -95,8 +106,15 @@ def contact_work(room: int, coordinates: int) -> ContactWork:
         h=np.zeros(coordinates),
         rungs=np.zeros(RUNGS, np.int64),
         sizes=np.zeros(len(LARGEST) + 1, np.int64),
-        note=np.zeros(5, np.int64),
+        posed=blank(Posed),
     )
+
+
+@kernel
+def note_posed(work, m, elements, bearings, level):
+    """Say what the problem now in `work` is about."""
+    posed = work.posed
+    posed.contacts, posed.elements, posed.bearings, posed.level = m, elements, bearings, level
 
 
 @kernel

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from watchsim.dynamics.acceleration import gap_accelerations
 from watchsim.dynamics.coulomb import add_element, element_row, fill_matrix, fill_rhs, read_forces
-from watchsim.dynamics.delassus import apply, contact_velocities, fill_delassus
+from watchsim.dynamics.delassus import apply, contact_velocities, fill_delassus, note_posed
 from watchsim.dynamics.expansion_friction import interval
 from watchsim.dynamics.handedness import restore_directions, reverse_directions
 from watchsim.dynamics.solver_fallbacks import LEMKE, keep_basis, solve_contacts
@@ -55,7 +55,7 @@ def _compress(model, closed, m, u, jam, work):
     fill_rhs(work, m, elements, work.b)
     nudged = _nudge(m, jam, work)
     nudged = _keep_sliding(m, work) or nudged
-    work.note[0], work.note[1], work.note[2], work.note[3] = m, elements, 0, LEVEL_COMPRESSION
+    note_posed(work, m, elements, 0, LEVEL_COMPRESSION)
     status, rung = solve_contacts(work, m, elements)
     if status == 0 and nudged and rung == LEMKE:
         fill_rhs(work, m, elements, work.b)
@@ -133,7 +133,7 @@ def _expand(model, closed, m, restitution, elements, work):
             work.size[row] -= work.G[row, 2 * i + 1] * work.other_x[i]
     fill_matrix(work, m, elements)
     fill_rhs(work, m, elements, work.size)
-    work.note[3] = LEVEL_EXPANSION
+    work.posed.level = LEVEL_EXPANSION
     status, _ = solve_contacts(work, m, elements)
     for i in range(m):
         extra = work.unit[i] * work.x[i]
@@ -186,7 +186,7 @@ def plastic_impact(model, closed, m, time, u, work):
     reverse_directions(work, m, 2 * m, elements, work.b)
     fill_matrix(work, m, elements)
     fill_rhs(work, m, elements, work.b)
-    work.note[0], work.note[1], work.note[2], work.note[3] = m, elements, 0, LEVEL_COMPRESSION
+    note_posed(work, m, elements, 0, LEVEL_COMPRESSION)
     status, _ = solve_contacts(work, m, elements)
     read_forces(work, m, elements, work.force)
     restore_directions(work, 2 * m, work.b)

@@ -25,7 +25,7 @@ def solve_contacts(work, m, elements):
     """Solve the problem in `work.A`, `work.rhs` into `work.x`; returns (status: OK or why Lemke failed, rung)."""
     n = m + 2 * elements
     status = lemke_checked(work.A, work.rhs, n, work.lcp, work.x)
-    work.note[4] = status
+    work.posed.lemke = status
     rung = LEMKE
     if status != OK:
         rung = FAILED

@@ -38,27 +38,7 @@ from watchsim.simulation.motion.row_times import keep_inner_rows
 from watchsim.simulation.motion.turning_points import keep_passages
 from watchsim.simulation.options import FINEST_ROWS, OptionsRef
 from watchsim.simulation.record.write_buffers import keep_row
-from watchsim.simulation.state import (
-    DAMPING,
-    DRIVE,
-    FRICTION,
-    IMPACTS,
-    MONITORS,
-    N_EVALUATIONS,
-    N_FLIGHTS,
-    N_GAPS,
-    N_IMPACTS,
-    N_INSTANTS,
-    N_LOOKUPS,
-    N_REJECTED,
-    N_STEPS,
-    RECENT,
-    SUMS,
-    RecordRef,
-    ScratchRef,
-    StateRef,
-    StepRef,
-)
+from watchsim.simulation.state import MONITORS, RECENT, SUMS, RecordRef, ScratchRef, StateRef, StepRef
 from watchsim.simulation.stops import Stop
 
 RUNNING, SLICE, CELL_UNKNOWN, BUFFER_FULL = int(Stop.RUNNING), int(Stop.SLICE), int(Stop.CELL_UNKNOWN), int(Stop.BUFFER_FULL)
@@ -72,8 +52,6 @@ EVENTS_AT_ONCE = 2000
 INSTANT = 1e-3  # share of `accumulation_time` within which events count as happening at once
 ROWS_PER_STEP = math.ceil(FLIGHT_PHASE / FINEST_ROWS) + 8
 EVENTS_PER_CONTACT = 20
-WORK = (N_STEPS, N_REJECTED, N_EVALUATIONS, N_GAPS, N_LOOKUPS)  # counts of what is done again once a cell is known
-BEFORE = 4  # in `until`, from here on: these counts before the current step
 
 
 @kernel
@@ -85,21 +63,22 @@ def _accept_coupled(model, state, options, end, scratch):
     step = scratch.step
     n = len(model.coordinates)
     for i in range(2 * n + SUMS):
-        value = dense_value(step, i, end) if end < step.span[1] else step.y1[i]
+        value = dense_value(step, i, end) if end < step.span.length else step.y1[i]
         scratch.y[i] = value
         if i < n:
             state.q[i] = value
         elif i < 2 * n:
             state.u[i - n] = value
-    for i in range(SUMS):
-        state.sums[(DRIVE, DAMPING, FRICTION)[i]] += scratch.y[2 * n + i]
-    motion(model, state, options, state.clock[0], scratch.y, scratch)
+    state.sums.drive += scratch.y[2 * n]
+    state.sums.damping += scratch.y[2 * n + 1]
+    state.sums.friction += scratch.y[2 * n + 2]
+    motion(model, state, options, state.clock.time, scratch.y, scratch)
     before = kinetic_energy(model, state.u)
     first = 0
-    while first < state.numbers[0]:
+    while first < state.now.awake_contacts:
         m = place_contacts(model, state.active, first, state.upto[first], scratch.pose, scratch.closed)
         deepest = project_positions(scratch.closed, m, True, scratch.work, state.q)
-        state.worst[0] = max(state.worst[0], deepest)
+        state.worst.penetration = max(state.worst.penetration, deepest)
         if _turns_rates(model, state, options, m, scratch.closed):
             place(model, state.q, state.u, scratch.pose)
             refresh(model, m, scratch.closed, scratch.pose)
@@ -107,8 +86,8 @@ def _accept_coupled(model, state, options, end, scratch):
         first += m
     for i in range(n):
         state.a[i] = scratch.dy[n + i]
-    state.worst[1] = max(state.worst[1], before)
-    return is_explained(model, options, before, kinetic_energy(model, state.u), state.worst[1])
+    state.worst.kinetic_energy = max(state.worst.kinetic_energy, before)
+    return is_explained(model, options, before, kinetic_energy(model, state.u), state.worst.kinetic_energy)
 
 
 @kernel
@@ -133,48 +112,48 @@ def _is_finite(state):
 @kernel
 def _room_left(record, contacts):
     events = EVENTS_PER_CONTACT * contacts
-    return record.used[0] + ROWS_PER_STEP < len(record.rows) and record.used[1] + events < len(record.events)
+    return record.used.rows + ROWS_PER_STEP < len(record.rows) and record.used.events + events < len(record.events)
 
 
 @kernel
 def _smooth_step(model, cells, state, options, end_time, scratch, record):
     """One smooth step up to its first event; returns (Stop code, event?)."""
-    left = end_time - state.clock[0]
+    left = end_time - state.clock.time
     flying, spacing, leave = can_fly(model, state), math.inf, math.inf
-    proposed = state.clock[1]
+    proposed = state.clock.step
     if flying:
         length, spacing = flight_length(model, state, options)
         begin_flight(model, state, min(length, left), scratch)
         # A long flight would ask about cells far behind the first event.
         for p in range(len(model.pairs)):
             length = min(length, time_through_cells(model, p, state.u, scratch.step.bound, FLIGHT_CELLS))
-        scratch.step.span[1] = min(length, left)
+        scratch.step.span.length = min(length, left)
         leave = first_turn(model, state)
     else:
-        if not coupled_step(
-            model, state, options, min(left, options.max_step, next_knot(model, state.clock[0]) - state.clock[0]), scratch
-        ):
+        longest = min(left, options.max_step, next_knot(model, state.clock.time) - state.clock.time)
+        made, smallest = coupled_step(model, state, options, longest, scratch)
+        if not made:
             return STEP_TOO_SMALL, False
-        leave = first_leave(model, state, options, scratch)
+        leave = first_leave(model, state, options, smallest, scratch)
     step = scratch.step
-    length = step.span[1]
+    length = step.span.length
     known, touch, contact = first_touch(model, cells, state, options, min(length, leave), scratch)
     if not known:
-        state.clock[1] = proposed
+        state.clock.step = proposed
         return CELL_UNKNOWN, False
     end = min(length, touch, leave)
-    state.clock[0] = end_time if end == left else step.span[0] + end
+    state.clock.time = end_time if end == left else step.span.start + end
     if flying:
-        state.counts[N_FLIGHTS] += 1
+        state.counts.flights += 1
         add_flight_sums(model, state, step, end)
         keep_flight_rows(model, state, end, spacing, scratch, record)
     else:
         if not _accept_coupled(model, state, options, end, scratch):
             return UNEXPLAINED, False
         keep_inner_rows(model, options, end, scratch, record)
-        keep_row(state, record, state.clock[0], state.q, state.u, state.a)
+        keep_row(state, record, state.clock.time, state.q, state.u, state.a)
     keep_passages(model, state, step, end, record)
-    state.numbers[4] = contact
+    state.now.touched = contact
     event = contact >= 0 or leave <= length
     if event:
         _note_end(model, state, contact, flying, scratch)
@@ -192,56 +171,64 @@ def _note_end(model, state, contact, flying, scratch):
         what = KINDS * contact + TOUCHED
     elif flying:
         what = BEARING
-    elif code >= MONITORS * state.numbers[0]:
-        what = KINDS * (code - MONITORS * state.numbers[0]) + BEARING
+    elif code >= MONITORS * state.now.awake_contacts:
+        what = KINDS * (code - MONITORS * state.now.awake_contacts) + BEARING
     else:
         what = KINDS * state.active[code // MONITORS] + code % MONITORS
-    scratch.recent[scratch.recent[RECENT] % RECENT] = what
-    scratch.recent[RECENT] += 1
+    scratch.ended.by[scratch.ended.number % RECENT] = what
+    scratch.ended.number += 1
 
 
 @kernel
 def _reaches(model, state, options, end_time):
     """True if the next step, taken freely, might come as far as `end_time`."""
-    longest = min(state.clock[1], options.max_step)
+    longest = min(state.clock.step, options.max_step)
     if can_fly(model, state):
         longest, _ = flight_length(model, state, options)
-    return longest >= end_time - state.clock[0]
+    return longest >= end_time - state.clock.time
 
 
 @kernel
 def _settle(model, cells, state, options, scratch, record):
     """Handle the waiting event; counts events that hardly let time advance."""
-    if state.clock[0] - state.clock[2] > INSTANT * options.accumulation_time:
-        state.numbers[3], state.clock[2] = 0, state.clock[0]
+    if state.clock.time - state.clock.event > INSTANT * options.accumulation_time:
+        state.now.events, state.clock.event = 0, state.clock.time
         begin_instant(state)
-    elif state.numbers[3] > EVENTS_AT_ONCE:
+    elif state.now.events > EVENTS_AT_ONCE:
         return TOO_MANY_EVENTS
-    touched, impacts, lost = state.numbers[4], state.counts[N_IMPACTS], state.sums[IMPACTS]
+    touched, impacts, lost = state.now.touched, state.counts.impacts, state.sums.impacts
     before = kinetic_energy(model, state.u)
     code = settle(model, cells, state, options, scratch, record)
     if code != RUNNING:
         return code
-    state.worst[1] = max(state.worst[1], before)
-    if not is_explained(model, options, before, kinetic_energy(model, state.u) + (state.sums[IMPACTS] - lost), state.worst[1]):
+    state.worst.kinetic_energy = max(state.worst.kinetic_energy, before)
+    after = kinetic_energy(model, state.u) + (state.sums.impacts - lost)
+    if not is_explained(model, options, before, after, state.worst.kinetic_energy):
         return UNEXPLAINED
-    if state.counts[N_IMPACTS] > impacts:
+    if state.counts.impacts > impacts:
         forget_decisions(state)
     elif touched < 0 and not decide_once(state):
         return TOO_MANY_EVENTS
-    state.numbers[3] += 1
-    state.counts[N_INSTANTS] += 1
+    state.now.events += 1
+    state.counts.instants += 1
     keep_passages(model, state, scratch.step, 0.0, record)
-    keep_row(state, record, state.clock[0], state.q, state.u, state.a)
+    keep_row(state, record, state.clock.time, state.q, state.u, state.a)
     return RUNNING
 
 
 @kernel
-def _undone(code, state, until):
+def _work_done(state):
+    """Counts of what is done again once a cell is known."""
+    counts = state.counts
+    return counts.steps, counts.rejected_steps, counts.evaluations, counts.gap_evaluations, counts.cells_looked_up
+
+
+@kernel
+def _undone(code, state, before):
     """What is done again with the cell known counts once: work must not depend on what earlier runs have learnt."""
     if code == CELL_UNKNOWN:
-        for i in range(len(WORK)):
-            state.counts[WORK[i]] = int(until[BEFORE + i])
+        counts = state.counts
+        counts.steps, counts.rejected_steps, counts.evaluations, counts.gap_evaluations, counts.cells_looked_up = before
     return code
 
 
@@ -252,26 +239,25 @@ def _loop(model, cells, state, options, until, scratch, record):
     while True:
         if not _room_left(record, len(scratch.closed.ids)):
             return BUFFER_FULL
-        for i in range(len(WORK)):
-            until[BEFORE + i] = state.counts[WORK[i]]
-        if state.numbers[2]:
+        before = _work_done(state)
+        if state.now.event_waits == 1:
             code = _settle(model, cells, state, options, scratch, record)
             if code != RUNNING:
-                return _undone(code, state, until)
+                return _undone(code, state, before)
             continue
-        if state.clock[0] >= until[1]:
+        if state.clock.time >= until.end:
             return DURATION
-        if state.clock[0] >= until[0] or until[3] <= 0.0:
+        if state.clock.time >= until.slice_end or until.steps <= 0.0:
             return SLICE
-        if until[2] == 0.0 and _reaches(model, state, options, until[1]):
+        if until.may_cut == 0 and _reaches(model, state, options, until.end):
             return LAST_STEP
-        until[3] -= 1.0
-        code, event = _smooth_step(model, cells, state, options, until[1], scratch, record)
+        until.steps -= 1.0
+        code, event = _smooth_step(model, cells, state, options, until.end, scratch, record)
         if code != RUNNING:
-            return _undone(code, state, until)
+            return _undone(code, state, before)
         if not _is_finite(state):
             return NOT_FINITE
-        state.numbers[2] = 1 if event else 0
+        state.now.event_waits = 1 if event else 0
 
 
 @inlined
@@ -283,12 +269,11 @@ def scratch_by_reference(scratch):
 
 @entry
 def advance(model, cells, state, options, until, scratch, record):
-    """Run to the time until[1] (or return at the end of a slice, after until[0] or until[3] steps); returns a Stop code.
+    """Run to the time `until.end`, or return at the end of a slice: see `Until`; returns a Stop code.
 
-    Before a step that until[1] might cut short it returns once, unless until[2] is set. Steps are counted down in until[3].
-    Behind that is room for counts.
+    Before a step that the end might cut short it returns once, unless `until.may_cut` is set.
 
-    All arguments but `until` are NamedTuples; `state`, `scratch` and `record` are written to.
+    All arguments but `until`, a record, are NamedTuples; `until.steps`, `state`, `scratch` and `record` are written to.
     """
     return _loop(
         ModelRef(*model),

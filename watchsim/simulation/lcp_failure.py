@@ -32,14 +32,15 @@ def failure_of(state: State, scratch: Scratch, pairs: Sequence[Pair]) -> dict[st
     A, rhs      of y = A x + rhs in the scaling of dynamics/coulomb.py
     """
     work = scratch.work
-    m, elements, bearings, level, lemke = (int(value) for value in work.note)
+    m, elements, bearings = int(work.posed.contacts), int(work.posed.elements), int(work.posed.bearings)
+    level = int(work.posed.level)
     closed = scratch.rest if level == LEVEL_ACCELERATION else scratch.closed
     rows, n = 2 * m + bearings, m + 2 * elements
     return {
         "level": LEVELS.get(level, "none"),
-        "lemke_ended_with": LEMKE_ENDS.get(lemke, "a solution"),
+        "lemke_ended_with": LEMKE_ENDS.get(int(work.posed.lemke), "a solution"),
         "what_to_try": list(ADVICE),
-        "t": float(state.clock[0]),
+        "t": float(state.clock.time),
         "q": state.q.tolist(),
         "u": state.u.tolist(),
         "contacts": [_contact(int(k), closed.kin[row], state, pairs) for row, k in enumerate(closed.ids[:m])],

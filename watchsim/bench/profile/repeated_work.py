@@ -24,19 +24,21 @@ from watchsim.simulation.options import OptionsRef
 from watchsim.simulation.state import RecordRef, StateRef
 
 COMPRESSION, EXPANSION, MODES = 0, 1, 2
+NOTHING = 0  # level of no problem
 
 
 @jit.entry
-def moments_again(model, cells, state, moment, options, until, scratch, record, repeats):
-    """What follows one moment, `repeats` times; returns the last cause to come back."""
+def moments_again(model, cells, state, own, moment, options, until, scratch, record, repeats):
+    """What follows one moment, `repeats` times; returns the last cause to come back. `own`, `moment`: `StateArrays`."""
     code = 0
     for _ in range(repeats):
-        state.clock[:], state.q[:], state.u[:], state.a[:] = moment.clock, moment.q, moment.u, moment.a
-        state.mode[:], state.grip[:], state.awake[:] = moment.mode, moment.grip, moment.awake
-        state.active[:], state.upto[:], state.numbers[:] = moment.active, moment.upto, moment.numbers
-        state.side_u[:], state.side_q[:] = moment.side_u, moment.side_q
-        state.sums[:], state.counts[:], state.worst[:] = moment.sums, moment.counts, moment.worst
-        record.used[:] = 0
+        own.clock[:], own.q[:], own.u[:], own.a[:] = moment.clock, moment.q, moment.u, moment.a
+        own.mode[:], own.grip[:], own.awake[:] = moment.mode, moment.grip, moment.awake
+        own.active[:], own.upto[:], own.numbers[:] = moment.active, moment.upto, moment.numbers
+        own.side_u[:], own.side_q[:] = moment.side_u, moment.side_q
+        own.sums[:], own.counts[:], own.worst[:] = moment.sums, moment.counts, moment.worst
+        own.decided[:], own.lenience[:] = moment.decided, moment.lenience
+        record.used.rows, record.used.events = 0, 0
         code = advance(model, cells, state, options, until, scratch, record)
     return code
 
@@ -72,7 +74,7 @@ def evaluations_again(model, state, options, scratch, repeats):
     w.y[:n], w.y[n : 2 * n] = s.q, s.u
     engage(m, s, w)
     for _ in range(repeats):
-        motion(m, s, o, s.clock[0], w.y, w)
+        motion(m, s, o, s.clock.time, w.y, w)
     return w.dy[0]
 
 
@@ -88,7 +90,7 @@ def impacts_again(model, cells, state, options, scratch, record, collides, repea
         size = place_contacts(m, w.listed, first, w.upto[first], w.pose, w.closed)
         approaches = approaching(size, w.closed, o.speed_zero)
         for _ in range(repeats if approaches else 0):
-            r.used[:] = 0
+            r.used.rows, r.used.events = 0, 0
             copy(before, s.u)
             place(m, s.q, s.u, w.pose)
             refresh(m, size, w.closed, w.pose)
@@ -114,10 +116,10 @@ def gathered(model, cells, state, options, scratch):
 def pose(model, cells, state, options, scratch, record, which):
     """Leave one problem of the event that waits, of the first island that has it, in `scratch.work`; returns its size or 0."""
     m, c, s, o, w = ModelRef(*model), CellsRef(*cells), StateRef(*state), OptionsRef(*options), scratch_by_reference(scratch)
-    r, note = RecordRef(*record), w.work.note
-    r.used[:], note[:] = 0, 0
+    r, posed = RecordRef(*record), w.work.posed
+    r.used.rows, r.used.events, posed.level = 0, 0, NOTHING
     count, first = gathered(m, c, s, o, w), 0
-    while first < count and note[3] == 0:
+    while first < count and posed.level == NOTHING:
         island = island_of(m, w.label, w.listed[first])
         size = place_contacts(m, w.listed, first, w.upto[first], w.pose, w.closed)
         first += size
@@ -125,16 +127,16 @@ def pose(model, cells, state, options, scratch, record, which):
         if which == MODES:
             if hit:
                 collide(m, s, island, size, o, 0.0, w, r)
-                note[:] = 0
+                posed.level = NOTHING
             decide(m, s, island, size, o, w, w.grip)
         elif hit:
             for i in range(size):
                 law = m.laws[m.contacts[w.closed.ids[i]].group]
                 w.restitution[i] = law.restitution if which == EXPANSION else 0.0
             impact(m, w.closed, size, w.restitution, 0.0, w.work, s.u)
-    if which == EXPANSION and note[3] != LEVEL_EXPANSION:
+    if which == EXPANSION and posed.level != LEVEL_EXPANSION:
         return 0
-    return note[0] + 2 * note[1]
+    return posed.contacts + 2 * posed.elements if posed.level != NOTHING else 0
 
 
 @jit.entry

@@ -40,7 +40,7 @@ def solves(n, rounding, work):
         if not math.isfinite(terms) or work.trial[i] < 0.0 or y < -allowed or (work.trial[i] > 0.0 and y > allowed):
             return False
         worst = max(worst, -y, abs(y) if work.trial[i] > 0.0 else 0.0)
-    work.worst[0] = max(work.worst[0], worst / floor)
+    work.worst.violation = max(work.worst.violation, worst / floor)
     return True
 
 

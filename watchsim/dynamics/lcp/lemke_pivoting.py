@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from watchsim.dynamics.lcp.basis import PIVOT, is_solution, solve_active
 from watchsim.dynamics.lcp.scaling import scale, unscale
 from watchsim.jit import by_reference, entry, kernel
+from watchsim.model.named_fields import blank
 
 OK, RAY, MAX_ITER, INEXACT = 0, 1, 2, 3
 
@@ -26,6 +27,12 @@ TIE = 1e-10  # ratios closer than this are equal; 1e-12 sends 1 in 1000 singular
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
+
+
+class WorstViolation:
+    """Of the conditions, in any accepted solution, see `is_solution`."""
+
+    violation: float
 
 
 class LcpWork(NamedTuple):
@@ -41,7 +48,7 @@ class LcpWork(NamedTuple):
     square: Array  # elimination of the active block, right-hand side last
     order: Integers  # the unknown of each of its columns
     trial: Array  # scaled x
-    worst: Array  # (1,) worst violation of the conditions in any accepted solution, see `is_solution`
+    worst: WorstViolation
 
 
 LcpWorkRef = by_reference(LcpWork, __name__)
@@ -60,7 +67,7 @@ def lcp_work(size: int) -> LcpWork:
         square=np.zeros((size, size + 1)),
         order=np.zeros(size, np.int64),
         trial=np.zeros(size),
-        worst=np.zeros(1),
+        worst=blank(WorstViolation),
     )
 
 

@@ -34,7 +34,6 @@ from watchsim.simulation.motion.drift_projection import (
 )
 from watchsim.simulation.motion.sleeping import add_terms, begin_terms, find_sleepers
 from watchsim.simulation.record.write_buffers import OPEN_EVENT, keep_change, keep_event
-from watchsim.simulation.state import N_LCP_FAILED, N_REDUNDANT
 from watchsim.simulation.stops import Stop
 
 RUNNING, CELL_UNKNOWN = int(Stop.RUNNING), int(Stop.CELL_UNKNOWN)
@@ -68,7 +67,7 @@ def settle(model, cells, state, options, scratch, record):
             return stop
         first = last
     _go_on(model, state, _closed_of(state, m, scratch.listed, state.active), options, scratch, record)
-    state.numbers[2], state.numbers[4] = 0, -1
+    state.now.event_waits, state.now.touched = 0, -1
     return RUNNING
 
 
@@ -82,7 +81,7 @@ def _settle_island(model, state, island, span, options, scratch, record):
     note_pace(state.u, scratch.pace)
     deepest = project_positions(closed, m, False, work, state.q)
     if deepest > 0.0:
-        state.worst[0] = max(state.worst[0], deepest)
+        state.worst.penetration = max(state.worst.penetration, deepest)
         place(model, state.q, state.u, scratch.pose)
         refresh(model, m, closed, scratch.pose)
         # Rates of the contacts in force have changed with the places, by the gaps times how fast bodies turn.
@@ -113,7 +112,7 @@ def _go_on(model, state, f, options, scratch, record):
     label_islands(model, state.active, f, scratch.label)
     sort_by_island(model, scratch.label, f, state.active, state.upto)
     place(model, state.q, state.u, scratch.pose)
-    forces(model, state.clock[0], state.q, state.u, work.h)
+    forces(model, state.clock.time, state.q, state.u, work.h)
     add_drag(model, state.grip, work.h)
     fill_inverse(model, state.grip, work.inverse)
     accelerate(rest, 0, work, state.a)
@@ -125,7 +124,7 @@ def _go_on(model, state, f, options, scratch, record):
         first += m
         m, unique = let_go(model, state, m, options, scratch, record)
         if not unique:
-            state.counts[N_REDUNDANT] += 1
+            state.counts.redundant_sets += 1
         apply(rest, m, work.force, work.inverse, state.a)
         add_terms(rest, m, work.force, scratch.terms)
     f = _closed_of(state, f, state.active, state.active)
@@ -138,7 +137,7 @@ def _correct(state, m, scratch):
     """Exact zero gaps and rates of an island's m contacts in force; no slip against the mode where it was too slow to count."""
     rest, work = scratch.rest, scratch.work
     deepest = project_positions(rest, m, True, work, state.q)
-    state.worst[0] = max(state.worst[0], deepest)
+    state.worst.penetration = max(state.worst.penetration, deepest)
     for i in range(m):
         k = rest.ids[i]
         scratch.trial[k] = STICK if state.mode[k] * rest.kin[i].gT_dot < 0.0 else state.mode[k]
@@ -152,13 +151,13 @@ def _list_awake_first(model, state, f, scratch):
     count = 0
     for awake in (True, False):
         if not awake:
-            state.numbers[0], state.numbers[1] = count, f - count
+            state.now.awake_contacts, state.now.sleeping_contacts = count, f - count
         for j in range(f):
             k = scratch.listed[j]
             if (state.awake[island_of(model, scratch.label, k)] != 0) == awake:
                 state.active[count] = k
                 count += 1
-    sort_by_island(model, scratch.label, state.numbers[0], state.active, state.upto)
+    sort_by_island(model, scratch.label, state.now.awake_contacts, state.active, state.upto)
 
 
 @kernel
@@ -184,7 +183,7 @@ def _resolve(model, state, island, m, options, scratch, record):
             stop_held(scratch.label, island, state.grip, state.u)
             return RUNNING, r
         if not _slides(r, options.speed_zero, scratch.rest):
-            state.counts[N_LCP_FAILED] += 1
+            state.counts.lcp_failures += 1
             return LCP_FAILED, 0
         _hold_gaps(model, state, r, options, scratch)
         refresh(model, m, scratch.closed, scratch.pose)
@@ -237,7 +236,7 @@ def _slides(r, speed_zero, rest):
 def _release(model, state, options, scratch, record):
     """Open the contacts that have left their primitives without a successor."""
     kept, awake = 0, 0
-    for j in range(state.numbers[0] + state.numbers[1]):
+    for j in range(state.now.awake_contacts + state.now.sleeping_contacts):
         k = state.active[j]
         if extent_margin(model, k, scratch.pose) < -LEFT * options.extent:
             state.mode[k] = OPEN
@@ -245,9 +244,9 @@ def _release(model, state, options, scratch, record):
             continue
         state.active[kept] = k
         kept += 1
-        if j < state.numbers[0]:
+        if j < state.now.awake_contacts:
             awake += 1
-    state.numbers[0], state.numbers[1] = awake, kept - awake
+    state.now.awake_contacts, state.now.sleeping_contacts = awake, kept - awake
 
 
 @kernel

@@ -10,7 +10,6 @@ from watchsim.dynamics.small_systems import copy
 from watchsim.jit import kernel
 from watchsim.simulation.events.handover import continues_active
 from watchsim.simulation.motion.sleeping import is_at_rest
-from watchsim.simulation.state import N_LOOKUPS
 
 
 @kernel
@@ -37,22 +36,22 @@ def gather(model, cells, state, options, scratch):
     """
     ids = scratch.listed
     m = 0
-    for j in range(state.numbers[0] + state.numbers[1]):
+    for j in range(state.now.awake_contacts + state.now.sleeping_contacts):
         m = insert(ids, m, state.active[j])
     # The contact that has just touched is closed, even where taking back drift has moved its gap since.
-    if state.numbers[4] >= 0:
-        m = insert(ids, m, state.numbers[4])
+    if state.now.touched >= 0:
+        m = insert(ids, m, state.now.touched)
     for p in range(len(model.pairs)):
         pair = model.pairs[p]
-        if is_at_rest(model, state, pair.a) and is_at_rest(model, state, pair.b) and state.clock[0] > 0.0:
+        if is_at_rest(model, state, pair.a) and is_at_rest(model, state, pair.b) and state.clock.time > 0.0:
             continue
         how, start, count = candidates(model, cells, p, state.q)
         if how == UNKNOWN:
-            scratch.unknown[0] = p
+            scratch.unknown.pair = p
             copy(state.q, scratch.at)
             return -1
         if how == LISTED:
-            state.counts[N_LOOKUPS] += 1
+            state.counts.cells_looked_up += 1
         for place in range(start, start + count):
             k = candidate(model, cells, how, place)
             if state.mode[k] != OPEN:

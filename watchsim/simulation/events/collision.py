@@ -21,7 +21,6 @@ from watchsim.simulation.events.impulse_check import kinetic_energy
 from watchsim.simulation.events.mode_decision import count_problems, decide
 from watchsim.simulation.events.zero_rates import note_pace
 from watchsim.simulation.record.write_buffers import keep_event
-from watchsim.simulation.state import IMPACTS, N_ACCUMULATED, N_ENERGY, N_IMPACTS, N_JAMS, N_LCP_FAILED
 
 GAIN = 1e-12  # a rise of kinetic energy beyond this share is a gain, not rounding
 ENERGY_GAINED = 11  # status: even without restitution an impact would gain energy, so its solution is wrong
@@ -61,14 +60,14 @@ def _solve(model, state, m, jam, scratch):
         status = impact(model, scratch.closed, m, scratch.restitution, jam, scratch.work, state.u)
         count_problems(state, scratch.work)
         if status != 0:
-            state.counts[N_LCP_FAILED] += 1
+            state.counts.lcp_failures += 1
             return status
         change, terms = energy_change(m, scratch.work)
         if change <= GAIN * kinetic:
             return 0
         if attempt == 2:
             return 0 if change <= GAIN * terms else ENERGY_GAINED
-        state.counts[N_ENERGY] += 1
+        state.counts.energy_rescues += 1
         least = _least_restitution(m, scratch) if attempt == 0 else 0.0
         for i in range(m):
             scratch.restitution[i] = least
@@ -113,7 +112,7 @@ def _end_rebounds(model, state, island, m, options, scratch):
         hidden = 0.25 * scratch.closed.kin[i].gN_dot * back <= lowest
         if ending < options.accumulation_time or hidden:
             scratch.restitution[i] = 0.0
-            latest = max(latest, state.clock[0] + (ending if share < 1.0 else back))
+            latest = max(latest, state.clock.time + (ending if share < 1.0 else back))
     return latest
 
 
@@ -162,12 +161,12 @@ def _end_chatter(model, state, m, time, scratch, record):
             return  # the impacts go on one by one
     for i in range(m):
         if scratch.closed.kin[i].gN_dot > scratch.zero[i]:
-            back = state.clock[0] + return_time(scratch.closed, i, state.a)
+            back = state.clock.time + return_time(scratch.closed, i, state.a)
             keep_event(state, record, ACCUMULATION_EVENT, scratch.closed.ids[i], -1, back)
-            state.counts[N_ACCUMULATED] += 1
+            state.counts.accumulations += 1
     place(model, state.q, state.u, scratch.pose)
     refresh(model, m, scratch.closed, scratch.pose)
-    state.sums[IMPACTS] += before - kinetic_energy(model, state.u)
+    state.sums.impacts += before - kinetic_energy(model, state.u)
 
 
 @kernel
@@ -185,11 +184,11 @@ def _write(model, state, m, jam, scratch, record, ends):
         row = keep_event(state, record, IMPACT_EVENT, closed.ids[i], -1, scratch.work.b[N])
         event = record.events[row]
         event.impulse_normal, event.impulse_tangential, event.energy_lost = scratch.impulse[N], scratch.impulse[T], lost
-        state.sums[IMPACTS] += lost
-        state.counts[N_IMPACTS] += 1
+        state.sums.impacts += lost
+        state.counts.impacts += 1
         if jam > 0.0 and abs(scratch.work.b[N]) <= jam < abs(scratch.work.b[T]):
             keep_event(state, record, JAM_EVENT, closed.ids[i], -1, scratch.work.b[T])
-            state.counts[N_JAMS] += 1
+            state.counts.jams += 1
         if ends >= 0.0 and scratch.restitution[i] == 0.0 and model.laws[model.contacts[closed.ids[i]].group].restitution > 0.0:
             keep_event(state, record, ACCUMULATION_EVENT, closed.ids[i], -1, ends)
-            state.counts[N_ACCUMULATED] += 1
+            state.counts.accumulations += 1

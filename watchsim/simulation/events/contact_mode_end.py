@@ -18,22 +18,22 @@ SAMPLES = 8
 @kernel
 def _slack(model, state, options, code):
     """How far beyond zero velocity the monitors of slips and of moving bearings fire; the reversal is where it vanishes."""
-    j = code - MONITORS * state.numbers[0]
+    j = code - MONITORS * state.now.awake_contacts
     if j >= 0:
         if state.grip[j] == STICK:
             return 0.0
-        return 0.5 * state.lenience[0] * options.speed_zero / options.size * model.coordinates[j].scale
+        return 0.5 * state.now.lenience * options.speed_zero / options.size * model.coordinates[j].scale
     slides = code % MONITORS == TANGENTIAL and state.mode[state.active[code // MONITORS]] != STICK
-    return state.lenience[0] * SLIP_SLACK * options.speed_zero if slides else 0.0
+    return state.now.lenience * SLIP_SLACK * options.speed_zero if slides else 0.0
 
 
 @kernel
 def _evaluate(model, state, options, tau, scratch):
-    """Evaluate the motion, and with it all monitors, at time tau of the step."""
+    """Evaluate the motion, and with it all monitors, at time tau of the step; returns the smallest."""
     for i in range(len(scratch.y)):
         scratch.y[i] = dense_value(scratch.step, i, tau)
     # `motion` reads `scratch.y` and writes `scratch.dy`.
-    motion(model, state, options, scratch.step.span[0] + tau, scratch.y, scratch)
+    return motion(model, state, options, scratch.step.span.start + tau, scratch.y, scratch)
 
 
 @kernel
@@ -58,7 +58,7 @@ def _root(model, state, options, which, low, high, scratch):
         middle = next_time(low, f_low, high, f_high, is_slow(number, high - low, before))
         if number % LOOK_EVERY == 0:
             before = high - low
-        if high - low <= RESOLUTION * (scratch.step.span[0] + high) or not low < middle < high:
+        if high - low <= RESOLUTION * (scratch.step.span.start + high) or not low < middle < high:
             break
         _evaluate(model, state, options, middle, scratch)
         f = scratch.monitors[which] - slack
@@ -78,17 +78,18 @@ def _root(model, state, options, which, low, high, scratch):
 
 
 @kernel
-def first_leave(model, state, options, scratch):
-    """First time in the coupled step at which a monitor is no longer positive; infinity if all stay positive."""
-    if scratch.alarm[0] > 0.0:
+def first_leave(model, state, options, smallest, scratch):
+    """First time in the coupled step at which a monitor is no longer positive; infinity if all stay positive.
+
+    `smallest`: the smallest monitor at the stages of the step.
+    """
+    if smallest > 0.0:
         return math.inf
-    length = scratch.step.span[1]
+    length = scratch.step.span.length
     before = 0.0
     for sample in range(SAMPLES + 1):
         tau = length * sample / SAMPLES
-        scratch.alarm[0] = math.inf
-        _evaluate(model, state, options, tau, scratch)
-        if scratch.alarm[0] <= 0.0:
+        if _evaluate(model, state, options, tau, scratch) <= 0.0:
             return _earliest(model, state, options, before, tau, scratch)
         before = tau
     return math.inf
@@ -101,7 +102,7 @@ def _earliest(model, state, options, before, tau, scratch):
     Its code is then the first in `scratch.codes`.
     """
     fired = 0
-    for code in range(MONITORS * state.numbers[0] + len(model.coordinates)):
+    for code in range(MONITORS * state.now.awake_contacts + len(model.coordinates)):
         if scratch.monitors[code] <= 0.0:
             scratch.codes[fired] = code
             fired += 1

@@ -17,7 +17,6 @@ from watchsim.dynamics.small_systems import copy
 from watchsim.jit import kernel
 from watchsim.simulation.motion.drift_projection import IN_STEPS, project_velocities
 from watchsim.simulation.record.write_buffers import keep_event
-from watchsim.simulation.state import N_LOOKUPS
 
 HANDOVER_EVENT = 6
 LEFT = 1.5  # times the extent beyond the primitive's end: the contact has left it; touching ends at 1, the monitor at 2
@@ -67,7 +66,7 @@ def is_beside_active(model, state, k):
     one point. The contact in force ends, with an event, before its neighbour can begin.
     """
     one = model.contacts[k]
-    for j in range(state.numbers[0]):
+    for j in range(state.now.awake_contacts):
         two = model.contacts[state.active[j]]
         if one.a == two.a:
             mine, its = one.b, two.b
@@ -94,7 +93,7 @@ def continues_active(model, state, options, k, pose):
 @kernel
 def room_beside_active(model, state, options, k, pose):
     """`room_to_differ` from the contact in force that open contact k continues; negative where it continues none."""
-    for j in range(state.numbers[0] + state.numbers[1]):
+    for j in range(state.now.awake_contacts + state.now.sleeping_contacts):
         way, turn = room_to_differ(model, k, state.active[j], options, pose)
         if way >= 0.0 and turn >= 0.0:
             return way, turn
@@ -115,11 +114,11 @@ def _successor(model, cells, state, options, k, scratch):
     p = _pair_of(model, k)
     how, start, count = candidates(model, cells, p, state.q)
     if how == UNKNOWN:
-        scratch.unknown[0] = p
+        scratch.unknown.pair = p
         copy(state.q, scratch.at)
         return -2
     if how == LISTED:
-        state.counts[N_LOOKUPS] += 1
+        state.counts.cells_looked_up += 1
     best, deepest = -1, -options.extent
     for slot in range(start, start + count):
         j = candidate(model, cells, how, slot)
@@ -138,7 +137,7 @@ def _successor(model, cells, state, options, k, scratch):
 def hand_over(model, cells, state, options, scratch, record):
     """Pass contacts that left their primitives to their neighbours. Poses must be current; False where a cell is unknown."""
     moved = False
-    for j in range(state.numbers[0] + state.numbers[1]):
+    for j in range(state.now.awake_contacts + state.now.sleeping_contacts):
         k = state.active[j]
         if extent_margin(model, k, scratch.pose) >= -LEFT * options.extent:
             continue
@@ -158,7 +157,7 @@ def hand_over(model, cells, state, options, scratch, record):
 @kernel
 def _follow(model, state, scratch):
     """Take back what the way beyond the primitive's end has done to the velocities: normals differ by the turn there."""
-    m = state.numbers[0]
+    m = state.now.awake_contacts
     for i in range(m):
         contact_kinematics(model, state.active[i], scratch.pose, i, scratch.closed)
     project_velocities(scratch.closed, m, state.mode, IN_STEPS, scratch.work, state.u)

@@ -7,9 +7,9 @@ from watchsim.dynamics.acceleration import decide_modes
 from watchsim.dynamics.applied_forces import forces
 from watchsim.dynamics.bearing_friction import add_drag, set_grips
 from watchsim.dynamics.delassus import LARGEST, RUNGS, fill_inverse
+from watchsim.dynamics.solver_fallbacks import COPOSITIVE, DETOUR, ENUMERATED, INEXACT, LEMKE
 from watchsim.jit import kernel
 from watchsim.simulation.events.closed_contacts import resting
-from watchsim.simulation.state import N_LCP, N_LCP_SIZE, N_LEMKE
 
 
 @kernel
@@ -31,7 +31,7 @@ def decide(model, state, island, m, options, scratch, out_grip):
     """
     work = scratch.work
     r = resting(model, m, scratch.closed, scratch.pose, scratch.zero, scratch.rest)
-    forces(model, state.clock[0], state.q, state.u, work.h)
+    forces(model, state.clock.time, state.q, state.u, work.h)
     set_grips(model, state.u, scratch.label, island, options, out_grip)
     add_drag(model, out_grip, work.h)
     bearings = standing_bearings(scratch.label, island, out_grip, work.dry)
@@ -46,11 +46,15 @@ def decide(model, state, island, m, options, scratch, out_grip):
 @kernel
 def count_problems(state, work):
     """Add the problems solved since last asked to the state's counts."""
+    counts, rungs = state.counts, work.rungs
+    counts.lcp_lemke += rungs[LEMKE]
+    counts.lcp_copositive += rungs[COPOSITIVE]
+    counts.lcp_detours += rungs[DETOUR]
+    counts.lcp_enumerated += rungs[ENUMERATED]
+    counts.lcp_inexact += rungs[INEXACT]
     for rung in range(RUNGS):
-        state.counts[N_LCP] += work.rungs[rung]
-        if rung < RUNGS - 1:  # the last one counts those without a solution
-            state.counts[N_LEMKE + rung] += work.rungs[rung]
-        work.rungs[rung] = 0
+        counts.lcp += rungs[rung]
+        rungs[rung] = 0
     for place in range(len(LARGEST) + 1):
-        state.counts[N_LCP_SIZE + place] += work.sizes[place]
+        counts.lcp_sizes[place] += work.sizes[place]
         work.sizes[place] = 0

@@ -20,7 +20,7 @@ SHARE = 0.5  # of the slack with which a mode ends: one that has come to its end
 @kernel
 def _weakest(model, state, m, options, scratch):
     """(row of the contact that is furthest from holding, -1 if all hold; does it pull?)."""
-    rest, work, zero = scratch.rest, scratch.work, SHARE * state.lenience[0] * options.force_zero
+    rest, work, zero = scratch.rest, scratch.work, SHARE * state.now.lenience * options.force_zero
     worst, row, pulls, largest = 0.0, -1, False, 0.0
     for i in range(m):
         largest = max(largest, work.force[2 * i])

@@ -20,7 +20,6 @@ from watchsim.simulation.events.handover import is_beside_active, room_beside_ac
 from watchsim.simulation.events.immovable import IMMOVABLE, is_immovable
 from watchsim.simulation.motion.sleeping import is_at_rest
 from watchsim.simulation.motion.step_path import body_on_path
-from watchsim.simulation.state import N_GAPS, N_LOOKUPS
 
 SLOWEST = 1e-300  # m/s: a bound of a speed that is zero, to be divided by
 STRIDE = 0.25  # of the extent: steps in which a neighbour of a contact in force is watched until its turn comes
@@ -227,7 +226,7 @@ def crossing(model, state, options, k, start, end, scratch):
             stretch = tau + length
         gap, rate, _, _ = normal_gap(model, k, scratch.pose)
         distance = _centre_distance(model, k, scratch.pose)
-        state.counts[N_GAPS] += 1
+        state.counts.gap_evaluations += 1
         if fresh or not outside:
             outside, clear = gap >= -zero, beside > 0.0  # what lay beside its primitives was no contact until now
         fresh = False
@@ -277,7 +276,7 @@ def _stays_open(model, state, options, k, length, first, bounds, scratch):
     `bounds` are the `_body_bounds` of the pair's bodies, of body `first` and of the other one.
     """
     gap, rate, _, _ = normal_gap(model, k, scratch.pose)
-    state.counts[N_GAPS] += 1
+    state.counts.gap_evaluations += 1
     if -options.behind <= gap <= options.gap_zero:
         return False
     # Behind its primitive a contact must come out before it can close.
@@ -303,7 +302,7 @@ def _first_of(model, cells, state, options, p, tau, until, scratch):
     if how == UNKNOWN:
         return False, 0.0, -1
     if how == LISTED:
-        state.counts[N_LOOKUPS] += 1
+        state.counts.cells_looked_up += 1
     bounds = (_body_bounds(model, pair.a, until - tau, scratch), _body_bounds(model, pair.b, until - tau, scratch))
     doubts = 0
     for place in range(start, start + count):
@@ -341,7 +340,7 @@ def first_touch(model, cells, state, options, end, scratch):
             until = min(best, tau + time_in_cell(model, p, scratch.q, scratch.u, scratch.step.bound))
             known, root, k = _first_of(model, cells, state, options, p, tau, until, scratch)
             if not known:
-                scratch.unknown[0] = p
+                scratch.unknown.pair = p
                 return False, 0.0, -1
             if k >= 0:
                 best, who = root, k

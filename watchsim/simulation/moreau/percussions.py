@@ -14,7 +14,6 @@ from watchsim.simulation.moreau.mobility import fill_mobility, push, rates_of
 from watchsim.simulation.moreau.percussion_laws import cone, residual
 from watchsim.simulation.moreau.prox_relaxation import relax
 from watchsim.simulation.record.write_buffers import keep_event
-from watchsim.simulation.state import IMPACTS, N_ENERGY, N_IMPACTS, N_LCP, N_LCP_FAILED, N_LCP_SIZE
 
 IMPACT_EVENT = 1
 GAIN = 1e-12  # share of the kinetic energy up to which a gain is rounding
@@ -26,12 +25,12 @@ NO_SIGN = 1e-10  # a tangential percussion below this share of the friction cone
 def solve_percussions(state, m, bearings, work):
     """Relax, and count what it took."""
     sweeps, settled = relax(work.laws, m, bearings)
-    state.counts[N_LCP] += 1
-    state.counts[N_LCP_SIZE + size_class(2 * m + bearings)] += 1
-    work.sweeps[0] += sweeps
+    state.counts.lcp += 1
+    state.counts.lcp_sizes[size_class(2 * m + bearings)] += 1
+    work.kept.sweeps += sweeps
     if not settled:
-        state.counts[N_LCP_FAILED] += 1
-    work.worst[0] = max(work.worst[0], residual(work.laws, m, 2 * m + bearings))
+        state.counts.lcp_failures += 1
+    work.kept.violation = max(work.kept.violation, residual(work.laws, m, 2 * m + bearings))
 
 
 @kernel
@@ -155,7 +154,7 @@ def stop_approaches(model, state, options, m, work, record):
         rates_of(work, m, 0, work.u, work.laws.b)
         if attempt == 2 or _loss(m, work) >= -GAIN * kinetic:
             break
-        state.counts[N_ENERGY] += 1
+        state.counts.energy_rescues += 1
         least = _least_restitution(m, work) if attempt == 0 else 0.0
         for i in range(m):
             work.restitution[i] = least
@@ -170,11 +169,11 @@ def _write_impacts(state, options, m, work, record):
     for i in range(m):
         N, T = 2 * i, 2 * i + 1
         lost = -0.5 * (P[N] * (before[N] + after[N]) + P[T] * (before[T] + after[T]))
-        state.sums[IMPACTS] += lost
+        state.sums.impacts += lost
         if P[N] > 0.0 and before[N] < -options.accumulation_speed:
             row = keep_event(state, record, IMPACT_EVENT, work.closed.ids[i], -1, before[N])
             event = record.events[row]
             event.impulse_normal, event.impulse_tangential, event.energy_lost = P[N], P[T], lost
-            state.counts[N_IMPACTS] += 1
+            state.counts.impacts += 1
             written = True
     return written

@@ -11,7 +11,7 @@ from watchsim.simulation.state import FLIGHT
 @kernel
 def coordinate_within(model, state, step, i, tau):
     """Coordinate i and its velocity at time tau after the start of the step."""
-    if step.kind[0] == FLIGHT:
+    if step.span.kind == FLIGHT:
         if state.awake[i] == 0:
             return step.q[i], 0.0
         return flow(model.coordinates[i], state.grip[i], step.q[i], step.u[i], tau)

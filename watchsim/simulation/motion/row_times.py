@@ -19,14 +19,14 @@ MOST_ROWS = 64
 @kernel
 def dense_rate(step, i, tau):
     """Time derivative of component i of y at time tau after the start of a coupled step."""
-    x = tau / step.span[1]
+    x = tau / step.span.length
     d = step.dense
     value, slope = d[6, i], 0.0
     for row in range(5, -1, -1):
         along = x if row % 2 == 1 else 1.0 - x
         slope = along * slope + (value if row % 2 == 1 else -value)
         value = d[row, i] + along * value
-    return (value + x * slope) / step.span[1]
+    return (value + x * slope) / step.span.length
 
 
 @kernel
@@ -51,18 +51,18 @@ def _pieces(model, options, end, step):
 def keep_inner_rows(model, options, end, scratch, record):
     """Append the rows needed within the first `end` seconds of the coupled step just made, but not the one at their end."""
     step = scratch.step
-    if end <= 0.0 or not is_kept(record, step.span[0], end):
+    if end <= 0.0 or not is_kept(record, step.span.start, end):
         return
     n = len(model.coordinates)
     pieces = _pieces(model, options, end, step)
     for piece in range(1, pieces):
         tau = end * piece / pieces
-        if not is_kept(record, step.span[0] + tau, 0.0):
+        if not is_kept(record, step.span.start + tau, 0.0):
             continue
-        row = record.used[0]
-        record.rows[row, 0] = step.span[0] + tau
+        row = record.used.rows
+        record.rows[row, 0] = step.span.start + tau
         for i in range(2 * n):
             record.rows[row, 1 + i] = dense_value(step, i, tau)
         for i in range(n):
             record.rows[row, 1 + 2 * n + i] = dense_rate(step, n + i, tau)
-        record.used[0] = row + 1
+        record.used.rows = row + 1

@@ -39,7 +39,7 @@ BEND = _second_derivative()
 @kernel
 def bound_accelerations(step, n):
     """Bounds of |q''| over the coupled step, for its n coordinates, into `step.bound`: no Bernstein polynomial exceeds them."""
-    h = step.span[1]
+    h = step.span.length
     for i in range(n):
         largest = 0.0
         for row in range(DEGREE - 1):
@@ -53,7 +53,7 @@ def bound_accelerations(step, n):
 @kernel
 def _polynomial(step, i, tau):
     """Coordinate i of a coupled step and its derivative at time tau."""
-    h, d = step.span[1], step.dense
+    h, d = step.span.length, step.dense
     x = tau / h
     w = 1.0 - x
     value, slope = d[5, i] + x * d[6, i], d[6, i]
@@ -78,7 +78,7 @@ def body_on_path(model, state, b, tau, scratch):
             i = body.first + j
             if state.awake[i] == 0:
                 scratch.q[i], scratch.u[i] = state.q[i], 0.0
-            elif step.kind[0] == FLIGHT:
+            elif step.span.kind == FLIGHT:
                 scratch.q[i], scratch.u[i] = flow(model.coordinates[i], state.grip[i], step.q[i], step.u[i], tau)
             else:
                 scratch.q[i], scratch.u[i] = _polynomial(step, i, tau)

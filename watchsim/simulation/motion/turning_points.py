@@ -41,7 +41,7 @@ def _root(model, state, step, spring, turn, end):
         middle = next_time(low, f_low, high, f_high, is_slow(number, high - low, before))
         if number % LOOK_EVERY == 0:
             before = high - low
-        if not low < middle < high or high - low <= 1e-16 * (step.span[0] + high):
+        if not low < middle < high or high - low <= 1e-16 * (step.span.start + high):
             break
         f = _value(model, state, step, spring, turn, middle)
         if f * f_high > 0.0:
@@ -73,7 +73,7 @@ def keep_passages(model, state, step, end, record):
 
     The state's q and u are those at the end; `end` 0 means a jump of velocity at one instant.
     """
-    now, n = state.clock[0], len(model.coordinates)
+    now, n = state.clock.time, len(model.coordinates)
     for spring in range(n + len(model.joints)):
         if spring < n:
             if model.coordinates[spring].watched == 0:
@@ -89,15 +89,15 @@ def keep_passages(model, state, step, end, record):
             if state.side_u[i] != 0:
                 tau = _root(model, state, step, (i, on, rest), True, end) if end > 0.0 else 0.0
                 q = _seen(model, state, step, i, on, tau)[0] if end > 0.0 else along(state.q, i, on)
-                state.clock[0] = now - end + tau
+                state.clock.time = now - end + tau
                 keep_event(state, record, TURN_EVENT, -1, model.coordinates[i].body, q)
             state.side_u[i] = side
         side = sign(along(state.q, i, on) - rest)
         if side != 0 and side != state.side_q[i]:
             if state.side_q[i] != 0 and end > 0.0:
                 tau = _root(model, state, step, (i, on, rest), False, end)
-                state.clock[0] = now - end + tau
+                state.clock.time = now - end + tau
                 speed = _seen(model, state, step, i, on, tau)[1]
                 keep_event(state, record, CROSS_EVENT, -1, model.coordinates[i].body, speed)
             state.side_q[i] = side
-        state.clock[0] = now
+        state.clock.time = now
