@@ -26,8 +26,9 @@ from watchsim.simulation.motion.coupled_motion import NORMAL
 from watchsim.simulation.motion.root_bracket import LOOK_EVERY, MOST, is_slow, next_time
 from watchsim.simulation.options import options_for
 from watchsim.simulation.runner import pairs_of
+from watchsim.simulation.scratch import Ended
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.state import Ended, new_state
+from watchsim.simulation.state import new_state
 from watchsim.simulation.stops import Stop
 
 ROOT = Path(jit.__file__).resolve().parents[1]

@@ -125,7 +125,7 @@ def decide_modes(model, closed, m, bearings, speed_zero, work, out_grip, out_mod
     reverse_directions(work, m, rows, elements, work.b)
     fill_matrix(work, m, elements)
     _load(work, m, elements, bearings)
-    fill_rhs(work, m, elements, work.more)
+    fill_rhs(work, m, elements, work.loaded)
     note_posed(work, m, elements, bearings, LEVEL_ACCELERATION)
     status, _ = solve_contacts(work, m, elements)
     if status != 0:
@@ -173,12 +173,12 @@ def _free_bearings(work, m, bearings):
 
 @kernel
 def _load(work, m, elements, bearings):
-    """Accelerations without contact forces, bearings at the lower end of their friction, into `more`."""
+    """Accelerations without contact forces, bearings at the lower end of their friction, into `loaded`."""
     for row in range(2 * m + bearings):
-        work.more[row] = work.b[row]
+        work.loaded[row] = work.b[row]
         for p in range(bearings):
             # The elements of the bearings are the last ones, in order.
-            work.more[row] += work.G[row, 2 * m + p] * work.shift[elements - bearings + p]
+            work.loaded[row] += work.G[row, 2 * m + p] * work.shift[elements - bearings + p]
 
 
 @kernel

@@ -41,7 +41,11 @@ class ContactWork(NamedTuple):
     b: Array  # (rows,) accelerations or velocities of the gaps without contact forces
     size: Array  # (rows,) the same with all terms taken positive: the scale of rounding
     force: Array  # (rows,) lambda or Lambda
-    more: Array  # (rows,) a second set: impulses of the expansion
+    more: Array  # (rows,) impulses of the expansion
+    rates: Array  # (rows,) velocities of the gaps at the start of the expansion, its least impulses included
+    offset: Array  # (room,) tangential impulse whose slip moves the corner of the law pg1996
+    loaded: Array  # (rows,) accelerations of the gaps without contact forces, bearings at the lower end of their friction
+    correction: Array  # (rows,) impulses that take back drift (simulation/motion/drift_projection.py)
     inverse: Array  # (n,) 1/mass, 0 where dry friction holds the coordinate
     unit: Array  # (blocks,) scale that gives G a unit diagonal
     drag: Array  # (room,) friction per normal force at the lower end of the interval
@@ -52,13 +56,16 @@ class ContactWork(NamedTuple):
     span: Array  # (blocks,) constant part of its length
     shift: Array  # (blocks,) constant part of its lower end
     hand: Array  # (rows,) -1 where a direction of friction is reversed, else 1
-    A: Array
+    A: Array  # the complementarity problem or the linear system in hand
     rhs: Array
     x: Array
     B: Array  # the same problem in its copositive form
     other_rhs: Array
     other_x: Array
-    scale: Array
+    free: Array  # forces that no motion decides, one set a row (redundant_contacts.py)
+    weight: Array  # of each unknown in the sum of squares of the forces
+    dual: Array  # multipliers of the laws that such forces must obey
+    scale: Array  # of a linear system, see `solve_small`
     order: Integers
     row: Integers  # (side,) of G, by row of a correction (simulation/motion/drift_projection.py)
     h: Array  # (n,)
@@ -83,6 +90,10 @@ def contact_work(room: int, coordinates: int) -> ContactWork:
         size=np.zeros(rows),
         force=np.zeros(rows),
         more=np.zeros(rows),
+        rates=np.zeros(rows),
+        offset=np.zeros(room),
+        loaded=np.zeros(rows),
+        correction=np.zeros(rows),
         inverse=np.zeros(coordinates),
         unit=np.zeros(blocks),
         drag=np.zeros(room),
@@ -99,6 +110,9 @@ def contact_work(room: int, coordinates: int) -> ContactWork:
         B=np.zeros((side, side)),
         other_rhs=np.zeros(side),
         other_x=np.zeros(side),
+        free=np.zeros((side, side)),
+        weight=np.zeros(side),
+        dual=np.zeros(side),
         scale=np.zeros(side),
         order=np.zeros(side, np.int64),
         row=np.zeros(side, np.int64),

@@ -119,20 +119,20 @@ def _expand(model, closed, m, restitution, elements, work):
             low, width, span, shift, returned = interval(law, restitution[i], normal, tangential)
             work.drag[i], work.more[2 * i + 1] = low, shift
             add_element(work, i, e, (width, span, shift))
-            work.other_x[i] = law.nu * returned
+            work.offset[i] = law.nu * returned
         else:
-            work.other_x[i] = 0.0
+            work.offset[i] = 0.0
     for row in range(2 * m):
         total = work.b[row]
         for j in range(2 * m):
             total += work.G[row, j] * (work.force[j] + work.more[j])
-        work.size[row] = total
+        work.rates[row] = total
     for e in range(elements):
         row = element_row(work, m, e)
         for i in range(m):
-            work.size[row] -= work.G[row, 2 * i + 1] * work.other_x[i]
+            work.rates[row] -= work.G[row, 2 * i + 1] * work.offset[i]
     fill_matrix(work, m, elements)
-    fill_rhs(work, m, elements, work.size)
+    fill_rhs(work, m, elements, work.rates)
     work.posed.level = LEVEL_EXPANSION
     status, _ = solve_contacts(work, m, elements)
     for i in range(m):
@@ -180,9 +180,9 @@ def plastic_impact(model, closed, m, time, u, work):
     elements = _begin(model, closed, m, work)
     fill_delassus(closed, m, work)
     contact_velocities(closed, m, u, work.b)
-    gap_accelerations(model, closed, m, work, work.more, work.size)
+    gap_accelerations(model, closed, m, work, work.loaded, work.size)
     for row in range(2 * m):
-        work.b[row] += time * work.more[row]
+        work.b[row] += time * work.loaded[row]
     reverse_directions(work, m, 2 * m, elements, work.b)
     fill_matrix(work, m, elements)
     fill_rhs(work, m, elements, work.b)

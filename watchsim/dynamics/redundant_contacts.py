@@ -22,13 +22,13 @@ def smallest_forces(m, n, rank, work):
     The first m unknowns are normal forces; `work.tangent` says which unknown is a contact's friction force, `work.drag` the
     friction of the others, `work.width` the friction coefficients.
     """
-    vectors = work.B
+    vectors = work.free
     count = n - rank
     null_vectors(work.A, n, rank, work.scale, work.order, vectors)
     _weigh(m, n, work)
-    count = _orthonormalize(vectors, count, n, work.other_rhs)
+    count = _orthonormalize(vectors, count, n, work.weight)
     for v in range(count):
-        share = _product(vectors[v], work.x, n, work.other_rhs)
+        share = _product(vectors[v], work.x, n, work.weight)
         for j in range(n):
             work.x[j] -= share * vectors[v, j]
     _keep_laws(m, n, count, work)
@@ -38,10 +38,10 @@ def smallest_forces(m, n, rank, work):
 def _weigh(m, n, work):
     """Weights of the unknowns in the sum of squares of all forces: a sliding contact's friction grows with its normal force."""
     for j in range(n):
-        work.other_rhs[j] = 1.0
+        work.weight[j] = 1.0
     for i in range(m):
         if work.tangent[i] < 0:
-            work.other_rhs[i] += work.drag[i] * work.drag[i]
+            work.weight[i] += work.drag[i] * work.drag[i]
 
 
 @kernel
@@ -98,7 +98,7 @@ def _gain(work, m, line, vector):
 @kernel
 def _keep_laws(m, n, count, work):
     """The smallest change along the free directions that fulfils all laws: the dual problem, positive semidefinite."""
-    vectors, largest, worst = work.B, 0.0, 0.0
+    vectors, largest, worst = work.free, 0.0, 0.0
     laws = m + 2 * (n - m)
     for j in range(n):
         largest = max(largest, abs(work.x[j]))
@@ -115,11 +115,11 @@ def _keep_laws(m, n, count, work):
             for v in range(count):
                 total += _gain(work, m, line, vectors[v]) * _gain(work, m, other, vectors[v])
             work.A[line, other] = total
-    if lemke_checked(work.A, work.rhs, laws, work.lcp, work.other_x) != OK:
+    if lemke_checked(work.A, work.rhs, laws, work.lcp, work.dual) != OK:
         return  # no forces obey the laws: the mode has ended, and its monitors say so
     for v in range(count):
         share = 0.0
         for line in range(laws):
-            share += _gain(work, m, line, vectors[v]) * work.other_x[line]
+            share += _gain(work, m, line, vectors[v]) * work.dual[line]
         for j in range(n):
             work.x[j] += share * vectors[v, j]

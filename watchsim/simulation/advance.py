@@ -9,16 +9,15 @@ from __future__ import annotations
 import math
 
 from watchsim.candidates.cell_lookup import time_through_cells
-from watchsim.contact.kinematics import ClosedRef
 from watchsim.contact.poses import place
 from watchsim.dynamics.applied_forces import next_knot
-from watchsim.dynamics.delassus import ContactWorkRef, fill_inverse
-from watchsim.dynamics.lcp.lemke_pivoting import LcpWorkRef
-from watchsim.jit import entry, inlined, kernel
+from watchsim.dynamics.delassus import fill_inverse
+from watchsim.jit import entry, kernel
 from watchsim.model.records import CellsRef, ModelRef
+from watchsim.simulation.buffers import RecordRef
 from watchsim.simulation.events.after_event import settle
 from watchsim.simulation.events.closed_contacts import refresh
-from watchsim.simulation.events.contact_mode_end import first_leave, first_turn
+from watchsim.simulation.events.contact_mode_end import NONE_FIRED, first_leave, first_turn
 from watchsim.simulation.events.impulse_check import is_explained, kinetic_energy
 from watchsim.simulation.events.mode_recurrence import begin_instant, decide_once, forget_decisions
 from watchsim.simulation.events.time_of_impact import first_touch
@@ -38,7 +37,8 @@ from watchsim.simulation.motion.row_times import keep_inner_rows
 from watchsim.simulation.motion.turning_points import keep_passages
 from watchsim.simulation.options import FINEST_ROWS, OptionsRef
 from watchsim.simulation.record.write_buffers import keep_row
-from watchsim.simulation.state import MONITORS, RECENT, SUMS, RecordRef, ScratchRef, StateRef, StepRef
+from watchsim.simulation.scratch import MONITORS, RECENT, SUMS, scratch_by_reference
+from watchsim.simulation.state import StateRef
 from watchsim.simulation.stops import Stop
 
 RUNNING, SLICE, CELL_UNKNOWN, BUFFER_FULL = int(Stop.RUNNING), int(Stop.SLICE), int(Stop.CELL_UNKNOWN), int(Stop.BUFFER_FULL)
@@ -60,32 +60,33 @@ def _accept_coupled(model, state, options, end, scratch):
 
     False where drift is no rounding.
     """
-    step = scratch.step
+    step, work, smooth = scratch.step, scratch.work, scratch.smooth
+    closed, pose = smooth.closed, smooth.pose
     n = len(model.coordinates)
     for i in range(2 * n + SUMS):
         value = dense_value(step, i, end) if end < step.span.length else step.y1[i]
-        scratch.y[i] = value
+        smooth.y[i] = value
         if i < n:
             state.q[i] = value
         elif i < 2 * n:
             state.u[i - n] = value
-    state.sums.drive += scratch.y[2 * n]
-    state.sums.damping += scratch.y[2 * n + 1]
-    state.sums.friction += scratch.y[2 * n + 2]
-    motion(model, state, options, state.clock.time, scratch.y, scratch)
+    state.sums.drive += smooth.y[2 * n]
+    state.sums.damping += smooth.y[2 * n + 1]
+    state.sums.friction += smooth.y[2 * n + 2]
+    motion(model, state, options, state.clock.time, work, smooth)
     before = kinetic_energy(model, state.u)
     first = 0
     while first < state.now.awake_contacts:
-        m = place_contacts(model, state.active, first, state.upto[first], scratch.pose, scratch.closed)
-        deepest = project_positions(scratch.closed, m, True, scratch.work, state.q)
+        m = place_contacts(model, state.active, first, state.upto[first], pose, closed)
+        deepest = project_positions(closed, m, True, work, state.q)
         state.worst.penetration = max(state.worst.penetration, deepest)
-        if _turns_rates(model, state, options, m, scratch.closed):
-            place(model, state.q, state.u, scratch.pose)
-            refresh(model, m, scratch.closed, scratch.pose)
-        project_velocities(scratch.closed, m, state.mode, IN_STEPS, scratch.work, state.u)
+        if _turns_rates(model, state, options, m, closed):
+            place(model, state.q, state.u, pose)
+            refresh(model, m, closed, pose)
+        project_velocities(closed, m, state.mode, IN_STEPS, work, state.u)
         first += m
     for i in range(n):
-        state.a[i] = scratch.dy[n + i]
+        state.a[i] = smooth.dy[n + i]
     state.worst.kinetic_energy = max(state.worst.kinetic_energy, before)
     return is_explained(model, options, before, kinetic_energy(model, state.u), state.worst.kinetic_energy)
 
@@ -119,11 +120,11 @@ def _room_left(record, contacts):
 def _smooth_step(model, cells, state, options, end_time, scratch, record):
     """One smooth step up to its first event; returns (Stop code, event?)."""
     left = end_time - state.clock.time
-    flying, spacing, leave = can_fly(model, state), math.inf, math.inf
+    flying, spacing, code = can_fly(model, state), math.inf, NONE_FIRED
     proposed = state.clock.step
     if flying:
         length, spacing = flight_length(model, state, options)
-        begin_flight(model, state, min(length, left), scratch)
+        begin_flight(model, state, min(length, left), scratch.step)
         # A long flight would ask about cells far behind the first event.
         for p in range(len(model.pairs)):
             length = min(length, time_through_cells(model, p, state.u, scratch.step.bound, FLIGHT_CELLS))
@@ -134,7 +135,7 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
         made, smallest = coupled_step(model, state, options, longest, scratch)
         if not made:
             return STEP_TOO_SMALL, False
-        leave = first_leave(model, state, options, smallest, scratch)
+        leave, code = first_leave(model, state, options, smallest, scratch)
     step = scratch.step
     length = step.span.length
     known, touch, contact = first_touch(model, cells, state, options, min(length, leave), scratch)
@@ -146,37 +147,37 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
     if flying:
         state.counts.flights += 1
         add_flight_sums(model, state, step, end)
-        keep_flight_rows(model, state, end, spacing, scratch, record)
+        keep_flight_rows(model, state, end, spacing, scratch.step, record)
     else:
         if not _accept_coupled(model, state, options, end, scratch):
             return UNEXPLAINED, False
-        keep_inner_rows(model, options, end, scratch, record)
+        keep_inner_rows(model, options, end, scratch.step, record)
         keep_row(state, record, state.clock.time, state.q, state.u, state.a)
     keep_passages(model, state, step, end, record)
     state.now.touched = contact
     event = contact >= 0 or leave <= length
     if event:
-        _note_end(model, state, contact, flying, scratch)
+        _note_end(state, contact, code, scratch.ended)
     return RUNNING, event
 
 
 @kernel
-def _note_end(model, state, contact, flying, scratch):
+def _note_end(state, contact, code, ended):
     """Remember what ended the step: `KINDS` times the contact (or bearing) that did, plus the kind of its monitor.
 
-    TOUCHED: it closed; BEARING: dry friction in the bearing of a coordinate holds or lets go.
+    TOUCHED: it closed; BEARING: dry friction in the bearing of a coordinate holds or lets go. `code`: of the monitor that
+    ended a coupled step.
     """
-    code = scratch.codes[0]
     if contact >= 0:
         what = KINDS * contact + TOUCHED
-    elif flying:
+    elif code == NONE_FIRED:
         what = BEARING
     elif code >= MONITORS * state.now.awake_contacts:
         what = KINDS * (code - MONITORS * state.now.awake_contacts) + BEARING
     else:
         what = KINDS * state.active[code // MONITORS] + code % MONITORS
-    scratch.ended.by[scratch.ended.number % RECENT] = what
-    scratch.ended.number += 1
+    ended.by[ended.number % RECENT] = what
+    ended.number += 1
 
 
 @kernel
@@ -237,7 +238,7 @@ def _loop(model, cells, state, options, until, scratch, record):
     """From step to step and event to event; see `advance`."""
     fill_inverse(model, state.grip, scratch.work.inverse)
     while True:
-        if not _room_left(record, len(scratch.closed.ids)):
+        if not _room_left(record, len(state.active)):
             return BUFFER_FULL
         before = _work_done(state)
         if state.now.event_waits == 1:
@@ -258,13 +259,6 @@ def _loop(model, cells, state, options, until, scratch, record):
         if not _is_finite(state):
             return NOT_FINITE
         state.now.event_waits = 1 if event else 0
-
-
-@inlined
-def scratch_by_reference(scratch):
-    """The scratch arrays as nested structs; what holds structs itself names them first."""
-    work = ContactWorkRef(LcpWorkRef(*scratch.work.lcp), *scratch.work[1:])
-    return ScratchRef(StepRef(*scratch.step), ClosedRef(*scratch.closed), ClosedRef(*scratch.rest), work, *scratch[4:])
 
 
 @entry

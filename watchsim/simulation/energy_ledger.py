@@ -9,7 +9,8 @@ from typing import Any
 from watchsim.simulation.advance import BEARING, KINDS, TOUCHED
 from watchsim.simulation.motion.coupled_motion import EXTENT, NORMAL, PARADOX, TANGENTIAL
 from watchsim.simulation.record.trajectory import Pair
-from watchsim.simulation.state import RECENT, Ended, State
+from watchsim.simulation.scratch import RECENT, Ended
+from watchsim.simulation.state import State
 
 LEAST_SHARE = 1e-6  # of the energy turned over: a larger residual is no rounding
 PER_TOLERANCE = 1e3  # times the tolerance per step, which the user asks for: a residual of that size was asked for

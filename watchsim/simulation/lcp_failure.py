@@ -12,7 +12,8 @@ from watchsim.dynamics.acceleration import LEVEL_ACCELERATION
 from watchsim.dynamics.impact import LEVEL_COMPRESSION, LEVEL_EXPANSION
 from watchsim.dynamics.lcp.lemke_pivoting import INEXACT, MAX_ITER, RAY
 from watchsim.simulation.record.contact_names import Pair
-from watchsim.simulation.state import Scratch, State
+from watchsim.simulation.scratch import Scratch
+from watchsim.simulation.state import State
 
 LEVELS = {LEVEL_ACCELERATION: "acceleration", LEVEL_COMPRESSION: "compression", LEVEL_EXPANSION: "expansion"}
 LEMKE_ENDS = {RAY: "ray", MAX_ITER: "too many pivots", INEXACT: "not a solution"}
@@ -34,7 +35,7 @@ def failure_of(state: State, scratch: Scratch, pairs: Sequence[Pair]) -> dict[st
     work = scratch.work
     m, elements, bearings = int(work.posed.contacts), int(work.posed.elements), int(work.posed.bearings)
     level = int(work.posed.level)
-    closed = scratch.rest if level == LEVEL_ACCELERATION else scratch.closed
+    closed = scratch.event.rest if level == LEVEL_ACCELERATION else scratch.event.closed
     rows, n = 2 * m + bearings, m + 2 * elements
     return {
         "level": LEVELS.get(level, "none"),

@@ -23,6 +23,7 @@ from watchsim.scene.oscillation import frequency
 from watchsim.scene.recording import Recording
 from watchsim.scene.scene import Scene
 from watchsim.simulation.advance import EVENTS_PER_CONTACT, ROWS_PER_STEP, advance
+from watchsim.simulation.buffers import Until, new_record
 from watchsim.simulation.energy_ledger import ledger_fails, touching, what_alternates
 from watchsim.simulation.interrupts import held_interrupts
 from watchsim.simulation.lcp_failure import failure_of
@@ -34,9 +35,10 @@ from watchsim.simulation.record.row_selection import Kept, tail_length
 from watchsim.simulation.record.saved_state import SavedState, save_state
 from watchsim.simulation.record.tally import Tally
 from watchsim.simulation.record.trajectory import EVENT_DTYPE, EventKind, Trajectory
+from watchsim.simulation.scratch import new_scratch
 from watchsim.simulation.start_clearance import clear_start
 from watchsim.simulation.start_clearance import warm_up as warm_up_start
-from watchsim.simulation.state import COUNT_NAMES, State, Until, new_record, new_scratch, new_state, room_for
+from watchsim.simulation.state import COUNT_NAMES, State, new_state, room_for
 from watchsim.simulation.state_arrays import arrays_of
 from watchsim.simulation.stops import Stop
 
@@ -147,7 +149,7 @@ class Run:
 
     def _learn(self) -> None:
         """Look up the cell that the loop has met."""
-        self.finder.learn(int(self.scratch.unknown.pair), self.scratch.at.copy())
+        self.finder.learn(int(self.scratch.asked.cell.pair), self.scratch.asked.at.copy())
 
     def to_the_end(self, duration: float, progress: Progress | None) -> Stop:
         """Run until the duration is over or something ends the run for good."""

@@ -20,8 +20,9 @@ from watchsim.mechanism.compile import compile_scene
 from watchsim.scene.recording import Recording
 from watchsim.scene.scene import Scene
 from watchsim.simulation.advance import EVENTS_PER_CONTACT, ROWS_PER_STEP
+from watchsim.simulation.buffers import Record, new_record
 from watchsim.simulation.runner import Run, new_until
-from watchsim.simulation.state import COUNT_NAMES, Record, State, new_record, room_for
+from watchsim.simulation.state import COUNT_NAMES, State, room_for
 from watchsim.simulation.state_arrays import arrays_of, copy_of_state, write_state
 from watchsim.simulation.stops import Stop
 

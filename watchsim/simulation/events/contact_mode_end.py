@@ -10,9 +10,10 @@ from watchsim.simulation.motion.coupled_motion import SLIP_SLACK, TANGENTIAL, mo
 from watchsim.simulation.motion.free_motion import turning_time
 from watchsim.simulation.motion.integrator import dense_value
 from watchsim.simulation.motion.root_bracket import LOOK_EVERY, MOST, RESOLUTION, is_slow, next_time
-from watchsim.simulation.state import MONITORS
+from watchsim.simulation.scratch import MONITORS
 
 SAMPLES = 8
+NONE_FIRED = -1  # in the place of a monitor's code
 
 
 @kernel
@@ -30,19 +31,20 @@ def _slack(model, state, options, code):
 @kernel
 def _evaluate(model, state, options, tau, scratch):
     """Evaluate the motion, and with it all monitors, at time tau of the step; returns the smallest."""
-    for i in range(len(scratch.y)):
-        scratch.y[i] = dense_value(scratch.step, i, tau)
-    # `motion` reads `scratch.y` and writes `scratch.dy`.
-    return motion(model, state, options, scratch.step.span.start + tau, scratch.y, scratch)
+    step, smooth = scratch.step, scratch.smooth
+    for i in range(len(smooth.y)):
+        smooth.y[i] = dense_value(step, i, tau)
+    return motion(model, state, options, step.span.start + tau, scratch.work, smooth)
 
 
 @kernel
 def _root(model, state, options, which, low, high, scratch):
     """Time at which one monitor, positive at low, passes zero; `high` where it is still positive then."""
+    monitors = scratch.smooth.monitors
     _evaluate(model, state, options, low, scratch)
-    f_low = scratch.monitors[which]
+    f_low = monitors[which]
     _evaluate(model, state, options, high, scratch)
-    f_high = scratch.monitors[which]
+    f_high = monitors[which]
     if not f_low > 0.0:
         return low
     if f_high > 0.0:
@@ -61,7 +63,7 @@ def _root(model, state, options, which, low, high, scratch):
         if high - low <= RESOLUTION * (scratch.step.span.start + high) or not low < middle < high:
             break
         _evaluate(model, state, options, middle, scratch)
-        f = scratch.monitors[which] - slack
+        f = monitors[which] - slack
         if f <= 0.0:
             high, f_high = middle, f
             if side == 1:
@@ -79,12 +81,12 @@ def _root(model, state, options, which, low, high, scratch):
 
 @kernel
 def first_leave(model, state, options, smallest, scratch):
-    """First time in the coupled step at which a monitor is no longer positive; infinity if all stay positive.
+    """(time, code of the monitor): when in the coupled step one is first no longer positive; infinity if all stay positive.
 
     `smallest`: the smallest monitor at the stages of the step.
     """
     if smallest > 0.0:
-        return math.inf
+        return math.inf, NONE_FIRED
     length = scratch.step.span.length
     before = 0.0
     for sample in range(SAMPLES + 1):
@@ -92,29 +94,25 @@ def first_leave(model, state, options, smallest, scratch):
         if _evaluate(model, state, options, tau, scratch) <= 0.0:
             return _earliest(model, state, options, before, tau, scratch)
         before = tau
-    return math.inf
+    return math.inf, NONE_FIRED
 
 
 @kernel
 def _earliest(model, state, options, before, tau, scratch):
-    """The earliest root among the monitors that are not positive at tau, all of them positive at `before`.
-
-    Its code is then the first in `scratch.codes`.
-    """
-    fired = 0
+    """The earliest root among the monitors that are not positive at tau, all of them positive at `before`, and its code."""
+    smooth, fired = scratch.smooth, 0
     for code in range(MONITORS * state.now.awake_contacts + len(model.coordinates)):
-        if scratch.monitors[code] <= 0.0:
-            scratch.codes[fired] = code
+        if smooth.monitors[code] <= 0.0:
+            smooth.fired[fired] = code
             fired += 1
     if tau == 0.0:
-        return 0.0
-    best, first = tau, scratch.codes[0]
+        return 0.0, smooth.fired[0]
+    best, first = tau, smooth.fired[0]
     for j in range(fired):
-        root = _root(model, state, options, scratch.codes[j], before, best, scratch)
+        root = _root(model, state, options, smooth.fired[j], before, best, scratch)
         if root < best:
-            best, first = root, scratch.codes[j]
-    scratch.codes[0] = first
-    return best
+            best, first = root, smooth.fired[j]
+    return best, first
 
 
 @kernel

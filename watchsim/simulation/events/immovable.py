@@ -27,9 +27,9 @@ def is_immovable(model, closed, i):
 
 
 @kernel
-def drop_immovable(model, state, m, scratch, record):
-    """Leave the immovable ones out of the m contacts in `scratch.closed`; returns how many are left."""
-    closed, kept = scratch.closed, 0
+def drop_immovable(model, state, m, event, record):
+    """Leave the immovable ones out of the m contacts in `event.closed`; returns how many are left."""
+    closed, kept = event.closed, 0
     for i in range(m):
         k = closed.ids[i]
         if is_immovable(model, closed, i):
@@ -38,6 +38,6 @@ def drop_immovable(model, state, m, scratch, record):
                 keep_event(state, record, OPEN_EVENT, k, -1, 0.0)
             continue
         if kept < i:
-            contact_kinematics(model, k, scratch.pose, kept, closed)
+            contact_kinematics(model, k, event.pose, kept, closed)
         kept += 1
     return kept

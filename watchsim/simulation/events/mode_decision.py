@@ -24,21 +24,20 @@ def standing_bearings(label, island, grip, out_dry):
 
 
 @kernel
-def decide(model, state, island, m, options, scratch, out_grip):
-    """Modes of those of the island's m closed contacts that are in I_N, into `scratch.trial`, and the grips of its bearings.
+def decide(model, state, island, m, options, work, event, out_grip):
+    """Modes of those of the island's m closed contacts that are in I_N, into `event.decided`, and the grips of its bearings.
 
-    The forces of the contacts are left in `scratch.work`. Returns (number of contacts in I_N, now in `scratch.rest`; status).
+    The forces of the contacts are left in `work`. Returns (number of contacts in I_N, now in `event.rest`; status).
     """
-    work = scratch.work
-    r = resting(model, m, scratch.closed, scratch.pose, scratch.zero, scratch.rest)
+    r = resting(model, m, event.closed, event.pose, event.zero, event.rest)
     forces(model, state.clock.time, state.q, state.u, work.h)
-    set_grips(model, state.u, scratch.label, island, options, out_grip)
+    set_grips(model, state.u, event.label, island, options, out_grip)
     add_drag(model, out_grip, work.h)
-    bearings = standing_bearings(scratch.label, island, out_grip, work.dry)
+    bearings = standing_bearings(event.label, island, out_grip, work.dry)
     if r == 0 and bearings == 0:
         fill_inverse(model, out_grip, work.inverse)
         return 0, 0
-    status = decide_modes(model, scratch.rest, r, bearings, options.speed_zero, work, out_grip, scratch.trial)
+    status = decide_modes(model, event.rest, r, bearings, options.speed_zero, work, out_grip, event.decided)
     count_problems(state, work)
     return r, status
 

@@ -18,9 +18,9 @@ SHARE = 0.5  # of the slack with which a mode ends: one that has come to its end
 
 
 @kernel
-def _weakest(model, state, m, options, scratch):
+def _weakest(model, state, m, options, work, rest):
     """(row of the contact that is furthest from holding, -1 if all hold; does it pull?)."""
-    rest, work, zero = scratch.rest, scratch.work, SHARE * state.now.lenience * options.force_zero
+    zero = SHARE * state.now.lenience * options.force_zero
     worst, row, pulls, largest = 0.0, -1, False, 0.0
     for i in range(m):
         largest = max(largest, work.force[2 * i])
@@ -37,15 +37,15 @@ def _weakest(model, state, m, options, scratch):
 
 
 @kernel
-def let_go(model, state, m, options, scratch, record):
-    """Forces of the m contacts in `scratch.rest`, without those that would pull; those that cannot stick slide.
+def let_go(model, state, m, options, work, event, record):
+    """Forces of the m contacts in `event.rest`, without those that would pull; those that cannot stick slide.
 
-    The forces are left in `scratch.work`. Returns (number of contacts in force, are their forces unique?).
+    The forces are left in `work`. Returns (number of contacts in force, are their forces unique?).
     """
-    rest, work = scratch.rest, scratch.work
+    rest = event.rest
     unique = solve_mode(model, rest, m, state.mode, work)
     for _ in range(2 * m):
-        i, pulls = _weakest(model, state, m, options, scratch)
+        i, pulls = _weakest(model, state, m, options, work, rest)
         if i < 0:
             break
         k = rest.ids[i]
@@ -55,7 +55,7 @@ def let_go(model, state, m, options, scratch, record):
             m -= 1
             for j in range(i, m):
                 rest.ids[j] = rest.ids[j + 1]
-            refresh(model, m, rest, scratch.pose)
+            refresh(model, m, rest, event.pose)
         else:
             state.mode[k] = FORWARD if work.force[2 * i + 1] < 0.0 else BACKWARD
         keep_change(state, record, k, old)

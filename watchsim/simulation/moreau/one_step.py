@@ -21,7 +21,10 @@ from watchsim.simulation.moreau.mobility import fill_mobility, push, rates_of
 from watchsim.simulation.moreau.percussion_laws import cone
 from watchsim.simulation.moreau.percussions import friction_cones, solve_percussions
 from watchsim.simulation.moreau.prox_relaxation import relax
+from watchsim.simulation.scratch import ask
+from watchsim.simulation.stops import Stop
 
+RUNNING, CELL_UNKNOWN, TOO_MANY_CONTACTS = int(Stop.RUNNING), int(Stop.CELL_UNKNOWN), int(Stop.TOO_MANY_CONTACTS)
 TAKEN_BACK = 0.2  # share of a penetration beyond `slop` taken back in a step
 YIELD = 1e-3  # share by which a contact's own push yields: of what is wedged in from two sides, both keep some
 
@@ -30,7 +33,7 @@ YIELD = 1e-3  # share by which a contact's own push yields: of what is wedged in
 def closed_at_middle(model, cells, state, options, h, work):
     """The contacts without a gap at the middle of the step, with kinematics, into `work.closed`.
 
-    Returns their number, -1 when a cell is unknown, -2 when there are too many.
+    Returns (Stop code: RUNNING, CELL_UNKNOWN or TOO_MANY_CONTACTS; their number).
     """
     for i in range(len(state.q)):
         work.q[i] = state.q[i] + 0.5 * h * state.u[i]
@@ -39,22 +42,21 @@ def closed_at_middle(model, cells, state, options, h, work):
     for p in range(len(model.pairs)):
         how, start, count = candidates(model, cells, p, work.q)
         if how == UNKNOWN:
-            work.unknown.pair = p
-            copy(work.q, work.at)
-            return -1
+            ask(work.asked, p, work.q)
+            return CELL_UNKNOWN, m
         for place_in_list in range(start, start + count):
             k = candidate(model, cells, how, place_in_list)
-            gap, _, _, _ = normal_gap(model, k, work.pose)
+            gap = normal_gap(model, k, work.pose).gap
             if gap > options.gap_close or (state.mode[k] == 0 and gap < -_believable(model, options, k, h, work)):
                 continue
             if extent_margin(model, k, work.pose) >= -options.extent:
                 if m == len(work.closed.ids):
-                    return -2
+                    return TOO_MANY_CONTACTS, m
                 contact_kinematics(model, k, work.pose, m, work.closed)
                 if is_immovable(model, work.closed, m):
                     continue
                 m += 1
-    return m
+    return RUNNING, m
 
 
 @kernel
@@ -96,10 +98,10 @@ def _free_velocity(model, state, h, work):
         work.free[i] = ((coordinate.mass - change) * work.u[i] + h * pull) * work.inverse[i]
     # Two coordinates at once would fill the matrix: what acts between them is taken at the middle as the last step foresees it.
     for i in range(len(work.u)):
-        work.at[i] = work.u[i] + 0.5 * h * state.a[i]
+        work.foreseen[i] = work.u[i] + 0.5 * h * state.a[i]
     for j in range(len(model.joints)):
         joint = model.joints[j]
-        work.joint[j] = joint_damping(joint, work.at)
+        work.joint[j] = joint_damping(joint, work.foreseen)
         torque = work.joint[j] - joint.stiffness * stretch(joint, work.q)
         work.free[joint.coordinate] += h * torque * work.inverse[joint.coordinate]
         work.free[joint.on] -= h * torque * work.inverse[joint.on]
@@ -155,7 +157,7 @@ def move(model, state, options, m, h, work, u):
         state.sums.drive += h * mean * work.force[i]
         state.sums.damping += h * work.damping[i] * mean * mean
         state.a[i] = (u[i] - work.u[i]) / h
-        work.free[i] = coordinate.stiffness * (state.q[i] - coordinate.rest) ** 2
+        work.wound[i] = coordinate.stiffness * (state.q[i] - coordinate.rest) ** 2
     for j in range(len(model.joints)):
         joint = model.joints[j]
         way = 0.5 * h * (work.u[joint.coordinate] + u[joint.coordinate] - work.u[joint.on] - u[joint.on])
@@ -168,7 +170,7 @@ def move(model, state, options, m, h, work, u):
     for i in range(len(u)):
         coordinate = model.coordinates[i]
         after = coordinate.stiffness * (state.q[i] - coordinate.rest) ** 2
-        state.sums.correction -= 0.5 * (after - work.free[i])
+        state.sums.correction -= 0.5 * (after - work.wound[i])
 
 
 @kernel

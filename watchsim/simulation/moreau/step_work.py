@@ -13,7 +13,8 @@ from watchsim.jit import by_reference
 from watchsim.model.named_fields import blank
 from watchsim.model.records import Model
 from watchsim.simulation.moreau.percussion_laws import Laws, laws
-from watchsim.simulation.state import UnknownCell, room_for
+from watchsim.simulation.scratch import Asked, asked_of
+from watchsim.simulation.state import room_for
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -36,12 +37,16 @@ class MoreauWork(NamedTuple):
 
     closed: Closed
     laws: Laws
+    asked: Asked
     memory: Array  # (contacts, 2)
     kept: KeptSteps
     pose: object
     q: Array  # at the middle of the step
     u: Array  # after the impacts, before the forces
     free: Array  # with the forces, without contacts
+    foreseen: Array  # velocities at the middle as the last step foresees them
+    start: Array  # coordinates at the start of the step
+    wound: Array  # by coordinate: twice the energy of its spring before positions are taken back
     force: Array  # drives and gravity at the middle
     damping: Array
     joint: Array  # torque of the damping between a carried body and its carrier
@@ -52,8 +57,6 @@ class MoreauWork(NamedTuple):
     more: Array
     restitution: Array
     dry: Integers  # coordinate of each bearing with dry friction
-    unknown: UnknownCell
-    at: Array
 
 
 MoreauWorkRef = by_reference(MoreauWork, __name__)
@@ -64,7 +67,10 @@ def moreau_work(model: Model) -> MoreauWork:
     n, room = len(model.coordinates), room_for(model)
     dry = np.flatnonzero(model.coordinates.coulomb > 0.0)
     rows = 2 * room + len(dry)
-    vectors = {name: np.zeros(n) for name in ("q", "u", "free", "force", "damping", "joint", "mass", "inverse", "change", "at")}
+    vectors = {
+        name: np.zeros(n)
+        for name in ("q", "u", "free", "force", "damping", "joint", "mass", "inverse", "change", "foreseen", "start", "wound")
+    }
     by_row = {name: np.zeros(rows) for name in ("rates", "more")}
     return MoreauWork(
         memory=np.zeros((len(model.contacts), 2)),
@@ -74,7 +80,7 @@ def moreau_work(model: Model) -> MoreauWork:
         laws=laws(room, len(dry)),
         restitution=np.zeros(room),
         dry=dry,
-        unknown=blank(UnknownCell),
+        asked=asked_of(n),
         **vectors,
         **by_row,
     )

@@ -9,6 +9,7 @@ from watchsim.contact.kinematics import ClosedRef
 from watchsim.dynamics.small_systems import copy
 from watchsim.jit import entry, inlined, kernel
 from watchsim.model.records import CellsRef, ModelRef
+from watchsim.simulation.buffers import RecordRef
 from watchsim.simulation.moreau.one_step import act, closed_at_middle, move
 from watchsim.simulation.moreau.percussion_laws import LawsRef
 from watchsim.simulation.moreau.percussions import stop_approaches
@@ -16,7 +17,8 @@ from watchsim.simulation.moreau.step_work import MoreauWorkRef
 from watchsim.simulation.motion.turning_points import sign
 from watchsim.simulation.options import OptionsRef
 from watchsim.simulation.record.write_buffers import keep_event, keep_row
-from watchsim.simulation.state import RecordRef, StateRef
+from watchsim.simulation.scratch import AskedRef
+from watchsim.simulation.state import StateRef
 from watchsim.simulation.stops import Stop
 
 SLICE, CELL_UNKNOWN, BUFFER_FULL = int(Stop.SLICE), int(Stop.CELL_UNKNOWN), int(Stop.BUFFER_FULL)
@@ -76,21 +78,21 @@ def _keep_of(model, state, h, spring, ends, record):
 @kernel
 def _step(model, cells, state, options, h, whole, work, record):
     """One step of length h, of which `whole` is the usual one; returns a Stop code."""
-    m = closed_at_middle(model, cells, state, options, h, work)
-    if m < 0:
-        return CELL_UNKNOWN if m == -1 else TOO_MANY_CONTACTS
+    code, m = closed_at_middle(model, cells, state, options, h, work)
+    if code != RUNNING:
+        return code
     jump = stop_approaches(model, state, options, m, work, record)
     if jump:
         keep_row(state, record, state.clock.time, state.q, state.u, state.a)
         keep_row(state, record, state.clock.time, state.q, work.u, state.a)
     act(model, state, m, h, work, state.u)
-    copy(state.q, work.at)
+    copy(state.q, work.start)
     move(model, state, options, m, h, work, state.u)
     for i in range(len(state.u)):
         if not math.isfinite(state.q[i] + state.u[i]):
             return NOT_FINITE
         # `_passages` looks from the start of the step to its end.
-        work.q[i], state.q[i] = state.q[i], work.at[i]
+        work.q[i], state.q[i] = state.q[i], work.start[i]
     _passages(model, state, h, work, work.q, state.u, record)
     copy(work.q, state.q)
     state.counts.steps += 1
@@ -116,7 +118,7 @@ def advance_fixed(model, cells, state, options, until, pace, work, record):
 @inlined
 def _by_reference(work):
     """The scratch arrays as a struct; what holds structs itself names them first."""
-    return MoreauWorkRef(ClosedRef(*work.closed), LawsRef(*work.laws), *work[2:])
+    return MoreauWorkRef(ClosedRef(*work.closed), LawsRef(*work.laws), AskedRef(*work.asked), *work[3:])
 
 
 @kernel

@@ -5,7 +5,7 @@ from __future__ import annotations
 from watchsim.jit import kernel
 from watchsim.simulation.motion.free_motion import acceleration, flow
 from watchsim.simulation.motion.integrator import dense_value
-from watchsim.simulation.state import FLIGHT
+from watchsim.simulation.scratch import FLIGHT
 
 
 @kernel

@@ -38,8 +38,8 @@ def project_positions(closed, m, both, work, out_q):
         work.scale[i] = _scale_of(work, 2 * i, IN_STEPS)
     solve_small(work.A, work.rhs, m, work.scale, work.order, work.x, IN_STEPS)
     for i in range(m):
-        work.more[2 * i], work.more[2 * i + 1] = work.x[i], 0.0
-    apply(closed, m, work.more, work.inverse, out_q)
+        work.correction[2 * i], work.correction[2 * i + 1] = work.x[i], 0.0
+    apply(closed, m, work.correction, work.inverse, out_q)
     return deepest
 
 
@@ -50,17 +50,17 @@ def project_velocities(closed, m, mode, independent, work, out_u):
     `independent`: IN_STEPS or AT_EVENTS.
     """
     find_correction(closed, m, mode, independent, work)
-    apply(closed, m, work.more, work.inverse, out_u)
+    apply(closed, m, work.correction, work.inverse, out_u)
 
 
 @kernel
 def find_correction(closed, m, mode, independent, work):
-    """The impulses of `project_velocities` into `work.more`; fills `work.G`."""
+    """The impulses of `project_velocities` into `work.correction`; fills `work.G`."""
     fill_delassus(closed, m, work)
     n = 0
     for i in range(m):
         state = mode[closed.ids[i]]
-        work.more[2 * i], work.more[2 * i + 1] = 0.0, 0.0
+        work.correction[2 * i], work.correction[2 * i + 1] = 0.0, 0.0
         if state != OPEN:
             n = _add_row(work, 2 * i, -closed.kin[i].gN_dot, n, independent)
         if state == STICK:
@@ -70,7 +70,7 @@ def find_correction(closed, m, mode, independent, work):
             work.A[i, j] = work.G[work.row[i], work.row[j]]
     solve_small(work.A, work.rhs, n, work.scale, work.order, work.x, independent)
     for i in range(n):
-        work.more[work.row[i]] = work.x[i]
+        work.correction[work.row[i]] = work.x[i]
 
 
 @kernel
@@ -78,7 +78,7 @@ def rate_left(closed, m, i, work):
     """Gap rate of contact i after the correction just found."""
     rate = closed.kin[i].gN_dot
     for row in range(2 * m):
-        rate += work.G[2 * i, row] * work.more[row]
+        rate += work.G[2 * i, row] * work.correction[row]
     return rate
 
 

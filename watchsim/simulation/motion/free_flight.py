@@ -11,7 +11,7 @@ from watchsim.jit import kernel
 from watchsim.simulation.motion.dense_output import coordinate_within, flight_acceleration
 from watchsim.simulation.motion.free_motion import acceleration_bound, quarter_period
 from watchsim.simulation.record.write_buffers import is_kept, keep_row
-from watchsim.simulation.state import FLIGHT
+from watchsim.simulation.scratch import FLIGHT
 
 FLIGHT_PHASE = 1.6  # rad of the fastest coordinate's own time scale: the longest flight
 
@@ -55,9 +55,9 @@ def flight_length(model, state, options):
 
 
 @kernel
-def begin_flight(model, state, length, scratch):
+def begin_flight(model, state, length, out_step):
     """Make the current step an exact flight of all awake coordinates."""
-    step = scratch.step
+    step = out_step
     step.span.kind = FLIGHT
     step.span.start, step.span.length = state.clock.time, length
     for i in range(len(model.coordinates)):
@@ -88,9 +88,8 @@ def add_flight_sums(model, state, step, end):
 
 
 @kernel
-def keep_flight_rows(model, state, end, spacing, scratch, record):
+def keep_flight_rows(model, state, end, spacing, step, record):
     """Rows of a flight, evenly spaced, the last one at its end; brings the state there."""
-    step = scratch.step
     n = len(model.coordinates)
     rows = 1 if spacing == math.inf or not is_kept(record, step.span.start, end) else max(1, math.ceil(end / spacing))
     for row in range(1, rows + 1):

@@ -12,7 +12,7 @@ from watchsim.jit import kernel
 from watchsim.simulation.motion.coupled_motion import engage, motion
 from watchsim.simulation.motion.dop853 import E3, E5, STAGES, A, C, D
 from watchsim.simulation.motion.step_path import bound_accelerations
-from watchsim.simulation.state import COUPLED, SUMS
+from watchsim.simulation.scratch import COUPLED, SUMS
 
 # Safety is smaller than usual: the motion of coupled bodies grows sharper from step to step, and repeating a step costs more
 # than shortening it.
@@ -23,17 +23,17 @@ SMALLEST = 1e-14  # shortest step, as a share of the longest allowed one
 @kernel
 def _stage(model, state, options, s, h, scratch):
     """Derivative of stage s into `stages[s]`; returns the smallest monitor."""
-    step = scratch.step
+    step, smooth = scratch.step, scratch.smooth
     width = len(step.y0)
     for i in range(width):
         total = 0.0
         for j in range(s):
             if A[s, j] != 0.0:
                 total += A[s, j] * step.stages[j, i]
-        scratch.y[i] = step.y0[i] + h * total
-    smallest = motion(model, state, options, step.span.start + C[s] * h, scratch.y, scratch)
+        smooth.y[i] = step.y0[i] + h * total
+    smallest = motion(model, state, options, step.span.start + C[s] * h, scratch.work, smooth)
     for i in range(width):
-        step.stages[s, i] = scratch.dy[i]
+        step.stages[s, i] = smooth.dy[i]
     return smallest
 
 
@@ -93,7 +93,7 @@ def coupled_step(model, state, options, longest, scratch):
         step.y0[i], step.y0[n + i] = state.q[i], state.u[i]
     for i in range(SUMS):
         step.y0[2 * n + i] = 0.0
-    engage(model, state, scratch)
+    engage(model, state, scratch.smooth)
     h = min(state.clock.step, longest)
     shrunk = False
     while True:
@@ -101,7 +101,7 @@ def coupled_step(model, state, options, longest, scratch):
         for s in range(STAGES + 1):
             smallest = min(smallest, _stage(model, state, options, s, h, scratch))
         for i in range(len(step.y0)):
-            step.y1[i] = scratch.y[i]
+            step.y1[i] = scratch.smooth.y[i]
         error = _error(model, options, h, step)
         factor = min(GROW, max(SHRINK, SAFETY * error**-0.125)) if error > 0.0 else GROW
         if error <= 1.0:

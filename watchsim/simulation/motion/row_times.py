@@ -48,9 +48,8 @@ def _pieces(model, options, end, step):
 
 
 @kernel
-def keep_inner_rows(model, options, end, scratch, record):
+def keep_inner_rows(model, options, end, step, record):
     """Append the rows needed within the first `end` seconds of the coupled step just made, but not the one at their end."""
-    step = scratch.step
     if end <= 0.0 or not is_kept(record, step.span.start, end):
         return
     n = len(model.coordinates)

@@ -15,7 +15,7 @@ from watchsim.contact.poses import place_body
 from watchsim.jit import kernel
 from watchsim.model.records import FREE
 from watchsim.simulation.motion.free_motion import flow
-from watchsim.simulation.state import FLIGHT
+from watchsim.simulation.scratch import FLIGHT
 
 DEGREE = 7
 # The continuous extension is y0 + sum of dense[t] x^a (1 - x)^b, with these exponents (a, b).
@@ -66,9 +66,9 @@ def _polynomial(step, i, tau):
 
 
 @kernel
-def body_on_path(model, state, b, tau, scratch):
-    """Bring body b's coordinates (in scratch.q, scratch.u) and pose to time tau of the step; u is exactly q'."""
-    step, part = scratch.step, b
+def body_on_path(model, state, step, b, tau, path):
+    """Bring body b's coordinates (in `path.q`, `path.u`) and pose to time tau of the step; u is exactly q'."""
+    part = b
     while part >= 0:  # the body, then its carrier
         body = model.bodies[part]
         part = body.carrier
@@ -77,9 +77,9 @@ def body_on_path(model, state, b, tau, scratch):
         for j in range(3 if body.motion == FREE else 1):
             i = body.first + j
             if state.awake[i] == 0:
-                scratch.q[i], scratch.u[i] = state.q[i], 0.0
+                path.q[i], path.u[i] = state.q[i], 0.0
             elif step.span.kind == FLIGHT:
-                scratch.q[i], scratch.u[i] = flow(model.coordinates[i], state.grip[i], step.q[i], step.u[i], tau)
+                path.q[i], path.u[i] = flow(model.coordinates[i], state.grip[i], step.q[i], step.u[i], tau)
             else:
-                scratch.q[i], scratch.u[i] = _polynomial(step, i, tau)
-    place_body(model, b, scratch.q, scratch.u, scratch.pose)
+                path.q[i], path.u[i] = _polynomial(step, i, tau)
+    place_body(model, b, path.q, path.u, path.pose)
