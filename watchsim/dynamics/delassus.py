@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from watchsim.contact.index_sets import STICK
 from watchsim.dynamics.lcp.lemke_pivoting import LcpWork, lcp_work
+from watchsim.dynamics.problem_kinds import Rung
 from watchsim.jit import by_reference, kernel
 from watchsim.model.named_fields import blank
 
@@ -25,8 +26,8 @@ class Posed:
     contacts: int
     elements: int
     bearings: int
-    level: int
-    lemke: int
+    level: int  # a Level
+    lemke: int  # an LcpOutcome
 
 
 class ContactWork(NamedTuple):
@@ -76,7 +77,6 @@ class ContactWork(NamedTuple):
 
 ContactWorkRef = by_reference(ContactWork, __name__)
 
-RUNGS = 6
 LARGEST = (1, 2, 4, 8, 16)  # unknowns of the problems counted together; one more place for larger ones
 
 
@@ -118,7 +118,7 @@ def contact_work(room: int, coordinates: int) -> ContactWork:
         row=np.zeros(side, np.int64),
         lcp=lcp_work(side),
         h=np.zeros(coordinates),
-        rungs=np.zeros(RUNGS, np.int64),
+        rungs=np.zeros(len(Rung), np.int64),
         sizes=np.zeros(len(LARGEST) + 1, np.int64),
         posed=blank(Posed),
     )

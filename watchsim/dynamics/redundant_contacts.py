@@ -7,12 +7,11 @@ friction cone, the smallest ones that do not.
 
 from __future__ import annotations
 
-from watchsim.dynamics.lcp.lemke_pivoting import OK, lemke_checked
+from watchsim.dynamics.lcp.lemke_pivoting import lemke_checked
+from watchsim.dynamics.lcp.outcome import LcpOutcome
 from watchsim.dynamics.small_systems import null_vectors
+from watchsim.dynamics.tolerances import DEPENDENT, LAW_ROUNDING, LAW_SLACK
 from watchsim.jit import kernel
-
-SLACK = 1e-9  # share of the largest force by which a law may be missed
-NO_GAIN = 1e-11  # what a free direction of length one does for a law by rounding alone
 
 
 @kernel
@@ -64,7 +63,7 @@ def _orthonormalize(vectors, count, n, weight):
                 for j in range(n):
                     vectors[v, j] -= share * vectors[w, j]
         square = _product(vectors[v], vectors[v], n, weight)
-        if square > 1e-20 * before:
+        if square > DEPENDENT * before:
             for j in range(n):
                 vectors[kept, j] = vectors[v, j] / square**0.5
             kept += 1
@@ -92,7 +91,7 @@ def _law(work, m, line, values):
 def _gain(work, m, line, vector):
     """What a free direction does for a law; none where it runs along the law's edge, or forces without bound would be taken."""
     gain = _law(work, m, line, vector)
-    return gain if abs(gain) > NO_GAIN else 0.0
+    return gain if abs(gain) > LAW_ROUNDING else 0.0
 
 
 @kernel
@@ -105,17 +104,17 @@ def _keep_laws(m, n, count, work):
     for line in range(laws):
         work.rhs[line] = _law(work, m, line, work.x)
         worst = min(worst, work.rhs[line])
-    if worst >= -SLACK * largest:
+    if worst >= -LAW_SLACK * largest:
         return
     for line in range(laws):
-        if work.rhs[line] >= -SLACK * largest:
+        if work.rhs[line] >= -LAW_SLACK * largest:
             work.rhs[line] = max(work.rhs[line], 0.0)
         for other in range(laws):
             total = 0.0
             for v in range(count):
                 total += _gain(work, m, line, vectors[v]) * _gain(work, m, other, vectors[v])
             work.A[line, other] = total
-    if lemke_checked(work.A, work.rhs, laws, work.lcp, work.dual) != OK:
+    if lemke_checked(work.A, work.rhs, laws, work.lcp, work.dual) != LcpOutcome.SOLVED:
         return  # no forces obey the laws: the mode has ended, and its monitors say so
     for v in range(count):
         share = 0.0

@@ -23,7 +23,8 @@ from watchsim.simulation.events.mode_recurrence import begin_instant, decide_onc
 from watchsim.simulation.events.time_of_impact import first_touch
 from watchsim.simulation.motion.contact_islands import place_contacts
 from watchsim.simulation.motion.coupled_motion import motion
-from watchsim.simulation.motion.drift_projection import IN_STEPS, project_positions, project_velocities
+from watchsim.simulation.motion.dense_output import dense_value
+from watchsim.simulation.motion.drift_projection import project_positions, project_velocities
 from watchsim.simulation.motion.free_flight import (
     FLIGHT_PHASE,
     add_flight_sums,
@@ -32,24 +33,19 @@ from watchsim.simulation.motion.free_flight import (
     flight_length,
     keep_flight_rows,
 )
-from watchsim.simulation.motion.integrator import coupled_step, dense_value
+from watchsim.simulation.motion.integrator import coupled_step
 from watchsim.simulation.motion.row_times import keep_inner_rows
 from watchsim.simulation.motion.turning_points import keep_passages
-from watchsim.simulation.options import FINEST_ROWS, OptionsRef
+from watchsim.simulation.options import OptionsRef
 from watchsim.simulation.record.write_buffers import keep_row
 from watchsim.simulation.scratch import MONITORS, RECENT, SUMS, scratch_by_reference
 from watchsim.simulation.state import StateRef
 from watchsim.simulation.stops import Stop
+from watchsim.simulation.tolerances import DEPENDENT_IN_STEPS, FINEST_ROWS, RATES_TURNED, SAME_INSTANT
 
-RUNNING, SLICE, CELL_UNKNOWN, BUFFER_FULL = int(Stop.RUNNING), int(Stop.SLICE), int(Stop.CELL_UNKNOWN), int(Stop.BUFFER_FULL)
-DURATION, STEP_TOO_SMALL, NOT_FINITE = int(Stop.DURATION), int(Stop.STEP_TOO_SMALL), int(Stop.NOT_FINITE)
-TOO_MANY_EVENTS, LAST_STEP = int(Stop.TOO_MANY_EVENTS), int(Stop.LAST_STEP)
-UNEXPLAINED = int(Stop.UNEXPLAINED)
 TOUCHED, BEARING, KINDS = MONITORS, MONITORS + 1, MONITORS + 2  # what ends a step, besides the monitors of a contact
-TURNS = 0.1  # times the gap rate that counts as zero: rates that change by less need not be found anew
 FLIGHT_CELLS = 128
 EVENTS_AT_ONCE = 2000
-INSTANT = 1e-3  # share of `accumulation_time` within which events count as happening at once
 ROWS_PER_STEP = math.ceil(FLIGHT_PHASE / FINEST_ROWS) + 8
 EVENTS_PER_CONTACT = 20
 
@@ -83,7 +79,7 @@ def _accept_coupled(model, state, options, end, scratch):
         if _turns_rates(model, state, options, m, closed):
             place(model, state.q, state.u, pose)
             refresh(model, m, closed, pose)
-        project_velocities(closed, m, state.mode, IN_STEPS, work, state.u)
+        project_velocities(closed, m, state.mode, DEPENDENT_IN_STEPS, work, state.u)
         first += m
     for i in range(n):
         state.a[i] = smooth.dy[n + i]
@@ -99,7 +95,7 @@ def _turns_rates(model, state, options, m, closed):
         furthest = max(furthest, abs(closed.kin[i].g))
     for i in range(len(state.u)):
         fastest = max(fastest, abs(state.u[i]) / model.coordinates[i].scale)
-    return furthest * fastest > TURNS * options.speed_zero
+    return furthest * fastest > RATES_TURNED * options.speed_zero
 
 
 @kernel
@@ -134,14 +130,14 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
         longest = min(left, options.max_step, next_knot(model, state.clock.time) - state.clock.time)
         made, smallest = coupled_step(model, state, options, longest, scratch)
         if not made:
-            return STEP_TOO_SMALL, False
+            return Stop.STEP_TOO_SMALL, False
         leave, code = first_leave(model, state, options, smallest, scratch)
     step = scratch.step
     length = step.span.length
     known, touch, contact = first_touch(model, cells, state, options, min(length, leave), scratch)
     if not known:
         state.clock.step = proposed
-        return CELL_UNKNOWN, False
+        return Stop.CELL_UNKNOWN, False
     end = min(length, touch, leave)
     state.clock.time = end_time if end == left else step.span.start + end
     if flying:
@@ -150,7 +146,7 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
         keep_flight_rows(model, state, end, spacing, scratch.step, record)
     else:
         if not _accept_coupled(model, state, options, end, scratch):
-            return UNEXPLAINED, False
+            return Stop.UNEXPLAINED, False
         keep_inner_rows(model, options, end, scratch.step, record)
         keep_row(state, record, state.clock.time, state.q, state.u, state.a)
     keep_passages(model, state, step, end, record)
@@ -158,7 +154,7 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
     event = contact >= 0 or leave <= length
     if event:
         _note_end(state, contact, code, scratch.ended)
-    return RUNNING, event
+    return Stop.RUNNING, event
 
 
 @kernel
@@ -192,29 +188,29 @@ def _reaches(model, state, options, end_time):
 @kernel
 def _settle(model, cells, state, options, scratch, record):
     """Handle the waiting event; counts events that hardly let time advance."""
-    if state.clock.time - state.clock.event > INSTANT * options.accumulation_time:
+    if state.clock.time - state.clock.event > SAME_INSTANT * options.accumulation_time:
         state.now.events, state.clock.event = 0, state.clock.time
         begin_instant(state)
     elif state.now.events > EVENTS_AT_ONCE:
-        return TOO_MANY_EVENTS
+        return Stop.TOO_MANY_EVENTS
     touched, impacts, lost = state.now.touched, state.counts.impacts, state.sums.impacts
     before = kinetic_energy(model, state.u)
     code = settle(model, cells, state, options, scratch, record)
-    if code != RUNNING:
+    if code != Stop.RUNNING:
         return code
     state.worst.kinetic_energy = max(state.worst.kinetic_energy, before)
     after = kinetic_energy(model, state.u) + (state.sums.impacts - lost)
     if not is_explained(model, options, before, after, state.worst.kinetic_energy):
-        return UNEXPLAINED
+        return Stop.UNEXPLAINED
     if state.counts.impacts > impacts:
         forget_decisions(state)
     elif touched < 0 and not decide_once(state):
-        return TOO_MANY_EVENTS
+        return Stop.TOO_MANY_EVENTS
     state.now.events += 1
     state.counts.instants += 1
     keep_passages(model, state, scratch.step, 0.0, record)
     keep_row(state, record, state.clock.time, state.q, state.u, state.a)
-    return RUNNING
+    return Stop.RUNNING
 
 
 @kernel
@@ -227,7 +223,7 @@ def _work_done(state):
 @kernel
 def _undone(code, state, before):
     """What is done again with the cell known counts once: work must not depend on what earlier runs have learnt."""
-    if code == CELL_UNKNOWN:
+    if code == Stop.CELL_UNKNOWN:
         counts = state.counts
         counts.steps, counts.rejected_steps, counts.evaluations, counts.gap_evaluations, counts.cells_looked_up = before
     return code
@@ -239,25 +235,25 @@ def _loop(model, cells, state, options, until, scratch, record):
     fill_inverse(model, state.grip, scratch.work.inverse)
     while True:
         if not _room_left(record, len(state.active)):
-            return BUFFER_FULL
+            return Stop.BUFFER_FULL
         before = _work_done(state)
         if state.now.event_waits == 1:
             code = _settle(model, cells, state, options, scratch, record)
-            if code != RUNNING:
+            if code != Stop.RUNNING:
                 return _undone(code, state, before)
             continue
         if state.clock.time >= until.end:
-            return DURATION
+            return Stop.DURATION
         if state.clock.time >= until.slice_end or until.steps <= 0.0:
-            return SLICE
+            return Stop.SLICE
         if until.may_cut == 0 and _reaches(model, state, options, until.end):
-            return LAST_STEP
+            return Stop.LAST_STEP
         until.steps -= 1.0
         code, event = _smooth_step(model, cells, state, options, until.end, scratch, record)
-        if code != RUNNING:
+        if code != Stop.RUNNING:
             return _undone(code, state, before)
         if not _is_finite(state):
-            return NOT_FINITE
+            return Stop.NOT_FINITE
         state.now.event_waits = 1 if event else 0
 
 

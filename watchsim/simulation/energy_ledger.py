@@ -11,9 +11,8 @@ from watchsim.simulation.motion.coupled_motion import EXTENT, NORMAL, PARADOX, T
 from watchsim.simulation.record.trajectory import Pair
 from watchsim.simulation.scratch import RECENT, Ended
 from watchsim.simulation.state import State
+from watchsim.simulation.tolerances import LEDGER_PER_TOLERANCE, LEDGER_SHARE
 
-LEAST_SHARE = 1e-6  # of the energy turned over: a larger residual is no rounding
-PER_TOLERANCE = 1e3  # times the tolerance per step, which the user asks for: a residual of that size was asked for
 MANY = 6  # different causes named
 
 _WORDS = {
@@ -28,7 +27,7 @@ _WORDS = {
 def ledger_fails(energy: dict[str, Any], held: float, tolerance: float) -> bool:
     """True if the residual of the ledger is more than rounding; `held` (J): the most energy that was ever in the motion."""
     turned_over = held + abs(energy["in_J"]) + abs(energy["stored_J"]) + sum(energy["dissipated"].values())
-    return bool(abs(energy["residual_J"]) > max(LEAST_SHARE, PER_TOLERANCE * tolerance) * turned_over)
+    return bool(abs(energy["residual_J"]) > max(LEDGER_SHARE, LEDGER_PER_TOLERANCE * tolerance) * turned_over)
 
 
 def what_alternates(ended: Ended, pairs: Sequence[Pair], bodies: Sequence[str]) -> str:

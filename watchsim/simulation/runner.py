@@ -41,6 +41,7 @@ from watchsim.simulation.start_clearance import warm_up as warm_up_start
 from watchsim.simulation.state import COUNT_NAMES, State, new_state, room_for
 from watchsim.simulation.state_arrays import arrays_of
 from watchsim.simulation.stops import Stop
+from watchsim.simulation.tolerances import FIRST_STEP
 
 Progress = Callable[[float, float], None]  # simulated time, duration
 
@@ -79,7 +80,7 @@ class Run:
         self.scene, self.compiled, self.tolerance = scene, compiled, tolerance
         self.options: Options = options_for(compiled.size, tolerance, natural_step(compiled, scene.duration))
         self.state: State = new_state(model, compiled.q, compiled.u)
-        self.state.clock.step = 1e-3 * self.options.max_step
+        self.state.clock.step = FIRST_STEP * self.options.max_step
         self.finder = CellFinder(model)
         self.scratch = new_scratch(model)
         self.pairs = pairs_of(compiled)

@@ -21,7 +21,7 @@ from watchsim.scene.recording import Recording
 from watchsim.scene.scene import Scene
 from watchsim.simulation import runner as running
 from watchsim.simulation.motion import dop853
-from watchsim.simulation.motion.integrator import dense_value
+from watchsim.simulation.motion.dense_output import dense_value
 from watchsim.simulation.options import options_for
 from watchsim.simulation.runner import Run, new_until
 from watchsim.simulation.simulate import simulate

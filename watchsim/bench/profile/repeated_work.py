@@ -9,8 +9,10 @@ from __future__ import annotations
 from watchsim import jit
 from watchsim.candidates.cell_lookup import candidates
 from watchsim.contact.poses import place
-from watchsim.dynamics.impact import LEVEL_EXPANSION, impact
+from watchsim.dynamics.impact import impact
 from watchsim.dynamics.lcp.lemke_pivoting import lemke_checked
+from watchsim.dynamics.lcp.outcome import LcpOutcome
+from watchsim.dynamics.problem_kinds import Level
 from watchsim.dynamics.small_systems import copy
 from watchsim.model.records import CellsRef, ModelRef
 from watchsim.simulation.advance import advance
@@ -24,15 +26,15 @@ from watchsim.simulation.motion.coupled_motion import engage, motion
 from watchsim.simulation.options import OptionsRef
 from watchsim.simulation.scratch import scratch_by_reference
 from watchsim.simulation.state import StateRef
+from watchsim.simulation.stops import Stop
 
 COMPRESSION, EXPANSION, MODES = 0, 1, 2
-NOTHING = 0  # level of no problem
 
 
 @jit.entry
 def moments_again(model, cells, state, own, moment, options, until, scratch, record, repeats):
     """What follows one moment, `repeats` times; returns the last cause to come back. `own`, `moment`: `StateArrays`."""
-    code = 0
+    code = Stop.RUNNING
     for _ in range(repeats):
         own.clock[:], own.q[:], own.u[:], own.a[:] = moment.clock, moment.q, moment.u, moment.a
         own.mode[:], own.grip[:], own.awake[:] = moment.mode, moment.grip, moment.awake
@@ -119,9 +121,9 @@ def pose(model, cells, state, options, scratch, record, which):
     """Leave one problem of the event that waits, of the first island that has it, in `scratch.work`; returns its size or 0."""
     m, c, s, o, w = ModelRef(*model), CellsRef(*cells), StateRef(*state), OptionsRef(*options), scratch_by_reference(scratch)
     r, posed = RecordRef(*record), w.work.posed
-    r.used.rows, r.used.events, posed.level = 0, 0, NOTHING
+    r.used.rows, r.used.events, posed.level = 0, 0, Level.NONE
     count, first = gathered(m, c, s, o, w), 0
-    while first < count and posed.level == NOTHING:
+    while first < count and posed.level == Level.NONE:
         island = island_of(m, w.event.label, w.event.listed[first])
         size = place_contacts(m, w.event.listed, first, w.event.upto[first], w.event.pose, w.event.closed)
         first += size
@@ -129,16 +131,16 @@ def pose(model, cells, state, options, scratch, record, which):
         if which == MODES:
             if hit:
                 collide(m, s, island, size, o, 0.0, w, r)
-                posed.level = NOTHING
+                posed.level = Level.NONE
             decide(m, s, island, size, o, w.work, w.event, w.impact.grip)
         elif hit:
             for i in range(size):
                 law = m.laws[m.contacts[w.event.closed.ids[i]].group]
                 w.impact.restitution[i] = law.restitution if which == EXPANSION else 0.0
             impact(m, w.event.closed, size, w.impact.restitution, 0.0, w.work, s.u)
-    if which == EXPANSION and posed.level != LEVEL_EXPANSION:
+    if which == EXPANSION and posed.level != Level.EXPANSION:
         return 0
-    return posed.contacts + 2 * posed.elements if posed.level != NOTHING else 0
+    return posed.contacts + 2 * posed.elements if posed.level != Level.NONE else 0
 
 
 @jit.entry
@@ -146,5 +148,5 @@ def problems_again(A, b, n, work, x, repeats):
     """One problem by Lemke's method."""
     total = 0
     for _ in range(repeats):
-        total += lemke_checked(A, b, n, work, x)
+        total += 1 if lemke_checked(A, b, n, work, x) == LcpOutcome.SOLVED else 0
     return total

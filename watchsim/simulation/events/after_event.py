@@ -16,30 +16,27 @@ from watchsim.dynamics.bearing_friction import add_drag, stop_held
 from watchsim.dynamics.delassus import apply, fill_inverse
 from watchsim.dynamics.small_systems import copy
 from watchsim.jit import kernel
+from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.events.closed_contacts import gather, refresh
 from watchsim.simulation.events.collision import approaching, collide
-from watchsim.simulation.events.handover import LEFT, hand_over
+from watchsim.simulation.events.handover import hand_over
 from watchsim.simulation.events.immovable import drop_immovable
 from watchsim.simulation.events.mode_decision import decide
 from watchsim.simulation.events.released_contacts import let_go
 from watchsim.simulation.events.zero_rates import note_pace, rounding_of, set_rate_zeros
 from watchsim.simulation.motion.contact_islands import island_of, label_islands, place_contacts, sort_by_island
 from watchsim.simulation.motion.drift_projection import (
-    AT_EVENTS,
-    IN_STEPS,
     find_correction,
     project_positions,
     project_velocities,
     rate_left,
 )
 from watchsim.simulation.motion.sleeping import add_terms, begin_terms, find_sleepers
-from watchsim.simulation.record.write_buffers import OPEN_EVENT, keep_change, keep_event
+from watchsim.simulation.record.write_buffers import keep_change, keep_event
 from watchsim.simulation.state import NO_CONTACT
 from watchsim.simulation.stops import Stop
+from watchsim.simulation.tolerances import CONTRADICTING_RATE, DEPENDENT_AT_EVENTS, DEPENDENT_IN_STEPS, LEFT_PRIMITIVE
 
-RUNNING, CELL_UNKNOWN = int(Stop.RUNNING), int(Stop.CELL_UNKNOWN)
-LCP_FAILED, TOO_MANY_CONTACTS, TOO_MANY_EVENTS = int(Stop.LCP_FAILED), int(Stop.TOO_MANY_CONTACTS), int(Stop.TOO_MANY_EVENTS)
-MANY_ROUNDINGS = 100.0  # a gap rate beyond so many times its rounding is not zero
 ROUNDS = 16  # impacts in a row at one instant
 
 
@@ -50,10 +47,10 @@ def settle(model, cells, state, options, scratch, record):
     event.pace[:] = 0.0
     place(model, state.q, state.u, event.pose)
     if not hand_over(model, cells, state, options, scratch, record):
-        return CELL_UNKNOWN
+        return Stop.CELL_UNKNOWN
     _release(model, state, options, event.pose, record)
     code, m = gather(model, cells, state, options, scratch)
-    if code != RUNNING:
+    if code != Stop.RUNNING:
         return code
     label_islands(model, event.listed, m, event.label)
     sort_by_island(model, event.label, m, event.listed, event.upto)
@@ -65,12 +62,12 @@ def settle(model, cells, state, options, scratch, record):
         if first < m and island_of(model, event.label, event.listed[first]) == island:
             last = event.upto[first]
         stop = _settle_island(model, state, island, (first, last), options, scratch, record)
-        if stop != RUNNING:
+        if stop != Stop.RUNNING:
             return stop
         first = last
     _go_on(model, state, _closed_of(state, m, event.listed, state.active), options, scratch, record)
     state.now.event_waits, state.now.touched = 0, NO_CONTACT
-    return RUNNING
+    return Stop.RUNNING
 
 
 @kernel
@@ -88,11 +85,11 @@ def _settle_island(model, state, island, span, options, scratch, record):
         place(model, state.q, state.u, event.pose)
         refresh(model, m, closed, event.pose)
         # Rates of the contacts in force have changed with the places, by the gaps times how fast bodies turn.
-        project_velocities(closed, m, state.mode, IN_STEPS, work, state.u)
+        project_velocities(closed, m, state.mode, DEPENDENT_IN_STEPS, work, state.u)
         place(model, state.q, state.u, event.pose)
         refresh(model, m, closed, event.pose)
     stop, r = _resolve(model, state, island, m, options, scratch, record)
-    if stop == RUNNING:
+    if stop == Stop.RUNNING:
         _take(state, m, r, event, record)
     return stop
 
@@ -144,7 +141,7 @@ def _correct(state, m, work, rest, out_trial):
     for i in range(m):
         k = rest.ids[i]
         out_trial[k] = STICK if state.mode[k] * rest.kin[i].gT_dot < 0.0 else state.mode[k]
-    project_velocities(rest, m, out_trial, AT_EVENTS, work, state.u)
+    project_velocities(rest, m, out_trial, DEPENDENT_AT_EVENTS, work, state.u)
 
 
 @kernel
@@ -175,24 +172,24 @@ def _resolve(model, state, island, m, options, scratch, record):
     for _ in range(ROUNDS):
         set_rate_zeros(event.closed, m, exactly, options, event.pace, event.zero)
         if jam > 0.0 or approaching(m, event.closed, event.zero):
-            if collide(model, state, island, m, options, jam, scratch, record) != 0:
-                return LCP_FAILED, 0
+            if not collide(model, state, island, m, options, jam, scratch, record):
+                return Stop.LCP_FAILED, 0
             jam = 0.0
             continue
-        r, status = decide(model, state, island, m, options, work, event, state.grip)
-        if status == 0:
+        r, solved = decide(model, state, island, m, options, work, event, state.grip)
+        if solved:
             if not exactly and _contradicts(r, options, work, event):
                 exactly = True
                 continue
             stop_held(event.label, island, state.grip, state.u)
-            return RUNNING, r
+            return Stop.RUNNING, r
         if not _slides(r, options.speed_zero, event.rest):
             state.counts.lcp_failures += 1
-            return LCP_FAILED, 0
+            return Stop.LCP_FAILED, 0
         _hold_gaps(model, state, r, options, work, event)
         refresh(model, m, event.closed, event.pose)
         jam = options.speed_zero
-    return TOO_MANY_EVENTS, 0
+    return Stop.TOO_MANY_EVENTS, 0
 
 
 @kernel
@@ -202,10 +199,10 @@ def _contradicts(r, options, work, event):
     Their rates then only seemed to be zero.
     """
     rest = event.rest
-    find_correction(rest, r, event.decided, AT_EVENTS, work)
+    find_correction(rest, r, event.decided, DEPENDENT_AT_EVENTS, work)
     for i in range(r):
         left = abs(rate_left(rest, r, i, work)) if event.decided[rest.ids[i]] != OPEN else 0.0
-        if left > MANY_ROUNDINGS * rounding_of(rest, i, options, event.pace):
+        if left > CONTRADICTING_RATE * rounding_of(rest, i, options, event.pace):
             return True
     return False
 
@@ -223,7 +220,7 @@ def _hold_gaps(model, state, r, options, work, event):
         event.trial[k] = STICK if holds else FORWARD
     for j in range(len(model.coordinates)):
         work.inverse[j] = 1.0 / model.coordinates[j].mass
-    project_velocities(rest, r, event.trial, AT_EVENTS, work, state.u)
+    project_velocities(rest, r, event.trial, DEPENDENT_AT_EVENTS, work, state.u)
     place(model, state.q, state.u, event.pose)
 
 
@@ -242,9 +239,9 @@ def _release(model, state, options, pose, record):
     kept, awake = 0, 0
     for j in range(state.now.awake_contacts + state.now.sleeping_contacts):
         k = state.active[j]
-        if extent_margin(model, k, pose) < -LEFT * options.extent:
+        if extent_margin(model, k, pose) < -LEFT_PRIMITIVE * options.extent:
             state.mode[k] = OPEN
-            keep_event(state, record, OPEN_EVENT, k, -1, 0.0)
+            keep_event(state, record, EventKind.OPEN, k, -1, 0.0)
             continue
         state.active[kept] = k
         kept += 1

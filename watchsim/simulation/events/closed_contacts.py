@@ -13,8 +13,6 @@ from watchsim.simulation.scratch import ask
 from watchsim.simulation.state import NO_CONTACT
 from watchsim.simulation.stops import Stop
 
-RUNNING, CELL_UNKNOWN, TOO_MANY_CONTACTS = int(Stop.RUNNING), int(Stop.CELL_UNKNOWN), int(Stop.TOO_MANY_CONTACTS)
-
 
 @kernel
 def insert(ids, count, k):
@@ -52,7 +50,7 @@ def gather(model, cells, state, options, scratch):
         how, start, count = candidates(model, cells, p, state.q)
         if how == UNKNOWN:
             ask(scratch.asked, p, state.q)
-            return CELL_UNKNOWN, m
+            return Stop.CELL_UNKNOWN, m
         if how == LISTED:
             state.counts.cells_looked_up += 1
         for place in range(start, start + count):
@@ -64,9 +62,9 @@ def gather(model, cells, state, options, scratch):
                 if continues_active(model, state, options, k, pose):
                     continue
                 if m == len(ids):
-                    return TOO_MANY_CONTACTS, m
+                    return Stop.TOO_MANY_CONTACTS, m
                 m = insert(ids, m, k)
-    return RUNNING, m
+    return Stop.RUNNING, m
 
 
 @kernel

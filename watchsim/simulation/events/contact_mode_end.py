@@ -6,11 +6,12 @@ import math
 
 from watchsim.contact.index_sets import STICK
 from watchsim.jit import kernel
-from watchsim.simulation.motion.coupled_motion import SLIP_SLACK, TANGENTIAL, motion
+from watchsim.simulation.motion.coupled_motion import TANGENTIAL, motion
+from watchsim.simulation.motion.dense_output import dense_value
 from watchsim.simulation.motion.free_motion import turning_time
-from watchsim.simulation.motion.integrator import dense_value
-from watchsim.simulation.motion.root_bracket import LOOK_EVERY, MOST, RESOLUTION, is_slow, next_time
+from watchsim.simulation.motion.root_bracket import is_open, narrowed, next_time, opened
 from watchsim.simulation.scratch import MONITORS
+from watchsim.simulation.tolerances import ROOT_RESOLUTION, SLIP_SLACK
 
 SAMPLES = 8
 NONE_FIRED = -1  # in the place of a monitor's code
@@ -54,29 +55,16 @@ def _root(model, state, options, which, low, high, scratch):
         slack = 0.0
     f_low -= slack
     f_high -= slack
-    side = 0
-    before = 2.0 * (high - low)
-    for number in range(MOST):
-        middle = next_time(low, f_low, high, f_high, is_slow(number, high - low, before))
-        if number % LOOK_EVERY == 0:
-            before = high - low
-        if high - low <= RESOLUTION * (scratch.step.span.start + high) or not low < middle < high:
-            break
-        _evaluate(model, state, options, middle, scratch)
+    bracket = opened(low, f_low, high, f_high)
+    tau = next_time(bracket)
+    while is_open(bracket, tau, ROOT_RESOLUTION * (scratch.step.span.start + bracket.high)):
+        _evaluate(model, state, options, tau, scratch)
         f = monitors[which] - slack
-        if f <= 0.0:
-            high, f_high = middle, f
-            if side == 1:
-                f_low *= 0.5
-            side = 1
-            if f == 0.0:
-                break
-        else:
-            low, f_low = middle, f
-            if side == -1:
-                f_high *= 0.5
-            side = -1
-    return high
+        bracket = narrowed(bracket, tau, f, f <= 0.0)
+        if f == 0.0:
+            break
+        tau = next_time(bracket)
+    return bracket.high
 
 
 @kernel

@@ -14,17 +14,12 @@ from watchsim.contact.index_sets import OPEN
 from watchsim.contact.kinematics import contact_kinematics
 from watchsim.contact.poses import place
 from watchsim.jit import kernel
-from watchsim.simulation.motion.drift_projection import IN_STEPS, project_velocities
+from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.motion.drift_projection import project_velocities
 from watchsim.simulation.record.write_buffers import keep_event
 from watchsim.simulation.scratch import ask
 from watchsim.simulation.state import NO_CONTACT
-
-HANDOVER_EVENT = 6
-LEFT = 1.5  # times the extent beyond the primitive's end: the contact has left it; touching ends at 1, the monitor at 2
-NEAR = 100.0  # times the extent: contact points this close are one
-FAR = 1e4  # times the extent: points further apart than that never are
-TURN = 1e-5  # rad. Large: shallow corners count as smooth; small: drawings that are tangent to a nanometre only get impacts
-SHARP = 1e-2  # rad: no joint that turns by more is smooth
+from watchsim.simulation.tolerances import DEPENDENT_IN_STEPS, FAR_POINTS, LEFT_PRIMITIVE, NEAR_POINTS, SHARP_TURN, SMOOTH_TURN
 
 
 @kernel
@@ -49,12 +44,12 @@ def room_to_differ(model, k, other, options, pose):
     sign = 1.0 if a == c else -1.0
     here, there = normal_gap(model, k, pose), normal_gap(model, other, pose)
     # One of them may be beyond its joint by some extents, and its normal turned by the curvature of that way.
-    turn = min(TURN + 4.0 * options.extent * max(abs(one.curvature), abs(two.curvature)), SHARP)
+    turn = min(SMOOTH_TURN + 4.0 * options.extent * max(abs(one.curvature), abs(two.curvature)), SHARP_TURN)
     turned = math.sqrt((here.nx - sign * there.nx) ** 2 + (here.ny - sign * there.ny) ** 2)
     x, y = contact_point(model, k, pose)
     X, Y = contact_point(model, other, pose)
     radius = max(model.primitives[one.a].radius, model.primitives[two.a].radius)
-    near = min(NEAR * options.extent + turn * radius, FAR * options.extent)
+    near = min(NEAR_POINTS * options.extent + turn * radius, FAR_POINTS * options.extent)
     return near - math.sqrt((x - X) ** 2 + (y - Y) ** 2), turn - turned
 
 
@@ -140,7 +135,7 @@ def hand_over(model, cells, state, options, scratch, record):
     moved = False
     for j in range(state.now.awake_contacts + state.now.sleeping_contacts):
         k = state.active[j]
-        if extent_margin(model, k, scratch.event.pose) >= -LEFT * options.extent:
+        if extent_margin(model, k, scratch.event.pose) >= -LEFT_PRIMITIVE * options.extent:
             continue
         known, successor = _successor(model, cells, state, options, k, scratch)
         if not known:
@@ -148,7 +143,7 @@ def hand_over(model, cells, state, options, scratch, record):
         if successor != NO_CONTACT:
             state.mode[successor], state.mode[k] = state.mode[k], OPEN
             state.active[j] = successor
-            keep_event(state, record, HANDOVER_EVENT, successor, -1, float(k))
+            keep_event(state, record, EventKind.HANDOVER, successor, -1, float(k))
             moved = True
     if moved:
         _follow(model, state, scratch.work, scratch.event)
@@ -161,5 +156,5 @@ def _follow(model, state, work, event):
     m = state.now.awake_contacts
     for i in range(m):
         contact_kinematics(model, state.active[i], event.pose, i, event.closed)
-    project_velocities(event.closed, m, state.mode, IN_STEPS, work, state.u)
+    project_velocities(event.closed, m, state.mode, DEPENDENT_IN_STEPS, work, state.u)
     place(model, state.q, state.u, event.pose)

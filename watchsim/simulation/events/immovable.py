@@ -9,12 +9,12 @@ from __future__ import annotations
 from watchsim.contact.index_sets import OPEN
 from watchsim.contact.kinematics import contact_kinematics
 from watchsim.jit import kernel
-from watchsim.simulation.record.write_buffers import OPEN_EVENT, keep_event
+from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.record.write_buffers import keep_event
+from watchsim.simulation.tolerances import IMMOVABLE
+
 
 # sine² of the angle between a face and the motion: drawings are rounded to a nanometre, which over a millimetre is a millionth
-IMMOVABLE = 1e-12
-
-
 @kernel
 def is_immovable(model, closed, i):
     """True if the gap of row i of `closed` changes by next to nothing however its bodies move."""
@@ -35,7 +35,7 @@ def drop_immovable(model, state, m, event, record):
         if is_immovable(model, closed, i):
             if state.mode[k] != OPEN:
                 state.mode[k] = OPEN
-                keep_event(state, record, OPEN_EVENT, k, -1, 0.0)
+                keep_event(state, record, EventKind.OPEN, k, -1, 0.0)
             continue
         if kept < i:
             contact_kinematics(model, k, event.pose, kept, closed)

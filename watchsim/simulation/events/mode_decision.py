@@ -6,8 +6,8 @@ from watchsim.contact.index_sets import STICK
 from watchsim.dynamics.acceleration import decide_modes
 from watchsim.dynamics.applied_forces import forces
 from watchsim.dynamics.bearing_friction import add_drag, set_grips
-from watchsim.dynamics.delassus import LARGEST, RUNGS, fill_inverse
-from watchsim.dynamics.solver_fallbacks import COPOSITIVE, DETOUR, ENUMERATED, INEXACT, LEMKE
+from watchsim.dynamics.delassus import LARGEST, fill_inverse
+from watchsim.dynamics.problem_kinds import Rung
 from watchsim.jit import kernel
 from watchsim.simulation.events.closed_contacts import resting
 
@@ -27,7 +27,7 @@ def standing_bearings(label, island, grip, out_dry):
 def decide(model, state, island, m, options, work, event, out_grip):
     """Modes of those of the island's m closed contacts that are in I_N, into `event.decided`, and the grips of its bearings.
 
-    The forces of the contacts are left in `work`. Returns (number of contacts in I_N, now in `event.rest`; status).
+    The forces of the contacts are left in `work`. Returns (number of contacts in I_N, now in `event.rest`; solved?).
     """
     r = resting(model, m, event.closed, event.pose, event.zero, event.rest)
     forces(model, state.clock.time, state.q, state.u, work.h)
@@ -36,22 +36,22 @@ def decide(model, state, island, m, options, work, event, out_grip):
     bearings = standing_bearings(event.label, island, out_grip, work.dry)
     if r == 0 and bearings == 0:
         fill_inverse(model, out_grip, work.inverse)
-        return 0, 0
-    status = decide_modes(model, event.rest, r, bearings, options.speed_zero, work, out_grip, event.decided)
+        return 0, True
+    solved = decide_modes(model, event.rest, r, bearings, options.speed_zero, work, out_grip, event.decided)
     count_problems(state, work)
-    return r, status
+    return r, solved
 
 
 @kernel
 def count_problems(state, work):
     """Add the problems solved since last asked to the state's counts."""
     counts, rungs = state.counts, work.rungs
-    counts.lcp_lemke += rungs[LEMKE]
-    counts.lcp_copositive += rungs[COPOSITIVE]
-    counts.lcp_detours += rungs[DETOUR]
-    counts.lcp_enumerated += rungs[ENUMERATED]
-    counts.lcp_inexact += rungs[INEXACT]
-    for rung in range(RUNGS):
+    counts.lcp_lemke += rungs[Rung.LEMKE]
+    counts.lcp_copositive += rungs[Rung.COPOSITIVE]
+    counts.lcp_detours += rungs[Rung.DETOUR]
+    counts.lcp_enumerated += rungs[Rung.ENUMERATED]
+    counts.lcp_inexact += rungs[Rung.INEXACT]
+    for rung in range(len(rungs)):
         counts.lcp += rungs[rung]
         rungs[rung] = 0
     for place in range(len(LARGEST) + 1):

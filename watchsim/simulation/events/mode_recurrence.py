@@ -9,9 +9,8 @@ finitely many such terms, so that every instant comes to an end (docs/theory/met
 from __future__ import annotations
 
 from watchsim.jit import kernel
+from watchsim.simulation.tolerances import LENIENCE_STEP, MOST_LENIENT
 
-FIRMER = 10.0  # how much more lenient the next terms are
-MOST = 1e7  # the most lenient terms. Large: late detachment there; small: the run ends where rounding is large
 BASE, MODULUS = 1000003, 2147483647
 
 
@@ -46,8 +45,8 @@ def decide_once(state):
     for j in range(known):
         if state.decided[j] == key:
             state.now.decisions = 0
-            state.now.lenience *= FIRMER
-            return state.now.lenience <= MOST
+            state.now.lenience *= LENIENCE_STEP
+            return state.now.lenience <= MOST_LENIENT
     if known < len(state.decided):
         state.decided[known] = key
         state.now.decisions = known + 1

@@ -16,14 +16,12 @@ from watchsim.contact.poses import point_of
 from watchsim.jit import kernel
 from watchsim.model.records import FIXED, FREE, LINE, PIVOT, SLIDE
 from watchsim.simulation.events.handover import is_beside_active, room_beside_active
-from watchsim.simulation.events.immovable import IMMOVABLE, is_immovable
+from watchsim.simulation.events.immovable import is_immovable
 from watchsim.simulation.motion.sleeping import is_at_rest
 from watchsim.simulation.motion.step_path import body_on_path
 from watchsim.simulation.scratch import ask
 from watchsim.simulation.state import NO_CONTACT
-
-SLOWEST = 1e-300  # m/s: a bound of a speed that is zero, to be divided by
-STRIDE = 0.25  # of the extent: steps in which a neighbour of a contact in force is watched until its turn comes
+from watchsim.simulation.tolerances import IMMOVABLE, NEIGHBOUR_STRIDE, SLOWEST_CLOSING, TIME_ROUNDING
 
 
 @kernel
@@ -89,7 +87,7 @@ def _gap_bounds(model, k, length, bounds_a, bounds_b, path):
 def _closing(velocity, bend, length, most):
     """Bound of a relative speed over `length` seconds from what it is now: bodies that travel together do not approach."""
     vx, vy = velocity
-    return max(min(most, math.sqrt(vx * vx + vy * vy) + bend * length), SLOWEST)
+    return max(min(most, math.sqrt(vx * vx + vy * vy) + bend * length), SLOWEST_CLOSING)
 
 
 @kernel
@@ -192,8 +190,8 @@ def _time_immovable(model, options, k, rate, bend, path):
     motion = model.bodies[b.body].motion
     if b.kind == LINE and motion in (FIXED, SLIDE):
         bend *= math.sqrt(IMMOVABLE)  # the line does not turn: bodies accelerate along it, too
-    steady = 0.25 * options.behind / max(-rate, SLOWEST)
-    return min(steady, math.sqrt(0.5 * options.behind / max(bend, SLOWEST)))
+    steady = 0.25 * options.behind / max(-rate, SLOWEST_CLOSING)
+    return min(steady, math.sqrt(0.5 * options.behind / max(bend, SLOWEST_CLOSING)))
 
 
 @kernel
@@ -241,7 +239,7 @@ def crossing(model, state, options, k, start, end, step, path):
             if way < 0.0:
                 wait = _time_immovable(model, options, k, rate, bend, path)
                 if wait > 0.0:
-                    tau += max(wait, 4e-16 * tau)
+                    tau += max(wait, TIME_ROUNDING * tau)
                     fresh = True
                     continue
                 soon = outside and clear and gap > 0.0 and rate * (end - tau) < -gap
@@ -249,7 +247,7 @@ def crossing(model, state, options, k, start, end, step, path):
             # It is the same contact at least until points or normals could have come apart.
             turning = swing + closing / (0.5 * distance)
             same = 0.5 * min(way / closing, turn / turning if turning > 0.0 else math.inf)
-            tau += max(same, STRIDE * options.extent / closing)
+            tau += max(same, NEIGHBOUR_STRIDE * options.extent / closing)
             fresh = True
         else:
             clear = clear and leaving if outside else clear
@@ -258,7 +256,7 @@ def crossing(model, state, options, k, start, end, step, path):
             # Beside its primitives the gap may pass through zero: which side it is on afterwards is found anew.
             fresh = beside > safe
             # Never less than the rounding of time itself.
-            tau += beside if fresh else max(safe, 4e-16 * tau)
+            tau += beside if fresh else max(safe, TIME_ROUNDING * tau)
         if stretch < end:
             tau = min(tau, stretch)
     return math.inf

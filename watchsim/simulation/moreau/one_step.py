@@ -23,10 +23,7 @@ from watchsim.simulation.moreau.percussions import friction_cones, solve_percuss
 from watchsim.simulation.moreau.prox_relaxation import relax
 from watchsim.simulation.scratch import ask
 from watchsim.simulation.stops import Stop
-
-RUNNING, CELL_UNKNOWN, TOO_MANY_CONTACTS = int(Stop.RUNNING), int(Stop.CELL_UNKNOWN), int(Stop.TOO_MANY_CONTACTS)
-TAKEN_BACK = 0.2  # share of a penetration beyond `slop` taken back in a step
-YIELD = 1e-3  # share by which a contact's own push yields: of what is wedged in from two sides, both keep some
+from watchsim.simulation.tolerances import TAKEN_BACK, YIELD
 
 
 @kernel
@@ -43,7 +40,7 @@ def closed_at_middle(model, cells, state, options, h, work):
         how, start, count = candidates(model, cells, p, work.q)
         if how == UNKNOWN:
             ask(work.asked, p, work.q)
-            return CELL_UNKNOWN, m
+            return Stop.CELL_UNKNOWN, m
         for place_in_list in range(start, start + count):
             k = candidate(model, cells, how, place_in_list)
             gap = normal_gap(model, k, work.pose).gap
@@ -51,12 +48,12 @@ def closed_at_middle(model, cells, state, options, h, work):
                 continue
             if extent_margin(model, k, work.pose) >= -options.extent:
                 if m == len(work.closed.ids):
-                    return TOO_MANY_CONTACTS, m
+                    return Stop.TOO_MANY_CONTACTS, m
                 contact_kinematics(model, k, work.pose, m, work.closed)
                 if is_immovable(model, work.closed, m):
                     continue
                 m += 1
-    return RUNNING, m
+    return Stop.RUNNING, m
 
 
 @kernel

@@ -10,6 +10,7 @@ from watchsim.dynamics.small_systems import copy
 from watchsim.jit import entry, inlined, kernel
 from watchsim.model.records import CellsRef, ModelRef
 from watchsim.simulation.buffers import RecordRef
+from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.moreau.one_step import act, closed_at_middle, move
 from watchsim.simulation.moreau.percussion_laws import LawsRef
 from watchsim.simulation.moreau.percussions import stop_approaches
@@ -20,13 +21,9 @@ from watchsim.simulation.record.write_buffers import keep_event, keep_row
 from watchsim.simulation.scratch import AskedRef
 from watchsim.simulation.state import StateRef
 from watchsim.simulation.stops import Stop
+from watchsim.simulation.tolerances import STEP_ROUNDING
 
-SLICE, CELL_UNKNOWN, BUFFER_FULL = int(Stop.SLICE), int(Stop.CELL_UNKNOWN), int(Stop.BUFFER_FULL)
-DURATION, NOT_FINITE, LAST_STEP = int(Stop.DURATION), int(Stop.NOT_FINITE), int(Stop.LAST_STEP)
-RUNNING, TOO_MANY_CONTACTS = int(Stop.RUNNING), int(Stop.TOO_MANY_CONTACTS)
-TURN_EVENT, CROSS_EVENT = 8, 9
 ROWS_PER_STEP, EVENTS_PER_CONTACT = 3, 2
-CLOSE = 1e-9  # share of a step that is rounding of time
 
 
 class Pace:
@@ -62,7 +59,7 @@ def _keep_of(model, state, h, spring, ends, record):
         if state.side_u[i] != 0:
             tau = h * fast / (fast - last) if fast * last < 0.0 else 0.0
             state.clock.time = start + tau
-            keep_event(state, record, TURN_EVENT, -1, body, before + 0.5 * fast * tau)
+            keep_event(state, record, EventKind.TURN, -1, body, before + 0.5 * fast * tau)
         state.side_u[i] = side
     way, side = before - rest, sign(after - rest)
     if side != 0 and side != state.side_q[i]:
@@ -70,7 +67,7 @@ def _keep_of(model, state, h, spring, ends, record):
             root = math.sqrt(max(0.0, fast * fast - 2.0 * bend * way))
             tau = min(h, max(0.0, -2.0 * way / (fast + math.copysign(root, fast))))
             state.clock.time = start + tau
-            keep_event(state, record, CROSS_EVENT, -1, body, fast + bend * tau)
+            keep_event(state, record, EventKind.CROSS, -1, body, fast + bend * tau)
         state.side_q[i] = side
     state.clock.time = start
 
@@ -79,7 +76,7 @@ def _keep_of(model, state, h, spring, ends, record):
 def _step(model, cells, state, options, h, whole, work, record):
     """One step of length h, of which `whole` is the usual one; returns a Stop code."""
     code, m = closed_at_middle(model, cells, state, options, h, work)
-    if code != RUNNING:
+    if code != Stop.RUNNING:
         return code
     jump = stop_approaches(model, state, options, m, work, record)
     if jump:
@@ -90,14 +87,14 @@ def _step(model, cells, state, options, h, whole, work, record):
     move(model, state, options, m, h, work, state.u)
     for i in range(len(state.u)):
         if not math.isfinite(state.q[i] + state.u[i]):
-            return NOT_FINITE
+            return Stop.NOT_FINITE
         # `_passages` looks from the start of the step to its end.
         work.q[i], state.q[i] = state.q[i], work.start[i]
     _passages(model, state, h, work, work.q, state.u, record)
     copy(work.q, state.q)
     state.counts.steps += 1
     state.clock.time = state.counts.steps * whole if h == whole else state.clock.time + h
-    return RUNNING
+    return Stop.RUNNING
 
 
 @entry
@@ -126,25 +123,25 @@ def _loop(model, cells, state, options, until, pace, work, record):
     while True:
         events = EVENTS_PER_CONTACT * len(work.closed.ids)
         if record.used.rows + ROWS_PER_STEP >= len(record.rows) or record.used.events + events >= len(record.events):
-            return BUFFER_FULL
+            return Stop.BUFFER_FULL
         if state.now.event_waits == 1:
             state.now.event_waits = 0
             keep_row(state, record, 0.0, state.q, state.u, state.a)
         left = until.end - state.clock.time
         if left <= 0.0:
-            return DURATION
+            return Stop.DURATION
         if state.clock.time >= until.slice_end and until.slice_end < until.end:
-            return SLICE
-        last = left <= pace.step * (1.0 + CLOSE)
+            return Stop.SLICE
+        last = left <= pace.step * (1.0 + STEP_ROUNDING)
         if last and until.may_cut == 0:
-            return LAST_STEP
-        h = pace.step if left >= pace.step * (1.0 - CLOSE) else left
+            return Stop.LAST_STEP
+        h = pace.step if left >= pace.step * (1.0 - STEP_ROUNDING) else left
         code = _step(model, cells, state, options, h, pace.step, work, record)
-        if code != RUNNING:
+        if code != Stop.RUNNING:
             return code
         if last:
             state.clock.time = until.end
         # Rows at least so often; the last one always.
-        if last or state.clock.time - work.kept.row_time >= pace.row * (1.0 - CLOSE):
+        if last or state.clock.time - work.kept.row_time >= pace.row * (1.0 - STEP_ROUNDING):
             work.kept.row_time = state.clock.time
             keep_row(state, record, state.clock.time, state.q, state.u, state.a)

@@ -18,8 +18,7 @@ from watchsim.dynamics.delassus import apply
 from watchsim.jit import kernel
 from watchsim.simulation.motion.contact_islands import place_contacts
 from watchsim.simulation.scratch import MONITORS
-
-SLIP_SLACK = 2.0  # times `speed_zero`: slips against their direction by less do not end a mode
+from watchsim.simulation.tolerances import SLIP_SLACK
 
 NORMAL, TANGENTIAL, EXTENT, PARADOX = range(MONITORS)
 

@@ -14,11 +14,9 @@ from watchsim.contact.index_sets import OPEN, STICK
 from watchsim.dynamics.delassus import apply, fill_delassus
 from watchsim.dynamics.small_systems import solve_small, unit_scale
 from watchsim.jit import kernel
+from watchsim.simulation.tolerances import DEPENDENT_IN_STEPS, SLIP_WEIGHT
 
 # sine² of the angle below which a direction counts as one of the others, or as immovable
-IN_STEPS = 1e-6  # what a step leaves. Large: drift piles up between nearly parallel faces; small: its rounding is magnified
-AT_EVENTS = 1e-2  # rates that count as zero. Large: sets are resolved by impulses without need; small: bodies are stopped
-SLIP_LAST = 0.5  # weight of slips against gap rates: where they compete, the gap rate is made exact
 
 
 @kernel
@@ -35,8 +33,8 @@ def project_positions(closed, m, both, work, out_q):
         for j in range(m):
             work.A[i, j] = work.G[2 * i, 2 * j]
         work.rhs[i] = -closed.kin[i].g if both or closed.kin[i].g < 0.0 else 0.0
-        work.scale[i] = _scale_of(work, 2 * i, IN_STEPS)
-    solve_small(work.A, work.rhs, m, work.scale, work.order, work.x, IN_STEPS)
+        work.scale[i] = _scale_of(work, 2 * i, DEPENDENT_IN_STEPS)
+    solve_small(work.A, work.rhs, m, work.scale, work.order, work.x, DEPENDENT_IN_STEPS)
     for i in range(m):
         work.correction[2 * i], work.correction[2 * i + 1] = work.x[i], 0.0
     apply(closed, m, work.correction, work.inverse, out_q)
@@ -47,7 +45,7 @@ def project_positions(closed, m, both, work, out_q):
 def project_velocities(closed, m, mode, independent, work, out_u):
     """Make the gap rates of the first m contacts in force, and the slip of the sticking ones, zero.
 
-    `independent`: IN_STEPS or AT_EVENTS.
+    `independent`: DEPENDENT_IN_STEPS or DEPENDENT_AT_EVENTS.
     """
     find_correction(closed, m, mode, independent, work)
     apply(closed, m, work.correction, work.inverse, out_u)
@@ -97,4 +95,4 @@ def _scale_of(work, row, independent):
     own = work.G[row, row]
     if own <= independent * easiest:
         return 0.0
-    return unit_scale(own) if row == normal else SLIP_LAST * unit_scale(own)
+    return unit_scale(own) if row == normal else SLIP_WEIGHT * unit_scale(own)

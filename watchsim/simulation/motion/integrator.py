@@ -13,11 +13,11 @@ from watchsim.simulation.motion.coupled_motion import engage, motion
 from watchsim.simulation.motion.dop853 import E3, E5, STAGES, A, C, D
 from watchsim.simulation.motion.step_path import bound_accelerations
 from watchsim.simulation.scratch import COUPLED, SUMS
+from watchsim.simulation.tolerances import SMALLEST_STEP
 
 # Safety is smaller than usual: the motion of coupled bodies grows sharper from step to step, and repeating a step costs more
 # than shortening it.
 SAFETY, SHRINK, GROW = 0.78, 0.2, 6.0
-SMALLEST = 1e-14  # shortest step, as a share of the longest allowed one
 
 
 @kernel
@@ -106,7 +106,7 @@ def coupled_step(model, state, options, longest, scratch):
         factor = min(GROW, max(SHRINK, SAFETY * error**-0.125)) if error > 0.0 else GROW
         if error <= 1.0:
             break
-        if not h > SMALLEST * options.max_step:
+        if not h > SMALLEST_STEP * options.max_step:
             return False, smallest
         state.counts.rejected_steps += 1
         shrunk = True
@@ -120,14 +120,3 @@ def coupled_step(model, state, options, longest, scratch):
     bound_accelerations(step, n)
     state.counts.steps += 1
     return True, smallest
-
-
-@kernel
-def dense_value(step, i, tau):
-    """Component i of y at time tau after the start of a coupled step."""
-    x = tau / step.span.length
-    w = 1.0 - x
-    d = step.dense
-    return step.y0[i] + x * (
-        d[0, i] + w * (d[1, i] + x * (d[2, i] + w * (d[3, i] + x * (d[4, i] + w * (d[5, i] + x * d[6, i])))))
-    )

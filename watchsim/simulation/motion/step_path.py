@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from watchsim.contact.poses import place_body
 from watchsim.jit import kernel
 from watchsim.model.records import FREE
+from watchsim.simulation.motion.dense_output import dense
 from watchsim.simulation.motion.free_motion import flow
 from watchsim.simulation.scratch import FLIGHT
 
@@ -51,21 +52,6 @@ def bound_accelerations(step, n):
 
 
 @kernel
-def _polynomial(step, i, tau):
-    """Coordinate i of a coupled step and its derivative at time tau."""
-    h, d = step.span.length, step.dense
-    x = tau / h
-    w = 1.0 - x
-    value, slope = d[5, i] + x * d[6, i], d[6, i]
-    value, slope = d[4, i] + w * value, w * slope - value
-    value, slope = d[3, i] + x * value, x * slope + value
-    value, slope = d[2, i] + w * value, w * slope - value
-    value, slope = d[1, i] + x * value, x * slope + value
-    value, slope = d[0, i] + w * value, w * slope - value
-    return step.y0[i] + x * value, (x * slope + value) / h
-
-
-@kernel
 def body_on_path(model, state, step, b, tau, path):
     """Bring body b's coordinates (in `path.q`, `path.u`) and pose to time tau of the step; u is exactly q'."""
     part = b
@@ -81,5 +67,5 @@ def body_on_path(model, state, step, b, tau, path):
             elif step.span.kind == FLIGHT:
                 path.q[i], path.u[i] = flow(model.coordinates[i], state.grip[i], step.q[i], step.u[i], tau)
             else:
-                path.q[i], path.u[i] = _polynomial(step, i, tau)
+                path.q[i], path.u[i] = dense(step, i, tau)
     place_body(model, b, path.q, path.u, path.pose)

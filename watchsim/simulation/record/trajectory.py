@@ -22,10 +22,9 @@ from watchsim.simulation.record.body_frames import frames
 from watchsim.simulation.record.contact_names import Pair as Pair
 from watchsim.simulation.record.saved_state import SavedState
 from watchsim.simulation.stops import Stop
+from watchsim.simulation.tolerances import ROW_NOISE
 
 Array = NDArray[np.float64]
-
-NOISE = 0.5  # tolerances: by so much positions at rows may be off, each for itself
 
 
 @dataclass(frozen=True)
@@ -92,7 +91,7 @@ class Trajectory:
     @cached_property
     def _noise(self) -> Array:
         """(n,): how exact each coordinate is at its rows."""
-        return NOISE * self.tolerance * np.max(np.abs(self.q), axis=0, initial=0.0)
+        return ROW_NOISE * self.tolerance * np.max(np.abs(self.q), axis=0, initial=0.0)
 
     def at(self, t: float) -> tuple[Array, Array]:
         """q and u at time `t` (after the impact where one happens at `t`).

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from watchsim.contact.index_sets import OPEN, STICK
 from watchsim.jit import kernel
-
-CLOSE_EVENT, OPEN_EVENT, STICK_EVENT, SLIDE_EVENT = 2, 3, 4, 5
+from watchsim.simulation.event_kinds import EventKind
 
 
 @kernel
@@ -51,10 +50,10 @@ def keep_change(state, record, k, old):
     if new == old:
         return
     if old == OPEN:
-        keep_event(state, record, CLOSE_EVENT, k, -1, float(new))
+        keep_event(state, record, EventKind.CLOSE, k, -1, float(new))
     elif new == OPEN:
-        keep_event(state, record, OPEN_EVENT, k, -1, 0.0)
+        keep_event(state, record, EventKind.OPEN, k, -1, 0.0)
     elif new == STICK:
-        keep_event(state, record, STICK_EVENT, k, -1, 0.0)
+        keep_event(state, record, EventKind.STICK, k, -1, 0.0)
     else:
-        keep_event(state, record, SLIDE_EVENT, k, -1, float(new))
+        keep_event(state, record, EventKind.SLIDE, k, -1, float(new))
