@@ -29,8 +29,8 @@ MU, EPS, BACK = 0.3, 0.8, 0.6
 def one_contact(law: str, eps: float, u: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
     """Total impulses N, T and rates after the impact; unit mass, no coupling, G = diag(1, 3) as for a uniform disc."""
     contact = BareContacts(np.array([1.0, 1.0 / 3.0]), np.eye(2), np.array([MU]), np.array([eps]), law, tangential=BACK)
-    status, after, impulses = contact.impact(np.array(u))
-    if status != 0:
+    solved, after, impulses = contact.impact(np.array(u))
+    if not solved:
         raise SystemExit(f"{law}: the impact at {u} was not solved")
     return impulses, after
 

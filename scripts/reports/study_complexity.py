@@ -32,7 +32,6 @@ from watchsim.simulation.record.saved_state import SavedState
 from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.simulation.runner import Run
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.state import N_GAPS
 from watchsim.simulation.stops import Stop
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -173,7 +172,7 @@ def measure(scene: Scene, whole_turn: bool) -> Row:
         brutes = [loop_time(scene, False) for _ in range(3)]
         brute = min(spent for _, spent, _ in brutes)
         assert events.tobytes() == events_of(brutes[0][2]).tobytes()
-    gaps = int(loop_time(scene, True)[2].state.counts[N_GAPS])
+    gaps = int(loop_time(scene, True)[2].state.counts.gap_evaluations)
     return Row(len(model.contacts), len(model.near), setup, learning, known, turn, brute, len(events), gaps)
 
 

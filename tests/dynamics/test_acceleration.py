@@ -44,7 +44,7 @@ class Outcome:
         work.h[:] = h
         self.grip = np.zeros(n, np.int8)
         self.gaps = closed.kin.g[:m].copy()
-        self.status = _decide(model, closed, m, 0, SLOW, work, self.grip, self.mode)
+        self.solved = _decide(model, closed, m, 0, SLOW, work, self.grip, self.mode)
         self.force, self.a = work.force[: 2 * m].copy(), np.zeros(n)
         _accelerate(closed, m, work, self.a)
         # The equality system of the decided mode has the same answer as the complementarity problem that chose it.
@@ -71,7 +71,7 @@ def on_incline(mu: float, slope: float, v: float, spin: float, push: float = 0.0
     compiled, k = disc_on_plane(mu)
     h = [M * G * math.sin(slope), -M * G * math.cos(slope) + push, 0.0]
     out = Outcome(compiled, [k], (0.0, R, 0.3), (v, 0.0, spin), h)
-    assert out.status == 0
+    assert out.solved
     assert out.gaps == pytest.approx([0.0], abs=1e-16)
     assert out.again == pytest.approx(out.a, abs=1e-12 * G)
     out.mode = out.mode[k : k + 1]
@@ -154,7 +154,7 @@ def test_one_rotor_on_a_stop(mu: float, height: float) -> None:
     """One coordinate, up to two forces: det G = 0. Pressed on it stays, pulled off it leaves; either acceleration is unique."""
     compiled, ids = rotor_on_stop((1.0, height), mu)
     pressed = Outcome(compiled, ids, [0.0], [0.0], [-2.0])
-    assert pressed.status == 0
+    assert pressed.solved
     assert pressed.mode[ids[0]] == STICK if mu > 0.0 and height != 0.0 else pressed.mode[ids[0]] != OPEN
     assert pressed.a == pytest.approx([0.0], abs=1e-13)
     assert pressed.again == pytest.approx([0.0], abs=1e-13)
@@ -182,7 +182,7 @@ def test_a_block_on_four_redundant_corners_stays() -> None:
     for slope, stays in ((0.9 * math.atan(mu), True), (1.1 * math.atan(mu), False)):
         h = [M * G * math.sin(slope), -M * G * math.cos(slope), 0.0]
         out = Outcome(compiled, ids, (0.0, s, 0.0), (0.0, 0.0, 0.0), h)
-        assert out.status == 0
+        assert out.solved
         a = 0.0 if stays else G * (math.sin(slope) - mu * math.cos(slope))
         assert out.a == pytest.approx([a, 0.0, 0.0], abs=1e-11 * G)
         assert out.again == pytest.approx([a, 0.0, 0.0], abs=1e-11 * G)

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from naive.lcp_oracle import residual, solutions
 
-from watchsim.dynamics.lcp.lemke_pivoting import OK, RAY, enumerate_lcp, lcp_work, lemke, solve_lcp
+from watchsim.dynamics.lcp.lemke_pivoting import enumerate_lcp, lcp_work, lemke, solve_lcp
+from watchsim.dynamics.lcp.outcome import LcpOutcome
 
 SIZE = 12
 WORK = lcp_work(SIZE)
@@ -81,7 +82,7 @@ def test_solvable_families_are_solved(family: Callable[..., Problem]) -> None:
     for _ in range(1500):
         A, b = family(rng, rng.integers(1, SIZE + 1))
         status, x = run(A, b)
-        assert status == OK
+        assert status == LcpOutcome.SOLVED
         assert residual(A, b, x) < 1e-12
         assert np.all(x >= 0.0)
 
@@ -92,7 +93,7 @@ def test_lemke_alone_suffices_where_theory_promises(family: Callable[..., Proble
     for _ in range(500):
         A, b = family(rng, rng.integers(1, 9))
         status, x = run(A, b, lemke)
-        assert status == OK
+        assert status == LcpOutcome.SOLVED
         assert residual(A, b, x) < 1e-12
 
 
@@ -103,7 +104,7 @@ def test_the_only_solution_of_a_p_matrix(family: Callable[..., Problem]) -> None
         A, b = family(rng, rng.integers(1, 5))
         truth = solutions(A, b)
         status, x = run(A, b)
-        assert status == OK
+        assert status == LcpOutcome.SOLVED
         np.testing.assert_allclose(x, truth[0], rtol=1e-10, atol=1e-12)
         for other in truth[1:]:  # other bases of the same degenerate solution
             np.testing.assert_allclose(other, truth[0], rtol=1e-9, atol=1e-9)
@@ -117,7 +118,7 @@ def test_finds_a_solution_exactly_when_there_is_one(family: Callable[..., Proble
         A, b = family(rng, rng.integers(1, 5))
         truth = solutions(A, b)
         status, x = run(A, b)
-        assert (status == OK) == bool(truth)
+        assert (status == LcpOutcome.SOLVED) == bool(truth)
         if truth:
             assert min(np.abs(x - other).max() for other in truth) < 1e-7 * max(1.0, x.max())
         unsolvable += not truth
@@ -136,7 +137,7 @@ def test_units_do_not_matter(family: Callable[..., Problem]) -> None:
         plain, _ = run(A, b)
         status, x = run(row[:, None] * A * column, row * b * load)
         assert status == plain
-        if status == OK:
+        if status == LcpOutcome.SOLVED:
             assert residual(A, b, x * column / load) < 1e-11
 
 
@@ -146,19 +147,19 @@ def test_enumeration_agrees_with_the_oracle(family: Callable[..., Problem]) -> N
     for _ in range(150):
         A, b = family(rng, rng.integers(1, 6))
         status, x = run(A, b, enumerate_lcp)
-        assert (status == OK) == bool(solutions(A, b))
-        assert status != OK or residual(A, b, x) < 1e-9
+        assert (status == LcpOutcome.SOLVED) == bool(solutions(A, b))
+        assert status != LcpOutcome.SOLVED or residual(A, b, x) < 1e-9
 
 
 def test_nothing_to_do_gives_exact_zeros() -> None:
     status, x = run(-np.eye(3), np.array([0.0, 2.0, 1e-300]))
-    assert status == OK
+    assert status == LcpOutcome.SOLVED
     assert list(x) == [0.0, 0.0, 0.0]
 
 
 def test_infeasible_ends_in_a_ray_with_zeros() -> None:
     status, x = run(np.array([[0.0, -1.0], [-1.0, 0.0]]), np.array([-1.0, 1.0]))
-    assert status == RAY
+    assert status == LcpOutcome.RAY
     assert list(x) == [0.0, 0.0]
 
 
@@ -168,7 +169,7 @@ def test_enumeration_rescues_what_lemke_loses() -> None:
     rescued = 0
     for _ in range(500):
         A, b = anything(rng, 5)
-        if run(A, b, lemke)[0] != OK and run(A, b)[0] == OK:
+        if run(A, b, lemke)[0] != LcpOutcome.SOLVED and run(A, b)[0] == LcpOutcome.SOLVED:
             assert residual(A, b, run(A, b)[1]) < 1e-9
             rescued += 1
     assert rescued > 10
@@ -177,12 +178,12 @@ def test_enumeration_rescues_what_lemke_loses() -> None:
 def test_one_contact_by_hand() -> None:
     """G = 4 kg^-1, approach 2 m/s: impulse 0.5 N·s."""
     status, x = run(np.array([[4.0]]), np.array([-2.0]))
-    assert status == OK
+    assert status == LcpOutcome.SOLVED
     assert x[0] == 0.5
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf])
 def test_what_is_not_a_number_is_refused(bad: float) -> None:
     with np.errstate(invalid="ignore"):
-        assert run(np.array([[1.0, 0.0], [0.0, 1.0]]), np.array([bad, -1.0]))[0] != OK
-        assert run(np.array([[bad, 0.0], [0.0, 1.0]]), np.array([-1.0, -1.0]))[0] != OK
+        assert run(np.array([[1.0, 0.0], [0.0, 1.0]]), np.array([bad, -1.0]))[0] != LcpOutcome.SOLVED
+        assert run(np.array([[bad, 0.0], [0.0, 1.0]]), np.array([-1.0, -1.0]))[0] != LcpOutcome.SOLVED

@@ -11,12 +11,13 @@ import numpy as np
 
 SCRIPT = """
 from watchsim.dynamics import acceleration, impact
-from watchsim.dynamics.lcp.lemke_pivoting import RAY
+from watchsim.dynamics.lcp.outcome import LcpOutcome
+from watchsim.dynamics.problem_kinds import Rung
 
 def unsolvable(work, m, elements):
-    work.note[4] = RAY
-    work.rungs[5] += 1
-    return RAY, 5
+    work.posed.lemke = LcpOutcome.RAY
+    work.rungs[Rung.FAILED] += 1
+    return Rung.FAILED
 
 impact.solve_contacts = acceleration.solve_contacts = unsolvable
 from watchsim.cli import main

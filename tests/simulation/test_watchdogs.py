@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,20 +15,22 @@ from moving_scenes import box, circle, ground, profile, touching
 from watchsim import jit
 from watchsim.jit import callable_kernel
 from watchsim.mechanism.compile import compile_scene
+from watchsim.model.named_fields import blank
 from watchsim.scene.body import Body
 from watchsim.scene.scene import Scene
 from watchsim.simulation.advance import BEARING, KINDS, TOUCHED
 from watchsim.simulation.energy_ledger import ledger_fails, what_alternates
 from watchsim.simulation.events.impulse_check import is_explained
-from watchsim.simulation.events.mode_recurrence import FIRMER, begin_instant, decide_once, forget_decisions
-from watchsim.simulation.events.mode_recurrence import MOST as MOST_LENIENT
+from watchsim.simulation.events.mode_recurrence import begin_instant, decide_once, forget_decisions
 from watchsim.simulation.motion.coupled_motion import NORMAL
-from watchsim.simulation.motion.root_bracket import LOOK_EVERY, MOST, is_slow, next_time
+from watchsim.simulation.motion.root_bracket import MOST, is_open, narrowed, next_time, opened
 from watchsim.simulation.options import options_for
 from watchsim.simulation.runner import pairs_of
+from watchsim.simulation.scratch import Ended
 from watchsim.simulation.simulate import simulate
-from watchsim.simulation.state import RECENT, new_state
+from watchsim.simulation.state import new_state
 from watchsim.simulation.stops import Stop
+from watchsim.simulation.tolerances import LENIENCE_STEP, MOST_LENIENT
 
 ROOT = Path(jit.__file__).resolve().parents[1]
 SABOTAGE = """
@@ -87,51 +89,44 @@ def test_no_set_of_modes_is_decided_twice_on_the_same_terms() -> None:
     once, forget, begin = (callable_kernel(kernel) for kernel in (decide_once, forget_decisions, begin_instant))
     seen: list[tuple[int, float]] = []
     for turn in range(1000):
-        state.numbers[0] = turn % 2
+        state.now.awake_contacts = turn % 2
         state.mode[0] = 1 + turn % 2
         if not once(state):
             break
-        terms = (turn % 2, float(state.lenience[0]))
+        terms = (turn % 2, float(state.now.lenience))
         seen.append(terms)
-    assert state.lenience[0] > MOST_LENIENT
+    assert state.now.lenience > MOST_LENIENT
     assert len(seen) < 40
-    assert {lenience for _, lenience in seen} == {FIRMER**power for power in range(8)}
+    assert {lenience for _, lenience in seen} == {LENIENCE_STEP**power for power in range(8)}
     begin(state)
-    assert state.lenience[0] == 1.0
+    assert state.now.lenience == 1.0
     assert once(state)
     forget(state)
     assert once(state)  # after an impact the same modes may come again
-    assert state.lenience[0] == 1.0
+    assert state.now.lenience == 1.0
 
 
 def test_what_alternates_is_named_with_bodies_and_edges() -> None:
     compiled = compile_scene(profile("bench_lever"))
     pairs, bodies = pairs_of(compiled), ["wheel", "lever", "balance"]
-    recent = np.zeros(RECENT + 1, np.int64)
-    recent[:4] = KINDS * 5 + NORMAL, KINDS * 5 + TOUCHED, KINDS * 5 + NORMAL, KINDS * 1 + BEARING
-    recent[RECENT] = 4
-    words = what_alternates(None, SimpleNamespace(recent=recent), pairs, bodies)
+    ended = blank(Ended)
+    ended.by[:4] = KINDS * 5 + NORMAL, KINDS * 5 + TOUCHED, KINDS * 5 + NORMAL, KINDS * 1 + BEARING
+    ended.number = 4
+    words = what_alternates(ended, pairs, bodies)
     assert f"the force ends at {pairs[5]} (2×)" in words
     assert f"{pairs[5]} touch (1×)" in words
     assert "the bearing of lever" in words
 
 
-def bracketed(value: object) -> tuple[float, int]:
+def bracketed(value: Callable[[float], float]) -> tuple[float, int]:
     """A root in [0, 1] found as the solver does, and the evaluations it took."""
-    following, slow = callable_kernel(next_time), callable_kernel(is_slow)
-    low, high, f_low, f_high, side, before = 0.0, 1.0, value(0.0), value(1.0), 0, 2.0
-    for number in range(MOST):
-        middle = following(low, f_low, high, f_high, slow(number, high - low, before))
-        if number % LOOK_EVERY == 0:
-            before = high - low
-        if high - low <= 1e-15 or not low < middle < high:
-            break
-        f = value(middle)
-        if f <= 0.0:
-            high, f_high, f_low, side = middle, f, f_low * (0.5 if side == 1 else 1.0), 1
-        else:
-            low, f_low, f_high, side = middle, f, f_high * (0.5 if side == -1 else 1.0), -1
-    return high, number
+    begin, following, goes_on, after = (callable_kernel(kernel) for kernel in (opened, next_time, is_open, narrowed))
+    bracket = begin(0.0, value(0.0), 1.0, value(1.0))
+    place = following(bracket)
+    while goes_on(bracket, place, 1e-15):
+        bracket = after(bracket, place, value(place), value(place) <= 0.0)
+        place = following(bracket)
+    return bracket.high, bracket.looks
 
 
 @pytest.mark.parametrize("root", [1e-9, 0.1, 0.5, 0.999])

@@ -10,19 +10,46 @@ contact lies inside both primitives is a question of its own.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from watchsim.contact.poses import point_of
 from watchsim.jit import kernel
 from watchsim.model.records import FULL, LINE
 
 
+class Shape(NamedTuple):
+    """Where the two sides of a contact are to each other, and how they are bent."""
+
+    gap: float  # m
+    nx: float  # outward normal of B's material; 0 where circle and arc are concentric
+    ny: float
+    Q: float  # 1 + K gap; 0 where circle and arc are concentric
+    foot: float  # K times the way from B's point along B's tangent there, over Q: the sine of n's angle from B's normal
+    arm_x: float  # from A's origin to the contact, m
+    arm_y: float
+
+
+class Gap(NamedTuple):
+    """How open a contact is, and how fast that changes."""
+
+    gap: float  # m
+    rate: float  # m/s
+    nx: float  # outward normal of B's material
+    ny: float
+
+
+class PlacedGap(NamedTuple):
+    """The same, with how far inside each of its primitives the contact lies; negative outside."""
+
+    gap: float  # m
+    rate: float  # m/s
+    inside_a: float  # m
+    inside_b: float
+
+
 @kernel
 def shape_of_contact(contact, a, b, pa, pb):
-    """(gap, nx, ny, Q, foot, arm_x, arm_y) of a contact between primitives a and b at poses pa and pb.
-
-    n: outward normal of B's material. Q = 1 + K gap; 0 where circle and arc are concentric, then n = 0. foot: K times the way
-    from B's point along B's tangent there, over Q: the sine of n's angle from B's normal. arm: from A's origin to the contact.
-    """
+    """The `Shape` of a contact between primitives a and b at poses pa and pb."""
     curvature, radius = contact.curvature, a.radius
     ax, ay = point_of(pa, a.px, a.py)
     bx, by = point_of(pb, b.px, b.py)
@@ -36,22 +63,40 @@ def shape_of_contact(contact, a, b, pa, pb):
     Q = math.sqrt(nx * nx + ny * ny)
     gap = (2.0 * (wx * mbx + wy * mby) - radius * (sx * sx + sy * sy) + curvature * (x * x + y * y)) / (1.0 + Q)
     if Q == 0.0:
-        return gap, 0.0, 0.0, 0.0, 0.0, ax, ay
+        return Shape(gap, 0.0, 0.0, 0.0, 0.0, ax, ay)
     nx, ny = nx / Q, ny / Q
-    return gap, nx, ny, Q, curvature * (mbx * y - mby * x) / Q, ax - radius * (max_ + nx), ay - radius * (may + ny)
+    foot = curvature * (mbx * y - mby * x) / Q
+    return Shape(gap, nx, ny, Q, foot, ax - radius * (max_ + nx), ay - radius * (may + ny))
+
+
+@kernel
+def _gap_rate(shape, pa, pb):
+    """Of both materials at the contact point: what moves along the tangent does not change the gap."""
+    x, y = shape.arm_x, shape.arm_y
+    vx = pa.vx - pb.vx - pa.w * y + pb.w * (y + pa.y - pb.y)
+    vy = pa.vy - pb.vy + pa.w * x - pb.w * (x + pa.x - pb.x)
+    return shape.nx * vx + shape.ny * vy
 
 
 @kernel
 def normal_gap(model, k, pose):
-    """Gap, its rate, and the normal (outward from B's material) of contact `k`: (g, g_dot, nx, ny)."""
+    """The `Gap` of contact `k`."""
     contact = model.contacts[k]
     a, b = model.primitives[contact.a], model.primitives[contact.b]
     pa, pb = pose[a.body], pose[b.body]
-    gap, nx, ny, _, _, x, y = shape_of_contact(contact, a, b, pa, pb)
-    # Both materials at the contact point: what moves along the tangent does not change the gap.
-    vx = pa.vx - pb.vx - pa.w * y + pb.w * (y + pa.y - pb.y)
-    vy = pa.vy - pb.vy + pa.w * x - pb.w * (x + pa.x - pb.x)
-    return gap, nx * vx + ny * vy, nx, ny
+    shape = shape_of_contact(contact, a, b, pa, pb)
+    return Gap(shape.gap, _gap_rate(shape, pa, pb), shape.nx, shape.ny)
+
+
+@kernel
+def placed_gap(model, k, pose):
+    """The `PlacedGap` of contact `k`."""
+    contact = model.contacts[k]
+    a, b = model.primitives[contact.a], model.primitives[contact.b]
+    pa, pb = pose[a.body], pose[b.body]
+    shape = shape_of_contact(contact, a, b, pa, pb)
+    inside_a, inside_b = margins_of(contact, a, b, pa, pb, shape)
+    return PlacedGap(shape.gap, _gap_rate(shape, pa, pb), inside_a, inside_b)
 
 
 @kernel
@@ -60,8 +105,8 @@ def contact_point(model, k, pose):
     contact = model.contacts[k]
     a, b = model.primitives[contact.a], model.primitives[contact.b]
     pa = pose[a.body]
-    _, _, _, _, _, x, y = shape_of_contact(contact, a, b, pa, pose[b.body])
-    return pa.x + x, pa.y + y
+    shape = shape_of_contact(contact, a, b, pa, pose[b.body])
+    return pa.x + shape.arm_x, pa.y + shape.arm_y
 
 
 @kernel
@@ -81,9 +126,9 @@ def _inside_fan(p, along, across, reach):
 
 @kernel
 def margins_of(contact, a, b, pa, pb, shape):
-    """How far inside primitive a and inside b the contact lies, metres; negative outside. `shape`: see `shape_of_contact`."""
-    _, nx, ny, Q, foot, x, y = shape
-    if Q == 0.0:
+    """How far inside primitive a and inside b the contact lies, metres; negative outside."""
+    nx, ny, x, y = shape.nx, shape.ny, shape.arm_x, shape.arm_y
+    if shape.Q == 0.0:
         return 0.0, -b.radius
     # The contact lies on A in the direction -n from the circle's centre.
     fx, fy = point_of(pa, a.nx, a.ny)
@@ -94,7 +139,7 @@ def margins_of(contact, a, b, pa, pb, shape):
         way = tx * (x + (pa.x - pb.x) - bx) + ty * (y + (pa.y - pb.y) - by)
         return inside_a, min(way, b.length - way)
     fx, fy = point_of(pb, b.nx, b.ny)
-    return inside_a, _inside_fan(b, nx * fx + ny * fy, abs(foot), b.radius)
+    return inside_a, _inside_fan(b, nx * fx + ny * fy, abs(shape.foot), b.radius)
 
 
 @kernel

@@ -113,7 +113,8 @@ def contact_kinematics(model, k, pose, row, out_closed):
     a, b = model.primitives[contact.a], model.primitives[contact.b]
     pa, pb = pose[a.body], pose[b.body]
     shape = shape_of_contact(contact, a, b, pa, pb)
-    gap, nx, ny, Q, _, xa, ya = shape  # (xa, ya): from A's origin to the contact point
+    gap, nx, ny, Q = shape.gap, shape.nx, shape.ny, shape.Q
+    xa, ya = shape.arm_x, shape.arm_y
     tx, ty = -ny, nx
     xb, yb = xa + pa.x - pb.x, ya + pa.y - pb.y
     # Velocity of A's material against B's at the contact point.

@@ -8,17 +8,14 @@ from __future__ import annotations
 
 from watchsim.contact.index_sets import BACKWARD, FORWARD, OPEN, STICK
 from watchsim.dynamics.coulomb import add_element, fill_matrix, fill_rhs, read_forces
-from watchsim.dynamics.delassus import apply, fill_bearings, fill_delassus
+from watchsim.dynamics.delassus import apply, fill_bearings, fill_delassus, note_posed
 from watchsim.dynamics.handedness import restore_directions, reverse_directions
+from watchsim.dynamics.problem_kinds import Level, Rung
 from watchsim.dynamics.redundant_contacts import smallest_forces
-from watchsim.dynamics.small_systems import RANK, solve_small, unit_scale
+from watchsim.dynamics.small_systems import solve_small, unit_scale
 from watchsim.dynamics.solver_fallbacks import solve_contacts
+from watchsim.dynamics.tolerances import ACCELERATION_ROUNDING, PAINLEVE, RANK
 from watchsim.jit import kernel
-
-ROUNDING = 1e-11  # accelerations below this share of the terms they are the sum of count as zero
-PAINLEVE = 1e-9  # share of G_N below which pressing on a sliding contact no longer pushes its bodies apart
-NO_FORCE = 10  # status of `decide_modes`: a sliding contact would need an infinite force
-LEVEL_ACCELERATION = 1
 
 
 @kernel
@@ -108,11 +105,11 @@ def _equation(work, m, row, line):
 
 @kernel
 def decide_modes(model, closed, m, bearings, speed_zero, work, out_grip, out_mode):
-    """Acceleration-level LCP over I_N, the first m closed contacts, and the bearings listed in `work.dry`; returns its status.
+    """Acceleration-level LCP over I_N, the first m closed contacts, and the bearings listed in `work.dry`; is it solved?
 
     Contacts whose |g_T_dot| is below `speed_zero` may stick; the others slide as they do. Sets modes and grips, fills
-    `work.force`, `work.inverse` and adds to `work.h` the dry friction of the bearings that begin to move. NO_FORCE, or the
-    status of the LCP: no finite force keeps the bodies apart (Painlevé's paradox, if a contact slides).
+    `work.force`, `work.inverse` and adds to `work.h` the dry friction of the bearings that begin to move. False: no
+    finite force keeps the bodies apart (Painlevé's paradox, if a contact slides).
     """
     for i in range(len(model.coordinates)):
         work.inverse[i] = 1.0 / model.coordinates[i].mass
@@ -125,15 +122,14 @@ def decide_modes(model, closed, m, bearings, speed_zero, work, out_grip, out_mod
     reverse_directions(work, m, rows, elements, work.b)
     fill_matrix(work, m, elements)
     _load(work, m, elements, bearings)
-    fill_rhs(work, m, elements, work.more)
-    work.note[0], work.note[1], work.note[2], work.note[3] = m, elements, bearings, LEVEL_ACCELERATION
-    status, _ = solve_contacts(work, m, elements)
-    if status != 0:
-        return status
+    fill_rhs(work, m, elements, work.loaded)
+    note_posed(work, m, elements, bearings, Level.ACCELERATION)
+    if solve_contacts(work, m, elements) == Rung.FAILED:
+        return False
     read_forces(work, m, elements, work.force)
     for i in range(m):
         if work.x[i] > 0.0 and is_paradox(work, m, i):
-            return NO_FORCE
+            return False
     for i in range(m):
         out_mode[closed.ids[i]] = _mode_of(closed, i, m, elements, bearings, work)
     restore_directions(work, rows, work.b)
@@ -141,7 +137,7 @@ def decide_modes(model, closed, m, bearings, speed_zero, work, out_grip, out_mod
         if out_mode[closed.ids[i]] == OPEN:
             work.force[2 * i], work.force[2 * i + 1] = 0.0, 0.0
     _decide_grips(model, m, bearings, work, out_grip)
-    return 0
+    return True
 
 
 @kernel
@@ -173,12 +169,12 @@ def _free_bearings(work, m, bearings):
 
 @kernel
 def _load(work, m, elements, bearings):
-    """Accelerations without contact forces, bearings at the lower end of their friction, into `more`."""
+    """Accelerations without contact forces, bearings at the lower end of their friction, into `loaded`."""
     for row in range(2 * m + bearings):
-        work.more[row] = work.b[row]
+        work.loaded[row] = work.b[row]
         for p in range(bearings):
             # The elements of the bearings are the last ones, in order.
-            work.more[row] += work.G[row, 2 * m + p] * work.shift[elements - bearings + p]
+            work.loaded[row] += work.G[row, 2 * m + p] * work.shift[elements - bearings + p]
 
 
 @kernel
@@ -215,14 +211,14 @@ def _mode_of(closed, i, m, elements, bearings, work):
     whose friction is at the other end is what the LCP may miss.
     """
     rows = 2 * m + bearings
-    if work.x[i] <= 0.0 and _row_acceleration(work, rows, 2 * i) > ROUNDING * row_terms(work, rows, 2 * i):
+    if work.x[i] <= 0.0 and _row_acceleration(work, rows, 2 * i) > ACCELERATION_ROUNDING * row_terms(work, rows, 2 * i):
         return OPEN
     if work.tangent[i] < 0:
         return BACKWARD if closed.kin[i].gT_dot < 0.0 else FORWARD
     slip = _row_acceleration(work, rows, 2 * i + 1)
     # lambda_T is the difference of terms as large as the friction cone.
     terms = abs(work.force[2 * i + 1]) + work.drag[i] * work.force[2 * i]
-    size = ROUNDING * (row_terms(work, rows, 2 * i + 1) + work.G[2 * i + 1, 2 * i + 1] * terms)
+    size = ACCELERATION_ROUNDING * (row_terms(work, rows, 2 * i + 1) + work.G[2 * i + 1, 2 * i + 1] * terms)
     e = work.tangent[i]
     is_reversed = work.hand[2 * i + 1] < 0.0
     if slip > size and work.x[m + e] == 0.0:
@@ -240,7 +236,7 @@ def _decide_grips(model, m, bearings, work, out_grip):
         i, row = work.dry[p], 2 * m + p
         moves = _row_acceleration(work, rows, row)
         terms = row_terms(work, rows, row) + work.inverse[i] * model.coordinates[i].coulomb
-        if abs(moves) > ROUNDING * terms:
+        if abs(moves) > ACCELERATION_ROUNDING * terms:
             out_grip[i] = FORWARD if moves > 0.0 else BACKWARD
             work.h[i] -= out_grip[i] * model.coordinates[i].coulomb
     for p in range(bearings):

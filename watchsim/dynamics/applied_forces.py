@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from watchsim.candidates.cell_lookup import along
+from watchsim.dynamics.tolerances import KNOT_ROUNDING
 from watchsim.jit import entry, kernel
 from watchsim.model.records import OVER_TIME
 
@@ -140,7 +141,7 @@ def next_knot(model, t):
         table = model.tables[j]
         if table.over == OVER_TIME:
             for i in range(table.start, table.start + table.count):
-                if model.knots[i, 0] > t * (1.0 + 1e-15):
+                if model.knots[i, 0] > t * (1.0 + KNOT_ROUNDING):
                     first = min(first, model.knots[i, 0])
                     break
     return first

@@ -12,10 +12,22 @@ from numpy.typing import NDArray
 
 from watchsim.contact.index_sets import STICK
 from watchsim.dynamics.lcp.lemke_pivoting import LcpWork, lcp_work
+from watchsim.dynamics.problem_kinds import Rung
 from watchsim.jit import by_reference, kernel
+from watchsim.model.named_fields import blank
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
+
+
+class Posed:
+    """The last problem: what it was about, and how Lemke's method ended."""
+
+    contacts: int
+    elements: int
+    bearings: int
+    level: int  # a Level
+    lemke: int  # an LcpOutcome
 
 
 class ContactWork(NamedTuple):
@@ -30,7 +42,11 @@ class ContactWork(NamedTuple):
     b: Array  # (rows,) accelerations or velocities of the gaps without contact forces
     size: Array  # (rows,) the same with all terms taken positive: the scale of rounding
     force: Array  # (rows,) lambda or Lambda
-    more: Array  # (rows,) a second set: impulses of the expansion
+    more: Array  # (rows,) impulses of the expansion
+    rates: Array  # (rows,) velocities of the gaps at the start of the expansion, its least impulses included
+    offset: Array  # (room,) tangential impulse whose slip moves the corner of the law pg1996
+    loaded: Array  # (rows,) accelerations of the gaps without contact forces, bearings at the lower end of their friction
+    correction: Array  # (rows,) impulses that take back drift (simulation/motion/drift_projection.py)
     inverse: Array  # (n,) 1/mass, 0 where dry friction holds the coordinate
     unit: Array  # (blocks,) scale that gives G a unit diagonal
     drag: Array  # (room,) friction per normal force at the lower end of the interval
@@ -41,24 +57,26 @@ class ContactWork(NamedTuple):
     span: Array  # (blocks,) constant part of its length
     shift: Array  # (blocks,) constant part of its lower end
     hand: Array  # (rows,) -1 where a direction of friction is reversed, else 1
-    A: Array
+    A: Array  # the complementarity problem or the linear system in hand
     rhs: Array
     x: Array
     B: Array  # the same problem in its copositive form
     other_rhs: Array
     other_x: Array
-    scale: Array
+    free: Array  # forces that no motion decides, one set a row (redundant_contacts.py)
+    weight: Array  # of each unknown in the sum of squares of the forces
+    dual: Array  # multipliers of the laws that such forces must obey
+    scale: Array  # of a linear system, see `solve_small`
     order: Integers
     row: Integers  # (side,) of G, by row of a correction (simulation/motion/drift_projection.py)
     h: Array  # (n,)
     rungs: Integers  # problems solved since last asked, by Rung; the last one counts those without a solution
     sizes: Integers  # the same problems by their number of unknowns, see `LARGEST`
-    note: Integers  # of the last problem: contacts, elements, bearings, level, status of Lemke
+    posed: Posed
 
 
 ContactWorkRef = by_reference(ContactWork, __name__)
 
-RUNGS = 6
 LARGEST = (1, 2, 4, 8, 16)  # unknowns of the problems counted together; one more place for larger ones
 
 
@@ -72,6 +90,10 @@ def contact_work(room: int, coordinates: int) -> ContactWork:
         size=np.zeros(rows),
         force=np.zeros(rows),
         more=np.zeros(rows),
+        rates=np.zeros(rows),
+        offset=np.zeros(room),
+        loaded=np.zeros(rows),
+        correction=np.zeros(rows),
         inverse=np.zeros(coordinates),
         unit=np.zeros(blocks),
         drag=np.zeros(room),
@@ -88,15 +110,25 @@ def contact_work(room: int, coordinates: int) -> ContactWork:
         B=np.zeros((side, side)),
         other_rhs=np.zeros(side),
         other_x=np.zeros(side),
+        free=np.zeros((side, side)),
+        weight=np.zeros(side),
+        dual=np.zeros(side),
         scale=np.zeros(side),
         order=np.zeros(side, np.int64),
         row=np.zeros(side, np.int64),
         lcp=lcp_work(side),
         h=np.zeros(coordinates),
-        rungs=np.zeros(RUNGS, np.int64),
+        rungs=np.zeros(len(Rung), np.int64),
         sizes=np.zeros(len(LARGEST) + 1, np.int64),
-        note=np.zeros(5, np.int64),
+        posed=blank(Posed),
     )
+
+
+@kernel
+def note_posed(work, m, elements, bearings, level):
+    """Say what the problem now in `work` is about."""
+    posed = work.posed
+    posed.contacts, posed.elements, posed.bearings, posed.level = m, elements, bearings, level
 
 
 @kernel

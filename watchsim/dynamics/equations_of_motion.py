@@ -18,5 +18,5 @@ def balance(model, t, q, u, ids, out_pose, out_closed, out_normal, out_h):
         contact = model.contacts[ids[row]]
         a, b = model.primitives[contact.a], model.primitives[contact.b]
         shape = shape_of_contact(contact, a, b, out_pose[a.body], out_pose[b.body])
-        out_normal[row, 0], out_normal[row, 1] = shape[1], shape[2]
+        out_normal[row, 0], out_normal[row, 1] = shape.nx, shape.ny
     forces(model, t, q, u, out_h)

@@ -6,10 +6,9 @@ that of the compression: the laws `coulomb`, `pg1996` and `shifted` of docs/theo
 
 from __future__ import annotations
 
+from watchsim.dynamics.tolerances import NO_TANGENTIAL
 from watchsim.jit import kernel
 from watchsim.model.records import PG1996, SHIFTED
-
-NO_IMPULSE = 1e-10  # a tangential impulse below this share of the friction cone has no sign
 
 
 @kernel
@@ -29,7 +28,7 @@ def interval(law, restitution, normal, tangential):
     returned = restitution * law.tangential * tangential
     least = abs(returned)
     span = max(0.0, mu * back - least)
-    if normal <= 0.0 or abs(tangential) <= NO_IMPULSE * mu * normal:
+    if normal <= 0.0 or abs(tangential) <= NO_TANGENTIAL * mu * normal:
         return 0.5 * mu, mu, span, -0.5 * span, returned
     if tangential > 0.0:
         return 0.0, mu, span, least, returned

@@ -10,9 +10,8 @@ neither depends on where the drawing came from.
 from __future__ import annotations
 
 from watchsim.dynamics.coulomb import element_row
+from watchsim.dynamics.tolerances import NO_HAND
 from watchsim.jit import kernel
-
-ZERO = 1e-9  # of the same measure of all rows: what is smaller has no direction
 
 
 @kernel
@@ -30,7 +29,7 @@ def reverse_directions(work, m, rows, elements, slip):
     for e in range(elements):
         row, block = element_row(work, m, e), work.block[e]
         direction = slip[row]
-        if _share(work, row, slip) <= ZERO * ZERO * largest and block < m:
+        if _share(work, row, slip) <= NO_HAND * NO_HAND * largest and block < m:
             direction = work.G[row, 2 * block]
         if direction < 0.0:
             work.hand[row] = -1.0

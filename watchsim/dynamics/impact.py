@@ -10,15 +10,13 @@ from __future__ import annotations
 
 from watchsim.dynamics.acceleration import gap_accelerations
 from watchsim.dynamics.coulomb import add_element, element_row, fill_matrix, fill_rhs, read_forces
-from watchsim.dynamics.delassus import apply, contact_velocities, fill_delassus
+from watchsim.dynamics.delassus import apply, contact_velocities, fill_delassus, note_posed
 from watchsim.dynamics.expansion_friction import interval
 from watchsim.dynamics.handedness import restore_directions, reverse_directions
-from watchsim.dynamics.solver_fallbacks import LEMKE, keep_basis, solve_contacts
+from watchsim.dynamics.problem_kinds import Level, Rung
+from watchsim.dynamics.solver_fallbacks import keep_basis, solve_contacts
+from watchsim.dynamics.tolerances import NUDGE, PARALLEL
 from watchsim.jit import kernel
-
-LEVEL_COMPRESSION, LEVEL_EXPANSION = 2, 3
-PARALLEL = 1e-12  # sine² of the angle between parallel directions
-NUDGE = 1e-6  # approach, as a share of the slip, by which the force of a jammed contact is made to act
 
 
 @kernel
@@ -41,7 +39,7 @@ def _begin(model, closed, m, work):
 
 @kernel
 def _compress(model, closed, m, u, jam, work):
-    """Impulses of the compression into `work.force`, rates before it into `work.b`. Returns (LCP status, elements).
+    """Impulses of the compression into `work.force`, rates before it into `work.b`. Returns (solved?, elements).
 
     From here on until `restore_directions` some directions of friction are reversed.
     """
@@ -55,13 +53,13 @@ def _compress(model, closed, m, u, jam, work):
     fill_rhs(work, m, elements, work.b)
     nudged = _nudge(m, jam, work)
     nudged = _keep_sliding(m, work) or nudged
-    work.note[0], work.note[1], work.note[2], work.note[3] = m, elements, 0, LEVEL_COMPRESSION
-    status, rung = solve_contacts(work, m, elements)
-    if status == 0 and nudged and rung == LEMKE:
+    note_posed(work, m, elements, 0, Level.COMPRESSION)
+    rung = solve_contacts(work, m, elements)
+    if nudged and rung == Rung.LEMKE:
         fill_rhs(work, m, elements, work.b)
         keep_basis(work, m, elements)
     read_forces(work, m, elements, work.force)
-    return status, elements
+    return rung != Rung.FAILED, elements
 
 
 @kernel
@@ -106,7 +104,7 @@ def is_parallel(work, i):
 
 @kernel
 def _expand(model, closed, m, restitution, elements, work):
-    """Impulses of the expansion into `work.more`. Returns the LCP status.
+    """Impulses of the expansion into `work.more`; True if they are found.
 
     Unknowns: Lambda_NP = Lambda_NE - eps Lambda_NC and the distance of Lambda_TE from the lower end of its interval.
     """
@@ -119,29 +117,29 @@ def _expand(model, closed, m, restitution, elements, work):
             low, width, span, shift, returned = interval(law, restitution[i], normal, tangential)
             work.drag[i], work.more[2 * i + 1] = low, shift
             add_element(work, i, e, (width, span, shift))
-            work.other_x[i] = law.nu * returned
+            work.offset[i] = law.nu * returned
         else:
-            work.other_x[i] = 0.0
+            work.offset[i] = 0.0
     for row in range(2 * m):
         total = work.b[row]
         for j in range(2 * m):
             total += work.G[row, j] * (work.force[j] + work.more[j])
-        work.size[row] = total
+        work.rates[row] = total
     for e in range(elements):
         row = element_row(work, m, e)
         for i in range(m):
-            work.size[row] -= work.G[row, 2 * i + 1] * work.other_x[i]
+            work.rates[row] -= work.G[row, 2 * i + 1] * work.offset[i]
     fill_matrix(work, m, elements)
-    fill_rhs(work, m, elements, work.size)
-    work.note[3] = LEVEL_EXPANSION
-    status, _ = solve_contacts(work, m, elements)
+    fill_rhs(work, m, elements, work.rates)
+    work.posed.level = Level.EXPANSION
+    rung = solve_contacts(work, m, elements)
     for i in range(m):
         extra = work.unit[i] * work.x[i]
         work.more[2 * i] += extra
         e = work.tangent[i]
         if e >= 0:
             work.more[2 * i + 1] += work.unit[i] * work.x[m + e] - work.drag[i] * extra
-    return status
+    return rung != Rung.FAILED
 
 
 @kernel
@@ -150,24 +148,23 @@ def impact(model, closed, m, restitution, jam, work, out_u):
 
     `restitution[i]` is eps_N of row i. With `jam` > 0 (m/s) contacts that slide while their gap stands still, to that
     speed, are jammed: the impulses that stop them are found although nothing approaches. Total impulses N, T are left in
-    `work.force`, rates before the impact in `work.b`. Returns the LCP status (0: solved); the velocities are changed only then.
+    `work.force`, rates before the impact in `work.b`. True if it is solved; the velocities are changed only then.
     """
-    status, elements = _compress(model, closed, m, out_u, jam, work)
-    if status != 0:
-        return status
+    solved, elements = _compress(model, closed, m, out_u, jam, work)
+    if not solved:
+        return False
     returns = False
     for i in range(m):
         if restitution[i] > 0.0 and work.force[2 * i] > 0.0:
             returns = True
     if returns:
-        status = _expand(model, closed, m, restitution, elements, work)
-        if status != 0:
-            return status
+        if not _expand(model, closed, m, restitution, elements, work):
+            return False
         for row in range(2 * m):
             work.force[row] += work.more[row]
     restore_directions(work, 2 * m, work.b)
     apply(closed, m, work.force, work.inverse, out_u)
-    return 0
+    return True
 
 
 @kernel
@@ -175,22 +172,22 @@ def plastic_impact(model, closed, m, time, u, work):
     """Impulses of the compression over a time in which the forces `work.h` act on `work.inverse`, into `work.force`.
 
     The compression of the rates that free motion over `time` would lead to (a step of Moreau's scheme at fixed positions).
-    Returns the LCP status.
+    True if they are found.
     """
     elements = _begin(model, closed, m, work)
     fill_delassus(closed, m, work)
     contact_velocities(closed, m, u, work.b)
-    gap_accelerations(model, closed, m, work, work.more, work.size)
+    gap_accelerations(model, closed, m, work, work.loaded, work.size)
     for row in range(2 * m):
-        work.b[row] += time * work.more[row]
+        work.b[row] += time * work.loaded[row]
     reverse_directions(work, m, 2 * m, elements, work.b)
     fill_matrix(work, m, elements)
     fill_rhs(work, m, elements, work.b)
-    work.note[0], work.note[1], work.note[2], work.note[3] = m, elements, 0, LEVEL_COMPRESSION
-    status, _ = solve_contacts(work, m, elements)
+    note_posed(work, m, elements, 0, Level.COMPRESSION)
+    rung = solve_contacts(work, m, elements)
     read_forces(work, m, elements, work.force)
     restore_directions(work, 2 * m, work.b)
-    return status
+    return rung != Rung.FAILED
 
 
 @kernel

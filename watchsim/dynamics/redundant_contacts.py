@@ -7,12 +7,11 @@ friction cone, the smallest ones that do not.
 
 from __future__ import annotations
 
-from watchsim.dynamics.lcp.lemke_pivoting import OK, lemke_checked
+from watchsim.dynamics.lcp.lemke_pivoting import lemke_checked
+from watchsim.dynamics.lcp.outcome import LcpOutcome
 from watchsim.dynamics.small_systems import null_vectors
+from watchsim.dynamics.tolerances import DEPENDENT, LAW_ROUNDING, LAW_SLACK
 from watchsim.jit import kernel
-
-SLACK = 1e-9  # share of the largest force by which a law may be missed
-NO_GAIN = 1e-11  # what a free direction of length one does for a law by rounding alone
 
 
 @kernel
@@ -22,13 +21,13 @@ def smallest_forces(m, n, rank, work):
     The first m unknowns are normal forces; `work.tangent` says which unknown is a contact's friction force, `work.drag` the
     friction of the others, `work.width` the friction coefficients.
     """
-    vectors = work.B
+    vectors = work.free
     count = n - rank
     null_vectors(work.A, n, rank, work.scale, work.order, vectors)
     _weigh(m, n, work)
-    count = _orthonormalize(vectors, count, n, work.other_rhs)
+    count = _orthonormalize(vectors, count, n, work.weight)
     for v in range(count):
-        share = _product(vectors[v], work.x, n, work.other_rhs)
+        share = _product(vectors[v], work.x, n, work.weight)
         for j in range(n):
             work.x[j] -= share * vectors[v, j]
     _keep_laws(m, n, count, work)
@@ -38,10 +37,10 @@ def smallest_forces(m, n, rank, work):
 def _weigh(m, n, work):
     """Weights of the unknowns in the sum of squares of all forces: a sliding contact's friction grows with its normal force."""
     for j in range(n):
-        work.other_rhs[j] = 1.0
+        work.weight[j] = 1.0
     for i in range(m):
         if work.tangent[i] < 0:
-            work.other_rhs[i] += work.drag[i] * work.drag[i]
+            work.weight[i] += work.drag[i] * work.drag[i]
 
 
 @kernel
@@ -64,7 +63,7 @@ def _orthonormalize(vectors, count, n, weight):
                 for j in range(n):
                     vectors[v, j] -= share * vectors[w, j]
         square = _product(vectors[v], vectors[v], n, weight)
-        if square > 1e-20 * before:
+        if square > DEPENDENT * before:
             for j in range(n):
                 vectors[kept, j] = vectors[v, j] / square**0.5
             kept += 1
@@ -92,34 +91,34 @@ def _law(work, m, line, values):
 def _gain(work, m, line, vector):
     """What a free direction does for a law; none where it runs along the law's edge, or forces without bound would be taken."""
     gain = _law(work, m, line, vector)
-    return gain if abs(gain) > NO_GAIN else 0.0
+    return gain if abs(gain) > LAW_ROUNDING else 0.0
 
 
 @kernel
 def _keep_laws(m, n, count, work):
     """The smallest change along the free directions that fulfils all laws: the dual problem, positive semidefinite."""
-    vectors, largest, worst = work.B, 0.0, 0.0
+    vectors, largest, worst = work.free, 0.0, 0.0
     laws = m + 2 * (n - m)
     for j in range(n):
         largest = max(largest, abs(work.x[j]))
     for line in range(laws):
         work.rhs[line] = _law(work, m, line, work.x)
         worst = min(worst, work.rhs[line])
-    if worst >= -SLACK * largest:
+    if worst >= -LAW_SLACK * largest:
         return
     for line in range(laws):
-        if work.rhs[line] >= -SLACK * largest:
+        if work.rhs[line] >= -LAW_SLACK * largest:
             work.rhs[line] = max(work.rhs[line], 0.0)
         for other in range(laws):
             total = 0.0
             for v in range(count):
                 total += _gain(work, m, line, vectors[v]) * _gain(work, m, other, vectors[v])
             work.A[line, other] = total
-    if lemke_checked(work.A, work.rhs, laws, work.lcp, work.other_x) != OK:
+    if lemke_checked(work.A, work.rhs, laws, work.lcp, work.dual) != LcpOutcome.SOLVED:
         return  # no forces obey the laws: the mode has ended, and its monitors say so
     for v in range(count):
         share = 0.0
         for line in range(laws):
-            share += _gain(work, m, line, vectors[v]) * work.other_x[line]
+            share += _gain(work, m, line, vectors[v]) * work.dual[line]
         for j in range(n):
             work.x[j] += share * vectors[v, j]

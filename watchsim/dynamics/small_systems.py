@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from watchsim.jit import kernel
 
-RANK = 1e-11  # pivots below this share of the first one count as zero: the contact forces are then not unique
-
 
 @kernel
 def copy(values, out):

@@ -10,43 +10,45 @@ largest load. If nothing helps, the caller stops and keeps the problem.
 from __future__ import annotations
 
 from watchsim.dynamics.delassus import size_class
-from watchsim.dynamics.lcp.basis import ROUGH, ROUNDING, is_solution, solve_active, solves
-from watchsim.dynamics.lcp.lemke_pivoting import OK, lemke, lemke_checked, lemke_on_path
+from watchsim.dynamics.lcp.basis import is_solution, solve_active, solves
+from watchsim.dynamics.lcp.lemke_pivoting import lemke, lemke_checked, lemke_on_path
+from watchsim.dynamics.lcp.outcome import LcpOutcome
 from watchsim.dynamics.lcp.scaling import scale, unscale
+from watchsim.dynamics.problem_kinds import Rung
+from watchsim.dynamics.tolerances import LCP_ROUGH, LCP_ROUNDING
 from watchsim.jit import kernel
 
-LEMKE, COPOSITIVE, DETOUR, ENUMERATED, INEXACT, FAILED = 0, 1, 2, 3, 4, 5  # rungs: places in ContactWork.rungs
 PATHS = 8  # other ones that Lemke tries
 MODES = 50000  # sets of modes tried at most: some tenths of a second
 
 
 @kernel
 def solve_contacts(work, m, elements):
-    """Solve the problem in `work.A`, `work.rhs` into `work.x`; returns (status: OK or why Lemke failed, rung)."""
+    """Solve the problem in `work.A`, `work.rhs` into `work.x`; returns the rung that did, FAILED if none."""
     n = m + 2 * elements
-    status = lemke_checked(work.A, work.rhs, n, work.lcp, work.x)
-    work.note[4] = status
-    rung = LEMKE
-    if status != OK:
-        rung = FAILED
+    outcome = lemke_checked(work.A, work.rhs, n, work.lcp, work.x)
+    work.posed.lemke = outcome
+    rung = Rung.LEMKE
+    if outcome != LcpOutcome.SOLVED:
+        rung = Rung.FAILED
         if elements > 0 and _solve_copositive(work, m, elements):
-            rung = COPOSITIVE
+            rung = Rung.COPOSITIVE
         elif _detour(work, n):
-            rung = DETOUR
+            rung = Rung.DETOUR
         elif enumerate_modes(work, m, elements):
-            rung = ENUMERATED
-        elif lemke(work.A, work.rhs, n, work.lcp, work.x) == OK and solves(n, ROUGH, work.lcp):
-            rung = INEXACT
+            rung = Rung.ENUMERATED
+        elif lemke(work.A, work.rhs, n, work.lcp, work.x) == LcpOutcome.SOLVED and solves(n, LCP_ROUGH, work.lcp):
+            rung = Rung.INEXACT
     work.rungs[rung] += 1
     work.sizes[size_class(n)] += 1
-    return (OK if rung != FAILED else status), rung
+    return rung
 
 
 @kernel
 def _detour(work, n):
     """True if Lemke's method reaches a solution from another start, then in `work.x`: ties and rounding fall otherwise."""
     for path in range(1, PATHS + 1):
-        if lemke_on_path(work.A, work.rhs, n, path, work.lcp, work.x) == OK:
+        if lemke_on_path(work.A, work.rhs, n, path, work.lcp, work.x) == LcpOutcome.SOLVED:
             return True
     return False
 
@@ -100,7 +102,7 @@ def fill_copositive(work, m, elements):
 def _solve_copositive(work, m, elements):
     """True if the copositive form gives a solution of the first form, then in `work.x`."""
     n = fill_copositive(work, m, elements)
-    if lemke_checked(work.B, work.other_rhs, n, work.lcp, work.other_x) != OK:
+    if lemke_checked(work.B, work.other_rhs, n, work.lcp, work.other_x) != LcpOutcome.SOLVED:
         return False
     for i in range(m):
         work.x[i] = work.other_x[i]
@@ -109,7 +111,7 @@ def _solve_copositive(work, m, elements):
         if work.block[e] < m:
             half += 0.5 * work.width[e] * work.x[work.block[e]]
         above = half + work.other_x[m + e] - work.other_x[m + elements + e]
-        work.x[m + e] = above if above > ROUNDING * half else 0.0
+        work.x[m + e] = above if above > LCP_ROUNDING * half else 0.0
     for e in range(elements):
         slip = work.rhs[m + e]
         for j in range(m + elements):
@@ -124,7 +126,7 @@ def _is_solved(work, n):
     magnitude = scale(work.A, work.rhs, n, work.lcp)
     for i in range(n):
         value = work.x[i] / (work.lcp.column_scale[i] * magnitude)
-        work.lcp.trial[i] = value if value > ROUNDING else 0.0
+        work.lcp.trial[i] = value if value > LCP_ROUNDING else 0.0
     return is_solution(n, work.lcp)
 
 

@@ -9,22 +9,22 @@ from __future__ import annotations
 import math
 
 from watchsim.candidates.cell_lookup import time_through_cells
-from watchsim.contact.kinematics import ClosedRef
 from watchsim.contact.poses import place
 from watchsim.dynamics.applied_forces import next_knot
-from watchsim.dynamics.delassus import ContactWorkRef, fill_inverse
-from watchsim.dynamics.lcp.lemke_pivoting import LcpWorkRef
-from watchsim.jit import entry, inlined, kernel
+from watchsim.dynamics.delassus import fill_inverse
+from watchsim.jit import entry, kernel
 from watchsim.model.records import CellsRef, ModelRef
+from watchsim.simulation.buffers import RecordRef
 from watchsim.simulation.events.after_event import settle
 from watchsim.simulation.events.closed_contacts import refresh
-from watchsim.simulation.events.contact_mode_end import first_leave, first_turn
+from watchsim.simulation.events.contact_mode_end import NONE_FIRED, first_leave, first_turn
 from watchsim.simulation.events.impulse_check import is_explained, kinetic_energy
 from watchsim.simulation.events.mode_recurrence import begin_instant, decide_once, forget_decisions
 from watchsim.simulation.events.time_of_impact import first_touch
 from watchsim.simulation.motion.contact_islands import place_contacts
 from watchsim.simulation.motion.coupled_motion import motion
-from watchsim.simulation.motion.drift_projection import IN_STEPS, project_positions, project_velocities
+from watchsim.simulation.motion.dense_output import dense_value
+from watchsim.simulation.motion.drift_projection import project_positions, project_velocities
 from watchsim.simulation.motion.free_flight import (
     FLIGHT_PHASE,
     add_flight_sums,
@@ -33,47 +33,21 @@ from watchsim.simulation.motion.free_flight import (
     flight_length,
     keep_flight_rows,
 )
-from watchsim.simulation.motion.integrator import coupled_step, dense_value
+from watchsim.simulation.motion.integrator import coupled_step
 from watchsim.simulation.motion.row_times import keep_inner_rows
 from watchsim.simulation.motion.turning_points import keep_passages
-from watchsim.simulation.options import FINEST_ROWS, OptionsRef
+from watchsim.simulation.options import OptionsRef
 from watchsim.simulation.record.write_buffers import keep_row
-from watchsim.simulation.state import (
-    DAMPING,
-    DRIVE,
-    FRICTION,
-    IMPACTS,
-    MONITORS,
-    N_EVALUATIONS,
-    N_FLIGHTS,
-    N_GAPS,
-    N_IMPACTS,
-    N_INSTANTS,
-    N_LOOKUPS,
-    N_REJECTED,
-    N_STEPS,
-    RECENT,
-    SUMS,
-    RecordRef,
-    ScratchRef,
-    StateRef,
-    StepRef,
-)
+from watchsim.simulation.scratch import MONITORS, RECENT, SUMS, scratch_by_reference
+from watchsim.simulation.state import StateRef
 from watchsim.simulation.stops import Stop
+from watchsim.simulation.tolerances import DEPENDENT_IN_STEPS, FINEST_ROWS, RATES_TURNED, SAME_INSTANT
 
-RUNNING, SLICE, CELL_UNKNOWN, BUFFER_FULL = int(Stop.RUNNING), int(Stop.SLICE), int(Stop.CELL_UNKNOWN), int(Stop.BUFFER_FULL)
-DURATION, STEP_TOO_SMALL, NOT_FINITE = int(Stop.DURATION), int(Stop.STEP_TOO_SMALL), int(Stop.NOT_FINITE)
-TOO_MANY_EVENTS, LAST_STEP = int(Stop.TOO_MANY_EVENTS), int(Stop.LAST_STEP)
-UNEXPLAINED = int(Stop.UNEXPLAINED)
 TOUCHED, BEARING, KINDS = MONITORS, MONITORS + 1, MONITORS + 2  # what ends a step, besides the monitors of a contact
-TURNS = 0.1  # times the gap rate that counts as zero: rates that change by less need not be found anew
 FLIGHT_CELLS = 128
 EVENTS_AT_ONCE = 2000
-INSTANT = 1e-3  # share of `accumulation_time` within which events count as happening at once
 ROWS_PER_STEP = math.ceil(FLIGHT_PHASE / FINEST_ROWS) + 8
 EVENTS_PER_CONTACT = 20
-WORK = (N_STEPS, N_REJECTED, N_EVALUATIONS, N_GAPS, N_LOOKUPS)  # counts of what is done again once a cell is known
-BEFORE = 4  # in `until`, from here on: these counts before the current step
 
 
 @kernel
@@ -82,33 +56,35 @@ def _accept_coupled(model, state, options, end, scratch):
 
     False where drift is no rounding.
     """
-    step = scratch.step
+    step, work, smooth = scratch.step, scratch.work, scratch.smooth
+    closed, pose = smooth.closed, smooth.pose
     n = len(model.coordinates)
     for i in range(2 * n + SUMS):
-        value = dense_value(step, i, end) if end < step.span[1] else step.y1[i]
-        scratch.y[i] = value
+        value = dense_value(step, i, end) if end < step.span.length else step.y1[i]
+        smooth.y[i] = value
         if i < n:
             state.q[i] = value
         elif i < 2 * n:
             state.u[i - n] = value
-    for i in range(SUMS):
-        state.sums[(DRIVE, DAMPING, FRICTION)[i]] += scratch.y[2 * n + i]
-    motion(model, state, options, state.clock[0], scratch.y, scratch)
+    state.sums.drive += smooth.y[2 * n]
+    state.sums.damping += smooth.y[2 * n + 1]
+    state.sums.friction += smooth.y[2 * n + 2]
+    motion(model, state, options, state.clock.time, work, smooth)
     before = kinetic_energy(model, state.u)
     first = 0
-    while first < state.numbers[0]:
-        m = place_contacts(model, state.active, first, state.upto[first], scratch.pose, scratch.closed)
-        deepest = project_positions(scratch.closed, m, True, scratch.work, state.q)
-        state.worst[0] = max(state.worst[0], deepest)
-        if _turns_rates(model, state, options, m, scratch.closed):
-            place(model, state.q, state.u, scratch.pose)
-            refresh(model, m, scratch.closed, scratch.pose)
-        project_velocities(scratch.closed, m, state.mode, IN_STEPS, scratch.work, state.u)
+    while first < state.now.awake_contacts:
+        m = place_contacts(model, state.active, first, state.upto[first], pose, closed)
+        deepest = project_positions(closed, m, True, work, state.q)
+        state.worst.penetration = max(state.worst.penetration, deepest)
+        if _turns_rates(model, state, options, m, closed):
+            place(model, state.q, state.u, pose)
+            refresh(model, m, closed, pose)
+        project_velocities(closed, m, state.mode, DEPENDENT_IN_STEPS, work, state.u)
         first += m
     for i in range(n):
-        state.a[i] = scratch.dy[n + i]
-    state.worst[1] = max(state.worst[1], before)
-    return is_explained(model, options, before, kinetic_energy(model, state.u), state.worst[1])
+        state.a[i] = smooth.dy[n + i]
+    state.worst.kinetic_energy = max(state.worst.kinetic_energy, before)
+    return is_explained(model, options, before, kinetic_energy(model, state.u), state.worst.kinetic_energy)
 
 
 @kernel
@@ -119,7 +95,7 @@ def _turns_rates(model, state, options, m, closed):
         furthest = max(furthest, abs(closed.kin[i].g))
     for i in range(len(state.u)):
         fastest = max(fastest, abs(state.u[i]) / model.coordinates[i].scale)
-    return furthest * fastest > TURNS * options.speed_zero
+    return furthest * fastest > RATES_TURNED * options.speed_zero
 
 
 @kernel
@@ -133,115 +109,123 @@ def _is_finite(state):
 @kernel
 def _room_left(record, contacts):
     events = EVENTS_PER_CONTACT * contacts
-    return record.used[0] + ROWS_PER_STEP < len(record.rows) and record.used[1] + events < len(record.events)
+    return record.used.rows + ROWS_PER_STEP < len(record.rows) and record.used.events + events < len(record.events)
 
 
 @kernel
 def _smooth_step(model, cells, state, options, end_time, scratch, record):
     """One smooth step up to its first event; returns (Stop code, event?)."""
-    left = end_time - state.clock[0]
-    flying, spacing, leave = can_fly(model, state), math.inf, math.inf
-    proposed = state.clock[1]
+    left = end_time - state.clock.time
+    flying, spacing, code = can_fly(model, state), math.inf, NONE_FIRED
+    proposed = state.clock.step
     if flying:
         length, spacing = flight_length(model, state, options)
-        begin_flight(model, state, min(length, left), scratch)
+        begin_flight(model, state, min(length, left), scratch.step)
         # A long flight would ask about cells far behind the first event.
         for p in range(len(model.pairs)):
             length = min(length, time_through_cells(model, p, state.u, scratch.step.bound, FLIGHT_CELLS))
-        scratch.step.span[1] = min(length, left)
+        scratch.step.span.length = min(length, left)
         leave = first_turn(model, state)
     else:
-        if not coupled_step(
-            model, state, options, min(left, options.max_step, next_knot(model, state.clock[0]) - state.clock[0]), scratch
-        ):
-            return STEP_TOO_SMALL, False
-        leave = first_leave(model, state, options, scratch)
+        longest = min(left, options.max_step, next_knot(model, state.clock.time) - state.clock.time)
+        made, smallest = coupled_step(model, state, options, longest, scratch)
+        if not made:
+            return Stop.STEP_TOO_SMALL, False
+        leave, code = first_leave(model, state, options, smallest, scratch)
     step = scratch.step
-    length = step.span[1]
+    length = step.span.length
     known, touch, contact = first_touch(model, cells, state, options, min(length, leave), scratch)
     if not known:
-        state.clock[1] = proposed
-        return CELL_UNKNOWN, False
+        state.clock.step = proposed
+        return Stop.CELL_UNKNOWN, False
     end = min(length, touch, leave)
-    state.clock[0] = end_time if end == left else step.span[0] + end
+    state.clock.time = end_time if end == left else step.span.start + end
     if flying:
-        state.counts[N_FLIGHTS] += 1
+        state.counts.flights += 1
         add_flight_sums(model, state, step, end)
-        keep_flight_rows(model, state, end, spacing, scratch, record)
+        keep_flight_rows(model, state, end, spacing, scratch.step, record)
     else:
         if not _accept_coupled(model, state, options, end, scratch):
-            return UNEXPLAINED, False
-        keep_inner_rows(model, options, end, scratch, record)
-        keep_row(state, record, state.clock[0], state.q, state.u, state.a)
+            return Stop.UNEXPLAINED, False
+        keep_inner_rows(model, options, end, scratch.step, record)
+        keep_row(state, record, state.clock.time, state.q, state.u, state.a)
     keep_passages(model, state, step, end, record)
-    state.numbers[4] = contact
+    state.now.touched = contact
     event = contact >= 0 or leave <= length
     if event:
-        _note_end(model, state, contact, flying, scratch)
-    return RUNNING, event
+        _note_end(state, contact, code, scratch.ended)
+    return Stop.RUNNING, event
 
 
 @kernel
-def _note_end(model, state, contact, flying, scratch):
+def _note_end(state, contact, code, ended):
     """Remember what ended the step: `KINDS` times the contact (or bearing) that did, plus the kind of its monitor.
 
-    TOUCHED: it closed; BEARING: dry friction in the bearing of a coordinate holds or lets go.
+    TOUCHED: it closed; BEARING: dry friction in the bearing of a coordinate holds or lets go. `code`: of the monitor that
+    ended a coupled step.
     """
-    code = scratch.codes[0]
     if contact >= 0:
         what = KINDS * contact + TOUCHED
-    elif flying:
+    elif code == NONE_FIRED:
         what = BEARING
-    elif code >= MONITORS * state.numbers[0]:
-        what = KINDS * (code - MONITORS * state.numbers[0]) + BEARING
+    elif code >= MONITORS * state.now.awake_contacts:
+        what = KINDS * (code - MONITORS * state.now.awake_contacts) + BEARING
     else:
         what = KINDS * state.active[code // MONITORS] + code % MONITORS
-    scratch.recent[scratch.recent[RECENT] % RECENT] = what
-    scratch.recent[RECENT] += 1
+    ended.by[ended.number % RECENT] = what
+    ended.number += 1
 
 
 @kernel
 def _reaches(model, state, options, end_time):
     """True if the next step, taken freely, might come as far as `end_time`."""
-    longest = min(state.clock[1], options.max_step)
+    longest = min(state.clock.step, options.max_step)
     if can_fly(model, state):
         longest, _ = flight_length(model, state, options)
-    return longest >= end_time - state.clock[0]
+    return longest >= end_time - state.clock.time
 
 
 @kernel
 def _settle(model, cells, state, options, scratch, record):
     """Handle the waiting event; counts events that hardly let time advance."""
-    if state.clock[0] - state.clock[2] > INSTANT * options.accumulation_time:
-        state.numbers[3], state.clock[2] = 0, state.clock[0]
+    if state.clock.time - state.clock.event > SAME_INSTANT * options.accumulation_time:
+        state.now.events, state.clock.event = 0, state.clock.time
         begin_instant(state)
-    elif state.numbers[3] > EVENTS_AT_ONCE:
-        return TOO_MANY_EVENTS
-    touched, impacts, lost = state.numbers[4], state.counts[N_IMPACTS], state.sums[IMPACTS]
+    elif state.now.events > EVENTS_AT_ONCE:
+        return Stop.TOO_MANY_EVENTS
+    touched, impacts, lost = state.now.touched, state.counts.impacts, state.sums.impacts
     before = kinetic_energy(model, state.u)
     code = settle(model, cells, state, options, scratch, record)
-    if code != RUNNING:
+    if code != Stop.RUNNING:
         return code
-    state.worst[1] = max(state.worst[1], before)
-    if not is_explained(model, options, before, kinetic_energy(model, state.u) + (state.sums[IMPACTS] - lost), state.worst[1]):
-        return UNEXPLAINED
-    if state.counts[N_IMPACTS] > impacts:
+    state.worst.kinetic_energy = max(state.worst.kinetic_energy, before)
+    after = kinetic_energy(model, state.u) + (state.sums.impacts - lost)
+    if not is_explained(model, options, before, after, state.worst.kinetic_energy):
+        return Stop.UNEXPLAINED
+    if state.counts.impacts > impacts:
         forget_decisions(state)
     elif touched < 0 and not decide_once(state):
-        return TOO_MANY_EVENTS
-    state.numbers[3] += 1
-    state.counts[N_INSTANTS] += 1
+        return Stop.TOO_MANY_EVENTS
+    state.now.events += 1
+    state.counts.instants += 1
     keep_passages(model, state, scratch.step, 0.0, record)
-    keep_row(state, record, state.clock[0], state.q, state.u, state.a)
-    return RUNNING
+    keep_row(state, record, state.clock.time, state.q, state.u, state.a)
+    return Stop.RUNNING
 
 
 @kernel
-def _undone(code, state, until):
+def _work_done(state):
+    """Counts of what is done again once a cell is known."""
+    counts = state.counts
+    return counts.steps, counts.rejected_steps, counts.evaluations, counts.gap_evaluations, counts.cells_looked_up
+
+
+@kernel
+def _undone(code, state, before):
     """What is done again with the cell known counts once: work must not depend on what earlier runs have learnt."""
-    if code == CELL_UNKNOWN:
-        for i in range(len(WORK)):
-            state.counts[WORK[i]] = int(until[BEFORE + i])
+    if code == Stop.CELL_UNKNOWN:
+        counts = state.counts
+        counts.steps, counts.rejected_steps, counts.evaluations, counts.gap_evaluations, counts.cells_looked_up = before
     return code
 
 
@@ -250,45 +234,36 @@ def _loop(model, cells, state, options, until, scratch, record):
     """From step to step and event to event; see `advance`."""
     fill_inverse(model, state.grip, scratch.work.inverse)
     while True:
-        if not _room_left(record, len(scratch.closed.ids)):
-            return BUFFER_FULL
-        for i in range(len(WORK)):
-            until[BEFORE + i] = state.counts[WORK[i]]
-        if state.numbers[2]:
+        if not _room_left(record, len(state.active)):
+            return Stop.BUFFER_FULL
+        before = _work_done(state)
+        if state.now.event_waits == 1:
             code = _settle(model, cells, state, options, scratch, record)
-            if code != RUNNING:
-                return _undone(code, state, until)
+            if code != Stop.RUNNING:
+                return _undone(code, state, before)
             continue
-        if state.clock[0] >= until[1]:
-            return DURATION
-        if state.clock[0] >= until[0] or until[3] <= 0.0:
-            return SLICE
-        if until[2] == 0.0 and _reaches(model, state, options, until[1]):
-            return LAST_STEP
-        until[3] -= 1.0
-        code, event = _smooth_step(model, cells, state, options, until[1], scratch, record)
-        if code != RUNNING:
-            return _undone(code, state, until)
+        if state.clock.time >= until.end:
+            return Stop.DURATION
+        if state.clock.time >= until.slice_end or until.steps <= 0.0:
+            return Stop.SLICE
+        if until.may_cut == 0 and _reaches(model, state, options, until.end):
+            return Stop.LAST_STEP
+        until.steps -= 1.0
+        code, event = _smooth_step(model, cells, state, options, until.end, scratch, record)
+        if code != Stop.RUNNING:
+            return _undone(code, state, before)
         if not _is_finite(state):
-            return NOT_FINITE
-        state.numbers[2] = 1 if event else 0
-
-
-@inlined
-def scratch_by_reference(scratch):
-    """The scratch arrays as nested structs; what holds structs itself names them first."""
-    work = ContactWorkRef(LcpWorkRef(*scratch.work.lcp), *scratch.work[1:])
-    return ScratchRef(StepRef(*scratch.step), ClosedRef(*scratch.closed), ClosedRef(*scratch.rest), work, *scratch[4:])
+            return Stop.NOT_FINITE
+        state.now.event_waits = 1 if event else 0
 
 
 @entry
 def advance(model, cells, state, options, until, scratch, record):
-    """Run to the time until[1] (or return at the end of a slice, after until[0] or until[3] steps); returns a Stop code.
+    """Run to the time `until.end`, or return at the end of a slice: see `Until`; returns a Stop code.
 
-    Before a step that until[1] might cut short it returns once, unless until[2] is set. Steps are counted down in until[3].
-    Behind that is room for counts.
+    Before a step that the end might cut short it returns once, unless `until.may_cut` is set.
 
-    All arguments but `until` are NamedTuples; `state`, `scratch` and `record` are written to.
+    All arguments but `until`, a record, are NamedTuples; `until.steps`, `state`, `scratch` and `record` are written to.
     """
     return _loop(
         ModelRef(*model),

@@ -9,10 +9,10 @@ from typing import Any
 from watchsim.simulation.advance import BEARING, KINDS, TOUCHED
 from watchsim.simulation.motion.coupled_motion import EXTENT, NORMAL, PARADOX, TANGENTIAL
 from watchsim.simulation.record.trajectory import Pair
-from watchsim.simulation.state import RECENT, Scratch, State
+from watchsim.simulation.scratch import RECENT, Ended
+from watchsim.simulation.state import State
+from watchsim.simulation.tolerances import LEDGER_PER_TOLERANCE, LEDGER_SHARE
 
-LEAST_SHARE = 1e-6  # of the energy turned over: a larger residual is no rounding
-PER_TOLERANCE = 1e3  # times the tolerance per step, which the user asks for: a residual of that size was asked for
 MANY = 6  # different causes named
 
 _WORDS = {
@@ -27,13 +27,12 @@ _WORDS = {
 def ledger_fails(energy: dict[str, Any], held: float, tolerance: float) -> bool:
     """True if the residual of the ledger is more than rounding; `held` (J): the most energy that was ever in the motion."""
     turned_over = held + abs(energy["in_J"]) + abs(energy["stored_J"]) + sum(energy["dissipated"].values())
-    return bool(abs(energy["residual_J"]) > max(LEAST_SHARE, PER_TOLERANCE * tolerance) * turned_over)
+    return bool(abs(energy["residual_J"]) > max(LEDGER_SHARE, LEDGER_PER_TOLERANCE * tolerance) * turned_over)
 
 
-def what_alternates(state: State, scratch: Scratch, pairs: Sequence[Pair], bodies: Sequence[str]) -> str:
+def what_alternates(ended: Ended, pairs: Sequence[Pair], bodies: Sequence[str]) -> str:
     """What ended the last steps, most frequent first, with bodies and edges; "" where nothing did."""
-    last = min(int(scratch.recent[RECENT]), RECENT)
-    counted = Counter(scratch.recent[:last].tolist())
+    counted = Counter(ended.by[: min(int(ended.number), RECENT)].tolist())
     words = [f"{_cause(code, pairs, bodies)} ({times}×)" for code, times in counted.most_common(MANY)]
     return f"what alternates: {'; '.join(words)}" if words else ""
 
@@ -47,5 +46,5 @@ def _cause(code: int, pairs: Sequence[Pair], bodies: Sequence[str]) -> str:
 
 def touching(state: State, pairs: Sequence[Pair]) -> str:
     """The contacts in force, in words."""
-    ids = state.active[: state.numbers[0]].tolist()
+    ids = state.active[: state.now.awake_contacts].tolist()
     return "in contact: " + "; ".join(str(pairs[k]) for k in ids[:MANY]) if ids else ""

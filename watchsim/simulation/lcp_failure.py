@@ -8,14 +8,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from watchsim.dynamics.acceleration import LEVEL_ACCELERATION
-from watchsim.dynamics.impact import LEVEL_COMPRESSION, LEVEL_EXPANSION
-from watchsim.dynamics.lcp.lemke_pivoting import INEXACT, MAX_ITER, RAY
+from watchsim.dynamics.lcp.outcome import LcpOutcome
+from watchsim.dynamics.problem_kinds import Level
 from watchsim.simulation.record.contact_names import Pair
-from watchsim.simulation.state import Scratch, State
+from watchsim.simulation.scratch import Scratch
+from watchsim.simulation.state import State
 
-LEVELS = {LEVEL_ACCELERATION: "acceleration", LEVEL_COMPRESSION: "compression", LEVEL_EXPANSION: "expansion"}
-LEMKE_ENDS = {RAY: "ray", MAX_ITER: "too many pivots", INEXACT: "not a solution"}
+LEMKE_ENDS = {
+    LcpOutcome.SOLVED: "a solution",
+    LcpOutcome.RAY: "ray",
+    LcpOutcome.TOO_MANY_PIVOTS: "too many pivots",
+    LcpOutcome.INEXACT: "not a solution",
+}
 ADVICE = (
     "Less friction at the contacts named here: near mu |b| = |a| of a rotor's lever arms bodies jam.",
     "Restitution 0 at these contacts: then only the compression must be solved.",
@@ -32,14 +36,15 @@ def failure_of(state: State, scratch: Scratch, pairs: Sequence[Pair]) -> dict[st
     A, rhs      of y = A x + rhs in the scaling of dynamics/coulomb.py
     """
     work = scratch.work
-    m, elements, bearings, level, lemke = (int(value) for value in work.note)
-    closed = scratch.rest if level == LEVEL_ACCELERATION else scratch.closed
+    m, elements, bearings = int(work.posed.contacts), int(work.posed.elements), int(work.posed.bearings)
+    level = Level(int(work.posed.level))
+    closed = scratch.event.rest if level == Level.ACCELERATION else scratch.event.closed
     rows, n = 2 * m + bearings, m + 2 * elements
     return {
-        "level": LEVELS.get(level, "none"),
-        "lemke_ended_with": LEMKE_ENDS.get(lemke, "a solution"),
+        "level": level.name.lower(),
+        "lemke_ended_with": LEMKE_ENDS[LcpOutcome(int(work.posed.lemke))],
         "what_to_try": list(ADVICE),
-        "t": float(state.clock[0]),
+        "t": float(state.clock.time),
         "q": state.q.tolist(),
         "u": state.u.tolist(),
         "contacts": [_contact(int(k), closed.kin[row], state, pairs) for row, k in enumerate(closed.ids[:m])],

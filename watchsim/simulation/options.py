@@ -9,17 +9,31 @@ from typing import NamedTuple
 
 from watchsim.jit import by_reference
 from watchsim.mechanism.contact_features import JOINT
-
-FINEST_ROWS, COARSEST_ROWS = 0.0125, 0.1  # rad
+from watchsim.simulation.tolerances import (
+    ACCUMULATION_SPEED,
+    ACCUMULATION_TIME,
+    BEHIND_LEAST,
+    BEHIND_MOST,
+    BEHIND_PER_TOLERANCE,
+    COARSEST_ROWS,
+    EXTENT_PER_JOINT,
+    FINEST_ROWS,
+    FORCE_ZERO,
+    GAP_CLOSE,
+    GAP_ZERO,
+    SLEEP,
+    SPEED_PER_TOLERANCE,
+    SPEED_ZERO,
+)
 
 
 class Options(NamedTuple):
-    """Tolerances of a run. Each line: what it is; too large: ...; too small: ..."""
+    """Tolerances of a run, from those of tolerances.py. Each line: what it is; too large: ...; too small: ..."""
 
     tolerance: float  # relative error per step of coordinates and velocities. Large: wrong rates; small: slow below 1e-12
     gap_zero: float  # m: a gap this small is zero to rounding. Large: early contacts; small: below the rounding of positions
     gap_close: float  # m: gaps this small take part in an impact. Large: merges events; small: splits simultaneous ones
-    behind: float  # m: a step may end this far behind a contact. Large: takes backs of parts for fronts; small: falls through
+    behind: float  # m: a step may end this far behind a contact. Large: accepts contacts on the far side; small: falls through
     extent: float  # m: how far beyond its primitive's end a contact counts. Large: sticks out; small: slips through joints
     speed_zero: float  # m/s: slower is zero. Large: freezes slow sliding; small: below the rounding of velocities
     force_zero: float  # share of a contact's force terms that counts as zero. Large: late detachment; small: rounding decides
@@ -38,18 +52,18 @@ def options_for(size: float, tolerance: float, max_step: float) -> Options:
     """Options for a scene whose contact outlines are `size` metres across."""
     return Options(
         tolerance=tolerance,
-        gap_zero=1e-13 * size,
+        gap_zero=GAP_ZERO * size,
         # Alike for all tolerances: which contacts share an impact must not depend on how exactly it is computed.
-        gap_close=2e-10 * size,
+        gap_close=GAP_CLOSE * size,
         # A corner that lands flat comes within its primitives only when it has landed: as far behind as drift has let it.
-        behind=max(2e-10, min(20.0 * tolerance, 2e-5)) * size,
-        extent=4.0 * JOINT * size,
+        behind=max(BEHIND_LEAST, min(BEHIND_PER_TOLERANCE * tolerance, BEHIND_MOST)) * size,
+        extent=EXTENT_PER_JOINT * JOINT * size,
         # Velocities drift off their contacts by about the tolerance within a step.
-        speed_zero=max(1e-8, 20.0 * tolerance) * size,
-        force_zero=1e-10,
-        accumulation_time=1e-6,
-        accumulation_speed=0.1 * size,
-        sleep=1e-9,
+        speed_zero=max(SPEED_ZERO, SPEED_PER_TOLERANCE * tolerance) * size,
+        force_zero=FORCE_ZERO,
+        accumulation_time=ACCUMULATION_TIME,
+        accumulation_speed=ACCUMULATION_SPEED * size,
+        sleep=SLEEP,
         # Rates between rows are off by the 5th power of their spacing: here by less than the tolerance.
         row_phase=min(max(FINEST_ROWS, 0.1 * (tolerance / 1e-9) ** 0.2), COARSEST_ROWS),
         max_step=max_step,

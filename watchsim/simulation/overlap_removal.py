@@ -16,13 +16,12 @@ from watchsim.contact.kinematics import Closed, closed_contacts
 from watchsim.contact.poses import poses
 from watchsim.model.records import Model
 from watchsim.simulation.options import Options
+from watchsim.simulation.tolerances import FURTHEST_TAKEN_BACK, IMMOBILE, NO_CHANGE_LEFT, OVERLAP_GONE
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-FURTHEST = 50.0  # times the rounding, that any point may move to take an overlap back; further, it is no rounding
 ROUNDS = 6  # of Newton's method; an overlap is smaller than all radii, so that two suffice
-IMMOBILE = 1e-6  # of a contact's mobility in all directions: less across it is none
 
 
 def kinematics_at(model: Model, q: Array) -> Closed:
@@ -70,8 +69,8 @@ def taken_back_from(model: Model, q: Array, options: Options, near: float) -> Ar
         mobile = np.linalg.norm(across, axis=1) > IMMOBILE * np.linalg.norm(np.hstack([across, along]), axis=1)
         overlapping = overlapping_rows(model, closed, options, near, 0.0)
         overlapping = overlapping[mobile[overlapping]]
-        if not len(overlapping) or -closed.kin.g[overlapping].min() <= 10.0 * options.gap_zero:
-            return moved if _furthest(model, moved - q, options.size) <= FURTHEST * near else None
+        if not len(overlapping) or -closed.kin.g[overlapping].min() <= OVERLAP_GONE * options.gap_zero:
+            return moved if _furthest(model, moved - q, options.size) <= FURTHEST_TAKEN_BACK * near else None
         # What touches from outside must not be pushed into.
         close = (np.abs(closed.kin.g) <= near) & (closed.kin.margin >= -options.extent) & (closed.kin.g >= 0.0)
         kept |= {*overlapping.tolist(), *np.flatnonzero(close & mobile).tolist()}
@@ -103,7 +102,7 @@ def _least_change(directions: Array, wanted: Array) -> Array | None:
     target = np.append(np.zeros(directions.shape[1]), 1.0)
     loads, _ = nnls(system, target)
     left = system @ loads - target
-    if np.linalg.norm(left) < 1e-9:
+    if np.linalg.norm(left) < NO_CHANGE_LEFT:
         return None
     change: Array = -left[:-1] / left[-1] * unit
     return change

@@ -18,10 +18,12 @@ from numpy.typing import NDArray
 from watchsim.candidates.cell_table import CellFinder
 from watchsim.dynamics.applied_forces import stored_energy
 from watchsim.mechanism.compile import Compiled
+from watchsim.model.named_fields import blank, words_of
 from watchsim.scene.oscillation import frequency
 from watchsim.scene.recording import Recording
 from watchsim.scene.scene import Scene
-from watchsim.simulation.advance import EVENTS_PER_CONTACT, ROWS_PER_STEP, WORK, advance
+from watchsim.simulation.advance import EVENTS_PER_CONTACT, ROWS_PER_STEP, advance
+from watchsim.simulation.buffers import Until, new_record
 from watchsim.simulation.energy_ledger import ledger_fails, touching, what_alternates
 from watchsim.simulation.interrupts import held_interrupts
 from watchsim.simulation.lcp_failure import failure_of
@@ -33,21 +35,13 @@ from watchsim.simulation.record.row_selection import Kept, columns_of, tail_leng
 from watchsim.simulation.record.saved_state import SavedState, save_state
 from watchsim.simulation.record.tally import Tally
 from watchsim.simulation.record.trajectory import EVENT_DTYPE, EventKind, Trajectory
+from watchsim.simulation.scratch import new_scratch
 from watchsim.simulation.start_clearance import clear_start
 from watchsim.simulation.start_clearance import warm_up as warm_up_start
-from watchsim.simulation.state import (
-    COUNT_NAMES,
-    DAMPING,
-    DRIVE,
-    FRICTION,
-    IMPACTS,
-    State,
-    new_record,
-    new_scratch,
-    new_state,
-    room_for,
-)
+from watchsim.simulation.state import COUNT_NAMES, State, new_state, room_for
+from watchsim.simulation.state_arrays import arrays_of
 from watchsim.simulation.stops import Stop
+from watchsim.simulation.tolerances import FIRST_STEP
 
 Progress = Callable[[float, float], None]  # simulated time, duration
 
@@ -64,9 +58,11 @@ def natural_step(compiled: Compiled, longest: float) -> float:
     return min(longest, 0.5 * math.pi / compiled.fastest) if compiled.fastest else longest
 
 
-def new_until(end: float = 0.0, duration: float = 0.0, last: float = 0.0, steps: float = 0.0) -> NDArray[np.float64]:
-    """How far `advance` is to run: end of the slice (s), of the run (s), 1 if the last step may be cut short, steps."""
-    return np.array([end, duration, last, steps, *(0.0 for _ in WORK)])
+def new_until(slice_end: float = 0.0, end: float = 0.0, may_cut: bool = False, steps: float = 0.0) -> Until:
+    """How far `advance` is to run."""
+    until = blank(Until)
+    until.slice_end, until.end, until.may_cut, until.steps = slice_end, end, int(may_cut), steps
+    return until
 
 
 class Run:
@@ -84,7 +80,7 @@ class Run:
         self.scene, self.compiled, self.tolerance = scene, compiled, tolerance
         self.options: Options = options_for(compiled.size, tolerance, natural_step(compiled, scene.duration))
         self.state: State = new_state(model, compiled.q, compiled.u)
-        self.state.clock[1] = 1e-3 * self.options.max_step
+        self.state.clock.step = FIRST_STEP * self.options.max_step
         self.finder = CellFinder(model)
         self.scratch = new_scratch(model)
         self.pairs = pairs_of(compiled)
@@ -102,7 +98,7 @@ class Run:
         """Begin at the scene's start; SceneError where bodies overlap there (see `start.clear_start`)."""
         q, taken_back = clear_start(self.scene, self.compiled, self.finder, self.options)
         if taken_back > 0.0:
-            self.state.q[:], self.state.worst[0] = q, taken_back
+            self.state.q[:], self.state.worst.penetration = q, taken_back
             self.stored_at_start = stored_energy(self.compiled.model, q, self.state.u)
 
     def begin_from(self, saved: SavedState) -> None:
@@ -115,12 +111,11 @@ class Run:
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Everything the future depends on, besides the model and the settings."""
-        return {**self.state._asdict(), "worst_residual": self._worst_residual(), "overlap": self.watch.found}
+        return {**arrays_of(self.state)._asdict(), "worst_residual": self._worst_residual(), "overlap": self.watch.found}
 
     def _worst_residual(self) -> NDArray[np.float64]:
         """(1,): the worst violation of a complementarity condition so far."""
-        worst: NDArray[np.float64] = self.scratch.work.lcp.worst
-        return worst
+        return words_of(self.scratch.work.lcp.worst, float)
 
     def settings(self) -> dict[str, Any]:
         """What must be the same when a saved state is taken up."""
@@ -136,11 +131,11 @@ class Run:
 
     def flush(self) -> None:
         """Empty the buffers: count the events, keep what the recording wants."""
-        rows, events = self.record.used
+        rows, events = self.record.used.rows, self.record.used.events
         self.tally.fold(self.record.events[:events])
         self.watch.see_rows(self.record.rows[:rows])
         self.kept.flush(self.record.rows[:rows], self.record.events[:events])
-        self.record.used[:] = 0
+        self.record.used.rows, self.record.used.events = 0, 0
 
     def warm_up(self) -> None:
         """Load or compile the kernels, once in a process: a call that returns at once because it has no room to record."""
@@ -150,13 +145,13 @@ class Run:
             _warm.add(type(self))
         warm_up_start(self.scene, self.compiled.model)
 
-    def _advance(self, until: NDArray[np.float64], record: Any) -> Stop:
+    def _advance(self, until: Until, record: Any) -> Stop:
         code = advance(self.compiled.model, self.finder.cells, self.state, self.options, until, self.scratch, record)
         return Stop(int(code))
 
     def _learn(self) -> None:
         """Look up the cell that the loop has met."""
-        self.finder.learn(int(self.scratch.unknown[0]), self.scratch.at.copy())
+        self.finder.learn(int(self.scratch.asked.cell.pair), self.scratch.asked.at.copy())
 
     def to_the_end(self, duration: float, progress: Progress | None) -> Stop:
         """Run until the duration is over or something ends the run for good."""
@@ -184,7 +179,8 @@ class Run:
         coordinates = self.compiled.model.coordinates
         # What moves more slowly than that is computed less closely: see the error control of integrator.py.
         usual = float(0.5 * np.sum(coordinates.mass * (coordinates.scale * coordinates.rate) ** 2))
-        return ledger_fails(self._energy(), max(float(self.state.worst[1]), self.stored_at_start, usual), self.tolerance)
+        held = max(float(self.state.worst.kinetic_energy), self.stored_at_start, usual)
+        return ledger_fails(self._energy(), held, self.tolerance)
 
     def _details(self, stop: Stop) -> str:
         """What is known of where and why, behind a colon; "" where the cause says it all."""
@@ -197,28 +193,28 @@ class Run:
             words = ". ".join(filter(None, (touching(self.state, self.pairs), ADVICE)))
         elif stop == Stop.TOO_MANY_EVENTS:
             bodies = [self.scene.bodies[coordinate.body].name for coordinate in self.compiled.model.coordinates]
-            words = what_alternates(self.state, self.scratch, self.pairs, bodies)
+            words = what_alternates(self.scratch.ended, self.pairs, bodies)
         else:
             words = ""
         return f": {words}" if words else ""
 
     def _look(self) -> None:
         """Look at the state now for bodies inside each other."""
-        self.watch.see((self.state.clock[:1].copy(), self.state.q[None].copy()))
+        self.watch.see((np.array([self.state.clock.time]), self.state.q[None].copy()))
 
     def _overlaps(self) -> bool:
-        return self.watch.fails(float(self.state.worst[0]))
+        return self.watch.fails(float(self.state.worst.penetration))
 
     def _slices(self, duration: float, progress: Progress | None, interrupted: Callable[[], bool]) -> Stop:
         """Slice after slice of about `SLICE_WALL`, with what has to be done between them."""
         length = 1e-5 * duration  # grows tenfold at most: a long slice would be deaf
         steps = FEWEST_STEPS  # where events crowd, time is no measure of work
         until = new_until(0.0, duration)
-        look = self.watch.next_look(float(self.state.clock[0]))
+        look = self.watch.next_look(float(self.state.clock.time))
         while True:
-            start, begun = time.perf_counter(), float(self.state.clock[0])
-            until[0] = min(duration, begun + length, look)
-            until[3] = steps
+            start, begun = time.perf_counter(), float(self.state.clock.time)
+            until.slice_end = min(duration, begun + length, look)
+            until.steps = steps
             stop = self._advance(until, self.record)
             if stop == Stop.CELL_UNKNOWN:
                 self._learn()
@@ -226,24 +222,24 @@ class Run:
                 self.flush()
             elif stop == Stop.LAST_STEP:
                 # The next step is cut short by the end. Who goes on later must go on from here, to take it whole.
-                self.saved, until[2] = self.save(), 1.0
+                self.saved, until.may_cut = self.save(), 1
             elif stop != Stop.SLICE:
                 return stop
             else:
                 pace = SLICE_WALL / max(time.perf_counter() - start, 1e-4)
-                if until[3] > 0.0:
-                    done = float(self.state.clock[0]) - begun
+                if until.steps > 0.0:
+                    done = float(self.state.clock.time) - begun
                     length = min(max(done * pace, 1e-9 * duration), 10.0 * length)
-                steps = min(max(pace * (steps - until[3]), 1.0), 2.0 * steps, MOST_STEPS)
-            if self.state.clock[0] >= look:
+                steps = min(max(pace * (steps - until.steps), 1.0), 2.0 * steps, MOST_STEPS)
+            if self.state.clock.time >= look:
                 self._look()
-                look = self.watch.next_look(float(self.state.clock[0]))
+                look = self.watch.next_look(float(self.state.clock.time))
             if self._ledger_fails():
                 return Stop.LEDGER
             if self._overlaps():
                 return Stop.OVERLAP
             if progress is not None:
-                progress(float(self.state.clock[0]), duration)
+                progress(float(self.state.clock.time), duration)
             if interrupted():
                 return Stop.INTERRUPTED
 
@@ -256,7 +252,7 @@ class Run:
     def _all_kept(self) -> tuple[Sequence[NDArray[np.float64]], NDArray[Any]]:
         """t, q, u, a and the events."""
         nothing = columns_of(np.zeros((0, 1 + 3 * len(self.state.q))))
-        return self.kept.closed(float(self.state.clock[0])) or (nothing, np.zeros(0, EVENT_DTYPE))
+        return self.kept.closed(float(self.state.clock.time)) or (nothing, np.zeros(0, EVENT_DTYPE))
 
     def trajectory(self, stop: Stop, wall: float, compile_time: float) -> Trajectory:
         """Everything kept, as a frozen value."""
@@ -265,8 +261,8 @@ class Run:
         words = self._details(stop)
         saved = self.saved
         if saved is not None:
-            before = self.kept.counts(float(self.state.clock[0]), self._parts_before)
-            stays = self.kept.for_good(float(self.state.clock[0]), self._parts_before)
+            before = self.kept.counts(float(self.state.clock.time), self._parts_before)
+            stays = self.kept.for_good(float(self.state.clock.time), self._parts_before)
             recorded = {**saved.recorded, "stays": stays}
             saved = dataclasses.replace(saved, rows=before[0], events=before[1], recorded=recorded)
         return Trajectory(
@@ -279,29 +275,29 @@ class Run:
             events=events,
             pairs=self.pairs,
             stop=stop,
-            stop_message=f"t = {self.state.clock[0]:.9g} s: {stop.sentence}{words}",
-            simulated=float(self.state.clock[0]),
+            stop_message=f"t = {self.state.clock.time:.9g} s: {stop.sentence}{words}",
+            simulated=float(self.state.clock.time),
             wall=wall,
             compile=compile_time,
             method=self.method,
             tolerance=self.tolerance,
-            worst_penetration=float(self.state.worst[0]),
+            worst_penetration=float(self.state.worst.penetration),
             worst_residual=float(self._worst_residual()[0]),
-            overlap=self.watch.result(float(self.state.worst[0])),
+            overlap=self.watch.result(float(self.state.worst.penetration)),
             energy=self._energy(),
             counts=self._counts(),
             step=self.step,
             end_q=compiled.relative(self.state.q[None])[0].copy(),
             end_u=compiled.relative(self.state.u[None], rates=True)[0].copy(),
             keep=self.kept.recording.keep,
-            spans=self.kept.spans(float(self.state.clock[0])),
+            spans=self.kept.spans(float(self.state.clock.time)),
             sums=self.tally.finished(),
             end_state=saved,
             failure=failure_of(self.state, self.scratch, self.pairs) if stop == Stop.LCP_FAILED else None,
         )
 
     def _counts(self) -> dict[str, int]:
-        counts = {name: int(value) for name, value in zip(COUNT_NAMES, self.state.counts, strict=True)}
+        counts = {name: int(value) for name, value in zip(COUNT_NAMES, words_of(self.state.counts, int), strict=True)}
         counts["cells"] = self.finder.number
         counts["cells_asked"] = self.finder.learned
         counts["declared_pairs"] = len(self.compiled.model.contacts)
@@ -309,7 +305,7 @@ class Run:
 
     def _dissipated(self) -> dict[str, float]:
         sums = self.state.sums
-        return {"friction": float(sums[FRICTION]), "damping": float(sums[DAMPING]), "impacts": float(sums[IMPACTS])}
+        return {"friction": float(sums.friction), "damping": float(sums.damping), "impacts": float(sums.impacts)}
 
     def _energy(self) -> dict[str, Any]:
         """The ledger: work in = stored + dissipated + residual, J."""
@@ -317,12 +313,12 @@ class Run:
         at_end = stored_energy(self.compiled.model, self.state.q, self.state.u)
         stored = at_end - self.stored_at_start
         dissipated = self._dissipated()
-        residual = sums[DRIVE] - stored - sum(dissipated.values())
+        residual = sums.drive - stored - sum(dissipated.values())
         # A swing that loses nothing gets nothing and stores nothing more: what it turns over is the scale of its rounding.
         held = max(at_end, self.stored_at_start, _turned_over(self.compiled.model.coordinates))
-        scale = max(abs(sums[DRIVE]), abs(stored), sum(dissipated.values()), held)
+        scale = max(abs(sums.drive), abs(stored), sum(dissipated.values()), held)
         return {
-            "in_J": float(sums[DRIVE]),
+            "in_J": float(sums.drive),
             "dissipated": dissipated,
             "stored_J": float(stored),
             "residual_J": float(residual),

@@ -20,11 +20,10 @@ from watchsim.scene.errors import SceneError
 from watchsim.scene.scene import Scene
 from watchsim.simulation.options import Options, options_for
 from watchsim.simulation.overlap_removal import kinematics_at, overlapping_rows, taken_back_from
+from watchsim.simulation.tolerances import TOUCH_REACH
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
-
-REACH = 1.5  # times the rounding: gaps of what touches as outlines do
 
 
 def clear_start(scene: Scene, compiled: Compiled, finder: CellFinder, options: Options) -> tuple[Array, float]:
@@ -56,7 +55,7 @@ def _clear(
     q = compiled.q
     if not touching or not len(q):
         return q, 0.0, []
-    near = REACH * max(met.allowed for met in touching)
+    near = TOUCH_REACH * max(met.allowed for met in touching)
     ids = _candidates(compiled.model, finder, q)
     model = compiled.model._replace(contacts=frozen(compiled.model.contacts[ids]))
     closed = kinematics_at(model, q)

@@ -17,6 +17,7 @@ from watchsim.scene.recording import Recording
 from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.simulation.runner import Run
 from watchsim.simulation.state import State
+from watchsim.simulation.state_arrays import write_state
 from watchsim.simulation.stops import Stop
 from watchsim.studies.loop import Loop
 
@@ -45,13 +46,12 @@ def run_from(loop: Loop, state: State | None, duration: float) -> Trajectory:
     if state is None:
         run.begin()
     else:
-        for name, array in state._asdict().items():
-            getattr(run.state, name)[...] = array
+        write_state(run.state, state)
         run.stored_at_start = float(stored_energy(run.compiled.model, run.state.q, run.state.u))
     stop = run.to_the_end(duration, None)
     if stop == Stop.INTERRUPTED:
         raise KeyboardInterrupt
-    loop.simulated += float(run.state.clock[0])
+    loop.simulated += float(run.state.clock.time)
     return run.trajectory(stop, 0.0, 0.0)
 
 

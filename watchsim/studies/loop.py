@@ -17,12 +17,16 @@ from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.scene.errors import SceneError
 from watchsim.scene.scene import Scene
 from watchsim.simulation.advance import EVENTS_PER_CONTACT, ROWS_PER_STEP, advance
+from watchsim.simulation.buffers import Until, new_record
 from watchsim.simulation.options import options_for
 from watchsim.simulation.runner import natural_step, new_until
+from watchsim.simulation.scratch import new_scratch
 from watchsim.simulation.start_clearance import clear_start
 from watchsim.simulation.start_clearance import warm_up as warm_up_start
-from watchsim.simulation.state import State, new_record, new_scratch, new_state, room_for
+from watchsim.simulation.state import State, new_state, room_for
+from watchsim.simulation.state_arrays import copy_of_state
 from watchsim.simulation.stops import Stop
+from watchsim.simulation.tolerances import FIRST_STEP
 from watchsim.studies.beginning import freed_start
 
 Events = NDArray[Any]
@@ -70,7 +74,7 @@ class Loop:
                 raise
             q = freed
         state = new_state(self.compiled.model, q, self.compiled.u)
-        state.clock[1] = 1e-3 * self.options.max_step
+        state.clock.step = FIRST_STEP * self.options.max_step
         return state
 
     def on(self, state: State, time: float, exactly: bool = False) -> Events:
@@ -78,30 +82,30 @@ class Loop:
 
         SolverGaveUp where the loop cannot go on; KeyboardInterrupt between two slices.
         """
-        begun = float(state.clock[0])
-        until = new_until(time, time if exactly else math.inf, 1.0, STEPS)
+        begun = float(state.clock.time)
+        until = new_until(time, time if exactly else math.inf, may_cut=True, steps=STEPS)
         parts = []
         while True:
             stop = self._call(state, until, self._record)
             if stop == Stop.CELL_UNKNOWN:
-                self.finder.learn(int(self._scratch.unknown[0]), self._scratch.at.copy())
+                self.finder.learn(int(self._scratch.asked.cell.pair), self._scratch.asked.at.copy())
                 continue
-            events = int(self._record.used[1])
+            events = int(self._record.used.events)
             parts.append(self._record.events[:events].copy())
-            self._record.used[:] = 0
-            if stop == Stop.DURATION or (stop == Stop.SLICE and state.clock[0] >= time):
+            self._record.used.rows, self._record.used.events = 0, 0
+            if stop == Stop.DURATION or (stop == Stop.SLICE and state.clock.time >= time):
                 break
             if stop == Stop.SLICE:
-                until[3] = STEPS
+                until.steps = STEPS
             elif stop != Stop.BUFFER_FULL:
-                raise SolverGaveUp(stop, float(state.clock[0]))
-        self.simulated += float(state.clock[0]) - begun
+                raise SolverGaveUp(stop, float(state.clock.time))
+        self.simulated += float(state.clock.time) - begun
         return parts[0] if len(parts) == 1 else np.concatenate(parts)
 
-    def _call(self, state: State, until: NDArray[np.float64], record: Any) -> Stop:
+    def _call(self, state: State, until: Until, record: Any) -> Stop:
         return Stop(int(advance(self.compiled.model, self.finder.cells, state, self.options, until, self._scratch, record)))
 
 
 def copied(state: State) -> State:
     """The same state in arrays of its own."""
-    return State._make(array.copy() for array in state)
+    return copy_of_state(state)

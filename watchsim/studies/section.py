@@ -13,6 +13,7 @@ import numpy as np
 
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.state import State
+from watchsim.simulation.state_arrays import arrays_of
 from watchsim.studies.loop import Events, Loop, copied
 from watchsim.studies.parts import Parts
 
@@ -51,18 +52,18 @@ def turns(events: Events, parts: Parts) -> Events:
 
 def first_section(loop: Loop, parts: Parts, state: State) -> Section | NoSection:
     """The first turning point after `state`'s time at which everything else stands still; `state` is used up."""
-    last, limit = float(state.clock[0]), float(state.clock[0]) + LONGEST * parts.period
-    while state.clock[0] < limit:
-        before, begun = copied(state), float(state.clock[0])
+    last, limit = float(state.clock.time), float(state.clock.time) + LONGEST * parts.period
+    while state.clock.time < limit:
+        before, begun = copied(state), float(state.clock.time)
         found = turns(loop.on(state, begun + parts.period / LOOKS), parts)
         for turn in found:
             last = float(turn["t"])
             section = section_at(loop, parts, before, last)
             if section is not None:
                 return section
-        if state.clock[0] - last > SILENT * parts.period:
-            return NoSection(True, float(state.clock[0]))
-    return NoSection(False, float(state.clock[0]))
+        if state.clock.time - last > SILENT * parts.period:
+            return NoSection(True, float(state.clock.time))
+    return NoSection(False, float(state.clock.time))
 
 
 def section_at(loop: Loop, parts: Parts, before: State, time: float) -> Section | None:
@@ -79,7 +80,7 @@ def section_at(loop: Loop, parts: Parts, before: State, time: float) -> Section 
 
 def is_clear(loop: Loop, parts: Parts, state: State) -> bool:
     """True if nothing touches the oscillator and nothing else moves."""
-    closed = state.active[: int(state.numbers[0] + state.numbers[1])]
+    closed = state.active[: int(state.now.awake_contacts + state.now.sleeping_contacts)]
     if parts.touching[closed].any():
         return False
     speeds = np.abs(state.u) * loop.options.size / loop.compiled.model.coordinates.scale
@@ -90,10 +91,9 @@ def is_clear(loop: Loop, parts: Parts, state: State) -> bool:
 def _begin_anew(state: State, parts: Parts, side: float) -> None:
     """Time 0, the oscillator at rest for an instant, nothing counted yet."""
     i = parts.coordinate
-    state.clock[2] -= state.clock[0]
-    state.clock[0] = 0.0
+    state.clock.event -= state.clock.time
+    state.clock.time = 0.0
     state.u[i] = 0.0
     state.side_u[i], state.side_q[i] = -side, side
-    state.sums[:] = 0.0
-    state.counts[:] = 0
-    state.worst[:] = 0.0
+    anew = arrays_of(state)
+    anew.sums[:], anew.counts[:], anew.worst[:] = 0.0, 0, 0.0

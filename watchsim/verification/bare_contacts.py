@@ -74,12 +74,12 @@ class BareContacts:
             self.closed.coord[row, : self.n] = np.arange(self.n)
             self.closed.w_N[row, : self.n], self.closed.w_T[row, : self.n] = self.W[2 * i], self.W[2 * i + 1]
 
-    def impact(self, u: Array, eps: Array | None = None) -> tuple[int, Array, Array]:
-        """Status, velocities after, impulses N, T, N, T, ... of the contacts that take part."""
+    def impact(self, u: Array, eps: Array | None = None) -> tuple[bool, Array, Array]:
+        """Solved?, velocities after, impulses N, T, N, T, ... of the contacts that take part."""
         after, m = u.copy(), len(self.taken)
         shares = (self.eps if eps is None else eps)[self.taken]
-        status = _kernel(impact)(self.model, self.closed, m, shares, 0.0, self.work, after)
-        return int(status), after, self.work.force[: 2 * m].copy()
+        solved = _kernel(impact)(self.model, self.closed, m, shares, 0.0, self.work, after)
+        return bool(solved), after, self.work.force[: 2 * m].copy()
 
     def energy_change(self) -> float:
         """Of the impact just solved, as the kernel says, J."""
@@ -89,14 +89,14 @@ class BareContacts:
         """J."""
         return 0.5 * float(u @ (self.mass * u))
 
-    def modes(self, u: Array, h: Array, speed_zero: float) -> tuple[int, NDArray[np.int8]]:
-        """Status, and mode by contact, of the contacts that take part under the forces h; constant directions."""
+    def modes(self, u: Array, h: Array, speed_zero: float) -> tuple[bool, NDArray[np.int8]]:
+        """Solved?, and mode by contact, of the contacts that take part under the forces h; constant directions."""
         mode, grip = np.full(self.m, OPEN, np.int8), np.zeros(self.n, np.int8)
         for row, i in enumerate(self.taken):
             self.closed.kin[row].gN_dot, self.closed.kin[row].gT_dot = self.W[2 * i : 2 * i + 2] @ u
         self.work.h[:] = h
-        status = _kernel(decide_modes)(self.model, self.closed, len(self.taken), 0, speed_zero, self.work, grip, mode)
-        return int(status), mode
+        solved = _kernel(decide_modes)(self.model, self.closed, len(self.taken), 0, speed_zero, self.work, grip, mode)
+        return bool(solved), mode
 
     def forces(self, h: Array, mode: NDArray[np.int8]) -> Array:
         """Forces N, T, N, T, ... of the contacts that take part in their modes under the forces h."""

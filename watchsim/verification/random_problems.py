@@ -9,7 +9,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.dynamics.lcp.lemke_pivoting import OK, lcp_work, solve_lcp
+from watchsim.dynamics.lcp.lemke_pivoting import lcp_work, solve_lcp
+from watchsim.dynamics.lcp.outcome import LcpOutcome
 from watchsim.verification.bare_contacts import BareContacts
 from watchsim.verification.compared import Row, compared
 
@@ -36,8 +37,8 @@ def impact_rows(count: int) -> list[Row]:
         if rates[0] >= 0.0 or mu * abs(G[0, 1]) >= 0.99 * G[0, 0]:
             continue  # nothing to do, or near jamming, where the answer is as large as one likes
         case = BareContacts(mass, W, np.array([mu]), np.array([eps]))
-        status, after, force = case.impact(u)
-        unsolved += status != 0
+        solved, after, force = case.impact(u)
+        unsolved += not solved
         truth = single_impact(G, rates, mu, eps)
         wanted = u + W.T @ truth / mass
         # Where the approach is the small difference of large terms, their rounding sets the scale of the impulse.
@@ -101,7 +102,7 @@ def lcp_rows(count: int) -> list[Row]:
             n = int(rng.integers(1, LARGEST + 1))
             A, b = family(rng, n)
             x = np.zeros(n)
-            if solve_lcp(A, b, n, work, x) == OK:
+            if solve_lcp(A, b, n, work, x) == LcpOutcome.SOLVED:
                 wrong += not is_solution(A, b, x)
             else:
                 given_up += 1

@@ -21,7 +21,7 @@ from watchsim.scene.recording import Recording
 from watchsim.scene.scene import Scene
 from watchsim.simulation import runner as running
 from watchsim.simulation.motion import dop853
-from watchsim.simulation.motion.integrator import dense_value
+from watchsim.simulation.motion.dense_output import dense_value
 from watchsim.simulation.options import options_for
 from watchsim.simulation.runner import Run, new_until
 from watchsim.simulation.simulate import simulate
@@ -89,11 +89,11 @@ def errors(h: float, monkeypatch: pytest.MonkeyPatch) -> tuple[float, float]:
 def middle_error(h: float) -> float:
     scene = dataclasses.replace(rolling_in_a_bowl(), duration=1.0)
     run = Run(scene, compile_scene(scene), 1e-9, Recording())
-    until = new_until(0.4, 0.9, 1.0, 1e9)
+    until = new_until(0.4, 0.9, True, 1e9)
     while run._advance(until, run.record) != Stop.SLICE:
         run.flush()
     step = run.scratch.step
-    start, length = step.span
+    start, length = step.span.start, step.span.length
     assert length == pytest.approx(h)
     exact = swung(float(start))
     worst = 0.0

@@ -10,15 +10,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from watchsim.simulation.motion import step_path
-from watchsim.simulation.motion.integrator import dense_value
+from watchsim.simulation.motion.dense_output import dense
 
 NUMBERS = st.lists(st.floats(-1.0, 1.0), min_size=8, max_size=8)
 
 
 def _step(numbers: list[float], length: float) -> types.SimpleNamespace:
     """A coupled step of one coordinate with these start value and coefficients of its continuous extension."""
-    dense = np.array(numbers[1:]).reshape(7, 1)
-    return types.SimpleNamespace(span=np.array([0.0, length]), y0=np.array(numbers[:1]), dense=dense, bound=np.zeros(1))
+    coefficients = np.array(numbers[1:]).reshape(7, 1)
+    span = types.SimpleNamespace(start=0.0, length=length)
+    return types.SimpleNamespace(span=span, y0=np.array(numbers[:1]), dense=coefficients, bound=np.zeros(1))
 
 
 def _plain(kernel):
@@ -45,10 +46,9 @@ def test_the_bound_holds_everywhere_in_the_step(numbers: list[float], length: fl
 
 @given(NUMBERS, st.floats(0.0, 1.0))
 def test_value_and_slope_are_the_polynomials(numbers: list[float], share: float) -> None:
-    value, slope = _plain(step_path._polynomial)(_step(numbers, 2.0), 0, 2.0 * share)
+    value, slope = _plain(dense)(_step(numbers, 2.0), 0, 2.0 * share)
     expected = _coefficients(numbers)
     assert value == pytest.approx(expected(share), abs=1e-13)
-    assert value == pytest.approx(_plain(dense_value)(_step(numbers, 2.0), 0, 2.0 * share), abs=1e-14)
     assert slope == pytest.approx(0.5 * expected.deriv()(share), abs=1e-12)
 
 

@@ -68,8 +68,8 @@ def test_a_single_tooth_that_slips_through_late_is_found(monkeypatch: pytest.Mon
     flush = Run.flush
 
     def slipping(run: Run) -> None:
-        rows = run.record.rows[: run.record.used[0]]
-        late = (rows[:, 0] > 1.2345) & (run.record.used[0] > 0)
+        rows = run.record.rows[: run.record.used.rows]
+        late = (rows[:, 0] > 1.2345) & (run.record.used.rows > 0)
         rows[late, 1] -= 2.0 * math.pi / 15
         flush(run)
 

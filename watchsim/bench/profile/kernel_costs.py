@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from watchsim.bench.profile.lcp_costs import problem_costs
 from watchsim.bench.profile.moments import Kind, Moment, Walk, seconds_each
 from watchsim.bench.profile.repeated_work import evaluations_again, impacts_again, lookups_again, touches_again
-from watchsim.simulation.state import COUNT_NAMES, N_IMPACTS, N_LOOKUPS
+from watchsim.simulation.state import COUNT_NAMES
+from watchsim.simulation.state_arrays import arrays_of
 
 REPEATS = 50
 COUNTED_AS = {  # kind of work -> its count, where that has another name
@@ -88,8 +89,8 @@ def _parts(walk: Walk, moment: Moment) -> _Parts:
     run = walk.run
     state, options, scratch = run.state, run.options, run.scratch
     # Contacts are looked for up to the end of the step, or up to where a mode ends before.
-    mode_ends = state.numbers[2] == 1 and state.numbers[4] < 0
-    end = float(state.clock[0] - scratch.step.span[0] if mode_ends else scratch.step.span[1])
+    mode_ends = state.now.event_waits == 1 and state.now.touched < 0
+    end = float(state.clock.time - scratch.step.span.start if mode_ends else scratch.step.span.length)
     walk.at(moment)
     search = seconds_each(touches_again, (run.compiled.model, run.finder.cells, state, options, end, scratch), REPEATS)
     each = 0.0
@@ -128,10 +129,10 @@ def _impacts(walk: Walk, moment: Moment, costs: Costs) -> tuple[float, int]:
     loop = run.compiled.model, run.finder.cells, run.state, run.options, run.scratch, walk.room
     walk.at(moment)
     impacts_again(*loop, True, 1)
-    done = run.state.counts - moment.state.counts
-    done[N_LOOKUPS] = 0  # contacts are gathered before that is repeated
+    done = arrays_of(run.state).counts - arrays_of(moment.state).counts
+    done[COUNT_NAMES.index("cells_looked_up")] = 0  # contacts are gathered before that is repeated
     whole, nothing = (seconds_each(impacts_again, (*loop, collides), REPEATS) for collides in (True, False))
-    return whole - nothing - _seconds(done, costs), int(done[N_IMPACTS])
+    return whole - nothing - _seconds(done, costs), int(done[COUNT_NAMES.index("impacts")])
 
 
 def _seconds(done: Integers, costs: Costs) -> float:

@@ -20,8 +20,10 @@ from watchsim.mechanism.compile import compile_scene
 from watchsim.scene.recording import Recording
 from watchsim.scene.scene import Scene
 from watchsim.simulation.advance import EVENTS_PER_CONTACT, ROWS_PER_STEP
+from watchsim.simulation.buffers import Record, new_record
 from watchsim.simulation.runner import Run, new_until
-from watchsim.simulation.state import COUNT_NAMES, N_FLIGHTS, N_IMPACTS, N_INSTANTS, Record, State, new_record, room_for
+from watchsim.simulation.state import COUNT_NAMES, State, room_for
+from watchsim.simulation.state_arrays import arrays_of, copy_of_state, write_state
 from watchsim.simulation.stops import Stop
 
 SAMPLE = 200  # moments of each kind
@@ -52,9 +54,9 @@ class Moment:
 
     @property
     def kind(self) -> Kind:
-        if self.done[N_INSTANTS]:
-            return Kind.IMPACT if self.done[N_IMPACTS] else Kind.CHANGE
-        return Kind.FLIGHT if self.done[N_FLIGHTS] else Kind.STEP
+        if self.count("instants"):
+            return Kind.IMPACT if self.count("impacts") else Kind.CHANGE
+        return Kind.FLIGHT if self.count("flights") else Kind.STEP
 
 
 class Walk:
@@ -66,7 +68,7 @@ class Walk:
         # Each step and each event leaves a row: with room for no more the loop comes back. Twice the events it asks for.
         self.room = new_record(model, ROWS_PER_STEP + 1, 2 * EVENTS_PER_CONTACT * room_for(model), EVERYWHERE)
         self._nowhere = new_record(model, 0, 0, EVERYWHERE)
-        self._until = new_until(duration, duration, 1.0, np.inf)
+        self._until = new_until(duration, duration, True, np.inf)
         self.met = dict.fromkeys(Kind, 0)
         self.moments: dict[Kind, list[Moment]] = {kind: [] for kind in Kind}
         chance = np.random.default_rng(0)
@@ -78,7 +80,7 @@ class Walk:
                 sample.append(moment)
             elif (place := int(chance.integers(self.met[moment.kind]))) < SAMPLE:
                 sample[place] = moment
-        self.counts = dict(zip(COUNT_NAMES, self.run.state.counts.tolist(), strict=True))
+        self.counts = dict(zip(COUNT_NAMES, arrays_of(self.run.state).counts.tolist(), strict=True))
 
     def weight(self, kind: Kind) -> float:
         """For how many moments of its kind one of the sample stands."""
@@ -86,7 +88,7 @@ class Walk:
 
     def at(self, moment: Moment) -> None:
         """Bring the run's state there."""
-        restore(self.run.state, moment.state)
+        write_state(self.run.state, moment.state)
 
     def again(self, moment: Moment) -> None:
         """Do once more what follows the moment: its step is in the run's scratch then, its state is the one behind it."""
@@ -96,7 +98,8 @@ class Walk:
     def seconds(self, moment: Moment) -> float:
         """What follows the moment takes so long, without what a call takes in which nothing is done."""
         run = self.run
-        loop = run.compiled.model, run.finder.cells, run.state, moment.state, run.options, self._until, run.scratch
+        states = run.state, arrays_of(run.state), arrays_of(moment.state)
+        loop = run.compiled.model, run.finder.cells, *states, run.options, self._until, run.scratch
         whole, nothing = (seconds_each(moments_again, (*loop, record), REPEATS) for record in (self.room, self._nowhere))
         return whole - nothing
 
@@ -110,31 +113,20 @@ class Walk:
         return seconds_each(calls, (), REPEATS)
 
     def _advance(self, record: Record) -> Stop:
-        record.used[:] = 0
+        record.used.rows, record.used.events = 0, 0
         return self.run._advance(self._until, record)
 
     def _passed(self) -> Iterator[Moment]:
         """All moments of the run."""
         run = self.run
         while True:
-            before = copied(run.state)
+            before = copy_of_state(run.state)
             while (stop := self._advance(self.room)) == Stop.CELL_UNKNOWN:
                 run._learn()
-                restore(run.state, before)
+                write_state(run.state, before)
             if stop != Stop.BUFFER_FULL:
                 return
-            yield Moment(before, run.state.counts - before.counts)
-
-
-def copied(state: State) -> State:
-    """A state of its own."""
-    return State._make(part.copy() for part in state)
-
-
-def restore(state: State, other: State) -> None:
-    """Write `other` into `state`."""
-    for name, part in state._asdict().items():
-        part[...] = getattr(other, name)
+            yield Moment(before, arrays_of(run.state).counts - arrays_of(before).counts)
 
 
 def seconds_each(call: Callable[..., object], arguments: tuple[Any, ...], repeats: int) -> float:

@@ -11,15 +11,13 @@ import time
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from watchsim.bench.profile.kernel_costs import COUNTED_AS, kernel_costs
 from watchsim.bench.profile.moments import Walk
 from watchsim.candidates.pair_cache import forget
 from watchsim.mechanism.compile import compile_scene
 from watchsim.scene.recording import Recording
 from watchsim.scene.scene import Scene
+from watchsim.simulation.buffers import Until
 from watchsim.simulation.methods import EVENT_DRIVEN
 from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.simulation.runner import Run
@@ -53,7 +51,7 @@ class _Timed(Run):
     looping: float = 0.0  # s of the processor
     learning: float = 0.0
 
-    def _advance(self, until: NDArray[np.float64], record: Any) -> Stop:
+    def _advance(self, until: Until, record: Any) -> Stop:
         begun = time.process_time()
         stop = super()._advance(until, record)
         self.looping += time.process_time() - begun

@@ -7,18 +7,14 @@ from __future__ import annotations
 
 import math
 
+from watchsim.dynamics.tolerances import LCP_PIVOT, LCP_RESIDUAL, LCP_ROUNDING
 from watchsim.jit import kernel
-
-PIVOT = 1e-11  # smaller pivots are rounding errors of a zero
-RESIDUAL = 1e-9  # a y this much smaller than the terms it is the sum of is zero
-ROUNDING = 1e-13  # so is one this much smaller than the largest x, or than one
-ROUGH = 1e-9  # the same where loads are the rounding of larger terms
 
 
 @kernel
 def is_solution(n, work):
     """True when the scaled trial solves the problem to rounding; see `solves`."""
-    return solves(n, ROUNDING, work)
+    return solves(n, LCP_ROUNDING, work)
 
 
 @kernel
@@ -36,11 +32,11 @@ def solves(n, rounding, work):
             term = work.matrix[i, j] * work.trial[j]
             y += term
             terms += abs(term)
-        allowed = RESIDUAL * terms + rounding * floor
+        allowed = LCP_RESIDUAL * terms + rounding * floor
         if not math.isfinite(terms) or work.trial[i] < 0.0 or y < -allowed or (work.trial[i] > 0.0 and y > allowed):
             return False
         worst = max(worst, -y, abs(y) if work.trial[i] > 0.0 else 0.0)
-    work.worst[0] = max(work.worst[0], worst / floor)
+    work.worst.violation = max(work.worst.violation, worst / floor)
     return True
 
 
@@ -61,7 +57,7 @@ def solve_active(n, work):
         for m in range(k + 1, count):
             value -= S[k, m] * work.trial[work.order[m]]
         value /= S[k, k]
-        work.trial[work.order[k]] = 0.0 if -RESIDUAL < value <= 0.0 else value
+        work.trial[work.order[k]] = 0.0 if -LCP_RESIDUAL < value <= 0.0 else value
     return regular
 
 
@@ -90,7 +86,7 @@ def _eliminate(count, step, work):
         for m in range(step, count):
             if abs(S[k, m]) > abs(S[row, column]):
                 row, column = k, m
-    if not abs(S[row, column]) > PIVOT:
+    if not abs(S[row, column]) > LCP_PIVOT:
         return False
     for m in range(count + 1):
         S[step, m], S[row, m] = S[row, m], S[step, m]

@@ -14,18 +14,24 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.dynamics.lcp.basis import PIVOT, is_solution, solve_active
+from watchsim.dynamics.lcp.basis import is_solution, solve_active
+from watchsim.dynamics.lcp.outcome import LcpOutcome
 from watchsim.dynamics.lcp.scaling import scale, unscale
+from watchsim.dynamics.tolerances import LCP_PIVOT, RATIO_TIE
 from watchsim.jit import by_reference, entry, kernel
-
-OK, RAY, MAX_ITER, INEXACT = 0, 1, 2, 3
+from watchsim.model.named_fields import blank
 
 UNEVEN, PERIOD = 5, 7  # for unlike entries of d on other paths
 ENUMERATED_SIZE = 12  # 2^12 small eliminations: some milliseconds
-TIE = 1e-10  # ratios closer than this are equal; 1e-12 sends 1 in 1000 singular problems down a ray
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
+
+
+class WorstViolation:
+    """Of the conditions, in any accepted solution, see `is_solution`."""
+
+    violation: float
 
 
 class LcpWork(NamedTuple):
@@ -41,7 +47,7 @@ class LcpWork(NamedTuple):
     square: Array  # elimination of the active block, right-hand side last
     order: Integers  # the unknown of each of its columns
     trial: Array  # scaled x
-    worst: Array  # (1,) worst violation of the conditions in any accepted solution, see `is_solution`
+    worst: WorstViolation
 
 
 LcpWorkRef = by_reference(LcpWork, __name__)
@@ -60,60 +66,60 @@ def lcp_work(size: int) -> LcpWork:
         square=np.zeros((size, size + 1)),
         order=np.zeros(size, np.int64),
         trial=np.zeros(size),
-        worst=np.zeros(1),
+        worst=blank(WorstViolation),
     )
 
 
 @entry
-def solve_lcp(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> int:
+def solve_lcp(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> LcpOutcome:
     """Solve the leading n×n problem into out_x[:n]: Lemke, checked, then enumeration up to ENUMERATED_SIZE unknowns.
 
-    OK: out_x solves the problem to rounding. RAY, MAX_ITER, INEXACT: why Lemke failed, and enumeration found nothing.
+    SOLVED: out_x solves the problem to rounding. Else why Lemke failed; enumeration found nothing.
     """
-    status = lemke_checked(A, b, n, work, out_x)
-    if status != OK and n <= ENUMERATED_SIZE and enumerate_lcp(A, b, n, work, out_x) == OK:
-        return OK
-    return status
+    outcome = lemke_checked(A, b, n, work, out_x)
+    if outcome != LcpOutcome.SOLVED and n <= ENUMERATED_SIZE and enumerate_lcp(A, b, n, work, out_x) == LcpOutcome.SOLVED:
+        return LcpOutcome.SOLVED
+    return outcome
 
 
 @kernel
-def lemke_checked(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> int:
-    """Lemke's method; OK only if what it ended with solves the problem to rounding, else INEXACT, RAY or MAX_ITER."""
+def lemke_checked(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> LcpOutcome:
+    """Lemke's method; SOLVED only if what it ended with solves the problem to rounding."""
     return lemke_on_path(A, b, n, 0, work, out_x)
 
 
 @kernel
-def lemke_on_path(A: Array, b: Array, n: int, path: int, work: LcpWork, out_x: Array) -> int:
+def lemke_on_path(A: Array, b: Array, n: int, path: int, work: LcpWork, out_x: Array) -> LcpOutcome:
     """The same on another path: the numbers of the paths have no meaning, but 0 is the usual one."""
-    status: int = _follow(A, b, n, path, work, out_x)
-    if status == OK and not (_is_trivial(b, n) or is_solution(n, work)):
-        return INEXACT
-    return status
+    outcome: LcpOutcome = _follow(A, b, n, path, work, out_x)
+    if outcome == LcpOutcome.SOLVED and not (_is_trivial(b, n) or is_solution(n, work)):
+        return LcpOutcome.INEXACT
+    return outcome
 
 
 @entry
-def lemke(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> int:
-    """Lemke's method on the leading n×n problem; out_x[:n] is set when the status is OK (unchecked), else zero."""
+def lemke(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> LcpOutcome:
+    """Lemke's method on the leading n×n problem; out_x[:n] is set when the outcome is SOLVED (unchecked), else zero."""
     return _follow(A, b, n, 0, work, out_x)
 
 
 @kernel
-def _follow(A: Array, b: Array, n: int, path: int, work: LcpWork, out_x: Array) -> int:
+def _follow(A: Array, b: Array, n: int, path: int, work: LcpWork, out_x: Array) -> LcpOutcome:
     for i in range(n):
         out_x[i], work.is_active[i] = 0.0, 0
     if _is_trivial(b, n):
-        return OK
+        return LcpOutcome.SOLVED
     magnitude = scale(A, b, n, work)
-    status = _pivot_to_end(n, path, work)
-    if status == OK:
+    outcome = _pivot_to_end(n, path, work)
+    if outcome == LcpOutcome.SOLVED:
         _solve_basis(n, work)
         unscale(n, magnitude, work, out_x)
-    return status
+    return outcome
 
 
 @entry
-def enumerate_lcp(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> int:
-    """Try every set of active indices, the empty one first; OK with out_x[:n], or RAY when none solves the problem."""
+def enumerate_lcp(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> LcpOutcome:
+    """Try every set of active indices, the empty one first; SOLVED with out_x[:n], or RAY when none solves the problem."""
     magnitude = scale(A, b, n, work)
     for chosen in range(1 << n):
         for i in range(n):
@@ -121,10 +127,10 @@ def enumerate_lcp(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> in
         solve_active(n, work)
         if is_solution(n, work):
             unscale(n, magnitude, work, out_x)
-            return OK
+            return LcpOutcome.SOLVED
     for i in range(n):
         out_x[i] = 0.0
-    return RAY
+    return LcpOutcome.RAY
 
 
 @kernel
@@ -137,7 +143,7 @@ def _is_trivial(b: Array, n: int) -> bool:
 
 
 @kernel
-def _pivot_to_end(n: int, path: int, work: LcpWork) -> int:
+def _pivot_to_end(n: int, path: int, work: LcpWork) -> LcpOutcome:
     """Lemke's path on y - A x - d z0 = b, from z0 large enough to the basis that z0 leaves."""
     z0 = 2 * n
     row = _start(n, path, work)
@@ -146,12 +152,12 @@ def _pivot_to_end(n: int, path: int, work: LcpWork) -> int:
         leaving = work.basis[row]
         _pivot(n, row, entering, work)
         if leaving == z0:
-            return OK
+            return LcpOutcome.SOLVED
         entering = leaving + n if leaving < n else leaving - n
-        row = _leaving_row(n, entering, work)
-        if row < 0:
-            return RAY
-    return MAX_ITER
+        bounded, row = _leaving_row(n, entering, work)
+        if not bounded:
+            return LcpOutcome.RAY
+    return LcpOutcome.TOO_MANY_PIVOTS
 
 
 @kernel
@@ -193,18 +199,18 @@ def _pivot(n: int, row: int, column: int, work: LcpWork) -> None:
 
 
 @kernel
-def _leaving_row(n: int, column: int, work: LcpWork) -> int:
-    """Row of the lexicographically smallest ratio, z0's row among equals; -1 when the column bounds nothing (a ray)."""
+def _leaving_row(n: int, column: int, work: LcpWork) -> tuple[bool, int]:
+    """(found, row of the lexicographically smallest ratio, z0's row among equals); not found: the column is a ray."""
     largest = 1.0
     for i in range(n):
         largest = max(largest, work.tableau[i, column])
     found = False
     best = column  # any integer: numba would compile the comparison twice for a literal
     for i in range(n):
-        if work.tableau[i, column] > PIVOT * largest and (not found or _is_smaller(n, i, best, column, work)):
+        if work.tableau[i, column] > LCP_PIVOT * largest and (not found or _is_smaller(n, i, best, column, work)):
             found = True
             best = i
-    return best if found else -1
+    return found, best
 
 
 @kernel
@@ -212,13 +218,13 @@ def _is_smaller(n: int, i: int, k: int, column: int, work: LcpWork) -> bool:
     """True when row i leaves before row k: compare right-hand sides over the pivots, then z0, then the inverse basis."""
     T = work.tableau
     left, right = T[i, 2 * n + 1] / T[i, column], T[k, 2 * n + 1] / T[k, column]
-    if abs(left - right) > TIE * max(1.0, abs(left)):
+    if abs(left - right) > RATIO_TIE * max(1.0, abs(left)):
         return left < right
     if work.basis[i] == 2 * n or work.basis[k] == 2 * n:
         return work.basis[i] == 2 * n
     for j in range(n):
         left, right = T[i, j] / T[i, column], T[k, j] / T[k, column]
-        if abs(left - right) > TIE * max(1.0, abs(left)):
+        if abs(left - right) > RATIO_TIE * max(1.0, abs(left)):
             return left < right
     return False
 

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import math
 
+from watchsim.dynamics.tolerances import COEFFICIENT_ROUNDING
 from watchsim.jit import kernel
 
 SWEEPS = 3
-ROUNDING = 1e-14  # of unit diagonals
 
 
 @kernel
@@ -86,7 +86,7 @@ def _unbalance(A, n, i, work):
     for j in range(n):
         # What rounding leaves of a zero says nothing about units; the mutual coefficient does not depend on them.
         mutual = abs(A[i, j]) * abs(A[j, i]) * (s[i] * s[j]) ** 2
-        if j == i or 0.0 < mutual < ROUNDING * ROUNDING:
+        if j == i or 0.0 < mutual < COEFFICIENT_ROUNDING * COEFFICIENT_ROUNDING:
             continue
         row = max(row, abs(A[i, j]) * c[j])
         column = max(column, abs(A[j, i]) * r[j])

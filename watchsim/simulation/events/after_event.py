@@ -16,82 +16,81 @@ from watchsim.dynamics.bearing_friction import add_drag, stop_held
 from watchsim.dynamics.delassus import apply, fill_inverse
 from watchsim.dynamics.small_systems import copy
 from watchsim.jit import kernel
+from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.events.closed_contacts import gather, refresh
 from watchsim.simulation.events.collision import approaching, collide
-from watchsim.simulation.events.handover import LEFT, hand_over
+from watchsim.simulation.events.handover import hand_over
 from watchsim.simulation.events.immovable import drop_immovable
 from watchsim.simulation.events.mode_decision import decide
 from watchsim.simulation.events.released_contacts import let_go
 from watchsim.simulation.events.zero_rates import note_pace, rounding_of, set_rate_zeros
 from watchsim.simulation.motion.contact_islands import island_of, label_islands, place_contacts, sort_by_island
 from watchsim.simulation.motion.drift_projection import (
-    AT_EVENTS,
-    IN_STEPS,
     find_correction,
     project_positions,
     project_velocities,
     rate_left,
 )
 from watchsim.simulation.motion.sleeping import add_terms, begin_terms, find_sleepers
-from watchsim.simulation.record.write_buffers import OPEN_EVENT, keep_change, keep_event
-from watchsim.simulation.state import N_LCP_FAILED, N_REDUNDANT
+from watchsim.simulation.record.write_buffers import keep_change, keep_event
+from watchsim.simulation.state import NO_CONTACT
 from watchsim.simulation.stops import Stop
+from watchsim.simulation.tolerances import CONTRADICTING_RATE, DEPENDENT_AT_EVENTS, DEPENDENT_IN_STEPS, LEFT_PRIMITIVE
 
-RUNNING, CELL_UNKNOWN = int(Stop.RUNNING), int(Stop.CELL_UNKNOWN)
-LCP_FAILED, TOO_MANY_CONTACTS, TOO_MANY_EVENTS = int(Stop.LCP_FAILED), int(Stop.TOO_MANY_CONTACTS), int(Stop.TOO_MANY_EVENTS)
-MANY_ROUNDINGS = 100.0  # a gap rate beyond so many times its rounding is not zero
 ROUNDS = 16  # impacts in a row at one instant
 
 
 @kernel
 def settle(model, cells, state, options, scratch, record):
     """Handle the event that waits at the current state; returns a Stop code, RUNNING when all went well."""
-    scratch.pace[:] = 0.0
-    place(model, state.q, state.u, scratch.pose)
+    event = scratch.event
+    event.pace[:] = 0.0
+    place(model, state.q, state.u, event.pose)
     if not hand_over(model, cells, state, options, scratch, record):
-        return CELL_UNKNOWN
-    _release(model, state, options, scratch, record)
-    m = gather(model, cells, state, options, scratch)
-    if m < 0:
-        return CELL_UNKNOWN if m == -1 else TOO_MANY_CONTACTS
-    label_islands(model, scratch.listed, m, scratch.label)
-    sort_by_island(model, scratch.label, m, scratch.listed, scratch.upto)
+        return Stop.CELL_UNKNOWN
+    _release(model, state, options, event.pose, record)
+    code, m = gather(model, cells, state, options, scratch)
+    if code != Stop.RUNNING:
+        return code
+    label_islands(model, event.listed, m, event.label)
+    sort_by_island(model, event.label, m, event.listed, event.upto)
     first = 0
-    for island in range(len(scratch.label)):
-        if scratch.label[island] != island:
+    for island in range(len(event.label)):
+        if event.label[island] != island:
             continue
         last = first
-        if first < m and island_of(model, scratch.label, scratch.listed[first]) == island:
-            last = scratch.upto[first]
+        if first < m and island_of(model, event.label, event.listed[first]) == island:
+            last = event.upto[first]
         stop = _settle_island(model, state, island, (first, last), options, scratch, record)
-        if stop != RUNNING:
+        if stop != Stop.RUNNING:
             return stop
         first = last
-    _go_on(model, state, _closed_of(state, m, scratch.listed, state.active), options, scratch, record)
-    state.numbers[2], state.numbers[4] = 0, -1
-    return RUNNING
+    _go_on(model, state, _closed_of(state, m, event.listed, state.active), options, scratch, record)
+    state.now.event_waits, state.now.touched = 0, NO_CONTACT
+    return Stop.RUNNING
 
 
 @kernel
 def _settle_island(model, state, island, span, options, scratch, record):
     """Impacts and modes of one island, whose closed contacts are listed[span[0]:span[1]]; returns a Stop code."""
-    closed, work = scratch.closed, scratch.work
+    work, event = scratch.work, scratch.event
+    closed = event.closed
     fill_inverse(model, state.grip, work.inverse)
-    m = place_contacts(model, scratch.listed, span[0], span[1], scratch.pose, closed)
-    m = drop_immovable(model, state, m, scratch, record)
-    note_pace(state.u, scratch.pace)
+    m = place_contacts(model, event.listed, span[0], span[1], event.pose, closed)
+    m = drop_immovable(model, state, m, event, record)
+    note_pace(state.u, event.pace)
     deepest = project_positions(closed, m, False, work, state.q)
     if deepest > 0.0:
-        state.worst[0] = max(state.worst[0], deepest)
-        place(model, state.q, state.u, scratch.pose)
-        refresh(model, m, closed, scratch.pose)
+        state.worst.penetration = max(state.worst.penetration, deepest)
+        place(model, state.q, state.u, event.pose)
+        refresh(model, m, closed, event.pose)
         # Rates of the contacts in force have changed with the places, by the gaps times how fast bodies turn.
-        project_velocities(closed, m, state.mode, IN_STEPS, work, state.u)
-        place(model, state.q, state.u, scratch.pose)
-        refresh(model, m, closed, scratch.pose)
+        project_velocities(closed, m, state.mode, DEPENDENT_IN_STEPS, work, state.u)
+        place(model, state.q, state.u, event.pose)
+        refresh(model, m, closed, event.pose)
     stop, r = _resolve(model, state, island, m, options, scratch, record)
-    if stop == RUNNING:
-        _take(model, state, m, r, scratch, record)
+    if stop == Stop.RUNNING:
+        _take(state, m, r, event, record)
     return stop
 
 
@@ -109,56 +108,56 @@ def _closed_of(state, m, ids, out_ids):
 @kernel
 def _go_on(model, state, f, options, scratch, record):
     """Exact positions and velocities, accelerations and sleep with the f contacts in force."""
-    rest, work = scratch.rest, scratch.work
-    label_islands(model, state.active, f, scratch.label)
-    sort_by_island(model, scratch.label, f, state.active, state.upto)
-    place(model, state.q, state.u, scratch.pose)
-    forces(model, state.clock[0], state.q, state.u, work.h)
+    work, event = scratch.work, scratch.event
+    rest = event.rest
+    label_islands(model, state.active, f, event.label)
+    sort_by_island(model, event.label, f, state.active, state.upto)
+    place(model, state.q, state.u, event.pose)
+    forces(model, state.clock.time, state.q, state.u, work.h)
     add_drag(model, state.grip, work.h)
     fill_inverse(model, state.grip, work.inverse)
     accelerate(rest, 0, work, state.a)
-    begin_terms(work.h, scratch.terms)
+    begin_terms(work.h, event.terms)
     first = 0
     while first < f:
-        m = place_contacts(model, state.active, first, state.upto[first], scratch.pose, rest)
-        _correct(state, m, scratch)
+        m = place_contacts(model, state.active, first, state.upto[first], event.pose, rest)
+        _correct(state, m, work, rest, event.trial)
         first += m
-        m, unique = let_go(model, state, m, options, scratch, record)
+        m, unique = let_go(model, state, m, options, work, event, record)
         if not unique:
-            state.counts[N_REDUNDANT] += 1
+            state.counts.redundant_sets += 1
         apply(rest, m, work.force, work.inverse, state.a)
-        add_terms(rest, m, work.force, scratch.terms)
+        add_terms(rest, m, work.force, event.terms)
     f = _closed_of(state, f, state.active, state.active)
-    find_sleepers(model, state, options, scratch, f)
-    _list_awake_first(model, state, f, scratch)
+    find_sleepers(model, state, options, event, f)
+    _list_awake_first(model, state, f, event)
 
 
 @kernel
-def _correct(state, m, scratch):
+def _correct(state, m, work, rest, out_trial):
     """Exact zero gaps and rates of an island's m contacts in force; no slip against the mode where it was too slow to count."""
-    rest, work = scratch.rest, scratch.work
     deepest = project_positions(rest, m, True, work, state.q)
-    state.worst[0] = max(state.worst[0], deepest)
+    state.worst.penetration = max(state.worst.penetration, deepest)
     for i in range(m):
         k = rest.ids[i]
-        scratch.trial[k] = STICK if state.mode[k] * rest.kin[i].gT_dot < 0.0 else state.mode[k]
-    project_velocities(rest, m, scratch.trial, AT_EVENTS, work, state.u)
+        out_trial[k] = STICK if state.mode[k] * rest.kin[i].gT_dot < 0.0 else state.mode[k]
+    project_velocities(rest, m, out_trial, DEPENDENT_AT_EVENTS, work, state.u)
 
 
 @kernel
-def _list_awake_first(model, state, f, scratch):
+def _list_awake_first(model, state, f, event):
     """Put the contacts of awake bodies first among the f in force."""
-    copy(state.active, scratch.listed)
+    copy(state.active, event.in_force)
     count = 0
     for awake in (True, False):
         if not awake:
-            state.numbers[0], state.numbers[1] = count, f - count
+            state.now.awake_contacts, state.now.sleeping_contacts = count, f - count
         for j in range(f):
-            k = scratch.listed[j]
-            if (state.awake[island_of(model, scratch.label, k)] != 0) == awake:
+            k = event.in_force[j]
+            if (state.awake[island_of(model, event.label, k)] != 0) == awake:
                 state.active[count] = k
                 count += 1
-    sort_by_island(model, scratch.label, state.numbers[0], state.active, state.upto)
+    sort_by_island(model, event.label, state.now.awake_contacts, state.active, state.upto)
 
 
 @kernel
@@ -168,60 +167,61 @@ def _resolve(model, state, island, m, options, scratch, record):
     Where no finite forces exist although nothing approaches, sliding contacts are jammed (Painlevé): their impulses are
     found, and the modes asked for again.
     """
+    work, event = scratch.work, scratch.event
     jam, exactly = 0.0, False
     for _ in range(ROUNDS):
-        set_rate_zeros(scratch.closed, m, exactly, options, scratch.pace, scratch.zero)
-        if jam > 0.0 or approaching(m, scratch.closed, scratch.zero):
-            if collide(model, state, island, m, options, jam, scratch, record) != 0:
-                return LCP_FAILED, 0
+        set_rate_zeros(event.closed, m, exactly, options, event.pace, event.zero)
+        if jam > 0.0 or approaching(m, event.closed, event.zero):
+            if not collide(model, state, island, m, options, jam, scratch, record):
+                return Stop.LCP_FAILED, 0
             jam = 0.0
             continue
-        r, status = decide(model, state, island, m, options, scratch, state.grip)
-        if status == 0:
-            if not exactly and _contradicts(r, options, scratch):
+        r, solved = decide(model, state, island, m, options, work, event, state.grip)
+        if solved:
+            if not exactly and _contradicts(r, options, work, event):
                 exactly = True
                 continue
-            stop_held(scratch.label, island, state.grip, state.u)
-            return RUNNING, r
-        if not _slides(r, options.speed_zero, scratch.rest):
-            state.counts[N_LCP_FAILED] += 1
-            return LCP_FAILED, 0
-        _hold_gaps(model, state, r, options, scratch)
-        refresh(model, m, scratch.closed, scratch.pose)
+            stop_held(event.label, island, state.grip, state.u)
+            return Stop.RUNNING, r
+        if not _slides(r, options.speed_zero, event.rest):
+            state.counts.lcp_failures += 1
+            return Stop.LCP_FAILED, 0
+        _hold_gaps(model, state, r, options, work, event)
+        refresh(model, m, event.closed, event.pose)
         jam = options.speed_zero
-    return TOO_MANY_EVENTS, 0
+    return Stop.TOO_MANY_EVENTS, 0
 
 
 @kernel
-def _contradicts(r, options, scratch):
-    """True if the contacts decided to be in force, of the r in `scratch.rest`, cannot all have a gap rate of zero.
+def _contradicts(r, options, work, event):
+    """True if the contacts decided to be in force, of the r in `event.rest`, cannot all have a gap rate of zero.
 
     Their rates then only seemed to be zero.
     """
-    rest, work = scratch.rest, scratch.work
-    find_correction(rest, r, scratch.trial, AT_EVENTS, work)
+    rest = event.rest
+    find_correction(rest, r, event.decided, DEPENDENT_AT_EVENTS, work)
     for i in range(r):
-        left = abs(rate_left(rest, r, i, work)) if scratch.trial[rest.ids[i]] != OPEN else 0.0
-        if left > MANY_ROUNDINGS * rounding_of(rest, i, options, scratch.pace):
+        left = abs(rate_left(rest, r, i, work)) if event.decided[rest.ids[i]] != OPEN else 0.0
+        if left > CONTRADICTING_RATE * rounding_of(rest, i, options, event.pace):
             return True
     return False
 
 
 @kernel
-def _hold_gaps(model, state, r, options, scratch):
-    """Zero the gap rates of the r contacts in `scratch.rest`, and the slip of those that hold.
+def _hold_gaps(model, state, r, options, work, event):
+    """Zero the gap rates of the r contacts in `event.rest`, and the slip of those that hold.
 
     The gaps of jammed contacts must not open, however slowly, or there is nothing to stop.
     """
-    rest, work = scratch.rest, scratch.work
+    rest = event.rest
     for i in range(r):
         k = rest.ids[i]
         holds = model.laws[model.contacts[k].group].friction > 0.0 and abs(rest.kin[i].gT_dot) <= options.speed_zero
-        scratch.trial[k] = STICK if holds else FORWARD
+        event.trial[k] = STICK if holds else FORWARD
     for j in range(len(model.coordinates)):
         work.inverse[j] = 1.0 / model.coordinates[j].mass
-    project_velocities(rest, r, scratch.trial, AT_EVENTS, work, state.u)
-    place(model, state.q, state.u, scratch.pose)
+    project_velocities(rest, r, event.trial, DEPENDENT_AT_EVENTS, work, state.u)
+    place(model, state.q, state.u, event.pose)
 
 
 @kernel
@@ -234,32 +234,32 @@ def _slides(r, speed_zero, rest):
 
 
 @kernel
-def _release(model, state, options, scratch, record):
+def _release(model, state, options, pose, record):
     """Open the contacts that have left their primitives without a successor."""
     kept, awake = 0, 0
-    for j in range(state.numbers[0] + state.numbers[1]):
+    for j in range(state.now.awake_contacts + state.now.sleeping_contacts):
         k = state.active[j]
-        if extent_margin(model, k, scratch.pose) < -LEFT * options.extent:
+        if extent_margin(model, k, pose) < -LEFT_PRIMITIVE * options.extent:
             state.mode[k] = OPEN
-            keep_event(state, record, OPEN_EVENT, k, -1, 0.0)
+            keep_event(state, record, EventKind.OPEN, k, -1, 0.0)
             continue
         state.active[kept] = k
         kept += 1
-        if j < state.numbers[0]:
+        if j < state.now.awake_contacts:
             awake += 1
-    state.numbers[0], state.numbers[1] = awake, kept - awake
+    state.now.awake_contacts, state.now.sleeping_contacts = awake, kept - awake
 
 
 @kernel
-def _take(model, state, m, r, scratch, record):
-    """Replace the modes of the closed contacts by the decided ones (in `scratch.trial` for I_N) and write down changes."""
-    closed, rest = scratch.closed, scratch.rest
+def _take(state, m, r, event, record):
+    """Replace the modes of the closed contacts by the decided ones (`event.decided` for I_N) and write down changes."""
+    closed, rest = event.closed, event.rest
     for i in range(m):
         k = closed.ids[i]
         new = OPEN
         for j in range(r):
             if rest.ids[j] == k:
-                new = scratch.trial[k]
+                new = event.decided[k]
         old = state.mode[k]
         state.mode[k] = new
         keep_change(state, record, k, old)

@@ -10,6 +10,8 @@ which of them carry something then, and which leave after all. Nothing is stoppe
 
 from __future__ import annotations
 
+import math
+
 from watchsim.contact.index_sets import BACKWARD, FORWARD, STICK
 from watchsim.contact.kinematics import contact_kinematics
 from watchsim.dynamics.acceleration import solve_mode
@@ -17,70 +19,66 @@ from watchsim.dynamics.delassus import apply, contact_velocities
 from watchsim.dynamics.impact import plastic_impact
 from watchsim.jit import kernel
 from watchsim.simulation.events.impulse_check import kinetic_energy
-
-TOO_EARLY = 20  # status of `end_chatter`: the impacts that are left are worth more than rounding
-PREPAID = 1e-8  # share of the kinetic energy that friction spares while contacts are apart, and which is rounding
-WITHIN = 1e-9  # share of the friction cone by which a sticking contact's impulse stays inside it
+from watchsim.simulation.tolerances import CHATTER_GAIN, WITHIN_CONE
 
 
 @kernel
-def may_be_chatter(m, options, scratch):
+def may_be_chatter(m, options, event, room):
     """True if after an impact some contact is slowly leaving, and none of those that were hit keeps all its energy."""
     found = False
     for i in range(m):
-        rate = scratch.closed.kin[i].gN_dot
+        rate = event.closed.kin[i].gN_dot
         if rate > options.accumulation_speed:
             return False
-        hit = scratch.impulse[2 * i] > 0.0
-        if hit and scratch.restitution[i] == 1.0:
+        hit = room.impulse[2 * i] > 0.0
+        if hit and room.restitution[i] == 1.0:
             return False
         # Where only contacts leave that rebound, their own rule knows when that would end.
-        if rate > scratch.zero[i] and not (hit and scratch.restitution[i] > 0.0):
+        if rate > event.zero[i] and not (hit and room.restitution[i] > 0.0):
             found = True
     return found
 
 
 @kernel
 def return_time(closed, i, a):
-    """Time after which contact i, leaving at its rate under the accelerations a, is closed again; -1 if it is not, s."""
+    """Time after which contact i, leaving at its rate under the accelerations a, is closed again, s; infinity if it is not."""
     closing = -closed.kin[i].bar_N
     for k in range(closed.slots[i]):
         closing -= closed.w_N[i, k] * a[closed.coord[i, k]]
-    return 2.0 * closed.kin[i].gN_dot / closing if closing > 0.0 else -1.0
+    return 2.0 * closed.kin[i].gN_dot / closing if closing > 0.0 else math.inf
 
 
 @kernel
-def chatter_time(state, m, options, scratch):
-    """Time until all contacts that leave are back, -1 if one of them comes further than `gap_close`; s.
+def chatter_time(state, m, options, event):
+    """Time until all contacts that leave are back, s; infinity if one of them comes further than `gap_close`.
 
     The accelerations are in `state.a`.
     """
-    latest = -1.0
+    latest = 0.0
     for i in range(m):
-        rate = scratch.closed.kin[i].gN_dot
-        if rate <= scratch.zero[i]:
+        rate = event.closed.kin[i].gN_dot
+        if rate <= event.zero[i]:
             continue
-        back = return_time(scratch.closed, i, state.a)
+        back = return_time(event.closed, i, state.a)
         # It rises on a parabola, to a quarter of the way it would go at its first speed.
-        if back < 0.0 or 0.25 * rate * back > options.gap_close:
-            return -1.0
+        if 0.25 * rate * back > options.gap_close:
+            return math.inf
         latest = max(latest, back)
     return latest
 
 
 @kernel
-def end_chatter(model, state, m, time, scratch):
-    """Velocities at the end of a chatter that lasts `time`; returns the LCP status, velocities unchanged unless solved.
+def end_chatter(model, state, m, time, work, event, room):
+    """Velocities at the end of a chatter that lasts `time`; True if they are found, else they are unchanged.
 
     P are the impulses of the plastic impact with the rates that free motion over `time` would lead to, lambda the
     forces of the contacts that P finds in force. What lambda does will be integrated when that time passes; the rest
-    is done now: u += M⁻¹ W (P - lambda time). TOO_EARLY where that would gain energy. `scratch.work` holds h and the
+    is done now: u += M⁻¹ W (P - lambda time). Not done where that would gain energy. `work` holds h and the
     inverse masses of the last decision.
     """
-    closed, rest, work = scratch.closed, scratch.rest, scratch.work
-    status = plastic_impact(model, closed, m, time, state.u, work)
-    if status != 0:
-        return status
+    closed, rest, ending = event.closed, event.rest, room.ending
+    if not plastic_impact(model, closed, m, time, state.u, work):
+        return False
     r = 0
     for i in range(m):
         N, T = work.force[2 * i], work.force[2 * i + 1]
@@ -88,23 +86,23 @@ def end_chatter(model, state, m, time, scratch):
             continue
         k = closed.ids[i]
         bound = model.laws[model.contacts[k].group].friction * N
-        if abs(T) < (1.0 - WITHIN) * bound:
-            scratch.trial[k] = STICK
+        if abs(T) < (1.0 - WITHIN_CONE) * bound:
+            room.mode[k] = STICK
         elif bound > 0.0:
-            scratch.trial[k] = BACKWARD if T > 0.0 else FORWARD
+            room.mode[k] = BACKWARD if T > 0.0 else FORWARD
         else:
-            scratch.trial[k] = BACKWARD if closed.kin[i].gT_dot < 0.0 else FORWARD
-        contact_kinematics(model, k, scratch.pose, r, rest)
-        scratch.impulse[2 * r], scratch.impulse[2 * r + 1] = N, T
+            room.mode[k] = BACKWARD if closed.kin[i].gT_dot < 0.0 else FORWARD
+        contact_kinematics(model, k, event.pose, r, rest)
+        ending[2 * r], ending[2 * r + 1] = N, T
         r += 1
-    solve_mode(model, rest, r, scratch.trial, work)
+    solve_mode(model, rest, r, room.mode, work)
     for row in range(2 * r):
-        scratch.impulse[row] -= work.force[row] * time
+        ending[row] -= work.force[row] * time
     # Less pressure for a moment is less friction: while that is worth anything, the impacts go on one by one.
-    if _gain(rest, r, state.u, scratch.impulse, work) > PREPAID * kinetic_energy(model, state.u):
-        return TOO_EARLY
-    apply(rest, r, scratch.impulse, work.inverse, state.u)
-    return 0
+    if _gain(rest, r, state.u, ending, work) > CHATTER_GAIN * kinetic_energy(model, state.u):
+        return False
+    apply(rest, r, ending, work.inverse, state.u)
+    return True
 
 
 @kernel

@@ -6,11 +6,12 @@ from watchsim.candidates.cell_lookup import LISTED, UNKNOWN, candidate, candidat
 from watchsim.contact.gaps import extent_margin, normal_gap
 from watchsim.contact.index_sets import OPEN
 from watchsim.contact.kinematics import contact_kinematics
-from watchsim.dynamics.small_systems import copy
 from watchsim.jit import kernel
 from watchsim.simulation.events.handover import continues_active
 from watchsim.simulation.motion.sleeping import is_at_rest
-from watchsim.simulation.state import N_LOOKUPS
+from watchsim.simulation.scratch import ask
+from watchsim.simulation.state import NO_CONTACT
+from watchsim.simulation.stops import Stop
 
 
 @kernel
@@ -29,42 +30,41 @@ def insert(ids, count, k):
 
 @kernel
 def gather(model, cells, state, options, scratch):
-    """Ids of I_C, ascending, into `scratch.listed`: contacts in force and those with a gap of zero.
+    """Ids of I_C, ascending, into `event.listed` of `scratch`: contacts in force and those with a gap of zero.
 
     What a contact in force will touch next on the same smooth outline is left out.
 
-    Poses must be current. Returns their number, -1 when a cell is unknown, -2 when there are too many.
+    Poses must be current. Returns (Stop code: RUNNING, CELL_UNKNOWN or TOO_MANY_CONTACTS; their number).
     """
-    ids = scratch.listed
+    ids, pose = scratch.event.listed, scratch.event.pose
     m = 0
-    for j in range(state.numbers[0] + state.numbers[1]):
+    for j in range(state.now.awake_contacts + state.now.sleeping_contacts):
         m = insert(ids, m, state.active[j])
     # The contact that has just touched is closed, even where taking back drift has moved its gap since.
-    if state.numbers[4] >= 0:
-        m = insert(ids, m, state.numbers[4])
+    if state.now.touched != NO_CONTACT:
+        m = insert(ids, m, state.now.touched)
     for p in range(len(model.pairs)):
         pair = model.pairs[p]
-        if is_at_rest(model, state, pair.a) and is_at_rest(model, state, pair.b) and state.clock[0] > 0.0:
+        if is_at_rest(model, state, pair.a) and is_at_rest(model, state, pair.b) and state.clock.time > 0.0:
             continue
         how, start, count = candidates(model, cells, p, state.q)
         if how == UNKNOWN:
-            scratch.unknown[0] = p
-            copy(state.q, scratch.at)
-            return -1
+            ask(scratch.asked, p, state.q)
+            return Stop.CELL_UNKNOWN, m
         if how == LISTED:
-            state.counts[N_LOOKUPS] += 1
+            state.counts.cells_looked_up += 1
         for place in range(start, start + count):
             k = candidate(model, cells, how, place)
             if state.mode[k] != OPEN:
                 continue
-            gap, _, _, _ = normal_gap(model, k, scratch.pose)
-            if -options.behind <= gap <= options.gap_close and extent_margin(model, k, scratch.pose) >= -options.extent:
-                if continues_active(model, state, options, k, scratch.pose):
+            gap = normal_gap(model, k, pose).gap
+            if -options.behind <= gap <= options.gap_close and extent_margin(model, k, pose) >= -options.extent:
+                if continues_active(model, state, options, k, pose):
                     continue
                 if m == len(ids):
-                    return -2
+                    return Stop.TOO_MANY_CONTACTS, m
                 m = insert(ids, m, k)
-    return m
+    return Stop.RUNNING, m
 
 
 @kernel

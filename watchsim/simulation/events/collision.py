@@ -15,18 +15,14 @@ from watchsim.dynamics.delassus import contact_velocities
 from watchsim.dynamics.impact import energy_change, impact
 from watchsim.dynamics.small_systems import copy
 from watchsim.jit import kernel
+from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.events.chatter import chatter_time, end_chatter, may_be_chatter, return_time
 from watchsim.simulation.events.closed_contacts import refresh
 from watchsim.simulation.events.impulse_check import kinetic_energy
 from watchsim.simulation.events.mode_decision import count_problems, decide
 from watchsim.simulation.events.zero_rates import note_pace
 from watchsim.simulation.record.write_buffers import keep_event
-from watchsim.simulation.state import IMPACTS, N_ACCUMULATED, N_ENERGY, N_IMPACTS, N_JAMS, N_LCP_FAILED
-
-GAIN = 1e-12  # a rise of kinetic energy beyond this share is a gain, not rounding
-ENERGY_GAINED = 11  # status: even without restitution an impact would gain energy, so its solution is wrong
-HIDDEN = 20.0  # times `gap_zero`: lower rebounds are rounding
-IMPACT_EVENT, ACCUMULATION_EVENT, JAM_EVENT = 1, 7, 10
+from watchsim.simulation.tolerances import ENERGY_GAIN, HIDDEN_REBOUND
 
 
 @kernel
@@ -39,157 +35,162 @@ def approaching(m, closed, zero):
 
 
 @kernel
-def _law_restitution(model, m, scratch):
+def _law_restitution(model, closed, m, out_restitution):
     for i in range(m):
-        scratch.restitution[i] = model.laws[model.contacts[scratch.closed.ids[i]].group].restitution
+        out_restitution[i] = model.laws[model.contacts[closed.ids[i]].group].restitution
 
 
 @kernel
-def _least_restitution(m, scratch):
+def _least_restitution(m, restitution):
     least = 1.0
     for i in range(m):
-        least = min(least, scratch.restitution[i])
+        least = min(least, restitution[i])
     return least
 
 
 @kernel
-def _solve(model, state, m, jam, scratch):
-    """One impact with scratch.restitution; on an energy gain again with the smallest restitution, then with none."""
-    kinetic = kinetic_energy(model, scratch.before)
+def _solve(model, state, m, jam, work, closed, room):
+    """One impact with `room.restitution`; on an energy gain again with the smallest restitution, then with none.
+
+    False if none is found: even without restitution an impact that gains energy is wrong.
+    """
+    kinetic = kinetic_energy(model, room.before)
     for attempt in range(3):
-        copy(scratch.before, state.u)
-        status = impact(model, scratch.closed, m, scratch.restitution, jam, scratch.work, state.u)
-        count_problems(state, scratch.work)
-        if status != 0:
-            state.counts[N_LCP_FAILED] += 1
-            return status
-        change, terms = energy_change(m, scratch.work)
-        if change <= GAIN * kinetic:
-            return 0
+        copy(room.before, state.u)
+        solved = impact(model, closed, m, room.restitution, jam, work, state.u)
+        count_problems(state, work)
+        if not solved:
+            state.counts.lcp_failures += 1
+            return False
+        change, terms = energy_change(m, work)
+        if change <= ENERGY_GAIN * kinetic:
+            return True
         if attempt == 2:
-            return 0 if change <= GAIN * terms else ENERGY_GAINED
-        state.counts[N_ENERGY] += 1
-        least = _least_restitution(m, scratch) if attempt == 0 else 0.0
+            return bool(change <= ENERGY_GAIN * terms)
+        state.counts.energy_rescues += 1
+        least = _least_restitution(m, room.restitution) if attempt == 0 else 0.0
         for i in range(m):
-            scratch.restitution[i] = least
-    return ENERGY_GAINED
+            room.restitution[i] = least
+    return False
 
 
 @kernel
-def _rebounds(i, options, scratch):
+def _rebounds(i, options, event, room):
     """True if contact i leaves the impact on its own restitution, and slowly."""
-    rate, share = scratch.closed.kin[i].gN_dot, scratch.restitution[i]
-    return share > 0.0 and scratch.impulse[2 * i] > 0.0 and scratch.zero[i] < rate <= options.accumulation_speed
+    rate, share = event.closed.kin[i].gN_dot, room.restitution[i]
+    return share > 0.0 and room.impulse[2 * i] > 0.0 and event.zero[i] < rate <= options.accumulation_speed
 
 
 @kernel
 def _accelerations(model, state, island, m, options, scratch):
     """Accelerations of the island after the impact into `state.a`; False if there are none."""
-    r, status = decide(model, state, island, m, options, scratch, scratch.grip)
-    if status != 0:
+    work, event = scratch.work, scratch.event
+    r, solved = decide(model, state, island, m, options, work, event, scratch.impact.grip)
+    if not solved:
         return False
-    accelerate(scratch.rest, r, scratch.work, state.a)
+    accelerate(event.rest, r, work, state.a)
     return True
 
 
 @kernel
 def _end_rebounds(model, state, island, m, options, scratch):
-    """Flag the rebounds that would end within `accumulation_time` (restitution 0); returns the latest end, -1 for none."""
-    latest, worth = -1.0, False
+    """Flag the rebounds that would end within `accumulation_time` (restitution 0); returns (any?, the latest end)."""
+    event, room = scratch.event, scratch.impact
+    latest, found, worth = 0.0, False, False
     for i in range(m):
-        worth = worth or _rebounds(i, options, scratch)
+        worth = worth or _rebounds(i, options, event, room)
     if not worth or not _accelerations(model, state, island, m, options, scratch):
-        return latest
+        return False, latest
     for i in range(m):
-        if not _rebounds(i, options, scratch):
+        if not _rebounds(i, options, event, room):
             continue
-        back, share = return_time(scratch.closed, i, state.a), scratch.restitution[i]
-        if back <= 0.0:
+        back, share = return_time(event.closed, i, state.a), room.restitution[i]
+        if back == math.inf:
             continue
         ending = back / (1.0 - share) if share < 1.0 else math.inf
         # A rebound that rises by no more than rounding is none, whatever its restitution: it would go on by rounding alone.
         # One that loses nothing would go on for ever: it is none where it stays within what counts as closed.
-        lowest = HIDDEN * options.gap_zero if share < 1.0 else options.gap_close
-        hidden = 0.25 * scratch.closed.kin[i].gN_dot * back <= lowest
+        lowest = HIDDEN_REBOUND * options.gap_zero if share < 1.0 else options.gap_close
+        hidden = 0.25 * event.closed.kin[i].gN_dot * back <= lowest
         if ending < options.accumulation_time or hidden:
-            scratch.restitution[i] = 0.0
-            latest = max(latest, state.clock[0] + (ending if share < 1.0 else back))
-    return latest
+            room.restitution[i] = 0.0
+            found, latest = True, max(latest, state.clock.time + (ending if share < 1.0 else back))
+    return found, latest
 
 
 @kernel
 def collide(model, state, island, m, options, jam, scratch, record):
-    """Resolve the impact of the island's m closed contacts: new velocities, kinematics, events. Returns the LCP status.
+    """Resolve the impact of the island's m closed contacts: new velocities, kinematics, events. False if none is found.
 
     `jam` (m/s) is positive where nothing approaches, but a sliding contact needs an infinite force (Painlevé).
     """
-    copy(state.u, scratch.before)
-    _law_restitution(model, m, scratch)
-    ends = -1.0
+    work, event, room = scratch.work, scratch.event, scratch.impact
+    copy(state.u, room.before)
+    _law_restitution(model, event.closed, m, room.restitution)
+    ended, ends = False, 0.0
     for _ in range(1 + m):
-        status = _solve(model, state, m, jam, scratch)
-        if status != 0:
-            copy(scratch.before, state.u)
-            return status
+        if not _solve(model, state, m, jam, work, event.closed, room):
+            copy(room.before, state.u)
+            return False
         for row in range(2 * m):
-            scratch.impulse[row] = scratch.work.force[row]
-        place(model, state.q, state.u, scratch.pose)
-        refresh(model, m, scratch.closed, scratch.pose)
-        end = _end_rebounds(model, state, island, m, options, scratch)
-        if end < 0.0:
+            room.impulse[row] = work.force[row]
+        place(model, state.q, state.u, event.pose)
+        refresh(model, m, event.closed, event.pose)
+        found, end = _end_rebounds(model, state, island, m, options, scratch)
+        if not found:
             break
-        ends = max(ends, end)
-    _write(model, state, m, jam, scratch, record, ends)
-    note_pace(state.u, scratch.pace)
-    if jam == 0.0 and may_be_chatter(m, options, scratch) and _accelerations(model, state, island, m, options, scratch):
-        time = chatter_time(state, m, options, scratch)
-        if time > 0.0:
+        ended, ends = True, max(ends, end)
+    _write(model, state, m, jam, event.closed, room, record, ended, ends)
+    note_pace(state.u, event.pace)
+    if jam == 0.0 and may_be_chatter(m, options, event, room) and _accelerations(model, state, island, m, options, scratch):
+        time = chatter_time(state, m, options, event)
+        if 0.0 < time < math.inf:
             _end_chatter(model, state, m, time, scratch, record)
-    return 0
+    return True
 
 
 @kernel
 def _end_chatter(model, state, m, time, scratch, record):
     """End the chatter of the m closed contacts within `time`; its energy goes to the impacts."""
+    work, event, room = scratch.work, scratch.event, scratch.impact
     before = kinetic_energy(model, state.u)
-    copy(state.u, scratch.before)
-    status = end_chatter(model, state, m, time, scratch)
-    count_problems(state, scratch.work)
-    contact_velocities(scratch.closed, m, state.u, scratch.rates)
+    copy(state.u, room.before)
+    done = end_chatter(model, state, m, time, work, event, room)
+    count_problems(state, work)
+    contact_velocities(event.closed, m, state.u, room.rates)
     for i in range(m):
-        if status != 0 or scratch.rates[2 * i] < -scratch.zero[i]:
-            copy(scratch.before, state.u)
+        if not done or room.rates[2 * i] < -event.zero[i]:
+            copy(room.before, state.u)
             return  # the impacts go on one by one
     for i in range(m):
-        if scratch.closed.kin[i].gN_dot > scratch.zero[i]:
-            back = state.clock[0] + return_time(scratch.closed, i, state.a)
-            keep_event(state, record, ACCUMULATION_EVENT, scratch.closed.ids[i], -1, back)
-            state.counts[N_ACCUMULATED] += 1
-    place(model, state.q, state.u, scratch.pose)
-    refresh(model, m, scratch.closed, scratch.pose)
-    state.sums[IMPACTS] += before - kinetic_energy(model, state.u)
+        if event.closed.kin[i].gN_dot > event.zero[i]:
+            back = state.clock.time + return_time(event.closed, i, state.a)
+            keep_event(state, record, EventKind.ACCUMULATION, event.closed.ids[i], -1, back)
+            state.counts.accumulations += 1
+    place(model, state.q, state.u, event.pose)
+    refresh(model, m, event.closed, event.pose)
+    state.sums.impacts += before - kinetic_energy(model, state.u)
 
 
 @kernel
-def _write(model, state, m, jam, scratch, record, ends):
+def _write(model, state, m, jam, closed, room, record, ended, ends):
     """Events and energy of the impact just solved; by contact, the loss is minus the impulse times the mean rate."""
-    closed = scratch.closed
-    contact_velocities(closed, m, scratch.before, scratch.work.b)
-    contact_velocities(closed, m, state.u, scratch.rates)
+    contact_velocities(closed, m, room.before, room.rates_before)
+    contact_velocities(closed, m, state.u, room.rates)
     for i in range(m):
         N, T = 2 * i, 2 * i + 1
-        if scratch.impulse[N] <= 0.0:
+        if room.impulse[N] <= 0.0:
             continue
-        lost = -0.5 * scratch.impulse[N] * (scratch.work.b[N] + scratch.rates[N])
-        lost -= 0.5 * scratch.impulse[T] * (scratch.work.b[T] + scratch.rates[T])
-        row = keep_event(state, record, IMPACT_EVENT, closed.ids[i], -1, scratch.work.b[N])
+        lost = -0.5 * room.impulse[N] * (room.rates_before[N] + room.rates[N])
+        lost -= 0.5 * room.impulse[T] * (room.rates_before[T] + room.rates[T])
+        row = keep_event(state, record, EventKind.IMPACT, closed.ids[i], -1, room.rates_before[N])
         event = record.events[row]
-        event.impulse_normal, event.impulse_tangential, event.energy_lost = scratch.impulse[N], scratch.impulse[T], lost
-        state.sums[IMPACTS] += lost
-        state.counts[N_IMPACTS] += 1
-        if jam > 0.0 and abs(scratch.work.b[N]) <= jam < abs(scratch.work.b[T]):
-            keep_event(state, record, JAM_EVENT, closed.ids[i], -1, scratch.work.b[T])
-            state.counts[N_JAMS] += 1
-        if ends >= 0.0 and scratch.restitution[i] == 0.0 and model.laws[model.contacts[closed.ids[i]].group].restitution > 0.0:
-            keep_event(state, record, ACCUMULATION_EVENT, closed.ids[i], -1, ends)
-            state.counts[N_ACCUMULATED] += 1
+        event.impulse_normal, event.impulse_tangential, event.energy_lost = room.impulse[N], room.impulse[T], lost
+        state.sums.impacts += lost
+        state.counts.impacts += 1
+        if jam > 0.0 and abs(room.rates_before[N]) <= jam < abs(room.rates_before[T]):
+            keep_event(state, record, EventKind.JAM, closed.ids[i], -1, room.rates_before[T])
+            state.counts.jams += 1
+        if ended and room.restitution[i] == 0.0 and model.laws[model.contacts[closed.ids[i]].group].restitution > 0.0:
+            keep_event(state, record, EventKind.ACCUMULATION, closed.ids[i], -1, ends)
+            state.counts.accumulations += 1

@@ -6,43 +6,46 @@ import math
 
 from watchsim.contact.index_sets import STICK
 from watchsim.jit import kernel
-from watchsim.simulation.motion.coupled_motion import SLIP_SLACK, TANGENTIAL, motion
+from watchsim.simulation.motion.coupled_motion import TANGENTIAL, motion
+from watchsim.simulation.motion.dense_output import dense_value
 from watchsim.simulation.motion.free_motion import turning_time
-from watchsim.simulation.motion.integrator import dense_value
-from watchsim.simulation.motion.root_bracket import LOOK_EVERY, MOST, RESOLUTION, is_slow, next_time
-from watchsim.simulation.state import MONITORS
+from watchsim.simulation.motion.root_bracket import is_open, narrowed, next_time, opened
+from watchsim.simulation.scratch import MONITORS
+from watchsim.simulation.tolerances import ROOT_RESOLUTION, SLIP_SLACK
 
 SAMPLES = 8
+NONE_FIRED = -1  # in the place of a monitor's code
 
 
 @kernel
 def _slack(model, state, options, code):
     """How far beyond zero velocity the monitors of slips and of moving bearings fire; the reversal is where it vanishes."""
-    j = code - MONITORS * state.numbers[0]
+    j = code - MONITORS * state.now.awake_contacts
     if j >= 0:
         if state.grip[j] == STICK:
             return 0.0
-        return 0.5 * state.lenience[0] * options.speed_zero / options.size * model.coordinates[j].scale
+        return 0.5 * state.now.lenience * options.speed_zero / options.size * model.coordinates[j].scale
     slides = code % MONITORS == TANGENTIAL and state.mode[state.active[code // MONITORS]] != STICK
-    return state.lenience[0] * SLIP_SLACK * options.speed_zero if slides else 0.0
+    return state.now.lenience * SLIP_SLACK * options.speed_zero if slides else 0.0
 
 
 @kernel
 def _evaluate(model, state, options, tau, scratch):
-    """Evaluate the motion, and with it all monitors, at time tau of the step."""
-    for i in range(len(scratch.y)):
-        scratch.y[i] = dense_value(scratch.step, i, tau)
-    # `motion` reads `scratch.y` and writes `scratch.dy`.
-    motion(model, state, options, scratch.step.span[0] + tau, scratch.y, scratch)
+    """Evaluate the motion, and with it all monitors, at time tau of the step; returns the smallest."""
+    step, smooth = scratch.step, scratch.smooth
+    for i in range(len(smooth.y)):
+        smooth.y[i] = dense_value(step, i, tau)
+    return motion(model, state, options, step.span.start + tau, scratch.work, smooth)
 
 
 @kernel
 def _root(model, state, options, which, low, high, scratch):
     """Time at which one monitor, positive at low, passes zero; `high` where it is still positive then."""
+    monitors = scratch.smooth.monitors
     _evaluate(model, state, options, low, scratch)
-    f_low = scratch.monitors[which]
+    f_low = monitors[which]
     _evaluate(model, state, options, high, scratch)
-    f_high = scratch.monitors[which]
+    f_high = monitors[which]
     if not f_low > 0.0:
         return low
     if f_high > 0.0:
@@ -52,68 +55,52 @@ def _root(model, state, options, which, low, high, scratch):
         slack = 0.0
     f_low -= slack
     f_high -= slack
-    side = 0
-    before = 2.0 * (high - low)
-    for number in range(MOST):
-        middle = next_time(low, f_low, high, f_high, is_slow(number, high - low, before))
-        if number % LOOK_EVERY == 0:
-            before = high - low
-        if high - low <= RESOLUTION * (scratch.step.span[0] + high) or not low < middle < high:
+    bracket = opened(low, f_low, high, f_high)
+    tau = next_time(bracket)
+    while is_open(bracket, tau, ROOT_RESOLUTION * (scratch.step.span.start + bracket.high)):
+        _evaluate(model, state, options, tau, scratch)
+        f = monitors[which] - slack
+        bracket = narrowed(bracket, tau, f, f <= 0.0)
+        if f == 0.0:
             break
-        _evaluate(model, state, options, middle, scratch)
-        f = scratch.monitors[which] - slack
-        if f <= 0.0:
-            high, f_high = middle, f
-            if side == 1:
-                f_low *= 0.5
-            side = 1
-            if f == 0.0:
-                break
-        else:
-            low, f_low = middle, f
-            if side == -1:
-                f_high *= 0.5
-            side = -1
-    return high
+        tau = next_time(bracket)
+    return bracket.high
 
 
 @kernel
-def first_leave(model, state, options, scratch):
-    """First time in the coupled step at which a monitor is no longer positive; infinity if all stay positive."""
-    if scratch.alarm[0] > 0.0:
-        return math.inf
-    length = scratch.step.span[1]
+def first_leave(model, state, options, smallest, scratch):
+    """(time, code of the monitor): when in the coupled step one is first no longer positive; infinity if all stay positive.
+
+    `smallest`: the smallest monitor at the stages of the step.
+    """
+    if smallest > 0.0:
+        return math.inf, NONE_FIRED
+    length = scratch.step.span.length
     before = 0.0
     for sample in range(SAMPLES + 1):
         tau = length * sample / SAMPLES
-        scratch.alarm[0] = math.inf
-        _evaluate(model, state, options, tau, scratch)
-        if scratch.alarm[0] <= 0.0:
+        if _evaluate(model, state, options, tau, scratch) <= 0.0:
             return _earliest(model, state, options, before, tau, scratch)
         before = tau
-    return math.inf
+    return math.inf, NONE_FIRED
 
 
 @kernel
 def _earliest(model, state, options, before, tau, scratch):
-    """The earliest root among the monitors that are not positive at tau, all of them positive at `before`.
-
-    Its code is then the first in `scratch.codes`.
-    """
-    fired = 0
-    for code in range(MONITORS * state.numbers[0] + len(model.coordinates)):
-        if scratch.monitors[code] <= 0.0:
-            scratch.codes[fired] = code
+    """The earliest root among the monitors that are not positive at tau, all of them positive at `before`, and its code."""
+    smooth, fired = scratch.smooth, 0
+    for code in range(MONITORS * state.now.awake_contacts + len(model.coordinates)):
+        if smooth.monitors[code] <= 0.0:
+            smooth.fired[fired] = code
             fired += 1
     if tau == 0.0:
-        return 0.0
-    best, first = tau, scratch.codes[0]
+        return 0.0, smooth.fired[0]
+    best, first = tau, smooth.fired[0]
     for j in range(fired):
-        root = _root(model, state, options, scratch.codes[j], before, best, scratch)
+        root = _root(model, state, options, smooth.fired[j], before, best, scratch)
         if root < best:
-            best, first = root, scratch.codes[j]
-    scratch.codes[0] = first
-    return best
+            best, first = root, smooth.fired[j]
+    return best, first
 
 
 @kernel

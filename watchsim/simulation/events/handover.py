@@ -13,18 +13,13 @@ from watchsim.contact.gaps import contact_point, extent_margin, normal_gap
 from watchsim.contact.index_sets import OPEN
 from watchsim.contact.kinematics import contact_kinematics
 from watchsim.contact.poses import place
-from watchsim.dynamics.small_systems import copy
 from watchsim.jit import kernel
-from watchsim.simulation.motion.drift_projection import IN_STEPS, project_velocities
+from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.motion.drift_projection import project_velocities
 from watchsim.simulation.record.write_buffers import keep_event
-from watchsim.simulation.state import N_LOOKUPS
-
-HANDOVER_EVENT = 6
-LEFT = 1.5  # times the extent beyond the primitive's end: the contact has left it; touching ends at 1, the monitor at 2
-NEAR = 100.0  # times the extent: contact points this close are one
-FAR = 1e4  # times the extent: points further apart than that never are
-TURN = 1e-5  # rad. Large: shallow corners count as smooth; small: drawings that are tangent to a nanometre only get impacts
-SHARP = 1e-2  # rad: no joint that turns by more is smooth
+from watchsim.simulation.scratch import ask
+from watchsim.simulation.state import NO_CONTACT
+from watchsim.simulation.tolerances import DEPENDENT_IN_STEPS, FAR_POINTS, LEFT_PRIMITIVE, NEAR_POINTS, SHARP_TURN, SMOOTH_TURN
 
 
 @kernel
@@ -47,15 +42,14 @@ def room_to_differ(model, k, other, options, pose):
         return -1.0, -1.0
     # The circle may be on either body: normals point out of the other one.
     sign = 1.0 if a == c else -1.0
-    _, _, nx, ny = normal_gap(model, k, pose)
-    _, _, mx, my = normal_gap(model, other, pose)
+    here, there = normal_gap(model, k, pose), normal_gap(model, other, pose)
     # One of them may be beyond its joint by some extents, and its normal turned by the curvature of that way.
-    turn = min(TURN + 4.0 * options.extent * max(abs(one.curvature), abs(two.curvature)), SHARP)
-    turned = math.sqrt((nx - sign * mx) ** 2 + (ny - sign * my) ** 2)
+    turn = min(SMOOTH_TURN + 4.0 * options.extent * max(abs(one.curvature), abs(two.curvature)), SHARP_TURN)
+    turned = math.sqrt((here.nx - sign * there.nx) ** 2 + (here.ny - sign * there.ny) ** 2)
     x, y = contact_point(model, k, pose)
     X, Y = contact_point(model, other, pose)
     radius = max(model.primitives[one.a].radius, model.primitives[two.a].radius)
-    near = min(NEAR * options.extent + turn * radius, FAR * options.extent)
+    near = min(NEAR_POINTS * options.extent + turn * radius, FAR_POINTS * options.extent)
     return near - math.sqrt((x - X) ** 2 + (y - Y) ** 2), turn - turned
 
 
@@ -67,7 +61,7 @@ def is_beside_active(model, state, k):
     one point. The contact in force ends, with an event, before its neighbour can begin.
     """
     one = model.contacts[k]
-    for j in range(state.numbers[0]):
+    for j in range(state.now.awake_contacts):
         two = model.contacts[state.active[j]]
         if one.a == two.a:
             mine, its = one.b, two.b
@@ -94,7 +88,7 @@ def continues_active(model, state, options, k, pose):
 @kernel
 def room_beside_active(model, state, options, k, pose):
     """`room_to_differ` from the contact in force that open contact k continues; negative where it continues none."""
-    for j in range(state.numbers[0] + state.numbers[1]):
+    for j in range(state.now.awake_contacts + state.now.sleeping_contacts):
         way, turn = room_to_differ(model, k, state.active[j], options, pose)
         if way >= 0.0 and turn >= 0.0:
             return way, turn
@@ -111,55 +105,56 @@ def _pair_of(model, k):
 
 @kernel
 def _successor(model, cells, state, options, k, scratch):
-    """The open contact that goes on where contact k ends: its number, -1 for none, -2 where the cell is unknown."""
+    """The open contact that goes on where contact k ends: (known, its number or NO_CONTACT).
+
+    `known` is False where the cell is unknown.
+    """
     p = _pair_of(model, k)
     how, start, count = candidates(model, cells, p, state.q)
     if how == UNKNOWN:
-        scratch.unknown[0] = p
-        copy(state.q, scratch.at)
-        return -2
+        ask(scratch.asked, p, state.q)
+        return False, NO_CONTACT
     if how == LISTED:
-        state.counts[N_LOOKUPS] += 1
-    best, deepest = -1, -options.extent
+        state.counts.cells_looked_up += 1
+    best, deepest = NO_CONTACT, -options.extent
     for slot in range(start, start + count):
         j = candidate(model, cells, how, slot)
         if state.mode[j] != OPEN:
             continue
-        gap, _, _, _ = normal_gap(model, j, scratch.pose)
-        if abs(gap) > options.gap_close:
+        if abs(normal_gap(model, j, scratch.event.pose).gap) > options.gap_close:
             continue
-        margin = extent_margin(model, j, scratch.pose)
-        if margin >= deepest and same_contact(model, j, k, options, scratch.pose):
+        margin = extent_margin(model, j, scratch.event.pose)
+        if margin >= deepest and same_contact(model, j, k, options, scratch.event.pose):
             best, deepest = j, margin
-    return best
+    return True, best
 
 
 @kernel
 def hand_over(model, cells, state, options, scratch, record):
     """Pass contacts that left their primitives to their neighbours. Poses must be current; False where a cell is unknown."""
     moved = False
-    for j in range(state.numbers[0] + state.numbers[1]):
+    for j in range(state.now.awake_contacts + state.now.sleeping_contacts):
         k = state.active[j]
-        if extent_margin(model, k, scratch.pose) >= -LEFT * options.extent:
+        if extent_margin(model, k, scratch.event.pose) >= -LEFT_PRIMITIVE * options.extent:
             continue
-        successor = _successor(model, cells, state, options, k, scratch)
-        if successor == -2:
+        known, successor = _successor(model, cells, state, options, k, scratch)
+        if not known:
             return False
-        if successor >= 0:
+        if successor != NO_CONTACT:
             state.mode[successor], state.mode[k] = state.mode[k], OPEN
             state.active[j] = successor
-            keep_event(state, record, HANDOVER_EVENT, successor, -1, float(k))
+            keep_event(state, record, EventKind.HANDOVER, successor, -1, float(k))
             moved = True
     if moved:
-        _follow(model, state, scratch)
+        _follow(model, state, scratch.work, scratch.event)
     return True
 
 
 @kernel
-def _follow(model, state, scratch):
+def _follow(model, state, work, event):
     """Take back what the way beyond the primitive's end has done to the velocities: normals differ by the turn there."""
-    m = state.numbers[0]
+    m = state.now.awake_contacts
     for i in range(m):
-        contact_kinematics(model, state.active[i], scratch.pose, i, scratch.closed)
-    project_velocities(scratch.closed, m, state.mode, IN_STEPS, scratch.work, state.u)
-    place(model, state.q, state.u, scratch.pose)
+        contact_kinematics(model, state.active[i], event.pose, i, event.closed)
+    project_velocities(event.closed, m, state.mode, DEPENDENT_IN_STEPS, work, state.u)
+    place(model, state.q, state.u, event.pose)

@@ -9,12 +9,12 @@ from __future__ import annotations
 from watchsim.contact.index_sets import OPEN
 from watchsim.contact.kinematics import contact_kinematics
 from watchsim.jit import kernel
-from watchsim.simulation.record.write_buffers import OPEN_EVENT, keep_event
+from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.record.write_buffers import keep_event
+from watchsim.simulation.tolerances import IMMOVABLE
+
 
 # sine² of the angle between a face and the motion: drawings are rounded to a nanometre, which over a millimetre is a millionth
-IMMOVABLE = 1e-12
-
-
 @kernel
 def is_immovable(model, closed, i):
     """True if the gap of row i of `closed` changes by next to nothing however its bodies move."""
@@ -27,17 +27,17 @@ def is_immovable(model, closed, i):
 
 
 @kernel
-def drop_immovable(model, state, m, scratch, record):
-    """Leave the immovable ones out of the m contacts in `scratch.closed`; returns how many are left."""
-    closed, kept = scratch.closed, 0
+def drop_immovable(model, state, m, event, record):
+    """Leave the immovable ones out of the m contacts in `event.closed`; returns how many are left."""
+    closed, kept = event.closed, 0
     for i in range(m):
         k = closed.ids[i]
         if is_immovable(model, closed, i):
             if state.mode[k] != OPEN:
                 state.mode[k] = OPEN
-                keep_event(state, record, OPEN_EVENT, k, -1, 0.0)
+                keep_event(state, record, EventKind.OPEN, k, -1, 0.0)
             continue
         if kept < i:
-            contact_kinematics(model, k, scratch.pose, kept, closed)
+            contact_kinematics(model, k, event.pose, kept, closed)
         kept += 1
     return kept

@@ -7,10 +7,7 @@ taken back, slips and speeds that count as zero. The kinetic energy that such a 
 from __future__ import annotations
 
 from watchsim.jit import kernel
-
-SHARE = 1e-6  # of the kinetic energy before, that corrections may change at an instant
-OF_HIGHEST = 1e-12  # and of the highest one met
-SLOW = 30.0  # times the speed that counts as zero: what moves no faster may be stopped
+from watchsim.simulation.tolerances import EXPLAINED_OF_HIGHEST, EXPLAINED_SHARE, STOPPABLE_SPEED
 
 
 @kernel
@@ -25,12 +22,12 @@ def kinetic_energy(model, u):
 @kernel
 def is_explained(model, options, before, after, highest):
     """True if a change of kinetic energy from `before` to `after` (J, impulses taken out) is of the size of rounding."""
-    allowed = SHARE * before + OF_HIGHEST * highest
+    allowed = EXPLAINED_SHARE * before + EXPLAINED_OF_HIGHEST * highest
     change = abs(after - before)
     if change <= allowed:
         return True
     for i in range(len(model.coordinates)):
         coordinate = model.coordinates[i]
-        slow = SLOW * options.speed_zero / options.size * coordinate.scale
+        slow = STOPPABLE_SPEED * options.speed_zero / options.size * coordinate.scale
         allowed += 0.5 * coordinate.mass * slow * slow
     return change <= allowed

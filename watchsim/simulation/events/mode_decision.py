@@ -6,10 +6,10 @@ from watchsim.contact.index_sets import STICK
 from watchsim.dynamics.acceleration import decide_modes
 from watchsim.dynamics.applied_forces import forces
 from watchsim.dynamics.bearing_friction import add_drag, set_grips
-from watchsim.dynamics.delassus import LARGEST, RUNGS, fill_inverse
+from watchsim.dynamics.delassus import LARGEST, fill_inverse
+from watchsim.dynamics.problem_kinds import Rung
 from watchsim.jit import kernel
 from watchsim.simulation.events.closed_contacts import resting
-from watchsim.simulation.state import N_LCP, N_LCP_SIZE, N_LEMKE
 
 
 @kernel
@@ -24,33 +24,36 @@ def standing_bearings(label, island, grip, out_dry):
 
 
 @kernel
-def decide(model, state, island, m, options, scratch, out_grip):
-    """Modes of those of the island's m closed contacts that are in I_N, into `scratch.trial`, and the grips of its bearings.
+def decide(model, state, island, m, options, work, event, out_grip):
+    """Modes of those of the island's m closed contacts that are in I_N, into `event.decided`, and the grips of its bearings.
 
-    The forces of the contacts are left in `scratch.work`. Returns (number of contacts in I_N, now in `scratch.rest`; status).
+    The forces of the contacts are left in `work`. Returns (number of contacts in I_N, now in `event.rest`; solved?).
     """
-    work = scratch.work
-    r = resting(model, m, scratch.closed, scratch.pose, scratch.zero, scratch.rest)
-    forces(model, state.clock[0], state.q, state.u, work.h)
-    set_grips(model, state.u, scratch.label, island, options, out_grip)
+    r = resting(model, m, event.closed, event.pose, event.zero, event.rest)
+    forces(model, state.clock.time, state.q, state.u, work.h)
+    set_grips(model, state.u, event.label, island, options, out_grip)
     add_drag(model, out_grip, work.h)
-    bearings = standing_bearings(scratch.label, island, out_grip, work.dry)
+    bearings = standing_bearings(event.label, island, out_grip, work.dry)
     if r == 0 and bearings == 0:
         fill_inverse(model, out_grip, work.inverse)
-        return 0, 0
-    status = decide_modes(model, scratch.rest, r, bearings, options.speed_zero, work, out_grip, scratch.trial)
+        return 0, True
+    solved = decide_modes(model, event.rest, r, bearings, options.speed_zero, work, out_grip, event.decided)
     count_problems(state, work)
-    return r, status
+    return r, solved
 
 
 @kernel
 def count_problems(state, work):
     """Add the problems solved since last asked to the state's counts."""
-    for rung in range(RUNGS):
-        state.counts[N_LCP] += work.rungs[rung]
-        if rung < RUNGS - 1:  # the last one counts those without a solution
-            state.counts[N_LEMKE + rung] += work.rungs[rung]
-        work.rungs[rung] = 0
+    counts, rungs = state.counts, work.rungs
+    counts.lcp_lemke += rungs[Rung.LEMKE]
+    counts.lcp_copositive += rungs[Rung.COPOSITIVE]
+    counts.lcp_detours += rungs[Rung.DETOUR]
+    counts.lcp_enumerated += rungs[Rung.ENUMERATED]
+    counts.lcp_inexact += rungs[Rung.INEXACT]
+    for rung in range(len(rungs)):
+        counts.lcp += rungs[rung]
+        rungs[rung] = 0
     for place in range(len(LARGEST) + 1):
-        state.counts[N_LCP_SIZE + place] += work.sizes[place]
+        counts.lcp_sizes[place] += work.sizes[place]
         work.sizes[place] = 0

@@ -9,29 +9,28 @@ finitely many such terms, so that every instant comes to an end (docs/theory/met
 from __future__ import annotations
 
 from watchsim.jit import kernel
+from watchsim.simulation.tolerances import LENIENCE_STEP, MOST_LENIENT
 
-FIRMER = 10.0  # how much more lenient the next terms are
-MOST = 1e7  # the most lenient terms. Large: late detachment there; small: the run ends where rounding is large
 BASE, MODULUS = 1000003, 2147483647
 
 
 @kernel
 def begin_instant(state):
     """Forget what was decided before."""
-    state.numbers[5], state.lenience[0] = 0, 1.0
+    state.now.decisions, state.now.lenience = 0, 1.0
 
 
 @kernel
 def forget_decisions(state):
     """After an impact the same modes may be decided again: the velocities are others."""
-    state.numbers[5] = 0
+    state.now.decisions = 0
 
 
 @kernel
 def key_of_modes(state):
     """A number for the modes of all contacts in force and the grips of all bearings."""
     key = 1
-    for j in range(state.numbers[0] + state.numbers[1]):
+    for j in range(state.now.awake_contacts + state.now.sleeping_contacts):
         k = state.active[j]
         key = (key * BASE + 4 * int(k) + int(state.mode[k]) + 1) % MODULUS
     for i in range(len(state.grip)):
@@ -42,13 +41,13 @@ def key_of_modes(state):
 @kernel
 def decide_once(state):
     """Note the modes just decided; False if they come back on the most lenient terms there are."""
-    key, known = key_of_modes(state), state.numbers[5]
+    key, known = key_of_modes(state), state.now.decisions
     for j in range(known):
         if state.decided[j] == key:
-            state.numbers[5] = 0
-            state.lenience[0] *= FIRMER
-            return state.lenience[0] <= MOST
+            state.now.decisions = 0
+            state.now.lenience *= LENIENCE_STEP
+            return state.now.lenience <= MOST_LENIENT
     if known < len(state.decided):
         state.decided[known] = key
-        state.numbers[5] = known + 1
+        state.now.decisions = known + 1
     return True

@@ -12,41 +12,39 @@ from watchsim.jit import kernel
 from watchsim.simulation.events.closed_contacts import refresh
 from watchsim.simulation.motion.coupled_motion import grip_left, press_left
 from watchsim.simulation.record.write_buffers import keep_change
-
-NOISE = 1e-14  # share of the island's largest force: a smaller one has its sign from rounding
-SHARE = 0.5  # of the slack with which a mode ends: one that has come to its end is not begun anew
+from watchsim.simulation.tolerances import BEGIN_SLACK, FORCE_NOISE
 
 
 @kernel
-def _weakest(model, state, m, options, scratch):
-    """(row of the contact that is furthest from holding, -1 if all hold; does it pull?)."""
-    rest, work, zero = scratch.rest, scratch.work, SHARE * state.lenience[0] * options.force_zero
-    worst, row, pulls, largest = 0.0, -1, False, 0.0
+def _weakest(model, state, m, options, work, rest):
+    """(does any not hold? row of the contact that is furthest from holding, does it pull?)."""
+    zero = BEGIN_SLACK * state.now.lenience * options.force_zero
+    worst, found, row, pulls, largest = 0.0, False, 0, False, 0.0
     for i in range(m):
         largest = max(largest, work.force[2 * i])
     for i in range(m):
-        left = press_left(work, i, zero) - NOISE * largest
+        left = press_left(work, i, zero) - FORCE_NOISE * largest
         if left <= worst:
-            worst, row, pulls = left, i, True
+            worst, found, row, pulls = left, True, i, True
         friction = model.laws[model.contacts[rest.ids[i]].group].friction
         if friction > 0.0 and state.mode[rest.ids[i]] == STICK:
             left = grip_left(friction, work, i, zero)
             if left <= worst:
-                worst, row, pulls = left, i, False
-    return row, pulls
+                worst, found, row, pulls = left, True, i, False
+    return found, row, pulls
 
 
 @kernel
-def let_go(model, state, m, options, scratch, record):
-    """Forces of the m contacts in `scratch.rest`, without those that would pull; those that cannot stick slide.
+def let_go(model, state, m, options, work, event, record):
+    """Forces of the m contacts in `event.rest`, without those that would pull; those that cannot stick slide.
 
-    The forces are left in `scratch.work`. Returns (number of contacts in force, are their forces unique?).
+    The forces are left in `work`. Returns (number of contacts in force, are their forces unique?).
     """
-    rest, work = scratch.rest, scratch.work
+    rest = event.rest
     unique = solve_mode(model, rest, m, state.mode, work)
     for _ in range(2 * m):
-        i, pulls = _weakest(model, state, m, options, scratch)
-        if i < 0:
+        found, i, pulls = _weakest(model, state, m, options, work, rest)
+        if not found:
             break
         k = rest.ids[i]
         old = state.mode[k]
@@ -55,7 +53,7 @@ def let_go(model, state, m, options, scratch, record):
             m -= 1
             for j in range(i, m):
                 rest.ids[j] = rest.ids[j + 1]
-            refresh(model, m, rest, scratch.pose)
+            refresh(model, m, rest, event.pose)
         else:
             state.mode[k] = FORWARD if work.force[2 * i + 1] < 0.0 else BACKWARD
         keep_change(state, record, k, old)

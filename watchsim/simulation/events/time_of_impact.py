@@ -10,53 +10,51 @@ from __future__ import annotations
 import math
 
 from watchsim.candidates.cell_lookup import LISTED, UNKNOWN, candidate, candidates, time_in_cell
-from watchsim.contact.gaps import extent_margins, normal_gap
+from watchsim.contact.gaps import normal_gap, placed_gap
 from watchsim.contact.kinematics import contact_kinematics
 from watchsim.contact.poses import point_of
-from watchsim.dynamics.small_systems import copy
 from watchsim.jit import kernel
 from watchsim.model.records import FIXED, FREE, LINE, PIVOT, SLIDE
 from watchsim.simulation.events.handover import is_beside_active, room_beside_active
-from watchsim.simulation.events.immovable import IMMOVABLE, is_immovable
+from watchsim.simulation.events.immovable import is_immovable
 from watchsim.simulation.motion.sleeping import is_at_rest
 from watchsim.simulation.motion.step_path import body_on_path
-from watchsim.simulation.state import N_GAPS, N_LOOKUPS
-
-SLOWEST = 1e-300  # m/s: a bound of a speed that is zero, to be divided by
-STRIDE = 0.25  # of the extent: steps in which a neighbour of a contact in force is watched until its turn comes
+from watchsim.simulation.scratch import ask
+from watchsim.simulation.state import NO_CONTACT
+from watchsim.simulation.tolerances import IMMOVABLE, NEIGHBOUR_STRIDE, SLOWEST_CLOSING, TIME_ROUNDING
 
 
 @kernel
-def _body_bounds(model, b, length, scratch):
+def _body_bounds(model, b, length, step, path):
     """Bounds over the next `length` seconds: (speed, turning rate, acceleration, turning acceleration) of the frame."""
     body = model.bodies[b]
-    own = _own_bounds(body, length, scratch)
+    own = _own_bounds(body, length, step, path)
     if body.carrier < 0:
         return own
-    speed, turn, push, twist = _own_bounds(model.bodies[body.carrier], length, scratch)
+    speed, turn, push, twist = _own_bounds(model.bodies[body.carrier], length, step, path)
     arm = math.sqrt(body.x * body.x + body.y * body.y)
     return speed + turn * arm, own[1], push + twist * arm + turn * turn * arm, own[3]
 
 
 @kernel
-def _own_bounds(body, length, scratch):
+def _own_bounds(body, length, step, path):
     """The same from the body's own coordinates alone."""
     i = body.first
-    bound = scratch.step.bound
+    bound = step.bound
     if body.motion == PIVOT:
-        return 0.0, abs(scratch.u[i]) + bound[i] * length, 0.0, bound[i]
+        return 0.0, abs(path.u[i]) + bound[i] * length, 0.0, bound[i]
     if body.motion == SLIDE:
-        return abs(scratch.u[i]) + bound[i] * length, 0.0, bound[i], 0.0
+        return abs(path.u[i]) + bound[i] * length, 0.0, bound[i], 0.0
     if body.motion == FREE:
         ax, ay = bound[i], bound[i + 1]
         acceleration = math.sqrt(ax * ax + ay * ay)
-        speed = math.sqrt(scratch.u[i] ** 2 + scratch.u[i + 1] ** 2) + acceleration * length
-        return speed, abs(scratch.u[i + 2]) + bound[i + 2] * length, acceleration, bound[i + 2]
+        speed = math.sqrt(path.u[i] ** 2 + path.u[i + 1] ** 2) + acceleration * length
+        return speed, abs(path.u[i + 2]) + bound[i + 2] * length, acceleration, bound[i + 2]
     return 0.0, 0.0, 0.0, 0.0
 
 
 @kernel
-def _gap_bounds(model, k, length, bounds_a, bounds_b, scratch):
+def _gap_bounds(model, k, length, bounds_a, bounds_b, path):
     """Bounds over the next `length` seconds: |g'|, |g''| but for B's curvature, and the bodies' relative turning.
 
     `bounds_a` and `bounds_b` are the `_body_bounds` of the two bodies.
@@ -65,7 +63,7 @@ def _gap_bounds(model, k, length, bounds_a, bounds_b, scratch):
     a, b = model.primitives[contact.a], model.primitives[contact.b]
     speed_a, turn_a, push_a, twist_a = bounds_a
     speed_b, turn_b, push_b, twist_b = bounds_b
-    pa, pb = scratch.pose[a.body], scratch.pose[b.body]
+    pa, pb = path.pose[a.body], path.pose[b.body]
     rx, ry = point_of(pa, a.x, a.y)
     arm_a = math.sqrt(rx * rx + ry * ry)
     speed = speed_a + turn_a * arm_a + speed_b
@@ -89,7 +87,7 @@ def _gap_bounds(model, k, length, bounds_a, bounds_b, scratch):
 def _closing(velocity, bend, length, most):
     """Bound of a relative speed over `length` seconds from what it is now: bodies that travel together do not approach."""
     vx, vy = velocity
-    return max(min(most, math.sqrt(vx * vx + vy * vy) + bend * length), SLOWEST)
+    return max(min(most, math.sqrt(vx * vx + vy * vy) + bend * length), SLOWEST_CLOSING)
 
 
 @kernel
@@ -162,7 +160,7 @@ def _time_to_zero(gap, rate, outside, bounds, options):
 
 
 @kernel
-def _next_stretch(model, options, k, left, scratch):
+def _next_stretch(model, options, k, left, step, path):
     """(length, closing, bend, swing): how long the bounds shall hold, of `left` seconds, and the `_gap_bounds` for so long.
 
     What is thrown far has bounds far beyond its motion: a stretch is no longer than the bodies travel by the scene's size.
@@ -170,48 +168,41 @@ def _next_stretch(model, options, k, left, scratch):
     contact = model.contacts[k]
     a, b = model.primitives[contact.a].body, model.primitives[contact.b].body
     length = left
-    bounds_a, bounds_b = _body_bounds(model, a, left, scratch), _body_bounds(model, b, left, scratch)
+    bounds_a, bounds_b = _body_bounds(model, a, left, step, path), _body_bounds(model, b, left, step, path)
     speed = bounds_a[0] + bounds_b[0]
     if speed * left > options.size:
         length = options.size / speed
-        bounds_a, bounds_b = _body_bounds(model, a, length, scratch), _body_bounds(model, b, length, scratch)
-    closing, bend, swing = _gap_bounds(model, k, length, bounds_a, bounds_b, scratch)
+        bounds_a, bounds_b = _body_bounds(model, a, length, step, path), _body_bounds(model, b, length, step, path)
+    closing, bend, swing = _gap_bounds(model, k, length, bounds_a, bounds_b, path)
     return length, closing, bend, swing
 
 
 @kernel
-def _margins(model, options, k, scratch):
-    """How far inside each of its primitives contact k lies, with the extent beyond their ends that still counts."""
-    inside_a, inside_b = extent_margins(model, k, scratch.pose)
-    return inside_a + options.extent, inside_b + options.extent
-
-
-@kernel
-def _time_immovable(model, options, k, rate, bend, scratch):
+def _time_immovable(model, options, k, rate, bend, path):
     """Until when contact k, without a gap, need not be looked at because no motion closes it; 0 where one does.
 
     It may begin to close when its lever arms grow: it is looked at before it is further behind than counts as touching.
     """
-    contact_kinematics(model, k, scratch.pose, 0, scratch.rest)
-    if not is_immovable(model, scratch.rest, 0):
+    contact_kinematics(model, k, path.pose, 0, path.probe)
+    if not is_immovable(model, path.probe, 0):
         return 0.0
     b = model.primitives[model.contacts[k].b]
     motion = model.bodies[b.body].motion
     if b.kind == LINE and motion in (FIXED, SLIDE):
         bend *= math.sqrt(IMMOVABLE)  # the line does not turn: bodies accelerate along it, too
-    steady = 0.25 * options.behind / max(-rate, SLOWEST)
-    return min(steady, math.sqrt(0.5 * options.behind / max(bend, SLOWEST)))
+    steady = 0.25 * options.behind / max(-rate, SLOWEST_CLOSING)
+    return min(steady, math.sqrt(0.5 * options.behind / max(bend, SLOWEST_CLOSING)))
 
 
 @kernel
-def crossing(model, state, options, k, start, end, scratch):
+def crossing(model, state, options, k, start, end, step, path):
     """First time in [start, end) at which open contact k closes inside its primitives; infinity if it does not.
 
     The two bodies must stand where they are at `start`.
     """
     contact = model.contacts[k]
     body_a, body_b = model.primitives[contact.a].body, model.primitives[contact.b].body
-    length, closing, bend, swing = _next_stretch(model, options, k, end - start, scratch)
+    length, closing, bend, swing = _next_stretch(model, options, k, end - start, step, path)
     if closing == 0.0 and length == end - start:
         return math.inf
     zero = options.gap_zero
@@ -220,20 +211,21 @@ def crossing(model, state, options, k, start, end, scratch):
     fresh, outside, clear, beside = True, True, False, 0.0
     while tau < end:
         if tau > start:
-            body_on_path(model, state, body_a, tau, scratch)
-            body_on_path(model, state, body_b, tau, scratch)
+            body_on_path(model, state, step, body_a, tau, path)
+            body_on_path(model, state, step, body_b, tau, path)
         if tau >= stretch:
-            length, closing, bend, swing = _next_stretch(model, options, k, end - tau, scratch)
+            length, closing, bend, swing = _next_stretch(model, options, k, end - tau, step, path)
             stretch = tau + length
-        gap, rate, _, _ = normal_gap(model, k, scratch.pose)
-        distance = _centre_distance(model, k, scratch.pose)
-        state.counts[N_GAPS] += 1
+        gap, rate, inside_a, inside_b = placed_gap(model, k, path.pose)
+        distance = _centre_distance(model, k, path.pose)
+        state.counts.gap_evaluations += 1
         if fresh or not outside:
             outside, clear = gap >= -zero, beside > 0.0  # what lay beside its primitives was no contact until now
         fresh = False
         leaving = gap > zero or rate > options.speed_zero
         clear = clear or (outside and leaving)  # a contact that has just rebounded returns to this gap by falling only
-        inside_a, inside_b = _margins(model, options, k, scratch)
+        # The extent beyond their ends still counts.
+        inside_a, inside_b = inside_a + options.extent, inside_b + options.extent
         beside = _time_outside(model, k, inside_a, inside_b, (closing, swing), distance)
         # Positions jump where drift is taken back: a gap may have closed by that.
         near = gap <= zero if outside else gap >= -options.behind
@@ -243,11 +235,11 @@ def crossing(model, state, options, k, start, end, scratch):
             fresh = True
         elif _is_due(gap, rate, outside, clear, options):
             # Where a smooth outline goes on, its next piece has no gap either, and closes only when its turn comes.
-            way, turn = room_beside_active(model, state, options, k, scratch.pose)
+            way, turn = room_beside_active(model, state, options, k, path.pose)
             if way < 0.0:
-                wait = _time_immovable(model, options, k, rate, bend, scratch)
+                wait = _time_immovable(model, options, k, rate, bend, path)
                 if wait > 0.0:
-                    tau += max(wait, 4e-16 * tau)
+                    tau += max(wait, TIME_ROUNDING * tau)
                     fresh = True
                     continue
                 soon = outside and clear and gap > 0.0 and rate * (end - tau) < -gap
@@ -255,94 +247,93 @@ def crossing(model, state, options, k, start, end, scratch):
             # It is the same contact at least until points or normals could have come apart.
             turning = swing + closing / (0.5 * distance)
             same = 0.5 * min(way / closing, turn / turning if turning > 0.0 else math.inf)
-            tau += max(same, STRIDE * options.extent / closing)
+            tau += max(same, NEIGHBOUR_STRIDE * options.extent / closing)
             fresh = True
         else:
             clear = clear and leaving if outside else clear
             safe = _time_to_zero(gap, rate, outside, (closing, bend, distance), options)
-            safe = max(safe, _time_immovable(model, options, k, rate, bend, scratch) if near and not leaving else 0.0)
+            safe = max(safe, _time_immovable(model, options, k, rate, bend, path) if near and not leaving else 0.0)
             # Beside its primitives the gap may pass through zero: which side it is on afterwards is found anew.
             fresh = beside > safe
             # Never less than the rounding of time itself.
-            tau += beside if fresh else max(safe, 4e-16 * tau)
+            tau += beside if fresh else max(safe, TIME_ROUNDING * tau)
         if stretch < end:
             tau = min(tau, stretch)
     return math.inf
 
 
 @kernel
-def _stays_open(model, state, options, k, length, first, bounds, scratch):
+def _stays_open(model, state, options, k, length, first, bounds, path):
     """True if one look at the current poses shows that contact k cannot close in the next `length` seconds.
 
     `bounds` are the `_body_bounds` of the pair's bodies, of body `first` and of the other one.
     """
-    gap, rate, _, _ = normal_gap(model, k, scratch.pose)
-    state.counts[N_GAPS] += 1
+    here = normal_gap(model, k, path.pose)
+    gap, rate = here.gap, here.rate
+    state.counts.gap_evaluations += 1
     if -options.behind <= gap <= options.gap_zero:
         return False
     # Behind its primitive a contact must come out before it can close.
     room, approach = (gap, -rate) if gap > 0.0 else (-gap, rate)
     # The circle may be on either body of the pair.
-    here = model.primitives[model.contacts[k].a].body == first
-    closing, bend, _ = _gap_bounds(model, k, length, bounds[0 if here else 1], bounds[1 if here else 0], scratch)
-    return room > closing * length or _safe(room, approach, closing, bend, _centre_distance(model, k, scratch.pose)) >= length
+    in_order = model.primitives[model.contacts[k].a].body == first
+    closing, bend, _ = _gap_bounds(model, k, length, bounds[0 if in_order else 1], bounds[1 if in_order else 0], path)
+    return room > closing * length or _safe(room, approach, closing, bend, _centre_distance(model, k, path.pose)) >= length
 
 
 @kernel
-def _place_pair(model, state, pair, tau, scratch):
-    body_on_path(model, state, pair.a, tau, scratch)
-    body_on_path(model, state, pair.b, tau, scratch)
+def _place_pair(model, state, pair, tau, step, path):
+    body_on_path(model, state, step, pair.a, tau, path)
+    body_on_path(model, state, step, pair.b, tau, path)
 
 
 @kernel
-def _first_of(model, cells, state, options, p, tau, until, scratch):
+def _first_of(model, cells, state, options, p, tau, until, step, path):
     """(known, time, contact) of the first closing in [tau, until) among the candidates of pair p in one cell."""
     pair = model.pairs[p]
-    best, who = until, -1
-    how, start, count = candidates(model, cells, p, scratch.q)
+    best, who = until, NO_CONTACT
+    how, start, count = candidates(model, cells, p, path.q)
     if how == UNKNOWN:
-        return False, 0.0, -1
+        return False, 0.0, NO_CONTACT
     if how == LISTED:
-        state.counts[N_LOOKUPS] += 1
-    bounds = (_body_bounds(model, pair.a, until - tau, scratch), _body_bounds(model, pair.b, until - tau, scratch))
+        state.counts.cells_looked_up += 1
+    bounds = (_body_bounds(model, pair.a, until - tau, step, path), _body_bounds(model, pair.b, until - tau, step, path))
     doubts = 0
     for place in range(start, start + count):
         k = candidate(model, cells, how, place)
         if state.mode[k] != 0 or is_beside_active(model, state, k):
             continue
-        if not _stays_open(model, state, options, k, until - tau, pair.a, bounds, scratch):
-            scratch.doubt[doubts] = k
+        if not _stays_open(model, state, options, k, until - tau, pair.a, bounds, path):
+            path.doubt[doubts] = k
             doubts += 1
     for j in range(doubts):
         if j > 0:
-            _place_pair(model, state, pair, tau, scratch)
-        root = crossing(model, state, options, scratch.doubt[j], tau, best, scratch)
+            _place_pair(model, state, pair, tau, step, path)
+        root = crossing(model, state, options, path.doubt[j], tau, best, step, path)
         if root < best:
-            best, who = root, scratch.doubt[j]
+            best, who = root, path.doubt[j]
     return True, best, who
 
 
 @kernel
 def first_touch(model, cells, state, options, end, scratch):
-    """(known, time, contact) of the first closing in [0, end) of the current step; contact -1: none.
+    """(known, time, contact) of the first closing in [0, end) of the current step, or NO_CONTACT.
 
-    `known` is False when a cell was met that nobody has asked about; the body pair is then in `scratch.unknown`, its
-    coordinates in `scratch.at`.
+    `known` is False when a cell was met that nobody has asked about: it is then in `scratch.asked`.
     """
-    best, who = end, -1
+    best, who, step, path = end, NO_CONTACT, scratch.step, scratch.path
     for p in range(len(model.pairs)):
         pair = model.pairs[p]
         if is_at_rest(model, state, pair.a) and is_at_rest(model, state, pair.b):
             continue
         tau = 0.0
         while tau < best:
-            _place_pair(model, state, pair, tau, scratch)
-            copy(scratch.q, scratch.at)
-            until = min(best, tau + time_in_cell(model, p, scratch.q, scratch.u, scratch.step.bound))
-            known, root, k = _first_of(model, cells, state, options, p, tau, until, scratch)
+            _place_pair(model, state, pair, tau, step, path)
+            until = min(best, tau + time_in_cell(model, p, path.q, path.u, step.bound))
+            known, root, k = _first_of(model, cells, state, options, p, tau, until, step, path)
             if not known:
-                scratch.unknown[0] = p
-                return False, 0.0, -1
+                ask(scratch.asked, p, path.q)
+                return False, 0.0, NO_CONTACT
             if k >= 0:
                 best, who = root, k
                 break

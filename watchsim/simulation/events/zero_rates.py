@@ -9,9 +9,7 @@ velocities counts as zero (`exactly`), at that instant and in that island.
 from __future__ import annotations
 
 from watchsim.jit import kernel
-
-ROUNDING = 1e-12  # share of the terms that a gap rate is the sum of
-FLOOR = 1e-15  # of the size, per second
+from watchsim.simulation.tolerances import RATE_FLOOR, RATE_ROUNDING
 
 
 @kernel
@@ -27,7 +25,7 @@ def rounding_of(closed, i, options, pace):
     terms = 0.0
     for k in range(closed.slots[i]):
         terms += abs(closed.w_N[i, k]) * pace[closed.coord[i, k]]
-    return ROUNDING * terms + FLOOR * options.size
+    return RATE_ROUNDING * terms + RATE_FLOOR * options.size
 
 
 @kernel

@@ -21,17 +21,16 @@ from watchsim.simulation.moreau.mobility import fill_mobility, push, rates_of
 from watchsim.simulation.moreau.percussion_laws import cone
 from watchsim.simulation.moreau.percussions import friction_cones, solve_percussions
 from watchsim.simulation.moreau.prox_relaxation import relax
-from watchsim.simulation.state import CORRECTION, DAMPING, DRIVE, FRICTION
-
-TAKEN_BACK = 0.2  # share of a penetration beyond `slop` taken back in a step
-YIELD = 1e-3  # share by which a contact's own push yields: of what is wedged in from two sides, both keep some
+from watchsim.simulation.scratch import ask
+from watchsim.simulation.stops import Stop
+from watchsim.simulation.tolerances import TAKEN_BACK, YIELD
 
 
 @kernel
 def closed_at_middle(model, cells, state, options, h, work):
     """The contacts without a gap at the middle of the step, with kinematics, into `work.closed`.
 
-    Returns their number, -1 when a cell is unknown, -2 when there are too many.
+    Returns (Stop code: RUNNING, CELL_UNKNOWN or TOO_MANY_CONTACTS; their number).
     """
     for i in range(len(state.q)):
         work.q[i] = state.q[i] + 0.5 * h * state.u[i]
@@ -40,22 +39,21 @@ def closed_at_middle(model, cells, state, options, h, work):
     for p in range(len(model.pairs)):
         how, start, count = candidates(model, cells, p, work.q)
         if how == UNKNOWN:
-            work.unknown[0] = p
-            copy(work.q, work.at)
-            return -1
+            ask(work.asked, p, work.q)
+            return Stop.CELL_UNKNOWN, m
         for place_in_list in range(start, start + count):
             k = candidate(model, cells, how, place_in_list)
-            gap, _, _, _ = normal_gap(model, k, work.pose)
+            gap = normal_gap(model, k, work.pose).gap
             if gap > options.gap_close or (state.mode[k] == 0 and gap < -_believable(model, options, k, h, work)):
                 continue
             if extent_margin(model, k, work.pose) >= -options.extent:
                 if m == len(work.closed.ids):
-                    return -2
+                    return Stop.TOO_MANY_CONTACTS, m
                 contact_kinematics(model, k, work.pose, m, work.closed)
                 if is_immovable(model, work.closed, m):
                     continue
                 m += 1
-    return m
+    return Stop.RUNNING, m
 
 
 @kernel
@@ -69,7 +67,7 @@ def _believable(model, options, k, h, work):
     vx = pa.vx - pa.w * ay - pb.vx + pb.w * dy
     vy = pa.vy + pa.w * ax - pb.vy - pb.w * dx
     # A neighbour on the outline takes over what the last contact had.
-    return 2.0 * (h * math.sqrt(vx * vx + vy * vy) + work.depth[0]) + options.gap_close
+    return 2.0 * (h * math.sqrt(vx * vx + vy * vy) + work.kept.depth) + options.gap_close
 
 
 @kernel
@@ -80,7 +78,7 @@ def _free_velocity(model, state, h, work):
         work.force[i] = driving_force(model, i, work.q[i])
         work.damping[i] = coordinate.viscous + coordinate.quadratic * abs(work.u[i])
     for j in range(len(model.tables)):
-        table, force = model.tables[j], table_force(model, j, state.clock[0] + 0.5 * h, work.q)
+        table, force = model.tables[j], table_force(model, j, state.clock.time + 0.5 * h, work.q)
         work.force[table.coordinate] += force
         if table.on >= 0:
             work.force[table.on] -= force
@@ -97,10 +95,10 @@ def _free_velocity(model, state, h, work):
         work.free[i] = ((coordinate.mass - change) * work.u[i] + h * pull) * work.inverse[i]
     # Two coordinates at once would fill the matrix: what acts between them is taken at the middle as the last step foresees it.
     for i in range(len(work.u)):
-        work.at[i] = work.u[i] + 0.5 * h * state.a[i]
+        work.foreseen[i] = work.u[i] + 0.5 * h * state.a[i]
     for j in range(len(model.joints)):
         joint = model.joints[j]
-        work.joint[j] = joint_damping(joint, work.at)
+        work.joint[j] = joint_damping(joint, work.foreseen)
         torque = work.joint[j] - joint.stiffness * stretch(joint, work.q)
         work.free[joint.coordinate] += h * torque * work.inverse[joint.coordinate]
         work.free[joint.on] -= h * torque * work.inverse[joint.on]
@@ -140,10 +138,10 @@ def act(model, state, m, h, work, out_u):
     rates_of(work, m, bearings, out_u, work.rates)
     for i in range(m):
         N, T = 2 * i, 2 * i + 1
-        state.sums[CORRECTION] -= 0.5 * laws.P[N] * (laws.b[N] + work.rates[N])
-        state.sums[FRICTION] -= 0.5 * laws.P[T] * (laws.b[T] + work.rates[T])
+        state.sums.correction -= 0.5 * laws.P[N] * (laws.b[N] + work.rates[N])
+        state.sums.friction -= 0.5 * laws.P[T] * (laws.b[T] + work.rates[T])
     for row in range(2 * m, 2 * m + bearings):
-        state.sums[DAMPING] -= 0.5 * laws.P[row] * (laws.b[row] + work.rates[row])
+        state.sums.damping -= 0.5 * laws.P[row] * (laws.b[row] + work.rates[row])
 
 
 @kernel
@@ -153,23 +151,23 @@ def move(model, state, options, m, h, work, u):
         coordinate = model.coordinates[i]
         mean = 0.5 * (work.u[i] + u[i])
         state.q[i] += h * mean
-        state.sums[DRIVE] += h * mean * work.force[i]
-        state.sums[DAMPING] += h * work.damping[i] * mean * mean
+        state.sums.drive += h * mean * work.force[i]
+        state.sums.damping += h * work.damping[i] * mean * mean
         state.a[i] = (u[i] - work.u[i]) / h
-        work.free[i] = coordinate.stiffness * (state.q[i] - coordinate.rest) ** 2
+        work.wound[i] = coordinate.stiffness * (state.q[i] - coordinate.rest) ** 2
     for j in range(len(model.joints)):
         joint = model.joints[j]
         way = 0.5 * h * (work.u[joint.coordinate] + u[joint.coordinate] - work.u[joint.on] - u[joint.on])
-        state.sums[DAMPING] -= work.joint[j] * way
+        state.sums.damping -= work.joint[j] * way
         spent = joint.stiffness * way * (stretch(joint, state.q) - 0.5 * way - stretch(joint, work.q))
-        state.sums[CORRECTION] -= spent
+        state.sums.correction -= spent
     wound = joint_energy(model, state.q)
     _take_back(state, options, m, work)
-    state.sums[CORRECTION] -= joint_energy(model, state.q) - wound
+    state.sums.correction -= joint_energy(model, state.q) - wound
     for i in range(len(u)):
         coordinate = model.coordinates[i]
         after = coordinate.stiffness * (state.q[i] - coordinate.rest) ** 2
-        state.sums[CORRECTION] -= 0.5 * (after - work.free[i])
+        state.sums.correction -= 0.5 * (after - work.wound[i])
 
 
 @kernel
@@ -178,7 +176,7 @@ def _take_back(state, options, m, work):
     laws = work.laws
     state.mode[:] = 0
     work.memory[:] = 0.0
-    work.depth[0] = 0.0
+    work.kept.depth = 0.0
     slop = 0.5 * options.gap_close
     any_deep = False
     for i in range(m):
@@ -186,12 +184,12 @@ def _take_back(state, options, m, work):
         state.mode[k] = 1
         work.memory[k, 0], work.memory[k, 1] = laws.P[2 * i], laws.P[2 * i + 1]
         depth = -work.closed.kin[i].g
-        work.depth[0] = max(work.depth[0], depth)
+        work.kept.depth = max(work.kept.depth, depth)
         laws.b[2 * i], laws.b[2 * i + 1] = -TAKEN_BACK * max(0.0, depth - slop), 0.0
         laws.low[i] = 0.0
         cone(laws.ends, i, 0.0)
         any_deep = any_deep or depth > slop
-    state.worst[0] = max(state.worst[0], work.depth[0])
+    state.worst.penetration = max(state.worst.penetration, work.kept.depth)
     if not any_deep:
         return
     for i in range(m):

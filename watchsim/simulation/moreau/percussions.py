@@ -8,30 +8,27 @@ from __future__ import annotations
 
 from watchsim.dynamics.delassus import size_class
 from watchsim.dynamics.small_systems import copy
+from watchsim.dynamics.tolerances import NO_TANGENTIAL, PARALLEL
 from watchsim.jit import kernel
 from watchsim.model.records import PG1996, SHIFTED
+from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.moreau.mobility import fill_mobility, push, rates_of
 from watchsim.simulation.moreau.percussion_laws import cone, residual
 from watchsim.simulation.moreau.prox_relaxation import relax
 from watchsim.simulation.record.write_buffers import keep_event
-from watchsim.simulation.state import IMPACTS, N_ENERGY, N_IMPACTS, N_LCP, N_LCP_FAILED, N_LCP_SIZE
-
-IMPACT_EVENT = 1
-GAIN = 1e-12  # share of the kinetic energy up to which a gain is rounding
-PARALLEL = 1e-12  # sine² of the angle between parallel directions
-NO_SIGN = 1e-10  # a tangential percussion below this share of the friction cone has no sign
+from watchsim.simulation.tolerances import ENERGY_GAIN
 
 
 @kernel
 def solve_percussions(state, m, bearings, work):
     """Relax, and count what it took."""
     sweeps, settled = relax(work.laws, m, bearings)
-    state.counts[N_LCP] += 1
-    state.counts[N_LCP_SIZE + size_class(2 * m + bearings)] += 1
-    work.sweeps[0] += sweeps
+    state.counts.lcp += 1
+    state.counts.lcp_sizes[size_class(2 * m + bearings)] += 1
+    work.kept.sweeps += sweeps
     if not settled:
-        state.counts[N_LCP_FAILED] += 1
-    work.worst[0] = max(work.worst[0], residual(work.laws, m, 2 * m + bearings))
+        state.counts.lcp_failures += 1
+    work.kept.violation = max(work.kept.violation, residual(work.laws, m, 2 * m + bearings))
 
 
 @kernel
@@ -57,7 +54,7 @@ def _expansion_ends(law, share, N, T, ends, i):
         ends[i, 2], ends[i, 3] = back * (T - mu * N), mu
     elif law.kind == PG1996:
         back = share * law.tangential * T
-        if abs(T) <= NO_SIGN * mu * N:
+        if abs(T) <= NO_TANGENTIAL * mu * N:
             cone(ends, i, 0.5 * mu)
         elif T > 0.0:
             ends[i, 0], ends[i, 1], ends[i, 2], ends[i, 3] = back, 0.0, 0.0, mu
@@ -153,9 +150,9 @@ def stop_approaches(model, state, options, m, work, record):
         copy(state.u, work.u)
         push(work, m, 0, work.laws.P, work.u)
         rates_of(work, m, 0, work.u, work.laws.b)
-        if attempt == 2 or _loss(m, work) >= -GAIN * kinetic:
+        if attempt == 2 or _loss(m, work) >= -ENERGY_GAIN * kinetic:
             break
-        state.counts[N_ENERGY] += 1
+        state.counts.energy_rescues += 1
         least = _least_restitution(m, work) if attempt == 0 else 0.0
         for i in range(m):
             work.restitution[i] = least
@@ -170,11 +167,11 @@ def _write_impacts(state, options, m, work, record):
     for i in range(m):
         N, T = 2 * i, 2 * i + 1
         lost = -0.5 * (P[N] * (before[N] + after[N]) + P[T] * (before[T] + after[T]))
-        state.sums[IMPACTS] += lost
+        state.sums.impacts += lost
         if P[N] > 0.0 and before[N] < -options.accumulation_speed:
-            row = keep_event(state, record, IMPACT_EVENT, work.closed.ids[i], -1, before[N])
+            row = keep_event(state, record, EventKind.IMPACT, work.closed.ids[i], -1, before[N])
             event = record.events[row]
             event.impulse_normal, event.impulse_tangential, event.energy_lost = P[N], P[T], lost
-            state.counts[N_IMPACTS] += 1
+            state.counts.impacts += 1
             written = True
     return written

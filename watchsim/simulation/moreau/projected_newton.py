@@ -7,7 +7,8 @@ equations singular: what they leave open stays as it was.
 
 from __future__ import annotations
 
-from watchsim.dynamics.small_systems import RANK, copy, solve_small
+from watchsim.dynamics.small_systems import copy, solve_small
+from watchsim.dynamics.tolerances import RANK
 from watchsim.jit import kernel
 from watchsim.simulation.moreau.percussion_laws import bounds, improvement, size
 

@@ -10,14 +10,14 @@ from __future__ import annotations
 from watchsim.jit import kernel
 from watchsim.simulation.moreau.percussion_laws import improved, size
 from watchsim.simulation.moreau.projected_newton import finish
+from watchsim.simulation.tolerances import SETTLED
 
 SWEEPS = 20000  # at each pace
 FIRST = 32  # sweeps before Newton's method is tried; again after twice as many
 PACES = 4
+
+
 # Largest change of a percussion in a sweep, as a share of the largest one or of what would stop the fastest contact.
-SETTLED = 1e-13
-
-
 @kernel
 def _sweep(laws, m, rows, pace):
     """Each percussion once; returns the largest change that a full pace would make."""

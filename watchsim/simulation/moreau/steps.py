@@ -9,6 +9,8 @@ from watchsim.contact.kinematics import ClosedRef
 from watchsim.dynamics.small_systems import copy
 from watchsim.jit import entry, inlined, kernel
 from watchsim.model.records import CellsRef, ModelRef
+from watchsim.simulation.buffers import RecordRef
+from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.moreau.one_step import act, closed_at_middle, move
 from watchsim.simulation.moreau.percussion_laws import LawsRef
 from watchsim.simulation.moreau.percussions import stop_approaches
@@ -16,15 +18,19 @@ from watchsim.simulation.moreau.step_work import MoreauWorkRef
 from watchsim.simulation.motion.turning_points import sign
 from watchsim.simulation.options import OptionsRef
 from watchsim.simulation.record.write_buffers import keep_event, keep_row
-from watchsim.simulation.state import N_STEPS, RecordRef, StateRef
+from watchsim.simulation.scratch import AskedRef
+from watchsim.simulation.state import StateRef
 from watchsim.simulation.stops import Stop
+from watchsim.simulation.tolerances import STEP_ROUNDING
 
-SLICE, CELL_UNKNOWN, BUFFER_FULL = int(Stop.SLICE), int(Stop.CELL_UNKNOWN), int(Stop.BUFFER_FULL)
-DURATION, NOT_FINITE, LAST_STEP = int(Stop.DURATION), int(Stop.NOT_FINITE), int(Stop.LAST_STEP)
-RUNNING, TOO_MANY_CONTACTS = int(Stop.RUNNING), int(Stop.TOO_MANY_CONTACTS)
-TURN_EVENT, CROSS_EVENT = 8, 9
 ROWS_PER_STEP, EVENTS_PER_CONTACT = 3, 2
-CLOSE = 1e-9  # share of a step that is rounding of time
+
+
+class Pace:
+    """How far apart steps and rows are, s."""
+
+    step: float
+    row: float
 
 
 @kernel
@@ -43,7 +49,7 @@ def _passages(model, state, h, work, q, u, record):
 @kernel
 def _keep_of(model, state, h, spring, ends, record):
     """The same for one spring, (coordinate, coordinate of the carrier or -1, rest); `ends`: q and u before and after."""
-    start = state.clock[0]
+    start = state.clock.time
     i, on, rest = spring
     body = model.coordinates[i].body
     before, fast, after, last = along(ends[0], i, on), along(ends[1], i, on), along(ends[2], i, on), along(ends[3], i, on)
@@ -52,49 +58,48 @@ def _keep_of(model, state, h, spring, ends, record):
     if side != 0 and side != state.side_u[i]:
         if state.side_u[i] != 0:
             tau = h * fast / (fast - last) if fast * last < 0.0 else 0.0
-            state.clock[0] = start + tau
-            keep_event(state, record, TURN_EVENT, -1, body, before + 0.5 * fast * tau)
+            state.clock.time = start + tau
+            keep_event(state, record, EventKind.TURN, -1, body, before + 0.5 * fast * tau)
         state.side_u[i] = side
     way, side = before - rest, sign(after - rest)
     if side != 0 and side != state.side_q[i]:
         if state.side_q[i] != 0:
             root = math.sqrt(max(0.0, fast * fast - 2.0 * bend * way))
             tau = min(h, max(0.0, -2.0 * way / (fast + math.copysign(root, fast))))
-            state.clock[0] = start + tau
-            keep_event(state, record, CROSS_EVENT, -1, body, fast + bend * tau)
+            state.clock.time = start + tau
+            keep_event(state, record, EventKind.CROSS, -1, body, fast + bend * tau)
         state.side_q[i] = side
-    state.clock[0] = start
+    state.clock.time = start
 
 
 @kernel
 def _step(model, cells, state, options, h, whole, work, record):
     """One step of length h, of which `whole` is the usual one; returns a Stop code."""
-    m = closed_at_middle(model, cells, state, options, h, work)
-    if m < 0:
-        return CELL_UNKNOWN if m == -1 else TOO_MANY_CONTACTS
+    code, m = closed_at_middle(model, cells, state, options, h, work)
+    if code != Stop.RUNNING:
+        return code
     jump = stop_approaches(model, state, options, m, work, record)
     if jump:
-        keep_row(state, record, state.clock[0], state.q, state.u, state.a)
-        keep_row(state, record, state.clock[0], state.q, work.u, state.a)
+        keep_row(state, record, state.clock.time, state.q, state.u, state.a)
+        keep_row(state, record, state.clock.time, state.q, work.u, state.a)
     act(model, state, m, h, work, state.u)
-    copy(state.q, work.at)
+    copy(state.q, work.start)
     move(model, state, options, m, h, work, state.u)
     for i in range(len(state.u)):
         if not math.isfinite(state.q[i] + state.u[i]):
-            return NOT_FINITE
+            return Stop.NOT_FINITE
         # `_passages` looks from the start of the step to its end.
-        work.q[i], state.q[i] = state.q[i], work.at[i]
+        work.q[i], state.q[i] = state.q[i], work.start[i]
     _passages(model, state, h, work, work.q, state.u, record)
     copy(work.q, state.q)
-    state.numbers[3] += 1
-    state.clock[0] = state.numbers[3] * whole if h == whole else state.clock[0] + h
-    state.counts[N_STEPS] += 1
-    return RUNNING
+    state.counts.steps += 1
+    state.clock.time = state.counts.steps * whole if h == whole else state.clock.time + h
+    return Stop.RUNNING
 
 
 @entry
 def advance_fixed(model, cells, state, options, until, pace, work, record):
-    """Run to until[1] in steps of pace[0] s, with a row every pace[1] s; otherwise as `advance`."""
+    """Run to `until.end` in steps of `pace.step`, with a row every `pace.row`, s; otherwise as `advance`."""
     return _loop(
         ModelRef(*model),
         CellsRef(*cells),
@@ -110,33 +115,33 @@ def advance_fixed(model, cells, state, options, until, pace, work, record):
 @inlined
 def _by_reference(work):
     """The scratch arrays as a struct; what holds structs itself names them first."""
-    return MoreauWorkRef(ClosedRef(*work.closed), LawsRef(*work.laws), *work[2:])
+    return MoreauWorkRef(ClosedRef(*work.closed), LawsRef(*work.laws), AskedRef(*work.asked), *work[3:])
 
 
 @kernel
 def _loop(model, cells, state, options, until, pace, work, record):
     while True:
         events = EVENTS_PER_CONTACT * len(work.closed.ids)
-        if record.used[0] + ROWS_PER_STEP >= len(record.rows) or record.used[1] + events >= len(record.events):
-            return BUFFER_FULL
-        if state.numbers[2]:
-            state.numbers[2] = 0
+        if record.used.rows + ROWS_PER_STEP >= len(record.rows) or record.used.events + events >= len(record.events):
+            return Stop.BUFFER_FULL
+        if state.now.event_waits == 1:
+            state.now.event_waits = 0
             keep_row(state, record, 0.0, state.q, state.u, state.a)
-        left = until[1] - state.clock[0]
+        left = until.end - state.clock.time
         if left <= 0.0:
-            return DURATION
-        if state.clock[0] >= until[0] and until[0] < until[1]:
-            return SLICE
-        last = left <= pace[0] * (1.0 + CLOSE)
-        if last and until[2] == 0.0:
-            return LAST_STEP
-        h = pace[0] if left >= pace[0] * (1.0 - CLOSE) else left
-        code = _step(model, cells, state, options, h, pace[0], work, record)
-        if code != RUNNING:
+            return Stop.DURATION
+        if state.clock.time >= until.slice_end and until.slice_end < until.end:
+            return Stop.SLICE
+        last = left <= pace.step * (1.0 + STEP_ROUNDING)
+        if last and until.may_cut == 0:
+            return Stop.LAST_STEP
+        h = pace.step if left >= pace.step * (1.0 - STEP_ROUNDING) else left
+        code = _step(model, cells, state, options, h, pace.step, work, record)
+        if code != Stop.RUNNING:
             return code
         if last:
-            state.clock[0] = until[1]
+            state.clock.time = until.end
         # Rows at least so often; the last one always.
-        if last or state.clock[0] - state.clock[2] >= pace[1] * (1.0 - CLOSE):
-            state.clock[2] = state.clock[0]
-            keep_row(state, record, state.clock[0], state.q, state.u, state.a)
+        if last or state.clock.time - work.kept.row_time >= pace.row * (1.0 - STEP_ROUNDING):
+            work.kept.row_time = state.clock.time
+            keep_row(state, record, state.clock.time, state.q, state.u, state.a)

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Any
+import dataclasses
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.mechanism.compile import Compiled
+from watchsim.model.named_fields import blank, row_of
 from watchsim.scene.recording import Recording
 from watchsim.scene.scene import Scene
+from watchsim.simulation.buffers import Until, new_record
 from watchsim.simulation.methods import MOREAU
 from watchsim.simulation.moreau.step_work import moreau_work
-from watchsim.simulation.moreau.steps import EVENTS_PER_CONTACT, ROWS_PER_STEP, advance_fixed
+from watchsim.simulation.moreau.steps import EVENTS_PER_CONTACT, ROWS_PER_STEP, Pace, advance_fixed
+from watchsim.simulation.record.saved_state import SavedState
 from watchsim.simulation.runner import EVENTS, ROWS, Run
-from watchsim.simulation.state import CORRECTION, new_record, room_for
+from watchsim.simulation.state import room_for
 from watchsim.simulation.stops import Stop
 
 ROWS_PER_QUARTER = 300  # of the fastest spring's period; of the scene's duration where there is no spring
@@ -28,39 +32,47 @@ class MoreauRun(Run):
     def __init__(self, scene: Scene, compiled: Compiled, tolerance: float, recording: Recording, step: float) -> None:
         super().__init__(scene, compiled, tolerance, recording)
         self.step = step
-        self.pace = np.array([step, max(step, self.options.max_step / ROWS_PER_QUARTER)])
+        self.pace = blank(Pace)
+        self.pace.step, self.pace.row = step, max(step, self.options.max_step / ROWS_PER_QUARTER)
         self.work = moreau_work(compiled.model)
         self.record = new_record(
             compiled.model, ROWS + ROWS_PER_STEP, EVENTS + EVENTS_PER_CONTACT * room_for(compiled.model), self.record.windows
         )
 
+    def begin_from(self, saved: SavedState) -> None:
+        if "row_time" not in saved.arrays:  # earlier versions kept it with the times
+            saved = dataclasses.replace(saved, arrays=saved.arrays | {"row_time": saved.arrays["clock"][2:]})
+        super().begin_from(saved)
+
     def arrays(self) -> dict[str, NDArray[Any]]:
-        return {**super().arrays(), "memory": self.work.memory, "depth": self.work.depth, "sweeps": self.work.sweeps}
+        kept = row_of(self.work.kept)
+        own = {name: kept[name] for name in ("depth", "sweeps", "row_time")}
+        return {**super().arrays(), "memory": self.work.memory, **own}
 
     def _worst_residual(self) -> NDArray[np.float64]:
-        return self.work.worst
+        return cast(NDArray[np.float64], row_of(self.work.kept)["violation"])
 
     def settings(self) -> dict[str, Any]:
         return {**super().settings(), "step": self.step}
 
-    def _advance(self, until: NDArray[np.float64], record: Any) -> Stop:
+    def _advance(self, until: Until, record: Any) -> Stop:
         model = self.compiled.model
         # Of fixed length, so that their number is a time.
-        before = float(self.state.clock[0])
-        until[0] = min(until[0], before + until[3] * self.pace[0])
+        before = float(self.state.clock.time)
+        until.slice_end = min(until.slice_end, before + until.steps * self.pace.step)
         code = advance_fixed(model, self.finder.cells, self.state, self.options, until, self.pace, self.work, record)
-        until[3] -= round((float(self.state.clock[0]) - before) / self.pace[0])
+        until.steps -= round((float(self.state.clock.time) - before) / self.pace.step)
         return Stop(int(code))
 
     def _learn(self) -> None:
-        self.finder.learn(int(self.work.unknown[0]), self.work.at.copy())
+        self.finder.learn(int(self.work.asked.cell.pair), self.work.asked.at.copy())
 
     def _counts(self) -> dict[str, int]:
-        return {**super()._counts(), "sweeps": int(self.work.sweeps[0])}
+        return {**super()._counts(), "sweeps": int(self.work.kept.sweeps)}
 
     def _ledger_fails(self) -> bool:
         """Never: the error of the ledger goes with the step, which the user has chosen."""
         return False
 
     def _dissipated(self) -> dict[str, float]:
-        return {**super()._dissipated(), "stepping": float(self.state.sums[CORRECTION])}
+        return {**super()._dissipated(), "stepping": float(self.state.sums.correction)}

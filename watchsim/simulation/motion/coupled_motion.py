@@ -7,6 +7,8 @@ comes near Painlevé's paradox, a bearing with dry friction that stops or breaks
 
 from __future__ import annotations
 
+import math
+
 from watchsim.contact.index_sets import OPEN, STICK
 from watchsim.contact.poses import place_body
 from watchsim.dynamics.acceleration import is_paradox, solve_mode
@@ -15,23 +17,22 @@ from watchsim.dynamics.bearing_friction import add_drag, add_loads, drag_power
 from watchsim.dynamics.delassus import apply
 from watchsim.jit import kernel
 from watchsim.simulation.motion.contact_islands import place_contacts
-from watchsim.simulation.state import MONITORS, N_EVALUATIONS
-
-SLIP_SLACK = 2.0  # times `speed_zero`: slips against their direction by less do not end a mode
+from watchsim.simulation.scratch import MONITORS
+from watchsim.simulation.tolerances import SLIP_SLACK
 
 NORMAL, TANGENTIAL, EXTENT, PARADOX = range(MONITORS)
 
 
 @kernel
-def bearing_monitor(model, state, scratch, options, j):
+def bearing_monitor(model, state, options, j, smooth):
     """Of coordinate j at the state being evaluated; its grip holds while it is positive."""
     coordinate = model.coordinates[j]
     if state.grip[j] == OPEN or state.awake[j] == 0:
         return 1.0
     if state.grip[j] == STICK:
-        return coordinate.coulomb - abs(scratch.load[j]) + state.lenience[0] * options.force_zero * scratch.terms[j]
-    slack = 0.5 * state.lenience[0] * options.speed_zero / options.size * coordinate.scale
-    return state.grip[j] * scratch.y[len(model.coordinates) + j] + slack
+        return coordinate.coulomb - abs(smooth.load[j]) + state.now.lenience * options.force_zero * smooth.terms[j]
+    slack = 0.5 * state.now.lenience * options.speed_zero / options.size * coordinate.scale
+    return state.grip[j] * smooth.y[len(model.coordinates) + j] + slack
 
 
 @kernel
@@ -52,86 +53,90 @@ def grip_left(friction, work, i, zero):
 
 
 @kernel
-def _tangential_monitor(model, state, scratch, options, i):
-    closed, work = scratch.closed, scratch.work
+def _tangential_monitor(model, state, options, i, work, closed):
     k = closed.ids[i]
     friction = model.laws[model.contacts[k].group].friction
     if friction == 0.0:
         return 1.0
     if state.mode[k] == STICK:
-        return grip_left(friction, work, i, state.lenience[0] * options.force_zero)
+        return grip_left(friction, work, i, state.now.lenience * options.force_zero)
     # A slip that counted as none may run against the mode decided: it ends only beyond what counts as none.
-    return state.mode[k] * closed.kin[i].gT_dot + state.lenience[0] * SLIP_SLACK * options.speed_zero
+    return state.mode[k] * closed.kin[i].gT_dot + state.now.lenience * SLIP_SLACK * options.speed_zero
 
 
 @kernel
-def _watch(model, state, options, first, m, scratch):
-    """Set the monitors of an island's m contacts, the first of them at place `first` of `state.active`.
+def _watch(model, state, options, first, m, work, smooth):
+    """Set the monitors of an island's m contacts, the first of them at place `first` of `state.active`; returns the smallest.
 
     Code MONITORS * place + kind; the mode holds while all are positive.
     """
-    closed, work, values = scratch.closed, scratch.work, scratch.monitors
+    closed, values = smooth.closed, smooth.monitors
+    smallest = math.inf
     for i in range(m):
         code = MONITORS * (first + i)
-        values[code + NORMAL] = press_left(work, i, state.lenience[0] * options.force_zero)
-        values[code + TANGENTIAL] = _tangential_monitor(model, state, scratch, options, i)
+        values[code + NORMAL] = press_left(work, i, state.now.lenience * options.force_zero)
+        values[code + TANGENTIAL] = _tangential_monitor(model, state, options, i, work, closed)
         values[code + EXTENT] = closed.kin[i].margin + 2.0 * options.extent
         values[code + PARADOX] = -1.0 if is_paradox(work, m, i) else 1.0
         for kind in range(MONITORS):
-            scratch.alarm[0] = min(scratch.alarm[0], values[code + kind])
+            smallest = min(smallest, values[code + kind])
+    return smallest
 
 
 @kernel
-def _watch_bearings(model, state, options, scratch):
-    """Set the monitors of the bearings: one for each coordinate, codes after those of the contacts."""
-    code = MONITORS * state.numbers[0]
+def _watch_bearings(model, state, options, smooth):
+    """Set the monitors of the bearings: one for each coordinate, codes after those of the contacts; returns the smallest."""
+    smallest = math.inf
+    code = MONITORS * state.now.awake_contacts
     for j in range(len(model.coordinates)):
-        scratch.monitors[code + j] = bearing_monitor(model, state, scratch, options, j)
-        scratch.alarm[0] = min(scratch.alarm[0], scratch.monitors[code + j])
+        smooth.monitors[code + j] = bearing_monitor(model, state, options, j, smooth)
+        smallest = min(smallest, smooth.monitors[code + j])
+    return smallest
 
 
 @kernel
-def engage(model, state, scratch):
+def engage(model, state, smooth):
     """Find the bodies that the active contacts join, the only ones whose places matter while the modes last."""
-    scratch.engaged[:] = 0
-    for i in range(state.numbers[0]):
+    smooth.engaged[:] = 0
+    for i in range(state.now.awake_contacts):
         contact = model.contacts[state.active[i]]
-        scratch.engaged[model.primitives[contact.a].body] = 1
-        scratch.engaged[model.primitives[contact.b].body] = 1
+        smooth.engaged[model.primitives[contact.a].body] = 1
+        smooth.engaged[model.primitives[contact.b].body] = 1
 
 
 @kernel
-def motion(model, state, options, t, y, scratch):
-    """dy/dt of y = (q, u, sums) at time t into `scratch.dy`; lowers `scratch.alarm` to the smallest monitor.
+def motion(model, state, options, t, work, smooth):
+    """dy/dt of `smooth.y` = (q, u, sums) at time t into `smooth.dy`; returns the smallest monitor.
 
-    `scratch.engaged` must be that of the active contacts.
+    `smooth.engaged` must be that of the active contacts; `work.inverse` is given.
     """
     n = len(model.coordinates)
-    q, u = y[:n], y[n : 2 * n]
-    work, closed, out = scratch.work, scratch.closed, scratch.dy
+    q, u = smooth.y[:n], smooth.y[n : 2 * n]
+    closed, out = smooth.closed, smooth.dy
     forces(model, t, q, u, work.h)
     add_drag(model, state.grip, work.h)
     for b in range(len(model.bodies)):
-        if scratch.engaged[b]:
-            place_body(model, b, q, u, scratch.pose)
+        if smooth.engaged[b]:
+            place_body(model, b, q, u, smooth.pose)
     for i in range(n):
         out[i], out[n + i] = u[i], work.h[i] * work.inverse[i]
-        scratch.load[i], scratch.terms[i] = work.h[i], abs(work.h[i])
-    friction, first = 0.0, 0
-    while first < state.numbers[0]:
-        m = place_contacts(model, state.active, first, state.upto[first], scratch.pose, closed)
+        smooth.load[i], smooth.terms[i] = work.h[i], abs(work.h[i])
+    smallest, friction, first = math.inf, 0.0, 0
+    while first < state.now.awake_contacts:
+        m = place_contacts(model, state.active, first, state.upto[first], smooth.pose, closed)
         solve_mode(model, closed, m, state.mode, work)
         apply(closed, m, work.force, work.inverse, out[n : 2 * n])
-        add_loads(closed, m, work.force, state.grip, scratch.load, scratch.terms)
+        add_loads(closed, m, work.force, state.grip, smooth.load, smooth.terms)
         for i in range(m):
             friction -= work.force[2 * i + 1] * closed.kin[i].gT_dot
-        _watch(model, state, options, first, m, scratch)
+        smallest = min(smallest, _watch(model, state, options, first, m, work, smooth))
         first += m
-    _watch_bearings(model, state, options, scratch)
+    smallest = min(smallest, _watch_bearings(model, state, options, smooth))
     for i in range(n):
         if state.awake[i] == 0:
             out[n + i] = 0.0
     out[2 * n] = drive_power(model, t, q, u)
     out[2 * n + 1] = damping_power(model, u) + drag_power(model, state.grip, u)
     out[2 * n + 2] = friction
-    state.counts[N_EVALUATIONS] += 1
+    state.counts.evaluations += 1
+    return smallest

@@ -1,17 +1,41 @@
-"""Where is everything at a time within the current step?"""
+"""Where is everything at a time within the current step?
+
+In a coupled step: the continuous extension, a polynomial of degree 7 in the share x of the step that has passed (Hairer,
+Noersett & Wanner 1993, II.6). In a flight: the closed form.
+"""
 
 from __future__ import annotations
 
 from watchsim.jit import kernel
 from watchsim.simulation.motion.free_motion import acceleration, flow
-from watchsim.simulation.motion.integrator import dense_value
-from watchsim.simulation.state import FLIGHT
+from watchsim.simulation.scratch import FLIGHT
+
+
+@kernel
+def dense(step, i, tau):
+    """Component i of y, and its time derivative, at time tau after the start of a coupled step."""
+    h, d = step.span.length, step.dense
+    x = tau / h
+    w = 1.0 - x
+    value, slope = d[5, i] + x * d[6, i], d[6, i]
+    value, slope = d[4, i] + w * value, w * slope - value
+    value, slope = d[3, i] + x * value, x * slope + value
+    value, slope = d[2, i] + w * value, w * slope - value
+    value, slope = d[1, i] + x * value, x * slope + value
+    value, slope = d[0, i] + w * value, w * slope - value
+    return step.y0[i] + x * value, (x * slope + value) / h
+
+
+@kernel
+def dense_value(step, i, tau):
+    """Component i of y alone."""
+    return dense(step, i, tau)[0]
 
 
 @kernel
 def coordinate_within(model, state, step, i, tau):
     """Coordinate i and its velocity at time tau after the start of the step."""
-    if step.kind[0] == FLIGHT:
+    if step.span.kind == FLIGHT:
         if state.awake[i] == 0:
             return step.q[i], 0.0
         return flow(model.coordinates[i], state.grip[i], step.q[i], step.u[i], tau)

@@ -14,11 +14,9 @@ from watchsim.contact.index_sets import OPEN, STICK
 from watchsim.dynamics.delassus import apply, fill_delassus
 from watchsim.dynamics.small_systems import solve_small, unit_scale
 from watchsim.jit import kernel
+from watchsim.simulation.tolerances import DEPENDENT_IN_STEPS, SLIP_WEIGHT
 
 # sine² of the angle below which a direction counts as one of the others, or as immovable
-IN_STEPS = 1e-6  # what a step leaves. Large: drift piles up between nearly parallel faces; small: its rounding is magnified
-AT_EVENTS = 1e-2  # rates that count as zero. Large: sets are resolved by impulses without need; small: bodies are stopped
-SLIP_LAST = 0.5  # weight of slips against gap rates: where they compete, the gap rate is made exact
 
 
 @kernel
@@ -35,11 +33,11 @@ def project_positions(closed, m, both, work, out_q):
         for j in range(m):
             work.A[i, j] = work.G[2 * i, 2 * j]
         work.rhs[i] = -closed.kin[i].g if both or closed.kin[i].g < 0.0 else 0.0
-        work.scale[i] = _scale_of(work, 2 * i, IN_STEPS)
-    solve_small(work.A, work.rhs, m, work.scale, work.order, work.x, IN_STEPS)
+        work.scale[i] = _scale_of(work, 2 * i, DEPENDENT_IN_STEPS)
+    solve_small(work.A, work.rhs, m, work.scale, work.order, work.x, DEPENDENT_IN_STEPS)
     for i in range(m):
-        work.more[2 * i], work.more[2 * i + 1] = work.x[i], 0.0
-    apply(closed, m, work.more, work.inverse, out_q)
+        work.correction[2 * i], work.correction[2 * i + 1] = work.x[i], 0.0
+    apply(closed, m, work.correction, work.inverse, out_q)
     return deepest
 
 
@@ -47,20 +45,20 @@ def project_positions(closed, m, both, work, out_q):
 def project_velocities(closed, m, mode, independent, work, out_u):
     """Make the gap rates of the first m contacts in force, and the slip of the sticking ones, zero.
 
-    `independent`: IN_STEPS or AT_EVENTS.
+    `independent`: DEPENDENT_IN_STEPS or DEPENDENT_AT_EVENTS.
     """
     find_correction(closed, m, mode, independent, work)
-    apply(closed, m, work.more, work.inverse, out_u)
+    apply(closed, m, work.correction, work.inverse, out_u)
 
 
 @kernel
 def find_correction(closed, m, mode, independent, work):
-    """The impulses of `project_velocities` into `work.more`; fills `work.G`."""
+    """The impulses of `project_velocities` into `work.correction`; fills `work.G`."""
     fill_delassus(closed, m, work)
     n = 0
     for i in range(m):
         state = mode[closed.ids[i]]
-        work.more[2 * i], work.more[2 * i + 1] = 0.0, 0.0
+        work.correction[2 * i], work.correction[2 * i + 1] = 0.0, 0.0
         if state != OPEN:
             n = _add_row(work, 2 * i, -closed.kin[i].gN_dot, n, independent)
         if state == STICK:
@@ -70,7 +68,7 @@ def find_correction(closed, m, mode, independent, work):
             work.A[i, j] = work.G[work.row[i], work.row[j]]
     solve_small(work.A, work.rhs, n, work.scale, work.order, work.x, independent)
     for i in range(n):
-        work.more[work.row[i]] = work.x[i]
+        work.correction[work.row[i]] = work.x[i]
 
 
 @kernel
@@ -78,7 +76,7 @@ def rate_left(closed, m, i, work):
     """Gap rate of contact i after the correction just found."""
     rate = closed.kin[i].gN_dot
     for row in range(2 * m):
-        rate += work.G[2 * i, row] * work.more[row]
+        rate += work.G[2 * i, row] * work.correction[row]
     return rate
 
 
@@ -97,4 +95,4 @@ def _scale_of(work, row, independent):
     own = work.G[row, row]
     if own <= independent * easiest:
         return 0.0
-    return unit_scale(own) if row == normal else SLIP_LAST * unit_scale(own)
+    return unit_scale(own) if row == normal else SLIP_WEIGHT * unit_scale(own)

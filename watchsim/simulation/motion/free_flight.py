@@ -11,7 +11,7 @@ from watchsim.jit import kernel
 from watchsim.simulation.motion.dense_output import coordinate_within, flight_acceleration
 from watchsim.simulation.motion.free_motion import acceleration_bound, quarter_period
 from watchsim.simulation.record.write_buffers import is_kept, keep_row
-from watchsim.simulation.state import DAMPING, DRIVE, FLIGHT
+from watchsim.simulation.scratch import FLIGHT
 
 FLIGHT_PHASE = 1.6  # rad of the fastest coordinate's own time scale: the longest flight
 
@@ -23,7 +23,7 @@ _WEIGHTS = (0.05061426814518813, 0.11119051722668724, 0.15685332293894363, 0.181
 @kernel
 def can_fly(model, state):
     """True if no contact is in force between awake bodies and all awake coordinates have exact solutions."""
-    if state.numbers[0] > 0:
+    if state.now.awake_contacts > 0:
         return False
     for i in range(len(model.coordinates)):
         if state.awake[i] and not model.coordinates[i].linear:
@@ -55,11 +55,11 @@ def flight_length(model, state, options):
 
 
 @kernel
-def begin_flight(model, state, length, scratch):
+def begin_flight(model, state, length, out_step):
     """Make the current step an exact flight of all awake coordinates."""
-    step = scratch.step
-    step.kind[0] = FLIGHT
-    step.span[0], step.span[1] = state.clock[0], length
+    step = out_step
+    step.span.kind = FLIGHT
+    step.span.start, step.span.length = state.clock.time, length
     for i in range(len(model.coordinates)):
         step.q[i], step.u[i] = state.q[i], state.u[i]
         step.bound[i] = 0.0
@@ -74,9 +74,9 @@ def add_flight_sums(model, state, step, end):
         coordinate = model.coordinates[i]
         if not state.awake[i]:
             continue
-        state.sums[DRIVE] += coordinate.force * (coordinate_within(model, state, step, i, end)[0] - step.q[i])
+        state.sums.drive += coordinate.force * (coordinate_within(model, state, step, i, end)[0] - step.q[i])
         if coordinate.coulomb > 0.0:
-            state.sums[DAMPING] += coordinate.coulomb * abs(coordinate_within(model, state, step, i, end)[0] - step.q[i])
+            state.sums.damping += coordinate.coulomb * abs(coordinate_within(model, state, step, i, end)[0] - step.q[i])
         if coordinate.viscous == 0.0:
             continue
         total = 0.0
@@ -84,18 +84,17 @@ def add_flight_sums(model, state, step, end):
             first = coordinate_within(model, state, step, i, end * _NODES[j])[1]
             last = coordinate_within(model, state, step, i, end * (1.0 - _NODES[j]))[1]
             total += _WEIGHTS[j] * (first * first + last * last)
-        state.sums[DAMPING] += coordinate.viscous * end * total
+        state.sums.damping += coordinate.viscous * end * total
 
 
 @kernel
-def keep_flight_rows(model, state, end, spacing, scratch, record):
+def keep_flight_rows(model, state, end, spacing, step, record):
     """Rows of a flight, evenly spaced, the last one at its end; brings the state there."""
-    step = scratch.step
     n = len(model.coordinates)
-    rows = 1 if spacing == math.inf or not is_kept(record, step.span[0], end) else max(1, math.ceil(end / spacing))
+    rows = 1 if spacing == math.inf or not is_kept(record, step.span.start, end) else max(1, math.ceil(end / spacing))
     for row in range(1, rows + 1):
         tau = end * row / rows if row < rows else end
         for i in range(n):
             state.q[i], state.u[i] = coordinate_within(model, state, step, i, tau)
             state.a[i] = flight_acceleration(model, state, i, state.q[i], state.u[i])
-        keep_row(state, record, step.span[0] + tau, state.q, state.u, state.a)
+        keep_row(state, record, step.span.start + tau, state.q, state.u, state.a)

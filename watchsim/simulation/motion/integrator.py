@@ -12,28 +12,29 @@ from watchsim.jit import kernel
 from watchsim.simulation.motion.coupled_motion import engage, motion
 from watchsim.simulation.motion.dop853 import E3, E5, STAGES, A, C, D
 from watchsim.simulation.motion.step_path import bound_accelerations
-from watchsim.simulation.state import COUPLED, N_REJECTED, N_STEPS, SUMS
+from watchsim.simulation.scratch import COUPLED, SUMS
+from watchsim.simulation.tolerances import SMALLEST_STEP
 
 # Safety is smaller than usual: the motion of coupled bodies grows sharper from step to step, and repeating a step costs more
 # than shortening it.
 SAFETY, SHRINK, GROW = 0.78, 0.2, 6.0
-SMALLEST = 1e-14  # shortest step, as a share of the longest allowed one
 
 
 @kernel
 def _stage(model, state, options, s, h, scratch):
-    """Derivative of stage s into `stages[s]`."""
-    step = scratch.step
+    """Derivative of stage s into `stages[s]`; returns the smallest monitor."""
+    step, smooth = scratch.step, scratch.smooth
     width = len(step.y0)
     for i in range(width):
         total = 0.0
         for j in range(s):
             if A[s, j] != 0.0:
                 total += A[s, j] * step.stages[j, i]
-        scratch.y[i] = step.y0[i] + h * total
-    motion(model, state, options, step.span[0] + C[s] * h, scratch.y, scratch)
+        smooth.y[i] = step.y0[i] + h * total
+    smallest = motion(model, state, options, step.span.start + C[s] * h, scratch.work, smooth)
     for i in range(width):
-        step.stages[s, i] = scratch.dy[i]
+        step.stages[s, i] = smooth.dy[i]
+    return smallest
 
 
 @kernel
@@ -59,10 +60,10 @@ def _error(model, options, h, step):
 
 @kernel
 def _extend(model, state, options, h, scratch):
-    """Coefficients of the continuous extension into `dense`."""
-    step = scratch.step
+    """Coefficients of the continuous extension into `dense`; returns the smallest monitor at its stages."""
+    step, smallest = scratch.step, math.inf
     for s in range(STAGES + 1, STAGES + 4):
-        _stage(model, state, options, s, h, scratch)
+        smallest = min(smallest, _stage(model, state, options, s, h, scratch))
     for i in range(len(step.y0)):
         change = step.y1[i] - step.y0[i]
         first, last = h * step.stages[0, i], h * step.stages[STAGES, i]
@@ -74,57 +75,48 @@ def _extend(model, state, options, h, scratch):
             for s in range(STAGES + 4):
                 total += D[row, s] * step.stages[s, i]
             step.dense[3 + row, i] = h * total
+    return smallest
 
 
 @kernel
 def coupled_step(model, state, options, longest, scratch):
-    """One accepted step of at most `longest` seconds from the state, left in `scratch.step`; False if it gets too small.
+    """One accepted step of at most `longest` seconds from the state, left in `scratch.step`.
 
-    `scratch.alarm` is the smallest monitor met at its stages. Proposes the next length in `state.clock[1]`.
+    Returns (made: False if it gets too small, the smallest monitor met at its stages). Proposes the next length in
+    `state.clock.step`.
     """
     step = scratch.step
     n = len(model.coordinates)
-    step.kind[0], step.span[0] = COUPLED, state.clock[0]
+    step.span.kind, step.span.start = COUPLED, state.clock.time
     for i in range(n):
         step.q[i], step.u[i] = state.q[i], state.u[i]
         step.y0[i], step.y0[n + i] = state.q[i], state.u[i]
     for i in range(SUMS):
         step.y0[2 * n + i] = 0.0
-    engage(model, state, scratch)
-    h = min(state.clock[1], longest)
+    engage(model, state, scratch.smooth)
+    h = min(state.clock.step, longest)
     shrunk = False
     while True:
-        scratch.alarm[0] = math.inf
+        smallest = math.inf
         for s in range(STAGES + 1):
-            _stage(model, state, options, s, h, scratch)
+            smallest = min(smallest, _stage(model, state, options, s, h, scratch))
         for i in range(len(step.y0)):
-            step.y1[i] = scratch.y[i]
+            step.y1[i] = scratch.smooth.y[i]
         error = _error(model, options, h, step)
         factor = min(GROW, max(SHRINK, SAFETY * error**-0.125)) if error > 0.0 else GROW
         if error <= 1.0:
             break
-        if not h > SMALLEST * options.max_step:
-            return False
-        state.counts[N_REJECTED] += 1
+        if not h > SMALLEST_STEP * options.max_step:
+            return False, smallest
+        state.counts.rejected_steps += 1
         shrunk = True
         h *= min(1.0, factor) if error < math.inf else SHRINK
-    _extend(model, state, options, h, scratch)
-    step.span[1] = h
+    smallest = min(smallest, _extend(model, state, options, h, scratch))
+    step.span.length = h
     proposed = h * (min(1.0, factor) if shrunk else factor)
     if not shrunk:  # a step cut short by `longest` says nothing against a longer next one
-        proposed = max(proposed, min(state.clock[1], h * GROW))
-    state.clock[1] = min(options.max_step, proposed)
+        proposed = max(proposed, min(state.clock.step, h * GROW))
+    state.clock.step = min(options.max_step, proposed)
     bound_accelerations(step, n)
-    state.counts[N_STEPS] += 1
-    return True
-
-
-@kernel
-def dense_value(step, i, tau):
-    """Component i of y at time tau after the start of a coupled step."""
-    x = tau / step.span[1]
-    w = 1.0 - x
-    d = step.dense
-    return step.y0[i] + x * (
-        d[0, i] + w * (d[1, i] + x * (d[2, i] + w * (d[3, i] + x * (d[4, i] + w * (d[5, i] + x * d[6, i])))))
-    )
+    state.counts.steps += 1
+    return True, smallest

@@ -10,23 +10,10 @@ from __future__ import annotations
 import math
 
 from watchsim.jit import kernel
-from watchsim.simulation.motion.integrator import dense_value
+from watchsim.simulation.motion.dense_output import dense, dense_value
 from watchsim.simulation.record.write_buffers import is_kept
 
 MOST_ROWS = 64
-
-
-@kernel
-def dense_rate(step, i, tau):
-    """Time derivative of component i of y at time tau after the start of a coupled step."""
-    x = tau / step.span[1]
-    d = step.dense
-    value, slope = d[6, i], 0.0
-    for row in range(5, -1, -1):
-        along = x if row % 2 == 1 else 1.0 - x
-        slope = along * slope + (value if row % 2 == 1 else -value)
-        value = d[row, i] + along * value
-    return (value + x * slope) / step.span[1]
 
 
 @kernel
@@ -36,7 +23,8 @@ def _pieces(model, options, end, step):
     most = 1.0
     for i in range(n):
         q0, u0, a0 = step.q[i], end * step.u[i], end * end * step.stages[0, n + i]
-        q1, u1, a1 = dense_value(step, i, end), end * dense_value(step, n + i, end), end * end * dense_rate(step, n + i, end)
+        speed, rate = dense(step, n + i, end)
+        q1, u1, a1 = dense_value(step, i, end), end * speed, end * end * rate
         q = 0.5 * (q0 + q1) + 0.15625 * (u0 - u1) + 0.015625 * (a0 + a1)
         u = (0.5 * (u0 + u1) + 0.125 * (a0 - a1)) / end
         middle = dense_value(step, n + i, 0.5 * end)
@@ -48,21 +36,20 @@ def _pieces(model, options, end, step):
 
 
 @kernel
-def keep_inner_rows(model, options, end, scratch, record):
+def keep_inner_rows(model, options, end, step, record):
     """Append the rows needed within the first `end` seconds of the coupled step just made, but not the one at their end."""
-    step = scratch.step
-    if end <= 0.0 or not is_kept(record, step.span[0], end):
+    if end <= 0.0 or not is_kept(record, step.span.start, end):
         return
     n = len(model.coordinates)
     pieces = _pieces(model, options, end, step)
     for piece in range(1, pieces):
         tau = end * piece / pieces
-        if not is_kept(record, step.span[0] + tau, 0.0):
+        if not is_kept(record, step.span.start + tau, 0.0):
             continue
-        row = record.used[0]
-        record.rows[row, 0] = step.span[0] + tau
+        row = record.used.rows
+        record.rows[row, 0] = step.span.start + tau
         for i in range(2 * n):
             record.rows[row, 1 + i] = dense_value(step, i, tau)
         for i in range(n):
-            record.rows[row, 1 + 2 * n + i] = dense_rate(step, n + i, tau)
-        record.used[0] = row + 1
+            record.rows[row, 1 + 2 * n + i] = dense(step, n + i, tau)[1]
+        record.used.rows = row + 1

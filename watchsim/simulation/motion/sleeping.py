@@ -45,25 +45,25 @@ def add_terms(closed, m, force, out_terms):
 
 
 @kernel
-def find_sleepers(model, state, options, scratch, f):
+def find_sleepers(model, state, options, event, f):
     """Set `state.awake`: an island with a contact or a bearing that holds sleeps if it is still and nothing depends on time.
 
-    The f contacts in force are in `state.active`, their islands in `scratch.label`, accelerations in `state.a`, the magnitudes
-    of the forces on each coordinate in `scratch.terms`.
+    The f contacts in force are in `state.active`, their islands in `event.label`, accelerations in `state.a`, the
+    magnitudes of the forces on each coordinate in `event.terms`.
     """
-    label, touched = scratch.label, scratch.u
+    label, touched = event.label, event.touched
     n = len(label)
     for i in range(n):
         state.awake[i] = 0
-    touched[:] = 0.0
+    touched[:] = 0
     for j in range(f):
-        touched[island_of(model, label, state.active[j])] = 1.0
-    _share_terms(model, scratch.terms)
+        touched[island_of(model, label, state.active[j])] = 1
+    _share_terms(model, event.terms)
     for i in range(n):
         if state.grip[i] == STICK:
-            touched[label[i]] = 1.0
+            touched[label[i]] = 1
     for i in range(n):
-        if touched[label[i]] == 0.0 or not _is_still(model, state, options, i, scratch.terms[i]):
+        if touched[label[i]] == 0 or not _is_still(model, state, options, i, event.terms[i]):
             _wake(state, label, label[i])
     for j in range(len(model.tables)):
         if model.tables[j].over == OVER_TIME:

@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 from watchsim.contact.poses import place_body
 from watchsim.jit import kernel
 from watchsim.model.records import FREE
+from watchsim.simulation.motion.dense_output import dense
 from watchsim.simulation.motion.free_motion import flow
-from watchsim.simulation.state import FLIGHT
+from watchsim.simulation.scratch import FLIGHT
 
 DEGREE = 7
 # The continuous extension is y0 + sum of dense[t] x^a (1 - x)^b, with these exponents (a, b).
@@ -39,7 +40,7 @@ BEND = _second_derivative()
 @kernel
 def bound_accelerations(step, n):
     """Bounds of |q''| over the coupled step, for its n coordinates, into `step.bound`: no Bernstein polynomial exceeds them."""
-    h = step.span[1]
+    h = step.span.length
     for i in range(n):
         largest = 0.0
         for row in range(DEGREE - 1):
@@ -51,24 +52,9 @@ def bound_accelerations(step, n):
 
 
 @kernel
-def _polynomial(step, i, tau):
-    """Coordinate i of a coupled step and its derivative at time tau."""
-    h, d = step.span[1], step.dense
-    x = tau / h
-    w = 1.0 - x
-    value, slope = d[5, i] + x * d[6, i], d[6, i]
-    value, slope = d[4, i] + w * value, w * slope - value
-    value, slope = d[3, i] + x * value, x * slope + value
-    value, slope = d[2, i] + w * value, w * slope - value
-    value, slope = d[1, i] + x * value, x * slope + value
-    value, slope = d[0, i] + w * value, w * slope - value
-    return step.y0[i] + x * value, (x * slope + value) / h
-
-
-@kernel
-def body_on_path(model, state, b, tau, scratch):
-    """Bring body b's coordinates (in scratch.q, scratch.u) and pose to time tau of the step; u is exactly q'."""
-    step, part = scratch.step, b
+def body_on_path(model, state, step, b, tau, path):
+    """Bring body b's coordinates (in `path.q`, `path.u`) and pose to time tau of the step; u is exactly q'."""
+    part = b
     while part >= 0:  # the body, then its carrier
         body = model.bodies[part]
         part = body.carrier
@@ -77,9 +63,9 @@ def body_on_path(model, state, b, tau, scratch):
         for j in range(3 if body.motion == FREE else 1):
             i = body.first + j
             if state.awake[i] == 0:
-                scratch.q[i], scratch.u[i] = state.q[i], 0.0
-            elif step.kind[0] == FLIGHT:
-                scratch.q[i], scratch.u[i] = flow(model.coordinates[i], state.grip[i], step.q[i], step.u[i], tau)
+                path.q[i], path.u[i] = state.q[i], 0.0
+            elif step.span.kind == FLIGHT:
+                path.q[i], path.u[i] = flow(model.coordinates[i], state.grip[i], step.q[i], step.u[i], tau)
             else:
-                scratch.q[i], scratch.u[i] = _polynomial(step, i, tau)
-    place_body(model, b, scratch.q, scratch.u, scratch.pose)
+                path.q[i], path.u[i] = dense(step, i, tau)
+    place_body(model, b, path.q, path.u, path.pose)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from watchsim.candidates.cell_lookup import along
 from watchsim.jit import kernel
+from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.motion.dense_output import coordinate_within
-from watchsim.simulation.motion.root_bracket import LOOK_EVERY, MOST, is_slow, next_time
+from watchsim.simulation.motion.root_bracket import is_open, narrowed, next_time, opened
 from watchsim.simulation.record.write_buffers import keep_event
-
-TURN_EVENT, CROSS_EVENT = 8, 9
+from watchsim.simulation.tolerances import PASSAGE_RESOLUTION
 
 
 @kernel
@@ -31,32 +31,18 @@ def _value(model, state, step, spring, turn, tau):
 @kernel
 def _root(model, state, step, spring, turn, end):
     """Time in [0, end] at which the velocity (turn) or the distance from rest changes sign."""
-    low, high = 0.0, end
-    f_low, f_high = _value(model, state, step, spring, turn, low), _value(model, state, step, spring, turn, high)
+    f_low, f_high = _value(model, state, step, spring, turn, 0.0), _value(model, state, step, spring, turn, end)
     if f_low == 0.0 or f_low * f_high > 0.0:
-        return low
-    side = 0
-    before = 2.0 * (high - low)
-    for number in range(MOST):
-        middle = next_time(low, f_low, high, f_high, is_slow(number, high - low, before))
-        if number % LOOK_EVERY == 0:
-            before = high - low
-        if not low < middle < high or high - low <= 1e-16 * (step.span[0] + high):
+        return 0.0
+    bracket = opened(0.0, f_low, end, f_high)
+    tau = next_time(bracket)
+    while is_open(bracket, tau, PASSAGE_RESOLUTION * (step.span.start + bracket.high)):
+        f = _value(model, state, step, spring, turn, tau)
+        bracket = narrowed(bracket, tau, f, f * bracket.f_high > 0.0)
+        if f == 0.0:
             break
-        f = _value(model, state, step, spring, turn, middle)
-        if f * f_high > 0.0:
-            high, f_high = middle, f
-            if side == 1:
-                f_low *= 0.5
-            side = 1
-        else:
-            low, f_low = middle, f
-            if f == 0.0:
-                break
-            if side == -1:
-                f_high *= 0.5
-            side = -1
-    return low if abs(f_low) < abs(f_high) else high
+        tau = next_time(bracket)
+    return bracket.low if abs(bracket.f_low) < abs(bracket.f_high) else bracket.high
 
 
 @kernel
@@ -73,7 +59,7 @@ def keep_passages(model, state, step, end, record):
 
     The state's q and u are those at the end; `end` 0 means a jump of velocity at one instant.
     """
-    now, n = state.clock[0], len(model.coordinates)
+    now, n = state.clock.time, len(model.coordinates)
     for spring in range(n + len(model.joints)):
         if spring < n:
             if model.coordinates[spring].watched == 0:
@@ -89,15 +75,15 @@ def keep_passages(model, state, step, end, record):
             if state.side_u[i] != 0:
                 tau = _root(model, state, step, (i, on, rest), True, end) if end > 0.0 else 0.0
                 q = _seen(model, state, step, i, on, tau)[0] if end > 0.0 else along(state.q, i, on)
-                state.clock[0] = now - end + tau
-                keep_event(state, record, TURN_EVENT, -1, model.coordinates[i].body, q)
+                state.clock.time = now - end + tau
+                keep_event(state, record, EventKind.TURN, -1, model.coordinates[i].body, q)
             state.side_u[i] = side
         side = sign(along(state.q, i, on) - rest)
         if side != 0 and side != state.side_q[i]:
             if state.side_q[i] != 0 and end > 0.0:
                 tau = _root(model, state, step, (i, on, rest), False, end)
-                state.clock[0] = now - end + tau
+                state.clock.time = now - end + tau
                 speed = _seen(model, state, step, i, on, tau)[1]
-                keep_event(state, record, CROSS_EVENT, -1, model.coordinates[i].body, speed)
+                keep_event(state, record, EventKind.CROSS, -1, model.coordinates[i].body, speed)
             state.side_q[i] = side
-        state.clock[0] = now
+        state.clock.time = now

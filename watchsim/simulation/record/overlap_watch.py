@@ -20,10 +20,10 @@ from watchsim.simulation.methods import MOREAU
 from watchsim.simulation.record.body_frames import frames
 from watchsim.simulation.record.overlap_instants import PairOfLayers, Poses, declared_pairs
 from watchsim.simulation.record.trajectory import between
+from watchsim.simulation.tolerances import OVERLAP_RESOLUTION, STEPPED_OVERLAP
 
 Array = NDArray[np.float64]
 
-RESOLUTION = 5e-5  # of the scene's size: overlaps that count. More than twice `Options.behind` at any tolerance
 CHORD = 1.0 / 8.0  # of the resolution: deviation of chords from arcs
 BLOCK = 32768  # rows, of which the longest moves of each coordinate are looked at. Large: less is seen; small: costs time
 FEW = 8  # coordinates whose longest moves are looked at in one block; of more, others in the next
@@ -32,7 +32,6 @@ MOST_STEPS = 7  # in one move
 TOGETHER = 64  # instants looked at together
 EARLY = (0, 1, 4, 16, 64, 256, 1024)  # rows looked at in any case
 DEEPER = 1.25  # times the worst so far: what is measured next
-STEPPED = 5e-3  # of the size, that bodies may overlap where time is stepped (see analysis/doubts.py: the step is too coarse)
 LOOKS = 16  # in a scene's duration, where no rows are recorded
 ROWS_SEEN, LOOKED, DEPTH, TIME, PLACE_X, PLACE_Y, CONTACT = range(7)
 
@@ -42,8 +41,8 @@ class OverlapWatch:
 
     def __init__(self, scene: Scene, compiled: Compiled, method: str, windows: tuple[Window, ...]) -> None:
         self._scene, self._compiled = scene, compiled
-        self.resolution = RESOLUTION * compiled.size
-        self._stepped = STEPPED * compiled.size if method == MOREAU else 0.0
+        self.resolution = OVERLAP_RESOLUTION * compiled.size
+        self._stepped = STEPPED_OVERLAP * compiled.size if method == MOREAU else 0.0
         self._sees_rows = windows == WHOLE_RUN
         self._pairs: list[PairOfLayers] | None = None
         self._scale = np.array(compiled.model.coordinates.scale)

@@ -23,12 +23,12 @@ from watchsim.simulation.record.body_frames import frames
 from watchsim.simulation.record.contact_names import Pair as Pair
 from watchsim.simulation.record.saved_state import SavedState
 from watchsim.simulation.stops import Stop
+from watchsim.simulation.tolerances import ROW_NOISE
 from watchsim.storage.columns import blocks, is_mapped, let_go
 
 Array = NDArray[np.float64]
 
 AT_ONCE = 1000  # times that are looked up together where rows lie in a file: those of a stretch of it, in order
-NOISE = 0.5  # tolerances: by so much positions at rows may be off, each for itself
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,7 @@ class Trajectory:
         most: Array = np.zeros(self.q.shape[1])
         for (part,) in blocks(self.q):
             most = np.maximum(most, np.max(np.abs(part), axis=0, initial=0.0))
-        return NOISE * self.tolerance * most
+        return ROW_NOISE * self.tolerance * most
 
     def at(self, t: float) -> tuple[Array, Array]:
         """q and u at time `t` (after the impact where one happens at `t`).

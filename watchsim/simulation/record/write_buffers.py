@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from watchsim.contact.index_sets import OPEN, STICK
 from watchsim.jit import kernel
-from watchsim.simulation.state import N_EVENTS
-
-CLOSE_EVENT, OPEN_EVENT, STICK_EVENT, SLIDE_EVENT = 2, 3, 4, 5
+from watchsim.simulation.event_kinds import EventKind
 
 
 @kernel
@@ -23,25 +21,25 @@ def keep_row(state, record, t, q, u, a):
     """Append a row unless t lies outside all windows."""
     if not is_kept(record, t, 0.0):
         return
-    row = record.used[0]
+    row = record.used.rows
     n = len(q)
     record.rows[row, 0] = t
     for i in range(n):
         record.rows[row, 1 + i] = q[i]
         record.rows[row, 1 + n + i] = u[i]
         record.rows[row, 1 + 2 * n + i] = a[i]
-    record.used[0] = row + 1
+    record.used.rows = row + 1
 
 
 @kernel
 def keep_event(state, record, kind, contact, body, value):
     """Append an event at the current time and return its row."""
-    row = record.used[1]
+    row = record.used.events
     event = record.events[row]
-    event.t, event.kind, event.contact, event.body, event.value = state.clock[0], kind, contact, body, value
+    event.t, event.kind, event.contact, event.body, event.value = state.clock.time, kind, contact, body, value
     event.impulse_normal, event.impulse_tangential, event.energy_lost = 0.0, 0.0, 0.0
-    record.used[1] = row + 1
-    state.counts[N_EVENTS] += 1
+    record.used.events = row + 1
+    state.counts.events += 1
     return row
 
 
@@ -52,10 +50,10 @@ def keep_change(state, record, k, old):
     if new == old:
         return
     if old == OPEN:
-        keep_event(state, record, CLOSE_EVENT, k, -1, float(new))
+        keep_event(state, record, EventKind.CLOSE, k, -1, float(new))
     elif new == OPEN:
-        keep_event(state, record, OPEN_EVENT, k, -1, 0.0)
+        keep_event(state, record, EventKind.OPEN, k, -1, 0.0)
     elif new == STICK:
-        keep_event(state, record, STICK_EVENT, k, -1, 0.0)
+        keep_event(state, record, EventKind.STICK, k, -1, 0.0)
     else:
-        keep_event(state, record, SLIDE_EVENT, k, -1, float(new))
+        keep_event(state, record, EventKind.SLIDE, k, -1, float(new))

@@ -190,16 +190,16 @@ def settle(model: Modal, e: Array, v: Array) -> tuple[Array, Array, Modes, list[
         if not any(N[i] @ v < -STILL for i in closed):
             break
         contacts.take(closed)
-        status, v, _ = contacts.impact(v)
+        solved, v, _ = contacts.impact(v)
         hit = True
-        if status != 0:
+        if not solved:
             raise RuntimeError("an impact of the woodpecker has no solution")
     resting = [i for i in closed if abs(N[i] @ v) <= STILL]
     mode = np.full(3, OPEN, np.int8)
     if resting:
         contacts.take(resting)
-        status, mode = contacts.modes(v, model.force(e), STILL)
-        if status != 0:
+        solved, mode = contacts.modes(v, model.force(e), STILL)
+        if not solved:
             raise RuntimeError("the woodpecker has no finite forces")
     taken = [i for i in resting if mode[i] != OPEN]
     if taken:
