@@ -148,10 +148,9 @@ def test_the_sheet_holds_the_headline_numbers(lever: Trajectory, lever_page: str
             {"verdict": "knocks", "verdict_message": "at 3 s"},
             '<p class="verdict bad"><strong>The watch knocks</strong> at 3 s</p>',
         ),
-        ({"verdict": "unsettled"}, '<p class="verdict open"><strong>Not settled yet</strong></p>'),
+        ({"verdict": "unsettled", "verdict_message": None}, '<p class="verdict open"><strong>Not settled yet</strong></p>'),
         ({"verdict": None}, None),
-        ({}, None),
-        ({"stopped": True, "stopped_message": "it stands"}, "<strong>The watch stops</strong> it stands"),
+        ({"verdict": None, "stopped": True, "stopped_message": "it stands"}, "<strong>The watch stops</strong> it stands"),
     ],
 )
 def test_the_verdict_is_shown_where_there_is_one(lever: Trajectory, numbers: dict, shown_text: str | None) -> None:
