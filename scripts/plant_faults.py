@@ -163,7 +163,8 @@ def interpreted(area: str) -> Callable[[Planted], bool]:
 
     def notices(planted: Planted) -> bool:
         source = (ROOT / "watchsim" / planted.file).read_text(encoding="utf-8")
-        tests, seconds = [], 0.0
+        tests: list[str] = []
+        seconds = 0.0
         for name in reached.tests(planted.file, function_of(source, planted.fault.line)):
             seconds += reached.seconds[name]
             if tests and seconds > LONGEST:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import ast
 import contextlib
-import importlib.abc
 import importlib.machinery
 import importlib.util
 import io
@@ -97,7 +96,8 @@ def fails(tests: Sequence[str], file: str, source: str, limit: float) -> bool:
     """Does one of the tests fail, or take more than so many seconds of processor time, with that text in place of the file?"""
 
     def work() -> tuple[int, str]:
-        sys.meta_path.insert(0, _Faulty(f"watchsim.{file.removesuffix('.py').replace('/', '.')}", PACKAGE + file, source))
+        faulty: Any = _Faulty(f"watchsim.{file.removesuffix('.py').replace('/', '.')}", PACKAGE + file, source)
+        sys.meta_path.insert(0, faulty)
         return _pytest(list(tests), []), ""
 
     return _in_a_copy(work, limit)[0] != 0
@@ -120,7 +120,7 @@ def function_of(source: str, line: int) -> int:
     return max((first for first, body, last in function_lines(source) if body <= line <= last), default=MODULE)
 
 
-class _Faulty(importlib.abc.MetaPathFinder, importlib.machinery.SourceFileLoader):
+class _Faulty(importlib.machinery.SourceFileLoader):
     """Imports one module from another text than that of its file."""
 
     def __init__(self, name: str, path: str, source: str) -> None:

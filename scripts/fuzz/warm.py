@@ -43,7 +43,8 @@ class Forked:
     """A watchsim command in a copy of this process; what it says goes to the file `said`."""
 
     def __init__(self, arguments: Sequence[str], place: Path, said: Path) -> None:
-        self.said, self.returncode = said, None
+        self.said = said
+        self.returncode: int | None = None
         sys.stdout.flush()
         # Signals wait until the command hears them, as they do for a process whose interpreter has begun with them held back.
         signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
@@ -51,7 +52,6 @@ class Forked:
         if self.pid == 0:
             self._become(arguments, place)
         signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)
-        self.returncode: int | None
 
     def _become(self, arguments: Sequence[str], place: Path) -> None:
         try:

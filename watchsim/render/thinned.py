@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 def thinned(run: Trajectory, window: tuple[float, float]) -> NDArray[np.intp]:
     """The rows to draw of those inside the window, in order; all of them where they are not so many."""
     start, stop = window
-    first, last = (int(np.searchsorted(run.t, end, side=side)) for end, side in ((start, "right"), (stop, "left")))
+    first, last = int(np.searchsorted(run.t, start, side="right")), int(np.searchsorted(run.t, stop, side="left"))
     if last - first <= POINTS:
         return np.arange(first, last)
     found, offset = [], first
