@@ -1,8 +1,9 @@
 """Do the tests notice small faults in the code?
 
-Faults are planted one at a time in a copy of the project, at random places (a seed says which), and the tests of that part are
-run until the first one fails. What none of them notices is listed; those judged harmless stand in
-scripts/checks/faults_judged.csv with the reason. Ends with 1 where fewer than 95 % of all others were noticed.
+Faults are planted one at a time at random places (a seed says which), and the tests that reach the place are run until one
+fails (see reached.py). Those of the kernels go into a copy of the project, which compiles them, and all tests of that part
+are run. What none of them notices is listed; those judged harmless stand in scripts/checks/faults_judged.csv with the reason.
+Ends with 1 where fewer than 95 % of all others were noticed.
 """
 
 from __future__ import annotations
@@ -18,10 +19,12 @@ import sys
 import tempfile
 import time
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 from faults import Fault, faults
+from reached import fails, function_of, load, recorded
 
 ROOT = Path(__file__).resolve().parents[2]
 JUDGED = ROOT / "scripts" / "checks" / "faults_judged.csv"
@@ -29,6 +32,8 @@ COPIED = ("watchsim", "profiles", "tests", "scripts", "pyproject.toml", "README.
 ENOUGH = 0.95
 PATIENCE = 5.0  # times what the tests take without a fault; an endless loop is noticed, too
 LEAST = 120.0  # s
+LONGEST = 40.0  # s of tests for one fault, the quickest of those that reach it
+COMPILED = "kernels"
 AREAS = {  # name -> (files, tests)
     "reader": (("drawing/**/*.py",), ("tests/drawing",)),
     "geometry": (
@@ -141,22 +146,48 @@ def main() -> int:
     begun, known = time.monotonic(), judged()
     tally: Counter[tuple[str, str]] = Counter()
     with tempfile.TemporaryDirectory(prefix="faults-") as scratch:
-        copy = Copy(Path(scratch) / "project")
         for area in given.areas:
-            tests = AREAS[area][1]
-            passed, seconds = copy.seconds(tests, None)
-            if not passed:
-                raise SystemExit(f"{area}: the tests fail without any fault")
-            print(f"{area}: {seconds:.0f} s without a fault", flush=True)
+            try_out = compiled(Path(scratch), area) if area == COMPILED else interpreted(area)
             for planted in chosen(area, given.count, given.seed):
                 if time.monotonic() - begun > 60.0 * given.minutes:
                     break
                 verdict = "judged" if planted.key() in known else ""
                 if not verdict:
-                    verdict = "noticed" if copy.notices(planted, tests, max(LEAST, PATIENCE * seconds)) else "missed"
+                    verdict = "noticed" if try_out(planted) else "missed"
                 tally[area, verdict] += 1
                 tell(planted, verdict, given.output)
     return report(tally, given.areas)
+
+
+def compiled(scratch: Path, area: str) -> Callable[[Planted], bool]:
+    """What tells whether a fault of the kernels is noticed."""
+    copy, tests = Copy(scratch / "project"), AREAS[area][1]
+    passed, seconds = copy.seconds(tests, None)
+    if not passed:
+        raise SystemExit(f"{area}: the tests fail without any fault")
+    print(f"{area}: {seconds:.0f} s without a fault", flush=True)
+    return lambda planted: copy.notices(planted, tests, max(LEAST, PATIENCE * seconds))
+
+
+def interpreted(area: str) -> Callable[[Planted], bool]:
+    """What tells whether a fault of what Python runs is noticed."""
+    load()
+    reached = recorded(AREAS[area][1])
+    whole = sum(reached.seconds.values())
+    print(f"{area}: {len(reached.seconds)} tests, {whole:.0f} s without a fault", flush=True)
+
+    def notices(planted: Planted) -> bool:
+        source = (ROOT / "watchsim" / planted.file).read_text(encoding="utf-8")
+        tests: list[str] = []
+        seconds = 0.0
+        for name in reached.tests(planted.file, function_of(source, planted.fault.line)):
+            seconds += reached.seconds[name]
+            if tests and seconds > LONGEST:
+                break
+            tests.append(name)
+        return bool(tests) and fails(tests, planted.file, planted.fault.source, max(LEAST, PATIENCE * LONGEST))
+
+    return notices
 
 
 def tell(planted: Planted, verdict: str, output: Path | None) -> None:

@@ -113,3 +113,18 @@ def test_three_edges_in_one_point_are_refused() -> None:
     star = tuple(Loop((Line(0.0, 0.0, *end),), closed=False) for end in ((1e-3, 0.0), (0.0, 1e-3), (-1e-3, 0.0)))
     with pytest.raises(ValueError, match="3 edges meet"):
         ws.Profile.from_path2d(ws.Profile(chains=star).to_path2d())
+
+
+def test_an_arc_of_a_path_is_the_circle_through_its_points() -> None:
+    """Any arc, far from the origin, either way round, also more than half a turn: against centre and radius as given."""
+    from watchsim.geometry.solids.meshes import edges_of, path2d
+
+    rng = np.random.default_rng(5)
+    for _ in range(50):
+        x, y, radius = 1e-3 * rng.normal(3.0, 5.0), 1e-3 * rng.normal(-4.0, 5.0), 1e-3 * rng.uniform(0.1, 4.0)
+        arc = Arc(x, y, radius, rng.uniform(-3.0, 3.0), rng.choice((-1.0, 1.0)) * rng.uniform(0.2, 6.0))
+        ((_, (again,)),) = edges_of(path2d([Loop((arc,), "A", closed=False)]), 1e-3)
+        assert isinstance(again, Arc)
+        assert (again.x, again.y, again.radius) == pytest.approx((x, y, radius), abs=1e-12)
+        assert again.sweep == pytest.approx(arc.sweep, abs=1e-9)
+        assert np.allclose(again.point(0.3), arc.point(0.3), atol=1e-12)

@@ -90,3 +90,16 @@ def test_drawn_arcs_come_near_the_spiral_they_follow() -> None:
 def test_a_strip_wider_than_its_bend_is_refused() -> None:
     with pytest.raises(ValueError, match="cannot follow an arc of radius"):
         ribbon(Arc(0.0, 0.0, 0.04e-3, 0.0, 1.0), 0.1e-3)
+
+
+def test_the_picture_is_a_strip_of_the_spiral() -> None:
+    """Its area is width times length, its corners lie half a width off the centre line, and it winds as often as it should."""
+    spiral = Spiral(1e-3, 3e-3, 8.0)
+    strip = spiral.outline(5e-5)
+    x, y = np.array([edge.start for edge in strip.edges]).T
+    area = 0.5 * abs(float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1))))
+    assert area == pytest.approx(5e-5 * spiral.length, rel=2e-2)
+    turned = np.abs(np.diff(np.unwrap(np.arctan2(y, x)))).sum() / math.tau
+    assert turned == pytest.approx(2.0 * spiral.turns, rel=1e-6)
+    r = np.hypot(x, y)
+    assert (r.min(), r.max()) == pytest.approx((1e-3 - 2.5e-5, 3e-3 + 2.5e-5))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -23,7 +23,7 @@ def contact_events(run: Trajectory, wanted: Callable[[Pair], bool], *kinds: Even
     return np.concatenate(found) if found else run.events
 
 
-def contact_columns(run: Trajectory, wanted: Callable[[Pair], bool], names: Sequence[str], *kinds: EventKind) -> list[Column]:
+def contact_columns(run: Trajectory, wanted: Callable[[Pair], bool], names: list[str], *kinds: EventKind) -> list[Column]:
     """Only these columns of the same rows: of a long run there are millions."""
     found = [part[list(names)][_concerned(run, part, wanted, kinds)] for (part,) in blocks(run.events)]
     return [np.concatenate([part[name] for part in found] or [run.events[name]]) for name in names]

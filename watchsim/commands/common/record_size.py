@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from watchsim.commands.common.console import say
-from watchsim.storage.columns import MOST
 from watchsim.storage.destination import LEAST_ROOM
 from watchsim.storage.disk import size_text
 
@@ -18,7 +17,6 @@ if TYPE_CHECKING:
     from watchsim.scene.recording import Recording
     from watchsim.scene.scene import Scene
 
-IN_MEMORY = 2.0 * MOST  # bytes: of rows and of events
 ROWS, EVENTS = 500, 160  # of a period of an escapement, measured: 395 and 156 (Swiss lever), 479 and 125 (bench lever)
 EVENT_BYTES = 52
 WRITTEN = 2.2  # times what is recorded: the files in which it is held, the packed ones, and the table of events
@@ -45,10 +43,12 @@ def kept_times(record: Recording, duration: float) -> tuple[float, float]:
 
 def room_for(scene: Scene, duration: float, folder: Path) -> float:
     """The bytes that the disk of `folder` should have; says so where they are more than memory should hold."""
-    size = record_size(scene, duration)
-    if size > IN_MEMORY:
+    from watchsim.storage.columns import MOST
+
+    size, in_memory = record_size(scene, duration), 2.0 * MOST  # of rows and of events
+    if size > in_memory:
         say(
-            f"Note: rows and events of this run take some {size_text(size)}. More than {size_text(IN_MEMORY)} are not held in "
+            f"Note: rows and events of this run take some {size_text(size)}. More than {size_text(in_memory)} are not held in "
             f"memory but in files beside {folder}, until the results are written. --record statistics keeps the last seconds "
             'and sums over the whole run, --record "every 10" each tenth row, --record FROM:TO a window.'
         )

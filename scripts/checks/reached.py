@@ -1,0 +1,172 @@
+"""Which tests reach which functions, how long does each take, and how is one run with a fault in the code?
+
+Every test is run once while the functions of the package that it calls are written down. With a fault in one of them only these
+tests are run, the quickest first, in a copy of a process that has loaded everything but the package; the faulty text stands in
+for the file as it is imported.
+"""
+
+from __future__ import annotations
+
+import ast
+import contextlib
+import importlib.machinery
+import importlib.util
+import io
+import json
+import os
+import resource
+import signal
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import CodeType, FrameType
+from typing import Any
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+PACKAGE = str(ROOT / "watchsim") + os.sep
+MODULE = 0  # the "line" of what is done while a file is imported
+OPTIONS = ["-x", "-q", "-p", "no:cacheprovider", "--no-header", "-W", "ignore"]
+LIBRARIES = ("numba", "scipy.spatial", "scipy.interpolate", "scipy.optimize", "shapely", "ezdxf", "hypothesis", "mpmath")
+
+
+@dataclass
+class Reached:
+    """For each test: the seconds it took, and (file, first line) of the functions it called."""
+
+    seconds: dict[str, float] = field(default_factory=dict)
+    called: dict[str, set[tuple[str, int]]] = field(default_factory=dict)
+
+    def tests(self, file: str, function: int) -> list[str]:
+        """The tests that reach a function, quickest first; of what is done at import, those that reach anything of the file."""
+        hit = [
+            name for name, called in self.called.items()
+            if (file, function) in called or (function == MODULE and any(one == file for one, _ in called))
+        ]  # fmt: skip
+        return sorted(hit, key=lambda name: self.seconds[name])
+
+
+class _Recorder:
+    """A plugin of pytest that writes down what each test calls."""
+
+    def __init__(self) -> None:
+        self.reached = Reached()
+        self._codes: set[CodeType] = set()
+
+    @pytest.hookimpl(hookwrapper=True)
+    def pytest_runtest_protocol(self, item: Any) -> Iterator[None]:
+        self._codes = set()
+        begun = time.process_time()
+        sys.setprofile(self._note)
+        yield
+        sys.setprofile(None)
+        self.reached.seconds[item.nodeid] = time.process_time() - begun
+        files = ((code.co_filename, code.co_firstlineno) for code in self._codes)
+        self.reached.called[item.nodeid] = {
+            (file.removeprefix(PACKAGE), line) for file, line in files if file.startswith(PACKAGE)
+        }
+
+    def _note(self, frame: FrameType, event: str, _: object) -> None:
+        if event == "call":
+            self._codes.add(frame.f_code)
+
+
+def load() -> None:
+    """Load what the tests need, but not the package."""
+    for name in LIBRARIES:
+        with contextlib.suppress(ImportError):
+            importlib.import_module(name)
+    sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
+
+
+def recorded(tests: Sequence[str]) -> Reached:
+    """Run the tests once; SystemExit where one fails without any fault."""
+    recorder = _Recorder()
+    status, said = _in_a_copy(lambda: (_pytest(list(tests), [recorder]), _dumped(recorder.reached))[0:2], None)
+    if status != 0:
+        raise SystemExit(f"the tests fail without any fault: {said[-2000:]}")
+    loaded = json.loads(said)
+    return Reached(loaded["seconds"], {name: {(file, line) for file, line in hits} for name, hits in loaded["called"].items()})
+
+
+def fails(tests: Sequence[str], file: str, source: str, limit: float) -> bool:
+    """Does one of the tests fail, or take more than so many seconds of processor time, with that text in place of the file?"""
+
+    def work() -> tuple[int, str]:
+        faulty: Any = _Faulty(f"watchsim.{file.removesuffix('.py').replace('/', '.')}", PACKAGE + file, source)
+        sys.meta_path.insert(0, faulty)
+        return _pytest(list(tests), []), ""
+
+    return _in_a_copy(work, limit)[0] != 0
+
+
+def function_lines(source: str) -> list[tuple[int, int, int]]:
+    """(first line with its decorators, of its body, last line) of every function, inner ones last."""
+    found = []
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, (ast.FunctionDef, ast.Lambda)):
+            decorators = getattr(node, "decorator_list", [])
+            first = min([node.lineno, *(one.lineno for one in decorators)])
+            body = node.body[0].lineno if isinstance(node, ast.FunctionDef) else node.lineno
+            found.append((first, body, node.end_lineno or node.lineno))
+    return sorted(found)
+
+
+def function_of(source: str, line: int) -> int:
+    """The first line of the innermost function in whose body a line is; MODULE where it is in none (defaults, constants)."""
+    return max((first for first, body, last in function_lines(source) if body <= line <= last), default=MODULE)
+
+
+class _Faulty(importlib.machinery.SourceFileLoader):
+    """Imports one module from another text than that of its file."""
+
+    def __init__(self, name: str, path: str, source: str) -> None:
+        super().__init__(name, path)
+        self._text = source
+
+    def find_spec(self, fullname: str, path: object = None, target: object = None) -> Any:
+        return importlib.util.spec_from_file_location(fullname, self.path, loader=self) if fullname == self.name else None
+
+    def get_code(self, fullname: str) -> CodeType:
+        return compile(self._text, self.path, "exec")
+
+
+def _pytest(tests: list[str], plugins: list[object]) -> int:
+    os.chdir(ROOT)
+    return int(pytest.main([*OPTIONS, *tests], plugins=plugins))
+
+
+def _dumped(reached: Reached) -> str:
+    return json.dumps({"seconds": reached.seconds, "called": {name: sorted(hits) for name, hits in reached.called.items()}})
+
+
+def _in_a_copy(work: Any, limit: float | None) -> tuple[int, str]:
+    """(status, text) that `work` gives in a copy of this process, which ends after so many seconds of processor time."""
+    reading, writing = os.pipe()
+    child = os.fork()
+    if child == 0:
+        status = 70
+        try:
+            os.setpgid(0, 0)
+            nowhere = os.open(os.devnull, os.O_RDWR)
+            os.dup2(nowhere, 1)
+            os.dup2(nowhere, 2)
+            if limit is not None:
+                resource.setrlimit(resource.RLIMIT_CPU, (int(limit) + 1, int(limit) + 1))
+                signal.alarm(int(60.0 * limit))  # on the clock: something waits for ever
+            with contextlib.redirect_stdout(io.StringIO()) as said:
+                status, text = work()
+            with os.fdopen(writing, "w") as pipe:
+                pipe.write(text if status == 0 else said.getvalue())
+        finally:
+            os._exit(status)
+    os.close(writing)
+    with os.fdopen(reading) as pipe:
+        text = pipe.read()
+    status = os.waitpid(child, 0)[1]
+    with contextlib.suppress(OSError):
+        os.killpg(child, signal.SIGKILL)  # what a test has started
+    return status, text
