@@ -20,7 +20,7 @@ from watchsim.simulation.simulate import simulate
 DURATION = 6.0
 CLOCKS = ("wall_s", "compile_s", "realtime_factor")
 # counts: how many cells were asked about depends on the runs before; overlap: how often was looked, on the buffers
-OTHERWISE = (*CLOCKS, "kept", "counts", "overlap")
+OTHERWISE = (*CLOCKS, "kept", "counts", "overlap", "verdict_message", "verdict_details")  # words of the beats that are kept
 
 
 @functools.cache
