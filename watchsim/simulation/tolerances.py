@@ -39,6 +39,8 @@ FINEST_ROWS, COARSEST_ROWS = 0.0125, 0.1
 FIRST_STEP = 1e-3
 # Of the longest step: shorter, the run ends. Large: ends at sharp forces; small: hangs there.
 SMALLEST_STEP = 1e-14
+# Sizes of the scene, or radians: the longest flight. Large: a step of what runs away takes for ever; small: more steps.
+FLIGHT_SIZES = 1e4
 # Of the time within a step: less is no progress. Large: contacts close late; small: the search stands still.
 TIME_ROUNDING = 4e-16
 # Of the time: bounds that close are one instant. Large: modes end late; small: needless evaluations.

@@ -12,6 +12,7 @@ from watchsim.simulation.motion.dense_output import coordinate_within, flight_ac
 from watchsim.simulation.motion.free_motion import acceleration_bound, quarter_period
 from watchsim.simulation.record.write_buffers import is_kept, keep_row
 from watchsim.simulation.scratch import FLIGHT
+from watchsim.simulation.tolerances import FLIGHT_SIZES
 
 FLIGHT_PHASE = 1.6  # rad of the fastest coordinate's own time scale: the longest flight
 
@@ -44,12 +45,24 @@ def _row_spacing(model, options, i):
 
 
 @kernel
+def _time_far(model, state, i):
+    """A time (s) in which coordinate i goes no further than `FLIGHT_SIZES` times the scene's size.
+
+    What falls with 1e30 m/s² would be looked for in 1e27 places along one step.
+    """
+    far = FLIGHT_SIZES * model.coordinates[i].scale
+    speed, bound = abs(state.u[i]), acceleration_bound(model.coordinates[i], state.grip[i], state.q[i], state.u[i])
+    both = speed + math.sqrt(speed * speed + 2.0 * bound * far)
+    return 2.0 * far / both if both > 0.0 else math.inf
+
+
+@kernel
 def flight_length(model, state, options):
     """(length, row spacing): of an exact flight now."""
     length, spacing = options.max_step, math.inf
     for i in range(len(model.coordinates)):
         if state.awake[i]:
-            length = min(length, quarter_period(model.coordinates[i]))
+            length = min(length, quarter_period(model.coordinates[i]), _time_far(model, state, i))
             spacing = min(spacing, _row_spacing(model, options, i))
     return min(length, FLIGHT_PHASE / options.row_phase * spacing), spacing
 
