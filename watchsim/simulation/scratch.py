@@ -188,59 +188,62 @@ def asked_of(coordinates: int) -> Asked:
     return Asked(blank(UnknownCell), np.zeros(coordinates))
 
 
+def _step_room(n: int) -> Step:
+    width = 2 * n + SUMS
+    vectors = {name: np.zeros(n) for name in ("q", "u", "bound")}
+    wide = {name: np.zeros(width) for name in ("y0", "y1")}
+    return Step(span=blank(Span), stages=np.zeros((16, width)), dense=np.zeros((7, width)), **vectors, **wide)
+
+
+def _smooth_room(n: int, bodies: int, room: int) -> Smooth:
+    width, monitors = 2 * n + SUMS, MONITORS * (room + n)
+    return Smooth(
+        y=np.zeros(width),
+        dy=np.zeros(width),
+        pose=poses(bodies),
+        closed=closed_contacts(room),
+        engaged=np.zeros(bodies, np.int8),
+        monitors=np.zeros(monitors),
+        fired=np.zeros(monitors, np.int64),
+        load=np.zeros(n),
+        terms=np.zeros(n),
+    )
+
+
+def _event_room(n: int, bodies: int, contacts: int, room: int) -> EventRoom:
+    return EventRoom(
+        pose=poses(bodies),
+        closed=closed_contacts(room),
+        rest=closed_contacts(room),
+        pace=np.zeros(n),
+        zero=np.zeros(room),
+        label=np.zeros(n, np.int64),
+        listed=np.zeros(room, np.int64),
+        upto=np.zeros(room, np.int64),
+        decided=np.zeros(contacts, np.int8),
+        trial=np.zeros(contacts, np.int8),
+        in_force=np.zeros(room, np.int64),
+        touched=np.zeros(n, np.int8),
+        terms=np.zeros(n),
+    )
+
+
+def _impact_room(n: int, contacts: int, room: int) -> ImpactRoom:
+    by_row = {name: np.zeros(2 * room) for name in ("impulse", "rates_before", "rates", "ending")}
+    grip, mode = np.zeros(n, np.int8), np.zeros(contacts, np.int8)
+    return ImpactRoom(restitution=np.zeros(room), before=np.zeros(n), grip=grip, mode=mode, **by_row)
+
+
 def new_scratch(model: Model) -> Scratch:
     """Room to work for one model."""
     n, bodies, contacts, room = len(model.coordinates), len(model.bodies), len(model.contacts), room_for(model)
-    width, monitors = 2 * n + SUMS, MONITORS * (room + n)
     return Scratch(
-        step=Step(
-            span=blank(Span),
-            q=np.zeros(n),
-            u=np.zeros(n),
-            bound=np.zeros(n),
-            y0=np.zeros(width),
-            y1=np.zeros(width),
-            stages=np.zeros((16, width)),
-            dense=np.zeros((7, width)),
-        ),
+        step=_step_room(n),
         work=contact_work(room, n),
-        smooth=Smooth(
-            y=np.zeros(width),
-            dy=np.zeros(width),
-            pose=poses(bodies),
-            closed=closed_contacts(room),
-            engaged=np.zeros(bodies, np.int8),
-            monitors=np.zeros(monitors),
-            fired=np.zeros(monitors, np.int64),
-            load=np.zeros(n),
-            terms=np.zeros(n),
-        ),
+        smooth=_smooth_room(n, bodies, room),
         path=Path(np.zeros(n), np.zeros(n), poses(bodies), closed_contacts(1), np.zeros(contacts, np.int64)),
-        event=EventRoom(
-            pose=poses(bodies),
-            closed=closed_contacts(room),
-            rest=closed_contacts(room),
-            pace=np.zeros(n),
-            zero=np.zeros(room),
-            label=np.zeros(n, np.int64),
-            listed=np.zeros(room, np.int64),
-            upto=np.zeros(room, np.int64),
-            decided=np.zeros(contacts, np.int8),
-            trial=np.zeros(contacts, np.int8),
-            in_force=np.zeros(room, np.int64),
-            touched=np.zeros(n, np.int8),
-            terms=np.zeros(n),
-        ),
-        impact=ImpactRoom(
-            restitution=np.zeros(room),
-            impulse=np.zeros(2 * room),
-            before=np.zeros(n),
-            rates_before=np.zeros(2 * room),
-            rates=np.zeros(2 * room),
-            grip=np.zeros(n, np.int8),
-            ending=np.zeros(2 * room),
-            mode=np.zeros(contacts, np.int8),
-        ),
+        event=_event_room(n, bodies, contacts, room),
+        impact=_impact_room(n, contacts, room),
         asked=asked_of(n),
         ended=blank(Ended),
     )
