@@ -7,7 +7,7 @@ import math
 import numpy as np
 from scipy.special import j1
 from swiss_pictures import BLUE, GREEN, RED, dots, line, named, panels, saved
-from swiss_studies import DAY, NOMINAL, Floats, Series, deviation_ppm, free_period, over, over_torque, slopes, unpoised
+from swiss_studies import DAY, NOMINAL, Floats, Series, cycle_of, deviation_ppm, free_period, over, over_torque, slopes, unpoised
 
 import watchsim as ws
 from watchsim.render.effects import plot_sensitivity
@@ -105,10 +105,10 @@ def positions(scene: ws.Scene) -> list[str]:
     rows, worst, spans = [], 0.0, []
     for torque, words in (("-1.0 µN·m", "wound"), ("-0.6 µN·m", "run down")):
         driven = scene.set("torques.0.value", torque)
-        flat = ws.steady(driven.set("damping.0.coulomb", FLAT))
+        flat = cycle_of(driven.set("damping.0.coulomb", FLAT))
         rows.append(f"| {words} | flat | {flat.amplitude_deg:.2f} | {flat.rate_s_per_d:+.3f} | | |")
         hanging = driven.set("damping.0.coulomb", HANGING)
-        poised = ws.steady(hanging)
+        poised = cycle_of(hanging)
         rows.append(f"| {words} | hanging, in poise | {poised.amplitude_deg:.2f} | {poised.rate_s_per_d:+.3f} | | |")
         rates = []
         for name, (x, y) in POSITIONS.items():
@@ -156,7 +156,7 @@ def temperature(scene: ws.Scene) -> list[str]:
             heavy = inertia * (1.0 + BRASS * kelvin) ** 2
             stiff = stiffness * (1.0 + beta * kelvin) * (1.0 + STEEL * kelvin) ** 3
             warm = scene.set("bodies.balance.inertia", heavy).set("springs.0.stiffness", stiff)
-            cycles.append(ws.steady(warm))
+            cycles.append(cycle_of(warm))
             free = DAY * (1.0 / (NOMINAL * free_period(heavy, stiff)) - 1.0)
             last = cycles[-1]
             assert last.rate_s_per_d is not None
@@ -230,11 +230,18 @@ def run_down(scene: ws.Scene) -> list[str]:
         f"The rate falls from {rate[0]:+.2f} to {rate[12]:+.2f} s/d in 24 hours and to {rate[-1]:+.2f} s/d in 48. The hands lose {-first:.2f} s on"
         f" the first day and {-second:.2f} s on the second.",
         "",
-        "*For a watch:* wound every day it can be set to keep time to a fraction of a second by the escapement's error; on the second day",
-        "it cannot. Either the torque must stay (a stop work, a remontoir) or the impulse come nearer to the middle.",
+        f"*For a watch:* wound every day it loses the same every day, which the regulator takes away; on a second day it falls back by"
+        f" {first - second:.2f} s",
+        "against that. Either the torque must stay (a stop work, a remontoir) or the impulse come nearer to the middle.",
         "",
     ]
 
+
+
+def told(value: float, decimals: int) -> str:
+    """With its sign, and 0 where nothing of it is left."""
+    text = f"{value:+.{decimals}f}"
+    return text if float(text) else "0"
 
 
 def what_matters(scene: ws.Scene) -> list[str]:
@@ -244,8 +251,8 @@ def what_matters(scene: ws.Scene) -> list[str]:
     rows = found.rows()
     agreeing = sum(1 for effect in found.effects if all(one.agrees for one in effect.by.values()))
     listed = [
-        f"| `{row['key']}` | {row['value']:.5g} {row['unit']} | {row['change']} | {row['amplitude_deg_per_change']:+.3f} |"
-        f" {row['rate_s_per_d_per_change']:+.3f} | {row['beat_error_ms_per_change']:+.4f} | {row['message']} |"
+        f"| `{row['key']}` | {row['value']:.5g} {row['unit']} | {row['change']} | {told(row['amplitude_deg_per_change'], 3)} |"
+        f" {told(row['rate_s_per_d_per_change'], 3)} | {told(row['beat_error_ms_per_change'], 4)} | {row['message']} |"
         for row in rows[:14]
         if row["amplitude_deg_per_change"] is not None
     ]
@@ -262,6 +269,8 @@ def what_matters(scene: ws.Scene) -> list[str]:
         "|---|---|---|---|---|---|---|",
         *listed,
         "",
-        "*For a watch:* distances of hundredths of a millimetre come before everything that can be polished or oiled.",
+        "*For a watch:* stiffness and inertia alone carry the rate; torque and air the amplitude. Of the places, a hundredth of a millimetre between",
+        "wheel and lever counts as much for the amplitude as 1 % of friction at the stones, and one sideways between balance, lever and banking is",
+        "the beat error.",
         "",
     ]

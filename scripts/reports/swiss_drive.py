@@ -177,7 +177,7 @@ def friction(scene: ws.Scene) -> list[str]:
         f"jewel {b[0] - b[-1]:.1f}° and {s[-1] - s[0]:+.2f} s/d. Restitution from 0 to 0.5 changes the amplitude by no more than"
         f" {np.nanmax(e) - np.nanmin(e):.2f}° and the rate by {np.nanmax(f) - np.nanmin(f):.3f} s/d.",
         "",
-        "*For a watch:* oil the stones first. Nobody has to know the restitution of ruby and steel: it does not matter here.",
+        "*For a watch:* oil the stones first. The restitution of ruby and steel need not be known: it hardly matters here.",
         "",
     ]
 
