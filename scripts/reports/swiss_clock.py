@@ -7,7 +7,19 @@ import math
 import numpy as np
 from scipy.special import j1
 from swiss_pictures import BLUE, GREEN, RED, dots, line, named, panels, saved
-from swiss_studies import DAY, NOMINAL, Floats, Series, cycle_of, deviation_ppm, free_period, over, over_torque, slopes, unpoised
+from swiss_studies import (
+    DAY,
+    NOMINAL,
+    Floats,
+    Series,
+    cycle_of,
+    deviation_ppm,
+    free_period,
+    over,
+    over_torque,
+    slopes,
+    unpoised,
+)
 
 import watchsim as ws
 from watchsim.render.effects import plot_sensitivity
@@ -81,7 +93,7 @@ def period(scene: ws.Scene) -> list[str]:
         "",
         f"What is left is ±1/2 to {left:.0e}.",
         "",
-        f"*For a watch:* 1 % of inertia is 0.5 % of the period, {0.5 * 0.01 * DAY:.0f} s/d: timing screws are for millionths. What the"
+        f"*For a watch:* 1 % of inertia is 0.5 % of the period, {0.5 * 0.01 * DAY:.0f} s/d; {2e6 / DAY:.0f} millionths are 1 s/d. What the"
         f" escapement adds is {np.min(own):.0f} to {np.max(own):.0f} ppm",
         f"({DAY * 1e-6 * np.min(own):.1f} to {DAY * 1e-6 * np.max(own):.1f} s/d), always a loss.",
         "",
@@ -118,7 +130,9 @@ def positions(scene: ws.Scene) -> list[str]:
             law, got = poise_rate(scene, cycle, down), cycle.rate_s_per_d - poised.rate_s_per_d
             worst = max(worst, abs(got - law))
             rates.append(cycle.rate_s_per_d)
-            rows.append(f"| {words} | {name} | {cycle.amplitude_deg:.2f} | {cycle.rate_s_per_d:+.3f} | {got:+.3f} | {law:+.3f} |")
+            rows.append(
+                f"| {words} | {name} | {cycle.amplitude_deg:.2f} | {cycle.rate_s_per_d:+.3f} | {got:+.3f} | {law:+.3f} |"
+            )
         spans.append(max(rates) - min(rates))
     return [
         "## Positions",
@@ -235,7 +249,6 @@ def run_down(scene: ws.Scene) -> list[str]:
         "against that. Either the torque must stay (a stop work, a remontoir) or the impulse come nearer to the middle.",
         "",
     ]
-
 
 
 def told(value: float, decimals: int) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 from swiss_pictures import BLUE, GOLD, GREEN, RED, dots, line, named, panels, saved
@@ -44,7 +45,9 @@ def torque(scene: ws.Scene, series: Series) -> list[str]:
     line(above, at, law, "A ∝ √torque, through 1 µN·m")
     named(above, "", "amplitude (°)")
     below.plot(at, 100.0 * (amplitude / law - 1.0), color=BLUE, marker="o", markersize=3.5, label="against A ∝ √torque")
-    below.plot(at, 100.0 * (amplitude / predicted - 1.0), color=RED, marker="s", markersize=3.0, label="against √(measured work)")
+    below.plot(
+        at, 100.0 * (amplitude / predicted - 1.0), color=RED, marker="s", markersize=3.0, label="against √(measured work)"
+    )
     named(below, "torque at the escape wheel (µN·m)", "amplitude beyond the law (%)")
     picture = saved(figure, "torque")
     pitch = math.pi / 15.0  # rad of the wheel in a beat
@@ -58,7 +61,11 @@ def torque(scene: ws.Scene, series: Series) -> list[str]:
         )
     off, worst = np.nanmax(abs(amplitude / law - 1.0)), np.nanmax(abs(amplitude / predicted - 1.0))
     knocking = [a for a, cycle in zip(at, series.cycles, strict=True) if cycle.verdict == "knocks"]
-    end = f"From {knocking[0]:.2f} µN·m on the watch knocks." if knocking else "Up to the largest of these torques it does not knock."
+    end = (
+        f"From {knocking[0]:.2f} µN·m on the watch knocks."
+        if knocking
+        else "Up to the largest of these torques it does not knock."
+    )
     return [
         "## Torque and amplitude",
         "",
@@ -90,7 +97,11 @@ def best(scene: ws.Scene, drawn: Series) -> list[str]:
     dots(axes, drawn.at / MICRO, drawn, "amplitude_deg", "as drawn: friction 0.12, air", BLUE)
     dots(axes, without.at / MICRO, without, "amplitude_deg", "no friction, air", GREEN, "s")
     dots(axes, small / MICRO, impacts[0.2], "amplitude_deg", "no friction, no air: impacts alone", RED, "^")
-    axes.axhline(338.0, color=GOLD, linestyle=":", linewidth=1.2, label="the jewel reaches the back of the fork (338°)")
+    for cycle in drawn.cycles:
+        if seen := re.search(r"from outside at (\d+)°", cycle.message):
+            knock = f"the jewel reaches the back of the fork ({seen[1]}°)"
+            axes.axhline(float(seen[1]), color=GOLD, linestyle=":", linewidth=1.2, label=knock)
+            break
     named(axes, "torque at the escape wheel (µN·m)", "amplitude (°)")
     picture = saved(figure, "best")
     rows = []
@@ -158,9 +169,7 @@ def friction(scene: ws.Scene) -> list[str]:
     a, r = stones.of("amplitude_deg"), stones.of("rate_s_per_d")
     b, s = jewel.of("amplitude_deg"), jewel.of("rate_s_per_d")
     e, f = bounce.of("amplitude_deg"), bounce.of("rate_s_per_d")
-    rows = [
-        f"| {values[i]:.2f} | {a[i]:.3f} | {r[i]:+.3f} | {b[i]:.3f} | {s[i]:+.3f} |" for i in range(0, len(values), 2)
-    ]
+    rows = [f"| {values[i]:.2f} | {a[i]:.3f} | {r[i]:+.3f} | {b[i]:.3f} | {s[i]:+.3f} |" for i in range(0, len(values), 2)]
     return [
         "## Friction and restitution",
         "",
