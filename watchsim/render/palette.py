@@ -15,6 +15,14 @@ INK = "#23272c"
 FAINT = "#80858c"
 GRID = "#ddd8ce"
 CONTACT = "#e8590c"
+FORCE = "#0b5fa5"
+PHASES = {  # of a beat; pale, to lie behind curves
+    "unlock": "#f6d2b8",
+    "catch-up": "#efe3a4",
+    "impulse": "#bfe0c3",
+    "drop": "#bcd8ef",
+    "run to banking": "#dccbe6",
+}
 
 
 @dataclass(frozen=True, slots=True)

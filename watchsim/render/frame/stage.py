@@ -18,8 +18,11 @@ from numpy.typing import NDArray
 
 from watchsim.geometry.primitives import Arc
 from watchsim.render.frame.coloured_edges import Edges, edge_paths
+from watchsim.render.frame.extras import NOTHING, Extras
 from watchsim.render.frame.filled_parts import Part, is_round, loops_of, parts
+from watchsim.render.frame.mechanism_extras import Beside
 from watchsim.render.frame.pose_history import Window
+from watchsim.render.frame.pose_matrix import pose_matrix
 from watchsim.render.frame.view import size_of, view
 from watchsim.render.frame.word_layout import draw_key, draw_notes, draw_rules, draw_scale, lay_out
 from watchsim.render.palette import BACKGROUND, CONTACT, INK
@@ -41,7 +44,7 @@ class Stage:
     """Draws a run at any instant of a window, always in the same frame.
 
     `size` is (width, height) in pixels; `speed` and `step` (s between frames) are only told, not used. `picked` edges are
-    drawn over everything, with a key below the title.
+    drawn over everything, with a key below the title. With `extras` the mechanism leaves room for them.
     """
 
     def __init__(
@@ -55,27 +58,40 @@ class Stage:
         speed: float | None = None,
         step: float | None = None,
         picked: Sequence[Edges] = (),
+        extras: Extras = NOTHING,
     ) -> None:
         self._figure = Figure(figsize=((size[0] + 0.5) / DPI, (size[1] + 0.5) / DPI), dpi=DPI, facecolor=BACKGROUND)
         self._canvas = FigureCanvasAgg(self._figure)
         self._unit = min(size[0] / 1280.0, size[1] / 720.0)
         self._layout = lay_out(self._figure, run, window, step or (window[1] - window[0]) / 2000.0)
-        self.view = view(run, window, self._layout.frame, zoom, turn)
+        self._beside = Beside(self._figure, run, window, extras, self._layout.frame, self._layout.small.size, self._unit)
+        self._room = self._beside.room
+        self.view = view(run, window, self._room, zoom, turn)
+        self._beside.look_at(self.view)
         draw_scale(self._figure, self.view.scale)
         draw_notes(self._figure, self._layout.frame, speed, self.view.turn)
         endless = any(not loop.closed for body in run.scene.bodies for loop in loops_of(body))
         if zoom is not None or endless or self.view.follow is not None:
-            draw_rules(self._figure, self._layout.frame)
+            draw_rules(self._figure, self._room)
         self._transforms = {body.name: Affine2D() for body in run.scene.bodies}
         self._patches = [*self._compose(run), *(patch for edges in picked for patch in self._picked(run, edges))]
         draw_key(self._figure, [(edges.colour, edges.meaning) for edges in picked])
         self._canvas.draw()
         self._background = self._canvas.copy_from_bbox(self._figure.bbox)
 
-    def draw(self, t: float, frames: dict[str, Array], contacts: Array | None = None, mark: str = CONTACT) -> Pixels:
+    def draw(
+        self,
+        t: float,
+        frames: dict[str, Array],
+        contacts: Array | None = None,
+        mark: str = CONTACT,
+        press: tuple[Array, Array] | None = None,
+        speed: float | None = None,
+    ) -> Pixels:
         """The picture (height, width, 4) of the instant `t`; the next call overwrites it.
 
-        `frames` gives every body's pose x, y, angle; `contacts` (n, 2) points to mark, in metres, in the colour `mark`.
+        `frames` gives every body's pose x, y, angle; `contacts` (n, 2) points to mark, in metres, in the colour `mark`; `press`
+        points (n, 2), m, and the forces there (n, 2), N; `speed` is told where it changes from frame to frame.
         """
         self._canvas.restore_region(self._background)
         renderer = self._canvas.get_renderer()
@@ -84,10 +100,19 @@ class Stage:
             transform.set_matrix(matrix @ pose_matrix(frames[body]))
         for patch in self._patches:
             patch.draw(renderer)
-        if contacts is not None and len(contacts):
-            for patch in self._marks(contacts @ matrix[:2, :2].T + matrix[:2, 2], mark):
-                patch.draw(renderer)
+
+        def touching(matrix: Array) -> list[PathPatch]:
+            made = [] if press is None else self._beside.arrows(matrix, *press)
+            if contacts is not None and len(contacts):
+                made += self._marks(contacts @ matrix[:2, :2].T + matrix[:2, 2], mark)
+            return made
+
+        for patch in touching(matrix):
+            self._own(patch).draw(renderer)
         pixels = np.asarray(self._canvas.buffer_rgba())
+        self._beside.draw(renderer, t, frames, matrix, touching, pixels)
+        if speed is not None:
+            self._beside.tell_speed(speed, self._layout.frame, pixels)
         self._layout.write(t, frames, pixels)
         return pixels
 
@@ -169,22 +194,15 @@ class Stage:
         looks = ((BACKGROUND, 2.2 * width), (mark, width))
         place = IdentityTransform()
         return [
-            self._own(PathPatch(rings, fill=False, edgecolor=colour, linewidth=line, transform=place)) for colour, line in looks
+            PathPatch(rings, fill=False, edgecolor=colour, linewidth=line, transform=place) for colour, line in looks
         ]
 
     def _own(self, patch: PathPatch) -> PathPatch:
         """The patch, drawn on this figure and only between the bands of words."""
-        room = self._layout.frame
+        room = self._room
         patch.set_figure(self._figure)
         patch.set_clip_box(Bbox.from_bounds(room.left, room.bottom, room.width, room.height))
         return patch
-
-
-def pose_matrix(frame: Array) -> Array:
-    """The 3 × 3 map from a body's frame to the plane, for its pose x, y, angle."""
-    x, y, angle = frame
-    c, s = np.cos(angle), np.sin(angle)
-    return np.array([[c, -s, x], [s, c, y], [0.0, 0.0, 1.0]])
 
 
 def _rings(points: Array, radius: float) -> Path:
