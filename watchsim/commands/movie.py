@@ -14,7 +14,12 @@ HELP = "MP4 or GIF of a results folder, by the file's ending"
 def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("run_folder", metavar="RUN", help="a results folder")
     parser.add_argument("--window", metavar="FROM:TO", help='such as "9.5 s:9.75 s" (default: all that was recorded)')
-    parser.add_argument("--speed", metavar="X", default="1", help='1/20 is slow motion (default %(default)s); "adaptive": slow where things happen, and the factor is told')
+    parser.add_argument(
+        "--speed",
+        metavar="X",
+        default="1",
+        help='1/20 is slow motion (default %(default)s); "adaptive": slow where things happen, and the factor is told',
+    )
     parser.add_argument("--length", metavar="TIME", help='how long a movie at adaptive speed lasts (default "10 s")')
     parser.add_argument("--fps", metavar="N", type=float, help="frames per second (default 60, GIF 25)")
     parser.add_argument("--size", metavar="WxH", help="pixels, such as 1280x720")
@@ -22,7 +27,12 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--forces", action="store_true", help="arrows for the forces at contacts, and their scale")
     parser.add_argument("--phases", action="store_true", help="tell the phases of a beat by name")
     parser.add_argument(
-        "--strip", metavar="BODY", nargs="?", const=True, default=False, help="its angle and velocity (default: the oscillator's)"
+        "--strip",
+        metavar="BODY",
+        nargs="?",
+        const=True,
+        default=False,
+        help="its angle and velocity (default: the oscillator's)",
     )
     parser.add_argument(
         "--inset",
@@ -41,7 +51,6 @@ def run(args: argparse.Namespace) -> int:
     from watchsim.commands.common.output_place import secured_file, swept_run
     from watchsim.render.encoder import check_path
     from watchsim.render.run_movie import ADAPTIVE, movie
-
     from watchsim.units import TIME
 
     speed, size = (args.speed if args.speed == ADAPTIVE else parse_speed(args.speed)), _size(args.size)

@@ -20,7 +20,6 @@ Array = NDArray[np.float64]
 MOST_FRAMES = 1e6
 BUSY_SHARE = 0.8  # of the film, for the stretches in which things happen
 RAMP = 0.3  # s of the film from one speed to the other
-GRID = 64  # steps in a ramp
 
 
 @dataclass(frozen=True)
@@ -70,7 +69,8 @@ def _knots(span: Window, busy: Sequence[Window], slow: float, fast: float) -> tu
     edges = [span[0], *(t for stretch in busy for t in stretch), span[1]]
     low, high = math.log(slow), math.log(fast)
     ramp = RAMP * slow * fast * (high - low) / (fast - slow)  # it then lasts RAMP in the film
-    t, v = [], []
+    t: list[float] = []
+    v: list[float] = []
     for k in range(0, len(edges), 2):
         start, end = edges[k], edges[k + 1]
         if end <= start:

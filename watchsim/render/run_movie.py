@@ -141,9 +141,7 @@ def _plan(run: Trajectory, span: Window, speed: float | str, length: float | Non
     return even(span, speed, fps)
 
 
-def _extras(
-    run: Trajectory, insets: Sequence[str], strip: str | bool, phases: bool, arrows: ForceArrows | None
-) -> Extras:
+def _extras(run: Trajectory, insets: Sequence[str], strip: str | bool, phases: bool, arrows: ForceArrows | None) -> Extras:
     places = (insets,) if isinstance(insets, str) else tuple(insets)
     body = None if strip is False else strip_body(run, None if strip is True else strip)
     force, scale = (arrows.largest, arrows.round_force) if arrows else (0.0, 0.0)

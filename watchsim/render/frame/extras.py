@@ -31,4 +31,4 @@ class Extras:
 
 NOTHING = Extras()
 STRIP_WIDE, STRIP_TALL = 0.27, 0.2  # share of a wide and of a tall picture's height that the strip takes
-ARROW = 0.17  # of the smaller side of the room: the longest arrow
+ARROW = 0.15  # of the smaller side of the room: the longest arrow

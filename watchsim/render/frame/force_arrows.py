@@ -17,7 +17,7 @@ from watchsim.simulation.record.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 
-HEAD, WIDE, SHAFT = 0.32, 0.13, 0.045  # of the longest arrow: length of a head, half widths of head and shaft
+HEAD, WIDE, SHAFT = 0.28, 0.1, 0.034  # of the longest arrow: length of a head, half widths of head and shaft
 AT_ONCE = 2000  # instants
 LEAST = 0.02  # of the longest arrow: shorter ones are dots
 
@@ -34,9 +34,7 @@ class ForceArrows:
             n, turned = told.direction, np.stack((-told.direction[..., 1], told.direction[..., 0]), axis=-1)
             on_a = told.normal[..., None] * n + told.tangential[..., None] * turned
             pairs = [run.pairs[number] for number in told.pairs.tolist()]
-            sign = [
-                1.0 if _rank(one.body_a, order, fixed) > _rank(one.body_b, order, fixed) else -1.0 for one in pairs
-            ]
+            sign = [1.0 if _rank(one.body_a, order, fixed) > _rank(one.body_b, order, fixed) else -1.0 for one in pairs]
             on_later = on_a * np.array(sign).reshape(1, -1, 1)
             for points, own in zip(told.point, on_later, strict=True):
                 held = np.isfinite(points[:, 0])

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from matplotlib.backend_bases import RendererBase
 from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
@@ -67,7 +68,7 @@ class InsetPicture:
         patch.set_clip_box(Bbox.from_bounds(room.left, room.bottom, room.width, room.height))
         return patch
 
-    def draw(self, renderer: object, frames: dict[str, Array], marks: Marks, out_pixels: Pixels) -> None:
+    def draw(self, renderer: RendererBase, frames: dict[str, Array], marks: Marks, out_pixels: Pixels) -> None:
         """Draw the inset for the poses x, y, angle of one instant."""
         matrix = self._inset.matrix(frames)
         self._sheet.draw(renderer)
@@ -87,9 +88,10 @@ class InsetPicture:
         for shape in self._shapes:
             x, y = self._transforms[shape.body].transform(shape.middle)
             reach = shape.reach * self._inset.view.scale
-            if abs(x - box.left - 0.5 * box.width) <= reach + 0.5 * box.width:
-                if abs(y - box.bottom - 0.5 * box.height) <= reach + 0.5 * box.height:
-                    yield shape
+            beside = abs(x - box.left - 0.5 * box.width) - 0.5 * box.width
+            above = abs(y - box.bottom - 0.5 * box.height) - 0.5 * box.height
+            if max(beside, above) <= reach:
+                yield shape
 
     def _shape(self, part: Part) -> _Shape:
         points = np.asarray(part.faces.vertices)

@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 AIR = 0.12  # of an inset, around what it shows
 STAYS = 2.5  # what sweeps more than so many times its size is followed
 MOST = 6  # insets
-ACROSS, DOWN = 0.3, 0.3  # share of a wide picture's width and of a tall one's height that insets take
+ACROSS, DOWN = 0.37, 0.3  # share of a wide picture's width and of a tall one's height that insets take
 GAP = 0.012  # of the longer side
 
 
@@ -58,18 +58,23 @@ def beside(frame: Frame, count: int) -> tuple[Frame, tuple[Frame, ...]]:
         return frame, ()
     if count > MOST:
         raise ValueError(f"insets: {count} are too many to be read; show at most {MOST}")
-    gap = GAP * max(frame.width, frame.height)
-    if frame.width >= frame.height:
-        each, taken = (frame.height - gap * (count + 1)) / count, ACROSS * frame.width
-        left = frame.left + frame.width - taken
-        boxes = tuple(
-            Frame(left, frame.bottom + frame.height - (k + 1) * (each + gap), taken - gap, each) for k in range(count)
+    wide, gap = frame.width >= frame.height, GAP * max(frame.width, frame.height)
+    across, down = (ACROSS * frame.width, frame.height) if wide else (frame.width, DOWN * frame.height)
+    left, top = frame.left + frame.width - across, frame.bottom + frame.height
+    columns = max(range(1, count + 1), key=lambda n: (min((across - gap) / n, (down - gap) / -(-count // n)), -n))
+    width, height = (across - gap) / columns, (down - gap) / -(-count // columns)
+    boxes = tuple(
+        Frame(
+            left + gap + k % columns * width,
+            top - gap - (k // columns + 1) * height + gap,
+            width - gap,
+            height - gap,
         )
-        return Frame(frame.left, frame.bottom, frame.width - taken, frame.height), boxes
-    each, taken = (frame.width - gap * (count + 1)) / count, DOWN * frame.height
-    bottom = frame.bottom + frame.height - taken
-    boxes = tuple(Frame(frame.left + gap + k * (each + gap), bottom, each, taken - gap) for k in range(count))
-    return Frame(frame.left, frame.bottom, frame.width, frame.height - taken), boxes
+        for k in range(count)
+    )
+    if wide:
+        return Frame(frame.left, frame.bottom, frame.width - across, frame.height), boxes
+    return Frame(frame.left, frame.bottom, frame.width, frame.height - down), boxes
 
 
 def inset(run: Trajectory, window: Window, place: str, box: Frame, turn: float) -> Inset:

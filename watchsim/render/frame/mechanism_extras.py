@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
 from matplotlib.transforms import IdentityTransform
@@ -20,7 +21,7 @@ from watchsim.render.frame.pose_history import Window
 from watchsim.render.frame.readouts import changing_speed_text, turn_text
 from watchsim.render.frame.strip import Strip
 from watchsim.render.frame.view import Frame, View
-from watchsim.render.palette import BACKGROUND, FAINT, FORCE, INK
+from watchsim.render.palette import BACKGROUND, FAINT, FORCE, INK, PHASES
 from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.units import metric
 
@@ -32,7 +33,10 @@ PAD = 24.0  # pixels at 1280 × 720
 
 
 class Beside:
-    """Insets, strip, arrows and phase names of a figure; `frame` is the room between the bands of words, `size` that of text."""
+    """Insets, strip, arrows and phase names of a figure.
+
+    `frame` is the room between the bands of words, `size` that of text, `unit` that of everything drawn.
+    """
 
     def __init__(
         self, figure: Figure, run: Trajectory, window: Window, extras: Extras, frame: Frame, size: float, unit: float
@@ -88,23 +92,27 @@ class Beside:
             picture.draw(renderer, frames, marks, out_pixels)
         self._key(renderer, out_pixels)
         if self._extras.phases:
-            top = self._frame.bottom + self._frame.height + 0.3 * self._words.size
-            self._bold.write(self._extras.phase_at(t), PAD * self._unit, top, out_pixels)
+            self._name_phase(self._extras.phase_at(t), out_pixels)
         if self._strip is not None:
             self._strip.draw(t, out_pixels)
+
+    def _name_phase(self, name: str, out_pixels: Pixels) -> None:
+        """The name, after a chip of the colour that shades the phase in the strip."""
+        size, left = self._bold.size, round(PAD * self._unit)
+        base = round(self._frame.bottom + self._frame.height + 0.3 * size)
+        if name in PHASES:
+            foot = out_pixels.shape[0] - base
+            chip = slice(foot - round(0.75 * size), foot + 1), slice(left, left + round(0.8 * size))
+            out_pixels[chip][..., :3] = np.round(255.0 * np.array(to_rgb(PHASES[name])))
+            left += round(1.3 * size)
+        self._bold.write(name, left, base, out_pixels)
 
     def tell_speed(self, speed: float, frame: Frame, out_pixels: Pixels) -> None:
         """Write the speed of this frame where a steady one would stand."""
         turned = turn_text(self._turn)
         text = changing_speed_text(speed) + (f", {turned}" if turned else "")
         right, base = frame.left + frame.width - PAD * self._unit, frame.bottom + frame.height + 0.3 * self._faint.size
-        clear = max(self._faint.width(text), round(0.4 * frame.width))
-        top = out_pixels.shape[0] - round(base) + round(0.4 * self._faint.size) - self._faint.height
-        out_pixels[max(top, 0) : top + self._faint.height, round(right) - clear : round(right), :3] = self._paper(out_pixels)
         self._faint.write(text, right, base, out_pixels, right=True)
-
-    def _paper(self, pixels: Pixels) -> Pixels:
-        return pixels[0, 0, :3].copy()
 
     def _key(self, renderer: Any, out_pixels: Pixels) -> None:
         """An arrow of a round force with its size, at the lower left of the mechanism."""

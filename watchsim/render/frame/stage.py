@@ -24,7 +24,7 @@ from watchsim.render.frame.mechanism_extras import Beside
 from watchsim.render.frame.pose_history import Window
 from watchsim.render.frame.pose_matrix import pose_matrix
 from watchsim.render.frame.view import size_of, view
-from watchsim.render.frame.word_layout import draw_key, draw_notes, draw_rules, draw_scale, lay_out
+from watchsim.render.frame.word_layout import draw_key, draw_notes, draw_rules, draw_scale, lay_out, relative_size
 from watchsim.render.palette import BACKGROUND, CONTACT, INK
 from watchsim.scene.carriers import at_start, is_still
 from watchsim.simulation.record.trajectory import Trajectory
@@ -62,7 +62,7 @@ class Stage:
     ) -> None:
         self._figure = Figure(figsize=((size[0] + 0.5) / DPI, (size[1] + 0.5) / DPI), dpi=DPI, facecolor=BACKGROUND)
         self._canvas = FigureCanvasAgg(self._figure)
-        self._unit = min(size[0] / 1280.0, size[1] / 720.0)
+        self._unit = relative_size(*size)
         self._layout = lay_out(self._figure, run, window, step or (window[1] - window[0]) / 2000.0)
         self._beside = Beside(self._figure, run, window, extras, self._layout.frame, self._layout.small.size, self._unit)
         self._room = self._beside.room
@@ -193,9 +193,7 @@ class Stage:
         rings, width = _rings(points, 7.0 * max(self._unit, 0.5)), max(2.4 * self._unit, 1.2)
         looks = ((BACKGROUND, 2.2 * width), (mark, width))
         place = IdentityTransform()
-        return [
-            PathPatch(rings, fill=False, edgecolor=colour, linewidth=line, transform=place) for colour, line in looks
-        ]
+        return [PathPatch(rings, fill=False, edgecolor=colour, linewidth=line, transform=place) for colour, line in looks]
 
     def _own(self, patch: PathPatch) -> PathPatch:
         """The patch, drawn on this figure and only between the bands of words."""

@@ -30,6 +30,8 @@ Pixels = NDArray[np.uint8]
 DPI = 72.0  # one point is one pixel
 SWINGS = 8.0  # on a page
 MOST_PAGES = 4000
+LEFT, FOOT = 11.5, 2.3  # of the text's size: room for the words on the left and below
+BELOW = 0.1  # of the height of one of the two rows, under its axes
 
 
 class Strip:
@@ -60,7 +62,11 @@ class Strip:
         middle = place[1].start + left + (share - number) * (right - left)
         half = max(1, round(0.06 * self._size))
         columns = slice(round(middle) - half, round(middle) + half)
-        out_pixels[place[0].start : bottom - round(2.4 * self._size), columns, :3] = np.round(255 * np.array(to_rgb(CONTACT)))
+        out_pixels[place[0].start : bottom - round(self._foot()), columns, :3] = np.round(255 * np.array(to_rgb(CONTACT)))
+
+    def _foot(self) -> float:
+        """Pixels from the bottom of the strip to that of its lower axes."""
+        return FOOT * self._size + BELOW * 0.5 * (self._room.height - FOOT * self._size)
 
     def _told(self, values: Array) -> Array:
         return values * 1e3 if self._body.motion in ("slide", "free") else np.degrees(values)
@@ -71,22 +77,28 @@ class Strip:
         width, height = round(self._room.width), round(self._room.height)
         figure = Figure(figsize=((width + 0.5) / DPI, (height + 0.5) / DPI), dpi=DPI, facecolor=BACKGROUND)
         canvas = FigureCanvasAgg(figure)
-        left, right, foot = 6.2 * self._size, 1.6 * self._size, 2.4 * self._size
+        left, right, foot = LEFT * self._size, 1.6 * self._size, FOOT * self._size
         each = (height - foot) / 2.0
         t, q, u, _ = dense(self._run, (start, end))
         told, line = clock((start, end)), looks(self._run.scene)[self._body.name].line
         travels = self._body.motion in ("slide", "free")
-        units = ("mm", "mm/s") if travels else ("°", "°/s")
+        units = ("travel (mm)", "velocity (mm/s)") if travels else ("angle (°)", "velocity (°/s)")
         for k, (values, unit) in enumerate(zip((q, u), units, strict=True)):
-            box = (left / width, (foot + (1 - k) * each + 0.1 * each) / height, 1.0 - (left + right) / width, 0.86 * each / height)
+            box = (
+                left / width,
+                (foot + (1 - k) * each + BELOW * each) / height,
+                1.0 - (left + right) / width,
+                0.86 * each / height,
+            )
             axes = figure.add_axes(box)
             self._shade(axes, start, end, told.base, told.factor)
-            axes.plot((t - told.base) * told.factor, self._told(values[:, self._column]), color=line, linewidth=0.11 * self._size)
+            axes.plot(
+                (t - told.base) * told.factor, self._told(values[:, self._column]), color=line, linewidth=0.11 * self._size
+            )
             axes.set_xlim((start - told.base) * told.factor, (end - told.base) * told.factor)
             axes.set_ylim(*self._reach[k])
-            self._style(axes, unit, k == 1)
+            self._style(axes, f"{self._body.name}\n{unit}", k == 1)
         axes.set_xlabel(told.label, fontsize=0.8 * self._size, color=INK, labelpad=0.05 * self._size)
-        figure.text(0.25 * self._size / width, 0.3 * self._size / height, self._body.name, fontsize=self._size, color=INK)
         canvas.draw()
         return np.array(canvas.buffer_rgba())[:height, :width].copy(), (left, width - right)
 
@@ -94,7 +106,11 @@ class Strip:
         for phase in self._phases:
             if phase.name in PHASES and phase.end > start and phase.start < end:
                 axes.axvspan(
-                    (phase.start - base) * factor, (phase.end - base) * factor, color=PHASES[phase.name], linewidth=0.0, zorder=0
+                    (phase.start - base) * factor,
+                    (phase.end - base) * factor,
+                    color=PHASES[phase.name],
+                    linewidth=0.0,
+                    zorder=0,
                 )
 
     def _style(self, axes: Axes, unit: str, last: bool) -> None:
@@ -103,8 +119,8 @@ class Strip:
         axes.grid(True, color=GRID, linewidth=0.8)
         axes.set_axisbelow(True)
         axes.tick_params(labelsize=0.8 * self._size, colors=INK, length=0.0, labelbottom=last, pad=0.25 * self._size)
-        axes.set_ylabel(unit, fontsize=0.8 * self._size, color=INK, rotation=0, ha="right", va="center")
-        axes.yaxis.set_label_coords(-4.2 * self._size / (self._room.width - 7.8 * self._size), 0.5)
+        axes.set_ylabel(unit, fontsize=0.8 * self._size, color=INK, rotation=0, ha="left", va="center", parse_math=False)
+        axes.yaxis.set_label_coords((1.6 - LEFT) * self._size / (self._room.width - (LEFT + 1.6) * self._size), 0.5)
         for side, spine in axes.spines.items():
             spine.set_visible(side in ("left", "bottom"))
             spine.set_color(FAINT)
