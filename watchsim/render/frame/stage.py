@@ -102,10 +102,9 @@ class Stage:
             patch.draw(renderer)
 
         def touching(matrix: Array) -> list[PathPatch]:
-            made = [] if press is None else self._beside.arrows(matrix, *press)
-            if contacts is not None and len(contacts):
-                made += self._marks(contacts @ matrix[:2, :2].T + matrix[:2, 2], mark)
-            return made
+            marked = contacts is not None and len(contacts) > 0
+            made = self._marks(contacts @ matrix[:2, :2].T + matrix[:2, 2], mark) if contacts is not None and marked else []
+            return made if press is None else made + self._beside.arrows(matrix, *press)
 
         for patch in touching(matrix):
             self._own(patch).draw(renderer)
