@@ -25,7 +25,7 @@ def test_reachable_edges_wear_colour_and_others_do_not(tmp_path):
     pairs = modelled_pairs(compiled, [body.name for body in scene.bodies])
     module.still(scene, tmp_path / "start.png", compiled, pairs)
     picture = imageio.imread(tmp_path / "start.png").astype(float) / 255.0
-    view = Stage(module._at_rest(scene, compiled), module.SIZE, (0.0, 1.0)).view
+    view = Stage(module.at_rest(scene, compiled), module.SIZE, (0.0, 1.0)).view
     rows = {"never": [], "reachable": [], "candidate": []}
     for number, body in enumerate(scene.bodies):
         matrix = view.matrix(view.centre) @ pose_matrix(np.array([*body.position, body.angle]))
