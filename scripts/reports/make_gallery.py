@@ -2,7 +2,8 @@
 
     python scripts/reports/make_gallery.py
 
-Runs the commands that the page shows, as anyone can, in a folder of its own; pictures go to docs/images/gallery. Takes a minute or two.
+Runs the commands that the page shows, as anyone can, in a folder of its own; pictures go to docs/images/gallery. Takes half a
+minute.
 """
 
 from __future__ import annotations
@@ -41,8 +42,8 @@ EXHIBITS = (
     Exhibit(
         "swiss_lever.gif",
         "An oscillation of a Swiss lever",
-        "At adaptive speed: unlocking, impulse and drop get most of the frames, and the factor is told at the upper right. Arrows are "
-        "the forces on the lever from the wheel, and on the roller's pin from the fork.",
+        "At adaptive speed: unlocking, impulse and drop get most of the frames, and the factor is told at the upper right. "
+        "Arrows are the forces on the lever from the wheel, and on the roller's pin from the fork.",
         f"watchsim movie swiss {BEAT} --speed adaptive --length 5s --fps 16 --size 720x406 --phases --forces "
         "--inset lever.STONES.1 --inset lever.FORK -o swiss_lever.gif",
         SWISS,

@@ -92,7 +92,7 @@ def parse_speed(text: str) -> float:
     try:
         value = float(Fraction(text))
     except (ValueError, ZeroDivisionError) as error:
-        raise InputError(f"--speed {text}: write a number or a fraction such as 1/20.") from error
+        raise InputError(f"--speed {text}: write a number or a fraction such as 1/20, or adaptive.") from error
     if not value > 0.0:
         raise InputError(f"--speed {text}: must be positive.")
     return value

@@ -17,11 +17,11 @@ GRID = "#ddd8ce"
 CONTACT = "#e8590c"
 FORCE = "#0b5fa5"
 PHASES = {  # of a beat; pale, to lie behind curves
-    "unlock": "#f6d2b8",
-    "catch-up": "#efe3a4",
-    "impulse": "#bfe0c3",
-    "drop": "#bcd8ef",
-    "run to banking": "#dccbe6",
+    "unlock": "#f3c6c6",
+    "catch-up": "#f7ead2",
+    "impulse": "#cfe6cf",
+    "drop": "#d9d3ee",
+    "run to banking": "#cfe2f3",
 }
 
 
