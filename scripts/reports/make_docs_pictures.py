@@ -1,7 +1,7 @@
 """How do the pictures of the README come about?
 
-Simulates profiles/swiss_lever for a second and draws it at the instant the balance passes its rest position, with the
-pin in the fork; and the angles and velocities of all bodies over the beats around it.
+Simulates profiles/swiss_lever for a second and draws the angles and velocities of all bodies over the beats around the
+instant at which the balance passes its rest position. The moving picture is made by scripts/reports/make_gallery.py.
 
     python scripts/reports/make_docs_pictures.py
 """
@@ -11,7 +11,6 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-import imageio.v3 as imageio
 import numpy as np
 
 import watchsim as ws
@@ -20,7 +19,6 @@ ROOT = Path(__file__).resolve().parents[2]
 IMAGES = ROOT / "docs" / "images"
 DURATION = 1.0  # s
 BEATS = 0.2  # s to each side of the instant in the plot
-SIZE = (1280, 720)
 
 
 def middle_of_an_impulse(run: ws.Trajectory) -> float:
@@ -35,7 +33,6 @@ def main() -> None:
     run = ws.simulate(ws.load(ROOT / "profiles" / "swiss_lever" / "scene.toml"), duration=DURATION)
     t = middle_of_an_impulse(run)
     IMAGES.mkdir(parents=True, exist_ok=True)
-    imageio.imwrite(IMAGES / "swiss_lever.png", ws.frame(run, t, size=SIZE))
     ws.plot_kinematics(run, window=(t - BEATS, t + BEATS)).savefig(IMAGES / "swiss_lever_beat.png")
 
 

@@ -212,7 +212,7 @@ def temperature(scene: ws.Scene) -> list[str]:
 def run_down(scene: ws.Scene) -> list[str]:
     """48 hours from full wind, by limit cycles at the torque of each hour."""
     hours = np.arange(0.0, 49.0, 2.0)
-    share = np.interp(hours, *zip(*MAINSPRING, strict=True))
+    share = np.interp(hours, [hour for hour, _ in MAINSPRING], [left for _, left in MAINSPRING])
     series = over_torque(scene.set("damping.0.coulomb", FLAT), WOUND * share)
     amplitude, rate = series.of("amplitude_deg"), series.of("rate_s_per_d")
     figure, axes = panels(3, height=2.0)

@@ -179,7 +179,7 @@ def test_an_interrupt_leaves_nothing(tmp_path):
 def test_frames_lie_as_far_apart_as_speed_and_rate_say(speed, fps, window, tmp_path, monkeypatch):
     """Frame k shows the instant start + k speed / fps, to the last one in the window."""
     shown = []
-    monkeypatch.setattr(Stage, "draw", lambda self, t, *_: shown.append(t) or np.zeros((180, 320, 4), np.uint8))
+    monkeypatch.setattr(Stage, "draw", lambda self, t, *_, **__: shown.append(t) or np.zeros((180, 320, 4), np.uint8))
     movie(watch_run(), tmp_path / "a.mp4", window=window, speed=speed, fps=fps, size=(320, 180))
     assert len(shown) == round((window[1] - window[0]) * fps / speed) + 1
     assert shown == pytest.approx([window[0] + k * speed / fps for k in range(len(shown))], rel=1e-12)

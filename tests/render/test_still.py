@@ -13,7 +13,8 @@ from watchsim.mechanism.compile import compile_scene
 from watchsim.mechanism.count_pairs import modelled_pairs
 from watchsim.model.records import LINE
 from watchsim.render import still as module
-from watchsim.render.frame.stage import Stage, pose_matrix
+from watchsim.render.frame.pose_matrix import pose_matrix
+from watchsim.render.frame.stage import Stage
 
 LEVER = Path(__file__).resolve().parents[2] / "profiles" / "bench_lever" / "scene.toml"
 

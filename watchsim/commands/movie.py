@@ -6,7 +6,7 @@ import argparse
 from fractions import Fraction
 from pathlib import Path
 
-from watchsim.commands.common.console import FINE, InputError, Progress, parse_names, parse_window, say
+from watchsim.commands.common.console import FINE, InputError, Progress, parse_names, parse_positive, parse_window, say
 
 HELP = "MP4 or GIF of a results folder, by the file's ending"
 
@@ -14,11 +14,34 @@ HELP = "MP4 or GIF of a results folder, by the file's ending"
 def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("run_folder", metavar="RUN", help="a results folder")
     parser.add_argument("--window", metavar="FROM:TO", help='such as "9.5 s:9.75 s" (default: all that was recorded)')
-    parser.add_argument("--speed", metavar="X", default="1", help="1/20 is slow motion (default %(default)s)")
+    parser.add_argument(
+        "--speed",
+        metavar="X",
+        default="1",
+        help='1/20 is slow motion (default %(default)s); "adaptive": slow where things happen, and the factor is told',
+    )
+    parser.add_argument("--length", metavar="TIME", help='how long a movie at adaptive speed lasts (default "10 s")')
     parser.add_argument("--fps", metavar="N", type=float, help="frames per second (default 60, GIF 25)")
     parser.add_argument("--size", metavar="WxH", help="pixels, such as 1280x720")
     parser.add_argument("--contacts", action="store_true", help="mark the contacts that are closed")
-    parser.add_argument("--forces", action="store_true", help="draw the forces of the contacts as arrows")
+    parser.add_argument("--forces", action="store_true", help="arrows for the forces at contacts, and their scale")
+    parser.add_argument("--phases", action="store_true", help="tell the phases of a beat by name")
+    parser.add_argument(
+        "--strip",
+        metavar="BODY",
+        nargs="?",
+        const=True,
+        default=False,
+        help="its angle and velocity (default: the oscillator's)",
+    )
+    parser.add_argument(
+        "--inset",
+        metavar="PLACE",
+        action="append",
+        default=[],
+        help='show a place enlarged: lever, lever.STONES, lever.STONES.2 (its second outline) or "-1.4,1.9:-0.8,2.5" (mm); '
+        "may be given several times",
+    )
     parser.add_argument("--zoom", metavar="NAMES", help="frame only these bodies, with commas between them")
     parser.add_argument("-o", "--output", metavar="FILE", help="file.mp4 or file.gif (default RUN/movie.mp4)")
 
@@ -27,9 +50,13 @@ def run(args: argparse.Namespace) -> int:
     from watchsim.commands.common.inputs import read_run
     from watchsim.commands.common.output_place import secured_file, swept_run
     from watchsim.render.encoder import check_path
-    from watchsim.render.run_movie import movie
+    from watchsim.render.run_movie import ADAPTIVE, movie
+    from watchsim.units import TIME
 
-    speed, size = parse_speed(args.speed), _size(args.size)
+    speed, size = (args.speed if args.speed == ADAPTIVE else parse_speed(args.speed)), _size(args.size)
+    length = None if args.length is None else parse_positive("--length", args.length, TIME)
+    if length is not None and speed != ADAPTIVE:
+        raise InputError(f"--length {args.length}: only with --speed {ADAPTIVE}; else speed and window tell how long it lasts.")
     if size and any(side % 2 for side in size):
         say(f"Note: sides of a movie are even numbers of pixels; {args.size} is rounded up.")
     window = parse_window(args.window)
@@ -46,8 +73,12 @@ def run(args: argparse.Namespace) -> int:
             fps=args.fps,
             size=size,
             contacts=args.contacts,
-            forces=args.forces,
             zoom=parse_names(args.zoom),
+            length=length,
+            insets=args.inset,
+            strip=args.strip,
+            phases=args.phases,
+            forces=args.forces,
             progress=progress,
         )
     finally:
@@ -61,7 +92,7 @@ def parse_speed(text: str) -> float:
     try:
         value = float(Fraction(text))
     except (ValueError, ZeroDivisionError) as error:
-        raise InputError(f"--speed {text}: write a number or a fraction such as 1/20.") from error
+        raise InputError(f"--speed {text}: write a number or a fraction such as 1/20, or adaptive.") from error
     if not value > 0.0:
         raise InputError(f"--speed {text}: must be positive.")
     return value

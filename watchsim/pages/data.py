@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 
 from watchsim.analysis.timing.phases import Phase
-from watchsim.pages.moments import busy, heard, instants, named
+from watchsim.pages.moments import heard, instants, named
 from watchsim.pages.motion import Channel
 from watchsim.pages.outlines import packed_part
 from watchsim.pages.touching import touching
+from watchsim.render.busy_stretches import busy
 from watchsim.render.frame.filled_parts import Part, is_round, loops_of
 from watchsim.render.frame.pose_history import Window
 from watchsim.render.frame.view import Frame, View, room_of, size_of, view

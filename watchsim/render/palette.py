@@ -15,6 +15,14 @@ INK = "#23272c"
 FAINT = "#80858c"
 GRID = "#ddd8ce"
 CONTACT = "#e8590c"
+FORCE = "#0b5fa5"
+PHASES = {  # of a beat; pale, to lie behind curves
+    "unlock": "#f3c6c6",
+    "catch-up": "#f7ead2",
+    "impulse": "#cfe6cf",
+    "drop": "#d9d3ee",
+    "run to banking": "#cfe2f3",
+}
 
 
 @dataclass(frozen=True, slots=True)

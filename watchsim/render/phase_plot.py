@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from watchsim.analysis.timeline.oscillation import Beat, shown_beats
 from watchsim.analysis.timeline.table import title
 from watchsim.render.frame.pose_history import dense
-from watchsim.render.palette import FAINT, GRID, INK, looks
+from watchsim.render.palette import FAINT, GRID, INK, PHASES, looks
 from watchsim.scene.roles import roles
 from watchsim.simulation.record.trajectory import Trajectory
 
@@ -26,14 +26,7 @@ MM = 1.0 / 25.4  # inches
 FULL, COLUMN = 170.0, 85.0  # mm
 PANEL, TOP, FOOT, LEFT, RIGHT, BETWEEN = 25.0, 31.0, 5.0, 13.5, 3.0, 11.0
 SIZE, SMALL = 6.5, 6.0  # pt
-SHADES = {
-    "unlock": "#f3c6c6",
-    "catch-up": "#f7ead2",
-    "impulse": "#cfe6cf",
-    "drop": "#d9d3ee",
-    "run to banking": "#cfe2f3",
-    "locked": "#ffffff",
-}
+SHADES = {**PHASES, "locked": "#ffffff"}
 SECOND = "#b3d7b3"  # of an impulse that follows another
 BEFORE, AFTER = 0.08, 0.12  # of a beat's phases: what is shown besides
 MANY = 2  # beats that are drawn one by one

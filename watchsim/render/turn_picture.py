@@ -14,7 +14,7 @@ from matplotlib.patches import PathPatch
 from matplotlib.transforms import Affine2D
 
 from watchsim.render.frame.filled_parts import Part, parts
-from watchsim.render.frame.stage import pose_matrix
+from watchsim.render.frame.pose_matrix import pose_matrix
 from watchsim.render.palette import BACKGROUND, CONTACT, FAINT, GRID, INK, looks
 from watchsim.storage.write import write_file
 from watchsim.turning.couples import pose_of

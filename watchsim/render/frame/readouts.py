@@ -76,6 +76,20 @@ def speed_text(speed: float) -> str:
     return f"{speed:.4g} of true speed"
 
 
+def changing_speed_text(speed: float) -> str:
+    """The same with two digits, for a speed that changes: "1/43 of true speed"."""
+    if speed >= 0.67:
+        return "true speed" if abs(speed - 1.0) < 0.005 else f"{_two_digits(speed)} × true speed"
+    return f"1/{_two_digits(1.0 / speed)} of true speed"
+
+
+def _two_digits(value: float) -> str:
+    if value < 10.0:
+        return f"{value:.1f}".removesuffix(".0")
+    power = 10 ** (math.floor(math.log10(value)) - 1)
+    return f"{round(value / power) * power:d}"
+
+
 def turn_text(turn: float) -> str:
     """ "picture turned by 90° clockwise"; nothing where the scene's axes stand as drawn."""
     degrees = round(math.degrees(math.remainder(turn, math.tau)), 2)

@@ -19,11 +19,14 @@ from numpy.typing import NDArray
 
 from watchsim.geometry.primitives import Arc
 from watchsim.render.frame.coloured_edges import Edges, edge_paths
+from watchsim.render.frame.extras import NOTHING, Extras
 from watchsim.render.frame.filled_parts import Part, is_round, loops_of, parts
+from watchsim.render.frame.mechanism_extras import Beside
 from watchsim.render.frame.pose_history import Window
+from watchsim.render.frame.pose_matrix import pose_matrix
 from watchsim.render.frame.readouts import Clock
 from watchsim.render.frame.view import size_of, view
-from watchsim.render.frame.word_layout import draw_key, draw_notes, draw_rules, draw_scale, lay_out
+from watchsim.render.frame.word_layout import draw_key, draw_notes, draw_rules, draw_scale, lay_out, relative_size
 from watchsim.render.palette import BACKGROUND, CONTACT, INK
 from watchsim.scene.carriers import at_start, is_still
 from watchsim.simulation.record.trajectory import Trajectory
@@ -37,18 +40,14 @@ HATCH = 13.0  # pixels between hatch strokes
 PICKED = 3.0  # pixels: width of picked edges
 SHADOW = (2.0, -3.0)  # pixels
 SHADE = (0.13, 0.14, 0.16, 0.13)
-FORCE = "#5f3dc4"
-LONGEST, HEAD = 110.0, 15.0  # pixels: the longest arrow, the head of an arrow
-LEAST_ARROW = 0.02  # of the longest: what is shorter is not drawn
-CLOSED = [Path.MOVETO, Path.LINETO, Path.LINETO, Path.CLOSEPOLY]
 
 
 class Stage:
     """Draws a run at any instant of a window, always in the same frame.
 
     `size` is (width, height) in pixels; `speed` and `step` (s between frames) are only told, not used. `picked` edges are
-    drawn over everything, with a key below the title. `clock` tells something else than the time of the run;
-    `arrows` what arrows mean, for the key.
+    drawn over everything, with a key below the title. With `extras` the mechanism leaves room for them.
+    `clock` reports something other than the time of the run.
     """
 
     def __init__(
@@ -62,25 +61,27 @@ class Stage:
         speed: float | None = None,
         step: float | None = None,
         picked: Sequence[Edges] = (),
+        extras: Extras = NOTHING,
         clock: Clock | None = None,
-        arrows: str | None = None,
     ) -> None:
         self._figure = Figure(figsize=((size[0] + 0.5) / DPI, (size[1] + 0.5) / DPI), dpi=DPI, facecolor=BACKGROUND)
         self._canvas = FigureCanvasAgg(self._figure)
-        self._unit = min(size[0] / 1280.0, size[1] / 720.0)
+        self._unit = relative_size(*size)
         self._layout = lay_out(self._figure, run, window, step or (window[1] - window[0]) / 2000.0)
         if clock is not None:
             self._layout = replace(self._layout, clock=clock)
-        self.view = view(run, window, self._layout.frame, zoom, turn)
+        self._beside = Beside(self._figure, run, window, extras, self._layout.frame, self._layout.small.size, self._unit)
+        self._room = self._beside.room
+        self.view = view(run, window, self._room, zoom, turn)
+        self._beside.look_at(self.view)
         draw_scale(self._figure, self.view.scale)
         draw_notes(self._figure, self._layout.frame, speed, self.view.turn)
         endless = any(not loop.closed for body in run.scene.bodies for loop in loops_of(body))
         if zoom is not None or endless or self.view.follow is not None:
-            draw_rules(self._figure, self._layout.frame)
+            draw_rules(self._figure, self._room)
         self._transforms = {body.name: Affine2D() for body in run.scene.bodies}
         self._patches = [*self._compose(run), *(patch for edges in picked for patch in self._picked(run, edges))]
-        meanings = [(edges.colour, edges.meaning) for edges in picked]
-        draw_key(self._figure, meanings if arrows is None else [*meanings, (FORCE, arrows)])
+        draw_key(self._figure, [(edges.colour, edges.meaning) for edges in picked])
         self._canvas.draw()
         self._background = self._canvas.copy_from_bbox(self._figure.bbox)
 
@@ -90,12 +91,13 @@ class Stage:
         frames: dict[str, Array],
         contacts: Array | None = None,
         mark: str = CONTACT,
-        arrows: Array | None = None,
+        press: tuple[Array, Array] | None = None,
+        speed: float | None = None,
     ) -> Pixels:
         """The picture (height, width, 4) of the instant `t`; the next call overwrites it.
 
-        `frames` gives every body's pose x, y, angle; `contacts` (n, 2) points to mark, in metres, in the colour `mark`;
-        `arrows` (n, 4) where arrows end, in metres, and what they point along, in parts of the longest.
+        `frames` gives every body's pose x, y, angle; `contacts` (n, 2) points to mark, in metres, in the colour `mark`; `press`
+        points (n, 2), m, and the forces there (n, 2), N; `speed` is told where it changes from frame to frame.
         """
         self._canvas.restore_region(self._background)
         renderer = self._canvas.get_renderer()
@@ -104,14 +106,18 @@ class Stage:
             transform.set_matrix(matrix @ pose_matrix(frames[body]))
         for patch in self._patches:
             patch.draw(renderer)
-        if contacts is not None and len(contacts):
-            for patch in self._marks(contacts @ matrix[:2, :2].T + matrix[:2, 2], mark):
-                patch.draw(renderer)
-        if arrows is not None and len(arrows):
-            ends = arrows[:, :2] @ matrix[:2, :2].T + matrix[:2, 2]
-            for patch in self._arrows(ends, arrows[:, 2:] @ matrix[:2, :2].T / self.view.scale):
-                patch.draw(renderer)
+
+        def touching(matrix: Array) -> list[PathPatch]:
+            marked = contacts is not None and len(contacts) > 0
+            made = self._marks(contacts @ matrix[:2, :2].T + matrix[:2, 2], mark) if contacts is not None and marked else []
+            return made if press is None else made + self._beside.arrows(matrix, *press)
+
+        for patch in touching(matrix):
+            self._own(patch).draw(renderer)
         pixels = np.asarray(self._canvas.buffer_rgba())
+        self._beside.draw(renderer, t, frames, matrix, touching, pixels)
+        if speed is not None:
+            self._beside.tell_speed(speed, self._layout.frame, pixels)
         self._layout.write(t, frames, pixels)
         return pixels
 
@@ -192,50 +198,14 @@ class Stage:
         rings, width = _rings(points, 7.0 * max(self._unit, 0.5)), max(2.4 * self._unit, 1.2)
         looks = ((BACKGROUND, 2.2 * width), (mark, width))
         place = IdentityTransform()
-        return [
-            self._own(PathPatch(rings, fill=False, edgecolor=colour, linewidth=line, transform=place)) for colour, line in looks
-        ]
-
-    def _arrows(self, ends: Array, along: Array) -> list[PathPatch]:
-        """Arrows whose points stand at `ends` (pixels); those of length 1 are as long as `LONGEST`."""
-        unit = max(self._unit, 0.5)
-        length = np.hypot(*along.T)
-        shown = length > LEAST_ARROW
-        if not shown.any():
-            return []
-        way = along[shown] / length[shown, None]
-        reach, head = LONGEST * unit * length[shown], HEAD * unit
-        side = np.column_stack((-way[:, 1], way[:, 0]))
-        tips, neck = ends[shown], ends[shown] - way * np.minimum(head, 0.6 * reach)[:, None]
-        wing = 0.45 * np.minimum(head, 0.6 * reach)[:, None] * side
-        shafts = _polylines(np.stack((tips - way * reach[:, None], neck), axis=1))
-        heads = Path.make_compound_path(
-            *(Path([a, b, c, a], CLOSED) for a, b, c in zip(tips, neck + wing, neck - wing, strict=True))
-        )
-        place, width = IdentityTransform(), max(2.2 * self._unit, 1.2)
-        return [
-            self._own(PathPatch(shafts, fill=False, edgecolor=FORCE, linewidth=width, transform=place)),
-            self._own(PathPatch(heads, facecolor=FORCE, linewidth=0.0, transform=place)),
-        ]
+        return [PathPatch(rings, fill=False, edgecolor=colour, linewidth=line, transform=place) for colour, line in looks]
 
     def _own(self, patch: PathPatch) -> PathPatch:
         """The patch, drawn on this figure and only between the bands of words."""
-        room = self._layout.frame
+        room = self._room
         patch.set_figure(self._figure)
         patch.set_clip_box(Bbox.from_bounds(room.left, room.bottom, room.width, room.height))
         return patch
-
-
-def pose_matrix(frame: Array) -> Array:
-    """The 3 × 3 map from a body's frame to the plane, for its pose x, y, angle."""
-    x, y, angle = frame
-    c, s = np.cos(angle), np.sin(angle)
-    return np.array([[c, -s, x], [s, c, y], [0.0, 0.0, 1.0]])
-
-
-def _polylines(ends: Array) -> Path:
-    """One stroke from each first to each second point."""
-    return Path(ends.reshape(-1, 2), np.tile([Path.MOVETO, Path.LINETO], len(ends)).astype(np.uint8))
 
 
 def _rings(points: Array, radius: float) -> Path:

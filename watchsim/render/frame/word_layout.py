@@ -138,9 +138,14 @@ def draw_rules(figure: Figure, frame: Frame) -> None:
         figure.add_artist(Line2D(ends, [y, y], color=GRID, linewidth=max(_unit(figure), 0.7), transform=IdentityTransform()))
 
 
+def relative_size(width: float, height: float) -> float:
+    """How large a picture is, 1 for 1280 × 720 pixels, wide or tall."""
+    return min(max(width, height) / 1280.0, min(width, height) / 720.0)
+
+
 def _unit(figure: Figure) -> float:
-    """Size of everything drawn, relative to a picture of 1280 × 720 pixels."""
-    return min(max(min(figure.bbox.width / 1280.0, figure.bbox.height / 720.0), 0.4), 4.0)
+    """Size of everything drawn, relative to a picture of 1280 × 720 or of 720 × 1280 pixels."""
+    return min(max(relative_size(figure.bbox.width, figure.bbox.height), 0.4), 4.0)
 
 
 def _words(figure: Figure, words: str, place: tuple[float, float], size: float, colour: str, **style: str) -> Text:
