@@ -8,6 +8,7 @@ from watchsim.construction.design import Design
 
 _HOMES = {
     "swiss_lever": "watchsim.construction.swiss_lever.design",
+    "geneva": "watchsim.construction.geneva.design",
 }
 
 NAMES = tuple(_HOMES)
