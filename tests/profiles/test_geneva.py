@@ -32,7 +32,7 @@ def wheel_and_speed(angle, speed, crank, distance, play):
 
 
 def departures(run: Trajectory, slots: int, crank: float, play: float) -> tuple[float, float, float]:
-    """Largest differences from the closed form (rad, rad/s), and the largest turning while locked (rad)."""
+    """Largest differences from the closed form (rad, parts of the driver's speed), and the largest turning while locked (rad)."""
     distance = crank / math.sin(math.pi / slots)
     entry, pitch = math.pi / 2.0 + math.pi / slots, 2.0 * math.pi / slots
     t = np.linspace(0.0, run.t[-1], 20001)
@@ -47,7 +47,7 @@ def departures(run: Trajectory, slots: int, crank: float, play: float) -> tuple[
     standing = math.pi / slots - pitch * (turn + (inside > math.pi))
     return (
         float(np.abs(wheel[driven] + pitch * turn[driven] - angle).max()),
-        float(np.abs(u[driven, 1] - speed).max()),
+        float(np.abs((u[driven, 1] - speed) / u[driven, 0]).max()),
         float(np.abs(wheel[locked] - standing[locked]).max()),
     )
 
