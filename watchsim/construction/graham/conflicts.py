@@ -17,7 +17,9 @@ def conflicts(anchor: Anchor) -> Iterator[Conflict]:
     if abs(values.embraced % 1.0 - 0.5) > 1e-9:
         yield Conflict("embraced", "must be a whole number and a half, else both pallets are worked at once")
     if anchor.half_span > MOST_SPAN or anchor.half_span < 90.0 - MOST_SPAN:
-        spread = f"{2.0 * anchor.half_span:.4g}° of the wheel, {2.0 * (90.0 - MOST_SPAN):g}° to {2.0 * MOST_SPAN:g}° can be drawn"
+        spread = (
+            f"{2.0 * anchor.half_span:.4g}° of the wheel, {2.0 * (90.0 - MOST_SPAN):g}° to {2.0 * MOST_SPAN:g}° can be drawn"
+        )
         yield Conflict("embraced", f"with {values.teeth} teeth the pallets embrace {spread}")
     if anchor.pallet_width < LEAST_WIDTH:
         most = 180.0 / values.teeth - values.tip_width - LEAST_WIDTH

@@ -23,12 +23,16 @@ class Graham:
     undercut: float = dim(6.0, "°", 1.0, 20.0, "of a tooth's front, from the radius", "about 5°")
     back: float = dim(14.0, "°", 2.0, 40.0, "of a tooth's back, from the radius", CHOSEN)
     lift: float = dim(2.0, "°", 0.3, 8.0, "pendulum, while a tooth drives an impulse face", f"{USUAL}: 1.5° to 3°")
-    lock: float = dim(0.4, "°", 0.02, 3.0, "pendulum, from the drop of a tooth until it is on the impulse face", f"{USUAL}: ¼° to ½°")
+    lock: float = dim(
+        0.4, "°", 0.02, 3.0, "pendulum, from the drop of a tooth until it is on the impulse face", f"{USUAL}: ¼° to ½°"
+    )
     drop: float = dim(1.5, "°", 0.1, 5.0, "wheel, free from a let-off to the next lock", f"{USUAL}: 1° to 2°")
     pendulum: float = dim(248.5, "mm", 20.0, 5000.0, "from the pivot to the middle of the bob", "beats half seconds")
     bob_radius: float = dim(30.0, "mm", 2.0, 500.0, "of the bob, a disc", CHOSEN)
     bob_mass: float = dim(0.5, "kg", 1e-3, 100.0, "of the bob", CHOSEN)
-    q_factor: float = dim(200.0, "", 5.0, 1e6, "quality factor of the pendulum without the escapement", "estimate: low, settles soon")
+    q_factor: float = dim(
+        200.0, "", 5.0, 1e6, "quality factor of the pendulum without the escapement", "estimate: low, settles soon"
+    )
     torque: float = dim(0.24, "mN·m", 1e-4, 1e4, "of the train on the escape wheel", CHOSEN)
     wheel_inertia: float = dim(400.0, "g·mm²", 1e-2, 1e8, "escape wheel with the train as felt there", CHOSEN)
     gravity: float = dim(9.81, "m/s²", 0.1, 30.0, "acceleration of gravity", "mean on the ground")

@@ -60,7 +60,7 @@ restitution = {values.restitution!r}
 
 [run]
 duration  = "60 s"
-tolerance = 1e-9
+tolerance = 1e-12
 
 [timegrapher]
 lift_angle = "{values.lift!r}°"

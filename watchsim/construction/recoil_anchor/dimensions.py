@@ -12,4 +12,6 @@ from watchsim.construction.graham.dimensions import CHOSEN, Graham
 class RecoilAnchor(Graham):
     """Those of the dead-beat escapement, and the lean of the locking faces."""
 
-    recoil: float = dim(20.0, "°", 1.0, 45.0, "of a locking face, from the arc about the pivot, so that it drives the wheel back", CHOSEN)
+    recoil: float = dim(
+        20.0, "°", 1.0, 45.0, "of a locking face, from the arc about the pivot, so that it drives the wheel back", CHOSEN
+    )
