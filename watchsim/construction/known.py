@@ -11,6 +11,7 @@ _HOMES = {
     "geneva": "watchsim.construction.geneva.design",
     "graham": "watchsim.construction.graham.design",
     "recoil_anchor": "watchsim.construction.recoil_anchor.design",
+    "involute_pair": "watchsim.construction.involute_pair.design",
 }
 
 NAMES = tuple(_HOMES)
