@@ -32,7 +32,7 @@ def wheel_and_speed(angle, speed, crank, distance, play):
 
 
 def departures(run: Trajectory, slots: int, crank: float, play: float) -> tuple[float, float, float]:
-    """Largest differences from the closed form (rad, parts of the driver's speed), and the largest turning while locked (rad)."""
+    """Largest differences from the closed form (rad, driver's speeds), and the largest turning while locked (rad)."""
     distance = crank / math.sin(math.pi / slots)
     entry, pitch = math.pi / 2.0 + math.pi / slots, 2.0 * math.pi / slots
     t = np.linspace(0.0, run.t[-1], 20001)

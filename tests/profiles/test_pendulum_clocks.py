@@ -85,7 +85,7 @@ def test_more_drive_makes_the_recoil_anchor_gain():
 
 
 def bearing(anchor: Anchor, side: int, pendulum: np.ndarray) -> np.ndarray:
-    """Of a tooth's tip on an impulse face, rad: where the straight face, turned with the pendulum, cuts the circle of the tips."""
+    """Of a tooth's tip on an impulse face, rad: where the face, turned with the pendulum, cuts the circle of the tips."""
     cos, sin = np.cos(pendulum), np.sin(pendulum)
     (ax, ay), (bx, by) = ((cos * x - sin * y, sin * x + cos * y + anchor.distance) for x, y in anchor.corners(side))
     dx, dy = bx - ax, by - ay
@@ -96,7 +96,7 @@ def bearing(anchor: Anchor, side: int, pendulum: np.ndarray) -> np.ndarray:
 
 
 def airy(amplitude: float, q_factor: float) -> float:
-    """Rate (s/d) by impulses that follow the faces without delay or friction: -(1 / 2π k A) times the integral of M sin φ.
+    """Rate (s/d) by impulses without delay or friction: -(1 / 2π k A) times the integral of M sin φ.
 
     M is the wheel's torque times its turn by the pendulum's; the drive is such that its work makes up for the damping, π k A² / Q.
     """

@@ -1,7 +1,7 @@
 """What are the outlines of the anchor and its pendulum?
 
-PALLETS are what the teeth meet: from the let-off corner over the impulse face to the locking face. ANCHOR holds them, ROD and BOB
-are the pendulum; these touch nothing. In the pendulum's frame, millimetres.
+PALLETS are what the teeth meet: from the let-off corner over the impulse face to the locking face. ANCHOR holds them, ROD and
+BOB are the pendulum; these touch nothing. In the pendulum's frame, millimetres.
 """
 
 from __future__ import annotations

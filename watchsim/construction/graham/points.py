@@ -62,7 +62,7 @@ class Anchor:
         return locking, self.from_pivot(side * self.half_span - half, -side * self.released)
 
     def face_direction(self, side: int) -> float:
-        """Of the locking face where it begins, away from the locking corner: along the arc about the pivot, leaning by `recoil`.
+        """Of the locking face at its corner, away from it: along the arc about the pivot, leaning by `recoil`.
 
         The entry pallet's runs clockwise about the pivot and leans outwards, the exit pallet's counter-clockwise and inwards.
         """

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from watchsim.construction.design import Conflict
 from watchsim.construction.involute_pair.dimensions import InvolutePair
-from watchsim.construction.involute_pair.gear import floor_left, pair
+from watchsim.construction.involute_pair.gear import departure, floor_left, pair
 from watchsim.construction.involute_pair.meshing import beyond_base, contact_ratio, distance, play
 
 LEAST_TIP, LEAST_FLOOR = 0.1, 0.05  # modules; degrees
@@ -30,5 +30,11 @@ def conflicts(values: InvolutePair) -> Iterator[Conflict]:
             yield Conflict("dedendum", f"is too small: the other gear's tips meet the floor of the {name}")
     if play(values) <= 0.0:
         yield Conflict("spread", "leaves no play between the teeth")
+    elif sum(map(departure, pair(values))) > play(values) * pair(values)[0].base_radius / 4.0:
+        yield Conflict(
+            "arcs", "follows the involute so coarsely that it takes up more than half of the play: more arcs or more spread"
+        )
     if contact_ratio(values) < 1.0:
-        yield Conflict("spread", f"gives a contact ratio of {contact_ratio(values):.3g}: a tooth leaves before the next one meets")
+        yield Conflict(
+            "spread", f"gives a contact ratio of {contact_ratio(values):.3g}: a tooth leaves before the next one meets"
+        )

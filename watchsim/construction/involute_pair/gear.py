@@ -89,13 +89,21 @@ def _tooth(gear: Gear) -> list[Edge]:
 
 def _flank(gear: Gear) -> list[Edge]:
     """The right flank, outwards: arcs evenly spread over the involute's rolling angle."""
+    return [_through(*(_at(gear, t) for t in three)) for three in _rolling_angles(gear)]
+
+
+def _rolling_angles(gear: Gear) -> list[tuple[float, float, float]]:
+    """For each arc the tangents of the pressure angle (rolling angles, rad) at its first, middle and last point."""
     base = gear.base_radius
     first, last = (math.sqrt(max((r / base) ** 2 - 1.0, 0.0)) for r in (gear.flank_start, gear.tip_radius))
-    number = 2 * gear.values.arcs
-    rolled = [first + (last - first) * i / number for i in range(number + 1)]
-    radii = [base * math.sqrt(1.0 + t * t) for t in rolled]
-    points = [polar(r, -math.degrees(gear.half_tooth(r))) for r in radii]
-    return [_through(*points[i : i + 3]) for i in range(0, number, 2)]
+    half = (last - first) / (2 * gear.values.arcs)
+    return [(first + 2 * i * half, first + (2 * i + 1) * half, first + 2 * (i + 1) * half) for i in range(gear.values.arcs)]
+
+
+def _at(gear: Gear, rolled: float) -> Point:
+    """The point of the right flank at that rolling angle."""
+    radius = gear.base_radius * math.sqrt(1.0 + rolled * rolled)
+    return polar(radius, -math.degrees(gear.half_tooth(radius)))
 
 
 def _through(first: Point, middle: Point, last: Point) -> Edge:
@@ -121,3 +129,13 @@ def floor_left(gear: Gear) -> float:
     foot = gear.half_tooth(gear.flank_start)
     return math.degrees(2.0 * math.pi / gear.teeth - 2.0 * foot)
 
+
+def departure(gear: Gear) -> float:
+    """How far the arcs lie from the involute at most, mm: looked at halfway between the points that they go through."""
+    worst = 0.0
+    for arc, (first, middle, last) in zip(_flank(gear), _rolling_angles(gear), strict=True):
+        for t in ((first + middle) / 2.0, (middle + last) / 2.0):
+            x, y = _at(gear, t)
+            if not isinstance(arc, Line):
+                worst = max(worst, abs(math.hypot(x - arc.x, y - arc.y) - arc.radius))
+    return worst

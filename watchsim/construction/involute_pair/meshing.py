@@ -20,15 +20,14 @@ def working_angle(values: InvolutePair) -> float:
 
 
 def play(values: InvolutePair) -> float:
-    """By which the pinion can turn with the wheel held, radians: gaps less teeth on the working pitch circles."""
-    gears, working = pair(values), working_angle(values)
-    taken = sum(2.0 * gear.half_tooth(gear.base_radius / math.cos(working)) * _rolling(gear, working) for gear in gears)
-    pitch = 2.0 * math.pi * gears[0].base_radius / math.cos(working) / gears[0].teeth
-    return (pitch - taken) / (gears[0].base_radius / math.cos(working))
-
-
-def _rolling(gear: Gear, working: float) -> float:
-    return gear.base_radius / math.cos(working)
+    """By which the pinion can turn with the wheel held, radians: the pitch less both teeth, on the circles that roll."""
+    working, taken = working_angle(values), 0.0
+    for gear in pair(values):
+        rolling = gear.base_radius / math.cos(working)
+        taken += 2.0 * gear.half_tooth(rolling) * rolling
+    pinion = pair(values)[0]
+    rolling = pinion.base_radius / math.cos(working)
+    return 2.0 * math.pi / pinion.teeth - taken / rolling
 
 
 def beyond_base(values: InvolutePair, gear: Gear, other: Gear) -> float:
@@ -46,5 +45,3 @@ def contact_ratio(values: InvolutePair) -> float:
     line = (pinion.base_radius + wheel.base_radius) * math.tan(working_angle(values))
     used = sum(math.sqrt(gear.tip_radius**2 - gear.base_radius**2) for gear in (pinion, wheel)) - line
     return used * pinion.teeth / (2.0 * math.pi * pinion.base_radius)
-
-
