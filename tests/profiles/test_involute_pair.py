@@ -7,6 +7,8 @@ import pytest
 
 import watchsim as ws
 from watchsim import designs
+from watchsim.construction.involute_pair.dimensions import InvolutePair
+from watchsim.construction.involute_pair.gear import departure, pair
 from watchsim.simulation.record.trajectory import Trajectory
 
 
@@ -17,12 +19,19 @@ def error(run: Trajectory, ratio: float) -> float:
 
 
 def test_the_profile_turns_evenly():
-    """Wheel 40, pinion 20, drag c on the pinion: its speed is torque / (2 c) = 5 rad/s."""
+    """Wheel 40, pinion 20, drag c on the pinion: its speed is torque / (2 c) = 5 rad/s.
+
+    The normal at a contact is tangent to the pinion's base circle, so what both flanks lack there turns it by that much over the
+    base radius: the error is at most twice what the arcs depart from the involute.
+    """
     run = ws.simulate(ws.load(ws.profiles_dir() / "involute_pair" / "scene.toml"))
     assert run.stop.name == "DURATION"
-    assert error(run, 2.0) < 2e-6
+    pinion, wheel = pair(InvolutePair())
+    off = (departure(pinion) + departure(wheel)) / pinion.base_radius
+    assert 0.2 * off < error(run, 2.0) < 2.0 * off
+    assert off < 5e-5
     turned = run.q[-1] - run.sample(np.array([0.5 * run.t[-1]]))[0][0]
-    assert turned[1] / turned[0] == pytest.approx(-2.0, abs=1e-6)
+    assert turned[1] / turned[0] == pytest.approx(-2.0, abs=1e-5)
     assert turned[1] / (0.5 * run.t[-1]) == pytest.approx(-5.0, rel=1e-5)
     assert run.worst_penetration < 1e-9
 

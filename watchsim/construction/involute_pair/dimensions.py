@@ -23,7 +23,7 @@ class InvolutePair:
     addendum: float = dim(1.0, "", 0.5, 1.2, "height of a tooth above the pitch circle, in modules", "ISO 53: 1")
     dedendum: float = dim(1.25, "", 0.7, 1.5, "depth of a gap below the pitch circle, in modules", "ISO 53: 1.25")
     spread: float = dim(0.05, "", 0.002, 0.3, "by which the centres are further apart than without play, in modules", CHOSEN)
-    arcs: int = dim(4, "", 1, 16, "arcs that each flank is drawn with, through points of the involute", CHOSEN)
+    arcs: int = dim(8, "", 1, 16, "arcs that each flank is drawn with, through points of the involute", CHOSEN)
     torque: float = dim(20.0, "µN·m", 1e-4, 1e6, "driving the wheel", CHOSEN)
     drag: float = dim(2.0, "µN·m·s/rad", 1e-6, 1e6, "load on the pinion, in proportion to its speed", CHOSEN)
     pinion_inertia: float = dim(5.0, "mg·cm²", 1e-4, 1e6, "pinion with what it turns", CHOSEN)
