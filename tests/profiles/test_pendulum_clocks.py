@@ -98,7 +98,7 @@ def bearing(anchor: Anchor, side: int, pendulum: np.ndarray) -> np.ndarray:
 def airy(amplitude: float, q_factor: float) -> float:
     """Rate (s/d) by impulses without delay or friction: -(1 / 2π k A) times the integral of M sin φ.
 
-    M is the wheel's torque times its turn by the pendulum's; the drive is such that its work makes up for the damping, π k A² / Q.
+    M is the wheel's torque times its turn by the pendulum's; the drive is such that its work makes up for damping, π k A² / Q.
     """
     anchor, swing, work, late = Anchor(Graham()), math.radians(amplitude), 0.0, 0.0
     for side in (1, -1):

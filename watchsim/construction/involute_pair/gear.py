@@ -1,7 +1,7 @@
 """What is the outline of a gear with involute teeth?
 
-In the gear's own frame, millimetres; tooth 0 is centred on the x axis. Each flank is a chain of arcs, each through three points of
-the involute; below the base circle it goes on straight towards the axis. Formulas: ISO 21771.
+In the gear's own frame, millimetres; tooth 0 is centred on the x axis. Each flank is a chain of arcs, each through three
+points of the involute; below the base circle it goes on straight towards the axis. Formulas: ISO 21771.
 """
 
 from __future__ import annotations
