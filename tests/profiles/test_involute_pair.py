@@ -21,8 +21,8 @@ def error(run: Trajectory, ratio: float) -> float:
 def test_the_profile_turns_evenly():
     """Wheel 40, pinion 20, drag c on the pinion: its speed is torque / (2 c) = 5 rad/s.
 
-    The normal at a contact is tangent to the pinion's base circle, so what both flanks lack there turns it by that much over the
-    base radius: the error is at most twice what the arcs depart from the involute.
+    The normal at a contact is tangent to the pinion's base circle, so what both flanks lack there turns it by that much over
+    the base radius: the error is at most twice what the arcs depart from the involute.
     """
     run = ws.simulate(ws.load(ws.profiles_dir() / "involute_pair" / "scene.toml"))
     assert run.stop.name == "DURATION"
