@@ -9,6 +9,10 @@ from watchsim.construction.design import Design
 _HOMES = {
     "swiss_lever": "watchsim.construction.swiss_lever.design",
     "coaxial": "watchsim.construction.coaxial.design",
+    "geneva": "watchsim.construction.geneva.design",
+    "graham": "watchsim.construction.graham.design",
+    "recoil_anchor": "watchsim.construction.recoil_anchor.design",
+    "involute_pair": "watchsim.construction.involute_pair.design",
 }
 
 NAMES = tuple(_HOMES)
