@@ -29,10 +29,17 @@ def test_versions_agree() -> None:
 
 
 def test_links_between_the_documents_lead_somewhere() -> None:
-    pages = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+    pages = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
     links = [(page, link) for page in pages for link in re.findall(r"\]\(([^)#:]+)\)", page.read_text(encoding="utf-8"))]
-    assert len(links) > 10
+    assert len({page for page, _ in links}) > 10
     assert [f"{page.name}: {link}" for page, link in links if not (page.parent / link).is_file()] == []
+
+
+def test_the_glossary_names_files_that_exist() -> None:
+    words = (ROOT / "docs/guide/glossary.md").read_text(encoding="utf-8")
+    homes = re.findall(r"`([a-z_]+/[a-z_/]*(?:\.py)?)`", words)
+    assert len(homes) > 20
+    assert [home for home in homes if not (ROOT / "watchsim" / home).exists()] == []
 
 
 def test_the_documents_name_the_commands_that_exist() -> None:

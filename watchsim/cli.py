@@ -36,7 +36,7 @@ def parser() -> argparse.ArgumentParser:
     top = argparse.ArgumentParser(
         prog="watchsim",
         description="From a designer's drawing to the true motion of a watch mechanism.",
-        epilog="watchsim COMMAND --help tells more.",
+        epilog="watchsim COMMAND --help shows its options.",
     )
     top.add_argument("--version", action="version", version=f"watchsim {__version__}")
     commands = top.add_subparsers(dest="command", metavar="COMMAND", required=True)

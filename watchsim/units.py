@@ -238,7 +238,7 @@ def _bare(number: str, dimension: Dimension) -> str:
     ratio = known_unit(first).factor / known_unit(second).factor
     factor = f"{max(ratio, 1.0 / ratio):.4g}"
     pair = f"{_joined(number, first)} and {_joined(number, second)}"
-    return f'a bare number needs a unit here: {pair} differ by a factor {factor}. Write "{_example(dimension, number)}"'
+    return f'a bare number needs a unit here: {pair} differ by a factor of {factor}. Write "{_example(dimension, number)}"'
 
 
 def _unfitting(value: object, unit: Unit, dimension: Dimension) -> str:

@@ -68,7 +68,7 @@ accidents a file, and reads each in a process of its own with 1 GB of memory and
 - SVG: names and letters changed, fragments put in (half comments, `CDATA`, entities, open tags), tags moved to other places.
 
 A file fails that brings a traceback, more time or more memory than that, or a loss in silence: every entity that a plain
-look at the file finds must be drawn or told of, and without any finding no less than before may be there, unless an
+look at the file finds must be drawn or reported, and without any finding no less than before may be there, unless an
 independent reader (for DXF ezdxf, for SVG `tests/naive/svg_length.py`) draws as little.
 
 | Files | Failures | Slowest |

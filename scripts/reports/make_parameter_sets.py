@@ -129,7 +129,7 @@ def page() -> str:
         "|---|---|---|---|---|",
         *(f"| {words} | {time:.3f} | {angle:.2f} | {theirs} |" for words, time, angle, theirs in timeline(run)),
         "",
-        "Shares of the wheel's work. The model's shares are of the mainspring's output; here they are told of the wheel's.",
+        "Shares of the wheel's work. The model's shares are of the mainspring's output; here they are given of the wheel's.",
         "",
         "| | here, % | model, % |",
         "|---|---|---|",

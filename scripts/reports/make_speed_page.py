@@ -82,7 +82,7 @@ stepping (`watchsim run --profile`): how far from the floor. No work is in two l
 - calls of the loop come from Python, which saves and tallies between them;
 - the rest is what goes on in between, and what the same work takes more in the midst of other work.
 
-Cells are learnt once for a geometry: the stepping told here knows them all, the last line is of a run that knows none. A test
+Cells are learnt once for a geometry: the stepping shown here knows them all, the last line is of a run that knows none. A test
 compares the shares with those of clocks within the loop (`tests/bench/test_where_time_goes.py`).
 
 {profiles}

@@ -81,7 +81,7 @@ def test_expectations_are_judged():
     kept, missed, unknown = summary(run)["expect"]
     assert kept["ok"] and not missed["ok"] and not unknown["ok"] and 'Did you mean "rate"?' in unknown["message"]
     assert expected_text(kept) == "amplitude = 270° ± 1°, got 270°"
-    assert expected_text(unknown).startswith('rte = 0 ± 1, but "rte" is no number of the results.')
+    assert expected_text(unknown).startswith('rte = 0 ± 1, but "rte" is not a number in the results.')
 
 
 def test_text_of_a_watch():
@@ -107,7 +107,8 @@ def test_text_of_a_watch_that_stopped():
     stopped = next(line for line in text.splitlines() if line.startswith("  verdict"))
     # The run ends at a turning point, which is not to be taken for a held balance.
     assert (
-        stopped.startswith("  verdict      t = 1.19") and "the watch stands: the escape wheel stands since t = 1.19" in stopped
+        stopped.startswith("  verdict      t = 1.19")
+        and "the watch stands: the escape wheel has stood still since t = 1.19" in stopped
     )
     assert "balance swinging, now at −270°; last amplitude 270°; in contact: wheel.TEETH corner 3" in stopped
     assert "missed beats 10 in 19 half swings: half pitches the wheel fell short or ran ahead" in text

@@ -163,7 +163,7 @@ def test_fixed_steps_have_no_energies(swiss):
 def test_the_printed_table(swiss):
     text = timeline_text(swiss)
     assert "entry stone" in text and "exit stone" in text and "impulse on tooth" in text
-    assert text.count("the books close to") == 2 and max(len(line) for line in text.splitlines()) < 170
+    assert text.count("the account closes to") == 2 and max(len(line) for line in text.splitlines()) < 170
 
 
 @pytest.mark.parametrize("width", [170.0, 85.0])

@@ -81,7 +81,7 @@ def test_a_watch_that_stops():
     # The lock of beat 11 (from 0) is the last that moves the wheel.
     lock = 11.5 * 0.125 + math.asin(22.5 / 270.0) / (8.0 * math.pi)
     assert stands.since == pytest.approx(lock, abs=3e-3)
-    assert stands.message.startswith("the escape wheel stands since t = 1.4")
+    assert stands.message.startswith("the escape wheel has stood still since t = 1.4")
     assert (
         "last amplitude 270°" in stands.message and "in contact: wheel.TEETH corner 3 / lever.STONES line 1" in stands.message
     )

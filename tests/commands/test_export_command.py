@@ -24,7 +24,7 @@ def test_everything_of_a_scene(tmp_path: Path, capsys: pytest.CaptureFixture[str
     expected = {f"{body}.{kind}" for body in BODIES for kind in ("dxf", "svg", "glb", "stl")} | {"scene.glb", "export.json"}
     assert {path.name for path in folder.iterdir()} == expected
     assert [Path(line).name for line in told.out.split()] == json.loads((folder / "export.json").read_text("utf-8"))["files"]
-    assert "0.2 mm taken: wheel.TEETH" in told.err
+    assert "0.2 mm is assumed: wheel.TEETH" in told.err
     scene = ws.load(f"{SWISS}/scene.toml")
     for name in BODIES:
         body, again = scene.body(name), ws.read(folder / f"{name}.dxf")

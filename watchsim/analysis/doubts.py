@@ -24,5 +24,5 @@ def doubts(run: Trajectory) -> Iterator[str]:
     if run.method == MOREAU and run.step is not None and run.worst_penetration > deep:
         yield (
             f"the step of {1e6 * run.step:.4g} µs is too coarse: bodies overlapped by {1e6 * run.worst_penetration:.2g} µm. "
-            f'Take a shorter one, such as --step "{1e6 * run.step / FINER:.2g} µs", until the numbers stay'
+            f'Take a shorter one, such as --step "{1e6 * run.step / FINER:.2g} µs", until the numbers no longer change'
         )

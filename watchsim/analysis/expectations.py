@@ -28,7 +28,7 @@ ENDINGS = {
     **{"_deg": "°", "_rad": "rad", "_vph": "vph", "_hz": "Hz", "_ms": "ms", "_s": "s", "_m": "m", "_J": "J"},
 }
 ERROR = "_error"
-KNOWN = f"Known are {', '.join(WATCH_KEYS)} and the names in summary.json."
+KNOWN = f"Known names: {', '.join(WATCH_KEYS)} and the names in summary.json."
 MOST_ADVISED = 20  # wrong keys for which a similar one is looked for: each takes a hundredth of a second
 
 
@@ -89,7 +89,7 @@ def judged(expectations: Sequence[Expectation], numbers: Mapping[str, Any]) -> l
 def _mistake(expectation: Expectation, known: Mapping[str, float | None], advised: bool = True) -> str:
     name = _name(expectation)
     if name not in known and not _within_null(name, known):
-        return f'"{expectation.key}" is no number of the results. {_advice(expectation.key, known) if advised else KNOWN}'
+        return f'"{expectation.key}" is not a number in the results. {_advice(expectation.key, known) if advised else KNOWN}'
     source = unit_of(name)
     if expectation.unit and known_unit(source).powers != known_unit(expectation.unit).powers:
         return f'"{expectation.key}" is in {source or "plain numbers"}, which cannot be compared with {expectation.unit}'

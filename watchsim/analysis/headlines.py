@@ -34,7 +34,9 @@ RULES = (
     ("jams", "jams, sliding contacts that no finite force could hold apart, stopped by impulses (Painlevé): {}"),
 )
 NO_PENETRATION = 1e-12  # m; less is not worth a digit, neither of depths nor of errors
-SCATTER = "scatter: how much the beats of that time scatter and drift; the error of the computation is another (--error-bars)"
+SCATTER = (
+    "scatter: how much the beats of that time scatter and drift; the error of the computation is another matter (--error-bars)"
+)
 PLAIN = 1e-6  # errors below are written with an exponent
 
 
@@ -146,7 +148,7 @@ def _contacts(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
 
 def _looked(overlap: Mapping[str, Any]) -> str:
     """What looking at the outlines themselves has found."""
-    looks = f"{overlap['looks']} {'look' if overlap['looks'] == 1 else 'looks'} at the outlines themselves"
+    looks = f"{overlap['looks']} {'check' if overlap['looks'] == 1 else 'checks'} of the outlines themselves"
     if overlap["between"] is None:
         return f"{looks} found no overlap of {metric(overlap['resolution_m'], 'm', 2)} or more"
     first, second = overlap["between"]
@@ -215,7 +217,7 @@ def _compared(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     if bars is None:
         return
     if not bars["complete"]:
-        yield "error bars", "none: the more exact run did not come to its end"
+        yield "error bars", "none: the more exact run did not finish"
         return
     finer = f"steps of {metric(bars['step_s'], 's', 4)}" if bars["step_s"] else f"tolerance {bars['tolerance']:.0e}"
     yield "error bars", f"of the computation, from a second run with {finer}:"

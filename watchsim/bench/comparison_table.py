@@ -1,4 +1,4 @@
-"""How is the comparison told in words?"""
+"""How is the comparison put into words?"""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ class _Body(NamedTuple):
 
 
 class CellMotion:
-    """The cell coordinates of one pair of bodies, read from its record (records.py), and the frame they are told in."""
+    """The cell coordinates of one pair of bodies, read from its record (records.py), and the frame they are given in."""
 
     def __init__(self, bodies: Records, pair: Any) -> None:
         self.coordinates = [int(pair[f"c{i}"]) for i in range(pair.axes)]

@@ -1,8 +1,8 @@
 """Which pairs of primitives that come near each other could touch inside both of them?
 
 A contact lies where the normal falls into the fans of both primitives and onto their lengths. The many short pieces of a fine
-outline that lie near a corner are told apart by that: the centre of the circle is opposite few of them. Errs only on the side
-of too many.
+outline that lie near a corner are distinguished by that: the centre of the circle is opposite few of them. Errs only on the
+side of too many.
 """
 
 from __future__ import annotations

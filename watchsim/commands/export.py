@@ -78,7 +78,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _motion(args: argparse.Namespace, formats: Sequence[str]) -> list[Track]:
-    """How the bodies move, where a results folder was given; InputError where a window or speed was asked of anything else."""
+    """How the bodies move, where a results folder was given; InputError where anything else has a window or speed."""
     from watchsim.commands.common.inputs import read_run
     from watchsim.commands.common.run_pictures import filmed
     from watchsim.commands.movie import parse_speed
@@ -145,7 +145,7 @@ def _contents(
     deviation: float,
     motion: Sequence[Track] = (),
 ) -> tuple[dict[str, bytes], dict[str, Any]]:
-    """The files by name, and what the manifest tells about them."""
+    """The files by name, and what the manifest says about them."""
     from watchsim.geometry.solids.meshes import glb, stl
     from watchsim.render.palette import looks
     from watchsim.scene.layer_heights import slabs
@@ -233,7 +233,7 @@ def _tell(manifest: dict[str, Any], folder: Path, as_json: bool) -> None:
     ]
     bare = [name for name, entries in manifest["solids"].items() if not entries]
     if assumed:
-        say(f"No thickness in the scene, {manifest['default_thickness_mm']:g} mm taken: {', '.join(assumed)}")
+        say(f"No thickness in the scene; {manifest['default_thickness_mm']:g} mm is assumed: {', '.join(assumed)}")
     if bare:
         say(f"No closed outline, so no solid: {', '.join(bare)}")
     if as_json:

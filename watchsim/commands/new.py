@@ -21,7 +21,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.usage = "watchsim new DESIGN [--DIMENSION VALUE ...] [-o DIR] [--list] [--json] [--force]"
     parser.epilog = (
         'For example: watchsim new swiss_lever --lock "2°" --draw "13.5°" --teeth 20 -o my_lever. '
-        "watchsim new --list tells the designs, watchsim new DESIGN --list their dimensions."
+        "watchsim new --list lists the designs, watchsim new DESIGN --list their dimensions."
     )
     _common(parser)
     parser.add_argument("design", metavar="DESIGN", nargs="?", help="the name of a design, such as swiss_lever")
@@ -46,7 +46,7 @@ def run(args: argparse.Namespace) -> int:
     asked = {"output": None, "list": False, "json": False, "force": False, **vars(args)}
     if asked["design"] is None:
         if not asked["list"]:
-            raise InputError("watchsim new: say which design. watchsim new --list tells what there is.")
+            raise InputError("watchsim new: name a design; watchsim new --list lists them.")
         _list_designs(asked["json"])
         return FINE
     design = designed(asked["design"])
@@ -80,8 +80,8 @@ def _unknown(design: Design, word: str) -> str:
         first = design.dimensions[0]
         return f'"{word}" belongs to no option. Write --DIMENSION VALUE, such as {first.option} {first.default}.'
     hint = nearest(word.partition("=")[0], [one.option for one in design.dimensions])
-    known = f"watchsim new {design.name} --list tells its dimensions."
-    return f"{word} is no dimension of this design. {hint if hint.startswith('Did') else known}"
+    known = f"watchsim new {design.name} --list lists its dimensions."
+    return f"{word} is not a dimension of this design. {hint if hint.startswith('Did') else known}"
 
 
 def _list_designs(as_json: bool) -> None:
@@ -93,7 +93,7 @@ def _list_designs(as_json: bool) -> None:
         return
     for one in designs:
         print(f"{one.name:16s} {one.title}, {len(one.dimensions)} dimensions")
-    say("watchsim new DESIGN --list tells the dimensions of one.")
+    say("watchsim new DESIGN --list lists the dimensions of one.")
 
 
 def _list_dimensions(design: Design, as_json: bool) -> None:

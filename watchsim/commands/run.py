@@ -160,7 +160,7 @@ def status(run: Trajectory, summary: dict[str, Any]) -> int:
     from watchsim.simulation.stops import Stop
 
     if run.stop.is_wrong:
-        say(f"The result is wrong: {run.stop_message}. It is kept, to be looked at.")
+        say(f"The result is wrong: {run.stop_message}. It is kept for inspection.")
         return GAVE_UP
     if run.stop.gave_up:
         say(f"The solver gave up: {run.stop_message}. What was simulated up to there is kept.")
@@ -189,11 +189,12 @@ def _unlike(scene: Scene) -> str:
     if not turning or turning[-1][0] < FAR * turning[0][0]:
         return ""
     (least, light), (most, heavy) = turning[0], turning[-1]
-    return f"The inertia of {light}, {least:.3g} kg·m², is {most / least:.1g} times smaller than that of {heavy}: is it meant?"
+    smaller = f"is {most / least:.1g} times smaller than that of {heavy}"
+    return f"The inertia of {light}, {least:.3g} kg·m², {smaller}: is this intended?"
 
 
 def _check_windows(scene: Scene, duration: float, asked: bool) -> None:
-    """A window that the run never enters: refused where it was asked for, else said."""
+    """A window that the run never enters: refused where it was requested, else reported."""
     late = [window for window in scene.record.windows if window[0] >= duration]
     for start, end in late:
         words = f"the run ends at {duration:g} s, so that nothing can be recorded from {start:g} s to {end:g} s"

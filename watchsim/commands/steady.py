@@ -53,11 +53,9 @@ def text(title: str, cycle: Cycle) -> str:
     for multiplier in cycle.multipliers:
         each = "each oscillation" if cycle.oscillations == 1 else f"{cycle.oscillations} oscillations"
         stable = "stable" if abs(multiplier) < 1.0 else "unstable"
-        lines.append(("multiplier", f"{multiplier:.6f}: of a small disturbance so much is left after {each}; {stable}"))
+        lines.append(("multiplier", f"{multiplier:.6f} of a small disturbance is left after {each}; {stable}"))
     if cycle.tooth_spread_deg and cycle.oscillations > 1:
-        lines.append(
-            ("teeth", f"they differ: the amplitude goes up and down by {cycle.tooth_spread_deg:.2g}° in a turn of the wheel")
-        )
+        lines.append(("teeth", f"they differ: the amplitude varies by {cycle.tooth_spread_deg:.2g}° in a turn of the wheel"))
     if cycle.verdict:
         lines.append(("verdict", cycle.verdict))
     if cycle.message:

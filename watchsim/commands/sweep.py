@@ -72,7 +72,7 @@ def run(args: argparse.Namespace) -> int:
     if args.tol is not None and not 1e-13 <= args.tol <= 1e-2:
         raise InputError(f"--tol {args.tol:g}: must lie between 1e-13 and 1e-2.")
     if args.workers is not None and args.workers < 1:
-        raise InputError(f"--workers {args.workers}: at least one process must work.")
+        raise InputError(f"--workers {args.workers}: at least one process is needed.")
     if args.sensitivity and args.duration:
         raise InputError("--sensitivity is taken on limit cycles; leave --duration out.")
     scene = load_scene(args.scene, args.set)

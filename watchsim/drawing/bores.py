@@ -41,7 +41,7 @@ class Lie:
 
     @property
     def clear(self) -> bool:
-        """Can be told whether it lies in material?"""
+        """Can it be decided whether it lies in material?"""
         return self.crosses is None and self.around is None and self.meets is None
 
     @property

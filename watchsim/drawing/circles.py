@@ -67,8 +67,10 @@ def circle_lines(loops: Iterable[Loop]) -> Iterator[str]:
         kept = centres[: max(0, SHOWN - shown)]
         shown += len(centres)
         places = ", ".join(f"({_mm(x)}, {_mm(y)})" for x, y in kept)
-        more = f"{' and ' if kept else ''}{len(centres) - len(kept)} more" if len(centres) > len(kept) else ""
-        yield f"{word if len(centres) == 1 else word + 's'} of radius {radius} mm at {places}{more}{' mm' if kept else ''}"
+        rest = len(centres) - len(kept)
+        more = "" if not rest else f" and {rest} more" if kept else f"{rest}"
+        where = f" at {places}{' mm' if kept else ''}{more}" if kept else f": {more}"
+        yield f"{word if len(centres) == 1 else word + 's'} of radius {radius} mm{where}"
 
 
 def _mm(value: float) -> str:

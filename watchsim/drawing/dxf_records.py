@@ -77,7 +77,7 @@ class Record:
 class Tags:
     """All whole records of a file.
 
-    `fault` tells what ended the reading early, empty for a whole file; `trash` whether something follows EOF, and `beyond` the
+    `fault` says what ended the reading early, empty for a whole file; `trash` whether something follows EOF, and `beyond` the
     types of the records among it.
     """
 
@@ -94,7 +94,7 @@ def as_number(value: object, code: int) -> float:
     except (TypeError, ValueError):
         raise DxfError(f'group {code} is "{str(value).strip()[:40]}" where a number belongs') from None
     if not -LARGEST <= number <= LARGEST:
-        raise DxfError(f"group {code} is {number:g}, no sensible number")
+        raise DxfError(f"group {code} is {number:g}, not a sensible number")
     return number
 
 
@@ -105,7 +105,7 @@ def decoded(text: str) -> str:
 
 
 def read_tags(data: bytes) -> Tags:
-    """Splits the bytes of a DXF file into records; DxfError if this is no DXF file at all."""
+    """Splits the bytes of a DXF file into records; DxfError if this is not a DXF file at all."""
     if not data.strip():
         raise DxfError("the file is empty")
     if data.startswith(BINARY_MARK):
@@ -137,7 +137,7 @@ def _text_pairs(text: str) -> tuple[list[int], list[object], str, str]:
     except ValueError:
         at = 2 * len(codes)
         if not codes:
-            told = f'this is no DXF file: it begins with "{_printable(lines[0])}"'
+            told = f'this is not a DXF file: it begins with "{_printable(lines[0])}"'
             raise DxfError(f"{told}. Save the drawing as DXF in CAD; another ending does not make it one") from None
         return codes, values, f'line {at + 1} reads "{_printable(lines[at])}" where a group code belongs', "line"
     return codes, values, "", "line"
@@ -171,7 +171,7 @@ def _grouped(codes: list[int], values: list[object], fault: str, word: str) -> T
     step = 2 if word == "line" else 1
     starts = [i for i, code in enumerate(codes) if code == 0]
     if not starts:
-        raise DxfError(f"this is no DXF file: {fault or 'it holds no record'}")
+        raise DxfError(f"this is not a DXF file: {fault or 'it holds no record'}")
     records: list[Record] = []
     for start, stop in zip(starts, [*starts[1:], len(codes)], strict=True):
         kind = str(values[start]).strip().upper()

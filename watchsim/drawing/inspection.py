@@ -182,7 +182,7 @@ def _places(points: Sequence[Point]) -> str:
 
 
 def _place(finding: Finding) -> str:
-    """Coordinates, where the finding has some and its message does not tell them."""
+    """Coordinates, where the finding has some and its message does not give them."""
     if finding.x_mm is None or finding.y_mm is None:
         return ""
     return "" if TOLD.search(finding.message) else f", at {shown((1e-3 * finding.x_mm, 1e-3 * finding.y_mm))} mm"

@@ -37,7 +37,7 @@ INSUNITS: dict[int, tuple[str, float]] = {
 
 
 def named_length(name: str) -> tuple[str, float]:
-    """The unit of that name as (usual spelling, metres); ValueError where it is no unit of length."""
+    """The unit of that name as (usual spelling, metres); ValueError where it is not a unit of length."""
     for known, metres in INSUNITS.values():
         if name.strip() == known:
             return known, metres

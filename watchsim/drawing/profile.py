@@ -79,5 +79,5 @@ def _scale(path: Path2D, units: str | None) -> float:
         raise ValueError('the path does not say its units: give them, such as units = "mm"')
     unit = known_unit({"meters": "m", "inches": "inch", "millimeters": "mm"}.get(name, name))
     if unit.powers not in LENGTH.powers or not math.isfinite(unit.factor):
-        raise ValueError(f'"{name}" is no unit of length')
+        raise ValueError(f'"{name}" is not a unit of length')
     return unit.factor

@@ -31,7 +31,7 @@ SMALLEST = 20.0  # times the snap: the smallest drawing that is believed
 def read(path: Path | str, units: str | None = None, snap: float = SNAP, fit: float = FIT) -> Drawing:
     """Reads a drawing. `units` overrules what the file says; `snap` and `fit` are in metres.
 
-    Raises ValueError where `units` is no unit of length, or `snap` or `fit` is not positive.
+    Raises ValueError where `units` is not a unit of length, or `snap` or `fit` is not positive.
     """
     path = Path(path)
     if not snap > 0.0 or not fit > 0.0:
@@ -137,9 +137,9 @@ def refused(message: str, fix: str) -> Content:
 
 def oversized(size: int) -> Content:
     message = (
-        f"the file has {size / 1e6:.0f} MB: more than {LARGEST_FILE / 1e6:.0f} MB are no drawing of a part; it was not read"
+        f"the file has {size / 1e6:.0f} MB, more than the {LARGEST_FILE / 1e6:.0f} MB allowed for a drawing; it was not read"
     )
-    fix = "Save what is wanted by itself: without pictures, hatches and meshes."
+    fix = "Save only the part: without pictures, hatches and meshes."
     return Content(findings=(Finding("too-large", "error", message, fix),))
 
 

@@ -1,4 +1,4 @@
-"""How is the geometry of function told: `statics` of `check --json`, and lines for people?"""
+"""How is the geometry of function reported: `statics` of `check --json`, and lines for people?"""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def _of_stone(function: Function, k: int) -> dict[str, Any] | None:
 
 
 def _beat(function: Function, k: int) -> int:
-    """Row of the pairs told by upper and lower bank that belongs to the entry (0) or exit (1) stone."""
+    """Row of the pairs numbered by upper and lower bank that belongs to the entry (0) or exit (1) stone."""
     return 0 if function.sides[k] > 0.0 else 1
 
 

@@ -9,7 +9,7 @@ FEW = 300  # up to that many, all pairs are compared; the library takes longer t
 
 
 class Boxes:
-    """Boxes (m, 4), asked again and again."""
+    """Boxes (m, 4), queried again and again."""
 
     def __init__(self, boxes: NDArray[np.float64]) -> None:
         self.boxes = boxes

@@ -23,7 +23,7 @@ DEEPEST = 30  # levels: cells of a billionth of the drawing
 GROWTH = 64  # entries per edge; edges that run along each other could be cut into cells for ever
 MOST_ENTRIES = 3_000_000  # of edges in cells, and
 MOST_PAIRS = 4_000_000  # of which each may be found in several cells: more would take too much memory
-MOST_CROWDS = 8  # places told
+MOST_CROWDS = 8  # places reported
 CROWD = 32  # partners looked at for each edge in a cell that could not be refined
 AT_ONCE = 1 << 17  # entries refined in one go
 

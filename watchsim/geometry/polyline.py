@@ -1,7 +1,7 @@
 """Which points draw an outline?
 
 Pictures, movies and overlap checks need plain vertices; lines give their ends, arcs are sampled so finely that no
-chord strays further from its arc than asked.
+chord strays further from its arc than requested.
 """
 
 from __future__ import annotations

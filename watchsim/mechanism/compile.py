@@ -37,10 +37,10 @@ class Compiled:
     q: np.ndarray
     u: np.ndarray
     fastest: float  # 1/s, largest natural frequency of a spring, 0 without springs
-    against: tuple[tuple[int, int, float], ...] = ()  # coordinates told relative to a carrier: (own, carrier's or -1, angle)
+    against: tuple[tuple[int, int, float], ...] = ()  # coordinates given relative to a carrier: (own, carrier's or -1, angle)
 
     def relative(self, q: np.ndarray, rates: bool = False) -> np.ndarray:
-        """Rows of coordinates, or of their `rates`, as the scene tells them: carried bodies relative to their carriers."""
+        """Rows of coordinates, or of their `rates`, as the scene gives them: carried bodies relative to their carriers."""
         out = np.array(q) if self.against else q
         for own, on, angle in self.against:
             out[:, own] -= (q[:, on] if on >= 0 else 0.0) + (0.0 if rates else angle)
@@ -72,7 +72,7 @@ def compile_scene(scene: Scene, prefilter: bool = True) -> Compiled:
 
 
 def _against(hung: tuple[Ride, ...], bodies: Records) -> tuple[tuple[int, int, float], ...]:
-    """The angles that the scene tells relative to a carrier."""
+    """The angles that the scene gives relative to a carrier."""
     return tuple(
         (int(bodies[i].first), angle_of(bodies[ride.turns_with]) if ride.turns_with >= 0 else -1, ride.angle)
         for i, ride in enumerate(hung)

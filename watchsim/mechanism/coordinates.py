@@ -68,7 +68,7 @@ class _Targets:
         return self._joint[name] if name in self._joint else self.rows[self.number(name)]
 
     def offset(self, name: str) -> float:
-        """From an angle as the scene tells it to the coordinate, or to the difference of the two."""
+        """From an angle as the scene gives it to the coordinate, or to the difference of the two."""
         return self.rides[name].angle if self.scene.body(name).motion == "pivot" else 0.0
 
 

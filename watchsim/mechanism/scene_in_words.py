@@ -1,4 +1,4 @@
-"""How are the places, springs, drives, damping and contacts of a scene told to people, in the units they choose?"""
+"""How are the places, springs, drives, damping and contacts of a scene described to people, in the units they choose?"""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from watchsim.scene.scene import Scene
 from watchsim.units import metric, show, to
 
 NANOMETRES = 6  # decimals of a millimetre: rounding of a position does not look like a place
-SMALL = 0.1e-3  # m: less is not told in millimetres
+SMALL = 0.1e-3  # m: less is not given in millimetres
 
 
 def force_lines(scene: Scene) -> Iterator[str]:

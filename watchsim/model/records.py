@@ -157,7 +157,7 @@ BODY_PAIR = np.dtype(
         ("fold0", "i8"),  # by 1/fold of a turn the body's outline comes back onto itself
         ("fold1", "i8"),
         ("fold2", "i8"),
-        ("frame", "i8"),  # the body that carries both, in whose frame the cells are told, -1: the movement
+        ("frame", "i8"),  # the body that carries both, in whose frame the cells are given, -1: the movement
     ]
 )
 

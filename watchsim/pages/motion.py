@@ -137,7 +137,7 @@ def _acceleration(s: Array, h: float, left: tuple[Array, Array], right: tuple[Ar
 
 
 def _without_repeats(kept: NDArray[np.int64], q: Array, u: Array, a: Array) -> NDArray[np.int64]:
-    """Without the rows of events at which this body did not notice anything, if those around them tell the same rest."""
+    """Without the rows of events at which this body did not notice anything, if those around them show the same rest."""
     if len(kept) < 3:
         return kept
     values = np.hstack((q[kept], u[kept], a[kept]))

@@ -77,7 +77,7 @@ def _path(loop: Loop) -> Iterator[str]:
             yield f"L{_place(edge.end)}"
             continue
         radius, turn = _number(edge.radius), int(edge.sweep > 0.0)
-        # An arc is told by its ends: of a circle they are the same, and near half a turn they say little about the centre.
+        # An arc is given by its ends: of a circle they are the same, and near half a turn they say little about the centre.
         pieces = math.ceil(abs(edge.sweep) / (0.75 * math.pi))
         for k in range(1, pieces + 1):
             yield f"A{radius} {radius} 0 0 {turn} {_place(edge.point(k / pieces))}"

@@ -8,7 +8,7 @@ from typing import Any
 from watchsim.scene.scene import Scene
 
 LONG = 6  # entries of a list that are written out
-LEFT_OUT = ("lock", "expect")  # told elsewhere
+LEFT_OUT = ("lock", "expect")  # shown elsewhere
 ROWS = 400
 
 

@@ -39,7 +39,7 @@ def timekeeping(run: Trajectory, numbers: Mapping[str, Any]) -> Iterator[Markup]
 
 
 def _computed(numbers: Mapping[str, Any]) -> str:
-    """The error of the computation beside the scatter, where a second run told it."""
+    """The error of the computation beside the scatter, where a second run gave it."""
     told = numbers.get("error_bars")
     if not told or not told.get("complete"):
         return ""

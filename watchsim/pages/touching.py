@@ -25,7 +25,7 @@ CROWD = 16.0  # contacts closed at a time, on average: forces of a heap take min
 def touching(run: Trajectory, window: Window) -> list[dict[str, Any]]:
     """For every contact that is closed some time in the window: its two sides, from when to when, and forces there.
 
-    Forces are left out of a heap, and where the run does not tell them (steps of fixed length, events not kept).
+    Forces are left out of a heap, and where the run does not hold them (steps of fixed length, events not kept).
     """
     try:
         marks = ContactMarks(run)

@@ -69,7 +69,7 @@ def _run(command: list[str], frames: Iterable[bytes | memoryview]) -> None:
             for frame in frames:
                 _feed(process.stdin, memoryview(frame).cast("B"))
         except BrokenPipeError:
-            broken = True  # the encoder died; what it said is told below
+            broken = True  # the encoder died; what it said is reported below
         except BaseException:
             process.kill()
             raise
@@ -96,4 +96,4 @@ def _refusals(words: str) -> list[str]:
 
 
 def _reason(words: str) -> str:
-    return (_refusals(words) or _lines(words) or ["the encoder stopped without a word"])[0]
+    return (_refusals(words) or _lines(words) or ["the encoder stopped without a message"])[0]

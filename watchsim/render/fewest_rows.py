@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 def kept_rows(count: int, fits: Callable[[int, int], bool], ends: Iterable[int] = ()) -> NDArray[np.int64]:
     """Rows of 0 … count - 1 to keep, in order: the first, the last, those in `ends`, and as many between as it takes.
 
-    `fits(i, j)` says whether all rows between i and j are told well enough by these two.
+    `fits(i, j)` says whether all rows between i and j are represented well enough by these two.
     """
     forced = sorted({0, count - 1, *ends}) if count else []
     kept = set(forced)

@@ -1,4 +1,4 @@
-"""At which instants must a player in three dimensions be told where bodies are, if it draws straight lines between them?"""
+"""At which instants must a player in three dimensions know the places of bodies, if it draws straight lines between them?"""
 
 from __future__ import annotations
 

@@ -98,7 +98,7 @@ def whole(path: Path, what: str) -> Iterator[None]:
         if isinstance(error, OSError) and error.errno is not None:  # not the content: no such file, no permission
             raise
         words = str(error) or type(error).__name__
-        raise ValueError(f"{path} is damaged or no {what} of watchsim ({words[:200]})") from error
+        raise ValueError(f"{path} is damaged or is not a {what} of watchsim ({words[:200]})") from error
 
 
 def _check(run: Trajectory) -> None:
@@ -109,7 +109,7 @@ def _check(run: Trajectory) -> None:
     if any(
         array.dtype != np.float64 or not np.isfinite(array).all() for array in (run.t, run.q, run.u, run.a, run.events["t"])
     ):
-        raise ValueError("it holds what is no number")
+        raise ValueError("it holds something that is not a number")
     if any(array.dtype != np.float64 or array.shape not in ((0,), (width,)) for array in (run.end_q, run.end_u)):
         raise ValueError("its end is no state")
     if np.any(np.diff(run.t) < 0.0) or np.any(run.events["contact"] >= len(run.pairs)):
@@ -117,6 +117,6 @@ def _check(run: Trajectory) -> None:
     if np.any(run.events["body"] >= len(run.scene.bodies)) or not set(run.events["kind"].tolist()) <= set(EventKind):
         raise ValueError("its events are of unknown bodies or kinds")
     if not all(isinstance(getattr(run, name), (int, float)) for name in FLOATS) or not isinstance(run.stop_message, str):
-        raise ValueError("its header holds what is no number")
+        raise ValueError("its header holds something that is not a number")
     if not all(isinstance(mapping, dict) for mapping in (run.overlap, run.energy, run.counts, run.sums)):
         raise ValueError("its header holds no sums")

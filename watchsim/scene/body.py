@@ -21,7 +21,7 @@ class Body:
     `velocity` is the start velocity in the same order (pivot: rad/s; slide: m/s; free: m/s, m/s, rad/s).
     `centre_of_mass` is in the body frame; it matters only where gravity acts on a pivoted body. `solids` say where mass and
     inertia come from, as far as they were not given as numbers.
-    `on` names the body that carries it; position, angle and velocity are then told in that one's frame, relative to it.
+    `on` names the body that carries it; position, angle and velocity are then given in that one's frame, relative to it.
     """
 
     name: str

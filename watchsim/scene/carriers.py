@@ -1,6 +1,6 @@
 """Which body carries which, and where do their frames and angles hang?
 
-A body's place, angle and velocity are told relative to its carrier. The model knows one level of carriers: the origin of a
+A body's place, angle and velocity are given relative to its carrier. The model knows one level of carriers: the origin of a
 carried body is a point fixed in one moving body, its host. What is exact in that form and keeps the mass matrix constant and
 diagonal (docs/theory/method.md 2.1) is resolved here, the rest is refused by name.
 """
@@ -27,7 +27,7 @@ class Ride:
     part_of     the body of the model that its outlines belong to: itself, or what it is rigidly joined to
     host        the moving body in which its frame's origin is a fixed point
     place       that point in the host's frame (m)
-    turns_with  the moving body against whose angle its own is told
+    turns_with  the moving body against whose angle its own is given
     angle       added to that (rad): its own angle is this one plus q of `turns_with` plus the angle in the scene
     start, spin the angle and the turning rate that it has at the start in the movement (rad, rad/s)
     """
@@ -224,7 +224,7 @@ def start_poses(scene: Scene) -> dict[str, tuple[float, float, float]]:
 
 
 def at_start(scene: Scene) -> Scene:
-    """The scene with every body's position and angle told in the movement and nothing carried, to draw or measure the start."""
+    """The scene with all positions and angles given in the movement and nothing carried, to draw or measure the start."""
     if all(body.on is None for body in scene.bodies):
         return scene
     poses = start_poses(scene)

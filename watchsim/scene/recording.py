@@ -10,7 +10,7 @@ Window = tuple[float, float]
 
 ALL, EVENTS, STATISTICS = "all", "events", "statistics"
 KEPT = (ALL, EVENTS, STATISTICS)
-EVERY = "every"  # "every 10": each tenth row
+EVERY = "every"  # "every 10": every tenth row
 WHOLE_RUN: tuple[Window, ...] = ((-math.inf, math.inf),)
 
 
@@ -22,7 +22,7 @@ class Recording:
     keep     "all": rows within the windows, and all events;
              "events": the same, but without windows only the rows of the last seconds;
              "statistics": rows and events within the windows and in the last seconds, so that memory does not grow with time
-    stride   of the rows within the windows each so many-th; between rows that are left out interpolation is not exact
+    stride   every n-th row within the windows is kept; interpolation across rows that are left out is not exact
     """
 
     windows: tuple[Window, ...] = ()
@@ -33,7 +33,7 @@ class Recording:
         if self.keep not in KEPT:
             raise ValueError(f'"{self.keep}" cannot be kept; there are {", ".join(KEPT)}')
         if self.stride < 1:
-            raise ValueError(f"each row or each {self.stride}-th can be kept, not each {self.stride}-th: at least 1")
+            raise ValueError(f"every row or every n-th row can be kept; n must be at least 1, not {self.stride}")
         for start, end in self.windows:
             if not start < end:
                 raise ValueError(f"a window runs from an earlier to a later time, not from {start:g} s to {end:g} s")

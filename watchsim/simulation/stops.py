@@ -47,7 +47,7 @@ _SENTENCES = {
     Stop.CELL_UNKNOWN: "a cell of the configuration space was entered for the first time",
     Stop.BUFFER_FULL: "the record buffer is full",
     Stop.LAST_STEP: "the next step might reach the end",
-    Stop.DURATION: "the asked duration was simulated",
+    Stop.DURATION: "the requested duration was simulated",
     Stop.INTERRUPTED: "interrupted by the user; everything up to here is kept",
     Stop.TOO_MANY_EVENTS: "too many events at one instant: time does not advance",
     Stop.LCP_FAILED: (

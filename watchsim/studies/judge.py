@@ -58,7 +58,7 @@ def run_from(loop: Loop, state: State | None, duration: float) -> Trajectory:
 def judged(run: Trajectory, suspicion: str = "", since_start: bool = False) -> Judgement:
     """What the mechanism does in that run; `suspicion` is what the search for a cycle met.
 
-    Times are told only where the run began with the scene (`since_start`).
+    Times are given only where the run began with the scene (`since_start`).
     """
     if run.stop.gave_up:
         return Judgement(None, run.stop_message)

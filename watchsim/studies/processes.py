@@ -17,7 +17,7 @@ from watchsim.studies.point import Question, Row
 from watchsim.studies.worker import begin, work
 
 AHEAD = 3  # points handed out per worker before one is finished
-LOST = "a worker process was ended from outside, perhaps for want of memory"
+LOST = "a worker process was ended from outside, perhaps for lack of memory"
 
 
 class Processes:

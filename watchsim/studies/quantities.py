@@ -26,7 +26,7 @@ class Quantity:
     """One number of a scene: its dotted path, its SI value, and what it is.
 
     `step` is the larger of the two by which it is varied; `low` and `high` bound it; `change` is what a maker may get wrong:
-    1 % more, 10 µm or 0.1°, in SI, told by `change_words`.
+    1 % more, 10 µm or 0.1°, in SI, worded by `change_words`.
     """
 
     key: str

@@ -1,4 +1,4 @@
-"""How is a study told on a terminal?"""
+"""How is a study shown on a terminal?"""
 
 from __future__ import annotations
 

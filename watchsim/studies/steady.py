@@ -1,7 +1,7 @@
 """What does the watch settle to, without waiting until it has?
 
 The limit cycle is a fixed point of the return map (return_map.py), found by shooting (shooting.py) and closed over a whole turn
-of the wheel (polish.py). Where there is none, an ordinary run tells what happens instead (judge.py).
+of the wheel (polish.py). Where there is none, an ordinary run shows what happens instead (judge.py).
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from watchsim.studies.shooting import Fixed, Lost, fixed_point
 
 REST = 1e-9  # rad or m per scale: bodies that stand still come back so closely, or the section is moved on
 SECTIONS = 6  # of them at most
-AFTERWARDS = 24  # periods of the run that tells what happens where there is no cycle
+AFTERWARDS = 24  # periods of the run that shows what happens where there is no cycle
 LONGEST = 120.0  # s, of a run that stands in for a cycle
 FEWEST = 40  # periods of it
 SETTLED = 1e-4  # of the amplitude: what such a run may still scatter and drift
@@ -167,7 +167,7 @@ def _lost(oscillate: ReturnMap, lost: Lost) -> Cycle:
     state = section.at(parts, lost.amplitude)
     if lost.trouble in VERDICTS and lost.trouble != UNSETTLED:
         return _instead(loop, state, lost.trouble, AFTERWARDS * parts.period)
-    return _by_run(loop, parts, "the search for a limit cycle came to no end", state)
+    return _by_run(loop, parts, "the search for a limit cycle did not converge", state)
 
 
 def _instead(loop: Loop, state: State | None, suspicion: str, duration: float) -> Cycle:

@@ -87,7 +87,7 @@ def _faces(run: Trajectory) -> float:
 
 
 def standing(count: int) -> Benchmark:
-    """Blocks and discs at rest on one another and on the ground with exactly so many contacts: nothing happens."""
+    """Blocks and discs at rest on one another and on the ground with exactly that many contacts: nothing happens."""
     side, radius = 0.05, 0.02
 
     def block(name: str, layer: int) -> Body:

@@ -22,7 +22,7 @@ ZERO = 1e-9  # of the oracle: violations and determinants below count as zero
 
 
 def random_rows(count: int) -> list[Row]:
-    """Impacts of one contact and complementarity problems of four families, so many of each."""
+    """Impacts of one contact and complementarity problems of four families, the given number of each."""
     return [*impact_rows(count), *lcp_rows(count)]
 
 

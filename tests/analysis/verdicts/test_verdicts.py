@@ -187,7 +187,7 @@ def test_the_wheel_is_the_body_whose_lever_meets_the_balance():
 def test_made_runs_have_no_shapes_to_ask():
     assert verdict(lever_run(40)).name == "ticks"
     stands = verdict(lever_run(20, missed=range(10, 20)))
-    assert stands.name == "stops" and "the escape wheel stands since t = 1.19" in stands.message
+    assert stands.name == "stops" and "the escape wheel has stood still since t = 1.19" in stands.message
 
 
 def pendulum() -> Scene:

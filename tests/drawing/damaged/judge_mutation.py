@@ -34,8 +34,8 @@ def fault(path: Path, whole: Drawing, mutator: Any) -> str:
     `length(path)`, how much another reader draws (drawing units), None where that one gives up; `TOLD`, the codes of findings
     that account for entities which are not drawn.
 
-    All entities must be drawn or told of; without any finding at least as much as before must be there, unless the other reader
-    agrees that the damaged file draws less.
+    All entities must be drawn or reported; without any finding at least as much as before must be there, unless the other
+    reader agrees that the damaged file draws less.
     """
     data = path.read_bytes()
     try:

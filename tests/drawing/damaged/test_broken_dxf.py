@@ -92,8 +92,8 @@ def test_trash_after_the_end_is_only_a_notice(read_bytes: Reader) -> None:
     [
         (d.record("CIRCLE", (10, 0.0), (20, 0.0)), "group 40 is missing"),
         (d.record("CIRCLE", (10, 0.0), (20, 0.0), (40, "one")), 'group 40 is "one"'),
-        (d.record("CIRCLE", (10, 0.0), (20, 0.0), (40, "nan")), "no sensible number"),
-        (d.record("CIRCLE", (10, 1e300), (20, 0.0), (40, 1.0)), "no sensible number"),
+        (d.record("CIRCLE", (10, 0.0), (20, 0.0), (40, "nan")), "not a sensible number"),
+        (d.record("CIRCLE", (10, 1e300), (20, 0.0), (40, 1.0)), "not a sensible number"),
         (d.record("LINE", (10, 0.0), (20, 0.0), (11, 1.0)), "group 21 is missing"),
         (d.record("LINE", *d.point(10, (0, 0)), *d.point(10, (0, 0)), *d.point(11, (0, 0))), "stands there 2 times"),
         (d.record("LWPOLYLINE", (90, 3), (10, 0.0), (20, 0.0), (10, 1.0), (20, 1.0)), "announces 3 corners and holds 2"),

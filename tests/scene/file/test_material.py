@@ -67,7 +67,7 @@ def test_contact_with_an_open_chain_of_unknown_side_is_an_error_that_says_how(tm
     for keys in ("", 'layers = ["GROUND"]\n'):
         text = faults(tmp_path, keys)
         assert "the outline is open" in text and "LINE #1A" in text
-        assert 'If it shall stay open: material = "left"' in text
+        assert 'If it is to stay open: material = "left"' in text
     stray = faults(tmp_path, 'layers = ["AXES"]\n')
     assert "there is no closed outline on this layer. Its lines are open: close them, or write material" in stray
 
@@ -79,7 +79,7 @@ def test_mistakes_in_material(tmp_path: Path) -> None:
     assert "two values are needed here" in text
     assert "the point lies on the chain of layer AXES itself" in text
     assert 'add "AXES" to layers' in faults(tmp_path, 'layers = ["GROUND"]\nmaterial = { AXES = "left", GROUND = "right" }\n')
-    assert "there is no open chain it could speak of" in faults(tmp_path, 'material = "left"\n', d.circle(0, 0, 1))
+    assert "there is no open chain it could apply to" in faults(tmp_path, 'material = "left"\n', d.circle(0, 0, 1))
     with pytest.raises(SceneError, match="belongs to a drawing"):
         scene(tmp_path, 'material = "right"\n', ball=BALL + 'material = "left"\n')
 

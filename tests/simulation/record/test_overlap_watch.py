@@ -121,7 +121,7 @@ def test_what_was_found_is_carried_on_written_and_said(tmp_path, capsys: pytest.
     write_results(first, tmp_path / "run", summary(first), "")
     numbers = summary(first)
     assert numbers["worst_overlap_m"] == numbers["overlap"]["worst_m"] == first.worst_overlap
-    assert "looks at the outlines themselves: lever.ARMS and banking.PINS by" in summary_text(first, numbers)
+    assert "checks of the outlines themselves: lever.ARMS and banking.PINS by" in summary_text(first, numbers)
     assert command.status(first, numbers) == 3
     assert "The result is wrong" in capsys.readouterr().err
 

@@ -52,7 +52,7 @@ class Energies:
 
 @dataclass(frozen=True, slots=True)
 class Stage:
-    """A phase with everything told of it; triples are of wheel, lever and oscillator, rad and rad/s.
+    """A phase with everything reported of it; triples are of wheel, lever and oscillator, rad and rad/s.
 
     `pallet`: entry or exit, the stone that is unlocked in this beat; "" where that cannot be told. `impulse`: angular impulse
     of all contacts on the oscillator, N·m·s. Rates at the start are before impacts at that time, but after the lock's at the

@@ -94,7 +94,7 @@ def _energy(told: list[Beat]) -> Iterator[str]:
             yield f"  {'of what is supplied':{WIDTH - 2}}{'':8}" + "".join(
                 f"{100.0 * value / sums[0]:>{w - 2}.2f} %" for value, w in zip(sums, wide, strict=True)
             )
-            yield f"  the books close to {abs(beat.residual):.1e} J, {abs(beat.residual) / sums[0]:.1e} of what is supplied"
+            yield f"  the account closes to {abs(beat.residual):.1e} J, {abs(beat.residual) / sums[0]:.1e} of what is supplied"
 
 
 def _values(stage: Stage, friction: dict[str, float], rubbed: list[str], struck: list[str]) -> list[float]:

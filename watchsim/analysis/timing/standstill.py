@@ -56,7 +56,9 @@ def standstill(run: Trajectory, found: Beats) -> Standstill | None:
         since = float(crossings[-1]) if len(crossings) else 0.0
         if since >= start:
             return None
-    return Standstill(since, f"the escape wheel stands since t = {since:.4g} s" + _circumstances(run, found, parts.oscillator))
+    return Standstill(
+        since, f"the escape wheel has stood still since t = {since:.4g} s" + _circumstances(run, found, parts.oscillator)
+    )
 
 
 def _circumstances(run: Trajectory, found: Beats, oscillator: str) -> str:

@@ -58,12 +58,12 @@ def timegrapher(run: Trajectory, found: Beats, window: Window | None = None) -> 
 
 
 def _refused(lift: float, true: float | None, heard: Array) -> str | None:
-    """Why an instrument could not tell the amplitude; `lift` and `true` in degrees."""
+    """Why an instrument could not determine the amplitude; `lift` and `true` in degrees."""
     if true is not None and true < LEAST * lift:
-        return f"it could not tell the amplitude: a swing of {true:.0f}° hardly leaves the lift of {lift:.4g}°"
+        return f"it could not determine the amplitude: a swing of {true:.0f}° hardly leaves the lift of {lift:.4g}°"
     heard = heard[np.isfinite(heard)]
     if np.std(heard) > UNEVEN * np.mean(heard):
-        return "it could not tell the amplitude: the last loud noise comes at another time in each beat"
+        return "it could not determine the amplitude: the last loud noise comes at another time in each beat"
     return None
 
 
@@ -71,7 +71,7 @@ def _why_another(shown: float | None, true: float | None) -> str | None:
     if shown is None or true is None or abs(shown - true) < ALIKE:
         return None
     side = "before the lift is over, so it reads high" if shown > true else "after the lift is over, so it reads low"
-    return f"its amplitude takes the lift to end with the last loud noise of a beat, which comes {side}"
+    return f"its amplitude assumes that the lift ends with the last loud noise of a beat, which comes {side}"
 
 
 def amplitude_deg(lift: float | None, interval: float | None, period: float) -> float | None:

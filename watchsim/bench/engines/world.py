@@ -35,7 +35,7 @@ class World(Protocol):
     """A scene in another engine, at its start."""
 
     def advance(self, steps: int) -> None:
-        """Take so many steps."""
+        """Take that many steps."""
 
     def place(self, body: str) -> tuple[float, float, float]:
         """x, y (m) and angle (rad, not wrapped) of a body that moves."""

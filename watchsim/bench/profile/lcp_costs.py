@@ -44,5 +44,5 @@ def problems_met(walk: Walk) -> list[Problem]:
 
 
 def size_name(unknowns: int) -> str:
-    """The name of the count of problems with so many unknowns."""
+    """The name of the count of problems with that many unknowns."""
     return next((f"lcp_to_{size}" for size in LARGEST if unknowns <= size), "lcp_larger")

@@ -36,7 +36,7 @@ def print_json(value: Any) -> None:
 
 
 class Progress:
-    """One line on a terminal that tells how far something has come and how long it will still take."""
+    """One line on a terminal that shows how far something has come and how long it will still take."""
 
     def __init__(self, words: str) -> None:
         self._words = words

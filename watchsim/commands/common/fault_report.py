@@ -38,7 +38,7 @@ def _is_raised_here(trace: TracebackType | None) -> bool:
 def report(error: Exception, argv: list[str]) -> str:
     """Write a file to send, and say where it is."""
     words = f"{type(error).__name__}: {error}".strip().splitlines()[0][:300]
-    told = f"This is a fault of watchsim, not of what it was given ({words})."
+    told = f"This is a fault of watchsim, not of its input ({words})."
     text = report_text(error, argv)
     for folder in (Path.cwd, lambda: Path(tempfile.gettempdir())):
         try:

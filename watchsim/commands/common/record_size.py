@@ -50,6 +50,6 @@ def room_for(scene: Scene, duration: float, folder: Path) -> float:
         say(
             f"Note: rows and events of this run take some {size_text(size)}. More than {size_text(in_memory)} are not held in "
             f"memory but in files beside {folder}, until the results are written. --record statistics keeps the last seconds "
-            'and sums over the whole run, --record "every 10" each tenth row, --record FROM:TO a window.'
+            'and sums over the whole run, --record "every 10" every tenth row, --record FROM:TO a window.'
         )
     return max(LEAST_ROOM, WRITTEN * size)

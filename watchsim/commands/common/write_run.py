@@ -58,13 +58,13 @@ def write(run: Trajectory, goal: Goal, extras: Extras, changed: Sequence[str] = 
     from watchsim.simulation.stops import Stop
 
     if run.stop == Stop.INTERRUPTED:
-        say("Interrupted: writing what was simulated; a second Ctrl-C gives it up ...")
+        say("Interrupted: writing what was simulated; a second Ctrl-C abandons it ...")
     try:
         numbers = _numbers(run, extras, changed, goal.folder)
         said = [*(f"Note: {note}" for note in numbers["notes"]), report_text(run, numbers)]
         beside: dict[str, Any] = {**goal.scene, **tables(run), "report.txt": "\n".join(said) + "\n"}
     except Exception:
-        say(f"The numbers of this run could not be made. Its motion is kept in {_bare(run, goal)}")
+        say(f"The numbers of this run could not be computed. Its motion is kept in {_bare(run, goal)}")
         raise
     drawn = pictures(run, extras.plots, extras.movie, extras.gif) | (page(run, numbers) if extras.report else {})
     _save(run, goal, numbers, beside, drawn)
@@ -124,7 +124,7 @@ def _save(run: Trajectory, goal: Goal, numbers: Mapping[str, Any], beside: dict[
         place = write_elsewhere(goal.folder.name, filler(run, numbers, beside), "the results")
         raise InputError(f"{error}.\nThe results were saved, without pictures, in {place}") from error
     except Exception:
-        say(f"The results could not be written as they should. The motion is kept in {_bare(run, goal)}")
+        say(f"The results could not be written as intended. The motion is kept in {_bare(run, goal)}")
         raise
 
 

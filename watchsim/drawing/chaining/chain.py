@@ -83,7 +83,7 @@ def chain_layer(layer: str, strokes: Sequence[Stroke], snap: float, deviation: f
     loops = nested([outline.loop for outline in outlines])
     if loops is None:
         loops = [outline.loop for outline in outlines]
-        message = "so many outlines lie within each other that holes were not told from what they are in"
+        message = "so many outlines are nested that holes were not distinguished from the parts around them"
         notes.append(Finding("crowded", "error", message, "Look for parts that are drawn many times over each other.", layer))
     return Chains(tuple(loops), tuple(chain.loop for chain in chains), (*findings, *repeated, *doubles, *slits, *notes))
 

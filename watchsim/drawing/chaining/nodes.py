@@ -18,7 +18,7 @@ from watchsim.geometry.edge_table import table_of
 from watchsim.geometry.primitives import Point
 
 TIGHT = 1e-9  # metres: the decimals of a drawing
-CROWD = 64  # neighbours looked at per cell: where more ends crowd within a snap, none can be told from another
+CROWD = 64  # neighbours looked at per cell: where more ends crowd within a snap, none can be distinguished from another
 NOBODY: list[int] = []
 
 

@@ -39,7 +39,7 @@ def left_out(found: Gathering, layers: dict[str, Layer]) -> list[Finding]:
 
 def _ignored(kind: str, count: int) -> Finding:
     if kind in TEXT_LIKE:
-        return Finding("ignored", "notice", f"{count} × {kind} not read: it is no outline")
+        return Finding("ignored", "notice", f"{count} × {kind} not read: it is not an outline")
     if kind in KNOWN_BUT_NOT_READ:
         return Finding("ignored", "warning", f"{count} × {kind} not read", "Draw it with lines and arcs where it matters.")
     message = f"{count} × {kind[:40]} not read: no type of entity known here; the file may be damaged"

@@ -44,7 +44,7 @@ def numbers(text: str) -> list[float]:
         result.append(finite(item[2]))
         at = item.end()
     if text[at:].strip():
-        raise SvgError(f'"{text[at : at + 20].strip()}" is no number')
+        raise SvgError(f'"{text[at : at + 20].strip()}" is not a number')
     return result
 
 
@@ -52,7 +52,7 @@ def split_length(text: str) -> tuple[float, str]:
     """The number and the unit in lower case ("" where there is none)."""
     match = _LENGTH.fullmatch(text)
     if match is None:
-        raise SvgError(f'"{text[:40]}" is no length')
+        raise SvgError(f'"{text[:40]}" is not a length')
     unit = match[2].lower()
     if unit and unit != "%" and unit not in METRES:
         raise SvgError(f'"{text[:40]}" is a length in a unit that cannot be known here')

@@ -1,7 +1,7 @@
 """Which pieces does an SVG path draw?
 
 The grammar of path data after SVG 1.1 §8.3: commands that repeat, numbers without blanks between them, flags of one digit.
-As there, a fault ends the path; what stands before it is drawn, and the fault is told.
+As there, a fault ends the path; what stands before it is drawn, and the fault is reported.
 """
 
 from __future__ import annotations

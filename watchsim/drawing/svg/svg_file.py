@@ -60,7 +60,7 @@ def read_svg(data: bytes, units: str | None, fit: float) -> Content:
         return Content(findings=tree.findings)
     if root.tag != "svg":
         what = f"<{root.tag[:40]}>" if ":" not in root.tag else "another kind of XML"
-        return Content(findings=(*tree.findings, Finding("unreadable", "error", f"this is no SVG file: it holds {what}")))
+        return Content(findings=(*tree.findings, Finding("unreadable", "error", f"this is not an SVG file: it holds {what}")))
     styles = read_styles(tree.sheets)
     values = styles.of(root)
     page = read_page(values, stated)

@@ -81,7 +81,7 @@ class LeftOut:
 
 def _ignored(kind: str, count: int) -> Finding:
     if kind in TEXT_LIKE:
-        return Finding("ignored", "notice", f"{count} × {kind} not read: it is no outline")
+        return Finding("ignored", "notice", f"{count} × {kind} not read: it is not an outline")
     why = "it moves" if kind in MOVING else "no element known here; the file may be damaged"
     return Finding("ignored", "warning", f"{count} × {kind[:40]} not read: {why}")
 

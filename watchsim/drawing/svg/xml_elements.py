@@ -89,7 +89,7 @@ def read_tree(data: bytes) -> Tree:
     except expat.ExpatError as error:
         findings.append(_fault(error, builder, data))
     except (ValueError, LookupError) as error:  # an encoding that expat cannot use
-        findings.append(Finding("unreadable", "error", f"this is no SVG file ({error})"))
+        findings.append(Finding("unreadable", "error", f"this is not an SVG file ({error})"))
     findings += builder.findings
     sheets = tuple(node.text for node in builder.styles)
     if builder.nameless and builder.root is not None:
@@ -132,7 +132,7 @@ def _fault(error: expat.ExpatError, builder: _Builder, data: bytes) -> Finding:
     reason = expat.errors.messages.get(error.code, "it is not well formed")
     if builder.root is None:
         what = "it is empty" if not data.strip() else f"{reason} in line {error.lineno}"
-        return Finding("unreadable", "error", f"this is no SVG file: {what}")
+        return Finding("unreadable", "error", f"this is not an SVG file: {what}")
     last = f"the last whole element is {builder.last.name}" if builder.last else "no element is whole"
     if builder.here is None and b"<" not in data[builder.end :]:
         return Finding(

@@ -46,7 +46,7 @@ def fit_arcs(curve: Curve, tolerance: float) -> Fit:
     """Tangent-continuous arcs along the whole curve, within `tolerance` metres.
 
     Where the curve itself has a corner or a cusp so have they. A larger deviation than the tolerance is possible where the
-    curve jumps, and is told.
+    curve jumps, and is reported.
     """
     return fit_all([curve], [tolerance])[0]
 

@@ -1,7 +1,7 @@
 """How do the pieces of chains share the work?
 
-A chain begins and ends with single arcs; all others come in pairs, as biarcs. What a piece can do is told in arcs of the best
-chain there could be (see fit).
+A chain begins and ends with single arcs; all others come in pairs, as biarcs. What a piece can do is measured in arcs of the
+best chain there could be (see fit).
 """
 
 from __future__ import annotations

@@ -73,7 +73,7 @@ def choose(run: Trajectory, names: Sequence[str] | None) -> tuple[Body, ...]:
     unknown = [name for name in asked if name not in bodies]
     if unknown or not asked:
         wrong = ", ".join(repr(name) for name in unknown) or "none given"
-        raise ValueError(f"bodies: {wrong}; moving bodies of this run: {', '.join(bodies) or 'none'}")
+        raise ValueError(f"bodies: no moving body is called {wrong}; there are: {', '.join(bodies) or 'none'}")
     return tuple(bodies[name] for name in asked)
 
 
@@ -99,7 +99,7 @@ def sampled(run: Trajectory, body: Body, window: Window) -> Array:
 
 
 def swept(run: Trajectory, body: Body, window: Window) -> Array:
-    """(m, 3) poses dense enough to tell the room the body takes within the window.
+    """(m, 3) poses dense enough to show the room the body takes within the window.
 
     A pivoted body is turned evenly through the angles it really reaches (at most one turn), others are sampled in time.
     """

@@ -15,8 +15,8 @@ from watchsim.scene.body import Body
 
 Array = NDArray[np.float64]
 
-ROUND = 1  # decimals of a window's length to which the time before it is told
-SHORT = 1.0  # s; a shorter window is told in milliseconds from its start
+ROUND = 1  # decimals of a window's length to which the time before it is given
+SHORT = 1.0  # s; a shorter window is given in milliseconds from its start
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Clock:
     unit: str
 
     def text(self, t: float, step: float) -> str:
-        """The time, with as many digits as tell apart two instants `step` seconds apart."""
+        """The time, with as many digits as distinguish two instants `step` seconds apart."""
         value = (t - self.base) * self.factor
         number = signed(value, decimals_for(step * self.factor))
         return f"{number} {self.unit}" if self.base == 0.0 else f"{self.base:.9g} s + {number} {self.unit}"
@@ -100,7 +100,7 @@ def turn_text(turn: float) -> str:
 
 
 def reading(body: Body, frames: Array) -> tuple[Callable[[Array], str], tuple[str, str]]:
-    """How to tell a body's pose (its angle; a slide's travel), and the texts at the two ends of the range in `frames`."""
+    """How to show a body's pose (its angle; a slide's travel), and the texts at the two ends of the range in `frames`."""
     if body.motion == "slide":
         start, axis = np.array(body.position), np.array(body.axis)
         values = 1e3 * ((frames[:, :2] - start) @ axis)

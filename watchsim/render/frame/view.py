@@ -93,7 +93,7 @@ def _shown(run: Trajectory, zoom: Sequence[str] | None) -> list[Body]:
         unknown = [name for name in asked if name not in drawn]
         if unknown or not asked:
             wrong = ", ".join(repr(name) for name in unknown) or "none given"
-            raise ValueError(f"zoom: {wrong}; bodies with a drawing: {', '.join(drawn)}")
+            raise ValueError(f"zoom: no body with an outline is called {wrong}; there are: {', '.join(drawn)}")
         return [drawn[name] for name in asked]
     if not drawn:
         raise ValueError("nothing to draw: no body of this scene has an outline")

@@ -77,7 +77,7 @@ def lay_out(figure: Figure, run: Trajectory, window: Window, step: float) -> Lay
     baseline = round(height - PAD * unit - 0.75 * TIME * unit)
     time_width = max(time.width(told.text(t, step)) for t in window)
     _title(figure, run.scene.title, (PAD * unit, baseline), width - 2.0 * PAD * unit - time_width - GAP * unit)
-    # The line for notes is kept free even where none is told: a frame drawn alone matches its movie.
+    # The line for notes is kept free even where none is shown: a frame drawn alone matches its movie.
     top = height - baseline + 0.35 * TIME * unit + 1.3 * small.size
     readings, bottom = _readings(figure, run, window, small)
     frame = Frame(0.0, bottom, width, height - top - bottom)
@@ -202,7 +202,7 @@ def _readings(figure: Figure, run: Trajectory, window: Window, small: Lettering)
 
 
 def _told(run: Trajectory, body: Body, window: Window) -> Array:
-    """The body's poses as its reading tells them: a carried one against its carrier."""
+    """The body's poses as its reading shows them: a carried one against its carrier."""
     own = sampled(run, body, window)
     return own if body.on is None else own - sampled(run, run.scene.body(body.on), window)
 

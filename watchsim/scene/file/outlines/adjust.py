@@ -53,7 +53,7 @@ def adjusted(table: Table, drawing: Drawing) -> Drawing:
 
 
 def _with_part_moved(one: Table, body: Table, before: Drawing, drawing: Drawing, layer: str) -> Drawing:
-    """`drawing` with one entry done; which part, about what and whither is told by the drawing as it was `before`."""
+    """`drawing` with one entry done; which part, about what and whither follows from the drawing as it was `before`."""
     loops = [*before.loops, *before.open_chains]
     numbers = _meant(one, loops, layer)
     if not numbers:
@@ -100,7 +100,7 @@ def _meant(one: Table, loops: list[Loop], layer: str) -> tuple[int, ...]:
     found, clear = part_near([loops[k] for k in mine], place)
     if not clear:
         one.fault(
-            "near", "two outlines of this layer are about as near: give a place in the one that is meant", with_value=True
+            "near", "two outlines of this layer are about equally near: give a place in the intended one", with_value=True
         )
         return ()
     return tuple(mine[k] for k in found)
@@ -166,7 +166,7 @@ def _along(one: Table, part: list[Loop]) -> Point:
         return (NAN, NAN)
     found = lines_near(part, place)
     if len(found) != 1:
-        several = "two edges meet there, or are as near: give a place on the one that is meant"
+        several = "two edges meet there, or are equally near: give a place on the intended one"
         one.fault("face", several if found else "the part has no straight edge", with_value=True)
         return (NAN, NAN)
     line, fraction = found[0]

@@ -160,7 +160,7 @@ def _similar(path: Path) -> str:
 def _layers(table: Table, drawing: Drawing, sides: Mapping[str, Side], apart: frozenset[str]) -> tuple[str, ...]:
     """The layers that can touch: with closed outlines, or with open chains whose material is known (`sides`).
 
-    Every asked layer that is not there is a fault.
+    Every requested layer that is not there is a fault.
     """
     closed = dict.fromkeys(loop.layer for loop in drawing.loops if loop.closed)
     asked = table.texts("layers")
@@ -197,7 +197,7 @@ def _sorted_out(
 ) -> Iterator[Finding]:
     """Notes the drawing's errors that concern this body as faults and hands on its warnings.
 
-    Where layers were chosen, the others may be as they like, but outlines that cross are told of; where none were, all must be
+    Where layers were chosen, the others may be as they like, but outlines that cross are reported; where none were, all must be
     sound but the pivot's. Open chains are as they should be where the scene says what is behind them. Sections, axes and
     hairsprings are judged by the solids that use them.
     """
@@ -214,7 +214,7 @@ def _sorted_out(
         )
         if crossing or (finding.severity == "error" and not beside):
             fix = _SETTING.sub(rf"\1 under [{table.path}]", finding.fix)
-            fix += f" If it shall stay open: {ADVICE}." if finding.code in OPEN else ""
+            fix += f" If it is to stay open: {ADVICE}." if finding.code in OPEN else ""
             text = f"{finding.message.rstrip('.')}. {fix}".strip()
             table.faults.add(f"{table.path}.drawing", text, _arrow(drawing.path, finding.layer))
         else:

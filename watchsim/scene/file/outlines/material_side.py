@@ -36,7 +36,7 @@ def face_layers(table: Table, drawing: Drawing, asked: tuple[str, ...]) -> dict[
         side = _side(table, "material", value)
         chosen = [layer for layer in there if layer in asked or "layers" not in table]
         if not chosen:
-            table.fault("material", "there is no open chain it could speak of: closed outlines have their material inside")
+            table.fault("material", "there is no open chain it could apply to: closed outlines have their material inside")
         return dict.fromkeys(chosen, side)
     result = {}
     for layer, entry in value.items():

@@ -1,4 +1,4 @@
-"""Which outlines of a layer are meant by a place near them, and which edge?"""
+"""Which outlines of a layer does a place near them choose, and which edge?"""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from watchsim.geometry.inside import winding
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Line, Point
 
-SAME = 1e-8  # m; edges as near as this to each other cannot be told apart by a place
+SAME = 1e-8  # m; edges as near as this to each other cannot be distinguished by a place
 CLEARER = 2.0  # times: so much farther off than the nearest must the next one be
 
 
 def part_near(loops: Sequence[Loop], place: Point) -> tuple[tuple[int, ...], bool]:
     """The numbers of the outline nearest to the place (of one that holds it, if any does) and of the holes in it, and whether
-    it is clearly the one that is meant."""
+    it is clearly the intended one."""
     order = sorted(parts_of(loops), key=lambda part: _away(loops[part[0]], place))
     if not order:
         return (), False

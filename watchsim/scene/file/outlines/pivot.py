@@ -53,7 +53,7 @@ def _near(table: Table, drawing: Drawing, kind: str, place: str) -> Point:
         table.fault("pivot", f"the drawing holds no {kind}", with_value=True)
         return UNREADABLE
     if len(found) > 1 and math.dist(found[1], (x, y)) < CLEARER * math.dist(found[0], (x, y)):
-        message = f"{_shown(found[:2])} mm are about as near: give the place more exactly"
+        message = f"{_shown(found[:2])} mm are about equally near: give the place more exactly"
         table.fault("pivot", message, with_value=True)
         return UNREADABLE
     return found[0]

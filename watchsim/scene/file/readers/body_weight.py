@@ -20,7 +20,7 @@ from watchsim.scene.solid import Solid, Weight, total
 class Inertias:
     """What the motion needs: `origin` is the point of the drawing that becomes the origin of the body's frame.
 
-    `centre` and `solids` are in that frame. `findings` tell of bores that count otherwise than their names say."""
+    `centre` and `solids` are in that frame. `findings` report bores that count otherwise than their names say."""
 
     origin: Point
     mass: float

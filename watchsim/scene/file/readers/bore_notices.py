@@ -29,7 +29,7 @@ def bore_notices(table: Table, outlines: Outlines, solids: Sequence[Solid], else
     `elsewhere` are the layers that other bodies of the same drawing name as bores: these are theirs.
     """
     entries = table.mapping.get("solids", ())
-    if not (outlines.sound and solids) or len(entries) != len(solids):  # what is wrong is told as a fault
+    if not (outlines.sound and solids) or len(entries) != len(solids):  # what is wrong is reported as a fault
         return ()
     plates = [(solid, entry) for solid, entry in zip(solids, entries, strict=True) if solid.kind == PLATE]
     unasked = [solid for solid, entry in plates if entry.get("bores") != []]
@@ -70,7 +70,7 @@ def _forgotten(table: Table, outlines: Outlines, plate: Solid, elsewhere: Set[st
     found = _unnamed(outlines, plate, elsewhere)
     for bore, lie in found:
         if _doubtful(lie):
-            message = f"{_the(bore)} lies across an outline of {_plate(plate)}: what is missing there cannot be told"
+            message = f"{_the(bore)} lies across an outline of {_plate(plate)}: what is missing there cannot be determined"
             yield _finding("notice", message, f"{LATER}.", bore)
     missing = [bore for bore, lie in found if lie.taken]
     if missing:

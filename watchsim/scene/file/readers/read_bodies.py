@@ -61,7 +61,7 @@ def read_bodies(mapping: object, folder: Path, faults: Faults, made: Made | None
             faults.add(where, "stands where bodies stand: a body has a name and a table, such as [bodies.wheel]", shown(entry))
     mapping = {name: entry for name, entry in mapping.items() if isinstance(entry, dict)}
     users = Counter(_drawing_path(entry, folder) for entry in mapping.values())
-    bores: dict[Path | None, Counter[str]] = {path: Counter() for path in users}  # drawing -> layers, by so many bodies
+    bores: dict[Path | None, Counter[str]] = {path: Counter() for path in users}  # drawing -> layers, by how many bodies
     for entry in mapping.values():
         bores[_drawing_path(entry, folder)].update(set(bored(entry)))
     read = [_read(mapping, name, folder, users, bores, faults, made or {}) for name in mapping]

@@ -73,7 +73,7 @@ _TOUCHES = "this layer is one of those that touch, of which the plate is made (w
 
 
 def _note_unclear(entry: Table, i: int, bores: Sequence[Loop], bore: Loop, lie: Lie) -> None:
-    """Where it cannot be told what is missing, or is missing twice."""
+    """Where it cannot be determined what is missing, or is missing twice."""
     where = f"the bore at {shown(middle(bore))} mm"
     if lie.crosses is not None:
         _fault(entry, i, f"{where} crosses an outline of the plate at {shown(lie.crosses)} mm. {LATER}")

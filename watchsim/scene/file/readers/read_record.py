@@ -69,7 +69,7 @@ def _stride(table: Table, path: str, item: str) -> int:
     word, _, number = item.partition(" ")
     if word == EVERY and is_stride(number):
         return int(number)
-    advice = f'write "{EVERY} 10" for each tenth row' if word == EVERY else nearest(item, KEPT)
+    advice = f'write "{EVERY} 10" for every tenth row' if word == EVERY else nearest(item, KEPT)
     table.faults.add(
         f"{table.path}.{path}", f'no window, none of {", ".join(KEPT)} and not "{EVERY} 10": {advice}', shown(item)
     )
