@@ -9,8 +9,9 @@ import pytest
 from matplotlib.colors import to_rgb
 from render.fake_runs import disc_run, slide_run, watch_run
 
+import watchsim as ws
 from watchsim.render.frame.extras import Extras
-from watchsim.render.frame.force_arrows import arrow_path
+from watchsim.render.frame.force_arrows import ForceArrows, arrow_path
 from watchsim.render.frame.insets import beside, inset
 from watchsim.render.frame.pose_history import poses
 from watchsim.render.frame.readouts import changing_speed_text
@@ -139,3 +140,14 @@ def test_an_adaptive_movie_is_as_long_as_asked(tmp_path):
     with pytest.raises(ValueError, match="length"):
         movie(watch_run(), tmp_path / "n.mp4", length=2.0)
     assert not (tmp_path / "n.mp4").exists()
+
+
+def test_arrows_tell_the_force_on_a_rolling_disc():
+    """Closed form of a uniform disc that rolls down a plane: normal force m g cos α, friction m g sin α / 3 uphill."""
+    run = ws.simulate(ws.load(ws.profiles_dir() / "incline" / "scene.toml"), duration=1.2)
+    (_, press), slope = ForceArrows(run, np.array([1.1])).at(0), math.radians(20.0)
+    weight = run.scene.body("disc").mass * math.hypot(*run.scene.gravity)
+    assert press.shape == (1, 2)
+    assert math.hypot(*press[0]) == pytest.approx(weight * math.hypot(math.cos(slope), math.sin(slope) / 3.0), rel=1e-6)
+    up = -np.array(run.scene.gravity) / math.hypot(*run.scene.gravity)
+    assert press[0] @ up == pytest.approx(weight * (math.cos(slope) ** 2 + math.sin(slope) ** 2 / 3.0), rel=1e-6)
