@@ -14,7 +14,8 @@ from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Edge, Line
 
 REACH = 16.0  # degrees, at the pivot, from the corners to the foot of a pallet
-ARM, HUB, BORE, ROD = 0.22, 0.16, 0.05, 0.1  # thickness of the arms, radii and half width, by the radius of the wheel
+HOLD = 5.0  # degrees of it that the anchor holds
+HUB, BORE, ROD = 0.16, 0.05, 0.1  # radii, and half the width of the rod, by the radius of the wheel
 
 
 def pendulum(anchor: Anchor) -> list[Loop]:
@@ -61,9 +62,9 @@ def _face(anchor: Anchor, side: int, foot: float) -> Edge:
 def arms(anchor: Anchor) -> Loop:
     """A bow over the pivot from foot to foot."""
     size = anchor.values.tip_radius
-    half = anchor.half_angle_seen + REACH
+    half = anchor.half_angle_seen + REACH - HOLD
     radii = [math.hypot(*anchor.corners(side)[0]) for side in (1, -1)]
-    outer, inner = 1.04 * max(radii), 0.96 * min(radii)
+    outer, inner = max(radii), min(radii)
     left, right = 270.0 - half, 270.0 + half
     hub = HUB * size
     edges: list[Edge] = [

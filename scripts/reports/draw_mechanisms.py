@@ -1,0 +1,38 @@
+"""How do the pictures of docs/guide/mechanisms.md come about?
+
+Simulates each profile and draws it at an instant at which its parts work on each other; of the clocks the wheel is shown close.
+
+    python scripts/reports/draw_mechanisms.py
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import imageio.v3 as imageio
+
+import watchsim as ws
+
+IMAGES = Path(__file__).resolve().parents[2] / "docs" / "images"
+SIZE = (960, 540)
+SHOWN = {  # profile: simulated (s), instant (s), bodies to show close (None: all)
+    "geneva": (1.0, 0.2, None),
+    "graham": (2.0, 1.76, ["wheel"]),
+    "recoil_anchor": (2.0, 1.76, ["wheel"]),
+    "involute_pair": (0.2, 0.2, None),
+}
+
+
+def main() -> None:
+    for name, (duration, instant, close) in SHOWN.items():
+        run = ws.simulate(ws.load(ws.profiles_dir() / name / "scene.toml"), duration=duration)
+        imageio.imwrite(IMAGES / f"{name}.png", ws.frame(run, instant, size=SIZE, zoom=close))
+
+
+if __name__ == "__main__":
+    sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+    from usage import arguments
+
+    arguments(__doc__)
+    main()
