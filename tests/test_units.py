@@ -66,11 +66,11 @@ REFUSED = [
     (
         28800,
         units.FREQUENCY,
-        'a bare number needs a unit here: 28800 Hz and 28800 vph differ by a factor 7200. Write "28800 vph"',
+        'a bare number needs a unit here: 28800 Hz and 28800 vph differ by a factor of 7200. Write "28800 vph"',
     ),
     (4, units.FREQUENCY, 'Write "4 Hz"'),
     ("0.3", units.LENGTH, 'Write "0.3 mm"'),
-    (-270, units.ANGLE, "-270 rad and -270° differ by a factor 57.3"),
+    (-270, units.ANGLE, "-270 rad and -270° differ by a factor of 57.3"),
     (0, units.TORQUE, "needs a unit"),
     (5, units.RATE, 'Write "5 s/d"'),
     ("12 mm", units.INERTIA, '"12 mm" is a length; here an inertia is needed'),

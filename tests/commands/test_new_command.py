@@ -48,7 +48,7 @@ def test_lists(capsys):
 
 
 REFUSED = [
-    (["new"], "say which design"),
+    (["new"], "name a design"),
     (["new", "swis_lever"], 'Did you mean "swiss_lever"?'),
     (["new", "swiss_lever", "--lok", "2°"], 'Did you mean "--lock"?'),
     (["new", "swiss_lever", "extra"], "belongs to no option"),

@@ -98,7 +98,7 @@ def test_mass_of_a_profile_and_of_one_layer() -> None:
         (entities.Bezier([0, 1, 2, 3]), "mm", "is a Bezier: only lines and arcs"),
         (entities.Arc([0, 1, 4]), "mm", "in a straight line"),
         (entities.Line([0, 1]), None, "does not say its units"),
-        (entities.Line([0, 1]), "kg", "no unit of length"),
+        (entities.Line([0, 1]), "kg", "not a unit of length"),
         (entities.Line([0, 1]), "furlong", "not a unit known here"),
     ],
 )

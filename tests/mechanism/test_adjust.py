@@ -122,7 +122,7 @@ REFUSED = [
     (KEY, [{"near": ENTRY, "along": "2 µm", "face": ["-1.23461485582 mm", "-0.62906768936 mm"]}], f"{KEY}.0.face", "two edges"),
     (KEY, {"turn": "1°", "about": "STONES"}, f"{KEY}.about", "neither a point nor a circle"),
     (KEY, {"turn": "1°", "about": "PIVO"}, f"{KEY}.about", "neither a point nor a circle"),
-    (KEY, [{"near": ["0 mm", "-0.5 mm"], "turn": "1°"}], f"{KEY}.0.near", "about as near"),
+    (KEY, [{"near": ["0 mm", "-0.5 mm"], "turn": "1°"}], f"{KEY}.0.near", "about equally near"),
     ("bodies.lever.adjust.ARMS", {"radial": "1 µm", "about": ["0.1 mm", "x"]}, "bodies.lever.adjust.ARMS.about.1", "number"),
     ("bodies.banking.adjust.PINS", [{"near": ["-0.5 mm", "5.2 mm"], "shift": ["1 mm", "0 mm"]}], "adjust.PINS", "cross at"),
 ]

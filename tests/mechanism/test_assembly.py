@@ -113,7 +113,7 @@ def test_drawn_layers_belong_to_their_body_only(desk: Path) -> None:
         ("hole near [1.1 mm, 2 mm]", "hole near [1.1, 2]", "a bare number needs a unit here"),
         ("hole near [1.1 mm, 2 mm]", "rivet near [1 mm, 2 mm]", "write hole, circle or point near a place"),
         ("hole near [1.1 mm, 2 mm]", "hole near 1 mm", "write hole, circle or point near a place"),
-        ("hole near [1.1 mm, 2 mm]", "circle near [1.2 mm, 5.5 mm]", "are about as near"),
+        ("hole near [1.1 mm, 2 mm]", "circle near [1.2 mm, 5.5 mm]", "are about equally near"),
         ('angle = "3°"', 'position = "drawn"', 'write ["1 mm", "0 mm"], or "as drawn"'),
     ],
 )

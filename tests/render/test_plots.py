@@ -63,7 +63,7 @@ def test_free_and_sliding_bodies_in_millimetres():
 
 def test_unknown_names_are_refused_with_the_choices():
     run = watch_run()
-    with pytest.raises(ValueError, match="'lver'; moving bodies of this run: wheel, lever, balance"):
+    with pytest.raises(ValueError, match="'lver'; there are: wheel, lever, balance"):
         plot_kinematics(run, bodies=["lver"])
     with pytest.raises(ValueError, match="'speed'; choose from angle, velocity"):
         plot_kinematics(run, quantities=["angle", "speed"])

@@ -102,7 +102,7 @@ ONE_FAULT = [
         'frequency = "28800 vph"',
         "frequency = 28800",
         "springs.0.frequency",
-        '28800 Hz and 28800 vph differ by a factor 7200. Write "28800 vph".',
+        '28800 Hz and 28800 vph differ by a factor of 7200. Write "28800 vph".',
     ),
     ('frequency = "28800 vph"', 'frequency = "4 Hz"\nstiffness = "1 N·m/rad"', "springs.0.frequency", "leave one out"),
     ('frequency = "28800 vph"', "", "springs.0", 'a spring needs frequency = "28800 vph" or stiffness'),
@@ -174,7 +174,7 @@ def test_text_of_a_fault(desk, good):
     line = 1 + good.split("\n").index('frequency = "28800 vph"')
     assert str(fault) == (
         f"{desk.folder}/scene.toml:{line}  springs.0.frequency = 28800\n"
-        '  a bare number needs a unit here: 28800 Hz and 28800 vph differ by a factor 7200. Write "28800 vph".'
+        '  a bare number needs a unit here: 28800 Hz and 28800 vph differ by a factor of 7200. Write "28800 vph".'
     )
 
 
