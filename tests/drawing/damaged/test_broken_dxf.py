@@ -25,12 +25,12 @@ def errors(drawing: Drawing) -> dict[str, str]:
     [
         (b"", "empty"),
         (b"\n  \r\n", "empty"),
-        (b"hello world\nthis is a letter\n", "no DXF file"),
-        (bytes(range(256)) * 20, "no DXF file"),
+        (b"hello world\nthis is a letter\n", "not a DXF file"),
+        (bytes(range(256)) * 20, "not a DXF file"),
         (b"AC1027\x00\x01\x02", "DWG"),
-        (b"AutoCAD Binary DXF\r\n\x1a\x00\xff\xff\xff", "no DXF file"),
-        (b"\x89PNG\r\n\x1a\n" + bytes(100), "no DXF file"),
-        (b"<html></html>", "no DXF file"),
+        (b"AutoCAD Binary DXF\r\n\x1a\x00\xff\xff\xff", "not a DXF file"),
+        (b"\x89PNG\r\n\x1a\n" + bytes(100), "not a DXF file"),
+        (b"<html></html>", "not a DXF file"),
     ],
 )
 def test_what_is_no_dxf(read_bytes: Reader, data: bytes, word: str) -> None:

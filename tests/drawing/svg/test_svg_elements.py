@@ -122,7 +122,7 @@ def test_a_circle_of_radius_zero_is_a_point(read_svg: Reader) -> None:
         ('<ellipse cx="3"/>', "neither rx nor ry"),
         ("<path/>", "no d"),
         ('<polygon points="1 2 3"/>', "partner"),
-        ('<polygon points="1 2 3,,4"/>', "no number"),
+        ('<polygon points="1 2 3,,4"/>', "not a number"),
         ("<polygon/>", "no points"),
         ("<line/>", "no coordinates"),
         ('<circle r="3" transform="turn(3)"/>', "turn"),
