@@ -68,7 +68,7 @@ def test_zoom_frames_the_named_bodies():
     near = view(run, (0.0, 2.0), FRAME, ["balance"], None)
     assert near.centre == pytest.approx((0.0, 7 * MM), abs=1e-6)
     assert near.scale == pytest.approx(600 * (1 - 2 * MARGIN) / (2 * MM), rel=1e-3)
-    with pytest.raises(ValueError, match="'ballance'; bodies with a drawing: wheel, lever, balance, banking"):
+    with pytest.raises(ValueError, match="'ballance'; there are: wheel, lever, balance, banking"):
         view(run, (0.0, 2.0), FRAME, ["ballance"], None)
 
 
