@@ -18,9 +18,12 @@ PAGE = Path(__file__).resolve().parents[2] / "docs" / "guide" / "swiss_lever.md"
 HEAD = [
     "# Studies of a Swiss lever",
     "",
-    "What changes in a watch when one number of it does? The scene is `profiles/swiss_lever`: 4 Hz, 15 teeth, 1 µN·m at the escape wheel.",
-    "Every point is a limit cycle found by shooting ([studies](studies.md)), with its error; error bars are drawn, and are mostly smaller",
-    "than the marks. Spring and damping count by stiffness and coefficient. Written by `scripts/reports/make_swiss_lever_page.py`.",
+    "What changes in a watch when one number of it does? The scene is `profiles/swiss_lever`: 4 Hz, 15"
+    " teeth, 1 µN·m at the escape wheel.",
+    "Every point is a limit cycle found by shooting ([studies](studies.md)), with its error; error"
+    " bars are drawn, and are mostly smaller",
+    "than the marks. Spring and damping count by stiffness and coefficient. Written by"
+    " `scripts/reports/make_swiss_lever_page.py`.",
     "",
     "A single study on the command line:",
     "",
@@ -34,7 +37,8 @@ HEAD = [
 TAIL = [
     "## Declared pairs and computing time",
     "",
-    "How the time of a run grows with what is declared is measured on a page of its own: [complexity](../reports/complexity.md).",
+    "How the time of a run grows with what is declared is measured on a page of its own:"
+    " [complexity](../reports/complexity.md).",
     "",
 ]
 

@@ -35,6 +35,7 @@ POSITIONS = {"3 o'clock down": (1.0, 0.0), "12 down": (0.0, 1.0), "9 down": (-1.
 # spreadsheet, described at hsn161.com/HSN/watches.php), divided by 86400. The loss of a steel spring on a brass balance, about
 # 11 s/d in 1 K, is from his article at bwcmg.org, "Nickel Steel Balance Spring".
 BRASS, STEEL = 1.64 / DAY, 0.95 / DAY
+LOSS_TOLD = "https://bwcmg.org/index.php/2024/09/10/nickel-steel-balance-spring-a-major-development-in-watchmaking"
 STEEL_AND_BRASS = 11.0  # s/d in 1 K
 TEMPERATURES = np.array([-15.0, -10.0, -5.0, 0.0, 5.0, 10.0, 15.0])  # K from that of adjustment
 # An example of a mainspring: hours since full wind, share of the torque. Assumed: quick at first, even, and a fall at the end.
@@ -83,8 +84,10 @@ def period(scene: ws.Scene) -> list[str]:
         "|---|---|---|---|---|---|",
         *rows,
         "",
-        "*Own* is what the escapement adds to the period of balance and spring alone. Slopes in logarithms at the drawn values; the",
-        "escapement's part follows from the derivatives by torque, damping and the other inertias, because forces and time have no",
+        "*Own* is what the escapement adds to the period of balance and spring alone. Slopes in"
+        " logarithms at the drawn values; the",
+        "escapement's part follows from the derivatives by torque, damping and the other inertias,"
+        " because forces and time have no",
         "unit of their own:",
         "",
         "| over | slope | of it the escapement | left |",
@@ -93,7 +96,8 @@ def period(scene: ws.Scene) -> list[str]:
         "",
         f"What is left is ±1/2 to {left:.0e}.",
         "",
-        f"*For a watch:* 1 % of inertia is 0.5 % of the period, {0.5 * 0.01 * DAY:.0f} s/d; {2e6 / DAY:.0f} millionths are 1 s/d. What the"
+        f"*For a watch:* 1 % of inertia is 0.5 % of the period, {0.5 * 0.01 * DAY:.0f} s/d;"
+        f" {2e6 / DAY:.0f} millionths are 1 s/d. What the"
         f" escapement adds is {np.min(own):.0f} to {np.max(own):.0f} ppm",
         f"({DAY * 1e-6 * np.min(own):.1f} to {DAY * 1e-6 * np.max(own):.1f} s/d), always a loss.",
         "",
@@ -138,7 +142,8 @@ def positions(scene: ws.Scene) -> list[str]:
         "## Positions",
         "",
         f"Pivots rub more in a hanging watch than in one lying flat ({HANGING} against {FLAT} as in",
-        f"[parameter set A](../reports/parameter-sets.md)), and a balance out of poise is a pendulum: here {1e9 * HEAVY:.0f} µg too much at"
+        "[parameter set A](../reports/parameter-sets.md)), and a balance out of poise is a pendulum:"
+        f" here {1e9 * HEAVY:.0f} µg too much at"
         f" {1e3 * RIM:.1f} mm, {HEAVY_AT:.0f}° from",
         "3 o'clock towards 12 when it is at rest. Dial up and dial down are the same in a plane model.",
         "",
@@ -146,11 +151,14 @@ def positions(scene: ws.Scene) -> list[str]:
         "|---|---|---|---|---|---|",
         *rows,
         "",
-        f"The last column is the closed form for a harmonic swing; the simulation agrees to {worst:.3f} s/d. J₁ changes its sign at 219.5°:",
-        f"above it the heavy place below loses, beneath it gains. The four hanging positions differ by {spans[0]:.2f} s/d wound and"
+        f"The last column is the closed form for a harmonic swing; the simulation agrees to {worst:.3f}"
+        " s/d. J₁ changes its sign at 219.5°:",
+        "above it the heavy place below loses, beneath it gains. The four hanging positions differ by"
+        f" {spans[0]:.2f} s/d wound and"
         f" {spans[1]:.2f} s/d run down.",
         "",
-        "*For a watch:* poise at low amplitude, where it shows, and look at the sign before filing: near 220° no timing machine sees a",
+        "*For a watch:* poise at low amplitude, where it shows, and look at the sign before filing:"
+        " near 220° no timing machine sees a",
         "heavy place at all.",
         "",
     ]
@@ -189,10 +197,11 @@ def temperature(scene: ws.Scene) -> list[str]:
         "",
         f"![Rate over temperature]({picture})",
         "",
-        "Warmth makes the balance larger and the spring softer, longer and thicker (k = E h e³/12L). A brass balance alone loses 1.64 s/d",
-        "in 1 K, a steel one 0.95 s/d ([HSN 161](http://www.hsn161.com/HSN/watches.php), after D. Boettcher), which gives their expansion; with",
-        "a steel spring a brass balance loses about 11 s/d in 1 K"
-        " ([Boettcher](https://bwcmg.org/index.php/2024/09/10/nickel-steel-balance-spring-a-major-development-in-watchmaking)), which",
+        "Warmth makes the balance larger and the spring softer, longer and thicker (k = E h e³/12L). A"
+        " brass balance alone loses 1.64 s/d",
+        "in 1 K, a steel one 0.95 s/d ([HSN 161](http://www.hsn161.com/HSN/watches.php), after D."
+        " Boettcher), which gives their expansion; with",
+        f"a steel spring a brass balance loses about 11 s/d in 1 K ([Boettcher]({LOSS_TOLD})), which",
         f"gives {1e6 * steel:.0f}·10⁻⁶/K for the modulus of the steel. An alloy that compensates this balance needs"
         f" {1e6 * exact:+.1f}·10⁻⁶/K, for a spring that expands like steel.",
         "",
@@ -200,7 +209,8 @@ def temperature(scene: ws.Scene) -> list[str]:
         "|---|---|---|---|---|---|",
         *rows,
         "",
-        f"With its escapement the watch with the steel spring changes by {slopes_told[0]:+.3f} s/d in 1 K, with the alloy by"
+        f"With its escapement the watch with the steel spring changes by {slopes_told[0]:+.3f} s/d in 1"
+        " K, with the alloy by"
         f" {slopes_told[1]:+.5f} s/d. Oil is not in this",
         "table: friction and damping are kept.",
         "",
@@ -212,7 +222,7 @@ def temperature(scene: ws.Scene) -> list[str]:
 def run_down(scene: ws.Scene) -> list[str]:
     """48 hours from full wind, by limit cycles at the torque of each hour."""
     hours = np.arange(0.0, 49.0, 2.0)
-    share = np.interp(hours, [hour for hour, _ in MAINSPRING], [left for _, left in MAINSPRING])
+    share = np.interp(hours, [at for at, _ in MAINSPRING], [part for _, part in MAINSPRING])
     series = over_torque(scene.set("damping.0.coulomb", FLAT), WOUND * share)
     amplitude, rate = series.of("amplitude_deg"), series.of("rate_s_per_d")
     figure, axes = panels(3, height=2.0)
@@ -233,18 +243,22 @@ def run_down(scene: ws.Scene) -> list[str]:
         "",
         f"![Torque, amplitude and rate over 48 hours]({picture})",
         "",
-        "An example: the torque of an assumed mainspring (`MAINSPRING` in `scripts/reports/swiss_clock.py`: quick at first, then even, with",
-        f"a fall at the end), {1e6 * WOUND:.1f} µN·m at the escape wheel when wound, pivots as lying flat. A watch settles within a minute, a",
+        "An example: the torque of an assumed mainspring (`MAINSPRING` in"
+        " `scripts/reports/swiss_clock.py`: quick at first, then even, with",
+        f"a fall at the end), {1e6 * WOUND:.1f} µN·m at the escape wheel when wound, pivots as lying"
+        " flat. A watch settles within a minute, a",
         "mainspring runs down in days: so each hour is a limit cycle of its own.",
         "",
         "| hours | torque, µN·m | amplitude, ° | rate, s/d |",
         "|---|---|---|---|",
         *rows,
         "",
-        f"The rate falls from {rate[0]:+.2f} to {rate[12]:+.2f} s/d in 24 hours and to {rate[-1]:+.2f} s/d in 48. The hands lose {-first:.2f} s on"
+        f"The rate falls from {rate[0]:+.2f} to {rate[12]:+.2f} s/d in 24 hours and to {rate[-1]:+.2f}"
+        f" s/d in 48. The hands lose {-first:.2f} s on"
         f" the first day and {-second:.2f} s on the second.",
         "",
-        f"*For a watch:* wound every day it loses the same every day, which the regulator takes away; on a second day it falls back by"
+        "*For a watch:* wound every day it loses the same every day, which the regulator takes away;"
+        " on a second day it falls back by"
         f" {first - second:.2f} s",
         "against that. Either the torque must stay (a stop work, a remontoir) or the impulse come nearer to the middle.",
         "",
@@ -264,8 +278,10 @@ def what_matters(scene: ws.Scene) -> list[str]:
     rows = found.rows()
     agreeing = sum(1 for effect in found.effects if all(one.agrees for one in effect.by.values()))
     listed = [
-        f"| `{row['key']}` | {row['value']:.5g} {row['unit']} | {row['change']} | {told(row['amplitude_deg_per_change'], 3)} |"
-        f" {told(row['rate_s_per_d_per_change'], 3)} | {told(row['beat_error_ms_per_change'], 4)} | {row['message']} |"
+        f"| `{row['key']}` | {row['value']:.5g} {row['unit']} | {row['change']} |"
+        f" {told(row['amplitude_deg_per_change'], 3)} |"
+        f" {told(row['rate_s_per_d_per_change'], 3)} | {told(row['beat_error_ms_per_change'], 4)} |"
+        f" {row['message']} |"
         for row in rows[:14]
         if row["amplitude_deg_per_change"] is not None
     ]
@@ -274,16 +290,20 @@ def what_matters(scene: ws.Scene) -> list[str]:
         "",
         f"![Effects of all numbers of the scene]({picture})",
         "",
-        f"Derivatives on the limit cycle by all {len(rows)} numbers of the scene (`watchsim sweep profiles/swiss_lever --sensitivity`), told as"
+        f"Derivatives on the limit cycle by all {len(rows)} numbers of the scene (`watchsim sweep"
+        " profiles/swiss_lever --sensitivity`), told as"
         " the effect of",
-        f"1 % more, 10 µm or 0.1°; the largest on the amplitude first. Two step sizes agree to 1 % in {agreeing} of {len(rows)}; the others say so.",
+        "1 % more, 10 µm or 0.1°; the largest on the amplitude first. Two step sizes agree to 1 % in"
+        f" {agreeing} of {len(rows)}; the others say so.",
         "",
         "| by | value | change | amplitude, ° | rate, s/d | beat error, ms | |",
         "|---|---|---|---|---|---|---|",
         *listed,
         "",
-        "*For a watch:* stiffness and inertia alone carry the rate; torque and air the amplitude. Of the places, a hundredth of a millimetre between",
-        "wheel and lever counts as much for the amplitude as 1 % of friction at the stones, and one sideways between balance, lever and banking is",
+        "*For a watch:* stiffness and inertia alone carry the rate; torque and air the amplitude. Of"
+        " the places, a hundredth of a millimetre between",
+        "wheel and lever counts as much for the amplitude as 1 % of friction at the stones, and one"
+        " sideways between balance, lever and banking is",
         "the beat error.",
         "",
     ]

@@ -1,4 +1,5 @@
-"""Chapters on what drives and brakes the Swiss lever: torque, the best possible amplitude, friction and restitution."""
+"""Chapters on what drives and brakes the Swiss lever: torque, the best possible amplitude, friction"
+" and restitution."""
 
 from __future__ import annotations
 
@@ -30,7 +31,8 @@ LOSSLESS_RUN = 120.0  # s: without damping a cycle takes so long to settle
 
 
 def torque(scene: ws.Scene, series: Series) -> list[str]:
-    """Amplitude over torque, beside the square-root law twice: drawn through one point, and of the measured work."""
+    """Amplitude over torque, beside the square-root law twice: drawn through one point, and of the"
+    " measured work."""
     at, amplitude = series.at / MICRO, series.of("amplitude_deg")
     here = int(np.argmin(abs(at - 1.0)))
     law = amplitude[here] * np.sqrt(at / at[here])
@@ -57,7 +59,8 @@ def torque(scene: ws.Scene, series: Series) -> list[str]:
         share = works[i] / (series.at[i] * pitch)
         rows.append(
             f"| {at[i]:.2f} | {amplitude[i]:.4f} ± {series.of('amplitude_deg_error')[i]:.0e} | {law[i]:.2f} |"
-            f" {1e9 * works[i]:.2f} | {100.0 * share:.2f} % | {predicted[i]:.4f} | {amplitude[i] / predicted[i] - 1.0:+.1e} |"
+            f" {1e9 * works[i]:.2f} | {100.0 * share:.2f} % | {predicted[i]:.4f} |"
+            f" {amplitude[i] / predicted[i] - 1.0:+.1e} |"
         )
     off, worst = np.nanmax(abs(amplitude / law - 1.0)), np.nanmax(abs(amplitude / predicted - 1.0))
     knocking = [a for a, cycle in zip(at, series.cycles, strict=True) if cycle.verdict == "knocks"]
@@ -75,12 +78,16 @@ def torque(scene: ws.Scene, series: Series) -> list[str]:
         "|---|---|---|---|---|---|---|",
         *rows,
         "",
-        "With viscous damping alone the balance loses πcωA²/2 in a beat, so that A = √(2w/(πcω)) for a work w per beat. The work is",
-        "measured on the motion itself, from the balance's energy before the jewel enters the fork and after it leaves; the law then",
-        f"holds to {worst:.1e} of the amplitude. If the escapement passed on the same share of the wheel's work at any torque, the",
+        "With viscous damping alone the balance loses πcωA²/2 in a beat, so that A = √(2w/(πcω)) for a"
+        " work w per beat. The work is",
+        "measured on the motion itself, from the balance's energy before the jewel enters the fork and"
+        " after it leaves; the law then",
+        f"holds to {worst:.1e} of the amplitude. If the escapement passed on the same share of the"
+        " wheel's work at any torque, the",
         f"amplitude would grow with √torque; it does to {100.0 * off:.1f} %, because the share hardly changes. {end}",
         "",
-        "*For a watch:* a mainspring that loses 20 % of its torque costs 10 % of the amplitude, not 20 %; and half the amplitude is",
+        "*For a watch:* a mainspring that loses 20 % of its torque costs 10 % of the amplitude, not 20"
+        " %; and half the amplitude is",
         "left at a quarter of the torque.",
         "",
     ]
@@ -132,11 +139,14 @@ def best(scene: ws.Scene, drawn: Series) -> list[str]:
         "|---|---|---|---|",
         *rows,
         "",
-        f"Without friction anywhere the amplitude rises to {last[reached]:.1f}° at {1e6 * without.at[reached]:.2f} µN·m; with more torque"
+        f"Without friction anywhere the amplitude rises to {last[reached]:.1f}° at"
+        f" {1e6 * without.at[reached]:.2f} µN·m; with more torque"
         " it knocks.",
         "",
-        "Without friction and without air nothing is left but the impacts: the wheel that falls on the stones, the jewel that meets",
-        "the fork. Geometry and inertias force them. They take the more the faster the balance is, and so limit the swing even then:",
+        "Without friction and without air nothing is left but the impacts: the wheel that falls on the"
+        " stones, the jewel that meets",
+        "the fork. Geometry and inertias force them. They take the more the faster the balance is, and"
+        " so limit the swing even then:",
         "",
         "| torque, µN·m | restitution 0, ° | restitution 0.2, ° |",
         "|---|---|---|",
@@ -144,7 +154,8 @@ def best(scene: ws.Scene, drawn: Series) -> list[str]:
         "",
         f"These are ends of runs of {LOSSLESS_RUN:.0f} s, for such a watch settles slowly.{knocks}",
         "",
-        "*For a watch:* polishing and oil have a bound, and it is in sight in the first table; what is beyond it belongs to the air,",
+        "*For a watch:* polishing and oil have a bound, and it is in sight in the first table; what is"
+        " beyond it belongs to the air,",
         "to the pivots and to the mass of wheel and lever.",
         "",
     ]
@@ -181,9 +192,11 @@ def friction(scene: ws.Scene) -> list[str]:
         "|---|---|---|---|---|",
         *rows,
         "",
-        f"Friction at the stones from 0 to {values[-1]:.1f} takes {a[0] - a[-1]:.1f}° of amplitude and changes the rate by"
+        f"Friction at the stones from 0 to {values[-1]:.1f} takes {a[0] - a[-1]:.1f}° of amplitude and"
+        " changes the rate by"
         f" {r[-1] - r[0]:+.2f} s/d; at the",
-        f"jewel {b[0] - b[-1]:.1f}° and {s[-1] - s[0]:+.2f} s/d. Restitution from 0 to 0.5 changes the amplitude by no more than"
+        f"jewel {b[0] - b[-1]:.1f}° and {s[-1] - s[0]:+.2f} s/d. Restitution from 0 to 0.5 changes the"
+        " amplitude by no more than"
         f" {np.nanmax(e) - np.nanmin(e):.2f}° and the rate by {np.nanmax(f) - np.nanmin(f):.3f} s/d.",
         "",
         "*For a watch:* oil the stones first. The restitution of ruby and steel need not be known: it hardly matters here.",
@@ -212,7 +225,8 @@ def isochronism(scene: ws.Scene, series: Series) -> list[str]:
     picture = saved(figure, "isochronism")
     at = series.at / MICRO
     rows = [
-        f"| {at[i]:.2f} | {amplitude[i]:.2f} | {rate[i]:+.4f} ± {series.of('rate_s_per_d_error')[i]:.0e} | {law[i]:+.3f} | {late[i]:.2f} |"
+        f"| {at[i]:.2f} | {amplitude[i]:.2f} | {rate[i]:+.4f} ±"
+        f" {series.of('rate_s_per_d_error')[i]:.0e} | {law[i]:+.3f} | {late[i]:.2f} |"
         for i in (int(np.argmin(abs(at - one))) for one in LISTED)
         if good[i]
     ]
@@ -228,15 +242,19 @@ def isochronism(scene: ws.Scene, series: Series) -> list[str]:
         "|---|---|---|---|---|",
         *rows,
         "",
-        "The balance's spring is linear, so the whole error is the escapement's. Airy's rule says that a short impulse centred θ̄ after",
+        "The balance's spring is linear, so the whole error is the escapement's. Airy's rule says that"
+        " a short impulse centred θ̄ after",
         f"the middle loses 86400·θ̄/(2QA) s/d: with Q = {quality:.0f} the rates of all torques tell a θ̄ of"
         f" {np.min(late[good]):.2f}° to {np.max(late[good]):.2f}°, with",
-        f"the damping changed instead {np.nanmin(slower):.2f}° to {np.nanmax(slower):.2f}°. Unlocking before the middle and impulse"
+        f"the damping changed instead {np.nanmin(slower):.2f}° to {np.nanmax(slower):.2f}°. Unlocking"
+        " before the middle and impulse"
         " after it both lose.",
         "",
-        f"*For a watch:* from {amplitude[i]:.0f}° down to {amplitude[j]:.0f}° it goes {rate[j] - rate[i]:+.2f} s/d by the escapement alone, when"
+        f"*For a watch:* from {amplitude[i]:.0f}° down to {amplitude[j]:.0f}° it goes"
+        f" {rate[j] - rate[i]:+.2f} s/d by the escapement alone, when"
         " the torque sags: the loss grows as 1/A.",
-        f"When the air or the oil brakes more instead, A falls with √Q and the loss grows as 1/A³: at {COMMON:.0f}° it is {sagged:+.2f} s/d with"
+        "When the air or the oil brakes more instead, A falls with √Q and the loss grows as 1/A³: at"
+        f" {COMMON:.0f}° it is {sagged:+.2f} s/d with"
         f" less torque and {thick:+.2f} s/d",
         "with more damping. The amplitude alone does not tell the rate.",
         "",
