@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from watchsim.simulation.event_kinds import EventKind
-from watchsim.simulation.state import State
+from watchsim.simulation.state import NO_CONTACT, State
 from watchsim.simulation.state_arrays import arrays_of
 from watchsim.studies.loop import Events, Loop, copied
 from watchsim.studies.parts import Parts
@@ -95,5 +95,6 @@ def _begin_anew(state: State, parts: Parts, side: float) -> None:
     state.clock.time = 0.0
     state.u[i] = 0.0
     state.side_u[i], state.side_q[i] = -side, side
+    state.now.event_waits, state.now.touched = 1, NO_CONTACT  # which way dry friction in its bearing acts is decided anew
     anew = arrays_of(state)
     anew.sums[:], anew.counts[:], anew.worst[:] = 0.0, 0, 0.0
