@@ -71,6 +71,7 @@ REFUSED = [
     ({"teeth": 15.5}, "teeth", "a whole number from 9 to 30"),
     ({"embraced": 3.0}, "embraced", "a whole number and a half"),
     ({"teeth": 30}, "drop_inside", "leave 0.3° for the stone, which needs 0.8°"),
+    ({"draw": 18.0, "undercut": 17.0}, "draw", "must be less than the undercut of the teeth, 17°"),
     ({"guard_freedom": 2.1}, "guard_freedom", "must be less than the total lock, 2°"),
     ({"lift_angle": 75.0, "lever_to_balance": 4.0, "crescent": 12.0}, "crescent", "must be at least"),
     ({"tip_radius": 20.0}, "tip_radius", "must be from 1.09 mm to 5.23 mm"),

@@ -59,6 +59,9 @@ def _angles(values: SwissLever) -> Iterator[Conflict]:
     if values.guard_freedom >= values.lock + values.run:
         words = f"must be less than the total lock, {values.lock + values.run:.4g}°"
         yield Conflict("guard_freedom", f"{words}: the dart is to stop the lever before it unlocks")
+    if values.draw >= values.undercut:
+        words = f"must be less than the undercut of the teeth, {values.undercut:.4g}°"
+        yield Conflict("draw", f"{words}: else the stone's edge slides on the tooth, and the draw is that of the tooth's face")
 
 
 def _pallets(values: SwissLever, design: Swiss) -> Iterator[Conflict]:
