@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from watchsim.construction.arms import Arms
 from watchsim.construction.coaxial.points import PITCH, TEETH, Points
 from watchsim.construction.outline import along, angle_of, arc_between, circle, fillet_chain, polar, turned
 from watchsim.geometry.loop import Loop
@@ -37,7 +38,8 @@ def wheel(points: Points) -> list[Loop]:
     s = points.scale
     large = ToothForm(points.values.tip_radius, 1.5 * s, 0.02 * s, 0.42 * s, 41.0, 0.62 * s, 0.12 * s)
     small = ToothForm(points.small_radius, 0.68 * points.small_radius, 0.015 * s, 0.15 * s, 42.0, 0.25 * s, 0.05 * s)
-    windows = [Loop(tuple(window(i, s)), "TEETH", hole=True) for i in range(ARMS)]
+    arms = Arms(ARMS, ARM_WIDTH * s, HUB_RADIUS * s, RIM_INNER * s, WINDOW_FILLET * s)
+    windows = [Loop(tuple(arms.window(i)), "TEETH", hole=True) for i in range(arms.number)]
     bores = [circle(layer, (0.0, 0.0), BORE_RADIUS * s, hole=True) for layer in ("TEETH", "SMALL_TEETH")]
     undercut = points.values.undercut
     second = contour(small, undercut, "SMALL_TEETH").moved(math.radians(points.small_turn), (0.0, 0.0))
@@ -80,29 +82,6 @@ def hollow_back(back: Point, radius: float, root: float) -> tuple[Edge, Point]:
         raise ValueError("the backs of the teeth do not reach the floor of their gaps")
     bearing = angle_of(back) + math.degrees(math.acos(cosine))
     return arc_between(back, polar(root, bearing), polar(reach, bearing), False), polar(root, bearing)
-
-
-def window(i: int, scale: float) -> list[Edge]:
-    """One opening between two arms, clockwise."""
-    first, last = _arm_sides(i, scale)
-    chain: list[Edge] = [
-        arc_between(last[1], first[1], (0.0, 0.0), False),
-        Line(*first[1], *first[0]),
-        arc_between(first[0], last[0], (0.0, 0.0), True),
-        Line(*last[0], *last[1]),
-    ]
-    return fillet_chain(chain, [WINDOW_FILLET * scale] * 4, closed=True)
-
-
-def _arm_sides(i: int, scale: float) -> tuple[tuple[Point, Point], tuple[Point, Point]]:
-    """Hub and rim ends of the arm edges that bound window i."""
-    pitch, half = 360.0 / ARMS, ARM_WIDTH * scale / 2.0
-    sides = []
-    for number, side in ((i, 1.0), (i + 1, -1.0)):
-        radii = (HUB_RADIUS * scale, RIM_INNER * scale)
-        ends = [turned((math.sqrt(r * r - half * half), side * half), number * pitch) for r in radii]
-        sides.append((ends[0], ends[1]))
-    return sides[0], sides[1]
 
 
 def _reach(start: Point, direction: float, radius: float) -> float:

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import math
 
-from watchsim.construction.outline import along, angle_of, arc_between, circle, fillet, fillet_chain, polar, turned
+from watchsim.construction.arms import Arms
+from watchsim.construction.outline import along, angle_of, arc_between, circle, fillet, polar, turned
 from watchsim.construction.swiss_lever.points import Swiss
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line, Point
@@ -28,7 +29,8 @@ FEW = 15  # teeth, up to which the gaps are as drawn here
 def wheel(design: Swiss) -> list[Loop]:
     """The toothed contour, the windows between the arms and the bore."""
     scale = design.wheel_scale
-    windows = [Loop(tuple(window(i, scale)), LAYER, hole=True) for i in range(ARMS)]
+    arms = Arms(ARMS, ARM_WIDTH * scale, HUB_RADIUS * scale, RIM_INNER * scale, WINDOW_FILLET * scale)
+    windows = [Loop(tuple(arms.window(i)), LAYER, hole=True) for i in range(arms.number)]
     return [contour(design), *windows, circle(LAYER, (0.0, 0.0), BORE_RADIUS * scale, hole=True)]
 
 
@@ -99,29 +101,6 @@ def concave_back(design: Swiss, back: Point, hollow: float) -> tuple[Arc, Point]
     bearing = angle_of(back) + math.degrees(math.acos(cosine))
     end = polar(root, bearing)
     return arc_between(back, end, polar(reach, bearing), False), end
-
-
-def window(i: int, scale: float) -> list[Edge]:
-    """One opening between two arms, clockwise."""
-    first, last = _arm_sides(i, scale)
-    chain: list[Edge] = [
-        arc_between(last[1], first[1], (0.0, 0.0), False),
-        Line(*first[1], *first[0]),
-        arc_between(first[0], last[0], (0.0, 0.0), True),
-        Line(*last[0], *last[1]),
-    ]
-    return fillet_chain(chain, [WINDOW_FILLET * scale] * 4, closed=True)
-
-
-def _arm_sides(i: int, scale: float) -> tuple[tuple[Point, Point], tuple[Point, Point]]:
-    """Hub and rim ends of the arm edges that bound window i."""
-    pitch, half = 360.0 / ARMS, ARM_WIDTH * scale / 2.0
-    sides = []
-    for number, side in ((i, 1.0), (i + 1, -1.0)):
-        radii = (HUB_RADIUS * scale, RIM_INNER * scale)
-        ends = [turned((math.sqrt(r * r - half * half), side * half), number * pitch) for r in radii]
-        sides.append((ends[0], ends[1]))
-    return sides[0], sides[1]
 
 
 def _on_root(face: Line, root: float) -> Point:
