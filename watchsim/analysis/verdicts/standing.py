@@ -38,12 +38,36 @@ def _why(watch: Watch, lever: str) -> tuple[str, str | None]:
     if not teeth:
         held = not watch.has_modes or any(watch.wheel in both for both in sides.values())
         return "" if held else f"{watch.wheel} touches nothing that holds it", None
+    if len(teeth) > 1:
+        return _caught(watch, lever, arms(run, watch.compiled, end, teeth)), str(run.pairs[teeth[0]])
     found = arms(run, watch.compiled, end, [teeth[0], *pins])
     rests, pair = face(watch, found, 0), str(found.pairs[0])
     moving = _still_moving(watch)
     if not pins or moving:
         return f"{rests}; {_without_pin(watch, moving, rests)}", pair
     return f"{rests}; {_torques(watch, lever, found, rests)}", pair
+
+
+def _caught(watch: Watch, lever: str, found: Arms) -> str:
+    """Two contacts of the wheel hold the lever: as where, for want of drop, the recoiling wheel meets the other pallet."""
+    places = [f"{face(watch, found, row)} ({pair})" for row, pair in enumerate(found.pairs)]
+    held = [name for name, way in (("anticlockwise", 1.0), ("clockwise", -1.0)) if not _passes(watch.wheel, lever, found, way)]
+    end = f": as {lever} turns {' or '.join(held)}, {watch.wheel} cannot make way for both" if held else ""
+    return " and ".join(places) + end
+
+
+def _passes(wheel: str, lever: str, found: Arms, way: float) -> bool:
+    """Whether some turn of the wheel keeps all gaps open as the lever begins to turn one way."""
+    least, most = -np.inf, np.inf
+    for row in range(len(found.pairs)):
+        opens, by_wheel = found.of(row, lever)[0] * way, found.of(row, wheel)[0]
+        if by_wheel > 0.0:
+            least = max(least, -opens / by_wheel)
+        elif by_wheel < 0.0:
+            most = min(most, -opens / by_wheel)
+        elif opens < 0.0:
+            return False
+    return bool(least <= most)
 
 
 def _still_moving(watch: Watch) -> bool:
