@@ -40,7 +40,7 @@ def test_what_is_planted_and_what_is_not() -> None:
     [
         "drawing/curves/plane_shapes.py",
         "analysis/timing/timegrapher.py",
-        "render/run_movie.py",
+        "render/movies/run_movie.py",
         "dynamics/impact.py",
         "units.py",
     ],

@@ -31,15 +31,15 @@ _HOMES = {
     "write_results": "watchsim.results.folder",
     "verdict": "watchsim.analysis.verdicts.verdict",
     "verify": "watchsim.verification.all_checks",
-    "steady": "watchsim.studies.steady",
-    "Cycle": "watchsim.studies.cycle",
+    "steady": "watchsim.studies.limit_cycle.steady",
+    "Cycle": "watchsim.studies.limit_cycle.cycle",
     "sweep": "watchsim.studies.sweep",
     "sensitivity": "watchsim.studies.sensitivity",
-    "plot_sweep": "watchsim.render.study",
-    "plot_kinematics": "watchsim.render.plots",
-    "movie": "watchsim.render.run_movie",
-    "frame": "watchsim.render.run_movie",
-    "plot_tape": "watchsim.render.tape",
+    "plot_sweep": "watchsim.render.figures.study",
+    "plot_kinematics": "watchsim.render.figures.plots",
+    "movie": "watchsim.render.movies.run_movie",
+    "frame": "watchsim.render.movies.run_movie",
+    "plot_tape": "watchsim.render.figures.tape",
     "sound": "watchsim.analysis.sound.wav",
     "report": "watchsim.pages.report",
     "profiles_dir": "watchsim.profiles_path",
@@ -64,11 +64,11 @@ if TYPE_CHECKING:
     from watchsim.drawing.read import read as read
     from watchsim.pages.report import report as report
     from watchsim.profiles_path import profiles_dir as profiles_dir
-    from watchsim.render.plots import plot_kinematics as plot_kinematics
-    from watchsim.render.run_movie import frame as frame
-    from watchsim.render.run_movie import movie as movie
-    from watchsim.render.study import plot_sweep as plot_sweep
-    from watchsim.render.tape import plot_tape as plot_tape
+    from watchsim.render.figures.plots import plot_kinematics as plot_kinematics
+    from watchsim.render.figures.study import plot_sweep as plot_sweep
+    from watchsim.render.figures.tape import plot_tape as plot_tape
+    from watchsim.render.movies.run_movie import frame as frame
+    from watchsim.render.movies.run_movie import movie as movie
     from watchsim.results.folder import read_results as read_results
     from watchsim.results.folder import write_results as write_results
     from watchsim.scene.errors import SceneError as SceneError
@@ -78,9 +78,9 @@ if TYPE_CHECKING:
     from watchsim.simulation.record.trajectory import Trajectory as Trajectory
     from watchsim.simulation.simulate import simulate as simulate
     from watchsim.simulation.stops import Stop as Stop
-    from watchsim.studies.cycle import Cycle as Cycle
+    from watchsim.studies.limit_cycle.cycle import Cycle as Cycle
+    from watchsim.studies.limit_cycle.steady import steady as steady
     from watchsim.studies.sensitivity import sensitivity as sensitivity
-    from watchsim.studies.steady import steady as steady
     from watchsim.studies.sweep import sweep as sweep
     from watchsim.verification.all_checks import verify as verify
 

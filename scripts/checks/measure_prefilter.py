@@ -24,8 +24,8 @@ from watchsim.mechanism.compile import compile_scene  # noqa: E402
 from watchsim.scene.file.load import load  # noqa: E402
 from watchsim.scene.recording import EVERYTHING  # noqa: E402
 from watchsim.scene.scene import Scene  # noqa: E402
+from watchsim.simulation.loop_state.state_arrays import arrays_of  # noqa: E402
 from watchsim.simulation.runner import Run  # noqa: E402
-from watchsim.simulation.state_arrays import arrays_of  # noqa: E402
 from watchsim.simulation.stops import Stop  # noqa: E402
 
 

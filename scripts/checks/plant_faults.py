@@ -47,11 +47,11 @@ AREAS = {  # name -> (files, tests)
     ),
     "pictures": (
         (
-            "render/run_movie.py",
+            "render/movies/run_movie.py",
             "render/frame/pose_history.py",
-            "render/speed_plot.py",
-            "render/frame/readouts.py",
-            "render/encoder.py",
+            "render/figures/speed_plot.py",
+            "render/frame/marks/readouts.py",
+            "render/movies/encoder.py",
         ),
         ("tests/render",),
     ),

@@ -13,8 +13,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from hunt.generator.material import Material, reach
 from hunt.impulses import Touches
-from hunt.material import Material, reach
 from watchsim.scene.scene import Scene
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.record.trajectory import Trajectory

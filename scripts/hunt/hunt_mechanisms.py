@@ -24,7 +24,7 @@ from typing import Any
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from hunt.generate import FAMILIES, mechanism
+from hunt.generator.generate import FAMILIES, mechanism
 from hunt.judge import Verdict, judged
 from hunt.pool import answers
 from hunt.shrink import shrunk

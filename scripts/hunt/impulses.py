@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import nnls
 
-from hunt.material import reach
+from hunt.generator.material import reach
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point, moved
 from watchsim.scene.body import Body
 from watchsim.scene.scene import Scene

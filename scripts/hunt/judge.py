@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hunt.books import faults
-from hunt.material import Material, reach
+from hunt.generator.material import Material, reach
 from hunt.views import View, perturbed, views
 from hunt.witness import witness_fault
 from watchsim.scene.errors import SceneError

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from hunt.material import apart
+from hunt.generator.material import apart
 from watchsim.geometry.primitives import Point
 from watchsim.scene.body import Body
 from watchsim.scene.scene import Scene

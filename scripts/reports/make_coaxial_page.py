@@ -17,8 +17,8 @@ import numpy as np
 import watchsim as ws
 from watchsim.analysis.contact_forces import forces
 from watchsim.analysis.timing.phases import phases
-from watchsim.render.run_movie import frame
-from watchsim.render.turn_picture import turn_picture
+from watchsim.render.movies.run_movie import frame
+from watchsim.render.stills.turn_picture import turn_picture
 from watchsim.scene.file.override import changed
 from watchsim.scene.scene import Scene
 from watchsim.simulation.record.trajectory import EventKind, Trajectory

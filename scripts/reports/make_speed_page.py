@@ -27,7 +27,7 @@ from watchsim.bench.scenarios import Scenario, scenarios
 from watchsim.bench.wall_clock import whole
 from watchsim.commands.bench import measured, write
 from watchsim.profiles_path import profiles_dir
-from watchsim.render.speed_plot import plot_speed
+from watchsim.render.figures.speed_plot import plot_speed
 from watchsim.scene.file.load import load
 from watchsim.simulation.methods import MOREAU
 from watchsim.simulation.simulate import simulate

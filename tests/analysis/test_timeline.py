@@ -18,7 +18,7 @@ from watchsim.analysis.timing.beats import beats
 from watchsim.cli import main
 from watchsim.commands.common.console import BAD_INPUT, FINE
 from watchsim.profiles_path import profiles_dir
-from watchsim.render.phase_plot import phase_plot
+from watchsim.render.figures.phase_plot import phase_plot
 from watchsim.scene.file.load import load
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.record.trajectory import Trajectory

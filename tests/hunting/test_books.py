@@ -12,9 +12,9 @@ import hunt_path  # noqa: F401
 import numpy as np
 import pytest
 from hunt.books import faults
-from hunt.material import Material
-from hunt.parts import GRAVITY, fixed, free, pivoted, sliding
-from hunt.shapes import box, circle
+from hunt.generator.material import Material
+from hunt.generator.parts import GRAVITY, fixed, free, pivoted, sliding
+from hunt.generator.shapes import box, circle
 
 from watchsim.scene.force import Contact, Side, Spring
 from watchsim.scene.scene import Scene

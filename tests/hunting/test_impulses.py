@@ -7,9 +7,9 @@ import math
 import hunt_path  # noqa: F401
 import numpy as np
 import pytest
+from hunt.generator.parts import fixed, free
+from hunt.generator.shapes import box, circle
 from hunt.impulses import Touches, touching
-from hunt.parts import fixed, free
-from hunt.shapes import box, circle
 
 from watchsim.geometry.primitives import Arc, Line
 from watchsim.scene.force import Contact, Side

@@ -9,11 +9,11 @@ import hunt_path  # noqa: F401
 import numpy as np
 import pytest
 from hunt import pool
-from hunt.generate import mechanism
+from hunt.generator.generate import mechanism
+from hunt.generator.parts import fixed, sliding
+from hunt.generator.shapes import box, circle
 from hunt.judge import Judge, judged, merged
-from hunt.parts import fixed, sliding
 from hunt.pool import answers
-from hunt.shapes import box, circle
 from hunt.views import views
 
 from watchsim.scene.force import Contact, Side

@@ -8,8 +8,8 @@ from dataclasses import replace
 import hunt_path  # noqa: F401
 import numpy as np
 import pytest
-from hunt.generate import FAMILIES, mechanism
-from hunt.material import Material, apart, start_pose
+from hunt.generator.generate import FAMILIES, mechanism
+from hunt.generator.material import Material, apart, start_pose
 from hunt.views import View, perturbed
 from hunt.write import write_scene
 

@@ -9,9 +9,9 @@ import pytest
 from render.fake_runs import MM, circle, disc_run
 
 from watchsim.mechanism.compile import compile_scene
+from watchsim.render.frame.marks.touching_points import ContactMarks
 from watchsim.render.frame.pose_history import poses
-from watchsim.render.frame.touching_points import ContactMarks
-from watchsim.render.run_movie import frame
+from watchsim.render.movies.run_movie import frame
 from watchsim.scene.body import Body
 from watchsim.scene.force import Contact, Side
 from watchsim.scene.scene import Scene

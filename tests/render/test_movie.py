@@ -11,12 +11,12 @@ import pytest
 from matplotlib.colors import to_rgb
 from render.fake_runs import disc_run, slide_run, watch_run
 
-from watchsim.render import encoder
 from watchsim.render.frame.pose_history import poses
 from watchsim.render.frame.stage import Stage
-from watchsim.render.gif_colours import shared_palette
+from watchsim.render.movies import encoder
+from watchsim.render.movies.gif_colours import shared_palette
+from watchsim.render.movies.run_movie import frame, movie
 from watchsim.render.palette import BACKGROUND, BLUED, BRASS, INK, NIGHT, RUBY
-from watchsim.render.run_movie import frame, movie
 
 SMALL = (480, 270)
 

@@ -10,14 +10,14 @@ from matplotlib.colors import to_rgb
 from render.fake_runs import disc_run, slide_run, watch_run
 
 import watchsim as ws
-from watchsim.render.frame.extras import Extras
-from watchsim.render.frame.force_arrows import ForceArrows, arrow_path
-from watchsim.render.frame.insets import beside, inset
+from watchsim.render.frame.marks.extras import Extras
+from watchsim.render.frame.marks.force_arrows import ForceArrows, arrow_path
+from watchsim.render.frame.marks.insets import beside, inset
+from watchsim.render.frame.marks.readouts import changing_speed_text
 from watchsim.render.frame.pose_history import poses
-from watchsim.render.frame.readouts import changing_speed_text
 from watchsim.render.frame.view import Frame
+from watchsim.render.movies.run_movie import frame, movie
 from watchsim.render.palette import CONTACT, RUBY
-from watchsim.render.run_movie import frame, movie
 
 SIZES = ((1280, 720), (720, 1280), (480, 480))
 BOX = Frame(800.0, 100.0, 200.0, 300.0)

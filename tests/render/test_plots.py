@@ -14,10 +14,10 @@ import pytest
 from matplotlib.colors import rgb_to_hsv, to_rgb
 from render.fake_runs import disc_run, slide_run, watch_run
 
+from watchsim.render.figures.plots import Kinematics, plot_kinematics, write_png
 from watchsim.render.frame.filled_parts import parts
-from watchsim.render.frame.readouts import clock
+from watchsim.render.frame.marks.readouts import clock
 from watchsim.render.palette import looks
-from watchsim.render.plots import Kinematics, plot_kinematics, write_png
 
 
 def curves(figure):

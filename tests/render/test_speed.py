@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from matplotlib.figure import Figure
 
-from watchsim.render.speed_plot import plot_speed
+from watchsim.render.figures.speed_plot import plot_speed
 
 
 def row(scene: str, method: str, time: float, error: float, note: str = "") -> dict[str, object]:

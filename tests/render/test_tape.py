@@ -8,7 +8,7 @@ from analysis.made_beats import PERIOD, PIN, balance_only, steady_swings
 from analysis.made_faults import swiss
 
 from watchsim.analysis.tape import tape
-from watchsim.render.tape import PAPER, plot_tape
+from watchsim.render.figures.tape import PAPER, plot_tape
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.simulate import simulate
 

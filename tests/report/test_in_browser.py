@@ -23,8 +23,8 @@ from watchsim.profiles_path import profiles_dir
 from watchsim.render.frame.filled_parts import loops_of
 from watchsim.render.frame.pose_history import poses
 from watchsim.render.frame.stage import Stage
+from watchsim.render.movies.run_movie import frame
 from watchsim.render.palette import BLUED, BRASS, GILT, NIGHT, RUBY, STEEL
-from watchsim.render.run_movie import frame
 from watchsim.scene.file.load import load
 from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.simulation.simulate import simulate

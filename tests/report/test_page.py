@@ -24,11 +24,11 @@ from watchsim.geometry.loop import Loop
 from watchsim.geometry.polyline import polyline
 from watchsim.geometry.primitives import Arc, Line
 from watchsim.pages.html import element, embedded, joined
-from watchsim.pages.motion import TooMuch, channels
-from watchsim.pages.outlines import path_data
 from watchsim.pages.page import SCRIPTS
+from watchsim.pages.player.motion import TooMuch, channels
+from watchsim.pages.player.outlines import path_data
+from watchsim.pages.player.stretch_shown import shown
 from watchsim.pages.report import page_text, report
-from watchsim.pages.stretch_shown import shown
 from watchsim.profiles_path import profiles_dir
 from watchsim.render.fewest_rows import kept_rows
 from watchsim.scene.file.load import load
@@ -180,7 +180,7 @@ def test_rows_that_are_kept_tell_the_motion(lever: Trajectory) -> None:
 
 
 def test_too_much_motion_is_refused_or_cut(monkeypatch: pytest.MonkeyPatch, lever: Trajectory) -> None:
-    monkeypatch.setattr("watchsim.pages.motion.MOST", 4_000)
+    monkeypatch.setattr("watchsim.pages.player.motion.MOST", 4_000)
     with pytest.raises(TooMuch, match="choose a shorter window"):
         page_text(lever, window=(0.0, 0.6))
     start, end = data_of(page_text(lever))["window"]

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from watchsim.studies.return_map import Return
-from watchsim.studies.shooting import Fixed, Lost, fixed_point
+from watchsim.studies.limit_cycle.return_map import Return
+from watchsim.studies.limit_cycle.shooting import Fixed, Lost, fixed_point
 
 
 def returning(function, good=lambda a: True):

@@ -10,7 +10,7 @@ import pytest
 import watchsim as ws
 from watchsim.analysis.timing.averages import mean_over
 from watchsim.simulation.record.half_swings import unevenness
-from watchsim.studies.steady import steady
+from watchsim.studies.limit_cycle.steady import steady
 
 
 @pytest.fixture(scope="module")

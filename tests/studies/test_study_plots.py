@@ -7,7 +7,7 @@ import io
 import pytest
 
 import watchsim as ws
-from watchsim.render.study import plot_sweep
+from watchsim.render.figures.study import plot_sweep
 from watchsim.studies.axes import Axis
 from watchsim.studies.outputs import outputs_named
 from watchsim.studies.sweep import Sweep

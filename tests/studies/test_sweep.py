@@ -16,11 +16,11 @@ import pytest
 import watchsim as ws
 from watchsim.cli import main
 from watchsim.studies.axes import axes_from_values
-from watchsim.studies.executor import Here
-from watchsim.studies.journal import NAME
 from watchsim.studies.outputs import outputs_named
 from watchsim.studies.point import Question
 from watchsim.studies.sweep import swept
+from watchsim.studies.workers.executor import Here
+from watchsim.studies.workers.journal import NAME
 
 ROOT = Path(ws.__file__).resolve().parents[1]
 BENCH = ws.profiles_dir() / "bench_lever"

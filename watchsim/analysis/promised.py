@@ -16,8 +16,8 @@ from watchsim.scene.errors import Fault, Faults
 from watchsim.scene.file.keys.locate import key_lines
 from watchsim.scene.roles import keeps_time, partners, roles
 from watchsim.scene.scene import Expectation, Scene
+from watchsim.simulation.loop_state.state import COUNT_NAMES
 from watchsim.simulation.record.trajectory import EVENT_DTYPE, Trajectory
-from watchsim.simulation.state import COUNT_NAMES
 from watchsim.simulation.stops import Stop
 
 COUNTS = (*COUNT_NAMES, "cells", "cells_asked", "declared_pairs", "sweeps")

@@ -74,7 +74,7 @@ def measured(
 def write(folder: Path, rows: list[dict[str, Any]], references: list[dict[str, Any]]) -> None:
     """bench.json, bench.md and bench.png."""
     from watchsim.bench.comparison_table import table
-    from watchsim.render.speed_plot import plot_speed
+    from watchsim.render.figures.speed_plot import plot_speed
     from watchsim.results.tables import json_text
     from watchsim.storage.write import write_file
 

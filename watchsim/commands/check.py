@@ -106,14 +106,14 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _still(scene: Scene, compiled: Compiled, pairs: ModelledPairs, report: Mapping[str, Any], path: str) -> None:
-    from watchsim.render.still import still
+    from watchsim.render.stills.still import still
 
     places = [(1e-3 * f["x_mm"], 1e-3 * f["y_mm"]) for f in report["findings"] if f["code"] == "overlap"]
     still(scene, path, compiled, pairs, places)
 
 
 def _sheet(scene: Scene, compiled: Compiled, function: Function, path: Path, width: float) -> None:
-    from watchsim.render.function_sheet import function_sheet, write_sheet
+    from watchsim.render.stills.function_sheet import function_sheet, write_sheet
 
     try:
         figure = function_sheet(scene, compiled, function, 1e3 * width)

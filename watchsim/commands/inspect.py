@@ -49,7 +49,7 @@ def run(args: argparse.Namespace) -> int:
         drawing = _only(drawing, [name.strip() for name in args.layer.split(",")])
     unreadable = not drawing.layers and any(finding.severity == "error" for finding in drawing.findings)
     if args.png and not unreadable:
-        from watchsim.render.drawing_picture import draw_drawing
+        from watchsim.render.stills.drawing_picture import draw_drawing
 
         draw_drawing(drawing, args.png, centres=args.centres)
         say(f"Picture: {args.png}")

@@ -49,8 +49,8 @@ def options(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from watchsim.commands.common.inputs import read_run
     from watchsim.commands.common.output_place import secured_file, swept_run
-    from watchsim.render.encoder import check_path
-    from watchsim.render.run_movie import ADAPTIVE, movie
+    from watchsim.render.movies.encoder import check_path
+    from watchsim.render.movies.run_movie import ADAPTIVE, movie
     from watchsim.units import TIME
 
     speed, size = (args.speed if args.speed == ADAPTIVE else parse_speed(args.speed)), _size(args.size)

@@ -65,13 +65,13 @@ def run(args: argparse.Namespace) -> int:
         target.parent.mkdir(exist_ok=True)
     paths = [secured_file(target.parent / f"{target.name}.{name}", "the plot") for name in formats]
     if args.tape:
-        from watchsim.render.tape import plot_tape
+        from watchsim.render.figures.tape import plot_tape
 
         figure = plot_tape(trajectory, window)
     elif args.phases:
         from watchsim.analysis.timeline.oscillation import shown_beats
         from watchsim.analysis.timeline.table import timeline_text
-        from watchsim.render.phase_plot import phase_plot
+        from watchsim.render.figures.phase_plot import phase_plot
 
         width = parse_width(args.width)
         try:
@@ -81,7 +81,7 @@ def run(args: argparse.Namespace) -> int:
         print(timeline_text(trajectory, told))
         figure = phase_plot(trajectory, window, 1e3 * width, told)
     else:
-        from watchsim.render.plots import plot_kinematics
+        from watchsim.render.figures.plots import plot_kinematics
 
         figure = plot_kinematics(trajectory, _bodies(trajectory, args.bodies), quantities, window)
     for path in paths:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from watchsim.commands.common.console import FINE, MISSED, InputError, announce_compile, print_json
 
 if TYPE_CHECKING:
-    from watchsim.studies.cycle import Cycle
+    from watchsim.studies.limit_cycle.cycle import Cycle
 
 HELP = "amplitude, rate and beat error that a watch settles to, without waiting for it"
 LABEL = 13
@@ -23,7 +23,7 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from watchsim.commands.common.inputs import load_scene
-    from watchsim.studies.steady import steady
+    from watchsim.studies.limit_cycle.steady import steady
 
     if args.tol is not None and not 1e-13 <= args.tol <= 1e-2:
         raise InputError(f"--tol {args.tol:g}: must lie between 1e-13 and 1e-2.")

@@ -28,8 +28,8 @@ from watchsim.commands.common.console import (
 
 if TYPE_CHECKING:
     from watchsim.scene.scene import Scene
-    from watchsim.studies.executor import Executor
     from watchsim.studies.outputs import Output
+    from watchsim.studies.workers.executor import Executor
 
 HELP = "parameter study: table and plot; or what matters in a watch (--sensitivity)"
 FILES = ("rows.jsonl", "sweep.csv", "sweep.json", "sweep.parquet", "sweep.png", "sweep.svg")
@@ -153,8 +153,8 @@ def _status(whole: bool, folder: Path, fine: int) -> int:
 
 def _executor(args: argparse.Namespace, points: int | None) -> Executor:
     from watchsim.jit import is_cached
-    from watchsim.studies.executor import chosen
     from watchsim.studies.sweep import processors
+    from watchsim.studies.workers.executor import chosen
 
     workers = args.workers or processors()
     if points is not None:
@@ -169,14 +169,14 @@ def _compile_once() -> None:
     """Before several processes do it all at once."""
     from watchsim.profiles_path import profiles_dir
     from watchsim.scene.file.load import load
-    from watchsim.studies.loop import Loop
+    from watchsim.studies.limit_cycle.loop import Loop
 
     Loop(load(profiles_dir() / "balance"), 1e-9).warm_up()
 
 
 def _watched(compute: Callable[[Progress], Any]) -> Any:
     """With a progress line; a worker that was killed is no fault of the program."""
-    from watchsim.studies.executor import WorkersLost
+    from watchsim.studies.workers.executor import WorkersLost
 
     progress = Progress("points:")
     try:
@@ -209,7 +209,7 @@ def _folder(args: argparse.Namespace, scene: Scene) -> Path:
 
 
 def _figure_of_sweep(done: Any) -> Any:
-    from watchsim.render.study import plot_sweep
+    from watchsim.render.figures.study import plot_sweep
 
     try:
         return plot_sweep(done) if done.rows else None
@@ -219,7 +219,7 @@ def _figure_of_sweep(done: Any) -> Any:
 
 
 def _figure_of_sensitivity(done: Any) -> Any:
-    from watchsim.render.effects import plot_sensitivity
+    from watchsim.render.figures.effects import plot_sensitivity
 
     return plot_sensitivity(done) if done.effects else None
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from watchsim.pages.html import Markup, element
-from watchsim.render.frame.readouts import decimals_for, signed
+from watchsim.render.frame.marks.readouts import decimals_for, signed
 from watchsim.simulation.record.trajectory import Array
 
 WIDTH, HEIGHT = 560.0, 230.0

@@ -13,11 +13,11 @@ from watchsim.analysis.timing.beats import Beats, beats
 from watchsim.mechanism.compile import compile_scene
 from watchsim.pages.charts import scatter
 from watchsim.pages.html import Content, Markup, element, joined
-from watchsim.pages.stretch_shown import shown
-from watchsim.pages.timekeeping import both_ways, with_error
+from watchsim.pages.player.stretch_shown import shown
+from watchsim.pages.timing_sheet.timekeeping import both_ways, with_error
 from watchsim.render.frame.pose_history import Window, poses
 from watchsim.render.frame.stage import Stage
-from watchsim.render.still import at_rest
+from watchsim.render.stills.still import at_rest
 from watchsim.scene.oscillation import frequency
 from watchsim.scene.roles import swings
 from watchsim.scene.scene import Scene

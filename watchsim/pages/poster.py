@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from watchsim.pages.html import Markup, element
-from watchsim.pages.outlines import path_data
+from watchsim.pages.player.outlines import path_data
 from watchsim.render.frame.filled_parts import Part
 from watchsim.render.frame.pose_history import Window, poses
 from watchsim.render.frame.view import Frame, View, room_of, view

@@ -12,15 +12,15 @@ from typing import Any
 
 from watchsim.analysis.summary import summary
 from watchsim.analysis.timing.phases import Phase, phases
-from watchsim.pages.data import picture_size, player_data
 from watchsim.pages.files import packed_files
 from watchsim.pages.html import Markup, element, joined
-from watchsim.pages.motion import Channel, TooMuch, channels
-from watchsim.pages.outlines import drawn_parts
 from watchsim.pages.page import page
+from watchsim.pages.player.data import picture_size, player_data
+from watchsim.pages.player.motion import Channel, TooMuch, channels
+from watchsim.pages.player.outlines import drawn_parts
+from watchsim.pages.player.stretch_shown import shown
 from watchsim.pages.poster import poster
-from watchsim.pages.sheet import sheet, verdict
-from watchsim.pages.stretch_shown import shown
+from watchsim.pages.timing_sheet.sheet import sheet, verdict
 from watchsim.render.frame.pose_history import Window, recorded
 from watchsim.results.tables import plain
 from watchsim.simulation.record.trajectory import Trajectory

@@ -14,13 +14,15 @@ from watchsim.dynamics.applied_forces import next_knot
 from watchsim.dynamics.delassus import fill_inverse
 from watchsim.jit import entry, kernel
 from watchsim.model.records import CellsRef, ModelRef
-from watchsim.simulation.buffers import RecordRef
 from watchsim.simulation.events.after_event import settle
 from watchsim.simulation.events.closed_contacts import refresh
 from watchsim.simulation.events.contact_mode_end import NONE_FIRED, first_leave, first_turn
 from watchsim.simulation.events.impulse_check import is_explained, kinetic_energy
 from watchsim.simulation.events.mode_recurrence import begin_instant, decide_once, forget_decisions
 from watchsim.simulation.events.time_of_impact import first_touch
+from watchsim.simulation.loop_state.buffers import RecordRef
+from watchsim.simulation.loop_state.scratch import MONITORS, RECENT, SUMS, scratch_by_reference
+from watchsim.simulation.loop_state.state import StateRef
 from watchsim.simulation.motion.contact_islands import place_contacts
 from watchsim.simulation.motion.coupled_motion import motion
 from watchsim.simulation.motion.dense_output import dense_value
@@ -38,8 +40,6 @@ from watchsim.simulation.motion.row_times import keep_inner_rows
 from watchsim.simulation.motion.turning_points import keep_passages
 from watchsim.simulation.options import OptionsRef
 from watchsim.simulation.record.write_buffers import keep_row
-from watchsim.simulation.scratch import MONITORS, RECENT, SUMS, scratch_by_reference
-from watchsim.simulation.state import StateRef
 from watchsim.simulation.stops import Stop
 from watchsim.simulation.tolerances import DEPENDENT_IN_STEPS, FINEST_ROWS, RATES_TURNED, SAME_INSTANT
 

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from typing import Any
 
 from watchsim.simulation.advance import BEARING, KINDS, TOUCHED
+from watchsim.simulation.loop_state.scratch import RECENT, Ended
+from watchsim.simulation.loop_state.state import State
 from watchsim.simulation.motion.coupled_motion import EXTENT, NORMAL, PARADOX, TANGENTIAL
 from watchsim.simulation.record.trajectory import Pair
-from watchsim.simulation.scratch import RECENT, Ended
-from watchsim.simulation.state import State
 from watchsim.simulation.tolerances import LEDGER_PER_TOLERANCE, LEDGER_SHARE
 
 MANY = 6  # different causes named

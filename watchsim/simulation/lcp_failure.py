@@ -10,9 +10,9 @@ from typing import Any
 
 from watchsim.dynamics.lcp.outcome import LcpOutcome
 from watchsim.dynamics.problem_kinds import Level
+from watchsim.simulation.loop_state.scratch import Scratch
+from watchsim.simulation.loop_state.state import State
 from watchsim.simulation.record.contact_names import Pair
-from watchsim.simulation.scratch import Scratch
-from watchsim.simulation.state import State
 
 LEMKE_ENDS = {
     LcpOutcome.SOLVED: "a solution",

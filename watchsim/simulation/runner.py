@@ -23,10 +23,13 @@ from watchsim.scene.oscillation import frequency
 from watchsim.scene.recording import Recording
 from watchsim.scene.scene import Scene
 from watchsim.simulation.advance import EVENTS_PER_CONTACT, ROWS_PER_STEP, advance
-from watchsim.simulation.buffers import Until, new_record
 from watchsim.simulation.energy_ledger import ledger_fails, touching, what_alternates
 from watchsim.simulation.interrupts import held_interrupts
 from watchsim.simulation.lcp_failure import failure_of
+from watchsim.simulation.loop_state.buffers import Until, new_record
+from watchsim.simulation.loop_state.scratch import new_scratch
+from watchsim.simulation.loop_state.state import COUNT_NAMES, State, new_state, room_for
+from watchsim.simulation.loop_state.state_arrays import arrays_of
 from watchsim.simulation.methods import EVENT_DRIVEN
 from watchsim.simulation.options import Options, options_for
 from watchsim.simulation.record.contact_names import pairs_of
@@ -35,11 +38,8 @@ from watchsim.simulation.record.row_selection import Kept, columns_of, tail_leng
 from watchsim.simulation.record.saved_state import SavedState, save_state
 from watchsim.simulation.record.tally import Tally
 from watchsim.simulation.record.trajectory import EVENT_DTYPE, EventKind, Trajectory
-from watchsim.simulation.scratch import new_scratch
 from watchsim.simulation.start_clearance import clear_start
 from watchsim.simulation.start_clearance import warm_up as warm_up_start
-from watchsim.simulation.state import COUNT_NAMES, State, new_state, room_for
-from watchsim.simulation.state_arrays import arrays_of
 from watchsim.simulation.stops import Stop
 from watchsim.simulation.tolerances import FIRST_STEP
 

@@ -19,9 +19,9 @@ from watchsim.scene.scene import Scene
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
 from watchsim.studies.axes import Value
-from watchsim.studies.judge import judged
+from watchsim.studies.limit_cycle.judge import judged
+from watchsim.studies.limit_cycle.steady import steady
 from watchsim.studies.outputs import OUTPUTS
-from watchsim.studies.steady import steady
 
 Row = dict[str, Any]
 

@@ -16,14 +16,14 @@ import numpy as np
 
 from watchsim.scene.errors import Fault, SceneError
 from watchsim.scene.scene import Scene
-from watchsim.studies.cycle import Cycle
-from watchsim.studies.executor import Executor, chosen
-from watchsim.studies.journal import Journal
+from watchsim.studies.limit_cycle.cycle import Cycle
+from watchsim.studies.limit_cycle.steady import steady
 from watchsim.studies.outputs import USUAL, Output, outputs_named
 from watchsim.studies.point import Question, Row
 from watchsim.studies.quantities import Quantity, fixed_nominal, quantities
-from watchsim.studies.steady import steady
 from watchsim.studies.sweep import Progress, computed, study_of
+from watchsim.studies.workers.executor import Executor, chosen
+from watchsim.studies.workers.journal import Journal
 from watchsim.units import known_unit
 
 AGREED = 0.01  # share of a derivative by which its two steps may differ

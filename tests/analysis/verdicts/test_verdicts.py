@@ -10,12 +10,12 @@ from analysis.made_beats import lever_run
 from analysis.made_faults import chipped, knocked, renamed, swiss, toothless, turned_over, unguarded
 
 from watchsim.analysis.timing.beats import beats
-from watchsim.analysis.verdicts.arms import arms
 from watchsim.analysis.verdicts.backwards import _against_teeth
+from watchsim.analysis.verdicts.equilibrium.arms import arms
+from watchsim.analysis.verdicts.equilibrium.in_force import in_force
+from watchsim.analysis.verdicts.equilibrium.statics import at_lever
 from watchsim.analysis.verdicts.faces import face
-from watchsim.analysis.verdicts.in_force import in_force
 from watchsim.analysis.verdicts.knocking import _angles, knocks
-from watchsim.analysis.verdicts.statics import at_lever
 from watchsim.analysis.verdicts.tripping import tripping
 from watchsim.analysis.verdicts.unlocked import unlocked
 from watchsim.analysis.verdicts.verdict import verdict

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from watchsim.analysis.verdicts.arms import Arms, arms
-from watchsim.analysis.verdicts.in_force import in_force
+from watchsim.analysis.verdicts.equilibrium.arms import Arms, arms
+from watchsim.analysis.verdicts.equilibrium.in_force import in_force
 from watchsim.analysis.verdicts.watch import Watch
 from watchsim.analysis.verdicts.words import OVERBANKS, Verdict, degrees, torque_text, when
 from watchsim.simulation.event_kinds import EventKind

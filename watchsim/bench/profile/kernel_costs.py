@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from watchsim.bench.profile.lcp_costs import problem_costs
 from watchsim.bench.profile.moments import Kind, Moment, Walk, seconds_each
 from watchsim.bench.profile.repeated_work import evaluations_again, impacts_again, lookups_again, touches_again
-from watchsim.simulation.state import COUNT_NAMES
-from watchsim.simulation.state_arrays import arrays_of
+from watchsim.simulation.loop_state.state import COUNT_NAMES
+from watchsim.simulation.loop_state.state_arrays import arrays_of
 
 REPEATS = 50
 COUNTED_AS = {  # kind of work -> its count, where that has another name

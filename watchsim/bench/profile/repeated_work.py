@@ -16,16 +16,16 @@ from watchsim.dynamics.problem_kinds import Level
 from watchsim.dynamics.small_systems import copy
 from watchsim.model.records import CellsRef, ModelRef
 from watchsim.simulation.advance import advance
-from watchsim.simulation.buffers import RecordRef
 from watchsim.simulation.events.closed_contacts import gather, refresh
 from watchsim.simulation.events.collision import approaching, collide
 from watchsim.simulation.events.mode_decision import decide
 from watchsim.simulation.events.time_of_impact import first_touch
+from watchsim.simulation.loop_state.buffers import RecordRef
+from watchsim.simulation.loop_state.scratch import scratch_by_reference
+from watchsim.simulation.loop_state.state import StateRef
 from watchsim.simulation.motion.contact_islands import island_of, label_islands, place_contacts, sort_by_island
 from watchsim.simulation.motion.coupled_motion import engage, motion
 from watchsim.simulation.options import OptionsRef
-from watchsim.simulation.scratch import scratch_by_reference
-from watchsim.simulation.state import StateRef
 from watchsim.simulation.stops import Stop
 
 COMPRESSION, EXPANSION, MODES = 0, 1, 2

@@ -17,7 +17,7 @@ from watchsim.candidates.pair_cache import forget
 from watchsim.mechanism.compile import compile_scene
 from watchsim.scene.recording import Recording
 from watchsim.scene.scene import Scene
-from watchsim.simulation.buffers import Until
+from watchsim.simulation.loop_state.buffers import Until
 from watchsim.simulation.methods import EVENT_DRIVEN
 from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.simulation.runner import Run

@@ -62,7 +62,7 @@ def _drawn(draw: Callable[[Path], object]) -> Callable[[Path], None]:
 
 def _plots(run: Trajectory) -> dict[str, Callable[[Path], object]]:
     """Kinematic plots: all that was recorded, and the last beats."""
-    from watchsim.render.plots import Kinematics, write_png
+    from watchsim.render.figures.plots import Kinematics, write_png
 
     if len(run.t) < 2:
         return {}
@@ -106,7 +106,7 @@ def filmed(run: Trajectory, slow: float) -> tuple[tuple[float, float], float]:
 
 
 def _movie(run: Trajectory, path: Path, slow: float) -> None:
-    from watchsim.render.run_movie import movie
+    from watchsim.render.movies.run_movie import movie
 
     window, speed = filmed(run, slow)
     progress = Progress(f"{path.name}, frames:")

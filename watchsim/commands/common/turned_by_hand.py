@@ -29,16 +29,16 @@ def turned_by_hand(scene: Scene, swing: str | None, movie: str | None, picture: 
 
     target = None
     if movie:
-        from watchsim.render.encoder import check_path
+        from watchsim.render.movies.encoder import check_path
 
         target = secured_file(check_path(movie), "the movie")
     found = turn(scene, None if swing is None else _swing(scene, swing))
     if picture:
-        from watchsim.render.turn_picture import turn_picture
+        from watchsim.render.stills.turn_picture import turn_picture
 
         turn_picture(found, Path(picture))
     if target is not None:
-        from watchsim.render.turn_movie import turn_movie
+        from watchsim.render.movies.turn_movie import turn_movie
 
         turn_movie(found, target)
         say(f"Movie: {target}")

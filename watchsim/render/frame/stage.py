@@ -19,14 +19,14 @@ from numpy.typing import NDArray
 
 from watchsim.geometry.primitives import Arc
 from watchsim.render.frame.coloured_edges import Edges, edge_paths
-from watchsim.render.frame.extras import NOTHING, Extras
 from watchsim.render.frame.filled_parts import Part, is_round, loops_of, parts
-from watchsim.render.frame.mechanism_extras import Beside
+from watchsim.render.frame.marks.extras import NOTHING, Extras
+from watchsim.render.frame.marks.mechanism_extras import Beside
+from watchsim.render.frame.marks.readouts import Clock
+from watchsim.render.frame.marks.word_layout import draw_key, draw_notes, draw_rules, draw_scale, lay_out, relative_size
 from watchsim.render.frame.pose_history import Window
 from watchsim.render.frame.pose_matrix import pose_matrix
-from watchsim.render.frame.readouts import Clock
 from watchsim.render.frame.view import size_of, view
-from watchsim.render.frame.word_layout import draw_key, draw_notes, draw_rules, draw_scale, lay_out, relative_size
 from watchsim.render.palette import BACKGROUND, CONTACT, INK
 from watchsim.scene.carriers import at_start, is_still
 from watchsim.simulation.record.trajectory import Trajectory

@@ -24,6 +24,7 @@ from watchsim.simulation.events.immovable import drop_immovable
 from watchsim.simulation.events.mode_decision import decide
 from watchsim.simulation.events.released_contacts import let_go
 from watchsim.simulation.events.zero_rates import note_pace, rounding_of, set_rate_zeros
+from watchsim.simulation.loop_state.state import NO_CONTACT
 from watchsim.simulation.motion.contact_islands import island_of, label_islands, place_contacts, sort_by_island
 from watchsim.simulation.motion.drift_projection import (
     find_correction,
@@ -33,7 +34,6 @@ from watchsim.simulation.motion.drift_projection import (
 )
 from watchsim.simulation.motion.sleeping import add_terms, begin_terms, find_sleepers
 from watchsim.simulation.record.write_buffers import keep_change, keep_event
-from watchsim.simulation.state import NO_CONTACT
 from watchsim.simulation.stops import Stop
 from watchsim.simulation.tolerances import CONTRADICTING_RATE, DEPENDENT_AT_EVENTS, DEPENDENT_IN_STEPS, LEFT_PRIMITIVE
 

@@ -8,9 +8,9 @@ from watchsim.contact.index_sets import OPEN
 from watchsim.contact.kinematics import contact_kinematics
 from watchsim.jit import kernel
 from watchsim.simulation.events.handover import continues_active
+from watchsim.simulation.loop_state.scratch import ask
+from watchsim.simulation.loop_state.state import NO_CONTACT
 from watchsim.simulation.motion.sleeping import is_at_rest
-from watchsim.simulation.scratch import ask
-from watchsim.simulation.state import NO_CONTACT
 from watchsim.simulation.stops import Stop
 
 

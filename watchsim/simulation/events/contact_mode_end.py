@@ -6,11 +6,11 @@ import math
 
 from watchsim.contact.index_sets import STICK
 from watchsim.jit import kernel
+from watchsim.simulation.loop_state.scratch import MONITORS
 from watchsim.simulation.motion.coupled_motion import TANGENTIAL, motion
 from watchsim.simulation.motion.dense_output import dense_value
 from watchsim.simulation.motion.free_motion import turning_time
 from watchsim.simulation.motion.root_bracket import is_open, narrowed, next_time, opened
-from watchsim.simulation.scratch import MONITORS
 from watchsim.simulation.tolerances import ROOT_RESOLUTION, SLIP_SLACK
 
 SAMPLES = 8

@@ -15,10 +15,10 @@ from watchsim.contact.kinematics import contact_kinematics
 from watchsim.contact.poses import place
 from watchsim.jit import kernel
 from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.loop_state.scratch import ask
+from watchsim.simulation.loop_state.state import NO_CONTACT
 from watchsim.simulation.motion.drift_projection import project_velocities
 from watchsim.simulation.record.write_buffers import keep_event
-from watchsim.simulation.scratch import ask
-from watchsim.simulation.state import NO_CONTACT
 from watchsim.simulation.tolerances import DEPENDENT_IN_STEPS, FAR_POINTS, LEFT_PRIMITIVE, NEAR_POINTS, SHARP_TURN, SMOOTH_TURN
 
 

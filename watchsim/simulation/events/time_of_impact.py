@@ -17,10 +17,10 @@ from watchsim.jit import kernel
 from watchsim.model.records import FIXED, FREE, LINE, PIVOT, SLIDE
 from watchsim.simulation.events.handover import is_beside_active, room_beside_active
 from watchsim.simulation.events.immovable import is_immovable
+from watchsim.simulation.loop_state.scratch import ask
+from watchsim.simulation.loop_state.state import NO_CONTACT
 from watchsim.simulation.motion.sleeping import is_at_rest
 from watchsim.simulation.motion.step_path import body_on_path
-from watchsim.simulation.scratch import ask
-from watchsim.simulation.state import NO_CONTACT
 from watchsim.simulation.tolerances import IMMOVABLE, NEIGHBOUR_STRIDE, SLOWEST_CLOSING, TIME_ROUNDING
 
 

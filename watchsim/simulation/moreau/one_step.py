@@ -17,11 +17,11 @@ from watchsim.dynamics.applied_forces import driving_force, joint_damping, joint
 from watchsim.dynamics.small_systems import copy
 from watchsim.jit import kernel
 from watchsim.simulation.events.immovable import is_immovable
+from watchsim.simulation.loop_state.scratch import ask
 from watchsim.simulation.moreau.mobility import fill_mobility, push, rates_of
 from watchsim.simulation.moreau.percussion_laws import cone
 from watchsim.simulation.moreau.percussions import friction_cones, solve_percussions
 from watchsim.simulation.moreau.prox_relaxation import relax
-from watchsim.simulation.scratch import ask
 from watchsim.simulation.stops import Stop
 from watchsim.simulation.tolerances import TAKEN_BACK, YIELD
 

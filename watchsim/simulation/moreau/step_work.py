@@ -12,9 +12,9 @@ from watchsim.contact.poses import poses
 from watchsim.jit import by_reference
 from watchsim.model.named_fields import blank
 from watchsim.model.records import Model
+from watchsim.simulation.loop_state.scratch import Asked, asked_of
+from watchsim.simulation.loop_state.state import room_for
 from watchsim.simulation.moreau.percussion_laws import Laws, laws
-from watchsim.simulation.scratch import Asked, asked_of
-from watchsim.simulation.state import room_for
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]

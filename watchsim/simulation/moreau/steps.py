@@ -9,8 +9,10 @@ from watchsim.contact.kinematics import ClosedRef
 from watchsim.dynamics.small_systems import copy
 from watchsim.jit import entry, inlined, kernel
 from watchsim.model.records import CellsRef, ModelRef
-from watchsim.simulation.buffers import RecordRef
 from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.loop_state.buffers import RecordRef
+from watchsim.simulation.loop_state.scratch import AskedRef
+from watchsim.simulation.loop_state.state import StateRef
 from watchsim.simulation.moreau.one_step import act, closed_at_middle, move
 from watchsim.simulation.moreau.percussion_laws import LawsRef
 from watchsim.simulation.moreau.percussions import stop_approaches
@@ -18,8 +20,6 @@ from watchsim.simulation.moreau.step_work import MoreauWorkRef
 from watchsim.simulation.motion.turning_points import sign
 from watchsim.simulation.options import OptionsRef
 from watchsim.simulation.record.write_buffers import keep_event, keep_row
-from watchsim.simulation.scratch import AskedRef
-from watchsim.simulation.state import StateRef
 from watchsim.simulation.stops import Stop
 from watchsim.simulation.tolerances import STEP_ROUNDING
 

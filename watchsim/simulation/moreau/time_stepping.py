@@ -12,13 +12,13 @@ from watchsim.mechanism.compile import Compiled
 from watchsim.model.named_fields import blank, row_of
 from watchsim.scene.recording import Recording
 from watchsim.scene.scene import Scene
-from watchsim.simulation.buffers import Until, new_record
+from watchsim.simulation.loop_state.buffers import Until, new_record
+from watchsim.simulation.loop_state.state import room_for
 from watchsim.simulation.methods import MOREAU
 from watchsim.simulation.moreau.step_work import moreau_work
 from watchsim.simulation.moreau.steps import EVENTS_PER_CONTACT, ROWS_PER_STEP, Pace, advance_fixed
 from watchsim.simulation.record.saved_state import SavedState
 from watchsim.simulation.runner import EVENTS, ROWS, Run
-from watchsim.simulation.state import room_for
 from watchsim.simulation.stops import Stop
 
 ROWS_PER_QUARTER = 300  # of the fastest spring's period; of the scene's duration where there is no spring

@@ -16,8 +16,8 @@ from watchsim.dynamics.applied_forces import damping_power, drive_power, forces
 from watchsim.dynamics.bearing_friction import add_drag, add_loads, drag_power
 from watchsim.dynamics.delassus import apply
 from watchsim.jit import kernel
+from watchsim.simulation.loop_state.scratch import MONITORS
 from watchsim.simulation.motion.contact_islands import place_contacts
-from watchsim.simulation.scratch import MONITORS
 from watchsim.simulation.tolerances import SLIP_SLACK
 
 NORMAL, TANGENTIAL, EXTENT, PARADOX = range(MONITORS)

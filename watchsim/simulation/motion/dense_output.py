@@ -7,8 +7,8 @@ Noersett & Wanner 1993, II.6). In a flight: the closed form.
 from __future__ import annotations
 
 from watchsim.jit import kernel
+from watchsim.simulation.loop_state.scratch import FLIGHT
 from watchsim.simulation.motion.free_motion import acceleration, flow
-from watchsim.simulation.scratch import FLIGHT
 
 
 @kernel

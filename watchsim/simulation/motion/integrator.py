@@ -9,10 +9,10 @@ from __future__ import annotations
 import math
 
 from watchsim.jit import kernel
+from watchsim.simulation.loop_state.scratch import COUPLED, SUMS
 from watchsim.simulation.motion.coupled_motion import engage, motion
 from watchsim.simulation.motion.dop853 import E3, E5, STAGES, A, C, D
 from watchsim.simulation.motion.step_path import bound_accelerations
-from watchsim.simulation.scratch import COUPLED, SUMS
 from watchsim.simulation.tolerances import SMALLEST_STEP
 
 # Safety is smaller than usual: the motion of coupled bodies grows sharper from step to step, and repeating a step costs more

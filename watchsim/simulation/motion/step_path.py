@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from watchsim.contact.poses import place_body
 from watchsim.jit import kernel
 from watchsim.model.records import FREE
+from watchsim.simulation.loop_state.scratch import FLIGHT
 from watchsim.simulation.motion.dense_output import dense
 from watchsim.simulation.motion.free_motion import flow
-from watchsim.simulation.scratch import FLIGHT
 
 DEGREE = 7
 # The continuous extension is y0 + sum of dense[t] x^a (1 - x)^b, with these exponents (a, b).

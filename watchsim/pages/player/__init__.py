@@ -1,0 +1,1 @@
+"""What the player of a page needs: outlines, motion, events, forces, packed small."""

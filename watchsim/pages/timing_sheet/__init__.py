@@ -1,0 +1,1 @@
+"""The timing sheet of a page: amplitude, rate and beat error, phases, parameters."""

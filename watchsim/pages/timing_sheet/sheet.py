@@ -1,0 +1,109 @@
+"""What does the timing sheet of a page say? The numbers of summary.json, in a watchmaker's units and order."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from watchsim.analysis.energy import energy_shares
+from watchsim.analysis.headlines import expected_text, headlines
+from watchsim.analysis.timing.phases import Phase
+from watchsim.pages.charts import bars
+from watchsim.pages.html import Markup, element, joined, section, table
+from watchsim.pages.timing_sheet.parameters import parameters
+from watchsim.pages.timing_sheet.phase_tables import phase_tables
+from watchsim.pages.timing_sheet.timekeeping import timekeeping
+from watchsim.render.frame.marks.readouts import signed
+from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.units import metric
+
+VERDICTS = {
+    "ticks": ("good", "The watch ticks"),
+    "stops": ("bad", "The watch stops"),
+    "knocks": ("bad", "The watch knocks"),
+    "trips": ("bad", "The escapement trips"),
+    "overbanks": ("bad", "The lever overbanks"),
+    "backwards": ("bad", "The wheel runs backwards"),
+    "unsettled": ("open", "Not settled yet"),
+}
+JUDGED = {True: "✓ kept", False: "✗ missed", None: "not judged"}
+
+
+def sheet(run: Trajectory, numbers: Mapping[str, Any], phases: list[Phase]) -> Markup:
+    """All sections of the sheet that this run has something to say to."""
+    sections = (
+        *timekeeping(run, numbers),
+        *phase_tables(phases),
+        *_energy(run),
+        *_function(numbers),
+        *_judgement(numbers),
+        *_parameters(run),
+        section("words", "The run in words", element("pre", headlines(run, numbers), tabindex=0)),
+    )
+    return joined(sections)
+
+
+def verdict(numbers: Mapping[str, Any]) -> Markup | None:
+    """A line in colour: what is to be thought of this watch; None where nothing keeps time."""
+    word, message = numbers.get("verdict"), numbers.get("verdict_message")
+    if word is None and numbers.get("stopped"):
+        word, message = "stops", numbers.get("stopped_message")
+    if word is None:
+        return None
+    look, told = VERDICTS.get(str(word), ("open", str(word).capitalize()))
+    more = message if message and str(message).casefold() != told.casefold() else None
+    return element("p", element("strong", told), f" {more}" if more else None, class_=f"verdict {look}")
+
+
+def _energy(run: Trajectory) -> Iterator[Markup]:
+    """The ledger as bars."""
+    shares = energy_shares(run)
+    if not shares.went_to:
+        return
+    entries = [
+        (cause, share, f"{signed(100.0 * share, 1)} % · {metric(share * shares.supplied, 'J', 3)}")
+        for cause, share in sorted(shares.went_to.items(), key=lambda item: -item[1])
+        if abs(share) >= 5e-4
+    ]
+    power = f", {metric(shares.supplied / run.simulated, 'W', 4)} on average" if run.simulated > 0.0 else ""
+    told = "Where the energy went: " + ", ".join(f"{cause} {100.0 * share:.1f} %" for cause, share, _ in entries)
+    closes = f"The account closes to {run.energy.get('residual_relative', 0.0):.1g} of it."
+    note = f"{metric(shares.supplied, 'J', 4)} went in{power}. {closes}"
+    yield section("energy", "Energy", element("p", note, class_="note"), bars(entries, told))
+
+
+def _function(numbers: Mapping[str, Any]) -> Iterator[Markup]:
+    """The geometry of function, where the results hold it."""
+    found = numbers.get("function")
+    rows = list(_flat("", found)) if isinstance(found, Mapping) else []
+    if rows:
+        yield section("function", "Geometry of function", table(("quantity", "value"), rows, "Measured from the drawing"))
+
+
+def _flat(path: str, value: Any) -> Iterator[tuple[str, str]]:
+    if isinstance(value, Mapping):
+        for key, item in value.items():
+            yield from _flat(f"{path}{'.' if path else ''}{key}", item)
+    elif isinstance(value, (list, tuple)) and any(isinstance(item, (Mapping, list, tuple)) for item in value):
+        for k, item in enumerate(value):
+            yield from _flat(f"{path}.{k}", item)
+    elif value is not None:
+        yield path, f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def _judgement(numbers: Mapping[str, Any]) -> Iterator[Markup]:
+    """What the scene promises, and what is to be doubted."""
+    entries = numbers.get("expect") or []
+    rows = [(element("span", JUDGED[one["ok"]], class_=f"ok-{one['ok']}"), expected_text(one)) for one in entries]
+    warnings = [element("li", f"Warning: {text}.", class_="warning") for text in numbers.get("warnings") or ()]
+    warnings += [element("li", f"Note: {text}.") for text in numbers.get("notes") or ()]
+    if rows or warnings:
+        told = table(("judged", "promise of the scene"), rows, "What the scene promises", numeric=False) if rows else None
+        yield section("judged", "Promises and notes", element("ul", *warnings) if warnings else None, told)
+
+
+def _parameters(run: Trajectory) -> Iterator[Markup]:
+    rows = parameters(run.scene)
+    if rows:
+        listed = (element("div", element("dt", key), element("dd", value)) for key, value in rows)
+        yield section("parameters", "Parameters", element("dl", *listed))

@@ -1,0 +1,1 @@
+"""Plots: what changes over time, over a beat or over a parameter."""

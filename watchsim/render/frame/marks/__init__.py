@@ -1,0 +1,1 @@
+"""What a frame shows besides the parts themselves: words, numbers, arrows, insets, a strip of curves."""

@@ -1,0 +1,225 @@
+"""Where do the words of a frame stand?
+
+A band at the top for title and time, one at the bottom for what every body reads and the scale; the mechanism has the
+rest. What never changes becomes artists of the figure; what changes is written by `Layout.write`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import FancyBboxPatch
+from matplotlib.text import Text
+from matplotlib.transforms import IdentityTransform
+from numpy.typing import NDArray
+
+from watchsim.render.frame.marks.lettering import Lettering
+from watchsim.render.frame.marks.readouts import Clock, clock, reading, scale_bar, speed_text, turn_text
+from watchsim.render.frame.pose_history import Window, sampled
+from watchsim.render.frame.view import Frame
+from watchsim.render.palette import BACKGROUND, FAINT, GRID, INK, Finish, looks
+from watchsim.scene.body import Body
+from watchsim.simulation.record.trajectory import Trajectory
+
+Array = NDArray[np.float64]
+Pixels = NDArray[np.uint8]
+
+TITLE, TIME, SMALL = 19.0, 24.0, 15.0  # text sizes in pixels at 1280 × 720
+PAD, GAP = 24.0, 30.0
+CHIP = 0.85  # of the text size: the side of a coloured square
+BAR = 0.16  # of the width: the longest scale bar
+SMALLEST = 9.0  # pixels; smaller text cannot be read
+LEAST = 8.0  # pixels of height for the bodies
+
+
+@dataclass(frozen=True)
+class Reading:
+    """A changing number: whose, against which carrier, how it is told, and where its last pixel and its baseline are."""
+
+    body: str
+    on: str | None
+    text: Callable[[Array], str]
+    right: int
+    baseline: int
+
+
+@dataclass(frozen=True)
+class Layout:
+    """The frame left for the mechanism, and the places of the changing numbers."""
+
+    frame: Frame
+    clock: Clock
+    step: float
+    time: Lettering
+    time_at: tuple[int, int]
+    small: Lettering
+    readings: tuple[Reading, ...]
+
+    def write(self, t: float, frames: dict[str, Array], out_pixels: Pixels) -> None:
+        """Write time and read-outs for the instant `t` and the poses x, y, angle of its bodies."""
+        self.time.write(self.clock.text(t, self.step), *self.time_at, out_pixels)
+        for item in self.readings:
+            own = frames[item.body] if item.on is None else frames[item.body] - frames[item.on]
+            self.small.write(item.text(own), item.right, item.baseline, out_pixels)
+
+
+def lay_out(figure: Figure, run: Trajectory, window: Window, step: float) -> Layout:
+    """Place title, time and read-outs on the figure (one point is one pixel) and say what room is left."""
+    width, height = int(figure.bbox.width), int(figure.bbox.height)
+    unit = _unit(figure)
+    time = Lettering(max(TIME * unit, SMALLEST), INK, BACKGROUND, "bold")
+    small = Lettering(max(SMALL * unit, SMALLEST), INK, BACKGROUND)
+    told = clock(window)
+    baseline = round(height - PAD * unit - 0.75 * TIME * unit)
+    time_width = max(time.width(told.text(t, step)) for t in window)
+    _title(figure, run.scene.title, (PAD * unit, baseline), width - 2.0 * PAD * unit - time_width - GAP * unit)
+    # The line for notes is kept free even where none is shown: a frame drawn alone matches its movie.
+    top = height - baseline + 0.35 * TIME * unit + 1.3 * small.size
+    readings, bottom = _readings(figure, run, window, small)
+    frame = Frame(0.0, bottom, width, height - top - bottom)
+    if frame.height < LEAST:
+        raise ValueError(f"size = {width}x{height}: no room is left beside title, time and read-outs; choose a larger picture")
+    return Layout(frame, told, step, time, (round(width - PAD * unit), baseline), small, readings)
+
+
+def draw_notes(figure: Figure, frame: Frame, speed: float | None, turn: float) -> None:
+    """Below the time: how fast a movie goes, and by how much (rad) the picture is turned against the scene's axes."""
+    size = max(SMALL * _unit(figure), SMALLEST)
+    notes = [] if speed is None else [speed_text(speed)]
+    if turned := turn_text(turn):
+        notes.append(turned)
+    place = (frame.left + frame.width - PAD * _unit(figure), frame.bottom + frame.height + 0.3 * size)
+    _words(figure, ", ".join(notes), place, size, FAINT, ha="right")
+
+
+def draw_scale(figure: Figure, scale: float) -> None:
+    """A bar of a round length at the lower right; `scale` is in pixels per metre."""
+    width, unit = int(figure.bbox.width), _unit(figure)
+    length, name = scale_bar(BAR * width / scale)
+    right, base = width - PAD * unit, PAD * unit
+    left, tick = right - length * scale, 4.0 * unit
+    line = Line2D(
+        [left, left, left, right, right, right],
+        [base + tick, base - tick, base, base, base - tick, base + tick],
+        color=INK,
+        linewidth=max(1.5 * unit, 1.0),
+        transform=IdentityTransform(),
+    )
+    figure.add_artist(line)
+    _words(figure, name, (0.5 * (left + right), base + 2.0 * tick), max(SMALL * unit, SMALLEST), INK, ha="center")
+
+
+def draw_key(figure: Figure, entries: Sequence[tuple[str, str]]) -> None:
+    """Strokes in their colours with what they mean, side by side in the line below the title."""
+    unit = _unit(figure)
+    size, x = max(SMALL * unit, SMALLEST), PAD * unit
+    base = figure.bbox.height - (PAD + 0.75 * TIME + 0.35 * TIME) * unit - size
+    for colour, meaning in entries:
+        stroke = Line2D(
+            *([x, x + 1.6 * size], [base + 0.35 * size] * 2),
+            color=colour,
+            linewidth=max(3.0 * unit, 1.5),
+            solid_capstyle="round",
+            transform=IdentityTransform(),
+        )
+        figure.add_artist(stroke)
+        text = _words(figure, meaning, (x + 2.2 * size, base), size, INK)
+        x += 2.2 * size + _width(text) + GAP * unit
+
+
+def draw_rules(figure: Figure, frame: Frame) -> None:
+    """Hairlines along the frame, for a picture that cuts bodies off there."""
+    for y in (frame.bottom, frame.bottom + frame.height):
+        ends = [frame.left, frame.left + frame.width]
+        figure.add_artist(Line2D(ends, [y, y], color=GRID, linewidth=max(_unit(figure), 0.7), transform=IdentityTransform()))
+
+
+def relative_size(width: float, height: float) -> float:
+    """How large a picture is, 1 for 1280 × 720 pixels, wide or tall."""
+    return min(max(width, height) / 1280.0, min(width, height) / 720.0)
+
+
+def _unit(figure: Figure) -> float:
+    """Size of everything drawn, relative to a picture of 1280 × 720 or of 720 × 1280 pixels."""
+    return min(max(relative_size(figure.bbox.width, figure.bbox.height), 0.4), 4.0)
+
+
+def _words(figure: Figure, words: str, place: tuple[float, float], size: float, colour: str, **style: str) -> Text:
+    """Text at a place in pixels; `style` may hold `ha` and `weight`."""
+    text = Text(*place, words, color=colour, fontsize=size, transform=IdentityTransform(), parse_math=False)
+    text.set(**style)
+    figure.add_artist(text)
+    return text
+
+
+def _width(text: Text) -> float:
+    return float(text.get_window_extent().width)
+
+
+def _title(figure: Figure, title: str, place: tuple[float, float], room: float) -> None:
+    """The scene's title, shortened where it does not fit."""
+    text = _words(figure, title, place, max(TITLE * _unit(figure), SMALLEST), INK, weight="bold")
+    while title and _width(text) > room:
+        title = title[:-1].rstrip(" ,;:-–")
+        text.set_text(f"{title}…" if title else "")
+
+
+@dataclass(frozen=True)
+class _Cell:
+    """A name and a value on their way to a place: `x` in pixels, `row` from the top of the rows, `taken` pixels wide."""
+
+    body: Body
+    name: Text
+    tell: Callable[[Array], str]
+    look: Finish
+    x: float
+    row: int
+    taken: float
+
+
+def _readings(figure: Figure, run: Trajectory, window: Window, small: Lettering) -> tuple[tuple[Reading, ...], float]:
+    """Rows of name and value from the bottom left, and the height they take."""
+    unit = _unit(figure)
+    line, left, limit = 1.55 * small.size, PAD * unit, figure.bbox.width * (1.0 - BAR) - (PAD + GAP) * unit
+    cells: list[_Cell] = []
+    x, row, worn = left, 0, looks(run.scene)
+    for body in run.scene.bodies:
+        if body.name not in run.slices:
+            continue
+        tell, ends = reading(body, _told(run, body, window))
+        name = _words(figure, body.name, (0.0, 0.0), small.size, INK)
+        taken = 1.5 * CHIP * small.size + _width(name) + 0.8 * small.size + max(small.width(text) for text in ends)
+        if x > left and x + taken > limit:
+            x, row = left, row + 1
+        cells.append(_Cell(body, name, tell, worn[body.name], x, row, taken))
+        x += taken + GAP * unit
+    placed = tuple(_place(figure, cell, round(PAD * unit + (row - cell.row) * line), small.size) for cell in cells)
+    return placed, 1.6 * PAD * unit + (row + 1) * line
+
+
+def _told(run: Trajectory, body: Body, window: Window) -> Array:
+    """The body's poses as its reading shows them: a carried one against its carrier."""
+    own = sampled(run, body, window)
+    return own if body.on is None else own - sampled(run, run.scene.body(body.on), window)
+
+
+def _place(figure: Figure, cell: _Cell, base: int, size: float) -> Reading:
+    """Put a cell's coloured chip and name on the figure, on a baseline `base` pixels above the bottom."""
+    x, chip = round(cell.x), CHIP * size
+    box = FancyBboxPatch(
+        (x, base - 0.05 * size),
+        chip,
+        chip,
+        boxstyle=f"round,pad=0,rounding_size={0.2 * size}",
+        facecolor=cell.look.fill,
+        edgecolor=cell.look.edge,
+        linewidth=max(0.06 * size, 0.7),
+        transform=IdentityTransform(),
+    )
+    figure.add_artist(box)
+    cell.name.set_position((x + 1.5 * chip, base))
+    return Reading(cell.body.name, cell.body.on, cell.tell, round(x + cell.taken), base)

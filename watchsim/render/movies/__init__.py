@@ -1,0 +1,1 @@
+"""How does a run become a film: which instants, at what pace, in which file format?"""

@@ -1,0 +1,56 @@
+"""What does a scene look like at its start, and what of it can touch?"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from watchsim.geometry.primitives import Point
+from watchsim.mechanism.compile import Compiled
+from watchsim.mechanism.count_pairs import ModelledPairs
+from watchsim.render.frame.coloured_edges import Edges
+from watchsim.render.frame.pose_history import poses
+from watchsim.render.frame.stage import Stage
+from watchsim.render.stills.fault_circles import FAULT
+from watchsim.scene.scene import Scene
+from watchsim.simulation.record.trajectory import EVENT_DTYPE, Trajectory
+from watchsim.simulation.stops import Stop
+from watchsim.storage.write import write_file
+
+SIZE = (1280, 720)
+REACHABLE, CANDIDATE = "#1971c2", "#f76707"
+
+
+def still(
+    scene: Scene, path: str | os.PathLike[str], compiled: Compiled, pairs: ModelledPairs, overlaps: Sequence[Point] = ()
+) -> None:
+    """Write a picture (PNG or what else imageio knows) of the bodies where the scene puts them at t = 0.
+
+    Edges that can ever touch another body are in colour, those of which a pair is a candidate at the start in another; rings
+    mark the places (m) where bodies overlap.
+    """
+    import imageio.v3 as imageio
+
+    model = compiled.model
+    picked: tuple[Edges, ...] = (
+        Edges(model, np.setdiff1d(pairs.reachable, pairs.candidates), REACHABLE, "can ever touch"),
+        Edges(model, pairs.candidates, CANDIDATE, "candidate at the start"),
+    )
+    if overlaps:
+        picked = (*picked, Edges(model, np.zeros(0, np.int64), FAULT, "bodies overlap"))
+    run = at_rest(scene, compiled)
+    stage = Stage(run, SIZE, (0.0, 1.0), picked=picked)
+    frames = {name: rows[0] for name, rows in poses(run, np.zeros(1)).items()}
+    pixels = stage.draw(0.0, frames, np.array(overlaps).reshape(-1, 2), FAULT)[..., :3]
+    write_file(Path(path), lambda scratch: imageio.imwrite(scratch, pixels), "the picture")
+
+
+def at_rest(scene: Scene, compiled: Compiled) -> Trajectory:
+    """A run in which nothing moves."""
+    q = compiled.relative(np.stack([compiled.q, compiled.q]))
+    rest = np.zeros_like(q)
+    events = np.zeros(0, EVENT_DTYPE)
+    return Trajectory(scene, np.array([0.0, 1.0]), q, rest, rest, compiled.slices, events, (), Stop.DURATION)

@@ -1,0 +1,227 @@
+"""What does the watch settle to, without waiting until it has?
+
+The limit cycle is a fixed point of the return map (return_map.py), found by shooting (shooting.py) and closed over a whole turn
+of the wheel (polish.py). Where there is none, an ordinary run shows what happens instead (judge.py).
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import time
+from pathlib import Path
+
+import numpy as np
+
+from watchsim.analysis.timing.beats import DAY
+from watchsim.analysis.verdicts.words import STOPS, TICKS, UNSETTLED, VERDICTS
+from watchsim.scene.scene import Scene
+from watchsim.simulation.loop_state.state import State
+from watchsim.studies.limit_cycle.cycle import Cycle
+from watchsim.studies.limit_cycle.judge import judged, late_means, run_from
+from watchsim.studies.limit_cycle.loop import Loop
+from watchsim.studies.limit_cycle.parts import Parts, is_driven, parts_of, why_no_section
+from watchsim.studies.limit_cycle.polish import FINER, Polished, glanced, polished
+from watchsim.studies.limit_cycle.return_map import Return, ReturnMap
+from watchsim.studies.limit_cycle.section import NoSection, Section, first_section, section_at
+from watchsim.studies.limit_cycle.shooting import Fixed, Lost, fixed_point
+
+REST = 1e-9  # rad or m per scale: bodies that stand still come back so closely, or the section is moved on
+SECTIONS = 6  # of them at most
+AFTERWARDS = 24  # periods of the run that shows what happens where there is no cycle
+LONGEST = 120.0  # s, of a run that stands in for a cycle
+FEWEST = 40  # periods of it
+SETTLED = 1e-4  # of the amplitude: what such a run may still scatter and drift
+LOSSLESS = 1e-9  # of the amplitude, in one oscillation
+FINEST = 1e-13  # tolerance of a run
+
+
+def steady(
+    scene: Scene | str | Path, *, tolerance: float | None = None, amplitude: float | None = None, brief: bool = False
+) -> Cycle:
+    """The limit cycle that the scene's start leads to: amplitude, rate, beat error and stability, each with its error.
+
+    scene      a scene, or the file or folder that holds one
+    tolerance  relative error per step (default the scene's own)
+    amplitude  rad (m), where the search is to begin instead of at the first turning point of the scene's own start
+    brief      one oscillation on the cycle is enough: without errors, multipliers and a look at all teeth of the wheel
+
+    Where there is no cycle `found` is False, and `verdict` and `message` say what there is instead. ValueError for a bad
+    argument; SceneError where bodies overlap at the start.
+    """
+    begun = time.perf_counter()
+    if not isinstance(scene, Scene):
+        from watchsim.scene.file.load import load
+
+        scene = load(scene)
+    tolerance = scene.tolerance if tolerance is None else float(tolerance)
+    if not FINEST <= tolerance <= 1e-2:
+        raise ValueError(f"the tolerance must lie between {FINEST:g} and 1e-2, not {tolerance}")
+    if amplitude is not None and not (amplitude > 0.0 and math.isfinite(amplitude)):
+        raise ValueError(f"the amplitude must be a positive number of rad (m), not {amplitude}")
+    loop = Loop(scene, tolerance)
+    ready = time.perf_counter()
+    loop.warm_up()
+    warm = time.perf_counter()
+    cycle = _searched(loop, amplitude, brief)
+    wall = time.perf_counter() - begun - (warm - ready)
+    return dataclasses.replace(cycle, simulated_s=loop.simulated, cells_s=loop.finder.seconds, wall_s=wall)
+
+
+def _searched(loop: Loop, amplitude: float | None, brief: bool) -> Cycle:
+    parts = parts_of(loop.scene, loop.compiled)
+    if parts is None:
+        return Cycle(False, None, "nothing in this scene swings on a spring or by gravity, so nothing repeats itself")
+    if why := why_no_section(loop.compiled, parts):
+        return _by_run(loop, parts, why)
+    state = loop.begin()
+    section = first_section(loop, parts, state)
+    if isinstance(section, NoSection):
+        if section.still or not is_driven(loop.scene):
+            return _instead(loop, None, STOPS, section.time)
+        return _by_run(loop, parts, "at no turning point of the oscillator does everything else stand still")
+    if not is_driven(loop.scene):
+        return _alone(ReturnMap(loop, parts, section))
+    return _shot(loop, parts, section, section.amplitude if amplitude is None else amplitude, brief)
+
+
+def _shot(loop: Loop, parts: Parts, section: Section, amplitude: float, brief: bool) -> Cycle:
+    """By shooting from that section and amplitude."""
+    oscillate, found = _fixed(loop, parts, section, amplitude)
+    if isinstance(found, Lost):
+        return _lost(oscillate, found)
+    if brief:
+        return _told(loop, parts, glanced(oscillate, found))
+    finer = Loop(loop.scene, max(FINER * loop.tolerance, FINEST), like=loop)
+    exact = polished(oscillate, found, finer)
+    loop.simulated += finer.simulated
+    if isinstance(exact, Return):
+        return _lost(oscillate, Lost(found.amplitude, exact.trouble, False))
+    if exact.multiplier is None or not abs(exact.multiplier) < 1.0:
+        return _unstable(loop, parts, exact)
+    return _told(loop, parts, exact)
+
+
+def _fixed(loop: Loop, parts: Parts, section: Section, amplitude: float) -> tuple[ReturnMap, Fixed | Lost]:
+    """The fixed point; the section moves on until what stands still at it comes back to its place."""
+    for _ in range(SECTIONS):
+        oscillate = ReturnMap(loop, parts, section)
+        found = fixed_point(oscillate, amplitude)
+        again = None if isinstance(found, Lost) else _moved_on(oscillate, found)
+        if again is None:
+            break
+        section, amplitude = again, found.amplitude
+    return oscillate, found
+
+
+def _moved_on(oscillate: ReturnMap, found: Fixed) -> Section | None:
+    """A section an oscillation later where bodies at rest have not come back to their places; None where they have."""
+    got = oscillate(found.amplitude)
+    if got.state is None:
+        return None
+    parts, loop = oscillate.parts, oscillate.loop
+    away = np.abs(got.state.q - oscillate.section.state.q) / loop.compiled.model.coordinates.scale
+    away[parts.coordinate] = 0.0
+    if parts.wheel >= 0:
+        away[parts.wheel] = 0.0
+    if (away <= REST).all():
+        return None
+    return section_at(loop, parts, got.state, got.time)
+
+
+def _told(loop: Loop, parts: Parts, exact: Polished) -> Cycle:
+    """A cycle in watchmakers' units."""
+    means = exact.means
+    return Cycle(
+        found=True,
+        verdict=TICKS if parts.wheel >= 0 else None,
+        amplitude_deg=_degrees(loop, parts, means.amplitude),
+        amplitude_deg_error=_degrees(loop, parts, exact.amplitude_error),
+        period_s=means.period,
+        period_s_error=exact.period_error,
+        rate_s_per_d=DAY * (parts.nominal / means.period - 1.0),
+        rate_s_per_d_error=_times(DAY * parts.nominal / means.period**2, exact.period_error),
+        beat_error_ms=1e3 * abs(means.uneven),
+        beat_error_ms_error=_times(1e3, exact.beat_error_error),
+        uneven_ms=1e3 * means.uneven,
+        multipliers=() if exact.multiplier is None else (exact.multiplier,),
+        multipliers_error=() if exact.multiplier_error is None else (exact.multiplier_error,),
+        oscillations=exact.per,
+        tooth_spread_deg=_degrees(loop, parts, means.spread),
+    )
+
+
+def _degrees(loop: Loop, parts: Parts, value: float | None) -> float | None:
+    """None for a body that slides."""
+    angular = loop.scene.bodies[parts.body].motion == "pivot"
+    return math.degrees(value) if angular and value is not None else None
+
+
+def _times(factor: float, value: float | None) -> float | None:
+    return None if value is None else factor * value
+
+
+def _lost(oscillate: ReturnMap, lost: Lost) -> Cycle:
+    """The orbit left the region where the mechanism works as it should: what happens there."""
+    loop, parts, section = oscillate.loop, oscillate.parts, oscillate.section
+    state = section.at(parts, lost.amplitude)
+    if lost.trouble in VERDICTS and lost.trouble != UNSETTLED:
+        return _instead(loop, state, lost.trouble, AFTERWARDS * parts.period)
+    return _by_run(loop, parts, "the search for a limit cycle did not converge", state)
+
+
+def _instead(loop: Loop, state: State | None, suspicion: str, duration: float) -> Cycle:
+    found = judged(run_from(loop, state, duration), suspicion, since_start=state is None)
+    return Cycle(False, found.name, found.message)
+
+
+def _unstable(loop: Loop, parts: Parts, exact: Polished) -> Cycle:
+    """A cycle that the mechanism leaves at the slightest disturbance: what it does then."""
+    told = _told(loop, parts, exact)
+    multiplier = exact.multiplier or 0.0
+    how = "it swings too far and too little in turn" if multiplier < 0.0 else "it runs away from it"
+    message = f"there is a cycle, but an unstable one (multiplier {multiplier:.3g}): disturbed, {how}"
+    return dataclasses.replace(told, found=False, verdict=UNSETTLED, message=message)
+
+
+def _alone(oscillate: ReturnMap) -> Cycle:
+    """What swings without a drive."""
+    start = oscillate.section.amplitude
+    got = oscillate(start)
+    if got.trouble:
+        return Cycle(False, None, "nothing drives it, and its swing dies away within an oscillation")
+    ratio = got.amplitude / start
+    if abs(1.0 - ratio) <= LOSSLESS:
+        message = "nothing drives it and nothing brakes it: it keeps any amplitude that it is given"
+    elif ratio > 1.0:
+        message = f"nothing drives it, and yet its swing grows by {100.0 * (ratio - 1.0):.3g} % in an oscillation"
+    else:
+        quality = math.pi / -math.log(ratio)
+        lost = f"{100.0 * (1.0 - ratio):.3g} % of its swing in an oscillation of {got.time:.9g} s"
+        message = f"nothing drives it: it loses {lost} (Q = {quality:.4g}), and comes to rest"
+    return Cycle(False, None, message, multipliers=(ratio,))
+
+
+def _by_run(loop: Loop, parts: Parts, why: str, state: State | None = None) -> Cycle:
+    """What an ordinary run settles to, from the scene's start or from that state."""
+    duration = min(max(loop.scene.duration, FEWEST * parts.period), max(LONGEST, FEWEST * parts.period))
+    run = run_from(loop, state, duration)
+    seen = judged(run, since_start=state is None)
+    means = late_means(run)
+    message = f"{why}; this is the end of a run of {run.simulated:.4g} s"
+    if means.amplitude_deg is None or seen.name not in (TICKS, UNSETTLED, None):
+        return Cycle(False, seen.name, seen.message or message)
+    settled = (means.amplitude_deg_error or math.inf) <= SETTLED * means.amplitude_deg
+    return Cycle(
+        found=settled,
+        verdict=(TICKS if parts.wheel >= 0 else None) if settled else UNSETTLED,
+        message=message if settled else f"{message}, which has not settled",
+        amplitude_deg=means.amplitude_deg,
+        amplitude_deg_error=means.amplitude_deg_error,
+        period_s=means.period_s,
+        period_s_error=means.period_s_error,
+        rate_s_per_d=means.rate_s_per_d,
+        rate_s_per_d_error=means.rate_s_per_d_error,
+        beat_error_ms=means.beat_error_ms,
+        beat_error_ms_error=means.beat_error_ms_error,
+    )

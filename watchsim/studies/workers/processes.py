@@ -1,0 +1,58 @@
+"""How do processes of this machine share the points of a study?
+
+They are forked from a server that has done nothing but import the package (where the system has one), never from a process with
+threads; elsewhere they are started anew.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+from collections.abc import Callable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from typing import Any
+
+from watchsim.studies.point import Question, Row
+from watchsim.studies.workers.executor import LOOK, Points, WorkersLost, finished
+from watchsim.studies.workers.worker import begin, work
+
+AHEAD = 3  # points handed out per worker before one is finished
+LOST = "a worker process was ended from outside, perhaps for lack of memory"
+
+
+class Processes:
+    """So many worker processes. Start it under `if __name__ == "__main__":` in scripts, as everything that starts processes."""
+
+    def __init__(self, workers: int) -> None:
+        self.workers = workers
+
+    def answers(self, question: Question, points: Points, interrupted: Callable[[], bool]) -> Iterator[tuple[int, Row]]:
+        context = start_method()
+        stop = context.Event()
+        waiting = list(reversed(points))
+        count = min(self.workers, len(points))
+        with ProcessPoolExecutor(count, context, initializer=begin, initargs=(question, stop)) as pool:
+            under_way: set[Future[Any]] = set()
+            try:
+                while (waiting or under_way) and not interrupted():
+                    while waiting and len(under_way) < AHEAD * count:
+                        under_way.add(pool.submit(work, *waiting.pop()))
+                    done, under_way = wait(under_way, LOOK, FIRST_COMPLETED)
+                    for future in done:
+                        made = finished(future)
+                        if made is not None:
+                            yield made
+            except BrokenProcessPool as error:
+                raise WorkersLost(LOST) from error
+            finally:
+                stop.set()
+                pool.shutdown(wait=True, cancel_futures=True)
+
+
+def start_method() -> Any:
+    """A server to fork from, with the package imported, else new processes."""
+    if "forkserver" not in multiprocessing.get_all_start_methods():
+        return multiprocessing.get_context("spawn")
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(["watchsim.studies.workers.worker"])
+    return context
