@@ -178,7 +178,8 @@ class Run:
         """Is the residual of the energy ledger more than rounding?"""
         coordinates = self.compiled.model.coordinates
         # What moves more slowly than that is computed less closely: see the error control of integrator.py.
-        usual = float(0.5 * np.sum(coordinates.mass * (coordinates.scale * coordinates.rate) ** 2))
+        own = coordinates[coordinates.driven == 0]
+        usual = float(0.5 * np.sum(own.mass * (own.scale * own.rate) ** 2))
         held = max(float(self.state.worst.kinetic_energy), self.stored_at_start, usual)
         return ledger_fails(self._energy(), held, self.tolerance)
 
@@ -328,7 +329,7 @@ class Run:
 
 def _turned_over(coordinates: Any) -> float:
     """What constant forces give to springs and take back in each swing, J."""
-    sprung = coordinates[coordinates.stiffness > 0.0]
+    sprung = coordinates[(coordinates.stiffness > 0.0) & (coordinates.driven == 0)]
     return float(np.max(2.0 * sprung.force**2 / sprung.stiffness, initial=0.0))
 
 
