@@ -97,6 +97,7 @@ def test_pushing_against_damping_takes_its_power(tmp_path: Path) -> None:
     assert run.u[-1][1] == pytest.approx(0.1, abs=1e-12)
     assert late.energy["in_J"] - run.energy["in_J"] == pytest.approx(2.0 * 0.01, rel=1e-9)
     assert late.energy["residual_relative"] < 1e-9
+    assert ws.forces(late, [1.5]).drives["pusher"].tolist() == pytest.approx([0.2])  # c V
 
 
 def test_block_on_a_belt(tmp_path: Path) -> None:
