@@ -40,7 +40,7 @@ class Forces:
     direction   the normal, out of body B's material (n, k, 2); nan where it is open
     point       where it touches, m (n, k, 2); nan where it is open
     pivots      name of a pivoted body -> force on it from its bearing in the movement, N (n, 2)
-    drives      name of a driven body -> torque (N·m) or, of a sliding one, force (N) along its axis that keeps its motion up (n,)
+    drives      name of a driven body -> torque, N·m, or force along its axis, N, that keeps its motion up (n,)
     """
 
     t: Array
