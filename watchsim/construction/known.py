@@ -13,6 +13,7 @@ _HOMES = {
     "graham": "watchsim.construction.graham.design",
     "recoil_anchor": "watchsim.construction.recoil_anchor.design",
     "involute_pair": "watchsim.construction.involute_pair.design",
+    "jumper": "watchsim.construction.jumper.design",
 }
 
 NAMES = tuple(_HOMES)
