@@ -14,6 +14,7 @@ _HOMES = {
     "recoil_anchor": "watchsim.construction.recoil_anchor.design",
     "involute_pair": "watchsim.construction.involute_pair.design",
     "jumper": "watchsim.construction.jumper.design",
+    "cam": "watchsim.construction.cam.design",
 }
 
 NAMES = tuple(_HOMES)
