@@ -15,6 +15,7 @@ _HOMES = {
     "involute_pair": "watchsim.construction.involute_pair.design",
     "jumper": "watchsim.construction.jumper.design",
     "cam": "watchsim.construction.cam.design",
+    "ratchet": "watchsim.construction.ratchet.design",
 }
 
 NAMES = tuple(_HOMES)
