@@ -35,7 +35,7 @@ def test_it_is_held_at_a_whole_number_of_teeth(changed: dict[str, str | float]) 
 
 
 def test_the_torque_of_the_mainspring_rests_on_the_click() -> None:
-    """So do the moments of the forces on its nose: about the wheel's axis the mainspring's, about its pivot its own spring's."""
+    """So do the moments of the forces on its nose: about the wheel's axis the mainspring's, about its pivot its spring's."""
     scene = designs.ratchet(friction=0.0).scene()
     run = ws.simulate(scene, duration=0.04)
     found = ws.forces(run, [0.03])
