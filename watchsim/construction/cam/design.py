@@ -31,7 +31,7 @@ def conflicts(values: Cam) -> Iterator[Conflict]:
     if values.eccentricity >= 0.8 * values.radius:
         yield Conflict("eccentricity", f"must be below {0.8 * values.radius:.4g} mm, else the axis has no room in the disc")
     elif values.speed >= leaves_at(values):
-        what = f"the follower leaves the cam at the top from {leaves_at(values):.6g} °/s on: more force, less mass or speed"
+        what = f"the follower leaves the cam at the top from {leaves_at(values):.6g} °/s on: more preload, less mass or speed"
         yield Conflict("speed", what)
 
 

@@ -24,5 +24,5 @@ def leaves_at(values: Cam) -> float:
     e, reach = 1e-3 * values.eccentricity, values.radius + values.roller_radius
     if e == 0.0:
         return math.inf
-    press = values.force + values.rate * 2.0 * values.eccentricity
+    press = values.preload + values.rate * 2.0 * values.eccentricity
     return math.degrees(math.sqrt(press / (1e-3 * values.mass * e * (1.0 + values.eccentricity / reach))))

@@ -56,6 +56,6 @@ def scene_text(values: Cam) -> str:
         values=values,
         leaves=leaves_at(values),
         lowest=lowest(values),
-        rest=-values.force / values.rate,
+        rest=-values.preload / values.rate,
         duration=round(TURNS * 360.0 / values.speed, 9),
     )

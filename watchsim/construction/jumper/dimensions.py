@@ -19,7 +19,7 @@ class Jumper:
     tip_rounding: float = dim(0.08, "mm", 0.005, 1.0, "radius of the points of the teeth", CHOSEN)
     beak_radius: float = dim(0.4, "mm", 0.02, 4.0, "of the round beak of the jumper", CHOSEN)
     jumper_length: float = dim(6.0, "mm", 0.5, 40.0, "jumper, from its pivot to the middle of the beak", CHOSEN)
-    force: float = dim(20.0, "mN", 0.1, 2000.0, "with which the beak is pressed into the star at rest", CHOSEN)
+    preload: float = dim(20.0, "mN", 0.1, 2000.0, "with which the beak is pressed into the star at rest", CHOSEN)
     rate: float = dim(8.0, "mN/mm", 0.01, 2000.0, "by which that force grows as the beak is lifted", CHOSEN)
     crank: float = dim(2.5, "mm", 0.2, 20.0, "finger, from its axis to the middle of its pin", CHOSEN)
     pin_radius: float = dim(0.3, "mm", 0.02, 3.0, "of the pin", CHOSEN)

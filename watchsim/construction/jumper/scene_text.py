@@ -42,7 +42,7 @@ pivot    = ["0 mm", "0 mm"]
 position = ["{beak!r} mm", "{values.jumper_length!r} mm"]
 inertia  = "{values.jumper_inertia:.15g} mg·cm²"
 
-[[springs]]                          # {values.force:.6g} mN on the beak at rest, {values.rate:.6g} mN/mm more as it is lifted
+[[springs]]                          # {values.preload:.6g} mN on the beak at rest, {values.rate:.6g} mN/mm more as it is lifted
 body      = "jumper"
 stiffness = "{stiffness!r} µN·m/rad"
 rest      = "{rest!r} rad"
@@ -81,7 +81,7 @@ def scene_text(values: Jumper) -> str:
         pitch=pitch(values),
         beak=beak_at_rest(values),
         stiffness=values.rate * values.jumper_length**2,  # mN/mm · mm² = µN·m per rad
-        rest=-values.force / (values.rate * values.jumper_length),
+        rest=-values.preload / (values.rate * values.jumper_length),
         drag=DRAG.format(drag=values.drag) if values.drag > 0.0 else "",
         duration=math.ceil(TURNS * 360.0 / values.speed * 1e6) / 1e6,
     )
