@@ -177,3 +177,14 @@ def test_nothing_acts_on_a_driven_body(tmp_path: Path) -> None:
         scene(tmp_path, pusher('velocity = "1 mm/s"') + '[[damping]]\nbody = "pusher"\nviscous = "2 N·s/m"\n')
     with pytest.raises(SceneError, match="neither can give way"):
         scene(tmp_path, pusher('velocity = "1 mm/s"').replace('motion = "slide"\naxis = [1.0, 0.0]', 'motion = "fixed"'))
+
+
+def test_a_body_without_a_way_out_ends_the_run_and_is_named(tmp_path: Path) -> None:
+    """A pusher squeezes a block between itself and a wall."""
+    wall = f'[bodies.wall]\nmotion = "fixed"\npolygon = {BOX}\nposition = ["50 mm", "0 mm"]\n'
+    wall += '[[contacts]]\nbetween = ["block", "wall"]\n[run]\nduration = "1 s"\n'
+    run = ws.simulate(scene(tmp_path, pusher('velocity = "20 mm/s"') + wall))
+    # 5 mm to the block, 5 mm to the wall with it.
+    assert run.simulated == pytest.approx(0.5, abs=1e-9)
+    assert run.stop.name not in ("DURATION", "RUNNING")
+    assert "pusher, which is driven, leaves block no way out" in run.stop_message

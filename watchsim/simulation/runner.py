@@ -25,7 +25,7 @@ from watchsim.scene.scene import Scene
 from watchsim.simulation.advance import EVENTS_PER_CONTACT, ROWS_PER_STEP, advance
 from watchsim.simulation.energy_ledger import ledger_fails, touching, what_alternates
 from watchsim.simulation.interrupts import held_interrupts
-from watchsim.simulation.lcp_failure import failure_of
+from watchsim.simulation.lcp_failure import driven_into, failure_of
 from watchsim.simulation.loop_state.buffers import Until, new_record
 from watchsim.simulation.loop_state.scratch import new_scratch
 from watchsim.simulation.loop_state.state import COUNT_NAMES, State, new_state, room_for
@@ -195,6 +195,10 @@ class Run:
         elif stop == Stop.TOO_MANY_EVENTS:
             bodies = [self.scene.bodies[coordinate.body].name for coordinate in self.compiled.model.coordinates]
             words = what_alternates(self.scratch.ended, self.pairs, bodies)
+        elif stop == Stop.LCP_FAILED:
+            driven = {body.name for body in self.scene.bodies if body.prescribed is not None}
+            failure = failure_of(self.state, self.scratch, self.pairs) if driven else None
+            words = driven_into(failure, self.pairs, driven)
         else:
             words = ""
         return f": {words}" if words else ""
