@@ -1,6 +1,6 @@
 """How does docs/guide/gallery.md come about, and the moving picture of the README?
 
-    python scripts/reports/make_gallery.py
+    python scripts/pictures/make_gallery.py
 
 Runs the commands that the page shows, as anyone can, in a folder of its own; pictures go to docs/images/gallery. Takes half a
 minute.
@@ -115,7 +115,7 @@ def run(command: str, folder: Path) -> None:
 
 def page(exhibits: Sequence[Exhibit]) -> str:
     """The page in Markdown."""
-    parts = ["# Gallery\n\nEvery picture with the commands that make it. `scripts/reports/make_gallery.py` makes this page.\n"]
+    parts = ["# Gallery\n\nEvery picture with the commands that make it. `scripts/pictures/make_gallery.py` makes this page.\n"]
     for one in exhibits:
         parts.append(f"## {one.title}\n\n{one.words}\n")
         if commands := "\n".join(filter(None, (one.also, one.command))):
