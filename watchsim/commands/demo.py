@@ -29,7 +29,7 @@ def run(args: argparse.Namespace) -> int:
     from watchsim.commands.common.write_run import Extras, goal_of, write
     from watchsim.commands.run import simulate_with_progress, status
     from watchsim.profiles_path import profiles_dir
-    from watchsim.results.folder import check_folder
+    from watchsim.results.write_results import check_folder
     from watchsim.verification.all_checks import incline_rows, verify_text
 
     start = time.monotonic()

@@ -33,7 +33,7 @@ def load_scene(name: str, changes: list[str] | None = None, overlap: bool = True
 
 def read_run(folder: str) -> Trajectory:
     """The trajectory kept in a results folder."""
-    from watchsim.results.folder import read_results
+    from watchsim.results.read_results import read_results
 
     try:
         return read_results(folder)
