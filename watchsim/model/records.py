@@ -92,7 +92,7 @@ PRIMITIVE = np.dtype(
         ("y", "f8"),
         ("tx", "f8"),  # line: direction of travel, material on its left
         ("ty", "f8"),
-        ("length", "f8"),  # line: its length; corner: the shorter neighbour (turns angles into lengths)
+        ("length", "f8"),  # line: its length; corner: the scene's size (turns angles into lengths)
         ("radius", "f8"),
         ("side", "f8"),  # arc: +1 convex, -1 concave (material outside)
         ("px", "f8"),  # a point on it: the corner, the line's start, the middle of the arc
