@@ -40,6 +40,7 @@ class Body:
 
     @property
     def layers(self) -> tuple[str, ...]:
+        """The layers of its outlines that can touch, in the order of the drawing."""
         return tuple(dict.fromkeys(loop.layer for loop in self.loops))
 
     @property

@@ -41,6 +41,7 @@ class Written:
 class Scene:
     """A mechanism in SI units, ready to be compiled.
 
+    `gravity` is (x, y) in m/s², `duration` s, `lift_angle` rad; `tolerance` the relative error per step.
     `tangential_law` ("coulomb", "pg1996" or "shifted") says what friction does in the expansion of impacts, `nu` belongs to
     pg1996 (docs/theory/laws.md).
     `nominal` (Hz) is what the rate is measured against, where the scene says so.

@@ -68,7 +68,7 @@ def new_until(slice_end: float = 0.0, end: float = 0.0, may_cut: bool = False, s
 class Run:
     """A run under way: the loop's arrays and what has been kept. By events; see `moreau.MoreauRun` for fixed steps.
 
-    The step of a scene without springs is bounded by the duration the scene gives, not by the asked one: how far a run is
+    The step of a scene without springs is bounded by the duration the scene gives, not by the requested one: how far a run is
     to go must not change a bit of it.
     """
 

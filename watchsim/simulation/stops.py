@@ -27,6 +27,7 @@ class Stop(IntEnum):
 
     @property
     def sentence(self) -> str:
+        """The cause in words."""
         return _SENTENCES[self]
 
     @property
@@ -54,7 +55,7 @@ _SENTENCES = {
         "no solution of a complementarity problem was found; lcp_failure.json holds it. Less friction or restitution at the "
         "contacts it names, or a tighter tolerance, may help"
     ),
-    Stop.STEP_TOO_SMALL: "the step became too small for the asked tolerance",
+    Stop.STEP_TOO_SMALL: "the step became too small for the requested tolerance",
     Stop.NOT_FINITE: "a coordinate or velocity is no longer a finite number",
     Stop.OUT_OF_MEMORY: "there is no memory left to keep more; --record statistics needs least",
     Stop.TOO_MANY_CONTACTS: "more contacts closed at once than there is room for",

@@ -37,6 +37,8 @@ class Trajectory:
 
     t (rows,) s; q, u, a (rows, n) coordinates, velocities, accelerations in SI; `slices[body]` says which columns belong
     to a body (fixed bodies have none). Those of a carried body are relative to its carrier; `pose` is in the movement.
+    `simulated` is the time reached, `wall` and `compile` what the run and its compiling took, all in s; `end_q` and `end_u`
+    (n,) belong to `simulated`. `step` (s) is that of a method with fixed steps.
     `energy` holds joules: in_J, stored_J, dissipated {cause: J}, residual_J.
     `counts` holds events, impacts, steps, lcp_failures and the like; `worst_penetration` is metres;
     `worst_residual` the worst violation of a complementarity condition, as a share of the problem's largest term.
