@@ -31,6 +31,28 @@ def test_no_merge_is_left_half_done(page):
     assert not re.search(r"^(<{7}|={7}|>{7})( |$)", page.read_text(encoding="utf-8"), re.MULTILINE)
 
 
+@pytest.mark.parametrize(("name", "fewest"), [("design", 30), ("extend", 20), ("debug", 1)])
+def test_files_and_modules_named_for_developers_exist(name, fewest):
+    text = (ROOT / "docs" / "develop" / f"{name}.md").read_text(encoding="utf-8")
+    tops = {path.name for path in (ROOT / "watchsim").iterdir() if path.is_dir()} | {"tests", "scripts", "watchsim"}
+    named = [place.split(":")[0] for place in re.findall(r"`([a-z_]+[./][a-z_./]+[a-z_])", text)]
+    named = [place for place in named if re.split(r"[./]", place)[0] in tops and not place.endswith(".toml")]
+    assert len(named) >= fewest
+    assert [place for place in named if not is_there(place)] == []
+
+
+def is_there(place: str) -> bool:
+    """Whether a path, or a dotted name of a module or of something in it, is in the checkout or the package."""
+    parts = re.split(r"[./]", re.sub(r"\.(py|sh)$", "", place))
+    for root in (ROOT, ROOT / "watchsim"):
+        whole = root.joinpath(*parts)
+        if whole.is_dir() or whole.with_suffix(".py").is_file() or whole.with_suffix(".sh").is_file():
+            return True
+        if "/" not in place and whole.parent != root and whole.parent.with_suffix(".py").is_file():
+            return True
+    return False
+
+
 def anchors(path: Path) -> set[str]:
     """The anchors of a page's headings, as GitHub makes them."""
     headings = re.findall(r"^#+ (.+)$", path.read_text(encoding="utf-8"), re.MULTILINE)

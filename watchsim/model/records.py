@@ -180,10 +180,13 @@ class Model(NamedTuple):
 ModelRef = by_reference(Model, __name__)
 
 
+NO_KEY = -1  # in the place of a cell's key: of a free slot, and of what lies beyond the range of keys
+
+
 class Cells(NamedTuple):
     """Open-addressing table: (pair, cell indices) -> candidate contacts `entries[start : start + count]`."""
 
-    keys: NDArray[np.int64]  # -1: free slot
+    keys: NDArray[np.int64]  # NO_KEY: free slot
     start: NDArray[np.int64]
     count: NDArray[np.int64]  # type: ignore[assignment]  # hides tuple.count, which nobody needs here
     entries: NDArray[np.int64]
