@@ -42,7 +42,7 @@ EXHIBITS = (
     Exhibit(
         "swiss_lever.gif",
         "An oscillation of a Swiss lever",
-        "At adaptive speed: unlocking, impulse and drop get most of the frames, and the factor is told at the upper right. "
+        "At adaptive speed: unlocking, impulse and drop get most of the frames, and the speed stands at the upper right. "
         "Arrows are the forces on the lever from the wheel, and on the roller's pin from the fork.",
         f"watchsim movie swiss {BEAT} --speed adaptive --length 5s --fps 16 --size 720x406 --phases --forces "
         "--inset lever.STONES.1 --inset lever.FORK -o swiss_lever.gif",

@@ -18,7 +18,7 @@ DEFAULT, PICTURE = "results/demo", "incline.png"
 
 def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-o", "--output", metavar="DIR", default=DEFAULT, help="results folder (default %(default)s)")
-    parser.add_argument("--details", action="store_true", help="print every number, not the verdicts alone")
+    parser.add_argument("--details", action="store_true", help="print every number, not only the verdicts")
     parser.add_argument("--force", action="store_true", help="replace a results folder that exists")
 
 

@@ -171,7 +171,7 @@ def status(run: Trajectory, summary: dict[str, Any]) -> int:
         say(f"Stopped at {run.stop_message}.")
         return stopping.status()
     if stopping.requested():
-        say("Interrupted while writing: all was kept but the pictures that were not drawn yet.")
+        say("Interrupted while writing: everything was kept except the pictures that were not drawn yet.")
         return stopping.status()
     missed = [entry for entry in summary["expect"] if entry["ok"] is False]
     for entry in missed:

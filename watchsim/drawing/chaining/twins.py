@@ -59,5 +59,5 @@ def distance(one: Loop, other: Loop, enough: float) -> float:
 
 def finding(loop: Loop, apart: float) -> Finding:
     x, y = loop.edges[0].point(0.5)
-    message = f"two outlines lie on each other within {1e9 * apart:.3g} nm all along, near {shown((x, y))} mm"
+    message = f"two outlines coincide within {1e9 * apart:.3g} nm all along, near {shown((x, y))} mm"
     return Finding("overlap", "error", message, "Leave only one of them.", loop.layer, 1e3 * x, 1e3 * y)

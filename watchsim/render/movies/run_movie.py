@@ -138,7 +138,7 @@ def _plan(run: Trajectory, span: Window, speed: float | str, length: float | Non
     if isinstance(speed, str):
         raise ValueError(f'speed = "{speed}": give a number, or "{ADAPTIVE}"')
     if length is not None:
-        raise ValueError(f'length = {length:g}: only a movie at speed = "{ADAPTIVE}" is made as long as asked')
+        raise ValueError(f'length = {length:g}: only a movie at speed = "{ADAPTIVE}" has a length of its own')
     return even(span, speed, fps)
 
 
