@@ -56,9 +56,7 @@ def run(args: argparse.Namespace) -> int:
     speed, size = (args.speed if args.speed == ADAPTIVE else parse_speed(args.speed)), _size(args.size)
     length = None if args.length is None else parse_positive("--length", args.length, TIME)
     if length is not None and speed != ADAPTIVE:
-        raise InputError(
-            f"--length {args.length}: only with --speed {ADAPTIVE}; otherwise speed and window determine how long it lasts."
-        )
+        raise InputError(f"--length {args.length}: only with --speed {ADAPTIVE}; else speed and window determine its length.")
     if size and any(side % 2 for side in size):
         say(f"Note: sides of a movie are even numbers of pixels; {args.size} is rounded up.")
     window = parse_window(args.window)

@@ -188,11 +188,9 @@ class _Builder:
 
     def entity(self, name: str, parameter: bool, value: str | None, *_: object) -> None:
         if value is None or parameter:
-            raise SvgError(
-                f'the entity "{name[:60]}" lies outside the file or controls how it is read; such entities are never followed'
-            )
+            raise SvgError(f'the entity "{name[:60]}" lies outside the file or steers how it is read; it is not followed')
         if "&" in value or "%" in value:
-            raise SvgError(f'the entity "{name[:60]}" is made of other entities; such entities are refused')
+            raise SvgError(f'the entity "{name[:60]}" is made of other entities, which is refused')
         self.entities[name] = len(value.encode())
 
     def check_entities(self, data: bytes) -> None:

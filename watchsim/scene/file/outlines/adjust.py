@@ -183,7 +183,7 @@ def _note_crossings(table: Table, path: str, drawing: Drawing, layer: str) -> No
     outlines = [Outline(loop, ("an edge",) * len(loop.edges)) for loop in drawing.loops if loop.layer == layer]
     for finding in _errors(outlines):
         table.faults.add(
-            path, f"moved like this, its outlines cross{finding}. Move it less", shown(table.mapping["adjust"][layer])
+            path, f"moved so far, its outlines cross{finding}. Move it less", shown(table.mapping["adjust"][layer])
         )
         return
 
