@@ -1,4 +1,4 @@
-"""What shall the user know about this drawing?
+"""What should the user know about this drawing?
 
 The same facts twice: as a dictionary with fixed names for programs, and as text for people.
 """

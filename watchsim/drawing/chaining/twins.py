@@ -1,4 +1,4 @@
-"""Which outlines lie on each other but for a hair?
+"""Which outlines nearly coincide?
 
 What was drawn twice exactly is taken out before. A copy that is off by some nanometres is not: the smaller of the two would
 count as a hole, and next to nothing would be left of the part.

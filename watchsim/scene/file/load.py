@@ -1,4 +1,4 @@
-"""How does a scene file become a mapping, and that a scene?
+"""How does a scene file become a scene?
 
 Everything is read before anything is refused: one SceneError lists all faults with file, line, key and cure.
 """
