@@ -79,7 +79,7 @@ def contents() -> str:
     """The first page: every name with the first sentence said of it."""
     parts = [f"# Reference\n\nWhat Python users call, after `import watchsim as ws`. {NOTE}\n"]
     for page, (title, names) in PAGES.items():
-        parts += [f"\n## [{title}]({page}.md)\n\n| | |\n|---|---|\n"]
+        parts += [f"\n## [{title}]({page}.md)\n\n| name | what it is |\n|---|---|\n"]
         for name in names:
             shown, thing = found(name)
             parts.append(f"| [`{shown}`]({page}.md#{anchor(shown)}) | {first_sentence(thing)} |\n")

@@ -39,16 +39,19 @@ class Written:
 
 @dataclass(frozen=True)
 class Scene:
-    """A mechanism in SI units, ready to be compiled.
+    """A mechanism in SI units, ready to be compiled. Two scenes are equal when all but the last six fields are.
 
-    `gravity` is (x, y) in m/s², `duration` s, `lift_angle` rad; `tolerance` the relative error per step.
-    `tangential_law` ("coulomb", "pg1996" or "shifted") says what friction does in the expansion of impacts, `nu` belongs to
-    pg1996 (docs/theory/laws.md).
-    `nominal` (Hz) is what the rate is measured against, where the scene says so.
-    `source` is the TOML mapping it was made from, `path` its file, `findings` what the drawings said besides errors,
-    `drawings` the files themselves as they were read, by their names in the scene file; two scenes are equal when everything
-    else is. `written` is there where a design stands in the file: `source` then holds the design's scene as well.
-    `reader(scene, {key: value})` reads `source` anew with keys changed; None for a scene that was made in Python.
+    bodies, springs, torques, damping, contacts  what it consists of
+    gravity         (x, y), m/s²
+    tangential_law  "coulomb", "pg1996" or "shifted": what friction does in the expansion of impacts; `nu` belongs to pg1996
+                    (docs/theory/laws.md)
+    duration        of a run, s; `tolerance` its relative error per step, `record` what is kept of it
+    lift_angle      rad; `nominal` (Hz) is what the rate is measured against. None where the scene says nothing
+    expect          numbers that a run promises
+    path, source    the file, and the TOML mapping that it holds
+    findings        what the drawings said besides errors; `drawings` the files as they were read, by their names in the scene
+    written         of a scene made from a design: `source` then holds the design's scene as well
+    reader          reader(scene, {key: value}) reads `source` anew with keys changed; None for a scene made in Python
     """
 
     title: str

@@ -111,7 +111,7 @@ class Run:
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Everything the future depends on, besides the model and the settings."""
-        return {**arrays_of(self.state)._asdict(), "worst_residual": self._worst_residual(), "overlap": self.watch.found}
+        return {**arrays_of(self.state)._asdict(), "worst_residual": self._worst_residual(), "overlap": self.watch.numbers}
 
     def _worst_residual(self) -> NDArray[np.float64]:
         """(1,): the worst violation of a complementarity condition so far."""
