@@ -27,6 +27,7 @@ PAGES = {
         [
             "watchsim.scene.body:Body",
             *(f"watchsim.scene.force:{name}" for name in ("Spring", "Torque", "Damping", "Contact", "Side")),
+            "watchsim.scene.prescribed:Prescribed",
             "watchsim.scene.recording:Recording",
         ],
     ),

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from watchsim.drawing.profile import Profile
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Point
+from watchsim.scene.prescribed import Prescribed
 from watchsim.scene.solid import Solid
 
 MOTIONS = ("pivot", "slide", "free", "fixed")
@@ -24,6 +25,7 @@ class Body:
     centre_of_mass  in the body's frame, m; it matters only where gravity acts on a pivoted body
     loops           outlines that can touch; `decoration` is drawn only
     solids          where mass and inertia come from, as far as they were not given as numbers
+    prescribed      the law by which a driven body moves whatever it meets; mass and inertia then change nothing
     on              the body that carries it; position, angle and velocity are then given in that one's frame, relative to it
     """
 
@@ -40,6 +42,7 @@ class Body:
     decoration: tuple[Loop, ...] = field(default=())
     solids: tuple[Solid, ...] = field(default=())
     on: str | None = None
+    prescribed: Prescribed | None = None
 
     @property
     def layers(self) -> tuple[str, ...]:

@@ -54,6 +54,7 @@ def flows(run: Trajectory, compiled: Compiled, rows: slice = slice(None)) -> Flo
     c = model.coordinates
     way = q - np.asarray(c.rest)
     own = 0.5 * (np.asarray(c.mass) * u**2 + np.asarray(c.stiffness) * way**2)
+    own[:, np.asarray(c.driven) != 0] = 0.0  # a prescribed motion holds no energy that counts
     stored = own.sum(axis=1)
     for joint in model.joints:
         wound = q[:, joint.coordinate] - q[:, joint.on] - joint.rest
@@ -126,6 +127,7 @@ def _drive_power(model: Model, t: Array, q: Array, u: Array) -> Array:
         power[:, table.coordinate] += value * u[:, table.coordinate]
         if table.on >= 0:
             power[:, table.on] -= value * u[:, table.on]
+    power[:, np.asarray(c.driven) != 0] = 0.0
     return power
 
 
