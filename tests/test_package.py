@@ -28,13 +28,6 @@ def test_versions_agree() -> None:
     assert project[1] == citation[1] == ws.__version__
 
 
-def test_links_between_the_documents_lead_somewhere() -> None:
-    pages = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
-    links = [(page, link) for page in pages for link in re.findall(r"\]\(([^)#:]+)\)", page.read_text(encoding="utf-8"))]
-    assert len({page for page, _ in links}) > 10
-    assert [f"{page.name}: {link}" for page, link in links if not (page.parent / link).is_file()] == []
-
-
 def test_the_glossary_names_files_that_exist() -> None:
     words = (ROOT / "docs/guide/glossary.md").read_text(encoding="utf-8")
     homes = re.findall(r"`([a-z_]+/[a-z_/]*(?:\.py)?)`", words)

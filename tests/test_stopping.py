@@ -13,7 +13,7 @@ import pytest
 from interpreter import ROOT
 
 from watchsim.profiles_path import profiles_dir
-from watchsim.results.folder import read_results
+from watchsim.results.read_results import read_results
 
 LEVER = profiles_dir() / "bench_lever"
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of Unix")
@@ -53,7 +53,7 @@ KEPT = [
     ("watchsim.simulation.runner", "Run._slices"),
     ("watchsim.simulation.runner", "Run.trajectory"),
     ("watchsim.analysis.summary", "tables"),
-    ("watchsim.results.folder", "write_events"),
+    ("watchsim.results.write_results", "write_events"),
     ("watchsim.storage.write", "sync_tree"),
     ("watchsim.storage.write", "sync_name"),
 ]
@@ -93,7 +93,7 @@ def test_a_second_one_stops_at_once(tmp_path: Path) -> None:
     """In the middle of writing: what stood there stays, and nothing else does."""
     folder = tmp_path / "out"
     arguments = ["run", str(LEVER), "--duration", "0.3 s", "--no-plots", "-o", str(folder)]
-    done = stopped([*arguments], "watchsim.results.folder", "json_text", signal.SIGINT, times=2)
+    done = stopped([*arguments], "watchsim.results.write_results", "json_text", signal.SIGINT, times=2)
     assert done.returncode == 130 and (folder / "summary.json").is_file(), "json_text is called once"
     before = (folder / "trajectory.npz").read_bytes()
     done = stopped([*arguments, "--force"], "watchsim.storage.disk", "sync_file", signal.SIGTERM, times=2)
@@ -116,7 +116,9 @@ def test_a_movie_under_way_is_given_up(tmp_path: Path) -> None:
 def test_what_the_shell_has_switched_off_stays_off(tmp_path: Path) -> None:
     """`nohup watchsim run ... &`"""
     code = "import signal; signal.signal(signal.SIGHUP, signal.SIG_IGN); signal.signal(signal.SIGINT, signal.SIG_IGN)\n"
-    code += CODE.format(home="watchsim.results.folder", name="write_events", number=int(signal.SIGHUP), times=1, pause=0.5)
+    code += CODE.format(
+        home="watchsim.results.write_results", name="write_events", number=int(signal.SIGHUP), times=1, pause=0.5
+    )
     arguments = ["run", str(LEVER), "--duration", "0.1 s", "--no-plots", "-o", str(tmp_path / "out")]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run([sys.executable, "-c", code, *arguments], env=environment, capture_output=True, check=False)

@@ -27,8 +27,8 @@ _HOMES = {
     "beats": "watchsim.analysis.timing.beats",
     "forces": "watchsim.analysis.contact_forces",
     "summary": "watchsim.analysis.summary",
-    "read_results": "watchsim.results.folder",
-    "write_results": "watchsim.results.folder",
+    "read_results": "watchsim.results.read_results",
+    "write_results": "watchsim.results.write_results",
     "verdict": "watchsim.analysis.verdicts.verdict",
     "verify": "watchsim.verification.all_checks",
     "steady": "watchsim.studies.limit_cycle.steady",
@@ -69,8 +69,8 @@ if TYPE_CHECKING:
     from watchsim.render.figures.tape import plot_tape as plot_tape
     from watchsim.render.movies.run_movie import frame as frame
     from watchsim.render.movies.run_movie import movie as movie
-    from watchsim.results.folder import read_results as read_results
-    from watchsim.results.folder import write_results as write_results
+    from watchsim.results.read_results import read_results as read_results
+    from watchsim.results.write_results import write_results as write_results
     from watchsim.scene.errors import SceneError as SceneError
     from watchsim.scene.file.load import load as load
     from watchsim.scene.scene import Scene as Scene

@@ -123,7 +123,7 @@ def _refusal(folder: Path, others_may_write: bool) -> str:
         os.utime(folder)
         if hasattr(os, "getuid"):
             if folder.stat().st_uid != os.getuid() or folder.stat().st_mode & stat.S_IWOTH:
-                return "belongs to somebody else"
+                return "belongs to another user"
             if not others_may_write and (open_to := _open_to_others(folder)):
                 return f"lies in {open_to}, where others can write"
     except OSError as error:

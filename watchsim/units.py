@@ -143,7 +143,7 @@ def split(value: object) -> tuple[str, str]:
         raise UnitError(f'"{value}" does not begin with a number')
     number = match[1].replace("−", "-")
     if len(number) > DIGITS:
-        raise UnitError(f"a number of {len(number)} characters is longer than any precision")
+        raise UnitError(f"a number of {len(number)} characters has more digits than any precision")
     if not math.isfinite(float(number)):
         raise UnitError(f'"{value}" is not a finite number')
     if match[2][:1] in (",", "'", "’", "_"):

@@ -3,7 +3,7 @@
     python scripts/checks/measure_prefilter.py [SCENE] [SECONDS]
 
 Runs the scene with the cells and by brute force (every declared pair in every step) and compares all events and the end states
-byte by byte. The share of shapely is told for the first turn of the escape wheel and for what follows.
+byte by byte. The share of shapely is given for the first turn of the escape wheel and for what follows.
 """
 
 from __future__ import annotations

@@ -67,9 +67,9 @@ accidents a file, and reads each in a process of its own with 1 GB of memory and
 - DXF: group codes changed, other words after code 0, INSERTs that show another block, perhaps the one they stand in;
 - SVG: names and letters changed, fragments put in (half comments, `CDATA`, entities, open tags), tags moved to other places.
 
-A file fails that brings a traceback, more time or more memory than that, or a loss in silence: every entity that a plain
-look at the file finds must be drawn or reported, and without any finding no less than before may be there, unless an
-independent reader (for DXF ezdxf, for SVG `tests/naive/svg_length.py`) draws as little.
+A file fails if it causes a traceback, takes more time or memory than that, or loses something silently: every entity that
+a plain look at the file finds must be drawn or reported, and without any finding nothing may be missing, unless an
+independent reader (for DXF ezdxf, for SVG `tests/naive/svg_length.py`) misses it, too.
 
 | Files | Failures | Slowest |
 |---|---|---|

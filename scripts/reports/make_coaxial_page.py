@@ -19,7 +19,7 @@ from watchsim.analysis.contact_forces import forces
 from watchsim.analysis.timing.phases import phases
 from watchsim.render.movies.run_movie import frame
 from watchsim.render.stills.turn_picture import turn_picture
-from watchsim.scene.file.override import changed
+from watchsim.scene.file.read_scene import changed
 from watchsim.scene.scene import Scene
 from watchsim.simulation.record.trajectory import EventKind, Trajectory
 from watchsim.turning.happenings import passings

@@ -52,16 +52,16 @@ def main(folder: Path, target: Path) -> None:
     text = (
         f"# Drawings of other programs, as they are read\n\n{summary}\n" + (f"\nNot: {others}.\n" if others else "") + "\n"
         "Written by `python scripts/reports/make_drawing_table.py FOLDER`; `tests/drawing/test_real_drawings.py` checks the "
-        "same. The truth lists what a file draws, chained by the plainest rule: what ends within a millionth of the size hangs "
-        "together, doubles are kept, nothing is closed, and what hangs on a branch is no loop. So *Drawn* counts what the file "
+        "same. The truth lists what a file draws, chained by the plainest rule: ends within a millionth of the size are "
+        "joined, doubles are kept, nothing is closed, and what is attached to a branch is no loop. So *Drawn* counts what the file "
         "holds, blocks and polylines unfolded, and Δ extents, Δ length and Δ areas are the relative differences of just that, "
         "chained by the same rule (`tests/naive/chaining.py`).\n\n"
         'Curves are followed within 2 nm here (`--fit "2 nm"`), fifty times closer than `watchsim inspect` does by itself, so '
         "that lengths and areas can be compared: *Curves → arcs* counts as many more arcs.\n\n"
-        "The other columns are what comes out, with doubles and slits taken out, gaps closed and outlines that touch told "
-        "apart. Where as many loops come out as the truth counts, Δ areas out compares these as well. One of them exceeds "
+        "The other columns show the result, with doubles and slits taken out, gaps closed and outlines that touch "
+        "distinguished. Where the result has as many loops as the truth, Δ areas out compares these as well. One of them exceeds "
         "1e-9: in 125_cycloidal ends miss each other by 0.4 nm at 24 joints; the truth integrates across these gaps, here they "
-        "are closed, which is worth 5e-9 of the area.\n\n"
+        "are closed, which changes the area by 5e-9 of it.\n\n"
     )
     target.write_text(text + HEAD + "\n".join(row.text for row in rows) + "\n")
     print(summary)

@@ -157,15 +157,15 @@ def creep(scene: Scene, duration: float) -> tuple[Floats, float]:
 
 HEAD = """# Long runs
 
-Does a simulated watch beat evenly for an hour, and does its energy account close all the time? Does a locked lever creep?
+Does a simulated watch beat evenly for an hour, and does its energy account stay closed? Does a locked lever creep?
 Written by `scripts/reports/measure_long_runs.py`; the hours are run minute by minute, each minute from the saved state of the
 one before.
 
 ![amplitude and residual over an hour](../images/long_runs.png)
 
 The residual of the account is the sum of the errors of all steps. Each step is exact to a share of about `tolerance`, 10⁻⁹
-here, and every beat of a settled watch makes the same errors, so that the residual grows with the work put in: what does not
-grow is its share of that work (right picture).
+here, and every beat of a settled watch makes the same errors, so the residual grows with the work put in; its share of that
+work does not (right picture).
 """
 STANDS = """
 ## Locked, balance stopped, {hours:g} h

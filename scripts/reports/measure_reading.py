@@ -187,7 +187,7 @@ def table(results: dict[str, np.ndarray], megabytes: dict[str, float], empty: fl
     head = (
         "# How fast drawings are read\n\n"
         "Made by `scripts/reports/measure_reading.py`: the whole command `watchsim inspect FILE` in a fresh process,\n"
-        "processor time in seconds, the least of a few runs. Outlines are cut into single entities and shuffled. "
+        "processor time in seconds, the minimum of a few runs. Outlines are cut into single entities and shuffled. "
         f"The exponent is fitted from {FITTED_FROM} edges on, after\nsubtracting the {empty:.2f} s of a drawing "
         "of one circle.\n\n"
     )
@@ -215,8 +215,8 @@ def curves_text(repeats: int) -> str:
                 rows.append(f"| {count} {name} | {path.stat().st_size / 1e6:.2f} MB | {drawing.fitted_arcs} | {used:.2f} |")
     return (
         f"{CURVED}\n\nSplines and Béziers that are neither straight nor round are followed by the fewest arcs within 0.1 µm "
-        f"that are found,\nall curves of a drawing at once, copies (blocks, turned teeth, mirrored halves) once for all. "
-        f"Where more than {MANY} spans\nwait the search stops a little sooner, with some four per cent more arcs. "
+        f"that are found,\nall curves of a drawing at once, copies (blocks, turned teeth, mirrored halves) only once. "
+        f"With more than {MANY} spans\nthe search stops a little sooner, with some four per cent more arcs. "
         f"Cubics of any shape some"
         f"\nmillimetres long, and closed outlines of {SPANS} spans:\n\n"
         f"| Curves | file | arcs | seconds |\n|---|---|---|---|\n" + "\n".join(rows) + "\n"

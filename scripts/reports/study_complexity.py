@@ -191,7 +191,7 @@ def rows(quick: bool) -> list[Row]:
 def table(found: list[Row]) -> str:
     """The measured numbers in Markdown, times in milliseconds."""
     lines = [
-        "| Declared pairs | that can ever touch | getting ready, ms | first run | later runs | a turn of the wheel "
+        "| Declared pairs | that can ever touch | preparation, ms | first run | later runs | a turn of the wheel "
         "| brute force | gaps evaluated | events |",
         "|---:|---:|---:|---:|---:|---:|---:|---:|---:|",
     ]
@@ -240,11 +240,12 @@ search for candidates included), events recorded.
 
 From {low:,} to {high:,} declared pairs the time of later runs grows by a factor of {growth:.2f}; over a whole turn of
 the wheel ({turn:g} s, all teeth) by {turn_growth:.2f} from {second:,} pairs on. Brute force looks at every declared pair
-in every step and has the same events to the last bit; it is not waited for beyond {most:,} pairs.
+in every step and has the same events to the last bit; it is not run beyond {most:,} pairs.
 
 *First run* asks shapely about each cell of the configuration space it enters; *later runs* of the same geometry, such as
-a sweep over torques or friction, ask nothing. *Getting ready* is done once, however long the run: the flattening of the
-scene, what can be found out in advance (what can ever touch, symmetries), and the digest of the model in the end state.
+a sweep over torques or friction, ask nothing. *Preparation* is done once, however long the run: the scene becomes a
+model, what can be known in advance is found (what can ever touch, symmetries), and the digest of the model in the end state
+is computed.
 """
 
 

@@ -157,14 +157,14 @@ HEAD = """# Two methods, one motion
 
 Moreau's time stepping ([method](../theory/method.md) 6) shares the model and the gap functions with the event-driven solver,
 but neither its search for events nor its complementarity solver. As its step shrinks it must come to the same motion, at first
-order. The incline is held against its closed form after 1 s; a balance with dry bearings, a block on a moving belt and the
+order. The incline is compared with its closed form after 1 s; a balance with dry bearings, a block on a moving belt and the
 levers against the event-driven solver: of the levers, the mean difference of angles over the first {levers:g} s, four
 beats. Written by `scripts/reports/study_convergence.py`.
 
 ![errors over step](../images/{picture})
 
 *Order* is the slope of the straight line through the logarithms of step and error. Which step an impact falls into is a
-matter of chance, so that errors scatter about the line.
+matter of chance, so errors scatter about the line.
 
 | case | error of | {steps} | order |
 |---|---|{rules}---:|"""

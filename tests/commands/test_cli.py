@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from watchsim.cli import COMMANDS, main
-from watchsim.results.folder import read_results
+from watchsim.results.read_results import read_results
 
 ROOT = Path(__file__).resolve().parents[2]
 LEVER = ROOT / "profiles" / "bench_lever" / "scene.toml"

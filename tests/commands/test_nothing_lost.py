@@ -16,8 +16,8 @@ from storage.disk_faults import Disk, watched
 from watchsim.cli import main
 from watchsim.commands.common import write_run
 from watchsim.profiles_path import profiles_dir
-from watchsim.results import folder
-from watchsim.results.folder import read_results
+from watchsim.results import write_results
+from watchsim.results.read_results import read_results
 from watchsim.simulation.runner import Run
 
 LEVER = str(profiles_dir() / "bench_lever")
@@ -84,7 +84,7 @@ def test_a_folder_made_meanwhile_is_left_alone(
     assert [path.name for path in target.iterdir()] == ["thesis.txt"]
 
 
-@pytest.mark.parametrize("home", ["watchsim.analysis.summary.summary", "watchsim.results.folder.write_events"])
+@pytest.mark.parametrize("home", ["watchsim.analysis.summary.summary", "watchsim.results.write_results.write_events"])
 def test_a_fault_in_what_is_made_of_it_does_not_cost_the_motion(
     home: str, tmp_path: Path, elsewhere: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -189,6 +189,6 @@ def test_fallback_names_what_fails(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     def full(*_: object, **__: object) -> None:
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr(folder, "write_trajectory", full)
+    monkeypatch.setattr(write_results, "write_trajectory", full)
     assert main([*SHORT, "-o", str(tmp_path / "out")]) == 2
     assert capsys.readouterr().err.count("No space left on device") >= 2

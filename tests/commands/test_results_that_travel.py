@@ -11,7 +11,7 @@ import pytest
 from watchsim.cli import main
 from watchsim.commands.common.console import BAD_INPUT, FINE
 from watchsim.profiles_path import profiles_dir
-from watchsim.results.folder import read_results
+from watchsim.results.read_results import read_results
 from watchsim.results.scene_copy import kept_names, travelling
 from watchsim.scene.file.load import load
 

@@ -14,7 +14,7 @@ from watchsim.commands.common.inputs import load_scene
 from watchsim.commands.common.record_size import record_size, room_for
 from watchsim.commands.common.run_pictures import last_beats
 from watchsim.profiles_path import profiles_dir
-from watchsim.results.folder import read_results
+from watchsim.results.read_results import read_results
 from watchsim.simulation.simulate import simulate
 from watchsim.storage.destination import LEAST_ROOM
 

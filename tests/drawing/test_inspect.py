@@ -91,7 +91,7 @@ def test_text_without_units_and_without_anything(read_bytes: Reader) -> None:
 
 
 def test_text_says_when_all_is_well_and_cuts_long_lists(read_bytes: Reader) -> None:
-    assert "nothing to complain about" in inspect_text(read_bytes(d.dxf(d.circle(0, 0, 1))))
+    assert "no faults found" in inspect_text(read_bytes(d.dxf(d.circle(0, 0, 1))))
     strays = "".join(d.line((5 * k, 0), (5 * k + 1, 0)) for k in range(30))
     text = inspect_text(read_bytes(d.dxf(strays)))
     assert text.count("(stray-line) [") == 12

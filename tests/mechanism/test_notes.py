@@ -27,7 +27,7 @@ CASES = {
     "a lift angle that nothing hears": (
         FLAT + DISC.replace("inertia", 'angle = "9°"\ninertia') + SPRING + '[timegrapher]\nlift_angle = "50°"\n' + END,
         "lift-angle",
-        "nothing may touch disc, so that no beat is heard",
+        "nothing may touch disc, so no beat is heard",
     ),
     "a lift angle without an oscillator": (
         FLAT + DISC + '[timegrapher]\nlift_angle = "50°"\n' + END,

@@ -19,7 +19,7 @@ from watchsim.profiles_path import profiles_dir
 from watchsim.render.frame.pose_history import poses
 from watchsim.render.keyframes import keyframes
 from watchsim.render.placed_solids import closed_solids, placed_solids
-from watchsim.results.folder import write_results
+from watchsim.results.write_results import write_results
 from watchsim.scene.file.load import load
 from watchsim.scene.layer_heights import slabs
 from watchsim.simulation.simulate import simulate

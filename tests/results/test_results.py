@@ -13,10 +13,11 @@ import pytest
 from render.fake_runs import watch_run
 
 from watchsim.results import archive
-from watchsim.results import folder as results
+from watchsim.results import write_results as results
 from watchsim.results.archive import read_trajectory, write_trajectory
-from watchsim.results.folder import check_folder, read_results, write_results
+from watchsim.results.read_results import read_results
 from watchsim.results.tables import json_text
+from watchsim.results.write_results import check_folder, write_results
 
 SUMMARY = {"amplitude_deg": np.float64(270.5), "rate_s_per_d": math.nan, "impacts": np.int64(3), "stop": "DURATION"}
 

@@ -35,7 +35,7 @@ def test_what_cannot_be_written_is_refused(secure: Callable[[Path, str], object]
     (tmp_path / "file").write_text("x")
     (tmp_path / "nowhere").symlink_to(tmp_path / "gone")
     (tmp_path / "circle").symlink_to(tmp_path / "circle")
-    assert "is not there; create it first" in refusal(secure, tmp_path / "none" / "out")
+    assert "does not exist; create it first" in refusal(secure, tmp_path / "none" / "out")
     assert "Not a directory" in refusal(secure, tmp_path / "file" / "out")
     assert "File name too long" in refusal(secure, tmp_path / ("x" * 256))
     assert "is a link to" in refusal(secure, tmp_path / "nowhere")

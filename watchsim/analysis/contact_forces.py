@@ -69,7 +69,7 @@ class _Instant:
 def forces(run: Trajectory, times: Iterable[float] | None = None) -> Forces:
     """Forces at these times (s), by default at all rows; after an impact where one happens at that time.
 
-    Where contacts are redundant the smallest forces are told. ValueError for a run by fixed steps, whose contacts have
+    Where contacts are redundant the smallest forces are given. ValueError for a run by fixed steps, whose contacts have
     impulses only, and where events were not kept.
     """
     if run.method != EVENT_DRIVEN:

@@ -59,13 +59,13 @@ def impossible(expectation: Expectation, scene: Scene) -> str:
     if parts.oscillator is None:
         why = "nothing in it swings on a spring or by gravity"
     elif "amplitude_deg" in name and scene.body(parts.oscillator).motion == "slide":
-        why = f"{parts.oscillator} slides, so that it has no amplitude in degrees"
+        why = f"{parts.oscillator} slides, so it has no amplitude in degrees"
     elif whole in BY_WHEEL and (parts.wheel is None or not keeps_time(scene)):
         why = "no driven wheel keeps the oscillator going"
     elif name == "timegrapher.amplitude_deg" and scene.lift_angle is None:
         why = "it names no lift_angle under [timegrapher]"
     elif whole == "timegrapher" and not partners(scene, parts.oscillator):
-        why = f"nothing may touch {parts.oscillator}, so that no beat is heard"
+        why = f"nothing may touch {parts.oscillator}, so no beat is heard"
     else:
         return ""
     return f'no run of this scene gives "{expectation.key}": {why}. Leave it out'

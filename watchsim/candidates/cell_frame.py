@@ -1,4 +1,4 @@
-"""In whose frame are the cells of two bodies told, and along which coordinates?
+"""In whose frame are the cells of two bodies given, and along which coordinates?
 
 Two bodies on the same carrier, or one body and its carrier, do not care how the carrier stands: seen from it they depend on
 relative angles alone. Everything else is seen from the movement.

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from watchsim.jit import entry, kernel
+from watchsim.model.records import NO_KEY
 
 UNKNOWN, LISTED, ALL = -1, 0, 1
 MARGIN = 0.5  # a cell's answer holds this share of its size beyond its faces
@@ -26,7 +27,7 @@ def along(value, coordinate, on):
 
 @entry
 def cell_key(model, p, q):
-    """The key of body pair p's cell at coordinates q; -1 where the indices leave the range of keys."""
+    """The key of body pair p's cell at coordinates q; NO_KEY where the indices leave the range of keys."""
     pair = model.pairs[p]
     x0, x1, x2 = q[pair.c0], q[pair.c1], q[pair.c2]
     if pair.frame >= 0:
@@ -35,7 +36,7 @@ def cell_key(model, p, q):
     i1 = cell_index(x1, pair.size1, pair.wrap1) if pair.axes > 1 else 0
     i2 = cell_index(x2, pair.size2, pair.wrap2) if pair.axes > 2 else 0
     if abs(i0) >= REACH or abs(i1) >= REACH or abs(i2) >= REACH:
-        return -1
+        return NO_KEY
     return (((p * 2 * REACH + (i0 + REACH)) * 2 * REACH) + (i1 + REACH)) * 2 * REACH + (i2 + REACH)
 
 
@@ -46,7 +47,7 @@ def find_slot(keys, key):
     # Neighbouring cells differ in one index: spread the three indices by primes. The table's length is a power of two.
     mixed = (key >> 34) * 7919 + ((key >> 17) & (2 * REACH - 1)) * 104729 + (key & (2 * REACH - 1)) * 31
     slot = (mixed ^ (mixed >> 15)) & (slots - 1)
-    while keys[slot] != key and keys[slot] != -1:
+    while keys[slot] != key and keys[slot] != NO_KEY:
         slot = (slot + 1) & (slots - 1)
     return slot
 
@@ -57,7 +58,7 @@ def insert_cells(keys, start, count, new_keys, new_start, new_count):
     added = 0
     for i in range(len(new_keys)):
         slot = find_slot(keys, new_keys[i])
-        if keys[slot] == -1:
+        if keys[slot] == NO_KEY:
             added += 1
             keys[slot] = new_keys[i]
             start[slot], count[slot] = new_start[i], new_count[i]
@@ -70,9 +71,9 @@ def candidates(model, cells, p, q):
     pair = model.pairs[p]
     if pair.listed:
         key = cell_key(model, p, q)
-        if key >= 0:
+        if key != NO_KEY:
             slot = find_slot(cells.keys, key)
-            if cells.keys[slot] == -1:
+            if cells.keys[slot] == NO_KEY:
                 return UNKNOWN, 0, 0
             return LISTED, cells.start[slot], cells.count[slot]
     return ALL, pair.near_start, pair.near_stop - pair.near_start

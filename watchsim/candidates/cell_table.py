@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from watchsim.candidates.cell_lookup import REACH, insert_cells
 from watchsim.candidates.equivalent_contacts import AlikeContacts
 from watchsim.candidates.pair_cache import Cell, Known, known_cells
-from watchsim.model.records import Cells, Model
+from watchsim.model.records import NO_KEY, Cells, Model
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -53,7 +53,7 @@ class CellFinder:
     def _forget(self) -> None:
         self.number = self._entries = 0
         self._inside: set[tuple[int, Cell]] = set()  # pairs of bodies and cells of theirs that the table holds
-        self.cells = Cells(np.full(64, -1, np.int64), *(np.zeros(size, np.int64) for size in (64, 64, 256)))
+        self.cells = Cells(np.full(64, NO_KEY, np.int64), *(np.zeros(size, np.int64) for size in (64, 64, 256)))
 
     def _insert_cells(self, p: int, cells: list[Cell]) -> None:
         """Put cells of body pair p into the table that it does not hold yet."""
@@ -69,7 +69,7 @@ class CellFinder:
             slots *= 2
         if slots > len(old.keys):
             taken = old.keys >= 0
-            empty = np.full(slots, -1, np.int64), np.zeros(slots, np.int64), np.zeros(slots, np.int64)
+            empty = np.full(slots, NO_KEY, np.int64), np.zeros(slots, np.int64), np.zeros(slots, np.int64)
             insert_cells(*empty, old.keys[taken], old.start[taken], old.count[taken])
             old = Cells(*empty, old.entries)
         entries = old.entries
@@ -178,7 +178,7 @@ class PairCells:
                 yield (turn, *others), moved
 
     def _keys(self, index: Integers) -> Integers:
-        """The keys of cells, as `lookup.cell_key` makes them."""
+        """The keys of cells, as `cell_lookup.cell_key` makes them."""
         key = np.full(len(index), self.p, np.int64)
         for i in range(3):
             key = key * 2 * REACH + REACH + (index[:, i] if i < len(self.axes) else 0)

@@ -48,7 +48,7 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     if not args.turn and (args.swing or args.movie):
-        raise InputError(f"{'--swing' if args.swing else '--movie'}: belongs to --turn, which is not asked for.")
+        raise InputError(f"{'--swing' if args.swing else '--movie'}: needs --turn.")
     from watchsim.commands.common.inputs import load_scene
     from watchsim.commands.common.output_place import secured_file
     from watchsim.drawing.findings import Finding

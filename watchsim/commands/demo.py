@@ -18,7 +18,7 @@ DEFAULT, PICTURE = "results/demo", "incline.png"
 
 def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-o", "--output", metavar="DIR", default=DEFAULT, help="results folder (default %(default)s)")
-    parser.add_argument("--details", action="store_true", help="print every number, not the verdicts alone")
+    parser.add_argument("--details", action="store_true", help="print every number, not only the verdicts")
     parser.add_argument("--force", action="store_true", help="replace a results folder that exists")
 
 
@@ -29,7 +29,7 @@ def run(args: argparse.Namespace) -> int:
     from watchsim.commands.common.write_run import Extras, goal_of, write
     from watchsim.commands.run import simulate_with_progress, status
     from watchsim.profiles_path import profiles_dir
-    from watchsim.results.folder import check_folder
+    from watchsim.results.write_results import check_folder
     from watchsim.verification.all_checks import incline_rows, verify_text
 
     start = time.monotonic()

@@ -82,7 +82,7 @@ def _motion(args: argparse.Namespace, formats: Sequence[str]) -> list[Track]:
     from watchsim.commands.common.inputs import read_run
     from watchsim.commands.common.run_pictures import filmed
     from watchsim.commands.movie import parse_speed
-    from watchsim.results.folder import TRAJECTORY
+    from watchsim.results.write_results import TRAJECTORY
 
     is_run = (Path(args.scene) / TRAJECTORY).is_file()
     asked = [option for option in ("window", "speed") if getattr(args, option) is not None]

@@ -18,14 +18,14 @@ def options(parser: argparse.ArgumentParser) -> None:
         "--speed",
         metavar="X",
         default="1",
-        help='1/20 is slow motion (default %(default)s); "adaptive": slow where things happen, and the factor is told',
+        help='1/20 is slow motion (default %(default)s); "adaptive": slow where things happen, with the factor shown',
     )
     parser.add_argument("--length", metavar="TIME", help='how long a movie at adaptive speed lasts (default "10 s")')
     parser.add_argument("--fps", metavar="N", type=float, help="frames per second (default 60, GIF 25)")
     parser.add_argument("--size", metavar="WxH", help="pixels, such as 1280x720")
     parser.add_argument("--contacts", action="store_true", help="mark the contacts that are closed")
     parser.add_argument("--forces", action="store_true", help="arrows for the forces at contacts, and their scale")
-    parser.add_argument("--phases", action="store_true", help="tell the phases of a beat by name")
+    parser.add_argument("--phases", action="store_true", help="name the phases of a beat")
     parser.add_argument(
         "--strip",
         metavar="BODY",
@@ -56,7 +56,7 @@ def run(args: argparse.Namespace) -> int:
     speed, size = (args.speed if args.speed == ADAPTIVE else parse_speed(args.speed)), _size(args.size)
     length = None if args.length is None else parse_positive("--length", args.length, TIME)
     if length is not None and speed != ADAPTIVE:
-        raise InputError(f"--length {args.length}: only with --speed {ADAPTIVE}; else speed and window tell how long it lasts.")
+        raise InputError(f"--length {args.length}: only with --speed {ADAPTIVE}; else speed and window determine its length.")
     if size and any(side % 2 for side in size):
         say(f"Note: sides of a movie are even numbers of pixels; {args.size} is rounded up.")
     window = parse_window(args.window)

@@ -35,7 +35,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _numbers(folder: str) -> dict[str, Any] | None:
     """The summary as the run wrote it, which knows its error bars and promises; None where it cannot be read."""
-    from watchsim.results.folder import SUMMARY
+    from watchsim.results.write_results import SUMMARY
 
     try:
         found = json.loads((Path(folder) / SUMMARY).read_text(encoding="utf-8"))

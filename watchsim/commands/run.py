@@ -66,7 +66,7 @@ def options(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from watchsim.commands.common.inputs import load_scene
     from watchsim.mechanism.notes import notes
-    from watchsim.results.folder import check_folder
+    from watchsim.results.write_results import check_folder
     from watchsim.units import TIME
 
     if args.scene is None and args.resume is None:
@@ -145,7 +145,7 @@ def _earlier(folder: str, scene: Scene) -> Trajectory:
     """The run to go on from, its scene replaced by the one given, which must be the same (see `simulate`)."""
     import dataclasses
 
-    from watchsim.results.folder import read_results
+    from watchsim.results.read_results import read_results
 
     run = read_results(folder)
     if run.end_state is None:
@@ -171,7 +171,7 @@ def status(run: Trajectory, summary: dict[str, Any]) -> int:
         say(f"Stopped at {run.stop_message}.")
         return stopping.status()
     if stopping.requested():
-        say("Interrupted while writing: all was kept but the pictures that were not drawn yet.")
+        say("Interrupted while writing: everything was kept except the pictures that were not drawn yet.")
         return stopping.status()
     missed = [entry for entry in summary["expect"] if entry["ok"] is False]
     for entry in missed:

@@ -60,7 +60,7 @@ def text(title: str, cycle: Cycle) -> str:
         lines.append(("verdict", cycle.verdict))
     if cycle.message:
         lines.append(("", cycle.message) if lines else ("cycle", cycle.message))
-    cells = f", {cycle.cells_s:.2g} s of it for the search of candidate contacts" if cycle.cells_s >= 5e-3 else ""
+    cells = f", {cycle.cells_s:.2g} s of it for the search for candidate contacts" if cycle.cells_s >= 5e-3 else ""
     lines.append(("computed", f"{cycle.simulated_s:.3g} s simulated in {cycle.wall_s:.2g} s{cells}"))
     return "\n".join([title, *(f"  {label:{LABEL}}{words}".rstrip() for label, words in lines)])
 

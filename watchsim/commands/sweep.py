@@ -183,7 +183,7 @@ def _watched(compute: Callable[[Progress], Any]) -> Any:
         return compute(progress)
     except WorkersLost as error:
         progress.close()
-        say(f"{error}. Finished points are kept; --resume goes on with the others, --workers 1 needs least memory.")
+        say(f"{error}. Finished points are kept; --resume goes on with the others, --workers 1 needs the least memory.")
         raise SystemExit(GAVE_UP) from error
     finally:
         progress.close()

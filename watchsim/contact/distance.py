@@ -81,18 +81,19 @@ def distance(a: Outline, pose_a: Vector, b: Outline, pose_b: Vector) -> Distance
 
 
 def gap(a: Outline, pose_a: Vector, b: Outline, pose_b: Vector) -> NDArray[Any]:
-    """Every pair of primitives that has a gap function, as rows of CONTACT_ROW; nothing moves, so all rates are 0.
+    """Every pair of primitives that has a gap function, one row each; nothing moves, so all rates are 0.
 
+    Poses are (x, y, angle), m and rad. docs/theory/contact-geometry.md lists the fields of the rows with shapes and units.
     Gaps are those of the whole line or full circle, positive outside the material: only rows with `margin` >= 0 are contacts.
     """
     return kinematics(a, pose_a, (0.0, 0.0, 0.0), b, pose_b, (0.0, 0.0, 0.0))
 
 
 def kinematics(a: Outline, pose_a: Vector, velocity_a: Vector, b: Outline, pose_b: Vector, velocity_b: Vector) -> NDArray[Any]:
-    """The same for outlines that move: gap rates, slip, force directions and bar terms, from the compiled kernels.
+    """The rows of `gap` for outlines that move, with gap rates, slip, force directions and bar terms from the compiled kernels.
 
-    With u = (velocity_a, velocity_b): g_N_dot = w_N·u, and g_N'' = w_N·u' + w_bar_N, likewise for T (Pfeiffer
-    & Glocker 1996, ch. 4).
+    Velocities are (vx, vy, omega), m/s and rad/s. With u = (velocity_a, velocity_b): g_N_dot = w_N·u, and
+    g_N'' = w_N·u' + w_bar_N, likewise for T (Pfeiffer & Glocker 1996, ch. 4).
     """
     model = _model(_loops(a), _loops(b))
     count = len(model.contacts)

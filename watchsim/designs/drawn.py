@@ -9,7 +9,7 @@ from typing import Any
 
 from watchsim.construction.design import Design
 from watchsim.drawing.sheet import Sheet
-from watchsim.scene.file.load import from_mapping
+from watchsim.scene.file.read_scene import from_mapping
 from watchsim.scene.scene import Scene
 from watchsim.storage.write import write_folder
 

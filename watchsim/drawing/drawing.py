@@ -15,11 +15,18 @@ from watchsim.geometry.loop import Loop
 class Drawing:
     """Everything read from one file. Lengths are metres, in the coordinates of the drawing.
 
-    `units` is the name the file (or the caller) gave, None when nobody said: lengths are then what they would be in
-    millimetres and a finding of severity "error" says so. `units_from` is "header", "option" or "page" (None when unknown).
-    `layers` lists all visible layers with geometry. `points` are (layer, x, y). `fitted` counts curves turned into arcs and
-    a bound of their deviation in metres. `drawn` is what the file holds before doubles are taken out and curves are fitted.
-    `data` is the file itself, byte by byte.
+    format          "dxf" or "svg"
+    units           as the file (or the caller) gave it; None where neither did: lengths are then what they would be in
+                    millimetres, and a finding of severity "error" says so
+    units_from      "header", "option" or "page"; None when unknown
+    loops           closed outlines, material on the left
+    open_chains     outlines that do not close
+    points          (layer, x, y) of each
+    layers          all visible layers with geometry
+    fitted_curves, fitted_arcs, fitted_deviation  curves followed by arcs, how many arcs, and a bound of their deviation (m)
+    ignored         what was not read, by kind
+    drawn           what the file holds before doubles are taken out and curves are fitted
+    data            the file itself, byte by byte
     """
 
     path: Path

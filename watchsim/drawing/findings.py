@@ -14,7 +14,7 @@ ORDER = ("error", "warning", "notice")  # the gravest first
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One observation. `severity` is "error", "warning" or "notice"; coordinates are millimetres in the drawing.
+    """One observation about a drawing. `severity` is "error", "warning" or "notice"; coordinates are its own, in millimetres.
 
     `other_mm` is the second place of a fault between two, such as the other end of a gap.
     """
@@ -29,5 +29,6 @@ class Finding:
     other_mm: Point | None = None
 
     def as_dict(self) -> dict[str, object]:
+        """What `inspect --json` prints of it."""
         names = ("code", "severity", "layer", "x_mm", "y_mm", "message", "fix")
         return {name: getattr(self, name) for name in names}

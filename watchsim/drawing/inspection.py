@@ -1,4 +1,4 @@
-"""What shall the user know about this drawing?
+"""What should the user know about this drawing?
 
 The same facts twice: as a dictionary with fixed names for programs, and as text for people.
 """
@@ -192,7 +192,7 @@ def finding_lines(findings: Iterable[Finding]) -> list[str]:
     """Findings by severity, numbered as in the picture; many of one kind are cut short with their count."""
     numbered = sorted(enumerate(findings, 1), key=lambda pair: ORDER.index(pair[1].severity))
     if not numbered:
-        return ["  nothing to complain about"]
+        return ["  no faults found"]
     result = ["  findings:"]
     seen: dict[str, int] = {}
     fixes: set[str] = set()

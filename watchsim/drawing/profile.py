@@ -25,6 +25,7 @@ class Profile:
 
     @property
     def layers(self) -> tuple[str, ...]:
+        """The layers that hold an outline, in the order of the drawing."""
         return tuple(dict.fromkeys(loop.layer for loop in (*self.loops, *self.chains)))
 
     def only(self, *layers: str) -> Profile:

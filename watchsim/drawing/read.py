@@ -155,7 +155,7 @@ def emptiness(content: Content) -> Finding:
         other += "; what it holds is not read: " + ", ".join(f"{count} × {kind}" for kind, count in content.ignored.items())
     message = f"the drawing holds no line and no arc that is visible{other}"
     place = "text, which must be turned into paths" if content.format == "svg" else "paper space"
-    return Finding("empty", "error", message, f"Look at hidden layers and at {place}.")
+    return Finding("empty", "error", message, f"Check hidden layers and {place}.")
 
 
 def smallness(loops: tuple[Loop, ...], snap: float) -> list[Finding]:
@@ -167,7 +167,7 @@ def smallness(loops: tuple[Loop, ...], snap: float) -> list[Finding]:
     if across > SMALLEST * snap:
         return []
     message = f"the whole drawing is {1e6 * across:.3g} µm across, and ends within {1e6 * snap:.3g} µm are taken for one point"
-    return [Finding("tiny", "warning", message, "Look at the units of the drawing.")]
+    return [Finding("tiny", "warning", message, "Check the units of the drawing.")]
 
 
 def units_missing(loops: tuple[Loop, ...]) -> Finding:

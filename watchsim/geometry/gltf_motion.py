@@ -1,4 +1,4 @@
-"""How does a glTF scene learn to move?
+"""How is motion added to a glTF scene?
 
 Each moving body has a node; an animation gives that node places and turns at key times, straight lines and shortest turns
 between them (Khronos, glTF 2.0 specification, 3.11 and appendix C).

@@ -69,7 +69,7 @@ def _unused_lift(scene: Scene) -> Iterator[Finding]:
     if name is None:
         why = "nothing swings on a spring or by gravity"
     elif not partners(scene, name):
-        why = f"nothing may touch {name}, so that no beat is heard"
+        why = f"nothing may touch {name}, so no beat is heard"
     else:
         return
     cure = "Leave it out, or look at [[springs]] and [[contacts]]."

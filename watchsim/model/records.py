@@ -93,7 +93,7 @@ PRIMITIVE = np.dtype(
         ("y", "f8"),
         ("tx", "f8"),  # line: direction of travel, material on its left
         ("ty", "f8"),
-        ("length", "f8"),  # line: its length; corner: the shorter neighbour (turns angles into lengths)
+        ("length", "f8"),  # line: its length; corner: the scene's size (turns angles into lengths)
         ("radius", "f8"),
         ("side", "f8"),  # arc: +1 convex, -1 concave (material outside)
         ("px", "f8"),  # a point on it: the corner, the line's start, the middle of the arc
@@ -181,10 +181,13 @@ class Model(NamedTuple):
 ModelRef = by_reference(Model, __name__)
 
 
+NO_KEY = -1  # in the place of a cell's key: of a free slot, and of what lies beyond the range of keys
+
+
 class Cells(NamedTuple):
     """Open-addressing table: (pair, cell indices) -> candidate contacts `entries[start : start + count]`."""
 
-    keys: NDArray[np.int64]  # -1: free slot
+    keys: NDArray[np.int64]  # NO_KEY: free slot
     start: NDArray[np.int64]
     count: NDArray[np.int64]  # type: ignore[assignment]  # hides tuple.count, which nobody needs here
     entries: NDArray[np.int64]

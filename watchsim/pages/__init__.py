@@ -1,1 +1,5 @@
-"""One page that shows a run: a player, linked plots and the timing sheet, in a single file that opens anywhere."""
+"""How is a run shown in one HTML file that opens anywhere: player, linked plots, timing sheet?
+
+In: a `Trajectory` and its numbers. Out: the text of the page (`report` writes it). Imports `render`, `analysis`, `results` and
+below; loads nothing from a network.
+"""

@@ -15,9 +15,9 @@ from pathlib import Path
 from typing import Any
 
 from watchsim.scene.body import Body
+from watchsim.scene.file.digests import digest, file_digest
 from watchsim.scene.file.keys.schema import DESIGN, SCHEMA
 from watchsim.scene.file.keys.write_toml import toml_text
-from watchsim.scene.file.load import digest, file_digest
 from watchsim.scene.scene import Scene
 
 PACKAGES = ("watchsim", "numpy", "scipy", "numba", "shapely", "ezdxf", "trimesh")

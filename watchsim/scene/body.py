@@ -17,13 +17,16 @@ MOTIONS = ("pivot", "slide", "free", "fixed")
 class Body:
     """A rigid part, SI units. Its outlines are in its own frame, whose origin is the pivot (free bodies: the centre of mass).
 
-    At the start the frame stands at `position`, turned by `angle`. Coordinates q by motion:
-    pivot - the angle itself; slide - the distance travelled along `axis` from `position`; free - x, y, angle; fixed - none.
-    `velocity` is the start velocity in the same order (pivot: rad/s; slide: m/s; free: m/s, m/s, rad/s).
-    `centre_of_mass` is in the body frame; it matters only where gravity acts on a pivoted body. `solids` say where mass and
-    inertia come from, as far as they were not given as numbers.
-    `prescribed` is the law by which a driven body moves whatever it meets; mass and inertia then change nothing.
-    `on` names the body that carries it; position, angle and velocity are then given in that one's frame, relative to it.
+    motion          "pivot", "slide", "free" or "fixed"; its coordinates q are the angle itself; the distance travelled along
+                    `axis` from `position`; x, y and angle; none
+    position, angle  where the frame stands at the start, m and rad
+    velocity        at the start, in the order of the coordinates: rad/s; m/s; m/s, m/s, rad/s
+    mass, inertia   kg, and kg·m² about the origin (free bodies: about the centre of mass)
+    centre_of_mass  in the body's frame, m; it matters only where gravity acts on a pivoted body
+    loops           outlines that can touch; `decoration` is drawn only
+    solids          where mass and inertia come from, as far as they were not given as numbers
+    prescribed      the law by which a driven body moves whatever it meets; mass and inertia then change nothing
+    on              the body that carries it; position, angle and velocity are then given in that one's frame, relative to it
     """
 
     name: str
@@ -43,6 +46,7 @@ class Body:
 
     @property
     def layers(self) -> tuple[str, ...]:
+        """The layers of its outlines that can touch, in the order of the drawing."""
         return tuple(dict.fromkeys(loop.layer for loop in self.loops))
 
     @property

@@ -15,14 +15,14 @@ from watchsim.geometry.primitives import Point
 from watchsim.scene.body import Body
 from watchsim.scene.scene import Scene
 
-NOWHERE = -2
+MOVEMENT, NOWHERE = -1, -2  # in the place of a host's number
 POISED = 1e-6  # of a body's reach: a centre of mass nearer to the pivot than that lies on it
 Complain = Callable[[str, str], None]  # takes the name of a body and what is wrong with how it is carried
 
 
 @dataclass(frozen=True, slots=True)
 class Ride:
-    """How one body hangs in the model. Bodies are numbered as in the scene; -1 stands for the movement itself.
+    """How one body hangs in the model. Bodies are numbered as in the scene; MOVEMENT stands for the movement itself.
 
     part_of     the body of the model that its outlines belong to: itself, or what it is rigidly joined to
     host        the moving body in which its frame's origin is a fixed point
@@ -33,9 +33,9 @@ class Ride:
     """
 
     part_of: int
-    host: int = -1
+    host: int = MOVEMENT
     place: Point = (0.0, 0.0)
-    turns_with: int = -1
+    turns_with: int = MOVEMENT
     angle: float = 0.0
     start: float = 0.0
     spin: float = 0.0
@@ -59,7 +59,7 @@ def rides(bodies: tuple[Body, ...], complain: Complain | None = None) -> tuple[R
     names = {body.name: i for i, body in enumerate(bodies)}
     found: dict[int, Ride] = {}
     for i in carriers_first(bodies, complain or _refuse):
-        found[i] = _ride(bodies, i, names.get(str(bodies[i].on), -1), found, complain or _refuse)
+        found[i] = _ride(bodies, i, names.get(str(bodies[i].on), MOVEMENT), found, complain or _refuse)
     return tuple(found.get(i, Ride(i)) for i in range(len(bodies)))
 
 
@@ -131,7 +131,7 @@ def _chain(name: str, carrier: Body, host: str) -> str:
 def _point(base: Body, number: int, ride: Ride, point: Point) -> tuple[int, Point]:
     """(host, place) of a point of a body of the model; host NOWHERE where it moves with more than one body."""
     if base.motion == "fixed":
-        return -1, _moved(point, ride.place, ride.start)
+        return MOVEMENT, _moved(point, ride.place, ride.start)
     if base.motion == "pivot" and point == (0.0, 0.0):
         return ride.host, ride.place
     return (number, point) if ride.host < 0 else (NOWHERE, point)
@@ -140,7 +140,7 @@ def _point(base: Body, number: int, ride: Ride, point: Point) -> tuple[int, Poin
 def _reference(base: Body, number: int, below: Ride) -> tuple[int, float]:
     """The moving body with which a carrier that is part of `base` turns, and the angle from that one's to its own."""
     if base.motion in ("fixed", "slide"):
-        return -1, below.start
+        return MOVEMENT, below.start
     return number, (0.0 if below.part_of == number and below.host != number else below.angle)
 
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Spring:
-    """-stiffness (q - rest): N·m/rad or N/m. `frequency` (Hz) where that is how it was given."""
+    """A spring: -stiffness (q - rest), N·m/rad or N/m. `frequency` (Hz) where that is how it was given."""
 
     body: str
     stiffness: float
@@ -33,7 +33,7 @@ class Torque:
 
 @dataclass(frozen=True, slots=True)
 class Damping:
-    """-viscous u - quadratic u|u| - coulomb sgn(u)."""
+    """Damping: -viscous u - quadratic u|u| - coulomb sgn(u), in SI units."""
 
     body: str
     viscous: float = 0.0

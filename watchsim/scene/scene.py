@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -12,6 +12,7 @@ from watchsim.displays import notebook_html
 from watchsim.drawing.findings import Finding
 from watchsim.geometry.primitives import Point
 from watchsim.scene.body import Body
+from watchsim.scene.errors import Fault, SceneError
 from watchsim.scene.force import Contact, Damping, Spring, Torque
 from watchsim.scene.recording import EVERYTHING, Recording
 
@@ -38,14 +39,19 @@ class Written:
 
 @dataclass(frozen=True)
 class Scene:
-    """A mechanism in SI units, ready to be compiled.
+    """A mechanism in SI units, ready to be compiled. Two scenes are equal when all but the last six fields are.
 
-    `tangential_law` ("coulomb", "pg1996" or "shifted") says what friction does in the expansion of impacts, `nu` belongs to
-    pg1996 (docs/theory/laws.md).
-    `nominal` (Hz) is what the rate is measured against, where the scene says so.
-    `source` is the TOML mapping it was made from, `path` its file, `findings` what the drawings said besides errors,
-    `drawings` the files themselves as they were read, by their names in the scene file; two scenes are equal when everything
-    else is. `written` is there where a design stands in the file: `source` then holds the design's scene as well.
+    bodies, springs, torques, damping, contacts  what it consists of
+    gravity         (x, y), m/s²
+    tangential_law  "coulomb", "pg1996" or "shifted": what friction does in the expansion of impacts; `nu` belongs to pg1996
+                    (docs/theory/laws.md)
+    duration        of a run, s; `tolerance` its relative error per step, `record` what is kept of it
+    lift_angle      rad; `nominal` (Hz) is what the rate is measured against. None where the scene says nothing
+    expect          numbers that a run promises
+    path, source    the file, and the TOML mapping that it holds
+    findings        what the drawings said besides errors; `drawings` the files as they were read, by their names in the scene
+    written         of a scene made from a design: `source` then holds the design's scene as well
+    reader          reader(scene, {key: value}) reads `source` anew with keys changed; None for a scene made in Python
     """
 
     title: str
@@ -68,6 +74,7 @@ class Scene:
     findings: tuple[Finding, ...] = field(default=(), repr=False, compare=False)
     drawings: Mapping[str, bytes] = field(default_factory=dict, repr=False, compare=False)
     written: Written | None = field(default=None, repr=False, compare=False)
+    reader: Callable[[Scene, Mapping[str, object]], Scene] | None = field(default=None, repr=False, compare=False)
 
     def __repr__(self) -> str:
         names = ", ".join(body.name for body in self.bodies)
@@ -88,8 +95,10 @@ class Scene:
         """A copy with one key of the scene file changed, everything else checked again.
 
         `key` is a dotted path such as "torques.0.value", "bodies.lever.position.1"; `value` a text as in the file
-        ("-1.2 µN·m") or a number in SI units. Raises SceneError for an unknown path or a value that does not fit.
+        ("-1.2 µN·m") or a number in SI units. Raises SceneError for an unknown path, for a value that does not fit, and
+        for a scene that was made in Python.
         """
-        from watchsim.scene.file.override import changed
-
-        return changed(self, {key: value})
+        if self.reader is None:
+            message = "this scene was made in Python and has no file to read again. Change it with dataclasses.replace"
+            raise SceneError([Fault(key, message, place="changed value")])
+        return self.reader(self, {key: value})

@@ -68,7 +68,7 @@ def new_until(slice_end: float = 0.0, end: float = 0.0, may_cut: bool = False, s
 class Run:
     """A run under way: the loop's arrays and what has been kept. By events; see `moreau.MoreauRun` for fixed steps.
 
-    The step of a scene without springs is bounded by the duration the scene gives, not by the asked one: how far a run is
+    The step of a scene without springs is bounded by the duration the scene gives, not by the requested one: how far a run is
     to go must not change a bit of it.
     """
 
@@ -111,7 +111,7 @@ class Run:
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Everything the future depends on, besides the model and the settings."""
-        return {**arrays_of(self.state)._asdict(), "worst_residual": self._worst_residual(), "overlap": self.watch.found}
+        return {**arrays_of(self.state)._asdict(), "worst_residual": self._worst_residual(), "overlap": self.watch.numbers}
 
     def _worst_residual(self) -> NDArray[np.float64]:
         """(1,): the worst violation of a complementarity condition so far."""

@@ -33,17 +33,18 @@ def simulate(
 ) -> Trajectory:
     """Simulate `scene` from 0 to `duration` at a relative error `tolerance` per step (both default to the scene's own).
 
-    scene     a scene, or the file or folder that holds one
-
-    duration  seconds, or a text with its unit such as "5 s"; so is `step`
-    record    what is kept: windows (s) of rows, "events", "statistics" or a `Recording`; default the scene's, else everything
-    progress  called as progress(simulated, duration) about ten times a second
-    prefilter off: every declared pair of primitives is looked at in every step; slow, the same events
-    method    "pfeiffer-glocker" (by events) or "moreau" (fixed steps of `step` seconds, default 10 µs): docs/theory/method.md
-    start     go on from here instead of from the scene's start: a trajectory (the result then holds both parts), or its
-              `end_state` (the result holds what follows). The same bits come out as from one run, whatever was cut where.
-    stream    a folder in whose file system rows and events are held where they would take more than some 50 MB of memory: in
-              files without a name, which vanish with the last array of the trajectory that looks into them
+    scene      a scene, or the file or folder that holds one
+    duration   seconds, or a text with its unit such as "5 s"; so is `step`
+    record     what is kept: windows (s) of rows, "events", "statistics" or a `Recording`; default the scene's, else
+               everything
+    progress   called as progress(simulated, duration) about ten times a second
+    prefilter  off: every declared pair of primitives is looked at in every step; slow, the same events
+    method     "pfeiffer-glocker" (by events) or "moreau" (fixed steps of `step` seconds, default 10 µs; see
+               docs/theory/method.md)
+    start      go on from here instead of from the scene's start: a trajectory (the result then holds both parts), or its
+               `end_state` (the result holds what follows). The same bits come out as from one run, whatever was cut where.
+    stream     a folder in whose file system rows and events are held where they would take more than some 50 MB of memory: in
+               files without a name, which vanish with the last array of the trajectory that looks into them
 
     KeyboardInterrupt ends the run and keeps what was simulated. A solver that cannot go on does not raise: see
     `Trajectory.stop`. ValueError for a bad argument, and for a `start` of another scene or other settings; SceneError where

@@ -15,7 +15,7 @@ from watchsim.candidates.cell_table import CellFinder
 from watchsim.contact.kinematics import Closed
 from watchsim.mechanism.compile import Compiled
 from watchsim.mechanism.overlap import Overlap, faults_at, meetings, overlap_faults, overlaps
-from watchsim.model.records import Model, frozen
+from watchsim.model.records import NO_KEY, Model, frozen
 from watchsim.scene.errors import SceneError
 from watchsim.scene.scene import Scene
 from watchsim.simulation.options import Options, options_for
@@ -95,12 +95,12 @@ def _candidates(model: Model, finder: CellFinder, q: Array) -> Integers:
     """The contacts that could be closed at q, ascending."""
     found = [np.zeros(0, np.int64)]
     for p, pair in enumerate(model.pairs):
-        key = cell_key(model, p, q) if pair.listed else -1
-        if key < 0:
+        key = cell_key(model, p, q) if pair.listed else NO_KEY
+        if key == NO_KEY:
             found.append(model.near[pair.near_start : pair.near_stop])
             continue
         slot = find_slot(finder.cells.keys, key)
-        if finder.cells.keys[slot] == -1:
+        if finder.cells.keys[slot] == NO_KEY:
             finder.learn(p, q)
             slot = find_slot(finder.cells.keys, key)
         start = finder.cells.start[slot]

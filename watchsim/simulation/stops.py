@@ -27,6 +27,7 @@ class Stop(IntEnum):
 
     @property
     def sentence(self) -> str:
+        """The cause in words."""
         return _SENTENCES[self]
 
     @property
@@ -54,11 +55,11 @@ _SENTENCES = {
         "no solution of a complementarity problem was found; lcp_failure.json holds it. Less friction or restitution at the "
         "contacts it names, or a tighter tolerance, may help"
     ),
-    Stop.STEP_TOO_SMALL: "the step became too small for the asked tolerance",
+    Stop.STEP_TOO_SMALL: "the step became too small for the requested tolerance",
     Stop.NOT_FINITE: "a coordinate or velocity is no longer a finite number",
-    Stop.OUT_OF_MEMORY: "there is no memory left to keep more; --record statistics needs least",
+    Stop.OUT_OF_MEMORY: "there is no memory left to keep more; --record statistics needs the least",
     Stop.TOO_MANY_CONTACTS: "more contacts closed at once than there is room for",
     Stop.UNEXPLAINED: "velocities changed at an instant by more than the impulses there explain",
     Stop.LEDGER: "the energy ledger does not close",
-    Stop.OVERLAP: "bodies stood inside each other, so that the motion is wrong from there on at the latest",
+    Stop.OVERLAP: "bodies overlapped, so the motion is wrong from there on at the latest",
 }

@@ -42,7 +42,7 @@ def secure_file(target: Path, what: str, room: float = 0.0) -> list[str]:
     _check_parent(target, place)
     said = sweep(place.parent)
     if place.exists() and not os.access(place, os.W_OK):
-        raise PermissionError(f"{target} is there and write-protected. Choose another name")
+        raise PermissionError(f"{target} exists and is write-protected. Choose another name")
     _try(target, place, what, room)
     return said
 
@@ -58,7 +58,7 @@ def _looked_up(target: Path, what: str) -> Path:
     except (OSError, RuntimeError):  # links in a circle
         exists = False
     if not exists:
-        raise FileNotFoundError(f"{target} is a link to {target.readlink()}, which is not there: {what} would go nowhere")
+        raise FileNotFoundError(f"{target} is a link to {target.readlink()}, which does not exist: {what} would go nowhere")
     return place
 
 
@@ -75,7 +75,7 @@ def _look(path: Path, target: Path) -> None:
 def _check_parent(target: Path, place: Path) -> None:
     parent = place.parent
     if not parent.is_dir():
-        there = "is a file, not a folder" if parent.exists() else "is not there; create it first"
+        there = "is a file, not a folder" if parent.exists() else "does not exist; create it first"
         raise FileNotFoundError(f"{target}: the folder {parent} {there}")
 
 

@@ -131,7 +131,7 @@ def sweep(parent: Path) -> list[str]:
         except (OSError, ValueError, KeyError, TypeError) as error:
             if scratch.journal.exists() and (scratch.new.exists() or scratch.old.exists()):
                 scratch.recoverable = True
-                said.append(f"{scratch.place} holds what a killed process left, and could not be brought back: {error}")
+                said.append(f"{scratch.place} holds what a killed process left, and it could not be brought back: {error}")
     return said
 
 
@@ -152,5 +152,5 @@ def _recovered(scratch: Scratch) -> list[str]:
         except OSError:
             scratch.old.rename(place)
             raise
-        return [f"{place}: replaced, as a killed process was about to."]
+        return [f"{place}: replaced, as a killed process was about to do."]
     return []

@@ -38,7 +38,7 @@ def outputs_named(names: Iterable[str]) -> tuple[Output, ...]:
         if name not in OUTPUTS:
             near = difflib.get_close_matches(name, OUTPUTS, n=1)
             advice = f'Did you mean "{near[0]}"?' if near else f"There are {', '.join(OUTPUTS)}."
-            raise ValueError(f'outputs: "{name}" is no number of a point. {advice}')
+            raise ValueError(f'outputs: "{name}" is not an output. {advice}')
         found.append(OUTPUTS[name])
     if not found:
         raise ValueError(f"outputs: name at least one of {', '.join(OUTPUTS)}")

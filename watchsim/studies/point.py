@@ -13,7 +13,7 @@ from typing import Any
 from watchsim.analysis.timing.averages import mean_over
 from watchsim.analysis.verdicts.words import TICKS
 from watchsim.scene.errors import SceneError
-from watchsim.scene.file.override import changed
+from watchsim.scene.file.read_scene import changed
 from watchsim.scene.roles import roles
 from watchsim.scene.scene import Scene
 from watchsim.simulation.simulate import simulate

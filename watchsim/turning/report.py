@@ -1,4 +1,4 @@
-"""What is told about a mechanism that was turned by hand: verdict, story, clearances; as text and as JSON."""
+"""What is reported about a mechanism that was turned by hand: verdict, story, clearances; as text and as JSON."""
 
 from __future__ import annotations
 

@@ -185,7 +185,7 @@ def test_entities_outside_their_sections_are_said(read_bytes: Reader) -> None:
 
 def test_a_block_that_is_there_twice_is_said(read_bytes: Reader) -> None:
     blocks = d.block("B", d.circle(0, 0, 1)) + d.block("b", "")
-    assert 'block "b" is there already' in errors(read_bytes(d.dxf(d.insert("B", (0, 0)), blocks=blocks)))["damaged"]
+    assert 'block "b" is defined twice' in errors(read_bytes(d.dxf(d.insert("B", (0, 0)), blocks=blocks)))["damaged"]
 
 
 def test_entities_after_the_end_are_an_error(read_bytes: Reader) -> None:

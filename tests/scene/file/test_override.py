@@ -1,5 +1,7 @@
 """Does changing one value change that value and nothing else, and check everything again?"""
 
+import pickle
+
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -7,7 +9,9 @@ from hypothesis import strategies as st
 
 from watchsim.scene.errors import SceneError
 from watchsim.scene.file.load import load
-from watchsim.scene.file.override import assignments, changed
+from watchsim.scene.file.override import assignments
+from watchsim.scene.file.read_scene import changed
+from watchsim.scene.scene import Scene
 
 
 @pytest.fixture
@@ -113,6 +117,17 @@ def test_refused_changes(scene, key, value, message):
         scene.set(key, value)
     assert message in str(caught.value)
     assert str(caught.value).startswith(f"changed value  {key}")
+
+
+def test_a_scene_without_a_file_says_how_to_change_it():
+    with pytest.raises(SceneError, match=r"run\.duration\n  this scene was made in Python.*dataclasses\.replace"):
+        Scene("bare", ()).set("run.duration", "1 s")
+
+
+def test_a_scene_that_was_pickled_can_be_changed(scene):
+    back = pickle.loads(pickle.dumps(scene))
+    assert back == scene
+    assert back.set("torques.0.value", -1.2e-6) == scene.set("torques.0.value", -1.2e-6)
 
 
 def test_assignments_of_the_command_line(scene):

@@ -72,12 +72,12 @@ ONE_FAULT = [
     (WHEEL_INERTIA, 'inertia = "nan mg·cm²"\n', "bodies.wheel.inertia", "does not begin with a number"),
     (WHEEL_INERTIA, SOLID.replace('density = "7.85 g/cm³"\n', ""), "bodies.wheel.solids.0", "density is missing"),
     (WHEEL_INERTIA, SOLID.replace("TEETH", "HUB"), "bodies.wheel.solids.0.layer", "closed outlines on: TEETH, BORE"),
-    (WHEEL_INERTIA, 'mass = "1 mg"\n' + SOLID, "bodies.wheel.mass", "the solids say the mass already"),
+    (WHEEL_INERTIA, 'mass = "1 mg"\n' + SOLID, "bodies.wheel.mass", "the solids give the mass already"),
     (POLYGON, 'polygon = [["0 mm", "0 mm"], ["1 mm", "0 mm"]]', "bodies.lever.polygon", "a list of at least 3 points"),
     (POLYGON, POLYGON.replace('"3 mm"', "3"), "bodies.lever.polygon.2.1", "a bare number needs a unit here"),
     (POLYGON, POLYGON.replace('["0 mm", "3 mm"]', '["0 mm"]'), "bodies.lever.polygon.2", "two values are needed"),
     (POLYGON, POLYGON.replace("3 mm", "0 mm"), "bodies.lever.polygon", "it encloses no area"),
-    (POLYGON, POLYGON.replace('["0 mm", "3 mm"]', '["1 mm", "0 mm"]'), "bodies.lever.polygon", "a point stands twice in it"),
+    (POLYGON, POLYGON.replace('["0 mm", "3 mm"]', '["1 mm", "0 mm"]'), "bodies.lever.polygon", "a point occurs twice in it"),
     (
         POLYGON,
         'polygon = [["0 mm", "0 mm"], ["2 mm", "2 mm"], ["2 mm", "0 mm"], ["0 mm", "3 mm"]]',
@@ -333,7 +333,7 @@ def test_wrong_shapes_never_crash(desk, text):
         ("[bodies.a]\ncircle = '5e101 mm'\n", "too large to compute with"),
         ("[bodies.a]\ncircle = '1 mm'\nmotion = 'free'\nmass = '1e-320 g'\n", "too small to compute with"),
         ("[bodies.a]\ncircle = '1 mm'\ninertia = '1 mg·cm²'\n[run]\nrecord = 'every 99999999999999999999'\n", "every 10"),
-        (f"[bodies.a]\ncircle = '0.{'1' * 5000} mm'\n", "longer than any precision"),
+        (f"[bodies.a]\ncircle = '0.{'1' * 5000} mm'\n", "more digits than any precision"),
         ("[bodies.a]\ncircle = '1 mm'\ninertia = '1 mg·cm²'\n[run]\ntolerance = 1e-14\n", "between 1e-13 and 0.01"),
     ],
 )

@@ -18,7 +18,8 @@ from watchsim.analysis.summary import summary, summary_text
 from watchsim.commands import run as command
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Line
-from watchsim.results.folder import read_results, write_results
+from watchsim.results.read_results import read_results
+from watchsim.results.write_results import write_results
 from watchsim.scene.body import Body
 from watchsim.scene.force import Contact, Side
 from watchsim.scene.recording import Recording

@@ -1,4 +1,4 @@
-"""Which blows sound when, for as long as is asked?
+"""Which blows sound when, for as long as requested?
 
 Those of the run; where the sound is to be longer, its last oscillations over and over. They are cut in the silence before a
 beat, a whole number of oscillations apart, and a whole turn of the escape wheel where there is one, so that nothing jumps.

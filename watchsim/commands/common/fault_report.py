@@ -1,4 +1,4 @@
-"""Whose fault is an error, and what does somebody need who is to mend it?"""
+"""Whose fault is an error, and what is needed to mend it?"""
 
 from __future__ import annotations
 

@@ -19,7 +19,8 @@ def load_scene(name: str, changes: list[str] | None = None, overlap: bool = True
     from watchsim.mechanism.overlap import overlap_faults
     from watchsim.scene.errors import SceneError
     from watchsim.scene.file.load import load
-    from watchsim.scene.file.override import assignments, changed
+    from watchsim.scene.file.override import assignments
+    from watchsim.scene.file.read_scene import changed
 
     scene = load(name)
     if changes:
@@ -32,7 +33,7 @@ def load_scene(name: str, changes: list[str] | None = None, overlap: bool = True
 
 def read_run(folder: str) -> Trajectory:
     """The trajectory kept in a results folder."""
-    from watchsim.results.folder import read_results
+    from watchsim.results.read_results import read_results
 
     try:
         return read_results(folder)

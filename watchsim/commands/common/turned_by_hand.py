@@ -1,4 +1,4 @@
-"""What does `watchsim check SCENE --turn` do? Lead the mechanism through its cycle, tell what happens, draw it."""
+"""What does `watchsim check SCENE --turn` do? Lead the mechanism through its cycle, report what happens, draw it."""
 
 from __future__ import annotations
 

@@ -114,7 +114,7 @@ def _with_error_bars(run: Trajectory, folder: Path) -> dict[str, Any]:
 
 
 def _save(run: Trajectory, goal: Goal, numbers: Mapping[str, Any], beside: dict[str, Any], drawn: dict[str, Any]) -> None:
-    from watchsim.results.folder import LOCK, filler, write_results
+    from watchsim.results.write_results import LOCK, filler, write_results
     from watchsim.storage.rescue import write_elsewhere
 
     try:
@@ -130,7 +130,7 @@ def _save(run: Trajectory, goal: Goal, numbers: Mapping[str, Any], beside: dict[
 
 def _bare(run: Trajectory, goal: Goal) -> Path:
     """Save the motion alone, which everything else can be made from."""
-    from watchsim.results.folder import bare_filler
+    from watchsim.results.write_results import bare_filler
     from watchsim.storage.rescue import write_elsewhere
 
     return write_elsewhere(goal.folder.name, bare_filler(run, goal.scene), "the motion")

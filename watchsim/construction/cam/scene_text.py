@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from watchsim.construction.cam.dimensions import Cam
 from watchsim.construction.cam.proportions import leaves_at, lowest
+from watchsim.construction.contact_tables import contact_tables
 from watchsim.construction.design import told
 
 TURNS = 3.0
@@ -38,15 +39,13 @@ body      = "follower"
 stiffness = "{values.rate:.15g} N/mm"
 rest      = "{rest!r} mm"
 
-[[contacts]]
-between     = ["follower.END", "cam.CAM"]
-friction    = {values.friction!r}
-restitution = {values.restitution!r}
-
+{contacts}
 [run]
 duration  = "{duration:.15g} s"
 tolerance = 1e-9
 """
+
+CONTACTS = (("follower.END", "cam.CAM"),)
 
 
 def scene_text(values: Cam) -> str:
@@ -54,6 +53,7 @@ def scene_text(values: Cam) -> str:
     return TEXT.format(
         dimensions=told(values),
         values=values,
+        contacts=contact_tables(values, *CONTACTS),
         leaves=leaves_at(values),
         lowest=lowest(values),
         rest=-values.preload / values.rate,

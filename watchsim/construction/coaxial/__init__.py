@@ -1,0 +1,4 @@
+"""How is a co-axial escapement drawn?
+
+In: its `dimensions`. Out: `sheets` and `scene_text`, or `conflicts`; `design` is the whole. Imports `construction` and below.
+"""

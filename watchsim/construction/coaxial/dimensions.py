@@ -21,7 +21,7 @@ ESTIMATE = "estimate: not published for a watch"
 class Coaxial:
     """The numbers a designer chooses; lengths that are not named here scale with the wheel."""
 
-    tip_radius: float = dim(2.25, "mm", 1.2, 4.0, "of the large wheel, to its tips", "4.5 mm across are told by R. W. Smith")
+    tip_radius: float = dim(2.25, "mm", 1.2, 4.0, "of the large wheel, to its tips", "R. W. Smith names 4.5 mm across")
     direct_reach: float = dim(9.5, "°", 7.0, 10.5, "half overlap of the tip circle and the roller stone's", LAYOUT)
     direct_lead: float = dim(
         11.25, "°", 10.8, 11.7, "from the waiting tooth to the line wheel-balance, first stone locked", LAYOUT
@@ -37,7 +37,7 @@ class Coaxial:
     lift: float = dim(8.25, "°", 6.0, 11.0, "lever, from unlocked to the next drop", LAYOUT)
     draw: float = dim(12.0, "°", 8.0, 18.0, "of the locking faces, the lever on its bank", PLAYTNER)
     lift_angle: float = dim(
-        38.0, "°", 30.0, 55.0, "balance, while its pin is in the fork", "told for calibres 2500 and 8500 of Omega"
+        38.0, "°", 30.0, 55.0, "balance, while its pin is in the fork", "published for calibres 2500 and 8500 of Omega"
     )
     undercut: float = dim(24.0, "°", 18.0, 32.0, "of the teeth's fronts from the radius, so that tips lock", PLAYTNER)
     pin_radius: float = dim(0.15, "mm", 0.08, 0.25, "of the unlocking pin before part of it is ground away", PLAYTNER)

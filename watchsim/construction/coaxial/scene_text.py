@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from watchsim.construction.coaxial.dimensions import Coaxial
 from watchsim.construction.coaxial.points import FIRST, Points
+from watchsim.construction.contact_tables import contact_tables
 from watchsim.construction.design import told
 
 CLEAR = 1e-4  # degrees by which lever and wheel stand off what they rest on
@@ -61,36 +62,7 @@ value = "{torque:.15g} µN·m"
 body     = "balance"
 q_factor = {values.q_factor!r}
 
-[[contacts]]                         # locking
-between     = ["wheel.TEETH", "lever.LOCKING_STONES"]
-friction    = {values.friction!r}
-restitution = {values.restitution!r}
-
-[[contacts]]                         # direct impulse
-between     = ["wheel.TEETH", "balance.IMPULSE_STONE"]
-friction    = {values.friction!r}
-restitution = {values.restitution!r}
-
-[[contacts]]                         # indirect impulse
-between     = ["wheel.SMALL_TEETH", "lever.IMPULSE_STONE"]
-friction    = {values.friction!r}
-restitution = {values.restitution!r}
-
-[[contacts]]                         # unlocking, and the indirect impulse handed on
-between     = ["lever.FORK", "balance.PIN"]
-friction    = {values.friction!r}
-restitution = {values.restitution!r}
-
-[[contacts]]                         # safety action: never meets in normal running
-between     = ["lever.GUARD", "balance.SAFETY"]
-friction    = {values.friction!r}
-restitution = {values.restitution!r}
-
-[[contacts]]
-between     = ["lever.ARMS", "banking.PINS"]
-friction    = {values.friction!r}
-restitution = {values.restitution!r}
-
+{contacts}
 [run]
 duration  = "10 s"
 tolerance = 1e-9
@@ -98,6 +70,15 @@ tolerance = 1e-9
 [timegrapher]
 lift_angle = "{values.lift_angle:.15g}°"
 """
+
+CONTACTS: tuple[tuple[str, str] | tuple[str, str, str], ...] = (
+    ("wheel.TEETH", "lever.LOCKING_STONES", "locking"),
+    ("wheel.TEETH", "balance.IMPULSE_STONE", "direct impulse"),
+    ("wheel.SMALL_TEETH", "lever.IMPULSE_STONE", "indirect impulse"),
+    ("lever.FORK", "balance.PIN", "unlocking, and the indirect impulse handed on"),
+    ("lever.GUARD", "balance.SAFETY", "safety action: never meets in normal running"),
+    ("lever.ARMS", "banking.PINS"),
+)
 
 
 def scene_text(values: Coaxial) -> str:
@@ -107,6 +88,7 @@ def scene_text(values: Coaxial) -> str:
     return TEXT.format(
         dimensions=told(values),
         values=values,
+        contacts=contact_tables(values, *CONTACTS),
         wheel_angle=points.locked_tip(FIRST, lever) + CLEAR,
         lever_y=points.lever_pivot[1],
         lever_angle=round(lever, 10),

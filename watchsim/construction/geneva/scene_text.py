@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from watchsim.construction.contact_tables import contact_tables
 from watchsim.construction.design import told
 from watchsim.construction.geneva.dimensions import Geneva
 from watchsim.construction.geneva.proportions import centre_distance, half_pitch
@@ -33,16 +34,7 @@ position = ["0 mm", "0 mm"]
 angle    = "{half!r}°"
 inertia  = "{values.wheel_inertia:.15g} g·mm²"
 {load}
-[[contacts]]
-between     = ["driver.PIN", "wheel.WHEEL"]
-friction    = {values.friction!r}
-restitution = {values.restitution!r}
-
-[[contacts]]                         # the lock
-between     = ["driver.DISC", "wheel.WHEEL"]
-friction    = {values.friction!r}
-restitution = {values.restitution!r}
-
+{contacts}
 [run]
 duration  = "{duration:.15g} s"
 tolerance = 1e-9
@@ -54,12 +46,18 @@ body    = "wheel"
 coulomb = "{load:.15g} mN·m"
 """
 
+CONTACTS: tuple[tuple[str, str] | tuple[str, str, str], ...] = (
+    ("driver.PIN", "wheel.WHEEL"),
+    ("driver.DISC", "wheel.WHEEL", "the lock"),
+)
+
 
 def scene_text(values: Geneva) -> str:
     """The text of scene.toml: the wheel locked, the pin outside."""
     return TEXT.format(
         dimensions=told(values),
         values=values,
+        contacts=contact_tables(values, *CONTACTS),
         distance=centre_distance(values),
         half=half_pitch(values),
         pitch=2.0 * half_pitch(values),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from watchsim.construction.contact_tables import contact_tables
 from watchsim.construction.design import told
 from watchsim.construction.graham.points import Anchor
 
@@ -53,11 +54,7 @@ value = "{torque:.15g} mN·m"
 body     = "pendulum"
 q_factor = {values.q_factor!r}
 
-[[contacts]]
-between     = ["wheel.TEETH", "pendulum.PALLETS"]
-friction    = {values.friction!r}
-restitution = {values.restitution!r}
-
+{contacts}
 [run]
 duration  = "60 s"
 tolerance = 1e-12
@@ -65,6 +62,8 @@ tolerance = 1e-12
 [timegrapher]
 lift_angle = "{values.lift!r}°"
 """
+
+CONTACTS: tuple[tuple[str, str] | tuple[str, str, str], ...] = (("wheel.TEETH", "pendulum.PALLETS"),)
 
 
 def scene_text(anchor: Anchor, title: str) -> str:
@@ -75,6 +74,7 @@ def scene_text(anchor: Anchor, title: str) -> str:
         title=f"{title}, {values.teeth} teeth",
         dimensions=told(values),
         values=values,
+        contacts=contact_tables(values, *CONTACTS),
         gravity=-values.gravity,
         wheel_angle=(anchor.wheel_angle(values.start) + CLEAR) % (360.0 / values.teeth),
         distance=anchor.distance,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from watchsim.construction.contact_tables import contact_tables
 from watchsim.construction.design import told
 from watchsim.construction.involute_pair.dimensions import InvolutePair
 from watchsim.construction.involute_pair.meshing import distance
@@ -38,18 +39,22 @@ value = "{values.torque:.15g} µN·m"
 body    = "pinion"
 viscous = "{values.drag:.15g} µN·m·s/rad"
 
-[[contacts]]
-between     = ["wheel.TEETH", "pinion.TEETH"]
-friction    = {values.friction!r}
-restitution = {values.restitution!r}
-
+{contacts}
 [run]
 duration  = "2 s"
 tolerance = 1e-10
 """
 
+CONTACTS: tuple[tuple[str, str] | tuple[str, str, str], ...] = (("wheel.TEETH", "pinion.TEETH"),)
+
 
 def scene_text(values: InvolutePair) -> str:
     """The text of scene.toml: both at rest, in the middle of the play."""
     pinion = (180.0 + 180.0 / values.pinion_teeth) % (360.0 / values.pinion_teeth)
-    return TEXT.format(dimensions=told(values), values=values, distance=distance(values), pinion=pinion)
+    return TEXT.format(
+        dimensions=told(values),
+        values=values,
+        contacts=contact_tables(values, *CONTACTS),
+        distance=distance(values),
+        pinion=pinion,
+    )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from watchsim.construction.contact_tables import contact_tables
 from watchsim.construction.design import told
 from watchsim.construction.jumper.dimensions import Jumper
 from watchsim.construction.jumper.proportions import beak_at_rest, finger_direction, finger_distance, pitch
@@ -47,16 +48,7 @@ body      = "jumper"
 stiffness = "{stiffness!r} µN·m/rad"
 rest      = "{rest!r} rad"
 {drag}
-[[contacts]]
-between     = ["finger.PIN", "star.STAR"]
-friction    = {values.friction!r}
-restitution = {values.restitution!r}
-
-[[contacts]]
-between     = ["jumper.BEAK", "star.STAR"]
-friction    = {values.friction!r}
-restitution = {values.restitution!r}
-
+{contacts}
 [run]
 duration  = "{duration:.15g} s"
 tolerance = 1e-9
@@ -68,6 +60,11 @@ body    = "star"
 coulomb = "{drag:.15g} µN·m"
 """
 
+CONTACTS = (
+    ("finger.PIN", "star.STAR"),
+    ("jumper.BEAK", "star.STAR"),
+)
+
 
 def scene_text(values: Jumper) -> str:
     """The text of scene.toml: the star at rest, the pin on its far side."""
@@ -75,6 +72,7 @@ def scene_text(values: Jumper) -> str:
     return TEXT.format(
         dimensions=told(values),
         values=values,
+        contacts=contact_tables(values, *CONTACTS),
         finger=polar(finger_distance(values), direction),
         direction=direction,
         speed=-values.speed,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from watchsim.construction.contact_tables import contact_tables
 from watchsim.construction.design import told
 from watchsim.construction.ratchet.dimensions import Ratchet
 from watchsim.construction.ratchet.proportions import pivot
@@ -50,15 +51,13 @@ table = [["0.05 s", "0 mN·m"], ["0.07 s", "{winding} mN·m"], ["0.35 s", "{wind
 body    = "wheel"
 viscous = "{values.viscous:.15g} mN·m·s/rad"
 
-[[contacts]]
-between     = ["click.NOSE", "wheel.TEETH"]
-friction    = {values.friction!r}
-restitution = {values.restitution!r}
-
+{contacts}
 [run]
 duration  = "0.5 s"
 tolerance = 1e-9
 """
+
+CONTACTS = (("click.NOSE", "wheel.TEETH"),)
 
 
 def scene_text(values: Ratchet) -> str:
@@ -67,6 +66,7 @@ def scene_text(values: Ratchet) -> str:
     return TEXT.format(
         dimensions=told(values),
         values=values,
+        contacts=contact_tables(values, *CONTACTS),
         pivot=pivot(values),
         angle=angle,
         stiffness=values.click_force * values.click_length / WOUND,  # mN·mm = µN·m

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from watchsim.construction.contact_tables import contact_tables
 from watchsim.construction.design import told
 from watchsim.construction.outline import along, angle_of
 from watchsim.construction.swiss_lever.dimensions import SwissLever
@@ -63,26 +64,7 @@ value = "{torque:.15g} µN·m"
 body     = "balance"
 q_factor = {values.q_factor!r}
 
-[[contacts]]
-between     = ["wheel.TEETH", "lever.STONES"]
-friction    = {values.friction!r}
-restitution = {values.restitution!r}
-
-[[contacts]]
-between     = ["lever.FORK", "balance.PIN"]
-friction    = {values.friction!r}
-restitution = {values.restitution!r}
-
-[[contacts]]                         # safety action: never meets in normal running
-between     = ["lever.DART", "balance.SAFETY"]
-friction    = {values.friction!r}
-restitution = {values.restitution!r}
-
-[[contacts]]
-between     = ["lever.ARMS", "banking.PINS"]
-friction    = {values.friction!r}
-restitution = {values.restitution!r}
-
+{contacts}
 [run]
 duration  = "10 s"
 tolerance = 1e-9
@@ -90,6 +72,13 @@ tolerance = 1e-9
 [timegrapher]
 lift_angle = "{values.lift_angle:.15g}°"
 """
+
+CONTACTS: tuple[tuple[str, str] | tuple[str, str, str], ...] = (
+    ("wheel.TEETH", "lever.STONES"),
+    ("lever.FORK", "balance.PIN"),
+    ("lever.DART", "balance.SAFETY", "safety action: never meets in normal running"),
+    ("lever.ARMS", "banking.PINS"),
+)
 
 
 def scene_text(values: SwissLever) -> str:
@@ -99,6 +88,7 @@ def scene_text(values: SwissLever) -> str:
         title="A Swiss lever escapement",
         dimensions=told(values),
         values=values,
+        contacts=contact_tables(values, *CONTACTS),
         vph=values.frequency,
         teeth=values.teeth,
         wheel_angle=wheel_angle(design),

@@ -1,4 +1,4 @@
-"""Which edges are not meant?
+"""Which edges are not intended?
 
 Edges without length, edges drawn twice, and slits (a line out and back, of no width) are taken out, each with a finding.
 """

@@ -1,4 +1,4 @@
-"""Which outlines lie on each other but for a hair?
+"""Which outlines nearly coincide?
 
 What was drawn twice exactly is taken out before. A copy that is off by some nanometres is not: the smaller of the two would
 count as a hole, and next to nothing would be left of the part.
@@ -59,5 +59,5 @@ def distance(one: Loop, other: Loop, enough: float) -> float:
 
 def finding(loop: Loop, apart: float) -> Finding:
     x, y = loop.edges[0].point(0.5)
-    message = f"two outlines lie on each other within {1e9 * apart:.3g} nm all along, near {shown((x, y))} mm"
+    message = f"two outlines coincide within {1e9 * apart:.3g} nm all along, near {shown((x, y))} mm"
     return Finding("overlap", "error", message, "Leave only one of them.", loop.layer, 1e3 * x, 1e3 * y)

@@ -18,7 +18,7 @@ def swallowed(record: Record, following: Record | None, layer: str) -> list[Find
     announced = record.kind == "INSERT" and record.text(66, "0") not in ("0", "")
     if announced and (following is None or following.kind != "ATTRIB"):
         message = f"{record.name} at {record.place} announces attributes (group 66) and none follow: it may be damaged"
-        return [Finding("strange-group", "warning", message, "Look whether it is all there.", layer)]
+        return [Finding("strange-group", "warning", message, "Check that it is complete.", layer)]
     return []
 
 
@@ -28,7 +28,7 @@ def strange_groups(record: Record, layer: str) -> list[Finding]:
         return []
     codes = ", ".join(map(str, strange[:6]))
     message = f"{record.name} at {record.place} has groups that do not belong there ({codes}): it may be damaged"
-    return [Finding("strange-group", "warning", message, "Look whether its shape is right.", layer)]
+    return [Finding("strange-group", "warning", message, "Check its shape.", layer)]
 
 
 def odd_copies(record: Record, layer: str) -> list[Finding]:

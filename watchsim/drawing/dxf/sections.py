@@ -95,7 +95,7 @@ def _sections(tags: Tags, findings: list[Finding]) -> dict[str, list[Record]]:
         message = f"the file ends (EOF) and goes on after its end with {len(lost)} entities ({lost[0]}); these were not read"
         findings.append(Finding("trash", "error", message, "Export it again from CAD: it is damaged or two files in one."))
     elif tags.trash:
-        findings.append(Finding("trash", "notice", "what follows after EOF was not read"))
+        findings.append(Finding("trash", "notice", "what follows EOF was not read"))
     return parts
 
 
@@ -152,7 +152,7 @@ def _blocks(records: list[Record], findings: list[Finding]) -> dict[str, Block]:
                 findings.append(_lost(record, "it names two layers: the entity behind it seems to have been swallowed"))
             if head is not None:
                 if head.text(2).lower() in blocks:
-                    findings.append(_lost(head, f'block "{head.text(2)}" is there already; the second one is used'))
+                    findings.append(_lost(head, f'block "{head.text(2)}" is defined twice; the second definition is used'))
                 blocks[head.text(2).lower()] = Block(head, tuple(entities))
                 if record.kind == "BLOCK":
                     findings.append(_lost(head, f'block "{head.text(2)}" has no ENDBLK'))

@@ -72,8 +72,8 @@ def read_svg(data: bytes, units: str | None, fit: float) -> Content:
             walker.walk(Spot(root, page.root, Place(), True, page.width, page.height))
             follow(found)
         except TooLarge:
-            message = "its elements are used so often that they unfold into too much; nothing was read"
-            findings = (*notes, Finding("too-large", "error", message, "Look at its <use> elements."))
+            message = "its elements are used so often that they expand to too many; nothing was read"
+            findings = (*notes, Finding("too-large", "error", message, "Check its <use> elements."))
             return Content(units=page.units, units_from=page.units_from, findings=findings)
     else:
         found.findings.append(Finding("page", "warning", "the page has no width or no height: nothing of it is shown"))
@@ -173,7 +173,7 @@ class Walker:
         if not max(map(abs, (*affine.ax, *affine.ay, *affine.origin))) <= LARGEST:
             raise SvgError("its transform puts it beyond any drawing")
         if affine.ax[0] * affine.ay[1] == affine.ax[1] * affine.ay[0]:
-            raise SvgError("its transform presses it flat")
+            raise SvgError("its transform flattens it")
         return affine
 
     def below(self, spot: Spot, child: Node) -> Spot:
@@ -244,7 +244,7 @@ class Walker:
         if isinstance(data, SvgError):
             raise data
         if data.fault:
-            message = f"{node.name} cannot be read to its end: {data.fault}. What stands before is drawn"
+            message = f"{node.name} cannot be read to its end: {data.fault}. What comes before is drawn"
             self.report("damaged", message, layer)
         if not data.rows and not data.fault:
             self.left_out.sizeless[node.tag] += 1

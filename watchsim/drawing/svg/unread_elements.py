@@ -49,7 +49,7 @@ class LeftOut:
             result += [Finding("hidden", "notice", message, layer=layer)] if count else []
         result += [_ignored(kind, count) for kind, count in self.ignored.items()]
         for kind, count in self.sizeless.items():
-            result.append(Finding("zero-size", "notice", f"{count} × {kind} of no size, of which nothing is drawn"))
+            result.append(Finding("zero-size", "notice", f"{count} × {kind} of no size, and so not drawn"))
         if self.marks:
             result.append(Finding("point", "notice", f"circles of radius 0, read as points: {self.marks}"))
         if self.clipped:
@@ -72,9 +72,9 @@ class LeftOut:
         result = []
         for (tag, name), count in strange.items():
             message = f'{count} × {tag} with an attribute "{name[:40]}" that it cannot have: the file may be damaged'
-            result.append(Finding("strange-attribute", "warning", message, "Look whether its shape is right."))
+            result.append(Finding("strange-attribute", "warning", message, "Check its shape."))
         if unused:
-            message = f"elements defined and nowhere used, which are not drawn: {unused}"
+            message = f"elements defined but never used, and so not drawn: {unused}"
             result.append(Finding("unused", "notice", message))
         return result
 

@@ -136,7 +136,7 @@ def _fault(error: expat.ExpatError, builder: _Builder, data: bytes) -> Finding:
     last = f"the last whole element is {builder.last.name}" if builder.last else "no element is whole"
     if builder.here is None and b"<" not in data[builder.end :]:
         return Finding(
-            "trailing", "warning", f"something stands after the end of the drawing in line {error.lineno}; it was not read"
+            "trailing", "warning", f"there is something after the end of the drawing, in line {error.lineno}; it was not read"
         )
     if error.code in CUT_SHORT:
         message = f"the file ends in line {error.lineno} inside <{builder.inside}>; {last}"
@@ -188,9 +188,9 @@ class _Builder:
 
     def entity(self, name: str, parameter: bool, value: str | None, *_: object) -> None:
         if value is None or parameter:
-            raise SvgError(f'the entity "{name[:60]}" lies outside the file or steers its reading; such are never followed')
+            raise SvgError(f'the entity "{name[:60]}" lies outside the file or steers how it is read; it is not followed')
         if "&" in value or "%" in value:
-            raise SvgError(f'the entity "{name[:60]}" is made of other entities; such are refused')
+            raise SvgError(f'the entity "{name[:60]}" is made of other entities, which is refused')
         self.entities[name] = len(value.encode())
 
     def check_entities(self, data: bytes) -> None:

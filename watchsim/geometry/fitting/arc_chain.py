@@ -1,4 +1,4 @@
-"""How are so many arcs laid along each curve?
+"""How is a given number of arcs laid along each curve?
 
 Single arcs at the ends and biarcs in between. The tangents at the ends of the biarcs are the curve's, turned a little so that
 the deviation swings evenly (see fit). One chain for each of many curves, laid at once.

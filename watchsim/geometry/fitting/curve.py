@@ -1,4 +1,4 @@
-"""What is a curve that arcs shall follow?
+"""What is a curve that arcs are to follow?
 
 A plane curve, rational between its breaks: splines and ellipses are of this kind exactly. Its spans are rational Béziers
 (G. Farin, Curves and Surfaces for CAGD, ch. 5 and 13), whose homogeneous coordinates are polynomials: their range can be

@@ -1,1 +1,4 @@
-"""Plots: what changes over time, over a beat or over a parameter."""
+"""How are plots drawn: what changes over time, over a beat or over a parameter?
+
+In: a `Trajectory` or a `Sweep`. Out: matplotlib figures. Imports `render.frame`, `studies`, `analysis` and below.
+"""

@@ -1,4 +1,4 @@
-"""How is drawn what matters in a watch?"""
+"""How are sensitivities drawn?"""
 
 from __future__ import annotations
 

@@ -62,20 +62,21 @@ def movie(
 ) -> Path:
     """Write a run as MP4 or GIF, by the ending of `path`, and return the path.
 
-    window   (from, to) in seconds; default all that was recorded
-    speed    seconds of the watch per second of the movie: 1/20 is slow motion; "adaptive": slow where things happen, and told
-    length   seconds that a movie at adaptive speed lasts; default 10
-    fps      frames per second; default 60, GIF 25 (a GIF keeps time in hundredths of a second: the nearest rate it can hold)
-    size     (width, height) in pixels, rounded up to even numbers; default 1280 × 720, GIF 800 × 450
-    contacts marks the contacts that are closed
-    zoom     names of the bodies to frame; default all
-    turn     radians by which the picture is turned; default: gravity down, or the quarter turn that fills the frame best
-    insets   places to enlarge: "lever", "lever.STONES", "lever.STONES.2" (its second outline), or a rectangle of the movement
-             in mm, "-1.4, 1.9 : -0.8, 2.5"
-    strip    the body whose angle and velocity run below the mechanism; True: the oscillator
-    phases   tells the phases of a beat by name
-    forces   arrows for the forces at contacts, of a run by events
-    progress called with (frames done, frames in all)
+    window    (from, to) in seconds; default all that was recorded
+    speed     seconds of the watch per second of the movie: 1/20 is slow motion; "adaptive": slow where things happen,
+              with the speed written in each frame
+    length    seconds that a movie at adaptive speed lasts; default 10
+    fps       frames per second; default 60, GIF 25 (a GIF keeps time in hundredths of a second: the nearest rate it can hold)
+    size      (width, height) in pixels, rounded up to even numbers; default 1280 × 720, GIF 800 × 450
+    contacts  rings around the contacts that are closed
+    zoom      names of the bodies to frame; default all
+    turn      radians by which the picture is turned; default: gravity down, or the quarter turn that fills the frame best
+    insets    places to enlarge: "lever", "lever.STONES", "lever.STONES.2" (its second outline), or a rectangle of the movement
+              in mm, "-1.4, 1.9 : -0.8, 2.5"
+    strip     the body whose angle and velocity run below the mechanism; True: the oscillator
+    phases    names the phase of a beat
+    forces    arrows for the forces at contacts, of a run by events
+    progress  called with (frames done, frames in all)
 
     ValueError for arguments that make no sense, OSError where the file cannot be written; the file is written whole or not
     at all.
@@ -137,7 +138,7 @@ def _plan(run: Trajectory, span: Window, speed: float | str, length: float | Non
     if isinstance(speed, str):
         raise ValueError(f'speed = "{speed}": give a number, or "{ADAPTIVE}"')
     if length is not None:
-        raise ValueError(f'length = {length:g}: only a movie at speed = "{ADAPTIVE}" is made as long as asked')
+        raise ValueError(f'length = {length:g}: only a movie at speed = "{ADAPTIVE}" has a length of its own')
     return even(span, speed, fps)
 
 

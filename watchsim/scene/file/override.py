@@ -1,29 +1,11 @@
-"""How is one value of a scene changed, from Python or by KEY=VALUE on the command line?"""
+"""Which keys and values does KEY=VALUE on the command line name?"""
 
 from __future__ import annotations
 
-import copy
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 
-from watchsim.scene.errors import Fault, Faults, SceneError
-from watchsim.scene.file.assign import assign
-from watchsim.scene.file.load import from_mapping
+from watchsim.scene.errors import Fault, SceneError
 from watchsim.scene.file.parsed import parsed
-from watchsim.scene.scene import Scene
-
-
-def changed(scene: Scene, changes: Mapping[str, object]) -> Scene:
-    """The scene with those dotted keys changed and everything checked again; SceneError lists what does not fit."""
-    if scene.written is not None:
-        later = {**scene.written.changes, **changes}
-        faults = Faults(str(scene.path) if scene.path else "scene", changed=frozenset(later))
-        return from_mapping(scene.written.mapping, scene.path, faults, later)
-    mapping = copy.deepcopy(scene.source)
-    faults = Faults(str(scene.path) if scene.path else "scene", changed=frozenset(changes))
-    for key, value in changes.items():
-        assign(mapping, key, value, faults)
-    faults.raise_any()
-    return from_mapping(mapping, scene.path, faults)
 
 
 def assignments(texts: Iterable[str]) -> dict[str, object]:

@@ -11,7 +11,7 @@ else:
     import tomli as tomllib
 
 DEEPEST = 20  # tables and lists within each other
-TOO_DEEP = f"tables and lists are nested more than {DEEPEST} deep, and nothing in a scene is"
+TOO_DEEP = f"tables and lists are nested more than {DEEPEST} deep; no scene needs that"
 
 
 def parsed(text: str) -> dict[str, Any]:

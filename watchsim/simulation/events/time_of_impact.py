@@ -11,6 +11,7 @@ import math
 
 from watchsim.candidates.cell_lookup import LISTED, UNKNOWN, candidate, candidates, time_in_cell
 from watchsim.contact.gaps import normal_gap, placed_gap
+from watchsim.contact.index_sets import OPEN
 from watchsim.contact.kinematics import contact_kinematics
 from watchsim.contact.poses import point_of
 from watchsim.jit import kernel
@@ -301,7 +302,7 @@ def _first_of(model, cells, state, options, p, tau, until, step, path):
     doubts = 0
     for place in range(start, start + count):
         k = candidate(model, cells, how, place)
-        if state.mode[k] != 0 or is_beside_active(model, state, k):
+        if state.mode[k] != OPEN or is_beside_active(model, state, k):
             continue
         if not _stays_open(model, state, options, k, until - tau, pair.a, bounds, path):
             path.doubt[doubts] = k

@@ -11,6 +11,7 @@ import math
 
 from watchsim.candidates.cell_lookup import UNKNOWN, candidate, candidates
 from watchsim.contact.gaps import extent_margin, normal_gap
+from watchsim.contact.index_sets import OPEN
 from watchsim.contact.kinematics import contact_kinematics
 from watchsim.contact.poses import place, point_of
 from watchsim.dynamics.applied_forces import driving_force, joint_damping, joint_energy, stretch, table_force
@@ -45,7 +46,7 @@ def closed_at_middle(model, cells, state, options, h, work):
         for place_in_list in range(start, start + count):
             k = candidate(model, cells, how, place_in_list)
             gap = normal_gap(model, k, work.pose).gap
-            if gap > options.gap_close or (state.mode[k] == 0 and gap < -_believable(model, options, k, h, work)):
+            if gap > options.gap_close or (state.mode[k] == OPEN and gap < -_believable(model, options, k, h, work)):
                 continue
             if extent_margin(model, k, work.pose) >= -options.extent:
                 if m == len(work.closed.ids):

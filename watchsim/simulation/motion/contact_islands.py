@@ -1,4 +1,4 @@
-"""Which closed contacts have to do with each other?
+"""Which closed contacts and coordinates act on each other?
 
 Coordinates that closed contacts join, or that belong to a free body or to a body and its carrier, form an island. No force or
 impulse passes from one island to another: every contact problem is posed for one island, and what happens in it leaves the

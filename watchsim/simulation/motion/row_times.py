@@ -1,4 +1,4 @@
-"""Which rows does a coupled step need, so that the motion within it can be told from them?
+"""Which rows does a coupled step need, so that the motion within it can be interpolated from them?
 
 Between rows the motion is taken for polynomials through q, u and a at both ends (see `Trajectory.sample`). Where these stray
 from the step's continuous extension by more than the tolerance, rows are put between, as many as it takes: the error of

@@ -1,4 +1,4 @@
-"""Where in the movement are the frames of all bodies, from the coordinates that a scene tells?"""
+"""Where in the movement are the frames of all bodies, from the coordinates of its scene?"""
 
 from __future__ import annotations
 

@@ -33,11 +33,13 @@ TOGETHER = 64  # instants looked at together
 EARLY = (0, 1, 4, 16, 64, 256, 1024)  # rows looked at in any case
 DEEPER = 1.25  # times the worst so far: what is measured next
 LOOKS = 16  # in a scene's duration, where no rows are recorded
-ROWS_SEEN, LOOKED, DEPTH, TIME, PLACE_X, PLACE_Y, CONTACT = range(7)
+NO_OVERLAP = -1  # in the place of a contact's number
+# What has been found: rows seen, instants looked at; of the worst overlap its depth (m), time (s), place (m), contact.
+FOUND = np.dtype([(name, "f8") for name in ("rows", "looks", "depth", "time", "x", "y", "contact")])
 
 
 class OverlapWatch:
-    """What has been seen so far; `found` is all that a saved state needs of it."""
+    """What has been seen so far. `numbers` is all that a saved state needs of it, `found` the same with names."""
 
     def __init__(self, scene: Scene, compiled: Compiled, method: str, windows: tuple[Window, ...]) -> None:
         self._scene, self._compiled = scene, compiled
@@ -48,7 +50,9 @@ class OverlapWatch:
         self._scale = np.array(compiled.model.coordinates.scale)
         self._last: Array | None = None  # row
         self._waiting: list[tuple[Array, Array]] = []  # times and coordinates of chosen rows
-        self.found = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0])
+        self.numbers = np.zeros(len(FOUND.names or ()))
+        self.found = self.numbers.view(FOUND).view(np.recarray)[0]
+        self.found.contact = NO_OVERLAP
 
     def limit(self, admitted: float) -> float:
         """How deep bodies may overlap (m) where the gap functions have seen overlaps of `admitted`."""
@@ -56,7 +60,7 @@ class OverlapWatch:
 
     def fails(self, admitted: float) -> bool:
         """True if bodies have overlapped by more than the limit."""
-        return bool(self.found[DEPTH] > self.limit(admitted))
+        return bool(self.found.depth > self.limit(admitted))
 
     def next_look(self, t: float) -> float:
         """The time after t (s) at which the state must be looked at, for want of rows; infinity where there are rows."""
@@ -67,8 +71,8 @@ class OverlapWatch:
 
     def see_rows(self, rows: Array) -> None:
         """Look, soon, at some of the next rows (t, q, u, a) of the run and between them."""
-        first = int(self.found[ROWS_SEEN])
-        self.found[ROWS_SEEN] += len(rows)
+        first = int(self.found.rows)
+        self.found.rows += len(rows)
         if not self._sees_rows or not len(rows):
             return
         if self._last is not None and rows[0, 0] > self._last[0, 0]:
@@ -102,7 +106,7 @@ class OverlapWatch:
         if not instants or not self._pairs:
             return
         times, q = (np.concatenate(parts) for parts in zip(*instants, strict=True))
-        self.found[LOOKED] += len(times)
+        self.found.looks += len(times)
         places = frames(self._scene, self._compiled.slices, self._compiled.relative(q))
         poses = {name: (place[:, 0] + 1j * place[:, 1], np.exp(1j * place[:, 2])) for name, place in places.items()}
         both = [(poses[pair.sides[0].body], poses[pair.sides[1].body]) for pair in self._pairs]
@@ -113,7 +117,7 @@ class OverlapWatch:
     @property
     def _bar(self) -> float:
         """How deep an overlap must be to be measured: one for all pairs, whatever is looked at together."""
-        return max(self.resolution, DEEPER * float(self.found[DEPTH]))
+        return max(self.resolution, DEEPER * float(self.found.depth))
 
     def _next_overlap(self, pairs: list[PairOfLayers], times: Array, both: list[tuple[Poses, Poses]], done: int) -> int:
         """Measure the overlaps of the next instant, from number `done`, that has any; returns the number of the one after."""
@@ -129,8 +133,10 @@ class OverlapWatch:
         for pair, hit, poses in zip(pairs, hits, both, strict=True):
             if len(hit) and hit[0] == at:
                 depth, place = pair.deepest(poses, at)
-                if depth > self.found[DEPTH]:
-                    self.found[DEPTH:] = depth, times[at], *place, pair.contact
+                if depth > self.found.depth:
+                    found = self.found
+                    found.depth, found.time, found.contact = depth, times[at], pair.contact
+                    found.x, found.y = place
         if self._bar > before:
             for pair in pairs:
                 pair.look_for(self._bar)
@@ -138,24 +144,24 @@ class OverlapWatch:
 
     def words(self) -> str:
         """The worst overlap in words."""
-        first, second = self._scene.contacts[int(self.found[CONTACT])].sides
-        x, y = (f"{1e3 * value:.4g}" for value in self.found[[PLACE_X, PLACE_Y]])
-        depth, t = 1e6 * self.found[DEPTH], self.found[TIME]
+        first, second = self._scene.contacts[int(self.found.contact)].sides
+        x, y = (f"{1e3 * value:.4g}" for value in (self.found.x, self.found.y))
+        depth, t = 1e6 * self.found.depth, self.found.time
         return f"{first} and {second} overlapped by {depth:.3g} µm at t = {t:.9g} s, at ({x}, {y}) mm"
 
     def result(self, admitted: float) -> dict[str, Any]:
         """What was found, as plain values for the summary."""
-        depth, contact = float(self.found[DEPTH]), int(self.found[CONTACT])
-        sides = self._scene.contacts[contact].sides if contact >= 0 else None
+        depth, contact = float(self.found.depth), int(self.found.contact)
+        sides = self._scene.contacts[contact].sides if contact != NO_OVERLAP else None
         return {
             "worst_m": depth,
             "resolution_m": self.resolution,
             "allowed_m": self.limit(admitted),
-            "looks": int(self.found[LOOKED]),
+            "looks": int(self.found.looks),
             "between": [str(side) for side in sides] if sides else None,
-            "t_s": float(self.found[TIME]) if sides else None,
-            "x_mm": 1e3 * float(self.found[PLACE_X]) if sides else None,
-            "y_mm": 1e3 * float(self.found[PLACE_Y]) if sides else None,
+            "t_s": float(self.found.time) if sides else None,
+            "x_mm": 1e3 * float(self.found.x) if sides else None,
+            "y_mm": 1e3 * float(self.found.y) if sides else None,
         }
 
 

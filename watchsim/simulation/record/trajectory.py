@@ -35,16 +35,26 @@ AT_ONCE = 1000  # times that are looked up together where rows lie in a file: th
 class Trajectory:
     """The motion of a scene. Arrays have one row per accepted step (two rows with the same time at an impact).
 
-    t (rows,) s; q, u, a (rows, n) coordinates, velocities, accelerations in SI; `slices[body]` says which columns belong
-    to a body (fixed bodies have none). Those of a carried body are relative to its carrier; `pose` is in the movement.
-    `energy` holds joules: in_J, stored_J, dissipated {cause: J}, residual_J.
-    `counts` holds events, impacts, steps, lcp_failures and the like; `worst_penetration` is metres;
-    `worst_residual` the worst violation of a complementarity condition, as a share of the problem's largest term.
-    `overlap` is what looking at the outlines themselves has found, apart from all gap functions (see
-    simulation/record/overlap_watch.py): worst_m, between, t_s, x_mm, y_mm, looks, and what was looked for and allowed.
-    `keep` and `spans` say what was kept (see scene/recording.py): `spans` the stretches of time (s) with rows, () for a
-    run that was made by hand. `sums` holds sums over all events of the whole run, kept or not (see simulation/record/tally.py).
-    `failure` is the complementarity problem on which the solver gave up (see simulation/lcp_failure.py), None otherwise.
+    t                  times of the rows (rows,), s
+    q, u, a            coordinates, velocities, accelerations (rows, n), SI and rad; of a carried body relative to its carrier
+    slices             body -> its columns of q, u, a; fixed bodies have none
+    events             one record each, as in EVENT_DTYPE: t (s), kind, contact, body, impulses (N·s), energy lost (J), value
+    pairs              the contacts that `contact` of an event counts, with bodies, layers and primitives
+    stop, stop_message  why the run ended
+    simulated          the time reached, s; `end_q` and `end_u` (n,) belong to it
+    wall, compile      what the run took in all, and what of it was compiling or loading the solver, s
+    method, tolerance, step  of the run; `step` (s) only of a method with fixed steps
+    worst_penetration  the deepest gap of a contact that counted, m
+    worst_residual     the worst violation of a complementarity condition, as a share of the problem's largest term
+    overlap            what looking at the outlines themselves has found, apart from all gap functions: worst_m, between,
+                       t_s, x_mm, y_mm, looks, resolution_m, allowed_m (simulation/record/overlap_watch.py)
+    energy             J: in_J, stored_J, dissipated {cause: J}, residual_J; residual_relative
+    counts             events, impacts, steps, lcp_failures and the like
+    keep, spans        what was kept (scene/recording.py): `spans` the stretches of time (s) with rows, () for a run that was
+                       made by hand
+    sums               over all events of the whole run, kept or not (simulation/record/tally.py)
+    end_state          from which the run can go on; None for one that was made by hand
+    failure            the complementarity problem on which the solver gave up (simulation/lcp_failure.py), else None
     """
 
     scene: Scene

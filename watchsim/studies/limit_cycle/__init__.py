@@ -1,1 +1,5 @@
-"""Where does a mechanism settle? Its return map, the cycle that closes, its stability, or what there is instead."""
+"""Where does a mechanism settle?
+
+In: a `Scene`. Out: its limit cycle with errors and stability, or what there is instead (`steady`), from its return map.
+Imports `analysis`, `simulation` and below.
+"""

@@ -1,4 +1,4 @@
-"""With what arrows does a picture tell how hard bodies press on one another?
+"""With which arrows does a picture show how hard bodies press on one another?
 
 An arrow begins where two bodies touch and tells the force on that one of them which comes later in the scene and can move:
 on the lever from the wheel, on the balance from the lever. All arrows of a movie have one scale.

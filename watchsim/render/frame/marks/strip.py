@@ -1,4 +1,4 @@
-"""How does a strip below the mechanism tell a body's angle and velocity, with a cursor at the instant shown?
+"""How does a strip below the mechanism show a body's angle and velocity, with a cursor at the instant shown?
 
 What a page of the strip holds never changes: it is drawn once, and the cursor is copied in. A window of many swings has several
 pages, one after the other.

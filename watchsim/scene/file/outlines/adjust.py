@@ -182,7 +182,9 @@ def _note_crossings(table: Table, path: str, drawing: Drawing, layer: str) -> No
     """Outlines of one layer that lay apart may cross once they are moved."""
     outlines = [Outline(loop, ("an edge",) * len(loop.edges)) for loop in drawing.loops if loop.layer == layer]
     for finding in _errors(outlines):
-        table.faults.add(path, f"so moved, its outlines cross{finding}. Move it less", shown(table.mapping["adjust"][layer]))
+        table.faults.add(
+            path, f"moved so far, its outlines cross{finding}. Move it less", shown(table.mapping["adjust"][layer])
+        )
         return
 
 

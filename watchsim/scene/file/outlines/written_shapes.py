@@ -59,7 +59,7 @@ def _points(table: Table, key: str, at_least: int) -> tuple[Point, ...]:
 
 def _note_defects(table: Table, points: Sequence[Point]) -> None:
     if len(set(points)) < len(points):
-        table.fault("polygon", "a point stands twice in it; the outline closes by itself, without repeating the first point")
+        table.fault("polygon", "a point occurs twice in it; the outline closes by itself, without repeating the first point")
     elif signed_area(points) == 0.0:
         table.fault("polygon", "it encloses no area")
     elif crossing := first_crossing(points):

@@ -78,7 +78,7 @@ def _shape_inertia(weight: Weight | None, motion: str, origin: Point) -> float:
 
 def _note_conflicts(table: Table, motion: str, outlines: Outlines) -> None:
     if "mass" in table and "solids" in table:
-        table.fault("mass", "the solids say the mass already: leave out mass or solids")
+        table.fault("mass", "the solids give the mass already: leave out mass or solids")
     if motion == "free" and "solids" in table and outlines.pivot is not None:
         table.fault("pivot", "a free body turns about its centre of mass, which the solids give: leave out pivot or solids")
 

@@ -1,4 +1,4 @@
-"""How is it read what to keep of a run?
+"""How does a scene file say what to keep of a run?
 
 `record` is one of these or a list of them: a window ["179 s", "180 s"], "all", "events", "statistics", "every 10".
 """

@@ -1,4 +1,4 @@
-"""What does a run leave on disk, and how is it read back?
+"""What does a run leave on disk? summary.json, trajectory.npz, events.csv and the rest.
 
 A results folder is built beside its destination and moved there when it is complete: it exists whole or not at all, and
 one that is replaced stays untouched until then.
@@ -6,7 +6,6 @@ one that is replaced stays untouched until then.
 
 from __future__ import annotations
 
-import dataclasses
 import os
 import re
 from collections.abc import Callable, Mapping
@@ -14,9 +13,9 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
-from watchsim.results.archive import read_trajectory, write_trajectory
+from watchsim.results.archive import write_trajectory
 from watchsim.results.scene_copy import LOCK, locked_drawings, travelling
-from watchsim.results.state_file import read_state, write_state
+from watchsim.results.state_file import write_state
 from watchsim.results.tables import json_text, write_events
 from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.storage.scratch import PREFIX
@@ -90,26 +89,6 @@ def write_results(
 def filler(run: Trajectory, summary: Mapping[str, Any], files: Extra) -> Callable[[Path], None]:
     """What writes a results folder into the folder it is given; `files` holds the locked scene, its drawings and extras."""
     return lambda place: _fill(place, run, summary, files)
-
-
-def read_results(folder: str | os.PathLike[str]) -> Trajectory:
-    """The trajectory of a results folder, with its scene.
-
-    FileNotFoundError where the folder or a file of it is missing, ValueError where one is damaged or does not belong to the
-    others, SceneError where the scene can no longer be loaded.
-    """
-    from watchsim.scene.file.load import load
-
-    place = Path(folder)
-    if not place.is_dir():
-        raise FileNotFoundError(f"{folder}: there is no such results folder")
-    missing = [name for name in (LOCK, TRAJECTORY) if not (place / name).is_file()]
-    if missing:
-        raise FileNotFoundError(f"{folder} is not a results folder of watchsim: {' and '.join(missing)} missing")
-    run = read_trajectory(place / TRAJECTORY, load(place / LOCK))
-    if (place / STATE).is_file():
-        run = dataclasses.replace(run, end_state=read_state(place / STATE))
-    return run
 
 
 def bare_filler(run: Trajectory, files: Extra) -> Callable[[Path], None]:

@@ -2,7 +2,7 @@
 
 Every kind of pair with its gap, normal, contact point and force directions as `watchsim.kinematics` gives them.
 
-    python scripts/reports/draw_contact_kinds.py
+    python scripts/pictures/draw_contact_kinds.py
 """
 
 from __future__ import annotations

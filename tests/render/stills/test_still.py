@@ -16,7 +16,7 @@ from watchsim.render.frame.pose_matrix import pose_matrix
 from watchsim.render.frame.stage import Stage
 from watchsim.render.stills import still as module
 
-LEVER = Path(__file__).resolve().parents[2] / "profiles" / "bench_lever" / "scene.toml"
+LEVER = Path(__file__).resolve().parents[3] / "profiles" / "bench_lever" / "scene.toml"
 
 
 def test_reachable_edges_wear_colour_and_others_do_not(tmp_path):

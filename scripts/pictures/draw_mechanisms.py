@@ -2,7 +2,7 @@
 
 Simulates each profile and draws it at an instant at which its parts work on each other; of the clocks the wheel is shown close.
 
-    python scripts/reports/draw_mechanisms.py
+    python scripts/pictures/draw_mechanisms.py
 """
 
 from __future__ import annotations

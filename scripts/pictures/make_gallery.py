@@ -1,6 +1,6 @@
 """How does docs/guide/gallery.md come about, and the moving picture of the README?
 
-    python scripts/reports/make_gallery.py
+    python scripts/pictures/make_gallery.py
 
 Runs the commands that the page shows, as anyone can, in a folder of its own; pictures go to docs/images/gallery. Takes half a
 minute.
@@ -42,7 +42,7 @@ EXHIBITS = (
     Exhibit(
         "swiss_lever.gif",
         "An oscillation of a Swiss lever",
-        "At adaptive speed: unlocking, impulse and drop get most of the frames, and the factor is told at the upper right. "
+        "At adaptive speed: unlocking, impulse and drop get most of the frames, and the speed stands at the upper right. "
         "Arrows are the forces on the lever from the wheel, and on the roller's pin from the fork.",
         f"watchsim movie swiss {BEAT} --speed adaptive --length 5s --fps 16 --size 720x406 --phases --forces "
         "--inset lever.STONES.1 --inset lever.FORK -o swiss_lever.gif",
@@ -115,7 +115,7 @@ def run(command: str, folder: Path) -> None:
 
 def page(exhibits: Sequence[Exhibit]) -> str:
     """The page in Markdown."""
-    parts = ["# Gallery\n\nEvery picture with the commands that make it. `scripts/reports/make_gallery.py` makes this page.\n"]
+    parts = ["# Gallery\n\nEvery picture with the commands that make it. `scripts/pictures/make_gallery.py` makes this page.\n"]
     for one in exhibits:
         parts.append(f"## {one.title}\n\n{one.words}\n")
         if commands := "\n".join(filter(None, (one.also, one.command))):

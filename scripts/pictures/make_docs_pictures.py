@@ -1,9 +1,9 @@
 """How do the pictures of the README come about?
 
 Simulates profiles/swiss_lever for a second and draws the angles and velocities of all bodies over the beats around the
-instant at which the balance passes its rest position. The moving picture is made by scripts/reports/make_gallery.py.
+instant at which the balance passes its rest position. The moving picture is made by scripts/pictures/make_gallery.py.
 
-    python scripts/reports/make_docs_pictures.py
+    python scripts/pictures/make_docs_pictures.py
 """
 
 from __future__ import annotations

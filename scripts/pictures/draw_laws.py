@@ -4,7 +4,7 @@ The characteristics of the expansion are read off the solver itself: one contact
 the impulses and rates of both phases as the solver's own `impact` gives them. The characteristics of normal contact, of
 friction while bodies touch and of a dry bearing are drawn from their definitions.
 
-    python scripts/reports/draw_laws.py
+    python scripts/pictures/draw_laws.py
 """
 
 from __future__ import annotations

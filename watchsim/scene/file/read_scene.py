@@ -1,0 +1,132 @@
+"""How does the mapping of a scene file become a scene, and what does it become with some of its keys changed?
+
+A scene carries the reader that made it (`Scene.reader`), so that `Scene.set` reads it anew without knowing this file.
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from watchsim.scene.errors import Faults
+from watchsim.scene.file.assign import assign
+from watchsim.scene.file.designed import with_design
+from watchsim.scene.file.digests import file_digest
+from watchsim.scene.file.keys.key_values import Table
+from watchsim.scene.file.keys.schema import LOCK, SECTIONS, nearest
+from watchsim.scene.file.readers.read_bodies import read_bodies
+from watchsim.scene.file.readers.read_carriers import note_carriers
+from watchsim.scene.file.readers.read_contacts import read_contacts
+from watchsim.scene.file.readers.read_forces import read_damping, read_springs, read_torques
+from watchsim.scene.file.readers.read_settings import read_expectations, read_heading, read_run, read_timegrapher
+from watchsim.scene.oscillation import frequency
+from watchsim.scene.scene import Scene, Written
+
+FAR_OFF = 0.1  # of the frequency of small swings: what a rate may be measured against
+
+
+def from_mapping(
+    mapping: dict[str, Any], path: Path | None, faults: Faults | None = None, changes: Mapping[str, object] | None = None
+) -> Scene:
+    """The scene of a TOML mapping; `path` is the file it stands for, drawings are looked for beside it.
+
+    `changes` are keys of a scene with a design that are changed after it has been put together.
+    """
+    faults = faults or Faults(str(path) if path else "scene")
+    folder = path.parent if path else Path()
+    written, made = None, None
+    if "design" in mapping:
+        written = Written(mapping, dict(changes or {}))
+        mapping, made = with_design(written, faults)
+        written = replace(written, made=frozenset(made))
+    _note_sections(mapping, faults)
+    heading = read_heading(mapping, faults)
+    read = read_bodies(mapping.get("bodies", {}), folder, faults, made)
+    bodies, sound = read.bodies, read.sound
+    springs = read_springs(mapping, bodies, faults)
+    torques = read_torques(mapping, bodies, faults)
+    damping = read_damping(mapping, bodies, springs, heading.gravity, faults)
+    contacts = read_contacts(mapping, bodies, sound, heading.tangential_law, faults)
+    note_carriers(bodies, damping, contacts, faults)
+    duration, record, tolerance = read_run(mapping, faults)
+    lift_angle, nominal = read_timegrapher(mapping, faults)
+    expect = read_expectations(mapping, faults)
+    _check_lock(mapping, folder, faults)
+    faults.raise_any()
+    scene = Scene(
+        title=heading.title or (path.parent.name if path else ""),
+        bodies=bodies,
+        springs=springs,
+        torques=torques,
+        damping=damping,
+        contacts=contacts,
+        gravity=heading.gravity,
+        tangential_law=heading.tangential_law,
+        nu=heading.nu,
+        duration=duration,
+        record=record,
+        tolerance=tolerance,
+        lift_angle=lift_angle,
+        nominal=nominal,
+        expect=expect,
+        path=path,
+        source=mapping,
+        findings=read.findings,
+        drawings=read.drawings,
+        written=written,
+        reader=changed,
+    )
+    _check_nominal(scene, faults)
+    faults.raise_any()
+    return scene
+
+
+def changed(scene: Scene, changes: Mapping[str, object]) -> Scene:
+    """The scene with those dotted keys changed and everything checked again; SceneError lists what does not fit."""
+    if scene.written is not None:
+        later = {**scene.written.changes, **changes}
+        faults = Faults(str(scene.path) if scene.path else "scene", changed=frozenset(later))
+        return from_mapping(scene.written.mapping, scene.path, faults, later)
+    mapping = copy.deepcopy(scene.source)
+    faults = Faults(str(scene.path) if scene.path else "scene", changed=frozenset(changes))
+    for key, value in changes.items():
+        assign(mapping, key, value, faults)
+    faults.raise_any()
+    return from_mapping(mapping, scene.path, faults)
+
+
+def _note_sections(mapping: Mapping[str, Any], faults: Faults) -> None:
+    for section in mapping:
+        if section not in SECTIONS:
+            faults.add(section, f"unknown section. {nearest(section, SECTIONS)}")
+    if not mapping.get("bodies") and "design" not in mapping:
+        faults.add("bodies", "a scene needs at least one body, such as [bodies.wheel]")
+
+
+def _check_nominal(scene: Scene, faults: Faults) -> None:
+    """A rate is measured against a frequency near that of the oscillator; anything else is a slip."""
+    if scene.nominal is None:
+        return
+    natural = frequency(scene)
+    if natural is None:
+        faults.add("timegrapher.frequency", "nothing in this scene swings on a spring or by gravity, so it has no rate")
+    elif abs(scene.nominal / natural - 1.0) > FAR_OFF:
+        seen = f"the oscillator makes small swings at {natural:.6g} Hz ({7200.0 * natural:.6g} vph)"
+        faults.add("timegrapher.frequency", f"{seen}, more than {100 * FAR_OFF:.0f} % off: look at mass, inertia and spring")
+
+
+def _check_lock(mapping: Mapping[str, Any], folder: Path, faults: Faults) -> None:
+    """A locked scene promises that its drawings are still the ones that were simulated."""
+    if "lock" not in mapping:
+        return
+    table = Table(mapping["lock"], "lock", LOCK, faults)
+    digests = table.mapping.get("drawings", {})
+    for name, expected in digests.items() if isinstance(digests, dict) else ():
+        path = folder / name
+        if path.is_file() and file_digest(path) != expected:
+            faults.add(
+                f"lock.drawings.{name}", "the drawing was changed after this scene was locked. Load the original scene file"
+            )
