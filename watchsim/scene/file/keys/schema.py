@@ -57,7 +57,9 @@ SPRING: Keys = {
     "frequency": Key(units.FREQUENCY),
     "stiffness": Key(units.ROTARY_STIFFNESS, units.LINEAR_STIFFNESS),
     "rest": Key(units.ANGLE, units.LENGTH),
+    "draw": PLAIN,
 }
+COIL: Keys = {"inner": LENGTH, "outer": LENGTH, "turns": NUMBER, "stud": ANGLE, "width": LENGTH}  # draw of a spring
 TORQUE: Keys = {"body": PLAIN, "value": Key(units.TORQUE, units.FORCE), "over": PLAIN, "table": PLAIN}
 DAMPING: Keys = {
     "body": PLAIN,
@@ -95,6 +97,8 @@ def key_at(path: tuple[str, ...]) -> Key | None:
             inner = rest[4:] if rest[3].isdigit() else rest[3:]
             return ADJUST.get(inner[0]) if inner else PLAIN
         return NAMED[section].get(rest[1])
+    if section == "springs" and rest[1] == "draw" and len(rest) >= 3:
+        return COIL.get(rest[2])
     return LISTED[section].get(rest[1])
 
 
@@ -107,6 +111,8 @@ def siblings(path: tuple[str, ...]) -> tuple[str, ...]:
         if path[2:3] == ("adjust",) and len(path) > 4:
             return tuple(ADJUST)
         return tuple(SOLID if path[2:3] == ("solids",) and len(path) > 4 else NAMED[section])
+    if section == "springs" and path[2:3] == ("draw",) and len(path) > 3:
+        return tuple(COIL)
     return tuple(LISTED[section]) if section in LISTED else SECTIONS
 
 
