@@ -18,8 +18,10 @@ from matplotlib.transforms import Affine2D, Bbox, IdentityTransform, Transform
 from numpy.typing import NDArray
 
 from watchsim.geometry.primitives import Arc
+from watchsim.render.frame.coil_patches import coil_patches
+from watchsim.render.frame.coils import hairsprings
 from watchsim.render.frame.coloured_edges import Edges, edge_paths
-from watchsim.render.frame.filled_parts import Part, is_round, loops_of, parts
+from watchsim.render.frame.filled_parts import Part, backdrop, is_round, loops_of, parts
 from watchsim.render.frame.marks.extras import NOTHING, Extras
 from watchsim.render.frame.marks.mechanism_extras import Beside
 from watchsim.render.frame.marks.readouts import Clock
@@ -27,7 +29,7 @@ from watchsim.render.frame.marks.word_layout import draw_key, draw_notes, draw_r
 from watchsim.render.frame.pose_history import Window
 from watchsim.render.frame.pose_matrix import pose_matrix
 from watchsim.render.frame.view import size_of, view
-from watchsim.render.palette import BACKGROUND, CONTACT, INK
+from watchsim.render.style import LIGHT, Style
 from watchsim.scene.carriers import at_start, is_still
 from watchsim.simulation.record.trajectory import Trajectory
 
@@ -39,7 +41,6 @@ CHORD = 0.05  # pixels that a chord may stray from its arc
 HATCH = 13.0  # pixels between hatch strokes
 PICKED = 3.0  # pixels: width of picked edges
 SHADOW = (2.0, -3.0)  # pixels
-SHADE = (0.13, 0.14, 0.16, 0.13)
 
 
 class Stage:
@@ -47,7 +48,7 @@ class Stage:
 
     `size` is (width, height) in pixels; `speed` and `step` (s between frames) are only told, not used. `picked` edges are
     drawn over everything, with a key below the title. With `extras` the mechanism leaves room for them.
-    `clock` reports something other than the time of the run.
+    `clock` reports something other than the time of the run, `style` is light or dark.
     """
 
     def __init__(
@@ -63,25 +64,29 @@ class Stage:
         picked: Sequence[Edges] = (),
         extras: Extras = NOTHING,
         clock: Clock | None = None,
+        style: Style = LIGHT,
     ) -> None:
-        self._figure = Figure(figsize=((size[0] + 0.5) / DPI, (size[1] + 0.5) / DPI), dpi=DPI, facecolor=BACKGROUND)
+        self._style = style
+        self._figure = Figure(figsize=((size[0] + 0.5) / DPI, (size[1] + 0.5) / DPI), dpi=DPI, facecolor=style.background)
         self._canvas = FigureCanvasAgg(self._figure)
         self._unit = relative_size(*size)
-        self._layout = lay_out(self._figure, run, window, step or (window[1] - window[0]) / 2000.0)
+        self._layout = lay_out(self._figure, run, window, step or (window[1] - window[0]) / 2000.0, style)
         if clock is not None:
             self._layout = replace(self._layout, clock=clock)
-        self._beside = Beside(self._figure, run, window, extras, self._layout.frame, self._layout.small.size, self._unit)
+        size_of_text = self._layout.small.size
+        self._beside = Beside(self._figure, run, window, extras, self._layout.frame, size_of_text, self._unit, style)
         self._room = self._beside.room
         self.view = view(run, window, self._room, zoom, turn)
         self._beside.look_at(self.view)
-        draw_scale(self._figure, self.view.scale)
-        draw_notes(self._figure, self._layout.frame, speed, self.view.turn)
+        draw_scale(self._figure, self.view.scale, style)
+        draw_notes(self._figure, self._layout.frame, speed, self.view.turn, style)
         endless = any(not loop.closed for body in run.scene.bodies for loop in loops_of(body))
         if zoom is not None or endless or self.view.follow is not None:
-            draw_rules(self._figure, self._room)
+            draw_rules(self._figure, self._room, style)
         self._transforms = {body.name: Affine2D() for body in run.scene.bodies}
+        self._springs = hairsprings(run.scene)
         self._patches = [*self._compose(run), *(patch for edges in picked for patch in self._picked(run, edges))]
-        draw_key(self._figure, [(edges.colour, edges.meaning) for edges in picked])
+        draw_key(self._figure, [(edges.colour, edges.meaning) for edges in picked], style)
         self._canvas.draw()
         self._background = self._canvas.copy_from_bbox(self._figure.bbox)
 
@@ -90,13 +95,13 @@ class Stage:
         t: float,
         frames: dict[str, Array],
         contacts: Array | None = None,
-        mark: str = CONTACT,
+        mark: str | None = None,
         press: tuple[Array, Array] | None = None,
         speed: float | None = None,
     ) -> Pixels:
         """The picture (height, width, 4) of the instant `t`; the next call overwrites it.
 
-        `frames` gives every body's pose x, y, angle; `contacts` (n, 2) points to mark, in metres, in the colour `mark`; `press`
+        `frames` gives every body's pose x, y, angle; `contacts` (n, 2) points to mark, in metres, in the colour `mark` (default: of contacts); `press`
         points (n, 2), m, and the forces there (n, 2), N; `speed` is told where it changes from frame to frame.
         """
         self._canvas.restore_region(self._background)
@@ -104,12 +109,14 @@ class Stage:
         matrix = self.view.matrix(self.view.centre_at(frames))
         for body, transform in self._transforms.items():
             transform.set_matrix(matrix @ pose_matrix(frames[body]))
+        for patch in coil_patches(self._springs, frames, matrix, self._style, self._unit):
+            self._own(patch).draw(renderer)
         for patch in self._patches:
             patch.draw(renderer)
 
         def touching(matrix: Array) -> list[PathPatch]:
             marked = contacts is not None and len(contacts) > 0
-            made = self._marks(contacts @ matrix[:2, :2].T + matrix[:2, 2], mark) if contacts is not None and marked else []
+            made = self._marks(contacts @ matrix[:2, :2].T + matrix[:2, 2], mark or self._style.contact) if contacts is not None and marked else []
             return made if press is None else made + self._beside.arrows(matrix, *press)
 
         for patch in touching(matrix):
@@ -130,12 +137,21 @@ class Stage:
         for body in still:
             self._transforms.pop(body)
         live: list[PathPatch] = []
+        unmoved: list[PathPatch] = []
         for part in shapes:
             if part.body in still:
                 fixed = Affine2D(self.view.matrix(self.view.centre) @ pose_matrix(frames[part.body]))
-                for patch in self._of_part(part, fixed):
-                    self._figure.add_artist(patch)
+                unmoved += self._of_part(part, fixed)
         moving = [part for part in shapes if part.body not in still]
+        behind = backdrop(moving)
+        for part in behind:
+            live += [self._shadow(part), *self._of_part(part, self._transforms[part.body])]
+        if behind or self._springs:
+            live += unmoved
+        else:
+            for patch in unmoved:
+                self._figure.add_artist(patch)
+        moving = moving[len(behind) :]
         live += [self._shadow(part) for part in moving if not part.ground]
         live += [patch for part in moving for patch in self._of_part(part, self._transforms[part.body])]
         live += [self._spoke(run, name) for name in self._transforms if is_round(run.scene.body(name))]
@@ -143,10 +159,12 @@ class Stage:
         return live
 
     def _of_part(self, part: Part, transform: Transform) -> list[PathPatch]:
-        edge = {"edgecolor": part.finish.edge, "joinstyle": "round", "capstyle": "round", "transform": transform}
+        look = self._style.worn(part.finish)
+        edge = {"edgecolor": look.edge, "joinstyle": "round", "capstyle": "round", "transform": transform}
         thin = max(1.1 * self._unit, 0.6)
         if not part.ground:
-            return [self._own(PathPatch(part.faces, facecolor=part.finish.fill, linewidth=thin, **edge))]
+            return [self._own(PathPatch(part.faces, facecolor=look.fill, linewidth=thin, **edge))]
+        edge["edgecolor"] = self._style.line(look)
         strokes = [] if part.strokes is None else [PathPatch(part.strokes, fill=False, linewidth=0.8 * thin, alpha=0.7, **edge)]
         return [self._own(patch) for patch in (*strokes, PathPatch(part.faces, fill=False, linewidth=1.8 * thin, **edge))]
 
@@ -162,7 +180,7 @@ class Stage:
 
     def _shadow(self, part: Part) -> PathPatch:
         shift = Affine2D().translate(SHADOW[0] * self._unit, SHADOW[1] * self._unit)
-        return self._own(PathPatch(part.faces, facecolor=SHADE, linewidth=0.0, transform=self._transforms[part.body] + shift))
+        return self._own(PathPatch(part.faces, facecolor=self._style.shade, linewidth=0.0, transform=self._transforms[part.body] + shift))
 
     def _spoke(self, run: Trajectory, name: str) -> PathPatch:
         """A radius drawn on a body so round that its turning could not be seen."""
@@ -174,7 +192,7 @@ class Stage:
         path = Path([(bore, 0.0), (bore + 0.9 * (reach - bore), 0.0)])
         width = max(2.0 * self._unit, 1.0)
         return self._own(
-            PathPatch(path, fill=False, edgecolor=INK, linewidth=width, capstyle="round", transform=self._transforms[name])
+            PathPatch(path, fill=False, edgecolor=self._style.ink, linewidth=width, capstyle="round", transform=self._transforms[name])
         )
 
     def _pivots(self, run: Trajectory) -> list[PathPatch]:
@@ -183,7 +201,7 @@ class Stage:
         if not pivoted or self.view.follow is not None:
             return []
         radius, matrix = 3.2 * max(self._unit, 0.5), self.view.matrix(self.view.centre)
-        look = {"facecolor": BACKGROUND, "edgecolor": INK, "linewidth": max(1.3 * self._unit, 0.8)}
+        look = {"facecolor": self._style.background, "edgecolor": self._style.ink, "linewidth": max(1.3 * self._unit, 0.8)}
         places = [body.position for body in pivoted if body.on is None]
         patches = []
         if places:
@@ -196,7 +214,7 @@ class Stage:
     def _marks(self, points: Array, mark: str) -> list[PathPatch]:
         """Rings with a pale rim, to be seen on steel, brass and ruby alike."""
         rings, width = _rings(points, 7.0 * max(self._unit, 0.5)), max(2.4 * self._unit, 1.2)
-        looks = ((BACKGROUND, 2.2 * width), (mark, width))
+        looks = ((self._style.background, 2.2 * width), (mark, width))
         place = IdentityTransform()
         return [PathPatch(rings, fill=False, edgecolor=colour, linewidth=line, transform=place) for colour, line in looks]
 
