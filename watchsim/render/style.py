@@ -57,11 +57,3 @@ DARK = Style(
     },
     shade=(0.0, 0.0, 0.0, 0.4),
 )
-STYLES = {style.name: style for style in (LIGHT, DARK)}
-
-
-def style_called(name: str) -> Style:
-    """The style of that name; ValueError naming the choices."""
-    if name not in STYLES:
-        raise ValueError(f'style = "{name}": choose {" or ".join(STYLES)}')
-    return STYLES[name]

@@ -29,7 +29,7 @@ def coil_patches(
         x, y, _ = frames[spring.body]
         width = max(scale * spring.coil.width, THINNEST * unit, 0.7)
         collet = Path.circle(tuple(_seen(np.array([[x, y]]), matrix)[0]), scale * spring.coil.inner)
-        colour = mixed(BLUED.line if style.name == "light" else BLUED.fill, style.background, 0.6 * PALE)
+        colour = mixed(BLUED.line if style.name == "light" else BLUED.fill, style.background, PALE)
         look = {"fill": False, "edgecolor": colour, "capstyle": "round", "joinstyle": "round"}
         yield PathPatch(Path(line), linewidth=width, transform=IdentityTransform(), **look)
         yield PathPatch(collet, linewidth=2.0 * width, transform=IdentityTransform(), **look)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -32,6 +33,28 @@ LEAST = 60.0  # pixels of height that must be left for the mechanism
 PAD = 24.0  # pixels at 1280 × 720
 
 
+@dataclass(frozen=True)
+class Shared:
+    """Who has which room (pixels): the mechanism, the strip below it, the insets."""
+
+    room: Frame
+    strip: Frame | None
+    insets: tuple[Frame, ...]
+
+
+def shared_room(frame: Frame, extras: Extras, height: float) -> Shared:
+    """How the frame between the bands of words of a picture of that height is shared out."""
+    room, below = frame, None
+    if extras.strip is not None:
+        taken = (STRIP_WIDE if frame.width >= frame.height else STRIP_TALL) * height
+        below = Frame(frame.left, frame.bottom, frame.width, taken)
+        room = Frame(frame.left, frame.bottom + taken, frame.width, frame.height - taken)
+        if room.height < LEAST:
+            raise ValueError("no room is left for the mechanism above its strip; choose a larger picture, or no strip")
+    room, boxes = beside(room, len(extras.insets))
+    return Shared(room, below, boxes)
+
+
 class Beside:
     """Insets, strip, arrows and phase names of a figure.
 
@@ -54,15 +77,10 @@ class Beside:
         self._words, self._faint = Words(size, style.ink, style.background), Words(size, style.faint, style.background)
         self._bold = Words(size, style.ink, style.background, "bold")
         self._frame, self._strip, self._turn = frame, None, 0.0
-        room = frame
-        if extras.strip is not None:
-            taken = (STRIP_WIDE if frame.width >= frame.height else STRIP_TALL) * figure.bbox.height
-            below = Frame(frame.left, frame.bottom, frame.width, taken)
-            room = Frame(frame.left, frame.bottom + taken, frame.width, frame.height - taken)
-            if room.height < LEAST:
-                raise ValueError("no room is left for the mechanism above its strip; choose a larger picture, or no strip")
-            self._strip = Strip(run, window, below, extras.strip, extras.phases, size, style)
-        self.room, self._boxes = beside(room, len(extras.insets))
+        shared = shared_room(frame, extras, figure.bbox.height)
+        if shared.strip is not None and extras.strip is not None:
+            self._strip = Strip(run, window, shared.strip, extras.strip, extras.phases, size, style)
+        self.room, self._boxes = shared.room, shared.insets
         self._longest = ARROW * min(self.room.width, self.room.height)
         self._insets: list[InsetPicture] = []
         self._made: list[Any] = []

@@ -18,12 +18,13 @@ from matplotlib.transforms import IdentityTransform
 from numpy.typing import NDArray
 
 from watchsim.render.frame.marks.lettering import Lettering
-from watchsim.render.frame.marks.readouts import Clock, clock, reading, scale_bar, speed_text, turn_text
+from watchsim.render.frame.marks.readouts import Clock, clock, goes_round, reading, scale_bar, speed_text, turn_text
 from watchsim.render.frame.pose_history import Window, sampled
 from watchsim.render.frame.view import Frame
 from watchsim.render.palette import Finish, looks
 from watchsim.render.style import Style
 from watchsim.scene.body import Body
+from watchsim.scene.roles import roles
 from watchsim.simulation.record.trajectory import Trajectory
 
 Array = NDArray[np.float64]
@@ -189,12 +190,14 @@ def _readings(
     unit = _unit(figure)
     line, left, limit = 1.55 * small.size, PAD * unit, figure.bbox.width * (1.0 - BAR) - (PAD + GAP) * unit
     cells: list[_Cell] = []
-    x, row, worn = left, 0, looks(run.scene)
+    x, row, worn, swinging = left, 0, looks(run.scene), roles(run.scene).oscillator
     for body in run.scene.bodies:
         if body.name not in run.slices:
             continue
-        tell, ends = reading(body, _told(run, body, window))
-        name = _words(figure, body.name, (0.0, 0.0), small.size, style.ink)
+        told = _told(run, body, window)
+        within = body.motion != "slide" and body.name != swinging and goes_round(told[:, 2])
+        tell, ends = reading(body, told, within)
+        name = _words(figure, f"{body.name} mod 360°" if within else body.name, (0.0, 0.0), small.size, style.ink)
         taken = 1.5 * CHIP * small.size + _width(name) + 0.8 * small.size + max(small.width(text) for text in ends)
         if x > left and x + taken > limit:
             x, row = left, row + 1
