@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 
 LEAST = 0.25  # turns that are left at any rate
 STEEPEST = 0.95  # of the way from collet to stud: the bulge; with more, coils would cross
-PER_TURN = 64  # chords, at most
+PER_TURN = (24, 180)  # chords, at least and at most
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,10 +31,16 @@ class Coil:
     stud: float
     width: float
 
-    def line(self, turned: float, chords: int | None = None) -> Array:
-        """(n, 2) points from collet to stud, the collet turned by `turned` (rad, counter-clockwise) from where it is at rest."""
+    def chords(self, deviation: float) -> int:
+        """How many it takes so that none strays more than `deviation` (m) from the coil."""
+        least, most = PER_TURN
+        fitting = math.tau / math.sqrt(8.0 * deviation / self.outer)
+        return math.ceil(min(max(fitting, least), most) * self.turns)
+
+    def line(self, turned: float, chords: int) -> Array:
+        """(chords + 1, 2) points from collet to stud, the collet turned by `turned` (rad, counter-clockwise) from where it is at rest."""
         swept = max(math.tau * self.turns - turned, math.tau * LEAST)
-        share = np.linspace(0.0, 1.0, 1 + (chords or math.ceil(PER_TURN * self.turns)))
+        share = np.linspace(0.0, 1.0, 1 + chords)
         angle = self.stud - swept * (1.0 - share)
         radius = self.inner + share * (self.outer - self.inner) + self.bulge(turned) * share * (1.0 - share)
         return np.column_stack((radius * np.cos(angle), radius * np.sin(angle)))

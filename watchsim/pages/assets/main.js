@@ -98,7 +98,8 @@ const chips = data.bodies.slice(0, MANY).map((body, b) => {
   $("parts").append(button);
   if (!rows) { value.remove(); return { b, button, value }; }
   const slide = body.motion === "slide", k = body.motion === "free" ? 2 : 0, factor = slide ? 1e3 : DEGREES;
-  return { b, button, value, read: (t) => `${minus((factor * rows.at(t, k, 0)).toFixed(slide ? 3 : 2))}${slide ? " mm" : "°"}` };
+  const within = (angle) => (body.round ? ((angle % 360) + 360) % 360 : angle), unit = slide ? " mm" : body.round ? "° mod 360°" : "°";
+  return { b, button, value, read: (t) => `${minus(within(factor * rows.at(t, k, 0)).toFixed(slide ? 3 : body.round ? 1 : 2))}${unit}` };
 });
 
 const showPlots = (b) => {
@@ -243,6 +244,7 @@ const toPaper = () => {
     const b = 3 * data.parts[Number(group.dataset.part)].body, c = Math.cos(poses[b + 2]), s = Math.sin(poses[b + 2]);
     group.setAttribute("transform", `matrix(${c} ${s} ${-s} ${c} ${1e3 * poses[b]} ${1e3 * poses[b + 1]})`);
   }
+  for (const strip of document.querySelectorAll("#poster [data-coil]")) strip.setAttribute("d", scenery.coils[Number(strip.dataset.coil)].pathData(poses));
   root.classList.add("paper"); // the plots take the size that they have there
   plots.draw(player.t, look);
 };

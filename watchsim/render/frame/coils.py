@@ -34,9 +34,9 @@ class Hairspring:
         """How far (rad) the collet is turned from its rest, for the poses x, y, angle of one instant."""
         return float(frames[self.body][2]) - self._base(frames) - self.rest
 
-    def line(self, frames: dict[str, Array]) -> Array:
-        """(n, 2) points of the strip's middle in the movement (m), from collet to stud."""
-        return self._placed(self.coil.line(self.turned(frames)), frames)
+    def line(self, frames: dict[str, Array], chords: int) -> Array:
+        """(chords + 1, 2) points of the strip's middle in the movement (m), from collet to stud."""
+        return self._placed(self.coil.line(self.turned(frames), chords), frames)
 
     def stud(self, frames: dict[str, Array]) -> Array:
         """(5, 2) corners (m) of the block at the outer end, the first one twice."""

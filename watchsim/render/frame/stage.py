@@ -18,8 +18,7 @@ from matplotlib.transforms import Affine2D, Bbox, IdentityTransform, Transform
 from numpy.typing import NDArray
 
 from watchsim.geometry.primitives import Arc
-from watchsim.render.frame.coil_patches import coil_patches
-from watchsim.render.frame.coils import hairsprings
+from watchsim.render.frame.coil_patches import CoilPatches
 from watchsim.render.frame.coloured_edges import Edges, edge_paths
 from watchsim.render.frame.filled_parts import Part, backdrop, is_round, loops_of, parts
 from watchsim.render.frame.marks.extras import NOTHING, Extras
@@ -84,7 +83,7 @@ class Stage:
         if zoom is not None or endless or self.view.follow is not None:
             draw_rules(self._figure, self._room, style)
         self._transforms = {body.name: Affine2D() for body in run.scene.bodies}
-        self._springs = hairsprings(run.scene)
+        self._springs = CoilPatches(run.scene, self._room, self.view.scale, style, self._unit, self._own)
         self._patches = [*self._compose(run), *(patch for edges in picked for patch in self._picked(run, edges))]
         draw_key(self._figure, [(edges.colour, edges.meaning) for edges in picked], style)
         self._canvas.draw()
@@ -109,8 +108,8 @@ class Stage:
         matrix = self.view.matrix(self.view.centre_at(frames))
         for body, transform in self._transforms.items():
             transform.set_matrix(matrix @ pose_matrix(frames[body]))
-        for patch in coil_patches(self._springs, frames, matrix, self._style, self._unit):
-            self._own(patch).draw(renderer)
+        for patch in self._springs.patches(frames, matrix):
+            patch.draw(renderer)
         for patch in self._patches:
             patch.draw(renderer)
 

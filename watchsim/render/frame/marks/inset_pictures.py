@@ -16,8 +16,7 @@ from matplotlib.path import Path
 from matplotlib.transforms import Affine2D, Bbox, IdentityTransform
 from numpy.typing import NDArray
 
-from watchsim.render.frame.coil_patches import coil_patches
-from watchsim.render.frame.coils import hairsprings
+from watchsim.render.frame.coil_patches import CoilPatches
 from watchsim.render.frame.filled_parts import Part, parts
 from watchsim.render.frame.marks.changing_words import Words
 from watchsim.render.frame.marks.insets import Inset
@@ -47,7 +46,7 @@ class InsetPicture:
 
     def __init__(self, figure: Figure, scene: Scene, inset: Inset, unit: float, words: Words, style: Style) -> None:
         self._figure, self._inset, self._words, self._style = figure, inset, words, style
-        self._unit, self._springs = unit, hairsprings(scene)
+        self._springs = CoilPatches(scene, inset.box, inset.view.scale, style, unit, self._own)
         self._thin = max(1.1 * unit, 0.6)
         self._transforms = {body.name: Affine2D() for body in scene.bodies}
         made = parts(scene, CHORD / inset.view.scale, HATCH * unit / inset.view.scale)
@@ -77,8 +76,8 @@ class InsetPicture:
         self._sheet.draw(renderer)
         for body, transform in self._transforms.items():
             transform.set_matrix(matrix @ pose_matrix(frames[body]))
-        for patch in coil_patches(self._springs, frames, matrix, self._style, self._unit):
-            self._own(patch).draw(renderer)
+        for patch in self._springs.patches(frames, matrix):
+            patch.draw(renderer)
         for shape in self._seen():
             for patch in shape.patches:
                 patch.draw(renderer)
