@@ -91,7 +91,7 @@ def finish(body: Body, layer: str, look: Finish) -> Finish:
     if body.motion == "fixed":
         return look
     own = _of_layer(name, sheet, look)
-    if body.layers and layer not in body.layers:
+    if body.layers and layer not in body.layers and any(loop.layer == layer for loop in body.decoration):
         return replace(BRASS if own is look and "rim" in sheet else own, pale=True)
     return own
 

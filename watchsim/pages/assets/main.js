@@ -270,6 +270,8 @@ window.watchsim = {
   seen: (name, points) => { const poses = motion.poses(player.t), b = data.bodies.findIndex((body) => body.name === name); view.aim(poses); return points.map(([x, y]) => view.screen(...view.point(poses, b, x, y))); },
   closed: (t) => { const poses = motion.poses(t); return contacts.all.filter((one) => one.holds(t)).map((one) => ({ name: one.name, force: one.press(t), place: one.touch(view, poses).slice(0, 2) })); },
   value: (plot, t) => curves.of(plots.body)[plot].lines[0].value(t),
+  coils: () => { const poses = motion.poses(player.t); return scenery.coils.map((coil) => coil.pathData(poses)); },
+  parts: () => scenery.parts.map(({ body, layer, pale }) => ({ body, layer, pale: Boolean(pale) })),
   pace: () => ({ fps, drawn }),
 };
 new ResizeObserver(resize).observe($("picture"));
