@@ -25,7 +25,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--size",
         metavar="WxH",
-        help='pixels, such as 1280x720; "auto": wide, square or tall, whichever shows the mechanism largest the way up it is drawn',
+        help='pixels, such as 1280x720; "auto": wide, square or tall, as the mechanism is drawn',
     )
     parser.add_argument("--dark", action="store_true", help="on dark ground")
     parser.add_argument(

@@ -38,7 +38,7 @@ class Coil:
         return math.ceil(min(max(fitting, least), most) * self.turns)
 
     def line(self, turned: float, chords: int) -> Array:
-        """(chords + 1, 2) points from collet to stud, the collet turned by `turned` (rad, counter-clockwise) from where it is at rest."""
+        """(chords + 1, 2) points from collet to stud, the collet `turned` (rad, counter-clockwise) from where it rests."""
         swept = max(math.tau * self.turns - turned, math.tau * LEAST)
         share = np.linspace(0.0, 1.0, 1 + chords)
         angle = self.stud - swept * (1.0 - share)

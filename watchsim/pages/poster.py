@@ -37,7 +37,12 @@ def poster(run: Trajectory, window: Window, parts: tuple[Part, ...], t: float) -
     groups = [
         element(
             "g",
-            element("path", d=data, fill="none" if part.ground else LIGHT.worn(part.finish).fill, stroke=LIGHT.worn(part.finish).edge),
+            element(
+                "path",
+                d=data,
+                fill="none" if part.ground else LIGHT.worn(part.finish).fill,
+                stroke=LIGHT.worn(part.finish).edge,
+            ),
             transform=_matrix(*_pose(frames[part.body])),
             data_part=number,
         )

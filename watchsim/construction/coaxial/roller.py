@@ -1,7 +1,8 @@
 """What are the outlines of a co-axial escapement's balance?
 
 The table (TABLE) carries the stone of the direct impulse (IMPULSE_STONE) and the D-shaped unlocking pin (PIN); in another plane
-the safety roller with its crescent (SAFETY); the balance's RIM is drawn only. In the balance's own frame, millimetres: at angle 0 the pin points at the lever.
+the safety roller with its crescent (SAFETY); the balance's RIM is drawn only. In the balance's own frame, millimetres: at
+angle 0 the pin points at the lever.
 """
 
 from __future__ import annotations

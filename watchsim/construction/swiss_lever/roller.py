@@ -1,8 +1,8 @@
 """What are the outlines of the Swiss lever's balance and banking pins?
 
 The table roller (TABLE) carries the D-shaped impulse pin (PIN) and, in another plane, the safety roller with its
-crescent (SAFETY); only the last two touch anything, and the balance's RIM is drawn only. In the balance's own frame, the pin towards the lever (-y) at 0;
-the banking pins (PINS) in movement coordinates. Millimetres.
+crescent (SAFETY); only the last two touch anything, and the balance's RIM is drawn only. In the balance's own frame, the
+pin towards the lever (-y) at 0; the banking pins (PINS) in movement coordinates. Millimetres.
 """
 
 from __future__ import annotations

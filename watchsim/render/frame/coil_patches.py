@@ -57,7 +57,10 @@ class CoilPatches:
 
     def _in_sight(self, x: float, y: float, reach: float) -> bool:
         room = self._room
-        return room.left - reach < x < room.left + room.width + reach and room.bottom - reach < y < room.bottom + room.height + reach
+        return (
+            room.left - reach < x < room.left + room.width + reach
+            and room.bottom - reach < y < room.bottom + room.height + reach
+        )
 
 
 def _seen(points: Array, matrix: Array) -> Array:

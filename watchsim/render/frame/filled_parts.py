@@ -56,7 +56,7 @@ def parts(scene: Scene, deviation: float, spacing: float) -> tuple[Part, ...]:
 
 
 def backdrop(shapes: Sequence[Part]) -> Sequence[Part]:
-    """Of parts in the order of `parts`: the leading ones that cannot touch, such as a balance's rim; they lie behind all else."""
+    """Of parts in the order of `parts`: the leading ones that cannot touch, such as a balance's rim; they lie behind."""
     return shapes[: next((k for k, part in enumerate(shapes) if not part.finish.pale), len(shapes))]
 
 

@@ -133,7 +133,7 @@ def frame(
     plan = Plan(np.array([float(t)]), np.ones(1), 1.0)
     arrows = ForceArrows(run, plan.times) if forces else None
     extras = _extras(run, insets, strip, phases, arrows)
-    pixels, turn = _size(run, span, extras, size, zoom, turn, False) if size == AUTO else (checked(size), turn)
+    pixels, turn = _size(run, span, extras, size, zoom, turn, False) if isinstance(size, str) else (checked(size), turn)
     stage = Stage(run, pixels, span, zoom=zoom, turn=turn, extras=extras, style=DARK if dark else LIGHT)
     marks = ContactMarks(run) if contacts else None
     picture = next(Film(stage, run, plan, marks, arrows, False).pictures(np.zeros(1, int)))

@@ -27,7 +27,12 @@ REACHABLE_DARK = "#74c0fc"
 
 
 def still(
-    scene: Scene, path: str | os.PathLike[str], compiled: Compiled, pairs: ModelledPairs, overlaps: Sequence[Point] = (), dark: bool = False
+    scene: Scene,
+    path: str | os.PathLike[str],
+    compiled: Compiled,
+    pairs: ModelledPairs,
+    overlaps: Sequence[Point] = (),
+    dark: bool = False,
 ) -> None:
     """Write a picture (PNG or what else imageio knows) of the bodies where the scene puts them at t = 0.
 

@@ -54,7 +54,9 @@ class InsetPicture:
         box = inset.box
         edge = Path([(box.left, box.bottom), (box.left + box.width, box.bottom + box.height)])
         frame = _rectangle(edge)
-        self._sheet = self._own(PathPatch(frame, facecolor=style.background, linewidth=0.0, transform=IdentityTransform()), False)
+        self._sheet = self._own(
+            PathPatch(frame, facecolor=style.background, linewidth=0.0, transform=IdentityTransform()), False
+        )
         look = {"fill": False, "edgecolor": style.faint, "linewidth": max(1.4 * unit, 1.0)}
         self._border = self._own(PathPatch(frame, transform=IdentityTransform(), **look), False)
 
@@ -101,7 +103,11 @@ class InsetPicture:
         points = np.asarray(part.faces.vertices)
         middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
         look = self._style.worn(part.finish)
-        edge = {"edgecolor": self._style.line(look) if part.ground else look.edge, "joinstyle": "round", "transform": self._transforms[part.body]}
+        edge = {
+            "edgecolor": self._style.line(look) if part.ground else look.edge,
+            "joinstyle": "round",
+            "transform": self._transforms[part.body],
+        }
         if part.ground:
             paths = [part.faces] if part.strokes is None else [part.strokes, part.faces]
             made = [PathPatch(path, fill=False, linewidth=self._thin, **edge) for path in paths]

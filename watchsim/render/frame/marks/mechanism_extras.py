@@ -92,7 +92,9 @@ class Beside:
             inset(self._run, self._window, place, box, view.turn)
             for place, box in zip(self._extras.insets, self._boxes, strict=True)
         ]
-        self._insets = [InsetPicture(self._figure, self._run.scene, one, self._unit, self._words, self._style) for one in self._made]
+        self._insets = [
+            InsetPicture(self._figure, self._run.scene, one, self._unit, self._words, self._style) for one in self._made
+        ]
 
     def arrows(self, matrix: Array, points: Array, forces: Array) -> list[PathPatch]:
         """Arrows for forces (n, 2), N, at points (n, 2), m, in a picture with this map."""

@@ -66,7 +66,9 @@ class Strip:
         middle = place[1].start + left + (share - number) * (right - left)
         half = max(1, round(0.06 * self._size))
         columns = slice(round(middle) - half, round(middle) + half)
-        out_pixels[place[0].start : bottom - round(self._foot()), columns, :3] = np.round(255 * np.array(to_rgb(self._style.contact)))
+        out_pixels[place[0].start : bottom - round(self._foot()), columns, :3] = np.round(
+            255 * np.array(to_rgb(self._style.contact))
+        )
 
     def _foot(self) -> float:
         """Pixels from the bottom of the strip to that of its lower axes."""
@@ -122,8 +124,12 @@ class Strip:
         axes.locator_params(axis="y", nbins=3)
         axes.grid(True, color=self._style.grid, linewidth=0.8)
         axes.set_axisbelow(True)
-        axes.tick_params(labelsize=0.8 * self._size, colors=self._style.ink, length=0.0, labelbottom=last, pad=0.25 * self._size)
-        axes.set_ylabel(unit, fontsize=0.8 * self._size, color=self._style.ink, rotation=0, ha="left", va="center", parse_math=False)
+        axes.tick_params(
+            labelsize=0.8 * self._size, colors=self._style.ink, length=0.0, labelbottom=last, pad=0.25 * self._size
+        )
+        axes.set_ylabel(
+            unit, fontsize=0.8 * self._size, color=self._style.ink, rotation=0, ha="left", va="center", parse_math=False
+        )
         axes.yaxis.set_label_coords((1.6 - LEFT) * self._size / (self._room.width - (LEFT + 1.6) * self._size), 0.5)
         for side, spine in axes.spines.items():
             spine.set_visible(side in ("left", "bottom"))

@@ -137,7 +137,9 @@ def draw_rules(figure: Figure, frame: Frame, style: Style) -> None:
     """Hairlines along the frame, for a picture that cuts bodies off there."""
     for y in (frame.bottom, frame.bottom + frame.height):
         ends = [frame.left, frame.left + frame.width]
-        figure.add_artist(Line2D(ends, [y, y], color=style.grid, linewidth=max(_unit(figure), 0.7), transform=IdentityTransform()))
+        figure.add_artist(
+            Line2D(ends, [y, y], color=style.grid, linewidth=max(_unit(figure), 0.7), transform=IdentityTransform())
+        )
 
 
 def relative_size(width: float, height: float) -> float:

@@ -20,7 +20,7 @@ def read_coil(table: Table, body: Body | None) -> Coil | None:
     if "draw" not in table:
         return _weighed(body)
     if body is not None and body.motion != "pivot":
-        table.fault("draw", f"a hairspring is wound about a pivot, and motion of {body.name} is \"{body.motion}\"")
+        table.fault("draw", f'a hairspring is wound about a pivot, and motion of {body.name} is "{body.motion}"')
         return None
     if not isinstance(table.mapping["draw"], dict):
         table.fault("draw", f"a table is needed here, such as {EXAMPLE}", with_value=True)
