@@ -48,10 +48,7 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    if args.dark and (args.turn or not args.png):
-        raise InputError("--dark: belongs to the picture of the start position: give --png, and no --turn.")
-    if not args.turn and (args.swing or args.movie):
-        raise InputError(f"{'--swing' if args.swing else '--movie'}: belongs to --turn, which is not asked for.")
+    _check_options(args)
     from watchsim.commands.common.inputs import load_scene
     from watchsim.commands.common.output_place import secured_file
     from watchsim.drawing.findings import Finding
@@ -106,6 +103,13 @@ def run(args: argparse.Namespace) -> int:
     if wrong:
         return BAD_INPUT
     return MISSED if turned is not None and not turned.passes else FINE
+
+
+def _check_options(args: argparse.Namespace) -> None:
+    if args.dark and (args.turn or not args.png):
+        raise InputError("--dark: belongs to the picture of the start position: give --png, and no --turn.")
+    if not args.turn and (args.swing or args.movie):
+        raise InputError(f"{'--swing' if args.swing else '--movie'}: belongs to --turn, which is not asked for.")
 
 
 def _still(scene: Scene, compiled: Compiled, pairs: ModelledPairs, report: Mapping[str, Any], path: str, dark: bool) -> None:
