@@ -12,7 +12,7 @@ from render.fake_runs import MM, circle, disc_run, watch_run, watch_scene
 
 from watchsim.geometry.coil import Coil
 from watchsim.render.frame.coils import hairsprings
-from watchsim.render.frame.filled_parts import backdrop, parts
+from watchsim.render.frame.filled_parts import backdrop, parts, working
 from watchsim.render.frame.marks.extras import NOTHING
 from watchsim.render.frame.marks.readouts import goes_round, reading
 from watchsim.render.frame.pose_history import poses
@@ -20,8 +20,10 @@ from watchsim.render.frame.stage import Stage
 from watchsim.render.movies.picture_size import FORMATS, fitting
 from watchsim.render.movies.run_movie import frame, movie
 from watchsim.render.palette import BRASS, FIXED
+from watchsim.render.placed_solids import placed_solids
 from watchsim.render.style import LIGHT
 from watchsim.scene.force import Spring
+from watchsim.scene.layer_heights import slabs
 from watchsim.scene.scene import Scene
 from watchsim.simulation.record.trajectory import Trajectory
 
@@ -136,3 +138,17 @@ def test_angles_are_told_within_a_turn_once_turns_have_gone_by() -> None:
     assert [tell(row) for row in turned] == ["356.0°", "354.8°", "0.0°"]
     assert all(len(text) >= len("0.0°") for text in ends)
     assert reading(wheel, turned)[0](turned[1]) == "−3605.2°"
+
+
+def test_pictures_of_function_leave_the_rim_out() -> None:
+    scene = with_rim(watch_scene())
+    assert {part.layer for part in parts(scene, 1e-6, 1e-3)} - {part.layer for part in working(scene, 1e-6, 1e-3)} == {"RIM"}
+
+
+def test_a_rim_is_a_solid_below_what_works() -> None:
+    scene = with_rim(watch_scene())
+    found = {slab.layer: slab for slab in slabs(scene, 0.2 * MM) if slab.body == "balance"}
+    assert set(found) == {"ROLLER", "PIN", "RIM"} and found["RIM"].middle < found["ROLLER"].middle
+    (balance,) = (one for one in placed_solids(scene, tuple(found.values()), 1e-6) if one.name == "balance")
+    rim = next(piece.mesh for piece in balance.pieces if piece.name == "RIM")
+    assert rim.is_watertight and rim.volume == pytest.approx(math.pi * (16 - 1.6**2) * 0.2, rel=1e-3)
