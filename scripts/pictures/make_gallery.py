@@ -51,8 +51,8 @@ EXHIBITS = (
     Exhibit(
         "tall.gif",
         "The same, for a telephone",
-        "A tall picture has its insets above, and its strip of angle and velocity below.",
-        f"watchsim movie swiss {BEAT} --speed adaptive --length 4s --fps 12 --size 450x800 --phases --strip "
+        "A tall picture has its insets above, and its strip of angle and velocity below; here on dark ground.",
+        f"watchsim movie swiss {BEAT} --speed adaptive --length 4s --fps 12 --size 450x800 --dark --phases --strip "
         "--inset lever.STONES.1 --inset lever.STONES.2 -o tall.gif",
     ),
     Exhibit(

@@ -99,7 +99,7 @@ def test_without_motion_nothing_is_animated() -> None:
     assert "animations" not in tree
 
 
-@pytest.mark.parametrize("profile", ["swiss_lever", "bench_lever", "balance"])
+@pytest.mark.parametrize("profile", ["swiss_lever", "bench_lever", "balance", "coaxial", "geneva", "graham"])
 def test_stl_files_are_closed(profile: str, tmp_path: Path) -> None:
     scene = load(PROFILES / profile / "scene.toml")
     assert main(["export", str(PROFILES / profile), "-o", str(tmp_path / "out"), "--format", "stl"]) == 0

@@ -9,7 +9,7 @@ import pytest
 from render.fake_runs import MM, circle, polygon, watch_scene
 
 from watchsim.render.frame.filled_parts import hatching, is_round, parts, signed_area
-from watchsim.render.palette import BLUED, BRASS, GILT, NIGHT, OTHERS, PLATE, RUBY, STEEL, finish, looks
+from watchsim.render.palette import BLUED, BRASS, FIXED, NIGHT, OTHERS, RUBY, STEEL, finish, looks
 from watchsim.scene.body import Body
 from watchsim.scene.scene import Scene
 
@@ -80,14 +80,14 @@ def test_watch_colours():
     scene = watch_scene()
     _, lever, balance, _ = scene.bodies
     worn = looks(scene)
-    assert worn == {"wheel": BRASS, "lever": STEEL, "balance": BLUED, "banking": GILT}
+    assert worn == {"wheel": BRASS, "lever": STEEL, "balance": BLUED, "banking": FIXED}
     assert finish(lever, "STONES", STEEL) is RUBY and finish(lever, "ARMS", STEEL) is STEEL
     assert finish(lever, "PALLET_FORK", STEEL) is STEEL
     assert finish(balance, "ROLLER", BLUED) is BLUED and finish(balance, "PIN", BLUED) is RUBY
     assert finish(balance, "SAFETY", BLUED) is NIGHT
     for name, look in {"pallet_fork": STEEL, "balance_wheel": BLUED, "escape_wheel": BRASS}.items():
         assert looks(Scene("", (Body(name),))) == {name: look}
-    assert looks(Scene("", (Body("plane", "fixed"),))) == {"plane": PLATE}
+    assert looks(Scene("", (Body("plane", "fixed"),))) == {"plane": FIXED}
     assert looks(Scene("", (Body("balance", loops=(circle(0, 0, 1, "PIN"),)),))) == {"balance": RUBY}
 
 

@@ -20,18 +20,19 @@ from watchsim.analysis.contact_forces import forces
 from watchsim.geometry.polyline import polyline
 from watchsim.pages.report import report
 from watchsim.profiles_path import profiles_dir
+from watchsim.render.frame.coils import hairsprings
 from watchsim.render.frame.filled_parts import loops_of
 from watchsim.render.frame.pose_history import poses
 from watchsim.render.frame.stage import Stage
 from watchsim.render.movies.run_movie import frame
-from watchsim.render.palette import BLUED, BRASS, GILT, NIGHT, RUBY, STEEL
+from watchsim.render.palette import BLUED, BRASS, FIXED, NIGHT, RUBY, STEEL
 from watchsim.scene.file.load import load
 from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.simulation.simulate import simulate
 
 pytestmark = pytest.mark.slow
 SIZE = (1280, 720)
-FINISHES = (BRASS, STEEL, RUBY, GILT, BLUED, NIGHT)
+FINISHES = (BRASS, STEEL, RUBY, FIXED, BLUED, NIGHT)
 BEATS_MB = 1.0
 
 
@@ -148,6 +149,29 @@ def test_pixels_agree_with_the_frames_of_a_movie(run: Trajectory, written: Path)
                 ours, theirs = moved[rows], movie[rows]
                 assert filled(theirs, finish.fill).sum() > 0
                 assert strays(ours, theirs, finish.fill) == 0 and strays(theirs, ours, finish.fill) == 0, (t, finish)
+
+
+def test_a_hairspring_lies_where_movies_draw_it(run: Trajectory, written: Path) -> None:
+    (spring,) = hairsprings(run.scene)
+    with opened(written) as page:
+        for t in np.linspace(*page.evaluate("watchsim.window"), 20).tolist():
+            page.evaluate("t => watchsim.seek(t)", t)
+            ((*numbers,),) = (map(float, one[1:].split()) for one in page.evaluate("watchsim.coils()"))
+            seen = 1e-3 * np.array(numbers).reshape(-1, 2)
+            frames = {name: rows[0] for name, rows in poses(run, np.array([t])).items()}
+            assert np.abs(seen - spring.line(frames, len(seen) - 1)).max() < 1e-7
+
+
+def test_a_rim_is_drawn_faintly_and_chosen_with_its_balance(run: Trajectory, written: Path) -> None:
+    rim = next(loop for loop in run.scene.body("balance").decoration if loop.layer == "RIM" and not loop.hole)
+    edge = rim.edges[0]
+    inside = [[0.94 * edge.radius, 0.0]]
+    with opened(written) as page:
+        ((x, y),) = page.evaluate("([name, points]) => watchsim.seen(name, points)", ["balance", inside])
+        assert "RIM" in [part["layer"] for part in page.evaluate("watchsim.parts()") if part["pale"]]
+        page.click("#stage", position={"x": x, "y": y})
+        page.wait_for_timeout(100)
+        assert page.text_content("#release").startswith("Following balance")
 
 
 def test_values_and_forces_are_those_of_the_run(run: Trajectory, written: Path) -> None:

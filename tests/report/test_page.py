@@ -19,6 +19,7 @@ from render.fake_runs import disc_run, watch_run
 from scipy.interpolate import BPoly
 
 from watchsim.analysis.summary import summary
+from watchsim.analysis.timing.phases import Phase
 from watchsim.drawing.read import read
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.polyline import polyline
@@ -29,6 +30,7 @@ from watchsim.pages.player.motion import TooMuch, channels
 from watchsim.pages.player.outlines import path_data
 from watchsim.pages.player.stretch_shown import shown
 from watchsim.pages.report import page_text, report
+from watchsim.pages.timing_sheet.phase_tables import phase_tables
 from watchsim.profiles_path import profiles_dir
 from watchsim.render.fewest_rows import kept_rows
 from watchsim.scene.file.load import load
@@ -255,3 +257,39 @@ def test_every_script_is_in_the_page() -> None:
 
     names = {item.name for item in resources.files("watchsim.pages.assets").iterdir() if item.name.endswith(".js")}
     assert names == {f"{name}.js" for name in SCRIPTS}
+
+
+def test_an_impulse_on_the_stone_and_one_on_the_tooth_are_told_apart_beat_by_beat() -> None:
+    turns = (0.1, 0.2, 0.3)
+    told = []
+    for beat in (1, 3):
+        t = float(beat)
+        told += [
+            Phase(beat, "unlock", t, t + 0.001),
+            Phase(beat, "impulse", t + 0.001, t + 0.003, turns=turns, on="stone"),
+            Phase(beat, "impulse", t + 0.003, t + 0.004, turns=turns, on="tooth"),
+            Phase(beat, "impulse", t + 0.005, t + 0.007, turns=turns, on="stone"),  # it let go for a moment
+        ]
+    (section,) = phase_tables(told)
+    rows = re.findall(r"<tr>(.*?)</tr>", str(section))
+    cells = {re.sub("<.*?>", "", row.split("</td>")[0]): re.findall(r"[-−]?[0-9.]+", re.sub("<.*?>", " ", row)) for row in rows}
+    assert float(cells["impulse on stone"][0]) == pytest.approx(4.0) and float(cells["impulse on tooth"][0]) == pytest.approx(
+        1.0
+    )
+    assert float(cells["impulse on stone"][-1]) == pytest.approx(math.degrees(0.2), abs=1e-3)
+    assert "Odd beats: means of 2 beats" in str(section)
+
+
+def test_a_rim_and_a_hairspring_are_in_data_and_still_picture(lever: Trajectory) -> None:
+    scene = load(PROFILES / "swiss_lever")
+    rim = dataclasses.replace(lever.scene.body("balance"), decoration=scene.body("balance").decoration)
+    bodies = tuple(rim if body.name == "balance" else body for body in lever.scene.bodies)
+    springs = tuple(dataclasses.replace(one, coil=scene.springs[0].coil) for one in lever.scene.springs)
+    run = dataclasses.replace(lever, scene=dataclasses.replace(lever.scene, bodies=bodies, springs=springs))
+    text = page_text(run)
+    data = data_of(text)
+    assert [part["layer"] for part in data["parts"] if part.get("pale")] == ["RIM"]
+    (coil,) = data["coils"]
+    assert data["bodies"][coil["body"]]["name"] == "balance" and coil["turns"] == 13
+    assert 'data-coil="0"' in text and len(text) < 1e6
+    assert data_of(page_text(lever))["coils"] == []

@@ -31,6 +31,7 @@ def options(parser: argparse.ArgumentParser) -> None:
         help="where to write a picture of the start position, what can ever touch in colour; of an escapement also "
         "FILE_function.png, its geometry of function",
     )
+    parser.add_argument("--dark", action="store_true", help="the picture of the start position on dark ground")
     parser.add_argument("--sheet", metavar="FILE", help="where to write the geometry of function alone (.png, .svg or .pdf)")
     parser.add_argument(
         "--width", metavar="LENGTH", default="170 mm", help='of that sheet (default "%(default)s", or "85 mm" for a column)'
@@ -47,8 +48,7 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    if not args.turn and (args.swing or args.movie):
-        raise InputError(f"{'--swing' if args.swing else '--movie'}: needs --turn.")
+    _check_options(args)
     from watchsim.commands.common.inputs import load_scene
     from watchsim.commands.common.output_place import secured_file
     from watchsim.drawing.findings import Finding
@@ -87,7 +87,7 @@ def run(args: argparse.Namespace) -> int:
         turned = turned_by_hand(scene, args.swing, args.movie, args.png)
         report["turn"] = turned.report
     elif args.png:
-        _still(scene, compiled, pairs, report, args.png)
+        _still(scene, compiled, pairs, report, args.png, args.dark)
     if args.png:
         if function.pallets is not None:
             sheets.append(Path(args.png).with_name(f"{Path(args.png).stem}_function.png"))
@@ -105,11 +105,18 @@ def run(args: argparse.Namespace) -> int:
     return MISSED if turned is not None and not turned.passes else FINE
 
 
-def _still(scene: Scene, compiled: Compiled, pairs: ModelledPairs, report: Mapping[str, Any], path: str) -> None:
+def _check_options(args: argparse.Namespace) -> None:
+    if args.dark and (args.turn or not args.png):
+        raise InputError("--dark: belongs to the picture of the start position: give --png, and no --turn.")
+    if not args.turn and (args.swing or args.movie):
+        raise InputError(f"{'--swing' if args.swing else '--movie'}: needs --turn.")
+
+
+def _still(scene: Scene, compiled: Compiled, pairs: ModelledPairs, report: Mapping[str, Any], path: str, dark: bool) -> None:
     from watchsim.render.stills.still import still
 
     places = [(1e-3 * f["x_mm"], 1e-3 * f["y_mm"]) for f in report["findings"] if f["code"] == "overlap"]
-    still(scene, path, compiled, pairs, places)
+    still(scene, path, compiled, pairs, places, dark)
 
 
 def _sheet(scene: Scene, compiled: Compiled, function: Function, path: Path, width: float) -> None:

@@ -22,7 +22,15 @@ def options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--length", metavar="TIME", help='how long a movie at adaptive speed lasts (default "10 s")')
     parser.add_argument("--fps", metavar="N", type=float, help="frames per second (default 60, GIF 25)")
-    parser.add_argument("--size", metavar="WxH", help="pixels, such as 1280x720")
+    parser.add_argument(
+        "--size",
+        metavar="WxH",
+        help='pixels, such as 1280x720; "auto": wide, square or tall, as the mechanism is drawn',
+    )
+    parser.add_argument("--dark", action="store_true", help="on dark ground")
+    parser.add_argument(
+        "--sound", action="store_true", help="the ticking, each blow when it is shown, with its own pitch at any speed (MP4)"
+    )
     parser.add_argument("--contacts", action="store_true", help="mark the contacts that are closed")
     parser.add_argument("--forces", action="store_true", help="arrows for the forces at contacts, and their scale")
     parser.add_argument("--phases", action="store_true", help="name the phases of a beat")
@@ -57,7 +65,7 @@ def run(args: argparse.Namespace) -> int:
     length = None if args.length is None else parse_positive("--length", args.length, TIME)
     if length is not None and speed != ADAPTIVE:
         raise InputError(f"--length {args.length}: only with --speed {ADAPTIVE}; else speed and window determine its length.")
-    if size and any(side % 2 for side in size):
+    if isinstance(size, tuple) and any(side % 2 for side in size):
         say(f"Note: sides of a movie are even numbers of pixels; {args.size} is rounded up.")
     window = parse_window(args.window)
     swept_run(args.run_folder)
@@ -79,6 +87,8 @@ def run(args: argparse.Namespace) -> int:
             strip=args.strip,
             phases=args.phases,
             forces=args.forces,
+            sound=args.sound,
+            dark=args.dark,
             progress=progress,
         )
     finally:
@@ -98,10 +108,10 @@ def parse_speed(text: str) -> float:
     return value
 
 
-def _size(text: str | None) -> tuple[int, int] | None:
-    if text is None:
-        return None
+def _size(text: str | None) -> tuple[int, int] | str | None:
+    if text is None or text == "auto":
+        return text
     parts = text.lower().split("x")
     if len(parts) != 2 or not all(part.isdigit() and int(part) > 0 for part in parts):
-        raise InputError(f"--size {text}: write width and height in pixels, such as 1280x720.")
+        raise InputError(f"--size {text}: write width and height in pixels, such as 1280x720, or auto.")
     return int(parts[0]), int(parts[1])

@@ -126,16 +126,16 @@ def bars(entries: Sequence[tuple[str, float, str]], told: str) -> Markup:
     return element("figure", picture, class_="chart")
 
 
-def strip(entries: Sequence[tuple[str, float]], unit: str, told: str) -> Markup:
-    """Lengths one after the other along a scale from zero, in the colours that `entries` of the same order have elsewhere."""
-    whole = max(sum(length for _, length in entries), 1e-300)
+def strip(entries: Sequence[tuple[str, float, int]], unit: str, told: str) -> Markup:
+    """Lengths one after the other along a scale from zero; an entry is its name, its length and the number of its colour."""
+    whole = max(sum(length for _, length, _ in entries), 1e-300)
     scale = (WIDTH - 2.0 * RIGHT) / whole
     x, height = RIGHT, 26.0
     parts: list[Markup] = []
-    for k, (name, length) in enumerate(entries):
+    for name, length, colour in entries:
         box = element("title", f"{name}: {length:.3g} {unit}")
         width = max(length * scale, 0.5)
-        parts.append(element("rect", box, x=f"{x:.2f}", y=0, width=f"{width:.2f}", height=height, class_=f"s{k % 8}"))
+        parts.append(element("rect", box, x=f"{x:.2f}", y=0, width=f"{width:.2f}", height=height, class_=f"s{colour % 8}"))
         x += length * scale
     step = round_step(whole / 8.0)
     for k in range(int(whole / step) + 1):

@@ -15,7 +15,21 @@ from typing import Any
 from watchsim.pages.html import Markup, embedded, joined
 
 ASSETS = "watchsim.pages.assets"
-SCRIPTS = ("bytes", "motion", "scene", "view", "contacts", "clock", "sound", "curves", "plots", "player", "files", "main")
+SCRIPTS = (
+    "bytes",
+    "motion",
+    "coil",
+    "scene",
+    "view",
+    "contacts",
+    "clock",
+    "sound",
+    "curves",
+    "plots",
+    "player",
+    "files",
+    "main",
+)
 
 
 def page(title: str, parts: Mapping[str, Markup | str | None], data: Mapping[str, Any]) -> str:

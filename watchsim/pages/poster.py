@@ -8,14 +8,18 @@ import numpy as np
 
 from watchsim.pages.html import Markup, element
 from watchsim.pages.player.outlines import path_data
+from watchsim.render.frame.coils import hairsprings
 from watchsim.render.frame.filled_parts import Part
 from watchsim.render.frame.pose_history import Window, poses
 from watchsim.render.frame.view import Frame, View, room_of, view
+from watchsim.render.palette import BLUED, mixed
+from watchsim.render.style import LIGHT, PALE
 from watchsim.simulation.record.trajectory import Array, Trajectory
 
 MARGIN = 0.04
 MOST = 150_000  # characters of path data; more than that is left to the player
 MM = 1e3
+COIL = 1e-3  # of its size, that a chord may stray from a hairspring
 FRAME = Frame(0.0, 0.0, 1280.0, 720.0)
 
 
@@ -33,16 +37,32 @@ def poster(run: Trajectory, window: Window, parts: tuple[Part, ...], t: float) -
     groups = [
         element(
             "g",
-            element("path", d=data, fill="none" if part.ground else part.finish.fill, stroke=part.finish.edge),
+            element(
+                "path",
+                d=data,
+                fill="none" if part.ground else LIGHT.worn(part.finish).fill,
+                stroke=LIGHT.worn(part.finish).edge,
+            ),
             transform=_matrix(*_pose(frames[part.body])),
             data_part=number,
         )
         for number, (part, data) in enumerate(zip(parts, drawn, strict=True))
     ]
+    coils = [
+        element(
+            "path",
+            d=_points(spring.line(frames, spring.coil.chords(COIL * spring.coil.outer))),
+            fill="none",
+            stroke=mixed(BLUED.line, LIGHT.background, PALE),
+            stroke_width=f"{MM * spring.coil.width:.4g}",
+            data_coil=number,
+        )
+        for number, spring in enumerate(hairsprings(run.scene))
+    ]
     width, height = MM * (right - left + 2.0 * pad), MM * (top - bottom + 2.0 * pad)
     return element(
         "svg",
-        element("g", *groups, transform=_matrix(*place)),
+        element("g", *coils, *groups, transform=_matrix(*place)),
         id="poster",
         viewBox=f"0 0 {width:.4f} {height:.4f}",
         role="img",
@@ -67,6 +87,11 @@ def _pose(frame: Array) -> tuple[float, ...]:
     x, y, angle = frame.tolist()
     c, s = math.cos(angle), math.sin(angle)
     return c, s, -s, c, MM * x, MM * y
+
+
+def _points(line: Array) -> str:
+    """A line through points (n, 2), m, as SVG path data in mm."""
+    return "M" + " ".join(f"{MM * x:.4f} {MM * y:.4f}" for x, y in line.tolist())
 
 
 def _matrix(*numbers: float) -> str:

@@ -1,18 +1,19 @@
 """Which colours does a part wear?
 
-Watchmaking has its own: brass wheels, grey steel levers, ruby stones, gilt pins. The words of layers and bodies tell which.
+Watchmaking has its own: brass wheels, grey steel levers, ruby stones. The words of layers and bodies tell which. Parts that
+never move have a colour of their own, whatever they are called.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from watchsim.scene.body import Body
 from watchsim.scene.scene import Scene
 
 BACKGROUND = "#f6f3ed"
 INK = "#23272c"
-FAINT = "#80858c"
+FAINT = "#5b6168"
 GRID = "#ddd8ce"
 CONTACT = "#e8590c"
 FORCE = "#0b5fa5"
@@ -27,11 +28,12 @@ PHASES = {  # of a beat; pale, to lie behind curves
 
 @dataclass(frozen=True, slots=True)
 class Finish:
-    """Colour of the face, of its edge, and of a curve that stands for the part in a plot."""
+    """Colour of the face, of its edge, and of a curve that stands for the part in a plot; `pale` parts are drawn faintly."""
 
     fill: str
     edge: str
     line: str
+    pale: bool = False
 
 
 BRASS = Finish("#dcb862", "#57420f", "#9c6f00")
@@ -45,19 +47,18 @@ PATINA = Finish("#8fbfa6", "#1f4634", "#2f7a58")
 ENAMEL = Finish("#b79bc9", "#402a52", "#74469a")
 OLIVE = Finish("#b9bd7a", "#43461a", "#767a14")
 PLATE = Finish("#cfcac0", "#55524b", "#6b675e")
+FIXED = Finish("#6f685e", "#2c2822", "#5a5349")
 
 OTHERS = (STEEL, BRASS, COPPER, BLUED, PATINA, ENAMEL, OLIVE)
 
 _STONES = ("stone", "pallet", "jewel", "ruby")
 _FORKS = ("lever", "fork", "anchor", "arm")
 _BODIES = (
-    (("bank",), GILT),
     (("balance", "roller"), BLUED),
     (("lever", "fork", "anchor", "pallet"), STEEL),
     (("wheel", "gear", "pinion"), BRASS),
 )
 _LAYERS = (
-    (("bank",), GILT),
     (("roller", "balance"), BLUED),
     (("tooth", "teeth", "wheel", "rim"), BRASS),
     ((*_FORKS, "dart", "guard", "horn"), STEEL),
@@ -70,7 +71,7 @@ def looks(scene: Scene) -> dict[str, Finish]:
     Bodies whose words tell of one come first; the others take what is left.
     """
     told = {body.name: _told(body) for body in scene.bodies}
-    found: dict[str, Finish] = {body.name: told[body.name] or PLATE for body in scene.bodies if body.motion == "fixed"}
+    found: dict[str, Finish] = {body.name: FIXED for body in scene.bodies if body.motion == "fixed"}
     moving = sorted((body for body in scene.bodies if body.motion != "fixed"), key=lambda body: told[body.name] is None)
     used: list[Finish] = []
     for rank, body in enumerate(moving):
@@ -82,8 +83,20 @@ def looks(scene: Scene) -> dict[str, Finish]:
 
 
 def finish(body: Body, layer: str, look: Finish) -> Finish:
-    """The finish of one layer of a body that `look` stands for: stones and impulse pins are ruby on any body."""
+    """The finish of one layer of a body that `look` stands for: stones and impulse pins are ruby on any body.
+
+    Layers that are drawn beside those that can touch are pale, and a balance's rim has the colour of its alloy.
+    """
     name, sheet = body.name.lower(), layer.lower()
+    if body.motion == "fixed":
+        return look
+    own = _of_layer(name, sheet, look)
+    if body.layers and layer not in body.layers and any(loop.layer == layer for loop in body.decoration):
+        return replace(BRASS if own is look and "rim" in sheet else own, pale=True)
+    return own
+
+
+def _of_layer(name: str, sheet: str, look: Finish) -> Finish:
     if any(word in sheet for word in _STONES) and not any(word in sheet for word in _FORKS):
         return RUBY
     if "pin" in sheet and any(word in name for word in ("balance", "roller")):
@@ -91,6 +104,12 @@ def finish(body: Body, layer: str, look: Finish) -> Finish:
     if "safety" in sheet:
         return NIGHT  # it lies on the roller and should stand out from it
     return look
+
+
+def mixed(colour: str, ground: str, share: float) -> str:
+    """A colour with that share of another in it."""
+    own, other = (tuple(int(text[k : k + 2], 16) for k in (1, 3, 5)) for text in (colour, ground))
+    return "#" + "".join(f"{round(a + share * (b - a)):02x}" for a, b in zip(own, other, strict=True))
 
 
 def _told(body: Body) -> Finish | None:

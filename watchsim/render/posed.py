@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.mechanism.compile import Compiled
-from watchsim.render.frame.filled_parts import Part, parts
+from watchsim.render.frame.filled_parts import Part, working
+from watchsim.render.style import LIGHT
 from watchsim.scene.scene import Scene
 from watchsim.simulation.record.body_frames import frames
 
@@ -24,21 +25,20 @@ EDGE = 0.4  # pt
 
 
 class Posed:
-    """The parts of a scene, drawn in millimetres wherever coordinates put them."""
+    """The parts of a scene that work, drawn in millimetres wherever coordinates put them."""
 
     def __init__(self, scene: Scene, compiled: Compiled) -> None:
         self.scene, self.compiled = scene, compiled
-        self.parts = parts(scene, FINENESS * compiled.size, 0.1 * compiled.size)
+        self.parts = working(scene, FINENESS * compiled.size, 0.1 * compiled.size)
 
     def draw(self, axes: Axes, q: Array, bodies: Iterable[str] | None = None) -> None:
         """All bodies, or some, filled; q are absolute coordinates (n,)."""
         for part, path in self._placed(q, bodies):
             from matplotlib.patches import PathPatch
 
-            filled = not part.ground
-            axes.add_patch(
-                PathPatch(path, fill=filled, facecolor=part.finish.fill, edgecolor=part.finish.edge, linewidth=EDGE, zorder=2)
-            )
+            look = LIGHT.worn(part.finish)
+            patch = PathPatch(path, fill=not part.ground, facecolor=look.fill, edgecolor=look.edge, linewidth=EDGE, zorder=2)
+            axes.add_patch(patch)
 
     def outline(self, axes: Axes, q: Array, bodies: Iterable[str], colour: str) -> None:
         """Where some bodies stood or will stand, as thin dashes."""

@@ -7,15 +7,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from watchsim.geometry.coil import Coil
+
 
 @dataclass(frozen=True, slots=True)
 class Spring:
-    """A spring: -stiffness (q - rest), N·m/rad or N/m. `frequency` (Hz) where that is how it was given."""
+    """A spring: -stiffness (q - rest), N·m/rad or N/m. `frequency` (Hz) where that is how it was given; `coil` is how it is drawn."""
 
     body: str
     stiffness: float
     rest: float = 0.0
     frequency: float | None = None
+    coil: Coil | None = None
 
 
 @dataclass(frozen=True, slots=True)

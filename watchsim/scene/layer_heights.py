@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import TYPE_CHECKING
 
+from watchsim.drawing.drawn_material import layer_roles
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.solids.revolution import reach
 from watchsim.scene.body import Body
@@ -62,6 +63,10 @@ def _of_body(body: Body, thickness: float) -> Iterable[Slab]:
         loops = tuple(loop for loop in body.loops if loop.layer == layer and loop.closed)
         if loops and layer not in described and not whole:
             yield Slab(body.name, layer, loops, thickness)
+    roles = layer_roles(loop for loop in (*body.loops, *body.decoration) if loop.closed)
+    apart = [loop for loop in body.decoration if loop.closed and loop.layer not in described and loop.layer not in body.layers]
+    for layer in dict.fromkeys(loop.layer for loop in apart if roles[loop.layer] == "material" and not loop.hole):
+        yield Slab(body.name, layer, tuple(loop for loop in apart if loop.layer == layer), thickness)
 
 
 def _seen(solid: Solid) -> tuple[Loop, ...]:

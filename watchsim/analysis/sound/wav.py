@@ -40,7 +40,7 @@ def sound(
     check_length(length)
     if not len(heard.times):
         raise ValueError("nothing sounds: this run has no impacts, or kept none")
-    write_file(target, lambda place: _write(place, heard, length, progress), "the sound")
+    write_file(target, lambda place: write_score(place, heard, length, progress), "the sound")
     return target
 
 
@@ -66,7 +66,8 @@ def told(heard: Score) -> str | None:
     return f"the run holds {heard.known:.4g} s; from there on its last {what} repeated"
 
 
-def _write(place: Path, heard: Score, length: float, progress: Progress | None) -> None:
+def write_score(place: Path, heard: Score, length: float, progress: Progress | None = None) -> None:
+    """Write `length` seconds of a score, in which something sounds, as WAV."""
     factor = FULL / _peak(heard, length)
     with wave.open(str(place), "wb") as file:
         file.setnchannels(1)

@@ -1,13 +1,15 @@
-"""What are the outlines of a co-axial escapement's roller?
+"""What are the outlines of a co-axial escapement's balance?
 
 The table (TABLE) carries the stone of the direct impulse (IMPULSE_STONE) and the D-shaped unlocking pin (PIN); in another plane
-the safety roller with its crescent (SAFETY). In the balance's own frame, millimetres: at angle 0 the pin points at the lever.
+the safety roller with its crescent (SAFETY); the balance's RIM is drawn only. In the balance's own frame, millimetres: at
+angle 0 the pin points at the lever.
 """
 
 from __future__ import annotations
 
 import math
 
+from watchsim.construction.balance_wheel import BalanceWheel, balance_wheel
 from watchsim.construction.coaxial.fork import CRESCENT_DEPTH, CRESCENT_HALF, PIN_GROUND, SAFETY_RADIUS, Fork
 from watchsim.construction.coaxial.points import Points
 from watchsim.construction.coaxial.stones import EDGE, roller_stone
@@ -17,20 +19,32 @@ from watchsim.geometry.primitives import Edge, Line
 
 TABLE_RADIUS, STAFF_RADIUS = 0.93, 0.16
 CRESCENT_EDGE = 0.02
+ARMS = 4
 
 
 def roller(points: Points) -> list[Loop]:
-    """Table with the staff's hole, stone, pin, safety roller."""
+    """Table with the staff's hole, stone, pin, safety roller; the balance's rim."""
     s, fork = points.scale, Fork(points)
     turn = math.radians(points.fork_bearing - 90.0)
     return [
-        circle("TABLE", (0.0, 0.0), TABLE_RADIUS * points.stone_reach / 1.0125),
+        circle("TABLE", (0.0, 0.0), _table_radius(points)),
         circle("TABLE", (0.0, 0.0), STAFF_RADIUS * s, hole=True),
         roller_stone(points).loop("IMPULSE_STONE", EDGE * s),
         pin(points, fork).moved(turn, (0.0, 0.0)),
         safety(s).moved(turn, (0.0, 0.0)),
         circle("SAFETY", (0.0, 0.0), STAFF_RADIUS * s, hole=True),
+        *wheel_of(points).rim(),
     ]
+
+
+def wheel_of(points: Points) -> BalanceWheel:
+    """Rim and hairspring of the balance."""
+    reach = max(_table_radius(points), points.stone_reach, points.pin_reach)
+    return balance_wheel(points.values.balance_inertia, reach, STAFF_RADIUS * points.scale, ARMS)
+
+
+def _table_radius(points: Points) -> float:
+    return TABLE_RADIUS * points.stone_reach / 1.0125
 
 
 def pin(points: Points, fork: Fork) -> Loop:

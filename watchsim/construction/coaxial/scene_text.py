@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from watchsim.construction.coaxial.dimensions import Coaxial
 from watchsim.construction.coaxial.points import FIRST, Points
+from watchsim.construction.coaxial.roller import wheel_of
 from watchsim.construction.contact_tables import contact_tables
 from watchsim.construction.design import told
 
@@ -38,6 +39,7 @@ inertia  = "{values.lever_inertia:.15g} mg·cm²"
 [bodies.balance]                     # hangs at the end of a swing, its pin far outside the fork
 drawing  = "roller.dxf"
 layers   = ["TABLE", "SAFETY", "PIN", "IMPULSE_STONE"]
+draw     = ["RIM"]
 pivot    = "PIVOT"
 position = ["{balance[0]!r} mm", "{balance[1]!r} mm"]
 angle    = "{start:.15g}°"
@@ -53,6 +55,7 @@ motion   = "fixed"
 [[springs]]
 body      = "balance"
 frequency = "{values.frequency:.15g} vph"
+draw      = {hairspring}
 
 [[torques]]
 body  = "wheel"
@@ -94,5 +97,6 @@ def scene_text(values: Coaxial) -> str:
         lever_angle=round(lever, 10),
         balance=points.balance_pivot,
         start=-values.start,
+        hairspring=wheel_of(points).hairspring(round(points.fork_bearing, 1)),
         torque=-values.torque,
     )

@@ -13,7 +13,7 @@ from watchsim.drawing.sheet import Sheet
 
 def draw(values: SwissLever) -> dict[str, Sheet]:
     """Its four sheets."""
-    return sheets(swiss(values))
+    return sheets(swiss(values), values.balance_inertia)
 
 
 DESIGN = Design("swiss_lever", "Swiss lever escapement with its balance", SwissLever, draw, scene_text, conflicts)

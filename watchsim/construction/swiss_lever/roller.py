@@ -1,14 +1,15 @@
-"""What are the outlines of the Swiss lever's roller and banking pins?
+"""What are the outlines of the Swiss lever's balance and banking pins?
 
 The table roller (TABLE) carries the D-shaped impulse pin (PIN) and, in another plane, the safety roller with its
-crescent (SAFETY); only the last two touch anything. In the balance's own frame, the pin towards the lever (-y) at 0;
-the banking pins (PINS) in movement coordinates. Millimetres.
+crescent (SAFETY); only the last two touch anything, and the balance's RIM is drawn only. In the balance's own frame, the
+pin towards the lever (-y) at 0; the banking pins (PINS) in movement coordinates. Millimetres.
 """
 
 from __future__ import annotations
 
 import math
 
+from watchsim.construction.balance_wheel import BalanceWheel, balance_wheel
 from watchsim.construction.outline import arc_between, circle, fillet_chain, polar
 from watchsim.construction.swiss_lever.points import Swiss
 from watchsim.geometry.loop import Loop
@@ -16,17 +17,29 @@ from watchsim.geometry.primitives import Edge, Line
 
 TABLE_RADIUS, STAFF_RADIUS = 0.95, 0.16
 CRESCENT_EDGE = 0.02
+ARMS = 3
+INERTIA = 12.0  # mg·cm², of the balance as drawn by default
 
 
-def roller(design: Swiss) -> list[Loop]:
-    """Table with the staff's hole, pin, safety roller."""
+def roller(design: Swiss, inertia: float) -> list[Loop]:
+    """Table with the staff's hole, pin, safety roller; the rim of a balance of that inertia (mg·cm²)."""
     return [
-        circle("TABLE", (0.0, 0.0), TABLE_RADIUS * design.lever_scale + design.reach_beyond),
+        circle("TABLE", (0.0, 0.0), _table_radius(design)),
         circle("TABLE", (0.0, 0.0), STAFF_RADIUS * design.lever_scale, hole=True),
         pin(design),
         safety(design),
         circle("SAFETY", (0.0, 0.0), STAFF_RADIUS * design.lever_scale, hole=True),
+        *wheel_of(design, inertia).rim(),
     ]
+
+
+def wheel_of(design: Swiss, inertia: float) -> BalanceWheel:
+    """Rim and hairspring of a balance of that inertia (mg·cm²)."""
+    return balance_wheel(inertia, _table_radius(design), STAFF_RADIUS * design.lever_scale, ARMS)
+
+
+def _table_radius(design: Swiss) -> float:
+    return TABLE_RADIUS * design.lever_scale + design.reach_beyond
 
 
 def pin(design: Swiss) -> Loop:

@@ -10,6 +10,7 @@ from watchsim.construction.outline import along, angle_of
 from watchsim.construction.swiss_lever.dimensions import SwissLever
 from watchsim.construction.swiss_lever.follow import swiss
 from watchsim.construction.swiss_lever.points import Swiss
+from watchsim.construction.swiss_lever.roller import wheel_of
 
 CLEAR = 1e-4  # degrees by which lever and wheel stand off what they rest on
 
@@ -40,6 +41,7 @@ inertia  = "{values.lever_inertia:.15g} mg·cm²"
 [bodies.balance]                     # hangs at the end of a swing, the jewel far outside the fork
 drawing  = "roller.dxf"
 layers   = ["TABLE", "SAFETY", "PIN"]
+draw     = ["RIM"]
 pivot    = "PIVOT"
 position = ["0 mm", "{balance_y!r} mm"]
 angle    = "{start:.15g}°"
@@ -55,6 +57,7 @@ motion   = "fixed"
 [[springs]]
 body      = "balance"
 frequency = "{values.frequency:.15g} vph"
+draw      = {hairspring}
 
 [[torques]]
 body  = "wheel"
@@ -96,6 +99,7 @@ def scene_text(values: SwissLever) -> str:
         lever_angle=round(design.bank - CLEAR, 10),
         balance_y=design.balance_pivot[1],
         start=-values.start,
+        hairspring=wheel_of(design, values.balance_inertia).hairspring(90.0),
         torque=-values.torque,
     )
 

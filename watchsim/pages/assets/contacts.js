@@ -69,7 +69,7 @@ class Contacts {
       if (!one.holds(time)) continue;
       const [x, y, nx, ny] = one.touch(view, poses), [px, py] = view.screen(x, y);
       if (points) {
-        ctx.beginPath(); ctx.arc(px, py, 5.5, 0, 2 * Math.PI);
+        ctx.beginPath(); ctx.arc(px, py, clamp(view.width / 110, 3.5, 5.5), 0, 2 * Math.PI);
         ctx.strokeStyle = look.paper; ctx.lineWidth = 4.5; ctx.stroke();
         ctx.strokeStyle = look.contact; ctx.lineWidth = 2.2; ctx.stroke();
       }

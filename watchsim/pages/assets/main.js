@@ -98,7 +98,8 @@ const chips = data.bodies.slice(0, MANY).map((body, b) => {
   $("parts").append(button);
   if (!rows) { value.remove(); return { b, button, value }; }
   const slide = body.motion === "slide", k = body.motion === "free" ? 2 : 0, factor = slide ? 1e3 : DEGREES;
-  return { b, button, value, read: (t) => `${minus((factor * rows.at(t, k, 0)).toFixed(slide ? 3 : 2))}${slide ? " mm" : "°"}` };
+  const within = (angle) => (body.round ? ((angle % 360) + 360) % 360 : angle), unit = slide ? " mm" : body.round ? "° mod 360°" : "°";
+  return { b, button, value, read: (t) => `${minus(within(factor * rows.at(t, k, 0)).toFixed(slide ? 3 : body.round ? 1 : 2))}${unit}` };
 });
 
 const showPlots = (b) => {
@@ -243,6 +244,7 @@ const toPaper = () => {
     const b = 3 * data.parts[Number(group.dataset.part)].body, c = Math.cos(poses[b + 2]), s = Math.sin(poses[b + 2]);
     group.setAttribute("transform", `matrix(${c} ${s} ${-s} ${c} ${1e3 * poses[b]} ${1e3 * poses[b + 1]})`);
   }
+  for (const strip of document.querySelectorAll("#poster [data-coil]")) strip.setAttribute("d", scenery.coils[Number(strip.dataset.coil)].pathData(poses));
   root.classList.add("paper"); // the plots take the size that they have there
   plots.draw(player.t, look);
 };
@@ -268,6 +270,8 @@ window.watchsim = {
   seen: (name, points) => { const poses = motion.poses(player.t), b = data.bodies.findIndex((body) => body.name === name); view.aim(poses); return points.map(([x, y]) => view.screen(...view.point(poses, b, x, y))); },
   closed: (t) => { const poses = motion.poses(t); return contacts.all.filter((one) => one.holds(t)).map((one) => ({ name: one.name, force: one.press(t), place: one.touch(view, poses).slice(0, 2) })); },
   value: (plot, t) => curves.of(plots.body)[plot].lines[0].value(t),
+  coils: () => { const poses = motion.poses(player.t); return scenery.coils.map((coil) => coil.pathData(poses)); },
+  parts: () => scenery.parts.map(({ body, layer, pale }) => ({ body, layer, pale: Boolean(pale) })),
   pace: () => ({ fps, drawn }),
 };
 new ResizeObserver(resize).observe($("picture"));

@@ -1,6 +1,6 @@
 // The outlines of the drawing on a canvas: arcs stay arcs at any zoom.
 const MOVE = 0, LINE = 1, ARC = 2;
-const FADED = 0.14, THIN = 1.1, RING = 3.4;
+const FADED = 0.14, THIN = 1.1, RING = 3.4, PALE = 0.55;
 
 const pathOf = (part) => {
   const path = new Path2D(), codes = bytesOf(part.codes), n = floats(part.numbers);
@@ -23,20 +23,20 @@ class Scenery {
   constructor(data) {
     this.bodies = data.bodies;
     this.parts = data.parts.map((part) => ({ ...part, path: pathOf(part), strokes: part.ground ? strokesOf(part.ground) : null }));
-    // What never moves lies below what does.
+    // What never moves lies below what does, but for what cannot touch and is larger than all that can: a balance's rim.
+    this.coils = data.coils.map((told) => new Coil(told));
     this.still = this.parts.filter((part) => data.bodies[part.body].still);
-    this.moving = this.parts.filter((part) => !data.bodies[part.body].still);
+    const moving = this.parts.filter((part) => !data.bodies[part.body].still), first = moving.findIndex((part) => !part.pale);
+    this.behind = moving.slice(0, first < 0 ? moving.length : first);
+    this.moving = moving.slice(this.behind.length);
   }
 
   // Everything at the poses given; `look` holds colours, what is faded, and the body chosen (or -1).
   draw(ctx, view, poses, look) {
+    for (const coil of this.coils) coil.draw(ctx, view, poses, look);
+    for (const part of this.behind) { this.shadow(ctx, view, poses, part, look); this.part(ctx, view, poses, part, look); }
     for (const part of this.still) this.part(ctx, view, poses, part, look);
-    ctx.fillStyle = look.shade;
-    for (const part of this.moving) {
-      if (part.strokes || look.faded.has(part.body)) continue;
-      view.place(ctx, poses, part.body, 2, 3);
-      ctx.fill(part.path);
-    }
+    for (const part of this.moving) this.shadow(ctx, view, poses, part, look);
     for (const part of this.moving) this.part(ctx, view, poses, part, look);
     this.bodies.forEach((body, b) => {
       if (!body.spoke) return;
@@ -49,14 +49,22 @@ class Scenery {
     this.bodies.forEach((body, b) => { if (body.motion === "pivot") this.ring(ctx, view, poses, b, look); });
   }
 
+  shadow(ctx, view, poses, part, look) {
+    if (part.strokes || look.faded.has(part.body)) return;
+    ctx.fillStyle = look.shade;
+    view.place(ctx, poses, part.body, 2, 3);
+    ctx.fill(part.path);
+  }
+
   part(ctx, view, poses, part, look) {
+    const worn = (colour) => (part.pale ? blended(colour, look.paper, PALE) : colour);
     const fixed = part.strokes !== null;
     view.place(ctx, poses, part.body);
     ctx.globalAlpha = look.faded.has(part.body) ? FADED : 1;
     ctx.lineJoin = "round"; ctx.lineCap = "round";
-    if (!fixed) { ctx.fillStyle = part.fill; ctx.fill(part.path); }
+    if (!fixed) { ctx.fillStyle = worn(part.fill); ctx.fill(part.path); }
     if (fixed && part.strokes) { ctx.strokeStyle = look.ground; ctx.lineWidth = 0.9 / view.scale; ctx.stroke(part.strokes); }
-    ctx.strokeStyle = fixed ? look.ground : part.edge;
+    ctx.strokeStyle = fixed ? look.ground : worn(part.edge);
     ctx.lineWidth = (fixed ? 1.9 : THIN) / view.scale;
     ctx.stroke(part.path);
     if (part.body === look.chosen) { ctx.strokeStyle = look.accent; ctx.lineWidth = 2 / view.scale; ctx.stroke(part.path); }
@@ -75,7 +83,7 @@ class Scenery {
 
   // The body whose face lies uppermost at a place of the screen (CSS pixels), faded ones last; -1 where there is none.
   hit(ctx, view, poses, x, y, faded) {
-    const under = [...this.still, ...this.moving].filter((part) => {
+    const under = [...this.behind, ...this.still, ...this.moving].filter((part) => {
       if (part.strokes) return false;
       view.place(ctx, poses, part.body);
       return ctx.isPointInPath(part.path, x * view.ratio, y * view.ratio);

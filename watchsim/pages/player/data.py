@@ -11,15 +11,16 @@ from watchsim.pages.player.moments import heard, instants, named
 from watchsim.pages.player.motion import Channel
 from watchsim.pages.player.outlines import packed_part
 from watchsim.pages.player.touching import touching
+from watchsim.render.frame.coils import STUD, Hairspring, hairsprings
 from watchsim.render.frame.filled_parts import Part, is_round, loops_of
-from watchsim.render.frame.pose_history import Window
+from watchsim.render.frame.marks.readouts import goes_round
+from watchsim.render.frame.pose_history import Window, sampled
 from watchsim.render.frame.view import Frame, View, room_of, size_of, view
 from watchsim.render.movies.busy_stretches import busy
-from watchsim.render.palette import Finish, looks
+from watchsim.render.palette import BLUED, FIXED, Finish, looks
 from watchsim.scene.body import Body
 from watchsim.scene.carriers import carried_last, is_still
 from watchsim.scene.roles import roles
-from watchsim.scene.scene import Scene
 from watchsim.simulation.record.trajectory import Array, Trajectory
 
 WIDE, HIGH = 1280.0, 720.0  # of the picture by which up and the part to follow are chosen
@@ -42,9 +43,10 @@ def player_data(
         "title": scene.title,
         "window": list(window),
         "opening": opening,
-        "bodies": [_body(scene, body, looks(scene)[body.name], rows.get(body.name)) for body in scene.bodies],
+        "bodies": [_body(run, window, body, looks(scene)[body.name], rows.get(body.name)) for body in scene.bodies],
         "order": [names.index(body.name) for body in carried_last(scene.bodies)],
         "parts": [packed_part(part, names) for part in parts],
+        "coils": [_coil(spring, names) for spring in hairsprings(scene)],
         "view": _view(run, window),
         "contacts": touching(run, window),
         "events": instants(run, window),
@@ -55,7 +57,26 @@ def player_data(
     }
 
 
-def _body(scene: Scene, body: Body, look: Finish, rows: dict[str, object] | None) -> dict[str, Any]:
+def _coil(spring: Hairspring, names: list[str]) -> dict[str, Any]:
+    """A hairspring, and in which colours it, its collet and its stud are drawn (on light and on dark ground)."""
+    coil = spring.coil
+    return {
+        "body": names.index(spring.body),
+        "on": -1 if spring.on is None else names.index(spring.on),
+        "rest": spring.rest,
+        "inner": coil.inner,
+        "outer": coil.outer,
+        "turns": coil.turns,
+        "stud": coil.stud,
+        "width": coil.width,
+        "block": STUD,
+        "colours": [BLUED.line, BLUED.fill],
+        "held": FIXED.fill,
+    }
+
+
+def _body(run: Trajectory, window: Window, body: Body, look: Finish, rows: dict[str, object] | None) -> dict[str, Any]:
+    scene = run.scene
     carries = any(other.on == body.name for other in scene.bodies)
     told: dict[str, Any] = {
         "name": body.name,
@@ -70,6 +91,9 @@ def _body(scene: Scene, body: Body, look: Finish, rows: dict[str, object] | None
     }
     if rows is not None:
         told["rows"] = rows
+        own = sampled(run, body, window)[:, 2]
+        carrier = 0.0 if body.on is None else sampled(run, scene.body(body.on), window)[:, 2]
+        told["round"] = body.motion != "slide" and body.name != roles(scene).oscillator and goes_round(own - carrier)
     # Mass times acceleration is a force only where nothing else rides along.
     if body.on is None and not carries and body.motion != "fixed":
         told["inertia"] = body.inertia if body.motion == "pivot" else body.mass

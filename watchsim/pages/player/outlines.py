@@ -40,6 +40,8 @@ def packed_part(part: Part, bodies: Sequence[str]) -> dict[str, object]:
         "codes": small(codes),
         "numbers": floats(numbers),
     }
+    if part.finish.pale:
+        found["pale"] = True
     if part.ground:
         strokes = np.zeros(0) if part.strokes is None else np.asarray(part.strokes.vertices).reshape(-1)
         found["ground"] = floats(strokes)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -17,30 +18,54 @@ SIDES = ((1, "odd beats"), (0, "even beats"))
 HEAD = ("phase", "lasts (ms)", "balance at (°)", "balance turns (°)", "lever turns (°)", "wheel turns (°)")
 
 
+@dataclass(frozen=True)
+class _Kind:
+    """A phase over its beats, one element a beat: how long it lasts (ms), where it finds the balance and how far balance, lever
+    and wheel turn in it (degrees)."""
+
+    name: str
+    number: int
+    lasts: Array
+    at: Array
+    turns: Array
+
+    def row(self) -> list[Content]:
+        """Means and scatter."""
+        mark = element("i", "", class_=f"chip s{self.number}", aria_hidden="true")
+        wheel, lever, balance = self.turns.T
+        return [joined((mark, self.name)), _mean(self.lasts), _mean(self.at), _mean(balance), _mean(lever), _mean(wheel)]
+
+
 def phase_tables(phases: list[Phase]) -> Iterator[Markup]:
     """The section, with a strip of time and a table for either direction of the balance; nothing where no phases are known."""
     parts: list[Markup] = []
     for odd, title in SIDES:
-        by_name = {name: [one for one in phases if one.name == name and one.beat % 2 == odd] for name in ORDER}
-        by_name = {name: own for name, own in by_name.items() if own}
-        if not by_name:
+        kinds = _kinds([one for one in phases if one.beat % 2 == odd])
+        if not kinds:
             continue
-        lengths = [(name, 1e3 * float(np.mean([one.end - one.start for one in own]))) for name, own in by_name.items()]
-        told = f"Phases of {title}: {', '.join(f'{name} {length:.3g} ms' for name, length in lengths)}"
-        rows = [_phase_row(name, own) for name, own in by_name.items()]
-        count = max(len(own) for own in by_name.values())
+        lengths = [(kind.name, float(np.mean(kind.lasts)), kind.number) for kind in kinds]
+        told = f"Phases of {title}: {', '.join(f'{name} {length:.3g} ms' for name, length, _ in lengths)}"
+        count = max(len(kind.lasts) for kind in kinds)
+        rows = [kind.row() for kind in kinds]
         parts += [strip(lengths, "ms", told), table(HEAD, rows, f"{title.capitalize()}: means of {count} beats")]
     if parts:
         yield section("phases", "Phases of a beat", *parts)
 
 
-def _phase_row(name: str, own: list[Phase]) -> list[Content]:
-    """Means and scatter of one phase over its beats."""
-    mark = element("i", "", class_=f"chip s{ORDER.index(name)}", aria_hidden="true")
-    last = np.array([1e3 * (phase.end - phase.start) for phase in own])
-    at = np.degrees([phase.angles[2] for phase in own])
-    turns = np.degrees([phase.turns for phase in own])
-    return [joined((mark, name)), _mean(last), _mean(at), _mean(turns[:, 2]), _mean(turns[:, 1]), _mean(turns[:, 0])]
+def _kinds(phases: list[Phase]) -> list[_Kind]:
+    """In the order of a beat; an impulse apart for what it acts on. What comes several times in a beat is added up."""
+    first: dict[tuple[str, str], dict[int, list[Phase]]] = {}
+    for one in phases:
+        if one.name in ORDER:
+            first.setdefault((one.name, one.on), {}).setdefault(one.beat, []).append(one)
+    found = []
+    for (name, on), beats in sorted(first.items(), key=lambda item: ORDER.index(item[0][0])):
+        own = list(beats.values())
+        lasts = np.array([1e3 * sum(one.end - one.start for one in beat) for beat in own])
+        turns = np.degrees([np.sum([one.turns for one in beat], axis=0) for beat in own])
+        at = np.degrees([beat[0].angles[2] for beat in own])
+        found.append(_Kind(f"{name} on {on}" if on else name, ORDER.index(name), lasts, at, turns))
+    return found
 
 
 def _mean(values: Array) -> str:

@@ -51,8 +51,12 @@ def verdict(numbers: Mapping[str, Any]) -> Markup | None:
     if word is None:
         return None
     look, told = VERDICTS.get(str(word), ("open", str(word).capitalize()))
-    more = message if message and str(message).casefold() != told.casefold() else None
-    return element("p", element("strong", told), f" {more}" if more else None, class_=f"verdict {look}")
+    more = str(message or "")
+    if more.casefold().startswith(told.casefold()):  # said once is enough
+        more = more[len(told) :]
+    elif more:
+        more = f" {more}"
+    return element("p", element("strong", told), more or None, class_=f"verdict {look}")
 
 
 def _energy(run: Trajectory) -> Iterator[Markup]:

@@ -55,6 +55,18 @@ def parts(scene: Scene, deviation: float, spacing: float) -> tuple[Part, ...]:
     return tuple(sorted(found, key=lambda part: -part.area))
 
 
+def backdrop(shapes: Sequence[Part]) -> Sequence[Part]:
+    """Of parts in the order of `parts`: the leading ones that cannot touch, such as a balance's rim; they lie behind."""
+    return shapes[: next((k for k, part in enumerate(shapes) if not part.finish.pale), len(shapes))]
+
+
+def working(scene: Scene, deviation: float, spacing: float) -> tuple[Part, ...]:
+    """The same without what lies behind all else and cannot touch: from a balance's rim nothing is to be learnt."""
+    found = parts(scene, deviation, spacing)
+    behind = {id(part) for part in backdrop([part for part in found if scene.body(part.body).motion != "fixed"])}
+    return tuple(part for part in found if id(part) not in behind)
+
+
 def loops_of(body: Body) -> tuple[Loop, ...]:
     """Everything that was drawn of a body, whether it can touch or not."""
     return tuple(loop for loop in (*body.loops, *body.decoration) if loop.edges)

@@ -13,6 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from watchsim.geometry.loop import Loop
+from watchsim.render.frame.coils import room_for
 from watchsim.render.frame.filled_parts import loops_of, outline
 from watchsim.render.frame.pose_history import Window, placed, swept
 from watchsim.scene.body import Body
@@ -79,8 +81,13 @@ def room_of(run: Trajectory, window: Window, zoom: Sequence[str] | None) -> tupl
     """(n, 2) points that bound all that is to be seen over a window, the poses they come from, and a body to follow, if any."""
     bodies = _shown(run, zoom)
     frames = {body.name: swept(run, body, window) for body in bodies}
-    points = np.concatenate([_room(body, frames[body.name]) for body in bodies])
-    if zoom is None:
+    if zoom is not None:
+        # What is asked for is seen for what it does: a rim drawn beside a roller would make that small.
+        points = np.concatenate([_room(body.loops or loops_of(body), body, frames[body.name]) for body in bodies])
+    else:
+        points = np.concatenate([_room(loops_of(body), body, frames[body.name]) for body in bodies])
+        coils = [placed(room_for(run.scene, body.name), frames[body.name][:1]).reshape(-1, 2) for body in bodies]
+        points = np.concatenate((points, *coils))
         points = np.concatenate((points, _ground_below(run, points)))
     return points, frames, _traveller(bodies, frames)
 
@@ -136,8 +143,8 @@ def size_of(body: Body) -> float:
     return max(float(np.ptp(outline(loops_of(body), COARSE * reach), axis=0).max()), 1e-12)
 
 
-def _room(body: Body, frames: Array) -> Array:
-    return placed(outline(loops_of(body), COARSE * size_of(body)), frames).reshape(-1, 2)
+def _room(loops: tuple[Loop, ...], body: Body, frames: Array) -> Array:
+    return placed(outline(loops, COARSE * size_of(body)), frames).reshape(-1, 2)
 
 
 def _traveller(bodies: list[Body], frames: dict[str, Array]) -> Body | None:

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import os
 import subprocess
-from collections.abc import Iterable
+import tempfile
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import IO
 
@@ -21,6 +22,7 @@ from watchsim.storage.write import write_file
 Pixels = NDArray[np.uint8]
 
 ENDINGS = (".mp4", ".gif")
+AUDIO = "128k"  # bits per second of one channel
 
 
 def check_path(path: str | os.PathLike[str]) -> Path:
@@ -35,16 +37,34 @@ def check_path(path: str | os.PathLike[str]) -> Path:
     return target
 
 
-def encode(frames: Iterable[Pixels], path: Path, size: tuple[int, int], fps: float, palette: Palette | None = None) -> None:
+def encode(
+    frames: Iterable[Pixels],
+    path: Path,
+    size: tuple[int, int],
+    fps: float,
+    palette: Palette | None = None,
+    sound: Callable[[Path], None] | None = None,
+) -> None:
     """Write frames, each (height, width, 4) 8-bit RGBA, as MP4 or, with a `palette`, as GIF.
 
+    `sound` writes a WAV file to the place it is given, which becomes the sound of an MP4.
     OSError with the encoder's own words where it fails; the destination then is as it was before.
     """
     raw = (np.ascontiguousarray(frame).data for frame in frames) if palette is None else map(palette.indexed, frames)
-    write_file(path, lambda scratch: _run(_command(scratch, size, fps, palette is not None), raw), "the movie")
+
+    def make(scratch: Path) -> None:
+        if sound is None:
+            _run(_command(scratch, size, fps, palette is not None), raw)
+            return
+        with tempfile.TemporaryDirectory(dir=scratch.parent) as folder:
+            heard = Path(folder) / "sound.wav"
+            sound(heard)
+            _run(_command(scratch, size, fps, palette is not None, heard), raw)
+
+    write_file(path, make, "the movie")
 
 
-def _command(scratch: Path, size: tuple[int, int], fps: float, gif: bool) -> list[str]:
+def _command(scratch: Path, size: tuple[int, int], fps: float, gif: bool, sound: Path | None = None) -> list[str]:
     from imageio_ffmpeg import get_ffmpeg_exe
 
     layout = "pal8" if gif else "rgba"
@@ -56,7 +76,8 @@ def _command(scratch: Path, size: tuple[int, int], fps: float, gif: bool) -> lis
     convert = ["-vf", "scale=out_color_matrix=bt709:out_range=tv,format=yuv420p"]
     tags = ["-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709"]
     quality = ["-c:v", "libx264", "-preset", "veryfast", "-crf", "19", "-tune", "animation"]
-    return [*head, "-an", *convert, *quality, *tags, "-movflags", "+faststart", str(scratch)]
+    heard = ["-an"] if sound is None else ["-i", str(sound), "-map", "0:v", "-map", "1:a", "-c:a", "aac", "-b:a", AUDIO]
+    return [*head, *heard, *convert, *quality, *tags, "-movflags", "+faststart", str(scratch)]
 
 
 def _run(command: list[str], frames: Iterable[bytes | memoryview]) -> None:

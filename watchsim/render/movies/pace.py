@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 
 MOST_FRAMES = 1e6
 BUSY_SHARE = 0.8  # of the film, for the stretches in which things happen
+SLOWEST = 1e-9  # of the fast speed: a stretch of rounding size is none to dwell on
 RAMP = 0.3  # s of the film from one speed to the other
 
 
@@ -54,6 +55,7 @@ def adaptive(span: Window, busy: Sequence[Window], length: float, fps: float) ->
     lively = sum(end - start for start, end in busy)
     count = max(2, math.floor(length * fps + 1e-6) + 1)
     slow, fast = lively / (BUSY_SHARE * length), (whole - lively) / ((1.0 - BUSY_SHARE) * length)
+    slow = max(slow, SLOWEST * fast)
     if lively <= 0.0 or fast <= slow:
         return Plan(np.linspace(*span, count), np.full(count, whole / length), fps)
     t, log_speed = _knots(span, busy, slow, fast)

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -21,23 +21,23 @@ from watchsim.render.frame.marks.extras import Extras
 from watchsim.render.frame.marks.force_arrows import ForceArrows
 from watchsim.render.frame.marks.strip import strip_body
 from watchsim.render.frame.marks.touching_points import ContactMarks
-from watchsim.render.frame.pose_history import Window, poses, stretch
+from watchsim.render.frame.pose_history import Window, stretch
 from watchsim.render.frame.stage import Stage
 from watchsim.render.movies.busy_stretches import busy
 from watchsim.render.movies.encoder import check_path, encode
+from watchsim.render.movies.film import Film
 from watchsim.render.movies.gif_colours import shared_palette
 from watchsim.render.movies.pace import Plan, adaptive, even
+from watchsim.render.movies.picture_size import AUTO, GIF_SIZE, MP4_SIZE, checked, even_sides, fitting
+from watchsim.render.movies.soundtrack import soundtrack, write_soundtrack
+from watchsim.render.style import DARK, LIGHT
 from watchsim.simulation.record.trajectory import Trajectory
 
-Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
 Pixels = NDArray[np.uint8]
 
 ADAPTIVE = "adaptive"  # a speed
 
 MP4_FPS, GIF_FPS = 60.0, 25.0
-MP4_SIZE, GIF_SIZE = (1280, 720), (800, 450)
-SIZES = (64, 8192)  # pixels a side
 LENGTH = 10.0  # s: a movie at adaptive speed
 SAMPLES = 12  # frames from which a GIF takes its colours
 
@@ -50,7 +50,7 @@ def movie(
     *,
     length: float | None = None,
     fps: float | None = None,
-    size: tuple[int, int] | None = None,
+    size: tuple[int, int] | str | None = None,
     contacts: bool = False,
     zoom: Sequence[str] | None = None,
     turn: float | None = None,
@@ -58,6 +58,8 @@ def movie(
     strip: str | bool = False,
     phases: bool = False,
     forces: bool = False,
+    sound: bool = False,
+    dark: bool = False,
     progress: Callable[[int, int], None] | None = None,
 ) -> Path:
     """Write a run as MP4 or GIF, by the ending of `path`, and return the path.
@@ -67,7 +69,8 @@ def movie(
               with the speed written in each frame
     length    seconds that a movie at adaptive speed lasts; default 10
     fps       frames per second; default 60, GIF 25 (a GIF keeps time in hundredths of a second: the nearest rate it can hold)
-    size      (width, height) in pixels, rounded up to even numbers; default 1280 × 720, GIF 800 × 450
+    size      (width, height) in pixels, rounded up to even numbers; default 1280 × 720, GIF 800 × 450; "auto": the mechanism the
+              way up that it is drawn, in the wide, square or tall format that shows it largest
     contacts  rings around the contacts that are closed
     zoom      names of the bodies to frame; default all
     turn      radians by which the picture is turned; default: gravity down, or the quarter turn that fills the frame best
@@ -76,6 +79,8 @@ def movie(
     strip     the body whose angle and velocity run below the mechanism; True: the oscillator
     phases    names the phase of a beat
     forces    arrows for the forces at contacts, of a run by events
+    sound     the ticking: each blow when its instant is shown, at slow and adaptive speed, too, with its own pitch
+    dark      on dark ground
     progress  called with (frames done, frames in all)
 
     ValueError for arguments that make no sense, OSError where the file cannot be written; the file is written whole or not
@@ -85,24 +90,29 @@ def movie(
     gif = target.suffix.lower() == ".gif"
     span = stretch(run, window, unbroken=True)
     plan = _plan(run, span, speed, length, fps if fps is not None else (GIF_FPS if gif else MP4_FPS), gif)
-    pixels = _even(size if size is not None else (GIF_SIZE if gif else MP4_SIZE))
+    if sound and gif:
+        raise ValueError("sound: a GIF holds none; choose a name that ends in .mp4")
+    heard = soundtrack(run, plan) if sound else None
     arrows = ForceArrows(run, plan.times) if forces else None
     extras = _extras(run, insets, strip, phases, arrows)
+    pixels, turn = _size(run, span, extras, size, zoom, turn, gif)
     told, step = (None if speed == ADAPTIVE else float(speed)), float(plan.speeds.min()) / plan.fps
-    stage = Stage(run, pixels, span, zoom=zoom, turn=turn, speed=told, step=step, extras=extras)
-    film = _Film(stage, run, plan, contacts, arrows, speed == ADAPTIVE)
+    style = DARK if dark else LIGHT
+    stage = Stage(run, pixels, span, zoom=zoom, turn=turn, speed=told, step=step, extras=extras, style=style)
+    film = Film(stage, run, plan, ContactMarks(run) if contacts else None, arrows, speed == ADAPTIVE)
     palette = None
     if gif:
         sampled = np.unique(np.linspace(0, len(plan.times) - 1, SAMPLES).astype(int))
         palette = shared_palette([picture.copy() for picture in film.pictures(sampled)])
-    encode(film.pictures(np.arange(len(plan.times)), progress), target, pixels, plan.fps, palette)
+    write = None if heard is None else partial(write_soundtrack, heard=heard)
+    encode(film.pictures(np.arange(len(plan.times)), progress), target, pixels, plan.fps, palette, write)
     return target
 
 
 def frame(
     run: Trajectory,
     t: float,
-    size: tuple[int, int] = MP4_SIZE,
+    size: tuple[int, int] | str = MP4_SIZE,
     window: Sequence[float] | None = None,
     *,
     contacts: bool = False,
@@ -112,6 +122,7 @@ def frame(
     strip: str | bool = False,
     phases: bool = False,
     forces: bool = False,
+    dark: bool = False,
 ) -> Pixels:
     """The picture (height, width, 3), 8 bits, of the instant `t` (s), framed as in a movie over `window`.
 
@@ -123,8 +134,10 @@ def frame(
     plan = Plan(np.array([float(t)]), np.ones(1), 1.0)
     arrows = ForceArrows(run, plan.times) if forces else None
     extras = _extras(run, insets, strip, phases, arrows)
-    stage = Stage(run, _checked(size), span, zoom=zoom, turn=turn, extras=extras)
-    picture = next(_Film(stage, run, plan, contacts, arrows, False).pictures(np.zeros(1, int)))
+    pixels, turn = _size(run, span, extras, size, zoom, turn, False) if isinstance(size, str) else (checked(size), turn)
+    stage = Stage(run, pixels, span, zoom=zoom, turn=turn, extras=extras, style=DARK if dark else LIGHT)
+    marks = ContactMarks(run) if contacts else None
+    picture = next(Film(stage, run, plan, marks, arrows, False).pictures(np.zeros(1, int)))
     return np.ascontiguousarray(picture[..., :3])
 
 
@@ -142,53 +155,26 @@ def _plan(run: Trajectory, span: Window, speed: float | str, length: float | Non
     return even(span, speed, fps)
 
 
+def _size(
+    run: Trajectory,
+    span: Window,
+    extras: Extras,
+    size: tuple[int, int] | str | None,
+    zoom: Sequence[str] | None,
+    turn: float | None,
+    gif: bool,
+) -> tuple[tuple[int, int], float | None]:
+    """Width and height of the pictures, and how they are turned."""
+    if size == AUTO:
+        found, way_up = fitting(run, span, extras, zoom, gif, turn)
+        return found, way_up
+    if isinstance(size, str):
+        raise ValueError(f'size = "{size}": give (width, height) in pixels, or "{AUTO}"')
+    return even_sides(size if size is not None else (GIF_SIZE if gif else MP4_SIZE)), turn
+
+
 def _extras(run: Trajectory, insets: Sequence[str], strip: str | bool, phases: bool, arrows: ForceArrows | None) -> Extras:
     places = (insets,) if isinstance(insets, str) else tuple(insets)
     body = None if strip is False else strip_body(run, None if strip is True else strip)
     force, scale = (arrows.largest, arrows.round_force) if arrows else (0.0, 0.0)
     return Extras(places, body, tuple(named_phases(run)) if phases else (), force, scale)
-
-
-def _checked(size: tuple[int, int]) -> tuple[int, int]:
-    try:
-        width, height = (int(side) for side in size)
-    except (TypeError, ValueError):
-        raise ValueError(f"size = {size!r}: give (width, height) in pixels") from None
-    if not all(SIZES[0] <= side <= SIZES[1] for side in (width, height)):
-        raise ValueError(f"size = {width}x{height}: each side must be {SIZES[0]} to {SIZES[1]} pixels")
-    return width, height
-
-
-def _even(size: tuple[int, int]) -> tuple[int, int]:
-    """The colour planes of an MP4 have half the size, so its sides must be even."""
-    width, height = _checked(size)
-    return width + width % 2, height + height % 2
-
-
-@dataclass(frozen=True)
-class _Film:
-    """What it takes to draw any frame of a plan."""
-
-    stage: Stage
-    run: Trajectory
-    plan: Plan
-    contacts: bool
-    arrows: ForceArrows | None
-    tells_speed: bool
-
-    def pictures(self, numbers: Integers, progress: Callable[[int, int], None] | None = None) -> Iterator[Pixels]:
-        """Frames of these numbers, one after the other, each in the same memory."""
-        times = self.plan.times[numbers]
-        where = poses(self.run, times)
-        marks = ContactMarks(self.run) if self.contacts else None
-        for k, (number, t) in enumerate(zip(numbers.tolist(), times.tolist(), strict=True)):
-            frames = {name: rows[k] for name, rows in where.items()}
-            yield self.stage.draw(
-                t,
-                frames,
-                marks.points(t, frames) if marks else None,
-                press=self.arrows.at(number) if self.arrows else None,
-                speed=float(self.plan.speeds[number]) if self.tells_speed else None,
-            )
-            if progress is not None:
-                progress(k + 1, len(times))

@@ -15,6 +15,7 @@ from watchsim.render.frame.coloured_edges import Edges
 from watchsim.render.frame.pose_history import poses
 from watchsim.render.frame.stage import Stage
 from watchsim.render.stills.fault_circles import FAULT
+from watchsim.render.style import DARK, LIGHT
 from watchsim.scene.scene import Scene
 from watchsim.simulation.record.trajectory import EVENT_DTYPE, Trajectory
 from watchsim.simulation.stops import Stop
@@ -22,27 +23,33 @@ from watchsim.storage.write import write_file
 
 SIZE = (1280, 720)
 REACHABLE, CANDIDATE = "#1971c2", "#f76707"
+REACHABLE_DARK = "#74c0fc"
 
 
 def still(
-    scene: Scene, path: str | os.PathLike[str], compiled: Compiled, pairs: ModelledPairs, overlaps: Sequence[Point] = ()
+    scene: Scene,
+    path: str | os.PathLike[str],
+    compiled: Compiled,
+    pairs: ModelledPairs,
+    overlaps: Sequence[Point] = (),
+    dark: bool = False,
 ) -> None:
     """Write a picture (PNG or what else imageio knows) of the bodies where the scene puts them at t = 0.
 
     Edges that can ever touch another body are in colour, those of which a pair is a candidate at the start in another; rings
-    mark the places (m) where bodies overlap.
+    mark the places (m) where bodies overlap. `dark`: on dark ground.
     """
     import imageio.v3 as imageio
 
     model = compiled.model
     picked: tuple[Edges, ...] = (
-        Edges(model, np.setdiff1d(pairs.reachable, pairs.candidates), REACHABLE, "can ever touch"),
+        Edges(model, np.setdiff1d(pairs.reachable, pairs.candidates), REACHABLE_DARK if dark else REACHABLE, "can ever touch"),
         Edges(model, pairs.candidates, CANDIDATE, "candidate at the start"),
     )
     if overlaps:
         picked = (*picked, Edges(model, np.zeros(0, np.int64), FAULT, "bodies overlap"))
     run = at_rest(scene, compiled)
-    stage = Stage(run, SIZE, (0.0, 1.0), picked=picked)
+    stage = Stage(run, SIZE, (0.0, 1.0), picked=picked, style=DARK if dark else LIGHT)
     frames = {name: rows[0] for name, rows in poses(run, np.zeros(1)).items()}
     pixels = stage.draw(0.0, frames, np.array(overlaps).reshape(-1, 2), FAULT)[..., :3]
     write_file(Path(path), lambda scratch: imageio.imwrite(scratch, pixels), "the picture")

@@ -13,9 +13,10 @@ import numpy as np
 from matplotlib.patches import PathPatch
 from matplotlib.transforms import Affine2D
 
-from watchsim.render.frame.filled_parts import Part, parts
+from watchsim.render.frame.filled_parts import Part, working
 from watchsim.render.frame.pose_matrix import pose_matrix
 from watchsim.render.palette import BACKGROUND, CONTACT, FAINT, GRID, INK, looks
+from watchsim.render.style import LIGHT
 from watchsim.storage.write import write_file
 from watchsim.turning.couples import pose_of
 from watchsim.turning.happenings import Happening, happenings
@@ -50,7 +51,7 @@ def _figure(found: Turn) -> Figure:
     FigureCanvasAgg(figure)
     rows = max(1, math.ceil(len(chosen) / ACROSS))
     grid = figure.add_gridspec(rows + 1, ACROSS, height_ratios=[*([1.0] * rows), 1.1], **MARGINS)
-    shapes = parts(found.scene, 2e-7, 2e-4)
+    shapes = working(found.scene, 2e-7, 2e-4)
     box = _box(found)
     for number, (row, words) in enumerate(chosen):
         axes = figure.add_subplot(grid[number // ACROSS, number % ACROSS])
@@ -138,9 +139,8 @@ def _view(axes: Axes, found: Turn, row: int, shapes: tuple[Part, ...], box: tupl
         number = bodies[part.body]
         x, y, c, s = pose_of(found.scene.bodies[number], q[number])
         place = Affine2D(pose_matrix(np.array([x, y, math.atan2(s, c)]))) + axes.transData
-        axes.add_patch(
-            PathPatch(part.faces, facecolor=part.finish.fill, edgecolor=part.finish.edge, linewidth=0.6, transform=place)
-        )
+        look = LIGHT.worn(part.finish)
+        axes.add_patch(PathPatch(part.faces, facecolor=look.fill, edgecolor=look.edge, linewidth=0.6, transform=place))
     for touch in found.cycle.touches[row]:
         axes.plot(*touch.place, "o", markersize=9, markerfacecolor="none", markeredgecolor=CONTACT, markeredgewidth=1.8)
     if found.cycle.jam is not None and row == len(found.cycle.rows) - 1:

@@ -62,6 +62,9 @@ def _enter(mapping: dict[str, Any], path: tuple[str, ...], faults: Faults) -> tu
     if not path[1].isdigit() or int(path[1]) >= len(elements):
         faults.add(key, f"{section} has no entry {path[1]}: there are {len(elements)}, counted from 0")
         return None, ()
+    if section == "springs" and path[2:3] == ("draw",) and len(path) > 3:
+        drawn = elements[int(path[1])].setdefault("draw", {})
+        return (drawn, path[3:]) if isinstance(drawn, dict) else (None, ())
     return elements[int(path[1])], path[2:]
 
 
@@ -125,6 +128,8 @@ def _advice(path: tuple[str, ...]) -> str:
     depth = 1 if path[0] in TABLES else 2
     if path[2:3] in (("solids",), ("adjust",)) and len(path) > 4:
         depth = 5 if path[2] == "adjust" and path[4].isdigit() and len(path) > 5 else 4
+    if path[0] == "springs" and path[2:3] == ("draw",) and len(path) > 3:
+        depth = 3
     if len(path) <= depth:
         kind = "the name of a body" if path[0] == "bodies" else "a number counted from 0" if path[0] in LISTED else "a key"
         return f"Write {path[0]}, {kind} and a key, all joined by points." if depth > 1 else nearest("", siblings(path))

@@ -16,12 +16,13 @@ from matplotlib.path import Path
 from matplotlib.transforms import Affine2D, Bbox, IdentityTransform
 from numpy.typing import NDArray
 
+from watchsim.render.frame.coil_patches import CoilPatches
 from watchsim.render.frame.filled_parts import Part, parts
 from watchsim.render.frame.marks.changing_words import Words
 from watchsim.render.frame.marks.insets import Inset
 from watchsim.render.frame.pose_matrix import pose_matrix
 from watchsim.render.frame.view import Frame
-from watchsim.render.palette import BACKGROUND, FAINT, INK
+from watchsim.render.style import Style
 from watchsim.scene.scene import Scene
 
 Array = NDArray[np.float64]
@@ -43,8 +44,9 @@ class _Shape:
 class InsetPicture:
     """One inset of a figure; `unit` is the size of everything drawn, `words` write its name."""
 
-    def __init__(self, figure: Figure, scene: Scene, inset: Inset, unit: float, words: Words) -> None:
-        self._figure, self._inset, self._words = figure, inset, words
+    def __init__(self, figure: Figure, scene: Scene, inset: Inset, unit: float, words: Words, style: Style) -> None:
+        self._figure, self._inset, self._words, self._style = figure, inset, words, style
+        self._springs = CoilPatches(scene, inset.box, inset.view.scale, style, unit, self._own)
         self._thin = max(1.1 * unit, 0.6)
         self._transforms = {body.name: Affine2D() for body in scene.bodies}
         made = parts(scene, CHORD / inset.view.scale, HATCH * unit / inset.view.scale)
@@ -52,8 +54,10 @@ class InsetPicture:
         box = inset.box
         edge = Path([(box.left, box.bottom), (box.left + box.width, box.bottom + box.height)])
         frame = _rectangle(edge)
-        self._sheet = self._own(PathPatch(frame, facecolor=BACKGROUND, linewidth=0.0, transform=IdentityTransform()), False)
-        look = {"fill": False, "edgecolor": FAINT, "linewidth": max(1.4 * unit, 1.0)}
+        self._sheet = self._own(
+            PathPatch(frame, facecolor=style.background, linewidth=0.0, transform=IdentityTransform()), False
+        )
+        look = {"fill": False, "edgecolor": style.faint, "linewidth": max(1.4 * unit, 1.0)}
         self._border = self._own(PathPatch(frame, transform=IdentityTransform(), **look), False)
 
     def place_in(self, matrix: Array, centre: tuple[float, float], room: Frame) -> PathPatch:
@@ -62,7 +66,7 @@ class InsetPicture:
         scale = float(np.hypot(*matrix[:2, 0]))
         middle = matrix[:2, :2] @ np.array(centre) + matrix[:2, 2]
         corners = _rectangle(Path(np.array([middle - scale * half, middle + scale * half])))
-        look = {"fill": False, "edgecolor": INK, "linewidth": 0.8 * self._thin, "alpha": 0.55}
+        look = {"fill": False, "edgecolor": self._style.ink, "linewidth": 0.8 * self._thin, "alpha": 0.55}
         patch = PathPatch(corners, transform=IdentityTransform(), **look)
         patch.set_figure(self._figure)
         patch.set_clip_box(Bbox.from_bounds(room.left, room.bottom, room.width, room.height))
@@ -74,6 +78,8 @@ class InsetPicture:
         self._sheet.draw(renderer)
         for body, transform in self._transforms.items():
             transform.set_matrix(matrix @ pose_matrix(frames[body]))
+        for patch in self._springs.patches(frames, matrix):
+            patch.draw(renderer)
         for shape in self._seen():
             for patch in shape.patches:
                 patch.draw(renderer)
@@ -96,12 +102,17 @@ class InsetPicture:
     def _shape(self, part: Part) -> _Shape:
         points = np.asarray(part.faces.vertices)
         middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
-        edge = {"edgecolor": part.finish.edge, "joinstyle": "round", "transform": self._transforms[part.body]}
+        look = self._style.worn(part.finish)
+        edge = {
+            "edgecolor": self._style.line(look) if part.ground else look.edge,
+            "joinstyle": "round",
+            "transform": self._transforms[part.body],
+        }
         if part.ground:
             paths = [part.faces] if part.strokes is None else [part.strokes, part.faces]
             made = [PathPatch(path, fill=False, linewidth=self._thin, **edge) for path in paths]
         else:
-            made = [PathPatch(part.faces, facecolor=part.finish.fill, linewidth=self._thin, **edge)]
+            made = [PathPatch(part.faces, facecolor=look.fill, linewidth=self._thin, **edge)]
         return _Shape(part.body, tuple(map(self._own, made)), middle, float(np.hypot(*(points - middle).T).max()))
 
     def _own(self, patch: PathPatch, clipped: bool = True) -> PathPatch:

@@ -115,7 +115,7 @@ def _outlines(run: Trajectory, place: str) -> tuple[Body, Sequence[Loop]]:
     body = drawn[name]
     loops = loops_of(body)
     if not rest:
-        return body, loops
+        return body, body.loops or loops
     layers = list(dict.fromkeys(loop.layer for loop in loops))
     layer, number = (rest, "") if rest in layers else rest.rpartition(".")[::2]
     if layer not in layers:

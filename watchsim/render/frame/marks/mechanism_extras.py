@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -21,7 +22,7 @@ from watchsim.render.frame.marks.readouts import changing_speed_text, turn_text
 from watchsim.render.frame.marks.strip import Strip
 from watchsim.render.frame.pose_history import Window
 from watchsim.render.frame.view import Frame, View
-from watchsim.render.palette import BACKGROUND, FAINT, FORCE, INK, PHASES
+from watchsim.render.style import Style
 from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.units import metric
 
@@ -32,6 +33,28 @@ LEAST = 60.0  # pixels of height that must be left for the mechanism
 PAD = 24.0  # pixels at 1280 × 720
 
 
+@dataclass(frozen=True)
+class Shared:
+    """Who has which room (pixels): the mechanism, the strip below it, the insets."""
+
+    room: Frame
+    strip: Frame | None
+    insets: tuple[Frame, ...]
+
+
+def shared_room(frame: Frame, extras: Extras, height: float) -> Shared:
+    """How the frame between the bands of words of a picture of that height is shared out."""
+    room, below = frame, None
+    if extras.strip is not None:
+        taken = (STRIP_WIDE if frame.width >= frame.height else STRIP_TALL) * height
+        below = Frame(frame.left, frame.bottom, frame.width, taken)
+        room = Frame(frame.left, frame.bottom + taken, frame.width, frame.height - taken)
+        if room.height < LEAST:
+            raise ValueError("no room is left for the mechanism above its strip; choose a larger picture, or no strip")
+    room, boxes = beside(room, len(extras.insets))
+    return Shared(room, below, boxes)
+
+
 class Beside:
     """Insets, strip, arrows and phase names of a figure.
 
@@ -39,21 +62,25 @@ class Beside:
     """
 
     def __init__(
-        self, figure: Figure, run: Trajectory, window: Window, extras: Extras, frame: Frame, size: float, unit: float
+        self,
+        figure: Figure,
+        run: Trajectory,
+        window: Window,
+        extras: Extras,
+        frame: Frame,
+        size: float,
+        unit: float,
+        style: Style,
     ) -> None:
+        self._style = style
         self._figure, self._run, self._window, self._extras, self._unit = figure, run, window, extras, unit
-        self._words, self._faint = Words(size, INK, BACKGROUND), Words(size, FAINT, BACKGROUND)
-        self._bold = Words(size, INK, BACKGROUND, "bold")
+        self._words, self._faint = Words(size, style.ink, style.background), Words(size, style.faint, style.background)
+        self._bold = Words(size, style.ink, style.background, "bold")
         self._frame, self._strip, self._turn = frame, None, 0.0
-        room = frame
-        if extras.strip is not None:
-            taken = (STRIP_WIDE if frame.width >= frame.height else STRIP_TALL) * figure.bbox.height
-            below = Frame(frame.left, frame.bottom, frame.width, taken)
-            room = Frame(frame.left, frame.bottom + taken, frame.width, frame.height - taken)
-            if room.height < LEAST:
-                raise ValueError("no room is left for the mechanism above its strip; choose a larger picture, or no strip")
-            self._strip = Strip(run, window, below, extras.strip, extras.phases, size)
-        self.room, self._boxes = beside(room, len(extras.insets))
+        shared = shared_room(frame, extras, figure.bbox.height)
+        if shared.strip is not None and extras.strip is not None:
+            self._strip = Strip(run, window, shared.strip, extras.strip, extras.phases, size, style)
+        self.room, self._boxes = shared.room, shared.insets
         self._longest = ARROW * min(self.room.width, self.room.height)
         self._insets: list[InsetPicture] = []
         self._made: list[Any] = []
@@ -65,7 +92,9 @@ class Beside:
             inset(self._run, self._window, place, box, view.turn)
             for place, box in zip(self._extras.insets, self._boxes, strict=True)
         ]
-        self._insets = [InsetPicture(self._figure, self._run.scene, one, self._unit, self._words) for one in self._made]
+        self._insets = [
+            InsetPicture(self._figure, self._run.scene, one, self._unit, self._words, self._style) for one in self._made
+        ]
 
     def arrows(self, matrix: Array, points: Array, forces: Array) -> list[PathPatch]:
         """Arrows for forces (n, 2), N, at points (n, 2), m, in a picture with this map."""
@@ -100,10 +129,10 @@ class Beside:
         """The name, after a chip of the colour that shades the phase in the strip."""
         size, left = self._bold.size, round(PAD * self._unit)
         base = round(self._frame.bottom + self._frame.height + 0.3 * size)
-        if name in PHASES:
+        if name in self._style.phases:
             foot = out_pixels.shape[0] - base
             chip = slice(foot - round(0.75 * size), foot + 1), slice(left, left + round(0.8 * size))
-            out_pixels[chip][..., :3] = np.round(255.0 * np.array(to_rgb(PHASES[name])))
+            out_pixels[chip][..., :3] = np.round(255.0 * np.array(to_rgb(self._style.phases[name])))
             left += round(1.3 * size)
         self._bold.write(name, left, base, out_pixels)
 
@@ -126,7 +155,7 @@ class Beside:
         self._words.write(metric(self._extras.scale, "N", 1), left + length + 0.6 * size, base, out_pixels)
 
     def _arrow(self, path: Any) -> PathPatch:
-        look = {"facecolor": FORCE, "edgecolor": BACKGROUND, "linewidth": max(0.9 * self._unit, 0.6)}
+        look = {"facecolor": self._style.force, "edgecolor": self._style.background, "linewidth": max(0.9 * self._unit, 0.6)}
         patch = PathPatch(path, transform=IdentityTransform(), **look)
         patch.set_figure(self._figure)
         return patch

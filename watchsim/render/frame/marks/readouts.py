@@ -99,8 +99,16 @@ def turn_text(turn: float) -> str:
     return f"picture turned by {abs(degrees):g}°{way}"
 
 
-def reading(body: Body, frames: Array) -> tuple[Callable[[Array], str], tuple[str, str]]:
-    """How to show a body's pose (its angle; a slide's travel), and the texts at the two ends of the range in `frames`."""
+def goes_round(angles: Array) -> bool:
+    """True where turns have gone by (rad), so that an angle is better read within its turn."""
+    return len(angles) > 0 and float(np.abs(angles).max()) >= math.tau
+
+
+def reading(body: Body, frames: Array, within_turn: bool = False) -> tuple[Callable[[Array], str], tuple[str, str]]:
+    """How to show a body's pose (its angle; a slide's travel), and the texts at the two ends of the range in `frames`.
+
+    `within_turn`: the angle from 0° to 360°, whole turns left away.
+    """
     if body.motion == "slide":
         start, axis = np.array(body.position), np.array(body.axis)
         values = 1e3 * ((frames[:, :2] - start) @ axis)
@@ -112,6 +120,13 @@ def reading(body: Body, frames: Array) -> tuple[Callable[[Array], str], tuple[st
         return travel, (f"{signed(float(values.min()), decimals)} mm", f"{signed(float(values.max()), decimals)} mm")
     values = np.degrees(frames[:, 2])
     decimals = 2 if float(np.ptp(values)) < 30.0 else 1
+    if within_turn:
+
+        def rest(frame: Array) -> str:
+            text = f"{math.degrees(frame[2]) % 360.0:.{decimals}f}"
+            return f"{0.0:.{decimals}f}°" if text.startswith("360") else f"{text}°"
+
+        return rest, (f"{0.0:.{decimals}f}°", f"{300.0:.{decimals}f}°")
 
     def angle(frame: Array) -> str:
         return f"{signed(math.degrees(frame[2]), decimals)}°"

@@ -20,7 +20,8 @@ from watchsim.analysis.timing.phases import Phase
 from watchsim.render.frame.marks.readouts import clock
 from watchsim.render.frame.pose_history import Window, choose, dense
 from watchsim.render.frame.view import Frame
-from watchsim.render.palette import BACKGROUND, CONTACT, FAINT, GRID, INK, PHASES, looks
+from watchsim.render.palette import looks
+from watchsim.render.style import Style
 from watchsim.scene.roles import roles
 from watchsim.simulation.record.trajectory import Trajectory
 
@@ -37,7 +38,10 @@ BELOW = 0.1  # of the height of one of the two rows, under its axes
 class Strip:
     """The strip of one body in `room` (pixels); `size` is that of its text."""
 
-    def __init__(self, run: Trajectory, window: Window, room: Frame, body: str, phases: Sequence[Phase], size: float) -> None:
+    def __init__(
+        self, run: Trajectory, window: Window, room: Frame, body: str, phases: Sequence[Phase], size: float, style: Style
+    ) -> None:
+        self._style = style
         self._run, self._room, self._phases, self._size = run, room, phases, size
         self._body = choose(run, [body])[0]
         self._window = window
@@ -62,7 +66,9 @@ class Strip:
         middle = place[1].start + left + (share - number) * (right - left)
         half = max(1, round(0.06 * self._size))
         columns = slice(round(middle) - half, round(middle) + half)
-        out_pixels[place[0].start : bottom - round(self._foot()), columns, :3] = np.round(255 * np.array(to_rgb(CONTACT)))
+        out_pixels[place[0].start : bottom - round(self._foot()), columns, :3] = np.round(
+            255 * np.array(to_rgb(self._style.contact))
+        )
 
     def _foot(self) -> float:
         """Pixels from the bottom of the strip to that of its lower axes."""
@@ -75,12 +81,12 @@ class Strip:
         """The pixels of one page, and the columns of its first and last instant."""
         start, end = (self._window[0] + k / self._pages * (self._window[1] - self._window[0]) for k in (number, number + 1))
         width, height = round(self._room.width), round(self._room.height)
-        figure = Figure(figsize=((width + 0.5) / DPI, (height + 0.5) / DPI), dpi=DPI, facecolor=BACKGROUND)
+        figure = Figure(figsize=((width + 0.5) / DPI, (height + 0.5) / DPI), dpi=DPI, facecolor=self._style.background)
         canvas = FigureCanvasAgg(figure)
         left, right, foot = LEFT * self._size, 1.6 * self._size, FOOT * self._size
         each = (height - foot) / 2.0
         t, q, u, _ = dense(self._run, (start, end))
-        told, line = clock((start, end)), looks(self._run.scene)[self._body.name].line
+        told, line = clock((start, end)), self._style.curve(looks(self._run.scene)[self._body.name])
         travels = self._body.motion in ("slide", "free")
         units = ("travel (mm)", "velocity (mm/s)") if travels else ("angle (°)", "velocity (°/s)")
         for k, (values, unit) in enumerate(zip((q, u), units, strict=True)):
@@ -97,33 +103,37 @@ class Strip:
             )
             axes.set_xlim((start - told.base) * told.factor, (end - told.base) * told.factor)
             axes.set_ylim(*self._reach[k])
-            self._style(axes, f"{self._body.name}\n{unit}", k == 1)
-        axes.set_xlabel(told.label, fontsize=0.8 * self._size, color=INK, labelpad=0.05 * self._size)
+            self._dress(axes, f"{self._body.name}\n{unit}", k == 1)
+        axes.set_xlabel(told.label, fontsize=0.8 * self._size, color=self._style.ink, labelpad=0.05 * self._size)
         canvas.draw()
         return np.array(canvas.buffer_rgba())[:height, :width].copy(), (left, width - right)
 
     def _shade(self, axes: Axes, start: float, end: float, base: float, factor: float) -> None:
         for phase in self._phases:
-            if phase.name in PHASES and phase.end > start and phase.start < end:
+            if phase.name in self._style.phases and phase.end > start and phase.start < end:
                 axes.axvspan(
                     (phase.start - base) * factor,
                     (phase.end - base) * factor,
-                    color=PHASES[phase.name],
+                    color=self._style.phases[phase.name],
                     linewidth=0.0,
                     zorder=0,
                 )
 
-    def _style(self, axes: Axes, unit: str, last: bool) -> None:
-        axes.set_facecolor(BACKGROUND)
+    def _dress(self, axes: Axes, unit: str, last: bool) -> None:
+        axes.set_facecolor(self._style.background)
         axes.locator_params(axis="y", nbins=3)
-        axes.grid(True, color=GRID, linewidth=0.8)
+        axes.grid(True, color=self._style.grid, linewidth=0.8)
         axes.set_axisbelow(True)
-        axes.tick_params(labelsize=0.8 * self._size, colors=INK, length=0.0, labelbottom=last, pad=0.25 * self._size)
-        axes.set_ylabel(unit, fontsize=0.8 * self._size, color=INK, rotation=0, ha="left", va="center", parse_math=False)
+        axes.tick_params(
+            labelsize=0.8 * self._size, colors=self._style.ink, length=0.0, labelbottom=last, pad=0.25 * self._size
+        )
+        axes.set_ylabel(
+            unit, fontsize=0.8 * self._size, color=self._style.ink, rotation=0, ha="left", va="center", parse_math=False
+        )
         axes.yaxis.set_label_coords((1.6 - LEFT) * self._size / (self._room.width - (LEFT + 1.6) * self._size), 0.5)
         for side, spine in axes.spines.items():
             spine.set_visible(side in ("left", "bottom"))
-            spine.set_color(FAINT)
+            spine.set_color(self._style.faint)
 
 
 def strip_body(run: Trajectory, asked: str | None) -> str:

@@ -18,11 +18,13 @@ from matplotlib.transforms import IdentityTransform
 from numpy.typing import NDArray
 
 from watchsim.render.frame.marks.lettering import Lettering
-from watchsim.render.frame.marks.readouts import Clock, clock, reading, scale_bar, speed_text, turn_text
+from watchsim.render.frame.marks.readouts import Clock, clock, goes_round, reading, scale_bar, speed_text, turn_text
 from watchsim.render.frame.pose_history import Window, sampled
 from watchsim.render.frame.view import Frame
-from watchsim.render.palette import BACKGROUND, FAINT, GRID, INK, Finish, looks
+from watchsim.render.palette import Finish, looks
+from watchsim.render.style import Style
 from watchsim.scene.body import Body
+from watchsim.scene.roles import roles
 from watchsim.simulation.record.trajectory import Trajectory
 
 Array = NDArray[np.float64]
@@ -67,36 +69,36 @@ class Layout:
             self.small.write(item.text(own), item.right, item.baseline, out_pixels)
 
 
-def lay_out(figure: Figure, run: Trajectory, window: Window, step: float) -> Layout:
+def lay_out(figure: Figure, run: Trajectory, window: Window, step: float, style: Style) -> Layout:
     """Place title, time and read-outs on the figure (one point is one pixel) and say what room is left."""
     width, height = int(figure.bbox.width), int(figure.bbox.height)
     unit = _unit(figure)
-    time = Lettering(max(TIME * unit, SMALLEST), INK, BACKGROUND, "bold")
-    small = Lettering(max(SMALL * unit, SMALLEST), INK, BACKGROUND)
+    time = Lettering(max(TIME * unit, SMALLEST), style.ink, style.background, "bold")
+    small = Lettering(max(SMALL * unit, SMALLEST), style.ink, style.background)
     told = clock(window)
     baseline = round(height - PAD * unit - 0.75 * TIME * unit)
     time_width = max(time.width(told.text(t, step)) for t in window)
-    _title(figure, run.scene.title, (PAD * unit, baseline), width - 2.0 * PAD * unit - time_width - GAP * unit)
+    _title(figure, run.scene.title, (PAD * unit, baseline), width - 2.0 * PAD * unit - time_width - GAP * unit, style.ink)
     # The line for notes is kept free even where none is shown: a frame drawn alone matches its movie.
     top = height - baseline + 0.35 * TIME * unit + 1.3 * small.size
-    readings, bottom = _readings(figure, run, window, small)
+    readings, bottom = _readings(figure, run, window, small, style)
     frame = Frame(0.0, bottom, width, height - top - bottom)
     if frame.height < LEAST:
         raise ValueError(f"size = {width}x{height}: no room is left beside title, time and read-outs; choose a larger picture")
     return Layout(frame, told, step, time, (round(width - PAD * unit), baseline), small, readings)
 
 
-def draw_notes(figure: Figure, frame: Frame, speed: float | None, turn: float) -> None:
+def draw_notes(figure: Figure, frame: Frame, speed: float | None, turn: float, style: Style) -> None:
     """Below the time: how fast a movie goes, and by how much (rad) the picture is turned against the scene's axes."""
     size = max(SMALL * _unit(figure), SMALLEST)
     notes = [] if speed is None else [speed_text(speed)]
     if turned := turn_text(turn):
         notes.append(turned)
     place = (frame.left + frame.width - PAD * _unit(figure), frame.bottom + frame.height + 0.3 * size)
-    _words(figure, ", ".join(notes), place, size, FAINT, ha="right")
+    _words(figure, ", ".join(notes), place, size, style.faint, ha="right")
 
 
-def draw_scale(figure: Figure, scale: float) -> None:
+def draw_scale(figure: Figure, scale: float, style: Style) -> None:
     """A bar of a round length at the lower right; `scale` is in pixels per metre."""
     width, unit = int(figure.bbox.width), _unit(figure)
     length, name = scale_bar(BAR * width / scale)
@@ -105,15 +107,15 @@ def draw_scale(figure: Figure, scale: float) -> None:
     line = Line2D(
         [left, left, left, right, right, right],
         [base + tick, base - tick, base, base, base - tick, base + tick],
-        color=INK,
+        color=style.ink,
         linewidth=max(1.5 * unit, 1.0),
         transform=IdentityTransform(),
     )
     figure.add_artist(line)
-    _words(figure, name, (0.5 * (left + right), base + 2.0 * tick), max(SMALL * unit, SMALLEST), INK, ha="center")
+    _words(figure, name, (0.5 * (left + right), base + 2.0 * tick), max(SMALL * unit, SMALLEST), style.ink, ha="center")
 
 
-def draw_key(figure: Figure, entries: Sequence[tuple[str, str]]) -> None:
+def draw_key(figure: Figure, entries: Sequence[tuple[str, str]], style: Style) -> None:
     """Strokes in their colours with what they mean, side by side in the line below the title."""
     unit = _unit(figure)
     size, x = max(SMALL * unit, SMALLEST), PAD * unit
@@ -127,15 +129,17 @@ def draw_key(figure: Figure, entries: Sequence[tuple[str, str]]) -> None:
             transform=IdentityTransform(),
         )
         figure.add_artist(stroke)
-        text = _words(figure, meaning, (x + 2.2 * size, base), size, INK)
+        text = _words(figure, meaning, (x + 2.2 * size, base), size, style.ink)
         x += 2.2 * size + _width(text) + GAP * unit
 
 
-def draw_rules(figure: Figure, frame: Frame) -> None:
+def draw_rules(figure: Figure, frame: Frame, style: Style) -> None:
     """Hairlines along the frame, for a picture that cuts bodies off there."""
     for y in (frame.bottom, frame.bottom + frame.height):
         ends = [frame.left, frame.left + frame.width]
-        figure.add_artist(Line2D(ends, [y, y], color=GRID, linewidth=max(_unit(figure), 0.7), transform=IdentityTransform()))
+        figure.add_artist(
+            Line2D(ends, [y, y], color=style.grid, linewidth=max(_unit(figure), 0.7), transform=IdentityTransform())
+        )
 
 
 def relative_size(width: float, height: float) -> float:
@@ -160,9 +164,9 @@ def _width(text: Text) -> float:
     return float(text.get_window_extent().width)
 
 
-def _title(figure: Figure, title: str, place: tuple[float, float], room: float) -> None:
+def _title(figure: Figure, title: str, place: tuple[float, float], room: float, ink: str) -> None:
     """The scene's title, shortened where it does not fit."""
-    text = _words(figure, title, place, max(TITLE * _unit(figure), SMALLEST), INK, weight="bold")
+    text = _words(figure, title, place, max(TITLE * _unit(figure), SMALLEST), ink, weight="bold")
     while title and _width(text) > room:
         title = title[:-1].rstrip(" ,;:-–")
         text.set_text(f"{title}…" if title else "")
@@ -181,17 +185,21 @@ class _Cell:
     taken: float
 
 
-def _readings(figure: Figure, run: Trajectory, window: Window, small: Lettering) -> tuple[tuple[Reading, ...], float]:
+def _readings(
+    figure: Figure, run: Trajectory, window: Window, small: Lettering, style: Style
+) -> tuple[tuple[Reading, ...], float]:
     """Rows of name and value from the bottom left, and the height they take."""
     unit = _unit(figure)
     line, left, limit = 1.55 * small.size, PAD * unit, figure.bbox.width * (1.0 - BAR) - (PAD + GAP) * unit
     cells: list[_Cell] = []
-    x, row, worn = left, 0, looks(run.scene)
+    x, row, worn, swinging = left, 0, looks(run.scene), roles(run.scene).oscillator
     for body in run.scene.bodies:
         if body.name not in run.slices:
             continue
-        tell, ends = reading(body, _told(run, body, window))
-        name = _words(figure, body.name, (0.0, 0.0), small.size, INK)
+        told = _told(run, body, window)
+        within = body.motion != "slide" and body.name != swinging and goes_round(told[:, 2])
+        tell, ends = reading(body, told, within)
+        name = _words(figure, f"{body.name} mod 360°" if within else body.name, (0.0, 0.0), small.size, style.ink)
         taken = 1.5 * CHIP * small.size + _width(name) + 0.8 * small.size + max(small.width(text) for text in ends)
         if x > left and x + taken > limit:
             x, row = left, row + 1

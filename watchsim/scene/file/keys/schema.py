@@ -63,7 +63,9 @@ SPRING: Keys = {
     "frequency": Key(units.FREQUENCY),
     "stiffness": Key(units.ROTARY_STIFFNESS, units.LINEAR_STIFFNESS),
     "rest": Key(units.ANGLE, units.LENGTH),
+    "draw": PLAIN,
 }
+COIL: Keys = {"inner": LENGTH, "outer": LENGTH, "turns": NUMBER, "stud": ANGLE, "width": LENGTH}  # draw of a spring
 TORQUE: Keys = {"body": PLAIN, "value": Key(units.TORQUE, units.FORCE), "over": PLAIN, "table": PLAIN}
 DAMPING: Keys = {
     "body": PLAIN,
@@ -103,6 +105,8 @@ def key_at(path: tuple[str, ...]) -> Key | None:
         if rest[1] == "swing" and len(rest) == 3:
             return SWING.get(rest[2])
         return NAMED[section].get(rest[1])
+    if section == "springs" and rest[1] == "draw" and len(rest) >= 3:
+        return COIL.get(rest[2])
     return LISTED[section].get(rest[1])
 
 
@@ -115,6 +119,8 @@ def siblings(path: tuple[str, ...]) -> tuple[str, ...]:
         if path[2:3] == ("adjust",) and len(path) > 4:
             return tuple(ADJUST)
         return tuple(SOLID if path[2:3] == ("solids",) and len(path) > 4 else NAMED[section])
+    if section == "springs" and path[2:3] == ("draw",) and len(path) > 3:
+        return tuple(COIL)
     return tuple(LISTED[section]) if section in LISTED else SECTIONS
 
 

@@ -14,6 +14,7 @@ from watchsim.scene.body import Body
 from watchsim.scene.errors import Faults
 from watchsim.scene.file.keys.key_values import NAN, Table, shown
 from watchsim.scene.file.keys.schema import DAMPING, SPRING, TORQUE, Keys, nearest
+from watchsim.scene.file.readers.read_coil import read_coil
 from watchsim.scene.force import Damping, Spring, Torque
 from watchsim.scene.oscillation import Oscillator, loads, oscillator
 
@@ -96,7 +97,7 @@ def _note_body(table: Table, known: Mapping[str, Body]) -> None:
 def _spring(entry: Entry) -> Spring:
     stiffness = _stiffness(entry)
     frequency = math.sqrt(stiffness / entry.mass) / math.tau if "frequency" in entry.table and stiffness > 0.0 else None
-    return Spring(entry.name, stiffness, entry.table.quantity("rest"), frequency)
+    return Spring(entry.name, stiffness, entry.table.quantity("rest"), frequency, read_coil(entry.table, entry.body))
 
 
 def _stiffness(entry: Entry) -> float:
