@@ -16,7 +16,7 @@ FAINT = "#80858c"
 GRID = "#ddd8ce"
 CONTACT = "#e8590c"
 FORCE = "#0b5fa5"
-PHASES = {  # of a beat; pale, to lie behind curves, and different for every kind of colour vision (tests/render/test_colours.py)
+PHASES = {  # of a beat; pale, to lie behind curves, and distinct for every kind of colour vision (tests/figures/test_colours)
     "unlock": "#a6cee4",
     "catch-up": "#f5d999",
     "impulse": "#8cd3c0",

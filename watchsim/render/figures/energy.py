@@ -13,10 +13,12 @@ from watchsim.analysis.timeline.oscillation import Beat, shown_beats
 from watchsim.analysis.timeline.rows import Stage
 from watchsim.analysis.timeline.table import title as phase_title
 from watchsim.render.figures.style import (
+    EDGE,
     FULL,
     HAIR,
     HEADING,
     LABEL,
+    MM,
     NARROW,
     SERIES,
     SMALL,
@@ -35,8 +37,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-LEFT, RIGHT, ROW, FOOT, OVER, UNDER, KEY = 33.0, 4.0, 5.0, 9.0, 7.0, 9.0, 5.0  # mm
-ROOM = 1.32  # longest bars: words beside a bar
+LEFT, RIGHT, ROW, OVER, UNDER, KEY = 24.0, 4.0, 5.0, 6.0, 9.0, 4.0  # mm
+WORDS = 27.0  # mm, beside a bar
 NANO = 1e9
 PARTS = ("stored", "damping", "friction", "impacts")  # of what is supplied
 COLOURS = dict(zip((*PARTS, "given back to the drive"), SERIES, strict=False))
@@ -64,8 +66,8 @@ def plot_energy(
     rows = -(-len(stages) // across) if stages else 0
     whole = ROW * len(shares.went_to)
     each = ROW * max((len(own) for own in stages), default=0)
-    step = OVER + KEY + each + UNDER
-    made = figure(width, HEADING + OVER + whole + UNDER + rows * step)
+    step = OVER + each + UNDER
+    made = figure(width, HEADING + OVER + whole + UNDER + (KEY if rows else 0.0) + rows * step)
     closes = f", the account closes to {abs(run.energy.get('residual_relative', 0.0)):.0e}"
     heading(made, run.scene.title, f"{metric(shares.supplied, 'J', 4)} put in over {run.simulated:.6g} s{closes}")
     top = HEADING + OVER
@@ -74,12 +76,13 @@ def plot_energy(
     wide = width / max(across, 1) - LEFT - RIGHT
     reach = max((abs(_sum(one)) for own in stages for one in own), default=0.0)
     for k, (beat, own) in enumerate(zip(beats_shown, stages, strict=True)):
-        left, up = (k % across) * (LEFT + wide + RIGHT) + LEFT, top + (k // across) * step + OVER + KEY
+        left, up = (k % across) * (LEFT + wide + RIGHT) + LEFT, top + KEY + (k // across) * step + OVER
         axes = panel(made, left, up, wide, ROW * len(own))
         _phases(axes, own, NANO * reach)
         stone = beat.stages[0].pallet
         title(axes, f"beat {beat.stages[0].beat}{f', {stone} stone' if stone else ''}")
-        axes.title.set_position((0.0, 1.0))
+        if k == 0:
+            _key(made, axes, top)
     return made
 
 
@@ -88,16 +91,25 @@ def _whole(axes: Axes, went: dict[str, float], supplied: float) -> None:
     dress(axes, grid="x")
     names = list(went)
     values = [100.0 * went[name] for name in names]
-    bars = axes.barh(range(len(names)), values, height=0.66, color=[COLOURS.get(name, FAINT) for name in names])
+    bars = axes.barh(
+        range(len(names)),
+        values,
+        height=0.66,
+        color=[COLOURS.get(name, FAINT) for name in names],
+        edgecolor="white",
+        linewidth=0.0,
+    )
     for bar, name, value in zip(bars, names, values, strict=True):
         bar.set_gid(f"energy {name}")
+        bar.set_hatch(HATCHES.get(name))
         amount = metric(went[name] * supplied, "J", 4)
         words = f"{value:.1f} %, {amount}".replace("-", "−")
         place = (max(value, 0.0), bar.get_y() + 0.5 * bar.get_height())
         axes.annotate(words, place, (3, 0), textcoords="offset points", va="center", fontsize=SMALL, color=INK)
     axes.set_yticks(range(len(names)), names)
     axes.invert_yaxis()
-    axes.set_xlim(min(*values, 0.0) * 1.1, ROOM * max(*values, 1e-9))
+    wide = axes.get_window_extent().width / axes.figure.dpi / MM
+    axes.set_xlim(min(*values, 0.0) * 1.1, max(*values, 1e-9) * wide / (wide - WORDS))
     axes.axvline(0.0, color=FAINT, linewidth=HAIR)
     axes.set_xlabel("share of what was put in (%)", labelpad=1.5)
     axes.tick_params(axis="y", length=0.0, labelsize=LABEL)
@@ -119,7 +131,6 @@ def _parts(stage: Stage) -> dict[str, float]:
 def _phases(axes: Axes, stages: list[Stage], reach: float) -> None:
     """Stacked bars: what was taken to the right of zero, what stores gave to the left; a line where the drive's work ends."""
     dress(axes, grid="x")
-    handles: dict[str, object] = {}
     for k, stage in enumerate(stages):
         ends = {True: 0.0, False: 0.0}
         for name, value in _parts(stage).items():
@@ -129,11 +140,9 @@ def _phases(axes: Axes, stages: list[Stage], reach: float) -> None:
                 hatch=HATCHES.get(name), edgecolor="white", linewidth=0.0,
             )  # fmt: skip
             bar[0].set_gid(f"energy {phase_title(stage)} {name}")
-            handles.setdefault(name, bar[0])
             ends[up] += value
         supplied = NANO * stage.energy.supplied
-        (mark,) = axes.plot([supplied, supplied], [k - 0.44, k + 0.44], color=INK, linewidth=1.2)
-        handles.setdefault("drive", mark)
+        axes.plot([supplied, supplied], [k - 0.44, k + 0.44], color=INK, linewidth=1.2, gid=f"drive {phase_title(stage)}")
     axes.set_yticks(range(len(stages)), [phase_title(stage) for stage in stages])
     axes.set_ylim(len(stages) - 0.5, -0.5)
     low = min(0.0, *(NANO * min(0.0, sum(min(v, 0.0) for v in _parts(stage).values())) for stage in stages))
@@ -141,5 +150,17 @@ def _phases(axes: Axes, stages: list[Stage], reach: float) -> None:
     axes.axvline(0.0, color=FAINT, linewidth=HAIR)
     axes.set_xlabel("energy (nJ)", labelpad=1.5)
     axes.tick_params(axis="y", length=0.0, labelsize=LABEL)
-    where = {"loc": "lower left", "bbox_to_anchor": (0.0, 1.0), "ncols": len(handles), "borderaxespad": 0.0}
-    key(axes, [(handle, name) for name, handle in handles.items()], **where)
+
+
+def _key(made: Figure, axes: Axes, top: float) -> None:
+    """What the parts of the bars stand for, above the first panel of phases."""
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    handles: list[tuple[object, str]] = [
+        (Patch(facecolor=COLOURS[name], hatch=HATCHES.get(name), edgecolor="white", linewidth=0.0), name) for name in PARTS
+    ]
+    handles.append((Line2D([], [], color=INK, linewidth=1.2), "work of the drive"))
+    width, height = (inches / MM for inches in made.get_size_inches())
+    where = {"bbox_to_anchor": (EDGE / width, 1.0 - (top + KEY) / height), "bbox_transform": made.transFigure}
+    key(axes, handles, loc="lower left", ncols=len(handles), borderaxespad=0.0, borderpad=0.0, **where)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from watchsim.analysis.timeline.rows import Stage
 from watchsim.analysis.timeline.table import TITLES, title
 from watchsim.analysis.timing.phases import Phase
-from watchsim.render.figures.style import EDGE, HAIR, LEAD, MM, PLAIN, POINT, SMALL
+from watchsim.render.figures.style import EDGE, HAIR, LEAD, LETTER, MM, POINT, SMALL
 from watchsim.render.palette import FAINT, INK, PHASE_LINES, PHASES
 
 if TYPE_CHECKING:
@@ -71,7 +71,7 @@ def name_key(figure: Figure, names: Iterable[str], top: float, lines: bool = Fal
     x, y = EDGE, top + 0.5 * row
     for name in names:
         words = TITLES.get(name, name)
-        own = SWATCH + GAP + PLAIN * SMALL * POINT * len(words)
+        own = SWATCH + GAP + LETTER * SMALL * POINT * len(words)
         if x > EDGE and x + own > wide - EDGE:
             x, y = EDGE, y + 1.15 * row
         tall = 0.7 if lines else 0.7 * row

@@ -14,6 +14,7 @@ from watchsim.render.palette import FAINT, GRID, INK
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.text import Text
 
 MM = 1.0 / 25.4  # inches
 POINT = 1.0 / 72.0 / MM  # mm
@@ -25,7 +26,7 @@ EDGE = 2.0  # mm, that nothing comes closer to the figure's edge
 HEADING = 11.0  # mm, the title and a line below it
 CURVE, THIN, HAIR = 0.9, 0.6, 0.5  # pt, of curves, aids and frames
 LEAD = 1.3  # height of a line of text over its size
-BOLD, PLAIN = 0.70, 0.60  # mean width of a letter over its size, on the safe side
+LETTER = 0.60  # mean width of a letter over its size, on the safe side
 
 # Okabe and Ito's colours for every kind of colour vision (jfly.uni-koeln.de/color, 2008), the yellow left out, and ink.
 SERIES = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", INK)
@@ -54,19 +55,25 @@ def panel(figure: Figure, left: float, top: float, width: float, height: float) 
 def heading(figure: Figure, title: str, words: str = "") -> None:
     """A title and a line below it, at the upper left; what does not fit is cut."""
     wide, high = (inches / MM for inches in figure.get_size_inches())
-    room = wide - 2.0 * EDGE
-    look = {"va": "center", "color": INK}
-    figure.suptitle(
-        cut(title, room, TITLE, BOLD), x=EDGE / wide, y=1.0 - 4.0 / high, ha="left", fontsize=TITLE, weight="bold", **look
-    )
+    look = {"ha": "left", "va": "center", "color": INK}
+    made = [figure.suptitle(title, x=EDGE / wide, y=1.0 - 4.0 / high, fontsize=TITLE, weight="bold", **look)]
     if words:
-        figure.text(EDGE / wide, 1.0 - 8.5 / high, cut(words, room, LABEL), fontsize=LABEL, **look)
+        made.append(figure.text(EDGE / wide, 1.0 - 8.5 / high, words, fontsize=LABEL, **look))
+    for text in made:
+        fit(text, wide - 2.0 * EDGE)
 
 
-def cut(text: str, room: float, size: float, letter: float = PLAIN) -> str:
-    """As much of a text as fits into `room` mm at `size` pt."""
-    most = int(room / (letter * size * POINT))
-    return text if len(text) <= most else f"{text[: max(most - 1, 1)].rstrip()}…"
+def fit(text: Text, room: float) -> None:
+    """Cut a text, measured as it is drawn, to `room` mm."""
+    figure = text.get_figure(root=True)
+    assert figure is not None
+    whole = text.get_text()
+    for _ in range(4):
+        width = text.get_window_extent().width / figure.dpi / MM
+        if width <= room:
+            return
+        most = min(int(len(text.get_text()) * room / width), len(text.get_text()) - 2)
+        text.set_text(f"{whole[: max(most, 1)].rstrip()}…")
 
 
 def dress(axes: Axes, grid: str = "both") -> None:

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 LEFT, RIGHT, TALL, BETWEEN, FOOT, KEY = 14.0, 4.0, 24.0, 3.5, 8.0, 4.0  # mm
 LEAST = {"amplitude": (1.0, 0.01), "rate": (1.0, 1.0), "beat error": (0.01, 0.01)}  # a smaller range is not blown up: °, mm; …
 COLUMNS = 1500  # of dots in a panel
+BIGGER = 1.9  # dots of one direction, so that those of the other do not hide them
 
 
 def plot_timing(run: Trajectory, window: Sequence[float] | None = None, width: float = FULL) -> Figure:
@@ -77,11 +78,12 @@ def _dots(axes: Axes, found: Beats, inside: Array, values: Array, name: str) -> 
     handles = []
     forward = found.end_at > found.start_at
     size = dot(len(inside))
-    for way, colour, mark, label in ((True, SERIES[0], "o", "forward"), (False, SERIES[1], "s", "back")):
+    directions = ((True, SERIES[0], "o", "forward", BIGGER), (False, SERIES[1], "s", "back", 1.0))
+    for way, colour, mark, label, bigger in directions:
         own = inside[forward[inside] == way]
         x, y = reduced(found.t[own], values[own], COLUMNS)
         gid = f"{name} {label}"
-        look = {"color": colour, "markersize": size, "markeredgewidth": 0.0, "gid": gid}
+        look = {"color": colour, "markersize": bigger * size, "markeredgewidth": 0.0, "gid": gid}
         handles.append((axes.plot(x, y, mark, **look)[0], label))  # type: ignore[arg-type]
     return handles
 

@@ -18,7 +18,6 @@ from watchsim.render.figures.column_extremes import reduced
 from watchsim.render.figures.passing_phases import passing
 from watchsim.render.figures.phase_bands import name_key, shade
 from watchsim.render.figures.style import (
-    COLUMN,
     CURVE,
     FULL,
     HEADING,

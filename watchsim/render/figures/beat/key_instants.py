@@ -13,11 +13,10 @@ import numpy as np
 
 from watchsim.analysis.contact_forces import absolute, forces
 from watchsim.analysis.timeline.oscillation import Beat, shown_beats
-from watchsim.analysis.timeline.rows import Stage
 from watchsim.analysis.timeline.table import title as phase_title
 from watchsim.mechanism.compile import compile_scene
 from watchsim.render.figures.phase_bands import shade, spread
-from watchsim.render.figures.phase_plot import around
+from watchsim.render.figures.phase_plot import AFTER, around
 from watchsim.render.figures.style import (
     CURVE,
     EDGE,
@@ -47,18 +46,17 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MANY = 2  # beats
-ACROSS = {True: 6, False: 3}  # pictures in a row: on a page, in a column
-GAP, TITLE, WORDS, CURVES, LEADS, FOOT, LEFT = 1.5, 5.0, 6.0, 20.0, 7.0, 9.0, 12.0  # mm
+ACROSS = {True: 7, False: 3}  # pictures in a row: on a page, in a column
+GAP, TITLE, WORDS, CURVES, LEADS, FOOT, LEFT = 1.2, 5.0, 4.5, 20.0, 5.0, 9.0, 12.0  # mm
 ROOM = 0.12  # of the lever's size, around it
 TALLEST = 1.35  # of a picture's width
 ARROW = 0.30  # of a picture's width: the largest force
-LATER = 1e-3  # of a phase: its forces are those right after its start
 END = "at rest"
 
 
 @dataclass(frozen=True)
 class Instant:
-    """A time (s) with what begins then."""
+    """A time (s) with what happens then."""
 
     t: float
     words: str
@@ -67,7 +65,7 @@ class Instant:
 def plot_timeline(
     run: Trajectory, window: Sequence[float] | None = None, width: float = FULL, told: list[Beat] | None = None
 ) -> Figure:
-    """The last two beats of a window: the mechanism around the lever as each phase begins, with the contact forces on the lever,
+    """The last two beats of a window: the mechanism around the lever amid each phase, with the contact forces on the lever,
     above the angles of lever and balance in those phases.
 
     ValueError where no beat was recorded whole.
@@ -81,7 +79,7 @@ def plot_timeline(
     rows = [-(-len(one) // across) for one in instants]
     heights = [TITLE + count * (tall + WORDS) + LEADS + CURVES + FOOT for count in rows]
     made = figure(width, HEADING + sum(heights))
-    heading(made, run.scene.title, "The mechanism as each phase begins; arrows: forces on the lever")
+    heading(made, run.scene.title, "Amid each phase; arrows: contact forces on the lever")
     posed = Posed(run.scene, compile_scene(run.scene))
     top = HEADING
     for beat, own, count, height in zip(beats_shown, instants, rows, heights, strict=True):
@@ -96,14 +94,11 @@ def plot_timeline(
 
 
 def key_instants(beat: Beat) -> list[Instant]:
-    """The start of every phase of a beat, and of the rest that follows."""
+    """The middle of every phase of a beat, and the rest that follows."""
     shown = [stage for stage in beat.stages if stage.name != "locked"]
-    rest = [Instant(shown[-1].phase.end, END)] if shown else []
-    return [Instant(stage.phase.start, _words_of(stage)) for stage in shown] + rest
-
-
-def _words_of(stage: Stage) -> str:
-    return phase_title(stage)
+    found = [Instant(0.5 * (stage.phase.start + stage.phase.end), phase_title(stage)) for stage in shown]
+    way = shown[-1].phase.end - shown[0].phase.start
+    return [*found, Instant(min(shown[-1].phase.end + AFTER * way, max(beat.end, shown[-1].phase.end)), END)]
 
 
 def _box(run: Trajectory) -> tuple[float, float, float, float]:
@@ -127,7 +122,7 @@ def _pictures(
     box: tuple[float, float, float, float],
     across: int,
 ) -> None:
-    """A row of pictures, or two, each with what begins."""
+    """A row of pictures, or two, each with what happens."""
     run, posed = drawn
     top, wide, tall = place
     compiled = posed.compiled
@@ -146,22 +141,23 @@ def _pictures(
         posed.draw(axes, absolute(compiled, run.at(one.t)[0][None], False)[0])
         if largest > 0.0 and len(points):
             _arrows(axes, points, force * (ARROW * (box[1] - box[0]) / largest))
-        _words(made, left, up + tall + 0.5 * LEAD * SMALL * POINT + 0.4, f"{k + 1}  {one.words}")
+        _words(made, left, up + tall + 0.5 * LEAD * SMALL * POINT + 0.4, f"{k + 1} {one.words}")
 
 
 def _arrows(axes: Axes, points: Array, arrows: Array) -> None:
     """Forces in the picture's mm, their tips where they press."""
     look = {"arrowstyle": "-|>,head_length=0.25,head_width=0.12", "color": FORCE, "linewidth": 1.0, "shrinkA": 0, "shrinkB": 0}
     for (x, y), (dx, dy) in zip(points, arrows, strict=True):
-        axes.annotate("", (x, y), (x - dx, y - dy), arrowprops=look, zorder=6, annotation_clip=True)
+        arrow = axes.annotate("", (x, y), (x - dx, y - dy), arrowprops=look, zorder=6, annotation_clip=True)
+        if arrow.arrow_patch is not None:
+            arrow.arrow_patch.set_clip_path(axes.patch)
 
 
 def _pushed(run: Trajectory, instants: list[Instant]) -> list[tuple[Array, Array]]:
-    """Where contacts press on the lever (mm) and how (N), right after each instant."""
+    """Where contacts press on the lever (mm) and how (N)."""
     name = roles(run.scene).lever
-    gaps = np.diff([one.t for one in instants], append=instants[-1].t + (instants[-1].t - instants[0].t))
     try:
-        told = forces(run, [one.t + LATER * gap for one, gap in zip(instants, gaps.tolist(), strict=True)])
+        told = forces(run, [one.t for one in instants])
     except ValueError:
         return [(np.zeros((0, 2)), np.zeros((0, 2)))] * len(instants)
     across = np.stack((-told.direction[..., 1], told.direction[..., 0]), axis=-1)

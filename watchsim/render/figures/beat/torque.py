@@ -17,7 +17,6 @@ from watchsim.render.figures.beat.torque_curve import Push, pushes
 from watchsim.render.figures.phase_bands import bands
 from watchsim.render.figures.style import (
     CURVE,
-    EDGE,
     FULL,
     HAIR,
     LEAD,
@@ -55,8 +54,9 @@ def plot_torque(
 ) -> Figure:
     """The torque of all contacts on the balance over its angle, a panel for each of the last two beats of a window.
 
-    Positive with the swing, whichever way it goes. The area under a phase is the work of its forces; written on it is what the phase gives to the balance in all, impacts
-    included, as in phases.csv. ValueError where no beat was recorded whole, or the run knows no forces.
+    Positive with the swing, whichever way it goes. The area under a phase is the work of its forces; written on it is what the
+    phase gives to the balance in all, impacts included, as in phases.csv. ValueError where no beat was recorded whole, or the
+    run knows no forces.
     """
     beats_shown = (told or shown_beats(run, window, rubbed=False))[-MANY:]
     found = [pushes(run, beat) for beat in beats_shown]
@@ -69,7 +69,7 @@ def plot_torque(
     heading(
         made,
         run.scene.title,
-        f"Torque of all contacts on {name}, positive with the swing; triangles: impacts that give (up) or take (down)",
+        f"Torque of contacts on {name}, positive with its swing; triangles: impacts",
     )
     largest = max((float(np.abs(one.torque).max()) for push in found for one in push), default=0.0) or 1.0
     factor, unit = next(((f, u) for f, u in PREFIXES if largest * f >= 1.0), PREFIXES[-1])

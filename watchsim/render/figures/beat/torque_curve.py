@@ -1,12 +1,13 @@
 """Which torque do the contacts exert on the balance, and which work do forces and impacts do on it in each phase of a beat?
 
-From the forces at the contacts and the jumps of the velocity; the timeline (phases.csv) has the same energies from the balance's
-books alone.
+From the forces at the contacts and the jumps of the velocity; the timeline (phases.csv) has the same energies from the books of
+the balance alone.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -65,7 +66,7 @@ def _instants(run: Trajectory, start: float, end: float, longest: float) -> Arra
     inside = run.t[(run.t > start) & (run.t < end)]
     edges = np.unique(np.concatenate(([start], inside, [end])))
     found = []
-    for low, high in zip(edges[:-1], edges[1:], strict=True):
+    for low, high in pairwise(edges.tolist()):
         count = max(WITHIN, int(np.ceil((high - low) / longest)) + 1) if high - low > longest else WITHIN
         last = high - max(JUST * (high - low), float(np.spacing(high)))
         found.append(np.linspace(low, max(last, low), count))
