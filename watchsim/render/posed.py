@@ -36,7 +36,7 @@ class Posed:
             from matplotlib.patches import PathPatch
 
             filled = not part.ground
-            axes.add_patch(
+            axes.add_artist(  # the limits are set by who draws; working them out from all curves takes longer than drawing
                 PathPatch(path, fill=filled, facecolor=part.finish.fill, edgecolor=part.finish.edge, linewidth=EDGE, zorder=2)
             )
 

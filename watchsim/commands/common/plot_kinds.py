@@ -35,6 +35,14 @@ class Request:
 
         return shown_beats(self.run, self.window, rubbed=False)
 
+    @property
+    def beats_if_any(self) -> list[Beat]:
+        """The same; none where there are none."""
+        try:
+            return self.beats
+        except ValueError:
+            return []
+
 
 def _kinematics(asked: Request) -> Figure:
     from watchsim.render.figures.plots import plot_kinematics
@@ -43,9 +51,9 @@ def _kinematics(asked: Request) -> Figure:
 
 
 def _phases(asked: Request) -> Figure:
-    from watchsim.render.figures.phase_plot import phase_plot
+    from watchsim.render.figures.phase_plot import plot_phases
 
-    return phase_plot(asked.run, asked.window, asked.width, asked.beats)
+    return plot_phases(asked.run, asked.window, asked.width, asked.beats)
 
 
 def _portrait(asked: Request) -> Figure:
@@ -75,7 +83,7 @@ def _timeline(asked: Request) -> Figure:
 def _energy(asked: Request) -> Figure:
     from watchsim.render.figures.energy import plot_energy
 
-    return plot_energy(asked.run, asked.window, asked.width)
+    return plot_energy(asked.run, asked.window, asked.width, asked.beats_if_any)
 
 
 def _timing(asked: Request) -> Figure:

@@ -57,10 +57,7 @@ def plot_energy(
     shares = energy_shares(run)
     if not shares.went_to:
         raise ValueError("no energy was put into this run, so there are no shares to draw")
-    try:
-        beats_shown = (told or shown_beats(run, window, rubbed=False))[-MANY:]
-    except ValueError:
-        beats_shown = []
+    beats_shown = (_beats(run, window) if told is None else told)[-MANY:]
     stages = [[one for one in beat.stages if one.name != "locked"] for beat in beats_shown]
     across = len(stages) if width >= NARROW else 1
     rows = -(-len(stages) // across) if stages else 0
@@ -84,6 +81,13 @@ def plot_energy(
         if k == 0:
             _key(made, axes, top)
     return made
+
+
+def _beats(run: Trajectory, window: Sequence[float] | None) -> list[Beat]:
+    try:
+        return shown_beats(run, window, rubbed=False)
+    except ValueError:
+        return []
 
 
 def _whole(axes: Axes, went: dict[str, float], supplied: float) -> None:

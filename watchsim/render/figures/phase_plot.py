@@ -28,7 +28,7 @@ BEFORE, AFTER = 0.08, 0.12  # of a beat's phases: what is shown besides
 MANY = 2  # beats that are drawn one by one
 
 
-def phase_plot(
+def plot_phases(
     run: Trajectory, window: Sequence[float] | None = None, width: float = FULL, told: list[Beat] | None = None
 ) -> Figure:
     """A figure `width` mm wide: left the whole window (s; default the last oscillation), then its last two beats at large.

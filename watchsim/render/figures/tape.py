@@ -99,7 +99,7 @@ def _paper(axes: Axes, shown: Tape, inside: slice) -> None:
     words = "rising gains, falling loses"
     if wrapped:
         words = f"{PAPER:g} ms wide; what leaves on one side comes back on the other"
-    axes.set_title(words, loc="left", fontsize=SMALL, color=FAINT, pad=3.0)
+    axes.set_title(words, loc="left", fontsize=SMALL, color=FAINT, y=1.0, pad=3.0)
     _legend(axes)
     _guides(axes, float(t[0]), float(t[-1]))
 

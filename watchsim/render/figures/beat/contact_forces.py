@@ -7,15 +7,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from watchsim.analysis.contact_forces import forces
+from watchsim.analysis.contact_forces import Forces, forces
 from watchsim.analysis.timeline.rows import pair_name
 from watchsim.analysis.timing.phases import Phase
+from watchsim.render.figures import usual_window
 from watchsim.render.figures.column_extremes import reduced
-from watchsim.render.figures.passing_phases import passing
 from watchsim.render.figures.phase_bands import name_key, shade
 from watchsim.render.figures.style import (
     CURVE,
@@ -30,9 +31,9 @@ from watchsim.render.figures.style import (
     panel,
     title,
 )
-from watchsim.render.figures.usual_window import one_cycle
+from watchsim.render.figures.usual_window import Shown
 from watchsim.render.frame.marks.readouts import clock
-from watchsim.render.frame.pose_history import Window, stretch
+from watchsim.render.frame.pose_history import Window
 from watchsim.render.palette import looks
 from watchsim.simulation.record.trajectory import Array, Trajectory
 
@@ -70,12 +71,12 @@ def plot_forces(run: Trajectory, window: Sequence[float] | None = None, width: f
     Impacts are no forces and not shown. ValueError for a run that knows no forces, and for a window with more than 12 000
     instants to look at.
     """
-    spans = _spans(run) if window is None else [stretch(run, window)]
-    told = [curves(run, span) for span in spans]
+    cycle = usual_window.shown(run, window)
+    spans = [cycle.window] if window is not None else _spans(run, cycle)
+    told = curves(run, spans)
     pairs = list(dict.fromkeys(name for one in told for name in one.normal))
     pivots = list(dict.fromkeys(name for one in told for name in one.pivots))
-    phases = [passing(run, span) for span in spans]
-    names = list(dict.fromkeys(one.name for own in phases for beat in own for one in beat if one.name != "locked"))
+    names = list(dict.fromkeys(one.name for beat in cycle.phases for one in beat if one.name != "locked"))
     rows = len(pairs) + bool(pivots)
     if not rows:
         raise ValueError("no contact is closed there, and nothing turns on a pivot: there are no forces to plot")
@@ -85,7 +86,8 @@ def plot_forces(run: Trajectory, window: Sequence[float] | None = None, width: f
     if names:
         name_key(made, names, HEADING)
     wide = width / len(spans) - LEFT - RIGHT
-    for c, (span, one, own) in enumerate(zip(spans, told, phases, strict=True)):
+    for c, (span, one) in enumerate(zip(spans, told, strict=True)):
+        own = [beat for beat in cycle.phases if beat[-1].end > span[0] and beat[0].start < span[1]]
         left = c * (LEFT + wide + RIGHT) + LEFT
         axes = [panel(made, left, top + k * (OVER + TALL + BETWEEN) + OVER, wide, TALL) for k in range(rows)]
         _column(axes, run, span, (one, own), (pairs, pivots), first=c == 0, wide=wide >= ROOMY)
@@ -93,24 +95,30 @@ def plot_forces(run: Trajectory, window: Sequence[float] | None = None, width: f
     return made
 
 
-def curves(run: Trajectory, span: Window) -> Curves:
-    """Forces over a stretch of time: right after every row, just before the next, and between."""
-    times = _instants(run, span)
-    if len(times) > MOST:
+def curves(run: Trajectory, spans: Sequence[Window]) -> list[Curves]:
+    """Forces over some stretches of time: right after every row, just before the next, and between."""
+    times = [_instants(run, span) for span in spans]
+    count = sum(map(len, times))
+    if count > MOST:
         raise ValueError(
-            f"{span[0]:.9g} s to {span[1]:.9g} s hold {len(times)} instants at which forces would have to be worked out, "
+            f"{spans[0][0]:.9g} s to {spans[-1][1]:.9g} s hold {count} instants at which forces would have to be worked out, "
             f"more than {MOST}; choose a shorter window"
         )
-    found = forces(run, times)
+    found = forces(run, np.concatenate(times))
+    ends = np.cumsum([0, *map(len, times)]).tolist()
+    return [_summed(run, found, slice(first, last)) for first, last in pairwise(ends)]
+
+
+def _summed(run: Trajectory, found: Forces, own: slice) -> Curves:
+    """By pair of bodies: several points may touch at once, and what they press, and what they rub, adds up."""
     normal: dict[str, Array] = {}
     tangential: dict[str, Array] = {}
     for k, contact in enumerate(found.pairs):
         name = pair_name(run, int(contact))
-        # Several points of a pair may touch at once: what they press, and what they rub, adds up.
-        normal[name] = normal.get(name, np.zeros(len(times))) + found.normal[:, k]
-        tangential[name] = tangential.get(name, np.zeros(len(times))) + found.tangential[:, k]
-    loads = {name: np.hypot(*force.T) for name, force in found.pivots.items()}
-    return Curves(times, normal, tangential, loads)
+        normal[name] = normal.get(name, 0.0) + found.normal[own, k]
+        tangential[name] = tangential.get(name, 0.0) + found.tangential[own, k]
+    loads = {name: np.hypot(*force[own].T) for name, force in found.pivots.items()}
+    return Curves(found.t[own], normal, tangential, loads)
 
 
 def _instants(run: Trajectory, span: Window) -> Array:
@@ -120,16 +128,14 @@ def _instants(run: Trajectory, span: Window) -> Array:
     return np.unique(np.concatenate((edges[:-1], before, np.linspace(span[0], before[-1], FINE))))
 
 
-def _spans(run: Trajectory) -> list[Window]:
-    """The last two beats where they are large, or one cycle."""
-    whole = one_cycle(run)
-    told = [beat for beat in passing(run, whole) if beat[0].name == "unlock"]
+def _spans(run: Trajectory, cycle: Shown) -> list[Window]:
+    """The beats of a cycle where they are whole, without their free oscillation; or the cycle."""
     found = []
-    for beat in told:
+    for beat in (beat for beat in cycle.phases if beat[0].name == "unlock"):
         end = max(one.end for one in beat if one.name != "locked")
         way = end - beat[0].start
         found.append((max(beat[0].start - BEFORE * way, float(run.t[0])), min(end + AFTER * way, float(run.t[-1]))))
-    return found or [whole]
+    return found[-2:] or [cycle.window]
 
 
 def _column(

@@ -5,6 +5,7 @@ plot_timeline(run).savefig("timeline.pdf")
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -24,6 +25,7 @@ from watchsim.render.figures.style import (
     HAIR,
     HEADING,
     LEAD,
+    LETTER,
     MM,
     NARROW,
     POINT,
@@ -46,8 +48,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MANY = 2  # beats
-ACROSS = {True: 7, False: 3}  # pictures in a row: on a page, in a column
-GAP, TITLE, WORDS, CURVES, LEADS, FOOT, LEFT = 1.2, 5.0, 4.5, 20.0, 5.0, 9.0, 12.0  # mm
+ACROSS = {True: 7, False: 4}  # pictures in a row: on a page, in a column
+LINE = LEAD * SMALL * POINT  # mm, of a caption
+GAP, TITLE, WORDS, CURVES, LEADS, FOOT, LEFT = 1.2, 5.0, 7.0, 20.0, 5.0, 9.0, 12.0  # mm
 ROOM = 0.12  # of the lever's size, around it
 TALLEST = 1.35  # of a picture's width
 ARROW = 0.30  # of a picture's width: the largest force
@@ -81,13 +84,17 @@ def plot_timeline(
     made = figure(width, HEADING + sum(heights))
     heading(made, run.scene.title, "Amid each phase; arrows: contact forces on the lever")
     posed = Posed(run.scene, compile_scene(run.scene))
+    pushed = _pushed(run, [one for own in instants for one in own])
+    largest = max((float(np.hypot(*force.T).max(initial=0.0)) for _, force in pushed), default=0.0)
+    longest = ARROW * (box[1] - box[0]) / largest if largest > 0.0 else 0.0
+    arrows = iter([(points, longest * force) for points, force in pushed])
     top = HEADING
     for beat, own, count, height in zip(beats_shown, instants, rows, heights, strict=True):
         stone = beat.stages[0].pallet
         words = f"beat {beat.stages[0].beat}{f', {stone} stone' if stone else ''}, first touch at {beat.start:.6g} s"
         _words(made, EDGE, top + 0.5 * TITLE - 1.0, words, weight="bold")
         under = top + TITLE + count * (tall + WORDS)
-        _pictures(made, (run, posed), own, (top + TITLE, wide, tall), box, across)
+        _pictures(made, (run, posed), [(one, *next(arrows)) for one in own], (top + TITLE, wide, tall), box, across)
         _curves(made, run, beat, own, under + LEADS)
         top += height
     return made
@@ -117,7 +124,7 @@ def _box(run: Trajectory) -> tuple[float, float, float, float]:
 def _pictures(
     made: Figure,
     drawn: tuple[Trajectory, Posed],
-    instants: list[Instant],
+    shown: list[tuple[Instant, Array, Array]],
     place: tuple[float, float, float],
     box: tuple[float, float, float, float],
     across: int,
@@ -126,9 +133,7 @@ def _pictures(
     run, posed = drawn
     top, wide, tall = place
     compiled = posed.compiled
-    pushed = _pushed(run, instants)
-    largest = max((float(np.hypot(*force.T).max(initial=0.0)) for _, force in pushed), default=0.0)
-    for k, (one, (points, force)) in enumerate(zip(instants, pushed, strict=True)):
+    for k, (one, points, force) in enumerate(shown):
         left, up = EDGE + (k % across) * (wide + GAP), top + (k // across) * (tall + WORDS)
         axes = panel(made, left, up, wide, tall)
         axes.set_aspect("equal", adjustable="datalim")
@@ -139,9 +144,14 @@ def _pictures(
         axes.spines[:].set_color(FAINT)
         axes.spines[:].set_linewidth(HAIR)
         posed.draw(axes, absolute(compiled, run.at(one.t)[0][None], False)[0])
-        if largest > 0.0 and len(points):
-            _arrows(axes, points, force * (ARROW * (box[1] - box[0]) / largest))
-        _words(made, left, up + tall + 0.5 * LEAD * SMALL * POINT + 0.4, f"{k + 1} {one.words}")
+        _arrows(axes, points, force)
+        for i, line in enumerate(_lines(f"{k + 1} {one.words}", wide)):
+            _words(made, left, up + tall + (i + 0.5) * LINE + 0.4, line)
+
+
+def _lines(words: str, wide: float) -> list[str]:
+    """A caption in one line, or in two where it is wider than its picture."""
+    return textwrap.wrap(words, max(int(wide / (LETTER * SMALL * POINT)), 10))[:2]
 
 
 def _arrows(axes: Axes, points: Array, arrows: Array) -> None:

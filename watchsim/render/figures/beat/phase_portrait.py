@@ -11,13 +11,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from watchsim.analysis.timing.phases import Phase
+from watchsim.render.figures import usual_window
 from watchsim.render.figures.column_extremes import distinct
-from watchsim.render.figures.passing_phases import passing
 from watchsim.render.figures.phase_bands import name_key, strong
 from watchsim.render.figures.plots import Channel, channels
 from watchsim.render.figures.style import CURVE, FULL, NARROW, dress, figure, heading, key, limits, panel, title
-from watchsim.render.figures.usual_window import one_cycle
-from watchsim.render.frame.pose_history import Window, choose, dense, stretch
+from watchsim.render.frame.pose_history import Window, choose, dense
 from watchsim.render.palette import FAINT, looks
 from watchsim.simulation.record.trajectory import Array, Trajectory
 
@@ -43,14 +42,14 @@ def plot_phase_portrait(
 
     An impact is a vertical line. ValueError as of `plot_kinematics`.
     """
-    span = one_cycle(run) if window is None else stretch(run, window)
+    cycle = usual_window.shown(run, window)
+    span, phases = cycle.window, cycle.phases
     chosen = choose(run, bodies)
     shown = [channel for body in (chosen if bodies else chosen[:MOST]) for channel in channels(run, body)]
     if not shown:
         raise ValueError("nothing to plot: no body of this run moves")
     across = min(1 if width < NARROW else 3, len(shown))
     rows = -(-len(shown) // across)
-    phases = passing(run, span)
     names = list(dict.fromkeys(phase.name for beat in phases for phase in beat if phase.name != "locked"))
     step = OVER + TALL + UNDER
     top = TOP + (5.0 if width >= NARROW else 8.0)

@@ -59,7 +59,7 @@ def plot_torque(
     run knows no forces.
     """
     beats_shown = (told or shown_beats(run, window, rubbed=False))[-MANY:]
-    found = [pushes(run, beat) for beat in beats_shown]
+    found = pushes(run, beats_shown)
     across = len(found) if width >= NARROW else 1
     rows = -(-len(found) // across)
     table = ROW * (2.5 + max(len(one) for one in found))
@@ -69,7 +69,7 @@ def plot_torque(
     heading(
         made,
         run.scene.title,
-        f"Torque of contacts on {name}, positive with its swing; triangles: impacts",
+        f"Torque on {name}, with its swing; triangles: impacts",
     )
     largest = max((float(np.abs(one.torque).max()) for push in found for one in push), default=0.0) or 1.0
     factor, unit = next(((f, u) for f, u in PREFIXES if largest * f >= 1.0), PREFIXES[-1])

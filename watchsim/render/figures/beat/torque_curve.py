@@ -6,6 +6,7 @@ the balance alone.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -43,28 +44,30 @@ class Push:
     way: float
 
 
-def pushes(run: Trajectory, beat: Beat) -> list[Push]:
-    """Of every phase of a beat but the free oscillation."""
+def pushes(run: Trajectory, beats: Sequence[Beat]) -> list[list[Push]]:
+    """Of every phase of some beats but the free oscillation."""
     name = roles(run.scene).oscillator
     assert name is not None
     compiled = compile_scene(run.scene)
-    return [_push(run, compiled, name, stage) for stage in beat.stages if stage.name != "locked"]
+    stages = [[stage for stage in beat.stages if stage.name != "locked"] for beat in beats]
+    times = [_instants(run, stage.phase.start, stage.phase.end) for own in stages for stage in own]
+    whole = torque_on(run, name, np.concatenate(times))
+    curves = zip(times, np.split(whole, np.cumsum([len(own) for own in times])[:-1]), strict=True)
+    return [[_push(run, compiled, name, stage, *next(curves)) for stage in own] for own in stages]
 
 
-def _push(run: Trajectory, compiled: Compiled, name: str, stage: Stage) -> Push:
-    start, end = stage.phase.start, stage.phase.end
-    times = _instants(run, start, end, (end - start) / FINE)
-    torque = torque_on(run, name, times)
+def _push(run: Trajectory, compiled: Compiled, name: str, stage: Stage, times: Array, torque: Array) -> Push:
     angle = run.sample(times)[0][:, run.slices[name].start]
     work = float(np.sum(0.5 * (torque[1:] + torque[:-1]) * np.diff(angle)))
     struck = _impacts(run, compiled, name, stage)
-    return Push(stage, angle, torque, work, sum(value for _, value in struck), struck, 1.0 if angle[-1] >= angle[0] else -1.0)
+    way = 1.0 if angle[-1] >= angle[0] else -1.0
+    return Push(stage, angle, torque, work, sum(value for _, value in struck), struck, way)
 
 
-def _instants(run: Trajectory, start: float, end: float, longest: float) -> Array:
+def _instants(run: Trajectory, start: float, end: float) -> Array:
     """Of each step between rows its start, some instants within, and one just before its end."""
     inside = run.t[(run.t > start) & (run.t < end)]
-    edges = np.unique(np.concatenate(([start], inside, [end])))
+    edges, longest = np.unique(np.concatenate(([start], inside, [end]))), (end - start) / FINE
     found = []
     for low, high in pairwise(edges.tolist()):
         count = max(WITHIN, int(np.ceil((high - low) / longest)) + 1) if high - low > longest else WITHIN
