@@ -50,6 +50,7 @@ _HOMES = {
     "plot_sensitivity": "watchsim.render.figures.effects",
     "sound": "watchsim.analysis.sound.wav",
     "report": "watchsim.pages.report",
+    "show": "watchsim.pages.inline",
     "profiles_dir": "watchsim.profiles_path",
 }
 
@@ -70,6 +71,7 @@ if TYPE_CHECKING:
     from watchsim.drawing.drawing import Drawing as Drawing
     from watchsim.drawing.profile import Profile as Profile
     from watchsim.drawing.read import read as read
+    from watchsim.pages.inline import show as show
     from watchsim.pages.report import report as report
     from watchsim.profiles_path import profiles_dir as profiles_dir
     from watchsim.render.figures.beat.contact_forces import plot_forces as plot_forces
