@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import io
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from watchsim.pages.card import card, image
-from watchsim.pages.html import Markup, element, table
+from watchsim.pages.html import element, table
 from watchsim.pages.timing_sheet.timekeeping import with_error
 from watchsim.studies.axes import Axis
 from watchsim.studies.limit_cycle.cycle import Cycle
@@ -15,13 +14,8 @@ from watchsim.studies.sensitivity import Sensitivity
 from watchsim.studies.sweep import Sweep
 from watchsim.units import to
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 ROWS = 12  # of a table; the rest is counted
-COLOURS = 32  # of a picture: a palette makes it small
-WIDTH = 560  # dots
-SHOWN = 420
+DOTS, SHOWN = 560, 420  # of a picture, and how wide it is shown
 PRINTED = 85.0  # mm, for which the letters are large enough
 
 
@@ -41,6 +35,7 @@ def cycle_html(cycle: Cycle) -> str:
 
 def sweep_html(sweep: Sweep) -> str:
     """The first rows as a table, and the plot."""
+    from watchsim.render.figures.shown_figure import small_png
     from watchsim.render.figures.study import plot_sweep
 
     count = len(sweep.rows)
@@ -61,12 +56,15 @@ def sweep_html(sweep: Sweep) -> str:
         figure = plot_sweep(sweep, PRINTED)
     except ValueError:  # keys without numbers
         return card(f"Sweep of {sweep.title}", lines, shown)
-    return card(f"Sweep of {sweep.title}", lines, shown, picture(figure, "The sweep as curves"))
+    return card(
+        f"Sweep of {sweep.title}", lines, shown, element("div", image(small_png(figure, DOTS), "The sweep as curves", SHOWN))
+    )
 
 
 def sensitivity_html(found: Sensitivity) -> str:
     """What matters most, and the plot."""
     from watchsim.render.figures.effects import plot_sensitivity
+    from watchsim.render.figures.shown_figure import small_png
 
     count, outputs = len(found.effects), found.outputs
     lines = [f"{count} {'quantity' if count == 1 else 'quantities'}", "" if found.whole else "interrupted: some are missing"]
@@ -78,17 +76,8 @@ def sensitivity_html(found: Sensitivity) -> str:
         for one in found.effects[:ROWS]
     ]
     shown = table(head, rows, f"the first {ROWS} of {count} quantities" if count > ROWS else "")
-    return card(f"What matters in {found.title}", lines, shown, picture(plot_sensitivity(found, PRINTED), "Effects as bars"))
-
-
-def picture(figure: Figure, words: str) -> Markup:
-    """A figure as a small PNG."""
-    from PIL import Image
-
-    out, small = io.BytesIO(), io.BytesIO()
-    figure.savefig(out, format="png", dpi=WIDTH / figure.get_figwidth())
-    Image.open(out).convert("RGB").quantize(COLOURS).save(small, "PNG", optimize=True)
-    return element("div", image(small.getvalue(), words, SHOWN))
+    bars = small_png(plot_sensitivity(found, PRINTED), DOTS)
+    return card(f"What matters in {found.title}", lines, shown, element("div", image(bars, "Effects as bars", SHOWN)))
 
 
 def _heading(output: Output) -> str:

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING
 from watchsim.commands.common.console import InputError
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from watchsim.analysis.timeline.oscillation import Beat
+    from watchsim.render.figures.style import Figure
     from watchsim.simulation.record.trajectory import Trajectory
 
 ALL = "all"

@@ -6,7 +6,7 @@ plot_energy(run).savefig("energy.pdf")
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from watchsim.analysis.energy import energy_shares
 from watchsim.analysis.timeline.oscillation import Beat, shown_beats
@@ -161,10 +161,10 @@ def _key(made: Figure, axes: Axes, top: float) -> None:
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
-    handles: list[tuple[object, str]] = [
+    handles: list[tuple[Any, str]] = [
         (Patch(facecolor=COLOURS[name], hatch=HATCHES.get(name), edgecolor="white", linewidth=0.0), name) for name in PARTS
     ]
     handles.append((Line2D([], [], color=INK, linewidth=1.2), "work of the drive"))
     width, height = (inches / MM for inches in made.get_size_inches())
-    where = {"bbox_to_anchor": (EDGE / width, 1.0 - (top + KEY) / height), "bbox_transform": made.transFigure}
+    where: dict[str, Any] = {"bbox_to_anchor": (EDGE / width, 1.0 - (top + KEY) / height), "bbox_transform": made.transFigure}
     key(axes, handles, loc="lower left", ncols=len(handles), borderaxespad=0.0, borderpad=0.0, **where)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import fields, replace
 from itertools import groupby
+from typing import Any
 
 import numpy as np
 
@@ -37,5 +38,6 @@ def _near(found: Beats, window: Window) -> Beats:
     """The half swings in the window, and one before and after it."""
     first, last = np.searchsorted(found.end, window[0]), np.searchsorted(found.start, window[1])
     own = slice(max(int(first) - 1, 0), int(last) + 1)
-    columns = {field.name: getattr(found, field.name) for field in fields(found)}
-    return replace(found, **{name: values[own] for name, values in columns.items() if isinstance(values, np.ndarray)})
+    columns = ((field.name, getattr(found, field.name)) for field in fields(found))
+    cut: dict[str, Any] = {name: values[own] for name, values in columns if isinstance(values, np.ndarray)}
+    return replace(found, **cut)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from watchsim.analysis.timeline.rows import Stage
 from watchsim.analysis.timeline.table import TITLES, title
@@ -56,10 +56,10 @@ def name_above(axes: Axes, stages: Sequence[Stage], zero: float, factor: float =
     line, gap = 2.6 / tall, 3.0 / tall
     for stage, middle, place in zip(shown, middles, spread(middles, 4.2 * (high - low) / wide), strict=True):
         where, top = (middle - low) / (high - low), (place - low) / (high - low)
-        style = {"transform": axes.transAxes, "color": FAINT, "linewidth": HAIR, "clip_on": False, "zorder": 1}
-        axes.plot((where, top), (1.0, 1.0 + line), **style)  # type: ignore[arg-type]
-        look = {"rotation": 90.0, "fontsize": SMALL, "ha": "center", "va": "bottom", "color": INK}
-        axes.text(top, 1.0 + gap, title(stage), transform=axes.transAxes, **look)  # type: ignore[arg-type]
+        style: dict[str, Any] = {"transform": axes.transAxes, "color": FAINT, "linewidth": HAIR, "clip_on": False, "zorder": 1}
+        axes.plot((where, top), (1.0, 1.0 + line), **style)
+        look: dict[str, Any] = {"rotation": 90.0, "fontsize": SMALL, "ha": "center", "va": "bottom", "color": INK}
+        axes.text(top, 1.0 + gap, title(stage), transform=axes.transAxes, **look)
 
 
 def name_key(figure: Figure, names: Iterable[str], top: float, lines: bool = False) -> float:

@@ -67,9 +67,9 @@ def plot_sweep(sweep: Sweep, width: float = FULL) -> Figure:
     panels[-1].set_xlabel(_label(along))
     if other is not None and field is None:
         handles, labels = panels[0].get_legend_handles_labels()
-        look = {"frameon": False, "fontsize": SMALL, "title_fontsize": SMALL, "labelcolor": INK}
-        where = {"loc": "outside right upper"} if width >= NARROW else {"loc": "outside lower left", "ncols": 3}
-        made.legend(handles, labels, title=_label(other), **look, **where)  # type: ignore[arg-type]
+        look: dict[str, Any] = {"frameon": False, "fontsize": SMALL, "title_fontsize": SMALL, "labelcolor": INK}
+        where: dict[str, Any] = {"loc": "outside right upper"} if width >= NARROW else {"loc": "outside lower left", "ncols": 3}
+        made.legend(handles, labels, title=_label(other), **look, **where)
     return made
 
 
@@ -98,7 +98,14 @@ def _curves(axes: Axes, sweep: Sweep, along: Axis, other: Axis | None, output: O
         bars = np.array([row.get(f"{output.column}_error") or 0.0 for row in good], float)
         colour, mark = SERIES[i % FAMILY], MARKERS[i % FAMILY]
         label = f"{_shown(other, value):.6g}" if other and other.is_numeric else str(value)
-        look = {"color": colour, "marker": mark, "markersize": 2.5, "linewidth": CURVE, "capsize": 1.5, "elinewidth": HAIR}
+        look: dict[str, Any] = {
+            "color": colour,
+            "marker": mark,
+            "markersize": 2.5,
+            "linewidth": CURVE,
+            "capsize": 1.5,
+            "elinewidth": HAIR,
+        }
         axes.errorbar(x, y, yerr=bars, label=label, **look)
         _failures(axes, [row for row in rows if row[output.column] is None], along, colour if other else BAD)
     axes.set_ylabel(f"{output.label} ({output.unit})" if output.unit else output.label)

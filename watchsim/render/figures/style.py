@@ -7,13 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Literal
 
 from watchsim.render.palette import FAINT, GRID, INK
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+    from matplotlib.figure import Figure as Figure
     from matplotlib.text import Text
 
 MM = 1.0 / 25.4  # inches
@@ -35,7 +35,7 @@ GOOD, BAD = SERIES[0], SERIES[1]
 MAP = "cividis"  # even in lightness, for every kind of colour vision
 
 
-def figure(width: float = FULL, height: float = COLUMN, layout: str | None = None) -> Figure:
+def figure(width: float = FULL, height: float = COLUMN, layout: Literal["constrained"] | None = None) -> Figure:
     """An empty figure of this size in mm that can be saved, and that a notebook shows."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
@@ -55,7 +55,7 @@ def panel(figure: Figure, left: float, top: float, width: float, height: float) 
 def heading(figure: Figure, title: str, words: str = "") -> None:
     """A title and a line below it, at the upper left; what does not fit is cut."""
     wide, high = (inches / MM for inches in figure.get_size_inches())
-    look = {"ha": "left", "va": "center", "color": INK}
+    look: dict[str, Any] = {"ha": "left", "va": "center", "color": INK}
     made = [figure.suptitle(title, x=EDGE / wide, y=1.0 - 4.0 / high, fontsize=TITLE, weight="bold", **look)]
     if words:
         made.append(figure.text(EDGE / wide, 1.0 - 8.5 / high, words, fontsize=LABEL, **look))
@@ -76,10 +76,10 @@ def fit(text: Text, room: float) -> None:
         text.set_text(f"{whole[: max(most, 1)].rstrip()}…")
 
 
-def dress(axes: Axes, grid: str = "both") -> None:
+def dress(axes: Axes, grid: Literal["both", "x", "y", "none"] = "both") -> None:
     """Grid, frame and numbers of a panel; `grid`: both, x, y or none."""
     if grid != "none":
-        axes.grid(True, axis=grid, color=GRID, linewidth=HAIR)  # type: ignore[arg-type]
+        axes.grid(True, axis=grid, color=GRID, linewidth=HAIR)
     axes.set_axisbelow(True)
     axes.spines[["top", "right"]].set_visible(False)
     axes.spines[["left", "bottom"]].set_color(FAINT)
@@ -102,11 +102,11 @@ def limits(axes: Axes, low: float, high: float, share: float = 0.08, flat: float
     axes.set_ylim(low - room, high + room)
 
 
-def key(axes: Axes, entries: Sequence[tuple[object, str]], **where: object) -> None:
+def key(axes: Axes, entries: Sequence[tuple[Any, str]], **where: Any) -> None:
     """A legend in the one style."""
     handles, names = [one for one, _ in entries], [name for _, name in entries]
-    look = {"frameon": False, "fontsize": SMALL, "labelcolor": INK, "handlelength": 1.4, "columnspacing": 1.0}
-    axes.legend(handles, names, **{**look, "borderaxespad": 0.2, "handletextpad": 0.4, **where})  # type: ignore[arg-type]
+    look: dict[str, Any] = {"frameon": False, "fontsize": SMALL, "labelcolor": INK, "handlelength": 1.4, "columnspacing": 1.0}
+    axes.legend(handles, names, **{**look, "borderaxespad": 0.2, "handletextpad": 0.4, **where})
 
 
 def save(figure: Figure, path: Path | str) -> None:
@@ -116,5 +116,5 @@ def save(figure: Figure, path: Path | str) -> None:
     with matplotlib.rc_context({"pdf.fonttype": 42, "svg.hashsalt": "watchsim", "svg.fonttype": "path"}):
         ending = Path(path).suffix[1:].lower()
         stamp = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(ending)
-        packed = {"pil_kwargs": {"compress_level": 3}} if ending == "png" else {}
-        figure.savefig(path, metadata=stamp, **packed)  # type: ignore[arg-type]
+        packed: dict[str, Any] = {"pil_kwargs": {"compress_level": 3}} if ending == "png" else {}
+        figure.savefig(path, metadata=stamp, **packed)

@@ -6,7 +6,7 @@ plot_tape(run).savefig("tape.png")
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -62,14 +62,14 @@ def plot_tape(run: Trajectory, window: Sequence[float] | None = None, width: flo
         LEAST,
         strict=True,
     ):
-        look = {"color": SERIES[0], "markersize": marks, "markeredgewidth": 0.0}
-        axes.plot(*reduced(t, values[inside], COLUMNS), "o", label="true", gid=label, **look)  # type: ignore[arg-type]
+        look: dict[str, Any] = {"color": SERIES[0], "markersize": marks, "markeredgewidth": 0.0}
+        axes.plot(*reduced(t, values[inside], COLUMNS), "o", label="true", gid=label, **look)
         axes.set_ylabel(label)
         room(axes, values[inside], least)
     if np.isfinite(shown.shown_deg[inside]).any():
         look = {"color": SERIES[4], "markersize": marks, "markeredgewidth": 0.0}
         read = shown.shown_deg[inside]
-        panels[2].plot(*reduced(t, read, COLUMNS), "s", label="by lift angle", gid="amplitude shown", **look)  # type: ignore[arg-type]
+        panels[2].plot(*reduced(t, read, COLUMNS), "s", label="by lift angle", gid="amplitude shown", **look)
         room(panels[2], np.concatenate([shown.amplitude_deg[inside], read]), LEAST[1])
         _legend(panels[2])
     for axes in panels[:-1]:
@@ -93,8 +93,8 @@ def _paper(axes: Axes, shown: Tape, inside: slice) -> None:
     axes.set_ylim(low - side, high + side)
     marks = dot(len(t))
     for way, colour, mark, label in ((True, SERIES[0], "o", "tick"), (False, SERIES[1], "s", "tock")):
-        look = {"color": colour, "markersize": marks, "markeredgewidth": 0.0, "label": label, "gid": label}
-        axes.plot(*reduced(t[forward == way], gain[forward == way], COLUMNS), mark, **look)  # type: ignore[arg-type]
+        look: dict[str, Any] = {"color": colour, "markersize": marks, "markeredgewidth": 0.0, "label": label, "gid": label}
+        axes.plot(*reduced(t[forward == way], gain[forward == way], COLUMNS), mark, **look)
     axes.set_ylabel("gain (ms)")
     words = "rising gains, falling loses"
     if wrapped:
@@ -130,5 +130,5 @@ def _guides(axes: Axes, start: float, end: float) -> None:
 
 def _legend(axes: Axes) -> None:
     handles, names = axes.get_legend_handles_labels()
-    where = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "ncols": 2, "borderaxespad": 0.0}
+    where: dict[str, Any] = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "ncols": 2, "borderaxespad": 0.0}
     key(axes, list(zip(handles, names, strict=True)), markerscale=1.8, **where)

@@ -6,9 +6,10 @@ plot_timing(run).savefig("timing.pdf")
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from watchsim.analysis.timing.beats import Beats, beats
 from watchsim.analysis.verdicts.verdict import verdict
@@ -44,7 +45,7 @@ def plot_timing(run: Trajectory, window: Sequence[float] | None = None, width: f
     beside = BESIDE.get(verdict(run).name or "")
     heading(made, run.scene.title, f"{found.body}, {len(inside)} half swings{f', {beside}' if beside else ''}")
     curves = _curves(found)
-    handles: list[tuple[object, str]] = []
+    handles: list[tuple[Any, str]] = []
     panels = []
     for k, (name, (label, values)) in enumerate(curves.items()):
         axes = panel(made, LEFT, HEADING + KEY + k * (TALL + BETWEEN), width - LEFT - RIGHT, TALL)
@@ -73,7 +74,7 @@ def _curves(found: Beats) -> dict[str, tuple[str, Array]]:
     }
 
 
-def _dots(axes: Axes, found: Beats, inside: Array, values: Array, name: str) -> list[tuple[object, str]]:
+def _dots(axes: Axes, found: Beats, inside: NDArray[np.int64], values: Array, name: str) -> list[tuple[Any, str]]:
     """A dot for each half swing, in the colour and shape of its direction; of many those that differ on paper."""
     handles = []
     forward = found.end_at > found.start_at
@@ -83,8 +84,8 @@ def _dots(axes: Axes, found: Beats, inside: Array, values: Array, name: str) -> 
         own = inside[forward[inside] == way]
         x, y = reduced(found.t[own], values[own], COLUMNS)
         gid = f"{name} {label}"
-        look = {"color": colour, "markersize": bigger * size, "markeredgewidth": 0.0, "gid": gid}
-        handles.append((axes.plot(x, y, mark, **look)[0], label))  # type: ignore[arg-type]
+        look: dict[str, Any] = {"color": colour, "markersize": bigger * size, "markeredgewidth": 0.0, "gid": gid}
+        handles.append((axes.plot(x, y, mark, **look)[0], label))
     return handles
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -152,7 +152,7 @@ def _column(
     told, worn = clock(span), looks(run.scene)
     x = (one.t - told.base) * told.factor
     nothing = np.zeros(len(x))
-    groups = [
+    groups: list[tuple[str, list[tuple[str, Array, str, Any]]]] = [
         (name, [("normal", one.normal.get(name, nothing), SERIES[0], "-"),
                 ("friction", one.tangential.get(name, nothing), SERIES[1], DASHES[1])])
         for name in pairs
@@ -173,7 +173,7 @@ def _column(
             title(panel_axes, name)
         if first:
             panel_axes.set_ylabel(f"force ({unit})", labelpad=1.5)
-        where = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "ncols": len(lines), "borderaxespad": 0.0}
+        where: dict[str, Any] = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "ncols": len(lines), "borderaxespad": 0.0}
         if wide or not first:  # side by side in a column of text: names on the left, keys on the right
             key(panel_axes, [(h, line[0]) for h, line in zip(handles, lines, strict=True)], **where)
         panel_axes.set_xlim(*((end - told.base) * told.factor for end in span))

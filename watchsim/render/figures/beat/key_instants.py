@@ -8,7 +8,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -156,7 +156,13 @@ def _lines(words: str, wide: float) -> list[str]:
 
 def _arrows(axes: Axes, points: Array, arrows: Array) -> None:
     """Forces in the picture's mm, their tips where they press."""
-    look = {"arrowstyle": "-|>,head_length=0.25,head_width=0.12", "color": FORCE, "linewidth": 1.0, "shrinkA": 0, "shrinkB": 0}
+    look: dict[str, Any] = {
+        "arrowstyle": "-|>,head_length=0.25,head_width=0.12",
+        "color": FORCE,
+        "linewidth": 1.0,
+        "shrinkA": 0,
+        "shrinkB": 0,
+    }
     for (x, y), (dx, dy) in zip(points, arrows, strict=True):
         arrow = axes.annotate("", (x, y), (x - dx, y - dy), arrowprops=look, zorder=6, annotation_clip=True)
         if arrow.arrow_patch is not None:
@@ -216,10 +222,10 @@ def _curves(made: Figure, run: Trajectory, beat: Beat, instants: list[Instant], 
     at = [1e3 * (one.t - beat.start) for one in instants]
     for k, (where, placed) in enumerate(zip(at, spread(at, 3.4 * (high - low) / wide), strict=True)):
         share, up = (where - low) / (high - low), (placed - low) / (high - low)
-        style = {"transform": axes.transAxes, "color": FAINT, "linewidth": HAIR, "clip_on": False}
-        axes.plot((share, up), (1.0, 1.0 + 2.4 / CURVES), **style)  # type: ignore[arg-type]
-        look = {"ha": "center", "va": "bottom", "fontsize": SMALL, "color": INK}
-        axes.text(up, 1.0 + 2.7 / CURVES, str(k + 1), transform=axes.transAxes, **look)  # type: ignore[arg-type]
+        style: dict[str, Any] = {"transform": axes.transAxes, "color": FAINT, "linewidth": HAIR, "clip_on": False}
+        axes.plot((share, up), (1.0, 1.0 + 2.4 / CURVES), **style)
+        look: dict[str, Any] = {"ha": "center", "va": "bottom", "fontsize": SMALL, "color": INK}
+        axes.text(up, 1.0 + 2.7 / CURVES, str(k + 1), transform=axes.transAxes, **look)
 
 
 def _words(made: Figure, left: float, down: float, words: str, weight: str = "normal") -> None:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -121,9 +121,9 @@ def _energies(axes: Axes, push: list[Push], factor: float) -> None:
         torque = factor * one.way * one.torque
         edge = float(torque.max() if up else torque.min())
         text = f"{NANO * given:+.1f} nJ".replace("-", "−")
-        look = {"ha": "center", "va": "bottom" if up else "top", "fontsize": SMALL, "color": INK, "zorder": 5}
+        look: dict[str, Any] = {"ha": "center", "va": "bottom" if up else "top", "fontsize": SMALL, "color": INK, "zorder": 5}
         place = (0.5 * (x[0] + x[-1]), max(edge, 0.0) if up else min(edge, 0.0))
-        axes.annotate(text, place, (0, 1.5 if up else -1.5), textcoords="offset points", **look)  # type: ignore[arg-type]
+        axes.annotate(text, place, (0, 1.5 if up else -1.5), textcoords="offset points", **look)
 
 
 def _table(axes: Axes, push: list[Push], below: float, row: float) -> None:
@@ -149,8 +149,14 @@ def _table(axes: Axes, push: list[Push], below: float, row: float) -> None:
         weight = "bold" if k in (0, len(rows) - 1) else "normal"
         for i, text in enumerate(cells):
             x = COLUMNS[0] + (1.6 * swatch if colour is not None else 0.0) if i == 0 else COLUMNS[i + 1]
-            look = {"ha": "left" if i == 0 else "right", "va": "center", "fontsize": SMALL, "color": INK, "weight": weight}
-            axes.text(x, y, text, transform=axes.transAxes, **look)  # type: ignore[arg-type]
+            look: dict[str, Any] = {
+                "ha": "left" if i == 0 else "right",
+                "va": "center",
+                "fontsize": SMALL,
+                "color": INK,
+                "weight": weight,
+            }
+            axes.text(x, y, text, transform=axes.transAxes, **look)
 
 
 def _nano(value: float) -> str:
