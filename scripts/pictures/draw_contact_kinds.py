@@ -11,11 +11,8 @@ import math
 import sys
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path as Curve
 
@@ -23,10 +20,13 @@ import watchsim as ws
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.polyline import polyline
 from watchsim.geometry.primitives import Arc, Line, Point
+from watchsim.render.figures.style import LABEL, SERIES, figure, save
+from watchsim.render.figures.style import title as named
+from watchsim.render.palette import BRASS, INK, STEEL
 
 IMAGE = Path(__file__).resolve().parents[2] / "docs" / "images" / "contact_kinds.png"
-INK, GREY, A_FILL, B_FILL = "#1f2933", "#9aa5b1", "#dcb862", "#c9d1da"
-NORMAL, TANGENT, GAP = "#d1495b", "#1f77b4", "#2a9d8f"
+A_FILL, B_FILL = BRASS.fill, STEEL.fill
+TANGENT, NORMAL, GAP, *_ = SERIES
 STILL = (0.0, 0.0, 0.0)
 FINE = 1e-3
 
@@ -71,18 +71,18 @@ PANELS = (
 )
 
 
-def fill(ax: plt.Axes, loop: Loop, pose: tuple[float, float, float], colour: str) -> None:
+def fill(ax: Axes, loop: Loop, pose: tuple[float, float, float], colour: str) -> None:
     points = polyline(loop.moved(pose[2], pose[:2]), FINE)
-    ax.add_patch(PathPatch(Curve(points), facecolor=colour, edgecolor=INK, linewidth=1.1, joinstyle="round"))
+    ax.add_patch(PathPatch(Curve(points), facecolor=colour, edgecolor=INK, linewidth=0.7, joinstyle="round"))
 
 
-def arrow(ax: plt.Axes, start: np.ndarray, way: np.ndarray, colour: str, word: str) -> None:
-    look = {"arrowstyle": "-|>", "color": colour, "linewidth": 1.6, "shrinkA": 0, "shrinkB": 0}
+def arrow(ax: Axes, start: np.ndarray, way: np.ndarray, colour: str, word: str) -> None:
+    look = {"arrowstyle": "-|>", "color": colour, "linewidth": 1.2, "mutation_scale": 7.0, "shrinkA": 0, "shrinkB": 0}
     ax.annotate("", tuple(start + way), tuple(start), arrowprops=look)
-    ax.annotate(word, tuple(start + 1.16 * way), color=colour, ha="center", va="center", fontsize=11)
+    ax.annotate(word, tuple(start + 1.16 * way), color=colour, ha="center", va="center", fontsize=LABEL)
 
 
-def panel(ax: plt.Axes, title: str, a: Loop, pose: tuple[float, float, float], b: Loop) -> None:
+def panel(ax: Axes, title: str, a: Loop, pose: tuple[float, float, float], b: Loop) -> None:
     """One kind of pair: the contact with the smallest gap inside both primitives."""
     rows = ws.gap(a, pose, b, STILL)
     rows = rows[(rows["margin"] >= 0.0) & (rows["g"] > 0.0)]
@@ -91,14 +91,14 @@ def panel(ax: plt.Axes, title: str, a: Loop, pose: tuple[float, float, float], b
     fill(ax, a, pose, A_FILL)
     point, n = row["point"], row["n"]
     foot = point - row["g"] * n
-    ax.plot(*np.array([point, foot]).T, color=GAP, linewidth=2.2, solid_capstyle="round")
+    ax.plot(*np.array([point, foot]).T, color=GAP, linewidth=1.6, solid_capstyle="round")
     t = np.array([-n[1], n[0]])
-    ax.annotate("g", 0.5 * (point + foot) - 0.14 * t, color=GAP, ha="center", va="center", fontsize=11)
-    ax.plot(*foot, "o", color=GAP, markersize=4)
+    ax.annotate("g", 0.5 * (point + foot) - 0.14 * t, color=GAP, ha="center", va="center", fontsize=LABEL)
+    ax.plot(*foot, "o", color=GAP, markersize=2.5)
     arrow(ax, point, 0.55 * n, NORMAL, "n")
     arrow(ax, point, 0.55 * t, TANGENT, "t")
-    ax.plot(*point, "o", color=INK, markersize=5)
-    ax.set_title(f"{title}: {row['kind_a']}–{row['kind_b']}, g = {row['g']:.3f}", color=INK, fontsize=10, loc="left")
+    ax.plot(*point, "o", color=INK, markersize=3)
+    named(ax, f"{title}: {row['kind_a']}–{row['kind_b']}, g = {row['g']:.3f}")
     ax.set_aspect("equal")
     ax.set_xlim(-1.65, 1.65)
     ax.set_ylim(-0.75, 1.65)
@@ -106,11 +106,12 @@ def panel(ax: plt.Axes, title: str, a: Loop, pose: tuple[float, float, float], b
 
 
 def main() -> None:
-    figure, axes = plt.subplots(2, 3, figsize=(11.0, 5.9), constrained_layout=True)
+    made = figure(height=92.0, layout="constrained")
+    axes = made.subplots(2, 3)
     for ax, (title, a, pose, b) in zip(axes.ravel(), PANELS, strict=True):
         panel(ax, title, a, pose, b)
     IMAGE.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(IMAGE, dpi=110)
+    save(made, IMAGE)
 
 
 if __name__ == "__main__":

@@ -12,17 +12,19 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.axes import Axes
 
+from watchsim.render.figures.style import HAIR, LABEL, SERIES, SMALL, TICK, figure, save
+from watchsim.render.figures.style import title as named
+from watchsim.render.palette import FAINT, INK
 from watchsim.verification.bare_contacts import BareContacts
 
 IMAGES = Path(__file__).resolve().parents[2] / "docs" / "images"
-INK, GREY = "#1f2933", "#9aa5b1"
-COLOURS = {"coulomb": "#1f77b4", "pg1996": "#d1495b", "shifted": "#2a9d8f"}
+GREY = FAINT
+COLOURS = dict(zip(("coulomb", "pg1996", "shifted"), SERIES, strict=False))
+DASHES = {"coulomb": "-", "pg1996": "--", "shifted": (0, (1.2, 1.0))}
+WIDE = 1.4  # pt, of a characteristic
 MU, EPS, BACK = 0.3, 0.8, 0.6
 
 
@@ -35,25 +37,23 @@ def one_contact(law: str, eps: float, u: tuple[float, float]) -> tuple[np.ndarra
     return impulses, after
 
 
-def axes_through_zero(ax: plt.Axes, x: str, y: str) -> None:
+def axes_through_zero(ax: Axes, x: str, y: str) -> None:
     for side in ("top", "right"):
         ax.spines[side].set_visible(False)
     ax.spines[["left", "bottom"]].set_position("zero")
     ax.spines[["left", "bottom"]].set_color(GREY)
+    ax.spines[["left", "bottom"]].set_linewidth(HAIR)
     for side in ("left", "bottom"):
         ax.spines[side].set_zorder(1)
-    ax.tick_params(colors=GREY, labelsize=8)
-    ax.set_xlabel(x, loc="right", color=INK)
-    ax.annotate(y, (0.0, 1.0), (6, 0), ax.get_xaxis_transform(), "offset points", va="top", color=INK)
-
-
-def title(ax: plt.Axes, text: str) -> None:
-    ax.set_title(text, color=INK, fontsize=11, pad=12)
+    ax.tick_params(colors=GREY, labelsize=TICK, length=2.0, width=HAIR)
+    ax.set_xlabel(x, loc="right", color=INK, fontsize=LABEL)
+    ax.annotate(y, (0.0, 1.0), (6, 0), ax.get_xaxis_transform(), "offset points", va="top", color=INK, fontsize=LABEL)
 
 
 def draw_expansion() -> None:
     """Left: friction impulse of the expansion over the slip after it. Right: slip after over slip before the impact."""
-    figure, (left, right) = plt.subplots(1, 2, figsize=(10.5, 4.2), constrained_layout=True)
+    made = figure(height=68.0, layout="constrained")
+    left, right = made.subplots(1, 2)
     slips = np.linspace(-2.5, 2.5, 2001)
     for law, colour in COLOURS.items():
         impulses, after = [], []
@@ -62,25 +62,26 @@ def draw_expansion() -> None:
             total, rates = one_contact(law, EPS, (-1.0, slip))
             impulses.append((total - compression)[1])
             after.append(rates[1])
-        right.plot(slips, after, color=colour, label=law, lw=1.8)
-        left.plot(slips, impulses, color=colour, label=law, lw=1.8)
-    left.axhline(MU * EPS, color=GREY, lw=0.8, ls="--")
-    left.axhline(-MU * EPS, color=GREY, lw=0.8, ls="--")
-    left.text(2.45, MU * EPS + 0.012, r"$+\mu\,\Lambda_{NE}$", ha="right", color=GREY)
-    left.text(-2.45, -MU * EPS - 0.03, r"$-\mu\,\Lambda_{NE}$", color=GREY)
+        right.plot(slips, after, color=colour, label=law, lw=WIDE, ls=DASHES[law])
+        left.plot(slips, impulses, color=colour, label=law, lw=WIDE, ls=DASHES[law])
+    left.axhline(MU * EPS, color=GREY, lw=HAIR, ls="--")
+    left.axhline(-MU * EPS, color=GREY, lw=HAIR, ls="--")
+    left.text(2.45, MU * EPS + 0.012, r"$+\mu\,\Lambda_{NE}$", ha="right", color=GREY, fontsize=LABEL)
+    left.text(-2.45, -MU * EPS - 0.03, r"$-\mu\,\Lambda_{NE}$", color=GREY, fontsize=LABEL)
     left.set(ylim=(-0.3, 0.32), yticks=[-0.2, -0.1, 0.1, 0.2], xticks=[-2, -1, 1, 2])
     right.set(ylim=(-1.0, 1.1), yticks=[-0.8, -0.4, 0.4, 0.8], xticks=[-2, -1, 1, 2])
     axes_through_zero(left, r"slip before  $\dot g_{TA}$", r"$\Lambda_{TE}$")
     axes_through_zero(right, r"slip before  $\dot g_{TA}$", r"slip after  $\dot g_{TE}$")
-    title(left, "Friction impulse of the expansion")
-    title(right, "What becomes of the slip")
-    right.legend(frameon=False, loc="upper left")
-    figure.savefig(IMAGES / "law_expansion.png", dpi=130)
+    named(left, "Friction impulse of the expansion")
+    named(right, "What becomes of the slip")
+    right.legend(frameon=False, loc="upper left", fontsize=SMALL)
+    save(made, IMAGES / "law_expansion.png")
 
 
 def draw_intervals() -> None:
     """The set-valued characteristic of the expansion for each law, after a compression that pulled with half its cone."""
-    figure, panels = plt.subplots(1, 3, figsize=(10.5, 3.4), constrained_layout=True, sharey=True)
+    made = figure(height=56.0, layout="constrained")
+    panels = made.subplots(1, 3, sharey=True)
     pulled = 0.5 * MU  # Lambda_TC for Lambda_NC = 1
     share = min(BACK, EPS)
     ends = {
@@ -89,33 +90,34 @@ def draw_intervals() -> None:
         "shifted": (share * pulled - MU * (EPS - share), share * pulled + MU * (EPS - share)),
     }
     for ax, (law, (low, high)) in zip(panels, ends.items(), strict=True):
-        ax.plot([-1.0, 0.0, 0.0, 1.0], [high, high, low, low], color=COLOURS[law], lw=2.2, zorder=3)
+        ax.plot([-1.0, 0.0, 0.0, 1.0], [high, high, low, low], color=COLOURS[law], lw=1.6, zorder=3)
         for x, y, side in ((-1.0, high, "left"), (1.0, low, "right")):
             text = f"{y:+.3f}".replace("-", "\N{MINUS SIGN}")
-            ax.annotate(text, (x, y), (0, 4), textcoords="offset points", fontsize=8, ha=side, color=INK)
+            ax.annotate(text, (x, y), (0, 4), textcoords="offset points", fontsize=SMALL, ha=side, color=INK)
         ax.set(ylim=(-0.3, 0.3), xlim=(-1.1, 1.1), xticks=[], yticks=[-0.2, -0.1, 0.1, 0.2])
         axes_through_zero(ax, r"$\dot g_{TE}$", r"$\Lambda_{TE}$")
-        title(ax, law)
-    figure.savefig(IMAGES / "law_intervals.png", dpi=130)
+        named(ax, law)
+    save(made, IMAGES / "law_intervals.png")
 
 
 def draw_definitions() -> None:
     """Unilateral contact, Coulomb friction and a dry bearing."""
-    figure, (normal, friction, bearing) = plt.subplots(1, 3, figsize=(10.5, 3.2), constrained_layout=True)
-    normal.plot([0.0, 0.0, 1.0], [1.0, 0.0, 0.0], color=INK, lw=2.2, zorder=3)
+    made = figure(height=54.0, layout="constrained")
+    normal, friction, bearing = made.subplots(1, 3)
+    normal.plot([0.0, 0.0, 1.0], [1.0, 0.0, 0.0], color=INK, lw=1.6, zorder=3)
     axes_through_zero(normal, r"$\ddot g_N$ or $\dot g_N$", r"$\lambda_N$")
-    title(normal, "normal: never pulls, never penetrates")
-    friction.plot([-1.0, 0.0, 0.0, 1.0], [0.6, 0.6, -0.6, -0.6], color=INK, lw=2.2, zorder=3)
+    named(normal, "normal: never pulls, never penetrates")
+    friction.plot([-1.0, 0.0, 0.0, 1.0], [0.6, 0.6, -0.6, -0.6], color=INK, lw=1.6, zorder=3)
     axes_through_zero(friction, r"$\dot g_T$", r"$\lambda_T$")
-    friction.text(-0.95, 0.66, r"$\mu\lambda_N$", color=INK)
-    title(friction, "friction: grows with the normal force")
-    bearing.plot([-1.0, 0.0, 0.0, 1.0], [0.6, 0.6, -0.6, -0.6], color=INK, lw=2.2, zorder=3)
+    friction.text(-0.95, 0.66, r"$\mu\lambda_N$", color=INK, fontsize=LABEL)
+    named(friction, "friction: grows with the normal force")
+    bearing.plot([-1.0, 0.0, 0.0, 1.0], [0.6, 0.6, -0.6, -0.6], color=INK, lw=1.6, zorder=3)
     axes_through_zero(bearing, r"$\dot q$", "torque")
-    bearing.text(-0.95, 0.66, r"$T$", color=INK)
-    title(bearing, "dry bearing: a fixed bound")
+    bearing.text(-0.95, 0.66, r"$T$", color=INK, fontsize=LABEL)
+    named(bearing, "dry bearing: a fixed bound")
     for ax in (normal, friction, bearing):
         ax.set(xticks=[], yticks=[], ylim=(-1.1, 1.1), xlim=(-1.1, 1.1))
-    figure.savefig(IMAGES / "law_definitions.png", dpi=130)
+    save(made, IMAGES / "law_definitions.png")
 
 
 def main() -> None:

@@ -76,8 +76,20 @@ EXHIBITS = (
     Exhibit(
         "phases.png",
         "The phases of a beat",
-        "From unlocking to the banking, with the mechanism at its key instants.",
+        "From unlocking to the banking.",
         "watchsim plot swiss --phases -o phases.png",
+    ),
+    Exhibit(
+        "timeline.png",
+        "The mechanism amid each phase",
+        "With the forces on the lever. More [plots](plots.md).",
+        "watchsim plot swiss --kind timeline -o timeline.png",
+    ),
+    Exhibit(
+        "torque.png",
+        "Torque on the balance",
+        "What unlocking takes and the impulse gives is the area under the curve.",
+        "watchsim plot swiss --kind torque -o torque.png",
     ),
     Exhibit(
         "incline.gif",

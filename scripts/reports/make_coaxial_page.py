@@ -109,8 +109,8 @@ def teeth(run: Trajectory) -> float:
 
 def range_map(scene: Scene, folder: Path) -> str:
     """The map of starts and torques; picture and text."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
+    from watchsim.render.figures.style import CURVE, SERIES, dress, figure, key, save
+    from watchsim.render.palette import INK
 
     kinds = np.zeros((len(STARTS), len(TORQUES)), int)
     for i, start in enumerate(STARTS):
@@ -125,29 +125,29 @@ def range_map(scene: Scene, folder: Path) -> str:
     for torque in TORQUES:
         start = min(330.0, 290.0 * math.sqrt(torque / TORQUE))
         steady.append(settled(scene.set("torques.0.value", f"{-torque} µN·m"), start).amplitude)
-    figure = Figure(figsize=(8.5, 5.2), facecolor="#f6f3ed", layout="constrained")
-    FigureCanvasAgg(figure)
-    axes = figure.add_subplot()
+    made = figure(height=105.0, layout="constrained")
+    axes = made.add_subplot()
     looks = (
-        (0, "#2e7d57", "o", "every impulse given"),
-        (1, "#d9a514", "s", "indirect impulse missed"),
-        (2, "#b3261e", "v", "direct impulse missed too"),
-        (3, "#5f3dc4", "X", "knocks"),
+        (0, SERIES[2], "o", "every impulse given"),
+        (1, SERIES[4], "s", "indirect impulse missed"),
+        (2, SERIES[1], "v", "direct impulse missed too"),
+        (3, SERIES[0], "X", "knocks"),
     )
     for kind, colour, mark, words in looks:
         rows, columns = np.nonzero(kinds == kind)
         if len(rows):
-            axes.plot(np.array(TORQUES)[columns], np.array(STARTS)[rows], mark, color=colour, markersize=8, label=words)
-    axes.plot(TORQUES, steady, "-", color="#23272c", linewidth=1.6, label="where it settles")
+            axes.plot(np.array(TORQUES)[columns], np.array(STARTS)[rows], mark, color=colour, markersize=5, label=words)
+    axes.plot(TORQUES, steady, "-", color=INK, linewidth=CURVE, label="where it settles")
     axes.set_xscale("log")
     axes.set_xticks(TORQUES, [f"{t:g}" for t in TORQUES])
     axes.minorticks_off()
     axes.set_xlabel("torque on the escape wheel (µN·m)")
     axes.set_ylabel("amplitude at the start (°)")
     axes.set_ylim(40.0, 350.0)
-    axes.grid(color="#ddd8ce", linewidth=0.6)
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, 1.12), ncols=5, fontsize=8.5, frameon=False)
-    figure.savefig(folder / "images" / "coaxial_range.png", dpi=110)
+    dress(axes)
+    handles, names = axes.get_legend_handles_labels()
+    key(axes, list(zip(handles, names, strict=True)), loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=5)
+    save(made, folder / "images" / "coaxial_range.png")
     held = [
         max((a for i, a in enumerate(STARTS) if kinds[i, j] == 0 and all(kinds[k, j] == 0 for k in range(i))), default=math.nan)
         for j in range(len(TORQUES))

@@ -17,10 +17,14 @@ from typing import Any
 
 import numpy as np
 
+from watchsim.render.figures.style import MAP, SERIES, SMALL, dress, figure, save
+from watchsim.render.figures.style import title as named
+from watchsim.render.palette import FAINT
 from watchsim.verification.all_checks import verify
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
-BLUE, RED, GREY = "#2b6ca3", "#b5382a", "#8a8f94"
+BLUE, RED, GREY = SERIES[0], SERIES[1], FAINT
+MARKS = {BLUE: "o", RED: "X", GREY: "s"}
 
 
 def number(value: float) -> str:
@@ -46,32 +50,26 @@ def table(rows: list[dict[str, Any]]) -> list[str]:
 
 def margins(rows: list[dict[str, Any]], path: Path) -> None:
     """Error of every number as a share of what it may be, by case."""
-    import matplotlib.pyplot as plt
-
     names = list(dict.fromkeys(row["name"] for row in rows))
-    figure, axis = plt.subplots(figsize=(9.0, 0.19 * len(names) + 1.0), constrained_layout=True)
+    made = figure(height=3.1 * len(names) + 14.0, layout="constrained")
+    axis = made.subplots()
     exact, worst = 1e-11, 10.0
     for row in rows:
         share = row["error"] / row["tolerance"] if row["tolerance"] > 0.0 else (0.0 if row["ok"] else worst)
         colour = RED if not row["ok"] else GREY if share == 0.0 else BLUE
         place = min(max(share, exact), worst)
-        axis.plot(place, names.index(row["name"]), "o", color=colour, markersize=4, alpha=0.7)
+        axis.plot(place, names.index(row["name"]), MARKS[colour], color=colour, markersize=2.6, alpha=0.7)
     axis.axvline(1.0, color=RED, linewidth=1.0)
     axis.set_xscale("log")
-    axis.set_yticks(range(len(names)), names, fontsize=7)
+    dress(axis, grid="x")
+    axis.set_yticks(range(len(names)), names, fontsize=SMALL)
     axis.set_ylim(len(names) - 0.4, -0.6)
-    axis.set_xlabel("error over the error allowed; grey: exact", fontsize=8)
-    axis.tick_params(axis="x", labelsize=8)
-    axis.grid(True, axis="x", color="0.92")
-    for side in ("top", "right"):
-        axis.spines[side].set_visible(False)
-    figure.savefig(path, dpi=110)
-    plt.close(figure)
+    axis.set_xlabel("error over the error allowed; grey squares: exact")
+    save(made, path)
 
 
 def grid_picture(grid: list[dict[str, str]], path: Path) -> None:
     """Amplitude and impacts over restitution and friction."""
-    import matplotlib.pyplot as plt
     from matplotlib.colors import LogNorm
 
     eps = sorted({float(row["restitution"]) for row in grid})
@@ -81,22 +79,25 @@ def grid_picture(grid: list[dict[str, str]], path: Path) -> None:
         i, j = eps.index(float(row["restitution"])), mus.index(float(row["friction"]))
         amplitude[i, j] = float(row["amplitude_deg"] or np.nan)
         impacts[i, j] = float(row["impacts"])
-    figure, axes = plt.subplots(1, 2, figsize=(9.6, 4.2), constrained_layout=True)
+    made = figure(height=75.0, layout="constrained")
+    axes = made.subplots(1, 2)
     step = 0.5 * (mus[1] - mus[0])
     edges = (mus[0] - step, mus[-1] + step, eps[0] - step, eps[-1] + step)
     for axis, values, title, norm in (
         (axes[0], amplitude, "amplitude in the first second, °", None),
         (axes[1], np.maximum(impacts, 1.0), "impacts in the first second", LogNorm()),
     ):
-        image = axis.imshow(values, origin="lower", extent=edges, aspect="equal", cmap="cividis", norm=norm)
-        figure.colorbar(image, ax=axis, shrink=0.85)
-        axis.set(xlabel="friction", ylabel="restitution", title=title)
+        image = axis.imshow(values, origin="lower", extent=edges, aspect="equal", cmap=MAP, norm=norm)
+        bar = made.colorbar(image, ax=axis, shrink=0.85)
+        bar.ax.tick_params(labelsize=SMALL)
+        axis.set(xlabel="friction", ylabel="restitution")
+        named(axis, title)
+        dress(axis, grid="none")
     for row in grid:
         if row["sound"] != "1":
             for axis in axes:
                 axis.plot(float(row["friction"]), float(row["restitution"]), "x", color=RED)
-    figure.savefig(path, dpi=110)
-    plt.close(figure)
+    save(made, path)
 
 
 def grid_text(grid: list[dict[str, str]]) -> list[str]:

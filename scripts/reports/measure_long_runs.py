@@ -219,23 +219,29 @@ def _line(run: Long, i: int) -> str:
 
 def picture(runs: list[Long], path: Path) -> None:
     """Amplitude from its last value, the residual of the account, and its share of the work put in, over time."""
-    import matplotlib.pyplot as plt
+    from watchsim.render.figures.style import CURVE, SERIES, dress, figure, key, save
+    from watchsim.render.figures.style import title as named
+    from watchsim.render.palette import FAINT
 
-    figure, axes = plt.subplots(1, 3, figsize=(13.0, 4.0), constrained_layout=True)
-    for run in runs:
+    made = figure(height=62.0, layout="constrained")
+    axes = made.subplots(1, 3)
+    for run, colour, dashes in zip(runs, SERIES, ("-", "--"), strict=False):
+        look = {"color": colour, "linestyle": dashes, "linewidth": CURVE, "label": run.title}
         minutes = run.end / PIECE
-        axes[0].semilogy(minutes[:-1], np.maximum(np.abs(run.amplitude - run.amplitude[-1])[:-1], 1e-13), ".-", label=run.title)
-        axes[1].plot(minutes, 1e12 * run.residual, label=run.title)
-        axes[2].semilogy(minutes, np.abs(run.residual) / run.supplied, label=run.title)
-    axes[0].axhline(STEADY, color="0.6", linestyle="--", linewidth=1.0)
-    axes[0].set(title="Mean amplitude of a minute, from the last one", ylabel="difference, °")
-    axes[1].set(title="Residual of the energy account", ylabel="residual, pJ")
-    axes[2].set(title="The same as a share of the work put in", ylabel="share", ylim=(1e-13, 1e-7))
-    for axis in axes:
+        axes[0].semilogy(minutes[:-1], np.maximum(np.abs(run.amplitude - run.amplitude[-1])[:-1], 1e-13), **look)
+        axes[1].plot(minutes, 1e12 * run.residual, **look)
+        axes[2].semilogy(minutes, np.abs(run.residual) / run.supplied, **look)
+    axes[0].axhline(STEADY, color=FAINT, linestyle=":", linewidth=CURVE)
+    axes[0].set(ylabel="difference, °")
+    axes[1].set(ylabel="residual, pJ")
+    axes[2].set(ylabel="share", ylim=(1e-13, 1e-7))
+    titles = ("Mean amplitude of a minute, from the last", "Residual of the energy account", "As a share of the work put in")
+    for axis, words in zip(axes, titles, strict=True):
         axis.set_xlabel("minute")
-        axis.grid(True, color="0.9")
-        axis.legend(frameon=False, fontsize=8)
-    figure.savefig(path, dpi=120)
+        named(axis, words)
+        dress(axis)
+    key(axes[1], [(line, str(line.get_label())) for line in axes[1].lines])
+    save(made, path)
 
 
 def failures(runs: list[Long], stands: dict[str, tuple[Floats, float]]) -> list[str]:

@@ -164,23 +164,24 @@ def exponent(sizes: np.ndarray, times: np.ndarray) -> float:
 
 
 def plot(results: dict[str, np.ndarray], empty: float, path: Path) -> None:
-    import matplotlib
+    from watchsim.render.figures.style import CURVE, HAIR, MARKERS, SERIES, SMALL, dress, figure, key, save
+    from watchsim.render.palette import FAINT
 
-    matplotlib.use("Agg")
-    from matplotlib import pyplot as plt
-
-    figure, axes = plt.subplots(figsize=(7.0, 4.4), layout="constrained")
-    for name, rows in results.items():
-        axes.loglog(rows[:, 0], rows[:, 1], "o-", label=f"{name} (n^{exponent(rows[:, 0], rows[:, 1] - empty):.2f})")
-    axes.axhline(empty, color="0.6", linewidth=0.8, linestyle=":")
-    axes.text(SIZES[-1], 1.04 * empty, "a drawing of one circle", fontsize=8, color="0.4", ha="right")
+    made = figure(height=95.0, layout="constrained")
+    axes = made.subplots()
+    lines = []
+    for (name, rows), colour, mark in zip(results.items(), SERIES, MARKERS, strict=False):
+        label = f"{name} (n^{exponent(rows[:, 0], rows[:, 1] - empty):.2f})"
+        lines += axes.loglog(rows[:, 0], rows[:, 1], mark, ls="-", color=colour, linewidth=CURVE, markersize=3.0, label=label)
+    axes.axhline(empty, color=FAINT, linewidth=HAIR, linestyle=":")
+    axes.text(SIZES[-1], 1.04 * empty, "a drawing of one circle", fontsize=SMALL, color=FAINT, ha="right")
+    dress(axes)
     axes.set(xlabel="edges", ylabel="processor time of watchsim inspect (s)")
     axes.xaxis.set_major_formatter(lambda n, _: f"{n:,.0f}".replace(",", " "))
     axes.set_yticks([0.2, 0.5, 1, 2, 5], labels=["0.2", "0.5", "1", "2", "5"])
     axes.set_yticks([], minor=True)
-    axes.grid(True, which="major", color="0.9")
-    axes.legend(frameon=False, fontsize=9)
-    figure.savefig(path, dpi=130)
+    key(axes, [(line, str(line.get_label())) for line in lines], loc="upper left")
+    save(made, path)
 
 
 def table(results: dict[str, np.ndarray], megabytes: dict[str, float], empty: float) -> str:

@@ -204,26 +204,25 @@ def table(found: list[Row]) -> str:
 
 def plot(found: list[Row], path: Path) -> None:
     """Time per simulated second over declared pairs, both logarithmic."""
-    import matplotlib
+    from watchsim.render.figures.style import CURVE, SERIES, dress, figure, key, save
 
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(figsize=(7.5, 4.6), constrained_layout=True)
+    made = figure(height=100.0, layout="constrained")
+    axes = made.subplots()
+    blue, red, _, _, _, light, _ = SERIES
+    look = {"linewidth": CURVE, "markersize": 3.0}
     x = [row.declared for row in found]
     brute = [(row.declared, row.brute) for row in found if row.brute is not None]
-    axes.loglog(*zip(*brute, strict=True), "s-", color="#b5452c", label="brute force: every pair in every step")
-    axes.loglog(x, [row.learning for row in found], "o--", color="#6f8fb3", label="prefilter, first run of a geometry")
-    axes.loglog(x, [row.known for row in found], "o-", color="#1f4e79", label="prefilter, later runs: four beats")
+    axes.loglog(*zip(*brute, strict=True), "s-", color=red, **look, label="brute force: every pair in every step")
+    axes.loglog(x, [row.learning for row in found], "o--", color=light, **look, label="prefilter, first run of a geometry")
+    axes.loglog(x, [row.known for row in found], "o-", color=blue, **look, label="prefilter, later runs: four beats")
     turn = [(row.declared, row.turn) for row in found if row.turn is not None]
-    axes.loglog(*zip(*turn, strict=True), "x:", color="#1f4e79", label="the same, a whole turn of the wheel")
+    axes.loglog(*zip(*turn, strict=True), "x:", color=blue, **look, label="the same, a whole turn of the wheel")
     axes.set_xlabel("declared pairs of primitives")
     axes.set_ylabel("processor time per simulated second, s")
-    axes.grid(True, which="major", color="0.88", linewidth=0.8)
-    axes.spines[["top", "right"]].set_visible(False)
+    dress(axes)
     axes.set_ylim(bottom=1e-3)
-    axes.legend(frameon=False, loc="upper left")
-    figure.savefig(path, dpi=150)
+    key(axes, [(line, str(line.get_label())) for line in axes.lines], loc="upper left")
+    save(made, path)
 
 
 PAGE = """# Input complexity and computing time

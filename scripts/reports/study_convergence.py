@@ -131,26 +131,33 @@ def order(steps: list[float], errors: list[float]) -> float:
 
 def picture(found: Found, path: Path) -> None:
     """Errors over steps, doubly logarithmic, with a line of slope 1."""
-    import matplotlib.pyplot as plt
+    from watchsim.render.figures.style import CURVE, MARKERS, SERIES, dress, figure, key, save
+    from watchsim.render.figures.style import title as named
+    from watchsim.render.palette import FAINT
 
-    figure, axes = plt.subplots(1, 2, figsize=(10.0, 4.6), constrained_layout=True)
+    made = figure(height=80.0, layout="constrained")
+    axes = made.subplots(1, 2)
     panels = (
         ("place, m/m", "Incline, dry bearings, stick and slip", "relative error of place"),
         ("balance, rad", "Levers: balance", "mean difference of angle, rad"),
     )
     for axis, (quantity, title, label) in zip(axes, panels, strict=True):
-        for (case, name), (steps, errors) in found.items():
-            if name == quantity:
-                axis.loglog(steps, errors, "o-", label=f"{case}: order {order(steps, errors):.2f}", markersize=4)
+        shown = [(case, *both) for (case, name), both in found.items() if name == quantity]
+        for (case, steps, errors), colour, mark in zip(shown, SERIES, MARKERS, strict=False):
+            look = {"color": colour, "marker": mark, "markersize": 3.0, "linewidth": CURVE}
+            axis.loglog(steps, errors, label=f"{case}: order {order(steps, errors):.2f}", **look)
         low, high = axis.get_xlim()
         middle = math.sqrt(np.prod(axis.get_ylim()))
         ends = np.array([low, high])
-        axis.loglog(ends, middle * ends / math.sqrt(low * high), color="0.6", linestyle="--", label="slope 1", zorder=0)
-        axis.set(title=title, xlabel="step, s", ylabel=label)
-        axis.grid(True, which="major", color="0.9")
+        axis.loglog(
+            ends, middle * ends / math.sqrt(low * high), color=FAINT, linestyle="--", linewidth=CURVE, label="slope 1", zorder=0
+        )
+        axis.set(xlabel="step, s", ylabel=label)
+        named(axis, title)
+        dress(axis)
         axis.set_ylim(top=20.0 * axis.get_ylim()[1])  # room for the legend
-        axis.legend(loc="upper left", frameon=False, fontsize=8)
-    figure.savefig(path, dpi=120)
+        key(axis, [(line, str(line.get_label())) for line in axis.lines], loc="upper left")
+    save(made, path)
 
 
 HEAD = """# Two methods, one motion

@@ -18,7 +18,7 @@ from watchsim.analysis.timing.beats import beats
 from watchsim.cli import main
 from watchsim.commands.common.console import BAD_INPUT, FINE
 from watchsim.profiles_path import profiles_dir
-from watchsim.render.figures.phase_plot import phase_plot
+from watchsim.render.figures.phase_plot import plot_phases
 from watchsim.scene.file.load import load
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.record.trajectory import Trajectory
@@ -168,7 +168,7 @@ def test_the_printed_table(swiss):
 
 @pytest.mark.parametrize("width", [170.0, 85.0])
 def test_the_plot_is_as_wide_as_asked_and_nothing_is_cut_off(swiss, width):
-    figure = phase_plot(swiss, width=width)
+    figure = plot_phases(swiss, width=width)
     assert figure.get_figwidth() * 25.4 == pytest.approx(width)
     figure.canvas.draw()
     box = figure.bbox

@@ -1,4 +1,4 @@
-"""watchsim plot RUN: kinematic plots of a finished run."""
+"""watchsim plot RUN: plots of a finished run, for screen and print."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from watchsim.commands.common.console import FINE, InputError, parse_names, pars
 if TYPE_CHECKING:
     from watchsim.simulation.record.trajectory import Trajectory
 
-HELP = "kinematic plots of a results folder"
+HELP = "plots of a results folder, for screen and print"
 FORMATS = ("png", "svg", "pdf")
 ALL, MOST = "all", 50  # bodies: each costs some hundredths of a second and two inches of paper
 
@@ -19,75 +19,111 @@ ALL, MOST = "all", 50  # bodies: each costs some hundredths of a second and two 
 def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("run_folder", metavar="RUN", help="a results folder")
     parser.add_argument(
+        "--kind",
+        metavar="NAMES",
+        help="kinematics (default), phases, timeline (the mechanism amid each phase), phase-portrait, torque (on the balance), "
+        f"forces (at contacts and bearings), energy, timing, tape, with commas; {ALL}: every one that the run has",
+    )
+    parser.add_argument(
         "--bodies", metavar="NAMES", help=f"only these bodies, with commas between them, or {ALL} (default: the first {MOST})"
     )
     parser.add_argument(
         "--quantities",
         metavar="NAMES",
         default="angle,velocity",
-        help="angle, velocity, acceleration, with commas (default %(default)s)",
+        help="of kinematics: angle, velocity, acceleration, with commas (default %(default)s)",
+    )
+    parser.add_argument("--tape", action="store_true", help="the same as --kind tape: the paper of a timegrapher")
+    parser.add_argument(
+        "--window", metavar="FROM:TO", help='such as "179.4 s:179.75 s" (default: the last beats, or the whole)'
     )
     parser.add_argument(
-        "--tape", action="store_true", help="the paper of a timegrapher, and rate, amplitude and beat error over time"
-    )
-    parser.add_argument("--window", metavar="FROM:TO", help='such as "179.4 s:179.75 s" (default: all that was recorded)')
-    parser.add_argument(
-        "--phases", action="store_true", help="the timeline: tables of motion and energy, and a plot with the phases of a beat"
+        "--phases", action="store_true", help="as --kind phases, and tables of motion and energy on the standard output"
     )
     parser.add_argument(
-        "--width", metavar="LENGTH", default="170 mm", help='of that plot (default "%(default)s", or "85 mm" for a column)'
+        "--width", metavar="LENGTH", default="170 mm", help='as printed (default "%(default)s", or "85 mm" for a column)'
     )
     parser.add_argument("--format", metavar="NAMES", default="png", help="png, svg, pdf, with commas (default %(default)s)")
     parser.add_argument(
-        "-o", "--output", metavar="FILE", help="the file, ending optional (default RUN/plots/kinematics, phases or tape)"
+        "-o", "--output", metavar="FILE", help="the file, ending optional; a folder for several kinds (default RUN/plots)"
     )
 
 
 def run(args: argparse.Namespace) -> int:
     from watchsim.commands.common.inputs import read_run
     from watchsim.commands.common.output_place import secured_file, swept_run
+    from watchsim.commands.common.plot_kinds import KINDS, Request
+    from watchsim.render.figures.style import save
     from watchsim.storage.write import write_file
 
+    kinds = _kinds(args)
     formats = parse_names(args.format) or []
     wrong = [name for name in formats if name not in FORMATS]
     if wrong or not formats:
         raise InputError(f"--format {args.format}: choose from {', '.join(FORMATS)}.")
+    width, window = 1e3 * parse_width(args.width), parse_window(args.window)
     swept_run(args.run_folder)
     trajectory = read_run(args.run_folder)
-    quantities = tuple(parse_names(args.quantities) or ())
-    window = parse_window(args.window)
-    usual = "phases" if args.phases else "tape" if args.tape else "kinematics"
-    target = Path(args.output) if args.output else Path(args.run_folder) / "plots" / usual
-    if target.suffix[1:] in FORMATS:
-        formats = [target.suffix[1:]] if args.format == "png" else formats
-        target = target.with_suffix("")
-    if not args.output:
-        target.parent.mkdir(exist_ok=True)
-    paths = [secured_file(target.parent / f"{target.name}.{name}", "the plot") for name in formats]
-    if args.tape:
-        from watchsim.render.figures.tape import plot_tape
-
-        figure = plot_tape(trajectory, window)
-    elif args.phases:
-        from watchsim.analysis.timeline.oscillation import shown_beats
-        from watchsim.analysis.timeline.table import timeline_text
-        from watchsim.render.figures.phase_plot import phase_plot
-
-        width = parse_width(args.width)
+    paths = {kind: [secured_file(path, "the plot") for path in own] for kind, own in _places(args, kinds, formats).items()}
+    bodies = _bodies(trajectory, args.bodies) if "kinematics" in kinds else parse_names(args.bodies)
+    asked = Request(trajectory, bodies, tuple(parse_names(args.quantities) or ()), window, width)
+    if args.phases:
+        _print_timeline(trajectory, window)
+    drawn = 0
+    for kind in kinds:
         try:
-            told = shown_beats(trajectory, window)
+            figure = KINDS[kind](asked)
         except ValueError as error:
-            raise InputError(f"--phases: {error}.") from error
-        print(timeline_text(trajectory, told))
-        figure = phase_plot(trajectory, window, 1e3 * width, told)
-    else:
-        from watchsim.render.figures.plots import plot_kinematics
-
-        figure = plot_kinematics(trajectory, _bodies(trajectory, args.bodies), quantities, window)
-    for path in paths:
-        write_file(path, figure.savefig, "the plot")
-        print(path)
+            if len(kinds) == 1:
+                raise InputError(f"--phases: {error}." if args.phases else f"--kind {kind}: {error}.") from error
+            say(f"No plot of {kind}: {error}.")
+            continue
+        for path in paths[kind]:
+            write_file(path, lambda place, figure=figure: save(figure, place), "the plot")  # type: ignore[misc]
+            print(path)
+        drawn += 1
+    if not drawn:
+        raise InputError(f"none of {', '.join(kinds)} can be drawn of this run.")
     return FINE
+
+
+def _kinds(args: argparse.Namespace) -> list[str]:
+    from watchsim.commands.common.plot_kinds import chosen
+
+    names = parse_names(args.kind) or ([] if args.tape or args.phases else ["kinematics"])
+    if args.kind is not None and not names:
+        return chosen([])
+    short = [name for name, wanted in (("phases", args.phases), ("tape", args.tape)) if wanted]
+    return chosen([*names, *short])
+
+
+def _places(args: argparse.Namespace, kinds: list[str], formats: list[str]) -> dict[str, list[Path]]:
+    """The files of each kind."""
+    folder = Path(args.run_folder) / "plots"
+    if not args.output:
+        folder.mkdir(exist_ok=True)
+    elif len(kinds) > 1:
+        folder = Path(args.output)
+        if folder.suffix[1:] in FORMATS:
+            raise InputError(f"-o {args.output}: {len(kinds)} plots need a folder, this is the name of one file.")
+        folder.mkdir(parents=True, exist_ok=True)
+    else:
+        target = Path(args.output)
+        if target.suffix[1:] in FORMATS:
+            formats = [target.suffix[1:]] if args.format == "png" else formats
+            target = target.with_suffix("")
+        return {kinds[0]: [target.parent / f"{target.name}.{name}" for name in formats]}
+    return {kind: [folder / f"{kind}.{name}" for name in formats] for kind in kinds}
+
+
+def _print_timeline(run: Trajectory, window: tuple[float, float] | None) -> None:
+    from watchsim.analysis.timeline.oscillation import shown_beats
+    from watchsim.analysis.timeline.table import timeline_text
+
+    try:
+        print(timeline_text(run, shown_beats(run, window)))
+    except ValueError as error:
+        raise InputError(f"--phases: {error}.") from error
 
 
 def _bodies(run: Trajectory, asked: str | None) -> list[str] | None:

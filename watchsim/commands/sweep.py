@@ -32,8 +32,8 @@ if TYPE_CHECKING:
     from watchsim.studies.workers.executor import Executor
 
 HELP = "parameter study: table and plot; or what matters in a watch (--sensitivity)"
-FILES = ("rows.jsonl", "sweep.csv", "sweep.json", "sweep.parquet", "sweep.png", "sweep.svg")
-FIGURES = (".png", ".svg")
+FILES = ("rows.jsonl", "sweep.csv", "sweep.json", "sweep.parquet", "sweep.png", "sweep.svg", "sweep.pdf")
+FIGURES = (".png", ".svg", ".pdf")
 
 
 def options(parser: argparse.ArgumentParser) -> None:
@@ -225,7 +225,7 @@ def _figure_of_sensitivity(done: Any) -> Any:
 
 
 def _write(folder: Path, numbers: dict[str, Any], table: dict[str, list[Any]], figure: Any) -> None:
-    """sweep.json, sweep.csv, sweep.parquet where pyarrow is installed, sweep.png and sweep.svg."""
+    """sweep.json, sweep.csv, sweep.parquet where pyarrow is installed, the plot as PNG, SVG and PDF."""
     from watchsim.results.tables import json_text
     from watchsim.storage.write import write_file
     from watchsim.studies.table import csv_text, parquet_writer
@@ -237,5 +237,7 @@ def _write(folder: Path, numbers: dict[str, Any], table: dict[str, list[Any]], f
     if write is not None:
         write_file(folder / "sweep.parquet", write, "the table")
     if figure is not None and not stopping.requested():
+        from watchsim.render.figures.style import save
+
         for ending in FIGURES:
-            write_file(folder / f"sweep{ending}", figure.savefig, "the plot")
+            write_file(folder / f"sweep{ending}", lambda path: save(figure, path), "the plot")

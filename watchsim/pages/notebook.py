@@ -1,19 +1,21 @@
-"""What do a scene, a run and its beats show of themselves in a notebook? A few lines and a small picture, in 30 kB at most."""
+"""What do values show of themselves in a notebook? A few lines and a small picture, in 30 kB at most."""
 
 from __future__ import annotations
 
-import base64
 import io
-from collections.abc import Sequence
 
 import numpy as np
 
 from watchsim.analysis.timing.averages import averages, last_window
 from watchsim.analysis.timing.beats import Beats, beats
 from watchsim.mechanism.compile import compile_scene
+from watchsim.pages.card import card, image
 from watchsim.pages.charts import scatter
-from watchsim.pages.html import Content, Markup, element, joined
+from watchsim.pages.html import Markup
 from watchsim.pages.player.stretch_shown import shown
+from watchsim.pages.study_cards import cycle_html as cycle_html
+from watchsim.pages.study_cards import sensitivity_html as sensitivity_html
+from watchsim.pages.study_cards import sweep_html as sweep_html
 from watchsim.pages.timing_sheet.timekeeping import both_ways, with_error
 from watchsim.render.frame.pose_history import Window, poses
 from watchsim.render.frame.stage import Stage
@@ -27,14 +29,6 @@ SIZE = (560, 315)
 COLOURS = 40  # of a picture: a palette makes it small
 NAMED = 8  # bodies
 DOTS = 120  # of a chart
-STYLE = Markup(
-    "<style>.watchsim{display:flex;gap:18px;align-items:flex-start;flex-wrap:wrap}"
-    ".watchsim>div{max-width:340px}.watchsim p{margin:0 0 4px}"
-    ".watchsim img,.watchsim .chart svg{max-width:420px;width:100%;height:auto}"
-    ".watchsim text{fill:currentColor;font-size:13px}.watchsim .grid{stroke:#8884}.watchsim .axis{stroke:#888}"
-    ".watchsim .d0{fill:#2f57a6}.watchsim .d1{fill:#b0183c}.watchsim figure{margin:0}"
-    ".watchsim .key{font-size:12px}.watchsim .key svg{width:10px;margin:0 5px}</style>"
-)
 
 
 def scene_html(scene: Scene) -> str:
@@ -49,7 +43,7 @@ def scene_html(scene: Scene) -> str:
     if hertz:
         lines.append(f"{hertz:.6g} Hz, {7200.0 * hertz:.6g} vph")
     run = at_rest(scene, compile_scene(scene))
-    return _card(scene.title, lines, _picture(run, (0.0, 1.0), 0.0))
+    return card(scene.title, lines, _picture(run, (0.0, 1.0), 0.0))
 
 
 def trajectory_html(run: Trajectory) -> str:
@@ -58,14 +52,14 @@ def trajectory_html(run: Trajectory) -> str:
     try:
         window = shown(run, None)
     except ValueError:  # no rows were kept
-        return _card(run.scene.title, lines, None)
-    return _card(run.scene.title, lines, _picture(run, window, window[1]))
+        return card(run.scene.title, lines, None)
+    return card(run.scene.title, lines, _picture(run, window, window[1]))
 
 
 def beats_html(found: Beats) -> str:
     """How many, the last of them, and a chart of the amplitude."""
     if len(found) < 3:
-        return _card(f"Beats of {found.body}", [_count(len(found), "half swing", "half swings")], None)
+        return card(f"Beats of {found.body}", [_count(len(found), "half swing", "half swings")], None)
     unit, scale = ("°", float(np.degrees(1.0))) if found.angular else ("mm", 1e3)
     step = -(-len(found) // DOTS) | 1  # odd, so that both directions stay in sight
     dots = [
@@ -73,7 +67,7 @@ def beats_html(found: Beats) -> str:
         for one in both_ways(found, found.t, scale * found.amplitude)
     ]
     chart = scatter(dots, "time (s)", f"amplitude ({unit})", f"Amplitude of {len(found)} half swings")
-    return _card(f"Beats of {found.body}", repr(found).strip("<>").split(": ", 1)[1].split("; "), chart)
+    return card(f"Beats of {found.body}", repr(found).strip("<>").split(": ", 1)[1].split("; "), chart)
 
 
 def _timing(run: Trajectory) -> list[str]:
@@ -94,11 +88,6 @@ def _count(number: int, one: str, more: str) -> str:
     return f"{number} {one if number == 1 else more}"
 
 
-def _card(title: str, lines: Sequence[str], picture: Content) -> str:
-    text = element("div", element("p", element("b", title)), *(element("p", line) for line in lines if line))
-    return element("div", STYLE, text, picture, class_="watchsim")
-
-
 def _picture(run: Trajectory, window: Window, t: float) -> Markup | None:
     """The mechanism at the instant `t` (s) as a small PNG; None where there is nothing to draw."""
     from PIL import Image
@@ -110,5 +99,4 @@ def _picture(run: Trajectory, window: Window, t: float) -> Markup | None:
         return None
     out = io.BytesIO()
     Image.fromarray(np.ascontiguousarray(pixels)).quantize(COLOURS).save(out, "PNG", optimize=True)
-    data = base64.b64encode(out.getvalue()).decode("ascii")
-    return joined(element("img", src=f"data:image/png;base64,{data}", alt=f"The mechanism at {t:g} s", width=SIZE[0] // 4 * 3))
+    return image(out.getvalue(), f"The mechanism at {t:g} s", SIZE[0] // 4 * 3)

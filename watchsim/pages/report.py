@@ -28,6 +28,7 @@ from watchsim.storage.write import write_file
 
 ENDINGS = (".html", ".htm")
 HALVINGS = 12
+ALONE = Markup("<style>.skip,header,#sheet,footer{display:none!important}main{margin-top:0;padding-top:0}</style>")
 
 
 def report(
@@ -79,6 +80,18 @@ def page_text(run: Trajectory, window: Sequence[float] | None = None, numbers: M
         "made": _made(told, off),
     }
     return page(run.scene.title, places, data)
+
+
+def player_text(run: Trajectory, window: Sequence[float] | None = None) -> str:
+    """A page with the player and the plots only, for a frame in another page."""
+    span, moved, off = _motion(run, window)
+    size = picture_size(run, span)
+    found = phases(run)
+    opening = _opening(found, span)
+    data = player_data(run, span, moved, drawn_parts(run.scene, size), found, opening)
+    data["files"] = {"entries": [], "data": ""}
+    places = dict.fromkeys(("poster", "verdict", "lead", "saved"), Markup(""))
+    return page(run.scene.title, {**places, "sheet": ALONE, "made": _made({}, off)}, data)
 
 
 def _motion(run: Trajectory, window: Sequence[float] | None) -> tuple[Window, list[Channel], float]:

@@ -17,12 +17,19 @@ FAINT = "#5b6168"
 GRID = "#ddd8ce"
 CONTACT = "#e8590c"
 FORCE = "#0b5fa5"
-PHASES = {  # of a beat; pale, to lie behind curves
-    "unlock": "#f3c6c6",
-    "catch-up": "#f7ead2",
-    "impulse": "#cfe6cf",
-    "drop": "#d9d3ee",
-    "run to banking": "#cfe2f3",
+PHASES = {  # of a beat; pale, to lie behind curves, and distinct for every kind of colour vision (tests/figures/test_colours)
+    "unlock": "#a6cee4",
+    "catch-up": "#f5d999",
+    "impulse": "#8cd3c0",
+    "drop": "#f0d7e5",
+    "run to banking": "#eebf99",
+}
+PHASE_LINES = {  # the same for curves: Okabe and Ito's colours
+    "unlock": "#0072b2",
+    "catch-up": "#e69f00",
+    "impulse": "#009e73",
+    "drop": "#cc79a7",
+    "run to banking": "#d55e00",
 }
 
 

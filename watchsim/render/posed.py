@@ -37,8 +37,9 @@ class Posed:
             from matplotlib.patches import PathPatch
 
             look = LIGHT.worn(part.finish)
-            patch = PathPatch(path, fill=not part.ground, facecolor=look.fill, edgecolor=look.edge, linewidth=EDGE, zorder=2)
-            axes.add_patch(patch)
+            axes.add_artist(  # the limits are set by who draws; working them out from all curves takes longer than drawing
+                PathPatch(path, fill=not part.ground, facecolor=look.fill, edgecolor=look.edge, linewidth=EDGE, zorder=2)
+            )
 
     def outline(self, axes: Axes, q: Array, bodies: Iterable[str], colour: str) -> None:
         """Where some bodies stood or will stand, as thin dashes."""

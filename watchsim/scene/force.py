@@ -12,7 +12,10 @@ from watchsim.geometry.coil import Coil
 
 @dataclass(frozen=True, slots=True)
 class Spring:
-    """A spring: -stiffness (q - rest), N·m/rad or N/m. `frequency` (Hz) where that is how it was given; `coil` is how it is drawn."""
+    """A spring: -stiffness (q - rest), N·m/rad or N/m.
+
+    `frequency` (Hz) where that is how it was given; `coil` is how it is drawn.
+    """
 
     body: str
     stiffness: float

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from watchsim.displays import notebook_html
 from watchsim.scene.errors import Fault, SceneError
 from watchsim.scene.scene import Scene
 from watchsim.studies.limit_cycle.cycle import Cycle
@@ -69,6 +70,14 @@ class Sensitivity:
     effects: tuple[Effect, ...]
     whole: bool
     wall_s: float
+
+    def __repr__(self) -> str:
+        first = f", {self.effects[0].quantity.key} first" if self.effects else ""
+        told = ", ".join(one.column for one in self.outputs)
+        return f"<Sensitivity of {self.title!r}: {len(self.effects)} quantities{first}; {told}>"
+
+    def _repr_html_(self) -> str:
+        return notebook_html(self)
 
     def rows(self) -> list[Row]:
         """One flat row per quantity: key and value in the unit people read, effects per usual change, per 1 % and per unit."""

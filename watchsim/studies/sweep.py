@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from watchsim.displays import notebook_html
 from watchsim.scene.scene import Scene
 from watchsim.simulation.interrupts import held_interrupts
 from watchsim.studies.axes import Axis, Value, axes_from_values
@@ -35,6 +36,14 @@ class Sweep:
     rows: tuple[Row, ...]
     whole: bool
     wall_s: float
+
+    def __repr__(self) -> str:
+        keys = ", ".join(axis.key for axis in self.axes)
+        told = ", ".join(one.column for one in self.outputs)
+        return f"<Sweep of {self.title!r}: {len(self.rows)} points over {keys}; {told}{'' if self.whole else '; interrupted'}>"
+
+    def _repr_html_(self) -> str:
+        return notebook_html(self)
 
     def column(self, name: str) -> list[Any]:
         """The values of a key, an output ("amplitude") or a column ("amplitude_deg_error") in all rows; else KeyError."""

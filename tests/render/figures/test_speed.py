@@ -17,7 +17,7 @@ def row(scene: str, method: str, time: float, error: float, note: str = "") -> d
 
 def test_every_figure_in_its_place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     saved: list[Figure] = []
-    monkeypatch.setattr(Figure, "savefig", lambda self, path: saved.append(self))
+    monkeypatch.setattr(Figure, "savefig", lambda self, path, **_: saved.append(self))
     rows = [
         *(row("a", "pfeiffer-glocker", 0.004, 1e-5), row("a", "pfeiffer-glocker", 0.005, 0.0), row("a", "moreau", 0.5, 0.01)),
         *(row("a", "moreau", 0.9, 0.02, "does not run"), row("b", "pfeiffer-glocker", 0.1, 1e-3), row("b", "moreau", 0.2, 0.3)),

@@ -15,7 +15,7 @@ from watchsim.simulation.record.trajectory import Trajectory
 
 @dataclass(frozen=True)
 class Beat:
-    """One beat: its phases in order, and of each what friction took by pair of bodies, J.
+    """One beat: its phases in order, and of each what friction took by pair of bodies, J (empty where that was not asked for).
 
     `residual`: what the books of the beat lack, J, friction as worked out from forces.
     """
@@ -37,10 +37,11 @@ class Beat:
         return sum(stage.energy.friction for stage in self.stages) - taken
 
 
-def shown_beats(run: Trajectory, window: Sequence[float] | None = None) -> list[Beat]:
+def shown_beats(run: Trajectory, window: Sequence[float] | None = None, rubbed: bool = True) -> list[Beat]:
     """The beats that begin within a window (s), by default those of the last oscillation that was recorded whole.
 
-    ValueError in words where there are none.
+    Without `rubbed` what friction took is not worked out by pair, which takes most of the time. ValueError in words where there
+    are none.
     """
     name = roles(run.scene).oscillator
     if name is None:
@@ -59,7 +60,8 @@ def shown_beats(run: Trajectory, window: Sequence[float] | None = None) -> list[
         stages = timeline(run, found, window)
     if not stages:
         raise ValueError("no beat of an escapement was recorded whole there")
-    return [_beat(run, [one for one in stages if one.beat == beat]) for beat in sorted({one.beat for one in stages})]
+    beats_shown = ([one for one in stages if one.beat == beat] for beat in sorted({one.beat for one in stages}))
+    return [_beat(run, own) if rubbed else Beat(tuple(own), ()) for own in beats_shown]
 
 
 def _beat(run: Trajectory, stages: list[Stage]) -> Beat:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from watchsim.render.palette import FAINT, GRID, INK
+from watchsim.render.figures.style import BAD, FULL, GOOD, HAIR, LABEL, NARROW, SMALL, TITLE, dress, figure
+from watchsim.render.palette import FAINT, INK
 from watchsim.studies.sensitivity import Effect, Sensitivity
 
 if TYPE_CHECKING:
@@ -14,33 +15,35 @@ if TYPE_CHECKING:
     from watchsim.studies.outputs import Output
 
 MOST = 30  # bars in a panel
-UP, DOWN = "#1f4e79", "#b5452c"
-WIDTH, ROW = 4.2, 0.24  # inches, of a panel and of a bar
+UP, DOWN = GOOD, BAD
+ROW, REST = 4.2, 18.0  # mm, of a bar and of all around the bars
+WORDS = 10.0  # mm, beside a bar
+LETTERS, LEAST_WIDE = 1.15, 30.0  # mm, of a letter of the names; of a panel at least
 LEAST = 1e-4  # of the longest bar: shorter ones are none
 TOLD = 1e-4  # of the longest bar: shorter ones have no number beside them
-ROOM = 1.4  # longest bars, on either side
 
 
-def plot_sensitivity(found: Sensitivity) -> Figure:
-    """A panel of bars for each output, the quantities in one order for all of them; a figure to save as PNG, SVG or PDF.
+def plot_sensitivity(found: Sensitivity, width: float = FULL) -> Figure:
+    """A panel of bars for each output, the quantities in one order for all of them; a figure `width` mm wide to save as
+    PNG, SVG or PDF. In a column the panels stand one below the other.
 
     A bar is the effect of 1 % more, of 10 µm or of 0.1°. What two step sizes disagree about is hatched.
     """
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
     shown = [effect for effect in found.effects if _matters(found, effect)][:MOST]
-    size = (WIDTH * len(found.outputs) + 2.6, ROW * len(shown) + 1.3)
-    figure = Figure(figsize=size, dpi=150, layout="constrained")
-    FigureCanvasAgg(figure)
-    panels = figure.subplots(1, len(found.outputs), sharey=True, squeeze=False)[0]
-    figure.suptitle(f"{found.title}: what matters", x=0.01, ha="left", fontsize=11, weight="bold", color=INK)
-    for axes, output in zip(panels, found.outputs, strict=True):
-        _bars(axes, shown, output)
+    across = len(found.outputs) if width >= NARROW else 1
+    rows = -(-len(found.outputs) // across)
+    made = figure(width, rows * (ROW * max(len(shown), 2) + REST), layout="constrained")
+    panels = made.subplots(rows, across, sharey=True, squeeze=False).flat
+    made.suptitle(f"{found.title}: what matters", x=0.01, ha="left", fontsize=TITLE, weight="bold", color=INK)
     names = [f"{effect.quantity.key}, {_signed(effect)}" for effect in shown]
-    panels[0].set_yticks(range(len(shown)), names)
+    # A panel's width is known only when it is laid out; before, all are alike beside the names.
+    wide = (width - LETTERS * max(map(len, names), default=0)) / across
+    for axes, output in zip(panels, found.outputs, strict=True):
+        _bars(axes, shown, output, max(wide, LEAST_WIDE))
+    for axes in (panels[0],) if across > 1 else panels:
+        axes.set_yticks(range(len(shown)), names, fontsize=SMALL)
     panels[0].invert_yaxis()
-    return figure
+    return made
 
 
 def _signed(effect: Effect) -> str:
@@ -60,7 +63,8 @@ def _length(effect: Effect, output: Output) -> float:
     return abs(effect.of(output.column, effect.quantity.change) or 0.0)
 
 
-def _bars(axes: Axes, shown: list[Effect], output: Output) -> None:
+def _bars(axes: Axes, shown: list[Effect], output: Output, wide: float) -> None:
+    dress(axes, grid="x")
     values = [effect.of(output.column, effect.quantity.change) or 0.0 for effect in shown]
     hatches = ["" if effect.by[output.column].agrees else "////" for effect in shown]
     bars = axes.barh(range(len(shown)), values, height=0.68, color=[UP if value > 0.0 else DOWN for value in values])
@@ -72,14 +76,12 @@ def _bars(axes: Axes, shown: list[Effect], output: Output) -> None:
         side = 1.0 if value >= 0.0 else -1.0
         place = (value + 0.02 * side * longest, bar.get_y() + 0.5 * bar.get_height())
         text = f"{value:+.3g}".replace("-", "−")
-        axes.text(*place, text, va="center", ha="left" if side > 0 else "right", fontsize=7, color=INK)
-    axes.set_xlim(-ROOM * longest, ROOM * longest)
-    axes.axvline(0.0, color=FAINT, linewidth=0.8)
+        axes.text(*place, text, va="center", ha="left" if side > 0 else "right", fontsize=SMALL, color=INK)
+    room = longest * wide / max(wide - 2.0 * WORDS, 0.2 * wide)
+    axes.set_xlim(-room, room)
+    axes.axvline(0.0, color=FAINT, linewidth=HAIR)
     axes.set_title(
-        f"change of {output.label} ({output.unit})" if output.unit else output.label, fontsize=9, loc="left", color=INK
+        f"change of {output.label} ({output.unit})" if output.unit else output.label, fontsize=LABEL, loc="left", color=INK
     )
-    axes.grid(True, axis="x", color=GRID, linewidth=0.7)
-    axes.set_axisbelow(True)
-    axes.spines[["top", "right", "left"]].set_visible(False)
-    axes.spines["bottom"].set_color(FAINT)
-    axes.tick_params(colors=INK, labelsize=8, left=False)
+    axes.spines["left"].set_visible(False)
+    axes.tick_params(left=False)

@@ -11,39 +11,38 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from watchsim.render.figures.style import LABEL, POINT, TICK
+
 if TYPE_CHECKING:
     from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
-POINT = 1.0 / 72.0  # inches
-TICK_SIZE = 9.0  # pt
-LABEL_SIZE = 10.0
-TITLE_SIZE = 13.0
+INCH = 72.0  # pt
 DIGIT = 0.637  # width of a digit over its size, in matplotlib's own font
 LINE = 1.25  # height of a line of text over its size
-BEFORE_LABEL = 7.0  # pt, the tick and the gap to its label
-GAP = 6.0  # pt, between words and from the edge of the figure
-TITLE_PAD = 4.0  # pt, between a panel and its title
+BEFORE_LABEL = 4.0  # pt, the tick and the gap to its label
+GAP = 4.0  # pt, between words and from the edge of the figure
+TITLE_PAD = 3.0  # pt, between a panel and its title
 
 
-def place_panels(figure: Figure, panels: NDArray[np.object_]) -> None:
+def place_panels(figure: Figure, panels: NDArray[np.object_], above: float) -> None:
     """Set the sides of a grid of panels whose limits are final, so that nothing overlaps and nothing is cut off.
 
-    `panels`: (rows, columns) axes with y labels and left titles, x labels in the last row only; room is left on top for a
-    title of the figure.
+    `panels`: (rows, columns) axes with y labels and left titles, x labels in the last row only; `above` mm on top are left for
+    the heading of the figure.
     """
-    width, height = (inches / POINT for inches in figure.get_size_inches())
+    width, height = (inches * INCH for inches in figure.get_size_inches())
     rows, columns = panels.shape
-    label = LINE * LABEL_SIZE
+    label = LINE * LABEL
     labels = [max(_label_width(axes.yaxis) for axes in panels[:, j]) for j in range(columns)]
     left = [BEFORE_LABEL + labels[j] + label + 2.0 * GAP for j in range(columns)]
     right = 0.5 * _label_width(panels[-1, 0].xaxis) + 0.5 * GAP  # the last label may stand below the corner
-    bottom = BEFORE_LABEL + LINE * TICK_SIZE + label + GAP
-    above = TITLE_PAD + label
-    top = LINE * TITLE_SIZE + GAP
+    bottom = BEFORE_LABEL + LINE * TICK + label + GAP
+    titles = TITLE_PAD + label
+    top = above / POINT
     panel_width = (width - sum(left) - columns * right) / columns
     step = (height - top - bottom) / rows
-    panel_height = step - above - GAP
+    panel_height = step - titles - GAP
     for j in range(columns):
         x = sum(left[: j + 1]) + j * (panel_width + right)
         for i in range(rows):
@@ -61,4 +60,4 @@ def _label_width(axis: Axis) -> float:
     low, high = sorted(axis.get_view_interval())
     ticks = [tick for tick in axis.get_major_locator().tick_values(low, high) if low <= tick <= high]
     texts = axis.get_major_formatter().format_ticks(ticks)
-    return max((DIGIT * TICK_SIZE * sum(0.5 if c in ",." else 1.0 for c in text) for text in texts), default=0.0)
+    return max((DIGIT * TICK * sum(0.5 if c in ",." else 1.0 for c in text) for text in texts), default=0.0)

@@ -14,10 +14,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.render.figures.plot_margins import GAP, LABEL_SIZE, POINT, TICK_SIZE, TITLE_PAD, TITLE_SIZE, place_panels
+from watchsim.analysis.timing.phases import Phase
+from watchsim.render.figures.column_extremes import reduced
+from watchsim.render.figures.passing_phases import passing
+from watchsim.render.figures.phase_bands import name_key, shade
+from watchsim.render.figures.plot_margins import place_panels
+from watchsim.render.figures.style import CURVE, FULL, NARROW, dress, figure, heading, key, title
 from watchsim.render.frame.marks.readouts import clock
 from watchsim.render.frame.pose_history import choose, dense, stretch
-from watchsim.render.palette import FAINT, GRID, INK, looks
+from watchsim.render.palette import looks
 from watchsim.scene.body import Body
 from watchsim.simulation.record.trajectory import Trajectory
 
@@ -29,7 +34,8 @@ Array = NDArray[np.float64]
 
 QUANTITIES = ("angle", "velocity", "acceleration")
 USUAL = QUANTITIES[:2]
-PANEL = (6.0, 2.1)  # inches
+PANEL, FOOT = 30.0, 9.0  # mm, the height of a row of panels, and room for the time below
+KEY, KEY_GAP = 6.5, 1.0  # mm, where the names of phases begin, and room below them
 FLAT = 1e-6  # a range smaller than this part of the value (or of 1 unit) is shown as flat, not magnified
 STYLES = ("-", "--")  # of x and y
 
@@ -61,6 +67,7 @@ def plot_kinematics(
     bodies: Sequence[str] | None = None,
     quantities: Sequence[str] = USUAL,
     window: Sequence[float] | None = None,
+    width: float = FULL,
 ) -> Figure:
     """One panel per moving body and quantity over a common time axis; a figure to save as PNG, SVG or PDF.
 
@@ -68,32 +75,35 @@ def plot_kinematics(
     quantities  "angle" (°; sliding and free bodies: their position in mm too), "velocity" (°/s, mm/s), "acceleration" (°/s²,
                 mm/s²; it jumps with every force, and what happens within an impact has none)
     window      (from, to) in seconds; default all that was recorded
+    width       mm, as printed: 170 for a page, 85 for a column
 
-    Between rows the curve follows the trajectory's own interpolation; at an impact the velocity jumps. ValueError naming
+    Where the window shows a few beats of an escapement their phases are shaded and named. Between rows the curve follows the
+    trajectory's own interpolation; at an impact the velocity jumps, and of dense curves every spike is drawn. ValueError naming
     the choices for an unknown body or quantity, or a window that was not recorded.
     """
-    return Kinematics(run, bodies, quantities).show(window)
+    return Kinematics(run, bodies, quantities, width).show(window)
 
 
 class Kinematics:
     """The panels of `plot_kinematics`, which can show one window after another: most of a plot's cost is making them."""
 
-    def __init__(self, run: Trajectory, bodies: Sequence[str] | None = None, quantities: Sequence[str] = USUAL) -> None:
-        from matplotlib.backends.backend_agg import FigureCanvasAgg
-
-        from watchsim.render.figures.shown_figure import ShownFigure
-
+    def __init__(
+        self,
+        run: Trajectory,
+        bodies: Sequence[str] | None = None,
+        quantities: Sequence[str] = USUAL,
+        width: float = FULL,
+    ) -> None:
         self.run, self._quantities = run, _quantities(quantities)
-        self._channels = [channel for body in choose(run, bodies) for channel in _channels(run, body)]
+        self._channels = [channel for body in choose(run, bodies) for channel in channels(run, body)]
         if not self._channels:
             raise ValueError("nothing to plot: no body of this run moves")
-        rows, columns = len(self._channels), len(self._quantities)
-        self.figure: Figure = ShownFigure(figsize=(PANEL[0] * columns, PANEL[1] * rows + 1.0), dpi=150)
-        FigureCanvasAgg(self.figure)
-        self._panels = self.figure.subplots(rows, columns, sharex=True, squeeze=False)
-        below = 1.0 - GAP * POINT / self.figure.get_figheight()
-        title = {"fontsize": TITLE_SIZE, "weight": "bold", "color": INK}
-        self.figure.suptitle(run.scene.title, x=0.01, y=below, ha="left", va="top", **title)
+        side_by_side = 1 if width < NARROW else len(self._quantities)
+        rows = len(self._channels) * len(self._quantities) // side_by_side
+        self.figure: Figure = figure(width, PANEL * rows + FOOT + KEY)
+        self._panels = self.figure.subplots(rows, side_by_side, sharex=True, squeeze=False)
+        heading(self.figure, run.scene.title)
+        self._own = len(self.figure.texts), len(self.figure.artists)
         worn = looks(run.scene)
         for axes, channel, quantity in self._each():
             _panel(axes, channel, quantity, worn[channel.body.name].line)
@@ -104,22 +114,35 @@ class Kinematics:
         t, *motion = dense(self.run, span)
         told = clock(span)
         x = (t - told.base) * told.factor
+        phases = passing(self.run, span)
         for axes, channel, quantity in self._each():
             values = channel.factor * motion[QUANTITIES.index(quantity)][:, channel.columns]
             for line, column in zip(axes.get_lines(), values.T, strict=True):
-                line.set_data(x, column)
+                line.set_data(*reduced(x, column))
             _limits(axes, values, quantity == "angle" and channel.units is ROTATION[0])
+            for band in list(axes.patches):
+                band.remove()
+            for beat in phases:
+                shade(axes, beat, told.base, told.factor)
         for axes in self._panels[-1]:
-            axes.set_xlabel(told.label, color=INK)
+            axes.set_xlabel(told.label)
         self._panels[-1, 0].set_xlim(*((end - told.base) * told.factor for end in span))  # which all panels share
-        place_panels(self.figure, self._panels)
+        place_panels(self.figure, self._panels, self._named(phases))
         return self.figure
+
+    def _named(self, phases: list[list[Phase]]) -> float:
+        """The names of the phases in sight below the title; where the panels begin, mm."""
+        texts, artists = self._own
+        for one in (*self.figure.texts[texts:], *self.figure.artists[artists:]):
+            one.remove()
+        names = list(dict.fromkeys(phase.name for beat in phases for phase in beat if phase.name != "locked"))
+        return name_key(self.figure, names, KEY) + KEY_GAP if names else KEY
 
     def _each(self) -> Iterator[tuple[Axes, Channel, str]]:
         """Every panel with what it shows."""
-        for row, channel in zip(self._panels, self._channels, strict=True):
-            for axes, quantity in zip(row, self._quantities, strict=True):
-                yield axes, channel, quantity
+        shown = ((channel, quantity) for channel in self._channels for quantity in self._quantities)
+        for axes, (channel, quantity) in zip(self._panels.flat, shown, strict=True):
+            yield axes, channel, quantity
 
 
 def write_png(figure: Figure, path: Path) -> None:
@@ -142,7 +165,8 @@ def _quantities(quantities: Sequence[str]) -> tuple[str, ...]:
     return asked
 
 
-def _channels(run: Trajectory, body: Body) -> list[Channel]:
+def channels(run: Trajectory, body: Body) -> list[Channel]:
+    """The rows of panels of one body: one, and of a free body two."""
     first = run.slices[body.name].start
     if body.motion == "slide":
         return [Channel(body, (first,), 1e3, *TRAVEL)]
@@ -153,19 +177,16 @@ def _channels(run: Trajectory, body: Body) -> list[Channel]:
 
 
 def _panel(axes: Axes, channel: Channel, quantity: str, colour: str) -> None:
-    axes.set_ylabel(f"{channel.names[quantity]} ({channel.units[quantity]})", color=INK)
-    axes.set_title(channel.body.name, loc="left", fontsize=LABEL_SIZE, color=colour, weight="bold", y=1.0, pad=TITLE_PAD)
-    axes.grid(True, color=GRID, linewidth=0.7)
-    axes.set_axisbelow(True)
-    axes.spines[["top", "right"]].set_visible(False)
-    axes.spines[["left", "bottom"]].set_color(FAINT)
-    axes.tick_params(colors=INK, labelsize=TICK_SIZE)
+    dress(axes)
+    axes.set_ylabel(f"{channel.names[quantity]} ({channel.units[quantity]})")
+    title(axes, channel.body.name, colour)
     axes.yaxis.set_offset_position("right")  # opposite the title
+    lines = []
     for k in range(len(channel.columns)):
-        label = channel.legend[k] if channel.legend else None
-        axes.plot([], [], STYLES[k], color=colour, linewidth=1.3, label=label, solid_joinstyle="round")
+        name = f"{channel.body.name} {quantity}{f' {channel.legend[k]}' if channel.legend else ''}"
+        lines += axes.plot([], [], STYLES[k], color=colour, linewidth=CURVE, solid_joinstyle="round", gid=name, zorder=3)
     if channel.legend:
-        axes.legend(frameon=False, fontsize=TICK_SIZE, loc="upper left", ncols=len(channel.legend), borderaxespad=0.2)
+        key(axes, list(zip(lines, channel.legend, strict=True)), loc="upper left", ncols=len(channel.legend))
 
 
 def _limits(axes: Axes, values: Array, angle: bool) -> None:

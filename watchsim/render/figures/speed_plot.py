@@ -6,36 +6,35 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from watchsim.render.palette import FAINT, GRID, INK
+from watchsim.render.figures.style import CURVE, FULL, HAIR, SERIES, SMALL, dress, figure, save, title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-COLOURS = {"pfeiffer-glocker": "#1f4e79", "moreau": "#6f8fb3", "pymunk": "#b5452c", "box2d": "#c98a1b", "mujoco": "#6b7d3a"}
+COLOURS = dict(
+    zip(("pfeiffer-glocker", "pymunk", "mujoco", "box2d", "moreau"), (SERIES[0], *SERIES[1:4], SERIES[5]), strict=True)
+)
 NAMES = {
     **{"pfeiffer-glocker": "watchsim, by events", "moreau": "watchsim, Moreau's time stepping"},
     **{"pymunk": "pymunk", "box2d": "Box2D", "mujoco": "MuJoCo"},
 }
 MARKS = {"pfeiffer-glocker": "o", "moreau": "s", "pymunk": "^", "box2d": "v", "mujoco": "D"}
 AXES = (("error_state", "error of the place after 3 s (m)"), ("error_amplitude_deg", "error of the amplitude (°)"))
+TALL = 75.0  # mm
 LEAST = 1e-14  # what comes out exactly is drawn here
 
 
 def plot_speed(rows: Sequence[Mapping[str, Any]], path: Path) -> None:
     """Processor time per simulated second over error, both logarithmic, a panel for each scene; the file's ending decides."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
     scenes = [name for name in dict.fromkeys(row["scene"] for row in rows) if _drawn(rows, name)]
-    figure = Figure(figsize=(4.6 * len(scenes), 4.6), dpi=150, layout="constrained")
-    FigureCanvasAgg(figure)
-    panels = figure.subplots(1, len(scenes), squeeze=False)[0]
+    made = figure(FULL, TALL, layout="constrained")
+    panels = made.subplots(1, len(scenes), squeeze=False)[0]
     for axes, scene in zip(panels, scenes, strict=True):
         _panel(axes, scene, [row for row in rows if row["scene"] == scene])
-    panels[0].set_ylabel("processor time per simulated second (s)", color=INK)
+    panels[0].set_ylabel("processor time per simulated second (s)")
     shown = {label: line for axes in panels for line, label in zip(*axes.get_legend_handles_labels(), strict=True)}
-    figure.legend(list(shown.values()), list(shown), loc="outside lower center", ncols=len(shown), frameon=False, fontsize=9)
-    figure.savefig(path)
+    made.legend(list(shown.values()), list(shown), loc="outside lower center", ncols=len(shown), frameon=False, fontsize=SMALL)
+    save(made, path)
 
 
 def _drawn(rows: Sequence[Mapping[str, Any]], scene: str) -> bool:
@@ -53,13 +52,9 @@ def _panel(axes: Axes, scene: str, rows: Sequence[Mapping[str, Any]]) -> None:
         spread.append([row["wall_largest"] - t for t, row in zip(y, points, strict=True)])
         if points:
             look: dict[str, Any] = {"color": COLOURS[method], "marker": MARKS[method], "label": NAMES[method]}
-            axes.errorbar(x, y, yerr=spread, linewidth=1.3, markersize=5, **look)
+            axes.errorbar(x, y, yerr=spread, linewidth=CURVE, elinewidth=HAIR, markersize=3.5, **look)
     axes.set_xscale("log")
     axes.set_yscale("log")
-    axes.set_title(scene, loc="left", fontsize=10, color=INK, weight="bold")
-    axes.set_xlabel(label, color=INK)
-    axes.grid(True, which="major", color=GRID, linewidth=0.7)
-    axes.set_axisbelow(True)
-    axes.spines[["top", "right"]].set_visible(False)
-    axes.spines[["left", "bottom"]].set_color(FAINT)
-    axes.tick_params(colors=INK, labelsize=9)
+    title(axes, scene)
+    axes.set_xlabel(label)
+    dress(axes)

@@ -12,7 +12,22 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.render.palette import CONTACT, FAINT, GRID, INK
+from watchsim.render.figures.style import (
+    BAD,
+    CURVE,
+    FULL,
+    HAIR,
+    LABEL,
+    MAP,
+    MARKERS,
+    NARROW,
+    SERIES,
+    SMALL,
+    TITLE,
+    dress,
+    figure,
+)
+from watchsim.render.palette import GRID, INK
 from watchsim.studies.axes import Axis
 from watchsim.studies.outputs import Output
 from watchsim.studies.sweep import Sweep
@@ -24,43 +39,38 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-PANEL = (7.0, 2.6)  # inches
-FAMILY = 7  # curves in one panel at most
-CURVES = ("#1f4e79", "#b5452c", "#6b7d3a", "#c98a1b", "#74469a", "#2f7a58", "#6a7683")
-MAP = "cividis"
+TALL, REST = 46.0, 9.0  # mm, of a panel, and of the title
+FAMILY = len(SERIES)  # curves in one panel at most
 
 
-def plot_sweep(sweep: Sweep) -> Figure:
-    """A panel for each output over the first key, or over the one with most values; a figure to save as PNG, SVG or PDF.
+def plot_sweep(sweep: Sweep, width: float = FULL) -> Figure:
+    """A panel for each output over the first key, or over the one with most values; a figure `width` mm wide to save as PNG,
+    SVG or PDF.
 
     ValueError where nothing can be drawn: more than two keys, or keys without numbers.
     """
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
     numeric = [axis for axis in sweep.axes if axis.is_numeric]
     if not numeric or len(sweep.axes) > 2:
         raise ValueError("only sweeps over one or two keys with numbers can be drawn")
-    size = (PANEL[0], PANEL[1] * len(sweep.outputs) + 0.6)
-    figure = Figure(figsize=size, dpi=150, layout="constrained")
-    FigureCanvasAgg(figure)
-    panels = figure.subplots(len(sweep.outputs), 1, sharex=True, squeeze=False)[:, 0]
-    figure.suptitle(sweep.title, x=0.01, ha="left", fontsize=11, weight="bold", color=INK)
+    made = figure(width, TALL * len(sweep.outputs) + REST, layout="constrained")
+    panels = made.subplots(len(sweep.outputs), 1, sharex=True, squeeze=False)[:, 0]
+    made.suptitle(sweep.title, x=0.01, ha="left", fontsize=TITLE, weight="bold", color=INK)
     along, other = _roles(sweep, numeric)
     field = other if other is not None and other.is_numeric and len(other.values) > FAMILY else None
     for axes, output in zip(panels, sweep.outputs, strict=True):
         if field is not None:
-            _map(figure, axes, sweep, along, field, output)
+            _map(made, axes, sweep, along, field, output)
         else:
             _curves(axes, sweep, along, other, output)
-        _dress(axes, grid=field is None)
-    panels[-1].set_xlabel(_label(along), color=INK)
+        dress(axes, grid="both" if field is None else "none")
+        axes.ticklabel_format(useOffset=False)
+    panels[-1].set_xlabel(_label(along))
     if other is not None and field is None:
         handles, labels = panels[0].get_legend_handles_labels()
-        figure.legend(
-            handles, labels, title=_label(other), loc="outside right upper", frameon=False, fontsize=8, title_fontsize=8
-        )
-    return figure
+        look: dict[str, Any] = {"frameon": False, "fontsize": SMALL, "title_fontsize": SMALL, "labelcolor": INK}
+        where: dict[str, Any] = {"loc": "outside right upper"} if width >= NARROW else {"loc": "outside lower left", "ncols": 3}
+        made.legend(handles, labels, title=_label(other), **look, **where)
+    return made
 
 
 def _roles(sweep: Sweep, numeric: Sequence[Axis]) -> tuple[Axis, Axis | None]:
@@ -86,11 +96,19 @@ def _curves(axes: Axes, sweep: Sweep, along: Axis, other: Axis | None, output: O
         x = np.array([_shown(along, row[along.key]) for row in good], float)
         y = np.array([row[output.column] for row in good], float)
         bars = np.array([row.get(f"{output.column}_error") or 0.0 for row in good], float)
-        colour = CURVES[i % len(CURVES)]
+        colour, mark = SERIES[i % FAMILY], MARKERS[i % FAMILY]
         label = f"{_shown(other, value):.6g}" if other and other.is_numeric else str(value)
-        axes.errorbar(x, y, yerr=bars, color=colour, marker="o", markersize=3.5, linewidth=1.2, capsize=2.0, label=label)
-        _failures(axes, [row for row in rows if row[output.column] is None], along, colour if other else CONTACT)
-    axes.set_ylabel(f"{output.label} ({output.unit})" if output.unit else output.label, color=INK)
+        look: dict[str, Any] = {
+            "color": colour,
+            "marker": mark,
+            "markersize": 2.5,
+            "linewidth": CURVE,
+            "capsize": 1.5,
+            "elinewidth": HAIR,
+        }
+        axes.errorbar(x, y, yerr=bars, label=label, **look)
+        _failures(axes, [row for row in rows if row[output.column] is None], along, colour if other else BAD)
+    axes.set_ylabel(f"{output.label} ({output.unit})" if output.unit else output.label)
 
 
 def _failures(axes: Axes, rows: Sequence[Any], along: Axis, colour: str) -> None:
@@ -101,9 +119,9 @@ def _failures(axes: Axes, rows: Sequence[Any], along: Axis, colour: str) -> None
     told: set[str] = set()
     for row in rows:
         x, verdict = _shown(along, row[along.key]), row["verdict"] or "no result"
-        axes.plot([x], [0.04], marker="x", color=colour, markersize=5, transform=edge, clip_on=False, linestyle="none")
+        axes.plot([x], [0.04], marker="x", color=colour, markersize=3.5, transform=edge, clip_on=False, linestyle="none")
         if verdict not in told:
-            style: dict[str, Any] = {"color": CONTACT, "fontsize": 8, "ha": "center", "va": "bottom"}
+            style: dict[str, Any] = {"color": BAD, "fontsize": SMALL, "ha": "center", "va": "bottom"}
             axes.text(x, 0.09, verdict, transform=edge, **style)
             told.add(verdict)
 
@@ -117,18 +135,9 @@ def _map(figure: Figure, axes: Axes, sweep: Sweep, along: Axis, other: Axis, out
     mesh = axes.pcolormesh(x, y, np.ma.masked_invalid(field), cmap=MAP, shading="nearest")
     axes.set_facecolor(GRID)  # where there is no number
     if reasons := sorted({row["verdict"] or "no result" for row in sweep.rows if row[output.column] is None}):
-        axes.set_title(f"grey: {', '.join(reasons)}", loc="right", fontsize=8, color=INK)
+        axes.set_title(f"grey: {', '.join(reasons)}", loc="right", fontsize=SMALL, color=INK)
     bar = figure.colorbar(mesh, ax=axes)
-    bar.set_label(f"{output.label} ({output.unit})" if output.unit else output.label, color=INK)
+    bar.set_label(f"{output.label} ({output.unit})" if output.unit else output.label, color=INK, fontsize=LABEL)
+    bar.ax.tick_params(labelsize=SMALL, colors=INK, length=2.0, width=HAIR)
     bar.outline.set_visible(False)
-    axes.set_ylabel(_label(other), color=INK)
-
-
-def _dress(axes: Axes, grid: bool) -> None:
-    if grid:
-        axes.grid(True, color=GRID, linewidth=0.7)
-    axes.set_axisbelow(True)
-    axes.spines[["top", "right"]].set_visible(False)
-    axes.spines[["left", "bottom"]].set_color(FAINT)
-    axes.tick_params(colors=INK, labelsize=9)
-    axes.ticklabel_format(useOffset=False)
+    axes.set_ylabel(_label(other))

@@ -69,8 +69,8 @@ def movie(
               with the speed written in each frame
     length    seconds that a movie at adaptive speed lasts; default 10
     fps       frames per second; default 60, GIF 25 (a GIF keeps time in hundredths of a second: the nearest rate it can hold)
-    size      (width, height) in pixels, rounded up to even numbers; default 1280 × 720, GIF 800 × 450; "auto": the mechanism the
-              way up that it is drawn, in the wide, square or tall format that shows it largest
+    size      (width, height) in pixels, rounded up to even numbers; default 1280 × 720, GIF 800 × 450; "auto": the
+              mechanism the way up that it is drawn, in the wide, square or tall format that shows it largest
     contacts  rings around the contacts that are closed
     zoom      names of the bodies to frame; default all
     turn      radians by which the picture is turned; default: gravity down, or the quarter turn that fills the frame best

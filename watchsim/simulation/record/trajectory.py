@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.displays import notebook_html
+from watchsim.displays import notebook_html, player
 from watchsim.scene.recording import ALL, Window
 from watchsim.scene.scene import Scene
 from watchsim.simulation.event_kinds import EVENT_DTYPE as EVENT_DTYPE
@@ -104,6 +104,10 @@ class Trajectory:
 
     def _repr_html_(self) -> str:
         return notebook_html(self)
+
+    def player(self, window: Window | None = None) -> Any:
+        """A player that a notebook shows under its cell, see `watchsim.show`."""
+        return player(self, window)
 
     @cached_property
     def _noise(self) -> Array:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from watchsim.displays import notebook_html
+
 JSON_NAMES = (
     *("found", "verdict", "message", "amplitude_deg", "amplitude_deg_error", "period_s", "period_s_error"),
     *(
@@ -60,6 +62,17 @@ class Cycle:
     simulated_s: float = 0.0
     cells_s: float = 0.0
     wall_s: float = 0.0
+
+    def __repr__(self) -> str:
+        if not self.found:
+            return f"<No limit cycle: {self.verdict}{f'; {self.message}' if self.message else ''}>"
+        swing = "" if self.amplitude_deg is None else f"{self.amplitude_deg:.3f}°, "
+        rate = "" if self.rate_s_per_d is None else f"{self.rate_s_per_d:.3f} s/d, "
+        even = "" if self.beat_error_ms is None else f"beat error {self.beat_error_ms:.3g} ms, "
+        return f"<Cycle: {swing}{rate}{even}multiplier {', '.join(f'{value:.4g}' for value in self.multipliers)}>"
+
+    def _repr_html_(self) -> str:
+        return notebook_html(self)
 
     def numbers(self) -> dict[str, Any]:
         """What `steady --json` prints."""

@@ -1,0 +1,101 @@
+"""Does a thinned curve look like the whole one, and does every spike survive?"""
+
+from __future__ import annotations
+
+import io
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from watchsim.render.figures.column_extremes import COLUMNS, distinct, reduced
+
+MILLION = 1_000_000
+X = np.linspace(0.0, 180.0, MILLION)
+QUIET = np.sin(3.0 * X)
+
+
+@given(st.integers(0, MILLION - 1), st.sampled_from([-50.0, 3.0, 1e6]))
+@settings(max_examples=25, deadline=None)
+def test_a_spike_of_one_sample_in_a_million_survives(place: int, height: float) -> None:
+    y = QUIET.copy()
+    y[place] = height
+    x, kept = reduced(X, y)
+    assert len(x) <= 4 * COLUMNS + 8
+    assert (X[place], height) in set(zip(x[kept == height].tolist(), kept[kept == height].tolist(), strict=True))
+    assert np.all(np.diff(x) >= 0.0)
+
+
+def pixels(x: np.ndarray, y: np.ndarray, columns: int) -> np.ndarray:
+    """A curve over its whole width, one dot thick and without shades between ink and paper."""
+    figure = Figure(figsize=(columns / 100.0, 3.0), dpi=100)
+    FigureCanvasAgg(figure)
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    axes.axis("off")
+    (line,) = axes.plot(x, y, color="black", linewidth=0.72, antialiased=False)
+    line.get_path().should_simplify = False  # matplotlib's own thinning is not what is tested
+    axes.set_xlim(0.0, 180.0)
+    axes.set_ylim(-5.0, 5.0)
+    out = io.BytesIO()
+    figure.savefig(out, format="raw")
+    return np.frombuffer(out.getvalue(), np.uint8).reshape(300, columns, 4)[..., 0]
+
+
+def test_the_picture_is_that_of_all_points() -> None:
+    rng = np.random.default_rng(7)
+    y = QUIET + 0.3 * rng.standard_normal(MILLION) * (rng.random(MILLION) > 0.999)
+    dots = 800
+    assert len(reduced(X, y)[0]) < MILLION / 50
+    whole, thin = pixels(X, y, dots), pixels(*reduced(X, y), dots)
+    assert np.mean(whole == 0) > 0.02 and np.mean(whole != thin) < 5e-3  # rounding at the edges of the ink
+
+
+def test_every_column_reaches_as_far_as_with_all_points() -> None:
+    y = QUIET + 0.3 * np.random.default_rng(8).standard_normal(MILLION)
+    x, kept = reduced(X, y)
+
+    def reaches(t: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        begins = np.searchsorted(t, np.linspace(0.0, 180.0, COLUMNS + 1)[:-1] + 1e-12)
+        return np.minimum.reduceat(values, begins), np.maximum.reduceat(values, begins)
+
+    for whole, thin in zip(reaches(X, y), reaches(x, kept), strict=True):
+        assert np.array_equal(whole, thin)
+
+
+def test_gaps_stay_gaps_and_short_curves_stay_whole() -> None:
+    y = QUIET.copy()
+    y[300_000:300_003] = np.nan
+    x, kept = reduced(X, y)
+    gap = np.flatnonzero(np.isnan(kept))
+    assert len(gap) and X[300_000] in x[gap]
+    assert X[299_999] in x and X[300_003] in x
+    few = reduced(X[:1000], QUIET[:1000])
+    assert few[0] is not None and len(few[0]) == 1000
+
+
+def test_an_impact_keeps_both_its_velocities() -> None:
+    x = np.sort(np.concatenate((X, [90.0, 90.0])))
+    y = np.where(x < 90.0, 1.0, 2.0)
+    first = int(np.searchsorted(x, 90.0))
+    y[first] = 1.0
+    kept_x, kept = reduced(x, y)
+    assert {1.0, 2.0} <= set(kept[kept_x == 90.0].tolist())
+
+
+def test_a_closed_curve_keeps_every_dot_it_visits() -> None:
+    angle = np.linspace(0.0, 2000.0, MILLION)
+    x, y = np.cos(angle), np.sin(angle)
+    y[777_777] = 40.0
+    kept_x, kept_y = distinct(x, y)
+    assert kept_y.max() == 40.0 and len(kept_x) <= MILLION
+    still = distinct(np.full(MILLION, 1.0), np.full(MILLION, 2.0))
+    assert len(still[0]) <= 2
+
+
+@pytest.mark.parametrize("count", [0, 1, 2])
+def test_nothing_to_thin(count: int) -> None:
+    x, y = reduced(X[:count], QUIET[:count])
+    assert len(x) == count and len(y) == count

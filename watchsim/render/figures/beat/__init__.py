@@ -1,0 +1,1 @@
+"""Plots of one beat: phase portrait, torque on the balance, forces, the mechanism at key instants."""

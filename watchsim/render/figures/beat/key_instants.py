@@ -1,0 +1,234 @@
+"""How does the mechanism stand at the key instants of a beat, and when are they?
+
+plot_timeline(run).savefig("timeline.pdf")
+"""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from watchsim.analysis.contact_forces import absolute, forces
+from watchsim.analysis.timeline.oscillation import Beat, shown_beats
+from watchsim.analysis.timeline.table import title as phase_title
+from watchsim.mechanism.compile import compile_scene
+from watchsim.render.figures.phase_bands import shade, spread
+from watchsim.render.figures.phase_plot import AFTER, around
+from watchsim.render.figures.style import (
+    CURVE,
+    EDGE,
+    FULL,
+    HAIR,
+    HEADING,
+    LEAD,
+    LETTER,
+    MM,
+    NARROW,
+    POINT,
+    SMALL,
+    dress,
+    figure,
+    heading,
+    limits,
+    panel,
+)
+from watchsim.render.frame.filled_parts import loops_of, outline
+from watchsim.render.frame.pose_history import dense
+from watchsim.render.palette import FAINT, FORCE, INK, looks
+from watchsim.render.posed import Posed
+from watchsim.scene.roles import roles
+from watchsim.simulation.record.trajectory import Array, Trajectory
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+MANY = 2  # beats
+ACROSS = {True: 7, False: 4}  # pictures in a row: on a page, in a column
+LINE = LEAD * SMALL * POINT  # mm, of a caption
+GAP, TITLE, WORDS, CURVES, LEADS, FOOT, LEFT = 1.2, 5.0, 7.0, 20.0, 5.0, 9.0, 12.0  # mm
+ROOM = 0.12  # of the lever's size, around it
+TALLEST = 1.35  # of a picture's width
+ARROW = 0.30  # of a picture's width: the largest force
+END = "at rest"
+
+
+@dataclass(frozen=True)
+class Instant:
+    """A time (s) with what happens then."""
+
+    t: float
+    words: str
+
+
+def plot_timeline(
+    run: Trajectory, window: Sequence[float] | None = None, width: float = FULL, told: list[Beat] | None = None
+) -> Figure:
+    """The last two beats of a window: the mechanism around the lever amid each phase, with the contact forces on the lever,
+    above the angles of lever and balance in those phases.
+
+    ValueError where no beat was recorded whole.
+    """
+    beats_shown = (told or shown_beats(run, window, rubbed=False))[-MANY:]
+    across = ACROSS[width >= NARROW]
+    box = _box(run)
+    wide = (width - 2.0 * EDGE - (across - 1) * GAP) / across
+    tall = wide * min((box[3] - box[2]) / (box[1] - box[0]), TALLEST)
+    instants = [key_instants(beat) for beat in beats_shown]
+    rows = [-(-len(one) // across) for one in instants]
+    heights = [TITLE + count * (tall + WORDS) + LEADS + CURVES + FOOT for count in rows]
+    made = figure(width, HEADING + sum(heights))
+    heading(made, run.scene.title, "Amid each phase; arrows: contact forces on the lever")
+    posed = Posed(run.scene, compile_scene(run.scene))
+    pushed = _pushed(run, [one for own in instants for one in own])
+    largest = max((float(np.hypot(*force.T).max(initial=0.0)) for _, force in pushed), default=0.0)
+    longest = ARROW * (box[1] - box[0]) / largest if largest > 0.0 else 0.0
+    arrows = iter([(points, longest * force) for points, force in pushed])
+    top = HEADING
+    for beat, own, count, height in zip(beats_shown, instants, rows, heights, strict=True):
+        stone = beat.stages[0].pallet
+        words = f"beat {beat.stages[0].beat}{f', {stone} stone' if stone else ''}, first touch at {beat.start:.6g} s"
+        _words(made, EDGE, top + 0.5 * TITLE - 1.0, words, weight="bold")
+        under = top + TITLE + count * (tall + WORDS)
+        _pictures(made, (run, posed), [(one, *next(arrows)) for one in own], (top + TITLE, wide, tall), box, across)
+        _curves(made, run, beat, own, under + LEADS)
+        top += height
+    return made
+
+
+def key_instants(beat: Beat) -> list[Instant]:
+    """The middle of every phase of a beat, and the rest that follows."""
+    shown = [stage for stage in beat.stages if stage.name != "locked"]
+    found = [Instant(0.5 * (stage.phase.start + stage.phase.end), phase_title(stage)) for stage in shown]
+    way = shown[-1].phase.end - shown[0].phase.start
+    return [*found, Instant(min(shown[-1].phase.end + AFTER * way, max(beat.end, shown[-1].phase.end)), END)]
+
+
+def _box(run: Trajectory) -> tuple[float, float, float, float]:
+    """Least and largest x, least and largest y (mm) of the lever as it stands at the start, with room around it."""
+    name = roles(run.scene).lever
+    assert name is not None
+    body = run.scene.body(name)
+    points = outline(loops_of(body), 1e-3 * max(compile_scene(run.scene).size, 1e-9))
+    x0, y0, angle = run.pose(name, float(run.t[0]))
+    c, s = np.cos(angle), np.sin(angle)
+    x, y = x0 + c * points[:, 0] - s * points[:, 1], y0 + s * points[:, 0] + c * points[:, 1]
+    side = ROOM * max(np.ptp(x), np.ptp(y))
+    return tuple(1e3 * float(v) for v in (x.min() - side, x.max() + side, y.min() - side, y.max() + side))  # type: ignore[return-value]
+
+
+def _pictures(
+    made: Figure,
+    drawn: tuple[Trajectory, Posed],
+    shown: list[tuple[Instant, Array, Array]],
+    place: tuple[float, float, float],
+    box: tuple[float, float, float, float],
+    across: int,
+) -> None:
+    """A row of pictures, or two, each with what happens."""
+    run, posed = drawn
+    top, wide, tall = place
+    compiled = posed.compiled
+    for k, (one, points, force) in enumerate(shown):
+        left, up = EDGE + (k % across) * (wide + GAP), top + (k // across) * (tall + WORDS)
+        axes = panel(made, left, up, wide, tall)
+        axes.set_aspect("equal", adjustable="datalim")
+        axes.set_xlim(box[0], box[1])
+        axes.set_ylim(box[2], box[3])
+        axes.set_xticks([])
+        axes.set_yticks([])
+        axes.spines[:].set_color(FAINT)
+        axes.spines[:].set_linewidth(HAIR)
+        posed.draw(axes, absolute(compiled, run.at(one.t)[0][None], False)[0])
+        _arrows(axes, points, force)
+        for i, line in enumerate(_lines(f"{k + 1} {one.words}", wide)):
+            _words(made, left, up + tall + (i + 0.5) * LINE + 0.4, line)
+
+
+def _lines(words: str, wide: float) -> list[str]:
+    """A caption in one line, or in two where it is wider than its picture."""
+    return textwrap.wrap(words, max(int(wide / (LETTER * SMALL * POINT)), 10))[:2]
+
+
+def _arrows(axes: Axes, points: Array, arrows: Array) -> None:
+    """Forces in the picture's mm, their tips where they press."""
+    look: dict[str, Any] = {
+        "arrowstyle": "-|>,head_length=0.25,head_width=0.12",
+        "color": FORCE,
+        "linewidth": 1.0,
+        "shrinkA": 0,
+        "shrinkB": 0,
+    }
+    for (x, y), (dx, dy) in zip(points, arrows, strict=True):
+        arrow = axes.annotate("", (x, y), (x - dx, y - dy), arrowprops=look, zorder=6, annotation_clip=True)
+        if arrow.arrow_patch is not None:
+            arrow.arrow_patch.set_clip_path(axes.patch)
+
+
+def _pushed(run: Trajectory, instants: list[Instant]) -> list[tuple[Array, Array]]:
+    """Where contacts press on the lever (mm) and how (N)."""
+    name = roles(run.scene).lever
+    try:
+        told = forces(run, [one.t for one in instants])
+    except ValueError:
+        return [(np.zeros((0, 2)), np.zeros((0, 2)))] * len(instants)
+    across = np.stack((-told.direction[..., 1], told.direction[..., 0]), axis=-1)
+    whole = told.normal[..., None] * told.direction + told.tangential[..., None] * across
+    sides = np.array([_side(run, int(k), name) for k in told.pairs]).reshape(-1)
+    found = []
+    for k in range(len(instants)):
+        held = np.isfinite(told.point[k, :, 0]) & (sides != 0.0)
+        found.append((1e3 * told.point[k, held], sides[held, None] * whole[k, held]))
+    return found
+
+
+def _side(run: Trajectory, contact: int, name: str | None) -> float:
+    """+1 where the body is the one that the forces are given for, -1 where it is the other one."""
+    pair = run.pairs[contact]
+    return {pair.body_a: 1.0, pair.body_b: -1.0}.get(name or "", 0.0)
+
+
+def _curves(made: Figure, run: Trajectory, beat: Beat, instants: list[Instant], top: float) -> None:
+    """Angles of lever and balance with the phases shaded, and a number above each instant."""
+    from matplotlib.ticker import MaxNLocator
+
+    width = made.get_figwidth() / MM
+    parts, worn = roles(run.scene), looks(run.scene)
+    wide = width - 2.0 * LEFT
+    axes = panel(made, LEFT, top, wide, CURVES)
+    other = axes.twinx()
+    span = around(beat, run)
+    t, q, _, _ = dense(run, span)
+    x = 1e3 * (t - beat.start)
+    for own, name in ((axes, parts.lever), (other, parts.oscillator)):
+        assert name is not None
+        dress(own, grid="x" if own is axes else "none")
+        values = np.degrees(q[:, run.slices[name].start])
+        own.plot(x, values, color=worn[name].line, linewidth=CURVE, gid=f"angle {name}", zorder=3)
+        limits(own, float(values.min()), float(values.max()))
+        own.set_ylabel(f"{name} (°)", color=worn[name].line, labelpad=1.5)
+        own.yaxis.set_major_locator(MaxNLocator(nbins=4, steps=[1, 2, 3, 5, 10]))
+    other.spines["right"].set_visible(True)
+    other.spines["right"].set_color(FAINT)
+    other.spines["right"].set_linewidth(HAIR)
+    shade(axes, (stage.phase for stage in beat.stages), beat.start)
+    axes.set_xlim(*(1e3 * (end - beat.start) for end in span))
+    axes.set_xlabel("time after the first touch (ms)", labelpad=1.5)
+    low, high = axes.get_xlim()
+    at = [1e3 * (one.t - beat.start) for one in instants]
+    for k, (where, placed) in enumerate(zip(at, spread(at, 3.4 * (high - low) / wide), strict=True)):
+        share, up = (where - low) / (high - low), (placed - low) / (high - low)
+        style: dict[str, Any] = {"transform": axes.transAxes, "color": FAINT, "linewidth": HAIR, "clip_on": False}
+        axes.plot((share, up), (1.0, 1.0 + 2.4 / CURVES), **style)
+        look: dict[str, Any] = {"ha": "center", "va": "bottom", "fontsize": SMALL, "color": INK}
+        axes.text(up, 1.0 + 2.7 / CURVES, str(k + 1), transform=axes.transAxes, **look)
+
+
+def _words(made: Figure, left: float, down: float, words: str, weight: str = "normal") -> None:
+    """A line of text at a place in mm from the upper left corner."""
+    width, height = (inches / MM for inches in made.get_size_inches())
+    made.text(left / width, 1.0 - down / height, words, fontsize=SMALL, va="center", color=INK, weight=weight)
