@@ -25,8 +25,8 @@ class Parts:
     """Names of the parts; `way` is the direction the drive turns the wheel in (±1, + is counter-clockwise).
 
     `lever` is the oscillator itself in an escapement whose anchor swings with it: `detached` is then False.
-    `to_wheel`, `to_banking`, `to_balance` are the model's contacts of the lever; `to_roller` those of wheel and balance, where a
-    lever stands between the two all the same (the direct impulse of a co-axial escapement). `guarded` says that the scene
+    `to_wheel`, `to_banking`, `to_balance` are the model's contacts of the lever; `to_roller` those of wheel and balance, where
+    a lever stands between the two all the same (the direct impulse of a co-axial escapement). `guarded` says that the scene
     declares more than one of lever and balance: besides fork and pin, a safety action.
     """
 
