@@ -8,6 +8,7 @@ import numpy as np
 from coaxial_scenes import NAMES
 
 import watchsim as ws
+from watchsim.analysis.timing.phases import phases
 from watchsim.scene.scene import Scene
 
 AROUND, POINTS = 0.012, 4801  # s to either side of the passage of rest, and instants in it
@@ -22,8 +23,8 @@ class Slide:
     work: float
 
 
-def slides(run: ws.Trajectory) -> dict[str, Slide]:
-    """Of the last whole oscillation of a run, by pairs of layers: slip and friction force, summed over fine steps."""
+def slides(run: ws.Trajectory) -> dict[tuple[str, str], Slide]:
+    """Of the last whole oscillation of a run, by pairs of layers and phase: slip and friction force, summed over fine steps."""
     events = run.events
     passes = events[(events["kind"] == ws.EventKind.CROSS) & (events["value"] > 0.0)]["t"]
     start, stop = passes[-2] - EVEN, passes[-1] - EVEN
@@ -32,7 +33,9 @@ def slides(run: ws.Trajectory) -> dict[str, Slide]:
     times = times[(times > start) & (times < stop)]
     found, steps = ws.forces(run, times), np.diff(times)
     _, u = run.sample(times)
-    out: dict[str, Slide] = {}
+    spans = [(one.start, one.end) for one in phases(run) if one.name == "unlock"]
+    unlocking = np.any([(times[:-1] >= a) & (times[1:] <= b) for a, b in spans], axis=0)
+    out: dict[tuple[str, str], Slide] = {}
     for column, k in enumerate(found.pairs.tolist()):
         pair = run.pairs[k]
         slip = np.zeros(len(times))
@@ -47,18 +50,19 @@ def slides(run: ws.Trajectory) -> dict[str, Slide]:
         power = speed * np.abs(found.tangential[:, column])
         both = on[1:] & on[:-1]
         names = " – ".join(sorted((f"{pair.body_a}.{pair.layer_a}", f"{pair.body_b}.{pair.layer_b}")))
-        was = out.get(names, Slide(0.0, 0.0))
-        way, work = (float(np.sum((0.5 * (f[1:] + f[:-1]) * steps)[both])) for f in (speed, power))
-        out[names] = Slide(was.way + way, was.work + work)
+        for phase, chosen in (("unlocking", both & unlocking), ("impulse", both & ~unlocking)):
+            was = out.get((names, phase), Slide(0.0, 0.0))
+            way, work = (float(np.sum((0.5 * (f[1:] + f[:-1]) * steps)[chosen])) for f in (speed, power))
+            out[names, phase] = Slide(was.way + way, was.work + work)
     return {name: one for name, one in out.items() if one.way > 1e-9}
 
 
 def table(both: dict[str, Scene]) -> str:
     """Both escapements on their limit cycles."""
-    lines = ["| escapement | layers | slid per oscillation, µm | friction's work, nJ |", "|---|---|---:|---:|"]
+    lines = ["| escapement | layers | while | slid per oscillation, µm | friction's work, nJ |", "|---|---|---|---:|---:|"]
     for name, scene in both.items():
         amplitude = ws.steady(scene).amplitude_deg
         found = slides(ws.simulate(scene.set("bodies.balance.angle", f"{-amplitude}°"), duration=2.0))
-        for layers, one in sorted(found.items(), key=lambda item: -item[1].way):
-            lines.append(f"| {NAMES[name]} | {layers} | {1e6 * one.way:.1f} | {1e9 * one.work:.4f} |")
+        for (layers, phase), one in sorted(found.items(), key=lambda item: -item[1].way):
+            lines.append(f"| {NAMES[name]} | {layers} | {phase} | {1e6 * one.way:.1f} | {1e9 * one.work:.4f} |")
     return "\n".join(lines)
