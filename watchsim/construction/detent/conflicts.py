@@ -7,9 +7,11 @@ from collections.abc import Iterator
 
 from watchsim.construction.design import Conflict
 from watchsim.construction.detent.dimensions import Detent
+from watchsim.construction.detent.parts import STAFF
 from watchsim.construction.detent.points import Points
 from watchsim.construction.detent.sheets import sheets
 
+THIN = 1.3  # of the staff's radius: the least that holds the discharging stone
 FREE = 0.5  # degrees of the wheel by which a waiting tooth must stand outside the overlap
 
 
@@ -28,4 +30,10 @@ def conflicts(values: Detent) -> Iterator[Conflict]:
         yield Conflict("reach", f"{words} of centres, and the impulse stone has to pass between them")
     if values.travel < values.lock + values.clearance:
         yield Conflict("travel", f"must be more than lock and clearance, {values.lock + values.clearance:.4g}°")
+    most = (points.discharge - THIN * STAFF * points.scale) / 1.2
+    if values.discharge_radius > most:
+        yield Conflict(
+            "discharge_radius", f"must be at most {most:.4g} mm, or the roller that holds the stone is as thin as its staff"
+        )
+        return
     sheets(values)

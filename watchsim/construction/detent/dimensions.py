@@ -22,16 +22,22 @@ class Detent:
     tip_radius: float = dim(6.5, "mm", 2.0, 10.0, "escape wheel, to its tips", CHOSEN)
     reach: float = dim(10.5, "°", 8.0, 11.0, "wheel, half overlap of the circles of tips and impulse stone", LAYOUT)
     stone_ratio: float = dim(0.5, "", 0.4, 0.6, "impulse stone's reach from the balance's centre, by the tip radius", LAYOUT)
-    inside: float = dim(6.0, "°", 2.0, 12.0, "balance, by which the impulse stone is in the overlap when the tooth is let go", LAYOUT)
+    inside: float = dim(
+        6.0, "°", 2.0, 12.0, "balance, by which the impulse stone is in the overlap when the tooth is let go", LAYOUT
+    )
     lock: float = dim(1.2, "°", 0.6, 2.0, "from its bank until the tooth is let go", LAYOUT)
     travel: float = dim(3.0, "°", 2.0, 4.5, "from its bank until the discharging stone lets it go", LAYOUT)
-    clearance: float = dim(0.5, "°", 0.2, 1.5, "by which the passing spring's tip stands before the line from pivot to balance", LAYOUT)
+    clearance: float = dim(
+        0.5, "°", 0.2, 1.5, "by which the passing spring's tip stands before the line from pivot to balance", LAYOUT
+    )
     draw: float = dim(12.0, "°", 9.0, 18.0, "of the locking face", "as in a lever, Playtner 1910")
     foot: float = dim(1.1, "", 0.8, 1.6, "from the locking to the detent's pivot, by the tip radius", LAYOUT)
-    discharge_ratio: float = dim(0.24, "", 0.18, 0.3, "discharging stone's reach from the balance's centre, by the tip radius", LAYOUT)
+    discharge_ratio: float = dim(
+        0.24, "", 0.18, 0.3, "discharging stone's reach from the balance's centre, by the tip radius", LAYOUT
+    )
     discharge_radius: float = dim(0.22, "mm", 0.1, 0.3, "of the discharging stone, a round pin", CHOSEN)
     undercut: float = dim(25.0, "°", 18.0, 32.0, "of the teeth's fronts from the radius, so that tips lock", USUAL)
-    letting_go: float = dim(-22.0, "°", -40.0, 0.0, "balance, from rest, where the tooth is let go", "impulse even about rest")
+    letting_go: float = dim(-22.5, "°", -40.0, 0.0, "balance, from rest, where the tooth is let go", "impulse even about rest")
     wheel_inertia: float = dim(15.0, "mg·cm²", 1.0, 200.0, "escape wheel with the train as felt there", ESTIMATE)
     detent_inertia: float = dim(8.0, "mg·cm²", 0.5, 100.0, "detent without the passing spring", ESTIMATE)
     detent_torque: float = dim(6.0, "µN·m", 0.5, 100.0, "of the detent's spring, on its bank", CHOSEN)

@@ -48,10 +48,15 @@ def roller(points: Points) -> list[Loop]:
         circle("TABLE", (0.0, 0.0), TABLE * points.stone_reach),
         circle("TABLE", (0.0, 0.0), STAFF * s, hole=True),
         stone.loop("IMPULSE_STONE", EDGE * s),
-        circle("ROLLER", (0.0, 0.0), points.pin_centre - 0.2 * values.discharge_radius),
+        circle("ROLLER", (0.0, 0.0), discharging_roller(points)),
         circle("ROLLER", (0.0, 0.0), STAFF * s, hole=True),
         circle("DISCHARGE", pin, values.discharge_radius),
     ]
+
+
+def discharging_roller(points: Points) -> float:
+    """Radius of the roller that holds the discharging stone: part of the stone stands out of it."""
+    return points.pin_centre - 0.2 * points.values.discharge_radius
 
 
 def _along(points: Points, corners: list[tuple[float, float, float]]) -> list[tuple[float, float, float]]:
@@ -96,7 +101,7 @@ def passing(points: Points) -> list[Loop]:
     s = points.scale
     rx, ry = root(points)
     first, last = points.blade_reach - BLADE_LENGTH * s, points.blade_reach
-    corners = [(first, -BLADE * s, 0.0), (last, -BLADE * s, 0.01 * s), (last, 0.0, 0.01 * s), (first, 0.0, 0.0)]
+    corners = [(first, -BLADE * s, 0.0), (last, -BLADE * s, 0.0), (last, 0.0, 0.0), (first, 0.0, 0.0)]
     leaf = [(x - rx, y - ry, radius) for x, y, radius in _along(points, corners)]
     return [Loop(tuple(rounded(leaf)), "LEAF")]
 

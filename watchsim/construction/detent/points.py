@@ -1,7 +1,7 @@
 """Which points follow from the dimensions of a detent escapement?
 
-The wheel's centre O is the origin and it turns clockwise; the balance's centre B stands above, and turns counter-clockwise while
-it unlocks and takes its impulse. A tooth is locked one and a half pitches beyond the line OB; the detent's pivot P lies on the
+The wheel's centre O is the origin and it turns clockwise; the balance's centre B stands above, and turns counter-clockwise
+while it unlocks and takes its impulse. A tooth is locked one and a half pitches beyond the line OB; the detent's pivot P lies on the
 tangent of the tip circle there, so that locking pushes through P, and draw alone turns the detent to its bank. Positive detent
 angles are counter-clockwise, into the wheel: it unlocks to negative ones. Degrees and millimetres.
 """
@@ -76,7 +76,9 @@ class Points:
         x, y = cx + self.pivot[0], cy + self.pivot[1]
         ux, uy = cosine(self.face_direction()), sine(self.face_direction())
         ahead = -(x * ux + y * uy)
-        return angle_of(along((x, y), self.face_direction(), ahead + math.sqrt(ahead**2 + self.values.tip_radius**2 - x * x - y * y)))
+        return angle_of(
+            along((x, y), self.face_direction(), ahead + math.sqrt(ahead**2 + self.values.tip_radius**2 - x * x - y * y))
+        )
 
     def pin_bearing(self) -> float:
         """Direction from B to the discharging stone's middle as the tooth is let go: it touches the passing spring's tip."""

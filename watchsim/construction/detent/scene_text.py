@@ -12,9 +12,9 @@ from watchsim.construction.detent.points import Points
 CLEAR = 1e-4  # degrees by which tooth and passing spring stand off what they rest on at the start
 
 TEXT = """\
-# A detent escapement, as in a marine chronometer: the wheel is locked by a detent that a spring holds on its bank. As the balance
-# swings counter-clockwise its discharging stone lifts the passing spring, and with it the detent; a tooth falls on the impulse
-# stone. On the way back it bends the passing spring alone, and nothing else happens. Drawn to these dimensions:
+# A detent escapement, as in a marine chronometer: the wheel is locked by a detent that a spring holds on its bank. As the
+# balance swings counter-clockwise its discharging stone lifts the passing spring, and with it the detent; a tooth falls on the
+# impulse stone. On the way back it bends the passing spring alone, and nothing else happens. Drawn to these dimensions:
 {dimensions}
 
 [scene]
