@@ -62,6 +62,7 @@ def table(both: dict[str, Scene]) -> str:
     lines = ["| escapement | layers | while | slid per oscillation, µm | friction's work, nJ |", "|---|---|---|---:|---:|"]
     for name, scene in both.items():
         amplitude = ws.steady(scene).amplitude_deg
+        assert amplitude is not None
         found = slides(ws.simulate(scene.set("bodies.balance.angle", f"{-amplitude}°"), duration=2.0))
         for (layers, phase), one in sorted(found.items(), key=lambda item: -item[1].way):
             lines.append(f"| {NAMES[name]} | {layers} | {phase} | {1e6 * one.way:.1f} | {1e9 * one.work:.4f} |")

@@ -59,7 +59,7 @@ def settled(scene: Scene) -> Point:
     """The limit cycle, and ten oscillations of it."""
     cycle = ws.steady(scene)
     if not cycle.found or cycle.amplitude_deg is None or cycle.rate_s_per_d is None or cycle.beat_error_ms is None:
-        return Point(*(6 * (math.nan,)), str(cycle.verdict))
+        return Point(math.nan, math.nan, math.nan, math.nan, math.nan, math.nan, str(cycle.verdict))
     assert cycle.period_s is not None
     run = ws.simulate(scene.set("bodies.balance.angle", f"{-cycle.amplitude_deg}°"), duration=10.0 * cycle.period_s)
     lost = run.energy["dissipated"]
@@ -187,13 +187,13 @@ def matters(both: dict[str, Scene]) -> str:
     """What 1 % more of each number, or 0.01 more friction, does to amplitude and rate (`sweep --sensitivity`)."""
     rows: dict[str, dict[str, tuple[float, float]]] = {}
     for name, scene in both.items():
-        words = KEYS | {f"{key}.friction": text for key, text in CONTACTS[name].items()}
-        found = ws.sensitivity(scene, words, outputs=["amplitude", "rate"])
+        meaning = KEYS | {f"{key}.friction": text for key, text in CONTACTS[name].items()}
+        found = ws.sensitivity(scene, meaning, outputs=["amplitude", "rate"])
         for effect in found.effects:
             change = 0.01 * (1.0 if effect.quantity.key.startswith("contacts") else effect.quantity.value)
             values = [effect.of(column, change) for column in ("amplitude_deg", "rate_s_per_d")]
             amplitude, rate = (math.nan if value is None else value for value in values)
-            rows.setdefault(words[effect.quantity.key], {})[name] = (amplitude, rate)
+            rows.setdefault(meaning[effect.quantity.key], {})[name] = (amplitude, rate)
     lines = [
         "| | co-axial: amplitude, ° | rate, s/d | Swiss lever: amplitude, ° | rate, s/d |",
         "|---|---:|---:|---:|---:|",
