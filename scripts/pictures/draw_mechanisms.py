@@ -20,6 +20,7 @@ SHOWN = {  # profile: simulated (s), instant (s), bodies to show close (None: al
     "geneva": (1.0, 0.2, None),
     "graham": (2.0, 1.76, ["wheel"]),
     "recoil_anchor": (2.0, 1.76, ["wheel"]),
+    "detent": (2.5, 2.1275, None),
     "involute_pair": (0.2, 0.2, None),
     "jumper": (0.6, 0.49, None),
     "cam": (0.2, 0.1, None),

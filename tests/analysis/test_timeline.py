@@ -197,3 +197,16 @@ def test_what_has_no_beats_says_so():
     assert timeline(run) == []
     with pytest.raises(ValueError, match="nothing in this scene swings"):
         shown_beats(run)
+
+
+def test_the_lock_is_counted_once_where_the_lever_is_on_its_bank_before_it():
+    """As in a co-axial escapement: no run to the banking is left, and the free oscillation begins with the lock."""
+    run = simulate(load(profiles_dir() / "coaxial" / "scene.toml"), duration=1.2, record="all")
+    told = shown_beats(run)
+    runs = [stage.phase for beat in told for stage in beat.stages if stage.name == "run to banking"]
+    assert runs and all(one.start == one.end for one in runs)
+    for beat in told:
+        assert abs(beat.residual) < 1e-9 * sum(stage.energy.supplied for stage in beat.stages)
+        inside = (run.events["t"] >= beat.start) & (run.events["t"] < beat.end)
+        impacts = sum(sum(stage.energy.impacts.values()) for stage in beat.stages)
+        assert impacts == pytest.approx(float(run.events["energy_lost"][inside].sum()), rel=1e-12)

@@ -9,6 +9,7 @@ from watchsim.construction.design import Design
 _HOMES = {
     "swiss_lever": "watchsim.construction.swiss_lever.design",
     "coaxial": "watchsim.construction.coaxial.design",
+    "detent": "watchsim.construction.detent.design",
     "geneva": "watchsim.construction.geneva.design",
     "graham": "watchsim.construction.graham.design",
     "recoil_anchor": "watchsim.construction.recoil_anchor.design",

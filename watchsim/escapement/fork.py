@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from watchsim.escapement.hands import Array, Hands, Integers, Touch
-from watchsim.escapement.pallets import Passage, change_error
 from watchsim.escapement.parts import Parts
+from watchsim.escapement.passage import Passage, change_error
 from watchsim.escapement.quantity import Quantity, over_teeth, single
 from watchsim.escapement.sweep import Rest
 
@@ -188,14 +188,20 @@ def fork(balance: Balance, banks: tuple[float, float], beats: list[Passage], ent
         lifts.append(single(_within(own.way * (other.angle - own.angle)), 2.0 * error))
         teeth = _different([one for one in beats if one.side == side][: len(beats) // 2])
         numbers = [one.tooth for one in teeth]
-        slots = balance.carried(own, bank, {angle for one in teeth for angle in (one.unlocked.lever, one.let_off.lever)})
+        # A stone of the balance itself is pushed on after the pin may have left the fork.
+        by_fork = {one.let_off.lever for one in teeth if one.direct is None}
+        slots = balance.carried(own, bank, {one.unlocked.lever for one in teeth} | by_fork)
         first = [_angle(slots[one.unlocked.lever].front) for one in teeth]
-        last = [_angle(slots[one.let_off.lever].back) for one in teeth]
+        last = [_angle(slots[one.let_off.lever].back) if one.direct is None else one.direct.end for one in teeth]
         for out, angles, places in (
             (unlocks, first, [one.unlocked for one in teeth]),
             (ends, last, [one.let_off for one in teeth]),
         ):
-            errors = [2.0 * error + balance.carried_error(slots[place.lever], place) for place in places]
+            carried = [balance.carried_error(slots[place.lever], place) if place.lever in slots else 0.0 for place in places]
+            errors = [
+                2.0 * error + one + (tooth.direct.error if tooth.direct else 0.0)
+                for one, tooth in zip(carried, teeth, strict=True)
+            ]
             out.append(over_teeth([own.way * (angle - own.angle) for angle in angles], errors, numbers))
         knock = math.nan if own.knock is None else _turns(-own.way * (own.knock - balance.rest))
         knocks.append(single(knock, error))

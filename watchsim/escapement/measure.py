@@ -8,10 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from watchsim.analysis.timing.teeth import pitch
-from watchsim.escapement.fork import Balance, Fork, fork
+from watchsim.escapement.direct import Roller
+from watchsim.escapement.fork import Balance, Entry, Fork, fork
 from watchsim.escapement.hands import SLACK, Hands
-from watchsim.escapement.pallets import NotMeasured, Pallet, Passage, pallet, passages
+from watchsim.escapement.impulses import Impulse, impulse
+from watchsim.escapement.pallets import Pallet, pallet
 from watchsim.escapement.parts import Parts, parts_of
+from watchsim.escapement.passage import NotMeasured, Passage
+from watchsim.escapement.passages import passages
 from watchsim.escapement.safety import Safety, safety
 from watchsim.escapement.sweep import Rest, Wheel
 from watchsim.mechanism.compile import Compiled, compile_scene
@@ -27,7 +31,8 @@ class Function:
 
     `pallets` are entry and exit: the stone a tooth meets first and second on its way. `sides` says on which bank (±1, + is
     counter-clockwise) each of them locks, `banks` are the lever's angles there; `lever_rest` is the angle half way between
-    them. `passages` are the first tooth's, for pictures: entry, exit.
+    them. `passages` are the first tooth's, for pictures: entry, exit. `impulses` belong to the beats that begin on the upper
+    and on the lower bank, as `fork` does; None where the wheel need not run after an impulse stone.
     """
 
     parts: Parts | None
@@ -38,6 +43,7 @@ class Function:
     passages: tuple[Passage, Passage] | None = None
     fork: Fork | None = None
     safety: tuple[Safety, Safety] | None = None
+    impulses: tuple[Impulse, Impulse] | None = None
     missing: tuple[tuple[str, str], ...] = ()
 
 
@@ -60,7 +66,8 @@ def measure(scene: Scene, compiled: Compiled | None = None) -> Function:
         first = wheel.lead(start, banks[0]).last if start.lever != banks[0] else start
         if first is None:
             raise NotMeasured("the wheel runs free as the lever goes to its bank")
-        beats = passages(wheel, banks, first, teeth)
+        roller = _roller(scene, wheel, banks) if len(parts.to_roller) else None
+        beats = passages(wheel, banks, first, teeth, roller)
     except NotMeasured as reason:
         return Function(parts, teeth, missing=(("lock, draw, lift, drop", str(reason)),))
     entry_side = _entry_side(wheel, beats[0])
@@ -70,14 +77,14 @@ def measure(scene: Scene, compiled: Compiled | None = None) -> Function:
     if not parts.detached:
         missing.append(("total lock, run, fork and safety action", f"{parts.lever} swings with the oscillator: no banking"))
         return Function(parts, teeth, None, pallets, sides, (shown[0], shown[1]), missing=tuple(missing))
-    made, guards = None, None
+    made, guards, pushes = None, None, None
     try:
-        made, guards = _roller(scene, hands, parts, banks, beats)
+        made, guards, pushes = _balance(scene, hands, parts, banks, beats)
     except NotMeasured as reason:
         missing.append(("lift angle of the balance, shake of the pin, safety action", str(reason)))
     if made is not None and guards is None:
         missing.append(("freedoms of guard pin and horns", f"nothing but the pin stops {parts.lever} between its banks"))
-    return Function(parts, teeth, banks, pallets, sides, (shown[0], shown[1]), made, guards, tuple(missing))
+    return Function(parts, teeth, banks, pallets, sides, (shown[0], shown[1]), made, guards, pushes, tuple(missing))
 
 
 def _start(wheel: Wheel, hands: Hands) -> Rest:
@@ -127,9 +134,13 @@ def _entry_side(wheel: Wheel, beat: Passage) -> float:
     return beat.side if wheel.parts.way * turn < 0.0 else -beat.side
 
 
-def _roller(
-    scene: Scene, hands: Hands, parts: Parts, banks: tuple[float, float], beats: list[Passage]
-) -> tuple[Fork, tuple[Safety, Safety] | None]:
+def _roller(scene: Scene, wheel: Wheel, banks: tuple[float, float]) -> Roller:
+    balance, entries = _entries(scene, wheel.hands, wheel.parts, banks)
+    return Roller(wheel, balance, banks, entries)
+
+
+def _entries(scene: Scene, hands: Hands, parts: Parts, banks: tuple[float, float]) -> tuple[Balance, tuple[Entry, Entry]]:
+    """Where the pin comes into the fork, from the upper and from the lower bank."""
     if not len(parts.to_balance):
         raise NotMeasured(f"{parts.lever} and {parts.balance} never touch")
     rest = next((one.rest for one in oscillators(scene) if one.body == parts.balance), 0.0)
@@ -137,14 +148,25 @@ def _roller(
     upper, lower = balance.entry(banks[0], 1.0), balance.entry(banks[1], -1.0)
     if upper is None or lower is None:
         raise NotMeasured(f"{parts.balance} does not meet {parts.lever} on its bank from one side only")
+    return balance, (upper, lower)
+
+
+def _balance(
+    scene: Scene, hands: Hands, parts: Parts, banks: tuple[float, float], beats: list[Passage]
+) -> tuple[Fork, tuple[Safety, Safety] | None, tuple[Impulse, Impulse] | None]:
+    balance, entries = _entries(scene, hands, parts, banks)
     try:
-        made = fork(balance, banks, beats, (upper, lower))
+        made = fork(balance, banks, beats, entries)
+        sides = list(zip(banks, (1.0, -1.0), entries, strict=True))
+        pushes = [impulse(balance, bank, entry, [one for one in beats if one.side == side]) for bank, side, entry in sides]
     except ValueError as reason:
         raise NotMeasured(str(reason)) from reason
-    guards = [safety(balance, bank, side, one) for bank, side, one in zip(banks, (1.0, -1.0), (upper, lower), strict=True)]
-    if guards[0] is None or guards[1] is None:
-        return made, None
-    return made, (guards[0], guards[1])
+    guards = [safety(balance, bank, side, entry) for bank, side, entry in sides]
+    return (
+        made,
+        None if guards[0] is None or guards[1] is None else (guards[0], guards[1]),
+        None if pushes[0] is None or pushes[1] is None else (pushes[0], pushes[1]),
+    )
 
 
 def finite(value: float) -> bool:

@@ -1,7 +1,4 @@
-"""What do wheel and stones do in a beat: lock, draw, recoil, lift, drop?
-
-Every tooth is taken past both stones, the lever led from bank to bank and back as often as the wheel has teeth.
-"""
+"""What do wheel and stones do in a beat: lock, draw, recoil, lift, drop?"""
 
 from __future__ import annotations
 
@@ -11,9 +8,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from watchsim.escapement.hands import Hands
-from watchsim.escapement.parts import Parts
+from watchsim.escapement.passage import Passage, change_error
 from watchsim.escapement.quantity import Quantity, over_teeth
-from watchsim.escapement.sweep import LEVEL, WIDTH, LetOff, Rest, Stretch, Sweep, Wheel
+from watchsim.escapement.sweep import Rest, Wheel
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,8 +24,8 @@ class Pallet:
                  wheel's pressure pulls the lever to the bank where it is positive
     draw_end     the same just before unlocking
     recoil       of the wheel, driven back while the stone is unlocked
-    lift         while the wheel drives the lever; lift_stone with the tooth's corner on the stone's face, lift_tooth with the
-                 stone's corner on the tooth's face
+    lift         from unlocked to let off; lift_stone with the tooth's corner on the stone's face, lift_tooth with the stone's
+                 corner on the tooth's face; nan where another stone than this one takes the impulse
     drop         of the wheel: free way from leaving this stone to the lock on the other one
     shake        of the wheel: how far it can be turned back as the stone is about to be unlocked
     """
@@ -44,75 +41,6 @@ class Pallet:
     lift_tooth: Quantity
     drop: Quantity
     shake: Quantity
-
-
-@dataclass(frozen=True, slots=True)
-class Passage:
-    """One tooth on one stone: the places between which its angles are told. `end`: the other bank (rad)."""
-
-    tooth: int
-    side: float
-    start: Rest
-    unlocked: Rest
-    let_off: Rest
-    landed: Rest
-    end: float
-    driven: tuple[Stretch, ...]
-    room: float
-
-
-class NotMeasured(Exception):
-    """The action does not get from bank to bank; the message says why."""
-
-
-def passages(wheel: Wheel, banks: tuple[float, float], start: Rest, teeth: int) -> list[Passage]:
-    """Every tooth past both stones, in the order of time; one more beat at the end, for the lock of the last."""
-    found: list[Passage] = []
-    rest = start
-    for beat in range(2 * teeth + 1):
-        side = 1.0 if beat % 2 == 0 else -1.0
-        sweep = wheel.lead(rest, banks[1] if side > 0.0 else banks[0])
-        found.append(_passage(sweep, side, beat // 2 % teeth + 1))
-        last = sweep.last
-        assert last is not None  # _passage refuses a wheel that runs free
-        rest = last
-    return found
-
-
-def _passage(sweep: Sweep, side: float, tooth: int) -> Passage:
-    locked = _locking(sweep.stretches)
-    unlocked = locked[-1].last if locked else sweep.stretches[0].first
-    let_off = _only(sweep.let_offs)
-    last = next(i for i, stretch in enumerate(sweep.stretches) if stretch.last == let_off.last)
-    assert let_off.landed is not None
-    driven = sweep.stretches[len(locked) : last + 1]
-    room = sweep.room[len(locked)] if locked else sweep.room[0]
-    end = sweep.stretches[-1].last.lever
-    return Passage(tooth, side, sweep.stretches[0].first, unlocked, let_off.last, let_off.landed, end, driven, room)
-
-
-def _only(let_offs: Sequence[LetOff]) -> LetOff:
-    if not let_offs:
-        raise NotMeasured("the lever reaches its other bank before the tooth is let off")
-    if any(one.landed is None for one in let_offs):
-        raise NotMeasured("a tooth that is let off finds no stone to lock on: the wheel runs free")
-    if len(let_offs) > 1:
-        raise NotMeasured("more than one tooth is let off in a beat: the wheel trips")
-    return let_offs[0]
-
-
-def _locking(stretches: Sequence[Stretch]) -> Sequence[Stretch]:
-    """Those before the wheel first drives the lever on; where the locking face itself repels the lever, that face."""
-    face = stretches[0].first
-    count = 0
-    for stretch in stretches:
-        repels = stretch.first.slope > LEVEL or stretch.last.slope > LEVEL
-        if repels and not (stretch.first.stone == face.stone and stretch.first.tooth == face.tooth):
-            break
-        count += 1
-        if repels:
-            break
-    return stretches[:count]
 
 
 def pallet(wheel: Wheel, beats: Sequence[Passage], side: float, detached: bool) -> Pallet:
@@ -138,6 +66,7 @@ def pallet(wheel: Wheel, beats: Sequence[Passage], side: float, detached: bool) 
         return _face_error(hands, one.start.stone if one.start.on_stone else one.start.tooth)
 
     none = over_teeth([], [], [])
+    pushed = any(one.caught is not None for one in own)
     return Pallet(
         total_lock=mean(lambda one, _: side * (one.start.lever - one.unlocked.lever), of_lever) if detached else none,
         lock=mean(lambda one, earlier: side * (earlier.let_off.lever - one.unlocked.lever), of_lever),
@@ -146,8 +75,8 @@ def pallet(wheel: Wheel, beats: Sequence[Passage], side: float, detached: bool) 
         draw_end=mean(lambda one, _: draw_angle(wheel, one.unlocked, pivot, side), of_draw),
         recoil=mean(lambda one, _: way * (one.start.wheel - one.unlocked.wheel), of_wheel),
         lift=mean(lambda one, _: side * (one.unlocked.lever - one.let_off.lever), of_lever),
-        lift_stone=mean(lambda one, _: sum(s.turn for s in one.driven if s.first.on_stone), of_lever),
-        lift_tooth=mean(lambda one, _: sum(s.turn for s in one.driven if not s.first.on_stone), of_lever),
+        lift_stone=none if pushed else mean(lambda one, _: sum(s.turn for s in one.driven if s.first.on_stone), of_lever),
+        lift_tooth=none if pushed else mean(lambda one, _: sum(s.turn for s in one.driven if not s.first.on_stone), of_lever),
         drop=mean(lambda one, _: way * (one.landed.wheel - one.let_off.wheel), of_wheel),
         shake=mean(lambda one, _: one.room, of_wheel),
     )
@@ -159,13 +88,6 @@ def draw_angle(wheel: Wheel, rest: Rest, pivot: tuple[float, float], side: float
     arm = math.dist(met.point, pivot)
     opening = met.rates[wheel.hands.body(wheel.parts.lever)]
     return math.asin(max(-1.0, min(1.0, side * opening / arm)))
-
-
-def change_error(hands: Hands, parts: Parts, rest: Rest) -> float:
-    """Of the lever's angle at which a corner comes to the end of a face, rad: a contact counts a little beyond it."""
-    x, y = hands.pivot(parts.lever, hands.compiled.q)
-    # The corner slides at a third of the arm at least, unless draw or lift are steeper than any escapement's.
-    return WIDTH + 3.0 * (hands.room + hands.resolution) / math.hypot(rest.x - x, rest.y - y)
 
 
 def _face_error(hands: Hands, primitive: int) -> float:

@@ -25,8 +25,9 @@ class Parts:
     """Names of the parts; `way` is the direction the drive turns the wheel in (±1, + is counter-clockwise).
 
     `lever` is the oscillator itself in an escapement whose anchor swings with it: `detached` is then False.
-    `to_wheel`, `to_banking`, `to_balance` are the model's contacts of the lever; `guarded` says that the scene declares more
-    than one of lever and balance: besides fork and pin, a safety action.
+    `to_wheel`, `to_banking`, `to_balance` are the model's contacts of the lever; `to_roller` those of wheel and balance, where
+    a lever stands between the two all the same (the direct impulse of a co-axial escapement). `guarded` says that the scene
+    declares more than one of lever and balance: besides fork and pin, a safety action.
     """
 
     wheel: str
@@ -36,6 +37,7 @@ class Parts:
     to_wheel: Integers
     to_banking: Integers
     to_balance: Integers
+    to_roller: Integers
     guarded: bool
 
     @property
@@ -62,7 +64,8 @@ def parts_of(scene: Scene, compiled: Compiled) -> Parts | str:
     fork = _between(scene, compiled, lever, {found.oscillator}) if lever != found.oscillator else np.zeros(0, np.int64)
     declared = [one for one in scene.contacts if {side.body for side in one.sides} == {lever, found.oscillator}]
     to_wheel = _between(scene, compiled, lever, {wheel})
-    return Parts(wheel, lever, found.oscillator, way, to_wheel, banking, fork, len(declared) > 1)
+    roller = _between(scene, compiled, found.oscillator, {wheel}) if lever != found.oscillator else np.zeros(0, np.int64)
+    return Parts(wheel, lever, found.oscillator, way, to_wheel, banking, fork, roller, len(declared) > 1)
 
 
 def _stands(scene: Scene, name: str, lever: str) -> bool:

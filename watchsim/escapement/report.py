@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from dataclasses import fields
 from typing import Any
 
+from watchsim.escapement.impulses import Impulse
 from watchsim.escapement.measure import Function
 from watchsim.escapement.pallets import Pallet
 from watchsim.escapement.quantity import Quantity
@@ -34,6 +35,14 @@ BALANCE_WORDS = {
     "impulse_end": "  let off after",
     "from_rest": "  pin meets the fork at",
     "knocking": "knocks at",
+}
+IMPULSE_WORDS = {
+    "catch_up": "  wheel catches up by",
+    "wheel": "  wheel turns",
+    "lever": "  lever turns",
+    "balance": "  balance turns",
+    "begins": "  from, balance at",
+    "ends": "  to, balance at",
 }
 
 
@@ -72,6 +81,11 @@ def _of_stone(function: Function, k: int) -> dict[str, Any] | None:
     if function.fork is not None:
         for name in OF_BALANCE:
             stone |= _entries(name, getattr(function.fork, name)[_beat(function, k)])
+    pushed = push(function, k)
+    if pushed is not None:
+        stone["impulse"] = pushed.kind
+        for name in IMPULSE_WORDS:
+            stone |= _entries(f"impulse_{name}", getattr(pushed, name))
     guards = guard(function, k)
     if guards is not None:
         stone |= _entries("guard_freedom", guards.guard) | _entries("horn_freedom", guards.horn)
@@ -84,6 +98,11 @@ def _of_stone(function: Function, k: int) -> dict[str, Any] | None:
 def _beat(function: Function, k: int) -> int:
     """Row of the pairs numbered by upper and lower bank that belongs to the entry (0) or exit (1) stone."""
     return 0 if function.sides[k] > 0.0 else 1
+
+
+def push(function: Function, k: int) -> Impulse | None:
+    """The impulse of the beat in which the entry (0) or exit (1) stone is unlocked, where it is given by another stone."""
+    return None if function.impulses is None else function.impulses[_beat(function, k)]
 
 
 def guard(function: Function, k: int) -> Safety | None:
@@ -117,10 +136,20 @@ def text(function: Function) -> Iterator[str]:
             pair = [getattr(one, name) for one in function.pallets]
             if any(math.isfinite(one.value) for one in pair):
                 yield f"      {words:24}" + "".join(f"{_told(one.value):>14}" for one in pair) + _worst_tooth(pair)
+    if function.impulses is not None:
+        yield from _impulse_lines(function)
     if function.fork is not None:
         yield from _fork_lines(function)
     for what, why in function.missing:
         yield f"  {what}: not measured, {why}"
+
+
+def _impulse_lines(function: Function) -> Iterator[str]:
+    pair = [one for one in (push(function, k) for k in (0, 1)) if one is not None]
+    yield f"      {'impulse, once unlocked':24}" + "".join(f"{one.kind:>14}" for one in pair)
+    for name, words in IMPULSE_WORDS.items():
+        values = [getattr(one, name) for one in pair]
+        yield f"      {words:24}" + "".join(f"{_told(one.value):>14}" for one in values) + _worst_tooth(values)
 
 
 def _fork_lines(function: Function) -> Iterator[str]:

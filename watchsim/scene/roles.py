@@ -22,7 +22,8 @@ class Roles:
 
 
 def roles(scene: Scene) -> Roles:
-    """The first that swings, a driven pivoted body besides it, and a moving body in contact with both.
+    """The first that swings, a driven pivoted body besides it, and a moving body in contact with both, if only by what it
+    carries.
 
     Of several driven bodies the wheel is the first that has such a lever, whatever the order of the torques: a lever may be
     knocked by a torque of its own.
@@ -37,7 +38,16 @@ def roles(scene: Scene) -> Roles:
 
 def _lever(scene: Scene, oscillator: str, wheel: str) -> str | None:
     both = partners(scene, oscillator) & partners(scene, wheel) - {oscillator, wheel}
-    return next((body.name for body in scene.bodies if body.motion == "pivot" and body.name in both), None)
+    pivoted = [body.name for body in scene.bodies if body.motion == "pivot"]
+    direct = next((name for name in pivoted if name in both), None)
+    return direct or next((name for name in pivoted if _reaches(scene, name, oscillator, wheel)), None)
+
+
+def _reaches(scene: Scene, name: str, oscillator: str, wheel: str) -> bool:
+    """Does the body touch both by way of what it carries, as a detent does with its passing spring?"""
+    own = {name} | {body.name for body in scene.bodies if body.on == name}
+    touched = set().union(*(partners(scene, one) for one in own))
+    return not own & {oscillator, wheel} and {oscillator, wheel} <= touched
 
 
 def swings(scene: Scene) -> bool:

@@ -100,9 +100,10 @@ def _stages(
 ) -> Iterator[Stage]:
     """Column by column: every number is a difference between two rows."""
     starts, ends = np.array([row.start for row in told]), np.array([row.end for row in told])
-    # The impacts of the lock belong to the drop that ends with them, all others to the phase that they begin.
-    locked = np.array([row.name == "run to banking" for row in told])
-    locking = np.array([row.name == "drop" for row in told])
+    # The impacts of the lock belong to the drop that ends with them, all others to the phase that they begin. A lever that is
+    # on its bank before the lock has no run to it: then the lock also is where the free oscillation begins.
+    locks = ends[[row.name == "drop" for row in told]]
+    locked, locking = np.isin(starts, locks), np.isin(ends, locks)
     i, j = _rows(made.t, starts, locked), _rows(made.t, ends, locking)
     names = [name for name in (parts.wheel, parts.lever, parts.oscillator) if name]
     columns = [run.slices[name].start for name in names]

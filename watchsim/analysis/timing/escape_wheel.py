@@ -48,14 +48,31 @@ def advance(run: Trajectory, wheel: str, found: Beats) -> Advance | None:
 def missed_beats(run: Trajectory, wheel: str, found: Beats) -> int | None:
     """Half swings in which the wheel did not advance by half a pitch, or half pitches it went too far; None where not known.
 
-    Between recorded windows, and from the start to the first of them, half swings and half pitches are only counted. There the
-    first half swing is given the benefit of the doubt: the wheel may start on either side of it.
+    Where it goes on by a whole pitch in every other half swing, as with a detent, whole pitches are counted. Between recorded
+    windows, and from the start to the first of them, half swings and half pitches are only counted. There the first half swing
+    is given the benefit of the doubt: the wheel may start on either side of it.
     """
     moved = advance(run, wheel, found)
     if moved is None:
         return None
-    missed = float(np.abs(np.rint(moved.steps) - np.diff(moved.half_swings)).sum())
+    only = _giving(moved)
+    one = 1.0 if only is None else 2.0  # half pitches
+    due = np.diff(moved.half_swings) if only is None else 2.0 * np.diff(_of_parity(moved.half_swings, only))
+    missed = float(np.abs(np.rint(moved.steps) - due).sum()) / one
     if moved.half_swings[0] > 0:
         before = abs(np.rint(moved.angle[0] / moved.half_pitch) - (moved.half_swings[0] + 1.0))
-        missed += max(0.0, before - 1.0)
+        missed += max(0.0, before - one) / one
     return int(missed)
+
+
+def _giving(moved: Advance) -> int | None:
+    """0 or 1: only the half swings of that parity give the wheel a step, of a whole pitch; None where all of them do."""
+    single = np.diff(moved.half_swings) == 1.0
+    steps, parity = np.rint(moved.steps[single]), moved.half_swings[:-1][single] % 2.0
+    usual = [np.median(steps[parity == k]) if (parity == k).any() else np.nan for k in (0.0, 1.0)]
+    return usual.index(2.0) if sorted(usual) == [0.0, 2.0] else None
+
+
+def _of_parity(half_swings: Array, parity: int) -> Array:
+    """How many half swings of that parity there were before each of these."""
+    return np.floor((half_swings + (1.0 - parity)) / 2.0)

@@ -14,6 +14,7 @@ from watchsim.construction.dimension import dim
 LAYOUT = "construction by overlapping circles, docs/guide/coaxial.md"
 RUNS = "chosen by runs from 60° to 330°, docs/guide/coaxial.md"
 PLAYTNER = "as in a lever, Playtner 1910"
+WEIGHED = "as drawn in steel 0.06 to 0.09, and the train, docs/guide/coaxial.md"
 ESTIMATE = "estimate: not published for a watch"
 
 
@@ -32,9 +33,9 @@ class Coaxial:
     indirect_lever: float = dim(4.5, "°", 3.5, 8.0, "the same at the lever", LAYOUT)
     indirect_offset: float = dim(0.5, "°", -3.0, 3.0, "lever, with its stone on the line wheel-lever", RUNS)
     indirect_lead: float = dim(11.25, "°", 7.5, 14.0, "from the waiting small tooth to that line, second stone locked", RUNS)
-    lock: float = dim(1.5, "°", 0.75, 3.0, "lever, from drop to unlocked, both stones", PLAYTNER)
-    run: float = dim(0.5, "°", 0.1, 1.5, "lever, from drop to the banking", PLAYTNER)
-    lift: float = dim(8.25, "°", 6.0, 11.0, "lever, from unlocked to the next drop", LAYOUT)
+    lock: float = dim(1.5, "°", 0.75, 3.0, "lever, total lock of both stones less the run", PLAYTNER)
+    run: float = dim(0.5, "°", 0.1, 1.5, "lever, before the banking, taken off the total lock", PLAYTNER)
+    lift: float = dim(8.25, "°", 6.0, 11.0, "lever, from bank to bank less lock and both runs", LAYOUT)
     draw: float = dim(12.0, "°", 8.0, 18.0, "of the locking faces, the lever on its bank", PLAYTNER)
     lift_angle: float = dim(
         38.0, "°", 30.0, 55.0, "balance, while its pin is in the fork", "published for calibres 2500 and 8500 of Omega"
@@ -46,7 +47,7 @@ class Coaxial:
     guard_clearance: float = dim(
         0.034, "mm", 0.015, 0.06, "between guard pin and safety roller, the lever on its bank", PLAYTNER
     )
-    wheel_inertia: float = dim(0.1, "mg·cm²", 0.01, 10.0, "both wheels with the train as felt there", ESTIMATE)
+    wheel_inertia: float = dim(0.1, "mg·cm²", 0.01, 10.0, "both wheels with the train as felt there", WEIGHED)
     lever_inertia: float = dim(0.06, "mg·cm²", 0.005, 5.0, "lever with its stones", ESTIMATE)
     balance_inertia: float = dim(12.0, "mg·cm²", 0.5, 200.0, "balance with roller and hairspring", ESTIMATE)
     frequency: float = dim(

@@ -46,14 +46,14 @@ def wheel(points: Points) -> list[Loop]:
     return [contour(large, undercut, "TEETH"), *windows, bores[0], second, bores[1]]
 
 
-def contour(form: ToothForm, undercut: float, layer: str) -> Loop:
-    """All teeth, counter-clockwise; one tooth and the gap behind it, turned eight times."""
-    tooth = Loop(tuple(tooth_and_gap(form, undercut)), layer)
-    edges = [edge for i in range(TEETH) for edge in tooth.moved(i * TURN / TEETH, (0.0, 0.0)).edges]
+def contour(form: ToothForm, undercut: float, layer: str, teeth: int = TEETH) -> Loop:
+    """All teeth, counter-clockwise; one tooth and the gap behind it, turned as often as there are teeth."""
+    tooth = Loop(tuple(tooth_and_gap(form, undercut, 360.0 / teeth)), layer)
+    edges = [edge for i in range(teeth) for edge in tooth.moved(i * TURN / teeth, (0.0, 0.0)).edges]
     return Loop(tuple(edges), layer)
 
 
-def tooth_and_gap(form: ToothForm, undercut: float) -> list[Edge]:
+def tooth_and_gap(form: ToothForm, undercut: float, pitch: float = PITCH) -> list[Edge]:
     """From the middle of the gap before the tooth over its tip to the middle of the next gap."""
     tip = (form.tip, 0.0)
     flat = math.degrees(form.land / form.tip)
@@ -61,8 +61,8 @@ def tooth_and_gap(form: ToothForm, undercut: float) -> list[Edge]:
     back = along(heel, flat + 180.0 - form.lean, form.back)
     foot = along(tip, 180.0 - undercut, _reach(tip, 180.0 - undercut, form.root))
     hollow, end = hollow_back(back, form.hollow, form.root)
-    before = polar(form.root, (angle_of(foot) + angle_of(end) - PITCH) / 2.0)
-    after = turned(before, PITCH)
+    before = polar(form.root, (angle_of(foot) + angle_of(end) - pitch) / 2.0)
+    after = turned(before, pitch)
     chain: list[Edge] = [
         arc_between(before, foot, (0.0, 0.0), True),
         Line(*foot, *tip),

@@ -18,6 +18,7 @@ from watchsim.escapement.report import direction, text
 from watchsim.mechanism.compile import Compiled
 from watchsim.render.posed import Posed
 from watchsim.render.stills.function_views import Views, dropped, lift, locked, scale_bar, shape, whole
+from watchsim.render.stills.impulse_view import impulse_view
 from watchsim.scene.scene import Scene
 from watchsim.storage.write import write_file
 
@@ -90,6 +91,8 @@ def _views(views: Views) -> list[Callable[[Axes, float], None]]:
         made.append(lambda axes, aspect: lift(axes, views, aspect))
     for k in (0, 1) if detached else ():
         made.append(lambda axes, aspect, k=k: locked(axes, views, k, aspect))  # type: ignore[misc]
+    for k in (0, 1) if views.function.impulses is not None else ():
+        made.append(lambda axes, aspect, k=k: impulse_view(axes, views, k, aspect))  # type: ignore[misc]
     for k in (0, 1):
         made.append(lambda axes, aspect, k=k: dropped(axes, views, k, aspect))  # type: ignore[misc]
     return made

@@ -150,9 +150,11 @@ def dropped(axes: Axes, views: Views, k: int, aspect: float) -> None:
     assert function.pallets is not None and function.passages is not None
     passage, numbers = function.passages[k], function.pallets[k]
     pivot = views.pivot(views.names[0])
-    before = views.coordinates(passage.let_off.lever, passage.let_off.wheel)
-    after = views.coordinates(passage.let_off.lever, passage.landed.wheel)
-    views.posed.draw(axes, before, [views.names[0], views.names[1]])
+    balance = None if passage.direct is None else passage.direct.end
+    before = views.coordinates(passage.let_off.lever, passage.let_off.wheel, balance)
+    after = views.coordinates(passage.let_off.lever, passage.landed.wheel, balance)
+    # What lets the tooth go: a stone of the lever, or of the balance itself.
+    views.posed.draw(axes, before, views.names if passage.direct is not None else views.names[:2])
     views.posed.outline(axes, after, [views.names[0]], WHEEL_INK)
     left, lands = ((1e3 * one.x, 1e3 * one.y) for one in (passage.let_off, passage.landed))
     centre = (0.5 * (left[0] + lands[0]), 0.5 * (left[1] + lands[1]))
@@ -170,7 +172,10 @@ def dropped(axes: Axes, views: Views, k: int, aspect: float) -> None:
     away = math.dist(place, centre)
     aside = (34.0 * (centre[0] - place[0]) / away, 34.0 * (centre[1] - place[1]) / away)
     pointed(axes, place, f"{word} drop {degrees(numbers.drop.value)}", aside, WHEEL_INK)
-    axes.set_title(f"let off by the {STONES[k]} stone", fontsize=8.0, loc="left", pad=3.0)
+    through = (
+        "" if passage.caught is None else ("direct impulse, after the " if passage.direct else "indirect impulse, after the ")
+    )
+    axes.set_title(f"let off by the {through}{STONES[k]} stone", fontsize=8.0, loc="left", pad=3.0)
 
 
 def lift(axes: Axes, views: Views, aspect: float) -> None:
