@@ -11,7 +11,7 @@ from watchsim.analysis.timing.teeth import pitch
 from watchsim.mechanism.compile import Compiled
 from watchsim.model.records import OVER_TIME
 from watchsim.scene.oscillation import frequency, nominal_frequency
-from watchsim.scene.roles import drive_direction, roles
+from watchsim.scene.roles import drive_direction, keeps_time, roles
 from watchsim.scene.scene import Scene
 
 
@@ -22,6 +22,7 @@ class Parts:
     coordinate  of the oscillator; `body` its number in the scene; `level` where it stands in balance
     wheel       coordinate of the escape wheel, -1 without one; `sense` the way it is driven; `pitch` None without equal teeth
     period      of small swings; `nominal` what the rate is measured against
+    has_lever   True where a lever stands between the two
     touching    by contact: True where it touches the oscillator; a last False stands for no contact (-1)
     """
 
@@ -33,6 +34,7 @@ class Parts:
     pitch: float | None
     period: float
     nominal: float
+    has_lever: bool
     touching: NDArray[np.bool_]
 
     @property
@@ -50,16 +52,16 @@ def parts_of(scene: Scene, compiled: Compiled) -> Parts | None:
     coordinate = compiled.slices[found.oscillator].start
     owner = model.primitives.body
     touching = np.append((owner[model.contacts.a] == body) | (owner[model.contacts.b] == body), False)
-    escapes = found.wheel is not None and found.lever is not None
     return Parts(
         coordinate,
         body,
         float(model.coordinates[coordinate].level),
         compiled.slices[found.wheel].start if found.wheel else -1,
         drive_direction(scene, found.wheel) if found.wheel else 1.0,
-        pitch(scene, found.wheel) if found.wheel and escapes else None,
+        pitch(scene, found.wheel) if found.wheel and keeps_time(scene) else None,
         1.0 / hertz,
         1.0 / (nominal_frequency(scene) or hertz),
+        found.lever is not None,
         touching,
     )
 

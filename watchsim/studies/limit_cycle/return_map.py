@@ -1,7 +1,7 @@
 """Where does the oscillator turn next time, when it turned at this amplitude?
 
 One oscillation, from a turning point to the next one on the same side, and what else must be true of it: two turning points,
-each reached in free flight, and the wheel one tooth further.
+all else at rest at the last one, and the wheel one tooth further.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.loop_state.state import State
 from watchsim.studies.limit_cycle.loop import Events, Loop, SolverGaveUp, copied
 from watchsim.studies.limit_cycle.parts import Parts
-from watchsim.studies.limit_cycle.section import Section, is_clear, turns
+from watchsim.studies.limit_cycle.section import Section, is_touched, others_rest, turns
 
 EARLY, LATE = 0.03, 0.06  # of a period: how long before its end an oscillation is looked at, and for how long after
 NEAR = 0.05  # of a pitch: by how much the wheel may miss a whole number of teeth
@@ -27,7 +27,7 @@ class Return(NamedTuple):
 
     amplitude  at the turning point it ends with; `time` of it, from that at which it began
     trouble    "" for a regular one, else the verdict that it suggests
-    state      shortly before its end, everything but the oscillator at rest; None after trouble
+    state      at its end, or shortly before where nothing touches the oscillator; all but that at rest. None after trouble
     events     all of it
     """
 
@@ -48,7 +48,9 @@ class ReturnMap:
 
     def __call__(self, amplitude: float, oscillations: int = 1) -> Return:
         """So many oscillations that begin at that amplitude."""
-        state = self.section.at(self.parts, amplitude)
+        state = self.section.at(self.loop, self.parts, amplitude)
+        if state is None:
+            return Return(np.nan, 0.0, UNSETTLED, None, np.zeros(0))
         try:
             return self._followed(state, oscillations)
         except SolverGaveUp as failure:
@@ -60,14 +62,17 @@ class ReturnMap:
         events = self.loop.on(state, end - EARLY * self.period, exactly=True)
         seen = len(turns(events, self.parts))
         advance = self._advance(state)
-        clear = is_clear(self.loop, self.parts, state)
         kept = copied(state)
         events = np.concatenate([events, self.loop.on(state, end + LATE * self.period)])
         own = turns(events, self.parts)
         trouble = self._trouble(seen, own, events, oscillations, advance)
-        if trouble or not clear:
-            return Return(np.nan, end, trouble or UNSETTLED, None, events)
+        if trouble:
+            return Return(np.nan, end, trouble, None, events)
         last = own[2 * oscillations - 1]
+        if self.section.touching:
+            self.loop.on(kept, float(last["t"]), exactly=True)
+        if is_touched(self.parts, kept) != self.section.touching or not others_rest(self.loop, self.parts, kept):
+            return Return(np.nan, end, UNSETTLED, None, events)
         self.period = float(last["t"]) / oscillations
         away = self.section.side * (float(last["value"]) - self.parts.level)
         return Return(away, float(last["t"]), "", kept, events[events["t"] <= last["t"]])
@@ -79,7 +84,7 @@ class ReturnMap:
 
     def _trouble(self, seen: int, own: Events, events: Events, oscillations: int, advance: float) -> str:
         parts = self.parts
-        if knocked(events, own, parts):
+        if parts.has_lever and knocked(events, own, parts):
             return KNOCKS
         teeth = advance / parts.pitch if parts.pitch else None
         if teeth is not None:

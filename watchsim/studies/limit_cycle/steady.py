@@ -23,7 +23,7 @@ from watchsim.studies.limit_cycle.loop import Loop
 from watchsim.studies.limit_cycle.parts import Parts, is_driven, parts_of, why_no_section
 from watchsim.studies.limit_cycle.polish import FINER, Polished, glanced, polished
 from watchsim.studies.limit_cycle.return_map import Return, ReturnMap
-from watchsim.studies.limit_cycle.section import NoSection, Section, first_section, section_at
+from watchsim.studies.limit_cycle.section import NoSection, Section, first_section, section_at, section_from
 from watchsim.studies.limit_cycle.shooting import Fixed, Lost, fixed_point
 
 REST = 1e-9  # rad or m per scale: bodies that stand still come back so closely, or the section is moved on
@@ -126,7 +126,7 @@ def _moved_on(oscillate: ReturnMap, found: Fixed) -> Section | None:
         away[parts.wheel] = 0.0
     if (away <= REST).all():
         return None
-    return section_at(loop, parts, got.state, got.time)
+    return section_from(loop, parts, got.state) if oscillate.section.touching else section_at(loop, parts, got.state, got.time)
 
 
 def _told(loop: Loop, parts: Parts, exact: Polished) -> Cycle:
@@ -164,7 +164,7 @@ def _times(factor: float, value: float | None) -> float | None:
 def _lost(oscillate: ReturnMap, lost: Lost) -> Cycle:
     """The orbit left the region where the mechanism works as it should: what happens there."""
     loop, parts, section = oscillate.loop, oscillate.parts, oscillate.section
-    state = section.at(parts, lost.amplitude)
+    state = section.at(loop, parts, lost.amplitude)
     if lost.trouble in VERDICTS and lost.trouble != UNSETTLED:
         return _instead(loop, state, lost.trouble, AFTERWARDS * parts.period)
     return _by_run(loop, parts, "the search for a limit cycle did not converge", state)
