@@ -15,7 +15,7 @@ from watchsim.simulation.overlap_removal import directions, kinematics_at
 from watchsim.studies.limit_cycle.loop import Loop
 
 ROUNDS = 30  # of Newton's method; faces are lines and arcs
-CLOSED = 1e-3  # of what the event loop takes for a closed gap
+CLOSED = 0.1  # of what the event loop takes for a closed gap; some units in the last place
 
 
 def in_force(state: State) -> NDArray[np.int64]:

@@ -18,6 +18,7 @@ from watchsim.studies.limit_cycle.parts import Parts
 from watchsim.studies.limit_cycle.section import Section, is_touched, others_rest, turns
 
 EARLY, LATE = 0.03, 0.06  # of a period: how long before its end an oscillation is looked at, and for how long after
+LONGER = 1.5  # times the time of the last oscillation: how long the next one may take
 NEAR = 0.05  # of a pitch: by how much the wheel may miss a whole number of teeth
 FAR, LIFT = 2.0, 0.3  # times where the lift begins, and of the amplitude: what is struck further out is no lift
 
@@ -48,13 +49,28 @@ class ReturnMap:
 
     def __call__(self, amplitude: float, oscillations: int = 1) -> Return:
         """So many oscillations that begin at that amplitude."""
-        state = self.section.at(self.loop, self.parts, amplitude)
-        if state is None:
+        begin = self.section.at(self.loop, self.parts, amplitude)
+        if begin is None:
             return Return(np.nan, 0.0, UNSETTLED, None, np.zeros(0))
         try:
-            return self._followed(state, oscillations)
+            got, usual = self._followed(copied(begin), oscillations), self.period
+            if got.trouble in (UNSETTLED, STOPS) and self._timed_anew(begin, oscillations):
+                got = self._followed(begin, oscillations)
+                self.period = usual if got.trouble else self.period
+            return got
         except SolverGaveUp as failure:
             return Return(np.nan, failure.time, str(failure), None, np.zeros(0))
+
+    def _timed_anew(self, begin: State, oscillations: int) -> bool:
+        """True where it swings in another time than the last one did: `period` is then that time."""
+        state = copied(begin)
+        own = turns(self.loop.on(state, LONGER * oscillations * self.period), self.parts)
+        if len(own) < 2 * oscillations:
+            return False
+        period = float(own[2 * oscillations - 1]["t"]) / oscillations
+        other = abs(period - self.period) > 0.5 * EARLY * self.period
+        self.period = period if other else self.period
+        return other
 
     def _followed(self, state: State, oscillations: int) -> Return:
         end = oscillations * self.period
