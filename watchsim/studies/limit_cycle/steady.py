@@ -153,11 +153,21 @@ def _fixed(loop: Loop, parts: Parts, section: Section, amplitude: float) -> tupl
     for _ in range(SECTIONS):
         oscillate = ReturnMap(loop, parts, section)
         found = fixed_point(oscillate, amplitude)
+        if isinstance(found, Lost) and found.trouble == UNSETTLED and section.touching:
+            oscillate, found = _elsewhere(oscillate, amplitude, found)
         again = None if isinstance(found, Lost) else _moved_on(oscillate, found)
         if again is None:
             break
         section, amplitude = again, found.amplitude
     return oscillate, found
+
+
+def _elsewhere(oscillate: ReturnMap, amplitude: float, lost: Lost) -> tuple[ReturnMap, Fixed | Lost]:
+    """The fixed point where the parts rest otherwise than at the section that the search began with; else what was lost."""
+    swings = Swings(oscillate)
+    found = fixed_point(swings, amplitude)
+    there = None if isinstance(found, Lost) else swings.map_at(found.amplitude)
+    return (oscillate, lost) if there is None else (there, found)
 
 
 def _moved_on(oscillate: ReturnMap, found: Fixed) -> Section | None:

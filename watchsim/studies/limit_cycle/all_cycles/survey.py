@@ -23,8 +23,8 @@ EDGE = 1e-5  # of the amplitude: how closely the end of regular work is looked f
 ROOT = 1e-7  # of the amplitude: more left than that, and it is no cycle but a jump of the map
 ALIKE = 1e-6  # of the amplitude: cycles closer to each other are one
 BESIDE = 1e-4  # of the amplitude: where the search begins for two that have split off from an unstable one
-STEPS = 20000  # of an orbit along the samples
-HERE = 0.005  # of the amplitude: so near to a stable cycle an orbit goes there
+DOUBLINGS = 18  # of the number of oscillations that are followed along the samples
+HERE = 0.005  # of the amplitude: what ends so near to a stable cycle goes there
 STEP = 1e-3  # of the amplitude, for a slope
 
 Oscillate = Callable[[float], Return]
@@ -68,6 +68,7 @@ class Survey:
         self._seen: dict[float, Sample] = {}
         self._grid(known)
         self.cycles = self._cycles()
+        self._ends = self._followed()
         self.spans = self._spans()
 
     def _at(self, amplitude: float) -> Sample:
@@ -99,7 +100,8 @@ class Survey:
         for _ in range(oscillations):
             if not reached > 0.0:
                 return np.nan
-            reached = self._at(reached).next
+            sample = self._at(reached)
+            reached = np.nan if sample.trouble else sample.next
         return reached - amplitude
 
     def _cycles(self) -> tuple[Found, ...]:
@@ -184,24 +186,31 @@ class Survey:
                 return one.amplitudes[0]
         return 0.5 * (low.amplitude + high.amplitude)
 
-    def end_of(self, amplitude: float) -> tuple[str, int | None]:
-        """What a swing of that size leads to, along lines between the samples: trouble and "", or the number of a stable cycle."""
-        samples = self._samples()
-        good = [one for one in samples if not one.trouble]
-        amplitudes, following = [one.amplitude for one in good], [one.next for one in good]
-        here = amplitude
-        for _ in range(STEPS):
-            nearest = self._near(here, samples)
-            if nearest.trouble:
-                return nearest.trouble, None
-            for number, one in enumerate(self.cycles):
-                if one.stable and any(abs(here - amplitude) <= HERE * amplitude for amplitude in one.amplitudes):
-                    return "", number
-            here = float(np.interp(here, amplitudes, following))
-        return UNSETTLED, None
+    def _followed(self) -> dict[float, tuple[str, int | None]]:
+        """By sample: what its orbit ends with, trouble and "", or the number of a stable cycle.
 
-    def _near(self, amplitude: float, samples: list[Sample]) -> Sample:
-        """The sample next to an amplitude; the outermost one beyond them."""
-        place = bisect.bisect_left([one.amplitude for one in samples], amplitude)
-        around = samples[max(0, place - 1) : place + 1]
-        return min(around, key=lambda one: abs(one.amplitude - amplitude))
+        Along lines between the samples, k oscillations and k more at once; what is not regular stays where it is.
+        """
+        samples = self._samples()
+        amplitudes = np.array([one.amplitude for one in samples])
+        reached = np.array([one.amplitude if one.trouble else one.next for one in samples])
+        for _ in range(DOUBLINGS):
+            reached = np.interp(reached, amplitudes, reached)
+        return {one.amplitude: self._end(float(end), samples) for one, end in zip(samples, reached, strict=True)}
+
+    def _end(self, amplitude: float, samples: list[Sample]) -> tuple[str, int | None]:
+        for number, one in enumerate(self.cycles):
+            if one.stable and any(abs(amplitude - other) <= HERE * other for other in one.amplitudes):
+                return "", number
+        return _nearest(amplitude, samples).trouble or UNSETTLED, None
+
+    def end_of(self, amplitude: float) -> tuple[str, int | None]:
+        """What a swing of that size leads to: trouble and "", or the number of a stable cycle."""
+        return self._ends[_nearest(amplitude, self._samples()).amplitude]
+
+
+def _nearest(amplitude: float, samples: list[Sample]) -> Sample:
+    """The sample next to an amplitude; the outermost one beyond them."""
+    place = bisect.bisect_left([one.amplitude for one in samples], amplitude)
+    around = samples[max(0, place - 1) : place + 1]
+    return min(around, key=lambda one: abs(one.amplitude - amplitude))

@@ -30,17 +30,18 @@ class Swings:
 
     def __call__(self, amplitude: float, oscillations: int = 1) -> Return:
         """So many oscillations that begin at that amplitude (rad, m)."""
-        chosen = self._map_at(amplitude)
+        chosen = self.map_at(amplitude)
         if chosen is None:
             return Return(np.nan, 0.0, UNSETTLED, None, np.zeros(0))
         return chosen(amplitude, oscillations)
 
     def state_at(self, amplitude: float) -> State | None:
         """The mechanism at a turning point of that amplitude; None where it cannot be brought there."""
-        chosen = self._map_at(amplitude)
+        chosen = self.map_at(amplitude)
         return None if chosen is None else chosen.section.at(self.known.loop, self.known.parts, amplitude)
 
-    def _map_at(self, amplitude: float) -> ReturnMap | None:
+    def map_at(self, amplitude: float) -> ReturnMap | None:
+        """The return map from a section where the parts rest as they do at that amplitude; None where there is none."""
         loop, parts = self.known.loop, self.known.parts
         nearest = sorted(self._maps, key=lambda one: abs(math.log(one.section.amplitude / amplitude)))
         for one in nearest:
