@@ -21,6 +21,7 @@ from watchsim.scene.file.parsed import parsed
 from watchsim.scene.file.readers.read_bodies import read_bodies
 from watchsim.scene.file.readers.read_carriers import note_carriers
 from watchsim.scene.file.readers.read_contacts import read_contacts
+from watchsim.scene.file.readers.read_trains import with_trains
 from watchsim.scene.file.readers.read_forces import read_damping, read_springs, read_torques
 from watchsim.scene.file.readers.read_settings import read_expectations, read_heading, read_run, read_timegrapher
 from watchsim.scene.oscillation import frequency
@@ -61,7 +62,7 @@ def from_mapping(
     _note_sections(mapping, faults)
     heading = read_heading(mapping, faults)
     read = read_bodies(mapping.get("bodies", {}), folder, faults, made)
-    bodies, sound = read.bodies, read.sound
+    bodies, sound = with_trains(mapping, read.bodies, faults), read.sound
     springs = read_springs(mapping, bodies, faults)
     torques = read_torques(mapping, bodies, faults)
     damping = read_damping(mapping, bodies, springs, heading.gravity, faults)

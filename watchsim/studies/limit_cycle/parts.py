@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 from watchsim.analysis.timing.teeth import pitch
 from watchsim.mechanism.compile import Compiled
 from watchsim.model.records import OVER_TIME
+from watchsim.scene.force import Torque
 from watchsim.scene.oscillation import frequency, nominal_frequency
 from watchsim.scene.roles import drive_direction, keeps_time, roles
 from watchsim.scene.scene import Scene
@@ -64,6 +66,14 @@ def parts_of(scene: Scene, compiled: Compiled) -> Parts | None:
         found.lever is not None,
         touching,
     )
+
+
+def with_springs_held(scene: Scene) -> Scene:
+    """The scene with every mainspring kept as far wound as it is at the start: a watch settles in minutes, it runs down in days."""
+    if not any(torque.mainspring for torque in scene.torques):
+        return scene
+    held = tuple(Torque(torque.body, torque.value) if torque.mainspring else torque for torque in scene.torques)
+    return dataclasses.replace(scene, torques=held)
 
 
 def is_driven(scene: Scene) -> bool:

@@ -21,7 +21,7 @@ from watchsim.simulation.loop_state.state import State
 from watchsim.studies.limit_cycle.cycle import Cycle
 from watchsim.studies.limit_cycle.judge import judged, late_means, run_from
 from watchsim.studies.limit_cycle.loop import Loop
-from watchsim.studies.limit_cycle.parts import Parts, is_driven, parts_of, why_no_section
+from watchsim.studies.limit_cycle.parts import Parts, is_driven, parts_of, why_no_section, with_springs_held
 from watchsim.studies.limit_cycle.polish import FINER, Polished, glanced, polished, polished_over
 from watchsim.studies.limit_cycle.repeats import repeats
 from watchsim.studies.limit_cycle.return_map import Return, ReturnMap
@@ -59,7 +59,7 @@ def steady(
     all_cycles  look at swings of all sizes for every cycle, stable or not, and say which of them each swing leads to
 
     Where there is no cycle `found` is False, and `verdict` and `message` say what there is instead. ValueError for a bad
-    argument; SceneError where bodies overlap at the start.
+    argument; SceneError where bodies overlap at the start. A mainspring stays as far wound as the scene says.
     """
     begun = time.perf_counter()
     if not isinstance(scene, Scene):
@@ -71,7 +71,7 @@ def steady(
         raise ValueError(f"the tolerance must lie between {FINEST:g} and 1e-2, not {tolerance}")
     if amplitude is not None and not (amplitude > 0.0 and math.isfinite(amplitude)):
         raise ValueError(f"the amplitude must be a positive number of rad (m), not {amplitude}")
-    loop = Loop(scene, tolerance)
+    loop = Loop(with_springs_held(scene), tolerance)
     ready = time.perf_counter()
     loop.warm_up()
     warm = time.perf_counter()
