@@ -99,6 +99,7 @@ run_down   = "2.8 rev"
         ("torques.0.train.0.ratio", 0.0, "must not be 0"),
         ("torques.0.train.1.inertia", "-1 mg·cm²", "above zero"),
         ("torques.0.run_down", "3 s", "time"),
+        ("torques.0.train.2.ratio", 3, "no wheel 2"),
     ],
 )
 def test_what_makes_no_train_is_refused(tmp_path, key, value, why):
@@ -126,3 +127,10 @@ def test_check_says_where_the_torque_comes_from(tmp_path):
     shown = "\n".join(force_lines(wheel(tmp_path, turned=1.0)))
     assert "from 9 mN·m at the barrel 1 turns from full wind" in shown
     assert "0.032 mg·cm²" in shown
+
+
+def test_a_plain_value_takes_its_place(tmp_path):
+    scene = wheel(tmp_path).set("torques.0.value", "-1 µN·m")
+    assert scene.torques[0].mainspring is None
+    assert scene.torques[0].value == pytest.approx(-1e-6)
+    assert scene.body("wheel").inertia == pytest.approx(0.05e-10)

@@ -181,7 +181,6 @@ def positions(scene: ws.Scene) -> list[str]:
         f'centre_of_mass = ["{1e6 * place[0]:.6g} µm", "{1e6 * place[1]:.6g} µm"]  # from the staff, with the balance at rest',
         "```",
         "",
-        "",
         "| | position | amplitude, ° | rate, s/d | by poise, s/d | (mgr/k)·J₁(A)/A, s/d |",
         "|---|---|---|---|---|---|",
         *rows,
