@@ -56,6 +56,16 @@ def test_the_report_is_what_the_terminal_said(moved: Path) -> None:
     assert "amplitude" in report
 
 
+def test_the_report_ends_with_the_timeline_of_the_last_oscillation(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "out"
+    assert main(["run", str(profiles_dir() / "bench_lever"), "--duration", "1 s", "--no-plots", "-o", str(out)]) == FINE
+    said, _, _ = capsys.readouterr().out.partition("Results: ")
+    report = (out / "report.txt").read_text(encoding="utf-8")
+    assert report.startswith(said)
+    assert report[len(said) :].startswith("\nTimeline, t = ")
+    assert report.count("unlocking") == 4  # of two beats, in the tables of motion and of energy
+
+
 def test_variants_of_one_edited_drawing_stand_side_by_side(tmp_path: Path) -> None:
     scene = tmp_path / "bench"
     shutil.copytree(profiles_dir() / "bench_lever", scene)

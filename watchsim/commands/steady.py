@@ -18,6 +18,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("scene", metavar="SCENE", help="a scene file (TOML), or the folder that holds scene.toml")
     parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], help="change a value of the scene")
     parser.add_argument("--tol", metavar="X", type=float, help="relative error per step (default: the scene's, 1e-9)")
+    parser.add_argument("--all", action="store_true", help="every cycle, stable or not, and which swings lead to which")
     parser.add_argument("--json", action="store_true", help="print one JSON object")
 
 
@@ -29,7 +30,7 @@ def run(args: argparse.Namespace) -> int:
         raise InputError(f"--tol {args.tol:g}: must lie between 1e-13 and 1e-2.")
     scene = load_scene(args.scene, args.set)
     announce_compile()
-    cycle = steady(scene, tolerance=args.tol)
+    cycle = steady(scene, tolerance=args.tol, all_cycles=args.all)
     if args.json:
         from watchsim.results.tables import plain
 
@@ -60,9 +61,30 @@ def text(title: str, cycle: Cycle) -> str:
         lines.append(("verdict", cycle.verdict))
     if cycle.message:
         lines.append(("", cycle.message) if lines else ("cycle", cycle.message))
+    lines += all_cycles(cycle)
     cells = f", {cycle.cells_s:.2g} s of it for the search for candidate contacts" if cycle.cells_s >= 5e-3 else ""
     lines.append(("computed", f"{cycle.simulated_s:.3g} s simulated in {cycle.wall_s:.2g} s{cells}"))
     return "\n".join([title, *(f"  {label:{LABEL}}{words}".rstrip() for label, words in lines)])
+
+
+def all_cycles(cycle: Cycle) -> list[tuple[str, str]]:
+    """Every cycle, and what becomes of swings of all sizes; nothing where that was not asked for."""
+    lines = []
+    for number, one in enumerate(cycle.cycles or (), 1):
+        swings = " and ".join(f"{amplitude:.6g}°" for amplitude in one.amplitudes_deg)
+        turns = f", {len(one.amplitudes_deg)} oscillations in turn" if len(one.amplitudes_deg) > 1 else ""
+        left = "" if one.multiplier is None else f", multiplier {one.multiplier:.6f}"
+        kind = "stable" if one.stable else "unstable"
+        lines.append(
+            (f"cycle {number}", f"{swings}{turns}, {with_error(one.rate_s_per_d, 0.005, ' s/d').split(' ±')[0]}{left}; {kind}")
+        )
+    for place, one in enumerate(cycle.starts or ()):
+        end = one.verdict if one.cycle is None else f"comes to cycle {one.cycle + 1}"
+        sign = "−" if one.side < 0 else "+"
+        lines.append(("" if place else "let go at", f"{sign}{one.from_deg:.4g}° to {sign}{one.to_deg:.4g}°: {end}"))
+    if cycle.cycles is not None and not cycle.cycles:
+        lines.append(("cycles", "none at any swing that was looked at"))
+    return lines
 
 
 def with_error(value: float, error: float | None, unit: str) -> str:

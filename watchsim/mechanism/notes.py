@@ -47,13 +47,13 @@ def _by_outline(scene: Scene) -> Iterator[Finding]:
     """Mass beside inertia leaves the centre of mass to the outline, which gravity then turns the body by."""
     for body in scene.bodies if any(scene.gravity) else ():
         entry = scene.source.get("bodies", {}).get(body.name, {})
-        written = "mass" in entry and "inertia" in entry and "solids" not in entry
+        written = "mass" in entry and "inertia" in entry and not {"solids", "centre_of_mass"} & set(entry)
         if written and body.motion == "pivot" and body.on is None and _is_off(body):
             message = (
                 f"the centre of mass of {body.name} is taken from its outline as of a uniform plate, "
                 f"{length(math.hypot(*body.centre_of_mass))} beside the pivot: gravity turns it"
             )
-            cure = f"Give solids under [bodies.{body.name}] for another centre of mass; leave out mass if it is poised."
+            cure = f"Write centre_of_mass under [bodies.{body.name}], or give solids; leave out mass if it is poised."
             yield Finding("centre-of-mass", "notice", message, cure)
 
 

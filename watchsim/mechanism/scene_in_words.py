@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from watchsim.scene.body import Body
 from watchsim.scene.carriers import at_start
-from watchsim.scene.force import Damping, Spring
+from watchsim.scene.force import Damping, Mainspring, Spring
 from watchsim.scene.oscillation import Oscillator, oscillator, oscillators
 from watchsim.scene.roles import keeps_time
 from watchsim.scene.scene import Scene
@@ -57,9 +57,21 @@ def _force_lines(scene: Scene) -> Iterator[str]:
     for torque in scene.torques:
         unit = "N" if scene.body(torque.body).motion == "slide" else "N·m"
         text = metric(torque.value, unit) if not torque.table else f"{len(torque.table)} values over {torque.over}"
+        if torque.mainspring is not None:
+            text = f"{metric(torque.value, unit)}, {_mainspring(torque.mainspring)}"
         yield f"  drive on {torque.body}: {text}"
     for damping in scene.damping:
         yield f"  damping on {damping.body}: {_damping(scene, damping)}"
+
+
+def _mainspring(spring: Mainspring) -> str:
+    """Where a torque comes from, and what its train weighs at the body."""
+    turns = f"{spring.run_down / math.tau:.6g} turns from full wind"
+    felt = f", train felt as {show(spring.inertia, 'mg·cm²')}" if spring.inertia else ""
+    return (
+        f"from {metric(spring.torque, 'N·m')} at the barrel {turns}, ratio {spring.ratio:g}, "
+        f"efficiency {100.0 * spring.efficiency:g} %{felt}"
+    )
 
 
 def _swing(scene: Scene, one: Oscillator) -> str:

@@ -25,16 +25,36 @@ class Spring:
 
 
 @dataclass(frozen=True, slots=True)
+class Mainspring:
+    """A mainspring that drives a body through a train.
+
+    ratio       turns of the body for one turn of the barrel, negative where the body turns clockwise
+    efficiency  of the train: share of the barrel's work that reaches the body
+    run_down    rad, of the barrel since it was wound, at the start
+    torque      N·m at the barrel, at the start
+    inertia     kg·m², of the train's wheels and the barrel as felt at the body; part of the body's own
+    """
+
+    ratio: float
+    efficiency: float
+    run_down: float
+    torque: float
+    inertia: float
+
+
+@dataclass(frozen=True, slots=True)
 class Torque:
     """A constant torque (N·m) or force (N) on a body; with `table`, value by linear interpolation over angle or time.
 
-    `over` is "constant", "angle" or "time"; `table` holds (abscissa, value) pairs in SI, ascending.
+    `over` is "constant", "angle" or "time"; `table` holds (abscissa, value) pairs in SI, ascending. Where a `mainspring` drives
+    the body through a train, `table` says what that comes to over the body's own angle, and `value` what it is at the start.
     """
 
     body: str
     value: float = 0.0
     over: str = "constant"
     table: tuple[tuple[float, float], ...] = ()
+    mainspring: Mainspring | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -65,7 +65,7 @@ def taken_back_from(model: Model, q: Array, options: Options, near: float) -> Ar
     for _ in range(ROUNDS):
         closed = kinematics_at(model, moved)
         # What no motion opens, as a disc about its own pivot against a bar that slides past it, stays as it is drawn.
-        across, along = _directions(closed, closed.w_N, len(q)) / root, _directions(closed, closed.w_T, len(q)) / root
+        across, along = directions(closed, closed.w_N, len(q)) / root, directions(closed, closed.w_T, len(q)) / root
         mobile = np.linalg.norm(across, axis=1) > IMMOBILE * np.linalg.norm(np.hstack([across, along]), axis=1)
         overlapping = overlapping_rows(model, closed, options, near, 0.0)
         overlapping = overlapping[mobile[overlapping]]
@@ -82,7 +82,7 @@ def taken_back_from(model: Model, q: Array, options: Options, near: float) -> Ar
     return None
 
 
-def _directions(closed: Closed, sparse: Array, n: int) -> Array:
+def directions(closed: Closed, sparse: Array, n: int) -> Array:
     """(contacts, n): w_N or w_T of all contacts over the coordinates."""
     out = np.zeros((len(closed.ids), n))
     for row, slots in enumerate(closed.slots):
@@ -90,16 +90,16 @@ def _directions(closed: Closed, sparse: Array, n: int) -> Array:
     return out
 
 
-def _least_change(directions: Array, wanted: Array) -> Array | None:
-    """The shortest y with directions · y >= wanted, None where there is none (Lawson and Hanson 1974, chapter 23)."""
+def _least_change(ways: Array, wanted: Array) -> Array | None:
+    """The shortest y with ways · y >= wanted, None where there is none (Lawson and Hanson 1974, chapter 23)."""
     from scipy.optimize import nnls
 
-    size = np.linalg.norm(directions, axis=1)
+    size = np.linalg.norm(ways, axis=1)
     scale = float(wanted.max())
-    rows, bounds = directions / size[:, None], wanted / size
+    rows, bounds = ways / size[:, None], wanted / size
     unit = scale / float(size.max())
     system = np.vstack([rows.T, bounds[None] / unit])
-    target = np.append(np.zeros(directions.shape[1]), 1.0)
+    target = np.append(np.zeros(ways.shape[1]), 1.0)
     loads, _ = nnls(system, target)
     left = system @ loads - target
     if np.linalg.norm(left) < NO_CHANGE_LEFT:

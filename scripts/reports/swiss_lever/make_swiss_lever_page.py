@@ -55,7 +55,7 @@ def page() -> str:
         *swiss_drive.best(scene, driven),
         *swiss_clock.positions(scene),
         *swiss_clock.temperature(scene),
-        *swiss_clock.run_down(scene),
+        *swiss_clock.run_down(),
         *swiss_clock.what_matters(scene),
     ]
     return minus("\n".join([*HEAD, *chapters, *TAIL]))

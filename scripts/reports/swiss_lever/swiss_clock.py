@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import tempfile
+from pathlib import Path
 
 import numpy as np
 from scipy.special import j1
@@ -12,11 +14,9 @@ from swiss_studies import (
     NOMINAL,
     Floats,
     Series,
-    cycle_of,
     deviation_ppm,
     free_period,
     over,
-    over_torque,
     slopes,
     unpoised,
 )
@@ -24,6 +24,7 @@ from swiss_studies import (
 import watchsim as ws
 from watchsim.render.figures.effects import plot_sensitivity
 from watchsim.studies.limit_cycle.cycle import Cycle
+from watchsim.units import ANGLE, TORQUE, parse
 
 G = 9.81  # m/s²
 FLAT, HANGING = "1.02 nN·m", "3.06 nN·m"  # pivot friction of parameter set A (profiles/set_a/scene.toml)
@@ -38,9 +39,31 @@ BRASS, STEEL = 1.64 / DAY, 0.95 / DAY
 LOSS_TOLD = "https://bwcmg.org/index.php/2024/09/10/nickel-steel-balance-spring-a-major-development-in-watchmaking"
 STEEL_AND_BRASS = 11.0  # s/d in 1 K
 TEMPERATURES = np.array([-15.0, -10.0, -5.0, 0.0, 5.0, 10.0, 15.0])  # K from that of adjustment
-# An example of a mainspring: hours since full wind, share of the torque. Assumed: quick at first, even, and a fall at the end.
-MAINSPRING = ((0.0, 1.0), (2.0, 0.96), (12.0, 0.89), (24.0, 0.81), (36.0, 0.71), (42.0, 0.6), (46.0, 0.42), (48.0, 0.3))
-WOUND = 1.2e-6  # N·m at the escape wheel, fully wound
+# An example of a mainspring and its train. Assumed: the torque falls quickly at first, then evenly, and again at the end; a barrel
+# that turns once in 6.75 h, so that the escape wheel (960 turns an hour) turns 6480 times as often; four fifths arrive.
+WOUND_SCENE = """\
+[scene]
+title  = "Swiss lever with a mainspring"
+schema = 1
+
+[design]
+of = "swiss_lever"
+
+[[torques]]
+body       = "wheel"
+over       = "barrel"                    # the table is the mainspring's: turns of the barrel since it was wound, torque at it
+table      = [["0 rev", "9.72 mN·m"], ["0.3 rev", "9.33 mN·m"], ["1.8 rev", "8.65 mN·m"], ["3.6 rev", "7.85 mN·m"],
+              ["5.3 rev", "6.92 mN·m"], ["6.2 rev", "5.83 mN·m"], ["6.8 rev", "4.1 mN·m"], ["7.1 rev", "2.92 mN·m"]]
+ratio      = -6480                       # turns of the wheel for one of the barrel; clockwise
+efficiency = 0.8
+run_down   = "0 rev"                     # how far the barrel has turned at the start
+
+[[damping]]
+body    = "balance"
+coulomb = "1.02 nN·m"                    # pivots, lying flat
+"""
+HOURS_A_TURN = 6.75
+RATIO, EFFICIENCY = 6480.0, 0.8  # as in the scene: the torque at the wheel is worked out from the table by hand
 FLAT_COLOUR = "#6a7683"
 
 
@@ -121,10 +144,10 @@ def positions(scene: ws.Scene) -> list[str]:
     rows, worst, spans = [], 0.0, []
     for torque, words in (("-1.0 µN·m", "wound"), ("-0.6 µN·m", "run down")):
         driven = scene.set("torques.0.value", torque)
-        flat = cycle_of(driven.set("damping.0.coulomb", FLAT))
+        flat = ws.steady(driven.set("damping.0.coulomb", FLAT))
         rows.append(f"| {words} | flat | {flat.amplitude_deg:.2f} | {flat.rate_s_per_d:+.3f} | | |")
         hanging = driven.set("damping.0.coulomb", HANGING)
-        poised = cycle_of(hanging)
+        poised = ws.steady(hanging)
         rows.append(f"| {words} | hanging, in poise | {poised.amplitude_deg:.2f} | {poised.rate_s_per_d:+.3f} | | |")
         rates = []
         for name, (x, y) in POSITIONS.items():
@@ -145,7 +168,18 @@ def positions(scene: ws.Scene) -> list[str]:
         "[parameter set A](../reports/parameter-sets.md)), and a balance out of poise is a pendulum:"
         f" here {1e9 * HEAVY:.0f} µg too much at"
         f" {1e3 * RIM:.1f} mm, {HEAVY_AT:.0f}° from",
-        "3 o'clock towards 12 when it is at rest. Dial up and dial down are the same in a plane model.",
+        "3 o'clock towards 12 when it is at rest. Dial up and dial down are the same in a plane model. In a scene, `gravity` under",
+        "`[scene]` says which way is down, and the balance says where its weight lies:",
+        "",
+        "```toml",
+        "[scene]",
+        'gravity = ["0 m/s²", "-9.81 m/s²"]       # 6 o\'clock down; 12 down is ["0 m/s²", "9.81 m/s²"], 3 down ["9.81 m/s²", "0 m/s²"]',
+        "",
+        "[bodies.balance]",
+        'mass           = "50 mg"',
+        'inertia        = "12 mg·cm²"',
+        f'centre_of_mass = ["{1e6 * place[0]:.6g} µm", "{1e6 * place[1]:.6g} µm"]  # from the staff, with the balance at rest',
+        "```",
         "",
         "| | position | amplitude, ° | rate, s/d | by poise, s/d | (mgr/k)·J₁(A)/A, s/d |",
         "|---|---|---|---|---|---|",
@@ -178,7 +212,7 @@ def temperature(scene: ws.Scene) -> list[str]:
             heavy = inertia * (1.0 + BRASS * kelvin) ** 2
             stiff = stiffness * (1.0 + beta * kelvin) * (1.0 + STEEL * kelvin) ** 3
             warm = scene.set("bodies.balance.inertia", heavy).set("springs.0.stiffness", stiff)
-            cycles.append(cycle_of(warm))
+            cycles.append(ws.steady(warm))
             free = DAY * (1.0 / (NOMINAL * free_period(heavy, stiff)) - 1.0)
             last = cycles[-1]
             assert last.rate_s_per_d is not None
@@ -219,22 +253,29 @@ def temperature(scene: ws.Scene) -> list[str]:
     ]
 
 
-def run_down(scene: ws.Scene) -> list[str]:
+def run_down() -> list[str]:
     """48 hours from full wind, by limit cycles at the torque of each hour."""
     hours = np.arange(0.0, 49.0, 2.0)
-    share = np.interp(hours, [at for at, _ in MAINSPRING], [part for _, part in MAINSPRING])
-    series = over_torque(scene.set("damping.0.coulomb", FLAT), WOUND * share)
-    amplitude, rate = series.of("amplitude_deg"), series.of("rate_s_per_d")
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "scene.toml"
+        file.write_text(WOUND_SCENE, encoding="utf-8")
+        scene = ws.load(file)
+        found = ws.sweep(scene, {"torques.0.run_down": hours / HOURS_A_TURN * math.tau})
+    amplitude, rate = (np.array(found.column(name), float) for name in ("amplitude", "rate"))
+    spring = scene.source["torques"][0]["table"]
+    turns, at_barrel = (np.array([parse(row[i], kind) for row in spring]) for i, kind in enumerate((ANGLE, TORQUE)))
+    torque = EFFICIENCY / RATIO * np.interp(hours / HOURS_A_TURN * math.tau, turns, at_barrel)
     figure, axes = panels(3, height=2.0)
-    axes[0].plot(hours, 1e6 * series.at, color=FLAT_COLOUR, marker=".")
+    axes[0].plot(hours, 1e6 * torque, color=FLAT_COLOUR, marker=".")
     named(axes[0], "", "torque (µN·m)", legend=False)
-    dots(axes[1], hours, series, "amplitude_deg", "", BLUE)
+    axes[1].errorbar(hours, amplitude, found.column("amplitude_deg_error"), color=BLUE, marker="o", markersize=3.5)
     named(axes[1], "", "amplitude (°)", legend=False)
-    dots(axes[2], hours, series, "rate_s_per_d", "", RED)
+    axes[2].errorbar(hours, rate, found.column("rate_s_per_d_error"), color=RED, marker="o", markersize=3.5)
     named(axes[2], "hours since full wind", "rate (s/d)", legend=False)
     picture = saved(figure, "run_down")
     rows = [
-        f"| {hours[i]:.0f} | {1e6 * series.at[i]:.3f} | {amplitude[i]:.2f} | {rate[i]:+.3f} |" for i in range(0, len(hours), 3)
+        f"| {hours[i]:.0f} | {hours[i] / HOURS_A_TURN:.2f} | {1e6 * torque[i]:.3f} | {amplitude[i]:.2f} | {rate[i]:+.3f} |"
+        for i in range(0, len(hours), 3)
     ]
     middle = 0.5 * (rate[1:] + rate[:-1]) * np.diff(hours) / 24.0
     first, second = float(np.sum(middle[:12])), float(np.sum(middle[12:]))
@@ -243,24 +284,29 @@ def run_down(scene: ws.Scene) -> list[str]:
         "",
         f"![Torque, amplitude and rate over 48 hours]({picture})",
         "",
-        "An example: the torque of an assumed mainspring (`MAINSPRING` in"
-        " `scripts/reports/swiss_lever/swiss_clock.py`: quick at first, then even, with",
-        f"a fall at the end), {1e6 * WOUND:.1f} µN·m at the escape wheel when wound, pivots as lying"
-        " flat. A watch settles within a minute, a",
-        "mainspring runs down in days: so each hour is a limit cycle of its own.",
+        "An example, with the torque of an assumed mainspring. A watch settles within a minute, a mainspring runs down in days: so each",
+        "hour is a limit cycle of its own, with the spring as far wound as it is then:",
         "",
-        "| hours | torque, µN·m | amplitude, ° | rate, s/d |",
-        "|---|---|---|---|",
+        "```toml",
+        *WOUND_SCENE.rstrip().split("\n"),
+        "```",
+        "",
+        "```",
+        'watchsim sweep my_watch "torques.0.run_down=0:7.11:25 rev" -o two_days',
+        "```",
+        "",
+        "| hours | turns of the barrel | torque at the wheel, µN·m | amplitude, ° | rate, s/d |",
+        "|---|---|---|---|---|",
         *rows,
         "",
         f"The rate falls from {rate[0]:+.2f} to {rate[12]:+.2f} s/d in 24 hours and to {rate[-1]:+.2f}"
-        f" s/d in 48. The hands lose {-first:.2f} s on"
-        f" the first day and {-second:.2f} s on the second.",
+        f" s/d in 48. The hands lose {-first:.2f} s on",
+        f"the first day and {-second:.2f} s on the second.",
         "",
         "*For a watch:* wound every day it loses the same every day, which the regulator takes away;"
-        " on a second day it falls back by"
-        f" {first - second:.2f} s",
-        "against that. Either the torque must stay (a stop work, a remontoir) or the impulse come nearer to the middle.",
+        " on a second day it falls back by",
+        f"{first - second:.2f} s against that. Either the torque must stay (a stop work, a remontoir) or the impulse come nearer to the"
+        " middle.",
         "",
     ]
 

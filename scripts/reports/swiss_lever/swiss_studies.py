@@ -6,7 +6,6 @@ frequency and Q, a heavier balance would be given a stiffer spring.
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -20,7 +19,6 @@ from watchsim.studies.limit_cycle.cycle import Cycle
 Floats = NDArray[np.float64]
 CONTACTS = range(4)
 STONES, JEWEL = 0, 1  # contacts of the scene: wheel with stones, fork with the roller's jewel
-TOLERANCES = (1e-9, 1e-10, 1e-8, 1e-11)  # of the solver: the first one that gives a cycle of one oscillation
 DAY = 86400.0  # s
 NOMINAL = 4.0  # Hz
 CLEAR = math.radians(35.0)  # beyond this angle the jewel is out of the fork: the lift angle is 51°
@@ -56,23 +54,10 @@ def everywhere(scene: ws.Scene, key: str, value: float) -> ws.Scene:
     return scene
 
 
-def cycle_of(scene: ws.Scene) -> Cycle:
-    """The limit cycle, of one oscillation: the teeth of this wheel are alike.
-
-    With dry friction in the pivots a single oscillation from a turning point does not always agree with a whole turn of the
-    wheel; `steady` then closes the turn instead, and is not near what a long run comes to. At another tolerance it is.
-    """
-    for tolerance in TOLERANCES:
-        cycle = ws.steady(scene, tolerance=tolerance)
-        if not cycle.found or cycle.oscillations == 1:
-            return cycle
-    raise RuntimeError("no tolerance gives a cycle of one oscillation")
-
-
 def over(scene: ws.Scene, key: str, values: Iterable[float]) -> Series:
     """The limit cycle for each value of one key."""
     at = np.array(list(values), float)
-    return Series(at, tuple(cycle_of(scene.set(key, float(value))) for value in at))
+    return Series(at, tuple(ws.steady(scene.set(key, float(value))) for value in at))
 
 
 def over_torque(scene: ws.Scene, torques: Iterable[float]) -> Series:
@@ -84,7 +69,7 @@ def over_torque(scene: ws.Scene, torques: Iterable[float]) -> Series:
 def both(scene: ws.Scene, key: str, values: Iterable[float]) -> Series:
     """Over a number that is the same in all contacts."""
     at = np.array(list(values), float)
-    return Series(at, tuple(cycle_of(everywhere(scene, key, float(value))) for value in at))
+    return Series(at, tuple(ws.steady(everywhere(scene, key, float(value))) for value in at))
 
 
 def work_per_beat(scene: ws.Scene, cycle: Cycle) -> float:
@@ -159,7 +144,7 @@ def slopes(scene: ws.Scene) -> dict[str, tuple[float, float]]:
 
 def unpoised(scene: ws.Scene, mass: float, offset: tuple[float, float], gravity: tuple[float, float]) -> Cycle:
     """The limit cycle of a balance of that mass (kg) whose centre of mass lies off its staff by so much (m)."""
-    bodies = tuple(
-        dataclasses.replace(body, mass=mass, centre_of_mass=offset) if body.name == "balance" else body for body in scene.bodies
-    )
-    return cycle_of(dataclasses.replace(scene, bodies=bodies, gravity=gravity))
+    inertia = scene.body("balance").inertia
+    for key, value in (("mass", mass), ("inertia", inertia), ("centre_of_mass", offset)):
+        scene = scene.set(f"bodies.balance.{key}", value)
+    return ws.steady(scene.set("scene.gravity", gravity))

@@ -62,7 +62,7 @@ def write(run: Trajectory, goal: Goal, extras: Extras, changed: Sequence[str] = 
     try:
         numbers = _numbers(run, extras, changed, goal.folder)
         said = [*(f"Note: {note}" for note in numbers["notes"]), report_text(run, numbers)]
-        beside: dict[str, Any] = {**goal.scene, **tables(run), "report.txt": "\n".join(said) + "\n"}
+        beside: dict[str, Any] = {**goal.scene, **tables(run), "report.txt": "\n".join([*said, *_timeline(run)]) + "\n"}
     except Exception:
         say(f"The numbers of this run could not be computed. Its motion is kept in {_bare(run, goal)}")
         raise
@@ -72,7 +72,7 @@ def write(run: Trajectory, goal: Goal, extras: Extras, changed: Sequence[str] = 
 
 
 def report_text(run: Trajectory, summary: dict[str, Any]) -> str:
-    """What the terminal says of a run, which report.txt keeps."""
+    """What the terminal says of a run; report.txt keeps it, with the timeline of the last oscillation."""
     from watchsim.analysis.summary import summary_text
 
     text = summary_text(run, summary)
@@ -81,6 +81,16 @@ def report_text(run: Trajectory, summary: dict[str, Any]) -> str:
 
         text += "\n" + profile_text(summary["profile"])
     return text
+
+
+def _timeline(run: Trajectory) -> list[str]:
+    """The tables of the last oscillation, for report.txt; none where its phases are not known."""
+    from watchsim.analysis.timeline.table import timeline_text
+
+    try:
+        return ["", timeline_text(run)]
+    except ValueError:
+        return []
 
 
 def _numbers(run: Trajectory, extras: Extras, changed: Sequence[str], folder: Path) -> dict[str, Any]:

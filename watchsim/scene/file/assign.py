@@ -17,7 +17,7 @@ INSTEAD_OF = {
     "stiffness": ("frequency",),
     "q_factor": ("viscous",),
     "viscous": ("q_factor",),
-    "value": ("table", "over"),
+    "value": ("table", "over", "ratio", "efficiency", "run_down", "train"),
 }
 
 
@@ -62,10 +62,26 @@ def _enter(mapping: dict[str, Any], path: tuple[str, ...], faults: Faults) -> tu
     if not path[1].isdigit() or int(path[1]) >= len(elements):
         faults.add(key, f"{section} has no entry {path[1]}: there are {len(elements)}, counted from 0")
         return None, ()
-    if section == "springs" and path[2:3] == ("draw",) and len(path) > 3:
-        drawn = elements[int(path[1])].setdefault("draw", {})
-        return (drawn, path[3:]) if isinstance(drawn, dict) else (None, ())
-    return elements[int(path[1])], path[2:]
+    holder, rest = elements[int(path[1])], path[2:]
+    if section == "springs" and rest[:1] == ("draw",) and len(rest) > 1:
+        drawn = holder.setdefault("draw", {})
+        return (drawn, rest[1:]) if isinstance(drawn, dict) else (None, ())
+    if rest[0] == "train" and len(rest) > 2:
+        return _enter_train(holder, rest, key, faults)
+    return holder, rest
+
+
+def _enter_train(
+    holder: dict[str, Any], rest: tuple[str, ...], key: str, faults: Faults
+) -> tuple[dict[str, Any] | None, tuple[str, ...]]:
+    """The table for one wheel of a train."""
+    wheels = holder.get("train")
+    inside = isinstance(wheels, list) and rest[1].isdigit() and int(rest[1]) < len(wheels)
+    if isinstance(wheels, list) and inside:
+        return wheels[int(rest[1])], rest[2:]
+    many = len(wheels) if isinstance(wheels, list) else 0
+    faults.add(key, f"the train has no wheel {rest[1]}: there are {many}, counted from 0")
+    return None, ()
 
 
 def _enter_adjust(

@@ -22,6 +22,7 @@ from watchsim.scene.file.readers.read_carriers import note_carriers
 from watchsim.scene.file.readers.read_contacts import read_contacts
 from watchsim.scene.file.readers.read_forces import read_damping, read_springs, read_torques
 from watchsim.scene.file.readers.read_settings import read_expectations, read_heading, read_run, read_timegrapher
+from watchsim.scene.file.readers.read_trains import with_trains
 from watchsim.scene.oscillation import frequency
 from watchsim.scene.scene import Scene, Written
 
@@ -45,7 +46,7 @@ def from_mapping(
     _note_sections(mapping, faults)
     heading = read_heading(mapping, faults)
     read = read_bodies(mapping.get("bodies", {}), folder, faults, made)
-    bodies, sound = read.bodies, read.sound
+    bodies, sound = with_trains(mapping, read.bodies, faults), read.sound
     springs = read_springs(mapping, bodies, faults)
     torques = read_torques(mapping, bodies, faults)
     damping = read_damping(mapping, bodies, springs, heading.gravity, faults)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,8 +19,37 @@ JSON_NAMES = (
         "multipliers",
         "multipliers_error",
     ),
-    *("oscillations", "tooth_spread_deg", "simulated_s", "cells_s", "wall_s"),
+    *("oscillations", "amplitudes_deg", "tooth_spread_deg", "cycles", "starts", "simulated_s", "cells_s", "wall_s"),
 )
+
+
+@dataclass(frozen=True)
+class Orbit:
+    """One of the cycles that a mechanism has, stable or not.
+
+    amplitudes_deg  of each of its oscillations, one after the other
+    multiplier      of a whole round of it; `stable` where its magnitude is below 1
+    """
+
+    amplitudes_deg: tuple[float, ...]
+    period_s: float
+    rate_s_per_d: float
+    multiplier: float | None
+    stable: bool
+
+
+@dataclass(frozen=True)
+class Range:
+    """What becomes of a swing that turns between `from_deg` and `to_deg` from rest: the cycle of that number, else `verdict`.
+
+    side  of the rest position on which it turns: +1 or -1
+    """
+
+    side: int
+    from_deg: float
+    to_deg: float
+    verdict: str
+    cycle: int | None
 
 
 @dataclass(frozen=True)
@@ -39,7 +69,10 @@ class Cycle:
                    its teeth differ: see `oscillations`). Only that of the amplitude is listed: what else could be disturbed is
                    at rest at the section, and held there
     oscillations   in one return
+    amplitudes_deg  of these oscillations one after the other, where the swing repeats itself only after several of them though
+                   the teeth are equal, as after period doubling; else ()
     tooth_spread_deg  largest minus smallest amplitude within a turn of the wheel
+    cycles, starts  what `all_cycles` found: every cycle (`Orbit`), and which of them swings of what size lead to (`Range`)
     simulated_s    simulated time it took; `cells_s` the search for candidate contacts, s, and `wall_s` everything but start-up
     """
 
@@ -58,7 +91,10 @@ class Cycle:
     multipliers: tuple[float, ...] = ()
     multipliers_error: tuple[float, ...] = ()
     oscillations: int = 1
+    amplitudes_deg: tuple[float, ...] = ()
     tooth_spread_deg: float | None = None
+    cycles: tuple[Orbit, ...] | None = None
+    starts: tuple[Range, ...] | None = None
     simulated_s: float = 0.0
     cells_s: float = 0.0
     wall_s: float = 0.0
@@ -76,4 +112,7 @@ class Cycle:
 
     def numbers(self) -> dict[str, Any]:
         """What `steady --json` prints."""
-        return {name: list(value) if isinstance(value := getattr(self, name), tuple) else value for name in JSON_NAMES}
+        found = {name: list(value) if isinstance(value := getattr(self, name), tuple) else value for name in JSON_NAMES}
+        for name in ("cycles", "starts"):
+            found[name] = None if found[name] is None else [dataclasses.asdict(one) for one in found[name]]
+        return found

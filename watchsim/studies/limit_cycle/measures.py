@@ -20,7 +20,7 @@ from watchsim.studies.limit_cycle.section import turns
 
 
 class Measures(NamedTuple):
-    """Means over a cycle; SI. `spread` is the largest minus the smallest amplitude of whole oscillations.
+    """Means over a cycle; SI. `spread` is the largest minus the smallest amplitude of whole oscillations, `each` all of them.
 
     uneven  half of: the half period that ends in a swing upwards, less the one that ends in a swing downwards; the beat error
             is its magnitude
@@ -30,6 +30,7 @@ class Measures(NamedTuple):
     period: float
     uneven: float
     spread: float
+    each: tuple[float, ...] = ()
 
 
 def measures(events: Events, parts: Parts, start: float, time: float) -> Measures:
@@ -43,7 +44,7 @@ def measures(events: Events, parts: Parts, start: float, time: float) -> Measure
     around = np.concatenate([marks[-2:] - time, marks])
     uneven = np.sign(ways) * unevenness(around)[2:]
     period = time / (len(ways) // 2)
-    return Measures(float(amplitude.mean()), period, 0.5 * float(uneven.mean()), float(np.ptp(whole)))
+    return Measures(float(amplitude.mean()), period, 0.5 * float(uneven.mean()), float(np.ptp(whole)), tuple(whole.tolist()))
 
 
 def _marks(events: Events, parts: Parts, ends: Array) -> Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,8 +11,9 @@ from numpy.typing import NDArray
 from watchsim.analysis.timing.teeth import pitch
 from watchsim.mechanism.compile import Compiled
 from watchsim.model.records import OVER_TIME
+from watchsim.scene.force import Torque
 from watchsim.scene.oscillation import frequency, nominal_frequency
-from watchsim.scene.roles import drive_direction, roles
+from watchsim.scene.roles import drive_direction, keeps_time, roles
 from watchsim.scene.scene import Scene
 
 
@@ -22,6 +24,7 @@ class Parts:
     coordinate  of the oscillator; `body` its number in the scene; `level` where it stands in balance
     wheel       coordinate of the escape wheel, -1 without one; `sense` the way it is driven; `pitch` None without equal teeth
     period      of small swings; `nominal` what the rate is measured against
+    has_lever   True where a lever stands between the two
     touching    by contact: True where it touches the oscillator; a last False stands for no contact (-1)
     """
 
@@ -33,6 +36,7 @@ class Parts:
     pitch: float | None
     period: float
     nominal: float
+    has_lever: bool
     touching: NDArray[np.bool_]
 
     @property
@@ -50,18 +54,26 @@ def parts_of(scene: Scene, compiled: Compiled) -> Parts | None:
     coordinate = compiled.slices[found.oscillator].start
     owner = model.primitives.body
     touching = np.append((owner[model.contacts.a] == body) | (owner[model.contacts.b] == body), False)
-    escapes = found.wheel is not None and found.lever is not None
     return Parts(
         coordinate,
         body,
         float(model.coordinates[coordinate].level),
         compiled.slices[found.wheel].start if found.wheel else -1,
         drive_direction(scene, found.wheel) if found.wheel else 1.0,
-        pitch(scene, found.wheel) if found.wheel and escapes else None,
+        pitch(scene, found.wheel) if found.wheel and keeps_time(scene) else None,
         1.0 / hertz,
         1.0 / (nominal_frequency(scene) or hertz),
+        found.lever is not None,
         touching,
     )
+
+
+def with_springs_held(scene: Scene) -> Scene:
+    """The scene with every mainspring kept as far wound as it is at the start: a watch settles in minutes, it runs down in days."""
+    if not any(torque.mainspring for torque in scene.torques):
+        return scene
+    held = tuple(Torque(torque.body, torque.value) if torque.mainspring else torque for torque in scene.torques)
+    return dataclasses.replace(scene, torques=held)
 
 
 def is_driven(scene: Scene) -> bool:

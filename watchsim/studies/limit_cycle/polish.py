@@ -105,15 +105,33 @@ def polished(oscillate: ReturnMap, found: Fixed, finer: Loop) -> Polished | Retu
     means = measures(turn.events, oscillate.parts, _start(oscillate, amplitude), turn.time)
     scatter = means.spread / math.sqrt(number) if per == 1 else 0.0
     amplitude_error = abs(left) + shift + scatter
-    return Polished(
-        means,
-        amplitude_error,
-        period_shift + abs(slope.period) * amplitude_error,
-        amplitude_error / amplitude * means.period + period_shift,
-        whole if per > 1 else slope.multiplier,
-        error,
-        per,
+    return _with_errors(means, amplitude, amplitude_error, slope, period_shift)._replace(
+        multiplier=whole if per > 1 else slope.multiplier, multiplier_error=error, per=per
     )
+
+
+def polished_over(oscillate: ReturnMap, amplitude: float, number: int, finer: Loop) -> Polished | Return:
+    """The cycle of so many oscillations that closes near that amplitude; the return that went wrong where one does."""
+    slope, turn = slope_at(oscillate, amplitude, number), oscillate(amplitude, number)
+    if isinstance(slope, Return) or turn.trouble:
+        return slope if isinstance(slope, Return) else turn
+    closed = _closed(oscillate, amplitude, number, turn, slope.multiplier)
+    if isinstance(closed, Return):
+        return closed
+    amplitude, turn, left = closed
+    slope = slope_at(oscillate, amplitude, number)
+    if isinstance(slope, Return):
+        return slope
+    shift, period_shift = _tolerance_shift(oscillate, amplitude, slope, finer, number)
+    means = measures(turn.events, oscillate.parts, _start(oscillate, amplitude), turn.time)
+    return _with_errors(means, amplitude, abs(left) + shift, slope, period_shift)._replace(
+        multiplier=slope.multiplier, multiplier_error=slope.error, per=number
+    )
+
+
+def _with_errors(means: Measures, amplitude: float, error: float, slope: Slope, period_shift: float) -> Polished:
+    """Errors of period and beat error follow from that of the amplitude and from the solver's tolerance."""
+    return Polished(means, error, period_shift + abs(slope.period) * error, error / amplitude * means.period + period_shift)
 
 
 def _start(oscillate: ReturnMap, amplitude: float) -> float:
@@ -138,12 +156,12 @@ def _closed(
     return amplitude, turn, left
 
 
-def _tolerance_shift(oscillate: ReturnMap, amplitude: float, slope: Slope, finer: Loop) -> tuple[float, float]:
-    """By how much amplitude and period move when the solver is ten times as exact: one oscillation of each is enough."""
-    here, there = oscillate(amplitude), ReturnMap(finer, oscillate.parts, oscillate.section)
+def _tolerance_shift(oscillate: ReturnMap, amplitude: float, slope: Slope, finer: Loop, number: int = 1) -> tuple[float, float]:
+    """By how much amplitude and period move when the solver is ten times as exact: one return of each is enough."""
+    here, there = oscillate(amplitude, number), ReturnMap(finer, oscillate.parts, oscillate.section)
     there.period = oscillate.period
-    exact = there(amplitude)
+    exact = there(amplitude, number)
     if here.trouble or exact.trouble:
         return np.nan, np.nan
     shift = (exact.amplitude - here.amplitude) / (1.0 - slope.multiplier)
-    return abs(shift), abs(exact.time - here.time + slope.period * shift)
+    return abs(shift), abs((exact.time - here.time) / number + slope.period * shift)

@@ -1,7 +1,7 @@
 """Where does the oscillator turn next time, when it turned at this amplitude?
 
 One oscillation, from a turning point to the next one on the same side, and what else must be true of it: two turning points,
-each reached in free flight, and the wheel one tooth further.
+all else at rest at the last one, and the wheel one tooth further.
 """
 
 from __future__ import annotations
@@ -15,9 +15,10 @@ from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.loop_state.state import State
 from watchsim.studies.limit_cycle.loop import Events, Loop, SolverGaveUp, copied
 from watchsim.studies.limit_cycle.parts import Parts
-from watchsim.studies.limit_cycle.section import Section, is_clear, turns
+from watchsim.studies.limit_cycle.section import Section, is_touched, others_rest, turns
 
 EARLY, LATE = 0.03, 0.06  # of a period: how long before its end an oscillation is looked at, and for how long after
+LONGER = 1.5  # times the time of the last oscillation: how long the next one may take
 NEAR = 0.05  # of a pitch: by how much the wheel may miss a whole number of teeth
 FAR, LIFT = 2.0, 0.3  # times where the lift begins, and of the amplitude: what is struck further out is no lift
 
@@ -27,7 +28,7 @@ class Return(NamedTuple):
 
     amplitude  at the turning point it ends with; `time` of it, from that at which it began
     trouble    "" for a regular one, else the verdict that it suggests
-    state      shortly before its end, everything but the oscillator at rest; None after trouble
+    state      at its end, or shortly before where nothing touches the oscillator; all but that at rest. None after trouble
     events     all of it
     """
 
@@ -48,11 +49,28 @@ class ReturnMap:
 
     def __call__(self, amplitude: float, oscillations: int = 1) -> Return:
         """So many oscillations that begin at that amplitude."""
-        state = self.section.at(self.parts, amplitude)
+        begin = self.section.at(self.loop, self.parts, amplitude)
+        if begin is None:
+            return Return(np.nan, 0.0, UNSETTLED, None, np.zeros(0))
         try:
-            return self._followed(state, oscillations)
+            got, usual = self._followed(copied(begin), oscillations), self.period
+            if got.trouble in (UNSETTLED, STOPS) and self._timed_anew(begin, oscillations):
+                got = self._followed(begin, oscillations)
+                self.period = usual if got.trouble else self.period
+            return got
         except SolverGaveUp as failure:
             return Return(np.nan, failure.time, str(failure), None, np.zeros(0))
+
+    def _timed_anew(self, begin: State, oscillations: int) -> bool:
+        """True where it swings in another time than the last one did: `period` is then that time."""
+        state = copied(begin)
+        own = turns(self.loop.on(state, LONGER * oscillations * self.period), self.parts)
+        if len(own) < 2 * oscillations:
+            return False
+        period = float(own[2 * oscillations - 1]["t"]) / oscillations
+        other = abs(period - self.period) > 0.5 * EARLY * self.period
+        self.period = period if other else self.period
+        return other
 
     def _followed(self, state: State, oscillations: int) -> Return:
         end = oscillations * self.period
@@ -60,14 +78,17 @@ class ReturnMap:
         events = self.loop.on(state, end - EARLY * self.period, exactly=True)
         seen = len(turns(events, self.parts))
         advance = self._advance(state)
-        clear = is_clear(self.loop, self.parts, state)
         kept = copied(state)
         events = np.concatenate([events, self.loop.on(state, end + LATE * self.period)])
         own = turns(events, self.parts)
         trouble = self._trouble(seen, own, events, oscillations, advance)
-        if trouble or not clear:
-            return Return(np.nan, end, trouble or UNSETTLED, None, events)
+        if trouble:
+            return Return(np.nan, end, trouble, None, events)
         last = own[2 * oscillations - 1]
+        if self.section.touching:
+            self.loop.on(kept, float(last["t"]), exactly=True)
+        if is_touched(self.parts, kept) != self.section.touching or not others_rest(self.loop, self.parts, kept):
+            return Return(np.nan, end, UNSETTLED, None, events)
         self.period = float(last["t"]) / oscillations
         away = self.section.side * (float(last["value"]) - self.parts.level)
         return Return(away, float(last["t"]), "", kept, events[events["t"] <= last["t"]])
@@ -79,7 +100,7 @@ class ReturnMap:
 
     def _trouble(self, seen: int, own: Events, events: Events, oscillations: int, advance: float) -> str:
         parts = self.parts
-        if knocked(events, own, parts):
+        if parts.has_lever and knocked(events, own, parts):
             return KNOCKS
         teeth = advance / parts.pitch if parts.pitch else None
         if teeth is not None:

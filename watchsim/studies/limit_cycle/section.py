@@ -3,6 +3,9 @@
 At a turning point of the oscillator, while everything else stands still: the wheel locked, the lever on its banking. There one
 number, how far it has swung, tells the whole future, because what stands still is held and comes back to the same place, the
 wheel a tooth further. Along that number the return map is smooth: on the way it meets the same contacts in the same order.
+
+A wheel may also rest on the oscillator itself, as in a dead-beat or a recoil escapement. Then it stands still while the oscillator
+turns, and where it stands follows from how far that has swung (following.py).
 """
 
 from __future__ import annotations
@@ -14,6 +17,7 @@ import numpy as np
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.loop_state.state import NO_CONTACT, State
 from watchsim.simulation.loop_state.state_arrays import arrays_of
+from watchsim.studies.limit_cycle.following import follow, in_force
 from watchsim.studies.limit_cycle.loop import Events, Loop, copied
 from watchsim.studies.limit_cycle.parts import Parts
 
@@ -24,17 +28,23 @@ SILENT = 3  # periods without a turning point: it does not swing
 
 @dataclass(frozen=True)
 class Section:
-    """A state at a turning point, with time 0 there; `side` is +1 or -1, the side of the rest position it lies on."""
+    """A state at a turning point, with time 0 there.
+
+    side       +1 or -1: the side of the rest position it lies on
+    amplitude  from the rest position, rad or m
+    touching   True where something rests on the oscillator
+    """
 
     state: State
     side: float
-    amplitude: float  # from the rest position, rad or m
+    amplitude: float
+    touching: bool = False
 
-    def at(self, parts: Parts, amplitude: float) -> State:
-        """A copy of the state, with the oscillator turning at another amplitude."""
+    def at(self, loop: Loop, parts: Parts, amplitude: float) -> State | None:
+        """A copy of the state, with the oscillator turning at another amplitude; None where what rests on it cannot follow."""
         state = copied(self.state)
         state.q[parts.coordinate] = parts.level + self.side * amplitude
-        return state
+        return state if not self.touching or follow(loop, state, parts.coordinate) else None
 
 
 @dataclass(frozen=True)
@@ -70,19 +80,29 @@ def section_at(loop: Loop, parts: Parts, before: State, time: float) -> Section 
     """The section at a turning point at that time (s), reached from a state before it; None where something else moves."""
     state = copied(before)
     loop.on(state, time, exactly=True)
-    if not is_clear(loop, parts, state):
+    return section_from(loop, parts, state)
+
+
+def section_from(loop: Loop, parts: Parts, turning: State) -> Section | None:
+    """The section of a state at a turning point; None where something else moves."""
+    if not others_rest(loop, parts, turning):
         return None
+    state = copied(turning)
     away = float(state.q[parts.coordinate]) - parts.level
-    side = 1.0 if away > 0.0 else -1.0
+    side, touching = 1.0 if away > 0.0 else -1.0, is_touched(parts, state)
     _begin_anew(state, parts, side)
-    return Section(state, side, abs(away))
+    if touching:
+        state.u[:] = 0.0
+    return Section(state, side, abs(away), touching)
 
 
-def is_clear(loop: Loop, parts: Parts, state: State) -> bool:
-    """True if nothing touches the oscillator and nothing else moves."""
-    closed = state.active[: int(state.now.awake_contacts + state.now.sleeping_contacts)]
-    if parts.touching[closed].any():
-        return False
+def is_touched(parts: Parts, state: State) -> bool:
+    """True if something touches the oscillator."""
+    return bool(parts.touching[in_force(state)].any())
+
+
+def others_rest(loop: Loop, parts: Parts, state: State) -> bool:
+    """True if nothing but the oscillator moves."""
     speeds = np.abs(state.u) * loop.options.size / loop.compiled.model.coordinates.scale
     speeds[parts.coordinate] = 0.0
     return bool((speeds <= loop.options.speed_zero).all())

@@ -10,6 +10,7 @@ import dataclasses
 import math
 import time
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,13 +18,17 @@ from watchsim.analysis.timing.beats import DAY
 from watchsim.analysis.verdicts.words import STOPS, TICKS, UNSETTLED, VERDICTS
 from watchsim.scene.scene import Scene
 from watchsim.simulation.loop_state.state import State
+from watchsim.studies.limit_cycle.all_cycles.report import with_all_cycles
+from watchsim.studies.limit_cycle.all_cycles.survey import Survey
+from watchsim.studies.limit_cycle.all_cycles.swings import Swings
 from watchsim.studies.limit_cycle.cycle import Cycle
 from watchsim.studies.limit_cycle.judge import judged, late_means, run_from
 from watchsim.studies.limit_cycle.loop import Loop
-from watchsim.studies.limit_cycle.parts import Parts, is_driven, parts_of, why_no_section
-from watchsim.studies.limit_cycle.polish import FINER, Polished, glanced, polished
+from watchsim.studies.limit_cycle.parts import Parts, is_driven, parts_of, why_no_section, with_springs_held
+from watchsim.studies.limit_cycle.polish import FINER, Polished, glanced, polished, polished_over
+from watchsim.studies.limit_cycle.repeats import repeats
 from watchsim.studies.limit_cycle.return_map import Return, ReturnMap
-from watchsim.studies.limit_cycle.section import NoSection, Section, first_section, section_at
+from watchsim.studies.limit_cycle.section import NoSection, Section, first_section, section_at, section_from
 from watchsim.studies.limit_cycle.shooting import Fixed, Lost, fixed_point
 
 REST = 1e-9  # rad or m per scale: bodies that stand still come back so closely, or the section is moved on
@@ -34,10 +39,16 @@ FEWEST = 40  # periods of it
 SETTLED = 1e-4  # of the amplitude: what such a run may still scatter and drift
 LOSSLESS = 1e-9  # of the amplitude, in one oscillation
 FINEST = 1e-13  # tolerance of a run
+ASIDE = 0.01  # of the amplitude: beside an unstable cycle, to see where it is left for
 
 
 def steady(
-    scene: Scene | str | Path, *, tolerance: float | None = None, amplitude: float | None = None, brief: bool = False
+    scene: Scene | str | Path,
+    *,
+    tolerance: float | None = None,
+    amplitude: float | None = None,
+    brief: bool = False,
+    all_cycles: bool = False,
 ) -> Cycle:
     """The limit cycle that the scene's start leads to: amplitude, rate, beat error and stability, each with its error.
 
@@ -45,9 +56,10 @@ def steady(
     tolerance  relative error per step (default the scene's own)
     amplitude  rad (m), where the search is to begin instead of at the first turning point of the scene's own start
     brief      one oscillation on the cycle is enough: without errors, multipliers and a look at all teeth of the wheel
+    all_cycles  look at swings of all sizes for every cycle, stable or not, and say which of them each swing leads to
 
     Where there is no cycle `found` is False, and `verdict` and `message` say what there is instead. ValueError for a bad
-    argument; SceneError where bodies overlap at the start.
+    argument; SceneError where bodies overlap at the start. A mainspring stays as far wound as the scene says.
     """
     begun = time.perf_counter()
     if not isinstance(scene, Scene):
@@ -59,16 +71,24 @@ def steady(
         raise ValueError(f"the tolerance must lie between {FINEST:g} and 1e-2, not {tolerance}")
     if amplitude is not None and not (amplitude > 0.0 and math.isfinite(amplitude)):
         raise ValueError(f"the amplitude must be a positive number of rad (m), not {amplitude}")
-    loop = Loop(scene, tolerance)
+    loop = Loop(with_springs_held(scene), tolerance)
     ready = time.perf_counter()
     loop.warm_up()
     warm = time.perf_counter()
-    cycle = _searched(loop, amplitude, brief)
+    cycle = _searched(loop, Search(amplitude, brief, all_cycles))
     wall = time.perf_counter() - begun - (warm - ready)
     return dataclasses.replace(cycle, simulated_s=loop.simulated, cells_s=loop.finder.seconds, wall_s=wall)
 
 
-def _searched(loop: Loop, amplitude: float | None, brief: bool) -> Cycle:
+class Search(NamedTuple):
+    """What was asked for, as in `steady`."""
+
+    amplitude: float | None
+    brief: bool
+    all_cycles: bool
+
+
+def _searched(loop: Loop, search: Search) -> Cycle:
     parts = parts_of(loop.scene, loop.compiled)
     if parts is None:
         return Cycle(False, None, "nothing in this scene swings on a spring or by gravity, so nothing repeats itself")
@@ -82,24 +102,50 @@ def _searched(loop: Loop, amplitude: float | None, brief: bool) -> Cycle:
         return _by_run(loop, parts, "at no turning point of the oscillator does everything else stand still")
     if not is_driven(loop.scene):
         return _alone(ReturnMap(loop, parts, section))
-    return _shot(loop, parts, section, section.amplitude if amplitude is None else amplitude, brief)
+    start = section.amplitude if search.amplitude is None else search.amplitude
+    oscillate, found = _fixed(loop, parts, section, start)
+    cycle = _shot(oscillate, found, search.brief)
+    if not search.all_cycles:
+        return cycle
+    known = start if isinstance(found, Lost) else found.amplitude
+    swings = Swings(oscillate)
+    return with_all_cycles(cycle, Survey(swings, known), swings)
 
 
-def _shot(loop: Loop, parts: Parts, section: Section, amplitude: float, brief: bool) -> Cycle:
-    """By shooting from that section and amplitude."""
-    oscillate, found = _fixed(loop, parts, section, amplitude)
+def _shot(oscillate: ReturnMap, found: Fixed | Lost, brief: bool) -> Cycle:
+    """What shooting has found, and how exactly it is known."""
+    loop, parts = oscillate.loop, oscillate.parts
+    finer = Loop(loop.scene, max(FINER * loop.tolerance, FINEST), like=loop)
     if isinstance(found, Lost):
-        return _lost(oscillate, found)
+        again = _after_several(oscillate, found.amplitude, finer) if found.trouble == UNSETTLED else None
+        return again or _lost(oscillate, found)
     if brief:
         return _told(loop, parts, glanced(oscillate, found))
-    finer = Loop(loop.scene, max(FINER * loop.tolerance, FINEST), like=loop)
     exact = polished(oscillate, found, finer)
     loop.simulated += finer.simulated
     if isinstance(exact, Return):
         return _lost(oscillate, Lost(found.amplitude, exact.trouble, False))
     if exact.multiplier is None or not abs(exact.multiplier) < 1.0:
-        return _unstable(loop, parts, exact)
+        return _after_several(oscillate, (1.0 + ASIDE) * found.amplitude, finer) or _unstable(loop, parts, exact)
     return _told(loop, parts, exact)
+
+
+def _after_several(oscillate: ReturnMap, amplitude: float, finer: Loop) -> Cycle | None:
+    """A stable cycle of several oscillations that the orbit from there runs to; None without one."""
+    found = repeats(oscillate, amplitude)
+    if found is None:
+        return None
+    loop, number = oscillate.loop, found[0]
+    exact = polished_over(oscillate, found[1], number, finer)
+    if isinstance(exact, Return) or exact.multiplier is None or not abs(exact.multiplier) < 1.0:
+        return None
+    told = _told(loop, oscillate.parts, exact)
+    if number == 1:
+        return told
+    each = tuple(math.degrees(one) for one in exact.means.each) if told.amplitude_deg is not None else ()
+    sizes = ", ".join(f"{one:.6g}°" for one in each)
+    message = f"it repeats itself only after {number} oscillations, which differ: {sizes or 'their sizes'} in turn"
+    return dataclasses.replace(told, message=message, amplitudes_deg=each)
 
 
 def _fixed(loop: Loop, parts: Parts, section: Section, amplitude: float) -> tuple[ReturnMap, Fixed | Lost]:
@@ -107,11 +153,21 @@ def _fixed(loop: Loop, parts: Parts, section: Section, amplitude: float) -> tupl
     for _ in range(SECTIONS):
         oscillate = ReturnMap(loop, parts, section)
         found = fixed_point(oscillate, amplitude)
+        if isinstance(found, Lost) and found.trouble == UNSETTLED and section.touching:
+            oscillate, found = _elsewhere(oscillate, amplitude, found)
         again = None if isinstance(found, Lost) else _moved_on(oscillate, found)
         if again is None:
             break
         section, amplitude = again, found.amplitude
     return oscillate, found
+
+
+def _elsewhere(oscillate: ReturnMap, amplitude: float, lost: Lost) -> tuple[ReturnMap, Fixed | Lost]:
+    """The fixed point where the parts rest otherwise than at the section that the search began with; else what was lost."""
+    swings = Swings(oscillate)
+    found = fixed_point(swings, amplitude)
+    there = None if isinstance(found, Lost) else swings.map_at(found.amplitude)
+    return (oscillate, lost) if there is None else (there, found)
 
 
 def _moved_on(oscillate: ReturnMap, found: Fixed) -> Section | None:
@@ -126,7 +182,7 @@ def _moved_on(oscillate: ReturnMap, found: Fixed) -> Section | None:
         away[parts.wheel] = 0.0
     if (away <= REST).all():
         return None
-    return section_at(loop, parts, got.state, got.time)
+    return section_from(loop, parts, got.state) if oscillate.section.touching else section_at(loop, parts, got.state, got.time)
 
 
 def _told(loop: Loop, parts: Parts, exact: Polished) -> Cycle:
@@ -164,7 +220,7 @@ def _times(factor: float, value: float | None) -> float | None:
 def _lost(oscillate: ReturnMap, lost: Lost) -> Cycle:
     """The orbit left the region where the mechanism works as it should: what happens there."""
     loop, parts, section = oscillate.loop, oscillate.parts, oscillate.section
-    state = section.at(parts, lost.amplitude)
+    state = section.at(loop, parts, lost.amplitude)
     if lost.trouble in VERDICTS and lost.trouble != UNSETTLED:
         return _instead(loop, state, lost.trouble, AFTERWARDS * parts.period)
     return _by_run(loop, parts, "the search for a limit cycle did not converge", state)

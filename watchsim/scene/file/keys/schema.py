@@ -40,7 +40,7 @@ BODY: Keys = {
     **{"circle": LENGTH, "polygon": LENGTH, "line": LENGTH},
     **{"pivot": LENGTH, "position": LENGTH, "motion": PLAIN, "axis": NUMBER, "angle": ANGLE},
     **{"velocity": Key(units.SPIN, units.SPEED), "spin": Key(units.SPIN)},
-    **{"mass": Key(units.MASS), "inertia": Key(units.INERTIA), "solids": PLAIN},
+    **{"mass": Key(units.MASS), "inertia": Key(units.INERTIA), "centre_of_mass": LENGTH, "solids": PLAIN},
     **{"on": PLAIN, "adjust": PLAIN},
     **{"swing": PLAIN, "path": PLAIN},
 }
@@ -66,7 +66,11 @@ SPRING: Keys = {
     "draw": PLAIN,
 }
 COIL: Keys = {"inner": LENGTH, "outer": LENGTH, "turns": NUMBER, "stud": ANGLE, "width": LENGTH}  # draw of a spring
-TORQUE: Keys = {"body": PLAIN, "value": Key(units.TORQUE, units.FORCE), "over": PLAIN, "table": PLAIN}
+TORQUE: Keys = {
+    **{"body": PLAIN, "value": Key(units.TORQUE, units.FORCE), "over": PLAIN, "table": PLAIN},
+    **{"ratio": NUMBER, "efficiency": NUMBER, "run_down": ANGLE, "train": PLAIN},
+}
+TRAIN: Keys = {"ratio": NUMBER, "inertia": Key(units.INERTIA)}  # of one wheel between mainspring and body
 DAMPING: Keys = {
     "body": PLAIN,
     "q_factor": NUMBER,
@@ -107,6 +111,8 @@ def key_at(path: tuple[str, ...]) -> Key | None:
         return NAMED[section].get(rest[1])
     if section == "springs" and rest[1] == "draw" and len(rest) >= 3:
         return COIL.get(rest[2])
+    if section == "torques" and rest[1] == "train" and len(rest) >= 4:
+        return TRAIN.get(rest[3])
     return LISTED[section].get(rest[1])
 
 

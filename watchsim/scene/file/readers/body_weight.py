@@ -45,12 +45,31 @@ def read_inertias(table: Table, motion: str, outlines: Outlines, elsewhere: Set[
     origin = outlines.pivot or ((weight.centre if weight else (0.0, 0.0)) if motion == "free" else (0.0, 0.0))
     mass = table.quantity("mass", weight.mass if weight else 0.0)
     inertia = table.quantity("inertia", _shape_inertia(weight, motion, origin))
-    centre = weight.centre if weight and motion != "free" else origin
+    centre = _written_centre(table, motion, origin) or (weight.centre if weight and motion != "free" else origin)
     shift = (-origin[0], -origin[1])
     local = (centre[0] + shift[0], centre[1] + shift[1])
     inertias = Inertias(origin, mass, inertia, local, tuple(solid.shifted(shift) for solid in solids), findings)
     _note_massless(table, motion, inertias, outlines)
     return inertias
+
+
+def _written_centre(table: Table, motion: str, origin: Point) -> Point | None:
+    """The centre of mass in the drawing where the scene gives it, from the pivot; None without.
+
+    It stands instead of that of the outline, and belongs to a mass and an inertia that are numbers, too.
+    """
+    if "centre_of_mass" not in table:
+        return None
+    if motion == "free":
+        table.fault("centre_of_mass", "a free body turns about its centre of mass: write pivot, which is that point")
+    elif motion == "slide" or (motion == "fixed" and "on" not in table):
+        table.fault("centre_of_mass", f"has no effect on a body that cannot turn ({motion}): leave it out")
+    elif "solids" in table:
+        table.fault("centre_of_mass", "the solids say the centre of mass already: leave out centre_of_mass or solids")
+    elif "mass" not in table or "inertia" not in table:
+        table.fault("centre_of_mass", "needs mass and inertia (about the pivot) beside it, as gravity acts on the mass there")
+    x, y = table.pair("centre_of_mass")
+    return (origin[0] + x, origin[1] + y)
 
 
 def _uniform_plate(table: Table, motion: str, outlines: Outlines) -> Weight | None:

@@ -15,6 +15,7 @@ from watchsim.scene.errors import Faults
 from watchsim.scene.file.keys.key_values import NAN, Table, shown
 from watchsim.scene.file.keys.schema import DAMPING, SPRING, TORQUE, Keys, nearest
 from watchsim.scene.file.readers.read_coil import read_coil
+from watchsim.scene.file.readers.read_trains import BARREL, KEYS, mainspring_torque
 from watchsim.scene.force import Damping, Spring, Torque
 from watchsim.scene.oscillation import Oscillator, loads, oscillator
 
@@ -116,6 +117,9 @@ def _stiffness(entry: Entry) -> float:
 
 def _torque(entry: Entry) -> Torque:
     table = entry.table
+    for key in KEYS if table.mapping.get("over") != BARREL else ():
+        if key in table:
+            table.fault(key, f'belongs to a table with over = "{BARREL}"')
     if "table" not in table:
         if "value" not in table and table.is_table:
             table.fault("", 'missing: value = "-1.0 µN·m", or a table over angle or time')
@@ -125,10 +129,12 @@ def _torque(entry: Entry) -> Torque:
     if "value" in table:
         table.fault("value", "a torque is either a value or a table: leave one out")
     sliding = table.motion == "slide"
-    choices = ("travel", "time") if sliding else ("angle", "time")
+    choices = ("travel", "time") if sliding else ("angle", "time", BARREL)
     if "over" not in table:
         table.fault("", f'a table needs over = "{choices[0]}" or over = "time"')
     over = table.one_of("over", choices, choices[0])
+    if over == BARREL and entry.body is not None:
+        return mainspring_torque(table, entry.body, _rows(table, units.ANGLE))
     abscissa = units.TIME if over == "time" else units.LENGTH if sliding else units.ANGLE
     return Torque(entry.name, over="time" if over == "time" else "angle", table=_rows(table, abscissa))
 

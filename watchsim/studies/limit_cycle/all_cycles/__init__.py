@@ -1,0 +1,1 @@
+"""Which cycles does a mechanism have, stable or not, and which swings lead to which?"""

@@ -1,0 +1,214 @@
+"""Which cycles does a mechanism have, stable or not, and which of them do swings of what size lead to?
+
+The return map P is looked at from small swings to large ones. Where P(A) - A, or P(P(A)) - A, changes its sign there is a
+cycle of one or two oscillations, or a jump of the map. What a swing leads to follows from the map between the samples.
+"""
+
+from __future__ import annotations
+
+import bisect
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from watchsim.analysis.verdicts.words import UNSETTLED
+from watchsim.studies.limit_cycle.return_map import Return
+
+DOWN, UP = 16.0, 4.0  # times the amplitude that is known: how far the map is looked at
+RATIO = 1.08  # from sample to sample
+BEYOND = 3  # samples in a row where the mechanism does not work: larger swings are left alone
+EXACT = 1e-12  # of the amplitude: how closely a cycle is looked for
+EDGE = 1e-5  # of the amplitude: how closely the end of regular work is looked for
+ROOT = 1e-7  # of the amplitude: more left than that, and it is no cycle but a jump of the map
+ALIKE = 1e-6  # of the amplitude: cycles closer to each other are one
+BESIDE = 1e-4  # of the amplitude: where the search begins for two that have split off from an unstable one
+DOUBLINGS = 18  # of the number of oscillations that are followed along the samples
+HERE = 0.005  # of the amplitude: what ends so near to a stable cycle goes there
+STEP = 1e-3  # of the amplitude, for a slope
+
+Oscillate = Callable[[float], Return]
+
+
+class Found(NamedTuple):
+    """A cycle: the amplitudes (rad, m) of its oscillations one after the other, its period (s) and its multiplier."""
+
+    amplitudes: tuple[float, ...]
+    period: float
+    multiplier: float | None
+
+    @property
+    def stable(self) -> bool:
+        return self.multiplier is not None and abs(self.multiplier) < 1.0
+
+
+class Span(NamedTuple):
+    """Swings between two amplitudes (rad, m) that lead to the cycle of that number, or else to what `verdict` says."""
+
+    low: float
+    high: float
+    verdict: str
+    cycle: int | None
+
+
+class Sample(NamedTuple):
+    """Where a swing of that amplitude turns next, and the time that takes; `trouble` where it is not regular."""
+
+    amplitude: float
+    next: float
+    time: float
+    trouble: str
+
+
+class Survey:
+    """The return map of a mechanism that is known to swing regularly at one amplitude, or nearly so."""
+
+    def __init__(self, oscillate: Oscillate, known: float) -> None:
+        self._oscillate = oscillate
+        self._seen: dict[float, Sample] = {}
+        self._grid(known)
+        self.cycles = self._cycles()
+        self._ends = self._followed()
+        self.spans = self._spans()
+
+    def _at(self, amplitude: float) -> Sample:
+        if amplitude not in self._seen:
+            got = self._oscillate(amplitude)
+            self._seen[amplitude] = Sample(amplitude, got.amplitude, got.time, got.trouble)
+        return self._seen[amplitude]
+
+    def _grid(self, known: float) -> None:
+        """Samples, and more of them where regular work ends."""
+        count = int(np.log(DOWN) / np.log(RATIO))
+        grid = [known * RATIO**k for k in range(-count, 1)]
+        silent = 0
+        while silent < BEYOND and grid[-1] < UP * known:
+            silent = silent + 1 if self._at(grid[-1]).trouble else 0
+            grid.append(grid[-1] * RATIO)
+        samples = [self._at(one) for one in grid]
+        for one, other in zip(samples, samples[1:], strict=False):
+            while one.trouble != other.trouble and other.amplitude - one.amplitude > EDGE * other.amplitude:
+                between = self._at(0.5 * (one.amplitude + other.amplitude))
+                one, other = (between, other) if between.trouble == one.trouble else (one, between)
+
+    def _samples(self) -> list[Sample]:
+        return [self._seen[one] for one in sorted(self._seen)]
+
+    def _gain(self, amplitude: float, oscillations: int) -> float:
+        """By how much a swing has grown after so many oscillations; not a number where one is not regular."""
+        reached = amplitude
+        for _ in range(oscillations):
+            if not reached > 0.0:
+                return np.nan
+            sample = self._at(reached)
+            reached = np.nan if sample.trouble else sample.next
+        return reached - amplitude
+
+    def _cycles(self) -> tuple[Found, ...]:
+        found: list[Found] = []
+        for oscillations in (1, 2):
+            grid = [(one.amplitude, self._gain(one.amplitude, oscillations)) for one in self._samples()]
+            brackets = [
+                (low[0], high[0]) for low, high in zip(grid, grid[1:], strict=False) if low[1] * high[1] < 0.0 or low[1] == 0.0
+            ]
+            if oscillations == 2:
+                brackets += [b for one in found if (one.multiplier or 0.0) < -1.0 for b in self._beside(one.amplitudes[0])]
+            for low, high in brackets:
+                amplitude = self._root(low, high, oscillations)
+                if amplitude is not None and not any(self._is_of(one, amplitude) for one in found):
+                    found.append(self._cycle(amplitude, oscillations))
+        return tuple(sorted(found))
+
+    def _is_of(self, cycle: Found, amplitude: float) -> bool:
+        return any(abs(one - amplitude) <= ALIKE * amplitude for one in cycle.amplitudes)
+
+    def _beside(self, amplitude: float) -> list[tuple[float, float]]:
+        """Where a pair of amplitudes may lie that has split off from an unstable cycle: swings grow inside, and shrink outside."""
+        low, high = amplitude * (1.0 + BESIDE), amplitude * (1.0 + 2.0 * BESIDE)
+        while high < 2.0 * amplitude:
+            inner, outer = self._gain(low, 2), self._gain(high, 2)
+            if inner * outer < 0.0:
+                return [(low, high)]
+            low, high = high, amplitude + 1.5 * (high - amplitude)
+        return []
+
+    def _root(self, low: float, high: float, oscillations: int) -> float | None:
+        """Where the gain vanishes between the two; None where it jumps, or where something in between is not regular."""
+        from scipy.optimize import brentq
+
+        try:
+            found = float(brentq(self._sure, low, high, args=(oscillations,), xtol=EXACT * high, rtol=1e-14))
+        except (ValueError, ArithmeticError):
+            return None
+        return found if abs(self._gain(found, oscillations)) <= ROOT * found else None
+
+    def _sure(self, amplitude: float, oscillations: int) -> float:
+        gain = self._gain(amplitude, oscillations)
+        if np.isnan(gain):
+            raise ArithmeticError
+        return gain
+
+    def _cycle(self, amplitude: float, oscillations: int) -> Found:
+        amplitudes, time, multiplier = [amplitude], 0.0, 1.0
+        for _ in range(oscillations):
+            here = self._at(amplitudes[-1])
+            time += here.time / oscillations
+            multiplier *= self._slope(amplitudes[-1])
+            amplitudes.append(here.next)
+        return Found(tuple(amplitudes[:-1]), time, None if np.isnan(multiplier) else multiplier)
+
+    def _slope(self, amplitude: float) -> float:
+        """Of the map, by central differences with two steps; not a number where it is not regular on both sides."""
+        step = STEP * amplitude
+        ends = [self._oscillate(amplitude + way * step) for way in (-1.0, 1.0, -0.5, 0.5)]
+        low, high, nearer, near = (np.nan if one.trouble else one.amplitude for one in ends)
+        return float((4.0 * (near - nearer) / step - (high - low) / (2.0 * step)) / 3.0)
+
+    def _spans(self) -> tuple[Span, ...]:
+        samples = self._samples()
+        ends = [self.end_of(one.amplitude) for one in samples]
+        spans: list[Span] = []
+        for i, (verdict, cycle) in enumerate(ends):
+            low = samples[0].amplitude if i == 0 else self._border(samples[i - 1], samples[i])
+            high = samples[-1].amplitude if i == len(ends) - 1 else self._border(samples[i], samples[i + 1])
+            if spans and spans[-1][2:] == (verdict, cycle):
+                spans[-1] = spans[-1]._replace(high=high)
+            else:
+                spans.append(Span(low, high, verdict, cycle))
+        return tuple(spans)
+
+    def _border(self, low: Sample, high: Sample) -> float:
+        """An unstable cycle between the two, else the middle."""
+        for one in self.cycles:
+            if not one.stable and low.amplitude <= one.amplitudes[0] <= high.amplitude:
+                return one.amplitudes[0]
+        return 0.5 * (low.amplitude + high.amplitude)
+
+    def _followed(self) -> dict[float, tuple[str, int | None]]:
+        """By sample: what its orbit ends with, trouble and "", or the number of a stable cycle.
+
+        Along lines between the samples, k oscillations and k more at once; what is not regular stays where it is.
+        """
+        samples = self._samples()
+        amplitudes = np.array([one.amplitude for one in samples])
+        reached = np.array([one.amplitude if one.trouble else one.next for one in samples])
+        for _ in range(DOUBLINGS):
+            reached = np.interp(reached, amplitudes, reached)
+        return {one.amplitude: self._end(float(end), samples) for one, end in zip(samples, reached, strict=True)}
+
+    def _end(self, amplitude: float, samples: list[Sample]) -> tuple[str, int | None]:
+        for number, one in enumerate(self.cycles):
+            if one.stable and any(abs(amplitude - other) <= HERE * other for other in one.amplitudes):
+                return "", number
+        return _nearest(amplitude, samples).trouble or UNSETTLED, None
+
+    def end_of(self, amplitude: float) -> tuple[str, int | None]:
+        """What a swing of that size leads to: trouble and "", or the number of a stable cycle."""
+        return self._ends[_nearest(amplitude, self._samples()).amplitude]
+
+
+def _nearest(amplitude: float, samples: list[Sample]) -> Sample:
+    """The sample next to an amplitude; the outermost one beyond them."""
+    place = bisect.bisect_left([one.amplitude for one in samples], amplitude)
+    around = samples[max(0, place - 1) : place + 1]
+    return min(around, key=lambda one: abs(one.amplitude - amplitude))
