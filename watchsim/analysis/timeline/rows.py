@@ -76,13 +76,45 @@ class Stage:
         return self.phase.name
 
 
+@dataclass(frozen=True, slots=True)
+class Stages:
+    """The stages of some beats in a row, column by column: (n,), of wheel, lever and oscillator (n, 3); names as in `Stage`."""
+
+    phases: list[Phase]
+    pallets: list[str]
+    start_rates: Array
+    end_angles: Array
+    end_rates: Array
+    impulse: Array
+    supplied: Array
+    stored: Array
+    to_balance: Array
+    damping: Array
+    friction: Array
+    impacts: list[dict[str, float]]
+
+    def each(self) -> Iterator[Stage]:
+        """One after the other."""
+        triples = (map(_triple, values.tolist()) for values in (self.start_rates, self.end_angles, self.end_rates))
+        energies = (values.tolist() for values in (self.supplied, self.stored, self.to_balance, self.damping, self.friction))
+        rows = zip(self.phases, self.pallets, *triples, self.impulse.tolist(), *energies, self.impacts, strict=True)
+        for phase, pallet, first, place, last, push, *energy, struck in rows:
+            yield Stage(phase, pallet, first, place, last, push, Energies(*energy, struck))
+
+
 def timeline(run: Trajectory, found: Beats | None = None, window: Sequence[float] | None = None) -> list[Stage]:
     """The phases of all beats recorded whole, or of those that begin within a window (s); empty without an escapement."""
     return list(each_stage(run, found, window))
 
 
 def each_stage(run: Trajectory, found: Beats | None = None, window: Sequence[float] | None = None) -> Iterator[Stage]:
-    """The same one after the other: the rows of a long run are read a few beats at a time."""
+    """The same one after the other."""
+    for part in stages(run, found, window):
+        yield from part.each()
+
+
+def stages(run: Trajectory, found: Beats | None = None, window: Sequence[float] | None = None) -> Iterator[Stages]:
+    """The same in columns: the rows of a long run are read a few beats at a time."""
     parts, compiled = roles(run.scene), compile_scene(run.scene)
     beats_told = (list(rows) for _, rows in groupby(each_phase(run, found), key=lambda row: row.beat))
     wanted = (rows for rows in beats_told if window is None or window[0] <= rows[0].start <= window[1])
@@ -92,13 +124,13 @@ def each_stage(run: Trajectory, found: Beats | None = None, window: Sequence[flo
         last = min(len(run.t), int(np.searchsorted(run.t, told[-1].end, side="right")) + 1)
         made = flows(run, compiled, slice(first, last))
         stones = _pallets(run, compiled, parts, [row for row in told if row.name == "unlock"])
-        yield from _stages(run, parts, compiled, made, told, stones)
+        yield _columns(run, parts, compiled, made, told, stones)
 
 
-def _stages(
+def _columns(
     run: Trajectory, parts: Roles, compiled: Compiled, made: Flows, told: list[Phase], stones: dict[int, str]
-) -> Iterator[Stage]:
-    """Column by column: every number is a difference between two rows."""
+) -> Stages:
+    """Every number is a difference between two rows."""
     starts, ends = np.array([row.start for row in told]), np.array([row.end for row in told])
     # The impacts of the lock belong to the drop that ends with them, all others to the phase that they begin.
     locked = np.array([row.name == "run to banking" for row in told])
@@ -117,13 +149,22 @@ def _stages(
     impulse = c.mass * change(made.u[:, balance]) + c.viscous * change(made.q[:, balance])
     impulse += c.stiffness * (change(made.swept[:, balance]) - c.rest * change(made.t)) - c.force * change(made.t)
     impacts = _impacts(run, starts, ends, locked, locking)
-    rates_i, rates_j = (compiled.relative(made.u[k], rates=True)[:, columns].tolist() for k in (i, j))
-    angles = compiled.relative(made.q[j])[:, columns].tolist()
-    books = (change(made.drive), change(made.stored), to_balance, damping.sum(axis=1), impulse)
-    for k, (row, supplied, stored, gained, damped, push) in enumerate(zip(told, *(b.tolist() for b in books), strict=True)):
-        energy = Energies(supplied, stored, gained, damped, supplied - stored - damped - sum(impacts[k].values()), impacts[k])
-        first, place, last = (_triple(values[k]) for values in (rates_i, angles, rates_j))
-        yield Stage(row, stones.get(row.beat, ""), first, place, last, push, energy)
+    rates_i, rates_j = (compiled.relative(made.u[k], rates=True)[:, columns] for k in (i, j))
+    supplied, stored, damped = change(made.drive), change(made.stored), damping.sum(axis=1)
+    return Stages(
+        phases=told,
+        pallets=[stones.get(row.beat, "") for row in told],
+        start_rates=rates_i,
+        end_angles=compiled.relative(made.q[j])[:, columns],
+        end_rates=rates_j,
+        impulse=impulse,
+        supplied=supplied,
+        stored=stored,
+        to_balance=to_balance,
+        damping=damped,
+        friction=supplied - stored - damped - np.array([sum(one.values()) for one in impacts]),
+        impacts=impacts,
+    )
 
 
 def _triple(values: list[float]) -> Triple:
