@@ -14,6 +14,7 @@ from watchsim.storage.columns import blocks, let_go
 
 STRETCHES = 8000  # of the picture's width, some thousand dots
 AT_ONCE = 2000  # rows that are looked up together
+DOTS = 5 * STRETCHES  # of a curve that is drawn as it is
 POINTS = 1_000_000  # a record with more rows in the window than that is thinned
 
 Array = NDArray[np.float64]
@@ -38,6 +39,22 @@ def thinned(run: Trajectory, window: tuple[float, float]) -> NDArray[np.intp]:
         found.append(offset + np.unique(np.concatenate(rows)))
         offset += len(t)
     return np.concatenate(found)
+
+
+def drawn(x: Array, y: Array) -> NDArray[np.intp]:
+    """The points (n,) of one curve to draw, in order; where they are many, those that are seen. Gaps (NaN) stay gaps."""
+    if len(x) <= DOTS:
+        return np.arange(len(x))
+    stretch = np.minimum(((x - x[0]) * (STRETCHES / (x[-1] - x[0]))).astype(np.int64), STRETCHES - 1)
+    begins = np.flatnonzero(np.diff(stretch, prepend=-1))
+    lengths = np.diff(np.append(begins, len(x)))
+    rows = [begins, np.append(begins[1:], len(x)) - 1, np.flatnonzero(np.isnan(y))]
+    for extreme in (np.fmin, np.fmax):
+        rows.append(np.flatnonzero(y == np.repeat(extreme.reduceat(y, begins), lengths)))
+    is_seen = np.zeros(len(x), bool)
+    for found in rows:
+        is_seen[found] = True
+    return np.flatnonzero(is_seen)
 
 
 def taken(array: NDArray[np.float64], rows: NDArray[np.intp]) -> Array:

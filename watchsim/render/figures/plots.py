@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from watchsim.render.drawn_rows import drawn
 from watchsim.render.figures.plot_margins import GAP, LABEL_SIZE, POINT, TICK_SIZE, TITLE_PAD, TITLE_SIZE, place_panels
 from watchsim.render.frame.marks.readouts import clock
 from watchsim.render.frame.pose_history import choose, dense, stretch
@@ -107,7 +108,8 @@ class Kinematics:
         for axes, channel, quantity in self._each():
             values = channel.factor * motion[QUANTITIES.index(quantity)][:, channel.columns]
             for line, column in zip(axes.get_lines(), values.T, strict=True):
-                line.set_data(x, column)
+                seen = drawn(x, column)
+                line.set_data(x[seen], column[seen])
             _limits(axes, values, quantity == "angle" and channel.units is ROTATION[0])
         for axes in self._panels[-1]:
             axes.set_xlabel(told.label, color=INK)
