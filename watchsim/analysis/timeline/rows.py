@@ -7,6 +7,7 @@ the forces at the contacts, so that the books are checked.
 from __future__ import annotations
 
 import math
+from bisect import bisect_left, bisect_right
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import groupby, islice
@@ -16,7 +17,7 @@ from numpy.typing import NDArray
 
 from watchsim.analysis.timeline.flows import Flows, flows
 from watchsim.analysis.timing.beats import Beats
-from watchsim.analysis.timing.body_contacts import between, contact_events
+from watchsim.analysis.timing.body_contacts import between, contact_columns
 from watchsim.analysis.timing.phases import Phase, each_phase
 from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.scene.recording import STATISTICS
@@ -26,7 +27,7 @@ from watchsim.simulation.methods import EVENT_DRIVEN
 from watchsim.simulation.record.trajectory import Array, Trajectory
 
 LOSSES = (EventKind.IMPACT, EventKind.JAM)
-BEATS_AT_ONCE = 2000  # some tens of megabytes
+BEATS_AT_ONCE = 300  # some megabytes, which a processor has at hand
 Triple = tuple[float, float, float]
 
 
@@ -116,6 +117,9 @@ def each_stage(run: Trajectory, found: Beats | None = None, window: Sequence[flo
 def stages(run: Trajectory, found: Beats | None = None, window: Sequence[float] | None = None) -> Iterator[Stages]:
     """The same in columns: the rows of a long run are read a few beats at a time."""
     parts, compiled = roles(run.scene), compile_scene(run.scene)
+    if not (parts.wheel and parts.lever):
+        return
+    rests = _rests(run, compiled, parts)
     beats_told = (list(rows) for _, rows in groupby(each_phase(run, found), key=lambda row: row.beat))
     wanted = (rows for rows in beats_told if window is None or window[0] <= rows[0].start <= window[1])
     while some := list(islice(wanted, BEATS_AT_ONCE)):
@@ -123,7 +127,7 @@ def stages(run: Trajectory, found: Beats | None = None, window: Sequence[float] 
         first = max(0, int(np.searchsorted(run.t, told[0].start, side="left")) - 1)
         last = min(len(run.t), int(np.searchsorted(run.t, told[-1].end, side="right")) + 1)
         made = flows(run, compiled, slice(first, last))
-        stones = _pallets(run, compiled, parts, [row for row in told if row.name == "unlock"])
+        stones = _pallets(run, compiled, parts, rests, [row for row in told if row.name == "unlock"])
         yield _columns(run, parts, compiled, made, told, stones)
 
 
@@ -182,7 +186,10 @@ def _impacts(
     run: Trajectory, starts: Array, ends: Array, locked: NDArray[np.bool_], locking: NDArray[np.bool_]
 ) -> list[dict[str, float]]:
     """What impacts took in each stretch, by pair of bodies, J."""
-    own = run.events[np.isin(run.events["kind"], LOSSES)]
+    # Bisection, not numpy's search: that would copy the whole column for each few beats.
+    first, last = bisect_left(run.events["t"], starts[0]), bisect_right(run.events["t"], ends.max())
+    own = run.events[first:last]
+    own = own[np.isin(own["kind"], LOSSES)]
     names = {k: pair_name(run, k) for k in np.unique(own["contact"]).tolist()}
     pairs, lost = [names[k] for k in own["contact"].tolist()], own["energy_lost"].tolist()
     t = np.ascontiguousarray(own["t"])
@@ -203,18 +210,25 @@ def pair_name(run: Trajectory, contact: int) -> str:
     return "-".join(sorted((pair.body_a, pair.body_b), key=[body.name for body in run.scene.bodies].index))
 
 
-def _pallets(run: Trajectory, compiled: Compiled, parts: Roles, unlocking: list[Phase]) -> dict[int, str]:
-    """For each beat the stone on which the wheel rested before: that of the last contact of wheel and lever until then."""
+def _rests(run: Trajectory, compiled: Compiled, parts: Roles) -> tuple[Array, NDArray[np.int64]]:
+    """When wheel and lever touch or part, and the number of the contact."""
     assert parts.wheel and parts.lever
-    events = contact_events(run, between(parts.lever, {parts.wheel}))
-    known = events[events["contact"] < len(compiled.model.contacts)]
-    last = np.searchsorted(known["t"], [row.start for row in unlocking], side="right") - 1
+    times, contacts = contact_columns(run, between(parts.lever, {parts.wheel}), ["t", "contact"])
+    known = contacts < len(compiled.model.contacts)
+    return times[known], contacts[known]
+
+
+def _pallets(
+    run: Trajectory, compiled: Compiled, parts: Roles, rests: tuple[Array, NDArray[np.int64]], unlocking: list[Phase]
+) -> dict[int, str]:
+    """For each beat the stone on which the wheel rested before: that of the last contact of wheel and lever until then."""
+    times, contacts = rests
+    last = np.searchsorted(times, [row.start for row in unlocking], side="right") - 1
     found: dict[int, str] = {}
     sides: dict[int, str] = {}
     for row, k in zip(unlocking, last.tolist(), strict=True):
         if k >= 0:
-            contact = int(known["contact"][k])
-            p = compiled.model.contacts[contact]
+            p = compiled.model.contacts[int(contacts[k])]
             stone = int(p.a if compiled.owners[int(p.a)] == parts.lever else p.b)
             if stone not in sides:
                 sides[stone] = _side(run, compiled, parts, stone, row.start)
