@@ -25,7 +25,7 @@ settings.load_profile("any machine")
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """All workers but the first begin with what needs no machine code: by then it is there, and is not compiled by each of them.
+    """All workers but the first begin with what needs no machine code: it is then there, and not compiled by each of them.
 
     pytest-xdist deals the tests out in as many equal parts as there are workers, one behind the other.
     """
@@ -33,7 +33,8 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     if workers == 1:
         return
     compiled = [item.path.relative_to(HERE).parts[0] not in UNCOMPILED for item in items]
-    plain, others = (iter([item for item, is_so in zip(items, compiled, strict=True) if is_so is one]) for one in (False, True))
+    plain = iter([item for item, is_so in zip(items, compiled, strict=True) if not is_so])
+    others = iter([item for item, is_so in zip(items, compiled, strict=True) if is_so])
     part, share = -(-len(items) // workers), -(-compiled.count(False) // (workers - 1))
     dealt = list(islice(others, part))
     for _ in range(workers - 1):

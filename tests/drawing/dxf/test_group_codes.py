@@ -14,7 +14,7 @@ REFERENCE = {
     "CIRCLE": "10 20 30 40",
     "ARC": "10 20 30 40 50 51",
     "ELLIPSE": "10 20 30 11 21 31 40 41 42",
-    "LWPOLYLINE": "90 70 43 10 20 40 41 42 91",
+    "LWPOLYLINE": "90 70 43 10 20 40 41 42 91 30",  # 30 is in no reference, but some programs write it
     "POLYLINE": "10 20 30 70 40 41 71 72 73 74 75",
     "VERTEX": "10 20 30 40 41 42 91 70 50 71 72 73 74",
     "INSERT": "2 10 20 30 41 42 43 50 70 71 44 45",
