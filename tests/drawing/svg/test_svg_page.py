@@ -8,6 +8,7 @@ import pytest
 import svg_text as s
 
 from watchsim.drawing.drawing import Drawing
+from watchsim.drawing.svg.unread_elements import FOREIGN
 from watchsim.drawing.inspection import inspect_report
 from watchsim.geometry.extent import extents
 from watchsim.geometry.primitives import Arc
@@ -192,3 +193,20 @@ def test_elements_of_no_namespace_are_read_and_said(read_svg: Reader) -> None:
     inside = named.replace("</svg>", '<g xmlns=""><rect width="1" height="1"/></g></svg>')
     (finding,) = read_svg(inside).findings
     assert "2 of 4 elements are in no namespace" in finding.message
+
+
+@pytest.mark.parametrize(
+    "foreign", ['<x:rect width="1" height="1"/>', f"<x:thing>{s.path('M0 0h1v1z')}</x:thing>"], ids=["itself", "within"]
+)
+def test_what_is_drawn_in_another_namespace_is_said(read_svg: Reader, foreign: str) -> None:
+    drawing = read_svg(s.svg(f'<g xmlns:x="http://example.org">{foreign}{s.path("M0 0h2v2z")}</g>'))
+    assert len(drawing.loops) == 1
+    assert any(FOREIGN in finding.message for finding in drawing.findings)
+    silent = read_svg(s.svg(f'<g xmlns:x="http://example.org"><x:note/>{s.path("M0 0h2v2z")}</g>'))
+    assert silent.findings == ()
+
+
+def test_a_rectangle_of_a_micrometre_is_one(read_svg: Reader) -> None:
+    """Sizes are compared with nothing, not with something small."""
+    (loop,) = read_svg(s.svg('<rect x="1" y="1" width="0.0009" height="2"/>')).loops
+    assert len(loop.edges) == 4

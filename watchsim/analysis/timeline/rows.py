@@ -125,7 +125,7 @@ def stages(run: Trajectory, found: Beats | None = None, window: Sequence[float] 
     while some := list(islice(wanted, BEATS_AT_ONCE)):
         told = [row for rows in some for row in rows]
         first = max(0, int(np.searchsorted(run.t, told[0].start, side="left")) - 1)
-        last = min(len(run.t), int(np.searchsorted(run.t, told[-1].end, side="right")) + 1)
+        last = int(np.searchsorted(run.t, told[-1].end, side="right")) + 1
         made = flows(run, compiled, slice(first, last))
         stones = _pallets(run, compiled, parts, rests, [row for row in told if row.name == "unlock"])
         yield _columns(run, parts, compiled, made, told, stones)
