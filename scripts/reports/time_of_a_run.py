@@ -14,7 +14,7 @@ import json
 import os
 import sys
 import time
-from collections import Counter
+from collections import defaultdict
 from collections.abc import Callable
 from typing import Any, NoReturn
 
@@ -30,7 +30,7 @@ PARTS = (  # module, name, what
     ("watchsim.render.figures.plots", "write_png", "plots"),
 )
 
-spent: Counter[str] = Counter()
+spent: defaultdict[str, float] = defaultdict(float)  # s
 _import = builtins.__import__
 
 
@@ -94,8 +94,8 @@ def main() -> None:
         sys.stderr.flush()
         leave(status)
 
-    os._exit = told  # type: ignore[assignment]
-    builtins.__import__ = Imports()  # type: ignore[assignment]
+    os._exit = told
+    builtins.__import__ = Imports()
     from watchsim.process import process
 
     process()

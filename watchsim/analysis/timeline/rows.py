@@ -99,8 +99,8 @@ class Stages:
         triples = (map(_triple, values.tolist()) for values in (self.start_rates, self.end_angles, self.end_rates))
         energies = (values.tolist() for values in (self.supplied, self.stored, self.to_balance, self.damping, self.friction))
         rows = zip(self.phases, self.pallets, *triples, self.impulse.tolist(), *energies, self.impacts, strict=True)
-        for phase, pallet, first, place, last, push, *energy, struck in rows:
-            yield Stage(phase, pallet, first, place, last, push, Energies(*energy, struck))
+        for phase, pallet, first, place, last, push, supplied, stored, gained, damped, rubbed, struck in rows:
+            yield Stage(phase, pallet, first, place, last, push, Energies(supplied, stored, gained, damped, rubbed, struck))
 
 
 def timeline(run: Trajectory, found: Beats | None = None, window: Sequence[float] | None = None) -> list[Stage]:
