@@ -7,14 +7,40 @@ are the folders whose made-up scenes and drawings tests in other folders use, to
 from __future__ import annotations
 
 import sys
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import HealthCheck, settings
 
 HERE = Path(__file__).resolve().parent
+UNCOMPILED = ("construction", "drawing", "geometry", "storage")  # folders
 SHARED = ("contact", "drawing", "drawing/damaged", "scene", "simulation")
 sys.path[:0] = [str(HERE), *(str(HERE / name) for name in SHARED)]
+
+# A test says whether the program is right, not whether the machine has something else to do.
+settings.register_profile("any machine", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("any machine")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """All workers but the first begin with what needs no machine code: it is then there, and not compiled by each of them.
+
+    pytest-xdist deals the tests out in as many equal parts as there are workers, one behind the other.
+    """
+    workers = int(getattr(config, "workerinput", {}).get("workercount", 1))
+    if workers == 1:
+        return
+    compiled = [item.path.relative_to(HERE).parts[0] not in UNCOMPILED for item in items]
+    plain = iter([item for item, is_so in zip(items, compiled, strict=True) if not is_so])
+    others = iter([item for item, is_so in zip(items, compiled, strict=True) if is_so])
+    part, share = -(-len(items) // workers), -(-compiled.count(False) // (workers - 1))
+    dealt = list(islice(others, part))
+    for _ in range(workers - 1):
+        first = list(islice(plain, share))
+        dealt += [*first, *islice(others, max(0, part - len(first)))]
+    items[:] = [*dealt, *plain, *others]
 
 
 def pytest_report_header() -> str:

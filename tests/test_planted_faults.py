@@ -54,3 +54,15 @@ def test_every_fault_is_one_change_of_a_real_file(name: str) -> None:
         line = source.encode().splitlines()[one.line - 1]
         assert line[one.column :].decode().startswith(one.before.splitlines()[0])
         assert len(one.source) == len(source) + len(one.after) - len(one.before)
+
+
+def test_the_tests_that_reach_a_function_are_found_in_the_project() -> None:
+    """Faults are planted in this copy of the package, not in a folder that is not there."""
+    import plant_faults
+    import reached
+
+    assert reached.ROOT == plant_faults.ROOT == ROOT
+    assert Path(reached.PACKAGE, "units.py").is_file()
+    for files, tests in plant_faults.AREAS.values():
+        assert all(any((ROOT / "watchsim").glob(pattern)) for pattern in files), files
+        assert all((ROOT / name).exists() for name in tests), tests

@@ -83,6 +83,7 @@ def test_forces_of_a_lever_escapement_are_those_that_moved_it() -> None:
     rows = rows[(np.diff(run.t)[rows] > 0.0) & ~np.isin(run.t[rows], run.events["t"])]
     found = ws.forces(run, run.t[rows])
     assert len(found.pairs) > 10 and found.normal.min() >= 0.0 and found.normal.max() > 1e-5
+    assert repr(found).startswith("<Forces at ") and len(repr(found)) < 200
     assert np.all(np.abs(found.tangential) <= 0.12 * found.normal * (1.0 + 1e-9) + 1e-15)
     scene, total = run.scene, {}
     across = np.stack((-found.direction[..., 1], found.direction[..., 0]), axis=-1)

@@ -13,6 +13,7 @@ from watchsim.analysis.summary import summary, summary_text
 from watchsim.analysis.timing.beats import DAY, beats
 from watchsim.cli import main
 from watchsim.commands.common.console import FINE
+from watchsim.scene.errors import SceneError
 from watchsim.scene.file.load import load
 from watchsim.simulation.simulate import simulate
 
@@ -106,3 +107,23 @@ def test_the_commands_tell_of_it(tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert "frequency" in said.out and "Note:" not in said.err
     assert (tmp_path / "out" / "beats.csv").is_file()
     assert json.loads((tmp_path / "out" / "summary.json").read_text())["notes"] == []
+
+
+def test_a_clock_that_hangs_still_has_no_rate(tmp_path: Path) -> None:
+    """Gravity's rounding makes it swing by less than can be told."""
+    place = tmp_path / "scene.toml"
+    place.write_text(TEXT.format(angle=0, duration=10, more=""), encoding="utf-8")
+    run = simulate(load(place))
+    numbers = summary(run)
+    assert len(beats(run)) == 0 and numbers["amplitude_deg"] is None and numbers["rate_s_per_d"] is None
+    assert "pendulum stays in its rest position" in summary_text(run) or "never passed its rest position" in summary_text(run)
+
+
+def test_what_is_not_read_causes_no_second_complaint(tmp_path: Path) -> None:
+    place = tmp_path / "scene.toml"
+    more = '[[damping]]\nbody = "pendulum"\nq_factor = 100'
+    text = TEXT.format(angle=5, duration=1, more=more).replace('pivot = ["0 mm", "250 mm"]', 'pivot = ["0", "250 mm"]')
+    place.write_text(text, encoding="utf-8")
+    with pytest.raises(SceneError) as told:
+        load(place)
+    assert "a bare number needs a unit here" in str(told.value) and "quality factor" not in str(told.value)

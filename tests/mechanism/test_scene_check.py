@@ -74,3 +74,12 @@ def test_text_for_people(desk):
     ):
         assert part in text, part
     assert "nothing overlaps at the start" in text
+
+
+def test_a_mass_is_told_where_there_is_one(desk, good):
+    weighed = good.replace('circle = "0.2 mm"', 'circle = "0.2 mm"\nmass = "1 mg"')
+    bare, told = (
+        check_text(check_report(scene, PAIRS), scene) for scene in (load(desk.scene(text)) for text in (good, weighed))
+    )
+    assert "mass" not in bare
+    assert told.count("mass 1 mg") == 1

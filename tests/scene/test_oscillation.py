@@ -42,7 +42,7 @@ def test_fixed_loads_count(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
     assert roles(scene).oscillator == "pendulum" and keeps_time(scene)
     assert main(["check", str(tmp_path)]) == FINE
     said = capsys.readouterr().out
-    assert "pendulum makes small swings at 0.498" in said and "19.62 N·m/rad of it from gravity" in said
+    assert "pendulum makes small swings at 0.498" in said and "by gravity alone, 19.62 N·m/rad" in said
     assert "with bob: mass 2000 g" in said and "has no mass" not in said
 
 

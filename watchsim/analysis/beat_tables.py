@@ -5,11 +5,12 @@ from __future__ import annotations
 import csv
 import io
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
-from watchsim.analysis.timeline.rows import Stage, can_be_told, each_stage
+from watchsim.analysis.timeline.rows import Stages, can_be_told, stages
 from watchsim.analysis.timing.beats import Beats
 from watchsim.simulation.record.trajectory import Trajectory
 
@@ -34,7 +35,8 @@ def beats_csv(found: Beats) -> str:
     scale = math.degrees(1.0) if found.angular else 1.0
     turn, amplitude = scale * found.end_at, scale * found.amplitude
     columns = (found.t, found.tick, found.end, turn, amplitude, found.period_s, found.rate_s_per_d, found.beat_error_ms)
-    return _text(header, ([found.before + i + 1, *row] for i, row in enumerate(np.column_stack(columns).tolist())))
+    numbers = range(found.before + 1, found.before + 1 + len(found.t))
+    return _text(header, zip(numbers, *map(_cells, columns), strict=True))
 
 
 def phases_csv(run: Trajectory, found: Beats) -> str:
@@ -45,21 +47,38 @@ def phases_csv(run: Trajectory, found: Beats) -> str:
     Energies and impulse are empty for a run by fixed steps, whose contacts have no smooth forces.
     """
     known = can_be_told(run)
-    return _text(PHASE_COLUMNS, (_phase_row(stage, known) for stage in each_stage(run, found)))
+    return _text(PHASE_COLUMNS, (row for part in stages(run, found) for row in _phase_rows(part, known)))
 
 
-def _phase_row(stage: Stage, known: bool) -> list[object]:
-    phase, e = stage.phase, stage.energy
-    turned = [math.degrees(x) for pair in zip(phase.angles, phase.turns, strict=True) for x in pair]
-    rates = [math.degrees(x) for pair in zip(stage.start_rates, stage.end_rates, strict=True) for x in pair]
-    energies = [stage.impulse, e.supplied, e.stored, e.to_balance, e.damping, e.friction, sum(e.impacts.values())]
-    times = [phase.start, 1e3 * (phase.end - phase.start)]
-    return [phase.beat, phase.name, *times, *turned, phase.on, stage.pallet, *rates, *(energies if known else [math.nan] * 7)]
+def _phase_rows(part: Stages, known: bool) -> Iterator[Sequence[object]]:
+    phases = part.phases
+    starts, ends = (np.array([getattr(row, name) for row in phases]) for name in ("start", "end"))
+    turned, rates = (
+        np.degrees(np.stack(pair, axis=2)).reshape(len(phases), -1)  # of each body one beside the other
+        for pair in (
+            (np.array([row.angles for row in phases]), np.array([row.turns for row in phases])),
+            (part.start_rates, part.end_rates),
+        )
+    )
+    energies = [part.impulse, part.supplied, part.stored, part.to_balance, part.damping, part.friction]
+    energies.append(np.array([sum(one.values()) for one in part.impacts]))
+    columns = [
+        *([row.beat for row in phases], [row.name for row in phases], starts, 1e3 * (ends - starts), *turned.T),
+        *([row.on for row in phases], part.pallets, *rates.T),
+        *(energies if known else [np.full(len(phases), math.nan)] * len(energies)),
+    ]
+    return zip(*(_cells(one) if isinstance(one, np.ndarray) else one for one in columns), strict=True)
+
+
+def _cells(column: NDArray[np.float64]) -> list[object]:
+    """The numbers; "" for what is not finite."""
+    values = column.tolist()
+    return values if np.isfinite(column).all() else [x if math.isfinite(x) else "" for x in values]
 
 
 def _text(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
     out = io.StringIO()
     table = csv.writer(out, lineterminator="\n")
     table.writerow(header)
-    table.writerows(["" if isinstance(x, float) and not math.isfinite(x) else x for x in row] for row in rows)
+    table.writerows(rows)
     return out.getvalue()

@@ -52,6 +52,10 @@ class Forces:
     pivots: dict[str, Array]
     drives: dict[str, Array]
 
+    def __repr__(self) -> str:
+        most = f"up to {self.normal.max():.3g} N at {len(self.pairs)} contacts" if self.normal.size else "no contact in force"
+        return f"<Forces at {len(self.t)} instants: {most}; pivots of {', '.join(self.pivots) or 'nothing'}>"
+
 
 @dataclass(frozen=True)
 class _Instant:

@@ -10,12 +10,13 @@ import io
 import math
 from dataclasses import dataclass
 from pathlib import Path
-
-import ezdxf
-from ezdxf.document import Drawing
+from typing import TYPE_CHECKING
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Edge, Line, Point
+
+if TYPE_CHECKING:
+    from ezdxf.document import Drawing
 
 COLOURS = {"PIVOT": 1, "TEETH": 2, "STONES": 6, "PALLETS": 6, "PIN": 6, "FORK": 4, "DART": 3, "SAFETY": 3, "PINS": 5}
 PLAIN = 7
@@ -44,6 +45,8 @@ class Sheet:
 
 def new_sheet(layers: tuple[str, ...], pivot: Point | None = (0.0, 0.0)) -> Drawing:
     """An empty drawing in millimetres with these layers and, unless None, the pivot point (mm)."""
+    import ezdxf  # a fifth of the start of a run that draws nothing
+
     ezdxf.options.write_fixed_meta_data_for_testing = True
     sheet = ezdxf.new("R2000", units=ezdxf.units.MM)
     for layer in layers:

@@ -76,14 +76,12 @@ def _mainspring(spring: Mainspring) -> str:
 
 def _swing(scene: Scene, one: Oscillator) -> str:
     """What gravity adds to the springs of a body, and how fast the two make it swing."""
-    by = "gravity alone" if not one.spring else "its springs and gravity together"
+    pull = metric(one.gravity, "N·m/rad")
+    by = f"gravity alone, {pull}" if not one.spring else f"its springs and gravity together, {pull} of it from gravity"
     if one.hertz is None:
         return f"  {one.body} does not swing: gravity topples it from {turned(one.rest)}"
     beats = f" = {show(one.hertz, 'vph')}" if keeps_time(scene) else ""
-    return (
-        f"  {one.body} makes small swings at {show(one.hertz, 'Hz')}{beats} about {turned(one.rest)} by {by}, "
-        f"{metric(one.gravity, 'N·m/rad')} of it from gravity"
-    )
+    return f"  {one.body} makes small swings at {show(one.hertz, 'Hz')}{beats} about {turned(one.rest)} by {by}"
 
 
 def _spring(scene: Scene, spring: Spring) -> str:

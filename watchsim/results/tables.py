@@ -9,6 +9,7 @@ import json
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from enum import Enum
+from itertools import chain, repeat
 from pathlib import Path
 from typing import Any
 
@@ -30,7 +31,7 @@ EVENT_COLUMNS = (
     "value",
 )
 
-NO_IMPULSE = "0.0,0.0,0.0"  # of an event that is no impact
+NO_IMPULSE = "0.0,0.0,0.0,"  # of an event that is no impact
 
 
 def plain(value: Any) -> Any:
@@ -72,7 +73,8 @@ def write_events(run: Trajectory, path: Path) -> None:
     def sides(contact: int, body: int) -> str:
         return _row(_sides(run, contact, body, names))
 
-    # What is the same in thousands of rows is made into text once: a third of the time of a csv.writer that sees every field.
+    # What is the same in thousands of rows is made into text once, and of the rest a column at a time: half the time of a
+    # csv.writer that sees every field.
     with path.open("w", newline="", encoding="utf-8") as file:
         file.write(_row(EVENT_COLUMNS) + "\r\n")
         for (part,) in blocks(run.events):
@@ -80,15 +82,27 @@ def write_events(run: Trajectory, path: Path) -> None:
 
 
 def _lines(events: NDArray[Any], kinds: Mapping[int, str], sides: Callable[[int, int], str]) -> Iterator[str]:
-    impulses = (events["impulse_normal"], events["impulse_tangential"], events["energy_lost"])
-    struck = np.any([(values != 0.0) | np.signbit(values) for values in impulses], axis=0)
-    before, told = None, ""
-    rows = zip(events.tolist(), struck.tolist(), strict=True)
-    for (t, kind, contact, body, normal, tangential, lost, value), is_impact in rows:
-        if t != before:  # at one instant there is often more than one event, and to write a number is most of the work
-            before, told = t, repr(t)
-        impulse = f"{normal!r},{tangential!r},{lost!r}" if is_impact else NO_IMPULSE
-        yield f"{told},{kinds[kind]},{sides(contact, body)},{impulse},{value!r}\r\n"
+    """The rows as text, cut anywhere."""
+    times, back = _runs(events["t"])  # at one instant there is often more than one event
+    told = np.array([f"{t!r}," for t in times.tolist()], object)[back].tolist()
+    places = [events[name].astype(np.int64) + 1 for name in ("kind", "contact", "body")]
+    sizes = [int(np.max(place, initial=0)) + 1 for place in places]
+    what, back = np.unique(np.ravel_multi_index(places, sizes), return_inverse=True)
+    each = (np.array(np.unravel_index(what, sizes)).T - 1).tolist()
+    said = np.array([f"{kinds[kind]},{sides(contact, body)}," for kind, contact, body in each], object)[back].tolist()
+    impulses = [events[name] for name in ("impulse_normal", "impulse_tangential", "energy_lost")]
+    struck = np.flatnonzero(np.any([(values != 0.0) | np.signbit(values) for values in impulses], axis=0))
+    pushed = np.full(len(events), NO_IMPULSE, object)
+    rows = zip(*(values[struck].tolist() for values in impulses), strict=True)
+    pushed[struck] = [f"{normal!r},{tangential!r},{lost!r}," for normal, tangential, lost in rows]
+    values = map(repr, events["value"].tolist())
+    return chain.from_iterable(zip(told, said, pushed.tolist(), values, repeat("\r\n")))
+
+
+def _runs(values: NDArray[Any]) -> tuple[NDArray[Any], NDArray[np.int64]]:
+    """What differs from the one before, and the number of that for every value."""
+    begins = np.append(True, values[1:] != values[:-1])[: len(values)]
+    return values[begins], np.cumsum(begins) - 1
 
 
 def _row(fields: Iterable[object]) -> str:

@@ -100,11 +100,11 @@ def _fill(place: Path, run: Trajectory, summary: Mapping[str, Any], files: Extra
     with ThreadPoolExecutor(1) as beside:  # packing needs another core, and no Python
         packed = beside.submit(write_trajectory, run, place / TRAJECTORY)
         write_events(run, place / EVENTS)
+        (place / SUMMARY).write_text(json_text(summary), encoding="utf-8")
+        if run.failure is not None:
+            (place / FAILURE).write_text(json_text(run.failure), encoding="utf-8")
+        _fill_rest(place, run, files)
         packed.result()
-    (place / SUMMARY).write_text(json_text(summary), encoding="utf-8")
-    if run.failure is not None:
-        (place / FAILURE).write_text(json_text(run.failure), encoding="utf-8")
-    _fill_rest(place, run, files)
 
 
 def _fill_bare(place: Path, run: Trajectory, files: Extra) -> None:

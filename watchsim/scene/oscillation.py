@@ -142,7 +142,8 @@ def _hung(bodies: tuple[Body, ...], gravity: Point, driven: set[str]) -> Iterato
 def _weight(load: Weighed, ride: Ride, gravity: Point) -> tuple[float, float]:
     """The largest torque of gravity (N·m), and the angle (rad, as the scene gives it) at which the body hangs."""
     (sx, sy), (gx, gy) = load.moment, gravity
-    if ride.host >= 0 or not math.hypot(sx, sy) > POISED * math.sqrt(abs(load.mass * load.inertia)):
+    # What could not be read is passed on as not-a-number: it has been complained of.
+    if ride.host >= 0 or math.hypot(sx, sy) <= POISED * math.sqrt(abs(load.mass * load.inertia)):
         return 0.0, 0.0
     along, across = sx * gx + sy * gy, sx * gy - sy * gx
     return math.hypot(along, across), math.atan2(across, along) - ride.angle

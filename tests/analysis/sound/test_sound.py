@@ -198,3 +198,9 @@ def test_louder_blows_are_louder(tmp_path):
         peaks.append(samples[24000:28800].max())
         assert samples[14400:14500].max() == pytest.approx(0.9 * 32767, abs=1) and samples[33600:].max() == 0.0
     assert peaks[1] / peaks[0] == pytest.approx(2.0, abs=1e-3)
+
+
+@pytest.mark.parametrize("length", [0.4, 1.0, 1.37])
+def test_the_file_is_as_long_as_asked_to_the_sample(length, tmp_path):
+    with wave.open(str(sound(ticking(2.0), tmp_path / "tick.wav", duration=length))) as file:
+        assert file.getnframes() == round(length * SAMPLES)

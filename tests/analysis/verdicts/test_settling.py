@@ -53,3 +53,9 @@ def test_chance_is_no_drift():
 def test_a_steady_loss_has_no_end_foretold():
     said = swung(lambda t: 280.0 - 3.0 * t)
     assert "falls by 3° per second" in said.message and "on its way" not in said.message
+
+
+@pytest.mark.parametrize(("start", "goal", "said"), [(2.0, 2.12, "about 2.12°"), (200.0, 280.0, "about 280°")])
+def test_where_it_goes_is_said_as_exactly_as_it_differs(start, goal, said):
+    found = swung(lambda t: goal + (start - goal) * math.exp(-t / 8.0), 80)
+    assert said in found.message, found.message

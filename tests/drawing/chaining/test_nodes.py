@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import math
 import random
+from itertools import pairwise
 
 import pytest
 
-from watchsim.drawing.chaining.nodes import Grid
+from watchsim.drawing.chaining.nodes import Grid, Nodes
+from watchsim.drawing.content import Stroke
+from watchsim.geometry.primitives import Line
 
 
 @pytest.mark.parametrize("reach", [1e-9, 1e-6, 3e-6])
@@ -32,3 +35,14 @@ def test_grid_finds_what_lies_at_the_same_place(reach: float) -> None:
         grid = Grid(reach)
         grid.add(p, 7)
         assert grid.around(p) == [7]
+
+
+def test_a_join_names_the_strokes_whose_ends_it_joins() -> None:
+    """Five lines in a row, the last two 2 µm apart."""
+    corners = [(0.0, 0.0), (1e-3, 0.0), (2e-3, 1e-3), (3e-3, 0.0), (4e-3, 1e-3)]
+    lines = [Line(*a, *b) for a, b in pairwise(corners)]
+    lines.append(Line(4e-3, 1e-3 + 2e-6, 5e-3, 0.0))
+    (join,) = Nodes([Stroke(line, "A", "LINE", k) for k, line in enumerate(lines)]).snap(5e-6, loose_only=False)
+    assert sorted(join.strokes) == [3, 4]
+    assert join.gap == pytest.approx(2e-6, rel=1e-6)
+    assert join.at == pytest.approx((4e-3, 1e-3), abs=3e-6)

@@ -9,6 +9,7 @@ import svg_text as s
 
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.inspection import inspect_report
+from watchsim.drawing.svg.unread_elements import FOREIGN
 from watchsim.geometry.extent import extents
 from watchsim.geometry.primitives import Arc
 
@@ -192,3 +193,34 @@ def test_elements_of_no_namespace_are_read_and_said(read_svg: Reader) -> None:
     inside = named.replace("</svg>", '<g xmlns=""><rect width="1" height="1"/></g></svg>')
     (finding,) = read_svg(inside).findings
     assert "2 of 4 elements are in no namespace" in finding.message
+
+
+@pytest.mark.parametrize(
+    "foreign", ['<x:rect width="1" height="1"/>', f"<x:thing>{s.path('M0 0h1v1z')}</x:thing>"], ids=["itself", "within"]
+)
+def test_what_is_drawn_in_another_namespace_is_said(read_svg: Reader, foreign: str) -> None:
+    drawing = read_svg(s.svg(f'<g xmlns:x="http://example.org">{foreign}{s.path("M0 0h2v2z")}</g>'))
+    assert len(drawing.loops) == 1
+    assert any(FOREIGN in finding.message for finding in drawing.findings)
+    silent = read_svg(s.svg(f'<g xmlns:x="http://example.org"><x:note/>{s.path("M0 0h2v2z")}</g>'))
+    assert silent.findings == ()
+
+
+def test_a_rectangle_of_a_micrometre_is_one(read_svg: Reader) -> None:
+    """Sizes are compared with nothing, not with something small."""
+    (loop,) = read_svg(s.svg('<rect x="1" y="1" width="0.0009" height="2"/>')).loops
+    assert len(loop.edges) == 4
+
+
+@pytest.mark.parametrize("size", ['width="0" height="2"', 'width="2" height="0"'])
+def test_a_rectangle_without_width_or_height_is_none(read_svg: Reader, size: str) -> None:
+    drawing = read_svg(s.svg(f'<rect x="1" y="1" {size}/><rect x="5" y="5" width="1" height="1"/>'))
+    assert [len(loop.edges) for loop in drawing.loops] == [4]
+    assert [finding.code for finding in drawing.findings] == ["zero-size"]
+
+
+def test_what_is_damaged_or_drawn_is_not_called_empty(read_svg: Reader) -> None:
+    drawing = read_svg(s.svg(s.path("M0 0h2v2z") + s.path("Q")))
+    assert [finding.code for finding in drawing.findings] == ["damaged"]
+    drawing = read_svg(s.svg(s.path("M0 0h2v2z") + s.path("")))
+    assert [finding.code for finding in drawing.findings] == ["zero-size"]

@@ -88,6 +88,7 @@ REFUSED = [
     ("torques.1.value", 1.0, "torques has no entry 1: there are 1, counted from 0"),
     ("torques.x.value", 1.0, "torques has no entry x"),
     ("torques", 1.0, "joined by points"),
+    ("expect.amplitude", 1.0, "Write expect.amplitude.value and expect.amplitude.tolerance"),
     ("bodies.whel.inertia", 1.0, 'there is no "whel" in bodies. Did you mean "wheel"?'),
     ("bodies.wheel", 1.0, "the name of a body and a key"),
     ("bodies.wheel.inertya", 1.0, 'Did you mean "inertia"?'),

@@ -6,6 +6,7 @@ finite sums: Gauss's rule with five points is exact for their squares.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -60,15 +61,21 @@ def flows(run: Trajectory, compiled: Compiled, rows: slice = slice(None)) -> Flo
         wound = q[:, joint.coordinate] - q[:, joint.on] - joint.rest
         stored = stored + 0.5 * joint.stiffness * wound**2
     h = np.diff(t)
-    driven, damped = np.zeros((len(h), q.shape[1])), np.zeros((len(h), q.shape[1]))
-    for node, weight in zip(NODES, WEIGHTS, strict=True):
-        qs, us = _at(node, h[:, None], (q, u, a))
-        time = t[:-1] + node * h
-        driven += weight * h[:, None] * _drive_power(model, time, qs, us)
-        damped += weight * h[:, None] * _damping_power(model, us)
+    step = h[:, None]
+    # A constant force works on the way, the integral of the cubics; only what changes on the way needs Gauss's rule.
+    driven = _constant_work(model, 0.5 * step * (u[:-1] + u[1:]) + step * step / 12.0 * (a[:-1] - a[1:]))
+    damped = np.zeros_like(driven)
+    moved, slowed = _changing(model)
+    if moved or slowed:
+        place, speed = _position(step, (q, u, a), moved), _velocity(h, (u, a), sorted({*moved, *slowed}))
+        for node, weight in zip(NODES, WEIGHTS, strict=True):
+            us = speed(node)
+            if moved:
+                driven += weight * step * _changing_power(model, t[:-1] + node * h, place(node), us)
+            if slowed:
+                damped += weight * step * _damping_power(model, us)
     free = _in_flight(model, own, (q, u, a)) & (h > 0.0)[:, None]
     damped = np.where(free, own[:-1] - own[1:] + driven, damped)
-    step = h[:, None]
     swept = step * (0.5 * (q[:-1] + q[1:]) + step * (0.1 * (u[:-1] - u[1:]) + step * (a[:-1] + a[1:]) / 120.0))
     driven, damped, swept = (_so_far(values) for values in (driven, damped, swept))
     return Flows(t, q, u, stored, own, driven.sum(axis=1), driven, damped, swept)
@@ -99,43 +106,86 @@ def _so_far(steps: Array) -> Array:
     return np.concatenate((np.zeros((1, steps.shape[1])), np.cumsum(steps, axis=0)))
 
 
-def _at(s: float, h: Array, rows: tuple[Array, Array, Array]) -> tuple[Array, Array]:
-    """Positions and velocities at a fraction of every step."""
-    q, u, a = rows
+Row = dict[int, Array]  # coordinate -> its values over all steps
+
+
+def _changing(model: Model) -> tuple[list[int], list[int]]:
+    """The coordinates on which a force changes with place or time, and those with damping: their powers are integrated."""
+    c = model.coordinates
+    moved = {int(k) for k in np.flatnonzero((c.weight_x != 0.0) | (c.weight_y != 0.0))}
+    slowed = {int(k) for k in np.flatnonzero((c.coulomb != 0.0) | (c.viscous != 0.0) | (c.quadratic != 0.0))}
+    for table in model.tables:
+        moved |= {int(table.coordinate), *([int(table.on)] if table.on >= 0 else [])}
+    for joint in model.joints:
+        if joint.viscous != 0.0 or joint.quadratic != 0.0:
+            slowed |= {int(joint.coordinate), int(joint.on)}
+    return sorted(moved), sorted(slowed)
+
+
+def _position(h: Array, rows: tuple[Array, Array, Array], wanted: list[int]) -> Callable[[float], Row]:
+    """What gives the positions of some coordinates at a fraction of every step."""
+    q, u, a = (values[:, wanted] for values in rows)
     q0, u0, a0 = q[:-1], h * u[:-1], h * h * a[:-1]
     d, u1, a1 = q[1:] - q0, h * u[1:], h * h * a[1:]
     c3 = 10.0 * d - 6.0 * u0 - 4.0 * u1 - 1.5 * a0 + 0.5 * a1
     c4 = -15.0 * d + 8.0 * u0 + 7.0 * u1 + 1.5 * a0 - a1
     c5 = 6.0 * d - 3.0 * (u0 + u1) - 0.5 * (a0 - a1)
-    where = q0 + s * (u0 + s * (0.5 * a0 + s * (c3 + s * (c4 + s * c5))))
-    fast = u0 + s * (a0 + s * (3.0 * (u1 - u0) - 2.0 * a0 - a1 + s * (2.0 * (u0 - u1) + a0 + a1)))
-    return where, np.divide(fast, h, out=np.zeros_like(fast), where=h > 0.0)
+
+    def at(s: float) -> Row:
+        return dict(zip(wanted, (q0 + s * (u0 + s * (0.5 * a0 + s * (c3 + s * (c4 + s * c5))))).T, strict=True))
+
+    return at
 
 
-def _drive_power(model: Model, t: Array, q: Array, u: Array) -> Array:
-    """Power of all that is neither spring nor damping, on each coordinate, W (rows, n)."""
-    c = model.coordinates
-    force = np.asarray(c.force) + np.cos(q) * np.asarray(c.weight_y) - np.sin(q) * np.asarray(c.weight_x)
-    power = np.asarray(force * u)
+def _velocity(h: Array, rows: tuple[Array, Array], wanted: list[int]) -> Callable[[float], Row]:
+    """The same of their velocities."""
+    step = h[:, None]
+    u, a = (values[:, wanted] for values in rows)
+    u0, d, a0, a1 = u[:-1], u[1:] - u[:-1], step * a[:-1], step * a[1:]
+    c2, c3 = 3.0 * d - 2.0 * a0 - a1, a0 + a1 - 2.0 * d
+
+    def at(s: float) -> Row:
+        return dict(zip(wanted, (u0 + s * (a0 + s * (c2 + s * c3))).T, strict=True))
+
+    return at
+
+
+def _constant_work(model: Model, way: Array) -> Array:
+    """What constant forces do on the way of every coordinate over every step, J (steps, n)."""
+    work = np.asarray(model.coordinates.force) * way
     for joint in model.joints:
-        power[:, joint.coordinate] += joint.force * u[:, joint.coordinate]
-        power[:, joint.on] -= joint.force * u[:, joint.on]
+        work[:, joint.coordinate] += joint.force * way[:, joint.coordinate]
+        work[:, joint.on] -= joint.force * way[:, joint.on]
+    return np.asarray(work)
+
+
+def _changing_power(model: Model, t: Array, q: Row, u: Row) -> Array:
+    """Power of weights and of tables on each coordinate, W (steps, n)."""
+    c = model.coordinates
+    power = np.zeros((len(t), len(c)))
+    for k, angle in q.items():
+        power[:, k] = (np.cos(angle) * c.weight_y[k] - np.sin(angle) * c.weight_x[k]) * u[k]
     for table in model.tables:
         knots = model.knots[table.start : table.start + table.count]
-        x = t if table.over == OVER_TIME else q[:, table.coordinate] - (q[:, table.on] if table.on >= 0 else 0.0)
+        own, on = int(table.coordinate), int(table.on)
+        x = t if table.over == OVER_TIME else q[own] - (q[on] if on >= 0 else 0.0)
         value = np.interp(x, knots[:, 0], knots[:, 1])
-        power[:, table.coordinate] += value * u[:, table.coordinate]
-        if table.on >= 0:
-            power[:, table.on] -= value * u[:, table.on]
+        power[:, own] += value * u[own]
+        if on >= 0:
+            power[:, on] -= value * u[on]
     power[:, np.asarray(c.driven) != 0] = 0.0
     return power
 
 
-def _damping_power(model: Model, u: Array) -> Array:
-    """What damping and dry bearings take, W (rows, n); of a carried body it counts with that body."""
-    c, speed = model.coordinates, np.abs(u)
-    power = speed * (np.asarray(c.coulomb) + speed * (np.asarray(c.viscous) + np.asarray(c.quadratic) * speed))
+def _damping_power(model: Model, u: Row) -> Array:
+    """What damping and dry bearings take, W (steps, n); of a carried body it counts with that body."""
+    c = model.coordinates
+    power = np.zeros((len(next(iter(u.values()))), len(c)))
+    for k, value in u.items():
+        speed = np.abs(value)
+        power[:, k] = speed * (c.coulomb[k] + speed * (c.viscous[k] + c.quadratic[k] * speed))
     for joint in model.joints:
-        w = np.abs(u[:, joint.coordinate] - u[:, joint.on])
-        power[:, joint.coordinate] += w * w * (joint.viscous + joint.quadratic * w)
-    return np.asarray(power)
+        if joint.viscous != 0.0 or joint.quadratic != 0.0:
+            w = np.abs(u[int(joint.coordinate)] - u[int(joint.on)])
+            power[:, joint.coordinate] += w * w * (joint.viscous + joint.quadratic * w)
+    return power

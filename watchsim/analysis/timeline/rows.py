@@ -7,6 +7,7 @@ the forces at the contacts, so that the books are checked.
 from __future__ import annotations
 
 import math
+from bisect import bisect_left, bisect_right
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import groupby, islice
@@ -16,7 +17,7 @@ from numpy.typing import NDArray
 
 from watchsim.analysis.timeline.flows import Flows, flows
 from watchsim.analysis.timing.beats import Beats
-from watchsim.analysis.timing.body_contacts import between, contact_events
+from watchsim.analysis.timing.body_contacts import between, contact_columns
 from watchsim.analysis.timing.phases import Phase, each_phase
 from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.scene.recording import STATISTICS
@@ -26,7 +27,7 @@ from watchsim.simulation.methods import EVENT_DRIVEN
 from watchsim.simulation.record.trajectory import Array, Trajectory
 
 LOSSES = (EventKind.IMPACT, EventKind.JAM)
-BEATS_AT_ONCE = 2000  # some tens of megabytes
+BEATS_AT_ONCE = 300  # some megabytes, which a processor has at hand
 Triple = tuple[float, float, float]
 
 
@@ -76,29 +77,64 @@ class Stage:
         return self.phase.name
 
 
+@dataclass(frozen=True, slots=True)
+class Stages:
+    """The stages of some beats in a row, column by column: (n,), of wheel, lever and oscillator (n, 3); names as in `Stage`."""
+
+    phases: list[Phase]
+    pallets: list[str]
+    start_rates: Array
+    end_angles: Array
+    end_rates: Array
+    impulse: Array
+    supplied: Array
+    stored: Array
+    to_balance: Array
+    damping: Array
+    friction: Array
+    impacts: list[dict[str, float]]
+
+    def each(self) -> Iterator[Stage]:
+        """One after the other."""
+        triples = (map(_triple, values.tolist()) for values in (self.start_rates, self.end_angles, self.end_rates))
+        energies = (values.tolist() for values in (self.supplied, self.stored, self.to_balance, self.damping, self.friction))
+        rows = zip(self.phases, self.pallets, *triples, self.impulse.tolist(), *energies, self.impacts, strict=True)
+        for phase, pallet, first, place, last, push, supplied, stored, gained, damped, rubbed, struck in rows:
+            yield Stage(phase, pallet, first, place, last, push, Energies(supplied, stored, gained, damped, rubbed, struck))
+
+
 def timeline(run: Trajectory, found: Beats | None = None, window: Sequence[float] | None = None) -> list[Stage]:
     """The phases of all beats recorded whole, or of those that begin within a window (s); empty without an escapement."""
     return list(each_stage(run, found, window))
 
 
 def each_stage(run: Trajectory, found: Beats | None = None, window: Sequence[float] | None = None) -> Iterator[Stage]:
-    """The same one after the other: the rows of a long run are read a few beats at a time."""
+    """The same one after the other."""
+    for part in stages(run, found, window):
+        yield from part.each()
+
+
+def stages(run: Trajectory, found: Beats | None = None, window: Sequence[float] | None = None) -> Iterator[Stages]:
+    """The same in columns: the rows of a long run are read a few beats at a time."""
     parts, compiled = roles(run.scene), compile_scene(run.scene)
+    if not (parts.wheel and parts.lever):
+        return
+    rests = _rests(run, compiled, parts)
     beats_told = (list(rows) for _, rows in groupby(each_phase(run, found), key=lambda row: row.beat))
     wanted = (rows for rows in beats_told if window is None or window[0] <= rows[0].start <= window[1])
     while some := list(islice(wanted, BEATS_AT_ONCE)):
         told = [row for rows in some for row in rows]
         first = max(0, int(np.searchsorted(run.t, told[0].start, side="left")) - 1)
-        last = min(len(run.t), int(np.searchsorted(run.t, told[-1].end, side="right")) + 1)
+        last = int(np.searchsorted(run.t, told[-1].end, side="right")) + 1
         made = flows(run, compiled, slice(first, last))
-        stones = _pallets(run, compiled, parts, [row for row in told if row.name == "unlock"])
-        yield from _stages(run, parts, compiled, made, told, stones)
+        stones = _pallets(run, compiled, parts, rests, [row for row in told if row.name == "unlock"])
+        yield _columns(run, parts, compiled, made, told, stones)
 
 
-def _stages(
+def _columns(
     run: Trajectory, parts: Roles, compiled: Compiled, made: Flows, told: list[Phase], stones: dict[int, str]
-) -> Iterator[Stage]:
-    """Column by column: every number is a difference between two rows."""
+) -> Stages:
+    """Every number is a difference between two rows."""
     starts, ends = np.array([row.start for row in told]), np.array([row.end for row in told])
     # The impacts of the lock belong to the drop that ends with them, all others to the phase that they begin. A lever that is
     # on its bank before the lock has no run to it: then the lock also is where the free oscillation begins.
@@ -118,13 +154,22 @@ def _stages(
     impulse = c.mass * change(made.u[:, balance]) + c.viscous * change(made.q[:, balance])
     impulse += c.stiffness * (change(made.swept[:, balance]) - c.rest * change(made.t)) - c.force * change(made.t)
     impacts = _impacts(run, starts, ends, locked, locking)
-    rates_i, rates_j = (compiled.relative(made.u[k], rates=True)[:, columns].tolist() for k in (i, j))
-    angles = compiled.relative(made.q[j])[:, columns].tolist()
-    books = (change(made.drive), change(made.stored), to_balance, damping.sum(axis=1), impulse)
-    for k, (row, supplied, stored, gained, damped, push) in enumerate(zip(told, *(b.tolist() for b in books), strict=True)):
-        energy = Energies(supplied, stored, gained, damped, supplied - stored - damped - sum(impacts[k].values()), impacts[k])
-        first, place, last = (_triple(values[k]) for values in (rates_i, angles, rates_j))
-        yield Stage(row, stones.get(row.beat, ""), first, place, last, push, energy)
+    rates_i, rates_j = (compiled.relative(made.u[k], rates=True)[:, columns] for k in (i, j))
+    supplied, stored, damped = change(made.drive), change(made.stored), damping.sum(axis=1)
+    return Stages(
+        phases=told,
+        pallets=[stones.get(row.beat, "") for row in told],
+        start_rates=rates_i,
+        end_angles=compiled.relative(made.q[j])[:, columns],
+        end_rates=rates_j,
+        impulse=impulse,
+        supplied=supplied,
+        stored=stored,
+        to_balance=to_balance,
+        damping=damped,
+        friction=supplied - stored - damped - np.array([sum(one.values()) for one in impacts]),
+        impacts=impacts,
+    )
 
 
 def _triple(values: list[float]) -> Triple:
@@ -142,7 +187,10 @@ def _impacts(
     run: Trajectory, starts: Array, ends: Array, locked: NDArray[np.bool_], locking: NDArray[np.bool_]
 ) -> list[dict[str, float]]:
     """What impacts took in each stretch, by pair of bodies, J."""
-    own = run.events[np.isin(run.events["kind"], LOSSES)]
+    # Bisection, not numpy's search: that would copy the whole column for each few beats.
+    first, last = bisect_left(run.events["t"], starts[0]), bisect_right(run.events["t"], ends.max())
+    own = run.events[first:last]
+    own = own[np.isin(own["kind"], LOSSES)]
     names = {k: pair_name(run, k) for k in np.unique(own["contact"]).tolist()}
     pairs, lost = [names[k] for k in own["contact"].tolist()], own["energy_lost"].tolist()
     t = np.ascontiguousarray(own["t"])
@@ -163,18 +211,25 @@ def pair_name(run: Trajectory, contact: int) -> str:
     return "-".join(sorted((pair.body_a, pair.body_b), key=[body.name for body in run.scene.bodies].index))
 
 
-def _pallets(run: Trajectory, compiled: Compiled, parts: Roles, unlocking: list[Phase]) -> dict[int, str]:
-    """For each beat the stone on which the wheel rested before: that of the last contact of wheel and lever until then."""
+def _rests(run: Trajectory, compiled: Compiled, parts: Roles) -> tuple[Array, NDArray[np.int64]]:
+    """When wheel and lever touch or part, and the number of the contact."""
     assert parts.wheel and parts.lever
-    events = contact_events(run, between(parts.lever, {parts.wheel}))
-    known = events[events["contact"] < len(compiled.model.contacts)]
-    last = np.searchsorted(known["t"], [row.start for row in unlocking], side="right") - 1
+    times, contacts = contact_columns(run, between(parts.lever, {parts.wheel}), ["t", "contact"])
+    known = contacts < len(compiled.model.contacts)
+    return times[known], contacts[known]
+
+
+def _pallets(
+    run: Trajectory, compiled: Compiled, parts: Roles, rests: tuple[Array, NDArray[np.int64]], unlocking: list[Phase]
+) -> dict[int, str]:
+    """For each beat the stone on which the wheel rested before: that of the last contact of wheel and lever until then."""
+    times, contacts = rests
+    last = np.searchsorted(times, [row.start for row in unlocking], side="right") - 1
     found: dict[int, str] = {}
     sides: dict[int, str] = {}
     for row, k in zip(unlocking, last.tolist(), strict=True):
         if k >= 0:
-            contact = int(known["contact"][k])
-            p = compiled.model.contacts[contact]
+            p = compiled.model.contacts[int(contacts[k])]
             stone = int(p.a if compiled.owners[int(p.a)] == parts.lever else p.b)
             if stone not in sides:
                 sides[stone] = _side(run, compiled, parts, stone, row.start)

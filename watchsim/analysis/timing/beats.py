@@ -23,6 +23,7 @@ from watchsim.storage.columns import blocks
 
 DAY = 86400.0
 HEARD = 0.8  # share of the half swings that must have a tick, for the ticks to be what the beat error is measured by
+STILL = 1e-13  # rad or m: half swings no larger are rounding, of a body at rest
 
 
 @dataclass(frozen=True)
@@ -105,6 +106,8 @@ def beats(run: Trajectory, body: str | None = None) -> Beats:
     own = np.concatenate([part[part["body"] == index] for (part,) in blocks(_unbroken(run))] or [run.events])
     crossings, turns = own[own["kind"] == EventKind.CROSS], own[own["kind"] == EventKind.TURN]
     complete, before, after = half_swings(crossings, turns)
+    is_swing = np.abs(turns["value"][after] - turns["value"][before]) > 2.0 * STILL
+    complete, before, after = complete[is_swing], before[is_swing], after[is_swing]
     t, start, end = crossings["t"], turns["t"][before], turns["t"][after]
     counted = run.sums.get("half_swings", len(complete)) if run.keep == STATISTICS and body is None else len(complete)
     return Beats(

@@ -47,6 +47,8 @@ def _missing(run: Trajectory, found: Beats, start: float) -> str:
         return f"{found.body} never passed its rest position"
     if turns < FEWEST_TURNS and run.simulated > 2.0 * found.nominal_period:
         return f"{found.body} turned back {_times(turns)} in {run.simulated:.4g} s"
+    if not len(found) and passages and turns >= FEWEST_TURNS:
+        return f"{found.body} stays in its rest position"
     need = 2.0 * found.nominal_period
     if run.simulated < need:
         return f"the run of {run.simulated:.4g} s is too short: {found.body} needs {need:.4g} s for two oscillations"

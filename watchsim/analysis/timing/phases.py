@@ -15,7 +15,7 @@ locked          until the next touch of pin and fork
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import islice, pairwise
 
 import numpy as np
@@ -34,6 +34,7 @@ Marks = tuple[float, float, float, float]
 TOUCH = (EventKind.IMPACT, EventKind.CLOSE)
 NEAR_REST = 0.1  # of the wheel's advance in the beat: a free run that ends so near to rest may be the drop
 AT_ONCE = 4000  # phases whose angles are looked up together
+FACES = ("stone", "tooth", "balance")
 STANDING = 1e-6  # of the same: the wheel has not moved
 
 
@@ -62,7 +63,7 @@ class _Contacts:
     angle: Array
     held: NDArray[np.int64]
     touching: NDArray[np.bool_]
-    on: tuple[str, ...]
+    on: NDArray[np.int64]  # numbers of `FACES`
     banking: Array
 
 
@@ -99,8 +100,8 @@ def _contacts(run: Trajectory, parts: Roles) -> _Contacts:
     times, kinds, which = contact_columns(run, involves(parts.wheel), ["t", "kind", "contact"], *TOUCH, EventKind.OPEN)
     fixed = {body.name for body in run.scene.bodies if body.motion == "fixed"}
     (banking,) = contact_columns(run, between(parts.lever, fixed), ["t"], *TOUCH)
-    faces = {contact: _face(run.pairs[contact], parts) for contact in np.unique(which).tolist()}
-    on = tuple(faces[contact] for contact in which.tolist())
+    used, back = np.unique(which, return_inverse=True)
+    on = np.array([FACES.index(_face(run.pairs[contact], parts)) for contact in used.tolist()], np.int64)[back]
     return _Contacts(times, progress(run, parts.wheel, times), held(kinds), kinds != EventKind.OPEN, on, banking)
 
 
@@ -136,11 +137,11 @@ def _beat(found: Beats, contacts: _Contacts, i: int, way: tuple[float, float]) -
 
 def _impulses(contacts: _Contacts, own: slice, caught: float, let_off: float) -> Iterator[tuple[float, str]]:
     """When the wheel begins to press on what, from `caught` to `let_off` (s)."""
-    last = ""
-    for t, touching, on in zip(contacts.times[own].tolist(), contacts.touching[own], contacts.on[own], strict=True):
-        if touching and caught <= t < let_off and on != last:
-            yield t, on
-            last = on
+    first, end = own.start + np.searchsorted(contacts.times[own], (caught, let_off), side="left")
+    touches = first + np.flatnonzero(contacts.touching[first:end])
+    if len(touches):
+        for k in touches[np.flatnonzero(np.diff(contacts.on[touches], prepend=-1))].tolist():
+            yield float(contacts.times[k]), FACES[contacts.on[k]]
 
 
 def _release_and_lock(contacts: _Contacts, own: slice, at_entry: float, at_end: float) -> Marks | None:
@@ -169,6 +170,14 @@ def _with_angles(run: Trajectory, parts: Roles, rows: list[Phase]) -> list[Phase
     columns = [run.slices[name].start for name in (parts.wheel, parts.lever, parts.oscillator) if name]
     first, last = run.sample(starts)[0][:, columns], run.sample(ends)[0][:, columns]
     turns = last - first
+    told = zip(rows, first.tolist(), turns.tolist(), kept.tolist(), strict=True)
     return [
-        replace(row, angles=tuple(first[k].tolist()), turns=tuple(turns[k].tolist())) for k, row in enumerate(rows) if kept[k]
+        Phase(row.beat, row.name, row.start, row.end, _triple(place), _triple(turn), row.on)
+        for row, place, turn, is_kept in told
+        if is_kept
     ]
+
+
+def _triple(values: list[float]) -> tuple[float, float, float]:
+    first, second, third = values
+    return first, second, third

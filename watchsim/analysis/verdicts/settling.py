@@ -6,6 +6,8 @@ still to come after the last is (c - b) r / (1 - r) with r = (c - b) / (b - a) (
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from watchsim.analysis.timing.averages import averages, last_window
@@ -40,9 +42,14 @@ def unsettled(watch: Watch) -> Verdict | None:
         return None
     per_second = steps[1] / (stretch * 0.5 * found.nominal_period)
     words = f"not settled yet: the amplitude {'rises' if per_second > 0.0 else 'falls'} by {abs(per_second):.2g}° per second"
-    words += f", on its way to about {goal:.0f}°" if goal is not None and goal > 0.0 else ""
+    words += f", on its way to about {goal:.{_decimals(abs(goal - last))}f}°" if goal is not None and goal > 0.0 else ""
     words += _rate(watch)
     return Verdict(UNSETTLED, words, float(found.t[-1]), watch.oscillator, torque=watch.drive(watch.run.simulated))
+
+
+def _decimals(way: float) -> int:
+    """So many that what is still to come can be seen."""
+    return max(0, -math.floor(math.log10(way))) if way > 0.0 else 0
 
 
 def _error(parts: Array) -> float:

@@ -47,12 +47,13 @@ def build(scene: Scene, step: float, setup: Setup) -> Box2DWorld:
     lightest = min(body.inertia for body in bodies(scene) if body.motion != "fixed")
     mass = 1.0 / (lightest * units**2)
     world = Box2D.b2World(gravity=(scene.gravity[0] * units, scene.gravity[1] * units), doSleep=False)
-    # It would start every step from the contact forces of the step before, also where a contact was lost in between.
     parts = {}
     for body in bodies(scene):
         position = (body.position[0] * units, body.position[1] * units)
         make = world.CreateStaticBody if body.motion == "fixed" else world.CreateDynamicBody
         part = make(position=position, angle=body.angle, allowSleep=False)
+        # Else only what stands still is met at its own instant: a tooth's corner would sink into a stone by a whole step.
+        part.bullet = body.motion != "fixed"
         parts[body.name] = part
         if body.motion == "pivot":
             part.angularVelocity = body.velocity[0] if body.velocity else 0.0

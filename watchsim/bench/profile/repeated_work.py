@@ -20,6 +20,7 @@ from watchsim.simulation.events.closed_contacts import gather, refresh
 from watchsim.simulation.events.collision import approaching, collide
 from watchsim.simulation.events.mode_decision import decide
 from watchsim.simulation.events.time_of_impact import first_touch
+from watchsim.simulation.events.zero_rates import set_rate_zeros
 from watchsim.simulation.loop_state.buffers import RecordRef
 from watchsim.simulation.loop_state.scratch import scratch_by_reference
 from watchsim.simulation.loop_state.state import StateRef
@@ -92,7 +93,8 @@ def impacts_again(model, cells, state, options, scratch, record, collides, repea
     while first < count:
         island = island_of(m, w.event.label, w.event.listed[first])
         size = place_contacts(m, w.event.listed, first, w.event.upto[first], w.event.pose, w.event.closed)
-        approaches = approaching(size, w.event.closed, o.speed_zero)
+        set_rate_zeros(w.event.closed, size, False, o, w.event.pace, w.event.zero)
+        approaches = approaching(size, w.event.closed, w.event.zero)
         for _ in range(repeats if approaches else 0):
             r.used.rows, r.used.events = 0, 0
             copy(before, s.u)
@@ -127,7 +129,8 @@ def pose(model, cells, state, options, scratch, record, which):
         island = island_of(m, w.event.label, w.event.listed[first])
         size = place_contacts(m, w.event.listed, first, w.event.upto[first], w.event.pose, w.event.closed)
         first += size
-        hit = approaching(size, w.event.closed, o.speed_zero)
+        set_rate_zeros(w.event.closed, size, False, o, w.event.pace, w.event.zero)
+        hit = approaching(size, w.event.closed, w.event.zero)
         if which == MODES:
             if hit:
                 collide(m, s, island, size, o, 0.0, w, r)

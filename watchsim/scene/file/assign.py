@@ -147,6 +147,9 @@ def _advice(path: tuple[str, ...]) -> str:
     if path[0] == "springs" and path[2:3] == ("draw",) and len(path) > 3:
         depth = 3
     if len(path) <= depth:
+        if path[0] == "expect":
+            what = ".".join((*path, "amplitude")[:2])
+            return f"Write {what}.value and {what}.tolerance, one by one."
         kind = "the name of a body" if path[0] == "bodies" else "a number counted from 0" if path[0] in LISTED else "a key"
         return f"Write {path[0]}, {kind} and a key, all joined by points." if depth > 1 else nearest("", siblings(path))
     return nearest(path[depth], siblings(path))

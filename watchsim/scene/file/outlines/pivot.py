@@ -20,6 +20,7 @@ CLEARER = 2.0  # times: so much further off than the nearest must the next one b
 KINDS = ("hole", "circle", "point")
 EXAMPLE = 'pivot = "hole near [1.2 mm, -0.5 mm]"'
 _NEAR = re.compile(r"\s*(\w+)\s+near\s*(.*)", re.DOTALL)
+_BARE = re.compile(r"[-+]?[\d.]+(e[-+]?\d+)?", re.IGNORECASE)
 _PAIR = re.compile(r"\[([^,\]]*),([^,\]]*)\]\s*")
 
 
@@ -44,6 +45,12 @@ def _near(table: Table, drawing: Drawing, kind: str, place: str) -> Point:
     pair = _PAIR.fullmatch(place)
     if kind not in KINDS or pair is None:
         table.fault("pivot", f"write hole, circle or point near a place of the drawing, such as {EXAMPLE}", with_value=True)
+        return UNREADABLE
+    bare = [part.strip() for part in pair.groups()]
+    if any(_BARE.fullmatch(part) for part in bare):
+        meant = ", ".join(f"{part} mm" if _BARE.fullmatch(part) else part for part in bare)
+        message = f'a bare number needs a unit here; write pivot = "{kind} near [{meant}]", or with another unit'
+        table.fault("pivot", message, with_value=True)
         return UNREADABLE
     x, y = (table.parsed("pivot", part.strip().strip("\"'"), table.dimension("pivot")) for part in pair.groups())
     if math.isnan(x) or math.isnan(y):

@@ -1,0 +1,87 @@
+"""Are work and losses between rows the integrals of their powers, whatever forces act?"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from watchsim.analysis.efficiency import _work_of_gravity
+from watchsim.analysis.timeline.flows import _position, _velocity, flows
+from watchsim.mechanism.compile import compile_scene
+from watchsim.scene.file.load import load
+from watchsim.simulation.simulate import simulate
+
+SCENE = """
+[scene]
+title = "A plate on its corner, with everything that acts on it"
+schema = 1
+gravity = ["1.5 m/s²", "-9.81 m/s²"]
+[bodies.plate]
+polygon = [["0 mm", "0 mm"], ["30 mm", "0 mm"], ["30 mm", "20 mm"], ["0 mm", "20 mm"]]
+position = ["0 mm", "0 mm"]
+mass = "10 g"
+inertia = "50 g·cm²"
+angle = "-20°"
+velocity = "300 °/s"
+[[springs]]
+body = "plate"
+stiffness = "5 mN·m/rad"
+rest = "-60°"
+"""
+MORE = """
+[[torques]]
+body = "plate"
+over = "angle"
+table = [["-200°", "0.3 mN·m"], ["0°", "-0.2 mN·m"], ["200°", "0.4 mN·m"]]
+[[damping]]
+body = "plate"
+viscous = "20 nN·m·s/rad"
+quadratic = "3 nN·m·s²/rad²"
+coulomb = "40 µN·m"
+"""
+NUMBERS = st.lists(st.floats(-2.0, 2.0), min_size=6, max_size=6)
+
+
+@given(NUMBERS, st.floats(0.01, 3.0), st.floats(0.0, 1.0))
+def test_between_rows_stand_the_quintic_and_the_cubic(numbers: list[float], h: float, s: float) -> None:
+    """A polynomial of degree five (of velocities: three) comes back as it was."""
+    p, v = np.polynomial.Polynomial(numbers), np.polynomial.Polynomial(numbers[:4])
+    ends = np.array([0.0, h])
+
+    def column(polynomial: np.polynomial.Polynomial, order: int = 0) -> np.ndarray:
+        return polynomial.deriv(order)(ends)[:, None] if order else polynomial(ends)[:, None]
+
+    scale = 1.0 + max(abs(p(np.linspace(0.0, h, 9))).max(), abs(v(np.linspace(0.0, h, 9))).max())
+    where = _position(np.array([[h]]), (column(p), column(p, 1), column(p, 2)), [0])(s)[0]
+    assert where[0] == pytest.approx(p(s * h), abs=1e-11 * scale * (1.0 + h) ** 5)
+    fast = _velocity(np.array([h]), (column(v), column(v, 1)), [0])(s)[0]
+    assert fast[0] == pytest.approx(v(s * h), abs=1e-11 * scale * (1.0 + h) ** 3)
+
+
+def test_work_and_losses_are_those_of_the_ledger(tmp_path: Path) -> None:
+    """The solver sums powers as it steps, with its own steps and rules."""
+    place = tmp_path / "scene.toml"
+    place.write_text(SCENE + MORE, encoding="utf-8")
+    scene = load(place)
+    run = simulate(scene, 1.0)
+    found = flows(run, compile_scene(scene))
+    assert run.energy["in_J"] != 0.0 and run.energy["dissipated"]["damping"] > 1e-6
+    assert found.drive[-1] == pytest.approx(run.energy["in_J"], rel=1e-7)
+    assert found.damped[-1].sum() == pytest.approx(run.energy["dissipated"]["damping"], rel=1e-7)
+    assert found.stored[-1] - found.stored[0] == pytest.approx(run.energy["stored_J"], rel=1e-7)
+
+
+def test_gravity_lends_what_the_centre_of_mass_has_fallen(tmp_path: Path) -> None:
+    place = tmp_path / "scene.toml"
+    place.write_text(SCENE, encoding="utf-8")
+    run = simulate(load(place), 0.3)
+    turned = run.end_q[0] if run.end_q[0] != run.q[0, 0] else None
+    assert turned is not None
+    centre = np.array([15e-3 + 10e-3j]) * np.exp(1j * np.array([run.q[0, 0], turned]))
+    fallen = 10e-3 * (1.5 * np.diff(centre.real)[0] - 9.81 * np.diff(centre.imag)[0])
+    assert _work_of_gravity(run) == pytest.approx(fallen, rel=1e-12)
+    assert run.energy["in_J"] == pytest.approx(fallen, rel=1e-7)

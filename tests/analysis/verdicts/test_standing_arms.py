@@ -1,0 +1,43 @@
+"""Can the wheel make way for two contacts at once, whatever its lever arms are?"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from watchsim.analysis.verdicts.standing import _passes
+
+ARM = st.sampled_from([0.0, 1e-5, 3e-4, 9e-4, 2.5e-3]).flatmap(lambda size: st.sampled_from([size, -size]))  # m
+
+
+@dataclass
+class Contacts:
+    """Rates at which two gaps open, by body: m for a turn of one radian."""
+
+    lever: tuple[float, float]
+    wheel: tuple[float, float]
+
+    @property
+    def pairs(self) -> tuple[int, int]:
+        return (0, 1)
+
+    def of(self, row: int, name: str) -> tuple[float, float]:
+        return (getattr(self, name)[row], 0.0)
+
+
+def some_turn(found: Contacts, way: float) -> bool:
+    """By trying the turns at which one gap just stays, and those far beyond them."""
+    tried = [0.0, -1e9, 1e9]
+    tried += [-way * a / b for a, b in zip(found.lever, found.wheel, strict=True) if b]
+    return any(all(way * a + b * x >= -1e-12 for a, b in zip(found.lever, found.wheel, strict=True)) for x in tried)
+
+
+@given(ARM, ARM, ARM, ARM, st.sampled_from([1.0, -1.0]))
+def test_as_by_trying_all_turns(a: float, b: float, c: float, d: float, way: float) -> None:
+    found: Any = Contacts((a, b), (c, d))
+    edges = sorted(-way * lever / wheel for lever, wheel in ((a, c), (b, d)) if wheel)
+    assume(len(edges) < 2 or edges[1] - edges[0] > 1e-9 or edges[0] == edges[1])
+    assert _passes("wheel", "lever", found, way) is some_turn(found, way)
