@@ -5,7 +5,8 @@ from __future__ import annotations
 import csv
 import io
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import chain, islice
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from watchsim.simulation.record.trajectory import Trajectory
 
 BEAT_COLUMNS = ("beat", "t_s", "tick_s", "turn_s", "turn_at", "amplitude", "period_s", "rate_s_per_d", "beat_error_ms")
 PARTS = ("wheel", "lever", "balance")
+ROWS_AT_ONCE = 1 << 14
 PHASE_COLUMNS = (
     *("beat", "phase", "t_s", "duration_ms"),
     *(f"{part}_{what}_deg" for part in PARTS for what in ("angle", "turn")),
@@ -58,8 +60,13 @@ def _phase_row(stage: Stage, known: bool) -> list[object]:
 
 
 def _text(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    out = io.StringIO()
-    table = csv.writer(out, lineterminator="\n")
-    table.writerow(header)
-    table.writerows(["" if isinstance(x, float) and not math.isfinite(x) else x for x in row] for row in rows)
-    return out.getvalue()
+    told = (["" if isinstance(x, float) and not math.isfinite(x) else x for x in row] for row in rows)
+    return "".join(_pieces(chain([header], told)))
+
+
+def _pieces(rows: Iterator[Sequence[object]]) -> Iterator[str]:
+    """Some thousand rows at a time: while it grows, a StringIO takes four bytes for every letter."""
+    while some := list(islice(rows, ROWS_AT_ONCE)):
+        out = io.StringIO()
+        csv.writer(out, lineterminator="\n").writerows(some)
+        yield out.getvalue()
