@@ -16,7 +16,7 @@ from watchsim.simulation.record.trajectory import Trajectory
 
 BEAT_COLUMNS = ("beat", "t_s", "tick_s", "turn_s", "turn_at", "amplitude", "period_s", "rate_s_per_d", "beat_error_ms")
 PARTS = ("wheel", "lever", "balance")
-ROWS_AT_ONCE = 1 << 14
+ROWS_AT_ONCE = 1 << 12
 PHASE_COLUMNS = (
     *("beat", "phase", "t_s", "duration_ms"),
     *(f"{part}_{what}_deg" for part in PARTS for what in ("angle", "turn")),
@@ -26,8 +26,8 @@ PHASE_COLUMNS = (
 )
 
 
-def beats_csv(found: Beats) -> str:
-    """One row per half swing: passage, tick, the turning point after it (time and place), amplitude, period, rate, beat error.
+def beats_csv(found: Beats) -> Iterator[str]:
+    """One row per half swing, some thousand rows a piece: passage, tick, the turning point after it (time and place), amplitude, period, rate, beat error.
 
     Angles in degrees (turn_at_deg, amplitude_deg), of a sliding body metres (turn_at_m, amplitude_m); empty where unknown.
     """
@@ -39,8 +39,8 @@ def beats_csv(found: Beats) -> str:
     return _text(header, ([found.before + i + 1, *row] for i, row in enumerate(np.column_stack(columns).tolist())))
 
 
-def phases_csv(run: Trajectory, found: Beats) -> str:
-    """One row per phase: beat (as in beats.csv), name, start, duration, for wheel, lever and balance the angle at its start and
+def phases_csv(run: Trajectory, found: Beats) -> Iterator[str]:
+    """One row per phase, in pieces: beat (as in beats.csv), name, start, duration, for wheel, lever and balance the angle at its start and
     the turn during it, on what an impulse acts, which stone is unlocked in the beat, angular velocities, the angular impulse of
     all contacts on the oscillator, and where the energy went (see analysis/timeline/rows.py).
 
@@ -59,14 +59,11 @@ def _phase_row(stage: Stage, known: bool) -> list[object]:
     return [phase.beat, phase.name, *times, *turned, phase.on, stage.pallet, *rates, *(energies if known else [math.nan] * 7)]
 
 
-def _text(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
+def _text(header: Sequence[str], rows: Iterable[Sequence[object]]) -> Iterator[str]:
+    """Some thousand rows at a time: of a long run there are hundreds of thousands."""
     told = (["" if isinstance(x, float) and not math.isfinite(x) else x for x in row] for row in rows)
-    return "".join(_pieces(chain([header], told)))
-
-
-def _pieces(rows: Iterator[Sequence[object]]) -> Iterator[str]:
-    """Some thousand rows at a time: while it grows, a StringIO takes four bytes for every letter."""
-    while some := list(islice(rows, ROWS_AT_ONCE)):
+    lines = chain([header], told)
+    while some := list(islice(lines, ROWS_AT_ONCE)):
         out = io.StringIO()
         csv.writer(out, lineterminator="\n").writerows(some)
         yield out.getvalue()
