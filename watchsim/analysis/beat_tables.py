@@ -27,9 +27,10 @@ PHASE_COLUMNS = (
 
 
 def beats_csv(found: Beats) -> Iterator[str]:
-    """One row per half swing, some thousand rows a piece: passage, tick, the turning point after it (time and place), amplitude, period, rate, beat error.
+    """One row per half swing: passage, tick, the turning point after it (time and place), amplitude, period, rate, beat error.
 
-    Angles in degrees (turn_at_deg, amplitude_deg), of a sliding body metres (turn_at_m, amplitude_m); empty where unknown.
+    In pieces of some thousand rows. Angles in degrees (turn_at_deg, amplitude_deg), of a sliding body metres (turn_at_m,
+    amplitude_m); empty where unknown.
     """
     unit = "deg" if found.angular else "m"
     header = [f"{name}_{unit}" if name in ("turn_at", "amplitude") else name for name in BEAT_COLUMNS]
@@ -40,7 +41,7 @@ def beats_csv(found: Beats) -> Iterator[str]:
 
 
 def phases_csv(run: Trajectory, found: Beats) -> Iterator[str]:
-    """One row per phase, in pieces: beat (as in beats.csv), name, start, duration, for wheel, lever and balance the angle at its start and
+    """One row per phase: beat (as in beats.csv), name, start, duration, for wheel, lever and balance the angle at its start and
     the turn during it, on what an impulse acts, which stone is unlocked in the beat, angular velocities, the angular impulse of
     all contacts on the oscillator, and where the energy went (see analysis/timeline/rows.py).
 

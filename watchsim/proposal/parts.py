@@ -11,14 +11,14 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 
 from watchsim.geometry.primitives import Point
-from watchsim.proposal.centres import Centre, centre_of, hole_of
+from watchsim.proposal.centres import SURE, Centre, centre_of, hole_of
 from watchsim.proposal.piece import Piece
 from watchsim.proposal.source import Mark, Source
-from watchsim.proposal.words import FIXED, part_of, part_word, tokens
+from watchsim.proposal.words import FIXED, LEVER, OSCILLATOR, hints_of, part_of, part_word, tokens
 
 INSIDE = 0.3  # of a piece in the material of a body: it belongs to it
-BORDER = 0.05  # of a piece's outline on that of a body: it belongs to it
-BESIDE = 2e-6  # m: outlines this close lie on each other
+BORDER = 0.2  # of a piece's outline on that of a body: it belongs to it
+BESIDE = 1e-6  # m: outlines this close lie on each other
 
 
 @dataclass(eq=False)
@@ -28,6 +28,7 @@ class Part:
     pieces: list[Piece]
     centre: Centre | None = None
     kind: str | None = None
+    hints: frozenset[str] = frozenset()  # kinds that its name may mean
     why: list[str] = field(default_factory=list)
 
     @property
@@ -75,7 +76,10 @@ def _single(piece: Piece, marks: Sequence[Mark], source: Source) -> Part:
     prefix = piece.layer.split("_")[0]
     named = source.blocks.get(prefix)
     kind = (part_of(named) if named else None) or part_of(piece.layer)
-    return Part([piece], None if kind == FIXED else centre_of(piece, marks), kind)
+    centre = centre_of(piece, marks)
+    if kind == FIXED and piece.is_disc and centre is not None and centre.worth == SURE:
+        kind = None  # a disc about a pivot turns, whatever it is called
+    return Part([piece], None if kind == FIXED else centre, kind, hints_of(piece.layer))
 
 
 def _of_one_file(source: Source, parts: list[Part], marks: Sequence[Mark]) -> list[Part]:
@@ -86,11 +90,11 @@ def _of_one_file(source: Source, parts: list[Part], marks: Sequence[Mark]) -> li
     kind = part_of(source.path.stem) or next((part.kind for part in parts if part.kind), None)
     why = ["it is a drawing by itself"]
     if kind == FIXED:
-        return [Part(pieces, None, kind, why)]
+        return [Part(pieces, None, kind, why=why)]
     if marks:
-        return [Part(pieces, Centre(marks[0].at, 3, f"the drawing marks it on layer {marks[0].layer}", marks[0]), kind, why)]
+        return [Part(pieces, Centre(marks[0].at, 3, f"the drawing marks it on layer {marks[0].layer}", marks[0]), kind, why=why)]
     centres = [part.centre for part in parts if part.centre is not None]
-    whole = Part(pieces, max(centres, key=lambda centre: centre.worth, default=None), kind, why)
+    whole = Part(pieces, max(centres, key=lambda centre: centre.worth, default=None), kind, why=why)
     whole.centre = whole.centre or _own_centre(whole)
     return [whole]
 
@@ -111,15 +115,23 @@ def _unite(part: Part, other: Part, why: str) -> None:
     part.pieces += other.pieces
     worth = [centre for centre in (part.centre, other.centre) if centre is not None]
     part.centre = max(worth, key=lambda centre: centre.worth, default=None)
-    part.kind = part.kind or other.kind
+    part.kind = _united(part.kind, other.kind)
     part.why = list(dict.fromkeys([*part.why, *other.why, why]))
+
+
+def _united(first: str | None, second: str | None) -> str | None:
+    """What an anchor with its pendulum, or a lever with its own balance, is: the oscillator."""
+    if {first, second} == {LEVER, OSCILLATOR}:
+        return OSCILLATOR
+    return first or second
 
 
 def _apart(one: Part, other: Part) -> bool:
     """Do centres or names say that these are two bodies?"""
     if one.centre is not None and other.centre is not None and not one.centre.is_that_of(other.centre):
         return True
-    return one.kind is not None and other.kind is not None and one.kind != other.kind
+    first, second = ({part.kind} if part.kind else part.hints for part in (one, other))
+    return bool(first) and bool(second) and not set(first) & set(second)
 
 
 def _one_block(source: Source) -> Callable[[Part, Part], bool]:
@@ -131,7 +143,7 @@ def _one_block(source: Source) -> Callable[[Part, Part], bool]:
 
 
 def _one_centre(one: Part, other: Part) -> bool:
-    return one.centre is not None and other.centre is not None and one.centre.is_that_of(other.centre) and not _apart(one, other)
+    return one.centre is not None and other.centre is not None and one.centre.is_that_of(other.centre)
 
 
 def _one_name(one: Part, other: Part) -> bool:
@@ -172,11 +184,21 @@ def _both_left_over(one: Part, other: Part) -> bool:
 def _take_in(parts: list[Part]) -> None:
     """Give pieces without a centre to the body in whose material, or along whose outline, they lie."""
     for part in [part for part in parts if part.centre is None and part.kind != FIXED]:
-        shares = [(_share(part, other), -other.area, k) for k, other in enumerate(parts) if other.centre and not _apart(part, other)]
-        best = max(shares, default=(0.0, 0.0, 0))
-        if best[0] >= INSIDE:
-            _unite(parts[best[2]], part, "they lie in each other")
+        around = [other for other in parts if other.centre is not None and not _apart(part, other)]
+        body = max(around, key=lambda other: (_share(part, other), -other.area), default=None)
+        if body is not None and _share(part, body) >= INSIDE:
+            _unite(body, part, "they lie in each other")
             parts.remove(part)
+    for part in [part for part in parts if part.centre is None and part.kind == OSCILLATOR]:  # a rod fixed to an anchor
+        if not any(other.centre is not None and other.kind == OSCILLATOR for other in parts):
+            body = next((other for other in parts if other.kind == LEVER and other.centre and _meet(part, other)), None)
+            if body is not None:
+                _unite(body, part, "they lie in each other")
+                parts.remove(part)
+
+
+def _meet(part: Part, other: Part) -> bool:
+    return any(p.region.intersects(q.region) for p in part.pieces for q in other.pieces)
 
 
 def _share(part: Part, other: Part) -> float:

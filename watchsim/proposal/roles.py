@@ -101,11 +101,14 @@ def _roundness(part: Part) -> float:
 
 def _name(roles: Sequence[Role]) -> None:
     taken: set[str] = set()
+    swings = next((role for role in roles if role.task == OSCILLATOR), None)
     for role in roles:
         words = [word for layer in role.part.layers if (word := part_word(layer)) is not None]
         plain = words[0] if words else NAMES[role.task]
         if role.task == OSCILLATOR and not words and not any(other.task == LEVER for other in roles):
             plain = "anchor"
+        if role.task == LEVER and not words and swings is None:
+            plain = "driver"
         name, k = plain, 1
         while name in taken:
             k += 1

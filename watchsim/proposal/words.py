@@ -20,7 +20,7 @@ PARTS = {
 # Words for a feature, which hint at the part that has it.
 FEATURES = {
     **dict.fromkeys(("escape", "teeth", "tooth", "zahn", "zaehne", "zähne", "dents"), WHEEL),
-    **dict.fromkeys(("pallet", "pallets", "stone", "stones", "fork", "horn", "horns", "dart", "guard"), LEVER),
+    **dict.fromkeys(("pallet", "pallets", "stone", "stones", "fork", "horn", "horns", "dart", "guard", "arm", "arms"), LEVER),
     **dict.fromkeys(("gabel", "stein", "steine", "fourchette", "palette", "palettes", "levée", "levees"), LEVER),
     **dict.fromkeys(("roller", "table", "safety", "impulse", "jewel", "rim", "hebelstein", "bob", "rod"), OSCILLATOR),
 }
@@ -45,8 +45,15 @@ def part_of(name: str) -> str | None:
     named = [PARTS[word] for word in words if word in PARTS]
     if named:
         return named[0]
-    hinted = {FEATURES[word] for word in words if word in FEATURES}
-    return hinted.pop() if len(hinted) == 1 else None
+    hinted = hints_of(name)
+    return next(iter(hinted)) if len(hinted) == 1 else None
+
+
+def hints_of(name: str) -> frozenset[str]:
+    """All kinds of part that the words of a name may belong to; empty where they say nothing."""
+    words = tokens(name)
+    named = [PARTS[word] for word in words if word in PARTS]
+    return frozenset(named[:1] or (FEATURES[word] for word in words if word in FEATURES))
 
 
 def part_word(name: str) -> str | None:
