@@ -13,7 +13,7 @@ from watchsim.geometry.primitives import Point
 from watchsim.geometry.solids.mass import section
 from watchsim.proposal.parts import Part
 from watchsim.proposal.roles import Role
-from watchsim.proposal.words import LEVER, OSCILLATOR, WHEEL
+from watchsim.proposal.words import DRIVER, LEVER, OSCILLATOR, WHEEL
 
 STEEL = 7850.0  # kg/m³
 WATCH = 40e-3  # m: what is larger is a clock
@@ -24,6 +24,7 @@ Q_FACTOR = {True: 250.0, False: 1000.0}
 SHARE = 0.35  # of the drive's work that reaches the oscillator: usual for a lever escapement
 LIGHT = 30.0  # times the lever's inertia: a balance with less is drawn without its rim
 HEAVY = 100.0  # times the wheel's inertia: an anchor with less is drawn without its pendulum
+STEPPED = 8  # teeth: a wheel with fewer is driven step by step, as in a Geneva drive
 TURNS = 1.0  # per second, of what has nothing to hold it back but damping
 
 
@@ -56,7 +57,7 @@ def amounts_of(roles: Sequence[Role], size: float, swing: float) -> Amounts:
     swinging = next((role for role in roles if role.task == OSCILLATOR), None)
     if swinging is not None:
         inertia[swinging.name] = _oscillators(inertia, swinging, lever, wheel)
-    driven = _driven(roles, wheel, lever, swinging)
+    driven = _driven(roles, wheel, swinging)
     if swinging is None:
         torque = Amount(1e-6 if watch else 1e-4, "nothing in the drawing says how strong the drive is")
         slow = Amount(torque.value / (2.0 * math.pi * TURNS), f"so that {driven} comes to about {TURNS:g} turn per second")
@@ -87,9 +88,10 @@ def _oscillators(inertia: dict[str, Amount], swinging: Role, lever: Role | None,
     return own
 
 
-def _driven(roles: Sequence[Role], wheel: Role | None, lever: Role | None, swinging: Role | None) -> str | None:
-    if swinging is None and lever is not None and wheel is not None and 0 < wheel.teeth < 8:
-        return lever.name
+def _driven(roles: Sequence[Role], wheel: Role | None, swinging: Role | None) -> str | None:
+    driver = next((role for role in roles if role.task == DRIVER), None)
+    if driver is not None and (wheel is None or wheel.teeth < STEPPED):
+        return driver.name
     if wheel is not None:
         return wheel.name
     return next((role.name for role in roles if role.moves and role is not swinging), None)

@@ -17,7 +17,7 @@ from watchsim.geometry.primitives import Point
 from watchsim.mechanism.material_polygons import material, placed
 from watchsim.proposal.piece import Piece, Region
 from watchsim.proposal.roles import Role
-from watchsim.proposal.words import FIXED, LEVER, OSCILLATOR, WHEEL, facing_by_name
+from watchsim.proposal.words import DRIVER, FIXED, LEVER, OSCILLATOR, WHEEL, facing_by_name
 
 Floats = NDArray[np.float64]
 SWING = math.radians(15.0)  # of a lever, to either side
@@ -56,7 +56,7 @@ def facings(roles: Sequence[Role], size: float) -> tuple[list[Facing], list[Faci
 
 def _misses(one: Role, other: Role) -> bool:
     """What turns all the way passes what stands still; it would end there."""
-    return {one.task, other.task} <= {WHEEL, OSCILLATOR, FIXED} and FIXED in (one.task, other.task) and not _anchor(one, other)
+    return {one.task, other.task} <= {WHEEL, DRIVER, OSCILLATOR, FIXED} and FIXED in (one.task, other.task) and not _anchor(one, other)
 
 
 def _anchor(one: Role, other: Role) -> bool:
@@ -82,7 +82,7 @@ def _overlap(p: Piece, q: Piece) -> float:
 
 
 def turns_fully(role: Role) -> bool:
-    return role.task == WHEEL or (role.task == OSCILLATOR and role.name != "anchor")
+    return role.task in (WHEEL, DRIVER) or (role.task == OSCILLATOR and role.name != "anchor")
 
 
 def _reach(one: Role, p: Piece, other: Role, q: Piece, near: float) -> bool:

@@ -65,6 +65,7 @@ def _in_one_drawing(source: Source, pieces: Sequence[Piece], alone: bool) -> lis
     _take_in(parts)
     _join(parts, _one_layer(parts), "they lie on one layer")
     _give_marks(parts, marks)
+    _give_to_nearest(parts)
     _join(parts, _both_left_over, "nothing shows a centre")
     for part in parts:
         if part.centre is None and part.kind != FIXED and part.kind is not None:
@@ -172,9 +173,35 @@ def _one_layer(parts: Sequence[Part]) -> Callable[[Part, Part], bool]:
             return False
         there = [part for part in parts if shared[0] in part.layers]
         centres = [part.centre for part in there if part.centre is not None]
-        return len(there) < len(parts) and len({id(part) for part in there if part.centre is not None}) <= 1 and len(centres) <= 1
+        return len(there) < len(parts) and len(centres) <= 1 and _nearest_to_each_other(one, other, parts)
 
     return together
+
+
+def _nearest_to_each_other(one: Part, other: Part, parts: Sequence[Part]) -> bool:
+    """Is no other body, of a kind that the names allow, nearer to what has no centre yet?"""
+    loose, body = (one, other) if one.centre is None else (other, one)
+    if body.centre is None:
+        return True
+    return _nearest(loose, parts) is body
+
+
+def _nearest(loose: Part, parts: Sequence[Part]) -> Part | None:
+    bodies = [part for part in parts if part.centre is not None and not _apart(loose, part)]
+    return min(bodies, key=lambda part: _distance(loose, part), default=None)
+
+
+def _distance(one: Part, other: Part) -> float:
+    return min(float(p.region.distance(q.region)) for p in one.pieces for q in other.pieces)
+
+
+def _give_to_nearest(parts: list[Part]) -> None:
+    """What is named for a moving part goes to the nearest one of that kind."""
+    for loose in [part for part in parts if part.centre is None and part.kind != FIXED and part.hints - {FIXED}]:
+        body = _nearest(loose, parts)
+        if body is not None and body.kind is not None:
+            _unite(body, loose, "it is the nearest part of the kind that their names speak of")
+            parts.remove(loose)
 
 
 def _both_left_over(one: Part, other: Part) -> bool:

@@ -1,4 +1,4 @@
-"""Which part is driven, which swings, and which stands between them?"""
+"""Which part is driven, which drives, which swings, and which stands between them?"""
 
 from __future__ import annotations
 
@@ -8,23 +8,22 @@ from dataclasses import dataclass
 
 from watchsim.proposal.centres import is_toothed
 from watchsim.proposal.parts import Part
-from watchsim.proposal.words import FIXED, LEVER, OSCILLATOR, WHEEL, part_word
+from watchsim.proposal.words import DRIVER, FIXED, LEVER, OSCILLATOR, WHEEL, part_of, part_word
 
 FEWEST_TEETH = 8  # of an escape wheel; with fewer slots a wheel is driven step by step, as in a Geneva drive
 ROUNDISH = 0.4  # of its outlines on arcs about its pivot: a part that may turn through whole turns
-NAMES = {WHEEL: "wheel", LEVER: "lever", OSCILLATOR: "balance", FIXED: "banking", None: "part"}
+NAMES = {WHEEL: "wheel", LEVER: "lever", OSCILLATOR: "balance", DRIVER: "driver", FIXED: "banking"}
 
 
 @dataclass(eq=False)
 class Role:
-    """A part with its name and task: wheel, lever, oscillator, fixed, or None. `teeth` is 0 where it is no wheel."""
+    """A part with its name and task: wheel, lever, oscillator, driver or fixed. `teeth` is 0 where it is no wheel."""
 
     part: Part
     name: str
-    task: str | None
+    task: str
     why: str
     teeth: int = 0
-    direction: int = 0  # of a wheel: the way its teeth lean, +1 counter-clockwise; 0 where they do not
 
     @property
     def moves(self) -> bool:
@@ -50,8 +49,9 @@ def roles_of(parts: Sequence[Part]) -> list[Role]:
             found.append(Role(part, "", OSCILLATOR, swinging[1]))
         else:
             named = part.kind == LEVER
-            found.append(Role(part, "", LEVER, "the names of its layers say so" if named else "it turns and is no wheel"))
-    order = [WHEEL, LEVER, OSCILLATOR, None, FIXED]
+            task = LEVER if named or swinging is not None else DRIVER
+            found.append(Role(part, "", task, "the names of its layers say so" if named else "it turns and is no wheel"))
+    order = [DRIVER, WHEEL, LEVER, OSCILLATOR, FIXED]
     found.sort(key=lambda role: order.index(role.task))
     _name(found)
     return found
@@ -101,14 +101,13 @@ def _roundness(part: Part) -> float:
 
 def _name(roles: Sequence[Role]) -> None:
     taken: set[str] = set()
-    swings = next((role for role in roles if role.task == OSCILLATOR), None)
     for role in roles:
-        words = [word for layer in role.part.layers if (word := part_word(layer)) is not None]
+        named = [(part_word(layer), part_of(layer)) for layer in role.part.layers]
+        words = [word for word, kind in named if word is not None and (kind == role.task or role.task == DRIVER) and kind != FIXED]
+        words = words or [word for word, _ in named if word is not None and role.task == FIXED]
         plain = words[0] if words else NAMES[role.task]
         if role.task == OSCILLATOR and not words and not any(other.task == LEVER for other in roles):
             plain = "anchor"
-        if role.task == LEVER and not words and swings is None:
-            plain = "driver"
         name, k = plain, 1
         while name in taken:
             k += 1

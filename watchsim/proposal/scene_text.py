@@ -18,7 +18,7 @@ from watchsim.proposal.words import OSCILLATOR
 
 FRICTION, RESTITUTION = 0.12, 0.2
 DURATION = "5 s"
-TASKS = {"wheel": "the wheel", "lever": "the lever", "oscillator": "the oscillator", "fixed": "stands still"}
+TASKS = {"wheel": "the wheel", "lever": "the lever", "oscillator": "the oscillator", "driver": "the driver", "fixed": "stands still"}
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 
-WHEEL, LEVER, OSCILLATOR, FIXED = "wheel", "lever", "oscillator", "fixed"
+WHEEL, LEVER, OSCILLATOR, DRIVER, FIXED = "wheel", "lever", "oscillator", "driver", "fixed"
 
 # Words for a part itself; a layer name that begins with one names its part.
 PARTS = {
