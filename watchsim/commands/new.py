@@ -19,10 +19,7 @@ DRAWINGS_USAGE = "watchsim new DRAWING [DRAWING ...] [-o DIR] [--json] [--force]
 
 
 def options(parser: argparse.ArgumentParser) -> None:
-    parser.usage = (
-        "watchsim new DESIGN [--DIMENSION VALUE ...] [-o DIR] [--list] [--json] [--force]\n"
-        f"       {DRAWINGS_USAGE}"
-    )
+    parser.usage = f"watchsim new DESIGN [--DIMENSION VALUE ...] [-o DIR] [--list] [--json] [--force]\n       {DRAWINGS_USAGE}"
     parser.epilog = (
         'For example: watchsim new swiss_lever --lock "2°" --draw "13.5°" --teeth 20 -o my_lever. '
         "watchsim new --list lists the designs, watchsim new DESIGN --list their dimensions. "

@@ -82,9 +82,13 @@ def _plate(part: Part, thickness: float) -> float:
 def _oscillators(inertia: dict[str, Amount], swinging: Role, lever: Role | None, wheel: Role | None) -> Amount:
     own = inertia[swinging.name]
     if lever is not None and own.value < LIGHT * inertia[lever.name].value:
-        return Amount(max(BALANCE, LIGHT * inertia[lever.name].value), "a balance's; what is drawn is too light to be all of it")
+        return Amount(
+            max(BALANCE, LIGHT * inertia[lever.name].value), "a balance's; what is drawn is too light to be all of it"
+        )
     if lever is None and wheel is not None and own.value < HEAVY * inertia[wheel.name].value:
-        return Amount(HEAVY * inertia[wheel.name].value, "with its pendulum or balance; what is drawn is too light to be all of it")
+        return Amount(
+            HEAVY * inertia[wheel.name].value, "with its pendulum or balance; what is drawn is too light to be all of it"
+        )
     return own
 
 

@@ -40,7 +40,9 @@ def centre_of(piece: Piece, marks: Sequence[Mark]) -> Centre | None:
     best = max(shares, key=lambda pair: pair[0], default=(0.0, None))
     symmetry = piece.turned
     if best[1] is not None and best[0] >= SHARE * piece.length:
-        return Centre(best[1].at, SURE, f"the drawing marks a point there, on layer {best[1].layer}, with arcs about it", best[1])
+        return Centre(
+            best[1].at, SURE, f"the drawing marks a point there, on layer {best[1].layer}, with arcs about it", best[1]
+        )
     if symmetry is not None and is_toothed(symmetry):
         mark = next((one for one in marks if math.dist(one.at, symmetry.centre) <= SAME), None)
         at = symmetry.centre if mark is None else mark.at

@@ -56,7 +56,11 @@ def facings(roles: Sequence[Role], size: float) -> tuple[list[Facing], list[Faci
 
 def _misses(one: Role, other: Role) -> bool:
     """What turns all the way passes what stands still; it would end there."""
-    return {one.task, other.task} <= {WHEEL, DRIVER, OSCILLATOR, FIXED} and FIXED in (one.task, other.task) and not _anchor(one, other)
+    return (
+        {one.task, other.task} <= {WHEEL, DRIVER, OSCILLATOR, FIXED}
+        and FIXED in (one.task, other.task)
+        and not _anchor(one, other)
+    )
 
 
 def _anchor(one: Role, other: Role) -> bool:
@@ -96,9 +100,7 @@ def _reach(one: Role, p: Piece, other: Role, q: Piece, near: float) -> bool:
         low, high = _ring(p, _at(one))
         ranges = [_ring_of(points, _at(one)) for points in _swung(other, q)]
         return any(least <= high + near and most >= low - near for least, most in ranges)
-    placed_p, placed_q = (
-        [_region(piece, points) for points in _swung(role, piece)] for role, piece in ((one, p), (other, q))
-    )
+    placed_p, placed_q = ([_region(piece, points) for points in _swung(role, piece)] for role, piece in ((one, p), (other, q)))
     return any(first.distance(second) <= near for first in placed_p for second in placed_q)
 
 

@@ -26,9 +26,7 @@ def lean_of(part: Part) -> int:
     symmetry = piece.turned
     assert symmetry is not None
     height = symmetry.outer - symmetry.inner
-    middles = [
-        _middle(piece.rings, symmetry.centre, symmetry.inner + share * height, symmetry.fold) for share in (TIP, ROOT)
-    ]
+    middles = [_middle(piece.rings, symmetry.centre, symmetry.inner + share * height, symmetry.fold) for share in (TIP, ROOT)]
     if None in middles:
         return 0
     tip, root = (middle for middle in middles if middle is not None)

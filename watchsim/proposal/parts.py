@@ -10,14 +10,17 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from watchsim.geometry.primitives import Point
-from watchsim.proposal.centres import SURE, Centre, centre_of, hole_of
+from watchsim.proposal.centres import SURE, Centre, centre_of, hole_of, is_toothed
 from watchsim.proposal.piece import Piece
 from watchsim.proposal.source import Mark, Source
-from watchsim.proposal.words import FIXED, LEVER, OSCILLATOR, hints_of, part_of, part_word, tokens
+from watchsim.proposal.words import FIXED, LEVER, OSCILLATOR, WHEEL, hints_of, part_of, part_word, tokens
 
 INSIDE = 0.3  # of a piece in the material of a body: it belongs to it
 BORDER = 0.2  # of a piece's outline on that of a body: it belongs to it
+CLOSE = 0.01  # of the whole: an outline without a name as near as this to a body belongs to it
 BESIDE = 1e-6  # m: outlines this close lie on each other
 
 
@@ -66,6 +69,7 @@ def _in_one_drawing(source: Source, pieces: Sequence[Piece], alone: bool) -> lis
     _join(parts, _one_layer(parts), "they lie on one layer")
     _give_marks(parts, marks)
     _give_to_nearest(parts)
+    _give_to_close(parts)
     _join(parts, _both_left_over, "nothing shows a centre")
     for part in parts:
         if part.centre is None and part.kind != FIXED and part.kind is not None:
@@ -93,7 +97,9 @@ def _of_one_file(source: Source, parts: list[Part], marks: Sequence[Mark]) -> li
     if kind == FIXED:
         return [Part(pieces, None, kind, why=why)]
     if marks:
-        return [Part(pieces, Centre(marks[0].at, 3, f"the drawing marks it on layer {marks[0].layer}", marks[0]), kind, why=why)]
+        return [
+            Part(pieces, Centre(marks[0].at, 3, f"the drawing marks it on layer {marks[0].layer}", marks[0]), kind, why=why)
+        ]
     centres = [part.centre for part in parts if part.centre is not None]
     whole = Part(pieces, max(centres, key=lambda centre: centre.worth, default=None), kind, why=why)
     whole.centre = whole.centre or _own_centre(whole)
@@ -202,6 +208,23 @@ def _give_to_nearest(parts: list[Part]) -> None:
         if body is not None and body.kind is not None:
             _unite(body, loose, "it is the nearest part of the kind that their names speak of")
             parts.remove(loose)
+
+
+def _give_to_close(parts: list[Part]) -> None:
+    """What nothing names and is no disc, such as a stone set in a lever, goes to the part that it nearly touches."""
+    points = np.concatenate([piece.points for part in parts for piece in part.pieces]) if parts else np.zeros((1, 2))
+    near = CLOSE * float((points.max(axis=0) - points.min(axis=0)).max())
+    for loose in [part for part in parts if part.centre is None and part.kind is None and not part.hints]:
+        if len(loose.pieces) > 1 or loose.pieces[0].is_disc:
+            continue
+        body = _nearest(loose, [part for part in parts if not _is_wheel(part)])
+        if body is not None and _distance(loose, body) <= near:
+            _unite(body, loose, "it nearly touches them")
+            parts.remove(loose)
+
+
+def _is_wheel(part: Part) -> bool:
+    return part.kind == WHEEL or any(piece.turned is not None and is_toothed(piece.turned) for piece in part.pieces)
 
 
 def _both_left_over(one: Part, other: Part) -> bool:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -89,26 +89,43 @@ class Piece:
         return DEVIATION * max(first.length, 1e-6)
 
 
-def pieces_of(file: int, loops: Sequence[Loop]) -> list[Piece]:
-    """The pieces of closed outlines; layer by layer, in the order of the drawing."""
+def pieces_of(file: int, loops: Sequence[Loop], crowded: frozenset[str] = frozenset()) -> list[Piece]:
+    """The pieces of closed outlines; layer by layer, in the order of the drawing.
+
+    On `crowded` layers outlines cross: what is taken for a hole there, but leaves the outline around it, is a part of its own.
+    """
     found: list[Piece] = []
     for layer in dict.fromkeys(loop.layer for loop in loops):
         own = [loop for loop in loops if loop.layer == layer and loop.closed]
-        single = [Piece(file, layer, tuple(group)) for group in _with_holes(own)]
+        single = [Piece(file, layer, tuple(group)) for group in _with_holes(own, layer in crowded)]
         found += _around_a_centre(single)
     return found
 
 
-def _with_holes(loops: Sequence[Loop]) -> Iterator[list[Loop]]:
+def _with_holes(loops: Sequence[Loop], crowded: bool) -> Iterator[list[Loop]]:
     outers = [loop for loop in loops if not loop.hole]
     groups: list[list[Loop]] = [[loop] for loop in outers]
     sizes = [abs(area(loop)) for loop in outers]
     for hole in (loop for loop in loops if loop.hole):
         place = hole.edges[0].point(0.5)
         around = [k for k, loop in enumerate(outers) if sizes[k] > abs(area(hole)) and winding(loop, place) != 0]
-        if around:
-            groups[min(around, key=lambda k: sizes[k])].append(hole)
+        within = min(around, key=lambda k: sizes[k], default=None)
+        if within is None or (crowded and not _is_hole(hole, outers[within], loops)):
+            groups.append([replace(hole.reversed(), hole=False)])
+        else:
+            groups[within].append(hole)
     yield from groups
+
+
+def _is_hole(hole: Loop, outer: Loop, loops: Sequence[Loop]) -> bool:
+    """Does it lie in the outline around it, and cross nothing else on its layer?"""
+    inside, around = _filled(hole), _filled(outer)
+    others = (_filled(loop) for loop in loops if loop is not hole and loop is not outer)
+    return bool(around.covers(inside)) and not any(inside.boundary.crosses(other.boundary) for other in others)
+
+
+def _filled(loop: Loop) -> Region:
+    return material([(chord_points(loop, DEVIATION * loop.length), False)])[0]
 
 
 def _around_a_centre(pieces: Sequence[Piece]) -> list[Piece]:

@@ -14,6 +14,7 @@ from watchsim.drawing.drawing import Drawing
 from watchsim.mechanism.overlap import overlaps
 from watchsim.proposal.amounts import amounts_of
 from watchsim.proposal.facing import Facing, facings
+from watchsim.proposal.layers import apart
 from watchsim.proposal.lean import lean_of
 from watchsim.proposal.parts import parts_of
 from watchsim.proposal.piece import Piece, pieces_of
@@ -24,6 +25,7 @@ from watchsim.proposal.sorted_drawings import drawn
 from watchsim.proposal.source import Source, is_mark, read_source, size_of
 from watchsim.proposal.start import start_of
 from watchsim.proposal.words import WHEEL
+from watchsim.scene.errors import SceneError
 from watchsim.scene.file.load import load
 from watchsim.scene.scene import Scene
 
@@ -49,11 +51,13 @@ class Proposal:
 def propose(paths: Sequence[Path]) -> Proposal:
     """A scene from drawings of parts, or of a whole assembly.
 
-    NothingToPropose where there is no closed outline, SceneError where the scene that was made of them does not load.
+    NothingToPropose where there is no closed outline, or where outlines have faults that no scene takes.
     """
     sources = [read_source(path) for path in paths]
     pieces, left_out = _pieces(sources)
-    roles = roles_of(parts_of(sources, pieces))
+    parts = parts_of(sources, pieces)
+    apart(parts, [source.crowded for source in sources])
+    roles = roles_of(parts)
     size = size_of([source.drawing for source in sources])
     places = side_by_side(roles, len(sources))
     met, others = _facings(roles, size, bool(places))
@@ -68,9 +72,7 @@ def propose(paths: Sequence[Path]) -> Proposal:
         kept = [facing for k, facing in enumerate(plan.facings) if k not in wrong]
         gone = [(facing, "they overlap at the start") for k, facing in enumerate(plan.facings) if k in wrong]
         plan = replace(plan, facings=kept, others=[*plan.others, *gone], guesses=[])
-    sides = tuple(
-        (f"{f.first.name}.{f.first_layer}", f"{f.second.name}.{f.second_layer}") for f in plan.facings
-    )
+    sides = tuple((plan.side(f.first, f.first_layer), plan.side(f.second, f.second_layer)) for f in plan.facings)
     return Proposal(files, tuple(plan.guesses), tuple(roles), sides, tuple(left_out))
 
 
@@ -80,7 +82,7 @@ def _pieces(sources: Sequence[Source]) -> tuple[list[Piece], list[str]]:
     for number, source in enumerate(sources):
         bad = source.bad_layers
         loops = [loop for loop in source.drawing.loops if loop.layer not in bad and not is_mark(loop.layer)]
-        pieces += pieces_of(number, loops)
+        pieces += pieces_of(number, loops, source.crowded)
         left_out += [f"layer {layer} of {source.path.name}: {_fault(source.drawing, layer)}" for layer in sorted(bad)]
     if not pieces:
         raise NothingToPropose(_why_nothing(sources))
@@ -102,7 +104,9 @@ def _why_nothing(sources: Sequence[Source]) -> str:
     for source in sources:
         faults = [one.message for one in source.drawing.findings if one.severity == "error"]
         told.append(f"{source.path}: {faults[0] if faults else 'it holds no closed outline'}")
-    return "\n".join([*told, "A scene is made of closed outlines. `watchsim inspect` says what each drawing holds, and where it is open"])
+    return "\n".join(
+        [*told, "A scene is made of closed outlines. `watchsim inspect` says what each drawing holds, and where it is open"]
+    )
 
 
 def _facings(roles: Sequence[Role], size: float, apart: bool) -> tuple[list[Facing], list[Facing]]:
@@ -125,7 +129,9 @@ def _plan(
     wheel = next((role for role in roles if role.task == WHEEL), None)
     lean = lean_of(wheel.part) if wheel is not None else 0
     way = "clockwise" if lean < 0 else "counter-clockwise"
-    why = f"{way}: the tips of the teeth lean that way" if lean else "clockwise: the drawing does not say which way it is driven"
+    why = (
+        f"{way}: the tips of the teeth lean that way" if lean else "clockwise: the drawing does not say which way it is driven"
+    )
     start = start_of(roles, () if places else met, lean or -1)
     amounts = amounts_of(roles, size, start.swing)
     title = paths[0].stem if len(paths) == 1 else ", ".join(path.stem for path in paths)
@@ -137,5 +143,9 @@ def _overlapping(files: dict[str, bytes]) -> set[int]:
     with tempfile.TemporaryDirectory() as folder:
         for name, data in files.items():
             (Path(folder) / name).write_bytes(data)
-        scene: Scene = load(Path(folder) / SCENE)
+        try:
+            scene: Scene = load(Path(folder) / SCENE)
+        except SceneError as error:
+            told = "\n".join(f"{fault.key}: {fault.message}" for fault in error.faults)
+            raise NothingToPropose(f"the outlines cannot be used as they are drawn\n{told}") from error
         return {met.contact for met in overlaps(scene)} if scene.contacts else set()

@@ -18,7 +18,13 @@ from watchsim.proposal.words import OSCILLATOR
 
 FRICTION, RESTITUTION = 0.12, 0.2
 DURATION = "5 s"
-TASKS = {"wheel": "the wheel", "lever": "the lever", "oscillator": "the oscillator", "driver": "the driver", "fixed": "stands still"}
+TASKS = {
+    "wheel": "the wheel",
+    "lever": "the lever",
+    "oscillator": "the oscillator",
+    "driver": "the driver",
+    "fixed": "stands still",
+}
 
 
 @dataclass(frozen=True)
@@ -48,10 +54,14 @@ class Plan:
     left_out: Sequence[str] = ()
     guesses: list[Guess] = field(default_factory=list)
 
+    def side(self, role: Role, layer: str) -> str:
+        """A layer of a body as a contact names it."""
+        return f"{role.name}.{self.drawn[role.part.file].layers[role.name, layer]}"
+
     def guess(self, key: str, value: str, why: str) -> str:
         """A line of the scene with its comment."""
         self.guesses.append(Guess(key, value, why))
-        return f"{key.split('.')[-1]} = {value}  # guess: {why}"
+        return f"{key.rsplit('.', maxsplit=1)[-1]} = {value}  # guess: {why}"
 
 
 def scene_text(plan: Plan) -> str:
@@ -102,7 +112,9 @@ def _body(plan: Plan, role: Role) -> Iterator[str]:
         yield 'position = "as drawn"'
     else:
         value = _pair(place)
-        yield plan.guess(f"{key}.position", value, "these drawings do not show where the parts stand; they are put side by side")
+        yield plan.guess(
+            f"{key}.position", value, "these drawings do not show where the parts stand; they are put side by side"
+        )
     if not role.moves:
         yield 'motion = "fixed"'
         return
@@ -175,11 +187,7 @@ def _contact(plan: Plan, facing: Facing, number: int) -> Iterator[str]:
 
 
 def _sides(plan: Plan, facing: Facing) -> str:
-    return _texts([_side(plan, facing.first, facing.first_layer), _side(plan, facing.second, facing.second_layer)])
-
-
-def _side(plan: Plan, role: Role, layer: str) -> str:
-    return f"{role.name}.{plan.drawn[role.part.file].layers[role.name, layer]}"
+    return _texts([plan.side(facing.first, facing.first_layer), plan.side(facing.second, facing.second_layer)])
 
 
 def _text(value: str) -> str:

@@ -13,15 +13,19 @@ ROOM = 1.2  # times their width
 
 
 def side_by_side(roles: Sequence[Role], files: int) -> dict[str, tuple[float, float]]:
-    """Positions (m) in a row by name; none where the drawings show the parts where they belong, or are one."""
+    """Positions (m) in a row by name; none where the drawings show the parts where they belong, or are one.
+
+    What stands still keeps its place against the first part, whose pivot is often the origin of the movement.
+    """
     if files < 2 or not _on_top_of_each_other(roles):
         return {}
-    places, x = {}, 0.0
-    for role in roles:
+    places = {role.name: (0.0, 0.0) for role in roles if not role.moves}
+    x = 0.0
+    for role in (role for role in roles if role.moves):
         at = role.part.centre.at if role.moves and role.part.centre is not None else (0.0, 0.0)
         around = [math.dist(at, (px, py)) for piece in role.part.pieces for px, py in piece.points.tolist()]
         reach = ROOM * max(around)
-        x += reach
+        x = x + reach if any(other.moves and other.name in places for other in roles) else 0.0
         places[role.name] = (round(x, 4), 0.0)
         x += reach
     return places

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from watchsim.drawing.dxf.write_dxf import dxf_text
+from watchsim.proposal.layers import plain
 from watchsim.proposal.roles import Role
 from watchsim.proposal.source import Source
 from watchsim.proposal.words import tokens
@@ -34,8 +35,7 @@ def drawn(sources: Sequence[Source], roles: Sequence[Role]) -> list[Drawn]:
     for number, source in enumerate(sources):
         own = [role for role in roles if role.part.file == number]
         prefix = f"{number + 1}_" if stems[source.path.name.casefold()] > 1 else ""
-        owners = Counter(layer for role in own for layer in role.part.layers)
-        if source.blocks or any(count > 1 for count in owners.values()):
+        if source.blocks or any(plain(layer)[1] for role in own for layer in role.part.layers):
             found.append(_sorted(f"{prefix}{source.path.stem}_sorted.dxf", own))
         else:
             layers = {(role.name, layer): layer for role in own for layer in role.part.layers}
@@ -47,10 +47,23 @@ def _sorted(name: str, roles: Sequence[Role]) -> Drawn:
     layers: dict[tuple[str, str], str] = {}
     loops, points = [], []
     for role in roles:
-        plain = role.name.upper()
+        own = role.name.upper()
         for layer in role.part.layers:
-            layers[role.name, layer] = f"{plain}_{layer.strip()}" if tokens(layer) and len(role.part.layers) > 1 else plain
+            layers[role.name, layer] = _layer_name(own, layer, len(role.part.layers))
         loops += [replace(loop, layer=layers[role.name, piece.layer]) for piece in role.part.pieces for loop in piece.loops]
         if role.moves and role.part.centre is not None:
-            points.append((f"{plain}_{PIVOT}", role.part.centre.at))
+            points.append((f"{own}_{PIVOT}", role.part.centre.at))
     return Drawn(name, dxf_text(loops, points).encode(), True, layers)
+
+
+def _layer_name(body: str, layer: str, count: int) -> str:
+    """BODY where it has only one, else BODY_LAYER, with a number where the layer was taken apart."""
+    if count == 1:
+        return body
+    name, number = plain(layer)
+    words = [
+        body,
+        *([name.strip()] if tokens(name) else []),
+        *([number] if number and (number != "1" or not tokens(name)) else []),
+    ]
+    return "_".join(words)

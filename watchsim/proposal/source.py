@@ -10,14 +10,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from watchsim.drawing.circles import circle_of
 from watchsim.drawing.content import Content, Inserted, Stroke
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.drawn_material import MARKS, last_word
-from watchsim.drawing.circles import circle_of
 from watchsim.drawing.read import FIT, SNAP, assembled, read_content
 from watchsim.geometry.extent import extents
 from watchsim.geometry.primitives import Point
 
+CROSSING = "crossing"  # the code of a finding
 LIKELY = (0.5e-3, 1.0)  # m across: a drawing without units within these is taken to be in millimetres, else in inches
 
 
@@ -43,7 +44,17 @@ class Source:
 
     @property
     def bad_layers(self) -> frozenset[str]:
-        """Layers with faults that a scene would refuse."""
+        """Layers with faults that a scene would refuse, and that layers of their own for single outlines do not mend."""
+        return self._with_errors() - self.crowded
+
+    @property
+    def crowded(self) -> frozenset[str]:
+        """Layers on which outlines cross and nothing else is wrong: parts drawn over each other."""
+        found = self.drawing.findings
+        others = {f.layer for f in found if f.severity == "error" and f.code != CROSSING}
+        return frozenset(layer for layer in self._with_errors() if layer not in others)
+
+    def _with_errors(self) -> frozenset[str]:
         return frozenset(f.layer for f in self.drawing.findings if f.severity == "error" and f.layer is not None)
 
 

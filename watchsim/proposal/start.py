@@ -73,7 +73,9 @@ def _rest(swinging: Role | None, levers: Sequence[Role], facings: Sequence[Facin
     if swinging is None or not turns_fully(swinging) or not levers or swinging.part.centre is None:
         return 0.0, drawn
     lever = levers[0]
-    touching = {layer for f in facings for role, layer in ((f.first, f.first_layer), (f.second, f.second_layer)) if role is swinging}
+    touching = {
+        layer for f in facings for role, layer in ((f.first, f.first_layer), (f.second, f.second_layer)) if role is swinging
+    }
     at = np.array(swinging.part.centre.at)
     pins = [piece for piece in swinging.part.pieces if piece.layer in touching and _is_pin(piece, at)]
     if not pins or lever.part.centre is None:
@@ -192,7 +194,9 @@ def _clearance(facings: Sequence[Facing], angles: dict[str, float]) -> float:
     """The least distance of what can meet, m; 0 where something overlaps."""
     least = math.inf
     for facing in facings:
-        first = [_turned(facing.first, piece, angles) for piece in facing.first.part.pieces if piece.layer == facing.first_layer]
+        first = [
+            _turned(facing.first, piece, angles) for piece in facing.first.part.pieces if piece.layer == facing.first_layer
+        ]
         second = [
             _turned(facing.second, piece, angles) for piece in facing.second.part.pieces if piece.layer == facing.second_layer
         ]
