@@ -1,7 +1,7 @@
 """Which surfaces face which?
 
-Layers of two bodies that come within reach of each other as the bodies turn: wheels and balances all the way, levers a little. What
-lies over each other in the drawing lies at different heights and cannot meet.
+Layers of two bodies that come within reach of each other as the bodies turn: wheels and balances all the way, levers a
+little. What lies over each other in the drawing lies at different heights and cannot meet.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.material_polygons import material, placed
-from watchsim.proposal.piece import Piece, Region
-from watchsim.proposal.roles import Role
-from watchsim.proposal.words import DRIVER, FIXED, LEVER, OSCILLATOR, WHEEL, facing_by_name
+from watchsim.proposal.bodies.piece import Piece, Region
+from watchsim.proposal.bodies.roles import Role
+from watchsim.proposal.bodies.words import DRIVER, FIXED, LEVER, OSCILLATOR, WHEEL, facing_by_name
 
 Floats = NDArray[np.float64]
 SWING = math.radians(15.0)  # of a lever, to either side

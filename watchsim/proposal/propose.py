@@ -13,18 +13,18 @@ from pathlib import Path
 from watchsim.drawing.drawing import Drawing
 from watchsim.mechanism.overlap import overlaps
 from watchsim.proposal.amounts import amounts_of
+from watchsim.proposal.bodies.layers import apart
+from watchsim.proposal.bodies.lean import lean_of
+from watchsim.proposal.bodies.parts import parts_of
+from watchsim.proposal.bodies.piece import Piece, pieces_of
+from watchsim.proposal.bodies.roles import Role, roles_of
+from watchsim.proposal.bodies.source import Source, is_mark, read_source, size_of
+from watchsim.proposal.bodies.words import WHEEL
 from watchsim.proposal.facing import Facing, facings
-from watchsim.proposal.layers import apart
-from watchsim.proposal.lean import lean_of
-from watchsim.proposal.parts import parts_of
-from watchsim.proposal.piece import Piece, pieces_of
-from watchsim.proposal.roles import Role, roles_of
 from watchsim.proposal.scene_text import Guess, Plan, scene_text
 from watchsim.proposal.side_by_side import side_by_side
 from watchsim.proposal.sorted_drawings import drawn
-from watchsim.proposal.source import Source, is_mark, read_source, size_of
 from watchsim.proposal.start import start_of
-from watchsim.proposal.words import WHEEL
 from watchsim.scene.errors import SceneError
 from watchsim.scene.file.load import load
 from watchsim.scene.scene import Scene

@@ -9,12 +9,12 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from watchsim.proposal.amounts import Amount, Amounts
+from watchsim.proposal.bodies.roles import Role
+from watchsim.proposal.bodies.source import Source
+from watchsim.proposal.bodies.words import OSCILLATOR
 from watchsim.proposal.facing import Facing
-from watchsim.proposal.roles import Role
 from watchsim.proposal.sorted_drawings import PIVOT, Drawn
-from watchsim.proposal.source import Source
 from watchsim.proposal.start import Start
-from watchsim.proposal.words import OSCILLATOR
 
 FRICTION, RESTITUTION = 0.12, 0.2
 DURATION = "5 s"

@@ -10,10 +10,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from watchsim.drawing.dxf.write_dxf import dxf_text
-from watchsim.proposal.layers import plain
-from watchsim.proposal.roles import Role
-from watchsim.proposal.source import Source
-from watchsim.proposal.words import tokens
+from watchsim.proposal.bodies.layers import plain
+from watchsim.proposal.bodies.roles import Role
+from watchsim.proposal.bodies.source import Source
+from watchsim.proposal.bodies.words import tokens
 
 PIVOT = "PIVOT"
 

@@ -9,7 +9,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 
-from watchsim.proposal.parts import Part
+from watchsim.proposal.bodies.part import Part
 
 APART = "#"  # between the name of a layer and the number of an outline on it
 

@@ -34,7 +34,7 @@ class Mark:
 
 @dataclass(frozen=True)
 class Source:
-    """One drawing. `units` is a guess where the file does not say; `blocks` names the inserted blocks, by prefix of the layer."""
+    """One drawing. `units` is a guess where the file does not say; `blocks` names inserted blocks, by prefix of the layer."""
 
     path: Path
     drawing: Drawing

@@ -10,8 +10,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.proposal.centres import is_toothed
-from watchsim.proposal.parts import Part
+from watchsim.proposal.bodies.centres import is_toothed
+from watchsim.proposal.bodies.part import Part
 
 TIP, ROOT = 0.9, 0.25  # of a tooth's height: where its middle is taken
 SYMMETRIC = 0.03  # of a pitch: teeth that lean less do not lean

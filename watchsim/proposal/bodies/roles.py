@@ -6,9 +6,9 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from watchsim.proposal.centres import is_toothed
-from watchsim.proposal.parts import Part
-from watchsim.proposal.words import DRIVER, FIXED, LEVER, OSCILLATOR, WHEEL, part_of, part_word
+from watchsim.proposal.bodies.centres import is_toothed
+from watchsim.proposal.bodies.part import Part
+from watchsim.proposal.bodies.words import DRIVER, FIXED, LEVER, OSCILLATOR, WHEEL, part_of, part_word
 
 FEWEST_TEETH = 8  # of an escape wheel; with fewer slots a wheel is driven step by step, as in a Geneva drive
 ROUNDISH = 0.4  # of its outlines on arcs about its pivot: a part that may turn through whole turns

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from watchsim.drawing.circles import circle_of
 from watchsim.geometry.inside import winding
 from watchsim.geometry.primitives import Point
-from watchsim.proposal.piece import Piece
-from watchsim.proposal.source import Mark
-from watchsim.proposal.symmetry import Turned
+from watchsim.proposal.bodies.piece import Piece
+from watchsim.proposal.bodies.source import Mark
+from watchsim.proposal.bodies.symmetry import Turned
 
 SAME = 2e-6  # m: two centres this close are one, as in drawings with three decimals of a millimetre
 SHARE = 0.1  # of a piece's outline must lie on arcs about a mark for these to name its centre
