@@ -7,9 +7,11 @@ the forces at the contacts, so that the books are checked.
 from __future__ import annotations
 
 import math
+from bisect import bisect_left, bisect_right
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import groupby, islice
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,7 +28,8 @@ from watchsim.simulation.methods import EVENT_DRIVEN
 from watchsim.simulation.record.trajectory import Array, Trajectory
 
 LOSSES = (EventKind.IMPACT, EventKind.JAM)
-BEATS_AT_ONCE = 2000  # some tens of megabytes
+BEATS_AT_ONCE = 500  # some megabytes
+EVENTS_BACK = 1 << 12  # that are looked through first for the last one before a time
 Triple = tuple[float, float, float]
 
 
@@ -141,7 +144,8 @@ def _impacts(
     run: Trajectory, starts: Array, ends: Array, locked: NDArray[np.bool_], locking: NDArray[np.bool_]
 ) -> list[dict[str, float]]:
     """What impacts took in each stretch, by pair of bodies, J."""
-    own = run.events[np.isin(run.events["kind"], LOSSES)]
+    there = run.events[_before(run, float(starts.min()), True) : _before(run, float(ends.max()), False)]
+    own = there[np.isin(there["kind"], LOSSES)]
     names = {k: pair_name(run, k) for k in np.unique(own["contact"]).tolist()}
     pairs, lost = [names[k] for k in own["contact"].tolist()], own["energy_lost"].tolist()
     t = np.ascontiguousarray(own["t"])
@@ -165,8 +169,7 @@ def pair_name(run: Trajectory, contact: int) -> str:
 def _pallets(run: Trajectory, compiled: Compiled, parts: Roles, unlocking: list[Phase]) -> dict[int, str]:
     """For each beat the stone on which the wheel rested before: that of the last contact of wheel and lever until then."""
     assert parts.wheel and parts.lever
-    events = contact_events(run, between(parts.lever, {parts.wheel}))
-    known = events[events["contact"] < len(compiled.model.contacts)]
+    known = _resting(run, compiled, parts, [row.start for row in unlocking])
     last = np.searchsorted(known["t"], [row.start for row in unlocking], side="right") - 1
     found: dict[int, str] = {}
     sides: dict[int, str] = {}
@@ -179,6 +182,26 @@ def _pallets(run: Trajectory, compiled: Compiled, parts: Roles, unlocking: list[
                 sides[stone] = _side(run, compiled, parts, stone, row.start)
             found[row.beat] = sides[stone]
     return found
+
+
+def _resting(run: Trajectory, compiled: Compiled, parts: Roles, times: list[float]) -> NDArray[Any]:
+    """The events between wheel and lever up to the last of the times, from at least one before the first on."""
+    assert parts.wheel and parts.lever
+    first, last = (_before(run, time, False) for time in (min(times, default=0.0), max(times, default=0.0)))
+    back = EVENTS_BACK
+    while True:
+        there = replace(run, events=run.events[max(0, first - back) : last])
+        events = contact_events(there, between(parts.lever, {parts.wheel}))
+        known = events[events["contact"] < len(compiled.model.contacts)]
+        if first <= back or (len(known) and known["t"][0] <= min(times, default=0.0)):
+            return known
+        back *= 8
+
+
+def _before(run: Trajectory, time: float, strictly: bool) -> int:
+    """How many events come before a time, or until then. Events may lie in a file: only a few are looked at."""
+    search = bisect_left if strictly else bisect_right
+    return search(range(len(run.events)), time, key=lambda k: float(run.events["t"][k]))
 
 
 def _side(run: Trajectory, compiled: Compiled, parts: Roles, stone: int, time: float) -> str:
