@@ -53,13 +53,13 @@ def test_an_assembly_gives_its_bodies_pivots_and_contacts(name: str, tmp_path: P
         found = set()
         for contact in one.contacts:
             sides = [(told[side.body], side.layer, one.body(side.body)) for side in contact.sides]
-            found.add(frozenset((body, (layer or own.layers[0]).removeprefix(f"{own.name.upper()}_")) for body, layer, own in sides))
+            found.add(
+                frozenset((body, (layer or own.layers[0]).removeprefix(f"{own.name.upper()}_")) for body, layer, own in sides)
+            )
         return found
 
-    plain = {("involute_pair"): {"WHEEL": "TEETH", "WHEEL_2": "TEETH"}, "coaxial": {"BANKING": "PINS"}}.get(name, {})
-    guessed = {
-        frozenset((body, plain.get(layer, layer)) for body, layer in pair) for pair in pairs(scene, names)
-    }
+    plain = {"involute_pair": {"WHEEL": "TEETH", "WHEEL_2": "TEETH"}, "coaxial": {"BANKING": "PINS"}}.get(name, {})
+    guessed = {frozenset((body, plain.get(layer, layer)) for body, layer in pair) for pair in pairs(scene, names)}
     wanted = pairs(real, {body.name: body.name for body in real.bodies})
     assert guessed - EXTRA.get(name, set()) == wanted
 
@@ -86,7 +86,9 @@ def test_loose_outlines_and_marks_give_bodies(tmp_path: Path) -> None:
     assert set(proposal.files) == {"loose_sorted.dxf", "scene.toml"}
     assert proposal.roles[0].teeth == 15
     at = [role.part.centre.at for role in proposal.roles[:3]]
-    assert [math.dist(a, body.position) for a, body in zip(at, real.bodies[:3], strict=True)] == pytest.approx([0.0] * 3, abs=1e-9)
+    assert [math.dist(a, body.position) for a, body in zip(at, real.bodies[:3], strict=True)] == pytest.approx(
+        [0.0] * 3, abs=1e-9
+    )
 
 
 def test_blocks_are_bodies(tmp_path: Path) -> None:
@@ -124,7 +126,9 @@ def test_every_guess_has_a_reason_and_stands_in_the_scene(tmp_path: Path) -> Non
     assert all(guess.why and guess.why in text for guess in proposal.guesses)
 
 
-def test_the_command_writes_and_refuses(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_command_writes_and_refuses(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
     path = assembly(scene_of("bench_lever"), tmp_path / "bench.dxf")
     assert main(["new", "bench.dxf", "--json"]) == 0

@@ -54,6 +54,20 @@ def facings(roles: Sequence[Role], size: float) -> tuple[list[Facing], list[Faci
     return likely, others
 
 
+def named_facings(roles: Sequence[Role]) -> list[Facing]:
+    """What works together by its names, where the drawings do not show how the parts stand; a lever meets what stands still."""
+    found = []
+    for k, one in enumerate(roles):
+        for other in roles[k + 1 :]:
+            pairs = [(a, b) for a in one.part.layers for b in other.part.layers]
+            named = [(a, b) for a, b in pairs if facing_by_name(a, b)]
+            if {one.task, other.task} == {LEVER, FIXED}:
+                arm = max(one.part.pieces if one.task == LEVER else other.part.pieces, key=lambda piece: piece.area).layer
+                named = [pair for pair in pairs if arm in pair]
+            found += [Facing(one, a, other, b, "by their names alone", by_name=True) for a, b in named]
+    return found
+
+
 def _misses(one: Role, other: Role) -> bool:
     """What turns all the way passes what stands still; it would end there."""
     return (

@@ -20,7 +20,7 @@ from watchsim.proposal.bodies.piece import Piece, pieces_of
 from watchsim.proposal.bodies.roles import Role, roles_of
 from watchsim.proposal.bodies.source import Source, is_mark, read_source, size_of
 from watchsim.proposal.bodies.words import WHEEL
-from watchsim.proposal.facing import Facing, facings
+from watchsim.proposal.facing import Facing, facings, named_facings
 from watchsim.proposal.scene_text import Guess, Plan, scene_text
 from watchsim.proposal.side_by_side import side_by_side
 from watchsim.proposal.sorted_drawings import drawn
@@ -110,10 +110,7 @@ def _why_nothing(sources: Sequence[Source]) -> str:
 
 
 def _facings(roles: Sequence[Role], size: float, apart: bool) -> tuple[list[Facing], list[Facing]]:
-    met, others = facings(roles, size)
-    if not apart:
-        return met, others
-    return [facing for facing in (*met, *others) if facing.by_name], []
+    return (named_facings(roles), []) if apart else facings(roles, size)
 
 
 def _plan(
