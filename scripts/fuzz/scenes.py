@@ -2,7 +2,8 @@
 
 Damages scene files at random, one to three accidents each, and has `watchsim check` judge them (every fourth one `watchsim run`
 for a millisecond, where the check finds nothing). A file fails that brings exit status 4, a traceback, the death of the process
-or more than 20 s. Files are numbered: number k is the same damage on every machine, so `--only K` repeats it.
+or more than 20 s. Files are numbered: number k is the same damage on every machine, so `--only K` repeats it. With `--seed
+WORD` it is other damages, and of designs as well.
 """
 
 from __future__ import annotations
@@ -25,6 +26,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 SCENES = ("profiles/swiss_lever", "profiles/bench_lever", "profiles/incline", "profiles/balance")
+DESIGNS = ("carriage", "coaxial", "geneva", "graham", "involute_pair", "recoil_anchor", "set_a")
+SEEDED = (*SCENES, *(f"profiles/{name}" for name in DESIGNS))
 SECONDS = 20
 MEMORY = 4 << 30
 VALUES = (
@@ -160,10 +163,10 @@ LINES = (
 )
 
 
-def damaged(number: int) -> tuple[str, bytes]:
+def damaged(number: int, seed: str) -> tuple[str, bytes]:
     """Which scene, and the file."""
-    rng = random.Random(f"scene {number}")
-    name = rng.choice(SCENES)
+    rng = random.Random(f"scene {seed} {number}" if seed else f"scene {number}")
+    name = rng.choice(SEEDED if seed else SCENES)
     data = (ROOT / name / "scene.toml").read_text(encoding="utf-8")
     for _ in range(rng.choice((1, 1, 2, 3))):
         data = rng.choice(ACCIDENTS)(rng, data)
@@ -285,9 +288,9 @@ def in_a_process(place: Path, *commands: list[str]) -> tuple[str, float]:
     return words, took
 
 
-def one(number: int, copies: Path) -> tuple[str, float]:
+def one(number: int, seed: str, copies: Path) -> tuple[str, float]:
     """Judge file `number`."""
-    name, content = damaged(number)
+    name, content = damaged(number, seed)
     place = copies / Path(name).name / "scene.toml"
     place.write_bytes(content)
     commands = [["check", str(place), "--json"]]
@@ -302,6 +305,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=500)
     parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--seed", default="")
     parser.add_argument("--only", type=int, help="print this file and what becomes of it")
     parser.add_argument("-o", "--output", type=Path, default=Path("results/fuzz"), help="where files that fail are kept")
     args = parser.parse_args()
@@ -316,19 +320,21 @@ def main() -> None:
     slowest = (0.0, -1)
     start = time.perf_counter()
     with tempfile.TemporaryDirectory() as folder:
-        for name in SCENES:
+        for name in SEEDED:
             shutil.copytree(ROOT / name, Path(folder) / Path(name).name)
         for number in range(args.first, args.first + args.count) if args.only is None else [args.only]:
-            words, took = one(number, Path(folder))
+            words, took = one(number, args.seed, Path(folder))
             slowest = max(slowest, (took, number))
             kind = words.splitlines()[0] if words else "nothing said"
             kinds[kind] += 1
             if kind not in ("0", "1", "2", "3") or args.only is not None:
                 args.output.mkdir(parents=True, exist_ok=True)
-                (args.output / f"scene-{number}.toml").write_bytes(damaged(number)[1])
-                print(f"{number} ({damaged(number)[0]}): {words}", flush=True)
+                name, content = damaged(number, args.seed)
+                (args.output / f"scene-{args.seed}{number}.toml").write_bytes(content)
+                print(f"{number} ({name}): {words}", flush=True)
+    seeded = f" with seed {args.seed}" if args.seed else ""
     print(
-        f"{sum(kinds.values())} scenes from number {args.first}: exit statuses {dict(sorted(kinds.items()))}; "
+        f"{sum(kinds.values())} scenes from number {args.first}{seeded}: exit statuses {dict(sorted(kinds.items()))}; "
         f"{time.perf_counter() - start:.0f} s, the slowest {slowest[0]:.1f} s (number {slowest[1]})"
     )
     sys.exit(bool(set(kinds) - {"0", "1", "2", "3"}) and args.only is None)

@@ -196,5 +196,5 @@ def test_energy_shares_sum_to_one():
 
 def test_tables_of_a_results_folder():
     made = tables(lever_run(6))
-    assert set(made) == {"beats.csv", "phases.csv"} and all(text.endswith("\n") for text in made.values())
+    assert set(made) == {"beats.csv", "phases.csv"} and all(str(text).endswith("\n") for text in made.values())
     assert tables(disc_run()) == {}

@@ -11,6 +11,7 @@ import pytest
 from storage.disk_faults import Disk, watched
 
 from watchsim.storage.columns import Columns, blocks, is_mapped, let_go, mapping, one_behind_the_other
+from watchsim.storage.unpacked import unpacked
 
 KIND = np.dtype([("t", "f8"), ("kind", "i4")])
 
@@ -104,3 +105,64 @@ def test_the_second_goes_behind_the_first(tmp_path: Path) -> None:
         assert same(list(both), [np.concatenate(pair) for pair in zip(first, second, strict=True)])
     nothing = [array[:0] for array in first]
     assert same(list(one_behind_the_other(nothing, nothing, None)), nothing)
+
+
+def archive_of(path: Path, seed: int = 3) -> dict[str, np.ndarray]:
+    """An npz archive with two columns, as results are written."""
+    rng = np.random.default_rng(seed)
+    events = np.zeros(500, KIND)
+    events["t"] = rng.random(500)
+    arrays = {"q": rng.random((1000, 3)), "events": events}
+    np.savez_compressed(path, **arrays)
+    return arrays
+
+
+def test_a_long_array_of_an_archive_is_mapped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    arrays = archive_of(tmp_path / "run.npz")
+    for most, mapped in ((0.0, True), (1e9, False)):
+        monkeypatch.setattr("watchsim.storage.columns.MOST", most)
+        with np.load(tmp_path / "run.npz") as archive:
+            back = {name: unpacked(archive, name, tmp_path) for name in arrays}
+        assert same(list(back.values()), list(arrays.values()))
+        assert [is_mapped(array) for array in back.values()] == [mapped] * 2
+    assert [path.name for path in tmp_path.iterdir()] == ["run.npz"]
+
+
+@pytest.mark.parametrize("lasting", [False, True])
+def test_an_archive_is_read_where_nothing_can_be_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, lasting: bool
+) -> None:
+    """A folder that cannot be written, or has no room: the file goes among the temporary ones, else into memory."""
+    import tempfile
+
+    arrays = archive_of(tmp_path / "run.npz")
+    make = tempfile.TemporaryFile
+
+    def refuse(dir: Path | None = None) -> object:
+        if dir is not None or lasting:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return make()
+
+    monkeypatch.setattr("watchsim.storage.columns.MOST", 0.0)
+    monkeypatch.setattr(tempfile, "TemporaryFile", refuse)
+    with np.load(tmp_path / "run.npz") as archive:
+        back = [unpacked(archive, name, tmp_path) for name in arrays]
+    assert same(back, list(arrays.values())) and [is_mapped(array) for array in back] == [not lasting] * 2
+
+
+def test_a_damaged_archive_is_refused_as_numpy_does(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every hundredth byte changed in turn: never anything but the right numbers or an exception."""
+    monkeypatch.setattr("watchsim.storage.columns.MOST", 0.0)
+    arrays = archive_of(tmp_path / "run.npz")
+    sound = (tmp_path / "run.npz").read_bytes()
+    refused = 0
+    for at in range(0, len(sound), 100):
+        (tmp_path / "run.npz").write_bytes(sound[:at] + bytes([sound[at] ^ 0xFF]) + sound[at + 1 :])
+        try:
+            with np.load(tmp_path / "run.npz") as archive:
+                back = [unpacked(archive, name, tmp_path) for name in arrays]
+        except Exception:
+            refused += 1
+        else:
+            assert same(back, list(arrays.values()))
+    assert refused > 100

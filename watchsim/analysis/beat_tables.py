@@ -6,6 +6,7 @@ import csv
 import io
 import math
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import chain, islice
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,7 @@ from watchsim.simulation.record.trajectory import Trajectory
 
 BEAT_COLUMNS = ("beat", "t_s", "tick_s", "turn_s", "turn_at", "amplitude", "period_s", "rate_s_per_d", "beat_error_ms")
 PARTS = ("wheel", "lever", "balance")
+ROWS_AT_ONCE = 1 << 12
 PHASE_COLUMNS = (
     *("beat", "phase", "t_s", "duration_ms"),
     *(f"{part}_{what}_deg" for part in PARTS for what in ("angle", "turn")),
@@ -25,10 +27,11 @@ PHASE_COLUMNS = (
 )
 
 
-def beats_csv(found: Beats) -> str:
+def beats_csv(found: Beats) -> Iterator[str]:
     """One row per half swing: passage, tick, the turning point after it (time and place), amplitude, period, rate, beat error.
 
-    Angles in degrees (turn_at_deg, amplitude_deg), of a sliding body metres (turn_at_m, amplitude_m); empty where unknown.
+    In pieces of some thousand rows. Angles in degrees (turn_at_deg, amplitude_deg), of a sliding body metres (turn_at_m,
+    amplitude_m); empty where unknown.
     """
     unit = "deg" if found.angular else "m"
     header = [f"{name}_{unit}" if name in ("turn_at", "amplitude") else name for name in BEAT_COLUMNS]
@@ -39,7 +42,7 @@ def beats_csv(found: Beats) -> str:
     return _text(header, zip(numbers, *map(_cells, columns), strict=True))
 
 
-def phases_csv(run: Trajectory, found: Beats) -> str:
+def phases_csv(run: Trajectory, found: Beats) -> Iterator[str]:
     """One row per phase: beat (as in beats.csv), name, start, duration, for wheel, lever and balance the angle at its start and
     the turn during it, on what an impulse acts, which stone is unlocked in the beat, angular velocities, the angular impulse of
     all contacts on the oscillator, and where the energy went (see analysis/timeline/rows.py).
@@ -76,9 +79,10 @@ def _cells(column: NDArray[np.float64]) -> list[object]:
     return values if np.isfinite(column).all() else [x if math.isfinite(x) else "" for x in values]
 
 
-def _text(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    out = io.StringIO()
-    table = csv.writer(out, lineterminator="\n")
-    table.writerow(header)
-    table.writerows(rows)
-    return out.getvalue()
+def _text(header: Sequence[str], rows: Iterable[Sequence[object]]) -> Iterator[str]:
+    """Some thousand rows at a time: of a long run there are hundreds of thousands."""
+    lines = chain([header], rows)
+    while some := list(islice(lines, ROWS_AT_ONCE)):
+        out = io.StringIO()
+        csv.writer(out, lineterminator="\n").writerows(some)
+        yield out.getvalue()

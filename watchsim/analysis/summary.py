@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import asdict
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -33,6 +34,7 @@ from watchsim.scene.roles import keeps_time, roles, swings
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.record.body_frames import frames, speeds
 from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.storage.long_text import LongText
 
 AVERAGED = ("amplitude_deg", "period_s", "rate_s_per_d", "beat_error_ms")
 LEDGER = {"in_J": 0.0, "dissipated": {}, "stored_J": 0.0, "residual_J": 0.0, "residual_relative": 0.0}
@@ -69,12 +71,12 @@ def summary_text(run: Trajectory, numbers: Mapping[str, Any] | None = None) -> s
     return headlines(run, summary(run) if numbers is None else numbers)
 
 
-def tables(run: Trajectory) -> dict[str, str]:
-    """The tables of a results folder besides events.csv: name -> text."""
+def tables(run: Trajectory, folder: Path | None = None) -> dict[str, LongText]:
+    """The tables of a results folder besides events.csv: name -> text, in files in `folder` where it is long."""
     if not swings(run.scene):
         return {}
     found = beats(run)
-    return {"beats.csv": beats_csv(found), "phases.csv": phases_csv(run, found)}
+    return {"beats.csv": LongText(beats_csv(found), folder), "phases.csv": LongText(phases_csv(run, found), folder)}
 
 
 def _about(run: Trajectory) -> dict[str, Any]:

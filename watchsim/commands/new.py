@@ -1,4 +1,4 @@
-"""watchsim new DESIGN: drawings and a scene of a mechanism, drawn to your dimensions."""
+"""watchsim new DESIGN or DRAWING: a scene of a mechanism, drawn to your dimensions or guessed from drawings."""
 
 from __future__ import annotations
 
@@ -13,25 +13,28 @@ if TYPE_CHECKING:
     from watchsim.construction.design import Design
     from watchsim.construction.dimension import Dimension
 
-HELP = "draws a mechanism to your dimensions: drawings and a scene that runs"
+HELP = "starts a scene: a mechanism drawn to your dimensions, or what drawings suggest, with guesses marked"
 WIDTH = 110
+DRAWINGS_USAGE = "watchsim new DRAWING [DRAWING ...] [-o DIR] [--json] [--force]"
 
 
 def options(parser: argparse.ArgumentParser) -> None:
-    parser.usage = "watchsim new DESIGN [--DIMENSION VALUE ...] [-o DIR] [--list] [--json] [--force]"
+    parser.usage = f"watchsim new DESIGN [--DIMENSION VALUE ...] [-o DIR] [--list] [--json] [--force]\n       {DRAWINGS_USAGE}"
     parser.epilog = (
         'For example: watchsim new swiss_lever --lock "2°" --draw "13.5°" --teeth 20 -o my_lever. '
-        "watchsim new --list lists the designs, watchsim new DESIGN --list their dimensions."
+        "watchsim new --list lists the designs, watchsim new DESIGN --list their dimensions. "
+        "watchsim new movement.dxf -o my_watch writes a scene that drawings suggest; each guess says so, and why."
     )
     _common(parser)
-    parser.add_argument("design", metavar="DESIGN", nargs="?", help="the name of a design, such as swiss_lever")
+    naming = "the name of a design, such as swiss_lever, or drawings (DXF, SVG)"
+    parser.add_argument("design", metavar="DESIGN", nargs="?", help=naming)
     parser.add_argument("rest", nargs=argparse.REMAINDER, help=argparse.SUPPRESS)
 
 
 def _common(parser: argparse.ArgumentParser) -> None:
     unset: Any = argparse.SUPPRESS
     parser.add_argument(
-        "-o", "--output", metavar="DIR", default=unset, help="folder for the files (default: the design's name)"
+        "-o", "--output", metavar="DIR", default=unset, help="folder for the files (default: the name of the design or drawing)"
     )
     parser.add_argument("--list", action="store_true", default=unset, help="list designs, or the dimensions of a design")
     parser.add_argument("--json", action="store_true", default=unset, help="print one JSON object instead of text")
@@ -41,6 +44,7 @@ def _common(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    from watchsim.commands.common.from_drawings import is_drawing
     from watchsim.scene.file.designed import designed
 
     asked = {"output": None, "list": False, "json": False, "force": False, **vars(args)}
@@ -49,6 +53,9 @@ def run(args: argparse.Namespace) -> int:
             raise InputError("watchsim new: name a design; watchsim new --list lists them.")
         _list_designs(asked["json"])
         return FINE
+    if is_drawing(asked["design"]):
+        _from_drawings(asked)
+        return FINE
     design = designed(asked["design"])
     given = _dimensions(design, asked["rest"], asked)
     if asked["list"]:
@@ -56,6 +63,22 @@ def run(args: argparse.Namespace) -> int:
     else:
         _write(design, given, asked)
     return FINE
+
+
+def _from_drawings(asked: dict[str, Any]) -> None:
+    """The first drawing, and those among the words behind it; the others are options."""
+    from watchsim.commands.common.from_drawings import start_from_drawings
+
+    parser = argparse.ArgumentParser(prog="watchsim new", usage=DRAWINGS_USAGE, allow_abbrev=False)
+    _common(parser)
+    parser.add_argument("drawings", nargs="*", metavar="DRAWING", help="further drawings")
+    found, unknown = parser.parse_known_args(asked["rest"])
+    if unknown:
+        raise InputError(f"watchsim new {asked['design']}: {unknown[0]} is no option for drawings; -o, --json and --force are.")
+    given = {**asked, **vars(found)}
+    if given["list"]:
+        raise InputError(f"watchsim new {asked['design']}: --list lists designs and their dimensions; a drawing has none.")
+    start_from_drawings([asked["design"], *given["drawings"]], given["output"], given["json"], given["force"])
 
 
 def _dimensions(design: Design, rest: list[str], asked: dict[str, Any]) -> dict[str, object]:

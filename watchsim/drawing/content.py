@@ -36,6 +36,15 @@ class Drawn:
     length: float = 0.0
 
 
+@dataclass(frozen=True, slots=True)
+class Inserted:
+    """A block put into the drawing itself (not into another block): its name, and the strokes' first and last `run`."""
+
+    block: str
+    first: int
+    last: int
+
+
 @dataclass(frozen=True)
 class Content:
     """Everything a reader found in one file; the fields are those of Drawing."""
@@ -50,5 +59,6 @@ class Content:
     fitted_deviation: float = 0.0
     ignored: dict[str, int] = field(default_factory=dict)
     drawn: Drawn = field(default_factory=Drawn)
+    inserted: tuple[Inserted, ...] = ()
     findings: tuple[Finding, ...] = ()
     data: bytes = field(default=b"", repr=False, compare=False)

@@ -39,7 +39,7 @@ def solve_contacts(work, m, elements):
             rung = Rung.ENUMERATED
         elif lemke(work.A, work.rhs, n, work.lcp, work.x) == LcpOutcome.SOLVED and solves(n, LCP_ROUGH, work.lcp):
             rung = Rung.INEXACT
-    work.rungs[rung] += 1
+    work.rungs[rung.value] += 1
     work.sizes[size_class(n)] += 1
     return rung
 

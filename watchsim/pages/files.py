@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import base64
 import io
+import tempfile
 import zipfile
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 from watchsim.analysis.summary import tables
@@ -14,6 +16,7 @@ from watchsim.results.tables import json_text
 from watchsim.simulation.record.trajectory import Trajectory
 
 MOST = 300_000  # bytes of packed files; a page must fit into a mail
+LONGEST = 20_000_000  # bytes of a table that is worth trying: packed it is a tenth
 TYPES = {"json": "application/json", "csv": "text/csv", "toml": "application/toml", "svg": "image/svg+xml"}
 HEADER = 30  # bytes of a local header, to which name and extra field are added (PKWARE APPNOTE 4.3.7)
 STAMP = (1980, 1, 1, 0, 0, 0)  # the same run makes the same page
@@ -21,7 +24,10 @@ STAMP = (1980, 1, 1, 0, 0, 0)  # the same run makes the same page
 
 def packed_files(run: Trajectory, numbers: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
     """The archive with where each file lies in it, and the names of those that would make the page too large."""
-    contents: dict[str, str | bytes] = {**travelling(run.scene), "summary.json": json_text(numbers), **tables(run)}
+    found = tables(run, Path(tempfile.gettempdir()))
+    long = [name for name, text in found.items() if text.size > LONGEST]
+    contents: dict[str, str | bytes] = {**travelling(run.scene), "summary.json": json_text(numbers)}
+    contents |= {name: str(text) for name, text in found.items() if name not in long}
     if not contents[LOCK]:
         contents.pop(LOCK)
     raw = {name: text.encode("utf-8", "replace") if isinstance(text, str) else text for name, text in contents.items()}
@@ -29,7 +35,7 @@ def packed_files(run: Trajectory, numbers: Mapping[str, Any]) -> tuple[dict[str,
     archive = _zipped({name: raw[name] for name in raw if name in fitting})
     with zipfile.ZipFile(io.BytesIO(archive)) as opened:
         entries = [_entry(archive, info) for info in opened.infolist()]
-    return {"entries": entries, "data": base64.b64encode(archive).decode("ascii")}, left_out
+    return {"entries": entries, "data": base64.b64encode(archive).decode("ascii")}, [*left_out, *long]
 
 
 def _chosen(raw: Mapping[str, bytes]) -> tuple[set[str], list[str]]:

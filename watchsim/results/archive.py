@@ -21,6 +21,7 @@ from watchsim.simulation.record.contact_names import Pair, Pairs, as_pairs
 from watchsim.simulation.record.trajectory import EVENT_DTYPE, EventKind, Trajectory
 from watchsim.simulation.stops import Stop
 from watchsim.storage.columns import blocks
+from watchsim.storage.unpacked import unpacked
 
 FORMAT = 4
 OLDER = 3  # in which every pair was written out in words
@@ -59,11 +60,14 @@ def write_array(file: IO[bytes], array: NDArray[Any]) -> None:
 
 
 def read_trajectory(path: Path, scene: Scene) -> Trajectory:
-    """The trajectory of `scene` kept in `path`; ValueError where the file is damaged or belongs to another scene."""
+    """The trajectory of `scene` kept in `path`; ValueError where the file is damaged or belongs to another scene.
+
+    Long columns are mapped from files without a name, so that a run may be larger than memory.
+    """
     with whole(path, "trajectory"), np.load(path, allow_pickle=False) as archive:
         header: dict[str, Any] = json.loads(archive["header"].tobytes())
         kind = header["format"]
-        columns = {name: archive[name] for name in COLUMNS}
+        columns: dict[str, Any] = {name: unpacked(archive, name, path.parent) for name in COLUMNS}
         table = archive.get("pairs")
     if kind not in (FORMAT, OLDER):
         raise ValueError(f"{path} has format {kind}; this version reads format {FORMAT}. Run the scene again")
@@ -76,7 +80,7 @@ def read_trajectory(path: Path, scene: Scene) -> Trajectory:
             f"{', '.join(sorted(moving)) or 'nothing'} can move: the two do not belong together"
         )
     with whole(path, "trajectory"):
-        columns["events"] = columns["events"].astype(EVENT_DTYPE)
+        columns["events"] = columns["events"].astype(EVENT_DTYPE, copy=False)
         header.setdefault("overlap", {})  # of files written before it was looked for
         kept = {name: header[name] for name in (*SCALARS, *NUMBERS)}
         if table is None:
@@ -106,17 +110,33 @@ def _check(run: Trajectory) -> None:
     rows, width = len(run.t), max((columns.stop for columns in run.slices.values()), default=0)
     if run.t.shape != (rows,) or any(array.shape != (rows, width) for array in (run.q, run.u, run.a)):
         raise ValueError("its columns are of different lengths")
-    if any(
-        array.dtype != np.float64 or not np.isfinite(array).all() for array in (run.t, run.q, run.u, run.a, run.events["t"])
-    ):
+    if any(array.dtype != np.float64 for array in (run.t, run.q, run.u, run.a)) or not _finite(run):
         raise ValueError("it holds something that is not a number")
     if any(array.dtype != np.float64 or array.shape not in ((0,), (width,)) for array in (run.end_q, run.end_u)):
         raise ValueError("its end is no state")
-    if np.any(np.diff(run.t) < 0.0) or np.any(run.events["contact"] >= len(run.pairs)):
+    if not _in_order(run.t) or any(np.any(part["contact"] >= len(run.pairs)) for (part,) in blocks(run.events)):
         raise ValueError("its rows are out of order, or its events of unknown contacts")
-    if np.any(run.events["body"] >= len(run.scene.bodies)) or not set(run.events["kind"].tolist()) <= set(EventKind):
-        raise ValueError("its events are of unknown bodies or kinds")
+    for (part,) in blocks(run.events):
+        if np.any(part["body"] >= len(run.scene.bodies)) or not set(np.unique(part["kind"]).tolist()) <= set(EventKind):
+            raise ValueError("its events are of unknown bodies or kinds")
     if not all(isinstance(getattr(run, name), (int, float)) for name in FLOATS) or not isinstance(run.stop_message, str):
         raise ValueError("its header holds something that is not a number")
     if not all(isinstance(mapping, dict) for mapping in (run.overlap, run.energy, run.counts, run.sums)):
         raise ValueError("its header holds no sums")
+
+
+def _finite(run: Trajectory) -> bool:
+    return all(
+        np.isfinite(part["t"] if part.dtype.names else part).all()
+        for array in (run.t, run.q, run.u, run.a, run.events)
+        for (part,) in blocks(array)
+    )
+
+
+def _in_order(t: NDArray[np.float64]) -> bool:
+    before = -np.inf
+    for (part,) in blocks(t):
+        if part[0] < before or np.any(np.diff(part) < 0.0):
+            return False
+        before = part[-1]
+    return True

@@ -51,9 +51,9 @@ class Columns:
         parts = [*self._parts, *behind]
         count = self._filed + sum(len(part[0]) for part in parts)
         if self._filed and self._written(parts):
-            return [_mapped(file, count, like) for file, like in zip(self._files, self._likes, strict=True)]
+            return [mapped(file, count, like) for file, like in zip(self._files, self._likes, strict=True)]
         if self._filed:  # the disk is full: what is not in the files must be in memory
-            before = [_mapped(file, self._filed, like) for file, like in zip(self._files, self._likes, strict=True)]
+            before = [mapped(file, self._filed, like) for file, like in zip(self._files, self._likes, strict=True)]
             parts = [before, *parts]
         return [np.concatenate([part[k] for part in parts]) for k in range(len(parts[0]))] if parts else []
 
@@ -84,7 +84,7 @@ def one_behind_the_other(first: Arrays, second: Arrays, folder: Path | None) -> 
     return columns.all() or first
 
 
-def _mapped(file: IO[bytes], rows: int, like: NDArray[Any]) -> NDArray[Any]:
+def mapped(file: IO[bytes], rows: int, like: NDArray[Any]) -> NDArray[Any]:
     """The first rows of a file as an array; `like` has its type and width."""
     shape = (rows, *like.shape[1:])
     length = math.prod(shape) * like.dtype.itemsize

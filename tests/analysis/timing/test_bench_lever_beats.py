@@ -58,7 +58,7 @@ def test_every_beat_is_heard_counted_and_told(bench_lever):
     assert numbers["beat_error_ms"] < 0.02 and numbers["timegrapher"]["amplitude_deg"] > numbers["amplitude_deg"]
     assert json.loads(json.dumps(numbers, allow_nan=False)) == numbers
     assert "missed beats none in 22 half swings" in summary_text(bench_lever, numbers)
-    assert len(tables(bench_lever)["beats.csv"].splitlines()) == 23
+    assert len(str(tables(bench_lever)["beats.csv"]).splitlines()) == 23
 
 
 def test_phases_have_the_angles_of_the_drawing(bench_lever):

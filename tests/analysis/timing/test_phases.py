@@ -85,13 +85,13 @@ def test_other_mechanisms_have_none():
 def test_tables():
     run = lever_run(6)
     found = beats(run)
-    rows = list(csv.DictReader(beats_csv(found).splitlines()))
+    rows = list(csv.DictReader("".join(beats_csv(found)).splitlines()))
     assert len(rows) == 5 and rows[0]["beat"] == "1" and rows[0]["period_s"] == "" and rows[0]["beat_error_ms"] == ""
     assert float(rows[3]["amplitude_deg"]) == pytest.approx(270.0) and float(rows[3]["t_s"]) == found.t[3]
     assert float(rows[3]["turn_at_deg"]) == pytest.approx(270.0) and float(rows[4]["rate_s_per_d"]) == pytest.approx(
         0.0, abs=1e-6
     )
-    table = list(csv.DictReader(phases_csv(run, found).splitlines()))
+    table = list(csv.DictReader("".join(phases_csv(run, found)).splitlines()))
     assert tuple(table[0]) == PHASE_COLUMNS and len(table) == 29
     drop = table[3]
     assert drop["phase"] == "drop" and float(drop["wheel_turn_deg"]) == pytest.approx(-2.0, abs=1e-6)

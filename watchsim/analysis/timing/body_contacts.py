@@ -25,8 +25,12 @@ def contact_events(run: Trajectory, wanted: Callable[[Pair], bool], *kinds: Even
 
 def contact_columns(run: Trajectory, wanted: Callable[[Pair], bool], names: list[str], *kinds: EventKind) -> list[Column]:
     """Only these columns of the same rows: of a long run there are millions."""
-    found = [part[list(names)][_concerned(run, part, wanted, kinds)] for (part,) in blocks(run.events)]
-    return [np.concatenate([part[name] for part in found] or [run.events[name]]) for name in names]
+    found: list[list[Column]] = [[] for _ in names]
+    for (part,) in blocks(run.events):
+        own = _concerned(run, part, wanted, kinds)
+        for column, name in zip(found, names, strict=True):
+            column.append(part[name][own])
+    return [np.concatenate(column or [run.events[name]]) for column, name in zip(found, names, strict=True)]
 
 
 def _concerned(run: Trajectory, events: Events, wanted: Callable[[Pair], bool], kinds: tuple[EventKind, ...]) -> Bits:

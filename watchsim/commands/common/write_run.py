@@ -56,13 +56,16 @@ def write(run: Trajectory, goal: Goal, extras: Extras, changed: Sequence[str] = 
     from watchsim.analysis.summary import tables
     from watchsim.commands.common.run_pictures import page, pictures
     from watchsim.simulation.stops import Stop
+    from watchsim.storage.write import real
 
     if run.stop == Stop.INTERRUPTED:
         say("Interrupted: writing what was simulated; a second Ctrl-C abandons it ...")
     try:
         numbers = _numbers(run, extras, changed, goal.folder)
         said = [*(f"Note: {note}" for note in numbers["notes"]), report_text(run, numbers)]
-        beside: dict[str, Any] = {**goal.scene, **tables(run), "report.txt": "\n".join([*said, *_timeline(run)]) + "\n"}
+        told = {name: text.write for name, text in tables(run, real(goal.folder).parent).items()}
+        report = "\n".join([*said, *_timeline(run)]) + "\n"
+        beside: dict[str, Any] = {**goal.scene, **told, "report.txt": report}
     except Exception:
         say(f"The numbers of this run could not be computed. Its motion is kept in {_bare(run, goal)}")
         raise

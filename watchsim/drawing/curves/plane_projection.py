@@ -11,7 +11,7 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from watchsim.drawing.content import Drawn, Stroke
+from watchsim.drawing.content import Drawn, Inserted, Stroke
 from watchsim.drawing.curves.plane_shapes import Conic, Dot, Shape, Spline, Straight, edge_on, exact_edge
 from watchsim.drawing.findings import Finding
 from watchsim.geometry.primitives import TURN, Edge, Line
@@ -51,6 +51,7 @@ class Gathering:
     tilted: int = 0
     copies: int = 0
     runs: int = 0
+    inserted: list[Inserted] = field(default_factory=list)
     curves: int = 0
     arcs: int = 0
     deviation: float = 0.0

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import zip_longest
 
-from watchsim.drawing.content import Content
+from watchsim.drawing.content import Content, Inserted
 from watchsim.drawing.curves.affine import IDENTITY, Affine, shifted
 from watchsim.drawing.curves.curves_to_arcs import follow
 from watchsim.drawing.curves.plane_projection import MOST_COPIES, MOST_STROKES, Gathering, TooLarge, emit
@@ -72,6 +72,7 @@ def read_dxf(data: bytes, units: str | None, fit: float) -> Content:
         fitted_deviation=found.deviation,
         ignored=dict(found.ignored),
         drawn=found.drawn(),
+        inserted=tuple(found.inserted),
         findings=(*notes, *sections.findings, *found.findings, *left_out(found, sections.layers)),
     )
 
@@ -186,7 +187,10 @@ class Walker:
                 message = f"{item.source} puts its block at coordinates beyond any drawing; it is left out"
                 self.found.findings.append(Finding("damaged", "error", message, "", layer))
                 return
+            before = self.found.runs
             self.walk(self.read_blocks[name], place, layer, (*path, name))
+            if not path:
+                self.found.inserted.append(Inserted(reference.block, before + 1, self.found.runs))
 
     def _base(self, block: Block) -> Affine:
         try:

@@ -46,11 +46,11 @@ def decide(model, state, island, m, options, work, event, out_grip):
 def count_problems(state, work):
     """Add the problems solved since last asked to the state's counts."""
     counts, rungs = state.counts, work.rungs
-    counts.lcp_lemke += rungs[Rung.LEMKE]
-    counts.lcp_copositive += rungs[Rung.COPOSITIVE]
-    counts.lcp_detours += rungs[Rung.DETOUR]
-    counts.lcp_enumerated += rungs[Rung.ENUMERATED]
-    counts.lcp_inexact += rungs[Rung.INEXACT]
+    counts.lcp_lemke += rungs[Rung.LEMKE.value]
+    counts.lcp_copositive += rungs[Rung.COPOSITIVE.value]
+    counts.lcp_detours += rungs[Rung.DETOUR.value]
+    counts.lcp_enumerated += rungs[Rung.ENUMERATED.value]
+    counts.lcp_inexact += rungs[Rung.INEXACT.value]
     for rung in range(len(rungs)):
         counts.lcp += rungs[rung]
         rungs[rung] = 0

@@ -1,0 +1,37 @@
+"""The mechanisms of the profiles, each drawn as a whole in one file, as a designer would send it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from watchsim.drawing.dxf.write_dxf import dxf_text
+from watchsim.profiles_path import profiles_dir
+from watchsim.scene.carriers import start_poses
+from watchsim.scene.file.load import load
+from watchsim.scene.scene import Scene
+
+NAMES = ("swiss_lever", "bench_lever", "set_a", "coaxial", "geneva", "graham", "recoil_anchor", "involute_pair")
+
+
+def scene_of(name: str) -> Scene:
+    return load(profiles_dir() / name)
+
+
+def assembly(scene: Scene, path: Path, layers: str = "own", marks: bool = True) -> Path:
+    """Draw a scene in `path`: with a balance, it and the lever at rest, all else as it starts; fixed parts have no mark.
+
+    layers  own: as in the drawings of the parts; body: with the body's name before; loose: everything on layer 0
+    """
+    springs = {spring.body for spring in scene.springs}
+    loops, points = [], []
+    for body in scene.bodies:
+        x, y, angle = start_poses(scene)[body.name]
+        angle = 0.0 if springs and body.name in (*springs, "lever") else angle
+        for loop in (*body.loops, *body.decoration):
+            name = {"own": loop.layer, "body": f"{body.name}_{loop.layer}", "loose": "0"}[layers]
+            loops.append(replace(loop.moved(angle, (x, y)), layer=name))
+        if body.motion != "fixed" and marks:
+            points.append(("PIVOT", (x, y)))
+    path.write_text(dxf_text(loops, points), encoding="utf-8")
+    return path

@@ -1,0 +1,174 @@
+"""Do drawings of whole mechanisms give the scene that they were drawn from?"""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import ezdxf
+import pytest
+from proposal.assemblies import NAMES, assembly, scene_of
+
+from watchsim.cli import main
+from watchsim.mechanism.overlap import overlaps
+from watchsim.proposal.propose import NothingToPropose, propose
+from watchsim.scene.file.load import load
+from watchsim.scene.scene import Scene
+from watchsim.simulation.simulate import simulate
+
+SHARED = Path("/work/shared/drawings")
+EXTRA = {"coaxial": {frozenset((("lever", "FORK"), ("balance", "IMPULSE_STONE")))}}  # guessed and not so
+
+
+def written(paths: list[Path], folder: Path) -> Scene:
+    """The proposed scene, loaded from files."""
+    folder.mkdir()
+    for name, data in propose(paths).files.items():
+        (folder / name).write_bytes(data)
+    return load(folder)
+
+
+def partner(scene: Scene, real: Scene, name: str) -> str:
+    """The body of the real scene that turns where body `name` of the proposed one does, or stands still as it does."""
+    body = scene.body(name)
+    if body.motion == "fixed":
+        return next(one.name for one in real.bodies if one.motion == "fixed")
+    turning = [one for one in real.bodies if one.motion == "pivot"]
+    nearest = min(turning, key=lambda one: math.dist(one.position, body.position))
+    assert math.dist(nearest.position, body.position) < 1e-9
+    return nearest.name
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_an_assembly_gives_its_bodies_pivots_and_contacts(name: str, tmp_path: Path) -> None:
+    real = scene_of(name)
+    scene = written([assembly(real, tmp_path / f"{name}.dxf", "own")], tmp_path / "out")
+    names = {body.name: partner(scene, real, body.name) for body in scene.bodies}
+    assert sorted(names.values()) == sorted(body.name for body in real.bodies)
+    assert not overlaps(scene)
+
+    def pairs(one: Scene, told: dict[str, str]) -> set[frozenset[tuple[str, str]]]:
+        """By body and the last words of the layer: a sorted drawing puts the body's name before it."""
+        found = set()
+        for contact in one.contacts:
+            sides = [(told[side.body], side.layer, one.body(side.body)) for side in contact.sides]
+            found.add(
+                frozenset((body, (layer or own.layers[0]).removeprefix(f"{own.name.upper()}_")) for body, layer, own in sides)
+            )
+        return found
+
+    plain = {"involute_pair": {"WHEEL": "TEETH", "WHEEL_2": "TEETH"}, "coaxial": {"BANKING": "PINS"}}.get(name, {})
+    guessed = {frozenset((body, plain.get(layer, layer)) for body, layer in pair) for pair in pairs(scene, names)}
+    wanted = pairs(real, {body.name: body.name for body in real.bodies})
+    assert guessed - EXTRA.get(name, set()) == wanted
+
+
+@pytest.mark.parametrize("name", ["swiss_lever", "bench_lever", "set_a"])
+def test_a_lever_escapement_goes_as_it_was_proposed(name: str, tmp_path: Path) -> None:
+    """Locked at the start, driven the right way, and gaining amplitude: it ticks without any edit."""
+    real = scene_of(name)
+    scene = written([assembly(real, tmp_path / f"{name}.dxf", "body")], tmp_path / "out")
+    assert math.copysign(1.0, scene.torques[0].value) == math.copysign(1.0, real.torques[0].value)
+    run = simulate(scene, 1.0)
+    wheel = run.slices[scene.torques[0].body].start
+    pitches = abs(run.q[-1, wheel] - run.q[0, wheel]) / math.radians(24.0)
+    assert 3.4 < pitches < 4.7  # one tooth in each oscillation of 4 Hz
+    balance = run.slices[scene.springs[0].body].start
+    assert math.degrees(run.q[len(run.q) // 2 :, balance].max()) > 240.0
+
+
+def test_loose_outlines_and_marks_give_bodies(tmp_path: Path) -> None:
+    """All on one layer: outlines in a drawing that is made for it, each on a layer of its own, those of one body together."""
+    real = scene_of("swiss_lever")
+    proposal = propose([assembly(real, tmp_path / "loose.dxf", "loose")])
+    assert [role.task for role in proposal.roles] == ["wheel", "lever", "oscillator", "fixed"]
+    assert set(proposal.files) == {"loose_sorted.dxf", "scene.toml"}
+    assert proposal.roles[0].teeth == 15
+    at = [role.part.centre.at for role in proposal.roles[:3]]
+    assert [math.dist(a, body.position) for a, body in zip(at, real.bodies[:3], strict=True)] == pytest.approx(
+        [0.0] * 3, abs=1e-9
+    )
+
+
+def test_blocks_are_bodies(tmp_path: Path) -> None:
+    """Two gears, each a block on the same layer, put into the drawing."""
+    document = ezdxf.new("R2010", units=ezdxf.units.MM)
+    for block, teeth, radius in (("BIG", 24, 6.0), ("SMALL", 12, 3.0)):
+        made = document.blocks.new(block)
+        corners = []
+        for k in range(2 * teeth):
+            r = radius + (0.4 if k % 2 else -0.4)
+            corners += [(r * math.cos(math.pi * (k + d) / teeth), r * math.sin(math.pi * (k + d) / teeth)) for d in (-0.2, 0.2)]
+        made.add_lwpolyline(corners, close=True, dxfattribs={"layer": "OUTLINE"})
+    document.modelspace().add_blockref("BIG", (0.0, 0.0))
+    document.modelspace().add_blockref("SMALL", (9.3, 0.0))
+    document.saveas(tmp_path / "gears.dxf")
+    scene = written([tmp_path / "gears.dxf"], tmp_path / "out")
+    assert sorted(body.position for body in scene.bodies) == [pytest.approx((0.0, 0.0), abs=1e-9), pytest.approx((9.3e-3, 0.0))]
+    assert len(scene.contacts) == 1 and not overlaps(scene)
+
+
+def test_parts_in_files_of_their_own_are_put_side_by_side(tmp_path: Path) -> None:
+    folder = scene_of("swiss_lever").path.parent  # type: ignore[union-attr]
+    proposal = propose([folder / f"{name}.dxf" for name in ("escape_wheel", "lever", "roller", "banking")])
+    assert [role.name for role in proposal.roles] == ["wheel", "lever", "balance", "banking"]
+    assert {("wheel.TEETH", "lever.STONES"), ("lever.FORK", "balance.PIN")} <= set(proposal.contacts)
+    keys = {guess.key for guess in proposal.guesses}
+    assert {"bodies.lever.position", "bodies.balance.position"} <= keys
+
+
+def test_every_guess_has_a_reason_and_stands_in_the_scene(tmp_path: Path) -> None:
+    path = assembly(scene_of("bench_lever"), tmp_path / "bench.dxf")
+    proposal = propose([path])
+    text = proposal.files["scene.toml"].decode()
+    assert len(proposal.guesses) > 10
+    assert all(guess.why and guess.why in text for guess in proposal.guesses)
+
+
+def test_the_command_writes_and_refuses(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    path = assembly(scene_of("bench_lever"), tmp_path / "bench.dxf")
+    assert main(["new", "bench.dxf", "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["folder"] == "bench" and [body["task"] for body in told["bodies"]][:3] == ["wheel", "lever", "oscillator"]
+    assert main(["check", "bench"]) == 0
+    assert main(["new", "bench.dxf"]) == 2  # it is there
+    assert main(["new", "bench.dxf", "--force"]) == 0
+    capsys.readouterr()
+    assert main(["new", "nothing.dxf"]) == 2
+    assert "there is no such file" in capsys.readouterr().err
+    assert main(["new", "bench.dxf", "--lock", "2°", "-o", "b"]) == 2
+    assert "no option for drawings" in capsys.readouterr().err
+    (tmp_path / "open.dxf").write_bytes(path.read_bytes()[:4000])
+    assert main(["new", "open.dxf"]) == 2
+    assert "closed outline" in capsys.readouterr().err
+    assert not (tmp_path / "open").exists() and not (tmp_path / "b").exists()
+
+
+@pytest.mark.skipif(not SHARED.is_dir(), reason="the shared drawings are not here")
+def test_a_real_assembly() -> None:
+    """A Swiss lever from a public CAD model: three parts that turn, two stops, stones against teeth, pin against fork."""
+    proposal = propose([SHARED / "pin_lever" / "siconos_pin_lever_assembly.dxf"])
+    assert [role.name for role in proposal.roles] == ["escape_wheel", "lever", "balance", "stop"]
+    wanted = {
+        ("escape_wheel.ESCAPE_WHEEL_z-1.30", "lever.PALLET_A"),
+        ("escape_wheel.ESCAPE_WHEEL_z-1.30", "lever.PALLET_B"),
+        ("lever.LEVER_z-1.20", "balance.BALANCE_z-1.10_IMPULSE"),
+        ("lever.LEVER_z-1.20", "stop.STOP_A"),
+        ("lever.LEVER_z-1.20", "stop.STOP_B"),
+    }
+    assert wanted <= set(proposal.contacts)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not SHARED.is_dir(), reason="the shared drawings are not here")
+def test_no_drawing_brings_it_down() -> None:
+    """Every shared drawing gives a scene that loads, or one clear refusal."""
+    for path in sorted([*SHARED.glob("dxf/*"), *SHARED.glob("svg/*")]):
+        try:
+            assert "scene.toml" in propose([path]).files
+        except NothingToPropose as error:
+            assert str(error)

@@ -1,0 +1,91 @@
+"""To which body do pieces belong that show no centre: which do they lie in, or next to?"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from watchsim.proposal.bodies.centres import is_toothed
+from watchsim.proposal.bodies.part import Part, are_apart, unite
+from watchsim.proposal.bodies.words import FIXED, LEVER, OSCILLATOR, WHEEL
+
+INSIDE = 0.3  # of a piece in the material of a body: it belongs to it
+BORDER = 0.2  # of a piece's outline on that of a body: it belongs to it
+CLOSE = 0.01  # of the whole: an outline without a name as near as this to a body belongs to it
+BESIDE = 1e-6  # m: outlines this close lie on each other
+
+
+def take_in(parts: list[Part]) -> None:
+    """Give pieces without a centre to the body in whose material, or along whose outline, they lie."""
+    for part in [part for part in parts if part.centre is None and part.kind != FIXED]:
+        around = [other for other in parts if other.centre is not None and not are_apart(part, other)]
+        body = max(around, key=lambda other: (_share(part, other), -other.area), default=None)
+        if body is not None and _share(part, body) >= INSIDE:
+            unite(body, part, "they lie in each other")
+            parts.remove(part)
+    for part in [part for part in parts if part.centre is None and part.kind == OSCILLATOR]:  # a rod fixed to an anchor
+        if not any(other.centre is not None and other.kind == OSCILLATOR for other in parts):
+            body = next((other for other in parts if other.kind == LEVER and other.centre and _meet(part, other)), None)
+            if body is not None:
+                unite(body, part, "they lie in each other")
+                parts.remove(part)
+
+
+def _meet(part: Part, other: Part) -> bool:
+    return any(p.region.intersects(q.region) for p in part.pieces for q in other.pieces)
+
+
+def _share(part: Part, other: Part) -> float:
+    """How much of a part lies in another one: of its area, or as much as its border says."""
+    most = 0.0
+    for piece in part.pieces:
+        for there in other.pieces:
+            most = max(most, piece.region.intersection(there.region).area / piece.area)
+            if most < INSIDE and piece.region.distance(there.region) <= BESIDE:
+                along = piece.region.boundary.intersection(there.region.buffer(BESIDE)).length
+                most = max(most, INSIDE if along > BORDER * piece.length else 0.0)
+    return most
+
+
+def nearest_to_each_other(one: Part, other: Part, parts: Sequence[Part]) -> bool:
+    """Is no other body, of a kind that the names allow, nearer to what has no centre yet?"""
+    loose, body = (one, other) if one.centre is None else (other, one)
+    if body.centre is None:
+        return True
+    return _nearest(loose, parts) is body
+
+
+def _nearest(loose: Part, parts: Sequence[Part]) -> Part | None:
+    bodies = [part for part in parts if part.centre is not None and not are_apart(loose, part)]
+    return min(bodies, key=lambda part: _distance(loose, part), default=None)
+
+
+def _distance(one: Part, other: Part) -> float:
+    return min(float(p.region.distance(q.region)) for p in one.pieces for q in other.pieces)
+
+
+def give_to_nearest(parts: list[Part]) -> None:
+    """What is named for a moving part goes to the nearest one of that kind."""
+    for loose in [part for part in parts if part.centre is None and part.kind != FIXED and part.hints - {FIXED}]:
+        body = _nearest(loose, parts)
+        if body is not None and body.kind is not None:
+            unite(body, loose, "it is the nearest part of the kind that their names speak of")
+            parts.remove(loose)
+
+
+def give_to_close(parts: list[Part]) -> None:
+    """What nothing names and is no disc, such as a stone set in a lever, goes to the part that it nearly touches."""
+    points = np.concatenate([piece.points for part in parts for piece in part.pieces]) if parts else np.zeros((1, 2))
+    near = CLOSE * float((points.max(axis=0) - points.min(axis=0)).max())
+    for loose in [part for part in parts if part.centre is None and part.kind is None and not part.hints]:
+        if len(loose.pieces) > 1 or loose.pieces[0].is_disc:
+            continue
+        body = _nearest(loose, [part for part in parts if not _is_wheel(part)])
+        if body is not None and _distance(loose, body) <= near:
+            unite(body, loose, "it nearly touches them")
+            parts.remove(loose)
+
+
+def _is_wheel(part: Part) -> bool:
+    return part.kind == WHEEL or any(piece.turned is not None and is_toothed(piece.turned) for piece in part.pieces)

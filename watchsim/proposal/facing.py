@@ -1,0 +1,160 @@
+"""Which surfaces face which?
+
+Layers of two bodies that come within reach of each other as the bodies turn: wheels and balances all the way, levers a
+little. What lies over each other in the drawing lies at different heights and cannot meet.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.geometry.primitives import Point
+from watchsim.mechanism.material_polygons import material, placed
+from watchsim.proposal.bodies.piece import Piece, Region
+from watchsim.proposal.bodies.roles import Role
+from watchsim.proposal.bodies.words import DRIVER, FIXED, LEVER, OSCILLATOR, WHEEL, facing_by_name
+
+Floats = NDArray[np.float64]
+SWING = math.radians(15.0)  # of a lever, to either side
+STEPS = 7
+MARGIN = 0.01  # of the whole size: what comes as near as this is taken to meet
+OVER = 0.02  # of the smaller area: what overlaps more lies at different heights
+
+
+@dataclass(frozen=True)
+class Facing:
+    """Two layers of two bodies that can meet. `overlap` is what they share in the drawing, by the smaller area."""
+
+    first: Role
+    first_layer: str
+    second: Role
+    second_layer: str
+    why: str
+    overlap: float = 0.0
+    by_name: bool = False
+
+
+def facings(roles: Sequence[Role], size: float) -> tuple[list[Facing], list[Facing]]:
+    """What is taken to meet, and what also comes within reach but is less likely to; each pair of layers once."""
+    likely: list[Facing] = []
+    others: list[Facing] = []
+    for k, one in enumerate(roles):
+        for other in roles[k + 1 :]:
+            if not (one.moves or other.moves) or _misses(one, other):
+                continue
+            met = [facing for a in one.part.layers for b in other.part.layers if (facing := _facing(one, a, other, b, size))]
+            named = [facing for facing in met if facing.by_name]
+            likely += named or met
+            others += [facing for facing in met if named and facing not in named]
+    return likely, others
+
+
+def named_facings(roles: Sequence[Role]) -> list[Facing]:
+    """What works together by its names, where the drawings do not show how the parts stand; a lever meets what stands still."""
+    found = []
+    for k, one in enumerate(roles):
+        for other in roles[k + 1 :]:
+            pairs = [(a, b) for a in one.part.layers for b in other.part.layers]
+            named = [(a, b) for a, b in pairs if facing_by_name(a, b)]
+            if {one.task, other.task} == {LEVER, FIXED}:
+                arm = max(one.part.pieces if one.task == LEVER else other.part.pieces, key=lambda piece: piece.area).layer
+                named = [pair for pair in pairs if arm in pair]
+            found += [Facing(one, a, other, b, "by their names alone", by_name=True) for a, b in named]
+    return found
+
+
+def _misses(one: Role, other: Role) -> bool:
+    """What turns all the way passes what stands still; it would end there."""
+    return (
+        {one.task, other.task} <= {WHEEL, DRIVER, OSCILLATOR, FIXED}
+        and FIXED in (one.task, other.task)
+        and not _anchor(one, other)
+    )
+
+
+def _anchor(one: Role, other: Role) -> bool:
+    return "anchor" in (one.name, other.name)
+
+
+def _facing(one: Role, a: str, other: Role, b: str, size: float) -> Facing | None:
+    first = [piece for piece in one.part.pieces if piece.layer == a]
+    second = [piece for piece in other.part.pieces if piece.layer == b]
+    overlap = max(_overlap(p, q) for p in first for q in second)
+    if overlap > OVER:
+        return None
+    near = MARGIN * size
+    if not any(_reach(one, p, other, q, near) for p in first for q in second):
+        return None
+    named = facing_by_name(a, b)
+    why = "by their names, and they come within reach" if named else "they come within reach of each other"
+    return Facing(one, a, other, b, why, overlap, named)
+
+
+def _overlap(p: Piece, q: Piece) -> float:
+    return float(p.region.intersection(q.region).area) / min(p.area, q.area)
+
+
+def turns_fully(role: Role) -> bool:
+    return role.task in (WHEEL, DRIVER) or (role.task == OSCILLATOR and role.name != "anchor")
+
+
+def _reach(one: Role, p: Piece, other: Role, q: Piece, near: float) -> bool:
+    if turns_fully(one) and turns_fully(other):
+        (low, high), (lower, higher) = (_ring(piece, _at(role)) for piece, role in ((p, one), (q, other)))
+        apart = math.dist(_at(one), _at(other))
+        return high + higher + near >= apart and apart + min(high, higher) + near >= max(low, lower)
+    if turns_fully(other):
+        one, p, other, q = other, q, one, p
+    if turns_fully(one):
+        low, high = _ring(p, _at(one))
+        ranges = [_ring_of(points, _at(one)) for points in _swung(other, q)]
+        return any(least <= high + near and most >= low - near for least, most in ranges)
+    placed_p, placed_q = ([_region(piece, points) for points in _swung(role, piece)] for role, piece in ((one, p), (other, q)))
+    return any(first.distance(second) <= near for first in placed_p for second in placed_q)
+
+
+def _at(role: Role) -> Point:
+    return role.part.centre.at if role.part.centre is not None else (0.0, 0.0)
+
+
+def _swung(role: Role, piece: Piece) -> list[Floats]:
+    """The outer points of a piece at some angles of its body; of what stands still where it is."""
+    if not role.moves:
+        return [piece.points]
+    swing = SWING if role.task in (LEVER, OSCILLATOR) else math.pi
+    return [about(piece.points, _at(role), angle) for angle in np.linspace(-swing, swing, STEPS).tolist()]
+
+
+def about(points: Floats, centre: Point, angle: float) -> Floats:
+    """Points turned about a centre."""
+    return placed(points - np.array(centre), (*centre, angle))
+
+
+def _region(piece: Piece, points: Floats) -> Region:
+    parts, at = [], 0
+    for ring, hole in piece.rings:
+        if not hole:
+            parts += material([(points[at : at + len(ring)], False)])
+            at += len(ring)
+    whole = parts[0]
+    for part in parts[1:]:
+        whole = whole.union(part)
+    return whole
+
+
+def _ring(piece: Piece, centre: Point) -> tuple[float, float]:
+    return _ring_of(piece.points, centre)
+
+
+def _ring_of(points: Floats, centre: Point) -> tuple[float, float]:
+    """The least and the largest distance of an outline from a point."""
+    start, step = points[:-1] - np.array(centre), np.diff(points, axis=0)
+    length = np.maximum((step**2).sum(axis=1), 1e-30)
+    share = np.clip(-(start * step).sum(axis=1) / length, 0.0, 1.0)
+    nearest = np.hypot(*(start + share[:, None] * step).T).min()
+    return float(nearest), float(np.hypot(*(points - np.array(centre)).T).max())
