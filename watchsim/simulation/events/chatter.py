@@ -68,15 +68,18 @@ def chatter_time(state, m, options, event):
 
 
 @kernel
-def end_chatter(model, state, m, time, work, event, room):
-    """Velocities at the end of a chatter that lasts `time`; True if they are found, else they are unchanged.
+def end_chatter(model, state, m, ended, work, event, room):
+    """Velocities at the end of a chatter; True if they are found, else they are unchanged.
+
+    `ended`: (time that it lasts, kinetic energy that the impact has just taken).
 
     P are the impulses of the plastic impact with the rates that free motion over `time` would lead to, lambda the
     forces of the contacts that P finds in force. What lambda does will be integrated when that time passes; the rest
-    is done now: u += M⁻¹ W (P - lambda time). Not done where that would gain energy. `work` holds h and the
-    inverse masses of the last decision.
+    is done now: u += M⁻¹ W (P - lambda time). Not done where that would gain more energy than the impact took. `work` holds h
+    and the inverse masses of the last decision.
     """
     closed, rest, ending = event.closed, event.rest, room.ending
+    time, taken = ended
     if not plastic_impact(model, closed, m, time, state.u, work):
         return False
     r = 0
@@ -98,8 +101,8 @@ def end_chatter(model, state, m, time, work, event, room):
     solve_mode(model, rest, r, room.mode, work)
     for row in range(2 * r):
         ending[row] -= work.force[row] * time
-    # Less pressure for a moment is less friction: while that is worth anything, the impacts go on one by one.
-    if _gain(rest, r, state.u, ending, work) > CHATTER_GAIN * kinetic_energy(model, state.u):
+    # Less pressure for a moment is less friction, which will come: of what the impact took, no more than that is given back.
+    if _gain(rest, r, state.u, ending, work) > max(CHATTER_GAIN * kinetic_energy(model, state.u), taken):
         return False
     apply(rest, r, ending, work.inverse, state.u)
     return True

@@ -154,8 +154,9 @@ def _end_chatter(model, state, m, time, scratch, record):
     """End the chatter of the m closed contacts within `time`; its energy goes to the impacts."""
     work, event, room = scratch.work, scratch.event, scratch.impact
     before = kinetic_energy(model, state.u)
+    taken = kinetic_energy(model, room.before) - before
     copy(state.u, room.before)
-    done = end_chatter(model, state, m, time, work, event, room)
+    done = end_chatter(model, state, m, (time, taken), work, event, room)
     count_problems(state, work)
     contact_velocities(event.closed, m, state.u, room.rates)
     for i in range(m):
