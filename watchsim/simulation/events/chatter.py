@@ -29,7 +29,7 @@ def may_be_chatter(m, options, event, room):
     for i in range(m):
         rate = event.closed.kin[i].gN_dot
         if rate > options.accumulation_speed:
-            return False
+            continue
         hit = room.impulse[2 * i] > 0.0
         if hit and room.restitution[i] == 1.0:
             return False
@@ -50,11 +50,11 @@ def return_time(closed, i, a):
 
 @kernel
 def chatter_time(state, m, options, event):
-    """Time until all contacts that leave are back, s; infinity if one of them comes further than `gap_close`.
+    """Time until all contacts that leave by less than `gap_close` are back, s; infinity if another one is back by then.
 
-    The accelerations are in `state.a`.
+    What leaves for longer than twice that time has no part in it. The accelerations are in `state.a`.
     """
-    latest = 0.0
+    latest, soonest = 0.0, math.inf
     for i in range(m):
         rate = event.closed.kin[i].gN_dot
         if rate <= event.zero[i]:
@@ -62,9 +62,10 @@ def chatter_time(state, m, options, event):
         back = return_time(event.closed, i, state.a)
         # It rises on a parabola, to a quarter of the way it would go at its first speed.
         if 0.25 * rate * back > options.gap_close:
-            return math.inf
-        latest = max(latest, back)
-    return latest
+            soonest = min(soonest, back)
+        else:
+            latest = max(latest, back)
+    return latest if soonest > 2.0 * latest else math.inf
 
 
 @kernel
