@@ -190,7 +190,9 @@ def _start(n: int, path: int, work: LcpWork) -> int:
         work.tableau[i, i] = 1.0
         cover = 1.0 + uneven * ((UNEVEN * i + uneven) % PERIOD) / PERIOD
         work.tableau[i, 2 * n] = -cover
-        load = work.load[i] + more * (UNLIKE * (i + 1) * (path + 1) % 1.0)
+        load = work.load[i]
+        if more > 0.0:
+            load += more * (UNLIKE * (i + 1) * (path + 1) % 1.0)
         work.tableau[i, 2 * n + 1] = load
         if load / cover <= lowest:
             row, lowest = i, load / cover
