@@ -10,11 +10,12 @@ from watchsim.contact.index_sets import BACKWARD, FORWARD, OPEN, STICK
 from watchsim.dynamics.coulomb import add_element, fill_matrix, fill_rhs, read_forces
 from watchsim.dynamics.delassus import apply, fill_bearings, fill_delassus, inverse_mass, note_posed, own_acceleration
 from watchsim.dynamics.handedness import restore_directions, reverse_directions
+from watchsim.dynamics.jamming import is_paradox, press_unloaded
 from watchsim.dynamics.problem_kinds import Level, Rung
 from watchsim.dynamics.redundant_contacts import smallest_forces
 from watchsim.dynamics.small_systems import solve_small, unit_scale
-from watchsim.dynamics.solver_fallbacks import solve_contacts
-from watchsim.dynamics.tolerances import ACCELERATION_ROUNDING, PAINLEVE, RANK
+from watchsim.dynamics.solver_fallbacks import keep_basis, solve_contacts
+from watchsim.dynamics.tolerances import ACCELERATION_ROUNDING, RANK
 from watchsim.jit import kernel
 
 
@@ -123,9 +124,14 @@ def decide_modes(model, closed, m, bearings, speed_zero, work, out_grip, out_mod
     fill_matrix(work, m, elements)
     _load(work, m, elements, bearings)
     fill_rhs(work, m, elements, work.loaded)
+    pressed = press_unloaded(model, closed, m, work)
     note_posed(work, m, elements, bearings, Level.ACCELERATION)
-    if solve_contacts(work, m, elements) == Rung.FAILED:
+    rung = solve_contacts(work, m, elements)
+    if rung == Rung.FAILED:
         return False
+    if pressed and rung == Rung.LEMKE:
+        fill_rhs(work, m, elements, work.loaded)
+        keep_basis(work, m, elements)
     read_forces(work, m, elements, work.force)
     for i in range(m):
         if work.x[i] > 0.0 and is_paradox(work, m, i):
@@ -178,23 +184,6 @@ def _load(work, m, elements, bearings):
 
 
 @kernel
-def is_paradox(work, m, i):
-    """True if contact i, all by itself, slides such that a normal force on it pulls its bodies together, or nearly so.
-
-    Works with the G and drag of `solve_mode` and `decide_modes`.
-    """
-    own = work.G[2 * i, 2 * i]
-    if work.tangent[i] >= 0 or own == 0.0:
-        return False
-    if own - work.drag[i] * work.G[2 * i, 2 * i + 1] > PAINLEVE * own:
-        return False
-    for j in range(m):
-        if j != i and (work.G[2 * i, 2 * j] != 0.0 or work.G[2 * i, 2 * j + 1] != 0.0 or work.G[2 * i + 1, 2 * j] != 0.0):
-            return False
-    return True
-
-
-@kernel
 def _row_acceleration(work, rows, row):
     """g'' of row `row` under the forces just found."""
     total = work.b[row]
@@ -214,6 +203,8 @@ def _mode_of(closed, i, m, elements, bearings, work):
     if work.x[i] <= 0.0 and _row_acceleration(work, rows, 2 * i) > ACCELERATION_ROUNDING * row_terms(work, rows, 2 * i):
         return OPEN
     if work.tangent[i] < 0:
+        if work.x[i] <= 0.0 and is_paradox(work, m, i):
+            return OPEN  # the least force would jam it
         return BACKWARD if closed.kin[i].gT_dot < 0.0 else FORWARD
     slip = _row_acceleration(work, rows, 2 * i + 1)
     # lambda_T is the difference of terms as large as the friction cone.

@@ -15,7 +15,7 @@ from watchsim.dynamics.expansion_friction import interval
 from watchsim.dynamics.handedness import restore_directions, reverse_directions
 from watchsim.dynamics.problem_kinds import Level, Rung
 from watchsim.dynamics.solver_fallbacks import keep_basis, solve_contacts
-from watchsim.dynamics.tolerances import NUDGE, PARALLEL
+from watchsim.dynamics.tolerances import NUDGE, PARALLEL, VELOCITY_ROUNDING
 from watchsim.jit import kernel
 
 
@@ -48,6 +48,7 @@ def _compress(model, closed, m, u, jam, work):
     elements = _begin(model, closed, m, work)
     fill_delassus(closed, m, work)
     contact_velocities(closed, m, u, work.b)
+    _drop_rounding(closed, m, u, work.b)
     reverse_directions(work, m, 2 * m, elements, work.b)
     fill_matrix(work, m, elements)
     fill_rhs(work, m, elements, work.b)
@@ -60,6 +61,18 @@ def _compress(model, closed, m, u, jam, work):
         keep_basis(work, m, elements)
     read_forces(work, m, elements, work.force)
     return rung != Rung.FAILED, elements
+
+
+@kernel
+def _drop_rounding(closed, m, u, out_rates):
+    """Make rates zero that are nothing but the rounding of their terms: where many contacts rest they contradict each other."""
+    for i in range(m):
+        terms = 0.0
+        for k in range(closed.slots[i]):
+            terms += (abs(closed.w_N[i, k]) + abs(closed.w_T[i, k])) * abs(u[closed.coord[i, k]])
+        for row in range(2 * i, 2 * i + 2):
+            if abs(out_rates[row]) <= VELOCITY_ROUNDING * terms:
+                out_rates[row] = 0.0
 
 
 @kernel

@@ -3,15 +3,15 @@
 Rung after rung: Lemke's method on the form of coulomb.py; on the copositive form, which always has a solution for
 impacts (Stewart & Trinkle 1996; Anitescu & Potra 1997); Lemke's method on other paths; enumeration of the modes of
 small sets. What solves the problem is checked against the first form. Where many contacts are redundant their loads are
-rounding errors that may contradict each other: then Lemke's end is taken if it misses by no more than a billionth of the
-largest load. If nothing helps, the caller stops and keeps the problem.
+rounding errors that may contradict each other: then an end of Lemke's method is taken that misses by no more than a billionth
+of the load that drives the problem. If nothing helps, the caller stops and keeps the problem.
 """
 
 from __future__ import annotations
 
 from watchsim.dynamics.delassus import size_class
 from watchsim.dynamics.lcp.basis import is_solution, solve_active, solves
-from watchsim.dynamics.lcp.lemke_pivoting import lemke, lemke_checked, lemke_on_path
+from watchsim.dynamics.lcp.lemke_pivoting import lemke_checked, lemke_on_path
 from watchsim.dynamics.lcp.outcome import LcpOutcome
 from watchsim.dynamics.lcp.scaling import scale, unscale
 from watchsim.dynamics.problem_kinds import Rung
@@ -33,11 +33,11 @@ def solve_contacts(work, m, elements):
         rung = Rung.FAILED
         if elements > 0 and _solve_copositive(work, m, elements):
             rung = Rung.COPOSITIVE
-        elif _detour(work, n):
+        elif _detour(work, n, False):
             rung = Rung.DETOUR
         elif enumerate_modes(work, m, elements):
             rung = Rung.ENUMERATED
-        elif lemke(work.A, work.rhs, n, work.lcp, work.x) == LcpOutcome.SOLVED and solves(n, LCP_ROUGH, work.lcp):
+        elif _detour(work, n, True):
             rung = Rung.INEXACT
     work.rungs[rung.value] += 1
     work.sizes[size_class(n)] += 1
@@ -45,10 +45,14 @@ def solve_contacts(work, m, elements):
 
 
 @kernel
-def _detour(work, n):
-    """True if Lemke's method reaches a solution from another start, then in `work.x`: ties and rounding fall otherwise."""
-    for path in range(1, PATHS + 1):
-        if lemke_on_path(work.A, work.rhs, n, path, work.lcp, work.x) == LcpOutcome.SOLVED:
+def _detour(work, n, rough):
+    """True if Lemke's method reaches a solution from another start, then in `work.x`: ties and rounding fall otherwise.
+
+    `rough`: the usual start counts, too, and so does what misses the conditions by next to nothing.
+    """
+    for path in range(0 if rough else 1, PATHS + 1):
+        outcome = lemke_on_path(work.A, work.rhs, n, path, work.lcp, work.x)
+        if outcome == LcpOutcome.SOLVED or (rough and outcome == LcpOutcome.INEXACT and solves(n, LCP_ROUGH, work.lcp)):
             return True
     return False
 

@@ -17,13 +17,20 @@ RANK = 1e-11
 COEFFICIENT_ROUNDING = 1e-14
 # A pivot that small is zero. Large: solvable problems end on a ray; small: division by rounding.
 LCP_PIVOT = 1e-11
-# Ratios that close are equal. Large: a wrong row leaves; small: at 1e-12 1 in 1000 singular problems ends on a ray.
+# Of the load that drives a problem: ratios that close are equal. Large: a wrong row leaves; small: at 1e-12 1 in 1000 singular
+# problems ends on a ray.
 RATIO_TIE = 1e-10
+# Of the largest load: the same. Large: small approaches tie with none; small: rounding takes sides.
+LOAD_ROUNDING = 1e-15
+# Of the load that drives it: changes of loads that part ties. Large: another problem is solved; small: ties stay.
+LCP_PERTURBED = 1e-4
+# Of that: the same on the next path. Large, small: too few sizes are tried.
+LCP_LESS = 0.1
 # Of its terms: a y that small is zero. Large: wrong solutions pass; small: right ones are refused.
 LCP_RESIDUAL = 1e-9
 # Of the largest x, or of one: so is that. Large: small forces vanish; small: redundant sets are refused.
 LCP_ROUNDING = 1e-13
-# The same where loads are the rounding of larger terms, as the last resort. Large, small: as above.
+# Of what drives the problem: the same where loads are rounding, as the last resort. Large, small: as above.
 LCP_ROUGH = 1e-9
 
 # --- Contact forces and modes ---
@@ -43,6 +50,8 @@ DEPENDENT = 1e-20
 
 # --- Impacts ---
 
+# Of its terms: a rate that small is zero. Large: slow approaches are missed; small: noise contradicts itself.
+VELOCITY_ROUNDING = 4e-15
 # Sine² of the angle between parallel directions. Large: slanted ones pass; small: friction stays open.
 PARALLEL = 1e-12
 # Of the slip: approach by which the force of a jammed contact acts. Large: others carry it; small: below rounding.

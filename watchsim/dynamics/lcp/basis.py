@@ -14,25 +14,28 @@ from watchsim.jit import kernel
 @kernel
 def is_solution(n, work):
     """True when the scaled trial solves the problem to rounding; see `solves`."""
-    return solves(n, LCP_ROUNDING, work)
+    return solves(n, 0.0, work)
 
 
 @kernel
-def solves(n, rounding, work):
-    """True when the scaled trial solves the problem; each y_i is judged by the terms it is the sum of and by `rounding`.
+def solves(n, rough, work):
+    """True when the scaled trial solves the problem; each y_i is judged by the terms it is the sum of and by rounding.
 
+    `rough`: the share that may be missing of the load that drives the problem, or of the largest unknown.
     `work.worst` keeps the worst violation of an accepted solution, as a share of one or of its largest unknown.
     """
-    floor, worst = 1.0, 0.0
+    largest, worst = 0.0, 0.0
     for i in range(n):
-        floor = max(floor, abs(work.trial[i]))
+        largest = max(largest, abs(work.trial[i]))
+    floor = max(1.0, largest)
+    missing = LCP_ROUNDING * floor + rough * max(work.worst.driver, largest)
     for i in range(n):
         y, terms = work.load[i], abs(work.load[i])
         for j in range(n):
             term = work.matrix[i, j] * work.trial[j]
             y += term
             terms += abs(term)
-        allowed = LCP_RESIDUAL * terms + rounding * floor
+        allowed = LCP_RESIDUAL * terms + missing
         if not math.isfinite(terms) or work.trial[i] < 0.0 or y < -allowed or (work.trial[i] > 0.0 and y > allowed):
             return False
         worst = max(worst, -y, abs(y) if work.trial[i] > 0.0 else 0.0)

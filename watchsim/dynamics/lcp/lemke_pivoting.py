@@ -17,21 +17,28 @@ from numpy.typing import NDArray
 from watchsim.dynamics.lcp.basis import is_solution, solve_active
 from watchsim.dynamics.lcp.outcome import LcpOutcome
 from watchsim.dynamics.lcp.scaling import scale, unscale
-from watchsim.dynamics.tolerances import LCP_PIVOT, RATIO_TIE
+from watchsim.dynamics.tolerances import LCP_LESS, LCP_PERTURBED, LCP_PIVOT, LOAD_ROUNDING, RATIO_TIE
 from watchsim.jit import by_reference, entry, kernel
 from watchsim.model.named_fields import blank
 
 UNEVEN, PERIOD = 5, 7  # for unlike entries of d on other paths
+PLAIN = 4  # paths that differ from the usual one by their loads alone
+UNLIKE = 0.6180339887498949  # multiples of it, less the whole part, are as unlike as can be
 ENUMERATED_SIZE = 12  # 2^12 small eliminations: some milliseconds
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 
-class WorstViolation:
-    """Of the conditions, in any accepted solution, see `is_solution`."""
+class Extremes:
+    """What bounds the errors of a problem and of its solution, in its scaling.
+
+    violation  the worst of any condition in an accepted solution, see `is_solution`
+    driver     the most negative load without sign: what has to be pushed away, perhaps far below the other loads
+    """
 
     violation: float
+    driver: float
 
 
 class LcpWork(NamedTuple):
@@ -47,7 +54,7 @@ class LcpWork(NamedTuple):
     square: Array  # elimination of the active block, right-hand side last
     order: Integers  # the unknown of each of its columns
     trial: Array  # scaled x
-    worst: WorstViolation
+    worst: Extremes
 
 
 LcpWorkRef = by_reference(LcpWork, __name__)
@@ -66,7 +73,7 @@ def lcp_work(size: int) -> LcpWork:
         square=np.zeros((size, size + 1)),
         order=np.zeros(size, np.int64),
         trial=np.zeros(size),
-        worst=blank(WorstViolation),
+        worst=blank(Extremes),
     )
 
 
@@ -90,7 +97,11 @@ def lemke_checked(A: Array, b: Array, n: int, work: LcpWork, out_x: Array) -> Lc
 
 @kernel
 def lemke_on_path(A: Array, b: Array, n: int, path: int, work: LcpWork, out_x: Array) -> LcpOutcome:
-    """The same on another path: the numbers of the paths have no meaning, but 0 is the usual one."""
+    """The same on another path: the numbers of the paths have no meaning, but 0 is the usual one.
+
+    The others begin with loads that are a little larger, each by another share, so that no two rows of zeros tie, and half of
+    them with other multiples of z0; the basis that they end with is judged with the true loads.
+    """
     outcome: LcpOutcome = _follow(A, b, n, path, work, out_x)
     if outcome == LcpOutcome.SOLVED and not (_is_trivial(b, n) or is_solution(n, work)):
         return LcpOutcome.INEXACT
@@ -112,7 +123,7 @@ def _follow(A: Array, b: Array, n: int, path: int, work: LcpWork, out_x: Array) 
     magnitude = scale(A, b, n, work)
     outcome = _pivot_to_end(n, path, work)
     if outcome == LcpOutcome.SOLVED:
-        _solve_basis(n, work)
+        _solve_basis(n, path, work)
         unscale(n, magnitude, work, out_x)
     return outcome
 
@@ -164,20 +175,27 @@ def _pivot_to_end(n: int, path: int, work: LcpWork) -> LcpOutcome:
 def _start(n: int, path: int, work: LcpWork) -> int:
     """Set up the tableau; returns the row z0 enters in: the most negative load over d, the last of equals (lexicographic).
 
-    Any d > 0 will do (Cottle, Pang, Stone, 4.4); path 0 takes ones.
+    Any d > 0 will do (Cottle, Pang, Stone, 4.4); paths up to PLAIN take ones.
     """
     row, lowest = 0, math.inf
+    uneven = path if path > PLAIN else 0
+    more = 0.0
+    if path > 0:
+        more = work.worst.driver * LCP_PERTURBED * LCP_LESS ** ((path - 1) % PLAIN)
     for i in range(n):
         work.basis[i] = i
         for j in range(n):
             work.tableau[i, j] = 0.0
             work.tableau[i, n + j] = -work.matrix[i, j]
         work.tableau[i, i] = 1.0
-        cover = 1.0 + path * ((UNEVEN * i + path) % PERIOD) / PERIOD
+        cover = 1.0 + uneven * ((UNEVEN * i + uneven) % PERIOD) / PERIOD
         work.tableau[i, 2 * n] = -cover
-        work.tableau[i, 2 * n + 1] = work.load[i]
-        if work.load[i] / cover <= lowest:
-            row, lowest = i, work.load[i] / cover
+        load = work.load[i]
+        if more > 0.0:
+            load += more * (UNLIKE * (i + 1) * (path + 1) % 1.0)
+        work.tableau[i, 2 * n + 1] = load
+        if load / cover <= lowest:
+            row, lowest = i, load / cover
     return row
 
 
@@ -218,7 +236,8 @@ def _is_smaller(n: int, i: int, k: int, column: int, work: LcpWork) -> bool:
     """True when row i leaves before row k: compare right-hand sides over the pivots, then z0, then the inverse basis."""
     T = work.tableau
     left, right = T[i, 2 * n + 1] / T[i, column], T[k, 2 * n + 1] / T[k, column]
-    if abs(left - right) > RATIO_TIE * max(1.0, abs(left)):
+    # Ratios go with the load that drives the problem, which may be a billionth of the largest.
+    if abs(left - right) > RATIO_TIE * max(work.worst.driver, abs(left)) + LOAD_ROUNDING:
         return left < right
     if work.basis[i] == 2 * n or work.basis[k] == 2 * n:
         return work.basis[i] == 2 * n
@@ -230,14 +249,17 @@ def _is_smaller(n: int, i: int, k: int, column: int, work: LcpWork) -> bool:
 
 
 @kernel
-def _solve_basis(n: int, work: LcpWork) -> None:
-    """The x of the final basis: solved afresh from the scaled data, or, if that block is singular, read off the tableau."""
+def _solve_basis(n: int, path: int, work: LcpWork) -> None:
+    """The x of the final basis: solved afresh from the scaled data, or, if that block is singular, read off the tableau.
+
+    The tableaus of other paths than 0 have other loads.
+    """
     for i in range(n):
         work.is_active[i] = 0
     for row in range(n):
         if n <= work.basis[row] < 2 * n:
             work.is_active[work.basis[row] - n] = 1
-    if solve_active(n, work) and is_solution(n, work):
+    if solve_active(n, work) and (path > 0 or is_solution(n, work)):
         return
     for row in range(n):
         if n <= work.basis[row] < 2 * n:

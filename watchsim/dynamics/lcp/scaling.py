@@ -16,7 +16,10 @@ SWEEPS = 3
 
 @kernel
 def scale(A, b, n, work):
-    """Fill the scaled problem R A C, R b / beta; returns beta. x = C x_scaled beta, y = y_scaled beta / R."""
+    """Fill the scaled problem R A C, R b / beta, and its most negative load; returns beta.
+
+    x = C x_scaled beta, y = y_scaled beta / R.
+    """
     _scale_pairs(A, n, work)
     _balance(A, n, work)
     largest = 0.0
@@ -25,9 +28,11 @@ def scale(A, b, n, work):
             work.matrix[i, j] = work.row_scale[i] * A[i, j] * work.column_scale[j]
         work.load[i] = work.row_scale[i] * b[i]
         largest = max(largest, abs(work.load[i]))
-    magnitude = _power_of_two(largest)
+    magnitude, driver = _power_of_two(largest), 0.0
     for i in range(n):
         work.load[i] /= magnitude
+        driver = max(driver, -work.load[i])
+    work.worst.driver = driver
     return magnitude
 
 

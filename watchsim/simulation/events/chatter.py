@@ -29,7 +29,7 @@ def may_be_chatter(m, options, event, room):
     for i in range(m):
         rate = event.closed.kin[i].gN_dot
         if rate > options.accumulation_speed:
-            return False
+            continue
         hit = room.impulse[2 * i] > 0.0
         if hit and room.restitution[i] == 1.0:
             return False
@@ -50,11 +50,11 @@ def return_time(closed, i, a):
 
 @kernel
 def chatter_time(state, m, options, event):
-    """Time until all contacts that leave are back, s; infinity if one of them comes further than `gap_close`.
+    """Time until all contacts that leave by less than `gap_close` are back, s; infinity if another one is back by then.
 
-    The accelerations are in `state.a`.
+    What leaves for longer than twice that time has no part in it. The accelerations are in `state.a`.
     """
-    latest = 0.0
+    latest, soonest = 0.0, math.inf
     for i in range(m):
         rate = event.closed.kin[i].gN_dot
         if rate <= event.zero[i]:
@@ -62,23 +62,26 @@ def chatter_time(state, m, options, event):
         back = return_time(event.closed, i, state.a)
         # It rises on a parabola, to a quarter of the way it would go at its first speed.
         if 0.25 * rate * back > options.gap_close:
-            return math.inf
-        latest = max(latest, back)
-    return latest
+            soonest = min(soonest, back)
+        else:
+            latest = max(latest, back)
+    return latest if soonest > 2.0 * latest else math.inf
 
 
 @kernel
-def end_chatter(model, state, m, time, work, event, room):
-    """Velocities at the end of a chatter that lasts `time`; returns how many contacts (`event.rest`) end in force.
+def end_chatter(model, state, m, ended, work, event, room):
+    """Velocities at the end of a chatter; returns how many contacts (`event.rest`) end in force.
 
     -1 where no end is found: velocities are then unchanged. The impulses are left in `room.ending`.
+    `ended`: (time that it lasts, kinetic energy that the impact has just taken).
 
     P are the impulses of the plastic impact with the rates that free motion over `time` would lead to, lambda the
     forces of the contacts that P finds in force. What lambda does will be integrated when that time passes; the rest
-    is done now: u += M⁻¹ W (P - lambda time). Not done where that would gain energy. `work` holds h and the
-    inverse masses of the last decision.
+    is done now: u += M⁻¹ W (P - lambda time). Not done where that would gain more energy than the impact took. `work` holds h
+    and the inverse masses of the last decision.
     """
     closed, rest, ending = event.closed, event.rest, room.ending
+    time, taken = ended
     if not plastic_impact(model, closed, m, time, state.u, work):
         return -1
     r = 0
@@ -100,8 +103,8 @@ def end_chatter(model, state, m, time, work, event, room):
     solve_mode(model, rest, r, room.mode, work)
     for row in range(2 * r):
         ending[row] -= work.force[row] * time
-    # Less pressure for a moment is less friction: while that is worth anything, the impacts go on one by one.
-    if _gain(rest, r, state.u, ending, work) > CHATTER_GAIN * kinetic_energy(model, state.u):
+    # Less pressure for a moment is less friction, which will come: of what the impact took, no more than that is given back.
+    if _gain(rest, r, state.u, ending, work) > max(CHATTER_GAIN * kinetic_energy(model, state.u), taken):
         return -1
     apply(rest, r, ending, work.inverse, state.u)
     return r

@@ -154,8 +154,9 @@ def _end_chatter(model, state, m, time, scratch, record):
     """End the chatter of the m closed contacts within `time`; its energy goes to the impacts."""
     work, event, room = scratch.work, scratch.event, scratch.impact
     before = kinetic_energy(model, state.u)
+    taken = kinetic_energy(model, room.before) - before
     copy(state.u, room.before)
-    r = end_chatter(model, state, m, time, work, event, room)
+    r = end_chatter(model, state, m, (time, taken), work, event, room)
     count_problems(state, work)
     contact_velocities(event.closed, m, state.u, room.rates)
     for i in range(m):
@@ -163,9 +164,11 @@ def _end_chatter(model, state, m, time, scratch, record):
             copy(room.before, state.u)
             return  # the impacts go on one by one
     for i in range(m):
-        if event.closed.kin[i].gN_dot > event.zero[i]:
-            back = state.clock.time + return_time(event.closed, i, state.a)
-            keep_event(state, record, EventKind.ACCUMULATION, event.closed.ids[i], -1, back)
+        if event.closed.kin[i].gN_dot <= event.zero[i]:
+            continue
+        back = return_time(event.closed, i, state.a)
+        if back <= time:
+            keep_event(state, record, EventKind.ACCUMULATION, event.closed.ids[i], -1, state.clock.time + back)
             state.counts.accumulations += 1
     place(model, state.q, state.u, event.pose)
     refresh(model, m, event.closed, event.pose)

@@ -11,10 +11,11 @@ import math
 
 from watchsim.contact.index_sets import OPEN, STICK
 from watchsim.contact.poses import place_body
-from watchsim.dynamics.acceleration import is_paradox, solve_mode
+from watchsim.dynamics.acceleration import solve_mode
 from watchsim.dynamics.applied_forces import damping_power, drive_power, forces
 from watchsim.dynamics.bearing_friction import add_drag, add_loads, drag_power
 from watchsim.dynamics.delassus import apply, drive_through_contacts, own_acceleration
+from watchsim.dynamics.jamming import is_paradox
 from watchsim.jit import kernel
 from watchsim.simulation.loop_state.scratch import MONITORS
 from watchsim.simulation.motion.contact_islands import place_contacts

@@ -26,6 +26,7 @@ Array = NDArray[np.float64]
 
 CHORD = 1.0 / 8.0  # of the resolution: deviation of chords from arcs
 BLOCK = 32768  # rows, of which the longest moves of each coordinate are looked at. Large: less is seen; small: costs time
+EVERY = 2  # of the blocks: one in so many. Large, small: as above
 FEW = 8  # coordinates whose longest moves are looked at in one block; of more, others in the next
 STRIDE = 0.1  # of the scene's size: moves between two rows are looked at in such steps
 MOST_STEPS = 7  # in one move
@@ -75,13 +76,21 @@ class OverlapWatch:
         self.found.rows += len(rows)
         if not self._sees_rows or not len(rows):
             return
-        if self._last is not None and rows[0, 0] > self._last[0, 0]:
-            # What lies between two parts of the rows is always looked at.
+        if self._last is not None and self._is_far(rows[0]):
+            # A long way between two parts of the rows is always looked at.
             self._waiting.append(self._instants(np.concatenate([self._last, rows[:1]]), np.zeros(1, np.int64)))
         self._last = rows[-1:].copy()
-        self._waiting.append(self._instants(rows, chosen_moves(rows, len(self._scale), first)))
+        moves = chosen_moves(rows, len(self._scale), first)
+        if len(moves):
+            self._waiting.append(self._instants(rows, moves))
         if sum(len(times) for times, _ in self._waiting) >= TOGETHER:
             self.see()
+
+    def _is_far(self, row: Array) -> bool:
+        """Is it, from the last row seen to this one, further than what lies between any two rows may go unseen?"""
+        assert self._last is not None
+        way = np.abs(row[1 : 1 + len(self._scale)] - self._last[0, 1 : 1 + len(self._scale)]) / self._scale
+        return bool(row[0] > self._last[0, 0] and way.max(initial=0.0) > STRIDE)
 
     def _instants(self, rows: Array, moves: NDArray[np.int64]) -> tuple[Array, Array]:
         """Times and coordinates within the moves from rows `moves` to the next ones; only at rows where time is stepped."""
@@ -174,9 +183,13 @@ def chosen_moves(rows: Array, n: int, first: int) -> NDArray[np.int64]:
     chosen: list[int] = []
     for start in range(0, len(rows) - 1, BLOCK):
         number = (first + start) // BLOCK
-        for i in range(n) if n <= FEW else (number * FEW + np.arange(FEW)) % n:
+        if number % EVERY:
+            continue
+        for i in range(n) if n <= FEW else (number // EVERY * FEW + np.arange(FEW)) % n:
             q = rows[start : start + BLOCK + 1, 1 + i]
-            chosen.append(start + int(np.argmax(np.abs(q[1:] - q[:-1]))))
+            way = q[1:] - q[:-1]
+            up, down = int(np.argmax(way)), int(np.argmin(way))
+            chosen.append(start + (up if way[up] >= -way[down] else down))
     chosen += [number - first for number in EARLY if 0 <= number - first < len(rows) - 1]
     places = np.unique(np.array(chosen, np.int64))
     return places[rows[places + 1, 0] > rows[places, 0]]
