@@ -112,3 +112,12 @@ def test_three_minutes_from_both_ends_come_to_the_same():
     low, high = checked(180.0, 150.0), checked(180.0, 330.0)
     assert low["amplitude_deg"] == pytest.approx(high["amplitude_deg"], abs=1e-3)
     assert low["rate_s_per_d"] == pytest.approx(high["rate_s_per_d"], abs=0.01)
+
+
+@pytest.mark.slow
+def test_time_stepping_comes_to_the_same_amplitude():
+    """Worst beat of a second; over 4 s, and for other steps, see docs/guide/coaxial.md."""
+    scene = ws.load(ROOT / "profiles" / "coaxial").set("bodies.balance.angle", "-289.9°")
+    true = ws.beats(ws.simulate(scene, duration=1.0, tolerance=1e-11, record="all")).amplitude_deg
+    twin = ws.beats(ws.simulate(scene, duration=1.0, method="moreau", step=2.5e-7, record="all")).amplitude_deg
+    assert abs(twin - true).max() < 1e-3

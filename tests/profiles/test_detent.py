@@ -28,7 +28,7 @@ def ticking() -> ws.Trajectory:
 
 def teeth(run: ws.Trajectory) -> float:
     column = run.slices["wheel"].start
-    return float(run.q[0, column] - run.end_q[column]) / (math.tau / 15.0)
+    return float(run.scene.body("wheel").angle - run.end_q[column]) / (math.tau / 15.0)
 
 
 def test_the_detent_is_the_lever_by_its_passing_spring():

@@ -63,8 +63,8 @@ def settled(scene: Scene) -> Point:
     assert cycle.period_s is not None
     run = ws.simulate(scene.set("bodies.balance.angle", f"{-cycle.amplitude_deg}°"), duration=10.0 * cycle.period_s)
     lost = run.energy["dissipated"]
-    shares = [lost[name] / sum(lost.values()) for name in ("damping", "friction", "impacts")]
-    return Point(cycle.amplitude_deg, cycle.rate_s_per_d, cycle.beat_error_ms, *shares, "ticks")
+    air, friction, impacts = (lost[name] / sum(lost.values()) for name in ("damping", "friction", "impacts"))
+    return Point(cycle.amplitude_deg, cycle.rate_s_per_d, cycle.beat_error_ms, air, friction, impacts, "ticks")
 
 
 def compared(both: dict[str, Scene]) -> str:
