@@ -113,7 +113,8 @@ def _solid_lines(body: Body) -> Iterator[str]:
     for name, kind, weight in rows:
         x, y = (_millimetres(value) for value in weight.centre)
         inertia = _fitting(weight.about((0.0, 0.0)), INERTIAS)
-        yield f"      {name:{width}}  {kind:{kinds}}  {_fitting(weight.mass, MASSES, 1e3):>12}  {inertia:>16}  centre ({x}, {y}) mm"
+        mass = _fitting(weight.mass, MASSES, 1e3)
+        yield f"      {name:{width}}  {kind:{kinds}}  {mass:>12}  {inertia:>16}  centre ({x}, {y}) mm"
 
 
 def _millimetres(value: float) -> str:
