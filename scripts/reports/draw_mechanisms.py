@@ -21,6 +21,9 @@ SHOWN = {  # profile: simulated (s), instant (s), bodies to show close (None: al
     "graham": (2.0, 1.76, ["wheel"]),
     "recoil_anchor": (2.0, 1.76, ["wheel"]),
     "involute_pair": (0.2, 0.2, None),
+    "jumper": (0.6, 0.49, None),
+    "cam": (0.2, 0.1, None),
+    "ratchet": (0.2, 0.15, None),
 }
 
 

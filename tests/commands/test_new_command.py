@@ -7,6 +7,7 @@ import json
 import pytest
 
 from watchsim.cli import main
+from watchsim.construction.known import NAMES
 from watchsim.scene.file.load import load
 
 
@@ -66,3 +67,10 @@ def test_refused(words, told, capsys, tmp_path, monkeypatch):
     assert told in said.err
     assert not said.out
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_design_can_be_drawn_from_the_command_line(name, tmp_path, capsys):
+    """No dimension is called like an option of the command."""
+    assert main(["new", name, "-o", str(tmp_path / "made")]) == 0
+    assert (tmp_path / "made" / "scene.toml").exists()

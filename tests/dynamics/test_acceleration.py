@@ -46,14 +46,14 @@ class Outcome:
         self.gaps = closed.kin.g[:m].copy()
         self.solved = _decide(model, closed, m, 0, SLOW, work, self.grip, self.mode)
         self.force, self.a = work.force[: 2 * m].copy(), np.zeros(n)
-        _accelerate(closed, m, work, self.a)
+        _accelerate(model, closed, m, work, self.a)
         # The equality system of the decided mode has the same answer as the complementarity problem that chose it.
         self.again = np.zeros(n)
         stay = [row for row, k in enumerate(ids) if self.mode[k] != OPEN]
         for row, kept in enumerate(stay):
             _kinematics(model, ids[kept], pose, row, closed)
         _solve(model, closed, len(stay), self.mode, work)
-        _accelerate(closed, len(stay), work, self.again)
+        _accelerate(model, closed, len(stay), work, self.again)
 
 
 def disc_on_plane(mu: float) -> tuple[Compiled, int]:

@@ -19,7 +19,7 @@ def resting(case: Case, h: np.ndarray, sticks: bool = True) -> tuple[bool, np.nd
     case.closed.kin.bar_N[:], case.closed.kin.bar_T[:] = 0.0, 0.0
     unique = _solve(case.model, case.closed, case.m, np.full(case.m, STICK if sticks else 1, np.int8), case.work)
     a = np.zeros(case.n)
-    _accelerate(case.closed, case.m, case.work, a)
+    _accelerate(case.model, case.closed, case.m, case.work, a)
     return bool(unique), case.work.force[: 2 * case.m].copy(), a
 
 

@@ -40,6 +40,7 @@ class Forces:
     direction   the normal, out of body B's material (n, k, 2); nan where it is open
     point       where it touches, m (n, k, 2); nan where it is open
     pivots      name of a pivoted body -> force on it from its bearing in the movement, N (n, 2)
+    drives      name of a driven body -> torque, N·m, or force along its axis, N, that keeps its motion up (n,)
     """
 
     t: Array
@@ -49,6 +50,7 @@ class Forces:
     direction: Array
     point: Array
     pivots: dict[str, Array]
+    drives: dict[str, Array]
 
     def __repr__(self) -> str:
         most = f"up to {self.normal.max():.3g} N at {len(self.pairs)} contacts" if self.normal.size else "no contact in force"
@@ -57,12 +59,14 @@ class Forces:
 
 @dataclass(frozen=True)
 class _Instant:
-    """Contacts in force with their forces (m, 2), normals (m, 2) and points (m, 2); accelerations of the coordinates (n,)."""
+    """Contacts in force with their forces (m, 2), normals (m, 2) and points (m, 2); of the coordinates what the contacts do to
+    them (n,) and their accelerations (n,)."""
 
     ids: NDArray[np.int64]
     force: Array
     normal: Array
     point: Array
+    load: Array
     acceleration: Array
 
 
@@ -83,12 +87,14 @@ def forces(run: Trajectory, times: Iterable[float] | None = None) -> Forces:
     found = [_instant(compiled, *row) for row in zip(t, where, speed, _modes(run, t), strict=True)]
     pairs = np.array(sorted({int(k) for one in found for k in one.ids}), np.int64)
     shape = (len(t), len(pairs))
-    out = Forces(t, pairs, np.zeros(shape), np.zeros(shape), np.full((*shape, 2), np.nan), np.full((*shape, 2), np.nan), {})
+    out = Forces(t, pairs, np.zeros(shape), np.zeros(shape), np.full((*shape, 2), np.nan), np.full((*shape, 2), np.nan), {}, {})
     for row, one in enumerate(found):
         columns = np.searchsorted(pairs, one.ids)
         out.normal[row, columns], out.tangential[row, columns] = one.force.T
         out.direction[row, columns], out.point[row, columns] = one.normal, one.point
-    out.pivots.update(_pivots(run, compiled, out, where, speed, np.array([one.acceleration for one in found])))
+    turning = np.array([one.acceleration for one in found])
+    out.pivots.update(_pivots(run, compiled, out, where, speed, turning))
+    out.drives.update(_drives(run, compiled, np.array([one.load for one in found]), turning))
     return out
 
 
@@ -135,19 +141,21 @@ def _instant(compiled: Compiled, t: float, q: Array, u: Array, modes: dict[int, 
     mobility = 1.0 / model.coordinates.mass
     dry = model.coordinates.coulomb
     held = (dry > 0.0) & (u == 0.0)
-    mobility[held] = 0.0
+    prescribed = np.asarray(model.coordinates.driven) != 0
+    mobility[held | prescribed] = 0.0
     h -= np.where(held, 0.0, dry * np.sign(u))
+    free = np.where(prescribed, h, mobility * h)
     rows = len(ids)
     w_n, w_t = (_dense(closed, values, rows, len(q)) for values in (closed.w_N, closed.w_T))
     kin = closed.kin[:rows]
     if not rows:
-        return _Instant(ids, np.zeros((0, 2)), normal, np.zeros((0, 2)), mobility * h)
+        return _Instant(ids, np.zeros((0, 2)), normal, np.zeros((0, 2)), np.zeros(len(q)), free)
     # Unknowns: the normal force of each contact, and the tangential one of those that stick.
     sticks = [i for i, k in enumerate(ids) if modes[int(k)] == STICK]
     friction = np.array([model.laws[model.contacts[k].group].friction for k in ids])
     slide = np.array([0.0 if modes[int(k)] == STICK else -friction[i] * modes[int(k)] for i, k in enumerate(ids)])
     hold, bar = np.vstack((w_n, w_t[sticks])), np.concatenate((kin.bar_N, kin.bar_T[sticks]))
-    system, right = hold * mobility, -bar - hold @ (mobility * h)
+    system, right = hold * mobility, -bar - hold @ free
 
     def loaded(force: Array) -> Array:
         return force[:, 0] @ w_n + force[:, 1] @ w_t
@@ -165,7 +173,8 @@ def _instant(compiled: Compiled, t: float, q: Array, u: Array, modes: dict[int, 
         share = _pressing(system @ ways.T, right)
         force = np.zeros((rows, 2))
         np.add.at(force, owner, share[:, None] * corners)
-    return _Instant(ids, force, normal, np.column_stack((kin.x, kin.y)), mobility * (h + loaded(force)))
+    load = loaded(force)
+    return _Instant(ids, force, normal, np.column_stack((kin.x, kin.y)), load, free + mobility * load)
 
 
 def _dense(closed: Closed, values: Array, rows: int, width: int) -> Array:
@@ -215,6 +224,14 @@ def _pivots(run: Trajectory, compiled: Compiled, found: Forces, q: Array, u: Arr
         moment = np.stack((c * load.moment[0] - s * load.moment[1], s * load.moment[0] + c * load.moment[1]), axis=1)
         change = turn[:, None] * np.stack((-moment[:, 1], moment[:, 0]), axis=1) - (spin * spin)[:, None] * moment
         yield body.name, change - load.mass * np.array(run.scene.gravity) - np.einsum("k,nkx->nx", sign, pressed)
+
+
+def _drives(run: Trajectory, compiled: Compiled, load: Array, a: Array) -> Iterator[tuple[str, Array]]:
+    """Against the contacts, and for the acceleration of as much mass or inertia as the scene gives the body."""
+    for body in run.scene.bodies:
+        if body.prescribed is not None:
+            j = compiled.slices[body.name].start
+            yield body.name, (body.mass if body.motion == "slide" else body.inertia) * a[:, j] - load[:, j]
 
 
 def _bodies_of(compiled: Compiled, pairs: NDArray[np.int64]) -> tuple[Array, Array]:

@@ -13,6 +13,9 @@ _HOMES = {
     "graham": "watchsim.construction.graham.design",
     "recoil_anchor": "watchsim.construction.recoil_anchor.design",
     "involute_pair": "watchsim.construction.involute_pair.design",
+    "jumper": "watchsim.construction.jumper.design",
+    "cam": "watchsim.construction.cam.design",
+    "ratchet": "watchsim.construction.ratchet.design",
 }
 
 NAMES = tuple(_HOMES)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from watchsim.contact.index_sets import BACKWARD, FORWARD, OPEN, STICK
 from watchsim.dynamics.coulomb import add_element, fill_matrix, fill_rhs, read_forces
-from watchsim.dynamics.delassus import apply, fill_bearings, fill_delassus, note_posed
+from watchsim.dynamics.delassus import apply, fill_bearings, fill_delassus, inverse_mass, note_posed, own_acceleration
 from watchsim.dynamics.handedness import restore_directions, reverse_directions
 from watchsim.dynamics.problem_kinds import Level, Rung
 from watchsim.dynamics.redundant_contacts import smallest_forces
@@ -30,7 +30,7 @@ def gap_accelerations(model, closed, m, work, out_b, out_size):
         size_N, size_T = kin.bar_size, kin.bar_size
         for k in range(closed.slots[i]):
             j = closed.coord[i, k]
-            free = work.h[j] * work.inverse[j]
+            free = own_acceleration(model, work, j)
             normal += closed.w_N[i, k] * free
             tangential += closed.w_T[i, k] * free
             terms = abs(free) + model.coordinates[j].load * work.inverse[j]
@@ -50,10 +50,10 @@ def row_terms(work, rows, row):
 
 
 @kernel
-def accelerate(closed, m, work, out_a):
+def accelerate(model, closed, m, work, out_a):
     """u' = M⁻¹ (h + W lambda) from `work.h` and `work.force`; 0 where dry friction holds."""
     for j in range(len(out_a)):
-        out_a[j] = work.h[j] * work.inverse[j]
+        out_a[j] = own_acceleration(model, work, j)
     apply(closed, m, work.force, work.inverse, out_a)
 
 
@@ -112,7 +112,7 @@ def decide_modes(model, closed, m, bearings, speed_zero, work, out_grip, out_mod
     finite force keeps the bodies apart (Painlevé's paradox, if a contact slides).
     """
     for i in range(len(model.coordinates)):
-        work.inverse[i] = 1.0 / model.coordinates[i].mass
+        work.inverse[i] = inverse_mass(model.coordinates[i])
     fill_delassus(closed, m, work)
     fill_bearings(closed, m, bearings, work)
     gap_accelerations(model, closed, m, work, work.b, work.size)

@@ -90,12 +90,15 @@ def drive_power(model, t, q, u):
     """Power of everything that is neither a spring nor damping (motor torques, gravity), W."""
     power = 0.0
     for i in range(len(model.coordinates)):
-        power += u[i] * driving_force(model, i, q[i])
+        if not model.coordinates[i].driven:
+            power += u[i] * driving_force(model, i, q[i])
     for j in range(len(model.joints)):
         joint = model.joints[j]
         power += (u[joint.coordinate] - u[joint.on]) * joint.force
     for j in range(len(model.tables)):
         table = model.tables[j]
+        if model.coordinates[table.coordinate].driven:
+            continue
         power += along(u, table.coordinate, table.on) * table_force(model, j, t, q)
     return power
 
@@ -124,10 +127,12 @@ def joint_energy(model, q):
 
 @entry
 def stored_energy(model, q, u):
-    """Kinetic energy and energy in springs, J."""
+    """Kinetic energy and energy in springs, J; a prescribed motion holds none that counts."""
     energy = 0.0
     for i in range(len(model.coordinates)):
         coordinate = model.coordinates[i]
+        if coordinate.driven:
+            continue
         way = q[i] - coordinate.rest
         energy += 0.5 * (coordinate.mass * u[i] * u[i] + coordinate.stiffness * way * way)
     return energy + joint_energy(model, q)

@@ -141,10 +141,22 @@ def size_class(n):
 
 
 @kernel
+def inverse_mass(coordinate):
+    """1/mass towards contacts; 0 where the motion is prescribed, so that no force changes it."""
+    return 0.0 if coordinate.driven else 1.0 / coordinate.mass
+
+
+@kernel
+def own_acceleration(model, work, j):
+    """What the forces `work.h` alone give coordinate j; `h` of a prescribed motion is its acceleration."""
+    return work.h[j] if model.coordinates[j].driven else work.h[j] * work.inverse[j]
+
+
+@kernel
 def fill_inverse(model, grip, out_inverse):
     """1/mass of each coordinate; 0 for those that `grip` says dry friction holds."""
     for i in range(len(model.coordinates)):
-        out_inverse[i] = 0.0 if grip[i] == STICK else 1.0 / model.coordinates[i].mass
+        out_inverse[i] = 0.0 if grip[i] == STICK else inverse_mass(model.coordinates[i])
 
 
 @kernel
@@ -191,6 +203,18 @@ def apply(closed, m, force, inverse, out_change):
             j = closed.coord[i, k]
             push = closed.w_N[i, k] * force[2 * i] + closed.w_T[i, k] * force[2 * i + 1]
             out_change[j] += push * inverse[j]
+
+
+@kernel
+def drive_through_contacts(model, closed, m, force, u):
+    """Power (of impulses: work) that keeps prescribed motions up against the forces of m contacts."""
+    total = 0.0
+    for i in range(m):
+        for k in range(closed.slots[i]):
+            j = closed.coord[i, k]
+            if model.coordinates[j].driven:
+                total -= (closed.w_N[i, k] * force[2 * i] + closed.w_T[i, k] * force[2 * i + 1]) * u[j]
+    return total
 
 
 @kernel

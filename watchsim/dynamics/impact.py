@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from watchsim.dynamics.acceleration import gap_accelerations
 from watchsim.dynamics.coulomb import add_element, element_row, fill_matrix, fill_rhs, read_forces
-from watchsim.dynamics.delassus import apply, contact_velocities, fill_delassus, note_posed
+from watchsim.dynamics.delassus import apply, contact_velocities, fill_delassus, inverse_mass, note_posed
 from watchsim.dynamics.expansion_friction import interval
 from watchsim.dynamics.handedness import restore_directions, reverse_directions
 from watchsim.dynamics.problem_kinds import Level, Rung
@@ -44,7 +44,7 @@ def _compress(model, closed, m, u, jam, work):
     From here on until `restore_directions` some directions of friction are reversed.
     """
     for j in range(len(model.coordinates)):
-        work.inverse[j] = 1.0 / model.coordinates[j].mass
+        work.inverse[j] = inverse_mass(model.coordinates[j])
     elements = _begin(model, closed, m, work)
     fill_delassus(closed, m, work)
     contact_velocities(closed, m, u, work.b)

@@ -127,7 +127,10 @@ def _inertias(scene: Scene, body: Body, number: int, weighed: Weighed, ride: Rid
     gx, gy = scene.gravity
     rows.body = number
     motion = MOTION_CODE[body.motion]
-    if motion == PIVOT:
+    if body.prescribed is not None:
+        rows.mass, rows.driven, rows.scale = 1.0, 1, 1.0 if motion == PIVOT else size
+        rows.stiffness, rows.rest = body.prescribed.square, body.prescribed.middle
+    elif motion == PIVOT:
         rows.mass, rows.scale = weighed.inertia, 1.0
         if ride.host < 0:  # a carried body is poised
             sx, sy = weighed.moment
@@ -148,11 +151,17 @@ def _tables(scene: Scene, targets: _Targets) -> tuple[Records, np.ndarray]:
             targets.row(torque.body).force += torque.value
         else:
             tabled.append(torque)
-    tables = records(TABLE, len(tabled))
+    paths = [body for body in scene.bodies if body.prescribed is not None and body.prescribed.table]
+    tables = records(TABLE, len(tabled) + len(paths))
     knots: list[tuple[float, float]] = []
-    for row, torque in zip(tables, tabled, strict=True):
+    for row, torque in zip(tables, tabled, strict=False):
         row.coordinate, row.on, row.over = targets.number(torque.body), targets.on(torque.body), OVER[torque.over]
         row.start, row.count = len(knots), len(torque.table)
         shift = targets.offset(torque.body) if torque.over == "angle" else 0.0
         knots.extend((x + shift, value) for x, value in torque.table)
+    for row, body in zip(tables[len(tabled) :], paths, strict=True):
+        assert body.prescribed is not None
+        row.coordinate, row.on, row.over = targets.slices[body.name].start, -1, OVER_TIME
+        row.start, row.count = len(knots), len(body.prescribed.table)
+        knots.extend(body.prescribed.table)
     return tables, np.array(knots, float).reshape(len(knots), 2)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from watchsim.scene.body import Body
 from watchsim.scene.carriers import at_start
 from watchsim.scene.force import Damping, Spring
 from watchsim.scene.oscillation import Oscillator, oscillator, oscillators
@@ -103,3 +104,15 @@ def _contact_lines(scene: Scene) -> Iterator[str]:
         if contact.tangential_restitution:
             text += f", tangential {contact.tangential_restitution:g} ({scene.tangential_law})"
         yield f"  contact {first} - {second}: {text}"
+
+
+def law_words(body: Body) -> str:
+    """How a driven body moves."""
+    law = body.prescribed
+    assert law is not None
+    if law.table:
+        return f"driven along a path of {law.table[-1][0]:.6g} s"
+    if law.square > 0.0:
+        return f"driven, swings at {metric(math.sqrt(law.square) / math.tau, 'Hz')}"
+    speed = body.velocity[0] if body.velocity else 0.0
+    return f"driven at {metric(speed, 'm/s') if body.motion == 'slide' else f'{math.degrees(speed):.6g} °/s'}"

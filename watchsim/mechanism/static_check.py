@@ -14,7 +14,7 @@ from watchsim.geometry.extent import extents
 from watchsim.mechanism.notes import notes
 from watchsim.mechanism.overlap import overlaps
 from watchsim.mechanism.pair_table import PairCount, pair_lines, pairs_entry
-from watchsim.mechanism.scene_in_words import force_lines, length, place, turned
+from watchsim.mechanism.scene_in_words import force_lines, law_words, length, place, turned
 from watchsim.scene.body import Body
 from watchsim.scene.carriers import Weighed
 from watchsim.scene.oscillation import frequency, loads
@@ -60,6 +60,7 @@ def _body_entry(body: Body) -> dict[str, Any]:
         "solids": [_solid_entry(solid) for solid in body.solids],
         "position_m": list(body.position),
         "coordinates": COORDINATES[body.motion],
+        "driven": body.prescribed is not None,
         **({"on": body.on} if body.on is not None else {}),
     }
 
@@ -169,6 +170,9 @@ def _size(body: Body) -> str:
 
 
 def _weights(body: Body) -> Iterator[str]:
+    if body.prescribed is not None:
+        yield law_words(body)
+        return
     if (body.motion != "fixed" or body.on is not None) and body.mass > 0.0:
         yield f"mass {_fitting(body.mass, MASSES, 1e3)}"
     if body.motion in ("pivot", "free"):

@@ -40,7 +40,8 @@ BODY = np.dtype(
 
 COORDINATE = np.dtype(
     [
-        ("mass", "f8"),  # kg or kg·m²
+        ("mass", "f8"),  # kg or kg·m²; 1 where the motion is prescribed: `force` is then an acceleration
+        ("driven", "i8"),  # 1: its motion is prescribed, no contact changes it
         ("force", "f8"),  # constant part, N or N·m
         ("viscous", "f8"),
         ("coulomb", "f8"),  # dry friction of the bearing, N or N·m

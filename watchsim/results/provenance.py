@@ -81,7 +81,7 @@ def _completed(entry: dict[str, Any], body: Body, here: Path, folder: Path | Non
     full.setdefault("angle", _si(body.angle, "rad"))
     for key, value in _start(body).items():
         full.setdefault(key, value)
-    if "solids" not in full and body.motion != "fixed":
+    if "solids" not in full and body.motion != "fixed" and body.prescribed is None:
         full.setdefault("inertia", _si(body.inertia, "kg·m²"))
     return full
 
@@ -89,7 +89,7 @@ def _completed(entry: dict[str, Any], body: Body, here: Path, folder: Path | Non
 def _start(body: Body) -> dict[str, Any]:
     if body.motion == "free":
         return {"velocity": _pair(body.velocity[:2], "m/s"), "spin": _si(body.velocity[2], "rad/s")}
-    if body.motion == "fixed":
+    if body.motion == "fixed" or body.prescribed is not None:
         return {}
     return {"velocity": _si(body.velocity[0], "rad/s" if body.motion == "pivot" else "m/s")}
 

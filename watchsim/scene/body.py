@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from watchsim.drawing.profile import Profile
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Point
+from watchsim.scene.prescribed import Prescribed
 from watchsim.scene.solid import Solid
 
 MOTIONS = ("pivot", "slide", "free", "fixed")
@@ -21,6 +22,7 @@ class Body:
     `velocity` is the start velocity in the same order (pivot: rad/s; slide: m/s; free: m/s, m/s, rad/s).
     `centre_of_mass` is in the body frame; it matters only where gravity acts on a pivoted body. `solids` say where mass and
     inertia come from, as far as they were not given as numbers.
+    `prescribed` is the law by which a driven body moves whatever it meets; mass and inertia then change nothing.
     `on` names the body that carries it; position, angle and velocity are then given in that one's frame, relative to it.
     """
 
@@ -37,6 +39,7 @@ class Body:
     decoration: tuple[Loop, ...] = field(default=())
     solids: tuple[Solid, ...] = field(default=())
     on: str | None = None
+    prescribed: Prescribed | None = None
 
     @property
     def layers(self) -> tuple[str, ...]:

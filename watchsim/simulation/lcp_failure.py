@@ -5,7 +5,7 @@ All that is needed to look at it elsewhere: the matrices, the contacts in words,
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Container, Mapping, Sequence
 from typing import Any
 
 from watchsim.dynamics.lcp.outcome import LcpOutcome
@@ -54,6 +54,17 @@ def failure_of(state: State, scratch: Scratch, pairs: Sequence[Pair]) -> dict[st
         "A": work.A[:n, :n].tolist(),
         "rhs": work.rhs[:n].tolist(),
     }
+
+
+def driven_into(failure: Mapping[str, Any] | None, pairs: Sequence[Pair], driven: Container[str]) -> str:
+    """Which driven body left which other no way out, in words; "" where none takes part in the failed problem."""
+    found: dict[str, None] = {}
+    for contact in failure["contacts"] if failure else ():
+        pair = pairs[contact["number"]]
+        for own, other in ((pair.body_a, pair.body_b), (pair.body_b, pair.body_a)):
+            if own in driven:
+                found[f"{own}, which is driven, leaves {other} no way out at {pair}"] = None
+    return "; ".join(found)
 
 
 def _contact(k: int, kinematics: Any, state: State, pairs: Sequence[Pair]) -> dict[str, Any]:

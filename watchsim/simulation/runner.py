@@ -25,7 +25,7 @@ from watchsim.scene.scene import Scene
 from watchsim.simulation.advance import EVENTS_PER_CONTACT, ROWS_PER_STEP, advance
 from watchsim.simulation.energy_ledger import ledger_fails, touching, what_alternates
 from watchsim.simulation.interrupts import held_interrupts
-from watchsim.simulation.lcp_failure import failure_of
+from watchsim.simulation.lcp_failure import driven_into, failure_of
 from watchsim.simulation.loop_state.buffers import Until, new_record
 from watchsim.simulation.loop_state.scratch import new_scratch
 from watchsim.simulation.loop_state.state import COUNT_NAMES, State, new_state, room_for
@@ -178,7 +178,8 @@ class Run:
         """Is the residual of the energy ledger more than rounding?"""
         coordinates = self.compiled.model.coordinates
         # What moves more slowly than that is computed less closely: see the error control of integrator.py.
-        usual = float(0.5 * np.sum(coordinates.mass * (coordinates.scale * coordinates.rate) ** 2))
+        own = coordinates[coordinates.driven == 0]
+        usual = float(0.5 * np.sum(own.mass * (own.scale * own.rate) ** 2))
         held = max(float(self.state.worst.kinetic_energy), self.stored_at_start, usual)
         return ledger_fails(self._energy(), held, self.tolerance)
 
@@ -194,6 +195,10 @@ class Run:
         elif stop == Stop.TOO_MANY_EVENTS:
             bodies = [self.scene.bodies[coordinate.body].name for coordinate in self.compiled.model.coordinates]
             words = what_alternates(self.scratch.ended, self.pairs, bodies)
+        elif stop == Stop.LCP_FAILED:
+            driven = {body.name for body in self.scene.bodies if body.prescribed is not None}
+            failure = failure_of(self.state, self.scratch, self.pairs) if driven else None
+            words = driven_into(failure, self.pairs, driven)
         else:
             words = ""
         return f": {words}" if words else ""
@@ -328,7 +333,7 @@ class Run:
 
 def _turned_over(coordinates: Any) -> float:
     """What constant forces give to springs and take back in each swing, J."""
-    sprung = coordinates[coordinates.stiffness > 0.0]
+    sprung = coordinates[(coordinates.stiffness > 0.0) & (coordinates.driven == 0)]
     return float(np.max(2.0 * sprung.force**2 / sprung.stiffness, initial=0.0))
 
 

@@ -55,6 +55,7 @@ def flows(run: Trajectory, compiled: Compiled, rows: slice = slice(None)) -> Flo
     c = model.coordinates
     way = q - np.asarray(c.rest)
     own = 0.5 * (np.asarray(c.mass) * u**2 + np.asarray(c.stiffness) * way**2)
+    own[:, np.asarray(c.driven) != 0] = 0.0  # a prescribed motion holds no energy that counts
     stored = own.sum(axis=1)
     for joint in model.joints:
         wound = q[:, joint.coordinate] - q[:, joint.on] - joint.rest
@@ -155,6 +156,7 @@ def _constant_work(model: Model, way: Array) -> Array:
     for joint in model.joints:
         work[:, joint.coordinate] += joint.force * way[:, joint.coordinate]
         work[:, joint.on] -= joint.force * way[:, joint.on]
+    work[:, np.asarray(model.coordinates.driven) != 0] = 0.0
     return np.asarray(work)
 
 
@@ -172,6 +174,7 @@ def _changing_power(model: Model, t: Array, q: Row, u: Row) -> Array:
         power[:, own] += value * u[own]
         if on >= 0:
             power[:, on] -= value * u[on]
+    power[:, np.asarray(c.driven) != 0] = 0.0
     return power
 
 

@@ -21,7 +21,6 @@ class Geneva:
     lock_radius: float = dim(7.0, "mm", 0.1, 190.0, "of the hollows in the wheel, in which the driver's disc locks it", CHOSEN)
     lock_play: float = dim(0.02, "mm", 0.0005, 1.0, "between the locking disc and a hollow", CHOSEN)
     speed: float = dim(360.0, "°/s", 1.0, 36000.0, "of the driver", CHOSEN)
-    driver_inertia: float = dim(100.0, "kg·m²", 1e-9, 1e6, "driver with its flywheel; heavy, so that it turns evenly", CHOSEN)
     wheel_inertia: float = dim(200.0, "g·mm²", 1e-3, 1e9, "driven wheel with what it turns", CHOSEN)
     load: float = dim(0.1, "mN·m", 0.0, 1e6, "dry friction of the driven wheel in its bearing", CHOSEN)
     friction: float = dim(0.1, "", 0.0, 0.5, "coefficient of friction, in all contacts", "steel on oiled steel")

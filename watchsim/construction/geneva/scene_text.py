@@ -16,14 +16,14 @@ TEXT = """\
 title  = "Geneva drive, {values.slots} slots"
 schema = 1
 
-[bodies.driver]                      # turns counter-clockwise; a flywheel keeps its speed
+[bodies.driver]                      # turns counter-clockwise, evenly
 drawing  = "driver.dxf"
 layers   = ["PIN", "DISC"]
 pivot    = "PIVOT"
 position = ["{distance!r} mm", "0 mm"]
 angle    = "90°"
+motion   = "driven"
 velocity = "{values.speed!r} °/s"
-inertia  = "{values.driver_inertia:.15g} kg·m²"
 
 [bodies.wheel]                       # locked at the start; turns clockwise, {pitch:.6g}° at a time
 drawing  = "wheel.dxf"

@@ -13,7 +13,7 @@ from watchsim.contact.poses import place
 from watchsim.dynamics.acceleration import accelerate
 from watchsim.dynamics.applied_forces import forces
 from watchsim.dynamics.bearing_friction import add_drag, stop_held
-from watchsim.dynamics.delassus import apply, fill_inverse
+from watchsim.dynamics.delassus import apply, fill_inverse, inverse_mass
 from watchsim.dynamics.small_systems import copy
 from watchsim.jit import kernel
 from watchsim.simulation.event_kinds import EventKind
@@ -116,7 +116,7 @@ def _go_on(model, state, f, options, scratch, record):
     forces(model, state.clock.time, state.q, state.u, work.h)
     add_drag(model, state.grip, work.h)
     fill_inverse(model, state.grip, work.inverse)
-    accelerate(rest, 0, work, state.a)
+    accelerate(model, rest, 0, work, state.a)
     begin_terms(work.h, event.terms)
     first = 0
     while first < f:
@@ -219,7 +219,7 @@ def _hold_gaps(model, state, r, options, work, event):
         holds = model.laws[model.contacts[k].group].friction > 0.0 and abs(rest.kin[i].gT_dot) <= options.speed_zero
         event.trial[k] = STICK if holds else FORWARD
     for j in range(len(model.coordinates)):
-        work.inverse[j] = 1.0 / model.coordinates[j].mass
+        work.inverse[j] = inverse_mass(model.coordinates[j])
     project_velocities(rest, r, event.trial, DEPENDENT_AT_EVENTS, work, state.u)
     place(model, state.q, state.u, event.pose)
 

@@ -69,7 +69,9 @@ def chatter_time(state, m, options, event):
 
 @kernel
 def end_chatter(model, state, m, time, work, event, room):
-    """Velocities at the end of a chatter that lasts `time`; True if they are found, else they are unchanged.
+    """Velocities at the end of a chatter that lasts `time`; returns how many contacts (`event.rest`) end in force.
+
+    -1 where no end is found: velocities are then unchanged. The impulses are left in `room.ending`.
 
     P are the impulses of the plastic impact with the rates that free motion over `time` would lead to, lambda the
     forces of the contacts that P finds in force. What lambda does will be integrated when that time passes; the rest
@@ -78,7 +80,7 @@ def end_chatter(model, state, m, time, work, event, room):
     """
     closed, rest, ending = event.closed, event.rest, room.ending
     if not plastic_impact(model, closed, m, time, state.u, work):
-        return False
+        return -1
     r = 0
     for i in range(m):
         N, T = work.force[2 * i], work.force[2 * i + 1]
@@ -100,9 +102,9 @@ def end_chatter(model, state, m, time, work, event, room):
         ending[row] -= work.force[row] * time
     # Less pressure for a moment is less friction: while that is worth anything, the impacts go on one by one.
     if _gain(rest, r, state.u, ending, work) > CHATTER_GAIN * kinetic_energy(model, state.u):
-        return False
+        return -1
     apply(rest, r, ending, work.inverse, state.u)
-    return True
+    return r
 
 
 @kernel

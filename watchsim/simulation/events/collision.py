@@ -11,7 +11,7 @@ import math
 
 from watchsim.contact.poses import place
 from watchsim.dynamics.acceleration import accelerate
-from watchsim.dynamics.delassus import contact_velocities
+from watchsim.dynamics.delassus import contact_velocities, drive_through_contacts
 from watchsim.dynamics.impact import energy_change, impact
 from watchsim.dynamics.small_systems import copy
 from watchsim.jit import kernel
@@ -88,7 +88,7 @@ def _accelerations(model, state, island, m, options, scratch):
     r, solved = decide(model, state, island, m, options, work, event, scratch.impact.grip)
     if not solved:
         return False
-    accelerate(event.rest, r, work, state.a)
+    accelerate(model, event.rest, r, work, state.a)
     return True
 
 
@@ -155,11 +155,11 @@ def _end_chatter(model, state, m, time, scratch, record):
     work, event, room = scratch.work, scratch.event, scratch.impact
     before = kinetic_energy(model, state.u)
     copy(state.u, room.before)
-    done = end_chatter(model, state, m, time, work, event, room)
+    r = end_chatter(model, state, m, time, work, event, room)
     count_problems(state, work)
     contact_velocities(event.closed, m, state.u, room.rates)
     for i in range(m):
-        if not done or room.rates[2 * i] < -event.zero[i]:
+        if r < 0 or room.rates[2 * i] < -event.zero[i]:
             copy(room.before, state.u)
             return  # the impacts go on one by one
     for i in range(m):
@@ -169,7 +169,9 @@ def _end_chatter(model, state, m, time, scratch, record):
             state.counts.accumulations += 1
     place(model, state.q, state.u, event.pose)
     refresh(model, m, event.closed, event.pose)
-    state.sums.impacts += before - kinetic_energy(model, state.u)
+    driven = drive_through_contacts(model, event.rest, r, room.ending, state.u)
+    state.sums.drive += driven
+    state.sums.impacts += before + driven - kinetic_energy(model, state.u)
 
 
 @kernel
@@ -177,6 +179,7 @@ def _write(model, state, m, jam, closed, room, record, ended, ends):
     """Events and energy of the impact just solved; by contact, the loss is minus the impulse times the mean rate."""
     contact_velocities(closed, m, room.before, room.rates_before)
     contact_velocities(closed, m, state.u, room.rates)
+    state.sums.drive += drive_through_contacts(model, closed, m, room.impulse, state.u)
     for i in range(m):
         N, T = 2 * i, 2 * i + 1
         if room.impulse[N] <= 0.0:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from watchsim.contact.index_sets import OPEN
 from watchsim.contact.kinematics import contact_kinematics
+from watchsim.dynamics.delassus import inverse_mass
 from watchsim.jit import kernel
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.record.write_buffers import keep_event
@@ -20,7 +21,7 @@ def is_immovable(model, closed, i):
     """True if the gap of row i of `closed` changes by next to nothing however its bodies move."""
     across, along = 0.0, 0.0
     for slot in range(closed.slots[i]):
-        inverse = 1.0 / model.coordinates[closed.coord[i, slot]].mass
+        inverse = inverse_mass(model.coordinates[closed.coord[i, slot]])
         across += closed.w_N[i, slot] ** 2 * inverse
         along += closed.w_T[i, slot] ** 2 * inverse
     return across <= IMMOVABLE * along

@@ -15,7 +15,8 @@ def kinetic_energy(model, u):
     """J."""
     total = 0.0
     for i in range(len(u)):
-        total += 0.5 * model.coordinates[i].mass * u[i] * u[i]
+        if not model.coordinates[i].driven:
+            total += 0.5 * model.coordinates[i].mass * u[i] * u[i]
     return total
 
 
@@ -28,6 +29,8 @@ def is_explained(model, options, before, after, highest):
         return True
     for i in range(len(model.coordinates)):
         coordinate = model.coordinates[i]
+        if coordinate.driven:
+            continue
         slow = STOPPABLE_SPEED * options.speed_zero / options.size * coordinate.scale
         allowed += 0.5 * coordinate.mass * slow * slow
     return change <= allowed

@@ -14,6 +14,7 @@ from watchsim.contact.gaps import extent_margin, normal_gap
 from watchsim.contact.kinematics import contact_kinematics
 from watchsim.contact.poses import place, point_of
 from watchsim.dynamics.applied_forces import driving_force, joint_damping, joint_energy, stretch, table_force
+from watchsim.dynamics.delassus import drive_through_contacts
 from watchsim.dynamics.small_systems import copy
 from watchsim.jit import kernel
 from watchsim.simulation.events.immovable import is_immovable
@@ -93,6 +94,8 @@ def _free_velocity(model, state, h, work):
         work.inverse[i] = 1.0 / work.mass[i]
         pull = work.force[i] - coordinate.stiffness * (state.q[i] - coordinate.rest)
         work.free[i] = ((coordinate.mass - change) * work.u[i] + h * pull) * work.inverse[i]
+        if coordinate.driven:
+            work.inverse[i] = 0.0
     # Two coordinates at once would fill the matrix: what acts between them is taken at the middle as the last step foresees it.
     for i in range(len(work.u)):
         work.foreseen[i] = work.u[i] + 0.5 * h * state.a[i]
@@ -140,6 +143,9 @@ def act(model, state, m, h, work, out_u):
         N, T = 2 * i, 2 * i + 1
         state.sums.correction -= 0.5 * laws.P[N] * (laws.b[N] + work.rates[N])
         state.sums.friction -= 0.5 * laws.P[T] * (laws.b[T] + work.rates[T])
+    for i in range(len(work.u)):
+        work.foreseen[i] = 0.5 * (work.u[i] + out_u[i])
+    state.sums.drive += drive_through_contacts(model, work.closed, m, laws.P, work.foreseen)
     for row in range(2 * m, 2 * m + bearings):
         state.sums.damping -= 0.5 * laws.P[row] * (laws.b[row] + work.rates[row])
 
@@ -151,7 +157,8 @@ def move(model, state, options, m, h, work, u):
         coordinate = model.coordinates[i]
         mean = 0.5 * (work.u[i] + u[i])
         state.q[i] += h * mean
-        state.sums.drive += h * mean * work.force[i]
+        if not coordinate.driven:
+            state.sums.drive += h * mean * work.force[i]
         state.sums.damping += h * work.damping[i] * mean * mean
         state.a[i] = (u[i] - work.u[i]) / h
         work.wound[i] = coordinate.stiffness * (state.q[i] - coordinate.rest) ** 2

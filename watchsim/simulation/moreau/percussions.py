@@ -6,12 +6,13 @@ scene's tangential law). Where that gains energy, less is thrown back (docs/theo
 
 from __future__ import annotations
 
-from watchsim.dynamics.delassus import size_class
+from watchsim.dynamics.delassus import drive_through_contacts, inverse_mass, size_class
 from watchsim.dynamics.small_systems import copy
 from watchsim.dynamics.tolerances import NO_TANGENTIAL, PARALLEL
 from watchsim.jit import kernel
 from watchsim.model.records import PG1996, SHIFTED
 from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.events.impulse_check import kinetic_energy
 from watchsim.simulation.moreau.mobility import fill_mobility, push, rates_of
 from watchsim.simulation.moreau.percussion_laws import cone, residual
 from watchsim.simulation.moreau.prox_relaxation import relax
@@ -132,15 +133,15 @@ def stop_approaches(model, state, options, m, work, record):
     """Impacts at the start of the step, into `work.u`; True if any is fast enough to be written down."""
     copy(state.u, work.u)
     rates_of(work, m, 0, work.u, work.rates)
-    fastest, kinetic = 0.0, 0.0
+    fastest = 0.0
     for i in range(m):
         fastest = max(fastest, -work.rates[2 * i])
         work.restitution[i] = _law(model, work, i).restitution
     if fastest == 0.0:
         return False
     for i in range(len(work.u)):
-        work.inverse[i] = 1.0 / model.coordinates[i].mass
-        kinetic += 0.5 * model.coordinates[i].mass * state.u[i] * state.u[i]
+        work.inverse[i] = inverse_mass(model.coordinates[i])
+    kinetic = kinetic_energy(model, state.u)
     fill_mobility(work, m, 0)
     _compress(model, state, m, work)
     for attempt in range(3):
@@ -156,6 +157,7 @@ def stop_approaches(model, state, options, m, work, record):
         least = _least_restitution(m, work) if attempt == 0 else 0.0
         for i in range(m):
             work.restitution[i] = least
+    state.sums.drive += drive_through_contacts(model, work.closed, m, work.laws.P, work.u)
     return _write_impacts(state, options, m, work, record)
 
 

@@ -14,7 +14,7 @@ from watchsim.contact.poses import place_body
 from watchsim.dynamics.acceleration import is_paradox, solve_mode
 from watchsim.dynamics.applied_forces import damping_power, drive_power, forces
 from watchsim.dynamics.bearing_friction import add_drag, add_loads, drag_power
-from watchsim.dynamics.delassus import apply
+from watchsim.dynamics.delassus import apply, drive_through_contacts, own_acceleration
 from watchsim.jit import kernel
 from watchsim.simulation.loop_state.scratch import MONITORS
 from watchsim.simulation.motion.contact_islands import place_contacts
@@ -119,14 +119,15 @@ def motion(model, state, options, t, work, smooth):
         if smooth.engaged[b]:
             place_body(model, b, q, u, smooth.pose)
     for i in range(n):
-        out[i], out[n + i] = u[i], work.h[i] * work.inverse[i]
+        out[i], out[n + i] = u[i], own_acceleration(model, work, i)
         smooth.load[i], smooth.terms[i] = work.h[i], abs(work.h[i])
-    smallest, friction, first = math.inf, 0.0, 0
+    smallest, friction, driven, first = math.inf, 0.0, 0.0, 0
     while first < state.now.awake_contacts:
         m = place_contacts(model, state.active, first, state.upto[first], smooth.pose, closed)
         solve_mode(model, closed, m, state.mode, work)
         apply(closed, m, work.force, work.inverse, out[n : 2 * n])
         add_loads(closed, m, work.force, state.grip, smooth.load, smooth.terms)
+        driven += drive_through_contacts(model, closed, m, work.force, u)
         for i in range(m):
             friction -= work.force[2 * i + 1] * closed.kin[i].gT_dot
         smallest = min(smallest, _watch(model, state, options, first, m, work, smooth))
@@ -135,7 +136,7 @@ def motion(model, state, options, t, work, smooth):
     for i in range(n):
         if state.awake[i] == 0:
             out[n + i] = 0.0
-    out[2 * n] = drive_power(model, t, q, u)
+    out[2 * n] = drive_power(model, t, q, u) + driven
     out[2 * n + 1] = damping_power(model, u) + drag_power(model, state.grip, u)
     out[2 * n + 2] = friction
     state.counts.evaluations += 1

@@ -85,7 +85,7 @@ def add_flight_sums(model, state, step, end):
     """Work in and damping losses of the first `end` seconds of a flight."""
     for i in range(len(model.coordinates)):
         coordinate = model.coordinates[i]
-        if not state.awake[i]:
+        if not state.awake[i] or coordinate.driven:
             continue
         state.sums.drive += coordinate.force * (coordinate_within(model, state, step, i, end)[0] - step.q[i])
         if coordinate.coulomb > 0.0:

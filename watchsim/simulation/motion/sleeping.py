@@ -69,6 +69,9 @@ def find_sleepers(model, state, options, event, f):
         if model.tables[j].over == OVER_TIME:
             _wake(state, label, label[model.tables[j].coordinate])
     for i in range(n):
+        if model.coordinates[i].driven:
+            _wake(state, label, label[i])
+    for i in range(n):
         if state.awake[i] == 0:
             state.u[i], state.a[i] = 0.0, 0.0
 

@@ -42,6 +42,12 @@ BODY: Keys = {
     **{"velocity": Key(units.SPIN, units.SPEED), "spin": Key(units.SPIN)},
     **{"mass": Key(units.MASS), "inertia": Key(units.INERTIA), "solids": PLAIN},
     **{"on": PLAIN, "adjust": PLAIN},
+    **{"swing": PLAIN, "path": PLAIN},
+}
+SWING: Keys = {  # of a driven body
+    "amplitude": Key(units.ANGLE, units.LENGTH),
+    "frequency": Key(units.FREQUENCY),
+    "phase": ANGLE,
 }
 SOLID: Keys = {
     **{"layer": PLAIN, "thickness": LENGTH, "density": Key(units.DENSITY), "count": NUMBER},
@@ -94,6 +100,8 @@ def key_at(path: tuple[str, ...]) -> Key | None:
         if rest[1] == "adjust" and len(rest) >= 4:
             inner = rest[4:] if rest[3].isdigit() else rest[3:]
             return ADJUST.get(inner[0]) if inner else PLAIN
+        if rest[1] == "swing" and len(rest) == 3:
+            return SWING.get(rest[2])
         return NAMED[section].get(rest[1])
     return LISTED[section].get(rest[1])
 

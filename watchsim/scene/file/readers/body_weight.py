@@ -86,7 +86,8 @@ def _note_conflicts(table: Table, motion: str, outlines: Outlines) -> None:
 def _note_massless(table: Table, motion: str, inertias: Inertias, outlines: Outlines) -> None:
     """A moving body that nothing holds back has no acceleration; a fault only where no other fault, such as a slip in the key,
     is the reason."""
-    needs = {"pivot": ("inertia",), "slide": ("mass",), "free": ("mass", "inertia")}.get(motion, ())
+    driven = table.mapping.get("motion") == "driven"  # needs no mass: it moves as prescribed
+    needs = () if driven else {"pivot": ("inertia",), "slide": ("mass",), "free": ("mass", "inertia")}.get(motion, ())
     slips = {nearest(name, table.keys) for name in table.mapping if name not in table.keys}
     promised = bool(table.mapping.get("solids")) or ("mass" in table and (outlines.loops or not outlines.sound))
     for key, value, example in (("mass", inertias.mass, "1 mg"), ("inertia", inertias.inertia, "0.05 mg·cm²")):

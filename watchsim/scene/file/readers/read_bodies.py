@@ -20,6 +20,7 @@ from watchsim.scene.file.outlines.body_outlines import Outlines, read_outlines
 from watchsim.scene.file.outlines.made import Made
 from watchsim.scene.file.outlines.solid_layers import bored
 from watchsim.scene.file.readers.body_weight import Inertias, read_inertias
+from watchsim.scene.file.readers.read_prescribed import DRIVEN, read_prescribed
 from watchsim.scene.solid import more_seen
 from watchsim.units import SPEED
 
@@ -77,6 +78,8 @@ def motion_of(bodies: Mapping[str, Any], name: object) -> str:
     """The motion a body asks for, "pivot" where it says nothing readable."""
     entry = bodies.get(name) if isinstance(bodies, Mapping) and isinstance(name, str) else None
     motion = entry.get("motion", "pivot") if isinstance(entry, Mapping) else "pivot"
+    if motion == DRIVEN:
+        return "slide" if isinstance(entry, Mapping) and "axis" in entry else "pivot"
     return motion if motion in MOTIONS else "pivot"
 
 
@@ -135,15 +138,17 @@ def _position(one: _Read, read: Mapping[str, _Read]) -> Point:
 
 def _body(one: _Read, position: Point, on: str | None) -> Body:
     table, motion, outlines, inertias = one.table, one.motion, one.outlines, one.inertias
-    table.one_of("motion", MOTIONS, "pivot")
+    table.one_of("motion", (*MOTIONS, DRIVEN), "pivot")
+    angle = table.quantity("angle")
+    prescribed = read_prescribed(table, angle if motion == "pivot" else 0.0)
     shift = (-inertias.origin[0], -inertias.origin[1])
     rest = outlines.drawn if outlines.drawn is not None else () if one.shared else outlines.rest
     return Body(
         name=one.name,
         motion=motion,
         position=position,
-        angle=table.quantity("angle"),
-        velocity=_velocity(table, motion),
+        angle=angle,
+        velocity=(prescribed.velocity,) if prescribed else _velocity(table, motion),
         axis=_axis(table, motion),
         mass=inertias.mass,
         inertia=inertias.inertia,
@@ -152,6 +157,7 @@ def _body(one: _Read, position: Point, on: str | None) -> Body:
         decoration=(*_shifted(rest, shift), *more_seen(inertias.solids, {loop.layer for loop in outlines.loops})),
         solids=inertias.solids,
         on=on,
+        prescribed=prescribed.law if prescribed else None,
     )
 
 
@@ -190,7 +196,7 @@ def _axis(table: Table, motion: str) -> Point:
     """Unit direction of a sliding body."""
     if motion != "slide":
         if "axis" in table:
-            table.fault("axis", 'belongs to motion = "slide"')
+            table.fault("axis", 'belongs to motion = "slide" or "driven"')
         return (1.0, 0.0)
     if "axis" not in table:
         table.fault("", "a sliding body needs its direction. Write e.g. axis = [1.0, 0.0]")

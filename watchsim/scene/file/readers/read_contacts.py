@@ -75,7 +75,14 @@ def _sides(table: Table, known: Known) -> tuple[Side, Side]:
         table.fault("between", f"{first.body} cannot touch itself: a body is rigid", with_value=True)
     elif first.body and second.body and all(_is_fixed(known.bodies[side.body]) for side in (first, second)):
         table.fault("between", f"{first.body} and {second.body} are both fixed, so this contact does nothing", with_value=True)
+    elif first.body and second.body and all(_is_set(known.bodies[side.body]) for side in (first, second)):
+        why = "neither can give way, so this contact does nothing"
+        table.fault("between", f"{first.body} and {second.body} are driven or fixed: {why}", with_value=True)
     return first, second
+
+
+def _is_set(body: Body) -> bool:
+    return _is_fixed(body) or body.prescribed is not None
 
 
 def _is_fixed(body: Body) -> bool:

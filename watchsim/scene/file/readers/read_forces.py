@@ -89,6 +89,8 @@ def _note_body(table: Table, known: Mapping[str, Body]) -> None:
         table.fault("body", f"there is no such body. {nearest(name, known)}", with_value=True)
     elif name in known and known[name].motion not in COORDINATE:
         table.fault("body", f'acts on a pivoted or a sliding body, and motion of {name} is "{known[name].motion}"', True)
+    elif name in known and known[name].prescribed is not None:
+        table.fault("body", f"{name} is driven: it moves as prescribed, whatever acts on it", True)
 
 
 def _spring(entry: Entry) -> Spring:
