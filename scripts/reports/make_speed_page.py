@@ -44,7 +44,8 @@ How long does a simulated second take, and how far off is what comes out? Writte
 `watchsim bench`, on one core of one machine ({machine}), all in one run. Times are of the processor, of the stepping alone
 (reading, compiling and setting up are left out for all engines): the median of several runs, with the smallest and the largest.
 Levers run for 3 s from the start, amplitude and rate are averaged from 1 s to 3 s; the disc's place is compared at 3 s. In this
-time the details of the first beats dominate: the settled lever runs for 15 s and is averaged over the last two.
+time the details of the first beats dominate: the settled lever runs for 15 s and is averaged over the last two. Other programs ran
+on the machine meanwhile: compare within a table, not from one to the next.
 
 ![Time per simulated second over error](../images/speed.png)
 

@@ -76,6 +76,24 @@ duration = "2 s"
     assert found == pytest.approx(-along * out + across * side, rel=1e-7, abs=1e-8)
 
 
+def test_a_bearing_that_sticks_carries_the_weight(tmp_path: Path) -> None:
+    """Held by dry friction at 5°, a bob of a gram does not accelerate: its bearing carries m g, and nothing across."""
+    text = """
+[bodies.bob]
+circle = "2 mm"
+pivot = ["0 mm", "10 mm"]
+mass = "1 g"
+angle = "5°"
+[[damping]]
+body = "bob"
+coulomb = "20 µN·m"
+[run]
+duration = "0.2 s"
+"""
+    run = simulate(scene_of(tmp_path, text))
+    assert ws.forces(run, [0.1]).pivots["bob"][0] == pytest.approx((0.0, 1e-3 * G), rel=1e-9, abs=1e-12)
+
+
 def test_forces_of_a_lever_escapement_are_those_that_moved_it() -> None:
     """M u' = h + W λ at the rows of the run: torques about the pivots, from points, normals and forces alone."""
     run = simulate(profiles_dir() / "swiss_lever", 0.4)

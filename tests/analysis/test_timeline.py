@@ -13,7 +13,7 @@ import pytest
 from watchsim.analysis.beat_tables import phases_csv
 from watchsim.analysis.timeline.oscillation import shown_beats
 from watchsim.analysis.timeline.rows import timeline
-from watchsim.analysis.timeline.table import timeline_text
+from watchsim.analysis.timeline.table import _nano, _values, timeline_text
 from watchsim.analysis.timing.beats import beats
 from watchsim.cli import main
 from watchsim.commands.common.console import BAD_INPUT, FINE
@@ -210,3 +210,9 @@ def test_the_lock_is_counted_once_where_the_lever_is_on_its_bank_before_it():
         inside = (run.events["t"] >= beat.start) & (run.events["t"] < beat.end)
         impacts = sum(sum(stage.energy.impacts.values()) for stage in beat.stages)
         assert impacts == pytest.approx(float(run.events["energy_lost"][inside].sum()), rel=1e-12)
+
+
+def test_what_did_not_rub_or_strike_is_a_dash(swiss):
+    stage = next(stage for stage in timeline(swiss) if not stage.energy.impacts)
+    assert _values(stage, {}, ["lever-balance"], ["wheel-lever"])[-2:] == [0.0, 0.0]
+    assert _nano(0.0) == "-" and _nano(2.5e-9) == "2.5000"

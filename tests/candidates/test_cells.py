@@ -90,19 +90,20 @@ def random_q(scene: Scene, rng: np.random.Generator) -> np.ndarray:
     return np.array(q)
 
 
+@pytest.mark.parametrize("poses", [40, pytest.param(300, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", CASES)
-def test_no_touching_pair_is_lost(name: str) -> None:
+def test_no_touching_pair_is_lost(name: str, poses: int) -> None:
     scene, compiled = pair(*CASES[name])
     finder, rng = CellFinder(compiled.model), np.random.default_rng(7)
     assert compiled.model.pairs[0].axes == sum(DEGREES[motion] for motion in CASES[name])
     met: list[int] = []
-    for k, q in touches(scene, compiled, rng, (random_q(scene, rng) for _ in range(90))):
+    for k, q in touches(scene, compiled, rng, (random_q(scene, rng) for _ in range(poses))):
         middle = cell_near(compiled, q, rng)
         how, ids = listed(compiled, finder.learn(0, middle), middle)
         assert how == LISTED and k in ids
         met.append(k)
     kinds = {(int(p.kind), int(o.kind)) for p, o in (sides(compiled, k) for k in met)}
-    assert len(met) > 20 and (len(kinds) >= 2 or "free" not in name)
+    assert len(met) > poses // 5 and (len(kinds) >= 2 or "free" not in name)
     # The lists are worth having: far shorter than all pairs.
     lengths = [len(listed(compiled, finder.learn(0, q), q)[1]) for q in (random_q(scene, rng) for _ in range(25))]
     assert np.mean(lengths) < 0.1 * len(compiled.model.contacts)

@@ -21,6 +21,7 @@ def test_report(desk):
         "coordinates": 1,
         "centre_of_mass_m": [0.0, 0.0],
         "solids": [],
+        "driven": False,
     }
     assert report["bodies"]["banking"]["coordinates"] == 0
     assert report["theory"] == {"frequency_hz": pytest.approx(4.0, rel=1e-15), "vph": pytest.approx(28800.0, rel=1e-15)}

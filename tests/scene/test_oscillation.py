@@ -43,7 +43,7 @@ def test_fixed_loads_count(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
     assert main(["check", str(tmp_path)]) == FINE
     said = capsys.readouterr().out
     assert "pendulum makes small swings at 0.498" in said and "by gravity alone, 19.62 N·m/rad" in said
-    assert "with bob: mass 2000 g" in said and "has no mass" not in said
+    assert "with bob: mass 2 kg" in said and "has no mass" not in said
 
 
 def test_a_pendulum_hangs_where_gravity_pulls_it(tmp_path: Path) -> None:

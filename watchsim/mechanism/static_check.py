@@ -114,7 +114,8 @@ def _solid_lines(body: Body) -> Iterator[str]:
     for name, kind, weight in rows:
         x, y = (_millimetres(value) for value in weight.centre)
         inertia = _fitting(weight.about((0.0, 0.0)), INERTIAS)
-        yield f"      {name:{width}}  {kind:{kinds}}  {_fitting(weight.mass, MASSES):>12}  {inertia:>16}  centre ({x}, {y}) mm"
+        mass = _fitting(weight.mass, MASSES, 1e3)
+        yield f"      {name:{width}}  {kind:{kinds}}  {mass:>12}  {inertia:>16}  centre ({x}, {y}) mm"
 
 
 def _millimetres(value: float) -> str:
@@ -173,7 +174,7 @@ def _weights(body: Body) -> Iterator[str]:
         yield law_words(body)
         return
     if (body.motion != "fixed" or body.on is not None) and body.mass > 0.0:
-        yield f"mass {_fitting(body.mass, MASSES)}"
+        yield f"mass {_fitting(body.mass, MASSES, 1e3)}"
     if body.motion in ("pivot", "free"):
         yield f"inertia {_fitting(body.inertia, INERTIAS)}"
 
@@ -183,11 +184,11 @@ def _load_lines(scene: Scene, body: Body, load: Weighed) -> Iterator[str]:
     carried = [other.name for other in scene.bodies if other.on == body.name and other.mass > 0.0]
     if body.motion == "fixed" or not carried:
         return
-    weights = [f"mass {_fitting(load.mass, MASSES)}"] if load.mass > 0.0 else []
+    weights = [f"mass {_fitting(load.mass, MASSES, 1e3)}"] if load.mass > 0.0 else []
     weights += [f"inertia {_fitting(load.inertia, INERTIAS)}"] if body.motion != "slide" else []
     yield f"      with {' and '.join(carried)}: {', '.join(weights)}"
 
 
-def _fitting(value: float, units: tuple[str, ...]) -> str:
-    """In the first unit that needs at most four digits before the point."""
-    return show(value, next((unit for unit in units if abs(to(value, unit)) < 1e4), units[-1]), 5)
+def _fitting(value: float, units: tuple[str, ...], most: float = 1e4) -> str:
+    """In the first unit in which it is less than that."""
+    return show(value, next((unit for unit in units if abs(to(value, unit)) < most), units[-1]), 5)

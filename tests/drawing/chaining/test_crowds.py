@@ -23,6 +23,7 @@ def heap(count: int, spacing: float) -> list[Stroke]:
     return [Stroke(Arc(spacing * k, 0.0, 1e-3, 0.0, TURN), "0", "CIRCLE", k) for k in range(count)]
 
 
+@pytest.mark.slow
 def test_a_heap_of_circles_takes_no_more_memory_than_its_limits_allow(monkeypatch: pytest.MonkeyPatch) -> None:
     """All 3000 of them cross all others: 4.5 million pairs, each with two points."""
     monkeypatch.setattr(near_edges, "MOST_PAIRS", 50_000)

@@ -18,10 +18,10 @@ WHOLE = sum(edge.length for edge in LOOP.edges)
 
 
 def touched(low: float, high: float) -> set[int]:
-    """The edges that a walk from `low` to `high` in thousands of small steps comes past."""
+    """The edges that a walk from `low` to `high` in a thousand small steps comes past."""
     found, ends = set(), [sum(edge.length for edge in LOOP.edges[:k]) for k in range(len(LOOP.edges) + 1)]
-    for step in range(4001):
-        s = (low + (high - low) * step / 4000) % WHOLE
+    for step in range(1001):
+        s = (low + (high - low) * step / 1000) % WHOLE
         found |= {k for k in range(len(LOOP.edges)) if ends[k] + 1e-6 < s < ends[k + 1] - 1e-6}
     return found
 

@@ -30,7 +30,9 @@ def test_the_speed_told_is_that_of_the_film():
 
 
 @given(
-    cuts=st.lists(st.floats(0.0, 1.0), min_size=2, max_size=12, unique=True).filter(lambda cuts: len(cuts) % 2 == 0),
+    cuts=st.lists(st.integers(0, 10**9).map(lambda n: n / 10**9), min_size=2, max_size=12, unique=True).filter(
+        lambda cuts: len(cuts) % 2 == 0
+    ),
     length=st.floats(0.2, 60.0),
 )
 def test_any_stretches_give_a_film_of_the_asked_length_that_never_turns_back(cuts, length):

@@ -156,6 +156,7 @@ def _constant_work(model: Model, way: Array) -> Array:
     for joint in model.joints:
         work[:, joint.coordinate] += joint.force * way[:, joint.coordinate]
         work[:, joint.on] -= joint.force * way[:, joint.on]
+    work[:, np.asarray(model.coordinates.driven) != 0] = 0.0
     return np.asarray(work)
 
 
