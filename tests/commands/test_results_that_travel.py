@@ -56,9 +56,7 @@ def test_the_report_is_what_the_terminal_said(moved: Path) -> None:
     assert "amplitude" in report
 
 
-def test_the_report_ends_with_the_timeline_of_the_last_oscillation(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_report_ends_with_the_timeline_of_the_last_oscillation(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out"
     assert main(["run", str(profiles_dir() / "bench_lever"), "--duration", "1 s", "--no-plots", "-o", str(out)]) == FINE
     said, _, _ = capsys.readouterr().out.partition("Results: ")

@@ -41,7 +41,9 @@ def wheel(tmp_path, ratio=-100.0, turned=0.0, seconds=0.01):
     return ws.load(tmp_path)
 
 
-@pytest.mark.parametrize("turned, at_barrel", [(0.0, 10e-3), (1.0, 9e-3), (2.0, 8e-3), (5.0, 3.5e-3), (9.0, 2e-3), (-1.0, 10e-3)])
+@pytest.mark.parametrize(
+    "turned, at_barrel", [(0.0, 10e-3), (1.0, 9e-3), (2.0, 8e-3), (5.0, 3.5e-3), (9.0, 2e-3), (-1.0, 10e-3)]
+)
 @pytest.mark.parametrize("ratio", [-100.0, 250.0])
 def test_torque_and_inertia_at_the_wheel(tmp_path, ratio, turned, at_barrel):
     """T = η T_barrel / i; I = I_wheel + Σ I_k / i_k²."""
@@ -86,7 +88,9 @@ run_down   = "2.8 rev"
     assert wound.amplitude_deg == pytest.approx(plain.amplitude_deg, abs=1e-7)
     assert wound.rate_s_per_d == pytest.approx(plain.rate_s_per_d, abs=1e-7)
     table = ws.sweep(scene, {"torques.0.run_down": [0.0, 5.6 * math.tau]})
-    assert np.square(table.column("amplitude")) == pytest.approx(np.square(plain.amplitude_deg) * np.array([1.25, 0.75]), rel=2e-3)
+    assert np.square(table.column("amplitude")) == pytest.approx(
+        np.square(plain.amplitude_deg) * np.array([1.25, 0.75]), rel=2e-3
+    )
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,6 @@
 """Scenes of dead-beat escapements without friction on a spring, whose motion follows from energy and Airy's rule alone.
 
-The locking arcs have the pivot as centre and exert no torque, so only the impulse faces act. Drawings come from `designs.graham`.
+The locking arcs have the pivot as centre and exert no torque, so only the impulse faces act. `designs.graham` draws them.
 """
 
 from __future__ import annotations
@@ -9,7 +9,6 @@ from pathlib import Path
 
 import watchsim as ws
 from watchsim.scene.scene import Scene
-
 
 ALONE = """
 [scene]
@@ -106,7 +105,14 @@ between = ["second_wheel.TEETH", "second_anchor.PALLETS"]
 
 
 def one_wheel(
-    folder: Path, *, lock: float = 0.4, quality: float = 250, torque: float, start: float, more: str = "", tolerance: float = 1e-10
+    folder: Path,
+    *,
+    lock: float = 0.4,
+    quality: float = 250,
+    torque: float,
+    start: float,
+    more: str = "",
+    tolerance: float = 1e-10,
 ) -> Scene:
     """An oscillator of 2 Hz with that escapement; `lock`, `start` in degrees, `torque` in mN·m."""
     text = ALONE.format(lock=lock, quality=quality, torque=torque, start=start, tolerance=tolerance)

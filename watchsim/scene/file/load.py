@@ -21,9 +21,9 @@ from watchsim.scene.file.parsed import parsed
 from watchsim.scene.file.readers.read_bodies import read_bodies
 from watchsim.scene.file.readers.read_carriers import note_carriers
 from watchsim.scene.file.readers.read_contacts import read_contacts
-from watchsim.scene.file.readers.read_trains import with_trains
 from watchsim.scene.file.readers.read_forces import read_damping, read_springs, read_torques
 from watchsim.scene.file.readers.read_settings import read_expectations, read_heading, read_run, read_timegrapher
+from watchsim.scene.file.readers.read_trains import with_trains
 from watchsim.scene.oscillation import frequency
 from watchsim.scene.scene import Scene, Written
 

@@ -131,9 +131,7 @@ def polished_over(oscillate: ReturnMap, amplitude: float, number: int, finer: Lo
 
 def _with_errors(means: Measures, amplitude: float, error: float, slope: Slope, period_shift: float) -> Polished:
     """Errors of period and beat error follow from that of the amplitude and from the solver's tolerance."""
-    return Polished(
-        means, error, period_shift + abs(slope.period) * error, error / amplitude * means.period + period_shift
-    )
+    return Polished(means, error, period_shift + abs(slope.period) * error, error / amplitude * means.period + period_shift)
 
 
 def _start(oscillate: ReturnMap, amplitude: float) -> float:
@@ -158,9 +156,7 @@ def _closed(
     return amplitude, turn, left
 
 
-def _tolerance_shift(
-    oscillate: ReturnMap, amplitude: float, slope: Slope, finer: Loop, number: int = 1
-) -> tuple[float, float]:
+def _tolerance_shift(oscillate: ReturnMap, amplitude: float, slope: Slope, finer: Loop, number: int = 1) -> tuple[float, float]:
     """By how much amplitude and period move when the solver is ten times as exact: one return of each is enough."""
     here, there = oscillate(amplitude, number), ReturnMap(finer, oscillate.parts, oscillate.section)
     there.period = oscillate.period

@@ -4,8 +4,8 @@ At a turning point of the oscillator, while everything else stands still: the wh
 number, how far it has swung, tells the whole future, because what stands still is held and comes back to the same place, the
 wheel a tooth further. Along that number the return map is smooth: on the way it meets the same contacts in the same order.
 
-A wheel may also rest on the oscillator itself, as in a dead-beat or a recoil escapement. Then it stands still while the oscillator
-turns, and where it stands follows from how far that has swung (following.py).
+A wheel may also rest on the oscillator itself, as in a dead-beat or a recoil escapement. Then it stands still while the
+oscillator turns, and where it stands follows from how far that has swung (following.py).
 """
 
 from __future__ import annotations

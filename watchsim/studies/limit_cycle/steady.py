@@ -18,6 +18,9 @@ from watchsim.analysis.timing.beats import DAY
 from watchsim.analysis.verdicts.words import STOPS, TICKS, UNSETTLED, VERDICTS
 from watchsim.scene.scene import Scene
 from watchsim.simulation.loop_state.state import State
+from watchsim.studies.limit_cycle.all_cycles.report import with_all_cycles
+from watchsim.studies.limit_cycle.all_cycles.survey import Survey
+from watchsim.studies.limit_cycle.all_cycles.swings import Swings
 from watchsim.studies.limit_cycle.cycle import Cycle
 from watchsim.studies.limit_cycle.judge import judged, late_means, run_from
 from watchsim.studies.limit_cycle.loop import Loop
@@ -27,9 +30,6 @@ from watchsim.studies.limit_cycle.repeats import repeats
 from watchsim.studies.limit_cycle.return_map import Return, ReturnMap
 from watchsim.studies.limit_cycle.section import NoSection, Section, first_section, section_at, section_from
 from watchsim.studies.limit_cycle.shooting import Fixed, Lost, fixed_point
-from watchsim.studies.limit_cycle.all_cycles.survey import Survey
-from watchsim.studies.limit_cycle.all_cycles.swings import Swings
-from watchsim.studies.limit_cycle.all_cycles.report import with_all_cycles
 
 REST = 1e-9  # rad or m per scale: bodies that stand still come back so closely, or the section is moved on
 SECTIONS = 6  # of them at most

@@ -7,11 +7,11 @@ import math
 
 from watchsim.analysis.timing.beats import DAY, beats
 from watchsim.analysis.verdicts.words import STOPS, TICKS, UNSETTLED
+from watchsim.studies.limit_cycle.all_cycles.survey import Found, Span, Survey
+from watchsim.studies.limit_cycle.all_cycles.swings import Swings
 from watchsim.studies.limit_cycle.cycle import Cycle, Orbit, Range
 from watchsim.studies.limit_cycle.judge import judged, run_from
 from watchsim.studies.limit_cycle.measures import measures
-from watchsim.studies.limit_cycle.all_cycles.survey import Found, Span, Survey
-from watchsim.studies.limit_cycle.all_cycles.swings import Swings
 
 FOLLOWED = 24  # periods: how long a swing that is not regular is watched
 
@@ -27,9 +27,7 @@ def with_all_cycles(cycle: Cycle, survey: Survey, swings: Swings) -> Cycle:
             ranges[-1] = dataclasses.replace(ranges[-1], to_deg=found.to_deg)
         else:
             ranges.append(found)
-    return dataclasses.replace(
-        cycle, cycles=tuple(_orbit(swings, found) for found in survey.cycles), starts=tuple(ranges)
-    )
+    return dataclasses.replace(cycle, cycles=tuple(_orbit(swings, found) for found in survey.cycles), starts=tuple(ranges))
 
 
 def _orbit(swings: Swings, found: Found) -> Orbit:
