@@ -23,6 +23,7 @@ from watchsim.studies.limit_cycle.parts import Parts
 
 LOOKS = 8  # in a period, for turning points
 LONGEST = 40  # periods until a clear turning point is met
+MOST_TURNS = 2  # between two looks; more are a rattling, and each that is tried costs as much as the look
 SILENT = 3  # periods without a turning point: it does not swing
 
 
@@ -66,7 +67,7 @@ def first_section(loop: Loop, parts: Parts, state: State) -> Section | NoSection
     while state.clock.time < limit:
         before, begun = copied(state), float(state.clock.time)
         found = turns(loop.on(state, begun + parts.period / LOOKS), parts)
-        for turn in found:
+        for turn in found[-MOST_TURNS:]:
             last = float(turn["t"])
             section = section_at(loop, parts, before, last)
             if section is not None:
