@@ -72,7 +72,7 @@ def judged(design: Drawn) -> str:
     if run.stop is not Stop.DURATION:
         return f"{run.stop.name.lower()}: {run.stop_message}"
     if told["amplitude_deg"] is None:
-        return f"does not tick: {told['timing_message'] or told['stopped_message']}"
+        return f"does not tick: {told['verdict_message'] or told['timing_message']}"
     missed = f", {told['missed_beats']} beats missed" if told["missed_beats"] else ""
     return f"ticks: amplitude {told['amplitude_deg']:5.1f}°, rate {told['rate_s_per_d']:+8.1f} s/d{missed}"
 

@@ -1,6 +1,6 @@
 """Scenes of dead-beat escapements without friction on a spring, whose motion follows from energy and Airy's rule alone.
 
-The locking arcs have the pivot as centre and exert no torque, so only the impulse faces act. Drawings come from `designs.graham`.
+The locking arcs have the pivot as centre and exert no torque, so only the impulse faces act. `designs.graham` draws them.
 """
 
 from __future__ import annotations

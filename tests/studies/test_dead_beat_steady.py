@@ -1,4 +1,4 @@
-"""Where a tooth rests on the oscillator itself: is the limit cycle that of a long run, and its rate the one that Airy's rule gives?"""
+"""Where a tooth rests on the oscillator: is the limit cycle that of a long run, and its rate that of Airy's rule?"""
 
 from __future__ import annotations
 

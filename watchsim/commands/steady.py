@@ -75,13 +75,12 @@ def all_cycles(cycle: Cycle) -> list[tuple[str, str]]:
         turns = f", {len(one.amplitudes_deg)} oscillations in turn" if len(one.amplitudes_deg) > 1 else ""
         left = "" if one.multiplier is None else f", multiplier {one.multiplier:.6f}"
         kind = "stable" if one.stable else "unstable"
-        lines.append(
-            (f"cycle {number}", f"{swings}{turns}, {with_error(one.rate_s_per_d, 0.005, ' s/d').split(' ±')[0]}{left}; {kind}")
-        )
-    for place, one in enumerate(cycle.starts or ()):
-        end = one.verdict if one.cycle is None else f"comes to cycle {one.cycle + 1}"
-        sign = "−" if one.side < 0 else "+"
-        lines.append(("" if place else "let go at", f"{sign}{one.from_deg:.4g}° to {sign}{one.to_deg:.4g}°: {end}"))
+        rate = f"{one.rate_s_per_d:.3f}".replace("-", "−")
+        lines.append((f"cycle {number}", f"{swings}{turns}, {rate} s/d{left}; {kind}"))
+    for place, start in enumerate(cycle.starts or ()):
+        end = start.verdict if start.cycle is None else f"comes to cycle {start.cycle + 1}"
+        sign = "−" if start.side < 0 else "+"
+        lines.append(("" if place else "let go at", f"{sign}{start.from_deg:.4g}° to {sign}{start.to_deg:.4g}°: {end}"))
     if cycle.cycles is not None and not cycle.cycles:
         lines.append(("cycles", "none at any swing that was looked at"))
     return lines

@@ -260,7 +260,7 @@ def run_down() -> list[str]:
         file = Path(folder) / "scene.toml"
         file.write_text(WOUND_SCENE, encoding="utf-8")
         scene = ws.load(file)
-        found = ws.sweep(scene, {"torques.0.run_down": hours / HOURS_A_TURN * math.tau})
+        found = ws.sweep(scene, {"torques.0.run_down": (hours / HOURS_A_TURN * math.tau).tolist()})
     amplitude, rate = (np.array(found.column(name), float) for name in ("amplitude", "rate"))
     spring = scene.source["torques"][0]["table"]
     turns, at_barrel = (np.array([parse(row[i], kind) for row in spring]) for i, kind in enumerate((ANGLE, TORQUE)))

@@ -69,7 +69,7 @@ def parts_of(scene: Scene, compiled: Compiled) -> Parts | None:
 
 
 def with_springs_held(scene: Scene) -> Scene:
-    """The scene with every mainspring kept as far wound as it is at the start: a watch settles in minutes, it runs down in days."""
+    """The scene with every mainspring kept as far wound as at the start: a watch settles in minutes, it runs down in days."""
     if not any(torque.mainspring for torque in scene.torques):
         return scene
     held = tuple(Torque(torque.body, torque.value) if torque.mainspring else torque for torque in scene.torques)

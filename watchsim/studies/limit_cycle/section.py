@@ -4,8 +4,8 @@ At a turning point of the oscillator, while everything else stands still: the wh
 number, how far it has swung, tells the whole future, because what stands still is held and comes back to the same place, the
 wheel a tooth further. Along that number the return map is smooth: on the way it meets the same contacts in the same order.
 
-A wheel may also rest on the oscillator itself, as in a dead-beat or a recoil escapement. Then it stands still while the oscillator
-turns, and where it stands follows from how far that has swung (following.py).
+A wheel may also rest on the oscillator itself, as in a dead-beat or a recoil escapement. Then it stands still while the
+oscillator turns, and where it stands follows from how far that has swung (following.py).
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from watchsim.studies.limit_cycle.parts import Parts
 
 LOOKS = 8  # in a period, for turning points
 LONGEST = 40  # periods until a clear turning point is met
+MOST_TURNS = 2  # between two looks; more are a rattling, and each that is tried costs as much as the look
 SILENT = 3  # periods without a turning point: it does not swing
 
 
@@ -66,7 +67,7 @@ def first_section(loop: Loop, parts: Parts, state: State) -> Section | NoSection
     while state.clock.time < limit:
         before, begun = copied(state), float(state.clock.time)
         found = turns(loop.on(state, begun + parts.period / LOOKS), parts)
-        for turn in found:
+        for turn in found[-MOST_TURNS:]:
             last = float(turn["t"])
             section = section_at(loop, parts, before, last)
             if section is not None:

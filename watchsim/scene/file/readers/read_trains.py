@@ -1,7 +1,7 @@
 """What does a mainspring do to a body that it drives through a train?
 
-One turn of the barrel turns the body `ratio` times. Its torque arrives divided by that, less what the train loses; the inertia of
-a wheel between them counts divided by the square of its own ratio to the body.
+One turn of the barrel turns the body `ratio` times. Its torque arrives divided by that, less what the train loses; the inertia
+of a wheel between them counts divided by the square of its own ratio to the body.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import replace
+from itertools import pairwise
 from typing import Any
 
 from watchsim.scene.body import Body
@@ -82,7 +83,7 @@ def mainspring_torque(table: Table, body: Body, rows: Rows) -> Torque:
 def interpolated(rows: Rows, at: float) -> float:
     """Linear between the rows, constant beyond them."""
     before, after = rows[0], rows[-1]
-    for first, second in zip(rows, rows[1:], strict=False):
+    for first, second in pairwise(rows):
         if first[0] <= at <= second[0]:
             before, after = first, second
             break

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import bisect
 from collections.abc import Callable
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -86,10 +87,14 @@ class Survey:
             silent = silent + 1 if self._at(grid[-1]).trouble else 0
             grid.append(grid[-1] * RATIO)
         samples = [self._at(one) for one in grid]
-        for one, other in zip(samples, samples[1:], strict=False):
-            while one.trouble != other.trouble and other.amplitude - one.amplitude > EDGE * other.amplitude:
-                between = self._at(0.5 * (one.amplitude + other.amplitude))
-                one, other = (between, other) if between.trouble == one.trouble else (one, between)
+        for one, other in pairwise(samples):
+            self._edge(one, other)
+
+    def _edge(self, low: Sample, high: Sample) -> None:
+        """Samples between two, by halving, until what goes wrong changes only between the last ones."""
+        while low.trouble != high.trouble and high.amplitude - low.amplitude > EDGE * high.amplitude:
+            between = self._at(0.5 * (low.amplitude + high.amplitude))
+            low, high = (between, high) if between.trouble == low.trouble else (low, between)
 
     def _samples(self) -> list[Sample]:
         return [self._seen[one] for one in sorted(self._seen)]
@@ -108,9 +113,7 @@ class Survey:
         found: list[Found] = []
         for oscillations in (1, 2):
             grid = [(one.amplitude, self._gain(one.amplitude, oscillations)) for one in self._samples()]
-            brackets = [
-                (low[0], high[0]) for low, high in zip(grid, grid[1:], strict=False) if low[1] * high[1] < 0.0 or low[1] == 0.0
-            ]
+            brackets = [(low[0], high[0]) for low, high in pairwise(grid) if low[1] * high[1] < 0.0 or low[1] == 0.0]
             if oscillations == 2:
                 brackets += [b for one in found if (one.multiplier or 0.0) < -1.0 for b in self._beside(one.amplitudes[0])]
             for low, high in brackets:
@@ -123,7 +126,7 @@ class Survey:
         return any(abs(one - amplitude) <= ALIKE * amplitude for one in cycle.amplitudes)
 
     def _beside(self, amplitude: float) -> list[tuple[float, float]]:
-        """Where a pair of amplitudes may lie that has split off from an unstable cycle: swings grow inside, and shrink outside."""
+        """Where a pair may lie that has split off from an unstable cycle: swings grow inside of it, and shrink outside."""
         low, high = amplitude * (1.0 + BESIDE), amplitude * (1.0 + 2.0 * BESIDE)
         while high < 2.0 * amplitude:
             inner, outer = self._gain(low, 2), self._gain(high, 2)
