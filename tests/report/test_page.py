@@ -281,7 +281,7 @@ def test_an_impulse_on_the_stone_and_one_on_the_tooth_are_told_apart_beat_by_bea
 
 
 def test_a_rim_and_a_hairspring_are_in_data_and_still_picture(lever: Trajectory) -> None:
-    scene = load(PROFILES / "swiss_lever")
+    scene = load(Path(str(profiles_dir())) / "swiss_lever")
     rim = dataclasses.replace(lever.scene.body("balance"), decoration=scene.body("balance").decoration)
     bodies = tuple(rim if body.name == "balance" else body for body in lever.scene.bodies)
     springs = tuple(dataclasses.replace(one, coil=scene.springs[0].coil) for one in lever.scene.springs)
