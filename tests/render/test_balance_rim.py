@@ -147,8 +147,10 @@ def test_pictures_of_function_leave_the_rim_out() -> None:
 
 def test_a_rim_is_a_solid_below_what_works() -> None:
     scene = with_rim(watch_scene())
-    found = {slab.layer: slab for slab in slabs(scene, 0.2 * MM) if slab.body == "balance"}
-    assert set(found) == {"ROLLER", "PIN", "RIM"} and found["RIM"].middle < found["ROLLER"].middle
-    (balance,) = (one for one in placed_solids(scene, tuple(found.values()), 1e-6) if one.name == "balance")
+    found = slabs(scene, 0.2 * MM)
+    middle = {(slab.body, slab.layer): slab.middle for slab in found}
+    assert {layer for body, layer in middle if body == "balance"} == {"ROLLER", "PIN", "RIM"}
+    assert middle["balance", "RIM"] < middle["lever", "ARMS"] - 0.19 * MM
+    (balance,) = (one for one in placed_solids(scene, found, 1e-6) if one.name == "balance")
     rim = next(piece.mesh for piece in balance.pieces if piece.name == "RIM")
     assert rim.is_watertight and rim.volume == pytest.approx(math.pi * (16 - 1.6**2) * 0.2, rel=1e-3)

@@ -91,6 +91,16 @@ def test_watch_colours():
     assert looks(Scene("", (Body("balance", loops=(circle(0, 0, 1, "PIN"),)),))) == {"balance": RUBY}
 
 
+def test_what_is_only_drawn_is_pale_and_no_stone_because_of_others() -> None:
+    drawn = (circle(0, 0, 9, "BOB"), circle(0, 0, 3, "ROD"), circle(0, 5, 1, "JEWELS"), circle(0, 0, 2, "PALLETS"))
+    pendulum = Body("pendulum", loops=(circle(0, 1, 1, "PALLETS"),), decoration=drawn)
+    look = looks(Scene("", (pendulum,)))["pendulum"]
+    assert look is RUBY and finish(pendulum, "PALLETS", look) is RUBY
+    fills = {layer: finish(pendulum, layer, look) for layer in ("BOB", "ROD", "JEWELS")}
+    assert all(one.pale for one in fills.values())
+    assert [one.fill for one in fills.values()] == [BRASS.fill, STEEL.fill, RUBY.fill]
+
+
 def test_no_two_moving_bodies_look_alike():
     """Words come first: a carriage named before the lever leaves it its steel."""
     names = ("carriage", "wheel", "lever", "balance", "click", "third_wheel", "cam")

@@ -47,7 +47,7 @@ def test_thickness_comes_from_the_scene(tmp_path: Path) -> None:
 def test_no_two_layers_of_the_swiss_lever_share_a_place() -> None:
     scene = load(ROOT / "profiles/swiss_lever/scene.toml")
     found = slabs(scene, 0.2e-3)
-    assert len(found) == 9
+    assert len(found) == 10
     by_name = {(slab.body, slab.layer): slab.middle for slab in found}
     for contact in scene.contacts:
         first, second = (by_name[side.body, side.layer] for side in contact.sides)

@@ -92,25 +92,29 @@ def looks(scene: Scene) -> dict[str, Finish]:
 def finish(body: Body, layer: str, look: Finish) -> Finish:
     """The finish of one layer of a body that `look` stands for: stones and impulse pins are ruby on any body.
 
-    Layers that are drawn beside those that can touch are pale, and a balance's rim has the colour of its alloy.
+    Layers that are drawn beside those that can touch are pale; a balance's rim and a pendulum's bob have that of
+    their alloy.
     """
     name, sheet = body.name.lower(), layer.lower()
     if body.motion == "fixed":
         return look
-    own = _of_layer(name, sheet, look)
+    own = _of_layer(name, sheet)
     if body.layers and layer not in body.layers and any(loop.layer == layer for loop in body.decoration):
-        return replace(BRASS if own is look and "rim" in sheet else own, pale=True)
-    return own
+        if own is None:
+            # Of a body of which only stones can touch, the rest is no stone.
+            own = BRASS if any(word in sheet for word in ("rim", "bob")) else STEEL if look is RUBY else look
+        return replace(own, pale=True)
+    return look if own is None else own
 
 
-def _of_layer(name: str, sheet: str, look: Finish) -> Finish:
+def _of_layer(name: str, sheet: str) -> Finish | None:
     if any(word in sheet for word in _STONES) and not any(word in sheet for word in _FORKS):
         return RUBY
     if "pin" in sheet and any(word in name for word in ("balance", "roller")):
         return RUBY
     if "safety" in sheet:
         return NIGHT  # it lies on the roller and should stand out from it
-    return look
+    return None
 
 
 def mixed(colour: str, ground: str, share: float) -> str:

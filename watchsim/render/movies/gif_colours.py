@@ -35,8 +35,8 @@ class Palette:
         return index.tobytes() + entries.tobytes()
 
 
-def shared_palette(samples: Iterable[Pixels]) -> Palette:
-    """The palette for frames like the samples, each (height, width, 3 or 4).
+def shared_palette(samples: Iterable[Pixels], named: Iterable[str] = ()) -> Palette:
+    """The palette for frames like the samples, each (height, width, 3 or 4), and for these `named` colours (#rrggbb) exactly.
 
     Colours count by the root of their area, so that a ruby of a few pixels keeps its red beside a large pale ground.
     """
@@ -46,7 +46,8 @@ def shared_palette(samples: Iterable[Pixels]) -> Palette:
     packed, counts = np.unique(seen @ np.array([65536, 256, 1], dtype=np.uint32), return_counts=True)
     found = np.column_stack((packed >> 16, (packed >> 8) & 255, packed & 255)).astype(np.uint8)
     strip = np.repeat(found, np.minimum(np.ceil(np.sqrt(counts)), HEAVIEST).astype(int), axis=0)
-    pinned = found[np.argsort(-counts)][:PINNED]
+    asked = np.array([[int(colour[k : k + 2], 16) for k in (1, 3, 5)] for colour in named], np.uint8).reshape(-1, 3)
+    pinned = np.concatenate((asked, found[np.argsort(-counts)][: PINNED - len(asked)]))
     image = Image.fromarray(strip[None]).quantize(COLOURS - len(pinned), method=Image.Quantize.MEDIANCUT, kmeans=3)
     mixed = np.array(image.getpalette(), dtype=np.uint8).reshape(-1, 3)[: COLOURS - len(pinned)]
     return _with_table(np.concatenate((pinned, mixed)))

@@ -103,7 +103,9 @@ def movie(
     palette = None
     if gif:
         sampled = np.unique(np.linspace(0, len(plan.times) - 1, SAMPLES).astype(int))
-        palette = shared_palette([picture.copy() for picture in film.pictures(sampled)])
+        palette = shared_palette(
+            [picture.copy() for picture in film.pictures(sampled)], style.phases.values() if phases else ()
+        )
     write = None if heard is None else partial(write_soundtrack, heard=heard)
     encode(film.pictures(np.arange(len(plan.times)), progress), target, pixels, plan.fps, palette, write)
     return target

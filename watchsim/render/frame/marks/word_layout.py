@@ -6,6 +6,7 @@ rest. What never changes becomes artists of the figure; what changes is written 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -143,8 +144,8 @@ def draw_rules(figure: Figure, frame: Frame, style: Style) -> None:
 
 
 def relative_size(width: float, height: float) -> float:
-    """How large a picture is, 1 for 1280 × 720 pixels, wide or tall."""
-    return min(max(width, height) / 1280.0, min(width, height) / 720.0)
+    """How large a picture is, 1 for 1280 × 720 pixels, wide, square or tall."""
+    return min(math.sqrt(width * height / (1280.0 * 720.0)), min(width, height) / 720.0)
 
 
 def _unit(figure: Figure) -> float:
