@@ -21,7 +21,7 @@ def lever(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def disc(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("runs") / "disc"
-    assert main(["run", str(profiles_dir() / "incline"), "--duration", "0.3 s", "--no-plots", "-o", str(folder)]) == 0
+    assert main(["run", str(profiles_dir() / "incline"), "--duration", "1 s", "--no-plots", "-o", str(folder)]) == 0
     return folder
 
 
