@@ -20,7 +20,7 @@ import watchsim as ws
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.polyline import polyline
 from watchsim.geometry.primitives import Arc, Line, Point
-from watchsim.render.figures.style import LABEL, SERIES, figure, save
+from watchsim.render.figures.style import LABEL, SERIES, SMALL, figure, save
 from watchsim.render.figures.style import title as named
 from watchsim.render.palette import BRASS, INK, STEEL
 
@@ -98,15 +98,17 @@ def panel(ax: Axes, title: str, a: Loop, pose: tuple[float, float, float], b: Lo
     arrow(ax, point, 0.55 * n, NORMAL, "n")
     arrow(ax, point, 0.55 * t, TANGENT, "t")
     ax.plot(*point, "o", color=INK, markersize=3)
-    named(ax, f"{title}: {row['kind_a']}–{row['kind_b']}, g = {row['g']:.3f}")
+    named(ax, title)
+    words = f"{row['kind_a']}–{row['kind_b']}, g = {row['g']:.3f}"
+    ax.text(0.0, 0.99, words, transform=ax.transAxes, fontsize=SMALL, va="top", color=INK)
     ax.set_aspect("equal")
     ax.set_xlim(-1.65, 1.65)
-    ax.set_ylim(-0.75, 1.65)
+    ax.set_ylim(-0.75, 1.95)
     ax.axis("off")
 
 
 def main() -> None:
-    made = figure(height=92.0, layout="constrained")
+    made = figure(height=100.0, layout="constrained")
     axes = made.subplots(2, 3)
     for ax, (title, a, pose, b) in zip(axes.ravel(), PANELS, strict=True):
         panel(ax, title, a, pose, b)

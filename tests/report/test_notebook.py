@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import html
 import io
 import re
 import subprocess
@@ -13,10 +14,18 @@ import imageio.v3 as iio
 import numpy as np
 import pytest
 from render.fake_runs import disc_run, watch_run
+from report.browser import opened
 
 import watchsim as ws
 from watchsim.analysis.timing.beats import Beats, beats
 from watchsim.scene.scene import Scene
+from watchsim.studies.axes import Axis
+from watchsim.studies.limit_cycle.cycle import Cycle
+from watchsim.studies.outputs import outputs_named
+from watchsim.studies.quantities import Quantity
+from watchsim.studies.sensitivity import Derivative, Effect, Sensitivity
+from watchsim.studies.sweep import Sweep
+from watchsim.units import TORQUE
 
 LARGEST = 30_000
 PROFILES = Path(str(ws.profiles_dir()))
@@ -73,6 +82,59 @@ def test_few_beats_and_none() -> None:
 
 def test_titles_stay_text() -> None:
     assert "<img src=x" not in Scene("<img src=x onerror=alert(1)>", ws.load(PROFILES / "balance").bodies)._repr_html_()
+
+
+def test_studies_show_themselves_and_print_in_a_line() -> None:
+    torque = Axis("torques.0.value", tuple(-1e-6 * (1.0 + 0.05 * k) for k in range(40)), "N·m", "µN·m")
+    row = {"amplitude_deg": 280.0, "amplitude_deg_error": 0.1, "verdict": "ticks", "message": ""}
+    rows = tuple({"torques.0.value": value, **row} for value in torque.values)
+    swept = Sweep("A <b>watch</b>", (torque,), outputs_named(["amplitude"]), rows, True, 1.0)
+    text = swept._repr_html_()
+    assert len(text.encode()) < LARGEST and "40 points" in text and "the first 12 of 40" in text and "<b>watch" not in text
+    assert picture(text).shape[1] == 560 and "−1.05" in text
+    assert len(repr(swept)) < 200 and "40 points over torques.0.value" in repr(swept)
+    nothing = Sweep("A watch", (torque,), outputs_named(["amplitude"]), (), False, 0.0)
+    assert "interrupted" in nothing._repr_html_() and "interrupted" in repr(nothing)
+
+    by = {"amplitude_deg": Derivative(2e8, 2e8, True, 0.0)}
+    quantity = Quantity("torques.0.value", -1e-6, TORQUE, -1e-8, -1e-8, "1 %")
+    cycle = Cycle(True, "ticks", amplitude_deg=280.0, rate_s_per_d=-5.5, beat_error_ms=0.01, multipliers=(0.88,))
+    found = Sensitivity("A watch", cycle, outputs_named(["amplitude"]), (Effect(quantity, by),), True, 1.0)
+    text = found._repr_html_()
+    assert len(text.encode()) < LARGEST and "torques.0.value" in text and picture(text).shape[1] == 560
+    assert len(repr(found)) < 200 and "1 quantities" in repr(found)
+    assert "280.000°" in repr(cycle) and "multiplier 0.88" in cycle._repr_html_()
+    standing = Cycle(False, "stops", "it stands")
+    assert "stops" in repr(standing) and "it stands" in standing._repr_html_()
+
+
+def test_a_run_plays_in_a_frame_that_may_do_nothing_else() -> None:
+    run = watch_run()
+    shown = run.player((0.2, 0.9))
+    text = shown._repr_html_()
+    assert text.startswith("<iframe") and len(text.encode()) < 300_000 and len(repr(shown)) < 200
+    assert 'sandbox="allow-scripts allow-downloads"' in text and "allow-same-origin" not in text
+    page = html.unescape(re.search(r'srcdoc="([^"]*)"', text)[1])
+    assert page == shown.page and "<canvas" in page and "default-src 'none'" in page
+    assert ws.show(run, (0.2, 0.9)).page == page
+    with pytest.raises(ValueError, match="was recorded"):
+        ws.show(run, (5.0, 6.0))
+
+
+@pytest.mark.slow
+def test_the_player_plays_inside_a_frame(tmp_path: Path) -> None:
+    path = tmp_path / "notebook.html"
+    ready = "<script>window.watchsim = true</script>"  # what the browser waits for; the frame has its own
+    path.write_text(f"<!DOCTYPE html><html><body>{ready}{watch_run().player()._repr_html_()}</body></html>", encoding="utf-8")
+    with opened(path) as page:
+        page.wait_for_timeout(500)
+        frame = page.frames[1]
+        before = frame.evaluate("document.getElementById('scrub').value")
+        frame.click("#play")
+        page.wait_for_timeout(800)
+        assert frame.evaluate("document.getElementById('scrub').value") != before
+        assert frame.evaluate("getComputedStyle(document.getElementById('sheet')).display") == "none"
+        assert page.said == [] and all(address.startswith(("file:", "about:", "data:")) for address in page.asked)
 
 
 def test_a_figure_shows_itself() -> None:

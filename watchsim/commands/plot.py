@@ -90,9 +90,10 @@ def run(args: argparse.Namespace) -> int:
 def _kinds(args: argparse.Namespace) -> list[str]:
     from watchsim.commands.common.plot_kinds import chosen
 
-    names = parse_names(args.kind) or ([] if args.tape or args.phases else ["kinematics"])
-    if args.kind is not None and not names:
-        return chosen([])
+    if args.kind is None:
+        names = [] if args.tape or args.phases else ["kinematics"]
+    elif not (names := parse_names(args.kind) or []):
+        return chosen(names)
     short = [name for name, wanted in (("phases", args.phases), ("tape", args.tape)) if wanted]
     return chosen([*names, *short])
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 IMAGES = Path(__file__).resolve().parents[3] / "docs" / "images"
-BLUE, RED, GREEN, GOLD = SERIES[0], SERIES[1], SERIES[2], SERIES[4]
+BLUE, RED, GREEN, GOLD = (SERIES[k] for k in (0, 1, 2, 4))
 HEIGHT = 62.0  # mm, of a panel
 
 

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-LEFT, RIGHT, ROW, OVER, UNDER, KEY = 24.0, 4.0, 5.0, 6.0, 9.0, 4.0  # mm
+LEFT, RIGHT, ROW, OVER, UNDER, KEY = 27.0, 4.0, 5.0, 6.0, 9.0, 4.0  # mm
 WORDS = 27.0  # mm, beside a bar
 NANO = 1e9
 PARTS = ("stored", "damping", "friction", "impacts")  # of what is supplied

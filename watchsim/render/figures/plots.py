@@ -35,6 +35,7 @@ Array = NDArray[np.float64]
 QUANTITIES = ("angle", "velocity", "acceleration")
 USUAL = QUANTITIES[:2]
 PANEL, FOOT = 30.0, 9.0  # mm, the height of a row of panels, and room for the time below
+MANY, LOW = 24, 20.0  # so many rows, and the height of each of more
 KEY, KEY_GAP = 6.5, 1.0  # mm, where the names of phases begin, and room below them
 FLAT = 1e-6  # a range smaller than this part of the value (or of 1 unit) is shown as flat, not magnified
 STYLES = ("-", "--")  # of x and y
@@ -100,7 +101,7 @@ class Kinematics:
             raise ValueError("nothing to plot: no body of this run moves")
         side_by_side = 1 if width < NARROW else len(self._quantities)
         rows = len(self._channels) * len(self._quantities) // side_by_side
-        self.figure: Figure = figure(width, PANEL * rows + FOOT + KEY)
+        self.figure: Figure = figure(width, (PANEL if rows <= MANY else LOW) * rows + FOOT + KEY)
         self._panels = self.figure.subplots(rows, side_by_side, sharex=True, squeeze=False)
         heading(self.figure, run.scene.title)
         self._own = len(self.figure.texts), len(self.figure.artists)

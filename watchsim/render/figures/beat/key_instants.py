@@ -54,6 +54,7 @@ GAP, TITLE, WORDS, CURVES, LEADS, FOOT, LEFT = 1.2, 5.0, 7.0, 20.0, 5.0, 9.0, 12
 ROOM = 0.12  # of the lever's size, around it
 TALLEST = 1.35  # of a picture's width
 ARROW = 0.30  # of a picture's width: the largest force
+SHORTEST = 0.025  # of it: a shorter arrow would be all head
 END = "at rest"
 
 
@@ -164,6 +165,8 @@ def _arrows(axes: Axes, points: Array, arrows: Array) -> None:
         "shrinkB": 0,
     }
     for (x, y), (dx, dy) in zip(points, arrows, strict=True):
+        if np.hypot(dx, dy) < SHORTEST * abs(np.subtract(*axes.get_xlim())):
+            continue
         arrow = axes.annotate("", (x, y), (x - dx, y - dy), arrowprops=look, zorder=6, annotation_clip=True)
         if arrow.arrow_patch is not None:
             arrow.arrow_patch.set_clip_path(axes.patch)

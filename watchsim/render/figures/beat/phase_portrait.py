@@ -15,7 +15,7 @@ from watchsim.render.figures import usual_window
 from watchsim.render.figures.column_extremes import distinct
 from watchsim.render.figures.phase_bands import name_key, strong
 from watchsim.render.figures.plots import Channel, channels
-from watchsim.render.figures.style import CURVE, FULL, NARROW, dress, figure, heading, key, limits, panel, title
+from watchsim.render.figures.style import CURVE, FULL, MM, NARROW, dress, figure, heading, key, limits, panel, title
 from watchsim.render.frame.pose_history import Window, choose, dense
 from watchsim.render.palette import FAINT, looks
 from watchsim.simulation.record.trajectory import Array, Trajectory
@@ -24,7 +24,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-LEFT, RIGHT, UNDER, OVER = 14.0, 3.5, 9.0, 5.0  # mm, around a panel
+LEFT, RIGHT, UNDER, OVER = 16.0, 3.5, 9.0, 5.0  # mm, around a panel
+LABEL_AT = 12.8  # mm, of the label left of its panel: numbers of seven digits fit between
 TALL = 38.0  # mm
 TOP = 6.5
 POINTS = 6000  # of a curve at least, for its bends
@@ -94,6 +95,8 @@ def _portrait(axes: Axes, channel: Channel, rows: tuple[Array, Array, Array], ph
     axes.yaxis.set_major_locator(MaxNLocator(nbins=5, steps=[1, 2, 5, 10]))
     axes.ticklabel_format(useOffset=False)
     axes.set_xlabel(f"{channel.names['angle']} ({channel.units['angle']})", labelpad=1.5)
-    axes.set_ylabel(f"{channel.names['velocity']} ({channel.units['velocity']})", labelpad=1.5)
+    axes.set_ylabel(f"{channel.names['velocity']} ({channel.units['velocity']})")
+    axes.yaxis.set_label_coords(-LABEL_AT / (axes.get_window_extent().width / axes.figure.dpi / MM), 0.5, axes.transAxes)
+    axes.yaxis.label.set_verticalalignment("center")
     if channel.legend:
         key(axes, list(zip(lines, channel.legend, strict=True)), loc="best")

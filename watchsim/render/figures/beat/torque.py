@@ -160,4 +160,4 @@ def _table(axes: Axes, push: list[Push], below: float, row: float) -> None:
 
 
 def _nano(value: float) -> str:
-    return f"{NANO * value + 0.0:.2f}".replace("-", "−")
+    return f"{round(NANO * value, 2) + 0.0:.2f}".replace("-", "−")
