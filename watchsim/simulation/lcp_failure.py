@@ -58,7 +58,7 @@ def failure_of(state: State, scratch: Scratch, pairs: Sequence[Pair]) -> dict[st
 
 def driven_into(failure: Mapping[str, Any] | None, pairs: Sequence[Pair], driven: Container[str]) -> str:
     """Which driven body left which other no way out, in words; "" where none takes part in the failed problem."""
-    found: dict[str, None] = {}  # each sentence once, in order
+    found: dict[str, None] = {}
     for contact in failure["contacts"] if failure else ():
         pair = pairs[contact["number"]]
         for own, other in ((pair.body_a, pair.body_b), (pair.body_b, pair.body_a)):
