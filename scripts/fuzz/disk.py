@@ -1,8 +1,9 @@
 """Is anything lost when the disk fails once, at any one of the things a command does to it?
 
-For `run`, with `--force` and `--resume`, `movie`, `plot`, `report`, `export` and `new`: the first opening for writing, write, synchronisation, rename or
-removal fails with "No space left on device", then only the second, and so on to the last one. After each: what was there
-before is whole, and what was computed lies where it was to go, or where the message says. `--stride N` takes every N-th.
+For `run`, with `--force` and `--resume`, `movie`, `plot`, `report`, `export` and `new`: the first opening for writing, write,
+synchronisation, rename or removal fails with "No space left on device", then only the second, and so on to the last one.
+After each: what was there before is whole, and what was computed lies where it was to go, or where the message says.
+`--stride N` takes every N-th.
 """
 
 from __future__ import annotations
