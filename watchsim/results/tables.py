@@ -30,6 +30,7 @@ EVENT_COLUMNS = (
     "value",
 )
 
+ROWS = 1 << 13  # of the table that are made into text together
 NO_IMPULSE = "0.0,0.0,0.0"  # of an event that is no impact
 
 
@@ -75,7 +76,7 @@ def write_events(run: Trajectory, path: Path) -> None:
     # What is the same in thousands of rows is made into text once: a third of the time of a csv.writer that sees every field.
     with path.open("w", newline="", encoding="utf-8") as file:
         file.write(_row(EVENT_COLUMNS) + "\r\n")
-        for (part,) in blocks(run.events):
+        for (part,) in blocks(run.events, length=ROWS):
             file.write("".join(_lines(part, kinds, sides)))
 
 
