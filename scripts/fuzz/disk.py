@@ -1,8 +1,9 @@
 """Is anything lost when the disk fails once, at any one of the things a command does to it?
 
-For `run`, with `--force` and `--resume`, `movie` and `plot`: the first opening for writing, write, synchronisation, rename or
-removal fails with "No space left on device", then only the second, and so on to the last one. After each: what was there
-before is whole, and what was computed lies where it was to go, or where the message says. `--stride N` takes every N-th.
+For `run`, with `--force` and `--resume`, `movie`, `plot`, `report`, `export` and `new`: the first opening for writing, write,
+synchronisation, rename or removal fails with "No space left on device", then only the second, and so on to the last one.
+After each: what was there before is whole, and what was computed lies where it was to go, or where the message says.
+`--stride N` takes every N-th.
 """
 
 from __future__ import annotations
@@ -27,6 +28,10 @@ COMMANDS = {
     "run --resume": ["run", LEVER, "--duration", "0.25 s", "--resume", "old"],
     "movie": ["movie", "old", "--window", "0.1 s:0.11 s", "--size", "64x64"],
     "plot": ["plot", "old", "--bodies", "lever"],
+    "report": ["report", "old"],
+    "export": ["export", LEVER, "-o", "new", "--format", "dxf"],
+    "new": ["new", "geneva", "-o", "new"],
+    "new drawing": ["new", str(ROOT / "profiles" / "bench_lever" / "wheel.dxf"), "-o", "new"],
 }
 
 
@@ -45,6 +50,8 @@ def judge(name: str, place: Path, second: Path, status: int, said: str) -> list[
     old = read_results(place / "old").simulated
     reached = {"run": 0.1, "run --force": 0.1, "run --resume": 0.25}.get(name)
     if reached is None:
+        if status == 2 and (place / "new").exists():
+            wrong.append("half a folder")
         return wrong + ([] if old == 0.2 else ["the run was changed"])
     target = place / ("new" if name == "run" else "old")
     saved = re.search(r"saved, without pictures, in (\S+)", said)

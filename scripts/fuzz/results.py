@@ -28,6 +28,7 @@ import scenes  # noqa: E402
 
 SCENE = str(ROOT / "profiles" / "bench_lever")
 FILES = ("trajectory.npz", "state.npz", "scene.lock.toml", "summary.json")
+NOTED = 50  # after so many folders a line says how far it has come
 COMMANDS = ("plot", "plot", "movie", "resume")
 NASTY: tuple[object, ...] = (None, [], {}, "x", -1, 10**30, 1e300, [[]], {"a": 1}, True, "DURATION")
 
@@ -145,6 +146,8 @@ def main() -> None:
             slowest = max(slowest, (took, number))
             kind = words.splitlines()[0] if words else "nothing said"
             kinds[kind] += 1
+            if sum(kinds.values()) % NOTED == 0:
+                print(f"{sum(kinds.values())} done, to number {number}: {dict(sorted(kinds.items()))}", flush=True)
             if kind not in ("0", "1", "2", "3") or args.only is not None:
                 print(f"{number} ({command}): {words}", flush=True)
     print(

@@ -29,6 +29,7 @@ SCENES = ("profiles/swiss_lever", "profiles/bench_lever", "profiles/incline", "p
 DESIGNS = ("carriage", "coaxial", "geneva", "graham", "involute_pair", "recoil_anchor", "set_a")
 SEEDED = (*SCENES, *(f"profiles/{name}" for name in DESIGNS))
 SECONDS = 20
+NOTED = 100  # after so many files a line says how far it has come
 MEMORY = 4 << 30
 VALUES = (
     *(
@@ -327,6 +328,8 @@ def main() -> None:
             slowest = max(slowest, (took, number))
             kind = words.splitlines()[0] if words else "nothing said"
             kinds[kind] += 1
+            if sum(kinds.values()) % NOTED == 0:
+                print(f"{sum(kinds.values())} done, to number {number}: {dict(sorted(kinds.items()))}", flush=True)
             if kind not in ("0", "1", "2", "3") or args.only is not None:
                 args.output.mkdir(parents=True, exist_ok=True)
                 name, content = damaged(number, args.seed)

@@ -148,6 +148,14 @@ def test_the_command_writes_and_refuses(
     assert not (tmp_path / "open").exists() and not (tmp_path / "b").exists()
 
 
+def test_an_outline_that_crosses_itself_is_refused(tmp_path: Path) -> None:
+    for name, path in (("equal", "M0 0 L5 5 L5 0 L0 5 Z"), ("unequal", "M0 0 L5 5 L5 0 L0 3 Z")):
+        head = '<svg xmlns="http://www.w3.org/2000/svg" width="9mm" height="9mm" viewBox="0 0 9 9">'
+        (tmp_path / f"{name}.svg").write_text(f'{head}<path id="A" d="{path}"/></svg>')
+        with pytest.raises(NothingToPropose, match="cross"):
+            propose([tmp_path / f"{name}.svg"])
+
+
 @pytest.mark.skipif(not SHARED.is_dir(), reason="the shared drawings are not here")
 def test_a_real_assembly() -> None:
     """A Swiss lever from a public CAD model: three parts that turn, two stops, stones against teeth, pin against fork."""

@@ -31,6 +31,7 @@ EVENT_COLUMNS = (
     "value",
 )
 
+ROWS = 1 << 13  # of the table that are made into text together
 NO_IMPULSE = "0.0,0.0,0.0,"  # of an event that is no impact
 
 
@@ -77,7 +78,7 @@ def write_events(run: Trajectory, path: Path) -> None:
     # csv.writer that sees every field.
     with path.open("w", newline="", encoding="utf-8") as file:
         file.write(_row(EVENT_COLUMNS) + "\r\n")
-        for (part,) in blocks(run.events):
+        for (part,) in blocks(run.events, length=ROWS):
             file.write("".join(_lines(part, kinds, sides)))
 
 

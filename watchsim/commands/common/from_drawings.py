@@ -26,7 +26,7 @@ def start_from_drawings(names: Sequence[str], output: str | None, as_json: bool,
     from watchsim.storage.write import write_folder
 
     paths = [Path(name) for name in names]
-    missing = [f"{path}: there is no such file" for path in paths if not path.is_file()]
+    missing = [f"{path}: {'is a folder' if path.is_dir() else 'there is no such file'}" for path in paths if not path.is_file()]
     if missing:
         raise InputError("\n".join(missing))
     folder = Path(output or paths[0].stem)

@@ -26,6 +26,7 @@ Region = Any  # a polygon, or several, of shapely
 Floats = NDArray[np.float64]
 
 DEVIATION = 2e-5  # of an outline's length: of chords from arcs
+LEAST = 1e-7  # of the square of its length: a piece with less area has no material
 ALIKE = 1e-3  # relative: areas and lengths of equal pieces
 FEWEST = 5  # equal pieces around a centre
 
@@ -59,6 +60,11 @@ class Piece:
         for part in parts[1:]:
             whole = whole.union(part)
         return whole
+
+    @property
+    def has_material(self) -> bool:
+        """False of an outline that crosses itself so that nothing is left: two equal halves that run either way."""
+        return min(self.area, float(self.region.area)) > LEAST * self.length**2
 
     @cached_property
     def centroid(self) -> Point:
@@ -98,7 +104,7 @@ def pieces_of(file: int, loops: Sequence[Loop], crowded: frozenset[str] = frozen
     for layer in dict.fromkeys(loop.layer for loop in loops):
         own = [loop for loop in loops if loop.layer == layer and loop.closed]
         single = [Piece(file, layer, tuple(group)) for group in _with_holes(own, layer in crowded)]
-        found += _around_a_centre(single)
+        found += _around_a_centre([piece for piece in single if piece.has_material])
     return found
 
 
