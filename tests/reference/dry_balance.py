@@ -6,6 +6,7 @@ the sign s of the velocity; at a stop it stays while |M(t) - k q| <= T.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 
@@ -26,7 +27,7 @@ def angles(
     """(n,) rad at the ascending `times` (s); `table` of (s, N·m) over all of them, `start`: angle and velocity."""
     w, (q, u) = math.sqrt(stiffness / inertia), start
     out, done = np.zeros(len(times)), 0
-    for (begin, first), (end, last) in zip(table, table[1:], strict=False):
+    for (begin, first), (end, last) in itertools.pairwise(table):
         slope, t = (last - first) / (end - begin), begin
         while t < end:
             torque = first + slope * (t - begin)

@@ -111,6 +111,8 @@ ENERGY_GAIN = 1e-12
 HIDDEN_REBOUND = 20.0
 # Of the kinetic energy spared by friction while contacts are apart. Large: energy appears; small: chatter goes on.
 CHATTER_GAIN = 1e-8
+# The same where the impact has just taken more. Large: motion of near jams changes; small: chatter goes on.
+CHATTER_BACK = 1e-6
 # Of the friction cone: sticking stays that far inside. Large: sticking taken for slip; small: rounding decides.
 WITHIN_CONE = 1e-9
 

@@ -122,6 +122,27 @@ def boxed(dice: Dice) -> Scene:
     return scene(dice, "boxed", bodies, 0.12, gravity=dice.chance(0.8))
 
 
+def crowd(dice: Dice) -> Scene:
+    """Eight to forty bodies fall into a box that is open above: discs, discs all alike, polygons, or both."""
+    count, kind = dice.number(8, 40), dice.pick(("disc", "alike", "polygon", "mixed"))
+    columns, pitch, wall = math.ceil(math.sqrt(count)), 10.0 * MM, 4.0 * MM
+    side, alike = columns * pitch + dice.uniform(0.0, 5.0) * MM, dice.uniform(2.0, 4.9) * MM
+    bodies = [
+        fixed("floor", box(side + 2.0 * wall, wall, (0.0, -0.5 * wall))),
+        fixed("left", box(wall, 2.0 * side, (-0.5 * (side + wall), side))),
+        fixed("right", box(wall, 2.0 * side, (0.5 * (side + wall), side))),
+    ]
+    for k in range(count):
+        radius = alike if kind == "alike" else dice.uniform(1.5, 4.9) * MM
+        is_round = kind in ("disc", "alike") or (kind == "mixed" and dice.chance(0.5))
+        outline = circle(radius) if is_round else ragged(dice, min(radius, 4.8 * MM), dice.number(3, 6))
+        place = ((k % columns - 0.5 * (columns - 1)) * pitch, (k // columns + 0.5) * pitch)
+        velocity = (dice.uniform(-0.5, 0.5), dice.uniform(-0.5, 0.1), dice.uniform(-30.0, 30.0))
+        mass = 0.02 if kind == "alike" else dice.log(0.005, 0.05)
+        bodies.append(free(f"m{k}", outline, place, mass, dice.uniform(0.0, 6.0), velocity))
+    return scene(dice, "crowd", bodies, 0.3, gravity=True)
+
+
 def wedge(dice: Dice) -> Scene:
     """A sliding wedge lifts a plunger, or a block slides between guides."""
     slope = dice.pick((dice.uniform(0.05, 1.2), dice.log(1e-6, 1e-1)))

@@ -19,7 +19,7 @@ from watchsim.dynamics.delassus import apply, contact_velocities
 from watchsim.dynamics.impact import plastic_impact
 from watchsim.jit import kernel
 from watchsim.simulation.events.impulse_check import kinetic_energy
-from watchsim.simulation.tolerances import CHATTER_GAIN, WITHIN_CONE
+from watchsim.simulation.tolerances import CHATTER_BACK, CHATTER_GAIN, WITHIN_CONE
 
 
 @kernel
@@ -29,7 +29,7 @@ def may_be_chatter(m, options, event, room):
     for i in range(m):
         rate = event.closed.kin[i].gN_dot
         if rate > options.accumulation_speed:
-            continue
+            return False
         hit = room.impulse[2 * i] > 0.0
         if hit and room.restitution[i] == 1.0:
             return False
@@ -50,11 +50,11 @@ def return_time(closed, i, a):
 
 @kernel
 def chatter_time(state, m, options, event):
-    """Time until all contacts that leave by less than `gap_close` are back, s; infinity if another one is back by then.
+    """Time until all contacts that leave are back, s; infinity if one of them comes further than `gap_close`.
 
-    What leaves for longer than twice that time has no part in it. The accelerations are in `state.a`.
+    The accelerations are in `state.a`.
     """
-    latest, soonest = 0.0, math.inf
+    latest = 0.0
     for i in range(m):
         rate = event.closed.kin[i].gN_dot
         if rate <= event.zero[i]:
@@ -62,10 +62,9 @@ def chatter_time(state, m, options, event):
         back = return_time(event.closed, i, state.a)
         # It rises on a parabola, to a quarter of the way it would go at its first speed.
         if 0.25 * rate * back > options.gap_close:
-            soonest = min(soonest, back)
-        else:
-            latest = max(latest, back)
-    return latest if soonest > 2.0 * latest else math.inf
+            return math.inf
+        latest = max(latest, back)
+    return latest
 
 
 @kernel
@@ -104,7 +103,8 @@ def end_chatter(model, state, m, ended, work, event, room):
     for row in range(2 * r):
         ending[row] -= work.force[row] * time
     # Less pressure for a moment is less friction, which will come: of what the impact took, no more than that is given back.
-    if _gain(rest, r, state.u, ending, work) > max(CHATTER_GAIN * kinetic_energy(model, state.u), taken):
+    kinetic = kinetic_energy(model, state.u)
+    if _gain(rest, r, state.u, ending, work) > max(CHATTER_GAIN * kinetic, min(taken, CHATTER_BACK * kinetic)):
         return -1
     apply(rest, r, ending, work.inverse, state.u)
     return r

@@ -164,11 +164,9 @@ def _end_chatter(model, state, m, time, scratch, record):
             copy(room.before, state.u)
             return  # the impacts go on one by one
     for i in range(m):
-        if event.closed.kin[i].gN_dot <= event.zero[i]:
-            continue
-        back = return_time(event.closed, i, state.a)
-        if back <= time:
-            keep_event(state, record, EventKind.ACCUMULATION, event.closed.ids[i], -1, state.clock.time + back)
+        if event.closed.kin[i].gN_dot > event.zero[i]:
+            back = state.clock.time + return_time(event.closed, i, state.a)
+            keep_event(state, record, EventKind.ACCUMULATION, event.closed.ids[i], -1, back)
             state.counts.accumulations += 1
     place(model, state.q, state.u, event.pose)
     refresh(model, m, event.closed, event.pose)
