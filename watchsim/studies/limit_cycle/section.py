@@ -78,15 +78,15 @@ def first_section(loop: Loop, parts: Parts, state: State) -> Section | NoSection
 
 
 def section_at(loop: Loop, parts: Parts, before: State, time: float) -> Section | None:
-    """The section at a turning point at that time (s), reached from a state before it; None where something else moves."""
+    """The section at a turning point at that time (s), reached from a state before it; None as in `section_from`."""
     state = copied(before)
     loop.on(state, time, exactly=True)
     return section_from(loop, parts, state)
 
 
 def section_from(loop: Loop, parts: Parts, turning: State) -> Section | None:
-    """The section of a state at a turning point; None where something else moves."""
-    if not others_rest(loop, parts, turning):
+    """The section of a state at a turning point; None where something else moves, or a lever holds the oscillator."""
+    if not others_rest(loop, parts, turning) or (parts.has_lever and is_touched(parts, turning)):
         return None
     state = copied(turning)
     away = float(state.q[parts.coordinate]) - parts.level
