@@ -10,7 +10,7 @@ import numpy as np
 from coaxial_scenes import IMAGES, TORQUE
 
 import watchsim as ws
-from watchsim.scene.file.override import changed
+from watchsim.scene.file.read_scene import changed
 from watchsim.scene.scene import Scene
 
 TORQUES = (0.06, 0.1, 0.15, 0.2, 0.3, 0.4, 0.48, 0.6, 0.8, 1.0)  # µN·m

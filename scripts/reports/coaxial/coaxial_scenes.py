@@ -10,7 +10,7 @@ import math
 from pathlib import Path
 
 import watchsim as ws
-from watchsim.scene.file.override import changed
+from watchsim.scene.file.read_scene import changed
 from watchsim.scene.scene import Scene
 
 IMAGES = Path(__file__).resolve().parents[3] / "docs" / "images"

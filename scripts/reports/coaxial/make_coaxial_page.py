@@ -23,7 +23,7 @@ from watchsim.construction.known import design
 from watchsim.escapement.measure import measure
 from watchsim.escapement.report import text
 from watchsim.mechanism.compile import compile_scene
-from watchsim.render.figures.phase_plot import phase_plot
+from watchsim.render.figures.phase_plot import plot_phases
 from watchsim.render.stills.function_sheet import function_sheet
 from watchsim.render.stills.turn_picture import turn_picture
 from watchsim.scene.scene import Scene
@@ -68,7 +68,7 @@ def timeline(scene: Scene) -> str:
 
     run = ws.simulate(scene, duration=WHOLE)
     told = shown_beats(run, LAST)
-    phase_plot(run, None, told=told[:2]).savefig(IMAGES / "coaxial_phases.png", dpi=130)
+    plot_phases(run, None, told=told[:2]).savefig(IMAGES / "coaxial_phases.png", dpi=130)
     for name, beat in (("indirect", told[0]), ("direct", told[1])):
         push = next(one.phase for one in beat.stages if one.name == "impulse")
         instant = 0.5 * (push.start + push.end)
