@@ -64,7 +64,11 @@ PAGES = {
     ),
     "pictures": (
         "Plots, movies, sound and pages",
-        ["plot_kinematics", "plot_sweep", "plot_tape", "movie", "frame", "sound", "report"],
+        [
+            *("plot_kinematics", "plot_phases", "plot_timeline", "plot_torque", "plot_phase_portrait", "plot_forces"),
+            *("plot_energy", "plot_timing", "plot_tape", "plot_sweep", "plot_sensitivity"),
+            *("movie", "frame", "show", "sound", "report"),
+        ],
     ),
     "verification": ("Verification", ["verify"]),
 }

@@ -43,7 +43,7 @@ AREAS = {  # name -> (files, tests)
     "scene": (("scene/**/*.py", "mechanism/*.py", "units.py"), ("tests/scene", "tests/mechanism", "tests/test_units.py")),
     "analysis": (
         ("analysis/**/*.py", "results/*.py", "verification/**/*.py"),
-        ("tests/analysis", "tests/results", "tests/verification", "tests/render/test_tape.py"),
+        ("tests/analysis", "tests/results", "tests/verification", "tests/render/figures/test_tape.py"),
     ),
     "pictures": (
         (

@@ -18,7 +18,7 @@ def scene_of(name: str) -> Scene:
     return load(profiles_dir() / name)
 
 
-def assembly(scene: Scene, path: Path, layers: str = "own", marks: bool = True) -> Path:
+def assembly(scene: Scene, path: Path, layers: str = "own", marks: bool = True, without: tuple[str, ...] = ()) -> Path:
     """Draw a scene in `path`: with a balance, it and the lever at rest, all else as it starts; fixed parts have no mark.
 
     layers  own: as in the drawings of the parts; body: with the body's name before; loose: everything on layer 0
@@ -29,6 +29,8 @@ def assembly(scene: Scene, path: Path, layers: str = "own", marks: bool = True) 
         x, y, angle = start_poses(scene)[body.name]
         angle = 0.0 if springs and body.name in (*springs, "lever") else angle
         for loop in (*body.loops, *body.decoration):
+            if loop.layer in without:
+                continue
             name = {"own": loop.layer, "body": f"{body.name}_{loop.layer}", "loose": "0"}[layers]
             loops.append(replace(loop.moved(angle, (x, y)), layer=name))
         if body.motion != "fixed" and marks:

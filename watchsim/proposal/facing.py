@@ -96,7 +96,8 @@ def _facing(one: Role, a: str, other: Role, b: str, size: float) -> Facing | Non
 
 
 def _overlap(p: Piece, q: Piece) -> float:
-    return float(p.region.intersection(q.region).area) / min(p.area, q.area)
+    """By the smaller area. What lies in the openings of a piece, as a wheel within a balance's rim, lies over it, too."""
+    return float(p.filled.intersection(q.filled).area) / min(p.area, q.area)
 
 
 def turns_fully(role: Role) -> bool:

@@ -45,7 +45,8 @@ def _why(watch: Watch, lever: str) -> tuple[str, str | None]:
     moving = _still_moving(watch)
     if not pins or moving:
         return f"{rests}; {_without_pin(watch, moving, rests)}", pair
-    return f"{rests}; {_torques(watch, lever, found, rests)}", pair
+    why = _torques(watch, lever, found, rests)
+    return (f"{rests}; {why}", pair) if why else ("", pair)
 
 
 def _caught(watch: Watch, lever: str, found: Arms) -> str:
@@ -85,18 +86,25 @@ def _without_pin(watch: Watch, moving: bool, rests: Face) -> str:
 
 
 def _torques(watch: Watch, lever: str, found: Arms, rests: Face) -> str:
-    """What the one side gives at the lever, and what the other needs: on lock the oscillator drives, on impulse the wheel."""
+    """What the one side gives at the lever, and what the other needs: on lock the oscillator drives, on impulse the wheel.
+
+    "" where that would be enough: then something else holds the lever.
+    """
     by_wheel = at_lever(found, 0, watch.wheel, lever, rests.out)
     by_pin = [at_lever(found, row, watch.oscillator, lever, rests.out) for row in range(1, len(found.pairs))]
     if by_wheel is None:
         return "friction jams it there"
     given = max((value for value in by_pin if value is not None), key=abs, default=0.0)
     if rests.impulse:
+        if abs(by_wheel) > abs(given):
+            return ""
         less, more = _told_apart(by_wheel, given)
         needed = f"is below the {more} needed to move {watch.oscillator} (set on impulse)"
         return f"the torque of {watch.wheel} at {lever}, {less}, {needed}"
     if given <= 0.0:
         return f"{watch.oscillator} does not push {lever} out (set on lock)"
+    if given > abs(by_wheel):
+        return ""
     less, more = _told_apart(given, by_wheel)
     return f"the torque of {watch.oscillator} at {lever}, {less}, is below the {more} needed to unlock (set on lock)"
 

@@ -61,6 +61,16 @@ class Piece:
             whole = whole.union(part)
         return whole
 
+    @cached_property
+    def filled(self) -> Region:
+        """The region without its holes."""
+        outer = [(points, False) for points, hole in self.rings if not hole]
+        parts = material(outer)
+        whole = parts[0]
+        for part in parts[1:]:
+            whole = whole.union(part)
+        return whole
+
     @property
     def has_material(self) -> bool:
         """False of an outline that crosses itself so that nothing is left: two equal halves that run either way."""
