@@ -14,7 +14,10 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import watchsim
+
 ROOT = Path(__file__).resolve().parents[1]
+PACKAGE = Path(watchsim.__file__).resolve().parent  # installed or not
 FOLDER = ROOT / "docs" / "reference"
 WIDEST = 100  # of a signature in one line
 NOTE = "Made from the docstrings by `python scripts/make_reference.py`; not edited by hand."
@@ -106,7 +109,7 @@ def found(name: str) -> tuple[str, Any]:
 
 def section(shown: str, thing: Any) -> str:
     """One name with all that belongs to it."""
-    home = Path(inspect.getsourcefile(thing) or "").resolve().relative_to(ROOT).as_posix()
+    home = Path(inspect.getsourcefile(thing) or "").resolve().relative_to(PACKAGE.parent).as_posix()
     parts = [f"\n## {shown}\n\n`{home}`\n\n"]
     if not inspect.isclass(thing):
         return "".join([*parts, signature(shown, thing), markdown(inspect.getdoc(thing) or "")])
