@@ -28,7 +28,7 @@ def run() -> ws.Trajectory:
 
 @pytest.fixture(scope="module")
 def rows(run: ws.Trajectory) -> list[dict[str, str]]:
-    return list(csv.DictReader(io.StringIO(phases_csv(run, ws.beats(run)))))
+    return list(csv.DictReader(io.StringIO("".join(phases_csv(run, ws.beats(run))))))
 
 
 PLOTS = {

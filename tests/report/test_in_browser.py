@@ -226,7 +226,7 @@ def test_keys_play_step_zoom_and_fade(written: Path) -> None:
         assert now() != first
         page.keyboard.press("n")
         page.keyboard.press("x")
-        assert page.get_attribute("#parts button", "aria-pressed") == "true"
+        page.wait_for_selector('#parts button:first-child[aria-pressed="true"]')  # with the next frame
         assert page.is_visible("#release")
         page.keyboard.press("Escape")
         page.keyboard.press("t")
