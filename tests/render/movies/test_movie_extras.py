@@ -17,8 +17,8 @@ from watchsim.geometry.polyline import polyline
 from watchsim.render.frame.marks.extras import Extras
 from watchsim.render.frame.marks.force_arrows import ForceArrows, arrow_path
 from watchsim.render.frame.marks.insets import beside, inset
-from watchsim.render.frame.marks.readouts import changing_speed_text
 from watchsim.render.frame.marks.pallet_stones import stone
+from watchsim.render.frame.marks.readouts import changing_speed_text
 from watchsim.render.frame.pose_history import poses
 from watchsim.render.frame.view import Frame
 from watchsim.render.movies.run_movie import frame, movie
@@ -100,7 +100,7 @@ def test_the_wheel_presses_on_the_stone_of_the_beat():
 
 def test_no_stones_no_inset():
     run = ws.simulate(ws.load(ws.profiles_dir() / "incline"), duration=0.05)
-    with pytest.raises(ValueError, match='inset "exit stone" is not known.*nothing swings'):
+    with pytest.raises(ValueError, match=r'inset "exit stone" is not known.*nothing swings'):
         inset(run, (0.0, 0.05), "exit stone", BOX, 0.0)
 
 

@@ -32,6 +32,11 @@ def _table(one: Table) -> Markup:
     for row in one.rows:
         words = row.words.strip()
         name = element("span", words, class_="of") if row.words != words else words
-        values = [*(DASH if value == "-" else value.replace("-", MINUS) for value in row.values), *[""] * (BOTH - len(row.values))]
+        values = [_printed(value) for value in row.values]
+        values += [""] * (BOTH - len(values))
         rows.append([name, *values, *([row.worst] if worst else [])])
     return table((*HEAD, "worst tooth") if worst else HEAD, rows, (one.title or STONES).capitalize())
+
+
+def _printed(value: str) -> str:
+    return DASH if value == "-" else value.replace("-", MINUS)

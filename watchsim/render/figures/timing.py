@@ -61,7 +61,7 @@ def plot_timing(run: Trajectory, window: Sequence[float] | None = None, width: f
     for axes in panels[:-1]:
         axes.set_xticklabels([])
     panels[-1].set_xlabel("time (s)", labelpad=1.5)
-    key(panels[0], handles, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.0, markerscale=1.6)
+    key(panels[0], handles, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.0)
     return made
 
 
