@@ -9,7 +9,7 @@ from watchsim.escapement.report import Table, measured, tables
 from watchsim.pages.html import Content, Markup, element, section, table
 from watchsim.scene.scene import Scene
 
-HEAD = ("", "entry stone", "exit stone")
+HEAD = ("quantity", "entry stone", "exit stone")
 STONES = "stones and wheel"
 MINUS, DASH = "\N{MINUS SIGN}", "\N{EN DASH}"
 BOTH = 2  # values of a row: of entry and of exit
