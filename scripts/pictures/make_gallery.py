@@ -45,7 +45,7 @@ EXHIBITS = (
         "At adaptive speed: unlocking, impulse and drop get most of the frames, and the speed stands at the upper right. "
         "Arrows are the forces on the lever from the wheel, and on the roller's pin from the fork.",
         f"watchsim movie swiss {BEAT} --speed adaptive --length 5s --fps 16 --size 720x406 --phases --forces "
-        "--inset lever.STONES.1 --inset lever.FORK -o swiss_lever.gif",
+        '--inset "entry stone" --inset lever.FORK -o swiss_lever.gif',
         SWISS,
     ),
     Exhibit(
@@ -53,7 +53,7 @@ EXHIBITS = (
         "The same, for a telephone",
         "A tall picture has its insets above, and its strip of angle and velocity below; here on dark ground.",
         f"watchsim movie swiss {BEAT} --speed adaptive --length 4s --fps 12 --size 450x800 --dark --phases --strip "
-        "--inset lever.STONES.1 --inset lever.STONES.2 -o tall.gif",
+        '--inset "entry stone" --inset "exit stone" -o tall.gif',
     ),
     Exhibit(
         "start.png",

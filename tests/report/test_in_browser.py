@@ -211,6 +211,9 @@ def test_values_and_forces_are_those_of_the_run(run: Trajectory, written: Path) 
 def test_keys_play_step_zoom_and_fade(written: Path) -> None:
     with opened(written) as page:
         now = lambda: page.text_content("#time")  # noqa: E731
+        other = (
+            "before => document.querySelector('#time').textContent !== before"  # what a key does is drawn with the next frame
+        )
         page.focus("#stage")
         before = now()
         page.keyboard.press(".")
@@ -220,20 +223,21 @@ def test_keys_play_step_zoom_and_fade(written: Path) -> None:
         page.wait_for_timeout(300)
         page.keyboard.press("Space")
         assert now() != stepped
+        played = now()
         page.keyboard.press("Home")
+        page.wait_for_function(other, arg=played)
         first = now()
         page.keyboard.press("Shift+ArrowRight")
-        assert now() != first
+        page.wait_for_function(other, arg=first)
         page.keyboard.press("n")
         page.keyboard.press("x")
-        assert page.get_attribute("#parts button", "aria-pressed") == "true"
+        page.wait_for_selector('#parts button:first-child[aria-pressed="true"]')  # with the next frame
         assert page.is_visible("#release")
         page.keyboard.press("Escape")
         page.keyboard.press("t")
         page.keyboard.press("f")
-        page.wait_for_timeout(100)
+        page.wait_for_selector('#push[aria-pressed="true"]')
         assert page.evaluate("document.documentElement.dataset.theme") == "dark"
-        assert page.get_attribute("#push", "aria-pressed") == "true"
         assert page.said == []
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import dataclasses
 import hashlib
+import html
 import json
 import math
 import re
@@ -21,6 +22,8 @@ from scipy.interpolate import BPoly
 from watchsim.analysis.summary import summary
 from watchsim.analysis.timing.phases import Phase
 from watchsim.drawing.read import read
+from watchsim.escapement.measure import measure
+from watchsim.escapement.report import statics
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.polyline import polyline
 from watchsim.geometry.primitives import Arc, Line
@@ -140,6 +143,15 @@ def test_the_sheet_holds_the_headline_numbers(lever: Trajectory, lever_page: str
     assert f"{numbers['amplitude_deg']:.1f}"[:4] in lever_page
     for heading in ("Timing", "Phases of a beat", "Energy", "Parameters", "Files", "Keys"):
         assert f">{heading}</h2>" in lever_page
+
+
+def test_the_sheet_holds_the_geometry_of_function_as_check_has_it(lever: Trajectory, lever_page: str) -> None:
+    found = statics(measure(lever.scene))
+    page = html.unescape(lever_page)
+    for name, words in (("total_lock", "total lock"), ("drop", "drop of the wheel"), ("lift", "lift")):
+        values = "".join(f"<td>{found[stone][f'{name}_deg']:.3f}°</td>" for stone in ("entry", "exit"))
+        assert f'<th scope="row">{words}</th>{values}' in page
+    assert 'id="h-function"' not in page_text(disc_run())
 
 
 @pytest.mark.parametrize(

@@ -98,6 +98,12 @@ def test_period_against_inertia_and_stiffness(found):
     assert slope["springs.0.stiffness"] - by_stiffness == pytest.approx(-0.5, abs=1e-4)
 
 
+def test_what_is_only_drawn_is_no_quantity():
+    scene = ws.load(ws.profiles_dir() / "swiss_lever")
+    assert scene.source["springs"][0]["draw"]["outer"]  # this one has a hairspring to be seen
+    assert not [one.key for one in quantities(scene) if ".draw" in one.key]
+
+
 def test_springs_count_by_stiffness():
     scene = fixed_nominal(ws.load(BENCH))
     keys = {one.key for one in quantities(scene)}

@@ -47,8 +47,8 @@ def options(parser: argparse.ArgumentParser) -> None:
         metavar="PLACE",
         action="append",
         default=[],
-        help='show a place enlarged: lever, lever.STONES, lever.STONES.2 (its second outline) or "-1.4,1.9:-0.8,2.5" (mm); '
-        "may be given several times",
+        help='show a place enlarged: lever, lever.STONES, lever.STONES.2 (its second outline), "entry stone", "exit stone" or '
+        '"-1.4,1.9:-0.8,2.5" (mm); may be given several times',
     )
     parser.add_argument("--zoom", metavar="NAMES", help="frame only these bodies, with commas between them")
     parser.add_argument("-o", "--output", metavar="FILE", help="file.mp4 or file.gif (default RUN/movie.mp4)")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from typing import Any
 
 from watchsim.escapement.impulses import Impulse
@@ -121,50 +121,80 @@ def _degrees(value: float) -> float | None:
     return math.degrees(value) if math.isfinite(value) else None
 
 
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A quantity in words, its values for entry and exit stone (or one for both), and the worst tooth where teeth differ."""
+
+    words: str
+    values: tuple[str, ...]
+    worst: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """Rows that belong together; `title` is empty where they go on with what is above."""
+
+    title: str
+    rows: tuple[Row, ...]
+
+
 def text(function: Function) -> Iterator[str]:
     """The same for people; nothing of a scene without such parts."""
     if function.parts is None:
         return
-    parts = function.parts
     if function.pallets is not None:
-        yield (
-            f"  geometry of function: {parts.wheel} turns {direction(function)}, {function.teeth} teeth; "
-            f"angles at each part's own pivot, exact to {_worst_error(function):.0e}°"
-        )
+        yield f"  geometry of function: {measured(function)}"
         yield f"      {'':24}{'entry stone':>14}{'exit stone':>14}"
-        for name, words in WORDS.items():
-            pair = [getattr(one, name) for one in function.pallets]
-            if any(math.isfinite(one.value) for one in pair):
-                yield f"      {words:24}" + "".join(f"{_told(one.value):>14}" for one in pair) + _worst_tooth(pair)
-    if function.impulses is not None:
-        yield from _impulse_lines(function)
-    if function.fork is not None:
-        yield from _fork_lines(function)
+    for table in tables(function):
+        if table.title:
+            yield f"    {table.title}"
+        for row in table.rows:
+            worst = f"   worst: {row.worst}" if row.worst else ""
+            yield f"      {row.words:24}" + "".join(f"{value:>14}" for value in row.values) + worst
     for what, why in function.missing:
         yield f"  {what}: not measured, {why}"
 
 
-def _impulse_lines(function: Function) -> Iterator[str]:
-    pair = [one for one in (push(function, k) for k in (0, 1)) if one is not None]
-    yield f"      {'impulse, once unlocked':24}" + "".join(f"{one.kind:>14}" for one in pair)
-    for name, words in IMPULSE_WORDS.items():
-        values = [getattr(one, name) for one in pair]
-        yield f"      {words:24}" + "".join(f"{_told(one.value):>14}" for one in values) + _worst_tooth(values)
+def measured(function: Function) -> str:
+    """Of which wheel, where its angles are, and how exact, in words."""
+    assert function.parts is not None
+    return (
+        f"{function.parts.wheel} turns {direction(function)}, {function.teeth} teeth; "
+        f"angles at each part's own pivot, exact to {_worst_error(function):.0e}°"
+    )
 
 
-def _fork_lines(function: Function) -> Iterator[str]:
+def tables(function: Function) -> Iterator[Table]:
+    """What was measured, in words: of the stones, of an impulse between other stones, of the balance, of the safety action."""
+    if function.pallets is not None:
+        named = ((words, [getattr(one, name) for one in function.pallets]) for name, words in WORDS.items())
+        yield Table("", tuple(_row(words, pair) for words, pair in named if any(math.isfinite(one.value) for one in pair)))
+    if function.impulses is not None:
+        pushes = [one for one in (push(function, k) for k in (0, 1)) if one is not None]
+        kinds = Row("impulse, once unlocked", tuple(one.kind for one in pushes))
+        pairs = ((words, [getattr(one, name) for one in pushes]) for name, words in IMPULSE_WORDS.items())
+        yield Table("", (kinds, *(_row(words, pair) for words, pair in pairs)))
+    if function.fork is not None:
+        yield from _fork_tables(function)
+
+
+def _row(words: str, pair: list[Quantity]) -> Row:
+    return Row(words, tuple(_told(one.value) for one in pair), _worst_tooth(pair))
+
+
+def _fork_tables(function: Function) -> Iterator[Table]:
     assert function.fork is not None and function.parts is not None
-    yield f"    {function.parts.balance}, from the pin's meeting the fork"
+    rows = []
     for name, words in BALANCE_WORDS.items():
         pair = [getattr(function.fork, name)[_beat(function, k)] for k in (0, 1)]
-        yield f"      {words:24}" + "".join(f"{_told(one.value):>14}" for one in pair)
-    yield f"      {'shake of the pin':24}{_told(function.fork.pin_shake.value):>14}"
+        rows.append(Row(words, tuple(_told(one.value) for one in pair)))
+    rows.append(Row("shake of the pin", (_told(function.fork.pin_shake.value),)))
+    yield Table(f"{function.parts.balance}, from the pin's meeting the fork", tuple(rows))
     if function.safety is not None:
-        yield f"    freedom of {function.parts.lever} on its bank"
         guards = [guard(function, k) for k in (0, 1)]
-        for name, words in (("guard", "guard pin"), ("horn", "horns"), ("worst", "largest anywhere")):
-            values = [getattr(one, name).value for one in guards]
-            yield f"      {words:24}" + "".join(f"{_told(value):>14}" for value in values)
+        freedoms = (("guard", "guard pin"), ("horn", "horns"), ("worst", "largest anywhere"))
+        told = (Row(words, tuple(_told(getattr(one, name).value) for one in guards)) for name, words in freedoms)
+        yield Table(f"freedom of {function.parts.lever} on its bank", tuple(told))
 
 
 def _told(value: float) -> str:
@@ -178,7 +208,7 @@ def _worst_tooth(pair: list[Quantity]) -> str:
         for name, one in zip(STONES, pair, strict=True)
         if one.tooth is not None and one.spread > NOTICEABLE
     ]
-    return f"   worst: {', '.join(words)}" if words else ""
+    return ", ".join(words)
 
 
 def _worst_error(function: Function) -> float:

@@ -13,7 +13,7 @@ from watchsim.render.frame.marks.readouts import decimals_for, signed
 from watchsim.simulation.record.trajectory import Array
 
 WIDTH, HEIGHT = 560.0, 230.0
-LEFT, RIGHT, TOP, BOTTOM = 70.0, 12.0, 12.0, 44.0
+LEFT, RIGHT, TOP, BOTTOM = 88.0, 12.0, 12.0, 44.0  # of the large letters on a telephone five fit between label and axis
 DOT = 2.4
 MOST = 1200  # dots of one series
 

@@ -13,8 +13,10 @@ from watchsim.studies.axes import DESIGN, dimension_of
 from watchsim.units import ANGLE, LENGTH, NUMBER, Dimension, UnitError, parse
 
 SECTIONS = ("scene", "bodies", "springs", "torques", "damping", "contacts", DESIGN)
-# What is no dimension of the mechanism: how a drawing is read, how a body starts, vertices, and what must stay a whole number.
+# What is no dimension of the mechanism: how a drawing is read, how a body starts, vertices, what must stay a whole number, and
+# what is only drawn.
 LEFT_OUT = {"schema", "snap", "material", "axis", "polygon", "line", "count", "turns", "velocity", "spin", "table", "pivot"}
+LEFT_OUT |= {"draw"}
 RELATIVE = 1e-3  # of a value: the larger of the two steps
 SHORT, SLIGHT, SMALL = 5e-7, 2e-4, 1e-4  # steps of lengths (m), angles (rad) and of numbers that are zero
 PERCENT, USUAL_LENGTH, USUAL_ANGLE = 0.01, 1e-5, 0.1  # what is compared: 1 %, 10 µm, 0.1°

@@ -8,11 +8,16 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 from render.fake_runs import disc_run, slide_run, watch_run
+from shapely import LineString, Point
 
 import watchsim as ws
+from watchsim.analysis.contact_forces import forces
+from watchsim.analysis.timeline.oscillation import shown_beats
+from watchsim.geometry.polyline import polyline
 from watchsim.render.frame.marks.extras import Extras
 from watchsim.render.frame.marks.force_arrows import ForceArrows, arrow_path
 from watchsim.render.frame.marks.insets import beside, inset
+from watchsim.render.frame.marks.pallet_stones import stone
 from watchsim.render.frame.marks.readouts import changing_speed_text
 from watchsim.render.frame.pose_history import poses
 from watchsim.render.frame.view import Frame
@@ -73,6 +78,30 @@ def test_an_outline_is_counted_from_one():
     for number in (0, 99, "x"):
         with pytest.raises(ValueError, match="counted"):
             inset(run, (0.0, 2.0), f"lever.{layer}.{number}", BOX, 0.0)
+
+
+def test_the_wheel_presses_on_the_stone_of_the_beat():
+    run = ws.simulate(ws.load(ws.profiles_dir() / "swiss_lever"), duration=0.6, record="all")
+    beats = shown_beats(run, rubbed=False)
+    assert {beat.stages[0].pallet for beat in beats} == {"entry", "exit"}
+    for beat in beats:
+        t = 0.5 * (beat.stages[0].phase.start + beat.stages[0].phase.end)
+        told = forces(run, [t])
+        pressed = {k: point for k, point in zip(told.pairs, told.point[0], strict=True) if np.isfinite(point[0])}
+        (place,) = (p for k, p in pressed.items() if {run.pairs[k].body_a, run.pairs[k].body_b} == {"wheel", "lever"})
+        x, y, angle = run.pose("lever", t)
+        c, s = math.cos(angle), math.sin(angle)
+        own = np.array([[c, s], [-s, c]]) @ (place - (x, y))
+        body, loop = stone(run.scene, f"{beat.stages[0].pallet} stone")
+        edges = LineString(polyline(loop, 1e-8))
+        assert body.name == "lever" and edges.distance(Point(own)) < 2e-8
+        assert inset(run, (0.0, 0.6), f"{beat.stages[0].pallet} stone", BOX, 0.0).box == BOX
+
+
+def test_no_stones_no_inset():
+    run = ws.simulate(ws.load(ws.profiles_dir() / "incline"), duration=0.05)
+    with pytest.raises(ValueError, match=r'inset "exit stone" is not known.*nothing swings'):
+        inset(run, (0.0, 0.05), "exit stone", BOX, 0.0)
 
 
 @pytest.mark.parametrize("size", [(1280.0, 500.0), (700.0, 1200.0)])

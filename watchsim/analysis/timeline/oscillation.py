@@ -43,9 +43,14 @@ def shown_beats(run: Trajectory, window: Sequence[float] | None = None, rubbed: 
     Without `rubbed` what friction took is not worked out by pair, which takes most of the time. ValueError in words where there
     are none.
     """
-    name = roles(run.scene).oscillator
+    parts = roles(run.scene)
+    name = parts.oscillator
     if name is None:
         raise ValueError("nothing in this scene swings, so it has no beats")
+    if parts.wheel is None:
+        raise ValueError(f"phases are those of an escapement, and no driven wheel keeps {name} swinging")
+    if parts.lever is None:
+        raise ValueError(f"phases are told of an escapement with a lever, and none stands between {parts.wheel} and {name}")
     if not can_be_told(run):
         raise ValueError("a timeline needs a run by events with all of them kept")
     found = beats(run)

@@ -158,7 +158,7 @@ class Plots {
     const size = Math.max(Math.abs(low), Math.abs(high)), [factor, prefix] = panel.metric ? PREFIXES.find(([least]) => size >= least) ?? [1e-12, "p"] : [1, ""];
     ctx.font = `11.5px ${look.font}`; ctx.fillStyle = look.faint; ctx.strokeStyle = look.grid; ctx.lineWidth = 1;
     ctx.textAlign = "right"; ctx.textBaseline = "middle";
-    const step = roundStep((high - low) / factor / Math.max(3, Math.floor(height / 30)));
+    const step = roundStep((high - low) / factor / Math.max(4, Math.floor(height / 26)));
     for (let k = Math.ceil(low / factor / step); k * step <= high / factor; k++) {
       const y = Math.round(panel.y(k * step * factor)) + 0.5;
       ctx.beginPath(); ctx.moveTo(PAD.left, y); ctx.lineTo(width - PAD.right, y); ctx.stroke();

@@ -10,6 +10,7 @@ from watchsim.analysis.headlines import expected_text, headlines
 from watchsim.analysis.timing.phases import Phase
 from watchsim.pages.charts import bars
 from watchsim.pages.html import Markup, element, joined, section, table
+from watchsim.pages.timing_sheet.function_tables import function_tables
 from watchsim.pages.timing_sheet.parameters import parameters
 from watchsim.pages.timing_sheet.phase_tables import phase_tables
 from watchsim.pages.timing_sheet.timekeeping import timekeeping
@@ -34,8 +35,8 @@ def sheet(run: Trajectory, numbers: Mapping[str, Any], phases: list[Phase]) -> M
     sections = (
         *timekeeping(run, numbers),
         *phase_tables(phases),
+        *function_tables(run.scene),
         *_energy(run),
-        *_function(numbers),
         *_judgement(numbers),
         *_parameters(run),
         section("words", "The run in words", element("pre", headlines(run, numbers), tabindex=0)),
@@ -76,25 +77,6 @@ def _energy(run: Trajectory) -> Iterator[Markup]:
     yield section("energy", "Energy", element("p", note, class_="note"), bars(entries, told))
 
 
-def _function(numbers: Mapping[str, Any]) -> Iterator[Markup]:
-    """The geometry of function, where the results hold it."""
-    found = numbers.get("function")
-    rows = list(_flat("", found)) if isinstance(found, Mapping) else []
-    if rows:
-        yield section("function", "Geometry of function", table(("quantity", "value"), rows, "Measured from the drawing"))
-
-
-def _flat(path: str, value: Any) -> Iterator[tuple[str, str]]:
-    if isinstance(value, Mapping):
-        for key, item in value.items():
-            yield from _flat(f"{path}{'.' if path else ''}{key}", item)
-    elif isinstance(value, (list, tuple)) and any(isinstance(item, (Mapping, list, tuple)) for item in value):
-        for k, item in enumerate(value):
-            yield from _flat(f"{path}.{k}", item)
-    elif value is not None:
-        yield path, f"{value:.6g}" if isinstance(value, float) else str(value)
-
-
 def _judgement(numbers: Mapping[str, Any]) -> Iterator[Markup]:
     """What the scene promises, and what is to be doubted."""
     entries = numbers.get("expect") or []
@@ -109,5 +91,11 @@ def _judgement(numbers: Mapping[str, Any]) -> Iterator[Markup]:
 def _parameters(run: Trajectory) -> Iterator[Markup]:
     rows = parameters(run.scene)
     if rows:
-        listed = (element("div", element("dt", key), element("dd", value)) for key, value in rows)
+        listed = (element("div", element("dt", _breakable(key)), element("dd", value)) for key, value in rows)
         yield section("parameters", "Parameters", element("dl", *listed))
+
+
+def _breakable(key: str) -> Markup:
+    """A dotted key that a narrow column may break after a dot, and nowhere else."""
+    head, *tail = key.split(".")
+    return joined((head, *((Markup(".<wbr/>"), part) for part in tail)))

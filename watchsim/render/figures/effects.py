@@ -64,6 +64,8 @@ def _length(effect: Effect, output: Output) -> float:
 
 
 def _bars(axes: Axes, shown: list[Effect], output: Output, wide: float) -> None:
+    from matplotlib.ticker import MaxNLocator
+
     dress(axes, grid="x")
     values = [effect.of(output.column, effect.quantity.change) or 0.0 for effect in shown]
     hatches = ["" if effect.by[output.column].agrees else "////" for effect in shown]
@@ -79,6 +81,7 @@ def _bars(axes: Axes, shown: list[Effect], output: Output, wide: float) -> None:
         axes.text(*place, text, va="center", ha="left" if side > 0 else "right", fontsize=SMALL, color=INK)
     room = longest * wide / max(wide - 2.0 * WORDS, 0.2 * wide)
     axes.set_xlim(-room, room)
+    axes.xaxis.set_major_locator(MaxNLocator(nbins=4, steps=[1, 2, 5, 10]))
     axes.axvline(0.0, color=FAINT, linewidth=HAIR)
     axes.set_title(
         f"change of {output.label} ({output.unit})" if output.unit else output.label, fontsize=LABEL, loc="left", color=INK

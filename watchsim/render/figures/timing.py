@@ -26,6 +26,7 @@ LEFT, RIGHT, TALL, BETWEEN, FOOT, KEY = 14.0, 4.0, 24.0, 3.5, 8.0, 4.0  # mm
 LEAST = {"amplitude": (1.0, 0.01), "rate": (1.0, 1.0), "beat error": (0.01, 0.01)}  # a smaller range is not blown up: °, mm; …
 COLUMNS = 1500  # of dots in a panel
 BIGGER = 1.9  # dots of one direction, so that those of the other do not hide them
+KEY_DOT = 2.4  # pt, of a dot in the key
 
 
 def plot_timing(run: Trajectory, window: Sequence[float] | None = None, width: float = FULL) -> Figure:
@@ -61,7 +62,15 @@ def plot_timing(run: Trajectory, window: Sequence[float] | None = None, width: f
     for axes in panels[:-1]:
         axes.set_xticklabels([])
     panels[-1].set_xlabel("time (s)", labelpad=1.5)
-    key(panels[0], handles, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.0, markerscale=1.6)
+    key(
+        panels[0],
+        handles,
+        loc="lower left",
+        bbox_to_anchor=(0.0, 1.0),
+        ncols=2,
+        borderaxespad=0.0,
+        markerscale=KEY_DOT / dot(len(inside)),
+    )
     return made
 
 

@@ -74,8 +74,8 @@ def movie(
     contacts  rings around the contacts that are closed
     zoom      names of the bodies to frame; default all
     turn      radians by which the picture is turned; default: gravity down, or the quarter turn that fills the frame best
-    insets    places to enlarge: "lever", "lever.STONES", "lever.STONES.2" (its second outline), or a rectangle of the movement
-              in mm, "-1.4, 1.9 : -0.8, 2.5"
+    insets    places to enlarge: "lever", "lever.STONES", "lever.STONES.2" (its second outline), "entry stone", "exit stone",
+              or a rectangle of the movement in mm, "-1.4, 1.9 : -0.8, 2.5"
     strip     the body whose angle and velocity run below the mechanism; True: the oscillator
     phases    names the phase of a beat
     forces    arrows for the forces at contacts, of a run by events

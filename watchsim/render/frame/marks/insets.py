@@ -1,8 +1,8 @@
 """Which places does a picture show once more, enlarged?
 
 A place is told as a body ("lever"), one of its layers ("lever.STONES"), one outline of a layer ("lever.STONES.2", counted in
-the order of the drawing), or a rectangle of the movement in millimetres ("-1.4, 1.9 : -0.8, 2.5"). What stays about where it is
-is shown in place; what goes far is followed.
+the order of the drawing), the "entry stone" or "exit stone" of an escapement, or a rectangle of the movement in millimetres
+("-1.4, 1.9 : -0.8, 2.5"). What stays about where it is is shown in place; what goes far is followed.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from watchsim.geometry.loop import Loop
 from watchsim.render.frame.filled_parts import loops_of, outline
+from watchsim.render.frame.marks.pallet_stones import STONES, stone
 from watchsim.render.frame.pose_history import Window, placed, swept
 from watchsim.render.frame.view import COARSE, Frame, View
 from watchsim.scene.body import Body
@@ -108,6 +109,12 @@ def _rectangle(place: str) -> Array | None:
 
 
 def _outlines(run: Trajectory, place: str) -> tuple[Body, Sequence[Loop]]:
+    if place in STONES and all(body.name != place for body in run.scene.bodies):
+        try:
+            lever, loop = stone(run.scene, place)
+        except ValueError as error:
+            raise ValueError(f"inset {error}") from None
+        return lever, [loop]
     name, _, rest = place.partition(".")
     drawn = {body.name: body for body in run.scene.bodies if loops_of(body)}
     if name not in drawn:
