@@ -29,6 +29,7 @@ WORDS = {
     "drop": "drop of the wheel",
     "shake": "shake of the wheel",
 }
+ANCHOR_WORDS = WORDS | {"draw": "draw, swung out", "recoil": "recoil, swinging out"}
 BALANCE_WORDS = {
     "lift_angle": "lift angle",
     "unlocking": "  unlocked after",
@@ -132,10 +133,13 @@ def text(function: Function) -> Iterator[str]:
             f"angles at each part's own pivot, exact to {_worst_error(function):.0e}°"
         )
         yield f"      {'':24}{'entry stone':>14}{'exit stone':>14}"
-        for name, words in WORDS.items():
+        for name, words in (WORDS if parts.detached else ANCHOR_WORDS).items():
             pair = [getattr(one, name) for one in function.pallets]
             if any(math.isfinite(one.value) for one in pair):
                 yield f"      {words:24}" + "".join(f"{_told(one.value):>14}" for one in pair) + _worst_tooth(pair)
+    if function.swung is not None:
+        ends = " and ".join(f"{math.degrees(end):.3f}°" for end in function.swung)
+        yield f"      swung out to {ends}: half as far again as from let-off to let-off"
     if function.impulses is not None:
         yield from _impulse_lines(function)
     if function.fork is not None:
@@ -168,7 +172,7 @@ def _fork_lines(function: Function) -> Iterator[str]:
 
 
 def _told(value: float) -> str:
-    return "never" if math.isinf(value) else "-" if math.isnan(value) else f"{value * 180.0 / math.pi + 0.0:.3f}°"
+    return "never" if math.isinf(value) else "-" if math.isnan(value) else f"{round(math.degrees(value), 3) + 0.0:.3f}°"
 
 
 def _worst_tooth(pair: list[Quantity]) -> str:

@@ -2,7 +2,8 @@
 
     python scripts/reports/coaxial/make_coaxial_page.py [page]
 
-Everything is run here, with the package's public functions; nothing is copied from anywhere. Takes some minutes.
+Everything is run here, with the package's public functions; nothing is copied from anywhere. Takes some minutes. Only Moreau's time
+stepping is run before, by run_coaxial_twin.py, which leaves its numbers in coaxial_twin.csv.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from pathlib import Path
 import coaxial_runs
 import coaxial_slides
 import coaxial_studies
+import run_coaxial_twin
 from coaxial_scenes import IMAGES, scenes
 
 import watchsim as ws
@@ -88,7 +90,6 @@ def page() -> str:
         "longs": coaxial_runs.long_runs(scene),
         "map": coaxial_runs.range_map(scene),
         "accuracy": coaxial_runs.accuracy(scene),
-        "twin": coaxial_runs.twin(coaxial_runs.stepped(scene)),
         "timeline": timeline(scene),
         "compared": coaxial_studies.compared(both),
         "slides": coaxial_slides.table(both),
@@ -98,6 +99,7 @@ def page() -> str:
         "wheels": coaxial_studies.wheels(scene),
         "weighed": coaxial_studies.weighed(scene),
         "matters": coaxial_studies.matters(both),
+        "twin": run_coaxial_twin.twin(run_coaxial_twin.read()),
     }
     return written(found)
 
