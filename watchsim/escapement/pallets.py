@@ -7,10 +7,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from watchsim.escapement.hands import Hands
+from watchsim.escapement.by_hand.hands import Hands
+from watchsim.escapement.by_hand.sweep import Rest, Wheel
 from watchsim.escapement.passage import Passage, change_error
 from watchsim.escapement.quantity import Quantity, over_teeth
-from watchsim.escapement.sweep import Rest, Wheel
 
 
 @dataclass(frozen=True, slots=True)
