@@ -2,7 +2,8 @@
 
     python scripts/reports/coaxial/run_coaxial_twin.py [csv]
 
-The page's one long computation, the finest step taking half of it; make_coaxial_page.py reads its numbers from the file.
+The page's one long computation: three minutes of processor time, half of it for the finest step. make_coaxial_page.py reads its
+numbers from the file.
 """
 
 from __future__ import annotations
