@@ -130,12 +130,12 @@ def accuracy(scene: Scene) -> str:
 
 
 def near_amplitude(scene: Scene, wanted: float) -> float | None:
-    """The torque (µN·m) at which the scene settles at that amplitude (°): it grows as the square root; None where it misses."""
+    """The torque (µN·m) at which the scene settles at that amplitude (°): it grows as the square root; None where no cycle is found."""
     torque = TORQUE
-    for _ in range(4):
+    for _ in range(6):
         cycle = ws.steady(scene.set("torques.0.value", f"{-torque} µN·m"))
         assert cycle.amplitude_deg is not None
         if cycle.found and abs(cycle.amplitude_deg - wanted) < CLOSE:
             return torque
         torque *= (wanted / cycle.amplitude_deg) ** 2
-    return torque if cycle.found else None
+    return None
