@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from watchsim.escapement.hands import Array, Hands, Integers, Touch
-from watchsim.escapement.parts import Parts
+from watchsim.escapement.by_hand.hands import Array, Hands, Integers, Touch
+from watchsim.escapement.by_hand.parts import Parts
+from watchsim.escapement.by_hand.sweep import Rest
 from watchsim.escapement.passage import Passage, change_error
 from watchsim.escapement.quantity import Quantity, over_teeth, single
-from watchsim.escapement.sweep import Rest
 
 STEP = math.radians(0.25)  # of the lever as the pin carries it
 BACK = math.radians(1.0)  # of the balance: a pin that has one wall only stands half as far from it

@@ -10,11 +10,11 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from watchsim.escapement.by_hand.hands import Touch
+from watchsim.escapement.by_hand.sweep import Rest
 from watchsim.escapement.fork import Balance, Entry
-from watchsim.escapement.hands import Touch
 from watchsim.escapement.passage import Passage, change_error
 from watchsim.escapement.quantity import Quantity, over_teeth
-from watchsim.escapement.sweep import Rest
 
 DIRECT, INDIRECT = "direct", "indirect"
 

@@ -8,16 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from watchsim.analysis.timing.teeth import pitch
+from watchsim.escapement.by_hand.hands import SLACK, Hands
+from watchsim.escapement.by_hand.parts import Parts, parts_of
+from watchsim.escapement.by_hand.sweep import Rest, Wheel
 from watchsim.escapement.direct import Roller
 from watchsim.escapement.fork import Balance, Entry, Fork, fork
-from watchsim.escapement.hands import SLACK, Hands
 from watchsim.escapement.impulses import Impulse, impulse
 from watchsim.escapement.pallets import Pallet, pallet
-from watchsim.escapement.parts import Parts, parts_of
 from watchsim.escapement.passage import NotMeasured, Passage
 from watchsim.escapement.passages import passages
 from watchsim.escapement.safety import Safety, safety
-from watchsim.escapement.sweep import Rest, Wheel
 from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.scene.oscillation import oscillators
 from watchsim.scene.scene import Scene
@@ -32,7 +32,8 @@ class Function:
     `pallets` are entry and exit: the stone a tooth meets first and second on its way. `sides` says on which bank (±1, + is
     counter-clockwise) each of them locks, `banks` are the lever's angles there; `lever_rest` is the angle half way between
     them. `passages` are the first tooth's, for pictures: entry, exit. `impulses` belong to the beats that begin on the upper
-    and on the lower bank, as `fork` does; None where the wheel need not run after an impulse stone.
+    and on the lower bank, as `fork` does; None where the wheel need not run after an impulse stone. `swung` is, for an anchor
+    that has no bank, how far it was turned to either side.
     """
 
     parts: Parts | None
@@ -45,6 +46,7 @@ class Function:
     safety: tuple[Safety, Safety] | None = None
     impulses: tuple[Impulse, Impulse] | None = None
     missing: tuple[tuple[str, str], ...] = ()
+    swung: tuple[float, float] | None = None
 
 
 def measure(scene: Scene, compiled: Compiled | None = None) -> Function:
@@ -75,8 +77,8 @@ def measure(scene: Scene, compiled: Compiled | None = None) -> Function:
     pallets = (pallet(wheel, beats, sides[0], parts.detached), pallet(wheel, beats, sides[1], parts.detached))
     shown = [next(one for one in beats if one.side == side) for side in sides]
     if not parts.detached:
-        missing.append(("total lock, run, fork and safety action", f"{parts.lever} swings with the oscillator: no banking"))
-        return Function(parts, teeth, None, pallets, sides, (shown[0], shown[1]), missing=tuple(missing))
+        missing.append(("total lock, run, fork and safety action", f"{parts.lever} is the oscillator itself: no banking"))
+        return Function(parts, teeth, None, pallets, sides, (shown[0], shown[1]), missing=tuple(missing), swung=banks)
     made, guards, pushes = None, None, None
     try:
         made, guards, pushes = _balance(scene, hands, parts, banks, beats)
@@ -108,21 +110,29 @@ def _banks(hands: Hands, parts: Parts, wheel: Wheel, start: Rest) -> tuple[float
     for sense in (1.0, -1.0):
         touch = hands.touch(parts.lever, parts.to_banking, q, sense, FARTHEST, SLACK)
         if touch is None:
-            raise NotMeasured(f"{parts.lever} never meets its banking on one side")
+            what = "measured are levers between two banks, and anchors that swing with the oscillator"
+            raise NotMeasured(f"{parts.lever} is stopped on one side only; {what}")
         found.append(touch.angle)
     return found[0], found[1]
 
 
 def _beyond_let_off(wheel: Wheel, start: Rest) -> tuple[float, float]:
-    """Half as far again as from let-off to let-off."""
-    ends = []
-    for sense in (1.0, -1.0):
-        sweep = wheel.lead(start, start.lever + sense * FARTHEST / 4.0)
-        if not sweep.let_offs:
-            raise NotMeasured("turning the anchor lets off no tooth")
-        ends.append(sweep.let_offs[0].last.lever)
-    more = 0.5 * (ends[0] - ends[1])
-    return ends[0] + more, ends[1] - more
+    """Half as far again as from let-off to let-off: the tooth that rests on a pallet now, and then the next one."""
+    sweeps = [wheel.lead(start, start.lever + sense * FARTHEST / 4.0) for sense in (1.0, -1.0)]
+    first = min(
+        (one.let_offs[0] for one in sweeps if one.let_offs), key=lambda one: abs(one.last.lever - start.lever), default=None
+    )
+    if first is None:
+        raise NotMeasured(f"turning {wheel.parts.lever} by {math.degrees(FARTHEST / 4.0):g}° either way lets off no tooth")
+    sense = math.copysign(1.0, first.last.lever - start.lever)
+    if first.landed is None:
+        raise NotMeasured("a tooth that is let off finds no pallet to lock on: the wheel runs free")
+    back = wheel.lead(first.landed, first.landed.lever - sense * FARTHEST / 4.0).let_offs
+    if not back:
+        raise NotMeasured(f"a tooth that is let off locks, but turning {wheel.parts.lever} back does not let it off again")
+    upper, lower = sorted((first.last.lever, back[0].last.lever), reverse=True)
+    more = 0.5 * (upper - lower)
+    return upper + more, lower - more
 
 
 def _entry_side(wheel: Wheel, beat: Passage) -> float:

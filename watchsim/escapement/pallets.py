@@ -7,10 +7,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from watchsim.escapement.hands import Hands
+from watchsim.escapement.by_hand.hands import Hands
+from watchsim.escapement.by_hand.sweep import Rest, Wheel
 from watchsim.escapement.passage import Passage, change_error
 from watchsim.escapement.quantity import Quantity, over_teeth
-from watchsim.escapement.sweep import Rest, Wheel
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,7 +23,8 @@ class Pallet:
     draw         of the locking face: angle between its normal and the line to the lever's pivot, lever on the bank; the
                  wheel's pressure pulls the lever to the bank where it is positive
     draw_end     the same just before unlocking
-    recoil       of the wheel, driven back while the stone is unlocked
+    recoil       of the wheel, driven back while the stone is unlocked; by an anchor without banking, from the lock to where it
+                 is turned back
     lift         from unlocked to let off; lift_stone with the tooth's corner on the stone's face, lift_tooth with the stone's
                  corner on the tooth's face; nan where another stone than this one takes the impulse
     drop         of the wheel: free way from leaving this stone to the lock on the other one
@@ -55,6 +56,10 @@ def pallet(wheel: Wheel, beats: Sequence[Passage], side: float, detached: bool) 
         values = [value(one, earlier) for one, earlier in zip(own, before, strict=True)]
         return over_teeth(values, [error(one) for one in own], teeth)
 
+    def recoil(one: Passage, earlier: Passage) -> float:
+        """An anchor drives the wheel back as it swings out, a lever as it comes back from its bank."""
+        return way * (one.start.wheel - one.unlocked.wheel if detached else earlier.landed.wheel - one.start.wheel)
+
     def of_lever(one: Passage) -> float:
         return change_error(hands, wheel.parts, one.unlocked) + change_error(hands, wheel.parts, one.let_off)
 
@@ -73,7 +78,7 @@ def pallet(wheel: Wheel, beats: Sequence[Passage], side: float, detached: bool) 
         run=mean(lambda _, earlier: side * (earlier.end - earlier.let_off.lever), of_lever) if detached else none,
         draw=mean(lambda one, _: draw_angle(wheel, one.start, pivot, side), of_draw),
         draw_end=mean(lambda one, _: draw_angle(wheel, one.unlocked, pivot, side), of_draw),
-        recoil=mean(lambda one, _: way * (one.start.wheel - one.unlocked.wheel), of_wheel),
+        recoil=mean(recoil, of_wheel),
         lift=mean(lambda one, _: side * (one.unlocked.lever - one.let_off.lever), of_lever),
         lift_stone=none if pushed else mean(lambda one, _: sum(s.turn for s in one.driven if s.first.on_stone), of_lever),
         lift_tooth=none if pushed else mean(lambda one, _: sum(s.turn for s in one.driven if not s.first.on_stone), of_lever),

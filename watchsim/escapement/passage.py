@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from watchsim.escapement.hands import Hands
-from watchsim.escapement.parts import Parts
-from watchsim.escapement.sweep import WIDTH, Rest, Stretch
+from watchsim.escapement.by_hand.hands import Hands
+from watchsim.escapement.by_hand.parts import Parts
+from watchsim.escapement.by_hand.sweep import WIDTH, Rest, Stretch
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from watchsim.escapement.by_hand.sweep import LEVEL, LetOff, Rest, Stretch, Sweep, Wheel
 from watchsim.escapement.direct import Roller
 from watchsim.escapement.passage import Direct, NotMeasured, Passage
-from watchsim.escapement.sweep import LEVEL, LetOff, Rest, Stretch, Sweep, Wheel
 
 MOST = 0.75  # of a pitch: the wheel goes on by less in one beat; two teeth of a lever make a whole one
 

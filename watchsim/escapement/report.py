@@ -29,6 +29,7 @@ WORDS = {
     "drop": "drop of the wheel",
     "shake": "shake of the wheel",
 }
+ANCHOR_WORDS = WORDS | {"draw": "draw, swung out", "recoil": "recoil, swinging out"}
 BALANCE_WORDS = {
     "lift_angle": "lift angle",
     "unlocking": "  unlocked after",
@@ -151,6 +152,9 @@ def text(function: Function) -> Iterator[str]:
         for row in table.rows:
             worst = f"   worst: {row.worst}" if row.worst else ""
             yield f"      {row.words:24}" + "".join(f"{value:>14}" for value in row.values) + worst
+    if function.swung is not None:
+        ends = " and ".join(f"{math.degrees(end):.3f}°" for end in function.swung)
+        yield f"      swung out to {ends}: half as far again as from let-off to let-off"
     for what, why in function.missing:
         yield f"  {what}: not measured, {why}"
 
@@ -167,7 +171,8 @@ def measured(function: Function) -> str:
 def tables(function: Function) -> Iterator[Table]:
     """What was measured, in words: of the stones, of an impulse between other stones, of the balance, of the safety action."""
     if function.pallets is not None:
-        named = ((words, [getattr(one, name) for one in function.pallets]) for name, words in WORDS.items())
+        named_so = WORDS if function.parts is None or function.parts.detached else ANCHOR_WORDS
+        named = ((words, [getattr(one, name) for one in function.pallets]) for name, words in named_so.items())
         yield Table("", tuple(_row(words, pair) for words, pair in named if any(math.isfinite(one.value) for one in pair)))
     if function.impulses is not None:
         pushes = [one for one in (push(function, k) for k in (0, 1)) if one is not None]
@@ -198,7 +203,7 @@ def _fork_tables(function: Function) -> Iterator[Table]:
 
 
 def _told(value: float) -> str:
-    return "never" if math.isinf(value) else "-" if math.isnan(value) else f"{value * 180.0 / math.pi + 0.0:.3f}°"
+    return "never" if math.isinf(value) else "-" if math.isnan(value) else f"{round(math.degrees(value), 3) + 0.0:.3f}°"
 
 
 def _worst_tooth(pair: list[Quantity]) -> str:

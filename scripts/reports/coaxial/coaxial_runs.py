@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass
 
 import numpy as np
 from coaxial_scenes import IMAGES, TORQUE
@@ -19,7 +18,6 @@ LONG, SHORT = 180.0, 4.0  # s
 KNOCKS = 337.0  # degrees: there the pin strikes the outside of the fork
 PERIOD = 1.0 / 3.5  # s
 CLOSE = 0.05  # degrees
-STEPS = (4e-6, 2e-6, 1e-6, 5e-7, 2.5e-7, 1.25e-7)  # s, of Moreau's stepping
 LOOKS = (
     (0, "#2e7d57", "o", "every impulse given"),
     (1, "#d9a514", "s", "indirect impulse missed"),
@@ -117,31 +115,6 @@ def range_map(scene: Scene) -> str:
     return "\n".join(lines)
 
 
-@dataclass(frozen=True)
-class Stepped:
-    """Moreau's stepping against the motion by events, 4 s: errors of amplitude (°) and rate (s/d)."""
-
-    step: float
-    worst: float
-    end: float
-    rate: float
-
-
-def stepped(scene: Scene) -> list[Stepped]:
-    """The twin for ever smaller steps."""
-    near = scene.set("bodies.balance.angle", "-289.9°")
-    run = ws.simulate(near, duration=SHORT, tolerance=1e-11)
-    true, told = ws.beats(run).amplitude_deg, ws.summary(run)
-    found = []
-    for step in STEPS:
-        other = ws.simulate(near, duration=SHORT, method="moreau", step=step)
-        own, said = ws.beats(other).amplitude_deg, ws.summary(other)
-        off = np.abs(own - true)
-        end = abs(said["amplitude_deg"] - told["amplitude_deg"])
-        found.append(Stepped(step, float(off.max()), end, abs(said["rate_s_per_d"] - told["rate_s_per_d"])))
-    return found
-
-
 def accuracy(scene: Scene) -> str:
     """Tolerances: the end of a run, and the cycle itself."""
     near = scene.set("bodies.balance.angle", "-289.9°")
@@ -156,45 +129,13 @@ def accuracy(scene: Scene) -> str:
     return "\n".join(lines)
 
 
-def twin(found: list[Stepped]) -> str:
-    """Table and picture of the time stepping."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    steps = np.array([one.step for one in found]) * 1e6
-    figure = Figure(figsize=(6.4, 3.8), facecolor="#f6f3ed", layout="constrained")
-    FigureCanvasAgg(figure)
-    axes = figure.add_subplot()
-    for name, words, mark in (
-        ("worst", "amplitude, worst beat of 28 (°)", "o"),
-        ("end", "amplitude at the end (°)", "s"),
-        ("rate", "rate (s/d)", "^"),
-    ):
-        axes.loglog(steps, [getattr(one, name) for one in found], mark + "-", label=words, linewidth=1.2)
-    axes.loglog(steps, found[0].worst * steps / steps[0], "--", color="#888888", label="first order")
-    axes.axhline(1e-3, color="#b3261e", linewidth=0.8)
-    axes.annotate("10⁻³ °", (steps[0], 1e-3), xytext=(-4, 3), textcoords="offset points", ha="right", fontsize=8)
-    axes.set_xticks(steps, [f"{one:g}" for one in steps])
-    axes.minorticks_off()
-    axes.set_xlabel("step of the time stepping (µs)")
-    axes.set_ylabel("difference from the motion by events")
-    axes.grid(color="#ddd8ce", linewidth=0.6)
-    axes.legend(fontsize=8, frameon=False)
-    figure.savefig(IMAGES / "coaxial_twin.png", dpi=120)
-    lines = ["| step, µs | worst beat, ° | end of 4 s, ° | rate, s/d |", "|---:|---:|---:|---:|"]
-    for one in found:
-        lines.append(f"| {1e6 * one.step:g} | {one.worst:.1e} | {one.end:.1e} | {one.rate:.1e} |")
-    slope = np.polyfit(np.log(steps), np.log([one.worst for one in found]), 1)[0]
-    return "\n".join(lines) + f"\n\nSlope of the worst beat over the step: {slope:.2f}."
-
-
 def near_amplitude(scene: Scene, wanted: float) -> float | None:
-    """The torque (µN·m) at which the scene settles at that amplitude (°): it grows as the square root; None where it misses."""
+    """The torque (µN·m) at which the scene settles at that amplitude (°): it grows as the square root; None where no cycle is found."""
     torque = TORQUE
-    for _ in range(4):
+    for _ in range(6):
         cycle = ws.steady(scene.set("torques.0.value", f"{-torque} µN·m"))
         assert cycle.amplitude_deg is not None
         if cycle.found and abs(cycle.amplitude_deg - wanted) < CLOSE:
             return torque
         torque *= (wanted / cycle.amplitude_deg) ** 2
-    return torque if cycle.found else None
+    return None

@@ -171,7 +171,7 @@ def wheels(scene: Scene) -> str:
         own = scene.set("bodies.wheel.inertia", f"{inertia} mg·cm²")
         one, torque = settled(own), near_amplitude(own, 290.0)
         if torque is None:
-            strong = "none without misses | "
+            strong = "no cycle found | "
         else:
             strong = f"{torque:.3f} | {held_up_to([missing(own, torque, start) for start in STARTS]):.0f}"
         if one.verdict == "ticks":
@@ -179,7 +179,7 @@ def wheels(scene: Scene) -> str:
             lines.append(f"| {inertia:g} | {one.amplitude:.2f} | {one.rate:+.2f} | {shares} | {strong} |")
         else:
             hovers = ws.steady(own).amplitude_deg
-            lines.append(f"| {inertia:g} | about {hovers:.0f}, impulses missed now and then | | | | {strong} |")
+            lines.append(f"| {inertia:g} | about {hovers:.0f}, no cycle found | | | | {strong} |")
     return "\n".join(lines)
 
 

@@ -2,18 +2,22 @@
 
     python scripts/reports/coaxial/make_coaxial_page.py [page]
 
-Everything is run here, with the package's public functions; nothing is copied from anywhere. Takes some minutes.
+Everything is run here, with the package's public functions; nothing is copied from anywhere. Takes some minutes. Only Moreau's time
+stepping is run before, by run_coaxial_twin.py, which leaves its numbers in coaxial_twin.csv.
 """
 
 from __future__ import annotations
 
 import math
 import sys
+import time
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import coaxial_runs
 import coaxial_slides
 import coaxial_studies
+import run_coaxial_twin
 from coaxial_scenes import IMAGES, scenes
 
 import watchsim as ws
@@ -76,29 +80,33 @@ def timeline(scene: Scene) -> str:
     return timeline_text(run, told)
 
 
-def page() -> str:
-    """The text of the page; draws the pictures."""
+def chapters() -> Iterator[tuple[str, Callable[[], dict[str, str]]]]:
+    """What is run for the page, one after the other: a name, and what fills places of the page."""
     both = scenes()
     scene = both["coaxial"]
-    friction, restitution = coaxial_studies.rubbed(both)
-    found = {
-        "dimensions": dimensions(),
-        "function": function(scene),
-        **turned(scene),
-        "longs": coaxial_runs.long_runs(scene),
-        "map": coaxial_runs.range_map(scene),
-        "accuracy": coaxial_runs.accuracy(scene),
-        "twin": coaxial_runs.twin(coaxial_runs.stepped(scene)),
-        "timeline": timeline(scene),
-        "compared": coaxial_studies.compared(both),
-        "slides": coaxial_slides.table(both),
-        "friction": friction,
-        "restitution": restitution,
-        "torque": coaxial_studies.driven(both),
-        "wheels": coaxial_studies.wheels(scene),
-        "weighed": coaxial_studies.weighed(scene),
-        "matters": coaxial_studies.matters(both),
-    }
+    yield "dimensions", lambda: {"dimensions": dimensions()}
+    yield "function", lambda: {"function": function(scene)}
+    yield "turned by hand", lambda: turned(scene)
+    yield "long runs", lambda: {"longs": coaxial_runs.long_runs(scene)}
+    yield "range", lambda: {"map": coaxial_runs.range_map(scene)}
+    yield "tolerances", lambda: {"accuracy": coaxial_runs.accuracy(scene)}
+    yield "timeline", lambda: {"timeline": timeline(scene)}
+    yield "compared", lambda: {"compared": coaxial_studies.compared(both)}
+    yield "slides", lambda: {"slides": coaxial_slides.table(both)}
+    yield "friction and restitution", lambda: dict(zip(("friction", "restitution"), coaxial_studies.rubbed(both), strict=True))
+    yield "torque", lambda: {"torque": coaxial_studies.driven(both)}
+    yield "inertia of the wheel", lambda: {"wheels": coaxial_studies.wheels(scene), "weighed": coaxial_studies.weighed(scene)}
+    yield "what matters", lambda: {"matters": coaxial_studies.matters(both)}
+    yield "time stepping", lambda: {"twin": run_coaxial_twin.twin(run_coaxial_twin.read())}
+
+
+def page() -> str:
+    """The text of the page; draws the pictures and tells how long each chapter took."""
+    found: dict[str, str] = {}
+    for name, made in chapters():
+        began = time.process_time()
+        found |= made()
+        print(f"{name}: {time.process_time() - began:.1f} s of processor time", flush=True)
     return written(found)
 
 

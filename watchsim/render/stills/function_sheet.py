@@ -12,7 +12,7 @@ from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING
 
-from watchsim.escapement.hands import Hands
+from watchsim.escapement.by_hand.hands import Hands
 from watchsim.escapement.measure import Function
 from watchsim.escapement.report import direction, text
 from watchsim.mechanism.compile import Compiled

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.escapement.hands import Hands
+from watchsim.escapement.by_hand.hands import Hands
 from watchsim.escapement.measure import Function
 from watchsim.geometry.primitives import Point
 from watchsim.render.posed import Posed

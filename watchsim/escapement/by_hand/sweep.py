@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from watchsim.escapement.hands import Array, Hands, Integers, Touch
-from watchsim.escapement.parts import Parts
+from watchsim.escapement.by_hand.hands import Array, Hands, Integers, Touch
+from watchsim.escapement.by_hand.parts import Parts
 
 STEP = math.radians(0.25)  # of the lever, in the search for changes
 WIDTH = 1e-11  # rad of the lever: a change is known to that

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.contact.poses import poses
-from watchsim.escapement.turning import describe, turn_to_touch
+from watchsim.escapement.by_hand.turning import describe, turn_to_touch
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.compile import Compiled
 from watchsim.mechanism.contact_features import JOINT
