@@ -136,6 +136,8 @@ def text(function: Function) -> Iterator[str]:
             pair = [getattr(one, name) for one in function.pallets]
             if any(math.isfinite(one.value) for one in pair):
                 yield f"      {words:24}" + "".join(f"{_told(one.value):>14}" for one in pair) + _worst_tooth(pair)
+        if any(_stands_out(getattr(one, name)) for one in function.pallets for name in WORDS):
+            yield f"      {'':24}teeth are counted anticlockwise in the drawing, 1 is nearest to the x axis"
     if function.impulses is not None:
         yield from _impulse_lines(function)
     if function.fork is not None:
@@ -176,9 +178,13 @@ def _worst_tooth(pair: list[Quantity]) -> str:
     words = [
         f"{_told(one.worst)} at tooth {one.tooth} ({name})"
         for name, one in zip(STONES, pair, strict=True)
-        if one.tooth is not None and one.spread > NOTICEABLE
+        if _stands_out(one)
     ]
     return f"   worst: {', '.join(words)}" if words else ""
+
+
+def _stands_out(one: Quantity) -> bool:
+    return one.tooth is not None and one.spread > NOTICEABLE
 
 
 def _worst_error(function: Function) -> float:
