@@ -241,7 +241,7 @@ def _derivative(quantity: Quantity, rows: Mapping[float, Row], column: str, leve
     stencil = _stencil(quantity)
     found: list[float] = []
     for step in _steps(quantity):
-        ends = [rows[quantity.value + at * step][column] for at in stencil]
+        ends = [rows[quantity.value + at * step].get(column) for at in stencil]  # a refused value has no row of numbers
         if level is None or any(end is None for end in ends):
             return Derivative(None, None, False, 0.0)
         first, second = ends
