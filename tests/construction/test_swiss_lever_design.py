@@ -98,9 +98,7 @@ WIDE = {  # 11 teeth a wide way apart: between unlocking and drop little room is
 }
 
 
-@pytest.mark.parametrize(
-    ("name", "side"), [("drop_outside", 1), ("drop_inside", -1)], ids=["entry unlocks", "exit unlocks"]
-)
+@pytest.mark.parametrize(("name", "side"), [("drop_outside", 1), ("drop_inside", -1)], ids=["entry unlocks", "exit unlocks"])
 def test_the_recoil_may_not_use_up_the_drop(name, side):
     """Just above the least drop that is accepted nothing overlaps while a stone unlocks, just below it two outlines do."""
     usual = {**WIDE, "drop_inside": 2.0, "drop_outside": 2.0}

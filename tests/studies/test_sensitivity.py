@@ -49,7 +49,9 @@ def test_what_of_a_design_can_be_varied_and_how_far():
 def test_a_value_that_is_refused_has_its_reason_in_the_table():
     (quantity,) = [one for one in quantities(fixed_nominal(ws.load(BENCH))) if one.key == "torques.0.value"]
     refused = {value: {"amplitude_deg": None, "verdict": None, "message": "too small"} for _, value in points_of(quantity)}
-    effect = effect_of(quantity, refused, {"amplitude_deg": 280.0, "beat_error_ms": 0.0}, outputs_named(["amplitude", "beat_error"]))
+    effect = effect_of(
+        quantity, refused, {"amplitude_deg": 280.0, "beat_error_ms": 0.0}, outputs_named(["amplitude", "beat_error"])
+    )
     assert effect.message == "too small"
     assert all(one.value is None for one in effect.by.values())
 

@@ -13,7 +13,9 @@ from watchsim.escapement.sweep import LEVEL, LetOff, Rest, Stretch, Sweep, Wheel
 MOST = 0.75  # of a pitch: the wheel goes on by less in one beat; two teeth of a lever make a whole one
 
 
-def passages(wheel: Wheel, banks: tuple[float, float], start: Rest, teeth: Teeth, roller: Roller | None = None) -> list[Passage]:
+def passages(
+    wheel: Wheel, banks: tuple[float, float], start: Rest, teeth: Teeth, roller: Roller | None = None
+) -> list[Passage]:
     """Every tooth past both stones, in the order of time; one more beat at the end, for the lock of the last."""
     ox, oy = wheel.hands.pivot(wheel.parts.wheel, wheel.at(0.0, 0.0))
     found: list[Passage] = []

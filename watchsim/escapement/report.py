@@ -176,9 +176,7 @@ def _told(value: float) -> str:
 def _worst_tooth(pair: list[Quantity]) -> str:
     """Words where the teeth are not alike."""
     words = [
-        f"{_told(one.worst)} at tooth {one.tooth} ({name})"
-        for name, one in zip(STONES, pair, strict=True)
-        if _stands_out(one)
+        f"{_told(one.worst)} at tooth {one.tooth} ({name})" for name, one in zip(STONES, pair, strict=True) if _stands_out(one)
     ]
     return f"   worst: {', '.join(words)}" if words else ""
 

@@ -73,7 +73,7 @@ def quantities(scene: Scene) -> tuple[Quantity, ...]:
 def quantity_at(scene: Scene, key: str, value: Any) -> Quantity | None:
     """The quantity at a path that holds that value; None where it is none, or no dimension of the mechanism."""
     path, dimension = key.split("."), dimension_of(scene, key)
-    if dimension is None or LEFT_OUT & set(path) or _is_start(scene, path) or path[0] == "springs" and "draw" in path:
+    if dimension is None or LEFT_OUT & set(path) or _is_start(scene, path) or (path[0] == "springs" and "draw" in path):
         return None
     if path[0] == DESIGN and (path[-1] in OF_DESIGN or _of_design(scene, path[-1]).count):
         return None

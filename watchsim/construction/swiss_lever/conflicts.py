@@ -90,7 +90,9 @@ def _unlocking(design: Swiss) -> Iterator[Conflict]:
     for side, name, locks, lets_off in ((-1, "drop_inside", "exit", "entry"), (1, "drop_outside", "entry", "exit")):
         left = drop_after_recoil(design, side)
         if left < 0.0:
-            words = f"is {-left:.3g}° too small: while the {locks} stone unlocks, the wheel recoils by {recoil(design, side):.3g}°"
+            words = (
+                f"is {-left:.3g}° too small: while the {locks} stone unlocks, the wheel recoils by {recoil(design, side):.3g}°"
+            )
             yield Conflict(name, f"{words}, and the tooth that has left the {lets_off} stone would come back into that stone")
 
 
