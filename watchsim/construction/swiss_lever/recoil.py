@@ -1,8 +1,9 @@
 """How much of the drop is left once unlocking has drawn the wheel back?
 
 A tooth has dropped on one stone, the tooth before it has just left the other. While the lever unlocks, the locking face pushes
-the wheel back (the recoil that its draw asks for), and the other stone comes in behind the tooth that it let off. What the wheel
-could still be turned back before the two meet is what is left of the drop; where nothing is left, the lever cannot unlock.
+the wheel back (the recoil that its draw asks for), and the other stone comes in behind the tooth that it let off. What the
+wheel could still be turned back before the two meet is what is left of the drop; where nothing is left, the lever cannot
+unlock.
 """
 
 from __future__ import annotations
