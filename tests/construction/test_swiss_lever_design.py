@@ -5,15 +5,21 @@ What is drawn is measured with shapely, which shares nothing with the drawing.
 
 from __future__ import annotations
 
+import math
 import random
 import sys
 from pathlib import Path
 
 import pytest
+from scipy.optimize import brentq
+from shapely import Polygon
+from shapely.affinity import rotate, translate
 
 from watchsim.construction.known import design
 from watchsim.construction.sound import drawing_of
+from watchsim.construction.swiss_lever.follow import swiss
 from watchsim.construction.swiss_lever.points import Swiss
+from watchsim.construction.swiss_lever.recoil import drop_after_recoil
 from watchsim.construction.swiss_lever.sheets import sheets
 from watchsim.designs.drawn import Drawn
 from watchsim.mechanism.overlap import overlap_faults
@@ -84,6 +90,48 @@ REFUSED = [
 def test_impossible_dimensions_are_refused_with_the_reason(chosen, name, words):
     found = LEVER.refusals(chosen)
     assert any(one.dimension == name and words in one.message for one in found), found
+
+
+WIDE = {  # 11 teeth a wide way apart: between unlocking and drop little room is left
+    **{"teeth": 11, "embraced": 2.5, "tooth_width": 4.864, "draw": 14.976, "lever_to_balance": 4.6851, "safety_ratio": 0.69871},
+    **{"lift_on_stone": 4.2143, "lift_on_tooth": 2.2595, "jewel_width": 0.38893, "jewel_ground": 0.39509, "crescent": 17.669},
+}
+
+
+@pytest.mark.parametrize(("name", "side"), [("drop_outside", 1), ("drop_inside", -1)], ids=["entry unlocks", "exit unlocks"])
+def test_the_recoil_may_not_use_up_the_drop(name, side):
+    """Just above the least drop that is accepted nothing overlaps while a stone unlocks, just below it two outlines do."""
+    usual = {**WIDE, "drop_inside": 2.0, "drop_outside": 2.0}
+
+    def left(drop):
+        return drop_after_recoil(swiss(LEVER.chosen({**usual, name: drop})), side)
+
+    least = brentq(left, 0.2, 2.0, xtol=1e-9)
+    for drop, clear in ((least + 0.01, True), (least - 0.01, False)):
+        chosen = {**usual, name: drop}
+        assert (LEVER.refusals(chosen) == ()) is clear
+        assert meet_while_unlocking(chosen, side) is not clear
+    (refusal,) = LEVER.refusals({**usual, name: least - 0.01})
+    assert refusal.dimension == name
+    assert refusal.message.startswith("is 0.01")
+
+
+def meet_while_unlocking(chosen, side):
+    """Do wheel and stones overlap as drawn, the lever at the end of unlocking and the wheel held back by the locking face?"""
+    values = LEVER.chosen(chosen)
+    design, sheets = swiss(values), LEVER.draw(values)
+    (px, py), (cx, cy) = design.lever_pivot, design.in_movement(design.locking_corner(side), side * design.unlocked)
+    contour = max((loop for loop in sheets["escape_wheel"].loops if not loop.hole), key=lambda loop: len(loop.edges))
+    # The wheel stands a little off the locking corner, the least angle that separates the two for certain.
+    wheel = rotate(filled(contour), math.degrees(math.atan2(cy, cx)) + 1e-4, origin=(0.0, 0.0))
+    stones = [filled(loop) for loop in sheets["lever"].loops if loop.layer == "STONES"]
+    placed = [translate(rotate(stone, side * design.unlocked, origin=(0.0, 0.0)), px, py) for stone in stones]
+    return any(wheel.intersection(stone).area > 1e-12 for stone in placed)
+
+
+def filled(loop):
+    """With 200 points an edge, so that chords of the arcs lie within some nanometres."""
+    return Polygon([edge.point(part / 200) for edge in loop.edges for part in range(200)])
 
 
 def test_all_limits_are_checked_at_once():

@@ -13,6 +13,7 @@ from watchsim.construction.swiss_lever.roller import banking
 from watchsim.escapement.measure import Function, measure
 from watchsim.escapement.pallets import Pallet
 from watchsim.escapement.quantity import Quantity
+from watchsim.escapement.report import text
 from watchsim.escapement.safety import Safety
 from watchsim.geometry.primitives import Line
 from watchsim.profiles_path import profiles_dir
@@ -183,15 +184,17 @@ def test_a_carried_escapement_is_the_same():
         assert one == pytest.approx(other, abs=1e-5)
 
 
-def test_a_chipped_tooth_is_named(swiss):
-    """A toe that is 10 µm short locks 10 µm less deep, at the radius of the locking."""
+@pytest.mark.parametrize("tooth", [1, 5, 15])
+def test_a_chipped_tooth_is_named(swiss, tooth):
+    """A toe that is 10 µm short locks 10 µm less deep, at the radius of the locking; on either stone it is the same tooth."""
     scene = load(SWISS)
     wheel = scene.body("wheel")
     short = 10e-6
-    toe = (2.4e-3, 0.0)
+    x, y = math.cos((tooth - 1) * math.tau / 15.0), math.sin((tooth - 1) * math.tau / 15.0)
+    toe = (2.4e-3 * x, 2.4e-3 * y)
 
     def chipped(point):
-        return (toe[0] - short, 0.0) if math.dist(point, toe) < 1e-9 else point
+        return (toe[0] - short * x, toe[1] - short * y) if math.dist(point, toe) < 1e-9 else point
 
     loops = tuple(
         replace(loop, edges=tuple(Line(*chipped(e.start), *chipped(e.end)) if isinstance(e, Line) else e for e in loop.edges))
@@ -204,7 +207,10 @@ def test_a_chipped_tooth_is_named(swiss):
         less = degrees(whole.lock) - math.degrees(one.lock.worst)
         # Tangent locking: the tip circle is square to the line to the lever's pivot, R tan 30° away.
         assert less == pytest.approx(math.degrees(short / (2.4e-3 * math.tan(math.radians(30.0)))), rel=0.02)
-        assert 1 <= one.lock.tooth <= 15 and degrees(one.lock) == pytest.approx(degrees(whole.lock) - less / 15.0, abs=1e-6)
+        assert one.lock.tooth == tooth and degrees(one.lock) == pytest.approx(degrees(whole.lock) - less / 15.0, abs=1e-6)
+    told = "\n".join(text(function))
+    assert f"at tooth {tooth} (entry)" in told and f"at tooth {tooth} (exit)" in told and "counted anticlockwise" in told
+    assert "counted anticlockwise" not in "\n".join(text(swiss))
 
 
 @pytest.mark.parametrize("name", ["incline", "balance"])

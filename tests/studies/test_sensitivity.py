@@ -33,6 +33,29 @@ def test_all_numbers_of_the_scene(found):
     assert sizes == sorted(sizes, reverse=True)
 
 
+def test_what_of_a_design_can_be_varied_and_how_far():
+    """Neither counts, nor where the balance is let go, nor how a hairspring is pictured; limits are the design's own."""
+    scene = ws.designs.swiss_lever(lock="0.1°", run="1.9°", q_factor=300).scene()
+    by = {one.key: one for one in quantities(fixed_nominal(scene))}
+    assert {"design.lock", "design.q_factor", "design.draw", "design.torque"} <= set(by)
+    assert not {"design.teeth", "design.embraced", "design.start"} & set(by)
+    assert not [key for key in by if key.startswith("springs.0.draw")]
+    assert by["design.lock"].low == pytest.approx(math.radians(0.1), abs=1e-15)
+    assert by["design.lock"].high == pytest.approx(math.radians(4.0))
+    assert by["design.torque"].low == pytest.approx(1e-9)
+    assert all(value >= by["design.lock"].low for _, value in points_of(by["design.lock"]))
+
+
+def test_a_value_that_is_refused_has_its_reason_in_the_table():
+    (quantity,) = [one for one in quantities(fixed_nominal(ws.load(BENCH))) if one.key == "torques.0.value"]
+    refused = {value: {"amplitude_deg": None, "verdict": None, "message": "too small"} for _, value in points_of(quantity)}
+    effect = effect_of(
+        quantity, refused, {"amplitude_deg": 280.0, "beat_error_ms": 0.0}, outputs_named(["amplitude", "beat_error"])
+    )
+    assert effect.message == "too small"
+    assert all(one.value is None for one in effect.by.values())
+
+
 def test_two_steps_agree(found):
     assert all(one.agrees for effect in found.effects for one in effect.by.values())
 

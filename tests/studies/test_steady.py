@@ -105,10 +105,22 @@ def test_a_balance_alone(bench):
     assert "dies" in cycle.message or "comes to rest" in cycle.message
 
 
-def test_nothing_swings():
-    cycle = steady(ws.load(ws.profiles_dir() / "incline"))
-    assert (cycle.found, cycle.verdict) == (False, None)
-    assert "nothing" in cycle.message
+@pytest.mark.parametrize(
+    ("name", "key", "seen"),
+    [
+        ("incline", "springs", "no body swings on a spring or by gravity"),
+        ("jumper", "springs", "jumper is sprung, finger moves as the scene says, and no torque acts"),
+        ("cam", "springs", "follower is sprung"),
+        ("ratchet", "torques", "wheel is driven, click is sprung and rests on it, and did not swing"),
+    ],
+)
+def test_what_is_no_watch_has_no_cycle_to_ask_for(name, key, seen):
+    with pytest.raises(ws.SceneError, match="nothing keeps an oscillator going") as refused:
+        steady(ws.load(ws.profiles_dir() / name))
+    (fault,) = refused.value.faults
+    assert fault.key == key
+    assert seen in fault.message
+    assert "scene.toml" in fault.place
 
 
 def test_on_a_carriage():

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from watchsim.analysis.timing.teeth import pitch
+from watchsim.analysis.verdicts.lean import Teeth, teeth
 from watchsim.escapement.by_hand.hands import SLACK, Hands
 from watchsim.escapement.by_hand.parts import Parts, parts_of
 from watchsim.escapement.by_hand.sweep import Rest, Wheel
@@ -58,10 +59,11 @@ def measure(scene: Scene, compiled: Compiled | None = None) -> Function:
     missing: list[tuple[str, str]] = []
     hands = Hands(compiled)
     whole = pitch(scene, parts.wheel)
-    if whole is None or not len(parts.to_wheel):
-        why = f"{parts.wheel} has no equal teeth" if whole is None else f"{parts.wheel} and {parts.lever} never touch"
+    toothed = None if whole is None else teeth(scene, parts.wheel) or Teeth(whole, 0.0, 0.0)
+    if toothed is None or not len(parts.to_wheel):
+        why = f"{parts.wheel} has no equal teeth" if toothed is None else f"{parts.wheel} and {parts.lever} never touch"
         return Function(parts, missing=(("geometry of function", why),))
-    teeth, wheel = round(math.tau / whole), Wheel(hands, parts, whole)
+    number, wheel = toothed.count, Wheel(hands, parts, toothed.pitch)
     try:
         start = _start(wheel, hands)
         banks = _banks(hands, parts, wheel, start)
@@ -69,16 +71,16 @@ def measure(scene: Scene, compiled: Compiled | None = None) -> Function:
         if first is None:
             raise NotMeasured("the wheel runs free as the lever goes to its bank")
         roller = _roller(scene, wheel, banks) if len(parts.to_roller) else None
-        beats = passages(wheel, banks, first, teeth, roller)
+        beats = passages(wheel, banks, first, toothed, roller)
     except NotMeasured as reason:
-        return Function(parts, teeth, missing=(("lock, draw, lift, drop", str(reason)),))
+        return Function(parts, number, missing=(("lock, draw, lift, drop", str(reason)),))
     entry_side = _entry_side(wheel, beats[0])
     sides = (entry_side, -entry_side)
     pallets = (pallet(wheel, beats, sides[0], parts.detached), pallet(wheel, beats, sides[1], parts.detached))
     shown = [next(one for one in beats if one.side == side) for side in sides]
     if not parts.detached:
-        missing.append(("total lock, run, fork and safety action", f"{parts.lever} is the oscillator itself: no banking"))
-        return Function(parts, teeth, None, pallets, sides, (shown[0], shown[1]), missing=tuple(missing), swung=banks)
+        missing.append(("total lock, run, fork and safety action", f"{parts.lever} swings with the oscillator: no banking"))
+        return Function(parts, number, None, pallets, sides, (shown[0], shown[1]), missing=tuple(missing), swung=banks)
     made, guards, pushes = None, None, None
     try:
         made, guards, pushes = _balance(scene, hands, parts, banks, beats)
@@ -86,7 +88,7 @@ def measure(scene: Scene, compiled: Compiled | None = None) -> Function:
         missing.append(("lift angle of the balance, shake of the pin, safety action", str(reason)))
     if made is not None and guards is None:
         missing.append(("freedoms of guard pin and horns", f"nothing but the pin stops {parts.lever} between its banks"))
-    return Function(parts, teeth, banks, pallets, sides, (shown[0], shown[1]), made, guards, pushes, tuple(missing))
+    return Function(parts, number, banks, pallets, sides, (shown[0], shown[1]), made, guards, pushes, tuple(missing))
 
 
 def _start(wheel: Wheel, hands: Hands) -> Rest:

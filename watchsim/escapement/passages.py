@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
+from watchsim.analysis.verdicts.lean import Teeth
 from watchsim.escapement.by_hand.sweep import LEVEL, LetOff, Rest, Stretch, Sweep, Wheel
 from watchsim.escapement.direct import Roller
 from watchsim.escapement.passage import Direct, NotMeasured, Passage
@@ -11,14 +13,17 @@ from watchsim.escapement.passage import Direct, NotMeasured, Passage
 MOST = 0.75  # of a pitch: the wheel goes on by less in one beat; two teeth of a lever make a whole one
 
 
-def passages(wheel: Wheel, banks: tuple[float, float], start: Rest, teeth: int, roller: Roller | None = None) -> list[Passage]:
+def passages(
+    wheel: Wheel, banks: tuple[float, float], start: Rest, teeth: Teeth, roller: Roller | None = None
+) -> list[Passage]:
     """Every tooth past both stones, in the order of time; one more beat at the end, for the lock of the last."""
+    ox, oy = wheel.hands.pivot(wheel.parts.wheel, wheel.at(0.0, 0.0))
     found: list[Passage] = []
     rest = start
-    for beat in range(2 * teeth + 1):
+    for beat in range(2 * teeth.count + 1):
         side = 1.0 if beat % 2 == 0 else -1.0
         sweep = wheel.lead(rest, banks[1] if side > 0.0 else banks[0])
-        tooth = beat // 2 % teeth + 1
+        tooth = teeth.number(math.atan2(rest.y - oy, rest.x - ox) - rest.wheel)
         direct = _direct(roller, sweep, side)
         if direct is None:
             passage, last = _passage(wheel, sweep, side, tooth), sweep.last

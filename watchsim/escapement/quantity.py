@@ -13,9 +13,9 @@ import numpy as np
 class Quantity:
     """`value` (rad, or m) with its `error`; `worst` is the value of the tooth `tooth` that differs most.
 
-    Teeth are counted from 1 in the order in which they pass; None for what has nothing to do with a tooth. The error covers
-    what the outlines leave open at their joints and the width to which changes were halved; the drawing's own decimals come on
-    top.
+    Teeth are counted anticlockwise from 1, the one nearest to the wheel's own x axis, as in verdicts; None for what has nothing
+    to do with a tooth. A drop is that of the tooth let off. The error covers what the outlines leave open at their joints and
+    the width to which changes were halved; the drawing's own decimals come on top.
     """
 
     value: float

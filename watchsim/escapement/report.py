@@ -152,6 +152,8 @@ def text(function: Function) -> Iterator[str]:
         for row in table.rows:
             worst = f"   worst: {row.worst}" if row.worst else ""
             yield f"      {row.words:24}" + "".join(f"{value:>14}" for value in row.values) + worst
+    if any(_stands_out(getattr(one, name)) for one in function.pallets or () for name in WORDS):
+        yield f"      {'':24}teeth are counted anticlockwise in the drawing, 1 is nearest to the x axis"
     if function.swung is not None:
         ends = " and ".join(f"{math.degrees(end):.3f}°" for end in function.swung)
         yield f"      swung out to {ends}: half as far again as from let-off to let-off"
@@ -209,11 +211,13 @@ def _told(value: float) -> str:
 def _worst_tooth(pair: list[Quantity]) -> str:
     """Words where the teeth are not alike."""
     words = [
-        f"{_told(one.worst)} at tooth {one.tooth} ({name})"
-        for name, one in zip(STONES, pair, strict=True)
-        if one.tooth is not None and one.spread > NOTICEABLE
+        f"{_told(one.worst)} at tooth {one.tooth} ({name})" for name, one in zip(STONES, pair, strict=True) if _stands_out(one)
     ]
     return ", ".join(words)
+
+
+def _stands_out(one: Quantity) -> bool:
+    return one.tooth is not None and one.spread > NOTICEABLE
 
 
 def _worst_error(function: Function) -> float:

@@ -65,6 +65,24 @@ def keeps_time(scene: Scene) -> bool:
     return found.oscillator is not None and (found.wheel is None or found.lever is not None or scene.lift_angle is not None)
 
 
+def only_presses(scene: Scene) -> bool:
+    """Is the spring there to press, as that of a jumper, a click or a cam's follower?
+
+    The sprung body then rests on a driven wheel that is no escapement's, or all that drives are bodies moved as the scene says.
+    """
+    found = roles(scene)
+    if found.oscillator is None:
+        return False
+    if found.wheel is not None:
+        return not keeps_time(scene)
+    return not is_driven(scene) and any(body.prescribed is not None for body in scene.bodies)
+
+
+def is_driven(scene: Scene) -> bool:
+    """Does a torque or a force put work in?"""
+    return any(torque.table or torque.value for torque in scene.torques)
+
+
 def partners(scene: Scene, name: str) -> set[str]:
     """The bodies that a declared contact lets touch body `name`."""
     pairs = [{side.body for side in contact.sides} for contact in scene.contacts]

@@ -6,17 +6,20 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from watchsim.construction import known
+from watchsim.construction.dimension import Dimension as DesignDimension
 from watchsim.scene.body import Body
 from watchsim.scene.oscillation import nominal_frequency
 from watchsim.scene.scene import Scene
 from watchsim.studies.axes import DESIGN, dimension_of
-from watchsim.units import ANGLE, LENGTH, NUMBER, Dimension, UnitError, parse
+from watchsim.units import ANGLE, LENGTH, NUMBER, Dimension, UnitError, known_unit, parse
 
 SECTIONS = ("scene", "bodies", "springs", "torques", "damping", "contacts", DESIGN)
 # What is no dimension of the mechanism: how a drawing is read, how a body starts, vertices, what must stay a whole number, and
 # what is only drawn.
 LEFT_OUT = {"schema", "snap", "material", "axis", "polygon", "line", "count", "turns", "velocity", "spin", "table", "pivot"}
 LEFT_OUT |= {"draw"}
+OF_DESIGN = {"embraced", "start"}  # a whole number and a half; where the balance is let go
 RELATIVE = 1e-3  # of a value: the larger of the two steps
 SHORT, SLIGHT, SMALL = 5e-7, 2e-4, 1e-4  # steps of lengths (m), angles (rad) and of numbers that are zero
 PERCENT, USUAL_LENGTH, USUAL_ANGLE = 0.01, 1e-5, 0.1  # what is compared: 1 %, 10 µm, 0.1°
@@ -72,16 +75,28 @@ def quantities(scene: Scene) -> tuple[Quantity, ...]:
 def quantity_at(scene: Scene, key: str, value: Any) -> Quantity | None:
     """The quantity at a path that holds that value; None where it is none, or no dimension of the mechanism."""
     path, dimension = key.split("."), dimension_of(scene, key)
-    if dimension is None or LEFT_OUT & set(path) or _is_start(scene, path):
+    if dimension is None or LEFT_OUT & set(path) or _is_start(scene, path) or (path[0] == "springs" and "draw" in path):
+        return None
+    if path[0] == DESIGN and (path[-1] in OF_DESIGN or _of_design(scene, path[-1]).count):
         return None
     try:
         number = parse(value, dimension)
     except UnitError:
         return None
-    if path[0] == DESIGN and dimension is NUMBER and number.is_integer():
-        return None  # a count, as of teeth
     change, words = _change(number, dimension)
-    return Quantity(key, number, dimension, _step(number, dimension), change, words, *BOUNDED.get(path[-1], (None, None)))
+    return Quantity(key, number, dimension, _step(number, dimension), change, words, *_bounds(scene, path))
+
+
+def _bounds(scene: Scene, path: list[str]) -> tuple[float | None, float | None]:
+    if path[0] != DESIGN:
+        return BOUNDED.get(path[-1], (None, None))
+    one = _of_design(scene, path[-1])
+    factor = known_unit(one.unit).factor
+    return factor * one.low, factor * one.high
+
+
+def _of_design(scene: Scene, name: str) -> DesignDimension:
+    return known.design(scene.source[DESIGN]["of"]).dimension(name)
 
 
 def _leaves(value: Any, path: str) -> Iterator[tuple[str, Any]]:

@@ -241,10 +241,10 @@ def _derivative(quantity: Quantity, rows: Mapping[float, Row], column: str, leve
     stencil = _stencil(quantity)
     found: list[float] = []
     for step in _steps(quantity):
-        ends = [rows[quantity.value + at * step][column] for at in stencil]
-        if level is None or any(end is None for end in ends):
+        # The row of a refused value holds no numbers.
+        first, second = (rows[quantity.value + at * step].get(column) for at in stencil)
+        if level is None or first is None or second is None:
             return Derivative(None, None, False, 0.0)
-        first, second = ends
         if stencil == CENTRAL:
             found.append((second - first) / (2.0 * step))
         else:

@@ -7,8 +7,9 @@ from typing import Any
 
 from watchsim.analysis.timing.beats import Beats
 from watchsim.scene.oscillation import oscillators
+from watchsim.scene.roles import only_presses
 from watchsim.simulation.event_kinds import EventKind
-from watchsim.simulation.record.half_swings import FEWEST_TURNS
+from watchsim.simulation.record.half_swings import FEWEST_TURNS, Events
 from watchsim.simulation.record.trajectory import Trajectory
 
 
@@ -21,6 +22,8 @@ def why_no_timing(run: Trajectory, found: Beats | None, numbers: Mapping[str, An
         return None
     if found is None:
         return _nothing_swings(run)
+    if only_presses(run.scene) and not _passages(run, found):
+        return None
     what = "rate" if numbers["amplitude_deg"] is not None or not found.angular else "amplitude and rate"
     if numbers["rate_s_per_d"] is not None:
         return f"no amplitude in degrees: {found.body} slides"
@@ -35,14 +38,22 @@ def _nothing_swings(run: Trajectory) -> str | None:
     return f"no amplitude and rate: no body has a spring, {hanging}"
 
 
+def _passages(run: Trajectory, found: Beats) -> int:
+    """Through the rest position, in the whole run."""
+    return int((_own_events(run, found)["kind"] == EventKind.CROSS).sum())
+
+
+def _own_events(run: Trajectory, found: Beats) -> Events:
+    own = [body.name for body in run.scene.bodies].index(found.body)
+    return run.events[run.events["body"] == own]
+
+
 def _missing(run: Trajectory, found: Beats, start: float) -> str:
     """What is too little for a period: two passages in one direction and three turning points make one."""
     one = next((one for one in oscillators(run.scene) if one.body == found.body), None)
     if one is not None and one.hertz is None:
         return f"gravity topples {found.body} from its rest position"
-    own = [body.name for body in run.scene.bodies].index(found.body)
-    events = run.events[run.events["body"] == own]
-    passages, turns = int((events["kind"] == EventKind.CROSS).sum()), int((events["kind"] == EventKind.TURN).sum())
+    passages, turns = _passages(run, found), int((_own_events(run, found)["kind"] == EventKind.TURN).sum())
     if not passages and run.simulated > found.nominal_period:
         return f"{found.body} never passed its rest position"
     if turns < FEWEST_TURNS and run.simulated > 2.0 * found.nominal_period:

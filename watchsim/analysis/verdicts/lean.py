@@ -31,14 +31,17 @@ class Teeth:
     first: float
 
     @property
+    def count(self) -> int:
+        return round(math.tau / self.pitch)
+
+    @property
     def direction(self) -> float:
         """+1 anticlockwise or -1: the way the teeth are made to turn; 0 where they stand upright."""
         return 0.0 if abs(self.lean) < UPRIGHT * self.pitch else math.copysign(1.0, self.lean)
 
     def number(self, angle: float) -> int:
         """Of the tooth at an angle (rad) in the wheel's frame: counted anticlockwise from 1, the one nearest to the x axis."""
-        count = round(math.tau / self.pitch)
-        return round((angle - math.remainder(self.first, self.pitch)) / self.pitch) % count + 1
+        return round((angle - math.remainder(self.first, self.pitch)) / self.pitch) % self.count + 1
 
 
 def teeth(scene: Scene, wheel: str) -> Teeth | None:

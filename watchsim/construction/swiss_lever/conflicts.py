@@ -13,6 +13,7 @@ from watchsim.construction.swiss_lever.guard import crescent_needed
 from watchsim.construction.swiss_lever.lever import Slot
 from watchsim.construction.swiss_lever.lifts import lift_on_tooth
 from watchsim.construction.swiss_lever.points import Swiss
+from watchsim.construction.swiss_lever.recoil import drop_after_recoil, recoil
 from watchsim.construction.swiss_lever.wheel import tooth_gap
 
 LEAST_STONE, LEAST_GAP, LEAST_LIFT = 0.8, 1.0, 0.2  # degrees
@@ -81,6 +82,18 @@ def _pallets(values: SwissLever, design: Swiss) -> Iterator[Conflict]:
     thin = min(Slot(design, side).width for side in (1, -1))
     if thin < 0.04 * design.wheel_scale:
         yield Conflict("draw", f"a stone would be {1e3 * thin:.3g} µm thick: its faces nearly meet")
+    else:
+        yield from _unlocking(design)
+
+
+def _unlocking(design: Swiss) -> Iterator[Conflict]:
+    for side, name, locks, lets_off in ((-1, "drop_inside", "exit", "entry"), (1, "drop_outside", "entry", "exit")):
+        left = drop_after_recoil(design, side)
+        if left < 0.0:
+            words = (
+                f"is {-left:.3g}° too small: while the {locks} stone unlocks, the wheel recoils by {recoil(design, side):.3g}°"
+            )
+            yield Conflict(name, f"{words}, and the tooth that has left the {lets_off} stone would come back into that stone")
 
 
 def _roller(values: SwissLever, design: Swiss) -> Iterator[Conflict]:

@@ -76,11 +76,6 @@ def with_springs_held(scene: Scene) -> Scene:
     return dataclasses.replace(scene, torques=held)
 
 
-def is_driven(scene: Scene) -> bool:
-    """Does a torque or a force put work in?"""
-    return any(torque.table or torque.value for torque in scene.torques)
-
-
 def why_no_section(compiled: Compiled, parts: Parts) -> str:
     """Why no turning point can stand for the whole state; "" where one can."""
     model = compiled.model

@@ -16,6 +16,7 @@ import numpy as np
 
 from watchsim.analysis.timing.beats import DAY
 from watchsim.analysis.verdicts.words import STOPS, TICKS, UNSETTLED, VERDICTS
+from watchsim.scene.roles import is_driven
 from watchsim.scene.scene import Scene
 from watchsim.simulation.loop_state.state import State
 from watchsim.studies.limit_cycle.all_cycles.report import with_all_cycles
@@ -23,8 +24,9 @@ from watchsim.studies.limit_cycle.all_cycles.survey import Survey
 from watchsim.studies.limit_cycle.all_cycles.swings import Swings
 from watchsim.studies.limit_cycle.cycle import Cycle
 from watchsim.studies.limit_cycle.judge import judged, late_means, run_from
+from watchsim.studies.limit_cycle.kept_going import nothing_lets_go, nothing_swings
 from watchsim.studies.limit_cycle.loop import Loop
-from watchsim.studies.limit_cycle.parts import Parts, is_driven, parts_of, why_no_section, with_springs_held
+from watchsim.studies.limit_cycle.parts import Parts, parts_of, why_no_section, with_springs_held
 from watchsim.studies.limit_cycle.polish import FINER, Polished, glanced, polished, polished_over
 from watchsim.studies.limit_cycle.repeats import repeats
 from watchsim.studies.limit_cycle.return_map import Return, ReturnMap
@@ -39,6 +41,7 @@ FEWEST = 40  # periods of it
 SETTLED = 1e-4  # of the amplitude: what such a run may still scatter and drift
 LOSSLESS = 1e-9  # of the amplitude, in one oscillation
 FINEST = 1e-13  # tolerance of a run
+DIES = "its swing dies away within an oscillation"
 ASIDE = 0.01  # of the amplitude: beside an unstable cycle, to see where it is left for
 
 
@@ -59,7 +62,8 @@ def steady(
     all_cycles  look at swings of all sizes for every cycle, stable or not, and say which of them each swing leads to
 
     Where there is no cycle `found` is False, and `verdict` and `message` say what there is instead. ValueError for a bad
-    argument; SceneError where bodies overlap at the start. A mainspring stays as far wound as the scene says.
+    argument; SceneError where bodies overlap at the start, and where nothing keeps an oscillator going. A mainspring stays as
+    far wound as the scene says.
     """
     begun = time.perf_counter()
     if not isinstance(scene, Scene):
@@ -71,11 +75,15 @@ def steady(
         raise ValueError(f"the tolerance must lie between {FINEST:g} and 1e-2, not {tolerance}")
     if amplitude is not None and not (amplitude > 0.0 and math.isfinite(amplitude)):
         raise ValueError(f"the amplitude must be a positive number of rad (m), not {amplitude}")
+    if refused := nothing_swings(scene):
+        raise refused
     loop = Loop(with_springs_held(scene), tolerance)
     ready = time.perf_counter()
     loop.warm_up()
     warm = time.perf_counter()
     cycle = _searched(loop, Search(amplitude, brief, all_cycles))
+    if not cycle.found and cycle.period_s is None and (refused := nothing_lets_go(scene)):
+        raise refused
     wall = time.perf_counter() - begun - (warm - ready)
     return dataclasses.replace(cycle, simulated_s=loop.simulated, cells_s=loop.finder.seconds, wall_s=wall)
 
@@ -98,6 +106,8 @@ def _searched(loop: Loop, search: Search) -> Cycle:
     section = first_section(loop, parts, state)
     if isinstance(section, NoSection):
         if section.still or not is_driven(loop.scene):
+            if parts.wheel < 0:
+                return Cycle(False, None, DIES)
             return _instead(loop, None, STOPS, section.time)
         return _by_run(loop, parts, "at no turning point of the oscillator does everything else stand still")
     if not is_driven(loop.scene):
@@ -245,7 +255,7 @@ def _alone(oscillate: ReturnMap) -> Cycle:
     start = oscillate.section.amplitude
     got = oscillate(start)
     if got.trouble:
-        return Cycle(False, None, "nothing drives it, and its swing dies away within an oscillation")
+        return Cycle(False, None, f"nothing drives it, and {DIES}")
     ratio = got.amplitude / start
     if abs(1.0 - ratio) <= LOSSLESS:
         message = "nothing drives it and nothing brakes it: it keeps any amplitude that it is given"
