@@ -30,7 +30,7 @@ def test_the_profile_keeps_all_rules():
 BROKEN = {
     "draw": {"draw": "6°"},
     "lock": {"lock": "0.5°"},
-    "drop": {"drop_outside": "0.5°"},
+    "drop": {"drop_outside": "0.7°"},
     "unequal-drops": {"drop_inside": "1.9°"},
     "run": {"run": "0.05°"},
     "pin-shake": {"shake": "0.005 mm"},
