@@ -15,10 +15,8 @@ from watchsim.studies.axes import DESIGN, dimension_of
 from watchsim.units import ANGLE, LENGTH, NUMBER, Dimension, UnitError, known_unit, parse
 
 SECTIONS = ("scene", "bodies", "springs", "torques", "damping", "contacts", DESIGN)
-# What is no dimension of the mechanism: how a drawing is read, how a body starts, vertices, what must stay a whole number, and
-# what is only drawn.
+# What is no dimension of the mechanism: how a drawing is read, how a body starts, vertices, what must stay a whole number.
 LEFT_OUT = {"schema", "snap", "material", "axis", "polygon", "line", "count", "turns", "velocity", "spin", "table", "pivot"}
-LEFT_OUT |= {"draw"}
 OF_DESIGN = {"embraced", "start"}  # a whole number and a half; where the balance is let go
 RELATIVE = 1e-3  # of a value: the larger of the two steps
 SHORT, SLIGHT, SMALL = 5e-7, 2e-4, 1e-4  # steps of lengths (m), angles (rad) and of numbers that are zero
