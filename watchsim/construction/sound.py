@@ -22,7 +22,7 @@ def drawing_of(sheet: Sheet, name: str, snap: float = SNAP) -> Drawing:
 
 def unsound(sheet: Sheet, name: str) -> Iterator[str]:
     """What is wrong with the outlines, a sentence for each layer."""
-    wrong = [finding for finding in drawing_of(sheet, name).findings if finding.severity == "error"]
+    wrong = [finding for finding in drawing_of(sheet, name, SNAP).findings if finding.severity == "error"]
     for layer in dict.fromkeys(finding.layer for finding in wrong):
         first = next(finding for finding in wrong if finding.layer == layer)
         at = "" if first.x_mm is None else f" at ({first.x_mm:.3f}, {first.y_mm:.3f}) mm"
