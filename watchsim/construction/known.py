@@ -10,6 +10,7 @@ _HOMES = {
     "swiss_lever": "watchsim.construction.swiss_lever.design",
     "coaxial": "watchsim.construction.coaxial.design",
     "detent": "watchsim.construction.detent.design",
+    "pin_pallet": "watchsim.construction.pin_pallet.pin_pallet_design",
     "geneva": "watchsim.construction.geneva.design",
     "graham": "watchsim.construction.graham.design",
     "recoil_anchor": "watchsim.construction.recoil_anchor.design",
