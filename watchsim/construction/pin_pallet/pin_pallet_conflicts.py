@@ -62,10 +62,13 @@ def _teeth(values: PinPallet, design: PinLever) -> Iterator[Conflict]:
         words = f"gives the impulse faces a slope of {rise:.3g}°; {LEAST_RISE:g}° to {STEEPEST:g}° work"
         yield Conflict("lift", words)
         return
-    for name, lever in (("lock", design.let_off), ("guard_freedom", design.bank - values.guard_freedom)):
+    rounds = "only the front of a tooth draws, and its corner rounds the pin before it unlocks"
+    for name, lever, what in (
+        ("lock", design.let_off, "a tooth would drop on a pin with its corner"),
+        ("guard_freedom", design.bank - values.guard_freedom, "the dart would stop the lever too late"),
+    ):
         if min(design.front_used(side, lever) for side in (1, -1)) < 0.0:
-            words = {"lock": "a tooth would drop on a pin by its corner", "guard_freedom": "the dart would stop the lever too late"}
-            yield Conflict(name, f"{words[name]}: only the front of a tooth draws, and its corner rounds the pin before unlocking")
+            yield Conflict(name, f"{what}: {rounds}")
     needed = drop_needed(design)
     if values.drop < needed:
         words = f"must be at least {needed:.4g}°: while one pin unlocks, the other comes in behind the tooth that it let off"
@@ -92,4 +95,5 @@ def _roller(values: PinPallet, design: PinLever) -> Iterator[Conflict]:
         )
     needed = crescent_needed(design)
     if values.crescent < needed:
-        yield Conflict("crescent", f"must be at least {needed:.4g}°: the dart enters the roller that far beside the impulse pin")
+        words = f"must be at least {needed:.4g}°"
+        yield Conflict("crescent", f"{words}: the dart enters the roller that far beside the impulse pin")

@@ -47,7 +47,7 @@ def pin_lever(values: PinPallet) -> PinLever:
 
 
 def _half_span(design: PinLever, nominal: float) -> float:
-    """Such that both drops are equal: from the pin that lets off to the one that locks are a whole number and a half of spaces."""
+    """Such that both drops are equal: as one pin lets off, the two are a whole number and a half of spaces apart."""
 
     def excess(half: float) -> float:
         placed = replace(design, half_span=half)

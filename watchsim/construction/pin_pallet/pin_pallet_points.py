@@ -1,9 +1,9 @@
 """Which points of a pin-pallet escapement follow from its numbers?
 
-The wheel's centre O is the origin and the wheel turns clockwise; a positive lever angle puts the entry pin (left) deep. With the
-lever at `unlocked` a pin's centre C stands where OC and the line to the lever's pivot P are at right angles, and the front
-corner of a tooth, behind the pin on that line, pushes through P: it neither draws nor drives. Both pins are as far from P, so
-that a let-off on one side is the mirror image of that on the other. Millimetres and degrees.
+The wheel's centre O is the origin and the wheel turns clockwise; a positive lever angle puts the entry pin (left) deep. With
+the lever at `unlocked` a pin's centre C stands where OC and the line to the lever's pivot P are at right angles, and the
+front corner of a tooth, behind the pin on that line, pushes through P: it neither draws nor drives. Both pins are as far from
+P, so that a let-off on one side is the mirror image of that on the other. Millimetres and degrees.
 """
 
 from __future__ import annotations
@@ -50,8 +50,8 @@ class PinLever(Swiss):
     def behind_pin(self, centre: Point) -> float:
         """Degrees of the wheel from a pin there to the front corner of the tooth whose front rests on it.
 
-        With the corner at (R, 0) the front goes inwards from it in the direction 180° - u; the pin's centre, the angle b before the
-        corner, is a pin's radius off that line: R sin u + |C| sin(b - u) = pin.
+        With the corner at (R, 0) the front goes inwards from it in the direction 180° - u; the pin's centre, the angle b
+        before the corner, is a pin's radius off that line: R sin u + |C| sin(b - u) = pin.
         """
         lean = math.radians(self.undercut)
         return self.undercut + math.degrees(math.asin((self.pin - self.tip_radius * math.sin(lean)) / math.hypot(*centre)))
