@@ -13,6 +13,7 @@ _HOMES = {
     "pin_pallet": "watchsim.construction.pin_pallet.pin_pallet_design",
     "pin_wheel": "watchsim.construction.pin_wheel.pin_wheel_design",
     "cylinder": "watchsim.construction.cylinder.cylinder_design",
+    "duplex": "watchsim.construction.duplex.duplex_design",
     "geneva": "watchsim.construction.geneva.design",
     "graham": "watchsim.construction.graham.design",
     "recoil_anchor": "watchsim.construction.recoil_anchor.design",

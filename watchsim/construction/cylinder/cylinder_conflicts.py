@@ -38,7 +38,22 @@ def conflicts(values: Cylinder) -> Iterator[Conflict]:
     if values.start > made.most - SPARE:
         words = f"must be less than {made.most - SPARE:.4g}°"
         yield Conflict("start", f"{words}: farther out the other end of the shell comes round to the tooth")
+    yield from _drive(values, made)
     yield from _belly(made)
+
+
+def _drive(values: Cylinder, made: Shell) -> Iterator[Conflict]:
+    """The swing A that the drive would keep up if only damping and friction at rest took work: w = π k A² / 2 Q + 2 f A."""
+    stiffness = values.balance_inertia * 1e-10 * (math.pi * values.frequency / 3600.0) ** 2
+    damping = 0.5 * math.pi * stiffness / values.q_factor
+    work = values.torque * 1e-6 * math.radians(values.tooth_width)
+    rubbing = values.friction * values.torque * 1e-6 * made.outer / made.distance
+    swing = math.degrees((math.sqrt(rubbing**2 + damping * work) - rubbing) / damping)
+    if swing > made.most:
+        words = f"the balance would swing by up to {swing:.4g}°, and at {made.most:.4g}° the other end of the shell comes round"
+        yield Conflict("torque", f"{words}: less torque, or a heavier balance")
+    if swing < made.let_off:
+        yield Conflict("torque", f"the balance would swing by {swing:.4g}° at most, and let off no tooth: more torque")
 
 
 def _belly(made: Shell) -> Iterator[Conflict]:

@@ -1,7 +1,7 @@
 """What are the outlines of a cylinder escapement's wheel and balance?
 
-TEETH and SHELL touch. The teeth stand on pillars over the RIM, at the height of the shell's cut: RIM, the balance's BALANCE
-rim are drawn only. Millimetres.
+TEETH and SHELL touch. The teeth stand on pillars over the wheel's RIM, at the height of the shell's cut; it and the
+RIM of the balance are drawn only. Millimetres.
 """
 
 from __future__ import annotations
@@ -67,13 +67,9 @@ def balance(shell: Shell) -> list[Loop]:
         arc_between(polar(shell.inner, left), polar(shell.inner, right), (0.0, 0.0), False),
         arc_between(polar(shell.inner, right), polar(shell.outer, right), polar(middle, right), True),
     ]
-    return [Loop(tuple(edges), "SHELL"), *_relayered(wheel_of(shell).rim())]
+    return [Loop(tuple(edges), "SHELL"), *wheel_of(shell).rim()]
 
 
 def wheel_of(shell: Shell) -> BalanceWheel:
     """Rim and hairspring of the balance."""
     return balance_wheel(shell.values.balance_inertia, shell.outer, 0.3 * shell.inner, BALANCE_ARMS)
-
-
-def _relayered(loops: list[Loop]) -> list[Loop]:
-    return [Loop(loop.edges, "BALANCE", hole=loop.hole) for loop in loops]

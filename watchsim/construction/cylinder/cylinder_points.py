@@ -85,8 +85,9 @@ class Shell:
         return -self.bearing(self.point_radius, self.inner)
 
     def _direction(self, reach: float, radius: float, side: int) -> float:
-        """From B, of what is `reach` from O and `radius` from B on the left (side 1) or right (-1)."""
-        return angle_of(polar(reach, 90.0 + side * self.bearing(reach, radius)), self.balance) % 360.0
+        """From B, of what is so far from O and from B: on the left (side 1) 90° to 270°, on the right (-1) -90° to 90°."""
+        seen = angle_of(polar(reach, 90.0 + side * self.bearing(reach, radius)), self.balance)
+        return seen % 360.0 if side > 0 else seen
 
     @cached_property
     def entry(self) -> tuple[float, float]:
@@ -96,7 +97,7 @@ class Shell:
     @cached_property
     def exit(self) -> tuple[float, float]:
         """The same of the right lip."""
-        return self._direction(self.point_radius, self.inner, -1) - 360.0, self._direction(self.heel_radius, self.outer, -1)
+        return self._direction(self.point_radius, self.inner, -1), self._direction(self.heel_radius, self.outer, -1)
 
     @property
     def lifts(self) -> tuple[float, float]:

@@ -31,7 +31,7 @@ inertia  = "{values.wheel_inertia:.15g} mg·cm²"      # with the train as felt 
 [bodies.balance]                     # hangs at the end of a swing
 drawing  = "balance.dxf"
 layers   = ["SHELL"]
-draw     = ["BALANCE"]
+draw     = ["RIM"]
 pivot    = "PIVOT"
 position = ["0 mm", "{values.centre_distance!r} mm"]
 angle    = "{values.start!r}°"
@@ -53,7 +53,7 @@ q_factor = {values.q_factor!r}
 {contacts}
 [run]
 duration  = "20 s"
-tolerance = 1e-9
+tolerance = 1e-12
 
 [timegrapher]
 lift_angle = "{values.lift:.15g}°"
