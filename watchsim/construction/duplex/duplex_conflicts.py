@@ -7,9 +7,11 @@ from collections.abc import Iterator
 
 from watchsim.construction.design import Conflict
 from watchsim.construction.duplex.duplex_dimensions import Duplex
+from watchsim.construction.duplex.duplex_outlines import floor_between
 from watchsim.construction.duplex.duplex_points import DuplexPoints
 
 FREE = 0.2  # degrees of the wheel by which an impulse tooth stands outside the overlap until the notch has let go
+LEAST_FLOOR = 2.0  # degrees
 LEAST_IMPULSE = 8.0  # degrees of the balance
 WITHIN = 1.0  # degrees of the balance by which the pallet is in the overlap as a tooth is let go
 SLIDES = 5.0  # degrees by which the point's direction on the roller must exceed the angle of friction
@@ -37,6 +39,10 @@ def conflicts(values: Duplex) -> Iterator[Conflict]:
         yield Conflict("intersection", words)
     if values.undercut <= values.notch / 2.0:
         yield Conflict("undercut", f"must be more than {values.notch / 2.0:.4g}°, half of the notch, so that points touch its wall")
+    floor = floor_between(points)
+    if not LEAST_FLOOR <= floor <= points.pitch:
+        words = f"with {values.teeth} teeth leaves no rim between the feet of the resting teeth"
+        yield Conflict("undercut", f"{words}: {LEAST_FLOOR:g}° of it are needed; less undercut, or fewer teeth")
     # The notch comes round to the resting tooth a second time.
     round_again = 360.0 - abs(values.letting_go) - 2.0 * values.intersection - values.notch - SPARE
     if values.start > round_again:

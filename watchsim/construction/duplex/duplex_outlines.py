@@ -11,11 +11,11 @@ import math
 from watchsim.construction.arms import Arms
 from watchsim.construction.balance_wheel import BalanceWheel, balance_wheel
 from watchsim.construction.coaxial.stones import Stone
-from watchsim.construction.coaxial.wheel import ToothForm, contour
+from watchsim.construction.coaxial.wheel import ToothForm, contour, tooth_and_gap
 from watchsim.construction.duplex.duplex_points import DuplexPoints
 from watchsim.construction.outline import along, arc_between, circle, fillet_chain, polar, turned
 from watchsim.geometry.loop import Loop
-from watchsim.geometry.primitives import Edge, Line
+from watchsim.geometry.primitives import Arc, Edge, Line
 
 REFERENCE = 6.0  # mm: radius of the wheel whose lesser lengths others scale
 ROOT, RIM, ARM, HUB, BORE = 3.6, 3.1, 0.35, 0.9, 0.3
@@ -29,7 +29,7 @@ DEPTH, CLEAR = 0.5, 2.0  # of the notch: of the roller's radius; of what the poi
 def wheel(points: DuplexPoints) -> list[Loop]:
     """Resting teeth on the rim, arms, impulse teeth; at angle 0 the point of a resting tooth is on the x axis."""
     s, values = points.values.tip_radius / REFERENCE, points.values
-    form = ToothForm(values.tip_radius, ROOT * s, 0.03 * s, STRAIGHT * s, values.undercut + TAPER, HOLLOW * s, 0.3 * s)
+    form = resting_form(points)
     arms = Arms(ARMS, ARM * s, HUB * s, RIM * s, 0.25 * s)
     upright = impulse_tooth(points)
     return [
@@ -38,6 +38,19 @@ def wheel(points: DuplexPoints) -> list[Loop]:
         circle("RESTING", (0.0, 0.0), BORE * s, hole=True),
         *(upright.moved(math.radians(points.waiting - points.rests + i * points.pitch), (0.0, 0.0)) for i in range(values.teeth)),
     ]
+
+
+def resting_form(points: DuplexPoints) -> ToothForm:
+    """Of the long teeth: their backs are straight for most of the way."""
+    s, values = points.values.tip_radius / REFERENCE, points.values
+    return ToothForm(values.tip_radius, ROOT * s, 0.03 * s, STRAIGHT * s, values.undercut + TAPER, HOLLOW * s, 0.3 * s)
+
+
+def floor_between(points: DuplexPoints) -> float:
+    """Degrees of the rim between two resting teeth, at the wheel's centre."""
+    chain = tooth_and_gap(resting_form(points), points.values.undercut, points.pitch)
+    first, last = chain[0], chain[-1]
+    return math.degrees(abs(first.sweep) + abs(last.sweep)) if isinstance(first, Arc) and isinstance(last, Arc) else 0.0
 
 
 def impulse_tooth(points: DuplexPoints) -> Loop:
