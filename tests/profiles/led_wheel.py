@@ -20,8 +20,8 @@ from watchsim.geometry.primitives import Arc
 
 DAY = 86400.0
 SPLIT = 400  # points on a full turn of an arc
-STEP = math.radians(0.05)  # of the wheel, to look for the touch
-FINE = 1e-10
+STEP = math.radians(0.004)  # of the wheel, to look for the touch: as an impulse ends, what overlaps is thin
+FINE = 1e-9
 
 
 def polygon(scene: ws.Scene, body: str, layers: set[str]) -> MultiPolygon:
@@ -72,8 +72,8 @@ class Led:
         return free
 
     def impulse(self, begin: float, end: float, wheel: float, points: int = 81) -> tuple[np.ndarray, np.ndarray]:
-        """Angles of the oscillator (rad) from begin to end, and how far the wheel stands at each."""
-        swung = np.linspace(begin, end, points)
+        """Angles of the oscillator (rad) from begin to end, closer together there, and how far the wheel stands at each."""
+        swung = begin + (end - begin) * np.sin(np.linspace(0.0, 0.5 * math.pi, points))
         gone = []
         for angle in swung:
             wheel = self.follow(float(angle), wheel)

@@ -20,7 +20,7 @@ class Cylinder:
     teeth: int = dim(15, "", 10, 20, "of the escape wheel", HEADRICK)
     centre_distance: float = dim(4.5, "mm", 1.0, 20.0, "of wheel and balance", CHOSEN)
     tooth_width: float = dim(10.0, "°", 4.0, 15.0, "of a tooth's impulse face, at the wheel's centre", HEADRICK)
-    drop: float = dim(0.8, "°", 0.1, 3.0, "wheel, free from a let-off to the next rest, the same inside and outside", CHOSEN)
+    drop: float = dim(1.4, "°", 0.1, 4.0, "wheel, free from a let-off to the next rest, the same inside and outside", CHOSEN)
     lift: float = dim(40.0, "°", 20.0, 70.0, "balance, while a tooth drives a lip; mean of both lips", USUAL)
     lock: float = dim(8.0, "°", 1.0, 20.0, "balance, from the drop of a tooth until its point is at the lip; of the lesser", USUAL)
     wheel_inertia: float = dim(0.4, "mg·cm²", 1e-3, 100.0, "escape wheel with the train as felt there", ESTIMATE)

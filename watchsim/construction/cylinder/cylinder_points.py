@@ -2,11 +2,11 @@
 
 The wheel's centre O is the origin and it turns clockwise; the balance's centre B stands above, at the distance D. A tooth's
 impulse face runs from its point, D - x from O, back to its heel, D + x from O. With the balance turned counter-clockwise the
-point rests outside on the left wall of the shell. Turning back, the left lip passes the point; the face lifts the lip until
-the heel has come within the inner radius; the point drops on the inside of the right wall. On the way back the face lifts
-the right lip until the heel is beyond the outer radius, and the next tooth's point drops on the left wall. Lips are half round:
-unlocking and let-off are where point and heel are beside the middle of the lip, seen from B. Bearings are at O, from the line
-OB, positive on the left; directions at B. Millimetres, degrees.
+point rests outside on the left wall of the shell. Turning back, the left lip passes the point, and the face lifts the lip;
+once the heel is through, the point drops on the inside of the right wall. On the way back the face lifts the right lip, and
+the next tooth's point drops on the left wall. Lips are half round: unlocked is where the middle of the lip and the point are
+in line with B, let off where the lip's middle and the heel are in line with O. Bearings are at O, from the line OB, positive
+on the left; directions at B. Millimetres, degrees.
 """
 
 from __future__ import annotations
@@ -58,22 +58,41 @@ class Shell:
         cosine = (reach**2 + self.distance**2 - radius**2) / (2.0 * reach * self.distance)
         return math.degrees(math.acos(cosine)) if cosine < 1.0 else 0.0
 
-    def _across(self, radius: float) -> float:
-        """Degrees of the wheel from where the point is on the circle about B on one side to the heel on it on the other."""
-        return self.bearing(self.point_radius, radius) + self.bearing(self.heel_radius, radius)
-
     @cached_property
     def inner(self) -> float:
         """Radius of the shell inside: a tooth and the drop fit."""
-        return self._radius(self.values.tooth_width + self.values.drop)
+
+        def excess(inner: float) -> float:
+            return self._let_off_bearing(inner, self._outer(inner)) + self.bearing(self.point_radius, inner) - fits
+
+        fits = self.values.tooth_width + self.values.drop
+        return float(brentq(excess, 1.001 * self.rise, 0.5 * self.distance, xtol=FINE * self.distance))
 
     @cached_property
     def outer(self) -> float:
         """Radius of the shell outside: it and the drop fit between two teeth."""
-        return self._radius(self.pitch - self.values.tooth_width - self.values.drop)
+        return self._outer(self.inner)
 
-    def _radius(self, across: float) -> float:
-        return float(brentq(lambda r: self._across(r) - across, self.rise, self.distance, xtol=FINE * self.distance))
+    def _outer(self, inner: float) -> float:
+        """With equal drops the walls take what is left of a pitch beside two teeth and two drops."""
+        walls = self.pitch - 2.0 * (self.values.tooth_width + self.values.drop)
+        angle = math.radians(self.bearing(self.point_radius, inner) + walls)
+        x, y = self.point_radius * math.sin(angle), self.point_radius * math.cos(angle) - self.distance
+        return math.hypot(x, y)
+
+    def _let_off_bearing(self, inner: float, outer: float) -> float:
+        """Of heel and lip's middle, in line with O."""
+        return self.bearing(self.heel_radius + (outer - inner) / 2.0, (inner + outer) / 2.0)
+
+    @property
+    def let_off_bearing(self) -> float:
+        return self._let_off_bearing(self.inner, self.outer)
+
+    @property
+    def driven(self) -> tuple[float, float]:
+        """Turn of the wheel during the impulse on the left and on the right lip."""
+        across = self.let_off_bearing - self.values.tooth_width
+        return self.rests_outside - across, self.rests_inside + self.let_off_bearing + self.values.tooth_width
 
     @property
     def rests_outside(self) -> float:
@@ -92,12 +111,15 @@ class Shell:
     @cached_property
     def entry(self) -> tuple[float, float]:
         """Direction of the left lip's middle at unlocking and let-off."""
-        return self._direction(self.point_radius, self.outer, 1), self._direction(self.heel_radius, self.inner, 1)
+        return self._direction(self.point_radius, self.outer, 1), self._lip_let_off(1)
 
     @cached_property
     def exit(self) -> tuple[float, float]:
         """The same of the right lip."""
-        return self._direction(self.point_radius, self.inner, -1), self._direction(self.heel_radius, self.outer, -1)
+        return self._direction(self.point_radius, self.inner, -1), self._lip_let_off(-1)
+
+    def _lip_let_off(self, side: int) -> float:
+        return self._direction(self.heel_radius + (self.outer - self.inner) / 2.0, (self.inner + self.outer) / 2.0, side)
 
     @property
     def lifts(self) -> tuple[float, float]:
