@@ -1,8 +1,8 @@
 """What does a drive give an oscillator, by the outlines alone?
 
-The oscillator is led by hand through an impulse, the wheel follows until its polygon touches the other. The turn of the wheel by
-the turn of the oscillator is the torque on it by the drive, without friction and inertia (virtual work); Airy's integral over
-it is the rate. Shares with the simulation only the drawings, as polygons of SPLIT points per arc.
+The oscillator is led by hand through an impulse, the wheel follows until its polygon touches the other. The turn of the wheel
+by the turn of the oscillator is the torque on it by the drive, without friction and inertia (virtual work); Airy's integral
+over it is the rate. Shares with the simulation only the drawings, as polygons of SPLIT points per arc.
 """
 
 from __future__ import annotations
@@ -81,7 +81,9 @@ class Led:
         return swung, np.array(gone)
 
 
-def work_and_rate(impulses: list[tuple[np.ndarray, np.ndarray]], torque: float, stiffness: float, swing: float) -> tuple[float, float]:
+def work_and_rate(
+    impulses: list[tuple[np.ndarray, np.ndarray]], torque: float, stiffness: float, swing: float
+) -> tuple[float, float]:
     """Work of the drive (J) in the impulses of an oscillation, and the rate (s/d) by Airy's formula.
 
     dω/ω = -(1 / 2π k A) times the integral of M sin φ over an oscillation, θ = A sin φ.

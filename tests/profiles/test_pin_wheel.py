@@ -75,7 +75,7 @@ def test_amplitude_and_rate_as_airy_says():
         ({"reach": 1.0}, "reach"),
         ({"pins": 60, "drop": 2.5}, "drop"),
         ({"pin_diameter": 9.0}, "pin_diameter"),
-        ({"lift": 5.0, "pin_circle": 100.0, "start": 3.5}, "lift"),
+        ({"lift": 5.0, "drop": 4.0, "start": 3.5}, "lift"),
         ({"torque": 500.0}, "torque"),
         ({"torque": 1.0}, "torque"),
     ],

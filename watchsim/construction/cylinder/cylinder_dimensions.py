@@ -22,7 +22,9 @@ class Cylinder:
     tooth_width: float = dim(10.0, "°", 4.0, 15.0, "of a tooth's impulse face, at the wheel's centre", HEADRICK)
     drop: float = dim(1.4, "°", 0.1, 4.0, "wheel, free from a let-off to the next rest, the same inside and outside", CHOSEN)
     lift: float = dim(40.0, "°", 20.0, 70.0, "balance, while a tooth drives a lip; mean of both lips", USUAL)
-    lock: float = dim(8.0, "°", 1.0, 20.0, "balance, from the drop of a tooth until its point is at the lip; of the lesser", USUAL)
+    lock: float = dim(
+        8.0, "°", 1.0, 20.0, "balance, from the drop of a tooth until its point is at the lip; of the lesser", USUAL
+    )
     wheel_inertia: float = dim(0.4, "mg·cm²", 1e-3, 100.0, "escape wheel with the train as felt there", ESTIMATE)
     balance_inertia: float = dim(15.0, "mg·cm²", 0.5, 1e3, "balance with cylinder and hairspring", ESTIMATE)
     frequency: float = dim(18000.0, "vph", 7200.0, 21600.0, "of the balance on its hairspring, in beats per hour", USUAL)

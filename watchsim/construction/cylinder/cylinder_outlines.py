@@ -1,7 +1,7 @@
 """What are the outlines of a cylinder escapement's wheel and balance?
 
 TEETH and SHELL touch. The teeth stand on pillars over the wheel's RIM, at the height of the shell's cut; it and the
-RIM of the balance are drawn only. Millimetres.
+rim of the balance (BALANCE) are drawn only. Millimetres.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ def balance(shell: Shell) -> list[Loop]:
         arc_between(polar(shell.inner, left), polar(shell.inner, right), (0.0, 0.0), False),
         arc_between(polar(shell.inner, right), polar(shell.outer, right), polar(middle, right), True),
     ]
-    return [Loop(tuple(edges), "SHELL"), *wheel_of(shell).rim()]
+    return [Loop(tuple(edges), "SHELL"), *(Loop(loop.edges, "BALANCE", hole=loop.hole) for loop in wheel_of(shell).rim())]
 
 
 def wheel_of(shell: Shell) -> BalanceWheel:

@@ -148,7 +148,7 @@ class Shell:
 
     @property
     def most(self) -> float:
-        """Swing at which the other end of the shell comes round to a resting tooth; the same on both sides but for the locks."""
+        """Swing at which the other end of the shell comes round to a resting tooth; of the side where that is first."""
         return min(self.entry[0] - self.left_lip + self.span, self.left_lip - self.exit[0]) - self.values.lock
 
 

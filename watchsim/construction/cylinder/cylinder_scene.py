@@ -31,7 +31,7 @@ inertia  = "{values.wheel_inertia:.15g} mg·cm²"      # with the train as felt 
 [bodies.balance]                     # hangs at the end of a swing
 drawing  = "balance.dxf"
 layers   = ["SHELL"]
-draw     = ["RIM"]
+draw     = ["BALANCE"]
 pivot    = "PIVOT"
 position = ["0 mm", "{values.centre_distance!r} mm"]
 angle    = "{values.start!r}°"

@@ -24,7 +24,9 @@ def conflicts(values: Duplex) -> Iterator[Conflict]:
     most = points.waiting - 2.0 * points.rests - FREE
     if values.reach > most:
         words = f"must be at most {most:.4g}°: as the notch lets a tooth go, the impulse tooth that will drive is"
-        yield Conflict("reach", f"{words} {most + FREE:.4g}° from the line of centres, and the pallet has to be there before it")
+        yield Conflict(
+            "reach", f"{words} {most + FREE:.4g}° from the line of centres, and the pallet has to be there before it"
+        )
         return
     at_letting_go = points.pallet_at(points.waiting - 2.0 * points.rests)
     least = WITHIN - points.half_impulse - at_letting_go
@@ -38,7 +40,9 @@ def conflicts(values: Duplex) -> Iterator[Conflict]:
         words = f"must be at least {holds:.4g}°, or a tooth wedges itself below the roller at a friction of {values.friction:g}"
         yield Conflict("intersection", words)
     if values.undercut <= values.notch / 2.0:
-        yield Conflict("undercut", f"must be more than {values.notch / 2.0:.4g}°, half of the notch, so that points touch its wall")
+        yield Conflict(
+            "undercut", f"must be more than {values.notch / 2.0:.4g}°, half of the notch, so that points touch its wall"
+        )
     floor = floor_between(points)
     if not LEAST_FLOOR <= floor <= points.pitch:
         words = f"with {values.teeth} teeth leaves no rim between the feet of the resting teeth"

@@ -36,7 +36,10 @@ def wheel(points: DuplexPoints) -> list[Loop]:
         contour(form, values.undercut, "RESTING", values.teeth),
         *(Loop(tuple(arms.window(i)), "RESTING", hole=True) for i in range(ARMS)),
         circle("RESTING", (0.0, 0.0), BORE * s, hole=True),
-        *(upright.moved(math.radians(points.waiting - points.rests + i * points.pitch), (0.0, 0.0)) for i in range(values.teeth)),
+        *(
+            upright.moved(math.radians(points.waiting - points.rests + i * points.pitch), (0.0, 0.0))
+            for i in range(values.teeth)
+        ),
     ]
 
 
@@ -69,9 +72,7 @@ def balance(points: DuplexPoints) -> list[Loop]:
     s, values = points.values.tip_radius / REFERENCE, points.values
     bearing = -90.0 + points.pallet_let_go - values.letting_go
     width = WIDTH * s
-    pallet = Stone(
-        polar(points.pallet, bearing), bearing + 180.0, width, points.pallet, width * math.tan(math.radians(RELIEF))
-    )
+    pallet = Stone(polar(points.pallet, bearing), bearing + 180.0, width, points.pallet, width * math.tan(math.radians(RELIEF)))
     return [roller(points), pallet.loop("PALLET", EDGE * s), *wheel_of(points).rim()]
 
 

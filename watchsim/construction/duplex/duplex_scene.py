@@ -11,9 +11,9 @@ from watchsim.construction.duplex.duplex_points import DuplexPoints
 CLEAR = 1e-4  # degrees by which the tooth stands off the roller at the start
 
 TEXT = """\
-# A duplex escapement: a long tooth rests on the roller while the balance swings; as the roller's notch comes by counter-clockwise
-# the tooth goes through with it, and an upright tooth falls on the impulse pallet. On the way back the tooth only dips into the
-# notch. Drawn to these dimensions:
+# A duplex escapement: a long tooth rests on the roller while the balance swings; as the roller's notch comes by, counter-
+# clockwise, the tooth goes through with it, and an upright tooth falls on the impulse pallet. On the way back the tooth only
+# dips into the notch. Drawn to these dimensions:
 {dimensions}
 
 [scene]
