@@ -15,6 +15,7 @@ _HOMES = {
     "cylinder": "watchsim.construction.cylinder.cylinder_design",
     "duplex": "watchsim.construction.duplex.duplex_design",
     "geneva": "watchsim.construction.geneva.design",
+    "geneva_stop": "watchsim.construction.geneva_stop.geneva_stop_design",
     "graham": "watchsim.construction.graham.design",
     "recoil_anchor": "watchsim.construction.recoil_anchor.design",
     "involute_pair": "watchsim.construction.involute_pair.design",

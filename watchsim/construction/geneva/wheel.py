@@ -28,13 +28,13 @@ BORE = 0.2  # by the distance of the slots' bottoms from the axis
 def wheel(values: Geneva) -> list[Loop]:
     """The slotted wheel and its bore."""
     pitch = math.radians(2.0 * half_pitch(values))
-    sector = Loop(tuple(_sector(values)), "WHEEL")
-    edges = [edge for i in range(values.slots) for edge in sector.moved(i * pitch, (0.0, 0.0)).edges]
+    part = Loop(tuple(sector(values)), "WHEEL")
+    edges = [edge for i in range(values.slots) for edge in part.moved(i * pitch, (0.0, 0.0)).edges]
     bore = BORE * (slot_bottom(values) - slot_half(values))
     return [Loop(tuple(edges), "WHEEL"), circle("WHEEL", (0.0, 0.0), bore, hole=True)]
 
 
-def _sector(values: Geneva) -> list[Edge]:
+def sector(values: Geneva) -> list[Edge]:
     """From the lower corner of one slot's mouth to that of the next, counter-clockwise."""
     rim, half, bottom = wheel_radius(values), slot_half(values), slot_bottom(values)
     mouth, middle, hollow = mouth_half(values), half_pitch(values), hollow_half(values)
