@@ -18,6 +18,7 @@ IMAGES = Path(__file__).resolve().parents[2] / "docs" / "images"
 SIZE = (960, 540)
 SHOWN = {  # profile: simulated (s), instant (s), bodies to show close (None: all)
     "geneva": (1.0, 0.2, None),
+    "geneva_stop": (4.0, 4.0, None),
     "graham": (2.0, 1.76, ["wheel"]),
     "recoil_anchor": (2.0, 1.76, ["wheel"]),
     "detent": (2.5, 2.1275, None),

@@ -72,7 +72,11 @@ def test_the_stop_holds_what_the_hand_has_more_than_the_mainspring():
 
 @pytest.mark.parametrize(
     ("chosen", "blamed"),
-    [({"hand": 5.0}, "hand"), ({"lock_radius": 1.4}, "lock_radius"), ({"pin_radius": 0.5, "turns": 3, "lock_radius": 0.9, "bottom_play": 0.9}, "pin_radius")],
+    [
+        ({"hand": 5.0}, "hand"),
+        ({"lock_radius": 1.4}, "lock_radius"),
+        ({"pin_radius": 0.5, "turns": 3, "lock_radius": 0.9, "bottom_play": 0.9}, "pin_radius"),
+    ],
 )
 def test_conflicts_name_what_to_change_first(chosen, blamed):
     assert blamed in [one.dimension for one in design("geneva_stop").refusals(chosen)]

@@ -24,7 +24,7 @@ class GenevaStop:
     hand: float = dim(8.0, "mN·m", 0.01, 1e3, "torque of the hand on the arbor", CHOSEN)
     mainspring: float = dim(5.0, "mN·m", 1e-3, 1e3, "torque of the mainspring on the arbor, fully wound", CHOSEN)
     speed: float = dim(720.0, "°/s", 10.0, 3600.0, "at which the hand would turn an arbor without mainspring", CHOSEN)
-    arbor_inertia: float = dim(5.0, "g·mm²", 1e-2, 1e6, "arbor with the winding wheels as felt there", CHOSEN)
+    arbor_inertia: float = dim(2000.0, "g·mm²", 300.0, 1e6, "arbor with winding wheels and hand as felt there", CHOSEN)
     cross_inertia: float = dim(0.05, "g·mm²", 1e-4, 1e4, "Maltese cross", CHOSEN)
     load: float = dim(0.02, "mN·m", 0.0, 10.0, "dry friction of the cross below its shouldered screw", CHOSEN)
     friction: float = dim(0.1, "", 0.0, 0.5, "coefficient of friction, in all contacts", "steel on oiled steel")

@@ -22,7 +22,8 @@ def cross(drive: Geneva) -> list[Loop]:
     rim, mouth, middle = wheel_radius(drive), mouth_half(drive), half_pitch(drive)
     blunt = arc_between(polar(rim, mouth), polar(rim, 2.0 * middle - mouth), (0.0, 0.0), True)
     parts = [
-        Loop((*slot_and_hollow[:3], blunt) if i == drive.slots - 2 else tuple(slot_and_hollow), "CROSS") for i in range(drive.slots)
+        Loop((*slot_and_hollow[:3], blunt) if i == drive.slots - 2 else tuple(slot_and_hollow), "CROSS")
+        for i in range(drive.slots)
     ]
     edges = [edge for i, part in enumerate(parts) for edge in part.moved(i * pitch, (0.0, 0.0)).edges]
     bore = BORE * (slot_bottom(drive) - slot_half(drive))
