@@ -25,9 +25,9 @@ PARTS = (  # module, name, what
     ("watchsim.analysis.beat_tables", "phases_csv", "phases.csv"),
     ("watchsim.results.tables", "write_events", "events.csv"),
     ("watchsim.results.archive", "write_trajectory", "trajectory.npz, packed beside the rest"),
-    ("watchsim.render.figures.plots", "Kinematics.__init__", "plots"),
-    ("watchsim.render.figures.plots", "Kinematics.show", "plots"),
-    ("watchsim.render.figures.plots", "write_png", "plots"),
+    ("watchsim.render.figures.kinematics_plot", "Kinematics.__init__", "plots"),
+    ("watchsim.render.figures.kinematics_plot", "Kinematics.show", "plots"),
+    ("watchsim.render.figures.kinematics_plot", "write_png", "plots"),
 )
 
 spent: defaultdict[str, float] = defaultdict(float)  # s

@@ -30,7 +30,7 @@ from watchsim.simulation.options import options_for
 from watchsim.simulation.runner import pairs_of
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.tolerances import LENIENCE_STEP, MOST_LENIENT
+from watchsim.tolerances import LENIENCE_STEP, MOST_LENIENT
 
 ROOT = Path(jit.__file__).resolve().parents[1]
 SABOTAGE = """

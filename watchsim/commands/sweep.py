@@ -82,9 +82,9 @@ def run(args: argparse.Namespace) -> int:
 
 def _sweep(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...]) -> int:
     from watchsim.studies.axes import axes_from_texts
+    from watchsim.studies.parameter_sweep import swept
     from watchsim.studies.point import Question
-    from watchsim.studies.sweep import swept
-    from watchsim.studies.table import sweep_table
+    from watchsim.studies.study_table import sweep_table
     from watchsim.units import TIME
 
     if not args.keys:
@@ -110,7 +110,7 @@ def _sweep(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...]) 
 
         print_json(plain(done.numbers()))
     else:
-        from watchsim.studies.report import sweep_text
+        from watchsim.studies.study_report import sweep_text
 
         print(sweep_text(done))
         print(f"Results: {folder}")
@@ -122,7 +122,7 @@ def _sweep(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...]) 
 
 def _sensitivity(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...]) -> int:
     from watchsim.studies.sensitivity import found
-    from watchsim.studies.table import sensitivity_table
+    from watchsim.studies.study_table import sensitivity_table
 
     folder = _folder(args, scene)
     with stopping.keeping():
@@ -137,7 +137,7 @@ def _sensitivity(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, 
 
         print_json(plain(done.numbers()))
     else:
-        from watchsim.studies.report import sensitivity_text
+        from watchsim.studies.study_report import sensitivity_text
 
         print(sensitivity_text(done))
         print(f"Results: {folder}")
@@ -153,7 +153,7 @@ def _status(whole: bool, folder: Path, fine: int) -> int:
 
 def _executor(args: argparse.Namespace, points: int | None) -> Executor:
     from watchsim.jit import is_cached
-    from watchsim.studies.sweep import processors
+    from watchsim.studies.parameter_sweep import processors
     from watchsim.studies.workers.executor import chosen
 
     workers = args.workers or processors()
@@ -169,7 +169,7 @@ def _compile_once() -> None:
     """Before several processes do it all at once."""
     from watchsim.profiles_path import profiles_dir
     from watchsim.scene.file.load import load
-    from watchsim.studies.limit_cycle.loop import Loop
+    from watchsim.studies.limit_cycle.run_from_state import Loop
 
     Loop(load(profiles_dir() / "balance"), 1e-9).warm_up()
 
@@ -209,7 +209,7 @@ def _folder(args: argparse.Namespace, scene: Scene) -> Path:
 
 
 def _figure_of_sweep(done: Any) -> Any:
-    from watchsim.render.figures.study import plot_sweep
+    from watchsim.render.figures.study_plot import plot_sweep
 
     try:
         return plot_sweep(done) if done.rows else None
@@ -219,7 +219,7 @@ def _figure_of_sweep(done: Any) -> Any:
 
 
 def _figure_of_sensitivity(done: Any) -> Any:
-    from watchsim.render.figures.effects import plot_sensitivity
+    from watchsim.render.figures.effects_plot import plot_sensitivity
 
     return plot_sensitivity(done) if done.effects else None
 
@@ -228,7 +228,7 @@ def _write(folder: Path, numbers: dict[str, Any], table: dict[str, list[Any]], f
     """sweep.json, sweep.csv, sweep.parquet where pyarrow is installed, the plot as PNG, SVG and PDF."""
     from watchsim.results.tables import json_text
     from watchsim.storage.write import write_file
-    from watchsim.studies.table import csv_text, parquet_writer
+    from watchsim.studies.study_table import csv_text, parquet_writer
 
     text = json_text(numbers)
     write_file(folder / "sweep.json", lambda path: path.write_text(text, encoding="utf-8"), "the numbers")
@@ -237,7 +237,7 @@ def _write(folder: Path, numbers: dict[str, Any], table: dict[str, list[Any]], f
     if write is not None:
         write_file(folder / "sweep.parquet", write, "the table")
     if figure is not None and not stopping.requested():
-        from watchsim.render.figures.style import save
+        from watchsim.render.figures.figure_style import save
 
         for ending in FIGURES:
             write_file(folder / f"sweep{ending}", lambda path: save(figure, path), "the plot")

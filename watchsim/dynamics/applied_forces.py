@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 from watchsim.candidates.cell_lookup import along
-from watchsim.dynamics.tolerances import KNOT_ROUNDING
 from watchsim.jit import entry, kernel
 from watchsim.model.records import OVER_TIME
+from watchsim.tolerances import KNOT_ROUNDING
 
 
 @kernel

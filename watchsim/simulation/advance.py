@@ -43,7 +43,7 @@ from watchsim.simulation.motion.turning_points import keep_passages
 from watchsim.simulation.options import OptionsRef
 from watchsim.simulation.record.write_buffers import keep_row
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.tolerances import DEPENDENT_IN_STEPS, FINEST_ROWS, RATES_TURNED, SAME_INSTANT
+from watchsim.tolerances import DEPENDENT_IN_STEPS, FINEST_ROWS, RATES_TURNED, SAME_INSTANT
 
 TOUCHED, BEARING, KINDS = MONITORS, MONITORS + 1, MONITORS + 2  # what ends a step, besides the monitors of a contact
 FLIGHT_CELLS = 128

@@ -11,7 +11,7 @@ from watchsim.simulation.loop_state.scratch import RECENT, Ended
 from watchsim.simulation.loop_state.state import State
 from watchsim.simulation.motion.coupled_motion import EXTENT, NORMAL, PARADOX, TANGENTIAL
 from watchsim.simulation.record.trajectory import Pair
-from watchsim.simulation.tolerances import LEDGER_PER_TOLERANCE, LEDGER_SHARE
+from watchsim.tolerances import LEDGER_PER_TOLERANCE, LEDGER_SHARE
 
 MANY = 6  # different causes named
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from watchsim.jit import by_reference
 from watchsim.mechanism.contact_features import JOINT
-from watchsim.simulation.tolerances import (
+from watchsim.tolerances import (
     ACCUMULATION_SPEED,
     ACCUMULATION_TIME,
     BEHIND_LEAST,
@@ -28,7 +28,7 @@ from watchsim.simulation.tolerances import (
 
 
 class Options(NamedTuple):
-    """Tolerances of a run, from those of tolerances.py. Each line: what it is; too large: ...; too small: ..."""
+    """Tolerances of a run, from those of watchsim/tolerances.py. Each line: what it is; too large: ...; too small: ..."""
 
     tolerance: float  # relative error per step of coordinates and velocities. Large: wrong rates; small: slow below 1e-12
     gap_zero: float  # m: a gap this small is zero to rounding. Large: early contacts; small: below the rounding of positions

@@ -41,7 +41,7 @@ from watchsim.simulation.record.trajectory import EVENT_DTYPE, EventKind, Trajec
 from watchsim.simulation.start_clearance import clear_start
 from watchsim.simulation.start_clearance import warm_up as warm_up_start
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.tolerances import FIRST_STEP
+from watchsim.tolerances import FIRST_STEP
 
 Progress = Callable[[float, float], None]  # simulated time, duration
 

@@ -18,11 +18,11 @@ from watchsim.displays import notebook_html
 from watchsim.scene.errors import Fault, SceneError
 from watchsim.scene.scene import Scene
 from watchsim.studies.limit_cycle.cycle import Cycle
-from watchsim.studies.limit_cycle.steady import steady
+from watchsim.studies.limit_cycle.find_cycle import steady
 from watchsim.studies.outputs import USUAL, Output, outputs_named
+from watchsim.studies.parameter_sweep import Progress, computed, study_of
 from watchsim.studies.point import Question, Row
 from watchsim.studies.quantities import Quantity, fixed_nominal, quantities
-from watchsim.studies.sweep import Progress, computed, study_of
 from watchsim.studies.workers.executor import Executor, chosen
 from watchsim.studies.workers.journal import Journal
 from watchsim.units import known_unit

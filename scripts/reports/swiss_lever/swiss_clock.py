@@ -22,7 +22,7 @@ from swiss_studies import (
 )
 
 import watchsim as ws
-from watchsim.render.figures.effects import plot_sensitivity
+from watchsim.render.figures.effects_plot import plot_sensitivity
 from watchsim.studies.limit_cycle.cycle import Cycle
 from watchsim.units import ANGLE, TORQUE, parse
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from watchsim.analysis.verdicts.equilibrium.arms import Arms, arms
 from watchsim.analysis.verdicts.equilibrium.in_force import in_force
+from watchsim.analysis.verdicts.equilibrium.lever_arms import Arms, arms
+from watchsim.analysis.verdicts.verdict_kinds import OVERBANKS, Verdict, degrees, torque_text, when
 from watchsim.analysis.verdicts.watch import Watch
-from watchsim.analysis.verdicts.words import OVERBANKS, Verdict, degrees, torque_text, when
 from watchsim.simulation.event_kinds import EventKind
 
 

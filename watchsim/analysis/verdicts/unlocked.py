@@ -12,8 +12,8 @@ import math
 import numpy as np
 
 from watchsim.analysis.timing.averages import last_window
-from watchsim.analysis.verdicts.equilibrium.arms import Arms, arms
 from watchsim.analysis.verdicts.equilibrium.in_force import in_force
+from watchsim.analysis.verdicts.equilibrium.lever_arms import Arms, arms
 from watchsim.analysis.verdicts.faces import Face, face
 from watchsim.analysis.verdicts.watch import Watch
 from watchsim.simulation.event_kinds import EventKind

@@ -13,7 +13,7 @@ from watchsim.analysis.timing.body_contacts import Events, between, contact_even
 from watchsim.analysis.timing.escape_wheel import progress
 from watchsim.analysis.timing.rows_at_hand import is_recorded
 from watchsim.analysis.timing.teeth import pitch
-from watchsim.analysis.verdicts.lean import Teeth, teeth
+from watchsim.analysis.verdicts.tooth_lean import Teeth, teeth
 from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.scene.oscillation import oscillators
 from watchsim.scene.recording import STATISTICS

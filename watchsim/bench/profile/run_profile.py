@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from watchsim.bench.profile.kernel_costs import COUNTED_AS, kernel_costs
-from watchsim.bench.profile.moments import Walk
+from watchsim.bench.profile.sampled_moments import Walk
 from watchsim.candidates.pair_cache import forget
 from watchsim.mechanism.compile import compile_scene
 from watchsim.scene.recording import Recording

@@ -23,8 +23,8 @@ from watchsim.drawing.svg.css import Styles, read_styles
 from watchsim.drawing.svg.element_layers import Place, inside
 from watchsim.drawing.svg.element_names import CONTAINERS, SILENT
 from watchsim.drawing.svg.element_shapes import READERS, Measures
-from watchsim.drawing.svg.page import page_unit, read_page
 from watchsim.drawing.svg.path_data import PathData
+from watchsim.drawing.svg.svg_page import page_unit, read_page
 from watchsim.drawing.svg.transforms import fitted, placed, plane, view_box
 from watchsim.drawing.svg.unread_elements import BURIED, DRAWN, LeftOut, drawn_within
 from watchsim.drawing.svg.xml_elements import Node, SvgError, Tree, read_tree

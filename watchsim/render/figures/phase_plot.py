@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.analysis.timeline.oscillation import Beat, shown_beats
+from watchsim.analysis.timeline.shown_beats import Beat, shown_beats
+from watchsim.render.figures.figure_style import CURVE, FULL, MM, NARROW, SMALL, dress, figure, heading, limits, panel
 from watchsim.render.figures.phase_bands import name_above, shade
-from watchsim.render.figures.style import CURVE, FULL, MM, NARROW, SMALL, dress, figure, heading, limits, panel
 from watchsim.render.frame.pose_history import dense
 from watchsim.render.palette import looks
 from watchsim.scene.roles import roles

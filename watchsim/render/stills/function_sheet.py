@@ -13,8 +13,8 @@ from textwrap import wrap
 from typing import TYPE_CHECKING
 
 from watchsim.escapement.by_hand.hands import Hands
+from watchsim.escapement.function_report import direction, text
 from watchsim.escapement.measure import Function
-from watchsim.escapement.report import direction, text
 from watchsim.mechanism.compile import Compiled
 from watchsim.render.posed import Posed
 from watchsim.render.stills.function_views import Views, dropped, lift, locked, scale_bar, shape, whole

@@ -35,7 +35,7 @@ from watchsim.simulation.motion.drift_projection import (
 from watchsim.simulation.motion.sleeping import add_terms, begin_terms, find_sleepers
 from watchsim.simulation.record.write_buffers import keep_change, keep_event
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.tolerances import CONTRADICTING_RATE, DEPENDENT_AT_EVENTS, DEPENDENT_IN_STEPS, LEFT_PRIMITIVE
+from watchsim.tolerances import CONTRADICTING_RATE, DEPENDENT_AT_EVENTS, DEPENDENT_IN_STEPS, LEFT_PRIMITIVE
 
 ROUNDS = 16  # impacts in a row at one instant
 

@@ -19,7 +19,7 @@ from watchsim.dynamics.delassus import apply, contact_velocities
 from watchsim.dynamics.impact import plastic_impact
 from watchsim.jit import kernel
 from watchsim.simulation.events.impulse_check import kinetic_energy
-from watchsim.simulation.tolerances import CHATTER_BACK, CHATTER_GAIN, WITHIN_CONE
+from watchsim.tolerances import CHATTER_BACK, CHATTER_GAIN, WITHIN_CONE
 
 
 @kernel

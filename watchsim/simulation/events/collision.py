@@ -22,7 +22,7 @@ from watchsim.simulation.events.impulse_check import kinetic_energy
 from watchsim.simulation.events.mode_decision import count_problems, decide
 from watchsim.simulation.events.zero_rates import note_pace
 from watchsim.simulation.record.write_buffers import keep_event
-from watchsim.simulation.tolerances import ENERGY_GAIN, HIDDEN_REBOUND
+from watchsim.tolerances import ENERGY_GAIN, HIDDEN_REBOUND
 
 
 @kernel

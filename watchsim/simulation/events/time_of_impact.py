@@ -22,7 +22,7 @@ from watchsim.simulation.loop_state.scratch import ask
 from watchsim.simulation.loop_state.state import NO_CONTACT
 from watchsim.simulation.motion.sleeping import is_at_rest
 from watchsim.simulation.motion.step_path import body_on_path
-from watchsim.simulation.tolerances import IMMOVABLE, NEIGHBOUR_STRIDE, SLOWEST_CLOSING, TIME_ROUNDING
+from watchsim.tolerances import IMMOVABLE, NEIGHBOUR_STRIDE, SLOWEST_CLOSING, TIME_ROUNDING
 
 
 @kernel

@@ -12,7 +12,7 @@ from watchsim.simulation.loop_state.scratch import FLIGHT
 from watchsim.simulation.motion.dense_output import coordinate_within, flight_acceleration
 from watchsim.simulation.motion.free_motion import acceleration_bound, quarter_period
 from watchsim.simulation.record.write_buffers import is_kept, keep_row
-from watchsim.simulation.tolerances import FLIGHT_SIZES
+from watchsim.tolerances import FLIGHT_SIZES
 
 FLIGHT_PHASE = 1.6  # rad of the fastest coordinate's own time scale: the longest flight
 

@@ -23,8 +23,8 @@ from watchsim.simulation.record.body_frames import frames
 from watchsim.simulation.record.contact_names import Pair as Pair
 from watchsim.simulation.record.saved_state import SavedState
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.tolerances import ROW_NOISE
 from watchsim.storage.columns import blocks, is_mapped, let_go
+from watchsim.tolerances import ROW_NOISE
 
 Array = NDArray[np.float64]
 

@@ -13,12 +13,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from watchsim.analysis.contact_forces import absolute, forces
-from watchsim.analysis.timeline.oscillation import Beat, shown_beats
-from watchsim.analysis.timeline.table import title as phase_title
+from watchsim.analysis.timeline.shown_beats import Beat, shown_beats
+from watchsim.analysis.timeline.timeline_table import title as phase_title
 from watchsim.mechanism.compile import compile_scene
-from watchsim.render.figures.phase_bands import shade, spread
-from watchsim.render.figures.phase_plot import AFTER, around
-from watchsim.render.figures.style import (
+from watchsim.render.figures.figure_style import (
     CURVE,
     EDGE,
     FULL,
@@ -36,6 +34,8 @@ from watchsim.render.figures.style import (
     limits,
     panel,
 )
+from watchsim.render.figures.phase_bands import shade, spread
+from watchsim.render.figures.phase_plot import AFTER, around
 from watchsim.render.frame.filled_parts import loops_of, outline
 from watchsim.render.frame.pose_history import dense
 from watchsim.render.palette import FAINT, FORCE, INK, looks

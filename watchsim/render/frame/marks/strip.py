@@ -21,7 +21,7 @@ from watchsim.render.frame.marks.readouts import clock
 from watchsim.render.frame.pose_history import Window, choose, dense
 from watchsim.render.frame.view import Frame
 from watchsim.render.palette import looks
-from watchsim.render.style import Style
+from watchsim.render.picture_style import Style
 from watchsim.scene.roles import roles
 from watchsim.simulation.record.trajectory import Trajectory
 
