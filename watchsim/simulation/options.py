@@ -5,9 +5,11 @@ All lengths scale with the scene's size, so that a tower clock and a wristwatch 
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 from watchsim.jit import by_reference
+from watchsim.mechanism.compile import Compiled
 from watchsim.mechanism.contact_features import JOINT
 from watchsim.tolerances import (
     ACCUMULATION_SPEED,
@@ -69,3 +71,8 @@ def options_for(size: float, tolerance: float, max_step: float) -> Options:
         max_step=max_step,
         size=size,
     )
+
+
+def natural_step(compiled: Compiled, longest: float) -> float:
+    """Longest step: a quarter of the fastest spring's period, so that no turning point hides between two others."""
+    return min(longest, 0.5 * math.pi / compiled.fastest) if compiled.fastest else longest

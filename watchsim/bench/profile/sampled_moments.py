@@ -20,10 +20,10 @@ from watchsim.mechanism.compile import compile_scene
 from watchsim.scene.recording import Recording
 from watchsim.scene.scene import Scene
 from watchsim.simulation.advance import EVENTS_PER_CONTACT, ROWS_PER_STEP
-from watchsim.simulation.loop_state.buffers import Record, new_record
+from watchsim.simulation.loop_state.buffers import Record, new_record, new_until
 from watchsim.simulation.loop_state.state import COUNT_NAMES, State, room_for
 from watchsim.simulation.loop_state.state_arrays import arrays_of, copy_of_state, write_state
-from watchsim.simulation.runner import Run, new_until
+from watchsim.simulation.runner import Run
 from watchsim.simulation.stops import Stop
 
 SAMPLE = 200  # moments of each kind

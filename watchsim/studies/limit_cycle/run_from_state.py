@@ -17,12 +17,11 @@ from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.scene.errors import SceneError
 from watchsim.scene.scene import Scene
 from watchsim.simulation.advance import EVENTS_PER_CONTACT, ROWS_PER_STEP, advance
-from watchsim.simulation.loop_state.buffers import Until, new_record
+from watchsim.simulation.loop_state.buffers import Until, new_record, new_until
 from watchsim.simulation.loop_state.scratch import new_scratch
 from watchsim.simulation.loop_state.state import State, new_state, room_for
 from watchsim.simulation.loop_state.state_arrays import copy_of_state
-from watchsim.simulation.options import options_for
-from watchsim.simulation.runner import natural_step, new_until
+from watchsim.simulation.options import natural_step, options_for
 from watchsim.simulation.start_clearance import clear_start
 from watchsim.simulation.start_clearance import warm_up as warm_up_start
 from watchsim.simulation.stops import Stop
