@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from watchsim.analysis.nonnegative import nonnegative
 from watchsim.contact.index_sets import OPEN, STICK
 from watchsim.contact.kinematics import Closed, closed_contacts
 from watchsim.contact.poses import poses
@@ -84,7 +85,8 @@ def forces(run: Trajectory, times: Iterable[float] | None = None) -> Forces:
     q, u = run.sample(t)
     compiled = compile_scene(run.scene)
     where, speed = absolute(compiled, q, False), absolute(compiled, u, True)
-    found = [_instant(compiled, *row) for row in zip(t, where, speed, _modes(run, t), strict=True)]
+    mechanism = _Mechanism(compiled)
+    found = [_instant(mechanism, *row) for row in zip(t.tolist(), where, speed, _modes(run, t), strict=True)]
     pairs = np.array(sorted({int(k) for one in found for k in one.ids}), np.int64)
     shape = (len(t), len(pairs))
     out = Forces(t, pairs, np.zeros(shape), np.zeros(shape), np.full((*shape, 2), np.nan), np.full((*shape, 2), np.nan), {}, {})
@@ -109,16 +111,52 @@ def absolute(compiled: Compiled, values: Array, rates: bool) -> Array:
 def _modes(run: Trajectory, times: Array) -> Iterator[dict[int, int]]:
     """Contact -> mode of what is in force, at each of the times."""
     told = run.events[np.isin(run.events["kind"], MODES)]
-    modes: dict[int, int] = {}
-    done = 0
+    order = np.argsort(times, kind="stable")
+    stops = np.searchsorted(told["t"], times[order], side="right")
+    done = int(stops[0]) if len(stops) else 0
+    changes = _Changes(told[:done])
+    modes = {contact: mode for contact in changes.contacts if (mode := changes.mode(contact, done)) is not None}
     found: dict[int, dict[int, int]] = {}
-    for place in np.argsort(times, kind="stable").tolist():
-        stop = int(np.searchsorted(told["t"], times[place], side="right"))
-        for event in told[done:stop]:
-            _change(modes, event)
+    for place, stop in zip(order.tolist(), stops.tolist(), strict=True):
+        for event in told[done:stop].tolist():
+            _change(modes, dict(zip(told.dtype.names, event, strict=True)))
         done = stop
         found[place] = dict(modes)
     return (found[place] for place in range(len(times)))
+
+
+class _Changes:
+    """Events that change modes, by contact: what a contact's mode is follows from the last of its own, not from all before."""
+
+    def __init__(self, events: NDArray[Any]) -> None:
+        gained, lost = events["contact"].astype(np.int64), events["value"].astype(np.int64)
+        handed = events["kind"] == EventKind.HANDOVER
+        self._events = events
+        self._of = np.concatenate((gained, lost[handed]))
+        self._at = np.concatenate((np.arange(len(events)), np.flatnonzero(handed)))
+        order = np.lexsort((self._at, self._of))
+        self._of, self._at = self._of[order], self._at[order]
+        self.contacts = np.unique(self._of).tolist()
+
+    def mode(self, contact: int, before: int) -> int | None:
+        """Its mode before the event of that number; None where it is open."""
+        handed = False
+        while (number := self._last_of(contact, before)) is not None:
+            event = self._events[number]
+            if int(event["kind"]) != EventKind.HANDOVER:
+                modes: dict[int, int] = {}
+                _change(modes, event)
+                return modes.get(contact, STICK if handed else None)
+            if int(event["contact"]) != contact:  # to that one, from this
+                break
+            handed, contact, before = True, int(event["value"]), number
+        return STICK if handed else None
+
+    def _last_of(self, contact: int, before: int) -> int | None:
+        """The number of the last event before another that says something about a contact."""
+        first, end = np.searchsorted(self._of, (contact, contact + 1))
+        k = int(np.searchsorted(self._at[first:end], before))
+        return int(self._at[first + k - 1]) if k else None
 
 
 def _change(modes: dict[int, int], event: Any) -> None:
@@ -133,28 +171,44 @@ def _change(modes: dict[int, int], event: Any) -> None:
         modes[contact] = int(value)
 
 
-def _instant(compiled: Compiled, t: float, q: Array, u: Array, modes: dict[int, int]) -> _Instant:
+class _Mechanism:
+    """What is the same at every instant, looked up once: mobilities, dry friction of bearings, friction of each contact."""
+
+    def __init__(self, compiled: Compiled) -> None:
+        model = self.model = compiled.model
+        self.mobility, self.dry = 1.0 / np.asarray(model.coordinates.mass), np.asarray(model.coordinates.coulomb)
+        self.prescribed = np.asarray(model.coordinates.driven) != 0
+        self.friction = np.asarray(model.laws.friction)[np.asarray(model.contacts.group)]
+        self.pose, self.closed = poses(len(model.bodies)), closed_contacts(1)
+
+    def room(self, contacts: int) -> Closed:
+        """Room for that many contacts, empty."""
+        if len(self.closed.ids) < contacts:
+            self.closed = closed_contacts(contacts)
+        self.closed.slots[:] = 0
+        return self.closed
+
+
+def _instant(mechanism: _Mechanism, t: float, q: Array, u: Array, modes: dict[int, int]) -> _Instant:
     """Forces of the contacts in `modes` at one state."""
-    model, ids = compiled.model, np.array(sorted(modes), np.int64)
-    closed, normal, h = closed_contacts(max(1, len(ids))), np.zeros((len(ids), 2)), np.zeros(len(q))
-    balance(model, float(t), q, u, ids, poses(len(model.bodies)), closed, normal, h)
-    mobility = 1.0 / model.coordinates.mass
-    dry = model.coordinates.coulomb
+    ids = np.array(sorted(modes), np.int64)
+    closed, normal, h = mechanism.room(len(ids)), np.zeros((len(ids), 2)), np.zeros(len(q))
+    balance(mechanism.model, t, q, u, ids, mechanism.pose, closed, normal, h)
+    dry, prescribed = mechanism.dry, mechanism.prescribed
     held = (dry > 0.0) & (u == 0.0)
-    prescribed = np.asarray(model.coordinates.driven) != 0
-    mobility[held | prescribed] = 0.0
+    mobility = np.where(held | prescribed, 0.0, mechanism.mobility)
     h -= np.where(held, 0.0, dry * np.sign(u))
     free = np.where(prescribed, h, mobility * h)
     rows = len(ids)
-    w_n, w_t = (_dense(closed, values, rows, len(q)) for values in (closed.w_N, closed.w_T))
-    kin = closed.kin[:rows]
     if not rows:
         return _Instant(ids, np.zeros((0, 2)), normal, np.zeros((0, 2)), np.zeros(len(q)), free)
+    w_n, w_t = (_dense(closed, values, rows, len(q)) for values in (closed.w_N, closed.w_T))
+    kin = closed.kin[:rows].view(np.ndarray)
     # Unknowns: the normal force of each contact, and the tangential one of those that stick.
     sticks = [i for i, k in enumerate(ids) if modes[int(k)] == STICK]
-    friction = np.array([model.laws[model.contacts[k].group].friction for k in ids])
+    friction = mechanism.friction[ids]
     slide = np.array([0.0 if modes[int(k)] == STICK else -friction[i] * modes[int(k)] for i, k in enumerate(ids)])
-    hold, bar = np.vstack((w_n, w_t[sticks])), np.concatenate((kin.bar_N, kin.bar_T[sticks]))
+    hold, bar = np.vstack((w_n, w_t[sticks])), np.concatenate((kin["bar_N"], kin["bar_T"][sticks]))
     system, right = hold * mobility, -bar - hold @ free
 
     def loaded(force: Array) -> Array:
@@ -174,7 +228,7 @@ def _instant(compiled: Compiled, t: float, q: Array, u: Array, modes: dict[int, 
         force = np.zeros((rows, 2))
         np.add.at(force, owner, share[:, None] * corners)
     load = loaded(force)
-    return _Instant(ids, force, normal, np.column_stack((kin.x, kin.y)), load, free + mobility * load)
+    return _Instant(ids, force, normal, np.column_stack((kin["x"], kin["y"])), load, free + mobility * load)
 
 
 def _dense(closed: Closed, values: Array, rows: int, width: int) -> Array:
@@ -195,12 +249,10 @@ def _least(system: Array, right: Array) -> Array:
 
 def _pressing(system: Array, right: Array) -> Array:
     """A solution without negative shares, near the smallest; as near to one as can be where rounding leaves none."""
-    from scipy.optimize import nnls
-
     high = 1.0 / np.maximum(np.abs(system).max(axis=1), np.finfo(float).tiny)
     scaled, target = system * high[:, None], right * high
     count = scaled.shape[1]
-    near, _ = nnls(np.vstack((scaled, GENTLE * np.eye(count))), np.append(target, np.zeros(count)))
+    near = nonnegative(np.vstack((scaled, GENTLE * np.eye(count))), np.append(target, np.zeros(count)))
     used = near > SMALLEST * near.max(initial=0.0)
     # The push towards small forces leaves the balance off by its square; among those in use the rest is put right.
     near[used] += np.linalg.lstsq(scaled[:, used], target - scaled @ near, rcond=SMALLEST)[0]

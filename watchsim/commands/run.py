@@ -21,6 +21,7 @@ from watchsim.commands.common.console import (
 )
 from watchsim.commands.common.output_place import secured_folder, swept_run
 from watchsim.commands.common.record_size import room_for
+from watchsim.commands.common.second_core import Meanwhile, load_plots
 from watchsim.commands.common.write_run import Extras, goal_of, report_text, write
 from watchsim.simulation.methods import EVENT_DRIVEN, METHODS
 
@@ -107,7 +108,9 @@ def run(args: argparse.Namespace) -> int:
         say(f"Note: {note.message}. {note.fix}")
     extras = Extras(not args.no_plots, args.movie, args.gif, args.error_bars, args.profile, args.report)
     with stopping.keeping():
-        trajectory = simulate_with_progress(scene, duration, args.tol, folder, method=method, step=step, start=start)
+        trajectory = simulate_with_progress(
+            scene, duration, args.tol, folder, method=method, step=step, start=start, plots=extras.plots
+        )
         summary = write(trajectory, goal, extras, changed)
     if args.json:
         print_json(summary)
@@ -127,17 +130,28 @@ def simulate_with_progress(
     method: str = EVENT_DRIVEN,
     step: float | None = None,
     start: Trajectory | None = None,
+    plots: bool = False,
 ) -> Trajectory:
-    """Simulate for results in `folder`, with a progress line on a terminal; a first run says that it compiles."""
+    """Simulate for results in `folder`, with a progress line on a terminal; a first run says that it compiles.
+
+    With `plots`, what draws them is loaded meanwhile.
+    """
     from watchsim.simulation.simulate import simulate
     from watchsim.storage.write import real
 
     announce_compile()
-    progress = Progress("simulated s:")
+    progress, meanwhile = Progress("simulated s:"), Meanwhile(load_plots)
+
+    def stepped(time: float, end: float) -> None:
+        if plots:
+            meanwhile.begin()
+        progress(time, end)
+
     try:
         beside = real(folder).parent
-        return simulate(scene, duration, tolerance, progress=progress, method=method, step=step, start=start, stream=beside)
+        return simulate(scene, duration, tolerance, progress=stepped, method=method, step=step, start=start, stream=beside)
     finally:
+        meanwhile.end()
         progress.close()
 
 

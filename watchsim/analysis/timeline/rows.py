@@ -120,7 +120,7 @@ def stages(run: Trajectory, found: Beats | None = None, window: Sequence[float] 
     if not (parts.wheel and parts.lever):
         return
     rests = _rests(run, compiled, parts)
-    beats_told = (list(rows) for _, rows in groupby(each_phase(run, found), key=lambda row: row.beat))
+    beats_told = (list(rows) for _, rows in groupby(each_phase(run, found, window), key=lambda row: row.beat))
     wanted = (rows for rows in beats_told if window is None or window[0] <= rows[0].start <= window[1])
     while some := list(islice(wanted, BEATS_AT_ONCE)):
         told = [row for rows in some for row in rows]

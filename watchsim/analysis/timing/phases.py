@@ -14,7 +14,7 @@ locked          until the next touch of pin and fork
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice, pairwise
 
@@ -75,13 +75,15 @@ def phases(run: Trajectory, found: Beats | None = None) -> list[Phase]:
     return list(each_phase(run, found))
 
 
-def each_phase(run: Trajectory, found: Beats | None = None) -> Iterator[Phase]:
-    """The same one after the other: a long run has a great many."""
+def each_phase(run: Trajectory, found: Beats | None = None, window: Sequence[float] | None = None) -> Iterator[Phase]:
+    """The same one after the other, since a long run has a great many; only of beats that pass within a window (s)."""
     parts = roles(run.scene)
     if parts.wheel is None or parts.lever is None or parts.oscillator is None or len(run.t) == 0:
         return
     found = found or beats(run)
     contacts, told = _contacts(run, parts), _told(run, found)
+    if window is not None:
+        told &= (found.end >= window[0]) & (found.tick <= window[1])
     at_entry, at_end = (progress(run, parts.wheel, np.where(told, t, run.t[0])) for t in (found.tick, found.end))
     ways = zip(at_entry.tolist(), at_end.tolist(), strict=True)
     rows = (phase for i, way in enumerate(ways) if told[i] for phase in _beat(found, contacts, i, way))

@@ -61,6 +61,7 @@ def write(run: Trajectory, goal: Goal, extras: Extras, changed: Sequence[str] = 
     if run.stop == Stop.INTERRUPTED:
         say("Interrupted: writing what was simulated; a second Ctrl-C abandons it ...")
     try:
+        drawn = pictures(run, extras.plots, extras.movie, extras.gif)
         numbers = _numbers(run, extras, changed, goal.folder)
         said = [*(f"Note: {note}" for note in numbers["notes"]), report_text(run, numbers)]
         told = {name: text.write for name, text in tables(run, real(goal.folder).parent).items()}
@@ -69,7 +70,7 @@ def write(run: Trajectory, goal: Goal, extras: Extras, changed: Sequence[str] = 
     except Exception:
         say(f"The numbers of this run could not be computed. Its motion is kept in {_bare(run, goal)}")
         raise
-    drawn = pictures(run, extras.plots, extras.movie, extras.gif) | (page(run, numbers) if extras.report else {})
+    drawn |= page(run, numbers) if extras.report else {}
     _save(run, goal, numbers, beside, drawn)
     return numbers
 
