@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from matplotlib.artist import Artist
 from matplotlib.backend_bases import GraphicsContextBase, RendererBase
 from matplotlib.patches import PathPatch
 
@@ -22,7 +21,7 @@ class LastingPatch(PathPatch):
         """Draw it with the look that it had when it was first drawn."""
         if self._context is None:
             self._context, self._face = self._look(renderer)
-        renderer.draw_path(self._context, self.get_path(), Artist.get_transform(self), self._face)
+        renderer.draw_path(self._context, self.get_path(), self.get_transform(), self._face)
 
     def _look(self, renderer: RendererBase) -> tuple[GraphicsContextBase, Any]:
         """The context for its edge, and the colour of its face (None: left empty)."""

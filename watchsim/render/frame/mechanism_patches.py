@@ -67,6 +67,7 @@ class Mechanism:
     def own(self, patch: LastingPatch) -> LastingPatch:
         """The patch, drawn on this figure and only between the bands of words."""
         room = self._room
+        patch.set_figure(self._figure)
         patch.set_clip_box(Bbox.from_bounds(room.left, room.bottom, room.width, room.height))
         return patch
 
@@ -107,9 +108,7 @@ class Mechanism:
         if not part.ground:
             return [self.own(LastingPatch(part.faces, facecolor=look.fill, linewidth=thin, **edge))]
         edge["edgecolor"] = self._style.line(look)
-        strokes = (
-            [] if part.strokes is None else [LastingPatch(part.strokes, fill=False, linewidth=0.8 * thin, alpha=0.7, **edge)]
-        )
+        strokes = [] if part.strokes is None else [LastingPatch(part.strokes, fill=False, linewidth=0.8 * thin, alpha=0.7, **edge)]
         return [self.own(patch) for patch in (*strokes, LastingPatch(part.faces, fill=False, linewidth=1.8 * thin, **edge))]
 
     def _picked(self, edges: Edges) -> list[LastingPatch]:

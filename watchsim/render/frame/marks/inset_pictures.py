@@ -5,12 +5,12 @@ Every inset has shapes of its own, fine enough for its scale; those out of its s
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.backend_bases import RendererBase
+from matplotlib.figure import Figure
 from matplotlib.path import Path
 from matplotlib.transforms import Affine2D, Bbox, IdentityTransform
 from numpy.typing import NDArray
@@ -42,58 +42,52 @@ class _Shape:
 
 
 class InsetPicture:
-    """One inset beside a mechanism in `room`; `unit` is the size of everything drawn, `words` write its name."""
+    """One inset of a figure; `unit` is the size of everything drawn, `words` write its name."""
 
-    def __init__(self, scene: Scene, inset: Inset, room: Frame, unit: float, words: Words, style: Style) -> None:
-        self._inset, self._words, self._style = inset, words, style
+    def __init__(self, figure: Figure, scene: Scene, inset: Inset, unit: float, words: Words, style: Style) -> None:
+        self._figure, self._inset, self._words, self._style = figure, inset, words, style
         self._springs = CoilPatches(scene, inset.box, inset.view.scale, style, unit, self._own)
         self._thin = max(1.1 * unit, 0.6)
         self._transforms = {body.name: Affine2D() for body in scene.bodies}
         made = parts(scene, CHORD / inset.view.scale, HATCH * unit / inset.view.scale)
         self._shapes = [self._shape(part) for part in made]
-        box, still = inset.box, IdentityTransform()
-        frame = _rectangle(np.array([box.left, box.bottom]), np.array([box.left + box.width, box.bottom + box.height]))
-        self._sheet = LastingPatch(frame, facecolor=style.background, linewidth=0.0, transform=still)
+        box = inset.box
+        edge = Path([(box.left, box.bottom), (box.left + box.width, box.bottom + box.height)])
+        frame = _rectangle(edge)
+        self._sheet = self._own(
+            LastingPatch(frame, facecolor=style.background, linewidth=0.0, transform=IdentityTransform()), False
+        )
         look = {"fill": False, "edgecolor": style.faint, "linewidth": max(1.4 * unit, 1.0)}
-        self._border = LastingPatch(frame, transform=still, **look)
-        look = {"fill": False, "edgecolor": style.ink, "linewidth": 0.8 * self._thin, "alpha": 0.55}
-        self._place = LastingPatch(frame, transform=still, **look)
-        self._place.set_clip_box(Bbox.from_bounds(room.left, room.bottom, room.width, room.height))
-        self._kept: Pixels = np.zeros((0, 0, 4), dtype=np.uint8)
-        self._kept_places: list[tuple[int, bytes]] = []
+        self._border = self._own(LastingPatch(frame, transform=IdentityTransform(), **look), False)
 
-    def place_in(self, matrix: Array, centre: tuple[float, float]) -> LastingPatch:
-        """The rectangle of the picture (its map `matrix`) that the inset enlarges. The next call moves it."""
+    def place_in(self, matrix: Array, centre: tuple[float, float], room: Frame) -> LastingPatch:
+        """The rectangle of the picture (its map `matrix`) that the inset enlarges."""
         half = 0.5 * np.array([self._inset.box.width, self._inset.box.height]) / self._inset.view.scale
         scale = float(np.hypot(*matrix[:2, 0]))
         middle = matrix[:2, :2] @ np.array(centre) + matrix[:2, 2]
-        self._place.set_path(_rectangle(middle - scale * half, middle + scale * half))
-        return self._place
+        corners = _rectangle(Path(np.array([middle - scale * half, middle + scale * half])))
+        look = {"fill": False, "edgecolor": self._style.ink, "linewidth": 0.8 * self._thin, "alpha": 0.55}
+        patch = LastingPatch(corners, transform=IdentityTransform(), **look)
+        patch.set_figure(self._figure)
+        patch.set_clip_box(Bbox.from_bounds(room.left, room.bottom, room.width, room.height))
+        return patch
 
     def draw(self, renderer: RendererBase, frames: dict[str, Array], marks: Marks, out_pixels: Pixels) -> None:
-        """Draw the inset for the poses x, y, angle of one instant; while nothing in it moves it is copied."""
+        """Draw the inset for the poses x, y, angle of one instant."""
         matrix = self._inset.matrix(frames)
+        self._sheet.draw(renderer)
         for body, transform in self._transforms.items():
             transform.set_matrix(matrix @ pose_matrix(frames[body]))
-        seen = list(self._seen())
-        behind, over = list(self._springs.patches(frames, matrix)), [self._own(patch) for patch in marks(matrix)]
-        places = [] if behind or over else [(id(shape), self._transforms[shape.body].get_matrix().tobytes()) for shape in seen]
-        area = self._area(out_pixels)
-        if places and places == self._kept_places:
-            area[:] = self._kept
-            return
-        for patch in (self._sheet, *behind, *(patch for shape in seen for patch in shape.patches), *over, self._border):
+        for patch in self._springs.patches(frames, matrix):
             patch.draw(renderer)
+        for shape in self._seen():
+            for patch in shape.patches:
+                patch.draw(renderer)
+        for patch in marks(matrix):
+            self._own(patch).draw(renderer)
+        self._border.draw(renderer)
         box, size = self._inset.box, self._words.size
         self._words.write(self._inset.name, box.left + 0.5 * size, box.bottom + 0.55 * size, out_pixels)
-        self._kept_places, self._kept = places, area.copy()
-
-    def _area(self, pixels: Pixels) -> Pixels:
-        """The part of the picture that the inset covers, its border included."""
-        box, edge = self._inset.box, math.ceil(0.5 * self._border.get_linewidth()) + 1
-        bottom, top = (math.floor(box.bottom) - edge, math.ceil(box.bottom + box.height) + edge)
-        left, right = max(math.floor(box.left) - edge, 0), math.ceil(box.left + box.width) + edge
-        return pixels[max(len(pixels) - top, 0) : len(pixels) - bottom, left:right]
 
     def _seen(self) -> Iterator[_Shape]:
         box = self._inset.box
@@ -121,14 +115,15 @@ class InsetPicture:
             made = [LastingPatch(part.faces, facecolor=look.fill, linewidth=self._thin, **edge)]
         return _Shape(part.body, tuple(map(self._own, made)), middle, float(np.hypot(*(points - middle).T).max()))
 
-    def _own(self, patch: LastingPatch) -> LastingPatch:
-        """The patch, drawn only within the inset."""
+    def _own(self, patch: LastingPatch, clipped: bool = True) -> LastingPatch:
+        patch.set_figure(self._figure)
         box = self._inset.box
-        patch.set_clip_box(Bbox.from_bounds(box.left, box.bottom, box.width, box.height))
+        if clipped:
+            patch.set_clip_box(Bbox.from_bounds(box.left, box.bottom, box.width, box.height))
         return patch
 
 
-def _rectangle(low: Array, high: Array) -> Path:
-    (x0, y0), (x1, y1) = low, high
+def _rectangle(diagonal: Path) -> Path:
+    (x0, y0), (x1, y1) = np.asarray(diagonal.vertices)
     codes = [Path.MOVETO, Path.LINETO, Path.LINETO, Path.LINETO, Path.CLOSEPOLY]
     return Path([(x0, y0), (x1, y0), (x1, y1), (x0, y1), (x0, y0)], codes)

@@ -90,7 +90,7 @@ class Beside:
         self._turn = view.turn
         self._made = insets(self._run, self._window, self._extras.insets, self._boxes, view.turn)
         self._insets = [
-            InsetPicture(self._run.scene, one, self.room, self._unit, self._words, self._style) for one in self._made
+            InsetPicture(self._figure, self._run.scene, one, self._unit, self._words, self._style) for one in self._made
         ]
 
     def arrows(self, matrix: Array, points: Array, forces: Array) -> list[LastingPatch]:
@@ -113,7 +113,7 @@ class Beside:
     ) -> None:
         """Draw everything for the poses of the instant `t`, in a picture whose map from metres is `matrix`."""
         for picture, one in zip(self._insets, self._made, strict=True):
-            picture.place_in(matrix, one.centre(frames)).draw(renderer)
+            picture.place_in(matrix, one.centre(frames), self.room).draw(renderer)
         for picture in self._insets:
             picture.draw(renderer, frames, marks, out_pixels)
         self._key(renderer, out_pixels)
@@ -153,4 +153,6 @@ class Beside:
 
     def _arrow(self, path: Any) -> LastingPatch:
         look = {"facecolor": self._style.force, "edgecolor": self._style.background, "linewidth": max(0.9 * self._unit, 0.6)}
-        return LastingPatch(path, transform=IdentityTransform(), **look)
+        patch = LastingPatch(path, transform=IdentityTransform(), **look)
+        patch.set_figure(self._figure)
+        return patch
