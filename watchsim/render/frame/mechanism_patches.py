@@ -108,8 +108,8 @@ class Mechanism:
         if not part.ground:
             return [self.own(LastingPatch(part.faces, facecolor=look.fill, linewidth=thin, **edge))]
         edge["edgecolor"] = self._style.line(look)
-        strokes = [] if part.strokes is None else [LastingPatch(part.strokes, fill=False, linewidth=0.8 * thin, alpha=0.7, **edge)]
-        return [self.own(patch) for patch in (*strokes, LastingPatch(part.faces, fill=False, linewidth=1.8 * thin, **edge))]
+        made = [] if part.strokes is None else [LastingPatch(part.strokes, fill=False, linewidth=0.8 * thin, alpha=0.7, **edge)]
+        return [self.own(patch) for patch in (*made, LastingPatch(part.faces, fill=False, linewidth=1.8 * thin, **edge))]
 
     def _picked(self, edges: Edges) -> list[LastingPatch]:
         """Edges in colour, on top of their bodies."""
