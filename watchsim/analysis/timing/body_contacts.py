@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -56,9 +56,16 @@ def between(first: str, others: set[str]) -> Callable[[Pair], bool]:
     return lambda pair: (pair.body_a == first and pair.body_b in others) or (pair.body_b == first and pair.body_a in others)
 
 
-def held(kinds: Column) -> NDArray[np.int64]:
-    """How many contacts hold after each of the events of these kinds."""
-    return np.cumsum((kinds == EventKind.CLOSE).astype(np.int64) - (kinds == EventKind.OPEN))
+def held(times: Column, kinds: Column, spans: Sequence[tuple[float, float]] = ()) -> NDArray[np.int64]:
+    """How many contacts hold after each of the events of these kinds, of one body that is free at some time.
+
+    A stretch that was recorded (`spans`, s) may begin while contacts hold, whose closing is no event of it: the count is
+    then below zero where none holds.
+    """
+    change = (kinds == EventKind.CLOSE).astype(np.int64) - (kinds == EventKind.OPEN)
+    begins = np.searchsorted(times, [start for start, _ in spans[1:]])
+    counts = [np.cumsum(own) for own in np.split(change, begins)]
+    return np.concatenate([own - min(0, int(own.min(initial=0))) for own in counts])
 
 
 def holding_at_end(run: Trajectory) -> list[Pair]:

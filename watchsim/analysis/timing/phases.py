@@ -104,7 +104,9 @@ def _contacts(run: Trajectory, parts: Roles) -> _Contacts:
     (banking,) = contact_columns(run, between(parts.lever, fixed), ["t"], *TOUCH)
     used, back = np.unique(which, return_inverse=True)
     on = np.array([FACES.index(_face(run.pairs[contact], parts)) for contact in used.tolist()], np.int64)[back]
-    return _Contacts(times, progress(run, parts.wheel, times), held(kinds), kinds != EventKind.OPEN, on, banking)
+    return _Contacts(
+        times, progress(run, parts.wheel, times), held(times, kinds, run.spans), kinds != EventKind.OPEN, on, banking
+    )
 
 
 def _face(pair: Pair, parts: Roles) -> str:

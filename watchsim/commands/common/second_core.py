@@ -52,8 +52,8 @@ class Meanwhile:
 
 def load_plots() -> None:
     """Load what plots need, fonts included."""
-    from watchsim.render.figures.plots import Kinematics
-    from watchsim.render.figures.style import figure
+    from watchsim.render.figures.kinematics_plot import Kinematics
+    from watchsim.render.figures.figure_style import figure
 
     assert Kinematics
     empty = figure()
