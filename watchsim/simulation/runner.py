@@ -23,7 +23,7 @@ from watchsim.scene.oscillation import frequency
 from watchsim.scene.recording import Recording
 from watchsim.scene.scene import Scene
 from watchsim.simulation.advance import EVENTS_PER_CONTACT, ROWS_PER_STEP, advance
-from watchsim.simulation.energy_ledger import ledger_fails, touching, what_alternates
+from watchsim.simulation.energy_ledger import furthest, ledger_fails, touching, what_alternates
 from watchsim.simulation.interrupts import held_interrupts
 from watchsim.simulation.lcp_failure import driven_into, failure_of
 from watchsim.simulation.loop_state.buffers import Until, new_record
@@ -161,7 +161,7 @@ class Run:
         except KeyboardInterrupt:
             stop = Stop.INTERRUPTED
         except OverflowError:  # so far away that no cell has a number
-            stop = Stop.NOT_FINITE
+            stop = Stop.FAR_AWAY
         except MemoryError:
             stop = Stop.OUT_OF_MEMORY
         if self.saved is None:
@@ -195,6 +195,8 @@ class Run:
         elif stop == Stop.TOO_MANY_EVENTS:
             bodies = [self.scene.bodies[coordinate.body].name for coordinate in self.compiled.model.coordinates]
             words = what_alternates(self.scratch.ended, self.pairs, bodies)
+        elif stop == Stop.FAR_AWAY:
+            words = furthest(self.state, self.compiled.model, [body.name for body in self.scene.bodies])
         elif stop == Stop.LCP_FAILED:
             driven = {body.name for body in self.scene.bodies if body.prescribed is not None}
             failure = failure_of(self.state, self.scratch, self.pairs) if driven else None
