@@ -23,6 +23,7 @@ from watchsim.scene.recording import STATISTICS
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.methods import EVENT_DRIVEN
 from watchsim.simulation.record.trajectory import Array, Trajectory
+from watchsim.storage.columns import blocks
 
 MODES = (EventKind.CLOSE, EventKind.OPEN, EventKind.STICK, EventKind.SLIDE, EventKind.HANDOVER)
 SLACK = 1e-9  # of the largest force: rounding
@@ -108,16 +109,22 @@ def absolute(compiled: Compiled, values: Array, rates: bool) -> Array:
 
 def _modes(run: Trajectory, times: Array) -> Iterator[dict[int, int]]:
     """Contact -> mode of what is in force, at each of the times."""
-    told = run.events[np.isin(run.events["kind"], MODES)]
     modes: dict[int, int] = {}
-    done = 0
     found: dict[int, dict[int, int]] = {}
-    for place in np.argsort(times, kind="stable").tolist():
-        stop = int(np.searchsorted(told["t"], times[place], side="right"))
-        for event in told[done:stop]:
+    waiting = np.argsort(times, kind="stable").tolist()[::-1]
+    for (part,) in blocks(run.events):
+        told, done = part[np.isin(part["kind"], MODES)], 0
+        while waiting and len(part) and times[waiting[-1]] < part["t"][-1]:
+            stop = int(np.searchsorted(told["t"], times[waiting[-1]], side="right"))
+            for event in told[done:stop]:
+                _change(modes, event)
+            done = stop
+            found[waiting.pop()] = dict(modes)
+        if not waiting:
+            break
+        for event in told[done:]:
             _change(modes, event)
-        done = stop
-        found[place] = dict(modes)
+    found |= {place: dict(modes) for place in waiting}
     return (found[place] for place in range(len(times)))
 
 

@@ -64,10 +64,10 @@ def held(kinds: Column) -> NDArray[np.int64]:
 def holding_at_end(run: Trajectory) -> list[Pair]:
     """The pairs whose contact is in force when the run ends."""
     last: dict[int, bool] = {}
-    columns = (run.events[name].tolist() for name in ("contact", "kind", "value"))
-    for contact, kind, value in zip(*columns, strict=True):
-        if kind in (EventKind.CLOSE, EventKind.OPEN):
-            last[contact] = kind == EventKind.CLOSE
-        elif kind == EventKind.HANDOVER:
-            last[int(value)], last[contact] = False, True
+    for (part,) in blocks(run.events):
+        for contact, kind, value in zip(*(part[name].tolist() for name in ("contact", "kind", "value")), strict=True):
+            if kind in (EventKind.CLOSE, EventKind.OPEN):
+                last[contact] = kind == EventKind.CLOSE
+            elif kind == EventKind.HANDOVER:
+                last[int(value)], last[contact] = False, True
     return [run.pairs[contact] for contact, closed in last.items() if closed]

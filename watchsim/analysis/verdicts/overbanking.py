@@ -9,6 +9,7 @@ from watchsim.analysis.verdicts.equilibrium.in_force import in_force
 from watchsim.analysis.verdicts.watch import Watch
 from watchsim.analysis.verdicts.words import OVERBANKS, Verdict, degrees, torque_text, when
 from watchsim.simulation.event_kinds import EventKind
+from watchsim.storage.columns import rows_where
 
 
 def overbanking(watch: Watch) -> Verdict | None:
@@ -17,7 +18,7 @@ def overbanking(watch: Watch) -> Verdict | None:
     if watch.lever is None or not watch.has_banking:
         return None
     own = [body.name for body in run.scene.bodies].index(watch.oscillator)
-    passed = run.events["t"][(run.events["body"] == own) & (run.events["kind"] == EventKind.CROSS)]
+    passed = rows_where(run.events, lambda part: (part["body"] == own) & (part["kind"] == EventKind.CROSS))["t"]
     since = float(passed[-1]) if len(passed) else 0.0
     if run.simulated - since < watch.found.nominal_period:
         return None
