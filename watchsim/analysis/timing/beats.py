@@ -7,7 +7,9 @@ turning points and passages, which are events of the run: found to rounding, wha
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 
@@ -124,6 +126,15 @@ def beats(run: Trajectory, body: str | None = None) -> Beats:
         period_s=since_two_before(t)[complete],
         before=max(0, counted - len(complete)),
     )
+
+
+def beats_within(found: Beats, window: Sequence[float]) -> Beats:
+    """The half swings in a window (s), and one before and after it."""
+    first, last = np.searchsorted(found.end, window[0]), np.searchsorted(found.start, window[1])
+    own = slice(max(int(first) - 1, 0), int(last) + 1)
+    columns = ((field.name, getattr(found, field.name)) for field in fields(found))
+    cut: dict[str, Any] = {name: values[own] for name, values in columns if isinstance(values, np.ndarray)}
+    return replace(found, before=found.before + own.start, **cut)
 
 
 def _unbroken_since(run: Trajectory) -> float:

@@ -23,6 +23,12 @@ def contact_events(run: Trajectory, wanted: Callable[[Pair], bool], *kinds: Even
     return np.concatenate(found) if found else run.events
 
 
+def contact_numbers(run: Trajectory, wanted: Callable[[Pair], bool]) -> set[int]:
+    """The wanted contacts that ever had an event."""
+    numbers = (part["contact"][_concerned(run, part, wanted, ())] for (part,) in blocks(run.events))
+    return {number for part in numbers for number in np.unique(part).tolist()}
+
+
 def contact_columns(run: Trajectory, wanted: Callable[[Pair], bool], names: list[str], *kinds: EventKind) -> list[Column]:
     """Only these columns of the same rows: of a long run there are millions."""
     found: list[list[Column]] = [[] for _ in names]
@@ -56,9 +62,9 @@ def between(first: str, others: set[str]) -> Callable[[Pair], bool]:
     return lambda pair: (pair.body_a == first and pair.body_b in others) or (pair.body_b == first and pair.body_a in others)
 
 
-def held(kinds: Column) -> NDArray[np.int64]:
+def held(kinds: Column) -> NDArray[np.int32]:
     """How many contacts hold after each of the events of these kinds."""
-    return np.cumsum((kinds == EventKind.CLOSE).astype(np.int64) - (kinds == EventKind.OPEN))
+    return np.cumsum((kinds == EventKind.CLOSE).astype(np.int8) - (kinds == EventKind.OPEN), dtype=np.int32)
 
 
 def holding_at_end(run: Trajectory) -> list[Pair]:

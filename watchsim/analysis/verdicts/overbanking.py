@@ -27,7 +27,7 @@ def overbanking(watch: Watch) -> Verdict | None:
     if not len(met) or not watch.recorded(met["t"][-1:]).all():
         return None
     t, contact = float(met["t"][-1]), int(met["contact"][-1])
-    bankings = set(np.unique(watch.events(watch.lever, watch.fixed, *EventKind)["contact"]).tolist())
+    bankings = watch.contacts(watch.lever, watch.fixed)
     banked = [number for number in in_force(run, [t])[0] if number in bankings]
     if not banked or not watch.has_shapes or not _pressed_on(arms(run, watch.compiled, t, [contact, *banked]), watch.lever):
         return None

@@ -69,9 +69,8 @@ def _one(run: Trajectory, event: Any, names: list[str]) -> str:
 
 def heard(run: Trajectory, window: Window) -> dict[str, str]:
     """Noises of the window: t (s) and loudness, 1 for the loudest; energies (J) go with the square of it."""
-    times, energies = noises(run)
-    inside = (times >= window[0]) & (times <= window[1])
-    times, energies = times[inside], np.maximum(energies[inside], 0.0)
+    times, energies = noises(run, *window)
+    energies = np.maximum(energies, 0.0)
     loudest = float(energies.max(initial=0.0))
     if loudest <= 0.0:
         return {"t": doubles([]), "loud": floats([])}
