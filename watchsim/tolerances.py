@@ -104,6 +104,9 @@ FIRST_STEP = 1e-3
 SMALLEST_STEP = 1e-14
 # Sizes of the scene, or radians: the longest flight. Large: a step of what runs away takes for ever; small: more steps.
 FLIGHT_SIZES = 1e4
+# Sizes of the scene, or radians: further away a position is rounded to a millionth of the size. Large: what runs away is
+# followed for ever; small: long falls and fast wheels end.
+FURTHEST_SIZES = 1e10
 # Of the time within a step: less is no progress. Large: contacts close late; small: the search stands still.
 TIME_ROUNDING = 4e-16
 # Of the time: bounds that close are one instant. Large: modes end late; small: needless evaluations.

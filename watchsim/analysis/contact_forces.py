@@ -24,6 +24,7 @@ from watchsim.scene.recording import STATISTICS
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.methods import EVENT_DRIVEN
 from watchsim.simulation.record.trajectory import Array, Trajectory
+from watchsim.storage.columns import blocks
 
 MODES = (EventKind.CLOSE, EventKind.OPEN, EventKind.STICK, EventKind.SLIDE, EventKind.HANDOVER)
 SLACK = 1e-9  # of the largest force: rounding
@@ -110,47 +111,59 @@ def absolute(compiled: Compiled, values: Array, rates: bool) -> Array:
 
 def _modes(run: Trajectory, times: Array) -> Iterator[dict[int, int]]:
     """Contact -> mode of what is in force, at each of the times."""
-    told = run.events[np.isin(run.events["kind"], MODES)]
     order = np.argsort(times, kind="stable")
-    stops = np.searchsorted(told["t"], times[order], side="right")
-    done = int(stops[0]) if len(stops) else 0
-    changes = _Changes(told[:done])
-    modes = {contact: mode for contact in changes.contacts if (mode := changes.mode(contact, done)) is not None}
+    first = times[order[0]] if len(times) else 0.0
+    waiting = order.tolist()[::-1]
+    modes: dict[int, int] = {}
     found: dict[int, dict[int, int]] = {}
-    for place, stop in zip(order.tolist(), stops.tolist(), strict=True):
-        for event in told[done:stop].tolist():
-            _change(modes, dict(zip(told.dtype.names, event, strict=True)))
-        done = stop
-        found[place] = dict(modes)
+    for (part,) in blocks(run.events):
+        if not waiting:
+            break
+        told = part[np.isin(part["kind"], MODES)]
+        done = int(np.searchsorted(told["t"], first, side="right"))
+        modes = _Changes(told[:done], modes).modes()
+        while waiting and times[waiting[-1]] < part["t"][-1]:
+            stop = int(np.searchsorted(told["t"], times[waiting[-1]], side="right"))
+            _apply(modes, told[done:stop])
+            done = max(done, stop)
+            found[waiting.pop()] = dict(modes)
+        if waiting:
+            _apply(modes, told[done:])
+    found |= {place: dict(modes) for place in waiting}
     return (found[place] for place in range(len(times)))
 
 
 class _Changes:
     """Events that change modes, by contact: what a contact's mode is follows from the last of its own, not from all before."""
 
-    def __init__(self, events: NDArray[Any]) -> None:
+    def __init__(self, events: NDArray[Any], earlier: dict[int, int]) -> None:
+        """`earlier`: the modes before the first of the events."""
         gained, lost = events["contact"].astype(np.int64), events["value"].astype(np.int64)
         handed = events["kind"] == EventKind.HANDOVER
-        self._events = events
+        self._events, self._earlier = events, earlier
         self._of = np.concatenate((gained, lost[handed]))
         self._at = np.concatenate((np.arange(len(events)), np.flatnonzero(handed)))
         order = np.lexsort((self._at, self._of))
         self._of, self._at = self._of[order], self._at[order]
-        self.contacts = np.unique(self._of).tolist()
 
-    def mode(self, contact: int, before: int) -> int | None:
-        """Its mode before the event of that number; None where it is open."""
-        handed = False
+    def modes(self) -> dict[int, int]:
+        """Contact -> mode of what is in force after all of the events."""
+        found = {contact: self._mode(contact) for contact in {*np.unique(self._of).tolist(), *self._earlier}}
+        return {contact: mode for contact, mode in found.items() if mode is not None}
+
+    def _mode(self, contact: int) -> int | None:
+        """The mode of a contact after all of the events; None where it is open."""
+        otherwise, before = None, len(self._events)
         while (number := self._last_of(contact, before)) is not None:
             event = self._events[number]
             if int(event["kind"]) != EventKind.HANDOVER:
-                modes: dict[int, int] = {}
-                _change(modes, event)
-                return modes.get(contact, STICK if handed else None)
+                own: dict[int, int] = {}
+                _change(own, int(event["kind"]), contact, event["value"])
+                return own.get(contact, otherwise)
             if int(event["contact"]) != contact:  # to that one, from this
-                break
-            handed, contact, before = True, int(event["value"]), number
-        return STICK if handed else None
+                return otherwise
+            otherwise, contact, before = STICK, int(event["value"]), number
+        return self._earlier.get(contact, otherwise)
 
     def _last_of(self, contact: int, before: int) -> int | None:
         """The number of the last event before another that says something about a contact."""
@@ -159,8 +172,12 @@ class _Changes:
         return int(self._at[first + k - 1]) if k else None
 
 
-def _change(modes: dict[int, int], event: Any) -> None:
-    kind, contact, value = int(event["kind"]), int(event["contact"]), event["value"]
+def _apply(modes: dict[int, int], events: NDArray[Any]) -> None:
+    for kind, contact, value in zip(*(events[name].tolist() for name in ("kind", "contact", "value")), strict=True):
+        _change(modes, kind, contact, value)
+
+
+def _change(modes: dict[int, int], kind: int, contact: int, value: float) -> None:
     if kind == EventKind.HANDOVER:
         modes[contact] = modes.pop(int(value), STICK)
     elif kind == EventKind.STICK:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from watchsim.scene.oscillation import nominal_frequency, oscillator, oscillators
 from watchsim.simulation.record.trajectory import Array, Trajectory
+from watchsim.storage.columns import let_go
 
 LONGEST_STEP = 0.26  # periods: within a window rows are never further apart than a quarter of a swing
 
@@ -44,4 +45,6 @@ def is_recorded(run: Trajectory, times: Array) -> NDArray[np.bool_]:
     after = np.clip(np.searchsorted(run.t, times, side="left"), 0, len(run.t) - 1)
     before = np.clip(np.searchsorted(run.t, times, side="right") - 1, 0, len(run.t) - 1)
     inside = (times >= run.t[0]) & (times <= run.t[-1])
-    return inside & (run.t[after] - run.t[before] <= longest)
+    found = inside & (run.t[after] - run.t[before] <= longest)
+    let_go(run.t)
+    return np.asarray(found)

@@ -52,8 +52,8 @@ class Meanwhile:
 
 def load_plots() -> None:
     """Load what plots need, fonts included."""
-    from watchsim.render.figures.kinematics_plot import Kinematics
     from watchsim.render.figures.figure_style import figure
+    from watchsim.render.figures.kinematics_plot import Kinematics
 
     assert Kinematics
     empty = figure()

@@ -65,7 +65,7 @@ def heading(figure: Figure, title: str, words: str = "") -> None:
 
 def fit(text: Text, room: float) -> None:
     """Cut a text, measured as it is drawn, to `room` mm."""
-    figure = text.get_figure(root=True)
+    figure = text.get_figure()
     assert figure is not None
     whole = text.get_text()
     for _ in range(4):
