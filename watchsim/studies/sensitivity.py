@@ -149,7 +149,7 @@ def found(
     cycle = steady(scene, tolerance=tolerance)
     if not cycle.found or cycle.amplitude_deg is None:
         raise ValueError(f"this watch has no limit cycle whose sensitivity could be computed: {cycle.message or cycle.verdict}")
-    # One oscillation tells all where the teeth are alike, but for the multiplier.
+    # One oscillation is enough where the teeth are alike, but for the multiplier.
     brief = cycle.oscillations == 1 and all(one.name != "multiplier" for one in outputs)
     question = Question(scene, True, None, tolerance, float(np.radians(cycle.amplitude_deg)), brief)
     points = [point for quantity in asked for point in points_of(quantity)]

@@ -37,7 +37,7 @@ class Touch:
 class Meeting:
     """A contact at a given position: its point (m) in the movement, the unit normal there, on which primitives.
 
-    `rates` tells of each of the two bodies (numbers in the model) how fast the gap opens as it turns, m/rad.
+    `rates` gives for each of the two bodies (numbers in the model) how fast the gap opens as it turns, m/rad.
     `flat` is the body that holds the line or the rounder arc, along whose face the other one's corner slides.
     """
 
