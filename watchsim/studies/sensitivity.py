@@ -23,7 +23,8 @@ from watchsim.studies.outputs import USUAL, Output, outputs_named
 from watchsim.studies.parameter_sweep import Progress, computed, study_of
 from watchsim.studies.point import Question, Row
 from watchsim.studies.quantities import Quantity, fixed_nominal, quantities
-from watchsim.studies.workers.executor import Executor, chosen
+from watchsim.studies.workers.choose_executor import chosen
+from watchsim.studies.workers.executor import Executor
 from watchsim.studies.workers.journal import Journal
 from watchsim.units import known_unit
 
