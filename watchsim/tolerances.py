@@ -2,10 +2,25 @@
 
 Each has its unit or what it is a share of, what it is for, and what goes wrong when it is too large or too small. Contact
 problems are scaled before they are solved, so theirs are all shares. The event loop's begin with those of `Options`, which
-scale with the scene's size (simulation/options.py).
+scale with the scene's size (simulation/options.py). Readers of drawings have their own, and so has what is turned by hand.
 """
 
 from __future__ import annotations
+
+# ====== Outlines, and which of them could touch ======
+
+# Of the scene's size: what joints of outlines leave open. Large: steps count as smooth; small: rounding makes edges.
+JOINT_RESOLUTION = 3e-11
+# m. Six decimals of a millimetre place a point within 0.71 nm, two outlines within 1.41 nm of each other; position and angle of
+# a body add their own. Large: a contact begins where none was drawn; small: resting contacts are refused.
+DRAWING_ROUNDING = 2e-9
+# Of the size, more than any tolerance of a run: a pair that comes this close can touch. Large: more candidates; small: contacts
+# are lost.
+CLEARANCE = 2e-3
+# Of a distance: the coordinates that shapely is given are rounded. Large: more candidates; small: contacts are lost.
+PLANE_ROUNDING = 1e-9
+# Of the distances from which a place is computed. Large, small: as above.
+PLACE_ROUNDING = 1e-14
 
 # ====== Contact problems ======
 

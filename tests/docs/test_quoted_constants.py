@@ -20,7 +20,7 @@ from watchsim.drawing.chaining import chain
 from watchsim.drawing.curves import plane_projection
 from watchsim.drawing.svg import svg_file, xml_elements
 from watchsim.dynamics import solver_fallbacks
-from watchsim.mechanism import contact_features, overlap
+from watchsim.mechanism import overlap
 from watchsim.scene import carriers
 from watchsim.scene.file import read_scene
 from watchsim.scene.file.readers import read_settings
@@ -85,10 +85,10 @@ QUOTED = [
     (METHOD, "and {} such terms, so decisions", math.log(tolerances.MOST_LENIENT, tolerances.LENIENCE_STEP) + 1),
     (METHOD, "More than {} events within an instant", advance.EVENTS_AT_ONCE),
     (METHOD, "no acceleration beyond rounding ({} of the forces", tolerances.SLEEP),
-    (METHOD, "Bodies that overlap by up to {} nm therefore touch", overlap.ROUNDING / NANO),
+    (METHOD, "Bodies that overlap by up to {} nm therefore touch", tolerances.DRAWING_ROUNDING / NANO),
     (METHOD, "chords deviate by at most {} nm", overlap.DEVIATION / NANO),
-    (METHOD, "what that adds is added to the {} nm", overlap.ROUNDING / NANO),
-    (METHOD, "over the contacts within {} nm of a touch", tolerances.TOUCH_REACH * overlap.ROUNDING / NANO),
+    (METHOD, "what that adds is added to the {} nm", tolerances.DRAWING_ROUNDING / NANO),
+    (METHOD, "over the contacts within {} nm of a touch", tolerances.TOUCH_REACH * tolerances.DRAWING_ROUNDING / NANO),
     (METHOD, "until no gap is below {} `gap_zero`", tolerances.OVERLAP_GONE),
     (METHOD, "by more than {} times the rounding", tolerances.FURTHEST_TAKEN_BACK),
     (METHOD, "deeper than {} of the scene's size", tolerances.OVERLAP_RESOLUTION),
@@ -102,18 +102,18 @@ QUOTED = [
     (METHOD, "by {} of their own mobility", tolerances.YIELD),
     (METHOD, "none changes by more than {} of the largest", tolerances.SETTLED),
     (METHOD, "After {}, 64, 128 … sweeps", prox_relaxation.FIRST),
-    (GEOMETRY, "Edges shorter than {} of the scene's size", contact_features.JOINT),
-    (GEOMETRY, "larger than {} rad", contact_features.JOINT),
-    (GEOMETRY, "the scene's size, than {} of the size over its radius", contact_features.JOINT),
-    (GEOMETRY, "more than the rounding of drawings, {} nm", overlap.ROUNDING / NANO),
+    (GEOMETRY, "Edges shorter than {} of the scene's size", tolerances.JOINT_RESOLUTION),
+    (GEOMETRY, "larger than {} rad", tolerances.JOINT_RESOLUTION),
+    (GEOMETRY, "the scene's size, than {} of the size over its radius", tolerances.JOINT_RESOLUTION),
+    (GEOMETRY, "more than the rounding of drawings, {} nm", tolerances.DRAWING_ROUNDING / NANO),
     (GEOMETRY, "Pairs of bodies with at most {} reachable pairs", cell_grid.FEW_CONTACTS),
     (GEOMETRY, "travels {} to 2 % of its reach", 100.0 * cell_grid.FINEST_SHARE),
     (GEOMETRY, "1 to {} % of its reach", 100.0 * cell_grid.CELL_SHARE),
     (LAWS, "where Λ_TC = 0 (to {} of the cone)", tolerances.NO_TANGENTIAL),
     (LAWS, "counts as jammed from {} G_N on", tolerances.PAINLEVE),
-    (DESIGN, "convex turns above {} rad get a corner", contact_features.JOINT),
-    (DESIGN, "no more than the rounding of drawings ({} nm)", overlap.ROUNDING / NANO),
-    (SCENE, "overlaps there by no more than {} nm", overlap.ROUNDING / NANO),
+    (DESIGN, "convex turns above {} rad get a corner", tolerances.JOINT_RESOLUTION),
+    (DESIGN, "no more than the rounding of drawings ({} nm)", tolerances.DRAWING_ROUNDING / NANO),
+    (SCENE, "overlaps there by no more than {} nm", tolerances.DRAWING_ROUNDING / NANO),
     (SCENE, "`duration` (default {} s)", read_settings.DURATION),
     (SCENE, "the relative error per step (default {})", read_settings.TOLERANCE),
     (SCENE, '`"{} µm"` |', read.SNAP / MICRO),

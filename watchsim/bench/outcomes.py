@@ -1,6 +1,6 @@
 """What does an engine make of a scenario, and how long does it take?
 
-Times are of the processor, of the stepping alone: setting up a scene, compiling and asking for cells are left out for all.
+Processor times of the stepping alone: setting up a scene, compiling and computing cells are left out for all.
 """
 
 from __future__ import annotations

@@ -154,7 +154,7 @@ def _status(whole: bool, folder: Path, fine: int) -> int:
 def _executor(args: argparse.Namespace, points: int | None) -> Executor:
     from watchsim.jit import is_cached
     from watchsim.studies.parameter_sweep import processors
-    from watchsim.studies.workers.executor import chosen
+    from watchsim.studies.workers.choose_executor import chosen
 
     workers = args.workers or processors()
     if points is not None:

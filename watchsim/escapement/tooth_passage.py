@@ -26,10 +26,10 @@ class Direct:
 
 @dataclass(frozen=True, slots=True)
 class Passage:
-    """One tooth on one stone: the places between which its angles are told. `end`: the other bank (rad).
+    """One tooth on one stone: the places between which its angles are measured. `end`: the other bank (rad).
 
-    `caught` is where the wheel, unlocked, has met the impulse stone, where it had to run after it; `direct` tells of an impulse
-    on the balance itself, during which nothing drives the lever but its pin.
+    `caught` is where the wheel, unlocked, has met the impulse stone, where it had to run after it; `direct` describes an
+    impulse on the balance itself, during which nothing drives the lever but its pin.
     """
 
     tooth: int

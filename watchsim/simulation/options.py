@@ -10,7 +10,6 @@ from typing import NamedTuple
 
 from watchsim.jit import by_reference
 from watchsim.mechanism.compile import Compiled
-from watchsim.mechanism.contact_features import JOINT
 from watchsim.tolerances import (
     ACCUMULATION_SPEED,
     ACCUMULATION_TIME,
@@ -23,6 +22,7 @@ from watchsim.tolerances import (
     FORCE_ZERO,
     GAP_CLOSE,
     GAP_ZERO,
+    JOINT_RESOLUTION,
     SLEEP,
     SPEED_PER_TOLERANCE,
     SPEED_ZERO,
@@ -59,7 +59,7 @@ def options_for(size: float, tolerance: float, max_step: float) -> Options:
         gap_close=GAP_CLOSE * size,
         # A corner that lands flat comes within its primitives only when it has landed: as far behind as drift has let it.
         behind=max(BEHIND_LEAST, min(BEHIND_PER_TOLERANCE * tolerance, BEHIND_MOST)) * size,
-        extent=EXTENT_PER_JOINT * JOINT * size,
+        extent=EXTENT_PER_JOINT * JOINT_RESOLUTION * size,
         # Velocities drift off their contacts by about the tolerance within a step.
         speed_zero=max(SPEED_ZERO, SPEED_PER_TOLERANCE * tolerance) * size,
         force_zero=FORCE_ZERO,

@@ -16,7 +16,8 @@ from watchsim.simulation.interrupts import held_interrupts
 from watchsim.studies.axes import Axis, Value, axes_from_values
 from watchsim.studies.outputs import USUAL, Output, outputs_named
 from watchsim.studies.point import Question, Row
-from watchsim.studies.workers.executor import Executor, chosen
+from watchsim.studies.workers.choose_executor import chosen
+from watchsim.studies.workers.executor import Executor
 from watchsim.studies.workers.journal import Journal, Study, scene_digest
 
 Progress = Callable[[float, float], None]  # points done, of so many

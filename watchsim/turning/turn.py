@@ -12,11 +12,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from watchsim.candidates.symmetry import turn_symmetry
-from watchsim.mechanism.compile import CLEARANCE, compile_scene
+from watchsim.mechanism.compile import compile_scene
 from watchsim.scene.errors import Fault, SceneError
 from watchsim.scene.oscillation import Oscillator, oscillators
 from watchsim.scene.roles import drive_direction, keeps_time
 from watchsim.scene.scene import Scene
+from watchsim.tolerances import CLEARANCE
 from watchsim.turning.moves import assembly
 from watchsim.turning.turned_cycle import Cycle
 

@@ -72,7 +72,7 @@ def timeline(scene: Scene) -> str:
 
     run = ws.simulate(scene, duration=WHOLE)
     told = shown_beats(run, LAST)
-    plot_phases(run, None, told=told[:2]).savefig(IMAGES / "coaxial_phases.png", dpi=130)
+    plot_phases(run, None, beats=told[:2]).savefig(IMAGES / "coaxial_phases.png", dpi=130)
     for name, beat in (("indirect", told[0]), ("direct", told[1])):
         push = next(one.phase for one in beat.stages if one.name == "impulse")
         instant = 0.5 * (push.start + push.end)

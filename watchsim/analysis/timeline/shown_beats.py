@@ -50,7 +50,7 @@ def shown_beats(run: Trajectory, window: Sequence[float] | None = None, rubbed: 
     if parts.wheel is None:
         raise ValueError(f"phases are those of an escapement, and no driven wheel keeps {name} swinging")
     if parts.lever is None:
-        raise ValueError(f"phases are told of an escapement with a lever, and none stands between {parts.wheel} and {name}")
+        raise ValueError(f"phases exist where an escapement has a lever; none stands between {parts.wheel} and {name}")
     if not can_be_told(run):
         raise ValueError("a timeline needs a run by events with all of them kept")
     found = beats(run)

@@ -11,8 +11,9 @@ from itertools import pairwise
 
 from watchsim.construction.coaxial.coaxial_fork import Fork, fork_outline, guard_pin
 from watchsim.construction.coaxial.coaxial_points import FIRST, SECOND, Points
-from watchsim.construction.coaxial.coaxial_stones import EDGE, Stone, lever_stone, locking_stone
+from watchsim.construction.coaxial.coaxial_stones import EDGE, lever_stone, locking_stone
 from watchsim.construction.outline import circle, fillet_chain, polar, turned
+from watchsim.construction.pallet_stone import Stone
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Edge, Line, Point
 

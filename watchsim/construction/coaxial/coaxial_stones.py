@@ -7,12 +7,10 @@ in their slots. In the frame of the part that holds them, millimetres.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 from watchsim.construction.coaxial.coaxial_points import FIRST, SECOND, Points, cosine, sine
-from watchsim.construction.outline import fillet_chain, polar
-from watchsim.geometry.loop import Loop
-from watchsim.geometry.primitives import Edge, Line, Point
+from watchsim.construction.outline import polar
+from watchsim.construction.pallet_stone import Stone
 
 LOCKING_WIDTH, LOCKING_LENGTH = 0.30, 0.62
 LEVER_WIDTH, LEVER_LENGTH = 0.17, 0.52
@@ -21,36 +19,6 @@ EDGE = 0.03
 UNDER = 0.025  # by which the end of a locking stone stays off the tip circle behind its corner
 RELIEF = 25.0  # of the ends of impulse stones behind their tips, from the circle they run on, degrees: the tooth that has given
 # its impulse waits behind the lever's stone
-
-
-@dataclass(frozen=True)
-class Stone:
-    """A prism: `at(t, v)` is t along the working face, away from its tip, and v across, into the stone.
-
-    The face runs from `tip` in the direction `face` (degrees); the material is to the right of it. `relief` is how far the
-    end's other corner stands back.
-    """
-
-    tip: Point
-    face: float
-    width: float
-    length: float
-    relief: float
-
-    def at(self, t: float, v: float) -> Point:
-        ux, uy = cosine(self.face), sine(self.face)
-        return (self.tip[0] + t * ux + v * uy, self.tip[1] + t * uy - v * ux)
-
-    def loop(self, layer: str, edge: float) -> Loop:
-        """Tip, end, back and face, counter-clockwise; the two edges of the shank rounded by `edge`."""
-        corners = [
-            self.tip,
-            self.at(self.relief, self.width),
-            self.at(self.length, self.width),
-            self.at(self.length, 0.0),
-        ]
-        edges: list[Edge] = [Line(*corners[i], *corners[(i + 1) % 4]) for i in range(4)]
-        return Loop(tuple(fillet_chain(edges, [0.0, edge, edge, 0.0], closed=True)), layer)
 
 
 def locking_stone(points: Points, side: int) -> Stone:

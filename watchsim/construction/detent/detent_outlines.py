@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from watchsim.construction.coaxial.coaxial_stones import Stone
-from watchsim.construction.coaxial.coaxial_wheel import ToothForm, contour
 from watchsim.construction.detent.detent_points import Points
 from watchsim.construction.outline import circle, polar, rounded
+from watchsim.construction.pallet_stone import Stone
+from watchsim.construction.undercut_teeth import ToothForm, contour
 from watchsim.construction.wheel_arms import Arms
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Point

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from watchsim.construction.contact_tables import contact_tables
 from watchsim.construction.design import told
 from watchsim.construction.detent.detent_dimensions import Detent
 from watchsim.construction.detent.detent_outlines import BLADE_LENGTH, root
@@ -84,31 +85,7 @@ value = "{torque!r} µN·m"
 body     = "balance"
 q_factor = {values.q_factor!r}
 
-[[contacts]]                         # locking
-between     = ["wheel.TEETH", "detent.STONE"]
-friction    = {values.friction!r}
-restitution = {values.restitution!r}
-
-[[contacts]]                         # impulse
-between     = ["wheel.TEETH", "balance.IMPULSE_STONE"]
-friction    = {values.friction!r}
-restitution = {values.restitution!r}
-
-[[contacts]]                         # unlocking, and passing on the way back
-between     = ["passing.LEAF", "balance.DISCHARGE"]
-friction    = {values.friction!r}
-restitution = {values.restitution!r}
-
-[[contacts]]
-between     = ["passing.LEAF", "detent.HORN"]
-friction    = {values.friction!r}
-restitution = {values.restitution!r}
-
-[[contacts]]
-between     = ["detent.BAR", "banking.SCREW"]
-friction    = {values.friction!r}
-restitution = {values.restitution!r}
-
+{contacts}
 [run]
 duration  = "10 s"
 tolerance = 1e-9
@@ -117,6 +94,14 @@ tolerance = 1e-9
 lift_angle = "{lift:.4g}°"           # from the letting go of the tooth to the end of the impulse
 """
 
+CONTACTS: tuple[tuple[str, str] | tuple[str, str, str], ...] = (
+    ("wheel.TEETH", "detent.STONE", "locking"),
+    ("wheel.TEETH", "balance.IMPULSE_STONE", "impulse"),
+    ("passing.LEAF", "balance.DISCHARGE", "unlocking, and passing on the way back"),
+    ("passing.LEAF", "detent.HORN"),
+    ("detent.BAR", "banking.SCREW"),
+)
+
 
 def scene_text(values: Detent) -> str:
     """The text of scene.toml: a tooth locked, the detent on its bank, the balance about to be let go."""
@@ -124,6 +109,7 @@ def scene_text(values: Detent) -> str:
     return TEXT.format(
         dimensions=told(values),
         values=values,
+        contacts=contact_tables(values, *CONTACTS),
         hertz=values.frequency / 7200.0,
         wheel_angle=round(points.wheel_angle() % points.pitch + CLEAR, 9),
         pivot=points.pivot,

@@ -10,7 +10,7 @@ from watchsim.construction.swiss_lever.swiss_lever_points import Swiss
 def lift_on_tooth(design: Swiss, side: int) -> float:
     """Lever angle (degrees) from where the stone's discharge corner crosses the circle of the toes to let-off.
 
-    The corner is rho from the lever's pivot, which is C from the wheel's centre: its distance from that one tells the angle
+    The corner is rho from the lever's pivot, which is C from the wheel's centre: its distance from that one gives the angle
     between the two directions at the pivot. ValueError where the corner never crosses.
     """
     corner = design.discharge_corner(side)

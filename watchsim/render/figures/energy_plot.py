@@ -47,7 +47,7 @@ MANY = 2  # beats
 
 
 def plot_energy(
-    run: Trajectory, window: Sequence[float] | None = None, width: float = FULL, told: list[Beat] | None = None
+    run: Trajectory, window: Sequence[float] | None = None, width: float = FULL, beats: list[Beat] | None = None
 ) -> Figure:
     """Bars: what the drive, springs and weights put in over the whole run and where it went; below, phase by phase of the last
     two beats of a window where there is an escapement.
@@ -57,7 +57,7 @@ def plot_energy(
     shares = energy_shares(run)
     if not shares.went_to:
         raise ValueError("no energy was put into this run, so there are no shares to draw")
-    beats_shown = (_beats(run, window) if told is None else told)[-MANY:]
+    beats_shown = (_beats(run, window) if beats is None else beats)[-MANY:]
     stages = [[one for one in beat.stages if one.name != "locked"] for beat in beats_shown]
     across = len(stages) if width >= NARROW else 1
     rows = -(-len(stages) // across) if stages else 0

@@ -67,14 +67,14 @@ class Instant:
 
 
 def plot_timeline(
-    run: Trajectory, window: Sequence[float] | None = None, width: float = FULL, told: list[Beat] | None = None
+    run: Trajectory, window: Sequence[float] | None = None, width: float = FULL, beats: list[Beat] | None = None
 ) -> Figure:
     """The last two beats of a window: the mechanism around the lever amid each phase, with the contact forces on the lever,
     above the angles of lever and balance in those phases.
 
     ValueError where no beat was recorded whole.
     """
-    beats_shown = (told or shown_beats(run, window, rubbed=False))[-MANY:]
+    beats_shown = (beats or shown_beats(run, window, rubbed=False))[-MANY:]
     across = ACROSS[width >= NARROW]
     box = _box(run)
     wide = (width - 2.0 * EDGE - (across - 1) * GAP) / across

@@ -50,7 +50,7 @@ PREFIXES = ((1.0, "N·m"), (1e3, "mN·m"), (1e6, "µN·m"), (1e9, "nN·m"))
 
 
 def plot_torque(
-    run: Trajectory, window: Sequence[float] | None = None, width: float = FULL, told: list[Beat] | None = None
+    run: Trajectory, window: Sequence[float] | None = None, width: float = FULL, beats: list[Beat] | None = None
 ) -> Figure:
     """The torque of all contacts on the balance over its angle, a panel for each of the last two beats of a window.
 
@@ -58,7 +58,7 @@ def plot_torque(
     phase gives to the balance in all, impacts included, as in phases.csv. ValueError where no beat was recorded whole, or the
     run knows no forces.
     """
-    beats_shown = (told or shown_beats(run, window, rubbed=False))[-MANY:]
+    beats_shown = (beats or shown_beats(run, window, rubbed=False))[-MANY:]
     found = pushes(run, beats_shown)
     across = len(found) if width >= NARROW else 1
     rows = -(-len(found) // across)

@@ -137,7 +137,7 @@ class Strip:
 
 
 def strip_body(run: Trajectory, asked: str | None) -> str:
-    """The body that a strip tells of: the one asked for, else the oscillator, else the first that moves."""
+    """The body that a strip shows: the one asked for, else the oscillator, else the first that moves."""
     own = asked or roles(run.scene).oscillator
     return choose(run, [own] if own else None)[0].name
 

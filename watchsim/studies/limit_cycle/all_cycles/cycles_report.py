@@ -1,4 +1,4 @@
-"""How are all cycles of a mechanism told, and what becomes of swings that are not regular?"""
+"""How are all cycles of a mechanism reported, and what becomes of swings that are not regular?"""
 
 from __future__ import annotations
 
