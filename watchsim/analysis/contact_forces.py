@@ -118,8 +118,8 @@ def _modes(run: Trajectory, times: Array) -> Iterator[dict[int, int]]:
     modes = {contact: mode for contact in changes.contacts if (mode := changes.mode(contact, done)) is not None}
     found: dict[int, dict[int, int]] = {}
     for place, stop in zip(order.tolist(), stops.tolist(), strict=True):
-        for event in told[done:stop].tolist():
-            _change(modes, dict(zip(told.dtype.names, event, strict=True)))
+        for event in told[done:stop]:
+            _change(modes, event)
         done = stop
         found[place] = dict(modes)
     return (found[place] for place in range(len(times)))
