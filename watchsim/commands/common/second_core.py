@@ -86,7 +86,7 @@ def drawn_apart(draws: Mapping[str, Draw]) -> Mapping[str, Draw]:
         return draws
     try:
         files: dict[str, IO[bytes]] = {name: tempfile.TemporaryFile() for name in draws}  # noqa: SIM115 - as long as the run
-        child = _copy_that(lambda: [draw(files[name]) for name, draw in draws.items()])
+        child = _copy_that(lambda: [(draw(files[name]), files[name].flush()) for name, draw in draws.items()])
     except OSError:  # no room for another process, or for files
         return draws
 
