@@ -31,8 +31,8 @@ COLUMNS = ("t", "q", "u", "a", "events", "end_q", "end_u")
 NUMBERS = ("worst_penetration", "worst_residual", "overlap", "energy", "counts", "sums")
 
 
-def write_trajectory(run: Trajectory, path: Path) -> None:
-    """Write `path` (npz): t, q, u, a and events in full precision, and everything else but the scene."""
+def write_trajectory(run: Trajectory, path: Path | IO[bytes]) -> None:
+    """Write the file `path` (npz): t, q, u, a and events in full precision, and everything else but the scene."""
     header = {
         "format": FORMAT,
         "stop": run.stop.name,

@@ -24,7 +24,7 @@ WHOLE_RUN = 10.0  # s that the movie of a whole run takes
 
 
 def pictures(run: Trajectory, plots: bool, movie: bool, gif: bool) -> dict[str, Callable[[Path], object]]:
-    """Name in the results folder -> what draws it into the file it is given; the plots are begun at once, beside this process."""
+    """Name in the results folder -> what draws it into the file it is given; plots are begun at once (see `drawn_apart`)."""
     found: dict[str, Any] = dict(drawn_apart(_plots(run))) if plots else {}
     if movie:
         found["movie.mp4"] = lambda path: _movie(run, path, slow=1 / 20)

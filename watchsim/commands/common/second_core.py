@@ -1,61 +1,77 @@
 """What does the second core of a machine do while a run is stepped, and while its numbers are worked out?
 
-The loop is machine code that leaves Python to others: meanwhile a thread loads what plots need. When the motion is known, they are
-drawn in a copy of the process, which has all that they show already, while the process itself goes on with numbers and tables.
+The loop is machine code that leaves Python to others: meanwhile a thread loads what plots need and makes events into text. When
+the motion is known, the plots are drawn in a copy of the process, which has all that they show, and the process itself goes on
+with numbers and tables.
 """
 
 from __future__ import annotations
 
-import contextlib
 import functools
 import os
 import shutil
 import signal
 import sys
 import tempfile
-import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
-from typing import IO, NoReturn
+from typing import IO, TYPE_CHECKING, Any, NoReturn
 
 from watchsim import stopping
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from watchsim.results.tables import EventLines
+    from watchsim.scene.scene import Scene
+    from watchsim.simulation.record.trajectory import Pair
 
 Draw = Callable[[Path | IO[bytes]], object]
 PROMPT = 5e-4  # s that a thread may keep Python from another; the usual 5 ms would hold up every slice of the loop
 
 
 class Meanwhile:
-    """Something that a thread does from `begin` on, once; whatever goes wrong with it, it is done again where it is needed."""
+    """What a thread does while a run is stepped: loads what plots need, and makes its events into text, in files in `folder`.
 
-    def __init__(self, work: Callable[[], object]) -> None:
-        self._work = work
-        self._thread: threading.Thread | None = None
+    Whatever goes wrong with it is done again where it is needed.
+    """
 
-    def begin(self) -> None:
-        """Begin, unless that has been done."""
-        if self._thread is None:
-            self._before = sys.getswitchinterval()
-            sys.setswitchinterval(PROMPT)
-            self._thread = threading.Thread(target=self._quietly, daemon=True, name="meanwhile")
-            self._thread.start()
+    def __init__(self, scene: Scene, folder: Path, plots: bool) -> None:
+        self._scene, self._folder, self._plots = scene, folder, plots
+        self._lines: EventLines | None = None
+        self._work: list[Future[object]] = []
+        self._thread = ThreadPoolExecutor(1, thread_name_prefix="meanwhile")
+        self._before = sys.getswitchinterval()
 
-    def end(self) -> None:
-        """Wait until it is done."""
-        if self._thread is not None:
-            self._thread.join()
-            sys.setswitchinterval(self._before)
+    def progress(self, *_: float) -> None:
+        """To be called while the run goes on: the loop is running, so that a thread may."""
+        if self._plots and not self._work:
+            self._do(load_plots)
 
-    def _quietly(self) -> None:
-        with contextlib.suppress(Exception):
-            self._work()
+    def follow(self, pairs: Sequence[Pair], events: NDArray[Any]) -> None:
+        """The next events of the run."""
+        from watchsim.results.tables import EventLines
+
+        lines = self._lines = self._lines or EventLines(self._scene, pairs, self._folder)
+        self._do(lambda: lines.add(events))
+
+    def _do(self, work: Callable[[], object]) -> None:
+        sys.setswitchinterval(PROMPT)
+        self._work.append(self._thread.submit(work))
+
+    def end(self) -> EventLines | None:
+        """Wait until it is done; the events as far as they were made into text, None where they were not."""
+        self._thread.shutdown()
+        sys.setswitchinterval(self._before)
+        return None if any(one.exception() for one in self._work) else self._lines
 
 
 def load_plots() -> None:
     """Load what plots need, fonts included."""
+    import watchsim.render.figures.kinematics_plot  # noqa: F401 - to have it
     from watchsim.render.figures.figure_style import figure
-    from watchsim.render.figures.kinematics_plot import Kinematics
 
-    assert Kinematics
     empty = figure()
     empty.text(0.5, 0.5, "0123456789 °/s", weight="bold")
     empty.canvas.draw()
@@ -70,7 +86,7 @@ def drawn_apart(draws: Mapping[str, Draw]) -> Mapping[str, Draw]:
         return draws
     try:
         files: dict[str, IO[bytes]] = {name: tempfile.TemporaryFile() for name in draws}  # noqa: SIM115 - as long as the run
-        child = _copy_that(lambda: [draw(files[name]) for name, draw in draws.items()])
+        child = _copy_that(lambda: [(draw(files[name]), files[name].flush()) for name, draw in draws.items()])
     except OSError:  # no room for another process, or for files
         return draws
 
