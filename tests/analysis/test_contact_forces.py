@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -17,6 +18,7 @@ from watchsim.profiles_path import profiles_dir
 from watchsim.scene.file.load import load
 from watchsim.simulation.event_kinds import EVENT_DTYPE, EventKind
 from watchsim.simulation.simulate import simulate
+from watchsim.storage.columns import blocks
 
 G = 9.81
 
@@ -175,8 +177,10 @@ def test_all_modes_are_among_those_told() -> None:
     assert len(compile_scene(run.scene).model.contacts) == len(run.pairs)
 
 
-def test_modes_from_the_last_events_are_those_of_all_events() -> None:
-    """Whatever came before, handovers from one contact to the next included."""
+@pytest.mark.parametrize("at_once", [7, 1000])
+def test_modes_from_the_last_events_are_those_of_all_events(at_once: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever came before, handovers from one contact to the next included, however many events are looked at at once."""
+    monkeypatch.setattr("watchsim.analysis.contact_forces.blocks", partial(blocks, length=at_once))
     rng = np.random.default_rng(4)
     kinds = [EventKind.CLOSE, EventKind.OPEN, EventKind.STICK, EventKind.SLIDE, EventKind.HANDOVER]
     for _ in range(20):
@@ -191,5 +195,5 @@ def test_modes_from_the_last_events_are_those_of_all_events() -> None:
         for time, found in zip(times, _modes(run, times), strict=True):
             modes: dict[int, int] = {}
             for event in events[events["t"] <= time]:
-                _change(modes, event)
+                _change(modes, int(event["kind"]), int(event["contact"]), event["value"])
             assert found == modes

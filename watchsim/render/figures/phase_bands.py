@@ -10,14 +10,12 @@ from watchsim.analysis.timeline.rows import Stage
 from watchsim.analysis.timeline.timeline_table import title
 from watchsim.analysis.timing.phases import Phase
 from watchsim.render.figures.figure_style import EDGE, HAIR, LEAD, LETTER, MM, POINT, SMALL
-from watchsim.render.palette import FAINT, INK, PHASE_LINES, PHASES
+from watchsim.render.palette import ELSE, FAINT, INK, PHASE_LINES, PHASES, SECOND
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-SECOND = "#66c5ab"  # of an impulse that follows another
-ELSE = "#eeeeee"
 SWATCH, GAP = 2.6, 1.0  # mm
 APART = 3.5  # mm, from one name to the next swatch
 
