@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import io
 import os
 import re
 import subprocess
@@ -163,8 +164,9 @@ def test_picture_files_are_whole_or_as_they_were(
     plot = tmp_path / "plot.png"
     plot.write_bytes(b"before")
 
-    def half(path: Path, *_: object, **__: object) -> None:
-        Path(path).write_bytes(b"half")
+    def half(path: Path | io.BytesIO, *_: object, **__: object) -> None:
+        if not isinstance(path, io.BytesIO):
+            Path(path).write_bytes(b"half")
         raise OSError(errno.ENOSPC, "No space left on device")
 
     monkeypatch.setattr("matplotlib.figure.Figure.savefig", lambda self, path, **_: half(path))
