@@ -90,7 +90,7 @@ def _judged_study(target: Path, status: int, said: str) -> list[str]:
     saved = re.search(r"saved, without plots, in (\S+)", said)
     table = (Path(saved[1]) if saved else target) / "sweep.csv"
     lines = table.read_text(encoding="utf-8").splitlines() if table.is_file() else []
-    if status == 0 or saved or "could not write the plot" in said:
+    if status == 0 or saved or "could not write the plot" in said or "The table is the new one" in said:
         return [] if len(lines) == 3 else [f"rows lost: {lines} {said}"]
     if target.name == "study" and len(lines) != 3:
         return ["the earlier study is gone"]
