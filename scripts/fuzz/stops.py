@@ -60,7 +60,7 @@ COMMANDS = {
     "picture": ["check", LEVER, "--png", "start.png"],
     "drawing": ["inspect", f"{LEVER}/wheel.dxf", "--png", "start.png"],
     "report": ["report", "old"],
-    "sound": ["sound", "old", "--duration", "60 s"],
+    "sound": ["sound", "old"],
     "design": ["new", "geneva", "-o", "drawn"],
     "proposal": ["new", f"{LEVER}/wheel.dxf", "-o", "drawn"],
     "sweep": ["sweep", LEVER, "contacts.0.friction=0.1,0.12,0.15", "--duration", "1.5 s", "--workers", "1", "-o", "study"],
