@@ -1,8 +1,8 @@
 """Does any damaged results folder bring watchsim down?
 
 Makes one folder, damages copies of it at random (files lost, cut, overwritten, exchanged; arrays and headers changed within
-sound archives), and has `plot`, `movie` or `run --resume` read them, or what `--command` names. A folder fails that brings exit status 4, a traceback, the
-death of the process, takes more than 20 s, or changes where the command refuses it. `--only K` repeats number K.
+sound archives), and has `plot`, `movie` or `run --resume` read them, or what `--command` names. A folder fails that brings
+exit status 4, a traceback, the death of the process, or takes more than 20 s. `--only K` repeats number K.
 """
 
 from __future__ import annotations
