@@ -68,6 +68,7 @@ COMMANDS = {
     "steady": ["steady", LEVER],
     "turned": ["check", LEVER, "--turn", "--swing", "30°", "--movie", "turn.gif"],
 }
+ALONE = ("workers",)  # always processes of their own: a copy has no server of worker processes
 DEMO, SELDOM = "demo", 50  # which takes as long as all the others
 COMMANDS_AND_DEMO = {**COMMANDS, DEMO: ["demo", "-o", "shown"]}
 KEEPING = ("run", "long", "steps", "resume", "force")
@@ -121,7 +122,7 @@ def one(
     from watchsim.storage.write import sweep
 
     rng = random.Random(f"{number}")
-    name, fresh = (names[number % len(names)], number // len(names) % FRESH == 0)
+    name, fresh = (names[number % len(names)], names[number % len(names)] in ALONE or number // len(names) % FRESH == 0)
     if number % SELDOM == 1 and names == list(COMMANDS):
         name, fresh = DEMO, False
     shutil.rmtree(place, ignore_errors=True)
@@ -206,8 +207,10 @@ def main() -> None:
         )  # fmt: skip
         (made / "old" / "mine.txt").write_text("mine")
         names = args.command or list(COMMANDS)
-        load({name: COMMANDS[name] for name in names}, made, place)
-        kinds = [(name, fresh) for name in names for fresh in (True, False)] + [(DEMO, False)] * (names == list(COMMANDS))
+        load({name: COMMANDS[name] for name in names if name not in ALONE}, made, place)
+        kinds = [(name, fresh) for name in names for fresh in (True, False) if fresh or name not in ALONE] + [(DEMO, False)] * (
+            names == list(COMMANDS)
+        )
         usual = {(name, fresh): _usual(COMMANDS_AND_DEMO[name], fresh, made, place) for name, fresh in kinds}
         print({f"{name}{' fresh' * fresh}": round(seconds, 2) for (name, fresh), seconds in usual.items()}, flush=True)
         for number in range(args.first, args.first + args.count):
