@@ -30,10 +30,10 @@ def write_study(folder: Path, numbers: dict[str, Any], table: dict[str, list[Any
         place = write_elsewhere(folder.name, lambda made: _all_in(made, files), "the table")
         raise InputError(f"{error}.\nThe table was saved, without plots, in {place}") from error
     drawn = [] if figure is None or stopping.requested() else [f"sweep{ending}" for ending in FIGURES]
-    for name in set(FILES) - {*files, *drawn}:
-        (folder / name).unlink(missing_ok=True)
     for name in drawn:
         write_file(folder / name, lambda path: save(figure, path), "the plot")
+    for name in set(FILES) - {*files, *drawn}:
+        _remove(folder / name)
 
 
 def _tables(numbers: dict[str, Any], table: dict[str, list[Any]]) -> dict[str, Callable[[Path], object]]:
@@ -46,6 +46,19 @@ def _tables(numbers: dict[str, Any], table: dict[str, list[Any]]) -> dict[str, C
         "sweep.csv": lambda path: path.write_text(rows, encoding="utf-8"),
     }
     return files if parquet is None else {**files, "sweep.parquet": parquet}
+
+
+def _remove(path: Path) -> None:
+    """Away with what an earlier study has left; InputError where it stays."""
+    from watchsim.storage.disk import reason
+
+    try:
+        if path.exists():
+            path.unlink()
+    except OSError as error:
+        raise InputError(
+            f"{path} is of an earlier study and could not be removed: {reason(error)}. The table is the new one."
+        ) from error
 
 
 def _all_in(folder: Path, files: dict[str, Callable[[Path], object]]) -> None:

@@ -16,6 +16,7 @@ from typing import IO, Any
 
 from watchsim.results.tables import plain
 from watchsim.scene.scene import Scene
+from watchsim.storage.disk import reason
 from watchsim.storage.write import write_file
 from watchsim.studies.point import Row
 
@@ -48,7 +49,10 @@ class Journal:
             first = _line(study)
             write_file(self.path, lambda place: place.write_bytes(first), "the rows")
             self._whole = len(first)
-        self._file: IO[bytes] = self.path.open("r+b", buffering=0)
+        try:
+            self._file: IO[bytes] = self.path.open("r+b", buffering=0)
+        except OSError as error:
+            raise type(error)(error.errno, f"could not write the rows to {self.path}: {reason(error)}") from error
 
     def __enter__(self) -> Journal:
         return self
