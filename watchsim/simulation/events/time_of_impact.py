@@ -18,11 +18,12 @@ from watchsim.jit import kernel
 from watchsim.model.records import FIXED, FREE, LINE, PIVOT, SLIDE
 from watchsim.simulation.events.handover import is_beside_active, room_beside_active
 from watchsim.simulation.events.immovable import is_immovable
+from watchsim.simulation.events.lasting_gap import time_apart
 from watchsim.simulation.loop_state.scratch import ask
 from watchsim.simulation.loop_state.state import NO_CONTACT
 from watchsim.simulation.motion.sleeping import is_at_rest
 from watchsim.simulation.motion.step_path import body_on_path
-from watchsim.simulation.tolerances import IMMOVABLE, NEIGHBOUR_STRIDE, SLOWEST_CLOSING, TIME_ROUNDING
+from watchsim.simulation.tolerances import FINE_LOOK, IMMOVABLE, NEIGHBOUR_STRIDE, SLOWEST_CLOSING, TIME_ROUNDING
 
 
 @kernel
@@ -156,8 +157,14 @@ def _time_to_zero(gap, rate, outside, bounds, options):
         if gap >= -options.behind:
             safe = min(safe, _safe(gap + options.behind, -rate, closing, bend, distance))
         return safe
+    return _safe(_room_outside(gap, rate, options), -rate, closing, bend, distance)
+
+
+@kernel
+def _room_outside(gap, rate, options):
+    """How far a gap on the free side may fall before it is due."""
     leaving = gap > options.gap_zero or rate > options.speed_zero
-    return _safe(max(gap, 0.0) if leaving else gap + 2.0 * options.gap_zero, -rate, closing, bend, distance)
+    return max(gap, 0.0) if leaving else gap + 2.0 * options.gap_zero
 
 
 @kernel
@@ -253,6 +260,9 @@ def crossing(model, state, options, k, start, end, step, path):
         else:
             clear = clear and leaving if outside else clear
             safe = _time_to_zero(gap, rate, outside, (closing, bend, distance), options)
+            if outside and safe < FINE_LOOK * (end - tau):
+                room = _room_outside(gap, rate, options)
+                safe = max(safe, time_apart(model, state, k, room, -rate, end - tau, tau, step, path))
             safe = max(safe, _time_immovable(model, options, k, rate, bend, path) if near and not leaving else 0.0)
             # Beside its primitives the gap may pass through zero: which side it is on afterwards is found anew.
             fresh = beside > safe

@@ -1,0 +1,73 @@
+"""For how long can a gap that hardly changes not close, although its bodies move fast?
+
+A body that turns about one of its own corners, on which a corner of another body lies: gaps there stay at rounding while all
+coordinates accelerate. Bounds of the coordinates one by one (time_of_impact.py) do not see that their accelerations cancel,
+and would have such a gap looked at every few nanoseconds. Here the two material points at the place of the contact are
+compared, by their velocities and accelerations now and a bound of how fast these change (docs/theory/method.md 3.3).
+"""
+
+from __future__ import annotations
+
+import math
+
+from watchsim.contact.poses import point_of
+from watchsim.jit import kernel
+from watchsim.model.records import FREE, PIVOT, SLIDE
+from watchsim.simulation.motion.step_path import acceleration_on_path
+
+
+@kernel
+def _material_point(model, state, step, b, rx, ry, left, tau, path):
+    """Of the point of body b at (rx, ry) from its origin: (vx, vy, ax, ay, bound of the third derivative for `left` seconds)."""
+    body, pose = model.bodies[b], path.pose[b]
+    i = body.first
+    if body.motion == SLIDE:
+        a = acceleration_on_path(model, state, step, i, tau, path)
+        return pose.vx, pose.vy, a * body.axis_x, a * body.axis_y, step.jerk[i]
+    if body.motion != PIVOT and body.motion != FREE:
+        return 0.0, 0.0, 0.0, 0.0, 0.0
+    turn = i if body.motion == PIVOT else i + 2
+    w, twist = pose.w, acceleration_on_path(model, state, step, turn, tau, path)
+    ax, ay, jerk = -twist * ry - w * w * rx, twist * rx - w * w * ry, 0.0
+    if body.motion == FREE:
+        ax += acceleration_on_path(model, state, step, i, tau, path)
+        ay += acceleration_on_path(model, state, step, i + 1, tau, path)
+        jerk = step.jerk[i] + step.jerk[i + 1]
+    fastest = abs(w) + step.bound[turn] * left
+    jerk += (step.jerk[turn] + 3.0 * step.bound[turn] * fastest + fastest**3) * math.sqrt(rx * rx + ry * ry)
+    return pose.vx - w * ry, pose.vy + w * rx, ax, ay, jerk
+
+
+@kernel
+def time_apart(model, state, k, room, approach, left, tau, step, path):
+    """A time up to `left` seconds within which contact k, with this much room and closing at this rate, cannot close; or 0.
+
+    The bodies must stand in `path` where they are at `tau`. With x the way between the two material points that lie at the
+    centre of A's circle now, and e the normal, which turns with B, the gap falls by no more than -e·x. Not for hollow arcs,
+    where it may fall by more, and not for carried bodies.
+    """
+    contact = model.contacts[k]
+    a, b = model.primitives[contact.a], model.primitives[contact.b]
+    if b.side < 0.0 or model.bodies[a.body].carrier >= 0 or model.bodies[b.body].carrier >= 0:
+        return 0.0
+    pa, pb = path.pose[a.body], path.pose[b.body]
+    rx, ry = point_of(pa, a.x, a.y)
+    one = _material_point(model, state, step, a.body, rx, ry, left, tau, path)
+    two = _material_point(model, state, step, b.body, rx + pa.x - pb.x, ry + pa.y - pb.y, left, tau, path)
+    turn = abs(pb.w)
+    if model.bodies[b.body].motion == PIVOT:
+        turn += step.bound[model.bodies[b.body].first] * left
+    elif model.bodies[b.body].motion == FREE:
+        turn += step.bound[model.bodies[b.body].first + 2] * left
+    speed = math.sqrt((one[0] - two[0]) ** 2 + (one[1] - two[1]) ** 2)
+    push = math.sqrt((one[2] - two[2]) ** 2 + (one[3] - two[3]) ** 2)
+    jerk = (one[4] + two[4]) * (1.0 + turn * left) + 3.0 * turn * push
+    # A third of the room each for the rate now, for its change now, and for what that changes by.
+    time, bend = left, push + 2.0 * turn * speed
+    if 3.0 * approach * time > room:
+        time = room / (3.0 * approach)
+    if 1.5 * bend * time * time > room:
+        time = math.sqrt(room / (1.5 * bend))
+    if 0.5 * jerk * time**3 > room:
+        time = (2.0 * room / jerk) ** (1.0 / 3.0)
+    return time
