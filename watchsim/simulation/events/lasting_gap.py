@@ -39,35 +39,72 @@ def _material_point(model, state, step, b, rx, ry, left, tau, path):
 
 
 @kernel
-def time_apart(model, state, k, room, approach, left, tau, step, path):
-    """A time up to `left` seconds within which contact k, with this much room and closing at this rate, cannot close; or 0.
-
-    The bodies must stand in `path` where they are at `tau`. With x the way between the two material points that lie at the
-    centre of A's circle now, and e the normal, which turns with B, the gap falls by no more than -e·x. Not for hollow arcs,
-    where it may fall by more, and not for carried bodies.
-    """
+def _points_apart(model, state, k, left, tau, step, path):
+    """(speed, acceleration, bound of its change) of one material point at the centre of A's circle against the other one."""
     contact = model.contacts[k]
     a, b = model.primitives[contact.a], model.primitives[contact.b]
-    if b.side < 0.0 or model.bodies[a.body].carrier >= 0 or model.bodies[b.body].carrier >= 0:
-        return 0.0
     pa, pb = path.pose[a.body], path.pose[b.body]
     rx, ry = point_of(pa, a.x, a.y)
     one = _material_point(model, state, step, a.body, rx, ry, left, tau, path)
     two = _material_point(model, state, step, b.body, rx + pa.x - pb.x, ry + pa.y - pb.y, left, tau, path)
-    turn = abs(pb.w)
-    if model.bodies[b.body].motion == PIVOT:
-        turn += step.bound[model.bodies[b.body].first] * left
-    elif model.bodies[b.body].motion == FREE:
-        turn += step.bound[model.bodies[b.body].first + 2] * left
     speed = math.sqrt((one[0] - two[0]) ** 2 + (one[1] - two[1]) ** 2)
     push = math.sqrt((one[2] - two[2]) ** 2 + (one[3] - two[3]) ** 2)
-    jerk = (one[4] + two[4]) * (1.0 + turn * left) + 3.0 * turn * push
-    # A third of the room each for the rate now, for its change now, and for what that changes by.
-    time, bend = left, push + 2.0 * turn * speed
-    if 3.0 * approach * time > room:
-        time = room / (3.0 * approach)
-    if 1.5 * bend * time * time > room:
-        time = math.sqrt(room / (1.5 * bend))
+    return speed, push, one[4] + two[4]
+
+
+@kernel
+def _fastest_turn(model, b, left, step, path):
+    """A bound of the turning rate of body b for `left` seconds."""
+    body = model.bodies[b]
+    if body.motion == PIVOT:
+        return abs(path.pose[b].w) + step.bound[body.first] * left
+    return abs(path.pose[b].w) + step.bound[body.first + 2] * left if body.motion == FREE else 0.0
+
+
+@kernel
+def _time_for(room, speed, push, jerk, left):
+    """A time up to `left` in which a way that begins with this speed, its change and the change of that does not exceed `room`."""
+    # A third of the room for each.
+    time = left
+    if 3.0 * speed * time > room:
+        time = room / (3.0 * speed)
+    if 1.5 * push * time * time > room:
+        time = math.sqrt(room / (1.5 * push))
     if 0.5 * jerk * time**3 > room:
         time = (2.0 * room / jerk) ** (1.0 / 3.0)
     return time
+
+
+@kernel
+def _is_carried(model, k):
+    contact = model.contacts[k]
+    a, b = model.primitives[contact.a].body, model.primitives[contact.b].body
+    return model.bodies[a].carrier >= 0 or model.bodies[b].carrier >= 0
+
+
+@kernel
+def time_still(model, state, k, room, left, tau, step, path):
+    """A time up to `left` seconds in which the place of contact k moves by no more than `room` on either body, or 0.
+
+    The bodies must stand in `path` where they are at `tau`. Not for carried bodies: 0.
+    """
+    if _is_carried(model, k):
+        return 0.0
+    speed, push, jerk = _points_apart(model, state, k, left, tau, step, path)
+    return _time_for(room, speed, push, jerk, left)
+
+
+@kernel
+def time_apart(model, state, k, room, approach, left, tau, step, path):
+    """A time up to `left` seconds within which contact k, with this much room and closing at this rate, cannot close; or 0.
+
+    As in `time_still`. With x the way between the two points and e the normal, which turns with B, the gap falls by no more
+    than -e·x. Not for hollow arcs, where it may fall by more: 0.
+    """
+    b = model.primitives[model.contacts[k].b]
+    if b.side < 0.0 or _is_carried(model, k):
+        return 0.0
+    speed, push, jerk = _points_apart(model, state, k, left, tau, step, path)
+    turn = _fastest_turn(model, b.body, left, step, path)
+    jerk = jerk * (1.0 + turn * left) + 3.0 * turn * push
+    return _time_for(room, max(approach, 0.0), push + 2.0 * turn * speed, jerk, left)

@@ -18,7 +18,7 @@ from watchsim.jit import kernel
 from watchsim.model.records import FIXED, FREE, LINE, PIVOT, SLIDE
 from watchsim.simulation.events.handover import is_beside_active, room_beside_active
 from watchsim.simulation.events.immovable import is_immovable
-from watchsim.simulation.events.lasting_gap import time_apart
+from watchsim.simulation.events.lasting_gap import time_apart, time_still
 from watchsim.simulation.loop_state.scratch import ask
 from watchsim.simulation.loop_state.state import NO_CONTACT
 from watchsim.simulation.motion.sleeping import is_at_rest
@@ -239,7 +239,11 @@ def crossing(model, state, options, k, start, end, step, path):
         near = gap <= zero if outside else gap >= -options.behind
         if near and min(inside_a, inside_b) < 0.0:
             # At least the time in which the gap cannot pass through its rounding.
-            tau += max(beside, zero / closing)
+            wait = max(beside, zero / closing)
+            if wait < FINE_LOOK * (end - tau):
+                way_in = -inside_b if model.primitives[contact.b].kind == LINE else 0.0
+                wait = max(wait, time_still(model, state, k, max(zero, way_in), end - tau, tau, step, path))
+            tau += max(wait, TIME_ROUNDING * tau)
             fresh = True
         elif _is_due(gap, rate, outside, clear, options):
             # Where a smooth outline goes on, its next piece has no gap either, and closes only when its turn comes.
