@@ -9,6 +9,7 @@ docs/reports/hunt.md.
     python scripts/hunt/hunt_mechanisms.py --only 17 --keep results/hunt --shrink
     python scripts/hunt/hunt_mechanisms.py --scene tests/data/hunt/blade.toml
 
+Ctrl-C ends the hunt with the table of what it has judged so far.
 Exit status: 0 all fine, 1 something was wrong, hung or gave up.
 """
 
@@ -19,6 +20,7 @@ import re
 import sys
 import time
 from collections import Counter
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +34,7 @@ from hunt.write import write_scene
 from watchsim.scene.file.load import load
 
 CLEAN = ("fine", "sensitive")
+TOLD = 500  # mechanisms between lines that say how far it is
 KINDS = ("fine", "sensitive", "wrong", "gave up", "hanging", "crashed")
 
 
@@ -117,12 +120,15 @@ def main() -> int:
         def work(number: int) -> Any:
             return verdict_of(number, args)
 
-        for number, answer in answers(numbers, work, args.jobs):
-            title, verdict = answer or ("?", Verdict("hanging", ["hanging: did not answer"]))
-            found.append((title, verdict))
-            report(str(number), title, verdict)
-            if args.keep and verdict.kind not in CLEAN and answer:
-                print(f"  kept as {kept(args, number, verdict)}", flush=True)
+        with suppress(KeyboardInterrupt):
+            for number, answer in answers(numbers, work, args.jobs):
+                title, verdict = answer or ("?", Verdict("hanging", ["hanging: did not answer"]))
+                found.append((title, verdict))
+                report(str(number), title, verdict)
+                if args.keep and verdict.kind not in CLEAN and answer:
+                    print(f"  kept as {kept(args, number, verdict)}", flush=True)
+                if len(found) % TOLD == 0:
+                    print(f"{len(found)} judged in {time.perf_counter() - begun:.0f} s", flush=True)
     print(table(found))
     print(f"Classes of faults: {classes(found)}")
     runs, took = sum(verdict.runs for _, verdict in found), time.perf_counter() - begun
