@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 
+from watchsim.contact.gaps import normal_gap
 from watchsim.contact.poses import point_of
 from watchsim.jit import kernel
 from watchsim.model.records import FREE, PIVOT, SLIDE
@@ -40,16 +41,14 @@ def _material_point(model, state, step, b, rx, ry, left, tau, path):
 
 @kernel
 def _points_apart(model, state, k, left, tau, step, path):
-    """(speed, acceleration, bound of its change) of one material point at the centre of A's circle against the other one."""
+    """(vx, vy, ax, ay, bound of how a changes) of the material point of A at the centre of its circle against that of B there."""
     contact = model.contacts[k]
     a, b = model.primitives[contact.a], model.primitives[contact.b]
     pa, pb = path.pose[a.body], path.pose[b.body]
     rx, ry = point_of(pa, a.x, a.y)
     one = _material_point(model, state, step, a.body, rx, ry, left, tau, path)
     two = _material_point(model, state, step, b.body, rx + pa.x - pb.x, ry + pa.y - pb.y, left, tau, path)
-    speed = math.sqrt((one[0] - two[0]) ** 2 + (one[1] - two[1]) ** 2)
-    push = math.sqrt((one[2] - two[2]) ** 2 + (one[3] - two[3]) ** 2)
-    return speed, push, one[4] + two[4]
+    return one[0] - two[0], one[1] - two[1], one[2] - two[2], one[3] - two[3], one[4] + two[4]
 
 
 @kernel
@@ -90,13 +89,13 @@ def time_still(model, state, k, room, left, tau, step, path):
     """
     if _is_carried(model, k):
         return 0.0
-    speed, push, jerk = _points_apart(model, state, k, left, tau, step, path)
-    return _time_for(room, speed, push, jerk, left)
+    vx, vy, ax, ay, jerk = _points_apart(model, state, k, left, tau, step, path)
+    return _time_for(room, math.sqrt(vx * vx + vy * vy), math.sqrt(ax * ax + ay * ay), jerk, left)
 
 
 @kernel
-def time_apart(model, state, k, room, approach, left, tau, step, path):
-    """A time up to `left` seconds within which contact k, with this much room and closing at this rate, cannot close; or 0.
+def time_apart(model, state, k, room, left, tau, step, path):
+    """A time up to `left` seconds within which contact k, on the free side with this much room, cannot close; or 0.
 
     As in `time_still`. With x the way between the two points and e the normal, which turns with B, the gap falls by no more
     than -e·x. Not for hollow arcs, where it may fall by more: 0.
@@ -104,7 +103,9 @@ def time_apart(model, state, k, room, approach, left, tau, step, path):
     b = model.primitives[model.contacts[k].b]
     if b.side < 0.0 or _is_carried(model, k):
         return 0.0
-    speed, push, jerk = _points_apart(model, state, k, left, tau, step, path)
+    here = normal_gap(model, k, path.pose)
+    vx, vy, ax, ay, jerk = _points_apart(model, state, k, left, tau, step, path)
     turn = _fastest_turn(model, b.body, left, step, path)
-    jerk = jerk * (1.0 + turn * left) + 3.0 * turn * push
-    return _time_for(room, max(approach, 0.0), push + 2.0 * turn * speed, jerk, left)
+    jerk = jerk * (1.0 + turn * left) + 3.0 * turn * math.sqrt(ax * ax + ay * ay)
+    push = max(-(here.nx * ax + here.ny * ay), 0.0) + 2.0 * turn * math.sqrt(vx * vx + vy * vy)
+    return _time_for(room, max(-here.rate, 0.0), push, jerk, left)

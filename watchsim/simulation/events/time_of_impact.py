@@ -266,7 +266,7 @@ def crossing(model, state, options, k, start, end, step, path):
             safe = _time_to_zero(gap, rate, outside, (closing, bend, distance), options)
             if outside and safe < FINE_LOOK * (end - tau):
                 room = _room_outside(gap, rate, options)
-                safe = max(safe, time_apart(model, state, k, room, -rate, end - tau, tau, step, path))
+                safe = max(safe, time_apart(model, state, k, room, end - tau, tau, step, path))
             safe = max(safe, _time_immovable(model, options, k, rate, bend, path) if near and not leaving else 0.0)
             # Beside its primitives the gap may pass through zero: which side it is on afterwards is found anew.
             fresh = beside > safe
