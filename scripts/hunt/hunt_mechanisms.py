@@ -9,7 +9,7 @@ docs/reports/hunt.md.
     python scripts/hunt/hunt_mechanisms.py --only 17 --keep results/hunt --shrink
     python scripts/hunt/hunt_mechanisms.py --scene tests/data/hunt/blade.toml
 
-Ctrl-C ends the hunt with the table of what it has judged so far.
+Ctrl-C and SIGTERM end the hunt with the table of what it has judged so far.
 Exit status: 0 all fine, 1 something was wrong, hung or gave up.
 """
 
@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import argparse
 import re
+import signal
 import sys
 import time
 from collections import Counter
@@ -120,6 +121,8 @@ def main() -> int:
         def work(number: int) -> Any:
             return verdict_of(number, args)
 
+        for ended in (signal.SIGINT, signal.SIGTERM):  # in the background the first one is ignored
+            signal.signal(ended, signal.default_int_handler)
         with suppress(KeyboardInterrupt):
             for number, answer in answers(numbers, work, args.jobs):
                 title, verdict = answer or ("?", Verdict("hanging", ["hanging: did not answer"]))
