@@ -42,20 +42,15 @@ def bound_accelerations(step, n):
     """Bounds of |q''| and |q'''| over the coupled step, for its n coordinates, into `step.bound` and `step.jerk`."""
     h = step.span.length
     for i in range(n):
-        step.bound[i] = _largest(BEND, step.dense, i) / (h * h)
-        step.jerk[i] = _largest(JERK, step.dense, i) / (h * h * h)
-
-
-@kernel
-def _largest(coefficients, terms, i):
-    """The largest Bernstein coefficient of a derivative of component i: no Bernstein polynomial exceeds it."""
-    largest = 0.0
-    for row in range(coefficients.shape[0]):
-        total = 0.0
-        for term in range(DEGREE):
-            total += coefficients[row, term] * terms[term, i]
-        largest = max(largest, abs(total))
-    return largest
+        bend, jerk = 0.0, 0.0  # no Bernstein polynomial exceeds its largest coefficient
+        for row in range(DEGREE - 1):
+            second, third = 0.0, 0.0
+            for term in range(DEGREE):
+                second += BEND[row, term] * step.dense[term, i]
+                if row < DEGREE - 2:
+                    third += JERK[row, term] * step.dense[term, i]
+            bend, jerk = max(bend, abs(second)), max(jerk, abs(third))
+        step.bound[i], step.jerk[i] = bend / (h * h), jerk / (h * h * h)
 
 
 @kernel
