@@ -48,7 +48,7 @@ def _serve(line: Connection, work: Work) -> None:
     while True:
         try:
             line.send(work(line.recv()))
-        except EOFError:
+        except (EOFError, KeyboardInterrupt):  # who ends the hunt ends its workers
             return
 
 
