@@ -136,6 +136,8 @@ SAME_INSTANT = 1e-3
 
 # m/s: in place of a bound that is zero, to be divided by. Large: closes late; small: division by zero.
 SLOWEST_CLOSING = 1e-300
+# Of what is left of a step: shorter looks deserve the finer bound. Large: dearer looks; small: more of them.
+FINE_LOOK = 1.0 / 64.0
 # Of the extent: steps in which a neighbour of a contact in force is watched. Large: late; small: slow.
 NEIGHBOUR_STRIDE = 0.25
 # Sine² of the angle between face and motion, drawings being rounded to a millionth. Large: falls through; small: jams.
