@@ -24,6 +24,7 @@ from watchsim.model.records import (
 from watchsim.scene.body import Body
 from watchsim.scene.carriers import Ride, Weighed, weigh
 from watchsim.scene.force import Torque
+from watchsim.scene.gear_trains import Bond, felt
 from watchsim.scene.oscillation import oscillators
 from watchsim.scene.scene import Scene
 
@@ -41,14 +42,18 @@ class Forced:
 class _Targets:
     """On which record do the springs, torques and damping of a body act: its coordinate, or the joint with its carrier?"""
 
-    def __init__(self, scene: Scene, hung: tuple[Ride, ...], slices: dict[str, slice], rows: Records) -> None:
+    def __init__(
+        self, scene: Scene, hung: tuple[Ride, ...], bound: tuple[Bond, ...], slices: dict[str, slice], rows: Records
+    ) -> None:
         self.scene, self.rows = scene, rows
         numbers = {body.name: i for i, body in enumerate(scene.bodies)}
+        self.bonds = {body.name: bond for body, bond in zip(scene.bodies, bound, strict=True)}
         acting = dict.fromkeys(
             [one.body for one in oscillators(scene)] + [one.body for one in scene.torques] + [one.body for one in scene.damping]
         )
         self.slices, self.rides = slices, {name: hung[numbers[name]] for name in acting}
-        jointed = [name for name in acting if self.rides[name].turns_with >= 0]
+        self._hung = dict(zip(numbers, hung, strict=True))
+        jointed = [name for name in acting if self.rides[name].turns_with >= 0 and scene.body(name).geared is None]
         self.joints = records(JOINT, len(jointed))
         self._joint = dict(zip(jointed, self.joints, strict=True))
         for name, joint in self._joint.items():
@@ -56,9 +61,22 @@ class _Targets:
             joint.coordinate, joint.on = slices[name].start, slices[carrier.name].stop - 1
 
     def number(self, name: str) -> int:
-        """The coordinate: a body's angle, or a sliding body's travel."""
-        part = self.slices[name]
-        return part.stop - 1 if self.scene.body(name).motion == "free" else part.start
+        """The coordinate: a body's angle, or a sliding body's travel; of the body that it is geared to."""
+        body = self._holder(name)
+        part = self.slices[body.name]
+        return part.stop - 1 if body.motion == "free" else part.start
+
+    def _holder(self, name: str) -> Body:
+        return self.scene.bodies[self.bonds[name].to]
+
+    def ratio(self, name: str) -> float:
+        """How far the body goes, as the scene gives it, for one unit of the coordinate."""
+        return self.bonds[name].told
+
+    def place(self, name: str, value: float) -> float:
+        """The coordinate, or the difference of the two, at which the scene gives the body this angle or travel."""
+        bond = self.bonds[name]
+        return (value - bond.shift) / bond.told + self._offset(self._holder(name).name)
 
     def on(self, name: str) -> int:
         """The angle of its carrier, against which it acts; -1 for none."""
@@ -67,33 +85,43 @@ class _Targets:
     def row(self, name: str) -> Any:
         return self._joint[name] if name in self._joint else self.rows[self.number(name)]
 
-    def offset(self, name: str) -> float:
+    def _offset(self, name: str) -> float:
         """From an angle as the scene gives it to the coordinate, or to the difference of the two."""
-        return self.rides[name].angle if self.scene.body(name).motion == "pivot" else 0.0
+        return self._hung[name].angle if self.scene.body(name).motion == "pivot" else 0.0
 
 
-def forced_coordinates(scene: Scene, hung: tuple[Ride, ...], slices: dict[str, slice], size: float) -> Forced:
-    """Coordinates with their forces; joints; force tables and their knots."""
+def forced_coordinates(
+    scene: Scene, hung: tuple[Ride, ...], bound: tuple[Bond, ...], slices: dict[str, slice], size: float
+) -> Forced:
+    """Coordinates with their forces; joints; force tables and their knots.
+
+    What acts on a geared body acts on the coordinate of the one it is geared to, with its ratio as lever arm.
+    """
     count = sum(part.stop - part.start for part in slices.values())
     rows = records(COORDINATE, count)
     weighed = weigh(scene.bodies, hung)
+    masses = felt(scene.bodies, hung, weighed)
     for i, body in enumerate(scene.bodies):
         if body.name in slices:
             _inertias(scene, body, i, weighed[i], hung[i], rows[slices[body.name]], size)
-    targets = _Targets(scene, hung, slices, rows)
+            if any(bond.to == i != k for k, bond in enumerate(bound)) and body.prescribed is None:
+                rows[slices[body.name]].mass = masses[i]
+    targets = _Targets(scene, hung, bound, slices, rows)
+    _weigh_geared(scene, weighed, targets)
     for spring in scene.springs:
         row = targets.row(spring.body)
         # Several springs on one coordinate add up to one: stiffnesses add, rests average.
-        total = row.stiffness + spring.stiffness
-        rest = spring.rest + targets.offset(spring.body)
-        row.rest = (row.stiffness * row.rest + spring.stiffness * rest) / total
+        stiffness = spring.stiffness * targets.ratio(spring.body) ** 2
+        total = row.stiffness + stiffness
+        rest = targets.place(spring.body, spring.rest)
+        row.rest = (row.stiffness * row.rest + stiffness * rest) / total
         row.stiffness = total
     stiffest = _watch(scene, targets)
     for damping in scene.damping:
-        row = targets.row(damping.body)
-        row.viscous += damping.viscous
-        row.quadratic += damping.quadratic
-        row.coulomb += damping.coulomb
+        row, ratio = targets.row(damping.body), abs(targets.ratio(damping.body))
+        row.viscous += ratio**2 * damping.viscous
+        row.quadratic += ratio**3 * damping.quadratic
+        row.coulomb += ratio * damping.coulomb
     tables, knots = _tables(scene, targets)
     joints = targets.joints
     if joints.coulomb.any():
@@ -117,7 +145,7 @@ def _watch(scene: Scene, targets: _Targets) -> float:
         if targets.on(one.body) < 0:
             row = targets.row(one.body)
             plain = one.weight == 0.0 and scene.body(one.body).motion == "pivot"
-            row.watched, row.level = 1, row.rest if plain else one.rest + targets.offset(one.body)
+            row.watched, row.level = 1, row.rest if plain else targets.place(one.body, one.rest)
             largest = max(largest, (one.spring + one.weight) / one.inertia)
     return largest
 
@@ -143,12 +171,21 @@ def _inertias(scene: Scene, body: Body, number: int, weighed: Weighed, ride: Rid
         rows.force = (weighed.mass * gx, weighed.mass * gy, 0.0)
 
 
+def _weigh_geared(scene: Scene, weighed: tuple[Weighed, ...], targets: _Targets) -> None:
+    """Gravity on a sliding body that is geared to another; a geared one that turns is poised."""
+    gx, gy = scene.gravity
+    for body, load in zip(scene.bodies, weighed, strict=True):
+        if body.geared is not None and body.motion == "slide" and scene.body(body.geared.to).prescribed is None:
+            pull = load.mass * (gx * body.axis[0] + gy * body.axis[1])
+            targets.row(body.name).force += targets.ratio(body.name) * pull
+
+
 def _tables(scene: Scene, targets: _Targets) -> tuple[Records, np.ndarray]:
     """Constant torques go into the coordinates, the others into tables."""
     tabled: list[Torque] = []
     for torque in scene.torques:
         if torque.over == "constant":
-            targets.row(torque.body).force += torque.value
+            targets.row(torque.body).force += targets.ratio(torque.body) * torque.value
         else:
             tabled.append(torque)
     paths = [body for body in scene.bodies if body.prescribed is not None and body.prescribed.table]
@@ -157,8 +194,8 @@ def _tables(scene: Scene, targets: _Targets) -> tuple[Records, np.ndarray]:
     for row, torque in zip(tables, tabled, strict=False):
         row.coordinate, row.on, row.over = targets.number(torque.body), targets.on(torque.body), OVER[torque.over]
         row.start, row.count = len(knots), len(torque.table)
-        shift = targets.offset(torque.body) if torque.over == "angle" else 0.0
-        knots.extend((x + shift, value) for x, value in torque.table)
+        over_angle, ratio = torque.over == "angle", targets.ratio(torque.body)
+        knots.extend(sorted((targets.place(torque.body, x) if over_angle else x, ratio * value) for x, value in torque.table))
     for row, body in zip(tables[len(tabled) :], paths, strict=True):
         assert body.prescribed is not None
         row.coordinate, row.on, row.over = targets.slices[body.name].start, -1, OVER_TIME

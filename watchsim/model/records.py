@@ -35,6 +35,8 @@ BODY = np.dtype(
         ("c", "f8"),  # cosine and sine of `angle`
         ("s", "f8"),
         ("carrier", "i8"),  # the moving body in whose frame (x, y) lies, -1: the movement
+        ("ratio", "f8"),  # its angle, or the way along its axis, is ratio q + phase of its first coordinate: 1 and 0 but for
+        ("phase", "f8"),  # bodies geared to the one whose coordinate that is
     ]
 )
 

@@ -21,6 +21,7 @@ from watchsim.scene.file.readers.read_bodies import read_bodies
 from watchsim.scene.file.readers.read_carriers import note_carriers
 from watchsim.scene.file.readers.read_contacts import read_contacts
 from watchsim.scene.file.readers.read_forces import read_damping, read_springs, read_torques
+from watchsim.scene.file.readers.read_gears import read_gears
 from watchsim.scene.file.readers.read_settings import read_expectations, read_heading, read_run, read_timegrapher
 from watchsim.scene.file.readers.read_trains import with_trains
 from watchsim.scene.oscillation import frequency
@@ -47,6 +48,8 @@ def from_mapping(
     heading = read_heading(mapping, faults)
     read = read_bodies(mapping.get("bodies", {}), folder, faults, made)
     bodies, sound = with_trains(mapping, read.bodies, faults), read.sound
+    geared = read_gears(mapping, bodies, heading.gravity, faults)
+    bodies = geared.bodies
     springs = read_springs(mapping, bodies, faults)
     torques = read_torques(mapping, bodies, faults)
     damping = read_damping(mapping, bodies, springs, heading.gravity, faults)
@@ -64,6 +67,7 @@ def from_mapping(
         torques=torques,
         damping=damping,
         contacts=contacts,
+        gears=geared.gears,
         gravity=heading.gravity,
         tangential_law=heading.tangential_law,
         nu=heading.nu,

@@ -79,6 +79,10 @@ DAMPING: Keys = {
     "coulomb": Key(units.TORQUE, units.FORCE),
 }
 CONTACT: Keys = {"between": PLAIN, "friction": NUMBER, "restitution": NUMBER, "tangential_restitution": NUMBER}
+GEAR: Keys = {
+    **{"between": PLAIN, "ratio": NUMBER, "backlash": Key(units.ANGLE, units.LENGTH)},
+    **{"restitution": NUMBER, "efficiency": NUMBER},
+}
 RUN: Keys = {"duration": Key(units.TIME), "record": Key(units.TIME), "tolerance": NUMBER}
 TIMEGRAPHER: Keys = {"lift_angle": ANGLE, "frequency": Key(units.FREQUENCY)}
 EXPECTATION: Keys = {"value": PLAIN, "tolerance": PLAIN}
@@ -86,7 +90,7 @@ LOCK: Keys = {"versions": PLAIN, "drawings": PLAIN, "design": PLAIN}
 
 TABLES = {"scene": SCENE, "run": RUN, "timegrapher": TIMEGRAPHER, "lock": LOCK}  # [name]
 NAMED = {"bodies": BODY, "expect": EXPECTATION}  # [name.anything]
-LISTED = {"springs": SPRING, "torques": TORQUE, "damping": DAMPING, "contacts": CONTACT}  # [[name]]
+LISTED = {"springs": SPRING, "torques": TORQUE, "damping": DAMPING, "contacts": CONTACT, "gears": GEAR}  # [[name]]
 DESIGN = "design"  # [design], whose keys are the dimensions of the design it names
 SECTIONS = (*TABLES, DESIGN, *NAMED, *LISTED)
 

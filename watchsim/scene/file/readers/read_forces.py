@@ -28,7 +28,7 @@ class Entry:
 
     table: Table
     body: Body | None
-    mass: float  # what the body's coordinate weighs with what it carries, kg or kg·m²; NaN after a fault
+    mass: float  # of the body's coordinate, with what it carries and what is geared to it, kg or kg·m²; NaN after a fault
 
     @property
     def name(self) -> str:
@@ -76,11 +76,8 @@ def _entries(mapping: Mapping[str, Any], section: str, keys: Keys, bodies: tuple
 
 
 def _masses(bodies: tuple[Body, ...]) -> dict[str, float]:
-    """What the coordinate of each body weighs: turning its inertia, sliding its mass."""
-    weighed = loads(bodies)[1]
-    return {
-        body.name: load.inertia if body.motion == "pivot" else load.mass for body, load in zip(bodies, weighed, strict=True)
-    }
+    """What the coordinate of each body weighs: turning its inertia, sliding its mass, with all that is geared to it."""
+    return {body.name: mass for body, mass in zip(bodies, loads(bodies)[2], strict=True)}
 
 
 def _note_body(table: Table, known: Mapping[str, Body]) -> None:
@@ -93,6 +90,10 @@ def _note_body(table: Table, known: Mapping[str, Body]) -> None:
         table.fault("body", f'acts on a pivoted or a sliding body, and motion of {name} is "{known[name].motion}"', True)
     elif name in known and known[name].prescribed is not None:
         table.fault("body", f"{name} is driven: it moves as prescribed, whatever acts on it", True)
+    elif name in known and (geared := known[name].geared) and known[geared.to].prescribed is not None:
+        table.fault(
+            "body", f"{name} moves as prescribed, whatever acts on it: {geared.to}, to which it is geared, is driven", True
+        )
 
 
 def _spring(entry: Entry) -> Spring:
