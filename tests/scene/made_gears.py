@@ -34,8 +34,8 @@ duration = "0.5 s"
 
 
 def wheels(folder: Path, ratio: float = -8.0, **parts: str) -> Scene:
-    """A wheel of 1 g·cm² and a pinion of 0.1 g·cm²; `parts` are keys of [scene], the bodies and the gears, and `more` tables."""
-    texts = {key: "" for key in ("scene", "wheel", "pinion", "gears", "more")} | parts
+    """A wheel of 1 g·cm² and a pinion of 0.1; `parts` are keys of [scene], of the bodies and of the gears, and `more` tables."""
+    texts = dict.fromkeys(("scene", "wheel", "pinion", "gears", "more"), "") | parts
     return read(folder, WHEELS.format(ratio=ratio, **texts))
 
 

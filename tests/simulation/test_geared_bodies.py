@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
-import tomllib
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from tests.scene.made_gears import read, wheels
+import tomllib
 
 import watchsim as ws
+from tests.scene.made_gears import read, wheels
 from watchsim.scene.file.read_scene import from_mapping
 from watchsim.scene.scene import Scene
 
@@ -164,7 +164,7 @@ duration = "0.5 s"
 
 
 def test_a_planet_rolls_round_a_fixed_wheel(tmp_path) -> None:
-    """It turns 1 + r times as fast as its carriage; a torque against the carriage acts with lever arm r: J = J_c + m d² + (1 + r)² J_p."""
+    """It turns 1 + r times as fast as the carriage; a torque against that acts r-fold: J = J_c + m d² + (1 + r)² J_p."""
     run = ws.simulate(read(tmp_path, PLANET))
     r, t = 8.0, 0.5
     bend = r * 2e-4 / (J_A + 2e-3 * 25e-6 + (1.0 + r) ** 2 * J_B)

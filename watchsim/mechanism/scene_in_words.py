@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from watchsim.mechanism.gears_in_words import gear_lines
 from watchsim.scene.body import Body
 from watchsim.scene.carriers import at_start
 from watchsim.scene.force import Damping, Mainspring, Spring
@@ -18,8 +19,9 @@ SMALL = 0.1e-3  # m: less is not given in millimetres
 
 
 def force_lines(scene: Scene) -> Iterator[str]:
-    """A line for each centre distance, spring, drive, damper and contact, and for what swings by its weight."""
+    """A line for each centre distance, gear, spring, drive, damper and contact, and for what swings by its weight."""
     yield from _distance_lines(scene)
+    yield from gear_lines(scene)
     yield from _force_lines(scene)
     yield from _contact_lines(scene)
 

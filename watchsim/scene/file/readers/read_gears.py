@@ -54,6 +54,7 @@ def read_gears(mapping: Mapping[str, Any], bodies: tuple[Body, ...], gravity: Po
     ranks = _ranks(mapping, bodies, hung, pulled)
     rigid = [(table, gear) for table, gear in read if gear.backlash == 0.0]
     bound = _bound(rigid, known, ranks)
+    _note_double([(table, gear) for table, gear in read if gear.backlash > 0.0], bound)
     spun = _with_velocities(bodies, bound, mapping, faults)
     note_gears(spun, hung, pulled, lambda name, message: faults.add(_key(rigid, name), message))
     return ReadGears(spun, tuple(gear for _, gear in read if gear.backlash > 0.0))
@@ -158,6 +159,14 @@ def _bound(
             continue
         found.update({other: Geared(name, ratio) for other, ratio in _reached(ways, name).items() if other != name})
     return found
+
+
+def _note_double(loose: list[tuple[Table, Gear]], bound: Mapping[str, Geared]) -> None:
+    """Play between two bodies that are bound without any is none."""
+    for table, gear in loose:
+        a, b = (bound[name].to if name in bound else name for name in gear.between)
+        if a == b:
+            table.fault("between", f"{' and '.join(gear.between)} are bound to each other already, without play", True)
 
 
 def _reached(ways: Mapping[str, Mapping[str, float]], name: str) -> dict[str, float]:
