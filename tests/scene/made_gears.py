@@ -34,7 +34,7 @@ duration = "0.5 s"
 
 
 def wheels(folder: Path, ratio: float = -8.0, **parts: str) -> Scene:
-    """A wheel of 1 g·cm² and a pinion of 0.1; `parts` are keys of [scene], of the bodies and of the gears, and `more` tables."""
+    """A wheel of 1 g·cm² and a pinion of 0.1; `parts` are keys of [scene], bodies and gears, and `more` tables."""
     texts = dict.fromkeys(("scene", "wheel", "pinion", "gears", "more"), "") | parts
     return read(folder, WHEELS.format(ratio=ratio, **texts))
 

@@ -62,12 +62,13 @@ COORDINATE = np.dtype(
     ]
 )
 
-# What acts at the pivot of a body that is carried by a turning one: on its coordinate, and back on that of its carrier.
-# Angles are differences of the two; the fields of `coordinate` itself are then zero.
+# What acts between two coordinates, on the one and back on the other: at the pivot of a body that is carried by a turning one
+# (the fields of `coordinate` itself are then zero), or between any two bodies. Angles are differences of the two.
 JOINT = np.dtype(
     [
         ("coordinate", "i8"),
-        ("on", "i8"),  # the carrier's angle
+        ("on", "i8"),  # the carrier's angle, or the other body's coordinate
+        ("watched", "i8"),  # 1: turning points and passages of the difference are events
         ("force", "f8"),
         ("viscous", "f8"),
         ("quadratic", "f8"),

@@ -1,6 +1,7 @@
 """Which forces act on a body besides contacts?
 
-All act on the body's own coordinate: a pivoted body's angle (N·m, rad) or a sliding body's travel (N, m).
+All act on the body's own coordinate: a pivoted body's angle (N·m, rad) or a sliding body's travel (N, m). With `against` they
+act between two bodies, on the one and back on the other; angles, travels and speeds are then those of `body` less the other's.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ class Spring:
     rest: float = 0.0
     frequency: float | None = None
     coil: Coil | None = None
+    against: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,6 +57,7 @@ class Torque:
     over: str = "constant"
     table: tuple[tuple[float, float], ...] = ()
     mainspring: Mainspring | None = None
+    against: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +68,7 @@ class Damping:
     viscous: float = 0.0
     quadratic: float = 0.0
     coulomb: float = 0.0
+    against: str | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,10 +6,12 @@ travel) is linear in it, so that the mass matrix stays diagonal and constant: J_
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from watchsim.scene.body import Body
 from watchsim.scene.carriers import Complain, Ride, Weighed
+from watchsim.scene.scene import Scene
 
 
 class Bond(NamedTuple):
@@ -53,6 +55,28 @@ def felt(bodies: tuple[Body, ...], hung: tuple[Ride, ...], weighed: tuple[Weighe
     for mass, bond in zip(own, bound, strict=True):
         whole[bond.to] += bond.ratio**2 * mass
     return tuple(whole[bond.to] / bond.told**2 for bond in bound)
+
+
+def goes_with(scene: Scene, name: str) -> dict[str, float]:
+    """All bodies geared to one, with play or without, itself included: how far each goes for one unit of it."""
+    ways: dict[str, dict[str, float]] = {}
+    bound = [(body.geared.to, body.name, body.geared.ratio) for body in scene.bodies if body.geared is not None]
+    for a, b, ratio in (*bound, *((*gear.between, gear.ratio) for gear in scene.gears)):
+        ways.setdefault(a, {})[b] = ratio
+        ways.setdefault(b, {})[a] = 1.0 / ratio
+    return reached(ways, name)
+
+
+def reached(ways: Mapping[str, Mapping[str, float]], name: str) -> dict[str, float]:
+    """All that `ways` join to a body, directly or not; `ways`: how far the one goes for one unit of the other."""
+    found, left = {name: 1.0}, [name]
+    while left:
+        here = left.pop(0)
+        for other, ratio in ways.get(here, {}).items():
+            if other not in found:
+                found[other] = found[here] * ratio
+                left.append(other)
+    return found
 
 
 def note_gears(bodies: tuple[Body, ...], hung: tuple[Ride, ...], pulled: frozenset[str], complain: Complain) -> None:

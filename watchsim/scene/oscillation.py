@@ -78,13 +78,13 @@ def nominal_frequency(scene: Scene) -> float | None:
     found = oscillators(scene)
     if not found or scene.nominal is not None:
         return scene.nominal
-    springs = [spring for spring in scene.springs if spring.body == found[0].body]
+    springs = [spring for spring in scene.springs if spring.body == found[0].body and spring.against is None]
     return (springs[0].frequency if len(springs) == 1 else None) or found[0].hertz
 
 
 def oscillator(bodies: tuple[Body, ...], springs: Iterable[Spring], gravity: Point, name: str) -> Oscillator | None:
     """How the body of that name swings; None where neither a spring nor gravity pulls it back."""
-    own = [spring for spring in springs if spring.body == name]
+    own = [spring for spring in springs if spring.body == name and spring.against is None]
     number = next((i for i, body in enumerate(bodies) if body.name == name), -1)
     if number < 0 or bodies[number].motion not in ("pivot", "slide"):
         return None
@@ -133,7 +133,7 @@ def _in_silence(_name: str, _message: str) -> None:
 
 
 def _sprung(springs: Iterable[Spring]) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(spring.body for spring in springs))
+    return tuple(dict.fromkeys(spring.body for spring in springs if spring.against is None))
 
 
 def _hung(bodies: tuple[Body, ...], gravity: Point, driven: set[str]) -> Iterator[Oscillator]:

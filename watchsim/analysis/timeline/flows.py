@@ -113,6 +113,7 @@ def _changing(model: Model) -> tuple[list[int], list[int]]:
     """The coordinates on which a force changes with place or time, and those with damping: their powers are integrated."""
     c = model.coordinates
     moved = {int(k) for k in np.flatnonzero((c.weight_x != 0.0) | (c.weight_y != 0.0))}
+    moved |= {int(k) for joint in model.joints if c.driven[joint.on] for k in (joint.coordinate, joint.on)}
     slowed = {int(k) for k in np.flatnonzero((c.coulomb != 0.0) | (c.viscous != 0.0) | (c.quadratic != 0.0))}
     for table in model.tables:
         moved |= {int(table.coordinate), *([int(table.on)] if table.on >= 0 else [])}
@@ -175,6 +176,12 @@ def _changing_power(model: Model, t: Array, q: Row, u: Row) -> Array:
         if on >= 0:
             power[:, on] -= value * u[on]
     power[:, np.asarray(c.driven) != 0] = 0.0
+    for joint in model.joints:
+        if c.driven[joint.on]:  # what keeps the prescribed motion up against spring and damping
+            own, on = int(joint.coordinate), int(joint.on)
+            w = u[own] - u[on]
+            held = joint.stiffness * (q[own] - q[on] - joint.rest) + w * (joint.viscous + joint.quadratic * np.abs(w))
+            power[:, on] -= held * u[on]
     return power
 
 

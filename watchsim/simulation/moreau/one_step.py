@@ -14,7 +14,7 @@ from watchsim.contact.gaps import extent_margin, normal_gap
 from watchsim.contact.index_sets import OPEN
 from watchsim.contact.kinematics import contact_kinematics
 from watchsim.contact.poses import place, point_of
-from watchsim.dynamics.applied_forces import driving_force, joint_damping, joint_energy, stretch, table_force
+from watchsim.dynamics.applied_forces import driving_force, joint_damping, joint_energy, push_back, stretch, table_force
 from watchsim.dynamics.delassus import drive_through_contacts
 from watchsim.dynamics.small_systems import copy
 from watchsim.jit import kernel
@@ -83,11 +83,11 @@ def _free_velocity(model, state, h, work):
         table, force = model.tables[j], table_force(model, j, state.clock.time + 0.5 * h, work.q)
         work.force[table.coordinate] += force
         if table.on >= 0:
-            work.force[table.on] -= force
+            push_back(model, table.on, force, work.force)
     for j in range(len(model.joints)):
         joint = model.joints[j]
         work.force[joint.coordinate] += joint.force
-        work.force[joint.on] -= joint.force
+        push_back(model, joint.on, joint.force, work.force)
     for i in range(len(work.u)):
         coordinate = model.coordinates[i]
         change = 0.5 * h * work.damping[i] + 0.25 * h * h * coordinate.stiffness
@@ -167,6 +167,9 @@ def move(model, state, options, m, h, work, u):
         joint = model.joints[j]
         way = 0.5 * h * (work.u[joint.coordinate] + u[joint.coordinate] - work.u[joint.on] - u[joint.on])
         state.sums.damping -= work.joint[j] * way
+        if model.coordinates[joint.on].driven:
+            held = work.joint[j] - joint.stiffness * stretch(joint, work.q)
+            state.sums.drive += 0.5 * h * (work.u[joint.on] + u[joint.on]) * held
         spent = joint.stiffness * way * (stretch(joint, state.q) - 0.5 * way - stretch(joint, work.q))
         state.sums.correction -= spent
     wound = joint_energy(model, state.q)

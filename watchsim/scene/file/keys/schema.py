@@ -64,10 +64,11 @@ SPRING: Keys = {
     "stiffness": Key(units.ROTARY_STIFFNESS, units.LINEAR_STIFFNESS),
     "rest": Key(units.ANGLE, units.LENGTH),
     "draw": PLAIN,
+    "against": PLAIN,
 }
 COIL: Keys = {"inner": LENGTH, "outer": LENGTH, "turns": NUMBER, "stud": ANGLE, "width": LENGTH}  # draw of a spring
 TORQUE: Keys = {
-    **{"body": PLAIN, "value": Key(units.TORQUE, units.FORCE), "over": PLAIN, "table": PLAIN},
+    **{"body": PLAIN, "value": Key(units.TORQUE, units.FORCE), "over": PLAIN, "table": PLAIN, "against": PLAIN},
     **{"ratio": NUMBER, "efficiency": NUMBER, "run_down": ANGLE, "train": PLAIN},
 }
 TRAIN: Keys = {"ratio": NUMBER, "inertia": Key(units.INERTIA)}  # of one wheel between mainspring and body
@@ -77,6 +78,7 @@ DAMPING: Keys = {
     "viscous": Key(units.ROTARY_VISCOUS, units.LINEAR_VISCOUS),
     "quadratic": Key(units.ROTARY_QUADRATIC, units.LINEAR_QUADRATIC),
     "coulomb": Key(units.TORQUE, units.FORCE),
+    "against": PLAIN,
 }
 CONTACT: Keys = {"between": PLAIN, "friction": NUMBER, "restitution": NUMBER, "tangential_restitution": NUMBER}
 GEAR: Keys = {

@@ -19,7 +19,7 @@ from watchsim.scene.file.keys.key_values import NAN, Table
 from watchsim.scene.file.keys.schema import GEAR, nearest
 from watchsim.scene.file.readers.read_forces import listed
 from watchsim.scene.gear import Gear, Geared
-from watchsim.scene.gear_trains import note_gears
+from watchsim.scene.gear_trains import note_gears, reached
 from watchsim.units import NUMBER, PER_LENGTH, TRAVEL_PER_TURN, Dimension
 
 SAME = 1e-9  # of a velocity that is given twice
@@ -148,7 +148,7 @@ def _bound(
     ways: dict[str, dict[str, float]] = {}  # ratio of the one for one unit of the other
     for table, gear in rigid:
         a, b = gear.between
-        if b in _reached(ways, a):
+        if b in reached(ways, a):
             table.fault("between", f"{a} and {b} are bound to each other already, through other gears", with_value=True)
             continue
         ways.setdefault(a, {})[b] = gear.ratio
@@ -157,7 +157,7 @@ def _bound(
     for name in sorted(ways, key=lambda one: (ranks[one], list(known).index(one))):
         if name in found or any(geared.to == name for geared in found.values()):
             continue
-        found.update({other: Geared(name, ratio) for other, ratio in _reached(ways, name).items() if other != name})
+        found.update({other: Geared(name, ratio) for other, ratio in reached(ways, name).items() if other != name})
     return found
 
 
@@ -167,18 +167,6 @@ def _note_double(loose: list[tuple[Table, Gear]], bound: Mapping[str, Geared]) -
         a, b = (bound[name].to if name in bound else name for name in gear.between)
         if a == b:
             table.fault("between", f"{' and '.join(gear.between)} are bound to each other already, without play", True)
-
-
-def _reached(ways: Mapping[str, Mapping[str, float]], name: str) -> dict[str, float]:
-    """All that is geared to a body, with how far each goes for one unit of it."""
-    found, left = {name: 1.0}, [name]
-    while left:
-        here = left.pop()
-        for other, ratio in ways.get(here, {}).items():
-            if other not in found:
-                found[other] = found[here] * ratio
-                left.append(other)
-    return found
 
 
 def _with_velocities(
