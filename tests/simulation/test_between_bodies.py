@@ -37,6 +37,7 @@ rest = "10°"
 
 [run]
 duration = "3 s"
+tolerance = 1e-11
 """
 
 

@@ -17,6 +17,7 @@ _HOMES = {
     "jumper": "watchsim.construction.jumper.design",
     "cam": "watchsim.construction.cam.design",
     "ratchet": "watchsim.construction.ratchet.design",
+    "verge": "watchsim.construction.verge.design",
 }
 
 NAMES = tuple(_HOMES)

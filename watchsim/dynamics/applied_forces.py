@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from watchsim.candidates.cell_lookup import along
+from watchsim.dynamics.line_springs import add_line_springs, line_spring_damping, line_spring_drive, line_spring_energy
 from watchsim.dynamics.tolerances import KNOT_ROUNDING
 from watchsim.jit import entry, kernel
 from watchsim.model.records import OVER_TIME
@@ -91,6 +92,7 @@ def forces(model, t, q, u, out_h):
         torque = joint_force(joint, q, u)
         out_h[joint.coordinate] += torque
         push_back(model, joint.on, torque, out_h)
+    add_line_springs(model, q, u, out_h)
     for j in range(len(model.tables)):
         table, force = model.tables[j], table_force(model, j, t, q)
         out_h[table.coordinate] += force
@@ -121,11 +123,11 @@ def drive_power(model, t, q, u):
         power += along(u, table.coordinate, table.on) * force
         if table.on >= 0 and model.coordinates[table.on].driven:
             power += u[table.on] * force
-    return power
+    return power + line_spring_drive(model, q, u)
 
 
 @kernel
-def damping_power(model, u):
+def damping_power(model, q, u):
     """Power taken by viscous and quadratic damping, W; never negative."""
     power = 0.0
     for i in range(len(model.coordinates)):
@@ -133,7 +135,7 @@ def damping_power(model, u):
     for j in range(len(model.joints)):
         joint = model.joints[j]
         power -= (u[joint.coordinate] - u[joint.on]) * joint_damping(joint, u)
-    return power
+    return power + line_spring_damping(model, q, u)
 
 
 @kernel
@@ -156,7 +158,7 @@ def stored_energy(model, q, u):
             continue
         way = q[i] - coordinate.rest
         energy += 0.5 * (coordinate.mass * u[i] * u[i] + coordinate.stiffness * way * way)
-    return energy + joint_energy(model, q)
+    return energy + joint_energy(model, q) + line_spring_energy(model, q)
 
 
 @kernel

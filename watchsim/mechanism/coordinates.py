@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from watchsim.mechanism.line_springs_of import coordinates_of_lines, line_springs
 from watchsim.model.records import (
     CONSTANT,
     COORDINATE,
@@ -33,9 +34,9 @@ OVER = {"constant": CONSTANT, "angle": OVER_ANGLE, "time": OVER_TIME}
 
 @dataclass(frozen=True)
 class Forced:
-    """Coordinates, joints, force tables and their knots, in the model's order; the largest natural frequency."""
+    """Coordinates, joints, line springs, force tables and their knots, in the model's order; the largest natural frequency."""
 
-    parts: tuple[Records, Records, Records, np.ndarray]
+    parts: tuple[Records, Records, Records, Records, np.ndarray]
     fastest: float
 
 
@@ -133,15 +134,24 @@ def forced_coordinates(
         raise ValueError("dry friction between two bodies that turn is not simulated")
     rows.load = np.abs(rows.force) + np.hypot(rows.weight_x, rows.weight_y)
     tabled = {int(table.coordinate) for table in tables}
-    jointed = {*joints.coordinate.tolist(), *joints.on.tolist()}
+    lines = line_springs(scene)
+    held = coordinates_of_lines(scene, lines, slices, bound)
+    jointed = {*joints.coordinate.tolist(), *joints.on.tolist(), *(k for k, _ in held)}
     for i, row in enumerate(rows):
         row.linear = row.quadratic == 0.0 and row.weight_x == 0.0 and row.weight_y == 0.0 and i not in tabled | jointed
     inverse = np.where(rows.driven != 0, 0.0, 1.0 / rows.mass)
     light = 1.0 / (inverse[joints.coordinate] + inverse[joints.on])
-    fastest = float(np.sqrt(np.max([*(rows.stiffness / rows.mass), stiffest, *(joints.stiffness / light)], initial=0.0)))
+    fastest = float(
+        np.sqrt(
+            np.max(
+                [*(rows.stiffness / rows.mass), stiffest, *(joints.stiffness / light), *(k / rows.mass[i] for i, k in held)],
+                initial=0.0,
+            )
+        )
+    )
     push = [*(np.abs(rows.force) / (rows.mass * rows.scale)), *(np.abs(joints.force) / light)]
     rows.rate = fastest or float(np.sqrt(np.max(push, initial=0.0))) or 1.0
-    return Forced((rows, joints, tables, knots), fastest)
+    return Forced((rows, joints, lines, tables, knots), fastest)
 
 
 def _watch(scene: Scene, targets: _Targets) -> float:

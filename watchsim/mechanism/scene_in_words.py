@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from watchsim.mechanism.gears_in_words import gear_lines
 from watchsim.scene.body import Body
 from watchsim.scene.carriers import at_start
-from watchsim.scene.force import Damping, Mainspring, Spring
+from watchsim.scene.force import Damping, LineSpring, Mainspring, Spring
 from watchsim.scene.oscillation import Oscillator, loads, oscillator, oscillators
 from watchsim.scene.roles import keeps_time
 from watchsim.scene.scene import Scene
@@ -55,6 +55,7 @@ def _distance_lines(scene: Scene) -> Iterator[str]:
 def _force_lines(scene: Scene) -> Iterator[str]:
     for spring in scene.springs:
         yield f"  spring on {_ends(spring.body, spring.against)}: {_spring(scene, spring)}"
+    yield from map(_line_spring, scene.line_springs)
     yield from (_swing(scene, one) for one in oscillators(scene) if one.weight)
     for torque in scene.torques:
         unit = "N" if scene.body(torque.body).motion == "slide" else "N·m"
@@ -64,6 +65,13 @@ def _force_lines(scene: Scene) -> Iterator[str]:
         yield f"  drive on {_ends(torque.body, torque.against)}: {text}"
     for damping in scene.damping:
         yield f"  damping on {_ends(damping.body, damping.against)}: {_damping(scene, damping)}"
+
+
+def _line_spring(spring: LineSpring) -> str:
+    first, second = spring.between
+    text = f"{metric(spring.stiffness, 'N/m')}, {length(spring.length)} long without force"
+    damped = f", damping {metric(spring.viscous, 'N·s/m')}" if spring.viscous else ""
+    return f"  spring from a point of {first} to one of {second or 'the movement'}: {text}{damped}"
 
 
 def _ends(body: str, against: str | None) -> str:

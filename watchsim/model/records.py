@@ -78,6 +78,21 @@ JOINT = np.dtype(
     ]
 )
 
+# A spring and damper along the line between a point of one body and a point of another, in their frames.
+LINE_SPRING = np.dtype(
+    [
+        ("a", "i8"),
+        ("b", "i8"),  # -1: the movement
+        ("xa", "f8"),
+        ("ya", "f8"),
+        ("xb", "f8"),
+        ("yb", "f8"),
+        ("stiffness", "f8"),
+        ("length", "f8"),  # without force
+        ("viscous", "f8"),
+    ]
+)
+
 TABLE = np.dtype(
     [
         ("coordinate", "i8"),
@@ -172,6 +187,7 @@ class Model(NamedTuple):
     bodies: Records
     coordinates: Records
     joints: Records
+    lines: Records
     tables: Records
     knots: NDArray[np.float64]  # (knots, 2) abscissa, value of all tables
     primitives: Records

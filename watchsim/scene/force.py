@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from watchsim.geometry.coil import Coil
+from watchsim.geometry.primitives import Point
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,6 +25,21 @@ class Spring:
     frequency: float | None = None
     coil: Coil | None = None
     against: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class LineSpring:
+    """A spring and damper between a point of one body and a point of another, or of the movement (None).
+
+    points     in the bodies' frames, m
+    stiffness  N/m; `length` (m) is that without force, `viscous` (N·s/m) acts on its rate
+    """
+
+    between: tuple[str, str | None]
+    points: tuple[Point, Point]
+    stiffness: float
+    length: float
+    viscous: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,8 +23,9 @@ class Roles:
 
 
 def roles(scene: Scene) -> Roles:
-    """The first that swings, a driven pivoted body besides it, if only through gears, and a moving body in contact with both, if
-    only by what it carries.
+    """The first that swings, a driven pivoted body besides it, and a moving body in contact with both.
+
+    A body may be driven through gears, and touch by way of what it carries.
 
     Of several driven bodies the wheel is the first that has such a lever, whatever the order of the torques: a lever may be
     knocked by a torque of its own.

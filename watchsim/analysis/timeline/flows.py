@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.analysis.contact_forces import absolute
+from watchsim.analysis.timeline.line_spring_rows import line_spring_energies
 from watchsim.mechanism.compile import Compiled
 from watchsim.model.records import OVER_TIME, Model
 from watchsim.simulation.record.trajectory import Array, Trajectory
@@ -60,6 +61,7 @@ def flows(run: Trajectory, compiled: Compiled, rows: slice = slice(None)) -> Flo
     for joint in model.joints:
         wound = q[:, joint.coordinate] - q[:, joint.on] - joint.rest
         stored = stored + 0.5 * joint.stiffness * wound**2
+    stored = stored + line_spring_energies(model, q)
     h = np.diff(t)
     step = h[:, None]
     # A constant force works on the way, the integral of the cubics; only what changes on the way needs Gauss's rule.

@@ -95,7 +95,10 @@ class Watch:
         return contact_events(self.run, between(first, others), *kinds)
 
     def drive(self, t: float) -> float:
-        """N·m on the wheel, if only through gears, at time `t` (s); tables over angle are read where the wheel was, 0 where that was not recorded."""
+        """N·m on the wheel, if only through gears, at time `t` (s); tables over angle are read where the body was.
+
+        0 where that was not recorded.
+        """
         total, ratios = 0.0, goes_with(self.run.scene, self.wheel)
         for torque in self.run.scene.torques:
             if torque.body not in ratios:

@@ -22,6 +22,7 @@ from watchsim.scene.file.readers.read_carriers import note_carriers
 from watchsim.scene.file.readers.read_contacts import read_contacts
 from watchsim.scene.file.readers.read_forces import read_damping, read_springs, read_torques
 from watchsim.scene.file.readers.read_gears import read_gears
+from watchsim.scene.file.readers.read_line_springs import read_line_springs
 from watchsim.scene.file.readers.read_settings import read_expectations, read_heading, read_run, read_timegrapher
 from watchsim.scene.file.readers.read_trains import with_trains
 from watchsim.scene.oscillation import frequency
@@ -54,6 +55,7 @@ def from_mapping(
     torques = read_torques(mapping, bodies, faults)
     damping = read_damping(mapping, bodies, springs, heading.gravity, faults)
     contacts = read_contacts(mapping, bodies, sound, heading.tangential_law, faults)
+    line_springs = read_line_springs(mapping, bodies, faults)
     note_carriers(bodies, damping, contacts, faults)
     duration, record, tolerance = read_run(mapping, faults)
     lift_angle, nominal = read_timegrapher(mapping, faults)
@@ -68,6 +70,7 @@ def from_mapping(
         damping=damping,
         contacts=contacts,
         gears=geared.gears,
+        line_springs=line_springs,
         gravity=heading.gravity,
         tangential_law=heading.tangential_law,
         nu=heading.nu,

@@ -49,6 +49,7 @@ class MoreauWork(NamedTuple):
     wound: Array  # by coordinate: twice the energy of its spring before positions are taken back
     force: Array  # drives and gravity at the middle
     damping: Array
+    line: Array  # what line springs do to each coordinate
     joint: Array  # force of the damping between two coordinates
     mass: Array
     inverse: Array
@@ -69,7 +70,7 @@ def moreau_work(model: Model) -> MoreauWork:
     rows = 2 * room + len(dry)
     vectors = {
         name: np.zeros(n)
-        for name in ("q", "u", "free", "force", "damping", "mass", "inverse", "change", "foreseen", "start", "wound")
+        for name in ("q", "u", "free", "force", "damping", "line", "mass", "inverse", "change", "foreseen", "start", "wound")
     }
     by_row = {name: np.zeros(rows) for name in ("rates", "more")}
     return MoreauWork(

@@ -85,6 +85,10 @@ GEAR: Keys = {
     **{"between": PLAIN, "ratio": NUMBER, "backlash": Key(units.ANGLE, units.LENGTH)},
     **{"restitution": NUMBER, "efficiency": NUMBER},
 }
+LINE_SPRING: Keys = {
+    **{"between": PLAIN, "points": LENGTH, "stiffness": Key(units.LINEAR_STIFFNESS)},
+    **{"length": LENGTH, "tension": Key(units.FORCE), "viscous": Key(units.LINEAR_VISCOUS)},
+}
 RUN: Keys = {"duration": Key(units.TIME), "record": Key(units.TIME), "tolerance": NUMBER}
 TIMEGRAPHER: Keys = {"lift_angle": ANGLE, "frequency": Key(units.FREQUENCY)}
 EXPECTATION: Keys = {"value": PLAIN, "tolerance": PLAIN}
@@ -92,7 +96,14 @@ LOCK: Keys = {"versions": PLAIN, "drawings": PLAIN, "design": PLAIN}
 
 TABLES = {"scene": SCENE, "run": RUN, "timegrapher": TIMEGRAPHER, "lock": LOCK}  # [name]
 NAMED = {"bodies": BODY, "expect": EXPECTATION}  # [name.anything]
-LISTED = {"springs": SPRING, "torques": TORQUE, "damping": DAMPING, "contacts": CONTACT, "gears": GEAR}  # [[name]]
+LISTED = {
+    "springs": SPRING,
+    "torques": TORQUE,
+    "damping": DAMPING,
+    "contacts": CONTACT,
+    "gears": GEAR,
+    "line_springs": LINE_SPRING,
+}  # [[name]]
 DESIGN = "design"  # [design], whose keys are the dimensions of the design it names
 SECTIONS = (*TABLES, DESIGN, *NAMED, *LISTED)
 
