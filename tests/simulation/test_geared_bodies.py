@@ -14,6 +14,7 @@ import watchsim as ws
 from tests.scene.made_gears import read, wheels
 from watchsim.scene.file.read_scene import from_mapping
 from watchsim.scene.scene import Scene
+from watchsim.simulation.event_kinds import EventKind
 
 J_A, J_B = 1e-7, 1e-8
 SWISS = Path("profiles/swiss_lever/scene.toml")
@@ -125,7 +126,7 @@ def test_two_racks_run_against_each_other_on_one_rotation(tmp_path) -> None:
     bend = (1.5e-4 - (m1 - m2) * 9.81 * R) / (J_A + (m1 + m2) * R * R)
     where = {name: part.start for name, part in run.slices.items()}
     hit = math.sqrt(2.0 * 1e-3 / (R * bend))  # the disc of 1 mm is 1 mm from the wall
-    found = run.events[run.events["kind"] == 1][0]
+    found = run.events[run.events["kind"] == EventKind.IMPACT][0]
     assert found["t"] == pytest.approx(hit, rel=1e-12)
     q, u = run.at(found["t"])
     assert q[where["near"]] == pytest.approx(-q[where["far"]], rel=1e-12)
@@ -220,7 +221,7 @@ def test_gears_with_play_rebound_by_their_restitution(tmp_path) -> None:
     run = ws.simulate(wheels(tmp_path, r, **parts))
     relative = run.u[:, run.slices["pinion"].start] - r * run.u[:, run.slices["wheel"].start]
     start, play = math.radians(-800.0), math.radians(2.0)
-    closes = run.events[run.events["kind"] == 1]["t"]
+    closes = run.events[run.events["kind"] == EventKind.IMPACT]["t"]
     whole = 0.5 * play / abs(start)
     expected = [whole + play / abs(start) * sum(e**-k for k in range(1, n + 1)) for n in range(7)]
     assert closes == pytest.approx([t for t in expected if t < 0.5], rel=1e-9)

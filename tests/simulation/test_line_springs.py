@@ -11,6 +11,7 @@ from scipy.integrate import solve_ivp
 import watchsim as ws
 from tests.scene.made_gears import read
 from watchsim.scene.errors import SceneError
+from watchsim.simulation.event_kinds import EventKind
 
 SCENE = """
 [scene]
@@ -158,7 +159,7 @@ duration = "1 s"
 def test_a_preloaded_leaf_spring_leaves_its_stop_at_its_preload(tmp_path) -> None:
     """Pressed down by 5 mN, it lifts off when the force has grown to that, at 0.5 s."""
     run = ws.simulate(read(tmp_path, LEAF))
-    opened = run.events[(run.events["kind"] == 2)]["t"]
+    opened = run.events[run.events["kind"] == EventKind.OPEN]["t"]
     assert opened[:1] == pytest.approx([0.5], abs=1e-6)
     w = math.sqrt(10.0 / 1e-3)
     assert run.end_q[1] == pytest.approx(1e-3 * 0.5 - 1e-3 / w * math.sin(0.5 * w), abs=1e-8)

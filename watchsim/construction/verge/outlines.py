@@ -12,7 +12,7 @@ from watchsim.geometry.primitives import Line, Point
 
 AHEAD = 2  # teeth that have passed already
 STAFF = 0.45  # radius of the verge's staff, in depths
-THICK = 0.16  # of a flag, in depths
+THICK, THINNEST = 0.16, 0.08  # of a flag, in depths and in pitches, the smaller of the two
 RIM = 1.5  # of the crown wheel below its teeth, in their heights
 
 
@@ -65,7 +65,7 @@ def verge(values: Verge) -> list[Loop]:
 
 def _flag(values: Verge, layer: str, angle: float, side: float) -> Loop:
     """A plate from the staff downwards, its face towards the teeth that come; `side` 1: they come from the left."""
-    long, thick = flag_length(values), THICK * depth(values)
+    long, thick = flag_length(values), min(THICK * depth(values), THINNEST * pitch(values))
     points = [(0.0, 0.0), (0.0, -long), (thick, -long + 0.5 * thick), (thick, 0.0)]
     c, s = math.cos(angle), math.sin(angle)
     return _closed([(side * (c * x - s * y), s * x + c * y) for x, y in points], layer)

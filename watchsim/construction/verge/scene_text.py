@@ -54,7 +54,7 @@ viscous = "{values.viscous:.15g} mN·m·s/rad"
 {contacts}
 [run]
 duration  = "20 s"
-tolerance = 1e-9
+tolerance = 1e-12
 """
 
 CONTACTS = (("near_side.NEAR", "verge.NEAR_FLAG"), ("far_side.FAR", "verge.FAR_FLAG"))
