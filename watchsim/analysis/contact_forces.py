@@ -104,6 +104,7 @@ def forces(run: Trajectory, times: Iterable[float] | None = None) -> Forces:
 def absolute(compiled: Compiled, values: Array, rates: bool) -> Array:
     """Coordinates in the movement from those that the trajectory gives: the inverse of `Compiled.relative`."""
     out = np.array(values)
+    out = out[:, : len(compiled.q)]  # what is geared to others follows from them
     for own, on, angle in compiled.against:  # carriers come before what they carry
         out[:, own] += (out[:, on] if on >= 0 else 0.0) + (0.0 if rates else angle)
     return out
@@ -278,7 +279,7 @@ def _pressing(system: Array, right: Array) -> Array:
 
 def _pivots(run: Trajectory, compiled: Compiled, found: Forces, q: Array, u: Array, a: Array) -> Iterator[tuple[str, Array]]:
     """What the bearings in the movement take: change of momentum less weight less contacts, of a body with all it carries."""
-    hung, weighed = loads(run.scene.bodies)
+    hung, weighed, _ = loads(run.scene.bodies)
     on_a, on_b = _bodies_of(compiled, found.pairs)
     across = np.stack((-found.direction[:, :, 1], found.direction[:, :, 0]), axis=2)
     pressed = np.nan_to_num(found.normal[:, :, None] * found.direction + found.tangential[:, :, None] * across)
@@ -287,8 +288,7 @@ def _pivots(run: Trajectory, compiled: Compiled, found: Forces, q: Array, u: Arr
             continue
         own = [k for k, other in enumerate(hung) if k == i or other.part_of == i or other.host == i]
         sign = np.isin(on_a, own).astype(float) - np.isin(on_b, own).astype(float)
-        first = compiled.slices[body.name].start
-        angle, spin, turn = q[:, first], u[:, first], a[:, first]
+        angle, spin, turn = (compiled.own(i, values, rates) for values, rates in ((q, False), (u, True), (a, True)))
         c, s = np.cos(angle), np.sin(angle)
         moment = np.stack((c * load.moment[0] - s * load.moment[1], s * load.moment[0] + c * load.moment[1]), axis=1)
         change = turn[:, None] * np.stack((-moment[:, 1], moment[:, 0]), axis=1) - (spin * spin)[:, None] * moment
@@ -297,10 +297,10 @@ def _pivots(run: Trajectory, compiled: Compiled, found: Forces, q: Array, u: Arr
 
 def _drives(run: Trajectory, compiled: Compiled, load: Array, a: Array) -> Iterator[tuple[str, Array]]:
     """Against the contacts, and for the acceleration of as much mass or inertia as the scene gives the body."""
-    for body in run.scene.bodies:
+    for body, mass in zip(run.scene.bodies, loads(run.scene.bodies)[2], strict=True):
         if body.prescribed is not None:
             j = compiled.slices[body.name].start
-            yield body.name, (body.mass if body.motion == "slide" else body.inertia) * a[:, j] - load[:, j]
+            yield body.name, mass * a[:, j] - load[:, j]
 
 
 def _bodies_of(compiled: Compiled, pairs: NDArray[np.int64]) -> tuple[Array, Array]:

@@ -17,6 +17,7 @@ _HOMES = {
     "jumper": "watchsim.construction.jumper.jumper_design",
     "cam": "watchsim.construction.cam.cam_design",
     "ratchet": "watchsim.construction.ratchet.ratchet_design",
+    "verge": "watchsim.construction.verge.verge_design",
 }
 
 NAMES = tuple(_HOMES)

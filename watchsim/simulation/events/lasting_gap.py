@@ -23,19 +23,20 @@ def _material_point(model, state, step, b, rx, ry, left, tau, path):
     body, pose = model.bodies[b], path.pose[b]
     i = body.first
     if body.motion == SLIDE:
-        a = acceleration_on_path(model, state, step, i, tau, path)
-        return pose.vx, pose.vy, a * body.axis_x, a * body.axis_y, step.jerk[i]
+        a = body.ratio * acceleration_on_path(model, state, step, i, tau, path)
+        return pose.vx, pose.vy, a * body.axis_x, a * body.axis_y, abs(body.ratio) * step.jerk[i]
     if body.motion != PIVOT and body.motion != FREE:
         return 0.0, 0.0, 0.0, 0.0, 0.0
     turn = i if body.motion == PIVOT else i + 2
-    w, twist = pose.w, acceleration_on_path(model, state, step, turn, tau, path)
+    w, twist = pose.w, body.ratio * acceleration_on_path(model, state, step, turn, tau, path)
     ax, ay, jerk = -twist * ry - w * w * rx, twist * rx - w * w * ry, 0.0
     if body.motion == FREE:
         ax += acceleration_on_path(model, state, step, i, tau, path)
         ay += acceleration_on_path(model, state, step, i + 1, tau, path)
         jerk = step.jerk[i] + step.jerk[i + 1]
-    fastest = abs(w) + step.bound[turn] * left
-    jerk += (step.jerk[turn] + 3.0 * step.bound[turn] * fastest + fastest**3) * math.sqrt(rx * rx + ry * ry)
+    bound = abs(body.ratio) * step.bound[turn]
+    fastest = abs(w) + bound * left
+    jerk += (abs(body.ratio) * step.jerk[turn] + 3.0 * bound * fastest + fastest**3) * math.sqrt(rx * rx + ry * ry)
     return pose.vx - w * ry, pose.vy + w * rx, ax, ay, jerk
 
 
@@ -56,7 +57,7 @@ def _fastest_turn(model, b, left, step, path):
     """A bound of the turning rate of body b for `left` seconds."""
     body = model.bodies[b]
     if body.motion == PIVOT:
-        return abs(path.pose[b].w) + step.bound[body.first] * left
+        return abs(path.pose[b].w) + abs(body.ratio) * step.bound[body.first] * left
     return abs(path.pose[b].w) + step.bound[body.first + 2] * left if body.motion == FREE else 0.0
 
 
