@@ -222,20 +222,19 @@ def test_a_study_whose_table_cannot_be_written_is_saved_elsewhere(
     tmp_path: Path, elsewhere: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The disk fills up while the points are computed; the earlier study beside them is left as it was."""
-    from watchsim.studies import parameter_sweep
 
     asked = ["sweep", LEVER, "contacts.0.friction=0.1,0.12", "--duration", "1.5 s", "--workers", "1", "--no-plots"]
     target = tmp_path / "disk" / "study"
     target.parent.mkdir()
     assert main([*asked, "-o", str(target)]) == 0
     before = (target / "sweep.csv").read_bytes()
-    original = sweep.computed
+    original = parameter_sweep.computed
 
     def full(*args: object, **options: object) -> None:
         original(*args, **options)  # type: ignore[arg-type]
         disk.failing, disk.count = len(disk.log) + 1, 10**6
 
-    monkeypatch.setattr(sweep, "computed", full)
+    monkeypatch.setattr(parameter_sweep, "computed", full)
     with watched(Disk(target.parent)) as disk:
         assert main([*asked, "-o", str(target), "--force"]) == 2
     found = re.search(r"saved, without plots, in (\S+)", capsys.readouterr().err)

@@ -19,7 +19,7 @@ from watchsim.simulation.motion.step_path import acceleration_on_path
 
 @kernel
 def _material_point(model, state, step, b, rx, ry, left, tau, path):
-    """Of the point of body b at (rx, ry) from its origin: (vx, vy, ax, ay, bound of the third derivative for `left` seconds)."""
+    """(vx, vy, ax, ay, bound of the third derivative for `left` s) of the point of body b at (rx, ry) from its origin."""
     body, pose = model.bodies[b], path.pose[b]
     i = body.first
     if body.motion == SLIDE:
@@ -42,7 +42,7 @@ def _material_point(model, state, step, b, rx, ry, left, tau, path):
 
 @kernel
 def _points_apart(model, state, k, left, tau, step, path):
-    """(vx, vy, ax, ay, bound of how a changes) of the material point of A at the centre of its circle against that of B there."""
+    """(vx, vy, ax, ay, bound of how a changes) of the point of A at the centre of its circle against that of B there."""
     contact = model.contacts[k]
     a, b = model.primitives[contact.a], model.primitives[contact.b]
     pa, pb = path.pose[a.body], path.pose[b.body]
@@ -63,7 +63,7 @@ def _fastest_turn(model, b, left, step, path):
 
 @kernel
 def _time_for(room, speed, push, jerk, left):
-    """A time up to `left` in which a way that begins with this speed, its change and the change of that does not exceed `room`."""
+    """A time up to `left` in which a way does not exceed `room`, by its speed, its acceleration and a bound of how that changes."""
     # A third of the room for each.
     time = left
     if 3.0 * speed * time > room:
