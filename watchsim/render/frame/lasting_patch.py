@@ -28,7 +28,8 @@ class LastingPatch(PathPatch):
         """The context for its edge, and the colour of its face (None: left empty)."""
         context = renderer.new_gc()
         edge, face = to_rgba(self.get_edgecolor()), to_rgba(self.get_facecolor())
-        context.set_alpha(1.0 if self.get_alpha() is None else self.get_alpha())
+        alpha = self.get_alpha()
+        context.set_alpha(1.0 if alpha is None else alpha)
         context.set_foreground(edge, isRGBA=True)
         context.set_linewidth(self.get_linewidth() if edge[3] else 0.0)
         context.set_capstyle(self.get_capstyle())

@@ -63,7 +63,7 @@ def _fastest_turn(model, b, left, step, path):
 
 @kernel
 def _time_for(room, speed, push, jerk, left):
-    """A time up to `left` in which a way does not exceed `room`, by its speed, its acceleration and a bound of how that changes."""
+    """A time up to `left` in which a way does not exceed `room`, by its speed, acceleration and a bound of the jerk."""
     # A third of the room for each.
     time = left
     if 3.0 * speed * time > room:
