@@ -222,6 +222,7 @@ def test_a_study_whose_table_cannot_be_written_is_saved_elsewhere(
     tmp_path: Path, elsewhere: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The disk fills up while the points are computed; the earlier study beside them is left as it was."""
+    from watchsim.studies import parameter_sweep
 
     asked = ["sweep", LEVER, "contacts.0.friction=0.1,0.12", "--duration", "1.5 s", "--workers", "1", "--no-plots"]
     target = tmp_path / "disk" / "study"
