@@ -30,6 +30,7 @@ SHOWN = {  # profile: simulated (s), instant (s), bodies to show close (None: al
     "jumper": (0.6, 0.49, None),
     "cam": (0.2, 0.1, None),
     "ratchet": (0.2, 0.15, None),
+    "verge": (4.1, 4.0, ["verge"]),
 }
 
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from watchsim.escapement.by_hand.hands import Hands
-from watchsim.escapement.by_hand.sweep import Rest, Wheel
-from watchsim.escapement.passage import Passage, change_error
+from watchsim.escapement.by_hand.lever_sweep import Rest, Wheel
 from watchsim.escapement.quantity import Quantity, over_teeth
+from watchsim.escapement.tooth_passage import Passage, change_error
 from watchsim.model.records import ARC, FULL
 
 

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from watchsim.drawing.findings import Finding
-from watchsim.escapement.fork import Fork
+from watchsim.escapement.fork_and_pin import Fork
 from watchsim.escapement.measure import Function
 from watchsim.escapement.pallets import Pallet
 from watchsim.escapement.quantity import Quantity

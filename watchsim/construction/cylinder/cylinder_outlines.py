@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import math
 
-from watchsim.construction.arms import Arms
 from watchsim.construction.balance_wheel import BalanceWheel, balance_wheel
 from watchsim.construction.cylinder.cylinder_points import Shell
 from watchsim.construction.outline import arc_between, arc_of_radius, circle, fillet_chain, polar
+from watchsim.construction.wheel_arms import Arms
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Edge, Line, Point
 

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import math
 
-from watchsim.construction.arms import Arms
 from watchsim.construction.balance_wheel import BalanceWheel, balance_wheel
-from watchsim.construction.coaxial.stones import Stone
-from watchsim.construction.coaxial.wheel import ToothForm, contour, tooth_and_gap
 from watchsim.construction.duplex.duplex_points import DuplexPoints
 from watchsim.construction.outline import along, arc_between, circle, fillet_chain, polar, turned
+from watchsim.construction.pallet_stone import Stone
+from watchsim.construction.undercut_teeth import ToothForm, contour, tooth_and_gap
+from watchsim.construction.wheel_arms import Arms
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line
 

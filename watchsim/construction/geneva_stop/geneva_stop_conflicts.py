@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from watchsim.construction.design import Conflict
-from watchsim.construction.geneva import conflicts as of_drive
+from watchsim.construction.geneva import geneva_conflicts as of_drive
 from watchsim.construction.geneva_stop.geneva_stop_dimensions import GenevaStop
 
 SPARE = 1.1

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from watchsim.construction.design import Design
-from watchsim.construction.geneva.driver import driver
+from watchsim.construction.geneva.geneva_driver import driver
 from watchsim.construction.geneva_stop.geneva_stop_conflicts import conflicts
 from watchsim.construction.geneva_stop.geneva_stop_dimensions import GenevaStop
 from watchsim.construction.geneva_stop.geneva_stop_outlines import cross

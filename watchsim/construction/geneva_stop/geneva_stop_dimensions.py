@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from watchsim.construction.dimension import dim
-from watchsim.construction.geneva.dimensions import Geneva
+from watchsim.construction.geneva.geneva_dimensions import Geneva
 
 CHOSEN, USUAL = "chosen for this design", "usual in watches"
 

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import math
 
-from watchsim.construction.geneva.dimensions import Geneva
-from watchsim.construction.geneva.proportions import half_pitch, mouth_half, slot_bottom, slot_half, wheel_radius
-from watchsim.construction.geneva.wheel import BORE, sector
+from watchsim.construction.geneva.geneva_dimensions import Geneva
+from watchsim.construction.geneva.geneva_proportions import half_pitch, mouth_half, slot_bottom, slot_half, wheel_radius
+from watchsim.construction.geneva.geneva_wheel import BORE, sector
 from watchsim.construction.outline import arc_between, circle, polar
 from watchsim.geometry.loop import Loop
 

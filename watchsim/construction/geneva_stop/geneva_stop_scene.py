@@ -6,7 +6,7 @@ import math
 
 from watchsim.construction.contact_tables import contact_tables
 from watchsim.construction.design import told
-from watchsim.construction.geneva.proportions import centre_distance, half_pitch
+from watchsim.construction.geneva.geneva_proportions import centre_distance, half_pitch
 from watchsim.construction.geneva_stop.geneva_stop_dimensions import GenevaStop
 
 SPARE = 1.4  # times the time that the turns would take at the speed without impacts

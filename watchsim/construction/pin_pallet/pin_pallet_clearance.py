@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 
 from watchsim.construction.outline import angle_of, turned
 from watchsim.construction.pin_pallet.pin_pallet_points import PinLever
-from watchsim.construction.swiss_lever.wheel import toe_heel_back
+from watchsim.construction.swiss_lever.swiss_lever_wheel import toe_heel_back
 from watchsim.geometry.primitives import Point
 
 STEPS = 120  # of the lever, from its bank to the let-off

@@ -10,8 +10,8 @@ from watchsim.construction.pin_pallet.pin_pallet_clearance import drop_needed
 from watchsim.construction.pin_pallet.pin_pallet_dimensions import PinPallet
 from watchsim.construction.pin_pallet.pin_pallet_numbers import pin_lever
 from watchsim.construction.pin_pallet.pin_pallet_points import PinLever
-from watchsim.construction.swiss_lever.guard import crescent_needed
-from watchsim.construction.swiss_lever.wheel import locking_foot, root_radius, tooth_gap
+from watchsim.construction.swiss_lever.swiss_lever_guard import crescent_needed
+from watchsim.construction.swiss_lever.swiss_lever_wheel import locking_foot, root_radius, tooth_gap
 
 LEAST_TOOTH, LEAST_GAP, LEAST_RISE = 2.0, 1.0, 3.0  # degrees
 SPANS = (18.0, 50.0)  # degrees, half of what the pins embrace

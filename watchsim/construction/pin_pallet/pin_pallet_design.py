@@ -8,8 +8,8 @@ from watchsim.construction.pin_pallet.pin_pallet_dimensions import PinPallet
 from watchsim.construction.pin_pallet.pin_pallet_lever import pin_pallet_lever
 from watchsim.construction.pin_pallet.pin_pallet_numbers import pin_lever
 from watchsim.construction.pin_pallet.pin_pallet_scene import scene_text
-from watchsim.construction.swiss_lever.roller import banking, roller
-from watchsim.construction.swiss_lever.wheel import wheel
+from watchsim.construction.swiss_lever.swiss_lever_roller import banking, roller
+from watchsim.construction.swiss_lever.swiss_lever_wheel import wheel
 from watchsim.drawing.sheet import Sheet
 
 

@@ -10,7 +10,7 @@ from itertools import pairwise
 
 from watchsim.construction.outline import circle, fillet_chain, polar
 from watchsim.construction.pin_pallet.pin_pallet_points import PinLever
-from watchsim.construction.swiss_lever.lever import BORE_RADIUS, HUB_RADIUS, dart, fork, neck_height
+from watchsim.construction.swiss_lever.swiss_lever_lever import BORE_RADIUS, HUB_RADIUS, dart, fork, neck_height
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Edge, Line, Point
 

@@ -11,7 +11,7 @@ from watchsim.construction.design import Impossible
 from watchsim.construction.outline import angle_of
 from watchsim.construction.pin_pallet.pin_pallet_dimensions import PinPallet
 from watchsim.construction.pin_pallet.pin_pallet_points import PinLever
-from watchsim.construction.swiss_lever.follow import dart_clearance, pin_reach
+from watchsim.construction.swiss_lever.swiss_lever_derived import dart_clearance, pin_reach
 
 GROUND, CLEARANCE, HORN = 3.0 / 7.0, 0.042, 62.0  # impulse pin and horns as in a Swiss lever of 4.36 mm
 SHIFT = 3.0  # degrees by which the half span may differ from a whole number and a half of spaces

@@ -12,7 +12,7 @@ import math
 from dataclasses import dataclass
 
 from watchsim.construction.outline import angle_of, polar
-from watchsim.construction.swiss_lever.points import Swiss
+from watchsim.construction.swiss_lever.swiss_lever_points import Swiss
 from watchsim.geometry.primitives import Point
 
 

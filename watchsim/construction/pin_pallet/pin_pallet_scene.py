@@ -6,7 +6,7 @@ from watchsim.construction.contact_tables import contact_tables
 from watchsim.construction.design import told
 from watchsim.construction.pin_pallet.pin_pallet_dimensions import PinPallet
 from watchsim.construction.pin_pallet.pin_pallet_numbers import pin_lever
-from watchsim.construction.swiss_lever.roller import wheel_of
+from watchsim.construction.swiss_lever.swiss_lever_roller import wheel_of
 
 CLEAR = 1e-4  # degrees by which lever and wheel stand off what they rest on
 

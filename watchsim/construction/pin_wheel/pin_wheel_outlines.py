@@ -8,9 +8,9 @@ from __future__ import annotations
 import math
 from itertools import pairwise
 
-from watchsim.construction.arms import Arms
 from watchsim.construction.outline import angle_of, arc_between, circle, fillet_chain, polar
 from watchsim.construction.pin_wheel.pin_wheel_points import PinAnchor
+from watchsim.construction.wheel_arms import Arms
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Edge, Line, Point
 
