@@ -216,7 +216,7 @@ def _pivots(run: Trajectory, compiled: Compiled, found: Forces, q: Array, u: Arr
     for i, (body, ride, load) in enumerate(zip(run.scene.bodies, hung, weighed, strict=True)):
         if body.motion != "pivot" or ride.host >= 0:
             continue
-        own = [k for k, other in enumerate(hung) if k == i or other.part_of == i or other.host == i]
+        own = [k for k, other in enumerate(hung) if i in (k, other.part_of, other.host)]
         sign = np.isin(on_a, own).astype(float) - np.isin(on_b, own).astype(float)
         first = compiled.slices[body.name].start
         angle, spin, turn = q[:, first], u[:, first], a[:, first]

@@ -18,7 +18,7 @@ from watchsim.simulation.runner import Progress, Run
 from watchsim.units import TIME, UnitError, parse
 
 
-def simulate(
+def simulate(  # noqa: PLR0913 - options, by name
     scene: Scene | str | Path,
     duration: float | str | None = None,
     tolerance: float | None = None,
