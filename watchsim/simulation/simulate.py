@@ -98,7 +98,7 @@ def _check(duration: float, tolerance: float, method: str, step: float | None) -
     if not 1e-13 <= tolerance <= 1e-2:
         raise ValueError(f"the tolerance must lie between 1e-13 and 1e-2, not {tolerance}")
     if method not in METHODS:
-        raise ValueError(f'there is no method "{method}"; there are {" and ".join(METHODS)}')
+        raise ValueError(f'there is no method "{method}"; choose {" or ".join(METHODS)}')
     if step is not None and method != MOREAU:
         raise ValueError(f"a fixed step belongs to the method {MOREAU}; {method} finds its own steps from the tolerance")
     if step is not None and not 0.0 < step <= duration:

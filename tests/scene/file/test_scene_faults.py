@@ -25,7 +25,7 @@ ONE_FAULT = [
     ('drawing = "wheel.dxf"', 'drawng = "wheel.dxf"', None, None),
     ("[scene]", "[scen]", "scen", 'unknown section. Did you mean "scene"?'),
     ('title = "Small lever"', "title = 5", "scene.title", "a text in quotes is needed here."),
-    ('title = "Small lever"', "schema = 2", "scene.schema", "this program reads schema 1."),
+    ('title = "Small lever"', "schema = 2", "scene.schema", "this version of watchsim reads schema 1."),
     ('title = "Small lever"', "gravity = 9.81", "scene.gravity", "two values are needed here"),
     ('title = "Small lever"', 'tangential_law = "newton"', "scene.tangential_law", "not one of coulomb, pg1996, shifted"),
     ('title = "Small lever"', "nu = 0.5", "scene.nu", "belongs to tangential_law"),

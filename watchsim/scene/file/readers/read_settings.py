@@ -44,7 +44,7 @@ def read_heading(mapping: Mapping[str, Any], faults: Faults) -> Heading:
     table = Table(mapping.get("scene", {}), "scene", SCENE, faults)
     schema = table.mapping.get("schema", SCHEMA)
     if schema != SCHEMA:
-        table.fault("schema", f"this program reads schema {SCHEMA}", with_value=True)
+        table.fault("schema", f"this version of watchsim reads schema {SCHEMA}", with_value=True)
     law, nu = table.one_of("tangential_law", tuple(TANGENTIAL_CODE), "coulomb"), table.quantity("nu")
     if nu < 0.0 or nu > 1.0:
         table.fault("nu", "must lie between 0 and 1", with_value=True)
