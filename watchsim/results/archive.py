@@ -113,7 +113,7 @@ def _check(run: Trajectory) -> None:
     if any(array.dtype != np.float64 for array in (run.t, run.q, run.u, run.a)) or not _finite(run):
         raise ValueError("it holds something that is not a number")
     if any(array.dtype != np.float64 or array.shape not in ((0,), (width,)) for array in (run.end_q, run.end_u)):
-        raise ValueError("it holds no valid end state")
+        raise ValueError("its end is no state")
     if not _in_order(run.t) or any(np.any(part["contact"] >= len(run.pairs)) for (part,) in blocks(run.events)):
         raise ValueError("its rows are out of order, or its events of unknown contacts")
     for (part,) in blocks(run.events):
