@@ -320,7 +320,10 @@ def test_wrong_shapes_never_crash(desk, text):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("[bodies]\ndrawing = 'x.dxf'\nposition = ['0 mm', '0 mm']\n", "a body has a name and a table, such as"),
+        (
+            "[bodies]\ndrawing = 'x.dxf'\nposition = ['0 mm', '0 mm']\n",
+            "a body is expected here: a table with its name, such as",
+        ),
         ("[bodies.a]\ncircle = '1 mm'\ninertia = '1 mg·cm²'\n[[contacts]]\n", "two sides are needed"),
         (
             "[bodies.a]\ncircle = '1 mm'\ninertia = '1 mg·cm²'\n[[springs]]\nbody = ''\nfrequency = '4 Hz'\n",
