@@ -35,6 +35,16 @@ def test_the_glossary_names_files_that_exist() -> None:
     assert [home for home in homes if not (ROOT / "watchsim" / home).exists()] == []
 
 
+@pytest.mark.parametrize(
+    "page", ["docs/develop/design.md", "docs/develop/extend.md", "docs/theory/method.md", "docs/reports/hunt.md"]
+)
+def test_pages_name_files_that_exist(page: str) -> None:
+    named = re.findall(r"`([a-z_/]+\.py)`", (ROOT / page).read_text(encoding="utf-8"))
+    there = [path.as_posix() for top in ("watchsim", "tests", "scripts") for path in (ROOT / top).rglob("*.py")]
+    assert named
+    assert [name for name in named if not any(path.endswith(f"/{name}") for path in there)] == []
+
+
 def test_the_documents_name_the_commands_that_exist() -> None:
     from watchsim.cli import COMMANDS
 

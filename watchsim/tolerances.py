@@ -86,6 +86,8 @@ KNOT_ROUNDING = 1e-15
 
 # --- Options of a run ---
 
+# Relative error of a step that may be requested. Large: errors show in every number; small: below the rounding of a step.
+FINEST_TOLERANCE, COARSEST_TOLERANCE = 1e-13, 1e-2
 # Of the size: a gap that small is zero to rounding. Large: early contacts; small: below the rounding of positions.
 GAP_ZERO = 1e-13
 # Of the size: gaps that small take part in an impact. Large: merges events; small: splits simultaneous ones.

@@ -20,7 +20,7 @@ def singles(count: int) -> list[tuple[Case, np.ndarray]]:
     found = []
     while len(found) < count:
         case, u = random_case(rng, 1, 3), rng.normal(size=3)
-        if rates(case, u)[0] < 0.0 and case.mu[0] * abs(case.G[0, 1]) < 0.95 * case.G[0, 0]:
+        if rates(case, u)[0] < 0.0 and case.friction[0] * abs(case.G[0, 1]) < 0.95 * case.G[0, 0]:
             found.append((case, u))
     return found
 
@@ -31,7 +31,7 @@ def test_one_contact_in_closed_form() -> None:
         solved, after, force = case.impact(u)
         before = rates(case, u)
         G = (case.G[0, 0], case.G[0, 1], case.G[1, 1])
-        truth = single_impact(G, tuple(before), case.mu[0], case.eps[0])
+        truth = single_impact(G, tuple(before), case.friction[0], case.restitution[0])
         regimes.add(truth.regime)
         scale = np.abs(before).max() * max(1.0, case.G.max() / case.G[0, 0])
         size = max(truth.normal, abs(truth.tangential))
@@ -58,7 +58,8 @@ def test_without_friction_a_single_contact_obeys_newton() -> None:
         solved, after, force = case.impact(u)
         assert solved
         assert force[1] == 0.0
-        assert rates(case, after)[0] == pytest.approx(-case.eps[0] * before[0] if before[0] < 0.0 else before[0], abs=1e-12)
+        expected = -case.restitution[0] * before[0] if before[0] < 0.0 else before[0]
+        assert rates(case, after)[0] == pytest.approx(expected, abs=1e-12)
 
 
 def test_separating_contacts_do_nothing() -> None:
@@ -104,12 +105,12 @@ def test_several_contacts_obey_the_laws_of_both_phases(m: int, n: int) -> None:
         N_C, T_C = compression[::2] / unit, compression[1::2] / unit
         v_C = rates(case, middle)
         assert complementary(N_C, v_C[::2] / scale)
-        assert coulomb_holds(N_C, T_C, v_C[1::2], case.mu, scale)
+        assert coulomb_holds(N_C, T_C, v_C[1::2], case.friction, scale)
         N_E, T_E = total[::2] / unit - N_C, total[1::2] / unit - T_C
         v_E = rates(case, after)
-        assert complementary(N_E - case.eps * N_C, v_E[::2] / scale)
-        assert coulomb_holds(N_E, T_E, v_E[1::2], case.mu, scale)
-        assert np.all(total[::2] / unit >= (1.0 + case.eps) * N_C - SMALL)
+        assert complementary(N_E - case.restitution * N_C, v_E[::2] / scale)
+        assert coulomb_holds(N_E, T_E, v_E[1::2], case.friction, scale)
+        assert np.all(total[::2] / unit >= (1.0 + case.restitution) * N_C - SMALL)
         assert case.kinetic(middle) <= case.kinetic(u) * (1.0 + 1e-12)
         assert case.kinetic(after) <= case.kinetic(u) * (1.0 + 1e-12)
     assert solved >= 100

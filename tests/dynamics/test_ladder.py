@@ -30,7 +30,7 @@ _add, _fill, _load, _solve, _copositive, _other_paths, _enumerate = (
 def compression(rng: np.random.Generator, m: int, n: int, friction: float) -> tuple[ContactWork, int, np.ndarray, np.ndarray]:
     """Room with the compression of m frictional contacts on n coordinates in it; its size, matrix and right-hand side."""
     case = random_case(rng, m, n, mu=rng.uniform(0.0, friction, m))
-    return filled(case.G, case.W @ rng.normal(size=n), case.mu)
+    return filled(case.G, case.W @ rng.normal(size=n), case.friction)
 
 
 def filled(G: np.ndarray, b: np.ndarray, mu: np.ndarray) -> tuple[ContactWork, int, np.ndarray, np.ndarray]:
@@ -141,8 +141,8 @@ def test_badly_scaled_contacts(decades: float) -> None:
         case = random_case(rng, 2, 3)
         unit = np.repeat([1.0, decades**0.5], 2)
         rates = case.W @ rng.normal(size=3)
-        plain = filled(case.G, rates, case.mu)
-        scaled = filled(case.G * np.outer(unit, unit), rates * unit, case.mu)
+        plain = filled(case.G, rates, case.friction)
+        scaled = filled(case.G * np.outer(unit, unit), rates * unit, case.friction)
         assert Rung.FAILED not in (_solve(plain[0], 2, 2), _solve(scaled[0], 2, 2))
         np.testing.assert_allclose(scaled[0].x[:2], plain[0].x[:2], rtol=1e-9, atol=1e-11)
 

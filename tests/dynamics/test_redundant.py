@@ -88,7 +88,7 @@ def test_a_lever_on_its_banking_with_a_tooth_that_sticks() -> None:
     assert a == pytest.approx([0.0, 0.0], abs=1e-9 * np.abs(h / case.mass).max())
     assert case.W.T @ force == pytest.approx(-h, abs=1e-12 * np.abs(h).max())
     assert np.all(force[::2] > 0.0)
-    assert np.all(np.abs(force[1::2]) <= case.mu * force[::2] * (1.0 + 1e-9))
+    assert np.all(np.abs(force[1::2]) <= case.friction * force[::2] * (1.0 + 1e-9))
     mode, grip = np.zeros(2, np.int8), np.zeros(2, np.int8)
     assert _decide(case.model, case.closed, 2, 0, 1e-9, case.work, grip, mode)
     assert list(mode) == [STICK, STICK]

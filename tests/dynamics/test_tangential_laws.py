@@ -21,10 +21,10 @@ def draws(law: str, count: int, seed: int) -> int:
         nu = rng.uniform(0.0, 1.0) if law == "pg1996" and done % 2 else 0.0
         case, u = random_case(rng, 1, 3, eps=eps, law=law, tangential=back, nu=nu), rng.normal(size=3)
         before, G = case.W @ u, case.G
-        if before[0] >= 0.0 or case.mu[0] * abs(G[0, 1]) >= 0.95 * G[0, 0]:
+        if before[0] >= 0.0 or case.friction[0] * abs(G[0, 1]) >= 0.95 * G[0, 0]:
             continue
         done += 1
-        truth = single_impact((G[0, 0], G[0, 1], G[1, 1]), tuple(before), case.mu[0], eps, law, back, nu)
+        truth = single_impact((G[0, 0], G[0, 1], G[1, 1]), tuple(before), case.friction[0], eps, law, back, nu)
         stuck += truth.regime == "stick"
         solved, after, force = case.impact(u)
         size = max(truth.normal, abs(truth.tangential))
@@ -51,13 +51,13 @@ def test_one_contact_in_closed_form_many_times(law: str) -> None:
 
 def bounds(case: Case, N_C: np.ndarray, T_C: np.ndarray, N_E: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Least and greatest tangential impulse of the expansion, from the words of docs/theory/laws.md."""
-    cone, returned = case.mu * N_E, case.eps * case.tangential * T_C
+    cone, returned = case.friction * N_E, case.restitution * case.tangential * T_C
     if case.law == "pg1996":
         # A contact that took no part in the compression has half its cone.
         low, high = np.where(T_C > 0.0, returned, -cone), np.where(T_C > 0.0, cone, returned)
         return np.where(N_C == 0.0, -0.5 * cone, low), np.where(N_C == 0.0, 0.5 * cone, high)
     if case.law == "shifted":
-        centre, radius = case.tangential * T_C, case.mu * (N_E - case.tangential * N_C)
+        centre, radius = case.tangential * T_C, case.friction * (N_E - case.tangential * N_C)
         return centre - radius, centre + radius
     return -cone, cone
 
@@ -100,11 +100,12 @@ def test_a_sticking_superball_reverses_slip_and_loses_nothing(law: str) -> None:
     rng = np.random.default_rng(61)
     for _ in range(50):
         case, u = random_case(rng, 1, 3, mu=1e3, eps=1.0, law=law, tangential=1.0), rng.normal(size=3)
-        if case.mu[0] * abs(case.G[0, 1]) >= case.G[0, 0] or (case.W @ u)[0] >= 0.0:
-            case = Case(case.mass, np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.3]]), case.mu, case.eps, law, tangential=1.0)
+        if case.friction[0] * abs(case.G[0, 1]) >= case.G[0, 0] or (case.W @ u)[0] >= 0.0:
+            W = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.3]])
+            case = Case(case.mass, W, case.friction, case.restitution, law, tangential=1.0)
             u[1] = -abs(u[1])
         solved, after, _ = case.impact(u)
         assert solved
-        lost = 1e-14 * case.mu[0] * np.linalg.cond(case.G)  # the problem that is solved holds mu times the friction terms
+        lost = 1e-14 * case.friction[0] * np.linalg.cond(case.G)  # the problem that is solved holds mu times the friction terms
         assert case.W @ after == pytest.approx(-(case.W @ u), abs=lost)
         assert case.kinetic(after) == pytest.approx(case.kinetic(u), rel=lost)

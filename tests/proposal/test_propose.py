@@ -148,7 +148,7 @@ def test_the_command_writes_and_refuses(
     assert main(["new", "nothing.dxf"]) == 2
     assert "there is no such file" in capsys.readouterr().err
     assert main(["new", "bench.dxf", "--lock", "2°", "-o", "b"]) == 2
-    assert "no option for drawings" in capsys.readouterr().err
+    assert "does not apply to drawings" in capsys.readouterr().err
     (tmp_path / "open.dxf").write_bytes(path.read_bytes()[:4000])
     assert main(["new", "open.dxf"]) == 2
     assert "closed outline" in capsys.readouterr().err

@@ -74,7 +74,7 @@ def test_what_does_not_go_with_it_is_refused(tmp_path, old, new, why):
 def test_beside_solids_it_is_refused(tmp_path):
     solids = '\n[[bodies.balance.solids]]\nlayer = "circle"\nthickness = "0.1 mm"\ndensity = "8 g/cm³"\n'
     text = BALANCE.replace('mass           = "50 mg"\n', "").replace('inertia        = "12 mg·cm²"\n', "")
-    with pytest.raises(SceneError, match="solids say the centre of mass already"):
+    with pytest.raises(SceneError, match="solids already give the centre of mass"):
         loaded(tmp_path, text + solids)
 
 

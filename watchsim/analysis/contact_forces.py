@@ -286,7 +286,7 @@ def _pivots(run: Trajectory, compiled: Compiled, found: Forces, q: Array, u: Arr
     for i, (body, ride, load) in enumerate(zip(run.scene.bodies, hung, weighed, strict=True)):
         if body.motion != "pivot" or ride.host >= 0:
             continue
-        own = [k for k, other in enumerate(hung) if k == i or other.part_of == i or other.host == i]
+        own = [k for k, other in enumerate(hung) if i in (k, other.part_of, other.host)]
         sign = np.isin(on_a, own).astype(float) - np.isin(on_b, own).astype(float)
         angle, spin, turn = (compiled.own(i, values, rates) for values, rates in ((q, False), (u, True), (a, True)))
         c, s = np.cos(angle), np.sin(angle)

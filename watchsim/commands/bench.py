@@ -60,7 +60,8 @@ def measured(
 
     chosen = scenarios()
     if unknown := set(names or ()) - {one.name for one in chosen}:
-        raise ValueError(f"--scene {', '.join(sorted(unknown))}: there are {'; '.join(one.name for one in chosen)}")
+        known = "; ".join(one.name for one in chosen)
+        raise ValueError(f"--scene {', '.join(sorted(unknown))}: no such scene. Choose from {known}")
     rows, references = [], []
     for scenario in chosen:
         if names and scenario.name not in names:

@@ -74,7 +74,7 @@ def _from_drawings(asked: dict[str, Any]) -> None:
     parser.add_argument("drawings", nargs="*", metavar="DRAWING", help="further drawings")
     found, unknown = parser.parse_known_args(asked["rest"])
     if unknown:
-        raise InputError(f"watchsim new {asked['design']}: {unknown[0]} is no option for drawings; -o, --json and --force are.")
+        raise InputError(f"watchsim new {asked['design']}: {unknown[0]} does not apply to drawings; -o, --json and --force do.")
     given = {**asked, **vars(found)}
     if given["list"]:
         raise InputError(f"watchsim new {asked['design']}: --list lists designs and their dimensions; a drawing has none.")

@@ -14,6 +14,7 @@ from watchsim.commands.common.console import (
     InputError,
     Progress,
     announce_compile,
+    check_tolerance,
     parse_positive,
     parse_window,
     print_json,
@@ -79,8 +80,7 @@ def run(args: argparse.Namespace) -> int:
     duration = None if args.duration is None else parse_positive("--duration", args.duration, TIME)
     step = None if args.step is None else parse_positive("--step", args.step, TIME)
     _check_windows(scene, scene.duration if duration is None else duration, asked=bool(args.record))
-    if args.tol is not None and not 1e-13 <= args.tol <= 1e-2:
-        raise InputError(f"--tol {args.tol:g}: must lie between 1e-13 and 1e-2.")
+    check_tolerance(args.tol)
     method, start = args.method or EVENT_DRIVEN, None
     folder = Path(args.output or args.resume or Path("results") / _name(scene))
     # What is resumed is written whole, with what follows it: nothing is lost where it takes the old one's place.

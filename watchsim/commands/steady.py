@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from watchsim.commands.common.console import FINE, MISSED, InputError, announce_compile, print_json
+from watchsim.commands.common.console import FINE, MISSED, announce_compile, check_tolerance, print_json
 
 if TYPE_CHECKING:
     from watchsim.studies.limit_cycle.cycle import Cycle
@@ -26,8 +26,7 @@ def run(args: argparse.Namespace) -> int:
     from watchsim.commands.common.inputs import load_scene
     from watchsim.studies.limit_cycle.find_cycle import steady
 
-    if args.tol is not None and not 1e-13 <= args.tol <= 1e-2:
-        raise InputError(f"--tol {args.tol:g}: must lie between 1e-13 and 1e-2.")
+    check_tolerance(args.tol)
     scene = load_scene(args.scene, args.set)
     announce_compile()
     cycle = steady(scene, tolerance=args.tol, all_cycles=args.all)

@@ -20,6 +20,7 @@ from watchsim.commands.common.console import (
     InputError,
     Progress,
     announce_compile,
+    check_tolerance,
     parse_names,
     parse_positive,
     print_json,
@@ -67,8 +68,7 @@ def run(args: argparse.Namespace) -> int:
     from watchsim.studies.outputs import outputs_named
 
     outputs = outputs_named(parse_names(args.outputs) or ())
-    if args.tol is not None and not 1e-13 <= args.tol <= 1e-2:
-        raise InputError(f"--tol {args.tol:g}: must lie between 1e-13 and 1e-2.")
+    check_tolerance(args.tol)
     if args.workers is not None and args.workers < 1:
         raise InputError(f"--workers {args.workers}: at least one process is needed.")
     if args.sensitivity and args.duration:

@@ -85,7 +85,7 @@ def _directions(model, b, row, sign, frame, out_closed):
             out_closed.w_T[row, j + i] = sign * (tx if i == 0 else ty)
         j += 2
         turn += 2
-    if body.motion == FREE or body.motion == PIVOT:
+    if body.motion in (FREE, PIVOT):
         out_closed.coord[row, j] = turn
         out_closed.w_N[row, j] = sign * (rx * ny - ry * nx)
         out_closed.w_T[row, j] = sign * (rx * ty - ry * tx)

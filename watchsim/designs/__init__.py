@@ -5,7 +5,8 @@
     mine.write("my_lever")          # drawings (DXF) and scene.toml
     run = ws.simulate(mine.scene())
 
-`ws.designs.names()` lists them; `help(ws.designs.swiss_lever)` lists the dimensions of one.
+`ws.designs.names()` lists them; `help(ws.designs.swiss_lever)` lists the dimensions of one. In: dimensions. Out: drawings and a
+scene. Imports `construction`, `scene` and below.
 """
 
 from __future__ import annotations

@@ -119,7 +119,7 @@ def is_parallel(work, i):
 def _expand(model, closed, m, restitution, elements, work):
     """Impulses of the expansion into `work.more`; True if they are found.
 
-    Unknowns: Lambda_NP = Lambda_NE - eps Lambda_NC and the distance of Lambda_TE from the lower end of its interval.
+    Unknowns: Lambda_NP = Lambda_NE - eps_N Lambda_NC and the distance of Lambda_TE from the lower end of its interval.
     """
     for i in range(m):
         normal, tangential = work.force[2 * i], work.force[2 * i + 1]

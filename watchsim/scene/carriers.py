@@ -177,7 +177,7 @@ def weigh(bodies: tuple[Body, ...], hung: tuple[Ride, ...], complain: Complain |
 def _own(body: Body, ride: Ride) -> Weighed:
     """A body without its loads, in the frame of the body it is part of."""
     (cx, cy), mass = body.centre_of_mass, body.mass
-    if body.motion == "free" or body.motion == "slide":
+    if body.motion in ("free", "slide"):
         return Weighed(mass, (0.0, 0.0), body.inertia)
     own = Weighed(mass, (mass * cx, mass * cy), body.inertia)
     if body.motion == "pivot" or ride.host < 0:
@@ -190,7 +190,7 @@ def _own(body: Body, ride: Ride) -> Weighed:
 def _is_poised(bodies: tuple[Body, ...], hung: tuple[Ride, ...], i: int, weighed: Weighed) -> bool:
     parts = [body for body, ride in zip(bodies, hung, strict=True) if ride.part_of == i]
     reach = max((math.hypot(*edge.point(0.5)) for body in parts for loop in body.loops for edge in loop.edges), default=0.0)
-    reach = max(reach, *(math.hypot(*ride.place) for ride in hung if ride.part_of == i or ride.host == i), 0.0)
+    reach = max(reach, *(math.hypot(*ride.place) for ride in hung if i in (ride.part_of, ride.host)), 0.0)
     # What could not be read is not a number, and no reason for a second complaint.
     return not math.hypot(*weighed.moment) > POISED * weighed.mass * reach
 

@@ -31,7 +31,7 @@ class Recording:
 
     def __post_init__(self) -> None:
         if self.keep not in KEPT:
-            raise ValueError(f'"{self.keep}" cannot be kept; there are {", ".join(KEPT)}')
+            raise ValueError(f'"{self.keep}" cannot be kept; choose from {", ".join(KEPT)}')
         if self.stride < 1:
             raise ValueError(f"every row or every n-th row can be kept; n must be at least 1, not {self.stride}")
         for start, end in self.windows:

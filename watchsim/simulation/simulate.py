@@ -19,12 +19,13 @@ from watchsim.simulation.record.joined_runs import joined
 from watchsim.simulation.record.saved_state import SavedState
 from watchsim.simulation.record.trajectory import Pair, Trajectory
 from watchsim.simulation.runner import Progress, Run
+from watchsim.tolerances import COARSEST_TOLERANCE, FINEST_TOLERANCE
 from watchsim.units import TIME, UnitError, parse
 
 Follow = Callable[[Sequence[Pair], NDArray[Any]], object]
 
 
-def simulate(
+def simulate(  # noqa: PLR0913 - options, by name
     scene: Scene | str | Path,
     duration: float | str | None = None,
     tolerance: float | None = None,
@@ -107,10 +108,10 @@ def _seconds(name: str, value: float | str) -> float:
 def _check(duration: float, tolerance: float, method: str, step: float | None) -> None:
     if not (duration > 0.0 and math.isfinite(duration)):
         raise ValueError(f"the duration must be a positive number of seconds, not {duration}")
-    if not 1e-13 <= tolerance <= 1e-2:
-        raise ValueError(f"the tolerance must lie between 1e-13 and 1e-2, not {tolerance}")
+    if not FINEST_TOLERANCE <= tolerance <= COARSEST_TOLERANCE:
+        raise ValueError(f"the tolerance must lie between {FINEST_TOLERANCE:g} and {COARSEST_TOLERANCE:g}, not {tolerance}")
     if method not in METHODS:
-        raise ValueError(f'there is no method "{method}"; there are {" and ".join(METHODS)}')
+        raise ValueError(f'there is no method "{method}"; choose {" or ".join(METHODS)}')
     if step is not None and method != MOREAU:
         raise ValueError(f"a fixed step belongs to the method {MOREAU}; {method} finds its own steps from the tolerance")
     if step is not None and not 0.0 < step <= duration:

@@ -61,7 +61,7 @@ class Sweep:
         }
 
 
-def sweep(
+def sweep(  # noqa: PLR0913 - options, by name
     scene: Scene | str | Path,
     values: Mapping[str, Sequence[Any]],
     outputs: Iterable[str] = USUAL,

@@ -46,11 +46,15 @@ def _kernel(function: Any) -> Any:
 class BareContacts:
     """m contacts on n coordinates: masses (n,), W (2m, n) with rows N, T, N, T, ..., friction and restitution (m,)."""
 
-    def __init__(self, mass: Array, W: Array, mu: Array, eps: Array, law: str = "coulomb", **more: Any) -> None:
+    def __init__(self, mass: Array, W: Array, friction: Array, restitution: Array, law: str = "coulomb", **more: Any) -> None:
         """`law` with `tangential` (restitution, by contact) and `nu` as in the scene file."""
-        self.law, self.tangential, self.nu = law, np.broadcast_to(more.get("tangential", 0.0), len(mu)), more.get("nu", 0.0)
-        self.mass, self.W, self.mu, self.eps = mass, W, mu, eps
-        self.m, self.n = len(mu), len(mass)
+        self.law, self.tangential, self.nu = (
+            law,
+            np.broadcast_to(more.get("tangential", 0.0), len(friction)),
+            more.get("nu", 0.0),
+        )
+        self.mass, self.W, self.friction, self.restitution = mass, W, friction, restitution
+        self.m, self.n = len(friction), len(mass)
         self.G = W / mass @ W.T
         self.model = self._model()
         self.closed: Closed = closed_contacts(self.m)
@@ -59,7 +63,7 @@ class BareContacts:
 
     def _model(self) -> Model:
         coordinates, laws, contacts = records(COORDINATE, self.n), records(LAW, self.m), records(CONTACT, self.m)
-        coordinates.mass, laws.friction, contacts.group = self.mass, self.mu, np.arange(self.m)
+        coordinates.mass, laws.friction, contacts.group = self.mass, self.friction, np.arange(self.m)
         laws.kind, laws.tangential, laws.nu = TANGENTIAL_CODE[self.law], self.tangential, self.nu
         none = {
             "bodies": BODY,
@@ -82,10 +86,10 @@ class BareContacts:
             self.closed.coord[row, : self.n] = np.arange(self.n)
             self.closed.w_N[row, : self.n], self.closed.w_T[row, : self.n] = self.W[2 * i], self.W[2 * i + 1]
 
-    def impact(self, u: Array, eps: Array | None = None) -> tuple[bool, Array, Array]:
+    def impact(self, u: Array, restitution: Array | None = None) -> tuple[bool, Array, Array]:
         """Solved?, velocities after, impulses N, T, N, T, ... of the contacts that take part."""
         after, m = u.copy(), len(self.taken)
-        shares = (self.eps if eps is None else eps)[self.taken]
+        shares = (self.restitution if restitution is None else restitution)[self.taken]
         solved = _kernel(impact)(self.model, self.closed, m, shares, 0.0, self.work, after)
         return bool(solved), after, self.work.force[: 2 * m].copy()
 

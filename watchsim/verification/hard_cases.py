@@ -193,8 +193,8 @@ def wedges(half_angle: float = 0.2, size: float = 0.05, speed: float = 1.0, rest
     """A wedge is driven into a slot of its own angle. With friction above tan(angle) it stays, below it comes out again.
 
     At the end of the compression it stands still on four contacts. The share of their impulses that the expansion returns
-    pushes it out with eps N (sin a - mu cos a) for each, so it leaves if and only if mu < tan a; its speed is at most eps times
-    that it came with.
+    pushes it out with eps_N N (sin a - mu cos a) for each, so it leaves if and only if mu < tan a; its speed is at most
+    eps_N times that it came with.
     """
     s, c = math.sin(half_angle), math.cos(half_angle)
     width = size * s / c

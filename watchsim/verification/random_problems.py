@@ -32,14 +32,14 @@ def impact_rows(count: int) -> list[Row]:
     worst, unsolved = 0.0, 0
     for _ in range(count):
         W, mass = rng.normal(size=(2, 3)), 10.0 ** rng.uniform(-1.0, 1.0, 3)
-        mu, eps, u = rng.uniform(0.0, 0.8), rng.uniform(), rng.normal(size=3)
+        mu, restitution, u = rng.uniform(0.0, 0.8), rng.uniform(), rng.normal(size=3)
         G, rates = W / mass @ W.T, W @ u
         if rates[0] >= 0.0 or mu * abs(G[0, 1]) >= 0.99 * G[0, 0]:
             continue  # nothing to do, or near jamming, where the answer is as large as one likes
-        case = BareContacts(mass, W, np.array([mu]), np.array([eps]))
+        case = BareContacts(mass, W, np.array([mu]), np.array([restitution]))
         solved, after, force = case.impact(u)
         unsolved += not solved
-        truth = single_impact(G, rates, mu, eps)
+        truth = single_impact(G, rates, mu, restitution)
         wanted = u + W.T @ truth / mass
         # Where the approach is the small difference of large terms, their rounding sets the scale of the impulse.
         scale = max(np.abs(truth).max(), np.abs(W[0]) @ np.abs(u) / G[0, 0])
@@ -53,7 +53,7 @@ def impact_rows(count: int) -> list[Row]:
     ]
 
 
-def single_impact(G: Array, rates: Array, mu: float, eps: float) -> Array:
+def single_impact(G: Array, rates: Array, mu: float, restitution: float) -> Array:
     """Impulses (normal, tangential) of Poisson's law with Coulomb friction; G (2, 2) and the rates before are N, T."""
     Lam = -np.linalg.solve(G, rates)
     if abs(Lam[1]) > mu * Lam[0]:
@@ -62,7 +62,7 @@ def single_impact(G: Array, rates: Array, mu: float, eps: float) -> Array:
             Lam = np.array([normal, -s * mu * normal])
             if s * (rates[1] + G[1] @ Lam) >= 0.0:
                 break
-    more = eps * Lam[0]
+    more = restitution * Lam[0]
     slip = rates[1] + G[1] @ Lam + G[1, 0] * more
     return Lam + np.array([more, np.clip(-slip / G[1, 1], -mu * more, mu * more)])
 

@@ -25,7 +25,7 @@ ONE_FAULT = [
     ('drawing = "wheel.dxf"', 'drawng = "wheel.dxf"', None, None),
     ("[scene]", "[scen]", "scen", 'unknown section. Did you mean "scene"?'),
     ('title = "Small lever"', "title = 5", "scene.title", "a text in quotes is needed here."),
-    ('title = "Small lever"', "schema = 2", "scene.schema", "this program reads schema 1."),
+    ('title = "Small lever"', "schema = 2", "scene.schema", "this version of watchsim reads schema 1."),
     ('title = "Small lever"', "gravity = 9.81", "scene.gravity", "two values are needed here"),
     ('title = "Small lever"', 'tangential_law = "newton"', "scene.tangential_law", "not one of coulomb, pg1996, shifted"),
     ('title = "Small lever"', "nu = 0.5", "scene.nu", "belongs to tangential_law"),
@@ -320,7 +320,10 @@ def test_wrong_shapes_never_crash(desk, text):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("[bodies]\ndrawing = 'x.dxf'\nposition = ['0 mm', '0 mm']\n", "a body has a name and a table, such as"),
+        (
+            "[bodies]\ndrawing = 'x.dxf'\nposition = ['0 mm', '0 mm']\n",
+            "a body is expected here: a table with its name, such as",
+        ),
         ("[bodies.a]\ncircle = '1 mm'\ninertia = '1 mg·cm²'\n[[contacts]]\n", "two sides are needed"),
         (
             "[bodies.a]\ncircle = '1 mm'\ninertia = '1 mg·cm²'\n[[springs]]\nbody = ''\nfrequency = '4 Hz'\n",

@@ -33,7 +33,7 @@ COMPRESSION, EXPANSION, MODES = 0, 1, 2
 
 
 @jit.entry
-def moments_again(model, cells, state, own, moment, options, until, scratch, record, repeats):
+def moments_again(model, cells, state, own, moment, options, until, scratch, record, repeats):  # noqa: PLR0913 - what `advance` takes, and more
     """What follows one moment, `repeats` times; returns the last cause to come back. `own`, `moment`: `StateArrays`."""
     code = Stop.RUNNING
     for _ in range(repeats):

@@ -121,6 +121,14 @@ def parse_width(text: str) -> float:
     return width
 
 
+def check_tolerance(tolerance: float | None) -> None:
+    """InputError where --tol is given and lies outside what a run may be asked for."""
+    from watchsim.tolerances import COARSEST_TOLERANCE, FINEST_TOLERANCE
+
+    if tolerance is not None and not FINEST_TOLERANCE <= tolerance <= COARSEST_TOLERANCE:
+        raise InputError(f"--tol {tolerance:g}: must lie between {FINEST_TOLERANCE:g} and {COARSEST_TOLERANCE:g}.")
+
+
 def parse_names(text: str | None) -> list[str] | None:
     """The names in a text such as "wheel,lever"."""
     return [name.strip() for name in text.split(",") if name.strip()] if text else None

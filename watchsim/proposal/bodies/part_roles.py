@@ -103,9 +103,7 @@ def _name(roles: Sequence[Role]) -> None:
     taken: set[str] = set()
     for role in roles:
         named = [(part_word(layer), part_of(layer)) for layer in role.part.layers]
-        words = [
-            word for word, kind in named if word is not None and (kind == role.task or role.task == DRIVER) and kind != FIXED
-        ]
+        words = [word for word, kind in named if word is not None and role.task in (kind, DRIVER) and kind != FIXED]
         words = words or [word for word, _ in named if word is not None and role.task == FIXED]
         plain = words[0] if words else NAMES[role.task]
         if role.task == OSCILLATOR and not words and not any(other.task == LEVER for other in roles):

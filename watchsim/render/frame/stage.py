@@ -41,7 +41,7 @@ class Stage:
     `clock` reports something other than the time of the run, `style` is light or dark.
     """
 
-    def __init__(
+    def __init__(  # noqa: PLR0913 - options, by name
         self,
         run: Trajectory,
         size: tuple[int, int],

@@ -42,7 +42,7 @@ LENGTH = 10.0  # s: a movie at adaptive speed
 SAMPLES = 12  # frames from which a GIF takes its colours
 
 
-def movie(
+def movie(  # noqa: PLR0913 - options, by name
     run: Trajectory,
     path: str | os.PathLike[str],
     window: Sequence[float] | None = None,
@@ -111,7 +111,7 @@ def movie(
     return target
 
 
-def frame(
+def frame(  # noqa: PLR0913 - options, by name
     run: Trajectory,
     t: float,
     size: tuple[int, int] | str = MP4_SIZE,

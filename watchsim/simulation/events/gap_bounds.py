@@ -7,6 +7,7 @@ to the gap of one contact. Conservative advancement rests on them (safe_times.py
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from watchsim.contact.poses import point_of
 from watchsim.jit import kernel
@@ -14,16 +15,26 @@ from watchsim.model.records import FREE, LINE, PIVOT, SLIDE
 from watchsim.tolerances import SLOWEST_CLOSING
 
 
+class Bounds(NamedTuple):
+    """What a body's frame does at most over a stretch of time."""
+
+    speed: float  # m/s
+    turn: float  # rad/s
+    push: float  # m/s²
+    twist: float  # rad/s²
+
+
 @kernel
 def body_bounds(model, b, length, step, path):
-    """Bounds over the next `length` seconds: (speed, turning rate, acceleration, turning acceleration) of the frame."""
+    """`Bounds` of the frame over the next `length` seconds."""
     body = model.bodies[b]
     own = _own_bounds(body, length, step, path)
     if body.carrier < 0:
         return own
-    speed, turn, push, twist = _own_bounds(model.bodies[body.carrier], length, step, path)
+    carrier = _own_bounds(model.bodies[body.carrier], length, step, path)
     arm = math.sqrt(body.x * body.x + body.y * body.y)
-    return speed + turn * arm, own[1], push + twist * arm + turn * turn * arm, own[3]
+    speed = carrier.speed + carrier.turn * arm
+    return Bounds(speed, own.turn, carrier.push + carrier.twist * arm + carrier.turn * carrier.turn * arm, own.twist)
 
 
 @kernel
@@ -32,15 +43,15 @@ def _own_bounds(body, length, step, path):
     i = body.first
     bound, ratio = step.bound, abs(body.ratio)
     if body.motion == PIVOT:
-        return 0.0, ratio * (abs(path.u[i]) + bound[i] * length), 0.0, ratio * bound[i]
+        return Bounds(0.0, ratio * (abs(path.u[i]) + bound[i] * length), 0.0, ratio * bound[i])
     if body.motion == SLIDE:
-        return ratio * (abs(path.u[i]) + bound[i] * length), 0.0, ratio * bound[i], 0.0
+        return Bounds(ratio * (abs(path.u[i]) + bound[i] * length), 0.0, ratio * bound[i], 0.0)
     if body.motion == FREE:
         ax, ay = bound[i], bound[i + 1]
         acceleration = math.sqrt(ax * ax + ay * ay)
         speed = math.sqrt(path.u[i] ** 2 + path.u[i + 1] ** 2) + acceleration * length
-        return speed, abs(path.u[i + 2]) + bound[i + 2] * length, acceleration, bound[i + 2]
-    return 0.0, 0.0, 0.0, 0.0
+        return Bounds(speed, abs(path.u[i + 2]) + bound[i + 2] * length, acceleration, bound[i + 2])
+    return Bounds(0.0, 0.0, 0.0, 0.0)
 
 
 @kernel
@@ -103,7 +114,7 @@ def next_stretch(model, options, k, left, step, path):
     a, b = model.primitives[contact.a].body, model.primitives[contact.b].body
     length = left
     bounds_a, bounds_b = body_bounds(model, a, left, step, path), body_bounds(model, b, left, step, path)
-    speed = bounds_a[0] + bounds_b[0]
+    speed = bounds_a.speed + bounds_b.speed
     if speed * left > options.size:
         length = options.size / speed
         bounds_a, bounds_b = body_bounds(model, a, length, step, path), body_bounds(model, b, length, step, path)

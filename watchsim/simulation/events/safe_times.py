@@ -27,10 +27,11 @@ def safe_time(room, approach, closing, bend, distance):
     else:
         limit = math.inf
     root = math.sqrt(approach * approach + 2.0 * bend * room)
+    curved = math.inf
     if approach > 0.0:
         curved = 2.0 * room / (approach + root)
-    else:
-        curved = (root - approach) / bend if bend > 0.0 else math.inf
+    elif bend > 0.0:
+        curved = (root - approach) / bend
     return max(straight, min(curved, limit))
 
 

@@ -32,6 +32,7 @@ from watchsim.studies.limit_cycle.return_map import Return, ReturnMap
 from watchsim.studies.limit_cycle.run_from_state import Loop
 from watchsim.studies.limit_cycle.section import NoSection, Section, first_section, section_at, section_from
 from watchsim.studies.limit_cycle.shooting import Fixed, Lost, fixed_point
+from watchsim.tolerances import COARSEST_TOLERANCE, FINEST_TOLERANCE
 
 REST = 1e-9  # rad or m per scale: bodies that stand still come back so closely, or the section is moved on
 SECTIONS = 6  # of them at most
@@ -40,7 +41,6 @@ LONGEST = 120.0  # s, of a run that stands in for a cycle
 FEWEST = 40  # periods of it
 SETTLED = 1e-4  # of the amplitude: what such a run may still scatter and drift
 LOSSLESS = 1e-9  # of the amplitude, in one oscillation
-FINEST = 1e-13  # tolerance of a run
 DIES = "its swing dies away within an oscillation"
 ASIDE = 0.01  # of the amplitude: beside an unstable cycle, to see where it is left for
 
@@ -71,8 +71,8 @@ def steady(
 
         scene = load(scene)
     tolerance = scene.tolerance if tolerance is None else float(tolerance)
-    if not FINEST <= tolerance <= 1e-2:
-        raise ValueError(f"the tolerance must lie between {FINEST:g} and 1e-2, not {tolerance}")
+    if not FINEST_TOLERANCE <= tolerance <= COARSEST_TOLERANCE:
+        raise ValueError(f"the tolerance must lie between {FINEST_TOLERANCE:g} and {COARSEST_TOLERANCE:g}, not {tolerance}")
     if amplitude is not None and not (amplitude > 0.0 and math.isfinite(amplitude)):
         raise ValueError(f"the amplitude must be a positive number of rad (m), not {amplitude}")
     if refused := nothing_swings(scene):
@@ -125,7 +125,7 @@ def _searched(loop: Loop, search: Search) -> Cycle:
 def _shot(oscillate: ReturnMap, found: Fixed | Lost, brief: bool) -> Cycle:
     """What shooting has found, and how exactly it is known."""
     loop, parts = oscillate.loop, oscillate.parts
-    finer = Loop(loop.scene, max(FINER * loop.tolerance, FINEST), like=loop)
+    finer = Loop(loop.scene, max(FINER * loop.tolerance, FINEST_TOLERANCE), like=loop)
     if isinstance(found, Lost):
         again = _after_several(oscillate, found.amplitude, finer) if found.trouble == UNSETTLED else None
         return again or _lost(oscillate, found)

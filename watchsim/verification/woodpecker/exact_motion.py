@@ -64,7 +64,7 @@ def phase_of(model: Modal, mode: Modes, taken: list[int]) -> Phase:
     flow[n : 2 * n, -1] = model.load + W.T @ at_zero
     rows, causes = [], []
     for i in range(3):
-        N, T, mu = contacts.W[2 * i], contacts.W[2 * i + 1], contacts.mu[i]
+        N, T, mu = contacts.W[2 * i], contacts.W[2 * i + 1], contacts.friction[i]
         if i not in taken:
             rows.append(np.concatenate([N, np.zeros(n), [model.gaps[i]]]))
             causes.append(("impact", i))

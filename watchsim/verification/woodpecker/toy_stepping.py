@@ -30,7 +30,7 @@ def percussions(G: Array, rates: Array, low: Array, friction: Array) -> Array:
 
 def step_to(model: Modal, e: Array, v: Array, until: float, h: float) -> tuple[Array, Array]:
     """Modal coordinates and velocities at time `until` by steps of about h."""
-    W, mu, eps = model.contacts.W, model.contacts.mu, model.contacts.eps
+    W, mu, restitution = model.contacts.W, model.contacts.friction, model.contacts.restitution
     count = round(until / h)
     h = until / count
     stiff = 1.0 + 0.25 * h * h * model.spring
@@ -40,7 +40,7 @@ def step_to(model: Modal, e: Array, v: Array, until: float, h: float) -> tuple[A
         w = v
         rows = W[[2 * i + k for i in closed for k in (0, 1)]] if closed else np.zeros((0, 3))
         if closed and (rows[::2] @ v).min() < 0.0:
-            w = _impact(rows, v, mu[closed], eps[closed])
+            w = _impact(rows, v, mu[closed], restitution[closed])
         free = ((2.0 - stiff) * w + h * (model.load - model.spring * e)) / stiff
         new = free
         if closed:
@@ -51,10 +51,10 @@ def step_to(model: Modal, e: Array, v: Array, until: float, h: float) -> tuple[A
     return e, v
 
 
-def _impact(rows: Array, v: Array, mu: Array, eps: Array) -> Array:
+def _impact(rows: Array, v: Array, mu: Array, restitution: Array) -> Array:
     """Velocities after compression and expansion."""
     G, m = rows @ rows.T, len(mu)
     P = percussions(G, rows @ v, np.zeros(m), mu)
     middle = v + rows.T @ P
-    more = percussions(G, rows @ middle, eps * P[::2], mu)
+    more = percussions(G, rows @ middle, restitution * P[::2], mu)
     return middle + rows.T @ more

@@ -1,1 +1,4 @@
-"""Plots of one beat: phase portrait, torque on the balance, forces, the mechanism at key instants."""
+"""How are phase portrait, torque on the balance, forces and key instants of one beat drawn?
+
+In: a `Trajectory`. Out: matplotlib figures. Imports `render.figures`, `analysis` and below.
+"""

@@ -65,7 +65,7 @@ def _written_centre(table: Table, motion: str, origin: Point) -> Point | None:
     elif motion == "slide" or (motion == "fixed" and "on" not in table):
         table.fault("centre_of_mass", f"has no effect on a body that cannot turn ({motion}): leave it out")
     elif "solids" in table:
-        table.fault("centre_of_mass", "the solids say the centre of mass already: leave out centre_of_mass or solids")
+        table.fault("centre_of_mass", "the solids already give the centre of mass: leave out centre_of_mass or solids")
     elif "mass" not in table or "inertia" not in table:
         table.fault("centre_of_mass", "needs mass and inertia (about the pivot) beside it, as gravity acts on the mass there")
     x, y = table.pair("centre_of_mass")

@@ -59,7 +59,7 @@ def read_bodies(mapping: object, folder: Path, faults: Faults, made: Made | None
     for name, entry in mapping.items():
         if not isinstance(entry, dict):
             where = f"bodies.{name}"
-            faults.add(where, "takes the place of a body: a body has a name and a table, such as [bodies.wheel]", shown(entry))
+            faults.add(where, "a body is expected here: a table with its name, such as [bodies.wheel]", shown(entry))
     mapping = {name: entry for name, entry in mapping.items() if isinstance(entry, dict)}
     users = Counter(_drawing_path(entry, folder) for entry in mapping.values())
     bores: dict[Path | None, Counter[str]] = {path: Counter() for path in users}  # drawing -> layers, by how many bodies

@@ -16,11 +16,11 @@ from watchsim.scene.file.keys.schema import EXPECTATION, RUN, SCENE, SCHEMA, TIM
 from watchsim.scene.file.readers.read_record import read_record
 from watchsim.scene.recording import Recording
 from watchsim.scene.scene import Expectation
+from watchsim.tolerances import COARSEST_TOLERANCE, FINEST_TOLERANCE
 from watchsim.units import Dimension, UnitError, known_unit, parse, split
 
 DURATION = 1.0
 TOLERANCE = 1e-9
-TOLERANCES = (1e-13, 1e-2)
 WATCH_QUANTITIES = {
     "amplitude": units.ANGLE,
     "rate": units.RATE,
@@ -44,7 +44,7 @@ def read_heading(mapping: Mapping[str, Any], faults: Faults) -> Heading:
     table = Table(mapping.get("scene", {}), "scene", SCENE, faults)
     schema = table.mapping.get("schema", SCHEMA)
     if schema != SCHEMA:
-        table.fault("schema", f"this program reads schema {SCHEMA}", with_value=True)
+        table.fault("schema", f"this version of watchsim reads schema {SCHEMA}", with_value=True)
     law, nu = table.one_of("tangential_law", tuple(TANGENTIAL_CODE), "coulomb"), table.quantity("nu")
     if nu < 0.0 or nu > 1.0:
         table.fault("nu", "must lie between 0 and 1", with_value=True)
@@ -58,9 +58,9 @@ def read_run(mapping: Mapping[str, Any], faults: Faults) -> tuple[float, Recordi
     table = Table(mapping.get("run", {}), "run", RUN, faults)
     duration = table.positive("duration", "it is how long to simulate") if "duration" in table else DURATION
     tolerance = table.quantity("tolerance", TOLERANCE)
-    low, high = TOLERANCES
-    if tolerance < low or tolerance > high:
-        table.fault("tolerance", f"must lie between {low:g} and {high:g}; {TOLERANCE:g} is usual", with_value=True)
+    if not FINEST_TOLERANCE <= tolerance <= COARSEST_TOLERANCE:
+        limits = f"{FINEST_TOLERANCE:g} and {COARSEST_TOLERANCE:g}"
+        table.fault("tolerance", f"must lie between {limits}; {TOLERANCE:g} is usual", with_value=True)
     return duration, read_record(table), tolerance
 
 
