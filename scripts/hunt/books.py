@@ -113,7 +113,7 @@ def faults(run: Trajectory, material: Material) -> Iterator[str]:
 
 
 def most_events(scene: Scene) -> float:
-    """More are wrong. What loses nothing may go on bouncing, however low; what loses little bounces long, on what does so, too."""
+    """More are wrong. What loses nothing may go on bouncing, however low; what loses little bounces long, on what does so."""
     restitution = max((contact.restitution for contact in scene.contacts), default=0.0)
     if restitution in (0.0, 1.0):
         return math.inf if restitution else MANY

@@ -7,7 +7,6 @@ import math
 import numpy as np
 import pytest
 from kinked_scenes import ANGLES, FRICTIONS, RESTITUTIONS, TOLERANCES, bar_for, beyond, expected, kinked_scene, off
-
 from reference.kinked_bar import obeys_laws
 
 from watchsim.simulation.simulate import simulate

@@ -45,8 +45,8 @@ class Bar:
 class Motion:
     """Time and state (s, theta, their rates) when the kink is met, right after it, and at the end.
 
-    `after` is None without an impact, `end` where the motion after it goes on beyond the closed forms. `is_open`: the laws allow
-    other motions after the impact, see `obeys_laws`.
+    `after` is None without an impact, `end` where the motion after it goes on beyond the closed forms. `is_open`: the laws
+    allow other motions after the impact, see `obeys_laws`.
     """
 
     met: float

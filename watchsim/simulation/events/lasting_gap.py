@@ -19,7 +19,7 @@ from watchsim.simulation.motion.step_path import acceleration_on_path
 
 @kernel
 def _material_point(model, state, step, b, rx, ry, left, tau, path):
-    """Of the point of body b at (rx, ry) from its origin: (vx, vy, ax, ay, bound of the third derivative for `left` seconds)."""
+    """(vx, vy, ax, ay, bound of how a changes for `left` seconds) of the point of body b at (rx, ry) from its origin."""
     body, pose = model.bodies[b], path.pose[b]
     i = body.first
     if body.motion == SLIDE:
@@ -41,7 +41,7 @@ def _material_point(model, state, step, b, rx, ry, left, tau, path):
 
 @kernel
 def _points_apart(model, state, k, left, tau, step, path):
-    """(vx, vy, ax, ay, bound of how a changes) of the material point of A at the centre of its circle against that of B there."""
+    """(vx, vy, ax, ay, bound of how a changes): A's material point at the centre of its circle against that of B there."""
     contact = model.contacts[k]
     a, b = model.primitives[contact.a], model.primitives[contact.b]
     pa, pb = path.pose[a.body], path.pose[b.body]
@@ -62,7 +62,7 @@ def _fastest_turn(model, b, left, step, path):
 
 @kernel
 def _time_for(room, speed, push, jerk, left):
-    """A time up to `left` in which a way that begins with this speed, its change and the change of that does not exceed `room`."""
+    """A time up to `left` in which a way with this speed, its change and the change of that does not exceed `room`."""
     # A third of the room for each.
     time = left
     if 3.0 * speed * time > room:
@@ -82,27 +82,29 @@ def _is_carried(model, k):
 
 
 @kernel
-def time_still(model, state, k, room, left, tau, step, path):
-    """A time up to `left` seconds in which the place of contact k moves by no more than `room` on either body, or 0.
+def time_still(model, state, k, room, span, step, path):
+    """A time in which the place of contact k moves by no more than `room` on either body, or 0.
 
-    The bodies must stand in `path` where they are at `tau`. Not for carried bodies: 0.
+    `span`: now, at which the bodies must stand in `path`, and the end of interest. Not for carried bodies: 0.
     """
     if _is_carried(model, k):
         return 0.0
+    tau, left = span[0], span[1] - span[0]
     vx, vy, ax, ay, jerk = _points_apart(model, state, k, left, tau, step, path)
     return _time_for(room, math.sqrt(vx * vx + vy * vy), math.sqrt(ax * ax + ay * ay), jerk, left)
 
 
 @kernel
-def time_apart(model, state, k, room, left, tau, step, path):
-    """A time up to `left` seconds within which contact k, on the free side with this much room, cannot close; or 0.
+def time_apart(model, state, k, room, span, step, path):
+    """A time within which contact k, on the free side with this much room, cannot close; or 0.
 
-    As in `time_still`. With x the way between the two points and e the normal, which turns with B, the gap falls by no more
-    than -e·x. Not for hollow arcs, where it may fall by more: 0.
+    `span` as in `time_still`. With x the way between the two points and e the normal, which turns with B, the gap falls by no
+    more than -e·x. Not for hollow arcs, where it may fall by more: 0.
     """
     b = model.primitives[model.contacts[k].b]
     if b.side < 0.0 or _is_carried(model, k):
         return 0.0
+    tau, left = span[0], span[1] - span[0]
     here = normal_gap(model, k, path.pose)
     vx, vy, ax, ay, jerk = _points_apart(model, state, k, left, tau, step, path)
     turn = _fastest_turn(model, b.body, left, step, path)
