@@ -101,7 +101,7 @@ def views(scene: Scene, seed: int, count: int) -> list[View]:
     ]
 
 
-def perturbed(scene: Scene, share: float, seed: int, lean: float) -> Scene:
+def perturbed(scene: Scene, share: float, seed: int, lean: float = 1.0) -> Scene:
     """Velocities, forces, masses, laws and, outwards, places changed by up to that share of themselves or of the scene's own.
 
     Places are stretched from a point of the plane, so that what touches at the start parts rather than overlaps; outlines are

@@ -3,7 +3,8 @@
 It shares the gap functions with the event-driven solver, and neither events nor contact solver. Its error goes with the step,
 so two steps say how far it can be trusted: it contradicts where the event-driven motion lies ten times further from the finer
 one than the two lie from each other and twins of 1e-4 from the scene, and where finer steps do not come nearer. A step takes
-impacts that follow each other within it for one; where that comes out otherwise, what comes after is not compared.
+impacts that follow each other within it for one, and parts an impact that is passed on through bodies in touch; where that
+comes out otherwise, what comes after is not compared.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ Array = NDArray[np.float64]
 
 STEPS = (2_000, 8_000, 32_000, 128_000)  # of the duration; the last two only where it contradicts
 FACTOR, FLOOR = 10.0, 0.03
+PASSED_ON = 1e-9  # of the approach at another contact of the instant: one that approaches less passes that impact on
 MERGED_STEPS = 2.0  # within which a step may take two impacts for one
 ALIKE = 1e-6  # tolerance whose twins (a hundred times that) are as far off as a step
 
@@ -56,10 +58,16 @@ def witness_fault(judge: Judge, base: Trajectory, middle: Array) -> Iterator[str
 
 
 def merged(run: Trajectory, until: float, wait: float) -> bool:
-    """Do two impacts of different contacts follow each other within that time?"""
+    """Do two impacts of different contacts follow each other within that time, or does one pass on another's at once?
+
+    Two bodies that travel together in touch are apart, in steps, by what they move in one: they are hit in turn.
+    """
     found = run.events[(run.events["kind"] == EventKind.IMPACT) & (run.events["t"] <= until)]
     between = np.diff(found["t"])
-    return bool(((found["contact"][1:] != found["contact"][:-1]) & (between > 0.0) & (between <= wait)).any())
+    in_turn = (found["contact"][1:] != found["contact"][:-1]) & (between > 0.0) & (between <= wait)
+    hardest = {t: np.abs(found["value"][found["t"] == t]).max() for t in np.unique(found["t"])}
+    passes_on = [abs(event["value"]) < PASSED_ON * hardest[event["t"]] for event in found]
+    return bool(in_turn.any() or any(passes_on))
 
 
 def _stepped(judge: Judge, steps: int) -> Array:

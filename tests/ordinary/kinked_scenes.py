@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from reference.kinked_bar import Bar, Motion, motion
+from reference.kinked_bar import Bar, Motion, motion, obeys_laws
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Line
@@ -110,6 +110,8 @@ def off(bar: Bar, truth: Motion, seconds: float, tolerance: float) -> Off:
     if truth.end is None:
         row = int(np.searchsorted(run.t, truth.met * (1.0 + 1e-9) + 1e-12)) - 1
         exact, found = truth.after, np.concatenate([run.q[row], run.u[row]])
+        if truth.is_open and obeys_laws(bar, truth.before, found):
+            exact = found
     else:
         exact, found = truth.end, np.concatenate([run.end_q, run.end_u])
     apart = np.abs(found - exact) * [1.0, bar.arm, 1.0, bar.arm] / abs(bar.speed)

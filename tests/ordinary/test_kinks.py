@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 from kinked_scenes import ANGLES, FRICTIONS, RESTITUTIONS, TOLERANCES, bar_for, beyond, expected, kinked_scene, off
+from reference.kinked_bar import obeys_laws
 
 from watchsim.simulation.simulate import simulate
 
@@ -59,3 +60,14 @@ def test_rebounds_that_are_ended_take_their_friction_with_them(angle: float, tol
     """Rebounds that are over have given the contact what a plastic impact gives, friction included."""
     found = off(bar_for(angle, False, 0.3, 0.5), expected(angle, False, 0.3, 0.5), beyond(angle), tolerance)
     assert not found.wrong
+
+
+def test_what_the_laws_leave_open_is_still_judged() -> None:
+    """At 90°, with friction, both faces stop both bodies: the split of that is open, what follows from a split is not."""
+    bar, truth = bar_for(ANGLES[-1], False, 0.3, 0.5), expected(ANGLES[-1], False, 0.3, 0.5)
+    assert truth.is_open and truth.after is not None
+    assert obeys_laws(bar, truth.before, truth.after)
+    assert not obeys_laws(bar, truth.before, truth.after * [1.0, 1.0, 1.01, 1.0])
+    assert not expected(ANGLES[-2], False, 0.1, 0.5).is_open
+    found = off(bar, truth, beyond(ANGLES[-1]), 1e-9)
+    assert found.speed == 0.0 and not found.wrong

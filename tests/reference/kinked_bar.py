@@ -9,13 +9,13 @@ on the corner, one equation holds for the contact force. Nothing of the package 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
-from scipy.optimize import brentq
+from scipy.optimize import brentq, linprog
 
 Vector = NDArray[np.float64]
 SHORT = 1e-7  # s: rebounds that last less are over
@@ -45,13 +45,15 @@ class Bar:
 class Motion:
     """Time and state (s, theta, their rates) when the kink is met, right after it, and at the end.
 
-    `after` is None without an impact, `end` where the motion after it goes on beyond the closed forms.
+    `after` is None without an impact, `end` where the motion after it goes on beyond the closed forms. `is_open`: the laws
+    allow other motions after the impact, see `obeys_laws`.
     """
 
     met: float
     before: Vector
     after: Vector | None
     end: Vector | None
+    is_open: bool = False
 
 
 class _Surface:
@@ -154,6 +156,65 @@ def _compressed(rate: float, slip: float, nn: float, nt: float, tt: float, mu: f
     return float(normal), float(tangential)
 
 
+def _splits(bar: Bar, x: Vector) -> tuple[Any, Any, Any]:
+    """(A, b, columns): impulses (N, T of the level, N, T of the ramp) that friction allows, A Λ <= b, and what they do to u."""
+    inverse = _inverse(bar)
+    columns = [inverse * w for angle in (0.0, bar.kink) for w in _Surface(bar, angle).at(x)[1:3]]
+    mu = bar.friction
+    cone = np.array([[-mu, 1.0], [-mu, -1.0]])
+    zero = np.zeros((2, 2))
+    return np.block([[cone, zero], [zero, cone]]), np.zeros(4), np.array(columns).T
+
+
+def is_open(bar: Bar, x: Vector) -> bool:
+    """Do the laws leave open which contact takes how much of the compression?
+
+    Where everything stands still at its end, both contacts may have pressed, stuck, in any split that stops both bodies.
+    """
+    ramp = _Surface(bar, bar.kink)
+    if np.abs(single_impact(replace(bar, restitution=0.0), ramp, x)[2:] * [1.0, bar.arm]).max() > 1e-9 * abs(bar.speed):
+        return False
+    cones, bounds, columns = _splits(bar, x)
+    scale = bar.mass * abs(bar.speed)
+    sides = [(0.0, None), (None, None)] * 2
+    most = linprog([-1.0, 0.0, 0.0, 0.0], cones, bounds, columns * scale, -x[2:], sides)
+    return bool(most.status == 0 and most.x[0] > 1e-6)
+
+
+def obeys_laws(bar: Bar, x: Vector, after: Vector) -> bool:
+    """Is there a split of the compression that stops both bodies, and an expansion, that lead from the state x to `after`?
+
+    The expansion returns the share eps, more only at a contact that stays closed; both lie within the cones of friction, the
+    expansion of what slides at their bounds.
+    """
+    cones, bounds, columns = _splits(bar, x)
+    nothing, columns, still = np.zeros_like(cones), columns * bar.mass * abs(bar.speed), 1e-9 * abs(bar.speed)
+    less, same = [], []
+    for contact, angle in enumerate((0.0, bar.kink)):
+        N, T = 2 * contact, 2 * contact + 1
+        _, w_n, w_t, _ = _Surface(bar, angle).at(x)
+        rate, slip = float(w_n @ after[2:]), float(w_t @ after[2:])
+        if rate < -still:
+            return False
+        returned = np.zeros(8)
+        returned[N], returned[4 + N] = bar.restitution, -1.0
+        (same if rate > still else less).append(returned)
+        if abs(slip) > still:
+            slides = np.zeros(8)
+            slides[4 + N], slides[4 + T] = math.copysign(bar.friction, slip), 1.0
+            same.append(slides)
+    motion_of = np.block([[columns, np.zeros_like(columns)], [columns, columns]])
+    found = linprog(
+        np.zeros(8),
+        np.vstack([np.block([[cones, nothing], [nothing, cones]]), *less]),
+        np.concatenate([bounds, bounds, np.zeros(len(less))]),
+        np.vstack([motion_of, *same]),
+        np.concatenate([-x[2:], after[2:] - x[2:], np.zeros(len(same))]),
+        [(0.0, None), (None, None)] * 4,
+    )
+    return bool(found.status == 0)
+
+
 def _bounce(bar: Bar, surface: _Surface, x: Vector, span: float) -> tuple[float, Vector]:
     """From right after an impact: flights and impacts until the follower rides; time taken and state."""
     spent, pull = 0.0, bar.torque / bar.inertia
@@ -226,5 +287,7 @@ def motion(bar: Bar, beyond: float) -> Motion:
     x[1], x[3] = 0.0, 0.0
     if bar.kink > 0.0:
         after = single_impact(bar, kink, x)
+        if is_open(bar, x):
+            return Motion(time, x, after, None, is_open=True)
         return Motion(time, x, after, _past_concave(bar, after, beyond))
     return Motion(time, x, None, _past_convex(bar, x, beyond))
