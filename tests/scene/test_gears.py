@@ -10,7 +10,7 @@ from tests.scene.made_gears import wheels
 from watchsim.mechanism.compile import compile_scene
 from watchsim.mechanism.static_check import check_report, check_text
 from watchsim.scene.errors import SceneError
-from watchsim.scene.gear import Gear, Geared
+from watchsim.scene.gearing import Gear, Geared
 
 THIRD = '[bodies.third]\nposition = ["20 mm", "0 mm"]\ninertia = "1 g·cm²"\n'
 

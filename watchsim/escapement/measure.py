@@ -20,6 +20,7 @@ from watchsim.escapement.pallets import Pallet, pallet
 from watchsim.escapement.safety import Safety, safety
 from watchsim.escapement.tooth_passage import NotMeasured, Passage
 from watchsim.mechanism.compile import Compiled, compile_scene
+from watchsim.scene.gear_trains import ungeared
 from watchsim.scene.oscillation import oscillators
 from watchsim.scene.scene import Scene
 
@@ -52,7 +53,8 @@ class Function:
 
 def measure(scene: Scene, compiled: Compiled | None = None) -> Function:
     """Measure a scene; never raises for a mechanism that has no such geometry."""
-    compiled = compiled or compile_scene(scene)
+    free = ungeared(scene)
+    compiled = compiled if compiled is not None and free is scene else compile_scene(free)
     parts = parts_of(scene, compiled)
     if isinstance(parts, str):
         return Function(None, missing=(("geometry of function", f"no escapement with a lever or an anchor: {parts}"),))

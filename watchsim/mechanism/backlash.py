@@ -18,7 +18,7 @@ from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import TURN, Arc, Line, Point
 from watchsim.scene.body import Body
 from watchsim.scene.force import Contact, Side
-from watchsim.scene.gear import Gear, Geared
+from watchsim.scene.gearing import Gear, Geared
 from watchsim.scene.scene import Scene
 
 LAYER = "gear"  # of both racks, in the names of contacts

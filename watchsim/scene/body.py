@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from watchsim.drawing.profile import Profile
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Point
-from watchsim.scene.gear import Geared
+from watchsim.scene.gearing import Geared
 from watchsim.scene.prescribed import Prescribed
 from watchsim.scene.solid import Solid
 

@@ -7,6 +7,7 @@ travel) is linear in it, so that the mass matrix stays diagonal and constant: J_
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import NamedTuple
 
 from watchsim.scene.body import Body
@@ -55,6 +56,13 @@ def felt(bodies: tuple[Body, ...], hung: tuple[Ride, ...], weighed: tuple[Weighe
     for mass, bond in zip(own, bound, strict=True):
         whole[bond.to] += bond.ratio**2 * mass
     return tuple(whole[bond.to] / bond.told**2 for bond in bound)
+
+
+def ungeared(scene: Scene) -> Scene:
+    """The scene with every body free of the others, as parts are that are turned by hand out of their train."""
+    if not scene.gears and all(body.geared is None for body in scene.bodies):
+        return scene
+    return replace(scene, bodies=tuple(replace(body, geared=None) for body in scene.bodies), gears=())
 
 
 def goes_with(scene: Scene, name: str) -> dict[str, float]:

@@ -14,7 +14,7 @@ from watchsim.geometry.primitives import Point
 from watchsim.scene.body import Body
 from watchsim.scene.errors import Fault, SceneError
 from watchsim.scene.force import Contact, Damping, LineSpring, Spring, Torque
-from watchsim.scene.gear import Gear
+from watchsim.scene.gearing import Gear
 from watchsim.scene.recording import EVERYTHING, Recording
 
 

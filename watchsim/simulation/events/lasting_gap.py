@@ -13,7 +13,7 @@ import math
 from watchsim.contact.gaps import normal_gap
 from watchsim.contact.poses import point_of
 from watchsim.jit import kernel
-from watchsim.model.records import FREE, PIVOT, SLIDE
+from watchsim.model.records import FIXED, FREE, PIVOT, SLIDE
 from watchsim.simulation.motion.step_path import acceleration_on_path
 
 
@@ -25,7 +25,7 @@ def _material_point(model, state, step, b, rx, ry, left, tau, path):
     if body.motion == SLIDE:
         a = body.ratio * acceleration_on_path(model, state, step, i, tau, path)
         return pose.vx, pose.vy, a * body.axis_x, a * body.axis_y, abs(body.ratio) * step.jerk[i]
-    if body.motion != PIVOT and body.motion != FREE:
+    if body.motion == FIXED:
         return 0.0, 0.0, 0.0, 0.0, 0.0
     turn = i if body.motion == PIVOT else i + 2
     w, twist = pose.w, body.ratio * acceleration_on_path(model, state, step, turn, tau, path)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +12,9 @@ from numpy.typing import NDArray
 from watchsim.analysis.timing.teeth import pitch
 from watchsim.mechanism.compile import Compiled
 from watchsim.model.records import OVER_TIME
+from watchsim.scene.carriers import rides
 from watchsim.scene.force import Torque
+from watchsim.scene.gear_trains import bonds
 from watchsim.scene.oscillation import frequency, nominal_frequency
 from watchsim.scene.roles import drive_direction, keeps_time, roles
 from watchsim.scene.scene import Scene
@@ -54,13 +57,16 @@ def parts_of(scene: Scene, compiled: Compiled) -> Parts | None:
     coordinate = compiled.slices[found.oscillator].start
     owner = model.primitives.body
     touching = np.append((owner[model.contacts.a] == body) | (owner[model.contacts.b] == body), False)
+    # A wheel geared to another body stands where that one's coordinate says.
+    bond = bonds(scene.bodies, rides(scene.bodies))[names.index(found.wheel)] if found.wheel else None
+    part = pitch(scene, found.wheel) if found.wheel and keeps_time(scene) else None
     return Parts(
         coordinate,
         body,
         float(model.coordinates[coordinate].level),
-        compiled.slices[found.wheel].start if found.wheel else -1,
-        drive_direction(scene, found.wheel) if found.wheel else 1.0,
-        pitch(scene, found.wheel) if found.wheel and keeps_time(scene) else None,
+        int(model.bodies[bond.to].first) if bond else -1,
+        drive_direction(scene, found.wheel) * math.copysign(1.0, bond.told) if found.wheel and bond else 1.0,
+        part / abs(bond.told) if part and bond else None,
         1.0 / hertz,
         1.0 / (nominal_frequency(scene) or hertz),
         found.lever is not None,

@@ -36,6 +36,8 @@ class ContactMarks:
         self._sides: dict[int, tuple[Side, Side]] = {}
         for k in map(int, np.unique(told["contact"])):
             events, contact = told[told["contact"] == k], model.contacts[k]
+            if max(model.primitives[contact.a].body, model.primitives[contact.b].body) >= len(names):
+                continue  # of gears with play, whose teeth are not drawn
             self._history[k] = np.array(events["t"]), events["closes"]
             self._sides[k] = _side(model.primitives[contact.a], names), _side(model.primitives[contact.b], names)
 

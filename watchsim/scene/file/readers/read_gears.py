@@ -18,8 +18,8 @@ from watchsim.scene.errors import Faults
 from watchsim.scene.file.keys.key_values import NAN, Table
 from watchsim.scene.file.keys.schema import GEAR, nearest
 from watchsim.scene.file.readers.read_forces import listed
-from watchsim.scene.gear import Gear, Geared
 from watchsim.scene.gear_trains import note_gears, reached
+from watchsim.scene.gearing import Gear, Geared
 from watchsim.units import NUMBER, PER_LENGTH, TRAVEL_PER_TURN, Dimension
 
 SAME = 1e-9  # of a velocity that is given twice
