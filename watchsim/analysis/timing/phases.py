@@ -14,6 +14,8 @@ locked          until the next touch of pin and fork
 
 from __future__ import annotations
 
+import math
+from bisect import bisect_left
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice, pairwise
@@ -57,14 +59,14 @@ class Phase:
 @dataclass(frozen=True, slots=True)
 class _Contacts:
     """Contact events of the wheel: times, its progress, how many contacts hold after each, which are touches, and on what; and
-    when the lever touches its banking."""
+    when the lever touches its banking. Lists: a beat has a dozen of them, for which arrays are slow."""
 
-    times: Array
-    angle: Array
-    held: NDArray[np.int64]
-    touching: NDArray[np.bool_]
-    on: NDArray[np.int64]  # numbers of `FACES`
-    banking: Array
+    times: list[float]
+    angle: list[float]
+    held: list[int]
+    touching: list[bool]
+    on: list[int]  # numbers of `FACES`
+    banking: list[float]
 
 
 def phases(run: Trajectory, found: Beats | None = None) -> list[Phase]:
@@ -86,7 +88,8 @@ def each_phase(run: Trajectory, found: Beats | None = None, window: Sequence[flo
         told &= (found.end >= window[0]) & (found.tick <= window[1])
     at_entry, at_end = (progress(run, parts.wheel, np.where(told, t, run.t[0])) for t in (found.tick, found.end))
     ways = zip(at_entry.tolist(), at_end.tolist(), strict=True)
-    rows = (phase for i, way in enumerate(ways) if told[i] for phase in _beat(found, contacts, i, way))
+    ticks, ends = found.tick.tolist(), found.end.tolist()
+    rows = (phase for i, way in enumerate(ways) if told[i] for phase in _beat(ticks, ends, contacts, i, way))
     while some := list(islice(rows, AT_ONCE)):
         yield from _with_angles(run, parts, some)
 
@@ -104,7 +107,8 @@ def _contacts(run: Trajectory, parts: Roles) -> _Contacts:
     (banking,) = contact_columns(run, between(parts.lever, fixed), ["t"], *TOUCH)
     used, back = np.unique(which, return_inverse=True)
     on = np.array([FACES.index(_face(run.pairs[contact], parts)) for contact in used.tolist()], np.int64)[back]
-    return _Contacts(times, progress(run, parts.wheel, times), held(kinds), kinds != EventKind.OPEN, on, banking)
+    angle, touching = progress(run, parts.wheel, times), kinds != EventKind.OPEN
+    return _Contacts(*(column.tolist() for column in (times, angle, held(kinds), touching, on, banking)))
 
 
 def _face(pair: Pair, parts: Roles) -> str:
@@ -114,55 +118,54 @@ def _face(pair: Pair, parts: Roles) -> str:
     return "tooth" if pair.body_b == parts.wheel else "stone"  # the second of a pair holds the line or the rounder arc
 
 
-def _beat(found: Beats, contacts: _Contacts, i: int, way: tuple[float, float]) -> Iterator[Phase]:
+def _beat(ticks: list[float], ends: list[float], contacts: _Contacts, i: int, way: tuple[float, float]) -> Iterator[Phase]:
     """The phases of beat `i`, without angles; `way`: the wheel's progress from its tick to its end."""
-    entry, end = found.tick[i], found.end[i]
-    first, last = np.searchsorted(contacts.times, (entry, end), side="left")
-    marks = _release_and_lock(contacts, slice(first, last), *way)
+    entry, end = ticks[i], ends[i]
+    own = range(bisect_left(contacts.times, entry), bisect_left(contacts.times, end))
+    marks = _release_and_lock(contacts, own, *way)
     if marks is None:
         return
     unlocked, caught, let_off, lock = marks
-    yield Phase(i + 1, "unlock", float(entry), unlocked)
+    yield Phase(i + 1, "unlock", entry, unlocked)
     yield Phase(i + 1, "catch-up", unlocked, caught)
-    changes = [*_impulses(contacts, slice(first, last), caught, let_off), (let_off, "")]
+    changes = [*_impulses(contacts, own, caught, let_off), (let_off, "")]
     for (t0, on), (t1, _) in pairwise(changes):
         yield Phase(i + 1, "impulse", t0, t1, on=on)
     yield Phase(i + 1, "drop", let_off, lock)
     resting = lock
-    met = int(np.searchsorted(contacts.banking, lock, side="left"))
+    met = bisect_left(contacts.banking, lock)
     if met < len(contacts.banking) and contacts.banking[met] <= end:
-        resting = float(contacts.banking[met])
+        resting = contacts.banking[met]
         yield Phase(i + 1, "run to banking", lock, resting)
-    if i + 1 < len(found) and np.isfinite(found.tick[i + 1]):
-        yield Phase(i + 1, "locked", resting, float(found.tick[i + 1]))
+    if i + 1 < len(ticks) and math.isfinite(ticks[i + 1]):
+        yield Phase(i + 1, "locked", resting, ticks[i + 1])
 
 
-def _impulses(contacts: _Contacts, own: slice, caught: float, let_off: float) -> Iterator[tuple[float, str]]:
+def _impulses(contacts: _Contacts, own: range, caught: float, let_off: float) -> Iterator[tuple[float, str]]:
     """When the wheel begins to press on what, from `caught` to `let_off` (s)."""
-    first, end = own.start + np.searchsorted(contacts.times[own], (caught, let_off), side="left")
-    touches = first + np.flatnonzero(contacts.touching[first:end])
-    if len(touches):
-        for k in touches[np.flatnonzero(np.diff(contacts.on[touches], prepend=-1))].tolist():
-            yield float(contacts.times[k]), FACES[contacts.on[k]]
+    before = -1
+    for k in own:
+        if contacts.touching[k] and caught <= contacts.times[k] < let_off and contacts.on[k] != before:
+            before = contacts.on[k]
+            yield contacts.times[k], FACES[before]
 
 
-def _release_and_lock(contacts: _Contacts, own: slice, at_entry: float, at_end: float) -> Marks | None:
+def _release_and_lock(contacts: _Contacts, own: range, at_entry: float, at_end: float) -> Marks | None:
     """Release, first touch after it, last touch before the drop, and lock (s), among the wheel's events `own` of one beat."""
-    times, angle, holding = contacts.times[own], contacts.angle[own], contacts.held[own]
+    times, angle = contacts.times, contacts.angle
     way = at_end - at_entry
-    if len(times) < 3 or not way > 0.0:
+    if len(own) < 3 or not way > 0.0:
         return None
     # Free runs: no contact holds from one event to the next, and time passes.
-    free = (holding[:-1] == 0) & (np.diff(times) > 0.0)
-    dropping = free & (angle[1:] >= at_end - NEAR_REST * way)
-    if not dropping.any():
+    near = at_end - NEAR_REST * way
+    free = (k for k in own[:-1] if contacts.held[k] == 0 and times[k + 1] - times[k] > 0.0 and angle[k + 1] >= near)
+    drop = max(free, key=lambda k: angle[k + 1] - angle[k], default=None)
+    if drop is None:
         return None
-    drop = int(np.argmax(np.where(dropping, np.diff(angle), -np.inf)))
-    released = int(np.flatnonzero(angle[: drop + 1] <= angle[: drop + 1].min() + STANDING * way)[-1])
-    caught = np.flatnonzero(contacts.touching[own][released + 1 : drop + 1])
-    if len(caught) == 0:
-        return None
-    return float(times[released]), float(times[released + 1 + caught[0]]), float(times[drop]), float(times[drop + 1])
+    back = min(angle[own.start : drop + 1]) + STANDING * way
+    released = max(k for k in range(own.start, drop + 1) if angle[k] <= back)
+    caught = next((k for k in range(released + 1, drop + 1) if contacts.touching[k]), None)
+    return None if caught is None else (times[released], times[caught], times[drop], times[drop + 1])
 
 
 def _with_angles(run: Trajectory, parts: Roles, rows: list[Phase]) -> list[Phase]:
