@@ -2,7 +2,8 @@
 
 Faults are planted one at a time at random places (a seed says which), and the tests that reach the place are run until one
 fails (see reached.py). Those of the kernels go into a copy of the project, which compiles them, and all tests of that part
-are run; in the area "plain" kernels run as the plain Python that they are, so that nothing need be compiled. What none of them notices is listed; those judged harmless stand in scripts/checks/faults_judged.csv with the reason.
+are run; in the area "plain" kernels run as the plain Python that they are, so that nothing need be compiled. What none of the
+tests notices is listed; what was judged harmless stands in scripts/checks/faults_judged.csv with the reason.
 Ends with 1 where fewer than 95 % of all others were noticed.
 """
 

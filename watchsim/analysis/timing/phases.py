@@ -29,7 +29,7 @@ from watchsim.analysis.timing.escape_wheel import progress
 from watchsim.analysis.timing.rows_at_hand import is_recorded
 from watchsim.scene.roles import Roles, roles
 from watchsim.simulation.event_kinds import EventKind
-from watchsim.simulation.record.trajectory import Array, Pair, Trajectory
+from watchsim.simulation.record.trajectory import Pair, Trajectory
 
 Marks = tuple[float, float, float, float]
 
