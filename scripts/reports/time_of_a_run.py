@@ -1,4 +1,4 @@
-"""Where does the time of a whole `watchsim run` go? Prints JSON: what -> seconds of the processor.
+"""Where does the time of a whole `watchsim run` go? Prints JSON: what -> seconds of processor time.
 
     python scripts/reports/time_of_a_run.py profiles/swiss_lever "180 s" FOLDER
 

@@ -24,6 +24,7 @@ from watchsim.scene.recording import STATISTICS
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.methods import EVENT_DRIVEN
 from watchsim.simulation.record.trajectory import Array, Trajectory
+from watchsim.storage.columns import blocks
 
 MODES = (EventKind.CLOSE, EventKind.OPEN, EventKind.STICK, EventKind.SLIDE, EventKind.HANDOVER)
 SLACK = 1e-9  # of the largest force: rounding
@@ -103,6 +104,7 @@ def forces(run: Trajectory, times: Iterable[float] | None = None) -> Forces:
 def absolute(compiled: Compiled, values: Array, rates: bool) -> Array:
     """Coordinates in the movement from those that the trajectory gives: the inverse of `Compiled.relative`."""
     out = np.array(values)
+    out = out[:, : len(compiled.q)]  # what is geared to others follows from them
     for own, on, angle in compiled.against:  # carriers come before what they carry
         out[:, own] += (out[:, on] if on >= 0 else 0.0) + (0.0 if rates else angle)
     return out
@@ -110,47 +112,59 @@ def absolute(compiled: Compiled, values: Array, rates: bool) -> Array:
 
 def _modes(run: Trajectory, times: Array) -> Iterator[dict[int, int]]:
     """Contact -> mode of what is in force, at each of the times."""
-    told = run.events[np.isin(run.events["kind"], MODES)]
     order = np.argsort(times, kind="stable")
-    stops = np.searchsorted(told["t"], times[order], side="right")
-    done = int(stops[0]) if len(stops) else 0
-    changes = _Changes(told[:done])
-    modes = {contact: mode for contact in changes.contacts if (mode := changes.mode(contact, done)) is not None}
+    first = times[order[0]] if len(times) else 0.0
+    waiting = order.tolist()[::-1]
+    modes: dict[int, int] = {}
     found: dict[int, dict[int, int]] = {}
-    for place, stop in zip(order.tolist(), stops.tolist(), strict=True):
-        for event in told[done:stop]:
-            _change(modes, event)
-        done = stop
-        found[place] = dict(modes)
+    for (part,) in blocks(run.events):
+        if not waiting:
+            break
+        told = part[np.isin(part["kind"], MODES)]
+        done = int(np.searchsorted(told["t"], first, side="right"))
+        modes = _Changes(told[:done], modes).modes()
+        while waiting and times[waiting[-1]] < part["t"][-1]:
+            stop = int(np.searchsorted(told["t"], times[waiting[-1]], side="right"))
+            _apply(modes, told[done:stop])
+            done = max(done, stop)
+            found[waiting.pop()] = dict(modes)
+        if waiting:
+            _apply(modes, told[done:])
+    found |= {place: dict(modes) for place in waiting}
     return (found[place] for place in range(len(times)))
 
 
 class _Changes:
     """Events that change modes, by contact: what a contact's mode is follows from the last of its own, not from all before."""
 
-    def __init__(self, events: NDArray[Any]) -> None:
+    def __init__(self, events: NDArray[Any], earlier: dict[int, int]) -> None:
+        """`earlier`: the modes before the first of the events."""
         gained, lost = events["contact"].astype(np.int64), events["value"].astype(np.int64)
         handed = events["kind"] == EventKind.HANDOVER
-        self._events = events
+        self._events, self._earlier = events, earlier
         self._of = np.concatenate((gained, lost[handed]))
         self._at = np.concatenate((np.arange(len(events)), np.flatnonzero(handed)))
         order = np.lexsort((self._at, self._of))
         self._of, self._at = self._of[order], self._at[order]
-        self.contacts = np.unique(self._of).tolist()
 
-    def mode(self, contact: int, before: int) -> int | None:
-        """Its mode before the event of that number; None where it is open."""
-        handed = False
+    def modes(self) -> dict[int, int]:
+        """Contact -> mode of what is in force after all of the events."""
+        found = {contact: self._mode(contact) for contact in {*np.unique(self._of).tolist(), *self._earlier}}
+        return {contact: mode for contact, mode in found.items() if mode is not None}
+
+    def _mode(self, contact: int) -> int | None:
+        """The mode of a contact after all of the events; None where it is open."""
+        otherwise, before = None, len(self._events)
         while (number := self._last_of(contact, before)) is not None:
             event = self._events[number]
             if int(event["kind"]) != EventKind.HANDOVER:
-                modes: dict[int, int] = {}
-                _change(modes, event)
-                return modes.get(contact, STICK if handed else None)
+                own: dict[int, int] = {}
+                _change(own, int(event["kind"]), contact, event["value"])
+                return own.get(contact, otherwise)
             if int(event["contact"]) != contact:  # to that one, from this
-                break
-            handed, contact, before = True, int(event["value"]), number
-        return STICK if handed else None
+                return otherwise
+            otherwise, contact, before = STICK, int(event["value"]), number
+        return self._earlier.get(contact, otherwise)
 
     def _last_of(self, contact: int, before: int) -> int | None:
         """The number of the last event before another that says something about a contact."""
@@ -159,8 +173,12 @@ class _Changes:
         return int(self._at[first + k - 1]) if k else None
 
 
-def _change(modes: dict[int, int], event: Any) -> None:
-    kind, contact, value = int(event["kind"]), int(event["contact"]), event["value"]
+def _apply(modes: dict[int, int], events: NDArray[Any]) -> None:
+    for kind, contact, value in zip(*(events[name].tolist() for name in ("kind", "contact", "value")), strict=True):
+        _change(modes, kind, contact, value)
+
+
+def _change(modes: dict[int, int], kind: int, contact: int, value: float) -> None:
     if kind == EventKind.HANDOVER:
         modes[contact] = modes.pop(int(value), STICK)
     elif kind == EventKind.STICK:
@@ -263,7 +281,7 @@ def _pressing(system: Array, right: Array) -> Array:
 
 def _pivots(run: Trajectory, compiled: Compiled, found: Forces, q: Array, u: Array, a: Array) -> Iterator[tuple[str, Array]]:
     """What the bearings in the movement take: change of momentum less weight less contacts, of a body with all it carries."""
-    hung, weighed = loads(run.scene.bodies)
+    hung, weighed, _ = loads(run.scene.bodies)
     on_a, on_b = _bodies_of(compiled, found.pairs)
     across = np.stack((-found.direction[:, :, 1], found.direction[:, :, 0]), axis=2)
     pressed = np.nan_to_num(found.normal[:, :, None] * found.direction + found.tangential[:, :, None] * across)
@@ -272,8 +290,7 @@ def _pivots(run: Trajectory, compiled: Compiled, found: Forces, q: Array, u: Arr
             continue
         own = [k for k, other in enumerate(hung) if k == i or other.part_of == i or other.host == i]
         sign = np.isin(on_a, own).astype(float) - np.isin(on_b, own).astype(float)
-        first = compiled.slices[body.name].start
-        angle, spin, turn = q[:, first], u[:, first], a[:, first]
+        angle, spin, turn = (compiled.own(i, values, rates) for values, rates in ((q, False), (u, True), (a, True)))
         c, s = np.cos(angle), np.sin(angle)
         moment = np.stack((c * load.moment[0] - s * load.moment[1], s * load.moment[0] + c * load.moment[1]), axis=1)
         change = turn[:, None] * np.stack((-moment[:, 1], moment[:, 0]), axis=1) - (spin * spin)[:, None] * moment
@@ -282,10 +299,10 @@ def _pivots(run: Trajectory, compiled: Compiled, found: Forces, q: Array, u: Arr
 
 def _drives(run: Trajectory, compiled: Compiled, load: Array, a: Array) -> Iterator[tuple[str, Array]]:
     """Against the contacts, and for the acceleration of as much mass or inertia as the scene gives the body."""
-    for body in run.scene.bodies:
+    for body, mass in zip(run.scene.bodies, loads(run.scene.bodies)[2], strict=True):
         if body.prescribed is not None:
             j = compiled.slices[body.name].start
-            yield body.name, (body.mass if body.motion == "slide" else body.inertia) * a[:, j] - load[:, j]
+            yield body.name, mass * a[:, j] - load[:, j]
 
 
 def _bodies_of(compiled: Compiled, pairs: NDArray[np.int64]) -> tuple[Array, Array]:

@@ -89,7 +89,7 @@ def _incline_picture(folder: Path) -> Path:
     """The kinematic plot of the bouncing disc, the first picture a newcomer sees."""
     from watchsim.commands.common.inputs import load_scene
     from watchsim.profiles_path import profiles_dir
-    from watchsim.render.figures.plots import plot_kinematics
+    from watchsim.render.figures.kinematics_plot import plot_kinematics
     from watchsim.simulation.simulate import simulate
     from watchsim.simulation.stops import Stop
     from watchsim.storage.write import write_file

@@ -175,7 +175,7 @@ def _earlier(folder: str, scene: Scene) -> Trajectory:
 def status(run: Trajectory, summary: dict[str, Any]) -> int:
     """Exit status of a finished run; says why on stderr where it is not 0."""
     from watchsim.analysis.headlines import expected_text
-    from watchsim.analysis.verdicts.words import SPOKEN
+    from watchsim.analysis.verdicts.verdict_kinds import SPOKEN
     from watchsim.simulation.stops import Stop
 
     if run.stop.is_wrong:

@@ -20,7 +20,7 @@ from watchsim.results.scene_copy import LOCK, locked_drawings, travelling
 from watchsim.results.state_file import write_state
 from watchsim.results.tables import json_text, write_events
 from watchsim.simulation.record.trajectory import Trajectory
-from watchsim.storage.scratch import PREFIX
+from watchsim.storage.scratch_folder import PREFIX
 from watchsim.storage.write import real, write_folder
 
 SUMMARY, TRAJECTORY, EVENTS = "summary.json", "trajectory.npz", "events.csv"

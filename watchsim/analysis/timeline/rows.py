@@ -25,6 +25,7 @@ from watchsim.scene.roles import Roles, drive_direction, roles
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.methods import EVENT_DRIVEN
 from watchsim.simulation.record.trajectory import Array, Trajectory
+from watchsim.storage.columns import let_go
 
 LOSSES = (EventKind.IMPACT, EventKind.JAM)
 BEATS_AT_ONCE = 300  # some megabytes, which a processor has at hand
@@ -129,6 +130,7 @@ def stages(run: Trajectory, found: Beats | None = None, window: Sequence[float] 
         made = flows(run, compiled, slice(first, last))
         stones = _pallets(run, compiled, parts, rests, [row for row in told if row.name == "unlock"])
         yield _columns(run, parts, compiled, made, told, stones)
+        let_go(run.t, run.q, run.u, run.a, run.events)
 
 
 def _columns(

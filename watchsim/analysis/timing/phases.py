@@ -15,21 +15,21 @@ locked          until the next touch of pin and fork
 from __future__ import annotations
 
 import math
-from bisect import bisect_left
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice, pairwise
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.analysis.timing.beats import Beats, beats
+from watchsim.analysis.timing.beats import Beats, beats, beats_within
 from watchsim.analysis.timing.body_contacts import between, contact_columns, held, involves
 from watchsim.analysis.timing.escape_wheel import progress
 from watchsim.analysis.timing.rows_at_hand import is_recorded
-from watchsim.scene.roles import Roles, roles
+from watchsim.scene.roles import Roles, keeps_time, roles
 from watchsim.simulation.event_kinds import EventKind
-from watchsim.simulation.record.trajectory import Pair, Trajectory
+from watchsim.simulation.record.trajectory import Array, Pair, Trajectory
 
 Marks = tuple[float, float, float, float]
 
@@ -59,14 +59,24 @@ class Phase:
 @dataclass(frozen=True, slots=True)
 class _Contacts:
     """Contact events of the wheel: times, its progress, how many contacts hold after each, which are touches, and on what; and
-    when the lever touches its banking. Lists: a beat has a dozen of them, for which arrays are slow."""
+    when the lever touches its banking."""
+
+    times: Array
+    angle: Array
+    held: NDArray[np.int32]
+    touching: NDArray[np.bool_]
+    on: NDArray[np.int8]  # numbers of `FACES`
+    banking: Array
+
+
+class _Own(NamedTuple):
+    """Those of one beat: a dozen, for which lists are faster."""
 
     times: list[float]
     angle: list[float]
     held: list[int]
     touching: list[bool]
-    on: list[int]  # numbers of `FACES`
-    banking: list[float]
+    on: list[int]
 
 
 def phases(run: Trajectory, found: Beats | None = None) -> list[Phase]:
@@ -77,19 +87,26 @@ def phases(run: Trajectory, found: Beats | None = None) -> list[Phase]:
     return list(each_phase(run, found))
 
 
+def phases_within(run: Trajectory, window: Sequence[float]) -> list[Phase]:
+    """The phases of the beats that lie in a window (s), and of one before and after it."""
+    if not keeps_time(run.scene):
+        return []
+    near = beats_within(beats(run), window)
+    return phases(run, near) if len(near) else []
+
+
 def each_phase(run: Trajectory, found: Beats | None = None, window: Sequence[float] | None = None) -> Iterator[Phase]:
     """The same one after the other, since a long run has a great many; only of beats that pass within a window (s)."""
     parts = roles(run.scene)
     if parts.wheel is None or parts.lever is None or parts.oscillator is None or len(run.t) == 0:
         return
     found = found or beats(run)
-    contacts, told = _contacts(run, parts), _told(run, found)
+    contacts, told = _contacts(run, parts, found), _told(run, found)
     if window is not None:
         told &= (found.end >= window[0]) & (found.tick <= window[1])
     at_entry, at_end = (progress(run, parts.wheel, np.where(told, t, run.t[0])) for t in (found.tick, found.end))
     ways = zip(at_entry.tolist(), at_end.tolist(), strict=True)
-    ticks, ends = found.tick.tolist(), found.end.tolist()
-    rows = (phase for i, way in enumerate(ways) if told[i] for phase in _beat(ticks, ends, contacts, i, way))
+    rows = (phase for i, way in enumerate(ways) if told[i] for phase in _beat(found, contacts, i, way))
     while some := list(islice(rows, AT_ONCE)):
         yield from _with_angles(run, parts, some)
 
@@ -100,15 +117,19 @@ def _told(run: Trajectory, found: Beats) -> NDArray[np.bool_]:
     return heard & is_recorded(run, np.where(heard, found.tick, 0.0)) & is_recorded(run, found.end)
 
 
-def _contacts(run: Trajectory, parts: Roles) -> _Contacts:
+def _contacts(run: Trajectory, parts: Roles, found: Beats) -> _Contacts:
+    """Those of the beats `found`."""
     assert parts.wheel and parts.lever
     times, kinds, which = contact_columns(run, involves(parts.wheel), ["t", "kind", "contact"], *TOUCH, EventKind.OPEN)
     fixed = {body.name for body in run.scene.bodies if body.motion == "fixed"}
     (banking,) = contact_columns(run, between(parts.lever, fixed), ["t"], *TOUCH)
-    used, back = np.unique(which, return_inverse=True)
-    on = np.array([FACES.index(_face(run.pairs[contact], parts)) for contact in used.tolist()], np.int64)[back]
-    angle, touching = progress(run, parts.wheel, times), kinds != EventKind.OPEN
-    return _Contacts(*(column.tolist() for column in (times, angle, held(kinds), touching, on, banking)))
+    first, end = np.searchsorted(times, (found.start[0], found.end[-1])) if len(found) else (0, 0)
+    near = slice(first, end)
+    used, back = np.unique(which[near], return_inverse=True)
+    on = np.array([FACES.index(_face(run.pairs[contact], parts)) for contact in used.tolist()], np.int8)[back]
+    holding, touching = held(times, kinds, run.spans)[near].copy(), kinds[near] != EventKind.OPEN
+    times = times[near].copy()
+    return _Contacts(times, progress(run, parts.wheel, times), holding, touching, on, banking)
 
 
 def _face(pair: Pair, parts: Roles) -> str:
@@ -118,53 +139,57 @@ def _face(pair: Pair, parts: Roles) -> str:
     return "tooth" if pair.body_b == parts.wheel else "stone"  # the second of a pair holds the line or the rounder arc
 
 
-def _beat(ticks: list[float], ends: list[float], contacts: _Contacts, i: int, way: tuple[float, float]) -> Iterator[Phase]:
+def _beat(found: Beats, contacts: _Contacts, i: int, way: tuple[float, float]) -> Iterator[Phase]:
     """The phases of beat `i`, without angles; `way`: the wheel's progress from its tick to its end."""
-    entry, end = ticks[i], ends[i]
-    own = range(bisect_left(contacts.times, entry), bisect_left(contacts.times, end))
-    marks = _release_and_lock(contacts, own, *way)
+    entry, end = float(found.tick[i]), float(found.end[i])
+    first, last = np.searchsorted(contacts.times, (entry, end), side="left")
+    columns = (contacts.times, contacts.angle, contacts.held, contacts.touching, contacts.on)
+    own = _Own(*(column[first:last].tolist() for column in columns))
+    marks = _release_and_lock(own, *way)
     if marks is None:
         return
     unlocked, caught, let_off, lock = marks
-    yield Phase(i + 1, "unlock", entry, unlocked)
-    yield Phase(i + 1, "catch-up", unlocked, caught)
-    changes = [*_impulses(contacts, own, caught, let_off), (let_off, "")]
+    beat = found.before + i + 1
+    yield Phase(beat, "unlock", entry, unlocked)
+    yield Phase(beat, "catch-up", unlocked, caught)
+    changes = [*_impulses(own, caught, let_off), (let_off, "")]
     for (t0, on), (t1, _) in pairwise(changes):
-        yield Phase(i + 1, "impulse", t0, t1, on=on)
-    yield Phase(i + 1, "drop", let_off, lock)
+        yield Phase(beat, "impulse", t0, t1, on=on)
+    yield Phase(beat, "drop", let_off, lock)
     resting = lock
-    met = bisect_left(contacts.banking, lock)
+    met = int(np.searchsorted(contacts.banking, lock, side="left"))
     if met < len(contacts.banking) and contacts.banking[met] <= end:
-        resting = contacts.banking[met]
-        yield Phase(i + 1, "run to banking", lock, resting)
-    if i + 1 < len(ticks) and math.isfinite(ticks[i + 1]):
-        yield Phase(i + 1, "locked", resting, ticks[i + 1])
+        resting = float(contacts.banking[met])
+        yield Phase(beat, "run to banking", lock, resting)
+    if i + 1 < len(found) and math.isfinite(found.tick[i + 1]):
+        yield Phase(beat, "locked", resting, float(found.tick[i + 1]))
 
 
-def _impulses(contacts: _Contacts, own: range, caught: float, let_off: float) -> Iterator[tuple[float, str]]:
+def _impulses(own: _Own, caught: float, let_off: float) -> Iterator[tuple[float, str]]:
     """When the wheel begins to press on what, from `caught` to `let_off` (s)."""
     before = -1
-    for k in own:
-        if contacts.touching[k] and caught <= contacts.times[k] < let_off and contacts.on[k] != before:
-            before = contacts.on[k]
-            yield contacts.times[k], FACES[before]
+    for time, touches, on in zip(own.times, own.touching, own.on, strict=True):
+        if touches and caught <= time < let_off and on != before:
+            before = on
+            yield time, FACES[on]
 
 
-def _release_and_lock(contacts: _Contacts, own: range, at_entry: float, at_end: float) -> Marks | None:
-    """Release, first touch after it, last touch before the drop, and lock (s), among the wheel's events `own` of one beat."""
-    times, angle = contacts.times, contacts.angle
+def _release_and_lock(own: _Own, at_entry: float, at_end: float) -> Marks | None:
+    """Release, first touch after it, last touch before the drop, and lock (s), among the wheel's events of one beat."""
+    times, angle = own.times, own.angle
     way = at_end - at_entry
-    if len(own) < 3 or not way > 0.0:
+    if len(times) < 3 or not way > 0.0:
         return None
     # Free runs: no contact holds from one event to the next, and time passes.
     near = at_end - NEAR_REST * way
-    free = (k for k in own[:-1] if contacts.held[k] == 0 and times[k + 1] - times[k] > 0.0 and angle[k + 1] >= near)
+    steps = range(len(times) - 1)
+    free = (k for k in steps if own.held[k] == 0 and times[k + 1] - times[k] > 0.0 and angle[k + 1] >= near)
     drop = max(free, key=lambda k: angle[k + 1] - angle[k], default=None)
     if drop is None:
         return None
-    back = min(angle[own.start : drop + 1]) + STANDING * way
-    released = max(k for k in range(own.start, drop + 1) if angle[k] <= back)
-    caught = next((k for k in range(released + 1, drop + 1) if contacts.touching[k]), None)
+    back = min(angle[: drop + 1]) + STANDING * way
+    released = max(k for k in range(drop + 1) if angle[k] <= back)
+    caught = next((k for k in range(released + 1, drop + 1) if own.touching[k]), None)
     return None if caught is None else (times[released], times[caught], times[drop], times[drop + 1])
 
 

@@ -37,7 +37,7 @@ def page(run: Trajectory, numbers: Mapping[str, Any]) -> dict[str, Callable[[Pat
     """The same for report.html; `numbers` are those of summary.json."""
 
     def write(path: Path) -> None:
-        from watchsim.pages.report import page_text
+        from watchsim.pages.report_page import page_text
 
         path.write_bytes(page_text(run, numbers=numbers).encode("utf-8", "replace"))
 
@@ -63,7 +63,7 @@ def _drawn(draw: Callable[[Path], object]) -> Callable[[Path], None]:
 
 def _plots(run: Trajectory) -> dict[str, Draw]:
     """Kinematic plots: all that was recorded, and the last beats."""
-    from watchsim.render.figures.plots import Kinematics, write_png
+    from watchsim.render.figures.kinematics_plot import Kinematics, write_png
 
     if len(run.t) < 2:
         return {}

@@ -69,8 +69,8 @@ class Meanwhile:
 
 def load_plots() -> None:
     """Load what plots need, fonts included."""
-    import watchsim.render.figures.plots  # noqa: F401 - to have it
-    from watchsim.render.figures.style import figure
+    import watchsim.render.figures.kinematics_plot  # noqa: F401 - to have it
+    from watchsim.render.figures.figure_style import figure
 
     empty = figure()
     empty.text(0.5, 0.5, "0123456789 °/s", weight="bold")

@@ -106,7 +106,7 @@ def report_text(run: Trajectory, summary: dict[str, Any]) -> str:
 
 def _timeline(run: Trajectory) -> list[str]:
     """The tables of the last oscillation, for report.txt; none where its phases are not known."""
-    from watchsim.analysis.timeline.table import timeline_text
+    from watchsim.analysis.timeline.timeline_table import timeline_text
 
     try:
         return ["", timeline_text(run)]
