@@ -2,7 +2,8 @@
 
 Faults are planted one at a time at random places (a seed says which), and the tests that reach the place are run until one
 fails (see reached.py). Those of the kernels go into a copy of the project, which compiles them, and all tests of that part
-are run. What none of them notices is listed; those judged harmless stand in scripts/checks/faults_judged.csv with the reason.
+are run; in the area "plain" kernels run as the plain Python that they are, so that nothing need be compiled. What none of the
+tests notices is listed; what was judged harmless stands in scripts/checks/faults_judged.csv with the reason.
 Ends with 1 where fewer than 95 % of all others were noticed.
 """
 
@@ -34,6 +35,7 @@ PATIENCE = 5.0  # times what the tests take without a fault; an endless loop is 
 LEAST = 120.0  # s
 LONGEST = 40.0  # s of tests for one fault, the quickest of those that reach it
 COMPILED = "kernels"
+PLAIN = "plain"
 AREAS = {  # name -> (files, tests)
     "reader": (("drawing/**/*.py",), ("tests/drawing",)),
     "geometry": (
@@ -54,6 +56,14 @@ AREAS = {  # name -> (files, tests)
             "render/movies/encoder.py",
         ),
         ("tests/render",),
+    ),
+    "plain": (
+        ("dynamics/**/*.py", "contact/*.py"),
+        (
+            *("tests/contact/test_kinematics.py", "tests/contact/test_exact_gaps.py"),
+            *("tests/dynamics/test_lcp.py", "tests/dynamics/test_acceleration.py", "tests/dynamics/test_mirror.py"),
+            *("tests/dynamics/test_impact.py", "tests/dynamics/test_tangential_laws.py"),
+        ),
     ),
     "kernels": (
         ("dynamics/**/*.py", "candidates/*.py", "contact/*.py", "simulation/**/*.py", "tolerances.py"),
@@ -171,6 +181,7 @@ def compiled(scratch: Path, area: str) -> Callable[[Planted], bool]:
 
 def interpreted(area: str) -> Callable[[Planted], bool]:
     """What tells whether a fault of what Python runs is noticed."""
+    os.environ["NUMBA_DISABLE_JIT"] = str(int(area == PLAIN))
     load()
     reached = recorded(AREAS[area][1])
     whole = sum(reached.seconds.values())

@@ -2,7 +2,8 @@
 
     python scripts/reports/make_speed_page.py [--from FOLDER]
 
-Runs `watchsim bench` and the studies of growth, some minutes on one core. `--from` takes the results of an earlier
+Runs `watchsim bench`, whole runs and the studies of growth: about a quarter of an hour on a machine with nothing else to do; the
+page says if there was something else. `--from` takes the results of an earlier
 `watchsim bench`.
 """
 
@@ -36,6 +37,9 @@ from watchsim.simulation.simulate import simulate
 ROOT = Path(__file__).resolve().parents[2]
 OWN = "pfeiffer-glocker"
 SETTLED = "bench_lever, settled"
+QUIET = 0.5  # processes that wait for the processor when the measuring begins
+ALONE = "Nothing else ran on the machine."
+BUSY = "Other programs ran on the machine meanwhile: compare within a table, not from one to the next."
 PROFILED = {"incline": 3.0, "bench_lever": 10.0, "swiss_lever": 10.0}  # s simulated
 
 PAGE = """# Speed against error
@@ -44,8 +48,7 @@ How long does a simulated second take, and how large is the error? Written by `s
 `watchsim bench`, on one core of one machine ({machine}), all in one run. Times are processor times of the stepping alone
 (without reading, compiling and set-up, for all engines): the median of several runs, with the smallest and the largest.
 Levers run for 3 s from the start, amplitude and rate are averaged from 1 s to 3 s; the disc's place is compared at 3 s. In this
-time the details of the first beats dominate: the settled lever runs for 15 s and is averaged over the last two. Other programs ran
-on the machine meanwhile: compare figures within a table, not across tables.
+time the details of the first beats dominate: the settled lever runs for 15 s and is averaged over the last two. {alone}
 
 ![Time per simulated second over error](../images/speed.png)
 
@@ -189,6 +192,7 @@ def main() -> int:
     parser.add_argument("--from", dest="folder", metavar="FOLDER", type=Path, help="results of an earlier `watchsim bench`")
     parser.add_argument("-o", "--output", type=Path, default=ROOT / "bench", help="where the results go (default bench)")
     args = parser.parse_args()
+    alone = os.getloadavg()[0] < QUIET
     if args.folder:
         kept = json.loads((args.folder / "bench.json").read_text(encoding="utf-8"))
         rows, references = kept["rows"], kept["references"]
@@ -199,6 +203,7 @@ def main() -> int:
     plot_speed(rows, ROOT / "docs" / "images" / "speed.png")
     text = PAGE.format(
         machine=f"{platform.machine()}, Python {platform.python_version()}",
+        alone=ALONE if alone else BUSY,
         ratios=ratios(rows),
         table=table(rows, references).rstrip(),
         simulated=settled.duration,

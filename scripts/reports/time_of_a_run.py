@@ -2,7 +2,8 @@
 
     python scripts/reports/time_of_a_run.py profiles/swiss_lever "180 s" FOLDER
 
-Runs the command in this process with clocks around its parts. Packing the motion goes on beside the rest, in a thread of its own.
+Runs the command in this process with clocks around its parts. Some go on beside others, in threads and in a copy of the process:
+they cost time of the processor, but none on the clock where there is a second core.
 """
 
 from __future__ import annotations
@@ -12,7 +13,9 @@ import functools
 import importlib
 import json
 import os
+import resource
 import sys
+import threading
 import time
 from collections import defaultdict
 from collections.abc import Callable
@@ -22,34 +25,41 @@ PARTS = (  # module, name, what
     ("watchsim.simulation.runner", "Run.warm_up", "loading the machine code"),
     ("watchsim.simulation.runner", "Run.to_the_end", "stepping"),
     ("watchsim.analysis.summary", "summary", "summary.json"),
-    ("watchsim.analysis.beat_tables", "phases_csv", "phases.csv"),
-    ("watchsim.results.tables", "write_events", "events.csv"),
+    ("watchsim.analysis.summary", "tables", "beats.csv, phases.csv"),
+    ("watchsim.results.tables", "EventLines.add", "events.csv, made into text beside the stepping"),
     ("watchsim.results.archive", "write_trajectory", "trajectory.npz, packed beside the rest"),
-    ("watchsim.render.figures.kinematics_plot", "Kinematics.__init__", "plots"),
-    ("watchsim.render.figures.kinematics_plot", "Kinematics.show", "plots"),
-    ("watchsim.render.figures.kinematics_plot", "write_png", "plots"),
+    ("watchsim.commands.common.write_run", "_timeline", "the timeline in report.txt"),
 )
+PLOTTING = "importing matplotlib, beside the stepping"
 
 spent: defaultdict[str, float] = defaultdict(float)  # s
 _import = builtins.__import__
 
 
+class Own(threading.local):
+    """Of one thread: whether it is importing, and what its imports have taken, s."""
+
+    depth = 0
+    importing = 0.0
+
+
+own = Own()
+
+
 class Imports:
     """A clock around every import that no other import asked for."""
 
-    depth = 0
-
     def __call__(self, *args: Any, **options: Any) -> Any:
-        if self.depth:
+        if own.depth:
             return _import(*args, **options)
-        self.depth, begun = 1, time.thread_time()
+        own.depth, begun = 1, time.thread_time()
         try:
             module = _import(*args, **options)
         finally:
-            self.depth = 0
-        spent["importing matplotlib" if "render" in args[0] or "matplotlib" in args[0] else "importing"] += (
-            time.thread_time() - begun
-        )
+            own.depth = 0
+        taken = time.thread_time() - begun
+        own.importing += taken
+        spent[PLOTTING if "render" in args[0] or "matplotlib" in args[0] else "importing"] += taken
         for name, attribute, what in PARTS:
             if name in sys.modules and (name, attribute) not in _clocked:
                 _clocked.add((name, attribute))
@@ -69,12 +79,11 @@ def _clock(module: str, attribute: str, what: str) -> None:
 
     @functools.wraps(function)
     def clocked(*args: Any, **options: Any) -> Any:
-        begun, before = time.thread_time(), spent["importing"] + spent["importing matplotlib"]
+        begun, before = time.thread_time(), own.importing
         try:
             return function(*args, **options)
         finally:
-            imported = spent["importing"] + spent["importing matplotlib"] - before
-            spent[what] += time.thread_time() - begun - imported
+            spent[what] += time.thread_time() - begun - (own.importing - before)
 
     setattr(holder, name, clocked)
     for other in list(sys.modules.values()):  # who has imported it by name already
@@ -85,11 +94,15 @@ def _clock(module: str, attribute: str, what: str) -> None:
 def main() -> None:
     scene, duration, folder = sys.argv[1:4]
     sys.argv = ["watchsim", "run", scene, "--duration", duration, "-o", folder, "--force"]
-    leave = os._exit
+    leave, number = os._exit, os.getpid()
 
     def told(status: int) -> NoReturn:
-        whole = time.process_time()
+        if os.getpid() != number:
+            leave(status)
+        drawn, whole = resource.getrusage(resource.RUSAGE_CHILDREN), time.process_time()
         spent["the rest"] = whole - sum(spent.values())
+        spent["plots, drawn beside the numbers"] = drawn.ru_utime + drawn.ru_stime
+        whole += spent["plots, drawn beside the numbers"]
         sys.stderr.write(json.dumps({**spent, "together": whole}))
         sys.stderr.flush()
         leave(status)

@@ -259,6 +259,8 @@ def _dense(closed: Closed, values: Array, rows: int, width: int) -> Array:
 
 def _least(system: Array, right: Array) -> Array:
     """The smallest solution, of a system scaled to a unit diagonal: contacts have lever arms of millimetres."""
+    if system.size == 1 and system[0, 0] != 0.0:
+        return np.asarray(right / system[0])
     scale = np.sqrt(np.abs(np.diag(system)))
     scale = np.where(scale > 0.0, 1.0 / np.where(scale > 0.0, scale, 1.0), 1.0)
     scaled: Array = np.linalg.lstsq(system * np.outer(scale, scale), right * scale, rcond=SMALLEST)[0]

@@ -14,9 +14,11 @@ locked          until the next touch of pin and fork
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice, pairwise
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,6 +67,16 @@ class _Contacts:
     touching: NDArray[np.bool_]
     on: NDArray[np.int8]  # numbers of `FACES`
     banking: Array
+
+
+class _Own(NamedTuple):
+    """Those of one beat: a dozen, for which lists are faster."""
+
+    times: list[float]
+    angle: list[float]
+    held: list[int]
+    touching: list[bool]
+    on: list[int]
 
 
 def phases(run: Trajectory, found: Beats | None = None) -> list[Phase]:
@@ -129,16 +141,18 @@ def _face(pair: Pair, parts: Roles) -> str:
 
 def _beat(found: Beats, contacts: _Contacts, i: int, way: tuple[float, float]) -> Iterator[Phase]:
     """The phases of beat `i`, without angles; `way`: the wheel's progress from its tick to its end."""
-    entry, end = found.tick[i], found.end[i]
+    entry, end = float(found.tick[i]), float(found.end[i])
     first, last = np.searchsorted(contacts.times, (entry, end), side="left")
-    marks = _release_and_lock(contacts, slice(first, last), *way)
+    columns = (contacts.times, contacts.angle, contacts.held, contacts.touching, contacts.on)
+    own = _Own(*(column[first:last].tolist() for column in columns))
+    marks = _release_and_lock(own, *way)
     if marks is None:
         return
     unlocked, caught, let_off, lock = marks
     beat = found.before + i + 1
-    yield Phase(beat, "unlock", float(entry), unlocked)
+    yield Phase(beat, "unlock", entry, unlocked)
     yield Phase(beat, "catch-up", unlocked, caught)
-    changes = [*_impulses(contacts, slice(first, last), caught, let_off), (let_off, "")]
+    changes = [*_impulses(own, caught, let_off), (let_off, "")]
     for (t0, on), (t1, _) in pairwise(changes):
         yield Phase(beat, "impulse", t0, t1, on=on)
     yield Phase(beat, "drop", let_off, lock)
@@ -147,36 +161,36 @@ def _beat(found: Beats, contacts: _Contacts, i: int, way: tuple[float, float]) -
     if met < len(contacts.banking) and contacts.banking[met] <= end:
         resting = float(contacts.banking[met])
         yield Phase(beat, "run to banking", lock, resting)
-    if i + 1 < len(found) and np.isfinite(found.tick[i + 1]):
+    if i + 1 < len(found) and math.isfinite(found.tick[i + 1]):
         yield Phase(beat, "locked", resting, float(found.tick[i + 1]))
 
 
-def _impulses(contacts: _Contacts, own: slice, caught: float, let_off: float) -> Iterator[tuple[float, str]]:
+def _impulses(own: _Own, caught: float, let_off: float) -> Iterator[tuple[float, str]]:
     """When the wheel begins to press on what, from `caught` to `let_off` (s)."""
-    first, end = own.start + np.searchsorted(contacts.times[own], (caught, let_off), side="left")
-    touches = first + np.flatnonzero(contacts.touching[first:end])
-    if len(touches):
-        for k in touches[np.flatnonzero(np.diff(contacts.on[touches], prepend=-1))].tolist():
-            yield float(contacts.times[k]), FACES[contacts.on[k]]
+    before = -1
+    for time, touches, on in zip(own.times, own.touching, own.on, strict=True):
+        if touches and caught <= time < let_off and on != before:
+            before = on
+            yield time, FACES[on]
 
 
-def _release_and_lock(contacts: _Contacts, own: slice, at_entry: float, at_end: float) -> Marks | None:
-    """Release, first touch after it, last touch before the drop, and lock (s), among the wheel's events `own` of one beat."""
-    times, angle, holding = contacts.times[own], contacts.angle[own], contacts.held[own]
+def _release_and_lock(own: _Own, at_entry: float, at_end: float) -> Marks | None:
+    """Release, first touch after it, last touch before the drop, and lock (s), among the wheel's events of one beat."""
+    times, angle = own.times, own.angle
     way = at_end - at_entry
     if len(times) < 3 or not way > 0.0:
         return None
     # Free runs: no contact holds from one event to the next, and time passes.
-    free = (holding[:-1] == 0) & (np.diff(times) > 0.0)
-    dropping = free & (angle[1:] >= at_end - NEAR_REST * way)
-    if not dropping.any():
+    near = at_end - NEAR_REST * way
+    steps = range(len(times) - 1)
+    free = (k for k in steps if own.held[k] == 0 and times[k + 1] - times[k] > 0.0 and angle[k + 1] >= near)
+    drop = max(free, key=lambda k: angle[k + 1] - angle[k], default=None)
+    if drop is None:
         return None
-    drop = int(np.argmax(np.where(dropping, np.diff(angle), -np.inf)))
-    released = int(np.flatnonzero(angle[: drop + 1] <= angle[: drop + 1].min() + STANDING * way)[-1])
-    caught = np.flatnonzero(contacts.touching[own][released + 1 : drop + 1])
-    if len(caught) == 0:
-        return None
-    return float(times[released]), float(times[released + 1 + caught[0]]), float(times[drop]), float(times[drop + 1])
+    back = min(angle[: drop + 1]) + STANDING * way
+    released = max(k for k in range(drop + 1) if angle[k] <= back)
+    caught = next((k for k in range(released + 1, drop + 1) if own.touching[k]), None)
+    return None if caught is None else (times[released], times[caught], times[drop], times[drop + 1])
 
 
 def _with_angles(run: Trajectory, parts: Roles, rows: list[Phase]) -> list[Phase]:
