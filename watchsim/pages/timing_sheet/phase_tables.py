@@ -13,7 +13,8 @@ from watchsim.pages.html import Content, Markup, element, joined, section, table
 from watchsim.render.frame.marks.readouts import decimals_for, signed
 from watchsim.simulation.record.trajectory import Array
 
-ORDER = ("unlock", "catch-up", "impulse", "drop", "run to banking")
+ORDER = ("unlock", "catch-up", "impulse", "drop", "run to banking", "recoil")
+COLOURS = (0, 1, 2, 3, 4, 0)
 SIDES = ((1, "odd beats"), (0, "even beats"))
 HEAD = ("phase", "lasts (ms)", "balance at (°)", "balance turns (°)", "lever turns (°)", "wheel turns (°)")
 
@@ -64,7 +65,7 @@ def _kinds(phases: list[Phase]) -> list[_Kind]:
         lasts = np.array([1e3 * sum(one.end - one.start for one in beat) for beat in own])
         turns = np.degrees([np.sum([one.turns for one in beat], axis=0) for beat in own])
         at = np.degrees([beat[0].angles[2] for beat in own])
-        found.append(_Kind(f"{name} on {on}" if on else name, ORDER.index(name), lasts, at, turns))
+        found.append(_Kind(f"{name} on {on}" if on else name, COLOURS[ORDER.index(name)], lasts, at, turns))
     return found
 
 
