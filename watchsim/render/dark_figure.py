@@ -107,7 +107,7 @@ def _repaint(artist: Any) -> None:
             if not (isinstance(get(), str) and get() in ("none", "auto")):
                 put(on_dark(get()))
     elif isinstance(artist, Patch):
-        face, edge = artist.get_facecolor(), artist.get_edgecolor()
+        face, edge = to_rgba(artist.get_facecolor()), to_rgba(artist.get_edgecolor())
         if face[3]:
             artist.set_facecolor(on_dark(face, face=True))
         if edge[3]:

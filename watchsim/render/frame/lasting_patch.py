@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 from matplotlib.backend_bases import GraphicsContextBase, RendererBase
+from matplotlib.colors import to_rgba
 from matplotlib.patches import PathPatch
 
 
@@ -25,8 +26,9 @@ class LastingPatch(PathPatch):
 
     def _look(self, renderer: RendererBase) -> tuple[GraphicsContextBase, Any]:
         """The context for its edge, and the colour of its face (None: left empty)."""
-        context, edge, face = renderer.new_gc(), self.get_edgecolor(), self.get_facecolor()
-        context.set_alpha(self.get_alpha())
+        context, edge, face = renderer.new_gc(), to_rgba(self.get_edgecolor()), to_rgba(self.get_facecolor())
+        if (alpha := self.get_alpha()) is not None:
+            context.set_alpha(alpha)
         context.set_foreground(edge, isRGBA=True)
         context.set_linewidth(self.get_linewidth() if edge[3] else 0.0)
         context.set_capstyle(self.get_capstyle())
