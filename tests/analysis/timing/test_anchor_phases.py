@@ -12,6 +12,7 @@ from watchsim.analysis.timeline.table import timeline_text
 from watchsim.analysis.timing.beats import beats
 from watchsim.analysis.timing.body_contacts import held
 from watchsim.analysis.timing.phases import phases
+from watchsim.pages.timing_sheet.phase_tables import phase_tables
 from watchsim.profiles_path import profiles_dir
 from watchsim.render.figures.passing_phases import passing
 from watchsim.scene.file.load import load
@@ -89,3 +90,8 @@ def test_contacts_that_hold_before_the_first_event_are_counted():
     assert held(np.arange(6.0), kinds).tolist() == [0, 1, 0, 1, 0, 1]
     kinds = np.array([close, out, out, close, out])  # the second record begins with one that holds
     assert held(np.arange(5.0), kinds, ((0.0, 1.5), (1.9, 4.0))).tolist() == [1, 0, 0, 1, 0]
+
+
+def test_the_table_of_an_anchor_names_no_lever(graham):
+    (made,) = phase_tables(phases(graham))
+    assert "balance turns" in made and "lever turns" not in made and "locked" not in made

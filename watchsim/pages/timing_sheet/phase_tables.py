@@ -47,8 +47,11 @@ def phase_tables(phases: list[Phase]) -> Iterator[Markup]:
         lengths = [(kind.name, float(np.mean(kind.lasts)), kind.number) for kind in kinds]
         told = f"Phases of {title}: {', '.join(f'{name} {length:.3g} ms' for name, length, _ in lengths)}"
         count = max(len(kind.lasts) for kind in kinds)
-        rows = [kind.row() for kind in kinds]
-        parts += [strip(lengths, "ms", told), table(HEAD, rows, f"{title.capitalize()}: means of {count} beats")]
+        anchor = all(np.array_equal(kind.turns[:, 1], kind.turns[:, 2]) for kind in kinds)  # the oscillator is its own lever
+        shown = [k for k, head in enumerate(HEAD) if not (anchor and head.startswith("lever"))]
+        rows = [[kind.row()[k] for k in shown] for kind in kinds]
+        heads = [HEAD[k] for k in shown]
+        parts += [strip(lengths, "ms", told), table(heads, rows, f"{title.capitalize()}: means of {count} beats")]
     if parts:
         yield section("phases", "Phases of a beat", *parts)
 
