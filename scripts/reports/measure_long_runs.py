@@ -264,12 +264,12 @@ def picture(runs: list[Course], path: Path) -> None:
     axes[0].set(ylabel="difference, °")
     axes[1].set(ylabel="residual, pJ")
     axes[2].set(ylabel="share", ylim=(1e-13, 1e-7))
-    titles = ("Mean amplitude of a minute, from the last", "Residual of the energy account", "As a share of the work put in")
+    titles = ("Amplitude, from its last value", "Residual of the account", "Share of the work put in")
     for axis, words in zip(axes, titles, strict=True):
         axis.set_xlabel("minute")
         named(axis, words)
         dress(axis)
-    key(axes[1], [(line, str(line.get_label())) for line in axes[1].lines])
+    key(axes[2], [(line, str(line.get_label())) for line in axes[2].lines], loc="upper right")
     save(made, path)
 
 

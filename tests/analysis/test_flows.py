@@ -63,16 +63,18 @@ def test_between_rows_stand_the_quintic_and_the_cubic(numbers: list[float], h: f
 
 
 def test_work_and_losses_are_those_of_the_ledger(tmp_path: Path) -> None:
-    """The solver sums powers as it steps, with its own steps and rules."""
+    """The solver sums powers as it steps, with its own steps and rules, those of weights among what is put in."""
     place = tmp_path / "scene.toml"
     place.write_text(SCENE + MORE, encoding="utf-8")
     scene = load(place)
     run = simulate(scene, 1.0)
     found = flows(run, compile_scene(scene))
     assert run.energy["in_J"] != 0.0 and run.energy["dissipated"]["damping"] > 1e-6
-    assert found.drive[-1] == pytest.approx(run.energy["in_J"], rel=1e-7)
+    fallen = _work_of_gravity(run)
+    assert abs(fallen) > 1e-4
+    assert found.drive[-1] + fallen == pytest.approx(run.energy["in_J"], rel=1e-7)
     assert found.damped[-1].sum() == pytest.approx(run.energy["dissipated"]["damping"], rel=1e-7)
-    assert found.stored[-1] - found.stored[0] == pytest.approx(run.energy["stored_J"], rel=1e-7)
+    assert found.stored[-1] - found.stored[0] + fallen == pytest.approx(run.energy["stored_J"], rel=1e-7)
 
 
 def test_gravity_lends_what_the_centre_of_mass_has_fallen(tmp_path: Path) -> None:

@@ -39,6 +39,14 @@ def test_pictures_are_as_wide_as_print_asks(lever: Path, tmp_path: Path, width: 
     assert abs(iio.improps(path).shape[1] - dots) <= 1  # 200 dots an inch
 
 
+def test_a_dark_plot_has_dark_ground(lever: Path, tmp_path: Path) -> None:
+    light, dark = tmp_path / "light.png", tmp_path / "dark.png"
+    assert main(["plot", str(lever), "--kind", "energy", "-o", str(light)]) == 0
+    assert main(["plot", str(lever), "--kind", "energy", "--dark", "-o", str(dark)]) == 0
+    means = [iio.imread(path)[..., :3].mean() for path in (light, dark)]
+    assert means[0] > 220.0 and means[1] < 80.0
+
+
 def test_short_forms_are_kinds(lever: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["plot", str(lever), "--phases", "--tape", "-o", str(tmp_path / "both")]) == 0
     assert sorted(path.name for path in (tmp_path / "both").iterdir()) == ["phases.png", "tape.png"]

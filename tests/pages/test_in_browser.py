@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 from pages.browser import opened
+from pages.pace import played
 from scipy.ndimage import maximum_filter
 
 from watchsim.analysis.contact_forces import forces
@@ -307,3 +308,11 @@ def test_it_keeps_up_with_the_screen(written: Path) -> None:
             page.wait_for_timeout(50)
             took.append(page.evaluate("watchsim.pace().drawn"))
         assert np.percentile(took, 25) < 8.0
+
+
+def test_a_processor_has_time_for_sixty_frames_a_second(written: Path) -> None:
+    with opened(written, *SIZE) as page:
+        found = played(page, 4.0)
+        assert page.said == []
+    assert found.frames > 10
+    assert found.busy / found.frames < 1.0 / 60.0

@@ -23,6 +23,7 @@ PHASES = {  # of a beat; pale, to lie behind curves, and distinct for every kind
     "impulse": "#8cd3c0",
     "drop": "#f0d7e5",
     "run to banking": "#eebf99",
+    "recoil": "#a6cee4",  # of an anchor's wheel, where a lever unlocks
 }
 SECOND, ELSE = "#66c5ab", "#eeeeee"  # an impulse that follows another; any other phase
 PHASE_LINES = {  # the same for curves: Okabe and Ito's colours
@@ -31,6 +32,7 @@ PHASE_LINES = {  # the same for curves: Okabe and Ito's colours
     "impulse": "#009e73",
     "drop": "#cc79a7",
     "run to banking": "#d55e00",
+    "recoil": "#0072b2",
 }
 
 

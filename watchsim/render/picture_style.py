@@ -54,6 +54,7 @@ DARK = Style(
         "impulse": "#27502f",
         "drop": "#3e3663",
         "run to banking": "#23466a",
+        "recoil": "#5f2b30",
     },
     shade=(0.0, 0.0, 0.0, 0.4),
 )

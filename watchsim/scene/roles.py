@@ -6,7 +6,7 @@ the wheel is driven, the lever touches both.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from watchsim.scene.gear_trains import goes_with
 from watchsim.scene.oscillation import oscillators
@@ -36,6 +36,14 @@ def roles(scene: Scene) -> Roles:
     found = [(wheel, None if oscillator is None else _lever(scene, oscillator, wheel)) for wheel in wheels]
     wheel, lever = next((one for one in found if one[1] is not None), found[0] if found else (None, None))
     return Roles(oscillator, wheel, lever)
+
+
+def with_anchor(scene: Scene) -> Roles:
+    """The same; a pendulum with its anchor, driven by the wheel itself, is the lever, too."""
+    found = roles(scene)
+    if found.wheel is None or found.oscillator is None or found.lever is not None or not keeps_time(scene):
+        return found
+    return replace(found, lever=found.oscillator) if found.oscillator in partners(scene, found.wheel) else found
 
 
 def _lever(scene: Scene, oscillator: str, wheel: str) -> str | None:

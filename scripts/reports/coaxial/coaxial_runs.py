@@ -19,10 +19,10 @@ KNOCKS = 337.0  # degrees: there the pin strikes the outside of the fork
 PERIOD = 1.0 / 3.5  # s
 CLOSE = 0.05  # degrees
 LOOKS = (
-    (0, "#2e7d57", "o", "every impulse given"),
-    (1, "#d9a514", "s", "indirect impulse missed"),
-    (2, "#b3261e", "v", "direct impulse missed too"),
-    (3, "#5f3dc4", "X", "knocks"),
+    (0, "#009e73", "o", "every impulse given"),
+    (1, "#e69f00", "s", "indirect impulse missed"),
+    (2, "#d55e00", "v", "direct impulse missed too"),
+    (3, "#cc79a7", "X", "knocks"),
 )
 
 
@@ -85,29 +85,29 @@ def held_up_to(kinds: list[int]) -> float:
 
 def range_map(scene: Scene) -> str:
     """The map of starts and torques; picture and text."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
+    from watchsim.render.figures.figure_style import CURVE, dress, figure, key, save
+    from watchsim.render.palette import INK
 
     kinds = np.array([[missing(scene, torque, start) for torque in TORQUES] for start in STARTS])
     steady = [ws.steady(scene.set("torques.0.value", f"{-torque} µN·m")).amplitude_deg for torque in TORQUES]
-    figure = Figure(figsize=(8.5, 5.2), facecolor="#f6f3ed", layout="constrained")
-    FigureCanvasAgg(figure)
-    axes = figure.add_subplot()
+    made = figure(height=100.0, layout="constrained")
+    axes = made.subplots()
     for kind, colour, mark, words in LOOKS:
         rows, columns = np.nonzero(kinds == kind)
         if len(rows):
-            axes.plot(np.array(TORQUES)[columns], np.array(STARTS)[rows], mark, color=colour, markersize=8, label=words)
+            axes.plot(np.array(TORQUES)[columns], np.array(STARTS)[rows], mark, color=colour, markersize=4.5, label=words)
     settles = [math.nan if value is None else value for value in steady]
-    axes.plot(TORQUES, settles, "-", color="#23272c", linewidth=1.6, label="where it settles")
+    axes.plot(TORQUES, settles, "-", color=INK, linewidth=CURVE, label="where it settles")
     axes.set_xscale("log")
     axes.set_xticks(TORQUES, [f"{t:g}" for t in TORQUES])
     axes.minorticks_off()
     axes.set_xlabel("torque on the escape wheel (µN·m)")
     axes.set_ylabel("amplitude at the start (°)")
     axes.set_ylim(40.0, 350.0)
-    axes.grid(color="#ddd8ce", linewidth=0.6)
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, 1.12), ncols=5, fontsize=8.5, frameon=False)
-    figure.savefig(IMAGES / "coaxial_range.png", dpi=110)
+    dress(axes)
+    entries = [(line, str(line.get_label())) for line in axes.lines]
+    key(axes, entries, loc="upper center", bbox_to_anchor=(0.5, 1.1), ncols=5)
+    save(made, IMAGES / "coaxial_range.png")
     lines = ["| torque, µN·m | settles at, ° | every impulse given from 60° up to, ° |", "|---:|---:|---:|"]
     for j, torque in enumerate(TORQUES):
         settled = "knocks" if steady[j] is None else f"{steady[j]:.1f}"

@@ -16,6 +16,7 @@ from coaxial_scenes import IMAGES, NAMES, bound, everywhere, pulled, supplied
 
 import watchsim as ws
 from watchsim.geometry.solids.mass import mass_properties
+from watchsim.render.figures.figure_style import CURVE, SERIES, dress, figure, key, save
 from watchsim.scene.scene import Scene
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 FRICTIONS, RESTITUTIONS = (0.0, 0.05, 0.10, 0.15, 0.20), (0.0, 0.1, 0.2, 0.3, 0.4, 0.5)
 PULLS = (0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3)  # shares of the torque
 INERTIAS = (0.05, 0.07, 0.085, 0.1, 0.15, 0.2)  # mg·cm², of the co-axial wheel
-INKS = {"coaxial": "#1f4e79", "swiss_lever": "#b5452c"}
+INKS = {"coaxial": SERIES[0], "swiss_lever": SERIES[1]}
 MARKS = {"coaxial": "o", "swiss_lever": "s"}
 STEEL = 7850.0  # kg/m³
 KEYS = {  # of both scenes alike; contacts have other numbers
@@ -121,7 +122,7 @@ def rubbed(both: dict[str, Scene]) -> tuple[str, str]:
     weak = {name: pulled(scene, 0.6) for name, scene in both.items()}
     friction = series(weak, FRICTIONS, lambda scene, x: everywhere(scene, x, 0.0))
     restitution = series(weak, RESTITUTIONS, lambda scene, x: everywhere(scene, 0.15, x))
-    figure, axes = _panels(2, 2)
+    made, axes = _panels(2, 2)
     for column, (values, found, words) in enumerate(
         ((FRICTIONS, friction, "friction in all contacts"), (RESTITUTIONS, restitution, "restitution in all contacts"))
     ):
@@ -131,8 +132,8 @@ def rubbed(both: dict[str, Scene]) -> tuple[str, str]:
         axes[2 + column].set_xlabel(words)
     axes[0].set_ylabel("amplitude (°)")
     axes[2].set_ylabel("rate (s/d)")
-    axes[0].legend(frameon=False, fontsize=8)
-    _saved(figure, "friction")
+    key(axes[0], [(one, str(one.get_label())) for one in axes[0].lines])
+    _saved(made, "friction")
     return table("friction", FRICTIONS, friction), table("restitution", RESTITUTIONS, restitution)
 
 
@@ -141,22 +142,22 @@ def driven(both: dict[str, Scene]) -> str:
     found = series(both, PULLS, pulled)
     smooth = series({n: everywhere(s, 0.0, 0.0) for n, s in both.items()}, PULLS, pulled)
     work = 1e9 * supplied("coaxial", both["coaxial"]) * np.array(PULLS)
-    figure, (axes,) = _panels(1, 1)
+    made, (axes,) = _panels(1, 1)
     for name in both:
         _line(axes, work, [one.amplitude for one in found[name]], name)
         _line(axes, work, [one.amplitude for one in smooth[name]], name, dashed=True, words=f"{NAMES[name]}, no friction")
     axes.plot(work, [bound(1e-9 * one) for one in work], color="#777777", label="all of the work reaches the balance")
     axes.set_xlabel("work of the drive in an oscillation (nJ)")
     axes.set_ylabel("amplitude (°)")
-    axes.legend(frameon=False, fontsize=8)
-    _saved(figure, "best")
-    figure, (axes,) = _panels(1, 1)
+    key(axes, [(one, str(one.get_label())) for one in axes.lines])
+    _saved(made, "best")
+    made, (axes,) = _panels(1, 1)
     for name in both:
         _line(axes, [one.amplitude for one in found[name]], [one.rate for one in found[name]], name)
     axes.set_xlabel("amplitude (°), by torque")
     axes.set_ylabel("rate (s/d)")
-    axes.legend(frameon=False, fontsize=8)
-    _saved(figure, "isochronism")
+    key(axes, [(one, str(one.get_label())) for one in axes.lines])
+    _saved(made, "isochronism")
     return table("share of the torque", PULLS, found)
 
 
@@ -218,24 +219,18 @@ def weighed(scene: Scene) -> str:
 
 
 def _panels(rows: int, columns: int) -> tuple[Figure, list[Axes]]:
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(
-        figsize=(4.3 * columns + 2.2 * (columns == 1), 2.6 * rows + 1.2 * (rows == 1)), dpi=120, layout="constrained"
-    )
-    FigureCanvasAgg(figure)
-    found: list[Any] = list(figure.subplots(rows, columns, squeeze=False, sharex="col").flat)
+    made = figure(height=58.0 * rows + 17.0 * (rows == 1), layout="constrained")
+    found: list[Any] = list(made.subplots(rows, columns, squeeze=False, sharex="col").flat)
     for axes in found:
-        axes.grid(color="#ddd8ce", linewidth=0.6)
+        dress(axes)
         axes.ticklabel_format(useOffset=False)
-    return figure, found
+    return made, found
 
 
 def _line(axes: Axes, x: Any, y: list[float], name: str, *, dashed: bool = False, words: str = "") -> None:
     style = "--" if dashed else "-"
-    axes.plot(x, y, style, marker=MARKS[name], markersize=4, color=INKS[name], linewidth=1.2, label=words or NAMES[name], alpha=0.6 if dashed else 1.0)  # fmt: skip
+    axes.plot(x, y, style, marker=MARKS[name], markersize=2.6, color=INKS[name], linewidth=CURVE, label=words or NAMES[name], alpha=0.6 if dashed else 1.0)  # fmt: skip
 
 
-def _saved(figure: Figure, name: str) -> None:
-    figure.savefig(IMAGES / f"coaxial_{name}.png")
+def _saved(made: Figure, name: str) -> None:
+    save(made, IMAGES / f"coaxial_{name}.png")

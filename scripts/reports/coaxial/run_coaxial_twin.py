@@ -51,29 +51,31 @@ def stepped(scene: Scene) -> Iterator[Stepped]:
 
 def twin(found: list[Stepped]) -> str:
     """Table and picture of the time stepping."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
+    from watchsim.render.figures.figure_style import BAD, CURVE, HAIR, SERIES, SMALL, dress, figure, key, save
+    from watchsim.render.palette import FAINT
 
     steps = np.array([one.step for one in found]) * 1e6
-    figure = Figure(figsize=(6.4, 3.8), facecolor="#f6f3ed", layout="constrained")
-    FigureCanvasAgg(figure)
-    axes = figure.add_subplot()
-    for name, words, mark in (
+    made = figure(height=80.0, layout="constrained")
+    axes = made.subplots()
+    told = (
         ("worst", "amplitude, worst beat of 28 (°)", "o"),
         ("end", "amplitude at the end (°)", "s"),
         ("rate", "rate (s/d)", "^"),
-    ):
-        axes.loglog(steps, [getattr(one, name) for one in found], mark + "-", label=words, linewidth=1.2)
-    axes.loglog(steps, found[0].worst * steps / steps[0], "--", color="#888888", label="first order")
-    axes.axhline(1e-3, color="#b3261e", linewidth=0.8)
-    axes.annotate("10⁻³ °", (steps[0], 1e-3), xytext=(-4, 3), textcoords="offset points", ha="right", fontsize=8)
+    )
+    for (name, words, mark), colour in zip(told, (SERIES[0], SERIES[2], SERIES[3]), strict=True):
+        y = [getattr(one, name) for one in found]
+        axes.loglog(steps, y, mark + "-", color=colour, label=words, linewidth=CURVE, markersize=3.0)
+    axes.loglog(steps, found[0].worst * steps / steps[0], "--", color=FAINT, linewidth=CURVE, label="first order")
+    entries = [(line, str(line.get_label())) for line in axes.lines]
+    axes.axhline(1e-3, color=BAD, linewidth=HAIR)
+    axes.annotate("10⁻³ °", (steps[0], 1e-3), xytext=(-4, 3), textcoords="offset points", ha="right", fontsize=SMALL)
     axes.set_xticks(steps, [f"{one:g}" for one in steps])
     axes.minorticks_off()
     axes.set_xlabel("step of the time stepping (µs)")
     axes.set_ylabel("difference from the motion by events")
-    axes.grid(color="#ddd8ce", linewidth=0.6)
-    axes.legend(fontsize=8, frameon=False)
-    figure.savefig(IMAGES / "coaxial_twin.png", dpi=120)
+    dress(axes)
+    key(axes, entries, loc="upper left")
+    save(made, IMAGES / "coaxial_twin.png")
     lines = ["| step, µs | worst beat, ° | end of 4 s, ° | rate, s/d |", "|---:|---:|---:|---:|"]
     for one in found:
         lines.append(f"| {1e6 * one.step:g} | {one.worst:.1e} | {one.end:.1e} | {one.rate:.1e} |")

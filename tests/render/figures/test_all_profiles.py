@@ -11,7 +11,18 @@ import watchsim as ws
 from watchsim.commands.common.plot_kinds import KINDS, Request
 
 PROFILES = sorted(path.name for path in Path(str(ws.profiles_dir())).iterdir() if (path / "scene.toml").is_file())
-WITHOUT_BEATS = {"geneva", "geneva_stop", "incline", "involute_pair", "balance", "cam", "jumper", "ratchet", "verge", "governor"}
+WITHOUT_BEATS = {
+    "geneva",
+    "geneva_stop",
+    "incline",
+    "involute_pair",
+    "balance",
+    "cam",
+    "jumper",
+    "ratchet",
+    "verge",
+    "governor",
+}
 # The wheel and the oscillator touch themselves; a detent is no lever.
 WITHOUT_PHASES = {"graham", "recoil_anchor", "detent", "pin_wheel", "cylinder", "duplex"}
 DURATION = {"graham": 4.0, "recoil_anchor": 4.0, "pin_wheel": 8.0}  # s: slow pendulums; a second of all others

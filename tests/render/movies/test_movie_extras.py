@@ -35,7 +35,7 @@ def near(picture, colour):
 
 @pytest.mark.parametrize("turn", [0.0, -0.5 * math.pi, 0.3])
 def test_an_inset_holds_the_rectangle_and_nothing_is_stretched(turn):
-    made = insets(watch_run(), (0.0, 2.0), "-1.4, 1.9 : -0.8, 2.5", BOX, turn)
+    made = insets(watch_run(), (0.0, 2.0), ["-1.4, 1.9 : -0.8, 2.5"], [BOX], turn)[0]
     matrix = made.matrix({})
     for x, y in ((-1.4e-3, 1.9e-3), (-0.8e-3, 2.5e-3), (-1.4e-3, 2.5e-3)):
         u, v, _ = matrix @ (x, y, 1.0)
@@ -74,10 +74,10 @@ def test_an_outline_is_counted_from_one():
     run = watch_run()
     body = next(body for body in run.scene.bodies if body.name == "lever")
     layer = body.loops[0].layer
-    insets(run, (0.0, 2.0), [f"lever.{layer}.1"], [BOX], 0.0)[0]
+    insets(run, (0.0, 2.0), [f"lever.{layer}.1"], [BOX], 0.0)
     for number in (0, 99, "x"):
         with pytest.raises(ValueError, match="counted"):
-            insets(run, (0.0, 2.0), [f"lever.{layer}.{number}"], [BOX], 0.0)[0]
+            insets(run, (0.0, 2.0), [f"lever.{layer}.{number}"], [BOX], 0.0)
 
 
 def test_the_wheel_presses_on_the_stone_of_the_beat():
@@ -101,7 +101,7 @@ def test_the_wheel_presses_on_the_stone_of_the_beat():
 def test_no_stones_no_inset():
     run = ws.simulate(ws.load(ws.profiles_dir() / "incline"), duration=0.05)
     with pytest.raises(ValueError, match=r'inset "exit stone" is not known.*nothing swings'):
-        insets(run, (0.0, 0.05), ["exit stone"], [BOX], 0.0)[0]
+        insets(run, (0.0, 0.05), ["exit stone"], [BOX], 0.0)
 
 
 @pytest.mark.parametrize("size", [(1280.0, 500.0), (700.0, 1200.0)])

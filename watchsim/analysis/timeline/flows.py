@@ -29,9 +29,9 @@ class Flows:
 
     t       s
     q, u    absolute coordinates and velocities (rows, n)
-    stored  kinetic energy and energy of springs, J
+    stored  kinetic energy, energy of springs and of the weight of turning bodies, such as a pendulum, J
     own     the same of each coordinate (rows, n); springs between carried bodies count with neither
-    drive   work of torques, weights and tables so far, J
+    drive   work of torques, forces and tables so far, J
     driven  the same on each coordinate
     damped  what damping and dry bearings of each coordinate have taken so far, J (rows, n)
     swept   integral of each coordinate over time so far, rad s
@@ -56,6 +56,7 @@ def flows(run: Trajectory, compiled: Compiled, rows: slice = slice(None)) -> Flo
     c = model.coordinates
     way = q - np.asarray(c.rest)
     own = 0.5 * (np.asarray(c.mass) * u**2 + np.asarray(c.stiffness) * way**2)
+    own -= np.asarray(c.weight_y) * np.sin(q) + np.asarray(c.weight_x) * np.cos(q)  # what the weight of a turning body has done
     own[:, np.asarray(c.driven) != 0] = 0.0  # a prescribed motion holds no energy that counts
     stored = own.sum(axis=1)
     for joint in model.joints:
@@ -114,8 +115,7 @@ Row = dict[int, Array]  # coordinate -> its values over all steps
 def _changing(model: Model) -> tuple[list[int], list[int]]:
     """The coordinates on which a force changes with place or time, and those with damping: their powers are integrated."""
     c = model.coordinates
-    moved = {int(k) for k in np.flatnonzero((c.weight_x != 0.0) | (c.weight_y != 0.0))}
-    moved |= {int(k) for joint in model.joints if c.driven[joint.on] for k in (joint.coordinate, joint.on)}
+    moved = {int(k) for joint in model.joints if c.driven[joint.on] for k in (joint.coordinate, joint.on)}
     slowed = {int(k) for k in np.flatnonzero((c.coulomb != 0.0) | (c.viscous != 0.0) | (c.quadratic != 0.0))}
     for table in model.tables:
         moved |= {int(table.coordinate), *([int(table.on)] if table.on >= 0 else [])}
@@ -164,11 +164,9 @@ def _constant_work(model: Model, way: Array) -> Array:
 
 
 def _changing_power(model: Model, t: Array, q: Row, u: Row) -> Array:
-    """Power of weights and of tables on each coordinate, W (steps, n)."""
+    """Power of tables on each coordinate, W (steps, n)."""
     c = model.coordinates
     power = np.zeros((len(t), len(c)))
-    for k, angle in q.items():
-        power[:, k] = (np.cos(angle) * c.weight_y[k] - np.sin(angle) * c.weight_x[k]) * u[k]
     for table in model.tables:
         knots = model.knots[table.start : table.start + table.count]
         own, on = int(table.coordinate), int(table.on)

@@ -21,7 +21,7 @@ from watchsim.analysis.timing.body_contacts import between, contact_columns
 from watchsim.analysis.timing.phases import Phase, each_phase
 from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.scene.recording import STATISTICS
-from watchsim.scene.roles import Roles, drive_direction, roles
+from watchsim.scene.roles import Roles, drive_direction, with_anchor
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.methods import EVENT_DRIVEN
 from watchsim.simulation.record.trajectory import Array, Trajectory
@@ -36,8 +36,8 @@ Triple = tuple[float, float, float]
 class Energies:
     """Of one phase, J. supplied = stored + damping + friction + impacts.
 
-    supplied    work of the drive and of weights
-    stored      gain of kinetic energy and of springs
+    supplied    work of the drive
+    stored      gain of kinetic energy, of springs, and of weights on turning bodies, such as a pendulum's
     to_balance  work of all contacts on the oscillator
     damping     taken by the air, by bearings
     friction    taken at the contacts: what is left of the books
@@ -117,7 +117,7 @@ def each_stage(run: Trajectory, found: Beats | None = None, window: Sequence[flo
 
 def stages(run: Trajectory, found: Beats | None = None, window: Sequence[float] | None = None) -> Iterator[Stages]:
     """The same in columns: the rows of a long run are read a few beats at a time."""
-    parts, compiled = roles(run.scene), compile_scene(run.scene)
+    parts, compiled = with_anchor(run.scene), compile_scene(run.scene)
     if not (parts.wheel and parts.lever):
         return
     rests = _rests(run, compiled, parts)
@@ -128,7 +128,7 @@ def stages(run: Trajectory, found: Beats | None = None, window: Sequence[float] 
         first = max(0, int(np.searchsorted(run.t, told[0].start, side="left")) - 1)
         last = int(np.searchsorted(run.t, told[-1].end, side="right")) + 1
         made = flows(run, compiled, slice(first, last))
-        stones = _pallets(run, compiled, parts, rests, [row for row in told if row.name == "unlock"])
+        stones = _pallets(run, compiled, parts, rests, [rows[0] for rows in some])
         yield _columns(run, parts, compiled, made, told, stones)
         let_go(run.t, run.q, run.u, run.a, run.events)
 

@@ -9,8 +9,10 @@ from watchsim.analysis.timeline.friction import friction_by_pair
 from watchsim.analysis.timeline.rows import Stage, can_be_told, timeline
 from watchsim.analysis.timing.beats import beats
 from watchsim.analysis.timing.rows_at_hand import nominal_period
-from watchsim.scene.roles import roles
+from watchsim.scene.roles import with_anchor
 from watchsim.simulation.record.trajectory import Trajectory
+
+RESTING = ("locked", "recoil")  # the last phase of a beat
 
 
 @dataclass(frozen=True)
@@ -28,6 +30,11 @@ class Beat:
         return self.stages[0].phase.start
 
     @property
+    def first(self) -> str:
+        """What the beat begins with: the first touch of pin and fork, or of an anchor the impulse."""
+        return "first touch" if self.stages[0].name == "unlock" else "beginning of the impulse"
+
+    @property
     def end(self) -> float:
         return self.stages[-1].phase.end
 
@@ -43,14 +50,16 @@ def shown_beats(run: Trajectory, window: Sequence[float] | None = None, rubbed: 
     Without `rubbed` what friction took is not worked out by pair, which takes most of the time. ValueError in words where there
     are none.
     """
-    parts = roles(run.scene)
+    parts = with_anchor(run.scene)
     name = parts.oscillator
     if name is None:
         raise ValueError("nothing in this scene swings, so it has no beats")
     if parts.wheel is None:
         raise ValueError(f"phases are those of an escapement, and no driven wheel keeps {name} swinging")
     if parts.lever is None:
-        raise ValueError(f"phases exist where an escapement has a lever; none stands between {parts.wheel} and {name}")
+        raise ValueError(
+            f"phases exist where an escapement has a lever or an anchor; none stands between {parts.wheel} and {name}"
+        )
     if not can_be_told(run):
         raise ValueError("a timeline needs a run by events with all of them kept")
     found = beats(run)
@@ -59,7 +68,7 @@ def shown_beats(run: Trajectory, window: Sequence[float] | None = None, rubbed: 
         window = (last - 3.1 * nominal_period(run, name), last)
         stages = timeline(run, found, window)
         chosen = sorted({one.beat for one in stages})
-        whole = [beat for beat in chosen if any(one.beat == beat and one.name == "locked" for one in stages)][-2:]
+        whole = [beat for beat in chosen if any(one.beat == beat and one.name in RESTING for one in stages)][-2:]
         stages = [one for one in stages if one.beat in whole]
     else:
         stages = timeline(run, found, window)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from watchsim.analysis.timeline.rows import Stage
+from watchsim.analysis.timeline.rows import Stage, Triple
 from watchsim.analysis.timeline.shown_beats import Beat, shown_beats
-from watchsim.scene.roles import roles
+from watchsim.scene.roles import with_anchor
 from watchsim.simulation.record.trajectory import Trajectory
 
 NANO, KILO = 1e9, 1e-3
@@ -26,28 +26,28 @@ def timeline_text(run: Trajectory, told: list[Beat] | None = None) -> str:
 
 
 def _motion(run: Trajectory, told: list[Beat]) -> Iterator[str]:
-    parts = roles(run.scene)
-    names = [str(name)[:13] for name in (parts.wheel, parts.lever, parts.oscillator)]
+    parts = with_anchor(run.scene)
+    bodies = (parts.wheel, parts.lever, parts.oscillator)
+    shown = [k for k, name in enumerate(bodies) if name not in bodies[:k]]  # an anchor is its own oscillator
+    names = [str(bodies[k])[:13] for k in shown]
     yield f"Timeline, t = {told[0].start:.6f} s to {told[-1].end:.6f} s"
-    yield "angles in degrees and angular velocities in 1000 °/s, at the start of each phase; times in ms from the first touch"
+    start = told[0].first
+    yield f"angles in degrees and angular velocities in 1000 °/s, at the start of each phase; times in ms from the {start}"
     yield f"{'':{WIDTH}}{'start':>9}{'length':>9} " + "".join(f" {name:>19}" for name in names)
-    yield f"{'':{WIDTH}}{'ms':>9}{'ms':>9} " + f" {'°':>10} {'1000°/s':>8}" * 3
+    yield f"{'':{WIDTH}}{'ms':>9}{'ms':>9} " + f" {'°':>10} {'1000°/s':>8}" * len(shown)
     for beat in told:
         yield _heading(beat)
         for stage in beat.stages:
             phase = stage.phase
             times = f"{1e3 * (phase.start - beat.start):9.3f}{1e3 * (phase.end - phase.start):9.3f} "
-            places = (
-                f" {math.degrees(angle):10.3f} {KILO * math.degrees(rate):8.3f}"
-                for angle, rate in zip(phase.angles, stage.start_rates, strict=True)
-            )
-            yield f"  {title(stage):{WIDTH - 2}}{times}" + "".join(places)
+            yield f"  {title(stage):{WIDTH - 2}}{times}" + _places(phase.angles, stage.start_rates, shown)
         last = beat.stages[-1]
-        places = (
-            f" {math.degrees(angle):10.3f} {KILO * math.degrees(rate):8.3f}"
-            for angle, rate in zip(last.end_angles, last.end_rates, strict=True)
-        )
-        yield f"  {'end':{WIDTH - 2}}{1e3 * (beat.end - beat.start):9.3f}{'':9} " + "".join(places)
+        places = _places(last.end_angles, last.end_rates, shown)
+        yield f"  {'end':{WIDTH - 2}}{1e3 * (beat.end - beat.start):9.3f}{'':9} {places}"
+
+
+def _places(angles: Triple, rates: Triple, shown: list[int]) -> str:
+    return "".join(f" {math.degrees(angles[k]):10.3f} {KILO * math.degrees(rates[k]):8.3f}" for k in shown)
 
 
 def _heading(beat: Beat) -> str:

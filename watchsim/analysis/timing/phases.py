@@ -10,6 +10,9 @@ impulse         from there until the last touch before the drop; one row for eac
 drop            the long free run that ends near where the wheel comes to rest
 run to banking  from the lock, the end of the drop, until the lever first meets its banking
 locked          until the next touch of pin and fork
+
+An anchor that swings as one with the oscillator has an impulse, a drop, and then is locked (dead-beat) or has a recoil, until
+the next impulse begins.
 """
 
 from __future__ import annotations
@@ -17,27 +20,28 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import islice, pairwise
+from itertools import islice, pairwise, zip_longest
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from watchsim.analysis.timing.anchor_marks import STANDING, anchor_marks
 from watchsim.analysis.timing.beats import Beats, beats, beats_within
 from watchsim.analysis.timing.body_contacts import between, contact_columns, held, involves
 from watchsim.analysis.timing.escape_wheel import progress
 from watchsim.analysis.timing.rows_at_hand import is_recorded
-from watchsim.scene.roles import Roles, keeps_time, roles
+from watchsim.scene.roles import Roles, keeps_time, with_anchor
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.record.trajectory import Array, Pair, Trajectory
 
 Marks = tuple[float, float, float, float]
 
 TOUCH = (EventKind.IMPACT, EventKind.CLOSE)
+RECOIL = 1e-3  # of the wheel's advance in a beat: a wheel that turns back less is led by a dead-beat anchor
 NEAR_REST = 0.1  # of the wheel's advance in the beat: a free run that ends so near to rest may be the drop
 AT_ONCE = 4000  # phases whose angles are looked up together
 FACES = ("stone", "tooth", "balance")
-STANDING = 1e-6  # of the same: the wheel has not moved
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +84,7 @@ class _Own(NamedTuple):
 
 
 def phases(run: Trajectory, found: Beats | None = None) -> list[Phase]:
-    """The phases of all beats that were recorded whole; empty where the scene is no lever escapement.
+    """The phases of all beats that were recorded whole; empty where the scene is no escapement with a lever or an anchor.
 
     A beat in which the wheel does not advance, or in which a phase cannot be told, has no rows.
     """
@@ -97,18 +101,53 @@ def phases_within(run: Trajectory, window: Sequence[float]) -> list[Phase]:
 
 def each_phase(run: Trajectory, found: Beats | None = None, window: Sequence[float] | None = None) -> Iterator[Phase]:
     """The same one after the other, since a long run has a great many; only of beats that pass within a window (s)."""
-    parts = roles(run.scene)
+    parts = with_anchor(run.scene)
     if parts.wheel is None or parts.lever is None or parts.oscillator is None or len(run.t) == 0:
         return
     found = found or beats(run)
-    contacts, told = _contacts(run, parts, found), _told(run, found)
+    contacts = _contacts(run, parts, found)
+    within = np.ones(len(found), bool)
     if window is not None:
-        told &= (found.end >= window[0]) & (found.tick <= window[1])
-    at_entry, at_end = (progress(run, parts.wheel, np.where(told, t, run.t[0])) for t in (found.tick, found.end))
-    ways = zip(at_entry.tolist(), at_end.tolist(), strict=True)
-    rows = (phase for i, way in enumerate(ways) if told[i] for phase in _beat(found, contacts, i, way))
+        within = (found.end >= window[0]) & (found.start <= window[1])
+    of_beats = _beats_of_anchor if parts.lever == parts.oscillator else _beats
+    rows = of_beats(run, parts, found, contacts, within)
     while some := list(islice(rows, AT_ONCE)):
         yield from _with_angles(run, parts, some)
+
+
+def _beats(run: Trajectory, parts: Roles, found: Beats, contacts: _Contacts, within: NDArray[np.bool_]) -> Iterator[Phase]:
+    """Of a lever, in whatever order it unlocks, is pushed and locks."""
+    assert parts.wheel
+    told = within & _told(run, found)
+    at_entry, at_end = (progress(run, parts.wheel, np.where(told, t, run.t[0])) for t in (found.tick, found.end))
+    ways = zip(at_entry.tolist(), at_end.tolist(), strict=True)
+    for i, way in enumerate(ways):
+        if told[i]:
+            yield from _beat(found, contacts, i, way)
+
+
+def _beats_of_anchor(
+    run: Trajectory, parts: Roles, found: Beats, contacts: _Contacts, within: NDArray[np.bool_]
+) -> Iterator[Phase]:
+    """Of an anchor that swings as one with the oscillator: impulse, drop, then locked, or recoil where the wheel turns back."""
+    assert parts.wheel
+    at_rows = progress(run, parts.wheel, run.t)
+    needed = within | np.append(False, within[:-1])  # where a beat is locked ends with the impulse of the next
+    told = needed & is_recorded(run, found.start) & is_recorded(run, found.end)
+    marks = [
+        anchor_marks(contacts.times, contacts.held, contacts.angle, run.t, at_rows, *span) if known else None
+        for known, span in zip(told, zip(found.start.tolist(), found.end.tolist(), strict=True), strict=True)
+    ]
+    for i, (own, after) in enumerate(zip_longest(marks, marks[1:])):
+        if own is None or not within[i]:
+            continue
+        beat = found.before + i + 1
+        yield Phase(beat, "impulse", own.pushed, own.let_off)
+        yield Phase(beat, "drop", own.let_off, own.lock)
+        if after is not None:
+            at_lock, back = progress(run, parts.wheel, np.array([own.lock, after.pushed])).tolist()
+            recoils = at_lock - back > RECOIL * (at_lock - float(np.interp(own.pushed, run.t, at_rows)))
+            yield Phase(beat, "recoil" if recoils else "locked", own.lock, after.pushed)
 
 
 def _told(run: Trajectory, found: Beats) -> NDArray[np.bool_]:

@@ -1,5 +1,5 @@
 // What is shown now: the instant, the speed, the part chosen; everything else asks here.
-const PHASES = { unlock: 0, "catch-up": 1, impulse: 2, drop: 3, "run to banking": 4 };
+const PHASES = { unlock: 0, "catch-up": 1, impulse: 2, drop: 3, "run to banking": 4, recoil: 0 };
 const FLASH = 0.25; // s on the screen that an impact is seen
 
 class Player {

@@ -14,7 +14,8 @@ from watchsim.pages.html import Content, Markup, element, joined, section, table
 from watchsim.render.frame.marks.readouts import decimals_for, signed
 from watchsim.simulation.record.trajectory import Array
 
-ORDER = ("unlock", "catch-up", "impulse", "drop", "run to banking")
+ORDER = ("unlock", "catch-up", "impulse", "drop", "run to banking", "recoil")
+COLOURS = (0, 1, 2, 3, 4, 0)
 SIDES = ((1, "odd beats"), (0, "even beats"))
 HEAD = ("phase", "lasts (ms)", "balance at (°)", "balance turns (°)", "lever turns (°)", "wheel turns (°)")
 
@@ -71,8 +72,11 @@ def phase_tables(phases: Iterable[Phase]) -> Iterator[Markup]:
         lengths = [(kind.name, float(np.mean(kind.lasts)), kind.number) for kind in kinds]
         told = f"Phases of {title}: {', '.join(f'{name} {length:.3g} ms' for name, length, _ in lengths)}"
         count = max(len(kind.lasts) for kind in kinds)
-        rows = [kind.row() for kind in kinds]
-        parts += [strip(lengths, "ms", told), table(HEAD, rows, f"{title.capitalize()}: means of {count} beats")]
+        anchor = all(np.array_equal(kind.turns[:, 1], kind.turns[:, 2]) for kind in kinds)  # the oscillator is its own lever
+        shown = [k for k, head in enumerate(HEAD) if not (anchor and head.startswith("lever"))]
+        rows = [[kind.row()[k] for k in shown] for kind in kinds]
+        heads = [HEAD[k] for k in shown]
+        parts += [strip(lengths, "ms", told), table(heads, rows, f"{title.capitalize()}: means of {count} beats")]
     if parts:
         yield section("phases", "Phases of a beat", *parts)
 
@@ -82,8 +86,8 @@ def _kinds(sums: dict[tuple[str, str], _Sums]) -> list[_Kind]:
     found = []
     for (name, on), own in sorted(sums.items(), key=lambda item: ORDER.index(item[0][0])):
         turns = np.degrees(np.array(own.turns).reshape(-1, 3))
-        title = f"{name} on {on}" if on else name
-        found.append(_Kind(title, ORDER.index(name), np.array(own.lasts), np.degrees(np.array(own.at)), turns))
+        title, colour = f"{name} on {on}" if on else name, COLOURS[ORDER.index(name)]
+        found.append(_Kind(title, colour, np.array(own.lasts), np.degrees(np.array(own.at)), turns))
     return found
 
 

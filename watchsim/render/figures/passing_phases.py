@@ -8,7 +8,7 @@ from itertools import groupby
 from watchsim.analysis.timing.beats import beats, beats_within
 from watchsim.analysis.timing.phases import Phase, phases
 from watchsim.render.frame.pose_history import Window
-from watchsim.scene.roles import keeps_time, roles
+from watchsim.scene.roles import keeps_time, with_anchor
 from watchsim.simulation.record.trajectory import Trajectory
 
 MOST = 12  # beats; of more the phases would be hairlines
@@ -16,7 +16,7 @@ MOST = 12  # beats; of more the phases would be hairlines
 
 def passing(run: Trajectory, window: Window) -> list[list[Phase]]:
     """The phases of each beat that is in sight, cut to the window; none where there is no escapement, or too much is shown."""
-    found = roles(run.scene)
+    found = with_anchor(run.scene)
     if found.wheel is None or found.lever is None or not keeps_time(run.scene):
         return []
     near = beats_within(beats(run), window)

@@ -13,7 +13,7 @@ from watchsim.render.figures.figure_style import CURVE, FULL, MM, NARROW, SMALL,
 from watchsim.render.figures.phase_bands import name_above, shade
 from watchsim.render.frame.pose_history import dense
 from watchsim.render.palette import looks
-from watchsim.scene.roles import roles
+from watchsim.scene.roles import with_anchor
 from watchsim.simulation.record.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -40,8 +40,8 @@ def plot_phases(
     span = (max(span[0], float(run.t[0])), min(span[1], float(run.t[-1])))
     large = beats[-MANY:]
     columns = [*([None] if width >= NARROW else []), *large]
-    parts = roles(run.scene)
-    names = [name for name in (parts.wheel, parts.lever, parts.oscillator) if name]
+    parts = with_anchor(run.scene)
+    names = list(dict.fromkeys(name for name in (parts.wheel, parts.lever, parts.oscillator) if name))
     rows = 2 * len(names)
     height = TOP + rows * PANEL + FOOT
     made = figure(width, height)
@@ -93,7 +93,11 @@ def _column(
     for axes in panels[:-1]:
         axes.set_xticklabels([])
     stone = f", {beat.stages[0].pallet} stone" if beat is not None and beat.stages[0].pallet else ""
-    words = f"ms after t = {zero:.4f} s" if beat is None else f"ms from touch{stone}"
+    words = (
+        f"ms after t = {zero:.4f} s"
+        if beat is None
+        else f"ms from {'touch' if beat.first == 'first touch' else 'impulse'}{stone}"
+    )
     panels[-1].set_xlabel(words, fontsize=SMALL, labelpad=1.5)
     if beat is not None:
         name_above(panels[0], beat.stages, zero)

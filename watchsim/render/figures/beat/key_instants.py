@@ -40,7 +40,7 @@ from watchsim.render.frame.filled_parts import loops_of, outline
 from watchsim.render.frame.pose_history import dense
 from watchsim.render.palette import FAINT, FORCE, INK, looks
 from watchsim.render.posed import Posed
-from watchsim.scene.roles import roles
+from watchsim.scene.roles import with_anchor
 from watchsim.simulation.record.trajectory import Array, Trajectory
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ def plot_timeline(
     top = HEADING
     for beat, own, count, height in zip(beats_shown, instants, rows, heights, strict=True):
         stone = beat.stages[0].pallet
-        words = f"beat {beat.stages[0].beat}{f', {stone} stone' if stone else ''}, first touch at {beat.start:.6g} s"
+        words = f"beat {beat.stages[0].beat}{f', {stone} stone' if stone else ''}, {beat.first} at {beat.start:.6g} s"
         _words(made, EDGE, top + 0.5 * TITLE - 1.0, words, weight="bold")
         under = top + TITLE + count * (tall + WORDS)
         _pictures(made, (run, posed), [(one, *next(arrows)) for one in own], (top + TITLE, wide, tall), box, across)
@@ -110,11 +110,11 @@ def key_instants(beat: Beat) -> list[Instant]:
 
 
 def _box(run: Trajectory) -> tuple[float, float, float, float]:
-    """Least and largest x, least and largest y (mm) of the lever as it stands at the start, with room around it."""
-    name = roles(run.scene).lever
+    """Least and largest x, least and largest y (mm) of what can touch of the lever at the start, with room around it."""
+    name = with_anchor(run.scene).lever
     assert name is not None
     body = run.scene.body(name)
-    points = outline(loops_of(body), 1e-3 * max(compile_scene(run.scene).size, 1e-9))
+    points = outline(body.loops or loops_of(body), 1e-3 * max(compile_scene(run.scene).size, 1e-9))
     x0, y0, angle = run.pose(name, float(run.t[0]))
     c, s = np.cos(angle), np.sin(angle)
     x, y = x0 + c * points[:, 0] - s * points[:, 1], y0 + s * points[:, 0] + c * points[:, 1]
@@ -174,7 +174,7 @@ def _arrows(axes: Axes, points: Array, arrows: Array) -> None:
 
 def _pushed(run: Trajectory, instants: list[Instant]) -> list[tuple[Array, Array]]:
     """Where contacts press on the lever (mm) and how (N)."""
-    name = roles(run.scene).lever
+    name = with_anchor(run.scene).lever
     try:
         told = forces(run, [one.t for one in instants])
     except ValueError:
@@ -196,18 +196,19 @@ def _side(run: Trajectory, contact: int, name: str | None) -> float:
 
 
 def _curves(made: Figure, run: Trajectory, beat: Beat, instants: list[Instant], top: float) -> None:
-    """Angles of lever and balance with the phases shaded, and a number above each instant."""
+    """Angles of lever and balance (of an anchor and its wheel) with the phases shaded, and a number above each instant."""
     from matplotlib.ticker import MaxNLocator
 
     width = made.get_figwidth() / MM
-    parts, worn = roles(run.scene), looks(run.scene)
+    parts, worn = with_anchor(run.scene), looks(run.scene)
     wide = width - 2.0 * LEFT
     axes = panel(made, LEFT, top, wide, CURVES)
     other = axes.twinx()
     span = around(beat, run)
     t, q, _, _ = dense(run, span)
     x = 1e3 * (t - beat.start)
-    for own, name in ((axes, parts.lever), (other, parts.oscillator)):
+    beside = parts.wheel if parts.lever == parts.oscillator else parts.oscillator
+    for own, name in ((axes, parts.lever), (other, beside)):
         assert name is not None
         dress(own, grid="x" if own is axes else "none")
         values = np.degrees(q[:, run.slices[name].start])
@@ -220,7 +221,7 @@ def _curves(made: Figure, run: Trajectory, beat: Beat, instants: list[Instant], 
     other.spines["right"].set_linewidth(HAIR)
     shade(axes, (stage.phase for stage in beat.stages), beat.start)
     axes.set_xlim(*(1e3 * (end - beat.start) for end in span))
-    axes.set_xlabel("time after the first touch (ms)", labelpad=1.5)
+    axes.set_xlabel(f"time after the {beat.first} (ms)", labelpad=1.5)
     low, high = axes.get_xlim()
     at = [1e3 * (one.t - beat.start) for one in instants]
     for k, (where, placed) in enumerate(zip(at, spread(at, 3.4 * (high - low) / wide), strict=True)):
