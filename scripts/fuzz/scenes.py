@@ -2,8 +2,8 @@
 
 Damages scene files at random, one to three accidents each, and has `watchsim check` judge them (every fourth one `watchsim run`
 for a millisecond, where the check finds nothing; with `--command` each one another command). A file fails that brings exit
-status 4, a traceback, the death of the process or more than 20 s. Files are numbered: number k is the same damage on every machine, so `--only K` repeats it. With `--seed
-WORD` it is other damages, and of designs as well.
+status 4, a traceback, the death of the process or more than 20 s. Files are numbered: number k is the same damage on every
+machine, so `--only K` repeats it. With `--seed WORD` it is other damages, and of designs as well.
 """
 
 from __future__ import annotations
