@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import GenericAlias
 from typing import Annotated, Any
 
 import numpy as np
@@ -24,6 +25,12 @@ class Times:
 
     first: float
     last: float
+
+
+class Aliased:
+    """An array type as numpy 2.5 spells it: an alias that only holds its element."""
+
+    by: Annotated[GenericAlias(list, (np.float64,)), 2]  # type: ignore[valid-type]
 
 
 @entry
@@ -54,3 +61,8 @@ def test_views_share_the_memory_and_copies_do_not() -> None:
     apart = copy_of(record)
     apart.first = 7.0
     assert (record.first, record.last, apart.last) == (3.0, 5.0, 5.0)
+
+
+def test_the_element_of_an_array_is_found_however_its_type_is_made() -> None:
+    assert dtype_of(Aliased) == np.dtype([("by", "f8", (2,))])
+    assert dtype_of(Mixed)["by"].base == np.int64

@@ -134,7 +134,8 @@ def main() -> None:
         _make(made)
         for name in args.command or COMMANDS:
             begun, number, rounds = time.perf_counter(), 1, 0
-            arguments = [str(place / word) if word in NAMES else word for word in COMMANDS[name]]
+            command, *words = COMMANDS[name]
+            arguments = [command, *(str(place / word) if word in NAMES else word for word in words)]
             while True:
                 shutil.rmtree(place, ignore_errors=True)
                 shutil.copytree(made, place)

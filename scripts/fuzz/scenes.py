@@ -1,9 +1,9 @@
 """Does any damaged scene file bring watchsim down, or make it slow?
 
 Damages scene files at random, one to three accidents each, and has `watchsim check` judge them (every fourth one `watchsim run`
-for a millisecond, where the check finds nothing). A file fails that brings exit status 4, a traceback, the death of the process
-or more than 20 s. Files are numbered: number k is the same damage on every machine, so `--only K` repeats it. With `--seed
-WORD` it is other damages, and of designs as well.
+for a millisecond, where the check finds nothing; with `--command` each one another command). A file fails that brings exit
+status 4, a traceback, the death of the process or more than 20 s. Files are numbered: number k is the same damage on every
+machine, so `--only K` repeats it. With `--seed WORD` it is other damages, and of designs as well.
 """
 
 from __future__ import annotations
@@ -98,14 +98,21 @@ def in_a_process(place: Path, *commands: list[str]) -> tuple[str, float]:
     return words, took
 
 
-def one(number: int, seed: str, copies: Path) -> tuple[str, float]:
-    """Judge file `number`."""
+def one(number: int, seed: str, copies: Path, command: str) -> tuple[str, float]:
+    """Judge file `number`; the `command` runs where the check finds nothing."""
     name, content = damaged(number, seed)
     place = copies / Path(name).name / "scene.toml"
     place.write_bytes(content)
     commands = [["check", str(place), "--json"]]
-    if number % 4 == 0:
-        commands.append(["run", str(place), "--duration", "1 ms", "--no-plots", "-o", str(place.parent / "out")])
+    out = ["-o", str(place.parent / "out")]
+    if command == "run" and number % 4 == 0:
+        commands.append(["run", str(place), "--duration", "1 ms", "--no-plots", *out])
+    elif command == "steady":
+        commands.append(["steady", str(place)])
+    elif command == "export":
+        commands.append(["export", str(place), *out])
+    elif command == "turn":
+        commands.append(["check", str(place), "--turn", "--swing", "20°"])
     answer = in_a_process(copies, *commands)
     shutil.rmtree(place.parent / "out", ignore_errors=True)
     return answer
@@ -116,6 +123,7 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=500)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--seed", default="")
+    parser.add_argument("--command", choices=("run", "steady", "export", "turn"), default="run", help="besides the check")
     parser.add_argument("--only", type=int, help="print this file and what becomes of it")
     parser.add_argument("-o", "--output", type=Path, default=Path("results/fuzz"), help="where files that fail are kept")
     args = parser.parse_args()
@@ -133,7 +141,7 @@ def main() -> None:
         for name in SEEDED:
             shutil.copytree(ROOT / name, Path(folder) / Path(name).name)
         for number in range(args.first, args.first + args.count) if args.only is None else [args.only]:
-            words, took = one(number, args.seed, Path(folder))
+            words, took = one(number, args.seed, Path(folder), args.command)
             slowest = max(slowest, (took, number))
             kind = words.splitlines()[0] if words else "nothing said"
             kinds[kind] += 1

@@ -26,8 +26,14 @@ def dtype_of(fields: type) -> np.dtype[Any]:
             described.append((name, _CODES[kind]))
         else:
             array, length = get_args(kind)
-            described.append((name, get_args(get_args(array)[1])[0], (length,)))
+            described.append((name, _element(array), (length,)))
     return np.dtype(described)
+
+
+def _element(kind: Any) -> Any:
+    """`np.float64` of `NDArray[np.float64]`: an alias whose parts lie elsewhere from numpy 2.5 on."""
+    parts = get_args(kind)
+    return _element(parts[-1]) if parts else kind
 
 
 def blank(fields: type[Fields]) -> Fields:

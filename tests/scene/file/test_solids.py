@@ -140,8 +140,9 @@ MISUSES = [
     ('layer = "ROLLER"\n' + PLATE + "turns = 3\n", "turns", "belongs to a hairspring"),
     ('layer = "ROLLER"\n' + PLATE + "lying = true\n", "lying", "belongs to a turned solid"),
     ('layer = "ROLLER"\n' + PLATE + "count = 3\n", "count", "nothing could touch the copies"),
-    ('layer = "WEIGHT"\n' + PLATE + "count = 0\n", "count", "a whole number from 1 on"),
-    ('layer = "WEIGHT"\n' + PLATE + "count = 2.5\n", "count", "a whole number from 1 on"),
+    ('layer = "WEIGHT"\n' + PLATE + "count = 0\n", "count", "a whole number from 1 to 1000"),
+    ('layer = "WEIGHT"\n' + PLATE + "count = 1e30\n", "count", "a whole number from 1 to 1000"),  # took all memory
+    ('layer = "WEIGHT"\n' + PLATE + "count = 2.5\n", "count", "a whole number from 1 to 1000"),
     ('layer = "WEIGHT"\n' + PLATE + 'count = "two"\n', "count", "does not begin with a number"),
     ('layer = "WEIGHT"\n' + PLATE + "turnd = 1\n", "turnd", 'Did you mean "turned"?'),
     (STAFF + 'thickness = "1 mm"\n', "thickness", "has its size from its profile"),

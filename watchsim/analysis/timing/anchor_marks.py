@@ -25,7 +25,7 @@ class Marks(NamedTuple):
 
 
 def anchor_marks(
-    times: Array, held: NDArray[np.int64], at_events: Array, rows: Array, at_rows: Array, start: float, end: float
+    times: Array, held: NDArray[np.int32], at_events: Array, rows: Array, at_rows: Array, start: float, end: float
 ) -> Marks | None:
     """The marks of the half swing from `start` to `end` (s); None where the wheel does not drop in it.
 

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 ROWS, EVENTS = 500, 160  # of a period of an escapement, measured: 395 and 156 (Swiss lever), 479 and 125 (bench lever)
 EVENT_BYTES = 52
+WORTH_A_NOTE = 64e6  # bytes on the disk that somebody may want to know of before a run
 WRITTEN = 2.2  # times what is recorded: the files in which it is held, the packed ones, and the table of events
 
 
@@ -42,11 +43,11 @@ def kept_times(record: Recording, duration: float) -> tuple[float, float]:
 
 
 def room_for(scene: Scene, duration: float, folder: Path) -> float:
-    """The bytes that the disk of `folder` should have; says so where they are more than memory should hold."""
+    """The bytes that the disk of `folder` should have; says so where they are many."""
     from watchsim.storage.columns import MOST
 
     size, in_memory = record_size(scene, duration), 2.0 * MOST  # of rows and of events
-    if size > in_memory:
+    if size > WORTH_A_NOTE:
         say(
             f"Note: rows and events of this run take some {size_text(size)}. More than {size_text(in_memory)} are not held in "
             f"memory but in files beside {folder}, until the results are written. --record statistics keeps the last seconds "

@@ -19,6 +19,7 @@ from watchsim.scene.file.outlines.body_outlines import Outlines
 from watchsim.scene.file.readers.read_bores import bores_of_plate
 from watchsim.scene.solid import HAIRSPRING, LYING, PLATE, UPRIGHT, Solid, Weight
 
+MOST_COPIES = 1000  # of one layer: each is weighed, drawn and looked at
 SPIRAL = ("inner", "outer", "turns", "length")
 SPRING_KEYS = (*SPIRAL, "width")
 LENGTHS = {"inner": "0.6 mm", "outer": "2.6 mm", "width": "0.03 mm", "thickness": "0.12 mm", "density": "7.85 g/cm³"}
@@ -260,7 +261,7 @@ class _Reader:
         value = self.entry.quantity("count", 1.0)
         if math.isnan(value):
             return 1
-        if value < 1.0 or value != round(value):
-            self.entry.fault("count", "a whole number from 1 on is needed here", with_value=True)
+        if not 1.0 <= value <= MOST_COPIES or value != round(value):
+            self.entry.fault("count", f"a whole number from 1 to {MOST_COPIES} is needed here", with_value=True)
             return 1
         return int(value)
