@@ -38,7 +38,7 @@ def _element(kind: Any) -> Any:
 
 def blank(fields: type[Fields]) -> Fields:
     """A record with these fields, all zero."""
-    return cast(Fields, np.zeros(1, dtype_of(cast(type, fields))).view(np.recarray)[0])
+    return cast(Fields, np.zeros(1, dtype_of(cast(Any, fields))).view(np.recarray)[0])
 
 
 def row_of(record: Any) -> NDArray[Any]:
