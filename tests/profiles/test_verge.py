@@ -11,8 +11,8 @@ from scipy.optimize import brentq
 
 import watchsim as ws
 from watchsim import designs
-from watchsim.construction.verge.dimensions import Verge
-from watchsim.construction.verge.proportions import depth, pitch
+from watchsim.construction.verge.verge_dimensions import Verge
+from watchsim.construction.verge.verge_proportions import depth, pitch
 from watchsim.simulation.record.trajectory import Trajectory
 
 # Flags close together, long, and let go after a small turn: the torque on the verge is then nearly constant.

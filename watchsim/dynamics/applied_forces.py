@@ -6,9 +6,9 @@ import math
 
 from watchsim.candidates.cell_lookup import along
 from watchsim.dynamics.line_springs import add_line_springs, line_spring_damping, line_spring_drive, line_spring_energy
-from watchsim.dynamics.tolerances import KNOT_ROUNDING
 from watchsim.jit import entry, kernel
 from watchsim.model.records import OVER_TIME
+from watchsim.tolerances import KNOT_ROUNDING
 
 
 @kernel

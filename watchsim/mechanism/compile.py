@@ -23,8 +23,7 @@ from watchsim.scene.carriers import Ride, rides
 from watchsim.scene.force import Side
 from watchsim.scene.gear_trains import Bond, bonds
 from watchsim.scene.scene import Scene
-
-CLEARANCE = 2e-3  # of the size: a pair that comes this close counts as touching. More than any tolerance of a run
+from watchsim.tolerances import CLEARANCE
 
 
 @dataclass(frozen=True)

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.analysis.timing.beats import Beats
-from watchsim.analysis.timing.body_contacts import Events, between, contact_events
+from watchsim.analysis.timing.body_contacts import Events, between, contact_events, contact_numbers
 from watchsim.analysis.timing.escape_wheel import progress
 from watchsim.analysis.timing.rows_at_hand import is_recorded
 from watchsim.analysis.timing.teeth import pitch
-from watchsim.analysis.verdicts.lean import Teeth, teeth
+from watchsim.analysis.verdicts.tooth_lean import Teeth, teeth
 from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.scene.gear_trains import goes_with
 from watchsim.scene.oscillation import oscillators
@@ -93,6 +93,10 @@ class Watch:
     def events(self, first: str, others: set[str], *kinds: EventKind) -> Events:
         """Contact events of body `first` with any of the others."""
         return contact_events(self.run, between(first, others), *kinds)
+
+    def contacts(self, first: str, others: set[str]) -> set[int]:
+        """The numbers of the contacts of body `first` with any of the others that ever had an event."""
+        return contact_numbers(self.run, between(first, others))
 
     def drive(self, t: float) -> float:
         """N·m on the wheel, if only through gears, at time `t` (s); tables over angle are read where the body was.

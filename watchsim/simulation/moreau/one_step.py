@@ -26,7 +26,7 @@ from watchsim.simulation.moreau.percussion_laws import cone
 from watchsim.simulation.moreau.percussions import friction_cones, solve_percussions
 from watchsim.simulation.moreau.prox_relaxation import relax
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.tolerances import TAKEN_BACK, YIELD
+from watchsim.tolerances import TAKEN_BACK, YIELD
 
 
 @kernel

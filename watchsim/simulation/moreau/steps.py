@@ -21,7 +21,7 @@ from watchsim.simulation.motion.turning_points import sign
 from watchsim.simulation.options import OptionsRef
 from watchsim.simulation.record.write_buffers import keep_event, keep_row
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.tolerances import STEP_ROUNDING
+from watchsim.tolerances import STEP_ROUNDING
 
 ROWS_PER_STEP, EVENTS_PER_CONTACT = 3, 2
 

@@ -19,7 +19,7 @@ from watchsim.dynamics.jamming import is_paradox
 from watchsim.jit import kernel
 from watchsim.simulation.loop_state.scratch import MONITORS
 from watchsim.simulation.motion.contact_islands import place_contacts
-from watchsim.simulation.tolerances import SLIP_SLACK
+from watchsim.tolerances import SLIP_SLACK
 
 NORMAL, TANGENTIAL, EXTENT, PARADOX = range(MONITORS)
 

@@ -8,7 +8,7 @@ from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.motion.dense_output import coordinate_within
 from watchsim.simulation.motion.root_bracket import is_open, narrowed, next_time, opened
 from watchsim.simulation.record.write_buffers import keep_event
-from watchsim.simulation.tolerances import PASSAGE_RESOLUTION
+from watchsim.tolerances import PASSAGE_RESOLUTION
 
 
 @kernel
