@@ -102,6 +102,7 @@ def test_friction_lowers_amplitude_and_rate():
     [
         ({"tooth_width": 11.0}, "tooth_width"),
         ({"tooth_width": 10.55}, "tooth_width"),
+        ({"drop": 1.0}, "drop"),
         ({"lift": 20.0, "friction": 0.25}, "lift"),
         ({"start": 40.0, "lift": 70.0}, "start"),
         ({"torque": 5.0}, "torque"),

@@ -12,6 +12,7 @@ from watchsim.construction.design import Conflict
 
 LEAST_WALL = 0.04  # of the outer radius
 PARTS = 20  # of an edge
+FINE = 1e-9  # of a radius
 SLIDES = 5.0  # degrees by which an impulse face must be steeper than the angle of friction
 SPARE = 5.0  # degrees of swing
 
@@ -57,9 +58,19 @@ def _drive(values: Cylinder, made: Shell) -> Iterator[Conflict]:
 
 
 def _belly(made: Shell) -> Iterator[Conflict]:
-    """Nothing of a tooth that rests inside may stand out of the inner circle."""
-    turn = math.radians(made.rests_inside + made.values.tooth_width / 2.0)
+    """A tooth that rests inside must be within the inner circle, those on both sides of the shell beyond the outer one."""
+    inside = max(_distances(made, made.rests_inside))
+    if inside > made.inner * (1.0 + FINE):
+        words = f"a tooth that rests inside would stand out of the shell by {1e3 * (inside - made.inner):.3g} µm"
+        yield Conflict("drop", f"{words}: more drop, or less lift")
+    outside = min(*_distances(made, made.rests_outside), *_distances(made, made.rests_outside - made.pitch))
+    if outside < made.outer * (1.0 - FINE):
+        words = f"the tooth before one that rests outside would be {1e3 * (made.outer - outside):.3g} µm within the shell"
+        yield Conflict("drop", f"{words}: more drop, or less lift")
+
+
+def _distances(made: Shell, bearing: float) -> list[float]:
+    """From the balance's centre, of points all round a tooth whose point is at that bearing."""
+    turn = math.radians(bearing + made.values.tooth_width / 2.0)
     edges = tooth(made).moved(turn, (0.0, 0.0)).edges
-    farthest = max(math.dist(edge.point(i / PARTS), made.balance) for edge in edges for i in range(PARTS + 1))
-    if farthest > made.inner * (1.0 + 1e-9):
-        yield Conflict("tooth_width", "a tooth that rests inside would be cut by the shell: less lift, or more drop")
+    return [math.dist(edge.point(i / PARTS), made.balance) for edge in edges for i in range(PARTS + 1)]
