@@ -10,8 +10,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from watchsim.construction.coaxial.dimensions import Coaxial
-from watchsim.construction.coaxial.sheets import sheets
+from watchsim.construction.coaxial.coaxial_dimensions import Coaxial
+from watchsim.construction.coaxial.coaxial_sheets import sheets
 from watchsim.storage.write import write_file
 
 

@@ -11,8 +11,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from watchsim.construction.swiss_lever.points import Swiss
-from watchsim.construction.swiss_lever.sheets import sheets
+from watchsim.construction.swiss_lever.swiss_lever_points import Swiss
+from watchsim.construction.swiss_lever.swiss_lever_sheets import sheets
 
 
 def draw(folder: Path, design: Swiss | None = None) -> None:

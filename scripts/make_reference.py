@@ -51,7 +51,7 @@ PAGES = {
             "forces",
             "watchsim.analysis.contact_forces:Forces",
             "verdict",
-            "watchsim.analysis.verdicts.words:Verdict",
+            "watchsim.analysis.verdicts.verdict_kinds:Verdict",
         ],
     ),
     "studies": (
@@ -60,7 +60,7 @@ PAGES = {
             "steady",
             "Cycle",
             "sweep",
-            "watchsim.studies.sweep:Sweep",
+            "watchsim.studies.parameter_sweep:Sweep",
             "sensitivity",
             "watchsim.studies.sensitivity:Sensitivity",
         ],

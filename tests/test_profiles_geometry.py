@@ -28,7 +28,7 @@ import draw_swiss_lever  # noqa: E402
 from measure_lever import measure  # noqa: E402
 from measure_shapes import placed, read_layout, tomllib  # noqa: E402
 
-from watchsim.construction.swiss_lever.points import Swiss  # noqa: E402
+from watchsim.construction.swiss_lever.swiss_lever_points import Swiss  # noqa: E402
 
 needs_pin_lever = pytest.mark.skipif(not (SHARED / "drawings" / "pin_lever").exists(), reason="the drawing is not here")
 needs_bench = pytest.mark.skipif(not (SHARED / "scenes" / "bench_lever.json").exists(), reason="the scene is not here")

@@ -31,25 +31,25 @@ _HOMES = {
     "write_results": "watchsim.results.write_results",
     "verdict": "watchsim.analysis.verdicts.verdict",
     "verify": "watchsim.verification.all_checks",
-    "steady": "watchsim.studies.limit_cycle.steady",
+    "steady": "watchsim.studies.limit_cycle.find_cycle",
     "Cycle": "watchsim.studies.limit_cycle.cycle",
-    "sweep": "watchsim.studies.sweep",
+    "sweep": "watchsim.studies.parameter_sweep",
     "sensitivity": "watchsim.studies.sensitivity",
-    "plot_sweep": "watchsim.render.figures.study",
-    "plot_kinematics": "watchsim.render.figures.plots",
+    "plot_sweep": "watchsim.render.figures.study_plot",
+    "plot_kinematics": "watchsim.render.figures.kinematics_plot",
     "movie": "watchsim.render.movies.run_movie",
     "frame": "watchsim.render.movies.run_movie",
-    "plot_tape": "watchsim.render.figures.tape",
-    "plot_timing": "watchsim.render.figures.timing",
-    "plot_energy": "watchsim.render.figures.energy",
+    "plot_tape": "watchsim.render.figures.tape_plot",
+    "plot_timing": "watchsim.render.figures.timing_plot",
+    "plot_energy": "watchsim.render.figures.energy_plot",
     "plot_phases": "watchsim.render.figures.phase_plot",
     "plot_timeline": "watchsim.render.figures.beat.key_instants",
     "plot_phase_portrait": "watchsim.render.figures.beat.phase_portrait",
-    "plot_torque": "watchsim.render.figures.beat.torque",
-    "plot_forces": "watchsim.render.figures.beat.contact_forces",
-    "plot_sensitivity": "watchsim.render.figures.effects",
+    "plot_torque": "watchsim.render.figures.beat.torque_plot",
+    "plot_forces": "watchsim.render.figures.beat.force_plot",
+    "plot_sensitivity": "watchsim.render.figures.effects_plot",
     "sound": "watchsim.analysis.sound.wav",
-    "report": "watchsim.pages.report",
+    "report": "watchsim.pages.report_page",
     "show": "watchsim.pages.inline",
     "profiles_dir": "watchsim.profiles_path",
 }
@@ -72,19 +72,19 @@ if TYPE_CHECKING:
     from watchsim.drawing.profile import Profile as Profile
     from watchsim.drawing.read import read as read
     from watchsim.pages.inline import show as show
-    from watchsim.pages.report import report as report
+    from watchsim.pages.report_page import report as report
     from watchsim.profiles_path import profiles_dir as profiles_dir
-    from watchsim.render.figures.beat.contact_forces import plot_forces as plot_forces
+    from watchsim.render.figures.beat.force_plot import plot_forces as plot_forces
     from watchsim.render.figures.beat.key_instants import plot_timeline as plot_timeline
     from watchsim.render.figures.beat.phase_portrait import plot_phase_portrait as plot_phase_portrait
-    from watchsim.render.figures.beat.torque import plot_torque as plot_torque
-    from watchsim.render.figures.effects import plot_sensitivity as plot_sensitivity
-    from watchsim.render.figures.energy import plot_energy as plot_energy
+    from watchsim.render.figures.beat.torque_plot import plot_torque as plot_torque
+    from watchsim.render.figures.effects_plot import plot_sensitivity as plot_sensitivity
+    from watchsim.render.figures.energy_plot import plot_energy as plot_energy
+    from watchsim.render.figures.kinematics_plot import plot_kinematics as plot_kinematics
     from watchsim.render.figures.phase_plot import plot_phases as plot_phases
-    from watchsim.render.figures.plots import plot_kinematics as plot_kinematics
-    from watchsim.render.figures.study import plot_sweep as plot_sweep
-    from watchsim.render.figures.tape import plot_tape as plot_tape
-    from watchsim.render.figures.timing import plot_timing as plot_timing
+    from watchsim.render.figures.study_plot import plot_sweep as plot_sweep
+    from watchsim.render.figures.tape_plot import plot_tape as plot_tape
+    from watchsim.render.figures.timing_plot import plot_timing as plot_timing
     from watchsim.render.movies.run_movie import frame as frame
     from watchsim.render.movies.run_movie import movie as movie
     from watchsim.results.read_results import read_results as read_results
@@ -97,9 +97,9 @@ if TYPE_CHECKING:
     from watchsim.simulation.simulate import simulate as simulate
     from watchsim.simulation.stops import Stop as Stop
     from watchsim.studies.limit_cycle.cycle import Cycle as Cycle
-    from watchsim.studies.limit_cycle.steady import steady as steady
+    from watchsim.studies.limit_cycle.find_cycle import steady as steady
+    from watchsim.studies.parameter_sweep import sweep as sweep
     from watchsim.studies.sensitivity import sensitivity as sensitivity
-    from watchsim.studies.sweep import sweep as sweep
     from watchsim.verification.all_checks import verify as verify
 
 

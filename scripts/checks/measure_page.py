@@ -13,8 +13,8 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
 
-from report.browser import opened
-from report.pace import SIZE, played
+from pages.browser import opened
+from pages.pace import SIZE, played
 
 
 def main() -> None:

@@ -43,7 +43,7 @@ AREAS = {  # name -> (files, tests)
     "scene": (("scene/**/*.py", "mechanism/*.py", "units.py"), ("tests/scene", "tests/mechanism", "tests/test_units.py")),
     "analysis": (
         ("analysis/**/*.py", "results/*.py", "verification/**/*.py"),
-        ("tests/analysis", "tests/results", "tests/verification", "tests/render/figures/test_tape.py"),
+        ("tests/analysis", "tests/results", "tests/verification", "tests/render/figures/test_tape_plot.py"),
     ),
     "pictures": (
         (
@@ -56,7 +56,7 @@ AREAS = {  # name -> (files, tests)
         ("tests/render",),
     ),
     "kernels": (
-        ("dynamics/**/*.py", "candidates/*.py", "contact/*.py", "simulation/**/*.py"),
+        ("dynamics/**/*.py", "candidates/*.py", "contact/*.py", "simulation/**/*.py", "tolerances.py"),
         ("tests/dynamics", "tests/candidates", "tests/contact", "tests/simulation"),
     ),
 }

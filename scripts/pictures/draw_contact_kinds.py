@@ -20,8 +20,8 @@ import watchsim as ws
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.polyline import polyline
 from watchsim.geometry.primitives import Arc, Line, Point
-from watchsim.render.figures.style import LABEL, SERIES, SMALL, figure, save
-from watchsim.render.figures.style import title as named
+from watchsim.render.figures.figure_style import LABEL, SERIES, SMALL, figure, save
+from watchsim.render.figures.figure_style import title as named
 from watchsim.render.palette import BRASS, INK, STEEL
 
 IMAGE = Path(__file__).resolve().parents[2] / "docs" / "images" / "contact_kinds.png"

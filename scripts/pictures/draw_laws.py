@@ -15,8 +15,8 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 
-from watchsim.render.figures.style import HAIR, LABEL, SERIES, SMALL, TICK, figure, save
-from watchsim.render.figures.style import title as named
+from watchsim.render.figures.figure_style import HAIR, LABEL, SERIES, SMALL, TICK, figure, save
+from watchsim.render.figures.figure_style import title as named
 from watchsim.render.palette import FAINT, INK
 from watchsim.verification.bare_contacts import BareContacts
 

@@ -100,7 +100,7 @@ SVG or PDF (`--format svg,pdf`, or the ending of `-o`). In Python each is a func
 
 A figure is as wide as it will be printed: 170 mm for a page, `--width "85 mm"` (`width=85`) for a column, letters of 6 pt or more in both. Colours can
 be told apart with every kind of colour vision, and no colour stands alone: names, dashes, marks or hatching go with it. `--dark` (`watchsim.render.dark_figure.dark`) gives any of them dark ground. The same style draws all pictures
-of these pages (`watchsim.render.figures.style`). `scripts/reports/make_plots_page.py` makes this page from
+of these pages (`watchsim.render.figures.figure_style`). `scripts/reports/make_plots_page.py` makes this page from
 
 ```
 {RUN}

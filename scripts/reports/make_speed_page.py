@@ -40,22 +40,22 @@ PROFILED = {"incline": 3.0, "bench_lever": 10.0, "swiss_lever": 10.0}  # s simul
 
 PAGE = """# Speed against error
 
-How long does a simulated second take, and how far off is what comes out? Written by `scripts/reports/make_speed_page.py` from
-`watchsim bench`, on one core of one machine ({machine}), all in one run. Times are of the processor, of the stepping alone
-(reading, compiling and setting up are left out for all engines): the median of several runs, with the smallest and the largest.
+How long does a simulated second take, and how large is the error? Written by `scripts/reports/make_speed_page.py` from
+`watchsim bench`, on one core of one machine ({machine}), all in one run. Times are processor times of the stepping alone
+(without reading, compiling and set-up, for all engines): the median of several runs, with the smallest and the largest.
 Levers run for 3 s from the start, amplitude and rate are averaged from 1 s to 3 s; the disc's place is compared at 3 s. In this
 time the details of the first beats dominate: the settled lever runs for 15 s and is averaged over the last two. Other programs ran
-on the machine meanwhile: compare within a table, not from one to the next.
+on the machine meanwhile: compare figures within a table, not across tables.
 
 ![Time per simulated second over error](../images/speed.png)
 
-What counts as true is the closed form, or the tightest run of the event-driven solver; another method confirms it. The levers
-of the other engines are polygons. They know Newton's law of impact, watchsim has Poisson's: with restitution above zero they
-need not come to the same amplitude. Each is set up as it is best known to us: for pymunk the spring's torque is that of where
-the body will be (with that of where it was, a step is Euler's explicit one, which feeds the oscillation: 0.9° at 5 µs); for
-Box2D moving bodies are "bullets", met at their own instants (without, 0.5° at 20 µs); pivots are masses too heavy to move.
+The reference is the closed form, or the event-driven solver at its tightest tolerance; another method confirms it. The levers
+of the other engines are polygons. They apply Newton's law of impact, watchsim Poisson's: with restitution above zero they
+need not reach the same amplitude. Each engine is set up as well as we know how: for pymunk the spring's torque is taken at the
+angle at the end of the step (at its start the step is explicit Euler's, which adds energy to the oscillation: 0.9° at 5 µs); for
+Box2D moving bodies are "bullets", with continuous collision detection (without, 0.5° at 20 µs); pivots are masses too heavy to move.
 
-## Beside the other engines
+## Compared with other engines
 
 {ratios}
 
@@ -63,10 +63,10 @@ Box2D moving bodies are "bullets", met at their own instants (without, 0.5° at 
 
 {table}
 
-## Whole runs, by the clock
+## Whole runs, wall-clock time
 
-From the drawing to the last of {simulated:g} s of the settled lever, compiled code loaded before: getting ready (reading; for
-other engines making polygons) and stepping. The first run of a geometry learns its cells.
+From the drawing to the last of {simulated:g} s of the settled lever, with the compiled code already loaded: set-up (reading; for
+other engines making polygons) and stepping. The first run of a geometry computes its cells.
 
 {wholes}
 
@@ -75,18 +75,18 @@ written and plotted: {command}
 
 ## Where the time goes
 
-Each count times the cost of one piece of that work, measured by itself in the middle of the run, beside the time of the
-stepping (`watchsim run --profile`): how far from the floor. No work is in two lines:
+Each count times the cost of one such piece of work, measured by itself in the middle of the run, beside the time of the
+stepping (`watchsim run --profile`). No work is counted twice:
 
 - a step is what it takes besides accelerations and gaps: Runge-Kutta sums, the estimate of the error, attempts that are
-  rejected, the polynomial in between, taking back drift, recording; a flight is the same in closed form;
-- gaps are the whole search for the next contact, but for looking up cells;
-- an instant is the settling of an event, but for its impacts, complementarity problems and look-ups; an impact is without its
-  problems;
-- calls of the loop come from Python, which saves and tallies between them;
-- the rest is what goes on in between, and what the same work takes more in the midst of other work.
+  rejected, dense output, drift correction, recording; a flight is the same in closed form;
+- gaps are the whole search for the next contact, except for looking up cells;
+- an instant is the handling of an event, except for its impacts, complementarity problems and look-ups; an impact is counted
+  without its problems;
+- calls of the loop come from Python, which saves and counts between them;
+- the rest is what happens in between, and what the same work costs more when interleaved with other work.
 
-Cells are learnt once for a geometry: the stepping shown here knows them all, the last line is of a run that knows none. A test
+Cells are computed once for a geometry: the stepping shown here knows them all, the last line is a run that knows none. A test
 compares the shares with those of clocks within the loop (`tests/bench/test_where_time_goes.py`).
 
 {profiles}
@@ -123,7 +123,7 @@ def ratios(rows: list[dict[str, Any]]) -> str:
 
 def wholes(scenario: Scenario) -> str:
     """A table of whole runs, each engine at its most exact setting but watchsim at its usual one."""
-    lines = ["| engine | first run: ready | stepping | again: ready | stepping |", "|---|---:|---:|---:|---:|"]
+    lines = ["| engine | first run: set-up | stepping | again: set-up | stepping |", "|---|---:|---:|---:|---:|"]
     settings = {name: values[-1] for name, values in scenario.settings.items() if is_installed_or_own(name)}
     settings[OWN] = 1e-9
     for method, setting in settings.items():
@@ -158,7 +158,7 @@ def command() -> str:
             [sys.executable, script, scene, "180 s", f"{folder}/0"], check=True, capture_output=True, text=True
         )
     parts = json.loads(told.stderr.splitlines()[-1])
-    lines = [f"{best:.2f} s by the clock, {processor:.2f} s of the processor, of which stepping {stepping:.2f} s", ""]
+    lines = [f"{best:.2f} s wall-clock, {processor:.2f} s processor time, of which stepping {stepping:.2f} s", ""]
     lines += ["| part | processor |", "|---|---:|", *(f"| {what} | {seconds:.2f} s |" for what, seconds in parts.items())]
     return "\n".join(lines)
 

@@ -18,8 +18,8 @@ from typing import Any
 import numpy as np
 from measured import REDRAW, keep, kept
 
-from watchsim.render.figures.style import MAP, SERIES, SMALL, dress, figure, save
-from watchsim.render.figures.style import title as named
+from watchsim.render.figures.figure_style import MAP, SERIES, SMALL, dress, figure, save
+from watchsim.render.figures.figure_style import title as named
 from watchsim.render.palette import FAINT
 from watchsim.verification.all_checks import verify
 

@@ -248,8 +248,8 @@ def _kept() -> list[Course]:
 
 def picture(runs: list[Course], path: Path) -> None:
     """Amplitude from its last value, the residual of the account, and its share of the work put in, over time."""
-    from watchsim.render.figures.style import CURVE, SERIES, dress, figure, key, save
-    from watchsim.render.figures.style import title as named
+    from watchsim.render.figures.figure_style import CURVE, SERIES, dress, figure, key, save
+    from watchsim.render.figures.figure_style import title as named
     from watchsim.render.palette import FAINT
 
     made = figure(height=62.0, layout="constrained")

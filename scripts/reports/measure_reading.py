@@ -166,7 +166,7 @@ def exponent(sizes: np.ndarray, times: np.ndarray) -> float:
 
 
 def plot(results: dict[str, np.ndarray], empty: float, path: Path) -> None:
-    from watchsim.render.figures.style import CURVE, HAIR, MARKERS, SERIES, SMALL, dress, figure, key, save
+    from watchsim.render.figures.figure_style import CURVE, HAIR, MARKERS, SERIES, SMALL, dress, figure, key, save
     from watchsim.render.palette import FAINT
 
     made = figure(height=95.0, layout="constrained")

@@ -205,7 +205,7 @@ def table(found: list[Row]) -> str:
 
 def plot(found: list[Row], path: Path) -> None:
     """Time per simulated second over declared pairs, both logarithmic."""
-    from watchsim.render.figures.style import CURVE, SERIES, dress, figure, key, save
+    from watchsim.render.figures.figure_style import CURVE, SERIES, dress, figure, key, save
 
     made = figure(height=100.0, layout="constrained")
     axes = made.subplots()

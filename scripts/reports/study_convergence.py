@@ -133,8 +133,8 @@ def order(steps: list[float], errors: list[float]) -> float:
 
 def picture(found: Found, path: Path) -> None:
     """Errors over steps, doubly logarithmic, with a line of slope 1."""
-    from watchsim.render.figures.style import CURVE, MARKERS, SERIES, dress, figure, key, save
-    from watchsim.render.figures.style import title as named
+    from watchsim.render.figures.figure_style import CURVE, MARKERS, SERIES, dress, figure, key, save
+    from watchsim.render.figures.figure_style import title as named
     from watchsim.render.palette import FAINT
 
     made = figure(height=80.0, layout="constrained")

@@ -1,4 +1,4 @@
-"""Where does the time of a whole `watchsim run` go? Prints JSON: what -> seconds of the processor.
+"""Where does the time of a whole `watchsim run` go? Prints JSON: what -> seconds of processor time.
 
     python scripts/reports/time_of_a_run.py profiles/swiss_lever "180 s" FOLDER
 
@@ -25,9 +25,9 @@ PARTS = (  # module, name, what
     ("watchsim.analysis.beat_tables", "phases_csv", "phases.csv"),
     ("watchsim.results.tables", "write_events", "events.csv"),
     ("watchsim.results.archive", "write_trajectory", "trajectory.npz, packed beside the rest"),
-    ("watchsim.render.figures.plots", "Kinematics.__init__", "plots"),
-    ("watchsim.render.figures.plots", "Kinematics.show", "plots"),
-    ("watchsim.render.figures.plots", "write_png", "plots"),
+    ("watchsim.render.figures.kinematics_plot", "Kinematics.__init__", "plots"),
+    ("watchsim.render.figures.kinematics_plot", "Kinematics.show", "plots"),
+    ("watchsim.render.figures.kinematics_plot", "write_png", "plots"),
 )
 
 spent: defaultdict[str, float] = defaultdict(float)  # s

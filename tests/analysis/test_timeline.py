@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from watchsim.analysis.beat_tables import phases_csv
-from watchsim.analysis.timeline.oscillation import shown_beats
 from watchsim.analysis.timeline.rows import timeline
-from watchsim.analysis.timeline.table import _nano, _values, timeline_text
+from watchsim.analysis.timeline.shown_beats import shown_beats
+from watchsim.analysis.timeline.timeline_table import _nano, _values, timeline_text
 from watchsim.analysis.timing.beats import beats
 from watchsim.cli import main
 from watchsim.commands.common.console import BAD_INPUT, FINE

@@ -14,9 +14,9 @@ from naive.lcp_oracle import solutions
 
 from watchsim.analysis.promised import COUNTS
 from watchsim.bench.profile.lcp_costs import problems_met, size_name
-from watchsim.bench.profile.moments import SAMPLE, Kind, Walk
 from watchsim.bench.profile.repeated_work import problems_again
 from watchsim.bench.profile.run_profile import WORDS, profile_of, profile_text
+from watchsim.bench.profile.sampled_moments import SAMPLE, Kind, Walk
 from watchsim.candidates.pair_cache import forget
 from watchsim.dynamics.lcp.lemke_pivoting import lcp_work
 from watchsim.mechanism.compile import compile_scene

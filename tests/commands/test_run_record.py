@@ -124,7 +124,7 @@ def test_a_plot_that_fails_costs_a_line_only(capsys, tmp_path, monkeypatch) -> N
     def fail(*_: object, **__: object) -> None:
         raise RuntimeError("no ink")
 
-    monkeypatch.setattr("watchsim.render.figures.plots.write_png", fail)
+    monkeypatch.setattr("watchsim.render.figures.kinematics_plot.write_png", fail)
     assert main(["run", SCENE, "--duration", "0.1 s", "-o", str(tmp_path / "r")]) == FINE
     assert "kinematics.png could not be drawn: no ink" in capsys.readouterr().err
     assert (tmp_path / "r" / "trajectory.npz").is_file() and not list((tmp_path / "r" / "plots").iterdir())

@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 
 import watchsim as ws
-from watchsim.construction.coaxial.conflicts import guard_freedom
-from watchsim.construction.coaxial.dimensions import Coaxial
-from watchsim.construction.coaxial.points import Points
-from watchsim.construction.coaxial.sheets import sheets
-from watchsim.construction.coaxial.stones import locking_stone, roller_stone
+from watchsim.construction.coaxial.coaxial_conflicts import guard_freedom
+from watchsim.construction.coaxial.coaxial_dimensions import Coaxial
+from watchsim.construction.coaxial.coaxial_points import Points
+from watchsim.construction.coaxial.coaxial_sheets import sheets
+from watchsim.construction.coaxial.coaxial_stones import locking_stone, roller_stone
 from watchsim.construction.known import design
 from watchsim.simulation.record.trajectory import EventKind
 

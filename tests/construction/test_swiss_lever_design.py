@@ -16,11 +16,11 @@ from shapely import Polygon
 from shapely.affinity import rotate, translate
 
 from watchsim.construction.known import design
-from watchsim.construction.sound import drawing_of
-from watchsim.construction.swiss_lever.follow import swiss
-from watchsim.construction.swiss_lever.points import Swiss
-from watchsim.construction.swiss_lever.recoil import drop_after_recoil
-from watchsim.construction.swiss_lever.sheets import sheets
+from watchsim.construction.outline_check import drawing_of
+from watchsim.construction.swiss_lever.swiss_lever_derived import swiss
+from watchsim.construction.swiss_lever.swiss_lever_points import Swiss
+from watchsim.construction.swiss_lever.swiss_lever_recoil import drop_after_recoil
+from watchsim.construction.swiss_lever.swiss_lever_sheets import sheets
 from watchsim.designs.drawn import Drawn
 from watchsim.mechanism.overlap import overlap_faults
 

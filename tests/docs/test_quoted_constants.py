@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from watchsim import tolerances
 from watchsim.analysis.verdicts import settling
 from watchsim.candidates import cell_grid
 from watchsim.drawing import facets, read
@@ -19,13 +20,11 @@ from watchsim.drawing.chaining import chain
 from watchsim.drawing.curves import plane_projection
 from watchsim.drawing.svg import svg_file, xml_elements
 from watchsim.dynamics import solver_fallbacks
-from watchsim.dynamics import tolerances as contact_problem
-from watchsim.mechanism import contact_features, overlap
+from watchsim.mechanism import overlap
 from watchsim.scene import carriers
 from watchsim.scene.file import read_scene
 from watchsim.scene.file.readers import read_settings
 from watchsim.simulation import advance
-from watchsim.simulation import tolerances as run
 from watchsim.simulation.moreau import prox_relaxation
 from watchsim.simulation.motion import root_bracket
 from watchsim.simulation.record import overlap_watch
@@ -45,7 +44,7 @@ WORDS = {
 WORDS |= {"sixteenth": 16, "a millionth": 1e-6}
 POWERS = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 NANO, MICRO = 1e-9, 1e-6
-INSTANT = run.SAME_INSTANT * run.ACCUMULATION_TIME
+INSTANT = tolerances.SAME_INSTANT * tolerances.ACCUMULATION_TIME
 
 METHOD = "theory/method.md"
 GEOMETRY = "theory/contact-geometry.md"
@@ -56,65 +55,65 @@ DRAWINGS = "guide/drawings.md"
 VERDICTS = "guide/verdicts.md"
 
 QUOTED = [
-    (METHOD, "Accelerations below {} of the terms", contact_problem.ACCELERATION_ROUNDING),
-    (METHOD, "w_NᵀM⁻¹w_N ≤ {} w_TᵀM⁻¹w_T take no part", run.IMMOVABLE),
-    (METHOD, "G_N − μ sgn(ġ_T) G_c ≤ {} G_N and carries a force", contact_problem.PAINLEVE),
-    (METHOD, "an approach of {} of the slip", contact_problem.NUDGE),
-    (METHOD, "Where it exceeds {} of the kinetic energy", run.ENERGY_GAIN),
+    (METHOD, "Accelerations below {} of the terms", tolerances.ACCELERATION_ROUNDING),
+    (METHOD, "w_NᵀM⁻¹w_N ≤ {} w_TᵀM⁻¹w_T take no part", tolerances.IMMOVABLE),
+    (METHOD, "G_N − μ sgn(ġ_T) G_c ≤ {} G_N and carries a force", tolerances.PAINLEVE),
+    (METHOD, "an approach of {} of the slip", tolerances.NUDGE),
+    (METHOD, "Where it exceeds {} of the kinetic energy", tolerances.ENERGY_GAIN),
     (METHOD, "Lemke on {} other paths", solver_fallbacks.PATHS),
     (METHOD, "(up to {} sets)", solver_fallbacks.MODES),
-    (METHOD, "missed by more than {} of the driving load", contact_problem.LCP_ROUGH),
-    (METHOD, "below `accumulation_time` ({} s)", run.ACCUMULATION_TIME),
-    (METHOD, "rises by no more than {} `gap_zero`", run.HIDDEN_REBOUND),
-    (METHOD, "`gap_zero` ({} of the scene's size)", run.HIDDEN_REBOUND * run.GAP_ZERO),
-    (METHOD, "has just taken or {} of the kinetic energy", run.CHATTER_BACK),
-    (METHOD, "({} in any case), the impacts go on", run.CHATTER_GAIN),
-    (METHOD, "turn by less than {} rad are handed over as tangent", run.SMOOTH_TURN),
-    (METHOD, "there, at most {} of the energy and, with friction", run.SMOOTH_TURN**2),
-    (METHOD, "all but sin²φ ≤ {} of it", run.DEPENDENT_IN_STEPS),
-    (METHOD, "({} at events, where rates", run.DEPENDENT_AT_EVENTS),
-    (METHOD, "a gap rate that is not rounding ({} of its terms)", run.CONTRADICTING_RATE * run.RATE_ROUNDING),
-    (METHOD, "by less than {} `speed_zero` is left alone", run.SLIP_SLACK),
-    (METHOD, "account for, and beyond that by at most {} of itself", run.EXPLAINED_SHARE),
-    (METHOD, "or by that of {} `speed_zero`", run.STOPPABLE_SPEED),
-    (METHOD, "may not exceed {} of the energy turned over", run.LEDGER_SHARE),
-    (METHOD, "turned over, or {} times the tolerance", run.LEDGER_PER_TOLERANCE),
+    (METHOD, "missed by more than {} of the driving load", tolerances.LCP_ROUGH),
+    (METHOD, "below `accumulation_time` ({} s)", tolerances.ACCUMULATION_TIME),
+    (METHOD, "rises by no more than {} `gap_zero`", tolerances.HIDDEN_REBOUND),
+    (METHOD, "`gap_zero` ({} of the scene's size)", tolerances.HIDDEN_REBOUND * tolerances.GAP_ZERO),
+    (METHOD, "has just taken or {} of the kinetic energy", tolerances.CHATTER_BACK),
+    (METHOD, "({} in any case), the impacts go on", tolerances.CHATTER_GAIN),
+    (METHOD, "turn by less than {} rad are handed over as tangent", tolerances.SMOOTH_TURN),
+    (METHOD, "there, at most {} of the energy and, with friction", tolerances.SMOOTH_TURN**2),
+    (METHOD, "all but sin²φ ≤ {} of it", tolerances.DEPENDENT_IN_STEPS),
+    (METHOD, "({} at events, where rates", tolerances.DEPENDENT_AT_EVENTS),
+    (METHOD, "a gap rate that is not rounding ({} of its terms)", tolerances.CONTRADICTING_RATE * tolerances.RATE_ROUNDING),
+    (METHOD, "by less than {} `speed_zero` is left alone", tolerances.SLIP_SLACK),
+    (METHOD, "account for, and beyond that by at most {} of itself", tolerances.EXPLAINED_SHARE),
+    (METHOD, "or by that of {} `speed_zero`", tolerances.STOPPABLE_SPEED),
+    (METHOD, "may not exceed {} of the energy turned over", tolerances.LEDGER_SHARE),
+    (METHOD, "turned over, or {} times the tolerance", tolerances.LEDGER_PER_TOLERANCE),
     (METHOD, "a bisection whenever {} steps have not halved", root_bracket.LOOK_EVERY),
     (METHOD, "Within an instant ({} ns)", INSTANT / NANO),
-    (METHOD, "cones and slips is made {} times larger", run.LENIENCE_STEP),
-    (METHOD, "until the next instant, at most {} times", math.log(run.MOST_LENIENT, run.LENIENCE_STEP)),
-    (METHOD, "and {} such terms, so decisions", math.log(run.MOST_LENIENT, run.LENIENCE_STEP) + 1),
+    (METHOD, "cones and slips is made {} times larger", tolerances.LENIENCE_STEP),
+    (METHOD, "until the next instant, at most {} times", math.log(tolerances.MOST_LENIENT, tolerances.LENIENCE_STEP)),
+    (METHOD, "and {} such terms, so decisions", math.log(tolerances.MOST_LENIENT, tolerances.LENIENCE_STEP) + 1),
     (METHOD, "More than {} events within an instant", advance.EVENTS_AT_ONCE),
-    (METHOD, "no acceleration beyond rounding ({} of the forces", run.SLEEP),
-    (METHOD, "Bodies that overlap by up to {} nm therefore touch", overlap.ROUNDING / NANO),
+    (METHOD, "no acceleration beyond rounding ({} of the forces", tolerances.SLEEP),
+    (METHOD, "Bodies that overlap by up to {} nm therefore touch", tolerances.DRAWING_ROUNDING / NANO),
     (METHOD, "chords deviate by at most {} nm", overlap.DEVIATION / NANO),
-    (METHOD, "what that adds is added to the {} nm", overlap.ROUNDING / NANO),
-    (METHOD, "over the contacts within {} nm of a touch", run.TOUCH_REACH * overlap.ROUNDING / NANO),
-    (METHOD, "until no gap is below {} `gap_zero`", run.OVERLAP_GONE),
-    (METHOD, "by more than {} times the rounding", run.FURTHEST_TAKEN_BACK),
-    (METHOD, "deeper than {} of the scene's size", run.OVERLAP_RESOLUTION),
+    (METHOD, "what that adds is added to the {} nm", tolerances.DRAWING_ROUNDING / NANO),
+    (METHOD, "over the contacts within {} nm of a touch", tolerances.TOUCH_REACH * tolerances.DRAWING_ROUNDING / NANO),
+    (METHOD, "until no gap is below {} `gap_zero`", tolerances.OVERLAP_GONE),
+    (METHOD, "by more than {} times the rounding", tolerances.FURTHEST_TAKEN_BACK),
+    (METHOD, "deeper than {} of the scene's size", tolerances.OVERLAP_RESOLUTION),
     (METHOD, "chords deviate by {} of that", overlap_watch.CHORD),
     (METHOD, "(of {} coordinates at a time)", overlap_watch.FEW),
     (METHOD, "within a way, steps of {} of the", overlap_watch.STRIDE),
     (METHOD, "the state at each {} of the scene's duration", overlap_watch.LOOKS),
     (METHOD, "when {} instants have come together", overlap_watch.TOGETHER),
-    (METHOD, "fails beyond {} of the size", run.STEPPED_OVERLAP),
-    (METHOD, "and {} of the overlap is taken back", run.TAKEN_BACK),
-    (METHOD, "by {} of their own mobility", run.YIELD),
-    (METHOD, "none changes by more than {} of the largest", run.SETTLED),
+    (METHOD, "fails beyond {} of the size", tolerances.STEPPED_OVERLAP),
+    (METHOD, "and {} of the overlap is taken back", tolerances.TAKEN_BACK),
+    (METHOD, "by {} of their own mobility", tolerances.YIELD),
+    (METHOD, "none changes by more than {} of the largest", tolerances.SETTLED),
     (METHOD, "After {}, 64, 128 … sweeps", prox_relaxation.FIRST),
-    (GEOMETRY, "Edges shorter than {} of the scene's size", contact_features.JOINT),
-    (GEOMETRY, "larger than {} rad", contact_features.JOINT),
-    (GEOMETRY, "the scene's size, than {} of the size over its radius", contact_features.JOINT),
-    (GEOMETRY, "more than the rounding of drawings, {} nm", overlap.ROUNDING / NANO),
+    (GEOMETRY, "Edges shorter than {} of the scene's size", tolerances.JOINT_RESOLUTION),
+    (GEOMETRY, "larger than {} rad", tolerances.JOINT_RESOLUTION),
+    (GEOMETRY, "the scene's size, than {} of the size over its radius", tolerances.JOINT_RESOLUTION),
+    (GEOMETRY, "more than the rounding of drawings, {} nm", tolerances.DRAWING_ROUNDING / NANO),
     (GEOMETRY, "Pairs of bodies with at most {} reachable pairs", cell_grid.FEW_CONTACTS),
     (GEOMETRY, "travels {} to 2 % of its reach", 100.0 * cell_grid.FINEST_SHARE),
     (GEOMETRY, "1 to {} % of its reach", 100.0 * cell_grid.CELL_SHARE),
-    (LAWS, "where Λ_TC = 0 (to {} of the cone)", contact_problem.NO_TANGENTIAL),
-    (LAWS, "counts as jammed from {} G_N on", contact_problem.PAINLEVE),
-    (DESIGN, "convex turns above {} rad get a corner", contact_features.JOINT),
-    (DESIGN, "no more than the rounding of drawings ({} nm)", overlap.ROUNDING / NANO),
-    (SCENE, "overlaps there by no more than {} nm", overlap.ROUNDING / NANO),
+    (LAWS, "where Λ_TC = 0 (to {} of the cone)", tolerances.NO_TANGENTIAL),
+    (LAWS, "counts as jammed from {} G_N on", tolerances.PAINLEVE),
+    (DESIGN, "convex turns above {} rad get a corner", tolerances.JOINT_RESOLUTION),
+    (DESIGN, "no more than the rounding of drawings ({} nm)", tolerances.DRAWING_ROUNDING / NANO),
+    (SCENE, "overlaps there by no more than {} nm", tolerances.DRAWING_ROUNDING / NANO),
     (SCENE, "`duration` (default {} s)", read_settings.DURATION),
     (SCENE, "the relative error per step (default {})", read_settings.TOLERANCE),
     (SCENE, '`"{} µm"` |', read.SNAP / MICRO),
@@ -123,6 +122,7 @@ QUOTED = [
     (SCENE, "within {} % of which it must lie", 100.0 * read_scene.FAR_OFF),
     (DRAWINGS, "away than {} µm (`--fit`)", read.FIT / MICRO),
     (DRAWINGS, "Drawings of more than {} pieces", plane_projection.MOST_STROKES),
+    (DRAWINGS, "unfold into more than {} pieces", plane_projection.UNFOLDED),
     (DRAWINGS, "files above {} MB are refused", read.LARGEST_FILE / 1e6),
     (DRAWINGS, "elements more than {} deep", xml_elements.DEEPEST),
     (DRAWINGS, "unfold into more than {} elements", svg_file.MOST_VISITS),

@@ -6,8 +6,8 @@ import math
 from dataclasses import replace
 
 from watchsim.construction import known
-from watchsim.construction.swiss_lever.follow import swiss
-from watchsim.construction.swiss_lever.points import Swiss
+from watchsim.construction.swiss_lever.swiss_lever_derived import swiss
+from watchsim.construction.swiss_lever.swiss_lever_points import Swiss
 from watchsim.designs.maker import Maker
 from watchsim.geometry.primitives import Point
 from watchsim.scene.body import Body

@@ -14,8 +14,8 @@ from escapement.made import mirrored_scene, turned_scene
 from shapely import affinity
 
 from watchsim import designs
+from watchsim.escapement.function_report import text
 from watchsim.escapement.measure import Function, measure
-from watchsim.escapement.report import text
 from watchsim.geometry.polyline import polyline
 from watchsim.profiles_path import profiles_dir
 from watchsim.scene.file.load import load

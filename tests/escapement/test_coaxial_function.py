@@ -9,12 +9,12 @@ import pytest
 from escapement.made import mirrored_scene, renamed_scene, turned_scene
 
 from watchsim.construction import known
-from watchsim.construction.coaxial.points import Points
+from watchsim.construction.coaxial.coaxial_points import Points
 from watchsim.designs.maker import Maker
+from watchsim.escapement.function_report import statics, text
 from watchsim.escapement.impulses import Impulse
 from watchsim.escapement.measure import Function, measure
 from watchsim.escapement.pallets import Pallet
-from watchsim.escapement.report import statics, text
 from watchsim.escapement.rules import judgements
 from watchsim.profiles_path import profiles_dir
 from watchsim.scene.file.load import load

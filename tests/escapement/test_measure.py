@@ -9,11 +9,11 @@ import measure_lever
 import pytest
 from escapement.made import mirrored_scene, renamed_scene, swiss_scene, turned_scene
 
-from watchsim.construction.swiss_lever.roller import banking
+from watchsim.construction.swiss_lever.swiss_lever_roller import banking
+from watchsim.escapement.function_report import text
 from watchsim.escapement.measure import Function, measure
 from watchsim.escapement.pallets import Pallet
 from watchsim.escapement.quantity import Quantity
-from watchsim.escapement.report import text
 from watchsim.escapement.safety import Safety
 from watchsim.geometry.primitives import Line
 from watchsim.profiles_path import profiles_dir

@@ -9,11 +9,11 @@ import pytest
 
 import watchsim as ws
 from watchsim import designs
-from watchsim.analysis.timeline.oscillation import shown_beats
+from watchsim.analysis.timeline.shown_beats import shown_beats
 from watchsim.analysis.timing.phases import phases
 from watchsim.construction import known
-from watchsim.construction.detent.dimensions import Detent
-from watchsim.construction.detent.points import Points
+from watchsim.construction.detent.detent_dimensions import Detent
+from watchsim.construction.detent.detent_points import Points
 from watchsim.scene.roles import Roles, roles
 
 DETENT = known.design("detent")

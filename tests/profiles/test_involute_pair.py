@@ -7,8 +7,8 @@ import pytest
 
 import watchsim as ws
 from watchsim import designs
-from watchsim.construction.involute_pair.dimensions import InvolutePair
-from watchsim.construction.involute_pair.gear import departure, pair
+from watchsim.construction.involute_pair.involute_pair_dimensions import InvolutePair
+from watchsim.construction.involute_pair.involute_pair_gear import departure, pair
 from watchsim.simulation.record.trajectory import Trajectory
 
 

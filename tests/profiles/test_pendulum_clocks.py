@@ -14,8 +14,8 @@ from scipy.special import ellipk
 
 import watchsim as ws
 from watchsim import designs
-from watchsim.construction.graham.dimensions import Graham
-from watchsim.construction.graham.points import Anchor
+from watchsim.construction.graham.graham_dimensions import Graham
+from watchsim.construction.graham.graham_points import Anchor
 from watchsim.simulation.record.trajectory import EventKind, Trajectory
 
 DAY = 86400.0

@@ -20,8 +20,8 @@ from watchsim.render.frame.stage import Stage
 from watchsim.render.movies.picture_size import FORMATS, fitting
 from watchsim.render.movies.run_movie import frame, movie
 from watchsim.render.palette import BRASS, FIXED
+from watchsim.render.picture_style import LIGHT
 from watchsim.render.placed_solids import placed_solids
-from watchsim.render.style import LIGHT
 from watchsim.scene.force import Spring
 from watchsim.scene.layer_heights import slabs
 from watchsim.scene.scene import Scene

@@ -11,7 +11,7 @@ from render.fake_runs import watch_run
 
 from watchsim.render.movies.run_movie import frame
 from watchsim.render.palette import BLUED, BRASS, FIXED, NIGHT, OTHERS, RUBY, STEEL, mixed
-from watchsim.render.style import DARK, LIGHT, Style
+from watchsim.render.picture_style import DARK, LIGHT, Style
 
 STYLES = (LIGHT, DARK)
 READ, SEEN, PALE_SEEN = 4.5, 3.0, 1.25  # contrasts: of words and of marks as WCAG 2.2 asks for; of what is meant to recede

@@ -10,7 +10,7 @@ from scipy.special import j1
 import watchsim as ws
 from watchsim.mechanism.notes import notes
 from watchsim.scene.errors import SceneError
-from watchsim.studies.limit_cycle.steady import steady
+from watchsim.studies.limit_cycle.find_cycle import steady
 
 BALANCE = """
 [scene]

@@ -10,7 +10,7 @@ import pytest
 import watchsim as ws
 from watchsim.mechanism.scene_in_words import force_lines
 from watchsim.scene.errors import SceneError
-from watchsim.studies.limit_cycle.steady import steady
+from watchsim.studies.limit_cycle.find_cycle import steady
 
 WHEEL = """
 [scene]

@@ -14,7 +14,7 @@ from watchsim.scene.body import Body
 from watchsim.scene.force import Spring, Torque
 from watchsim.scene.recording import Recording
 from watchsim.scene.scene import Scene
-from watchsim.simulation import runner as simulating
+from watchsim.simulation import runner, slice_pace
 from watchsim.simulation.record.trajectory import EventKind, Trajectory
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
@@ -87,8 +87,8 @@ def test_bad_tolerance(bad: float) -> None:
 
 def test_small_buffers_lose_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     whole = simulate(profile("incline"), 0.6)
-    monkeypatch.setattr(simulating, "ROWS", 3)
-    monkeypatch.setattr(simulating, "EVENTS", 3)
+    monkeypatch.setattr(runner, "ROWS", 3)
+    monkeypatch.setattr(runner, "EVENTS", 3)
     pieces = simulate(profile("incline"), 0.6)
     assert np.array_equal(whole.t, pieces.t)
     assert np.array_equal(whole.q, pieces.q)
@@ -114,7 +114,7 @@ def test_two_runs_are_identical() -> None:
 def test_slices_do_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:
     """How often the loop looks at the clock must not change a bit of the answer."""
     first = simulate(profile("bench_lever"), 0.3)
-    monkeypatch.setattr(simulating, "SLICE_WALL", 1e-4)
+    monkeypatch.setattr(slice_pace, "SLICE_WALL", 1e-4)
     second = simulate(profile("bench_lever"), 0.3)
     assert np.array_equal(first.q[-1], second.q[-1])
     assert np.array_equal(first.events, second.events)

@@ -13,7 +13,7 @@ from moving_scenes import box, circle, profile
 from watchsim.cli import main
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Line
-from watchsim.mechanism.overlap import ROUNDING, overlaps
+from watchsim.mechanism.overlap import overlaps
 from watchsim.scene.body import Body
 from watchsim.scene.errors import SceneError
 from watchsim.scene.file.load import load
@@ -21,6 +21,7 @@ from watchsim.scene.force import Contact, Side, Torque
 from watchsim.scene.scene import Scene
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
+from watchsim.tolerances import DRAWING_ROUNDING
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "drawing"))
 import dxf_text as d
@@ -82,7 +83,9 @@ def test_deeper_is_refused_in_python_as_on_the_command_line(name: str) -> None:
 @pytest.mark.parametrize("steps", [400, 40])
 def test_no_depth_falls_between_touching_and_refused(steps: int) -> None:
     """A tip on a flat, depth by depth across the rounding."""
-    scenes = [on_the_ground(TIP, 1 * MM - 2.0 * ROUNDING * k / steps, GROUND, 1e-9) for k in range(0, steps, steps // 40)]
+    scenes = [
+        on_the_ground(TIP, 1 * MM - 2.0 * DRAWING_ROUNDING * k / steps, GROUND, 1e-9) for k in range(0, steps, steps // 40)
+    ]
     seen = []
     for scene in scenes:
         try:

@@ -19,7 +19,7 @@ from watchsim.model.named_fields import blank
 from watchsim.scene.body import Body
 from watchsim.scene.scene import Scene
 from watchsim.simulation.advance import BEARING, KINDS, TOUCHED
-from watchsim.simulation.energy_ledger import ledger_fails, what_alternates
+from watchsim.simulation.energy_ledger import ledger_fails
 from watchsim.simulation.events.impulse_check import is_explained
 from watchsim.simulation.events.mode_recurrence import begin_instant, decide_once, forget_decisions
 from watchsim.simulation.loop_state.scratch import Ended
@@ -27,10 +27,11 @@ from watchsim.simulation.loop_state.state import new_state
 from watchsim.simulation.motion.coupled_motion import NORMAL
 from watchsim.simulation.motion.root_bracket import MOST, is_open, narrowed, next_time, opened
 from watchsim.simulation.options import options_for
-from watchsim.simulation.runner import pairs_of
+from watchsim.simulation.record.contact_names import pairs_of
 from watchsim.simulation.simulate import simulate
+from watchsim.simulation.stop_details import what_alternates
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.tolerances import LENIENCE_STEP, MOST_LENIENT
+from watchsim.tolerances import LENIENCE_STEP, MOST_LENIENT
 
 ROOT = Path(jit.__file__).resolve().parents[1]
 SABOTAGE = """

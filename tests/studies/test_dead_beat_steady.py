@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 
 import watchsim as ws
 from watchsim.analysis.timing.averages import mean_over
-from watchsim.studies.limit_cycle.steady import steady
+from watchsim.studies.limit_cycle.find_cycle import steady
 
 TIP, DROP, LIFT, LOCK = 0.1, 1.5, 0.5, 0.4  # degrees, as drawn in dead_beat_scenes.py
 HALF_SPAN, PITCH = 45.0, 12.0

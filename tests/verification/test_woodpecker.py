@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from watchsim.contact.index_sets import BACKWARD, OPEN
-from watchsim.verification.woodpecker.cycle import breaks_loose, find_cycle
 from watchsim.verification.woodpecker.exact_motion import moments, phase_of
 from watchsim.verification.woodpecker.toy import LOWER, UPPER, Toy, modal, start
+from watchsim.verification.woodpecker.woodpecker_cycle import breaks_loose, find_cycle
 from watchsim.verification.woodpecker.woodpecker_rows import STEPS, woodpecker_rows
 
 STICKS = (10.496956, 30.073403, 49.633109)  # mm down the page: where the sleeve's lower edge sticks in the animation

@@ -9,7 +9,7 @@ from typing import Any
 
 from watchsim.analysis.doubts import UNSOLVED
 from watchsim.analysis.energy import energy_shares
-from watchsim.analysis.verdicts.words import BESIDE
+from watchsim.analysis.verdicts.verdict_kinds import BESIDE
 from watchsim.scene.roles import keeps_time
 from watchsim.simulation.methods import MOREAU
 from watchsim.simulation.record.trajectory import Trajectory

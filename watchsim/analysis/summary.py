@@ -26,7 +26,7 @@ from watchsim.analysis.timing.standstill import standstill
 from watchsim.analysis.timing.timegrapher import timegrapher
 from watchsim.analysis.timing.whole_run import whole_run
 from watchsim.analysis.verdicts.verdict import verdict
-from watchsim.analysis.verdicts.words import NOTHING, Verdict
+from watchsim.analysis.verdicts.verdict_kinds import NOTHING, Verdict
 from watchsim.mechanism.notes import notes
 from watchsim.results.provenance import versions
 from watchsim.results.tables import plain

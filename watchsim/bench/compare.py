@@ -20,7 +20,7 @@ LONGEST = 0.4  # s simulated, of that part
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One engine at one setting. Times in s of the processor per simulated second: median, smallest and largest of `repeats`.
+    """One engine at one setting. Times in s of processor time per simulated second: median, smallest and largest of `repeats`.
 
     Errors are absolute: rate in s/d, amplitude in degrees, state (x of the free body) in m; None where there is none.
     """

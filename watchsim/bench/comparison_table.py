@@ -7,7 +7,7 @@ from typing import Any
 
 from watchsim.bench.engines.world import MODULES
 
-COLUMNS = ("setting", "time, s per simulated s", "spread", "amplitude off", "rate off", "place off")
+COLUMNS = ("setting", "time, s per simulated s", "spread", "error of amplitude", "of rate", "of place")
 
 
 def table(rows: Sequence[Mapping[str, Any]], references: Sequence[Mapping[str, Any]]) -> str:
@@ -20,7 +20,7 @@ def table(rows: Sequence[Mapping[str, Any]], references: Sequence[Mapping[str, A
 
 
 def truth_text(reference: Mapping[str, Any]) -> str:
-    """What counts as true, and what confirms it."""
+    """The reference, and what confirms it."""
     truth = reference["truth"]
     values = []
     if truth["amplitude"] is not None:
@@ -32,7 +32,7 @@ def truth_text(reference: Mapping[str, Any]) -> str:
         for name, unit in (("amplitude_off_deg", "°"), ("rate_off_s_per_d", " s/d"), ("state_off_m", " m"))
         if reference[name] is not None
     ]
-    return f"True: {', '.join(values)} ({reference['source']}). {reference['confirmed_by']}: off by {', '.join(off)}."
+    return f"Reference: {', '.join(values)} ({reference['source']}). {reference['confirmed_by']}: differs by {', '.join(off)}."
 
 
 def _lines(rows: Sequence[Mapping[str, Any]]) -> list[str]:

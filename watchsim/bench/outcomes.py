@@ -1,6 +1,6 @@
 """What does an engine make of a scenario, and how long does it take?
 
-Times are of the processor, of the stepping alone: setting up a scene, compiling and asking for cells are left out for all.
+Processor times of the stepping alone: setting up a scene, compiling and computing cells are left out for all.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ import numpy as np
 from watchsim.analysis.timing.averages import mean_over
 from watchsim.analysis.timing.beats import DAY
 from watchsim.bench.engines.world import build
+from watchsim.bench.sampled_swings import swing
 from watchsim.bench.scenarios import Scenario
-from watchsim.bench.swings import swing
 from watchsim.mechanism.compile import compile_scene
 from watchsim.scene.recording import Recording
 from watchsim.simulation.methods import EVENT_DRIVEN, MOREAU

@@ -19,10 +19,10 @@ from watchsim.candidates.chords import Chords, chords
 from watchsim.candidates.named_rows import named_rows
 from watchsim.candidates.normal_fans import Regions
 from watchsim.model.records import Model
+from watchsim.tolerances import PLANE_ROUNDING
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
-ROUNDING = 1e-9  # of a distance: the coordinates that shapely is given are rounded
 
 
 class PairSearch:
@@ -100,7 +100,7 @@ class PairSearch:
         near = shapely.dwithin(
             np.broadcast_to(self._still[other], (cells, len(other))),
             shapes[:, row],
-            (distance[:, row] + self._still_sag[other]) * (1.0 + ROUNDING),
+            (distance[:, row] + self._still_sag[other]) * (1.0 + PLANE_ROUNDING),
         )
         cell, place = np.nonzero(near)
         wanted = mover[place] * self._others + other[place]
@@ -117,7 +117,7 @@ class PairSearch:
             return self._wanted, self._wanted
         points, distance = self._seen(centre[None, :], room, np.arange(len(self._reach)))
         shapes = _shapes(points[0], self._drawn.first)
-        within = (distance[0] + self._still_sag.max()) * (1.0 + ROUNDING)
+        within = (distance[0] + self._still_sag.max()) * (1.0 + PLANE_ROUNDING)
         mover, other = self._tree.query(shapes, predicate="dwithin", distance=within)
         wanted = mover * self._others + other
         declared = self._wanted[np.minimum(np.searchsorted(self._wanted, wanted), len(self._wanted) - 1)] == wanted

@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 
 from watchsim.candidates.cell_motion import CellMotion
 from watchsim.model.records import FULL, LINE, Model, Records
+from watchsim.tolerances import PLACE_ROUNDING
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
-ROUNDING = 1e-14  # of the distances from which a place is computed
 
 
 class Regions:
@@ -59,7 +59,7 @@ class Regions:
         arm, far = np.hypot(circle.x, circle.y), np.hypot(x, y)
         travel = shift_a + swing_a * arm
         travel = travel + shift_b + swing_b * (far + travel) + self._clearance
-        travel = travel + ROUNDING * (arm + far + circle.radius + met.radius)
+        travel = travel + PLACE_ROUNDING * (arm + far + circle.radius + met.radius)
         dx, dy = x - met.x, y - met.y
         straight = met.kind == LINE
         along = dx * met.tx + dy * met.ty

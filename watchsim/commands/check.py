@@ -52,8 +52,8 @@ def run(args: argparse.Namespace) -> int:
     from watchsim.commands.common.inputs import load_scene
     from watchsim.commands.common.output_place import secured_file
     from watchsim.drawing.findings import Finding
+    from watchsim.escapement.function_report import statics, text
     from watchsim.escapement.measure import measure
-    from watchsim.escapement.report import statics, text
     from watchsim.escapement.rules import judgements
     from watchsim.mechanism.compile import compile_scene
     from watchsim.mechanism.count_pairs import modelled_pairs

@@ -148,7 +148,7 @@ def _write(design: Design, given: dict[str, object], asked: dict[str, Any]) -> N
     from watchsim.designs.drawn import Drawn
     from watchsim.mechanism.overlap import overlap_faults
     from watchsim.scene.errors import SceneError
-    from watchsim.scene.file.dimensions import chosen
+    from watchsim.scene.file.design_dimensions import chosen
 
     folder = Path(asked["output"] or design.name)
     drawn = Drawn(design, chosen(design, given))

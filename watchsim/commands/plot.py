@@ -55,7 +55,7 @@ def run(args: argparse.Namespace) -> int:
     from watchsim.commands.common.output_place import secured_file, swept_run
     from watchsim.commands.common.plot_kinds import KINDS, Request
     from watchsim.render.dark_figure import dark
-    from watchsim.render.figures.style import save
+    from watchsim.render.figures.figure_style import save
     from watchsim.storage.write import write_file
 
     kinds = _kinds(args)
@@ -120,8 +120,8 @@ def _places(args: argparse.Namespace, kinds: list[str], formats: list[str]) -> d
 
 
 def _print_timeline(run: Trajectory, window: tuple[float, float] | None) -> None:
-    from watchsim.analysis.timeline.oscillation import shown_beats
-    from watchsim.analysis.timeline.table import timeline_text
+    from watchsim.analysis.timeline.shown_beats import shown_beats
+    from watchsim.analysis.timeline.timeline_table import timeline_text
 
     try:
         print(timeline_text(run, shown_beats(run, window)))

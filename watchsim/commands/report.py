@@ -23,7 +23,7 @@ def options(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from watchsim.commands.common.inputs import read_run
     from watchsim.commands.common.output_place import secured_file, swept_run
-    from watchsim.pages.report import check_page, report
+    from watchsim.pages.report_page import check_page, report
 
     window = parse_window(args.window)
     swept_run(args.run_folder)

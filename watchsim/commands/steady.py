@@ -24,7 +24,7 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from watchsim.commands.common.inputs import load_scene
-    from watchsim.studies.limit_cycle.steady import steady
+    from watchsim.studies.limit_cycle.find_cycle import steady
 
     if args.tol is not None and not 1e-13 <= args.tol <= 1e-2:
         raise InputError(f"--tol {args.tol:g}: must lie between 1e-13 and 1e-2.")

@@ -32,8 +32,6 @@ if TYPE_CHECKING:
     from watchsim.studies.workers.executor import Executor
 
 HELP = "parameter study: table and plot; or what matters in a watch (--sensitivity)"
-FILES = ("rows.jsonl", "sweep.csv", "sweep.json", "sweep.parquet", "sweep.png", "sweep.svg", "sweep.pdf")
-FIGURES = (".png", ".svg", ".pdf")
 
 
 def options(parser: argparse.ArgumentParser) -> None:
@@ -81,10 +79,11 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _sweep(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...]) -> int:
+    from watchsim.commands.common.write_study import write_study
     from watchsim.studies.axes import axes_from_texts
+    from watchsim.studies.parameter_sweep import swept
     from watchsim.studies.point import Question
-    from watchsim.studies.sweep import swept
-    from watchsim.studies.table import sweep_table
+    from watchsim.studies.study_table import sweep_table
     from watchsim.units import TIME
 
     if not args.keys:
@@ -104,13 +103,13 @@ def _sweep(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...]) 
                 question, axes, outputs, _executor(args, points), folder=folder, resume=args.resume, progress=progress
             )
         )
-        _write(folder, done.numbers(), sweep_table(done), None if args.no_plots else _figure_of_sweep(done))
+        write_study(folder, done.numbers(), sweep_table(done), None if args.no_plots else _figure_of_sweep(done))
     if args.json:
         from watchsim.results.tables import plain
 
         print_json(plain(done.numbers()))
     else:
-        from watchsim.studies.report import sweep_text
+        from watchsim.studies.study_report import sweep_text
 
         print(sweep_text(done))
         print(f"Results: {folder}")
@@ -121,8 +120,9 @@ def _sweep(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...]) 
 
 
 def _sensitivity(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...]) -> int:
+    from watchsim.commands.common.write_study import write_study
     from watchsim.studies.sensitivity import found
-    from watchsim.studies.table import sensitivity_table
+    from watchsim.studies.study_table import sensitivity_table
 
     folder = _folder(args, scene)
     with stopping.keeping():
@@ -131,13 +131,13 @@ def _sensitivity(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, 
                 scene, args.keys or None, outputs, _executor(args, None), args.tol, folder, args.resume, progress
             )
         )
-        _write(folder, done.numbers(), sensitivity_table(done), None if args.no_plots else _figure_of_sensitivity(done))
+        write_study(folder, done.numbers(), sensitivity_table(done), None if args.no_plots else _figure_of_sensitivity(done))
     if args.json:
         from watchsim.results.tables import plain
 
         print_json(plain(done.numbers()))
     else:
-        from watchsim.studies.report import sensitivity_text
+        from watchsim.studies.study_report import sensitivity_text
 
         print(sensitivity_text(done))
         print(f"Results: {folder}")
@@ -153,8 +153,8 @@ def _status(whole: bool, folder: Path, fine: int) -> int:
 
 def _executor(args: argparse.Namespace, points: int | None) -> Executor:
     from watchsim.jit import is_cached
-    from watchsim.studies.sweep import processors
-    from watchsim.studies.workers.executor import chosen
+    from watchsim.studies.parameter_sweep import processors
+    from watchsim.studies.workers.choose_executor import chosen
 
     workers = args.workers or processors()
     if points is not None:
@@ -169,7 +169,7 @@ def _compile_once() -> None:
     """Before several processes do it all at once."""
     from watchsim.profiles_path import profiles_dir
     from watchsim.scene.file.load import load
-    from watchsim.studies.limit_cycle.loop import Loop
+    from watchsim.studies.limit_cycle.run_from_state import Loop
 
     Loop(load(profiles_dir() / "balance"), 1e-9).warm_up()
 
@@ -197,19 +197,16 @@ def _folder(args: argparse.Namespace, scene: Scene) -> Path:
     what = "sensitivity" if args.sensitivity else "sweep"
     folder = Path(args.output or Path("results") / f"{name}-{what}")
     secured_folder(folder, "results", default=not args.output)
-    if folder.is_dir() and any(folder.iterdir()) and not args.resume:
-        if not args.force:
-            raise InputError(
-                f"{folder} exists already. Go on with it (--resume), begin anew in it (--force), or choose another folder (-o)."
-            )
-        for old in FILES:
-            (folder / old).unlink(missing_ok=True)
+    if folder.is_dir() and any(folder.iterdir()) and not (args.resume or args.force):
+        raise InputError(
+            f"{folder} exists already. Go on with it (--resume), begin anew in it (--force), or choose another folder (-o)."
+        )
     folder.mkdir(exist_ok=True)
     return folder
 
 
 def _figure_of_sweep(done: Any) -> Any:
-    from watchsim.render.figures.study import plot_sweep
+    from watchsim.render.figures.study_plot import plot_sweep
 
     try:
         return plot_sweep(done) if done.rows else None
@@ -219,25 +216,6 @@ def _figure_of_sweep(done: Any) -> Any:
 
 
 def _figure_of_sensitivity(done: Any) -> Any:
-    from watchsim.render.figures.effects import plot_sensitivity
+    from watchsim.render.figures.effects_plot import plot_sensitivity
 
     return plot_sensitivity(done) if done.effects else None
-
-
-def _write(folder: Path, numbers: dict[str, Any], table: dict[str, list[Any]], figure: Any) -> None:
-    """sweep.json, sweep.csv, sweep.parquet where pyarrow is installed, the plot as PNG, SVG and PDF."""
-    from watchsim.results.tables import json_text
-    from watchsim.storage.write import write_file
-    from watchsim.studies.table import csv_text, parquet_writer
-
-    text = json_text(numbers)
-    write_file(folder / "sweep.json", lambda path: path.write_text(text, encoding="utf-8"), "the numbers")
-    write_file(folder / "sweep.csv", lambda path: path.write_text(csv_text(table), encoding="utf-8"), "the table")
-    write = parquet_writer(table)
-    if write is not None:
-        write_file(folder / "sweep.parquet", write, "the table")
-    if figure is not None and not stopping.requested():
-        from watchsim.render.figures.style import save
-
-        for ending in FIGURES:
-            write_file(folder / f"sweep{ending}", lambda path: save(figure, path), "the plot")

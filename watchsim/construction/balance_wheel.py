@@ -9,8 +9,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from watchsim.construction.arms import Arms
 from watchsim.construction.outline import circle
+from watchsim.construction.wheel_arms import Arms
 from watchsim.geometry.loop import Loop
 
 GLUCYDUR = 8.25  # mg/mm³

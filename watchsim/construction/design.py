@@ -24,7 +24,7 @@ from functools import cached_property
 from typing import Any
 
 from watchsim.construction.dimension import Dimension, dimensions_of
-from watchsim.construction.sound import unsound
+from watchsim.construction.outline_check import unsound
 from watchsim.drawing.sheet import Sheet
 
 Values = Any  # a frozen dataclass whose fields are declared with construction.dimension.dim

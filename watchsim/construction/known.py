@@ -7,16 +7,21 @@ import importlib
 from watchsim.construction.design import Design
 
 _HOMES = {
-    "swiss_lever": "watchsim.construction.swiss_lever.design",
-    "coaxial": "watchsim.construction.coaxial.design",
-    "detent": "watchsim.construction.detent.design",
-    "geneva": "watchsim.construction.geneva.design",
-    "graham": "watchsim.construction.graham.design",
-    "recoil_anchor": "watchsim.construction.recoil_anchor.design",
-    "involute_pair": "watchsim.construction.involute_pair.design",
-    "jumper": "watchsim.construction.jumper.design",
-    "cam": "watchsim.construction.cam.design",
-    "ratchet": "watchsim.construction.ratchet.design",
+    "swiss_lever": "watchsim.construction.swiss_lever.swiss_lever_design",
+    "coaxial": "watchsim.construction.coaxial.coaxial_design",
+    "detent": "watchsim.construction.detent.detent_design",
+    "pin_pallet": "watchsim.construction.pin_pallet.pin_pallet_design",
+    "pin_wheel": "watchsim.construction.pin_wheel.pin_wheel_design",
+    "cylinder": "watchsim.construction.cylinder.cylinder_design",
+    "duplex": "watchsim.construction.duplex.duplex_design",
+    "geneva": "watchsim.construction.geneva.geneva_design",
+    "graham": "watchsim.construction.graham.graham_design",
+    "recoil_anchor": "watchsim.construction.recoil_anchor.recoil_anchor_design",
+    "verge": "watchsim.construction.verge.verge_design",
+    "involute_pair": "watchsim.construction.involute_pair.involute_pair_design",
+    "jumper": "watchsim.construction.jumper.jumper_design",
+    "cam": "watchsim.construction.cam.cam_design",
+    "ratchet": "watchsim.construction.ratchet.ratchet_design",
 }
 
 NAMES = tuple(_HOMES)

@@ -72,12 +72,13 @@ def distance(a: Outline, pose_a: Vector, b: Outline, pose_b: Vector) -> Distance
     edges = [_edges(loops) for loops in (loops_a, loops_b)]
     turned = [(float(x), float(y), math.cos(angle), math.sin(angle)) for x, y, angle in (pose_a, pose_b)]
     placed = [records(EDGE, len(rows)) for rows in edges]
-    value, i, at, j, other, crossing = nearest_edges(edges[0], turned[0], edges[1], turned[1], *placed)
-    if crossing or _one_inside(loops_a, turned[0], loops_b, turned[1]):
+    near = nearest_edges(edges[0], turned[0], edges[1], turned[1], *placed)
+    if near.crossing or _one_inside(loops_a, turned[0], loops_b, turned[1]):
         deepest = _deepest(loops_a, turned[0], loops_b, turned[1], placed)
         if deepest is not None:
             return deepest
-    return Distance(float(value), _point(placed[0][i], at), _point(placed[1][j], other))
+    on_a, on_b = _point(placed[0][near.edge_a], near.way_a), _point(placed[1][near.edge_b], near.way_b)
+    return Distance(float(near.distance), on_a, on_b)
 
 
 def gap(a: Outline, pose_a: Vector, b: Outline, pose_b: Vector) -> NDArray[Any]:

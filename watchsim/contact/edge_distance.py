@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,6 +17,9 @@ from watchsim.geometry.primitives import Edge, Line
 from watchsim.jit import entry, kernel
 from watchsim.mechanism.contact_features import middle
 from watchsim.model.records import records
+
+FLAT = 8.0  # an arc whose radius is larger than so many lengths gets its middle from exact arithmetic
+HALVINGS = 200
 
 EDGE = np.dtype(
     [
@@ -28,8 +31,17 @@ EDGE = np.dtype(
         ("half", "f8"),  # half its length
     ]
 )
-FLAT = 8.0  # an arc whose radius is larger than so many lengths gets its middle from exact arithmetic
-HALVINGS = 200
+
+
+class Nearest(NamedTuple):
+    """Where two sets of edges are nearest: the edge of each by its row, and the place on it by the way from its middle."""
+
+    distance: float  # m
+    edge_a: int
+    way_a: float  # m
+    edge_b: int
+    way_b: float  # m
+    crossing: bool  # edges cross there: the distance is 0
 
 
 def edge_records(edges: Iterable[Edge]) -> Any:
@@ -191,7 +203,7 @@ def edge_to_edge(a, b):
 
 @entry
 def nearest_edges(edges_a, pose_a, edges_b, pose_b, room_a, room_b):
-    """(distance, row of a, way, row of b, way, crossing?) of two sets of edges at poses (x, y, cosine, sine)."""
+    """The nearest points of two sets of edges at poses (x, y, cosine, sine)."""
     place_edges(edges_a, pose_a, room_a)
     place_edges(edges_b, pose_b, room_b)
     best, row_a, at_a, row_b, at_b = math.inf, 0, 0.0, 0, 0.0
@@ -205,8 +217,8 @@ def nearest_edges(edges_a, pose_a, edges_b, pose_b, room_a, room_b):
             if distance < best or crossing:
                 best, row_a, at_a, row_b, at_b = distance, i, first, j, second
             if crossing:
-                return 0.0, i, first, j, second, True
-    return best, row_a, at_a, row_b, at_b, False
+                return Nearest(0.0, i, first, j, second, True)
+    return Nearest(best, row_a, at_a, row_b, at_b, False)
 
 
 @entry

@@ -6,7 +6,7 @@ import inspect
 
 from watchsim.construction.design import Design
 from watchsim.designs.drawn import Drawn
-from watchsim.scene.file.dimensions import chosen
+from watchsim.scene.file.design_dimensions import chosen
 
 
 class Maker:

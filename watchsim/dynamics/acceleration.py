@@ -15,8 +15,8 @@ from watchsim.dynamics.problem_kinds import Level, Rung
 from watchsim.dynamics.redundant_contacts import smallest_forces
 from watchsim.dynamics.small_systems import solve_small, unit_scale
 from watchsim.dynamics.solver_fallbacks import keep_basis, solve_contacts
-from watchsim.dynamics.tolerances import ACCELERATION_ROUNDING, RANK
 from watchsim.jit import kernel
+from watchsim.tolerances import ACCELERATION_ROUNDING, RANK
 
 
 @kernel

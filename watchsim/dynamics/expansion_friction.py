@@ -6,9 +6,9 @@ that of the compression: the laws `coulomb`, `pg1996` and `shifted` of docs/theo
 
 from __future__ import annotations
 
-from watchsim.dynamics.tolerances import NO_TANGENTIAL
 from watchsim.jit import kernel
 from watchsim.model.records import PG1996, SHIFTED
+from watchsim.tolerances import NO_TANGENTIAL
 
 
 @kernel

@@ -10,8 +10,8 @@ neither depends on where the drawing came from.
 from __future__ import annotations
 
 from watchsim.dynamics.coulomb import element_row
-from watchsim.dynamics.tolerances import NO_HAND
 from watchsim.jit import kernel
+from watchsim.tolerances import NO_HAND
 
 
 @kernel

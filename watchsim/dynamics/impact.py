@@ -15,8 +15,8 @@ from watchsim.dynamics.expansion_friction import interval
 from watchsim.dynamics.handedness import restore_directions, reverse_directions
 from watchsim.dynamics.problem_kinds import Level, Rung
 from watchsim.dynamics.solver_fallbacks import keep_basis, solve_contacts
-from watchsim.dynamics.tolerances import NUDGE, PARALLEL, VELOCITY_ROUNDING
 from watchsim.jit import kernel
+from watchsim.tolerances import NUDGE, PARALLEL, VELOCITY_ROUNDING
 
 
 @kernel

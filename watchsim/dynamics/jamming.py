@@ -5,8 +5,8 @@ Where nothing presses such a contact, the laws have several solutions (docs/theo
 
 from __future__ import annotations
 
-from watchsim.dynamics.tolerances import ACCELERATION_ROUNDING, NUDGE, PAINLEVE
 from watchsim.jit import kernel
+from watchsim.tolerances import ACCELERATION_ROUNDING, NUDGE, PAINLEVE
 
 
 @kernel

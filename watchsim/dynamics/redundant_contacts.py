@@ -10,8 +10,8 @@ from __future__ import annotations
 from watchsim.dynamics.lcp.lemke_pivoting import lemke_checked
 from watchsim.dynamics.lcp.outcome import LcpOutcome
 from watchsim.dynamics.small_systems import null_vectors
-from watchsim.dynamics.tolerances import DEPENDENT, LAW_ROUNDING, LAW_SLACK
 from watchsim.jit import kernel
+from watchsim.tolerances import DEPENDENT, LAW_ROUNDING, LAW_SLACK
 
 
 @kernel

@@ -15,8 +15,8 @@ from watchsim.dynamics.lcp.lemke_pivoting import lemke_checked, lemke_on_path
 from watchsim.dynamics.lcp.outcome import LcpOutcome
 from watchsim.dynamics.lcp.scaling import scale, unscale
 from watchsim.dynamics.problem_kinds import Rung
-from watchsim.dynamics.tolerances import LCP_ROUGH, LCP_ROUNDING
 from watchsim.jit import kernel
+from watchsim.tolerances import LCP_ROUGH, LCP_ROUNDING
 
 PATHS = 8  # other ones that Lemke tries
 MODES = 50000  # sets of modes tried at most: some tenths of a second

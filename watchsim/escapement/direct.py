@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from watchsim.escapement.by_hand.hands import Array, Touch
-from watchsim.escapement.by_hand.sweep import JUMP, LITTLE, WIDTH, Rest, Wheel
-from watchsim.escapement.fork import Balance, Entry
-from watchsim.escapement.passage import Direct
+from watchsim.escapement.by_hand.lever_sweep import JUMP, LITTLE, WIDTH, Rest, Wheel
+from watchsim.escapement.fork_and_pin import Balance, Entry
+from watchsim.escapement.tooth_passage import Direct
 
 STEP = math.radians(0.25)  # of the balance
 AHEAD = math.radians(0.5)  # of the lever: more than a step of the balance carries it

@@ -11,10 +11,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from watchsim.escapement.by_hand.hands import Touch
-from watchsim.escapement.by_hand.sweep import Rest
-from watchsim.escapement.fork import Balance, Entry
-from watchsim.escapement.passage import Passage, change_error
+from watchsim.escapement.by_hand.lever_sweep import Rest
+from watchsim.escapement.fork_and_pin import Balance, Entry
 from watchsim.escapement.quantity import Quantity, over_teeth
+from watchsim.escapement.tooth_passage import Passage, change_error
 
 DIRECT, INDIRECT = "direct", "indirect"
 

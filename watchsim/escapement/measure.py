@@ -8,17 +8,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from watchsim.analysis.timing.teeth import pitch
-from watchsim.analysis.verdicts.lean import Teeth, teeth
+from watchsim.analysis.verdicts.tooth_lean import Teeth, teeth
+from watchsim.escapement.by_hand.escapement_parts import Parts, parts_of
 from watchsim.escapement.by_hand.hands import SLACK, Hands
-from watchsim.escapement.by_hand.parts import Parts, parts_of
-from watchsim.escapement.by_hand.sweep import Rest, Wheel
+from watchsim.escapement.by_hand.lever_sweep import Rest, Wheel
 from watchsim.escapement.direct import Roller
-from watchsim.escapement.fork import Balance, Entry, Fork, fork
+from watchsim.escapement.every_tooth import passages
+from watchsim.escapement.fork_and_pin import Balance, Entry, Fork, fork
 from watchsim.escapement.impulses import Impulse, impulse
 from watchsim.escapement.pallets import Pallet, pallet
-from watchsim.escapement.passage import NotMeasured, Passage
-from watchsim.escapement.passages import passages
 from watchsim.escapement.safety import Safety, safety
+from watchsim.escapement.tooth_passage import NotMeasured, Passage
 from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.scene.oscillation import oscillators
 from watchsim.scene.scene import Scene

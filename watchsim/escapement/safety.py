@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from watchsim.escapement.by_hand.hands import Integers
-from watchsim.escapement.fork import Balance, Entry
+from watchsim.escapement.fork_and_pin import Balance, Entry
 from watchsim.escapement.quantity import Quantity, single
 
 SCAN = math.radians(1.0)  # of the balance

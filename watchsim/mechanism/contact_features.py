@@ -14,8 +14,8 @@ from watchsim.geometry.exact_angle import cos_sin
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line, Point
 from watchsim.model.records import ARC, CORNER, FULL, LINE, PART, PRIMITIVE, Records
+from watchsim.tolerances import JOINT_RESOLUTION
 
-JOINT = 3e-11  # of the scene's size. Large: steps at joints count as smooth; small: rounding makes edges and corners
 FLAT = 8.0  # of the size: for larger radii than that the centre's rounding would show on the outline
 
 
@@ -24,7 +24,7 @@ def features(loop: Loop, body: int, size: float) -> Records:
 
     Edges shorter than a joint's tolerance have no primitive; their neighbours reach across.
     """
-    edges = _watertight(loop, JOINT * size)
+    edges = _watertight(loop, JOINT_RESOLUTION * size)
     rows = [_line(edge) if isinstance(edge, Line) else _arc(edge, size) for edge in edges]
     count = len(edges)
     for i in range(count if loop.closed else count - 1):
@@ -103,7 +103,7 @@ def _turn(before: Edge, after: Edge, size: float) -> float:
     turn = math.atan2(ax * by - ay * bx, ax * bx + ay * by)
     # A turn that no contact would notice: normals of a flat arc notice less.
     flattest = max(size, *(edge.radius for edge in (before, after) if isinstance(edge, Arc)), 0.0)
-    return turn if abs(turn) * flattest >= JOINT * size else 0.0
+    return turn if abs(turn) * flattest >= JOINT_RESOLUTION * size else 0.0
 
 
 def _is_hollow(edge: Edge) -> bool:

@@ -1,8 +1,8 @@
 """Which bodies touch at the start, and which stand inside each other?
 
 Contact laws push bodies apart from a touch, not out of each other: a scene must begin with all declared pairs open or
-touching. Numbers of drawings and scenes are rounded: what overlaps by no more than `ROUNDING` touches, what overlaps by more is
-a fault. Outlines are compared as polygons of chords that are fine where the two come close.
+touching. Numbers of drawings and scenes are rounded: what overlaps by no more than `DRAWING_ROUNDING` touches, what overlaps
+by more is a fault. Outlines are compared as polygons of chords that are fine where the two come close.
 """
 
 from __future__ import annotations
@@ -24,12 +24,10 @@ from watchsim.scene.errors import Fault
 from watchsim.scene.file.keys.locate import key_lines
 from watchsim.scene.force import Side
 from watchsim.scene.scene import Scene
+from watchsim.tolerances import DRAWING_ROUNDING
 
 Floats = NDArray[np.float64]
 Pose = tuple[float, float, float]
-# m. Six decimals of a millimetre place a point within 0.71 nm, two outlines within 1.41 nm of each other; position and angle of
-# a body add their own. Too large: a contact begins where none was drawn; too small: resting contacts are refused.
-ROUNDING = 2e-9
 DEVIATION = 0.1e-9  # m, of chords near the other outline; too large: depths are uncertain; too small: slow
 SIDES = np.array([-1.0, -1.0, 1.0, 1.0])  # what widens a box (xmin, ymin, xmax, ymax)
 CLOSE = 1e-6  # m, between chords of two outlines that count as near
@@ -46,7 +44,7 @@ class Overlap:
     sides: tuple[Side, Side]
     depth: float
     place: Point
-    allowed: float = ROUNDING
+    allowed: float = DRAWING_ROUNDING
 
     def __str__(self) -> str:
         first, second = self.sides
@@ -148,12 +146,12 @@ class _Layer:
 
 def _meeting(contact: int, a: _Layer, b: _Layer) -> Overlap | None:
     """The deepest point at which two layers touch or overlap; None where they are apart."""
-    if not (len(a.boxes) and len(b.boxes)) or not _meet(a.box[None], b.box[None] + ROUNDING * SIDES)[0]:
+    if not (len(a.boxes) and len(b.boxes)) or not _meet(a.box[None], b.box[None] + DRAWING_ROUNDING * SIDES)[0]:
         return None
     (region_a, faces_a, error_a), (region_b, faces_b, error_b) = (
         layer.finely(near) for layer, near in zip((a, b), _near(a, b), strict=True)
     )
-    allowed = ROUNDING + error_a + error_b
+    allowed = DRAWING_ROUNDING + error_a + error_b
     found = [regions_depth(region_a, region_b, allowed)]
     for faces, region, others in ((faces_a, region_b, faces_b), (faces_b, region_a, faces_a)):
         for points, edges in faces:

@@ -28,8 +28,8 @@ class Dots:
     look: str
 
 
-def scatter(series: Sequence[Dots], x_label: str, y_label: str, told: str) -> Markup:
-    """Dots over labelled axes; `told` is what the chart says to those who cannot see it."""
+def scatter(series: Sequence[Dots], x_label: str, y_label: str, description: str) -> Markup:
+    """Dots over labelled axes; `description` is what the chart says to those who cannot see it."""
     clean = [_thinned(one) for one in series]
     xs, ys = (np.concatenate([getattr(one, axis) for one in clean]) for axis in "xy")
     x_axis, y_axis = _Axis(xs, LEFT, WIDTH - RIGHT, 7), _Axis(ys, HEIGHT - BOTTOM, TOP, 5)
@@ -39,7 +39,7 @@ def scatter(series: Sequence[Dots], x_label: str, y_label: str, told: str) -> Ma
         for x, y in zip(one.x.tolist(), one.y.tolist(), strict=True)
     ]
     parts = (*_grid(x_axis, y_axis), *_labels(x_label, y_label), *marks)
-    picture = element("svg", *parts, viewBox=f"0 0 {WIDTH:g} {HEIGHT:g}", role="img", aria_label=told)
+    picture = element("svg", *parts, viewBox=f"0 0 {WIDTH:g} {HEIGHT:g}", role="img", aria_label=description)
     key = element("p", *(_key(one) for one in series), class_="key") if len(series) > 1 else None
     return element("figure", picture, key, class_="chart")
 
@@ -106,7 +106,7 @@ def _labels(x_label: str, y_label: str) -> tuple[Markup, Markup]:
     )
 
 
-def bars(entries: Sequence[tuple[str, float, str]], told: str) -> Markup:
+def bars(entries: Sequence[tuple[str, float, str]], description: str) -> Markup:
     """A labelled bar for each (name, share of 1, value in words); negative shares run to the left of the zero line."""
     row, names, room = 30.0, 205.0, WIDTH - 205.0 - 150.0
     low, high = min(0.0, *(share for _, share, _ in entries)), max(1e-9, *(share for _, share, _ in entries))
@@ -122,11 +122,11 @@ def bars(entries: Sequence[tuple[str, float, str]], told: str) -> Markup:
             ),
             element("text", value, x=f"{zero + (width if share >= 0 else 0) + 7:.2f}", y=y + 0.5 * row, dy="0.34em"),
         )
-    picture = element("svg", *parts, viewBox=f"0 0 {WIDTH:g} {row * len(entries):g}", role="img", aria_label=told)
+    picture = element("svg", *parts, viewBox=f"0 0 {WIDTH:g} {row * len(entries):g}", role="img", aria_label=description)
     return element("figure", picture, class_="chart")
 
 
-def strip(entries: Sequence[tuple[str, float, int]], unit: str, told: str) -> Markup:
+def strip(entries: Sequence[tuple[str, float, int]], unit: str, description: str) -> Markup:
     """Lengths one after the other along a scale from zero; an entry is its name, its length and the number of its colour."""
     whole = max(sum(length for _, length, _ in entries), 1e-300)
     scale = (WIDTH - 2.0 * RIGHT) / whole
@@ -143,5 +143,5 @@ def strip(entries: Sequence[tuple[str, float, int]], unit: str, told: str) -> Ma
         parts.append(element("line", x1=at, x2=at, y1=height, y2=height + 4, class_="axis"))
         label = f"{signed(k * step, decimals_for(step * 1.0001))}{'' if k else f' {unit}'}"
         parts.append(element("text", label, x=at, y=height + 17, text_anchor="middle" if k else "start"))
-    picture = element("svg", *parts, viewBox=f"0 0 {WIDTH:g} {height + 22:g}", role="img", aria_label=told)
+    picture = element("svg", *parts, viewBox=f"0 0 {WIDTH:g} {height + 22:g}", role="img", aria_label=description)
     return element("figure", picture, class_="chart")

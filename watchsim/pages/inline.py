@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from watchsim.pages.html import element
-from watchsim.pages.report import player_text
+from watchsim.pages.report_page import player_text
 from watchsim.simulation.record.trajectory import Trajectory
 
 HEIGHT = 640  # dots: picture, buttons, and the first plot

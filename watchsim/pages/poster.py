@@ -7,13 +7,13 @@ import math
 import numpy as np
 
 from watchsim.pages.html import Markup, element
-from watchsim.pages.player.outlines import path_data
+from watchsim.pages.player.canvas_outlines import path_data
 from watchsim.render.frame.coils import hairsprings
 from watchsim.render.frame.filled_parts import Part
 from watchsim.render.frame.pose_history import Window, poses
 from watchsim.render.frame.view import Frame, View, room_of, view
 from watchsim.render.palette import BLUED, mixed
-from watchsim.render.style import LIGHT, PALE
+from watchsim.render.picture_style import LIGHT, PALE
 from watchsim.simulation.record.trajectory import Array, Trajectory
 
 MARGIN = 0.04

@@ -10,8 +10,8 @@ from watchsim.pages.timing_sheet.timekeeping import with_error
 from watchsim.studies.axes import Axis
 from watchsim.studies.limit_cycle.cycle import Cycle
 from watchsim.studies.outputs import Output
+from watchsim.studies.parameter_sweep import Sweep
 from watchsim.studies.sensitivity import Sensitivity
-from watchsim.studies.sweep import Sweep
 from watchsim.units import to
 
 ROWS = 12  # of a table; the rest is counted
@@ -36,7 +36,7 @@ def cycle_html(cycle: Cycle) -> str:
 def sweep_html(sweep: Sweep) -> str:
     """The first rows as a table, and the plot."""
     from watchsim.render.figures.shown_figure import small_png
-    from watchsim.render.figures.study import plot_sweep
+    from watchsim.render.figures.study_plot import plot_sweep
 
     count = len(sweep.rows)
     lines = [f"{count} {'point' if count == 1 else 'points'}", "" if sweep.whole else "interrupted: points are missing"]
@@ -63,7 +63,7 @@ def sweep_html(sweep: Sweep) -> str:
 
 def sensitivity_html(found: Sensitivity) -> str:
     """What matters most, and the plot."""
-    from watchsim.render.figures.effects import plot_sensitivity
+    from watchsim.render.figures.effects_plot import plot_sensitivity
     from watchsim.render.figures.shown_figure import small_png
 
     count, outputs = len(found.effects), found.outputs

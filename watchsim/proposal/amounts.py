@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from watchsim.geometry.primitives import Point
 from watchsim.geometry.solids.mass import section
 from watchsim.proposal.bodies.part import Part
-from watchsim.proposal.bodies.roles import Role
-from watchsim.proposal.bodies.words import DRIVER, LEVER, OSCILLATOR, WHEEL
+from watchsim.proposal.bodies.part_names import DRIVER, LEVER, OSCILLATOR, WHEEL
+from watchsim.proposal.bodies.part_roles import Role
 
 STEEL = 7850.0  # kg/m³
 WATCH = 40e-3  # m: what is larger is a clock

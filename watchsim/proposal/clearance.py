@@ -6,8 +6,8 @@ import math
 from collections.abc import Sequence
 
 from watchsim.mechanism.material_polygons import material
+from watchsim.proposal.bodies.part_roles import Role
 from watchsim.proposal.bodies.piece import Piece, Region
-from watchsim.proposal.bodies.roles import Role
 from watchsim.proposal.facing import Facing, about
 
 

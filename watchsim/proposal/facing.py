@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.material_polygons import material, placed
+from watchsim.proposal.bodies.part_names import DRIVER, FIXED, LEVER, OSCILLATOR, WHEEL, facing_by_name
+from watchsim.proposal.bodies.part_roles import Role
 from watchsim.proposal.bodies.piece import Piece, Region
-from watchsim.proposal.bodies.roles import Role
-from watchsim.proposal.bodies.words import DRIVER, FIXED, LEVER, OSCILLATOR, WHEEL, facing_by_name
 
 Floats = NDArray[np.float64]
 SWING = math.radians(15.0)  # of a lever, to either side

@@ -8,8 +8,8 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from watchsim.proposal.bodies.roles import Role
-from watchsim.proposal.bodies.words import LEVER, OSCILLATOR, WHEEL
+from watchsim.proposal.bodies.part_names import LEVER, OSCILLATOR, WHEEL
+from watchsim.proposal.bodies.part_roles import Role
 from watchsim.proposal.clearance import clearance
 from watchsim.proposal.facing import Facing, turns_fully
 

@@ -13,15 +13,15 @@ from pathlib import Path
 from watchsim.drawing.drawing import Drawing
 from watchsim.mechanism.overlap import overlaps
 from watchsim.proposal.amounts import amounts_of
+from watchsim.proposal.bodies.grouped_pieces import parts_of
 from watchsim.proposal.bodies.layers import apart
-from watchsim.proposal.bodies.lean import lean_of
-from watchsim.proposal.bodies.parts import parts_of
+from watchsim.proposal.bodies.part_names import WHEEL
+from watchsim.proposal.bodies.part_roles import Role, roles_of
 from watchsim.proposal.bodies.piece import Piece, pieces_of
-from watchsim.proposal.bodies.roles import Role, roles_of
 from watchsim.proposal.bodies.source import Source, is_mark, read_source, size_of
-from watchsim.proposal.bodies.words import WHEEL
+from watchsim.proposal.bodies.teeth_direction import lean_of
 from watchsim.proposal.facing import Facing, facings, named_facings
-from watchsim.proposal.scene_text import Guess, Plan, scene_text
+from watchsim.proposal.proposed_scene import Guess, Plan, scene_text
 from watchsim.proposal.side_by_side import side_by_side
 from watchsim.proposal.sorted_drawings import drawn
 from watchsim.proposal.start import start_of

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from watchsim.proposal.bodies.roles import Role
+from watchsim.proposal.bodies.part_roles import Role
 
 OVER = 0.3  # of the smaller area: parts of two files that share more were not drawn where they belong
 SAME = 2e-6  # m, of pivots

@@ -11,9 +11,9 @@ from dataclasses import dataclass, replace
 
 from watchsim.drawing.dxf.write_dxf import dxf_text
 from watchsim.proposal.bodies.layers import plain
-from watchsim.proposal.bodies.roles import Role
+from watchsim.proposal.bodies.part_names import tokens
+from watchsim.proposal.bodies.part_roles import Role
 from watchsim.proposal.bodies.source import Source
-from watchsim.proposal.bodies.words import tokens
 
 PIVOT = "PIVOT"
 

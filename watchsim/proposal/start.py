@@ -12,9 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from watchsim.proposal.bodies.part_names import LEVER, OSCILLATOR, WHEEL
+from watchsim.proposal.bodies.part_roles import Role
 from watchsim.proposal.bodies.piece import Piece
-from watchsim.proposal.bodies.roles import Role
-from watchsim.proposal.bodies.words import LEVER, OSCILLATOR, WHEEL
 from watchsim.proposal.clearance import clearance, overlaps
 from watchsim.proposal.facing import Facing, turns_fully
 from watchsim.proposal.locked import locked

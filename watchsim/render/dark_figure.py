@@ -17,7 +17,7 @@ from matplotlib.patches import Patch
 from matplotlib.text import Text
 
 from watchsim.render.palette import SECOND
-from watchsim.render.style import DARK, LIGHT
+from watchsim.render.picture_style import DARK, LIGHT
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

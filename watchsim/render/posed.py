@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from watchsim.mechanism.compile import Compiled
 from watchsim.render.frame.filled_parts import Part, working
-from watchsim.render.style import LIGHT
+from watchsim.render.picture_style import LIGHT
 from watchsim.scene.scene import Scene
 from watchsim.simulation.record.body_frames import frames
 

@@ -5,11 +5,12 @@ All lengths scale with the scene's size, so that a tower clock and a wristwatch 
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 from watchsim.jit import by_reference
-from watchsim.mechanism.contact_features import JOINT
-from watchsim.simulation.tolerances import (
+from watchsim.mechanism.compile import Compiled
+from watchsim.tolerances import (
     ACCUMULATION_SPEED,
     ACCUMULATION_TIME,
     BEHIND_LEAST,
@@ -21,6 +22,7 @@ from watchsim.simulation.tolerances import (
     FORCE_ZERO,
     GAP_CLOSE,
     GAP_ZERO,
+    JOINT_RESOLUTION,
     SLEEP,
     SPEED_PER_TOLERANCE,
     SPEED_ZERO,
@@ -28,7 +30,7 @@ from watchsim.simulation.tolerances import (
 
 
 class Options(NamedTuple):
-    """Tolerances of a run, from those of tolerances.py. Each line: what it is; too large: ...; too small: ..."""
+    """Tolerances of a run, from those of watchsim/tolerances.py. Each line: what it is; too large: ...; too small: ..."""
 
     tolerance: float  # relative error per step of coordinates and velocities. Large: wrong rates; small: slow below 1e-12
     gap_zero: float  # m: a gap this small is zero to rounding. Large: early contacts; small: below the rounding of positions
@@ -57,7 +59,7 @@ def options_for(size: float, tolerance: float, max_step: float) -> Options:
         gap_close=GAP_CLOSE * size,
         # A corner that lands flat comes within its primitives only when it has landed: as far behind as drift has let it.
         behind=max(BEHIND_LEAST, min(BEHIND_PER_TOLERANCE * tolerance, BEHIND_MOST)) * size,
-        extent=EXTENT_PER_JOINT * JOINT * size,
+        extent=EXTENT_PER_JOINT * JOINT_RESOLUTION * size,
         # Velocities drift off their contacts by about the tolerance within a step.
         speed_zero=max(SPEED_ZERO, SPEED_PER_TOLERANCE * tolerance) * size,
         force_zero=FORCE_ZERO,
@@ -69,3 +71,8 @@ def options_for(size: float, tolerance: float, max_step: float) -> Options:
         max_step=max_step,
         size=size,
     )
+
+
+def natural_step(compiled: Compiled, longest: float) -> float:
+    """Longest step: a quarter of the fastest spring's period, so that no turning point hides between two others."""
+    return min(longest, 0.5 * math.pi / compiled.fastest) if compiled.fastest else longest

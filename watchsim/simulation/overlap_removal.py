@@ -16,7 +16,7 @@ from watchsim.contact.kinematics import Closed, closed_contacts
 from watchsim.contact.poses import poses
 from watchsim.model.records import Model
 from watchsim.simulation.options import Options
-from watchsim.simulation.tolerances import FURTHEST_TAKEN_BACK, IMMOBILE, NO_CHANGE_LEFT, OVERLAP_GONE
+from watchsim.tolerances import FURTHEST_TAKEN_BACK, IMMOBILE, NO_CHANGE_LEFT, OVERLAP_GONE
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]

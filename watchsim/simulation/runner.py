@@ -7,8 +7,7 @@ slices. A frozen trajectory is handed back.
 from __future__ import annotations
 
 import dataclasses
-import math
-import time
+import functools
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -18,51 +17,39 @@ from numpy.typing import NDArray
 from watchsim.candidates.cell_table import CellFinder
 from watchsim.dynamics.applied_forces import stored_energy
 from watchsim.mechanism.compile import Compiled
-from watchsim.model.named_fields import blank, words_of
+from watchsim.model.named_fields import words_of
 from watchsim.scene.oscillation import frequency
 from watchsim.scene.recording import Recording
 from watchsim.scene.scene import Scene
 from watchsim.simulation.advance import EVENTS_PER_CONTACT, ROWS_PER_STEP, advance
-from watchsim.simulation.energy_ledger import ledger_fails, touching, what_alternates
+from watchsim.simulation.energy_ledger import ledger, ledger_fails, usual_energy
 from watchsim.simulation.interrupts import held_interrupts
 from watchsim.simulation.lcp_failure import driven_into, failure_of
-from watchsim.simulation.loop_state.buffers import Until, new_record
+from watchsim.simulation.loop_state.buffers import Until, new_record, new_until
 from watchsim.simulation.loop_state.scratch import new_scratch
 from watchsim.simulation.loop_state.state import COUNT_NAMES, State, new_state, room_for
 from watchsim.simulation.loop_state.state_arrays import arrays_of
 from watchsim.simulation.methods import EVENT_DRIVEN
-from watchsim.simulation.options import Options, options_for
+from watchsim.simulation.options import Options, natural_step, options_for
 from watchsim.simulation.record.contact_names import pairs_of
 from watchsim.simulation.record.overlap_watch import OverlapWatch
 from watchsim.simulation.record.row_selection import Kept, columns_of, tail_length
 from watchsim.simulation.record.saved_state import SavedState, save_state
+from watchsim.simulation.record.scene_coordinates import events_of_scene, rows_of_scene
 from watchsim.simulation.record.tally import Tally
-from watchsim.simulation.record.trajectory import EVENT_DTYPE, EventKind, Trajectory
+from watchsim.simulation.record.trajectory import EVENT_DTYPE, Trajectory
+from watchsim.simulation.slice_pace import Pace
 from watchsim.simulation.start_clearance import clear_start
 from watchsim.simulation.start_clearance import warm_up as warm_up_start
+from watchsim.simulation.stop_details import furthest, unaccounted, unexplained, what_alternates
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.tolerances import FIRST_STEP
+from watchsim.tolerances import FIRST_STEP
 
 Progress = Callable[[float, float], None]  # simulated time, duration
 
 ROWS, EVENTS = 20000, 20000
-ADVICE = "Try a tighter tolerance; if that does not help, this is a fault of the program, and the scene shows it"
-SLICE_WALL = 0.1  # s between looks at the clock
-FEWEST_STEPS, MOST_STEPS = 16.0, 4000.0  # of a slice; steps may become much slower from one to the next
 
 _warm: set[type[Run]] = set()  # ways of stepping whose kernels are loaded
-
-
-def natural_step(compiled: Compiled, longest: float) -> float:
-    """Longest step: a quarter of the fastest spring's period, so that no turning point hides between two others."""
-    return min(longest, 0.5 * math.pi / compiled.fastest) if compiled.fastest else longest
-
-
-def new_until(slice_end: float = 0.0, end: float = 0.0, may_cut: bool = False, steps: float = 0.0) -> Until:
-    """How far `advance` is to run."""
-    until = blank(Until)
-    until.slice_end, until.end, until.may_cut, until.steps = slice_end, end, int(may_cut), steps
-    return until
 
 
 class Run:
@@ -84,7 +71,12 @@ class Run:
         self.finder = CellFinder(model)
         self.scratch = new_scratch(model)
         self.pairs = pairs_of(compiled)
-        self.kept = Kept(recording, tail_length(frequency(scene)), self._rows_told, lambda events: _as_told(events, compiled))
+        self.kept = Kept(
+            recording,
+            tail_length(frequency(scene)),
+            functools.partial(rows_of_scene, compiled),
+            functools.partial(events_of_scene, compiled),
+        )
         self.tally = Tally(scene, self.pairs)
         # A step wider, for the rows next to a window.
         windows = np.array(self.kept.windows, float).reshape(-1, 2) + self.options.max_step * np.array([-1.0, 1.0])
@@ -161,7 +153,7 @@ class Run:
         except KeyboardInterrupt:
             stop = Stop.INTERRUPTED
         except OverflowError:  # so far away that no cell has a number
-            stop = Stop.NOT_FINITE
+            stop = Stop.FAR_AWAY
         except MemoryError:
             stop = Stop.OUT_OF_MEMORY
         if self.saved is None:
@@ -176,11 +168,7 @@ class Run:
 
     def _ledger_fails(self) -> bool:
         """Is the residual of the energy ledger more than rounding?"""
-        coordinates = self.compiled.model.coordinates
-        # What moves more slowly than that is computed less closely: see the error control of integrator.py.
-        own = coordinates[coordinates.driven == 0]
-        usual = float(0.5 * np.sum(own.mass * (own.scale * own.rate) ** 2))
-        held = max(float(self.state.worst.kinetic_energy), self.stored_at_start, usual)
+        held = max(float(self.state.worst.kinetic_energy), self.stored_at_start, usual_energy(self.compiled.model))
         return ledger_fails(self._energy(), held, self.tolerance)
 
     def _details(self, stop: Stop) -> str:
@@ -188,13 +176,14 @@ class Run:
         if stop == Stop.OVERLAP:
             words = self.watch.words()
         elif stop == Stop.LEDGER:
-            energy = self._energy()
-            words = f"{energy['residual_J']:.3g} J are unaccounted for, of {energy['in_J']:.3g} J put in. {ADVICE}"
+            words = unaccounted(self._energy())
         elif stop == Stop.UNEXPLAINED:
-            words = ". ".join(filter(None, (touching(self.state, self.pairs), ADVICE)))
+            words = unexplained(self.state, self.pairs)
         elif stop == Stop.TOO_MANY_EVENTS:
             bodies = [self.scene.bodies[coordinate.body].name for coordinate in self.compiled.model.coordinates]
             words = what_alternates(self.scratch.ended, self.pairs, bodies)
+        elif stop == Stop.FAR_AWAY:
+            words = furthest(self.state, self.compiled.model, [body.name for body in self.scene.bodies])
         elif stop == Stop.LCP_FAILED:
             driven = {body.name for body in self.scene.bodies if body.prescribed is not None}
             failure = failure_of(self.state, self.scratch, self.pairs) if driven else None
@@ -211,15 +200,12 @@ class Run:
         return self.watch.fails(float(self.state.worst.penetration))
 
     def _slices(self, duration: float, progress: Progress | None, interrupted: Callable[[], bool]) -> Stop:
-        """Slice after slice of about `SLICE_WALL`, with what has to be done between them."""
-        length = 1e-5 * duration  # grows tenfold at most: a long slice would be deaf
-        steps = FEWEST_STEPS  # where events crowd, time is no measure of work
+        """Slice after slice, with what has to be done between them."""
+        pace = Pace(duration)
         until = new_until(0.0, duration)
         look = self.watch.next_look(float(self.state.clock.time))
         while True:
-            start, begun = time.perf_counter(), float(self.state.clock.time)
-            until.slice_end = min(duration, begun + length, look)
-            until.steps = steps
+            pace.begin(float(self.state.clock.time), until, look)
             stop = self._advance(until, self.record)
             if stop == Stop.CELL_UNKNOWN:
                 self._learn()
@@ -231,11 +217,7 @@ class Run:
             elif stop != Stop.SLICE:
                 return stop
             else:
-                pace = SLICE_WALL / max(time.perf_counter() - start, 1e-4)
-                if until.steps > 0.0:
-                    done = float(self.state.clock.time) - begun
-                    length = min(max(done * pace, 1e-9 * duration), 10.0 * length)
-                steps = min(max(pace * (steps - until.steps), 1.0), 2.0 * steps, MOST_STEPS)
+                pace.end(float(self.state.clock.time), until)
             if self.state.clock.time >= look:
                 self._look()
                 look = self.watch.next_look(float(self.state.clock.time))
@@ -247,12 +229,6 @@ class Run:
                 progress(float(self.state.clock.time), duration)
             if interrupted():
                 return Stop.INTERRUPTED
-
-    def _rows_told(self, rows: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
-        """t, q, u, a of rows, as the scene tells them."""
-        t, q, u, a = columns_of(rows)
-        relative = self.compiled.relative
-        return t, relative(q), relative(u, rates=True), relative(a, rates=True)
 
     def _all_kept(self) -> tuple[Sequence[NDArray[np.float64]], NDArray[Any]]:
         """t, q, u, a and the events."""
@@ -314,33 +290,5 @@ class Run:
 
     def _energy(self) -> dict[str, Any]:
         """The ledger: work in = stored + dissipated + residual, J."""
-        sums = self.state.sums
         at_end = stored_energy(self.compiled.model, self.state.q, self.state.u)
-        stored = at_end - self.stored_at_start
-        dissipated = self._dissipated()
-        residual = sums.drive - stored - sum(dissipated.values())
-        # A swing that loses nothing gets nothing and stores nothing more: what it turns over is the scale of its rounding.
-        held = max(at_end, self.stored_at_start, _turned_over(self.compiled.model.coordinates))
-        scale = max(abs(sums.drive), abs(stored), sum(dissipated.values()), held)
-        return {
-            "in_J": float(sums.drive),
-            "dissipated": dissipated,
-            "stored_J": float(stored),
-            "residual_J": float(residual),
-            "residual_relative": float(abs(residual) / scale) if scale else 0.0,
-        }
-
-
-def _turned_over(coordinates: Any) -> float:
-    """What constant forces give to springs and take back in each swing, J."""
-    sprung = coordinates[(coordinates.stiffness > 0.0) & (coordinates.driven == 0)]
-    return float(np.max(2.0 * sprung.force**2 / sprung.stiffness, initial=0.0))
-
-
-def _as_told(events: NDArray[Any], compiled: Compiled) -> NDArray[Any]:
-    """The events, angles of turning points told as the scene tells them."""
-    told = [(compiled.model.coordinates[own].body, angle) for own, _, angle in compiled.against if angle != 0.0]
-    events = events.copy() if told else events
-    for body, angle in told:
-        events["value"][(events["kind"] == EventKind.TURN) & (events["body"] == body)] -= angle
-    return events
+        return ledger(float(self.state.sums.drive), self._dissipated(), (self.stored_at_start, at_end), self.compiled.model)

@@ -20,7 +20,7 @@ from watchsim.scene.errors import SceneError
 from watchsim.scene.scene import Scene
 from watchsim.simulation.options import Options, options_for
 from watchsim.simulation.overlap_removal import kinematics_at, overlapping_rows, taken_back_from
-from watchsim.simulation.tolerances import TOUCH_REACH
+from watchsim.tolerances import TOUCH_REACH
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]

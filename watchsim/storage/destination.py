@@ -11,7 +11,7 @@ import stat
 from pathlib import Path
 
 from watchsim.storage.disk import reason, size_text, write_bytes
-from watchsim.storage.scratch import scratch_in
+from watchsim.storage.scratch_folder import scratch_in
 from watchsim.storage.write import real, sweep
 
 LEAST_ROOM = 4_000_000  # bytes: a small run with its plots

@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from watchsim.storage.disk import reason, sync_file, sync_folder, sync_name, sync_tree, write_bytes
-from watchsim.storage.scratch import Scratch, guard, leftovers, scratch_in
+from watchsim.storage.scratch_folder import Scratch, guard, leftovers, scratch_in
 
 Ours = Callable[[str], bool]  # of a path in the folder, with slashes: is it a file of ours, which may be replaced?
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from watchsim.analysis.timing.averages import mean_over
-from watchsim.analysis.verdicts.words import TICKS
+from watchsim.analysis.verdicts.verdict_kinds import TICKS
 from watchsim.scene.errors import SceneError
 from watchsim.scene.file.read_scene import changed
 from watchsim.scene.roles import roles
@@ -19,8 +19,8 @@ from watchsim.scene.scene import Scene
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
 from watchsim.studies.axes import Value
+from watchsim.studies.limit_cycle.find_cycle import steady
 from watchsim.studies.limit_cycle.judge import judged
-from watchsim.studies.limit_cycle.steady import steady
 from watchsim.studies.outputs import OUTPUTS
 
 Row = dict[str, Any]

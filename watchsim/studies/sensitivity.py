@@ -18,12 +18,13 @@ from watchsim.displays import notebook_html
 from watchsim.scene.errors import Fault, SceneError
 from watchsim.scene.scene import Scene
 from watchsim.studies.limit_cycle.cycle import Cycle
-from watchsim.studies.limit_cycle.steady import steady
+from watchsim.studies.limit_cycle.find_cycle import steady
 from watchsim.studies.outputs import USUAL, Output, outputs_named
+from watchsim.studies.parameter_sweep import Progress, computed, study_of
 from watchsim.studies.point import Question, Row
 from watchsim.studies.quantities import Quantity, fixed_nominal, quantities
-from watchsim.studies.sweep import Progress, computed, study_of
-from watchsim.studies.workers.executor import Executor, chosen
+from watchsim.studies.workers.choose_executor import chosen
+from watchsim.studies.workers.executor import Executor
 from watchsim.studies.workers.journal import Journal
 from watchsim.units import known_unit
 
@@ -149,7 +150,7 @@ def found(
     cycle = steady(scene, tolerance=tolerance)
     if not cycle.found or cycle.amplitude_deg is None:
         raise ValueError(f"this watch has no limit cycle whose sensitivity could be computed: {cycle.message or cycle.verdict}")
-    # One oscillation tells all where the teeth are alike, but for the multiplier.
+    # One oscillation is enough where the teeth are alike, but for the multiplier.
     brief = cycle.oscillations == 1 and all(one.name != "multiplier" for one in outputs)
     question = Question(scene, True, None, tolerance, float(np.radians(cycle.amplitude_deg)), brief)
     points = [point for quantity in asked for point in points_of(quantity)]

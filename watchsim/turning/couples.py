@@ -77,8 +77,10 @@ class Couple:
     def near(self, pose_a: Pose, pose_b: Pose) -> Near:
         """The nearest points at those poses."""
         first, second = self.edges
-        distance, i, at, j, other, crossing = nearest_edges(first, pose_a, second, pose_b, *self.room)
-        return Near(float(distance), bool(crossing), (first[i], at, pose_a), (second[j], other, pose_b), (int(i), int(j)))
+        near = nearest_edges(first, pose_a, second, pose_b, *self.room)
+        i, j = int(near.edge_a), int(near.edge_b)
+        on_a, on_b = (first[i], near.way_a, pose_a), (second[j], near.way_b, pose_b)
+        return Near(float(near.distance), bool(near.crossing), on_a, on_b, (i, j))
 
 
 def pose_of(body: Body, q: float) -> Pose:

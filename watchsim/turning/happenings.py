@@ -10,7 +10,7 @@ import numpy as np
 from watchsim.geometry.primitives import Point
 from watchsim.turning.turn import Turn
 
-PASSING = 1.5e-4  # m: what comes closer without a touch is told
+PASSING = 1.5e-4  # m: what comes closer without a touch is reported
 ALIKE = 5e-7  # m: passings of the same layers that differ by less are one
 FORGOTTEN = 3  # rows: a touch that comes back so soon was never lost
 

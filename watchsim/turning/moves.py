@@ -69,7 +69,7 @@ class Assembly:
         return [(couple, near) for couple, near in found if near.crossing or near.distance <= TOUCHING]
 
     def room(self, couple: Couple) -> float:
-        """A bound from below of the distance, without looking again while what was seen last tells of room enough."""
+        """A bound from below of the distance, without looking again while what was seen last leaves room enough."""
         known = self._known.get(id(couple))
         if known is not None:
             a, b, near = known

@@ -12,13 +12,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from watchsim.candidates.symmetry import turn_symmetry
-from watchsim.mechanism.compile import CLEARANCE, compile_scene
+from watchsim.mechanism.compile import compile_scene
 from watchsim.scene.errors import Fault, SceneError
 from watchsim.scene.oscillation import Oscillator, oscillators
 from watchsim.scene.roles import drive_direction, keeps_time
 from watchsim.scene.scene import Scene
-from watchsim.turning.cycle import Cycle
+from watchsim.tolerances import CLEARANCE
 from watchsim.turning.moves import assembly
+from watchsim.turning.turned_cycle import Cycle
 
 SWING = math.radians(180.0)  # of a balance whose scene starts nearer to rest
 BALANCE = math.radians(60.0)  # what starts further from rest swings as far as it starts

@@ -85,7 +85,7 @@ def held_up_to(kinds: list[int]) -> float:
 
 def range_map(scene: Scene) -> str:
     """The map of starts and torques; picture and text."""
-    from watchsim.render.figures.style import CURVE, dress, figure, key, save
+    from watchsim.render.figures.figure_style import CURVE, dress, figure, key, save
     from watchsim.render.palette import INK
 
     kinds = np.array([[missing(scene, torque, start) for torque in TORQUES] for start in STARTS])

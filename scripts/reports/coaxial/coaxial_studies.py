@@ -16,7 +16,7 @@ from coaxial_scenes import IMAGES, NAMES, bound, everywhere, pulled, supplied
 
 import watchsim as ws
 from watchsim.geometry.solids.mass import mass_properties
-from watchsim.render.figures.style import CURVE, SERIES, dress, figure, key, save
+from watchsim.render.figures.figure_style import CURVE, SERIES, dress, figure, key, save
 from watchsim.scene.scene import Scene
 
 if TYPE_CHECKING:

@@ -21,19 +21,19 @@ import run_coaxial_twin
 from coaxial_scenes import IMAGES, scenes
 
 import watchsim as ws
-from watchsim.analysis.timeline.oscillation import shown_beats
-from watchsim.analysis.timeline.table import timeline_text
+from watchsim.analysis.timeline.shown_beats import shown_beats
+from watchsim.analysis.timeline.timeline_table import timeline_text
 from watchsim.construction.known import design
+from watchsim.escapement.function_report import text
 from watchsim.escapement.measure import measure
-from watchsim.escapement.report import text
 from watchsim.mechanism.compile import compile_scene
 from watchsim.render.figures.phase_plot import plot_phases
 from watchsim.render.stills.function_sheet import function_sheet
 from watchsim.render.stills.turn_picture import turn_picture
 from watchsim.scene.scene import Scene
 from watchsim.turning.happenings import passings
-from watchsim.turning.report import turn_text
 from watchsim.turning.turn import turn
+from watchsim.turning.turning_report import turn_text
 
 PAGE = Path(__file__).resolve().parents[3] / "docs" / "guide" / "coaxial.md"
 LAST = (179.65, 179.95)  # s: the beats that begin here reach from before 179.68 s to beyond 179.98 s
@@ -72,7 +72,7 @@ def timeline(scene: Scene) -> str:
 
     run = ws.simulate(scene, duration=WHOLE)
     told = shown_beats(run, LAST)
-    plot_phases(run, None, told=told[:2]).savefig(IMAGES / "coaxial_phases.png", dpi=130)
+    plot_phases(run, None, beats=told[:2]).savefig(IMAGES / "coaxial_phases.png", dpi=130)
     for name, beat in (("indirect", told[0]), ("direct", told[1])):
         push = next(one.phase for one in beat.stages if one.name == "impulse")
         instant = 0.5 * (push.start + push.end)

@@ -51,7 +51,7 @@ def stepped(scene: Scene) -> Iterator[Stepped]:
 
 def twin(found: list[Stepped]) -> str:
     """Table and picture of the time stepping."""
-    from watchsim.render.figures.style import BAD, CURVE, HAIR, SERIES, SMALL, dress, figure, key, save
+    from watchsim.render.figures.figure_style import BAD, CURVE, HAIR, SERIES, SMALL, dress, figure, key, save
     from watchsim.render.palette import FAINT
 
     steps = np.array([one.step for one in found]) * 1e6

@@ -23,8 +23,8 @@ DURATION, SETTLED = 0.3, 0.15  # s
 SAME = 1e-4
 TEXT = """An involute wheel of 30 teeth (module 0.2 mm) drives a pinion of 8 against a viscous load; each flank is N arcs
 through three points of the involute. Mean speed of the wheel in rad/s over whole teeth between {settled:g} and
-{duration:g} s, when one tooth is like the next to 2e-9. *Apart*: between the tolerances, relative; above 1e-4 wrong,
-or marked *differ* where the truth is not unique. The truth is `tests/reference/gear_friction.py`: exact involutes,
+{duration:g} s, when successive teeth agree to 2e-9. *Apart*: relative difference between the tolerances; above 1e-4 wrong,
+or marked *differ* where the solution is not unique. The reference is `tests/reference/gear_friction.py`: exact involutes,
 one equation of motion, scipy.
 
 Without friction the truth is {free:.4f} rad/s, and the speed converges to it. With friction 0.1 and teeth as usual

@@ -13,10 +13,10 @@ from kinked_scenes import ANGLES, FRICTIONS, RESTITUTIONS, TOLERANCES, bar_for, 
 DECADES = ((0.0, 1e-8), (1e-8, 1e-6), (1e-6, 1e-5), (1e-5, 1e-4), (1e-4, 1e-3), (1e-3, 0.15), (0.15, 2.0))
 TEXT = """A bar slides under a round follower that a torque presses on. Its level top rises (concave) or falls (convex) by an
 angle. {angles} angles, even in their logarithm from 1e-10 to 0.1 rad, then to 90°; restitution {restitutions};
-friction {frictions}; tolerance {tolerances}. The truth shares nothing with watchsim
+friction {frictions}; tolerance {tolerances}. The reference shares nothing with watchsim
 (`tests/reference/kinked_bar.py`): the impact of one contact in closed form, flights on parabolas, one equation for
 the contact force while the follower rides (scipy). Compared are the speeds of bar and follower and their places 20 ms
-after the kink (beyond 0.15 rad 2 ms), over the bar's speed and way. Where friction stops the follower at the kink,
+after the kink (beyond 0.15 rad 2 ms), relative to the bar's speed and travel. Where friction stops the follower at the kink,
 the speeds right after the impact are compared. Energy: the residual over the kinetic energy.
 
 A run counts as wrong beyond 1e-9 + 20 tolerances + what two rules cost (`allowed` in

@@ -20,8 +20,8 @@ DEAR, FEW = ("gears, two arcs a flank", "Swiss lever"), 100  # a run of these ta
 LIMIT = 1e-9
 TEXT = """{count} mechanisms, each in three quarter turns and in random poses (seed {seed}): the world is turned by a random
 angle, with gravity and axes, and the outlines of each body are turned within its frame by another one. Compared with the
-mechanism as it was written: all coordinates at the end and all turning points of what swings on a spring, since the
-start, over the largest of them; tolerance {tolerance:g}. Wrong is a difference above {limit:g}, a missing turning point,
+original mechanism: all coordinates at the end and all turning points of what swings on a spring, since the
+start, relative to the largest of them; tolerance {tolerance:g}. Wrong is a difference above {limit:g}, a missing turning point,
 an early end, or an energy residual above 1e-6.
 
 | mechanism | impacts | turning points | poses | largest difference | wrong |

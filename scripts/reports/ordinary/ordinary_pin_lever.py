@@ -37,9 +37,9 @@ that nothing overlaps. The impulse pin's two splines are drawn as N arcs through
 Amplitudes in degrees, mean of the last two half swings of 3 s.
 
 As drawn, with its wheel at the angle of the assembly, the lever cannot start at 0.06 and 0.09 mm: a tooth then stands 14
-and 38 µm inside a pallet, ten thousand times what drawings are rounded by, and the start is refused by name and depth. Such a
-scene used to tick because contacts that begin behind a face were lost in silence; a start check that lets it pass would let
-every lost contact pass. The same scene with `--set bodies.wheel.angle` of one degree back stands free, and that is what is
+and 38 µm inside a pallet, ten thousand times the rounding of drawings, and the start is refused with bodies and depth. Such a
+scene used to tick because contacts that begin behind a face were silently lost; a start check that accepts it would accept
+every lost contact. The same scene with `--set bodies.wheel.angle` of one degree back stands free, and that is what is
 measured here.
 
 | pin drawn as | {heads} | ended |

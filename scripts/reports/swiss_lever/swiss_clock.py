@@ -22,7 +22,7 @@ from swiss_studies import (
 )
 
 import watchsim as ws
-from watchsim.render.figures.effects import plot_sensitivity
+from watchsim.render.figures.effects_plot import plot_sensitivity
 from watchsim.studies.limit_cycle.cycle import Cycle
 from watchsim.units import ANGLE, TORQUE, parse
 
@@ -337,7 +337,7 @@ def what_matters(scene: ws.Scene) -> list[str]:
         f"![Effects of all numbers of the scene]({picture})",
         "",
         f"Derivatives on the limit cycle by all {len(rows)} numbers of the scene (`watchsim sweep"
-        " profiles/swiss_lever --sensitivity`), told as"
+        " profiles/swiss_lever --sensitivity`), given as"
         " the effect of",
         "1 % more, 10 µm or 0.1°; the largest on the amplitude first. Two step sizes agree to 1 % in"
         f" {agreeing} of {len(rows)}; the others say so.",

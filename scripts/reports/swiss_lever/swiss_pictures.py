@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from swiss_studies import Floats, Series
 
-from watchsim.render.figures.style import CURVE, FULL, HAIR, SERIES, dress, figure, key, save
+from watchsim.render.figures.figure_style import CURVE, FULL, HAIR, SERIES, dress, figure, key, save
 from watchsim.render.palette import FAINT
 
 if TYPE_CHECKING:

@@ -61,7 +61,7 @@ def over(scene: ws.Scene, key: str, values: Iterable[float]) -> Series:
 
 
 def over_torque(scene: ws.Scene, torques: Iterable[float]) -> Series:
-    """Over the torque at the escape wheel, N·m, told positive; the wheel turns clockwise."""
+    """Over the torque at the escape wheel, N·m, counted positive; the wheel turns clockwise."""
     at = np.array(list(torques), float)
     return Series(at, over(scene, "torques.0.value", -at).cycles)
 

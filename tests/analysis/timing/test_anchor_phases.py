@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from watchsim.analysis.timeline.oscillation import shown_beats
-from watchsim.analysis.timeline.table import timeline_text
+from watchsim.analysis.timeline.shown_beats import shown_beats
+from watchsim.analysis.timeline.timeline_table import timeline_text
 from watchsim.analysis.timing.beats import beats
 from watchsim.analysis.timing.body_contacts import held
 from watchsim.analysis.timing.phases import phases

@@ -11,16 +11,16 @@ from analysis.made_faults import chipped, knocked, renamed, swiss, toothless, tu
 
 from watchsim.analysis.timing.beats import beats
 from watchsim.analysis.verdicts.backwards import _against_teeth
-from watchsim.analysis.verdicts.equilibrium.arms import arms
 from watchsim.analysis.verdicts.equilibrium.in_force import in_force
+from watchsim.analysis.verdicts.equilibrium.lever_arms import arms
 from watchsim.analysis.verdicts.equilibrium.statics import at_lever
 from watchsim.analysis.verdicts.faces import face
 from watchsim.analysis.verdicts.knocking import _angles, knocks
 from watchsim.analysis.verdicts.tripping import tripping
 from watchsim.analysis.verdicts.unlocked import unlocked
 from watchsim.analysis.verdicts.verdict import verdict
+from watchsim.analysis.verdicts.verdict_kinds import Verdict
 from watchsim.analysis.verdicts.watch import watch_of
-from watchsim.analysis.verdicts.words import Verdict
 from watchsim.profiles_path import profiles_dir
 from watchsim.scene.body import Body
 from watchsim.scene.file.load import load

@@ -10,7 +10,7 @@ from typing import Any
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.inspection import inspect_report, inspect_text
 from watchsim.drawing.read import FIT, read, read_content
-from watchsim.drawing.svg.page import page_unit
+from watchsim.drawing.svg.svg_page import page_unit
 from watchsim.geometry.extent import total_length
 
 

@@ -12,7 +12,7 @@ from shapely import LineString, Point
 
 import watchsim as ws
 from watchsim.analysis.contact_forces import forces
-from watchsim.analysis.timeline.oscillation import shown_beats
+from watchsim.analysis.timeline.shown_beats import shown_beats
 from watchsim.geometry.polyline import polyline
 from watchsim.render.frame.marks.extras import Extras
 from watchsim.render.frame.marks.force_arrows import ForceArrows, arrow_path

@@ -20,10 +20,11 @@ from watchsim.scene.force import Damping, Torque
 from watchsim.scene.recording import Recording
 from watchsim.scene.scene import Scene
 from watchsim.simulation import runner as running
+from watchsim.simulation.loop_state.buffers import new_until
 from watchsim.simulation.motion import dop853
 from watchsim.simulation.motion.dense_output import dense_value
 from watchsim.simulation.options import options_for
-from watchsim.simulation.runner import Run, new_until
+from watchsim.simulation.runner import Run
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
 

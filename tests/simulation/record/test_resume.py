@@ -84,8 +84,8 @@ def test_however_slices_end(method: dict[str, Any], monkeypatch: pytest.MonkeyPa
     """After each step, after seven, or after as many as take a tenth of a second: the same bits."""
     whole = simulate(profile("bench_lever"), 0.3, **method)
     for steps in (1.0, 7.0):
-        monkeypatch.setattr("watchsim.simulation.runner.FEWEST_STEPS", steps)
-        monkeypatch.setattr("watchsim.simulation.runner.MOST_STEPS", steps)
+        monkeypatch.setattr("watchsim.simulation.slice_pace.FEWEST_STEPS", steps)
+        monkeypatch.setattr("watchsim.simulation.slice_pace.MOST_STEPS", steps)
         assert_same(simulate(profile("bench_lever"), 0.3, **method), whole)
 
 

@@ -17,7 +17,7 @@ the next impulse begins.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice, pairwise, zip_longest
 
@@ -25,15 +25,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.analysis.timing.anchor_marks import STANDING, anchor_marks
-from watchsim.analysis.timing.beats import Beats, beats
+from watchsim.analysis.timing.beats import Beats, beats, beats_within
 from watchsim.analysis.timing.body_contacts import between, contact_columns, held, involves
 from watchsim.analysis.timing.escape_wheel import progress
 from watchsim.analysis.timing.rows_at_hand import is_recorded
-from watchsim.scene.roles import Roles, with_anchor
+from watchsim.scene.roles import Roles, keeps_time, with_anchor
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.record.trajectory import Array, Pair, Trajectory
 
 Marks = tuple[float, float, float, float]
+Bits = NDArray[np.bool_]
 
 TOUCH = (EventKind.IMPACT, EventKind.CLOSE)
 RECOIL = 1e-3  # of the wheel's advance in a beat: a wheel that turns back less is led by a dead-beat anchor
@@ -65,9 +66,9 @@ class _Contacts:
 
     times: Array
     angle: Array
-    held: NDArray[np.int64]
+    held: NDArray[np.int32]
     touching: NDArray[np.bool_]
-    on: NDArray[np.int64]  # numbers of `FACES`
+    on: NDArray[np.int8]  # numbers of `FACES`
     banking: Array
 
 
@@ -79,23 +80,32 @@ def phases(run: Trajectory, found: Beats | None = None) -> list[Phase]:
     return list(each_phase(run, found))
 
 
-def each_phase(run: Trajectory, found: Beats | None = None) -> Iterator[Phase]:
-    """The same one after the other: a long run has a great many."""
+def phases_within(run: Trajectory, window: Sequence[float]) -> list[Phase]:
+    """The phases of the beats that lie in a window (s), and of one before and after it."""
+    if not keeps_time(run.scene):
+        return []
+    near = beats_within(beats(run), window)
+    return phases(run, near) if len(near) else []
+
+
+def each_phase(run: Trajectory, found: Beats | None = None, window: Sequence[float] | None = None) -> Iterator[Phase]:
+    """The same one after the other, since a long run has a great many; only of beats that pass within a window (s)."""
     parts = with_anchor(run.scene)
     if parts.wheel is None or parts.lever is None or parts.oscillator is None or len(run.t) == 0:
         return
     found = found or beats(run)
-    contacts = _contacts(run, parts)
+    contacts = _contacts(run, parts, found)
+    passing = np.ones(len(found), bool) if window is None else (found.end >= window[0]) & ~(found.start > window[1])
     of_beats = _beats_of_anchor if parts.lever == parts.oscillator else _beats
-    rows = of_beats(run, parts, found, contacts)
+    rows = of_beats(run, parts, found, contacts, passing)
     while some := list(islice(rows, AT_ONCE)):
         yield from _with_angles(run, parts, some)
 
 
-def _beats(run: Trajectory, parts: Roles, found: Beats, contacts: _Contacts) -> Iterator[Phase]:
+def _beats(run: Trajectory, parts: Roles, found: Beats, contacts: _Contacts, passing: Bits) -> Iterator[Phase]:
     """Of a lever, in whatever order it unlocks, is pushed and locks."""
     assert parts.wheel
-    told = _told(run, found)
+    told = _told(run, found) & passing
     at_entry, at_end = (progress(run, parts.wheel, np.where(told, t, run.t[0])) for t in (found.tick, found.end))
     ways = zip(at_entry.tolist(), at_end.tolist(), strict=True)
     for i, way in enumerate(ways):
@@ -103,11 +113,11 @@ def _beats(run: Trajectory, parts: Roles, found: Beats, contacts: _Contacts) -> 
             yield from _beat(found, contacts, i, way)
 
 
-def _beats_of_anchor(run: Trajectory, parts: Roles, found: Beats, contacts: _Contacts) -> Iterator[Phase]:
+def _beats_of_anchor(run: Trajectory, parts: Roles, found: Beats, contacts: _Contacts, passing: Bits) -> Iterator[Phase]:
     """Of an anchor that swings as one with the oscillator: impulse, drop, then locked, or recoil where the wheel turns back."""
     assert parts.wheel
     at_rows = progress(run, parts.wheel, run.t)
-    told = is_recorded(run, found.start) & is_recorded(run, found.end)
+    told = is_recorded(run, found.start) & is_recorded(run, found.end) & passing
     marks = [
         anchor_marks(contacts.times, contacts.held, contacts.angle, run.t, at_rows, *span) if known else None
         for known, span in zip(told, zip(found.start.tolist(), found.end.tolist(), strict=True), strict=True)
@@ -129,16 +139,19 @@ def _told(run: Trajectory, found: Beats) -> NDArray[np.bool_]:
     return heard & is_recorded(run, np.where(heard, found.tick, 0.0)) & is_recorded(run, found.end)
 
 
-def _contacts(run: Trajectory, parts: Roles) -> _Contacts:
+def _contacts(run: Trajectory, parts: Roles, found: Beats) -> _Contacts:
+    """Those of the beats `found`."""
     assert parts.wheel and parts.lever
     times, kinds, which = contact_columns(run, involves(parts.wheel), ["t", "kind", "contact"], *TOUCH, EventKind.OPEN)
     fixed = {body.name for body in run.scene.bodies if body.motion == "fixed"}
     (banking,) = contact_columns(run, between(parts.lever, fixed), ["t"], *TOUCH)
-    used, back = np.unique(which, return_inverse=True)
-    on = np.array([FACES.index(_face(run.pairs[contact], parts)) for contact in used.tolist()], np.int64)[back]
-    return _Contacts(
-        times, progress(run, parts.wheel, times), held(times, kinds, run.spans), kinds != EventKind.OPEN, on, banking
-    )
+    first, end = np.searchsorted(times, (found.start[0], found.end[-1])) if len(found) else (0, 0)
+    near = slice(first, end)
+    used, back = np.unique(which[near], return_inverse=True)
+    on = np.array([FACES.index(_face(run.pairs[contact], parts)) for contact in used.tolist()], np.int8)[back]
+    holding, touching = held(times, kinds, run.spans)[near].copy(), kinds[near] != EventKind.OPEN
+    times = times[near].copy()
+    return _Contacts(times, progress(run, parts.wheel, times), holding, touching, on, banking)
 
 
 def _face(pair: Pair, parts: Roles) -> str:
@@ -156,19 +169,20 @@ def _beat(found: Beats, contacts: _Contacts, i: int, way: tuple[float, float]) -
     if marks is None:
         return
     unlocked, caught, let_off, lock = marks
-    yield Phase(i + 1, "unlock", float(entry), unlocked)
-    yield Phase(i + 1, "catch-up", unlocked, caught)
+    beat = found.before + i + 1
+    yield Phase(beat, "unlock", float(entry), unlocked)
+    yield Phase(beat, "catch-up", unlocked, caught)
     changes = [*_impulses(contacts, slice(first, last), caught, let_off), (let_off, "")]
     for (t0, on), (t1, _) in pairwise(changes):
-        yield Phase(i + 1, "impulse", t0, t1, on=on)
-    yield Phase(i + 1, "drop", let_off, lock)
+        yield Phase(beat, "impulse", t0, t1, on=on)
+    yield Phase(beat, "drop", let_off, lock)
     resting = lock
     met = int(np.searchsorted(contacts.banking, lock, side="left"))
     if met < len(contacts.banking) and contacts.banking[met] <= end:
         resting = float(contacts.banking[met])
-        yield Phase(i + 1, "run to banking", lock, resting)
+        yield Phase(beat, "run to banking", lock, resting)
     if i + 1 < len(found) and np.isfinite(found.tick[i + 1]):
-        yield Phase(i + 1, "locked", resting, float(found.tick[i + 1]))
+        yield Phase(beat, "locked", resting, float(found.tick[i + 1]))
 
 
 def _impulses(contacts: _Contacts, own: slice, caught: float, let_off: float) -> Iterator[tuple[float, str]]:

@@ -7,8 +7,8 @@ import numpy as np
 from watchsim.analysis.timing.averages import last_window
 from watchsim.analysis.verdicts.running_free import running_free
 from watchsim.analysis.verdicts.unlocked import unlocked
+from watchsim.analysis.verdicts.verdict_kinds import BACKWARDS, Verdict, torque_text, when
 from watchsim.analysis.verdicts.watch import Watch
-from watchsim.analysis.verdicts.words import BACKWARDS, Verdict, torque_text, when
 
 
 def backwards(watch: Watch) -> Verdict | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from watchsim.analysis.verdicts.equilibrium.arms import Arms
+from watchsim.analysis.verdicts.equilibrium.lever_arms import Arms
 from watchsim.analysis.verdicts.watch import Watch
 
 DRIVING = 0.05  # of the distance from the lever's pivot: with a longer arm the wheel drives the pallet out

@@ -8,9 +8,9 @@ import numpy as np
 
 from watchsim.analysis.timing.averages import averages, last_window
 from watchsim.analysis.timing.body_contacts import Events
-from watchsim.analysis.verdicts.equilibrium.arms import arms
+from watchsim.analysis.verdicts.equilibrium.lever_arms import arms
+from watchsim.analysis.verdicts.verdict_kinds import KNOCKS, Verdict, degrees, times, torque_text, when
 from watchsim.analysis.verdicts.watch import Watch
-from watchsim.analysis.verdicts.words import KNOCKS, Verdict, degrees, times, torque_text, when
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.record.trajectory import Array
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from watchsim.analysis.timing.averages import last_window
+from watchsim.analysis.verdicts.verdict_kinds import when
 from watchsim.analysis.verdicts.watch import Watch
-from watchsim.analysis.verdicts.words import when
 
 FAST = 2.0  # times as many teeth as the oscillator could let go in that time
 

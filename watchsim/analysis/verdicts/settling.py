@@ -11,8 +11,8 @@ import math
 import numpy as np
 
 from watchsim.analysis.timing.averages import averages, last_window
+from watchsim.analysis.verdicts.verdict_kinds import UNSETTLED, Verdict
 from watchsim.analysis.verdicts.watch import Watch
-from watchsim.analysis.verdicts.words import UNSETTLED, Verdict
 from watchsim.simulation.record.trajectory import Array
 
 FEWEST = 12  # half swings that three stretches take

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from watchsim.analysis.timing.standstill import standstill
-from watchsim.analysis.verdicts.equilibrium.arms import Arms, arms
 from watchsim.analysis.verdicts.equilibrium.in_force import in_force
+from watchsim.analysis.verdicts.equilibrium.lever_arms import Arms, arms
 from watchsim.analysis.verdicts.equilibrium.statics import at_lever
 from watchsim.analysis.verdicts.faces import Face, face
+from watchsim.analysis.verdicts.verdict_kinds import STOPS, Verdict, degrees, torque_text, when
 from watchsim.analysis.verdicts.watch import Watch
-from watchsim.analysis.verdicts.words import STOPS, Verdict, degrees, torque_text, when
 
 HELD = 1e-4  # rad: an oscillator that moved less for half a period is held
 

@@ -7,8 +7,8 @@ import numpy as np
 from watchsim.analysis.timing.escape_wheel import advance
 from watchsim.analysis.verdicts.running_free import running_free
 from watchsim.analysis.verdicts.unlocked import unlocked
+from watchsim.analysis.verdicts.verdict_kinds import TRIPS, Verdict, times, torque_text, when
 from watchsim.analysis.verdicts.watch import Watch
-from watchsim.analysis.verdicts.words import TRIPS, Verdict, times, torque_text, when
 from watchsim.simulation.event_kinds import EventKind
 
 AHEAD = 1  # half pitches gained within two half swings

@@ -23,8 +23,8 @@ from watchsim.analysis.verdicts.overbanking import overbanking
 from watchsim.analysis.verdicts.settling import unsettled
 from watchsim.analysis.verdicts.standing import standing
 from watchsim.analysis.verdicts.tripping import tripping
+from watchsim.analysis.verdicts.verdict_kinds import NOTHING, TICKS, Verdict, when
 from watchsim.analysis.verdicts.watch import Watch, watch_of
-from watchsim.analysis.verdicts.words import NOTHING, TICKS, Verdict, when
 from watchsim.scene.roles import swings
 from watchsim.simulation.record.trajectory import Trajectory
 

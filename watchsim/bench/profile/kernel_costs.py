@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.bench.profile.lcp_costs import problem_costs
-from watchsim.bench.profile.moments import Kind, Moment, Walk, seconds_each
 from watchsim.bench.profile.repeated_work import evaluations_again, impacts_again, lookups_again, touches_again
+from watchsim.bench.profile.sampled_moments import Kind, Moment, Walk, seconds_each
 from watchsim.simulation.loop_state.state import COUNT_NAMES
 from watchsim.simulation.loop_state.state_arrays import arrays_of
 

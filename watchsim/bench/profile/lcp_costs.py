@@ -8,8 +8,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.bench.profile.moments import Kind, Walk, seconds_each
 from watchsim.bench.profile.repeated_work import COMPRESSION, EXPANSION, MODES, pose, problems_again
+from watchsim.bench.profile.sampled_moments import Kind, Walk, seconds_each
 from watchsim.dynamics.delassus import LARGEST
 from watchsim.dynamics.lcp.lemke_pivoting import lcp_work
 

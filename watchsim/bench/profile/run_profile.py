@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from watchsim.bench.profile.kernel_costs import COUNTED_AS, kernel_costs
-from watchsim.bench.profile.moments import Walk
+from watchsim.bench.profile.sampled_moments import Walk
 from watchsim.candidates.pair_cache import forget
 from watchsim.mechanism.compile import compile_scene
 from watchsim.scene.recording import Recording
@@ -48,7 +48,7 @@ class _Timed(Run):
     """A run that knows how often the compiled loop was called, and for how long."""
 
     calls = 0
-    looping: float = 0.0  # s of the processor
+    looping: float = 0.0  # s of processor time
     learning: float = 0.0
 
     def _advance(self, until: Until, record: Any) -> Stop:
@@ -67,7 +67,7 @@ class _Timed(Run):
 def profile_of(run: Trajectory) -> dict[str, Any]:
     """The first ten seconds of a run by events done again, with no cell known and with all cells known, and its kernels.
 
-    `simulated_s`; `stepping_s` of the processor with all cells known, without getting ready; `counts`; `work`: kind of work ->
+    `simulated_s`; `stepping_s` of processor time with all cells known, without set-up; `counts`; `work`: kind of work ->
     {count, seconds_each, seconds, share}; `floor_s`, the sum of these seconds; `rest`: {seconds, share} above it; `over_floor`,
     the stepping over the floor; `over_numerics`, over accelerations, gaps and problems alone; `learning`: as one of `work`, for
     the cells asked about where nothing is known before, its share that of the stepping there.
@@ -107,7 +107,7 @@ def _quickest(scene: Scene, tolerance: float, duration: float) -> tuple[_Timed, 
 
 
 def _stepped(scene: Scene, tolerance: float, duration: float) -> tuple[_Timed, Stop, float]:
-    """(a run done, why it ended, seconds of the processor)."""
+    """(a run done, why it ended, seconds of processor time)."""
     run = _Timed(scene, compile_scene(scene), tolerance, Recording(keep="statistics"))
     run.warm_up()
     run.calls = run.looping = 0
@@ -129,7 +129,7 @@ def _shared(count: int, seconds: float, of: float) -> dict[str, float]:
 
 def profile_text(profile: Mapping[str, Any]) -> str:
     """The same for people."""
-    lines = [f"  stepping     {profile['stepping_s']:.3g} s of the processor for {profile['simulated_s']:g} s simulated"]
+    lines = [f"  stepping     {profile['stepping_s']:.3g} s of processor time for {profile['simulated_s']:g} s simulated"]
     for name, entry in profile["work"].items():
         each = 1e9 * entry["seconds_each"]
         lines.append(f"{'':15}{WORDS[name]:33}{entry['count']:>9} × {each:6.0f} ns = {100.0 * entry['share']:4.1f} %")

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 from watchsim.commands.common.console import InputError
 
 if TYPE_CHECKING:
-    from watchsim.analysis.timeline.oscillation import Beat
-    from watchsim.render.figures.style import Figure
+    from watchsim.analysis.timeline.shown_beats import Beat
+    from watchsim.render.figures.figure_style import Figure
     from watchsim.simulation.record.trajectory import Trajectory
 
 ALL = "all"
@@ -30,7 +30,7 @@ class Request:
     @cached_property
     def beats(self) -> list[Beat]:
         """The beats that the plots of a beat share."""
-        from watchsim.analysis.timeline.oscillation import shown_beats
+        from watchsim.analysis.timeline.shown_beats import shown_beats
 
         return shown_beats(self.run, self.window, rubbed=False)
 
@@ -44,7 +44,7 @@ class Request:
 
 
 def _kinematics(asked: Request) -> Figure:
-    from watchsim.render.figures.plots import plot_kinematics
+    from watchsim.render.figures.kinematics_plot import plot_kinematics
 
     return plot_kinematics(asked.run, asked.bodies, asked.quantities, asked.window, asked.width)
 
@@ -62,13 +62,13 @@ def _portrait(asked: Request) -> Figure:
 
 
 def _torque(asked: Request) -> Figure:
-    from watchsim.render.figures.beat.torque import plot_torque
+    from watchsim.render.figures.beat.torque_plot import plot_torque
 
     return plot_torque(asked.run, asked.window, asked.width, asked.beats)
 
 
 def _forces(asked: Request) -> Figure:
-    from watchsim.render.figures.beat.contact_forces import plot_forces
+    from watchsim.render.figures.beat.force_plot import plot_forces
 
     return plot_forces(asked.run, asked.window, asked.width)
 
@@ -80,19 +80,19 @@ def _timeline(asked: Request) -> Figure:
 
 
 def _energy(asked: Request) -> Figure:
-    from watchsim.render.figures.energy import plot_energy
+    from watchsim.render.figures.energy_plot import plot_energy
 
     return plot_energy(asked.run, asked.window, asked.width, asked.beats_if_any)
 
 
 def _timing(asked: Request) -> Figure:
-    from watchsim.render.figures.timing import plot_timing
+    from watchsim.render.figures.timing_plot import plot_timing
 
     return plot_timing(asked.run, asked.window, asked.width)
 
 
 def _tape(asked: Request) -> Figure:
-    from watchsim.render.figures.tape import plot_tape
+    from watchsim.render.figures.tape_plot import plot_tape
 
     return plot_tape(asked.run, asked.window, asked.width)
 

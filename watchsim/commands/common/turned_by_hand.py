@@ -24,8 +24,8 @@ class Turned:
 def turned_by_hand(scene: Scene, swing: str | None, movie: str | None, picture: str | None, on_dark: bool) -> Turned:
     """Turn the scene; write a movie and a picture where asked. SceneError where the scene is none that can be turned."""
     from watchsim.commands.common.output_place import secured_file
-    from watchsim.turning.report import PASSES, turn_report, turn_text
     from watchsim.turning.turn import turn
+    from watchsim.turning.turning_report import PASSES, turn_report, turn_text
 
     target = None
     if movie:

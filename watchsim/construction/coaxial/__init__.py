@@ -1,4 +1,5 @@
 """How is a co-axial escapement drawn?
 
-In: its `dimensions`. Out: `sheets` and `scene_text`, or `conflicts`; `design` is the whole. Imports `construction` and below.
+In: its `coaxial_dimensions`. Out: its sheets and the text of its scene, or conflicts; `coaxial_design` is the whole. Imports
+`construction` and below.
 """

@@ -1,5 +1,5 @@
 """How is a Geneva drive drawn?
 
-In: its `dimensions`. Out: outlines of driver and wheel, `scene_text`, or `conflicts`; `design` is the whole. Imports
-`construction` and below.
+In: its `geneva_dimensions`. Out: outlines of driver and wheel, the text of its scene, or conflicts; `geneva_design` is the
+whole. Imports `construction` and below.
 """

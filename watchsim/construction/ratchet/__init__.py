@@ -1,5 +1,5 @@
 """How is a ratchet wheel with its click drawn?
 
-In: its `dimensions`. Out: the outlines of its parts and `scene_text`, or conflicts; `design` is the whole. Imports
-`construction` and below.
+In: its `ratchet_dimensions`. Out: the outlines of its parts and the text of its scene, or conflicts; `ratchet_design` is the
+whole. Imports `construction` and below.
 """

@@ -10,7 +10,7 @@ import re
 from collections.abc import Mapping, Sequence
 
 from watchsim.drawing.findings import Finding
-from watchsim.drawing.svg.page import Page
+from watchsim.drawing.svg.svg_page import Page
 
 BROWSERS, ILLUSTRATOR, OLD_INKSCAPE = 96, 72, 90  # pixels per inch
 CHANGED = (0, 92)  # the first Inkscape that counts as browsers do

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import math
 
-from watchsim.dynamics.tolerances import LCP_PIVOT, LCP_RESIDUAL, LCP_ROUNDING
 from watchsim.jit import kernel
+from watchsim.tolerances import LCP_PIVOT, LCP_RESIDUAL, LCP_ROUNDING
 
 
 @kernel

@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 from watchsim.dynamics.lcp.basis import is_solution, solve_active
 from watchsim.dynamics.lcp.outcome import LcpOutcome
 from watchsim.dynamics.lcp.scaling import scale, unscale
-from watchsim.dynamics.tolerances import LCP_LESS, LCP_PERTURBED, LCP_PIVOT, LOAD_ROUNDING, RATIO_TIE
 from watchsim.jit import by_reference, entry, kernel
 from watchsim.model.named_fields import blank
+from watchsim.tolerances import LCP_LESS, LCP_PERTURBED, LCP_PIVOT, LOAD_ROUNDING, RATIO_TIE
 
 UNEVEN, PERIOD = 5, 7  # for unlike entries of d on other paths
 PLAIN = 4  # paths that differ from the usual one by their loads alone

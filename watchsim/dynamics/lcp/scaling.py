@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import math
 
-from watchsim.dynamics.tolerances import COEFFICIENT_ROUNDING
 from watchsim.jit import kernel
+from watchsim.tolerances import COEFFICIENT_ROUNDING
 
 SWEEPS = 3
 

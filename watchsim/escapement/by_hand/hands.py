@@ -16,7 +16,7 @@ from watchsim.contact.poses import poses
 from watchsim.escapement.by_hand.turning import describe, turn_to_touch
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.compile import Compiled
-from watchsim.mechanism.contact_features import JOINT
+from watchsim.tolerances import JOINT_RESOLUTION
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -37,7 +37,7 @@ class Touch:
 class Meeting:
     """A contact at a given position: its point (m) in the movement, the unit normal there, on which primitives.
 
-    `rates` tells of each of the two bodies (numbers in the model) how fast the gap opens as it turns, m/rad.
+    `rates` gives for each of the two bodies (numbers in the model) how fast the gap opens as it turns, m/rad.
     `flat` is the body that holds the line or the rounder arc, along whose face the other one's corner slides.
     """
 
@@ -54,7 +54,7 @@ class Hands:
     def __init__(self, compiled: Compiled) -> None:
         self.compiled, self.model = compiled, compiled.model
         self.room = ROOM * compiled.size
-        self.resolution = JOINT * compiled.size  # m: what outlines leave open
+        self.resolution = JOINT_RESOLUTION * compiled.size  # m: what outlines leave open
         self._pose, self._row = poses(len(self.model.bodies)), np.zeros(5)
         self._pairs = np.column_stack((self.model.contacts.a, self.model.contacts.b))
         self._owner = np.array(self.model.primitives.body)

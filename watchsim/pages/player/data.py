@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from watchsim.analysis.timing.phases import Phase
-from watchsim.pages.player.moments import heard, instants, named
+from watchsim.pages.player.canvas_outlines import packed_part
 from watchsim.pages.player.motion import Channel
-from watchsim.pages.player.outlines import packed_part
+from watchsim.pages.player.player_moments import heard, instants, named
 from watchsim.pages.player.touching import touching
 from watchsim.render.frame.coils import STUD, Hairspring, hairsprings
 from watchsim.render.frame.filled_parts import Part, is_round, loops_of

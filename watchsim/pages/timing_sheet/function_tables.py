@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from watchsim.escapement.function_report import Table, measured, tables
 from watchsim.escapement.measure import measure
-from watchsim.escapement.report import Table, measured, tables
 from watchsim.pages.html import Content, Markup, element, section, table
 from watchsim.scene.scene import Scene
 

@@ -11,7 +11,7 @@ from watchsim.geometry.inside import winding
 from watchsim.geometry.primitives import Point
 from watchsim.proposal.bodies.piece import Piece
 from watchsim.proposal.bodies.source import Mark
-from watchsim.proposal.bodies.symmetry import Turned
+from watchsim.proposal.bodies.symmetry_centre import Turned
 
 SAME = 2e-6  # m: two centres this close are one, as in drawings with three decimals of a millimetre
 SHARE = 0.1  # of a piece's outline must lie on arcs about a mark for these to name its centre

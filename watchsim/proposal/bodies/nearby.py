@@ -8,7 +8,7 @@ import numpy as np
 
 from watchsim.proposal.bodies.centres import is_toothed
 from watchsim.proposal.bodies.part import Part, are_apart, unite
-from watchsim.proposal.bodies.words import FIXED, LEVER, OSCILLATOR, WHEEL
+from watchsim.proposal.bodies.part_names import FIXED, LEVER, OSCILLATOR, WHEEL
 
 INSIDE = 0.3  # of a piece in the material of a body: it belongs to it
 BORDER = 0.2  # of a piece's outline on that of a body: it belongs to it

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from watchsim.proposal.bodies.centres import Centre
+from watchsim.proposal.bodies.part_names import LEVER, OSCILLATOR
 from watchsim.proposal.bodies.piece import Piece
-from watchsim.proposal.bodies.words import LEVER, OSCILLATOR
 
 
 @dataclass(eq=False)

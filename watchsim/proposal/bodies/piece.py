@@ -20,7 +20,7 @@ from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Point
 from watchsim.geometry.solids.mass import area, section
 from watchsim.mechanism.material_polygons import chord_points, material
-from watchsim.proposal.bodies.symmetry import Turned, turned
+from watchsim.proposal.bodies.symmetry_centre import Turned, turned
 
 Region = Any  # a polygon, or several, of shapely
 Floats = NDArray[np.float64]

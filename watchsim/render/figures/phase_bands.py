@@ -7,9 +7,9 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from watchsim.analysis.timeline.rows import Stage
-from watchsim.analysis.timeline.table import title
+from watchsim.analysis.timeline.timeline_table import title
 from watchsim.analysis.timing.phases import Phase
-from watchsim.render.figures.style import EDGE, HAIR, LEAD, LETTER, MM, POINT, SMALL
+from watchsim.render.figures.figure_style import EDGE, HAIR, LEAD, LETTER, MM, POINT, SMALL
 from watchsim.render.palette import ELSE, FAINT, INK, PHASE_LINES, PHASES, SECOND
 
 if TYPE_CHECKING:

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.analysis.timeline.oscillation import Beat, shown_beats
+from watchsim.analysis.timeline.shown_beats import Beat, shown_beats
+from watchsim.render.figures.figure_style import CURVE, FULL, MM, NARROW, SMALL, dress, figure, heading, limits, panel
 from watchsim.render.figures.phase_bands import name_above, shade
-from watchsim.render.figures.style import CURVE, FULL, MM, NARROW, SMALL, dress, figure, heading, limits, panel
 from watchsim.render.frame.pose_history import dense
 from watchsim.render.palette import looks
 from watchsim.scene.roles import with_anchor
@@ -29,16 +29,16 @@ MANY = 2  # beats that are drawn one by one
 
 
 def plot_phases(
-    run: Trajectory, window: Sequence[float] | None = None, width: float = FULL, told: list[Beat] | None = None
+    run: Trajectory, window: Sequence[float] | None = None, width: float = FULL, beats: list[Beat] | None = None
 ) -> Figure:
     """A figure `width` mm wide: left the whole window (s; default the last oscillation), then its last two beats at large.
 
     In a single column of text (less than 120 mm) only the beats. ValueError where no beat was recorded whole.
     """
-    told = told or shown_beats(run, window, rubbed=False)
-    span = (told[0].start, told[-1].end) if window is None else (float(window[0]), float(window[1]))
+    beats = beats or shown_beats(run, window, rubbed=False)
+    span = (beats[0].start, beats[-1].end) if window is None else (float(window[0]), float(window[1]))
     span = (max(span[0], float(run.t[0])), min(span[1], float(run.t[-1])))
-    large = told[-MANY:]
+    large = beats[-MANY:]
     columns = [*([None] if width >= NARROW else []), *large]
     parts = with_anchor(run.scene)
     names = list(dict.fromkeys(name for name in (parts.wheel, parts.lever, parts.oscillator) if name))
@@ -50,7 +50,7 @@ def plot_phases(
     for c, beat in enumerate(columns):
         left = LEFT + c * (wide + BETWEEN)
         panels = [panel(made, left, TOP + r * PANEL - 1.5, wide, PANEL - 5.0) for r in range(rows)]
-        _column(panels, run, names, span if beat is None else around(beat, run), beat, told, first=c == 0)
+        _column(panels, run, names, span if beat is None else around(beat, run), beat, beats, first=c == 0)
     return made
 
 
@@ -67,7 +67,7 @@ def _column(
     names: list[str],
     span: tuple[float, float],
     beat: Beat | None,
-    told: list[Beat],
+    beats: list[Beat],
     first: bool,
 ) -> None:
     """Angle and velocity of each body over one stretch of time."""
@@ -88,7 +88,7 @@ def _column(
                 axes.set_ylabel(unit, fontsize=SMALL, color=colour, weight="bold")
                 axes.yaxis.set_label_coords(-LABEL_AT / _width(axes), 0.5)
     for axes in panels:
-        for one in told if beat is None else [beat]:
+        for one in beats if beat is None else [beat]:
             shade(axes, (stage.phase for stage in one.stages), zero, grey=beat is None)
     for axes in panels[:-1]:
         axes.set_xticklabels([])

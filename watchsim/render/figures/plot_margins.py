@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.render.figures.style import LABEL, POINT, TICK
+from watchsim.render.figures.figure_style import LABEL, POINT, TICK
 
 if TYPE_CHECKING:
     from matplotlib.axis import Axis

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from watchsim.render.figures.style import CURVE, FULL, HAIR, SERIES, SMALL, dress, figure, save, title
+from watchsim.render.figures.figure_style import CURVE, FULL, HAIR, SERIES, SMALL, dress, figure, save, title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

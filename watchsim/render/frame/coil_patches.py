@@ -13,7 +13,7 @@ from watchsim.render.frame.coils import Hairspring, hairsprings
 from watchsim.render.frame.lasting_patch import LastingPatch
 from watchsim.render.frame.view import Frame
 from watchsim.render.palette import BLUED, FIXED, mixed
-from watchsim.render.style import PALE, Style
+from watchsim.render.picture_style import PALE, Style
 from watchsim.scene.scene import Scene
 
 Array = NDArray[np.float64]

@@ -26,9 +26,10 @@ class LastingPatch(PathPatch):
 
     def _look(self, renderer: RendererBase) -> tuple[GraphicsContextBase, Any]:
         """The context for its edge, and the colour of its face (None: left empty)."""
-        context, edge, face = renderer.new_gc(), to_rgba(self.get_edgecolor()), to_rgba(self.get_facecolor())
-        if (alpha := self.get_alpha()) is not None:
-            context.set_alpha(alpha)
+        context = renderer.new_gc()
+        edge, face = to_rgba(self.get_edgecolor()), to_rgba(self.get_facecolor())
+        alpha = self.get_alpha()
+        context.set_alpha(1.0 if alpha is None else alpha)
         context.set_foreground(edge, isRGBA=True)
         context.set_linewidth(self.get_linewidth() if edge[3] else 0.0)
         context.set_capstyle(self.get_capstyle())

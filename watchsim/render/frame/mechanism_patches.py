@@ -22,7 +22,7 @@ from watchsim.render.frame.filled_parts import Part, backdrop, is_round, loops_o
 from watchsim.render.frame.lasting_patch import LastingPatch
 from watchsim.render.frame.pose_matrix import pose_matrix
 from watchsim.render.frame.view import Frame, View, size_of
-from watchsim.render.style import Style
+from watchsim.render.picture_style import Style
 from watchsim.scene.carriers import at_start, is_still
 from watchsim.scene.scene import Scene
 

@@ -24,7 +24,7 @@ from watchsim.render.frame.marks.word_layout import draw_key, draw_notes, draw_r
 from watchsim.render.frame.mechanism_patches import Mechanism
 from watchsim.render.frame.pose_history import Window
 from watchsim.render.frame.view import view
-from watchsim.render.style import LIGHT, Style
+from watchsim.render.picture_style import LIGHT, Style
 from watchsim.simulation.record.trajectory import Trajectory
 
 Array = NDArray[np.float64]

@@ -12,7 +12,7 @@ from watchsim.render.frame.marks.word_layout import lay_out
 from watchsim.render.frame.pose_history import Window
 from watchsim.render.frame.stage import DPI
 from watchsim.render.frame.view import view
-from watchsim.render.style import LIGHT
+from watchsim.render.picture_style import LIGHT
 from watchsim.simulation.record.trajectory import Trajectory
 
 AUTO = "auto"  # a size

@@ -30,7 +30,7 @@ from watchsim.render.movies.gif_colours import shared_palette
 from watchsim.render.movies.pace import Plan, adaptive, even
 from watchsim.render.movies.picture_size import AUTO, GIF_SIZE, MP4_SIZE, checked, even_sides, fitting
 from watchsim.render.movies.soundtrack import soundtrack, write_soundtrack
-from watchsim.render.style import DARK, LIGHT
+from watchsim.render.picture_style import DARK, LIGHT
 from watchsim.simulation.record.trajectory import Trajectory
 
 Pixels = NDArray[np.uint8]

@@ -16,7 +16,7 @@ from watchsim.render.movies.encoder import check_path, encode
 from watchsim.render.movies.gif_colours import shared_palette
 from watchsim.render.movies.picture_size import GIF_SIZE, MP4_SIZE
 from watchsim.render.movies.run_movie import GIF_FPS
-from watchsim.render.style import DARK, LIGHT
+from watchsim.render.picture_style import DARK, LIGHT
 from watchsim.simulation.record.body_frames import frames
 from watchsim.simulation.record.trajectory import EVENT_DTYPE, Stop, Trajectory
 from watchsim.turning.turn import Turn

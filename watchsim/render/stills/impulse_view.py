@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from watchsim.escapement.impulses import DIRECT, Impulse
-from watchsim.escapement.passage import Passage
+from watchsim.escapement.tooth_passage import Passage
 from watchsim.geometry.primitives import Point
 from watchsim.render.stills.angle_marks import arc, pointed, polar, ray
 from watchsim.render.stills.function_views import LEVER_INK, WHEEL_INK, Array, Views, degrees, frame

@@ -14,8 +14,8 @@ from watchsim.mechanism.count_pairs import ModelledPairs
 from watchsim.render.frame.coloured_edges import Edges
 from watchsim.render.frame.pose_history import poses
 from watchsim.render.frame.stage import Stage
+from watchsim.render.picture_style import DARK, LIGHT
 from watchsim.render.stills.fault_circles import FAULT
-from watchsim.render.style import DARK, LIGHT
 from watchsim.scene.scene import Scene
 from watchsim.simulation.record.trajectory import EVENT_DTYPE, Trajectory
 from watchsim.simulation.stops import Stop

@@ -17,12 +17,12 @@ from watchsim.render.dark_figure import dark
 from watchsim.render.frame.filled_parts import Part, working
 from watchsim.render.frame.pose_matrix import pose_matrix
 from watchsim.render.palette import BACKGROUND, CONTACT, FAINT, GRID, INK, looks
-from watchsim.render.style import LIGHT
+from watchsim.render.picture_style import LIGHT
 from watchsim.storage.write import write_file
 from watchsim.turning.couples import pose_of
 from watchsim.turning.happenings import Happening, happenings
-from watchsim.turning.report import verdict
 from watchsim.turning.turn import Turn
+from watchsim.turning.turning_report import verdict
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -141,6 +141,10 @@ def with_unit(value: object, dimension: Dimension | None) -> object:
 def _advice(path: tuple[str, ...]) -> str:
     if path[0] not in SECTIONS:
         return nearest(path[0], SECTIONS)
+    if path[0] == "lock":
+        return "watchsim writes this table; it cannot be changed."
+    if path[0] == "design":
+        return "This scene has no [design]: its bodies, springs, torques and contacts are written out. Change a key of these."
     depth = 1 if path[0] in TABLES else 2
     if path[2:3] in (("solids",), ("adjust",)) and len(path) > 4:
         depth = 5 if path[2] == "adjust" and path[4].isdigit() and len(path) > 5 else 4
@@ -150,6 +154,7 @@ def _advice(path: tuple[str, ...]) -> str:
         if path[0] == "expect":
             what = ".".join((*path, "amplitude")[:2])
             return f"Write {what}.value and {what}.tolerance, one by one."
-        kind = "the name of a body" if path[0] == "bodies" else "a number counted from 0" if path[0] in LISTED else "a key"
-        return f"Write {path[0]}, {kind} and a key, all joined by points." if depth > 1 else nearest("", siblings(path))
+        if path[0] in LISTED:
+            return f"Write {path[0]}.NUMBER.KEY, the number counted from 0."
+        return "Write bodies.NAME.KEY, with the name of a body." if path[0] == "bodies" else nearest("", siblings(path))
     return nearest(path[depth], siblings(path))

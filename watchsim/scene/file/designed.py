@@ -14,7 +14,7 @@ from watchsim.construction import known
 from watchsim.construction.design import Design
 from watchsim.scene.errors import Fault, Faults, SceneError
 from watchsim.scene.file.assign import assign
-from watchsim.scene.file.dimensions import chosen, with_si
+from watchsim.scene.file.design_dimensions import chosen, with_si
 from watchsim.scene.file.keys.key_values import shown
 from watchsim.scene.file.keys.schema import DESIGN, nearest
 from watchsim.scene.file.merge import merged

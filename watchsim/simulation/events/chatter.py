@@ -19,7 +19,7 @@ from watchsim.dynamics.delassus import apply, contact_velocities
 from watchsim.dynamics.impact import plastic_impact
 from watchsim.jit import kernel
 from watchsim.simulation.events.impulse_check import kinetic_energy
-from watchsim.simulation.tolerances import CHATTER_BACK, CHATTER_GAIN, WITHIN_CONE
+from watchsim.tolerances import CHATTER_BACK, CHATTER_GAIN, WITHIN_CONE
 
 
 @kernel
@@ -69,9 +69,9 @@ def chatter_time(state, m, options, event):
 
 @kernel
 def end_chatter(model, state, m, ended, work, event, room):
-    """Velocities at the end of a chatter; returns how many contacts (`event.rest`) end in force.
+    """Velocities at the end of a chatter: (found, how many contacts (`event.rest`) end in force).
 
-    -1 where no end is found: velocities are then unchanged. The impulses are left in `room.ending`.
+    Where no end is found, velocities are unchanged. The impulses are left in `room.ending`.
     `ended`: (time that it lasts, kinetic energy that the impact has just taken).
 
     P are the impulses of the plastic impact with the rates that free motion over `time` would lead to, lambda the
@@ -82,7 +82,7 @@ def end_chatter(model, state, m, ended, work, event, room):
     closed, rest, ending = event.closed, event.rest, room.ending
     time, taken = ended
     if not plastic_impact(model, closed, m, time, state.u, work):
-        return -1
+        return False, 0
     r = 0
     for i in range(m):
         N, T = work.force[2 * i], work.force[2 * i + 1]
@@ -105,9 +105,9 @@ def end_chatter(model, state, m, ended, work, event, room):
     # Less pressure for a moment is less friction, which will come: of what the impact took, no more than that is given back.
     kinetic = kinetic_energy(model, state.u)
     if _gain(rest, r, state.u, ending, work) > max(CHATTER_GAIN * kinetic, min(taken, CHATTER_BACK * kinetic)):
-        return -1
+        return False, 0
     apply(rest, r, ending, work.inverse, state.u)
-    return r
+    return True, r
 
 
 @kernel

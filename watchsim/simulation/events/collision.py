@@ -22,7 +22,7 @@ from watchsim.simulation.events.impulse_check import kinetic_energy
 from watchsim.simulation.events.mode_decision import count_problems, decide
 from watchsim.simulation.events.zero_rates import note_pace
 from watchsim.simulation.record.write_buffers import keep_event
-from watchsim.simulation.tolerances import ENERGY_GAIN, HIDDEN_REBOUND
+from watchsim.tolerances import ENERGY_GAIN, HIDDEN_REBOUND
 
 
 @kernel
@@ -156,11 +156,11 @@ def _end_chatter(model, state, m, time, scratch, record):
     before = kinetic_energy(model, state.u)
     taken = kinetic_energy(model, room.before) - before
     copy(state.u, room.before)
-    r = end_chatter(model, state, m, (time, taken), work, event, room)
+    found, r = end_chatter(model, state, m, (time, taken), work, event, room)
     count_problems(state, work)
     contact_velocities(event.closed, m, state.u, room.rates)
     for i in range(m):
-        if r < 0 or room.rates[2 * i] < -event.zero[i]:
+        if not found or room.rates[2 * i] < -event.zero[i]:
             copy(room.before, state.u)
             return  # the impacts go on one by one
     for i in range(m):

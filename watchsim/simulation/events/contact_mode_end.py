@@ -11,7 +11,7 @@ from watchsim.simulation.motion.coupled_motion import TANGENTIAL, motion
 from watchsim.simulation.motion.dense_output import dense_value
 from watchsim.simulation.motion.free_motion import turning_time
 from watchsim.simulation.motion.root_bracket import is_open, narrowed, next_time, opened
-from watchsim.simulation.tolerances import ROOT_RESOLUTION, SLIP_SLACK
+from watchsim.tolerances import ROOT_RESOLUTION, SLIP_SLACK
 
 SAMPLES = 8
 NONE_FIRED = -1  # in the place of a monitor's code
@@ -109,5 +109,7 @@ def first_turn(model, state):
     first = math.inf
     for i in range(len(model.coordinates)):
         if state.awake[i] and model.coordinates[i].coulomb > 0.0:
+            if state.grip[i] * state.u[i] < 0.0:
+                return 0.0  # it turned at the very end of the last flight
             first = min(first, turning_time(model.coordinates[i], state.grip[i], state.q[i], state.u[i]))
     return first

@@ -19,7 +19,7 @@ from watchsim.simulation.loop_state.scratch import ask
 from watchsim.simulation.loop_state.state import NO_CONTACT
 from watchsim.simulation.motion.drift_projection import project_velocities
 from watchsim.simulation.record.write_buffers import keep_event
-from watchsim.simulation.tolerances import DEPENDENT_IN_STEPS, FAR_POINTS, LEFT_PRIMITIVE, NEAR_POINTS, SHARP_TURN, SMOOTH_TURN
+from watchsim.tolerances import DEPENDENT_IN_STEPS, FAR_POINTS, LEFT_PRIMITIVE, NEAR_POINTS, SHARP_TURN, SMOOTH_TURN
 
 
 @kernel

@@ -12,7 +12,7 @@ from watchsim.dynamics.delassus import inverse_mass
 from watchsim.jit import kernel
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.record.write_buffers import keep_event
-from watchsim.simulation.tolerances import IMMOVABLE
+from watchsim.tolerances import IMMOVABLE
 
 
 # sine² of the angle between a face and the motion: drawings are rounded to a nanometre, which over a millimetre is a millionth

@@ -7,7 +7,7 @@ taken back, slips and speeds that count as zero. The kinetic energy that such a 
 from __future__ import annotations
 
 from watchsim.jit import kernel
-from watchsim.simulation.tolerances import EXPLAINED_OF_HIGHEST, EXPLAINED_SHARE, STOPPABLE_SPEED
+from watchsim.tolerances import EXPLAINED_OF_HIGHEST, EXPLAINED_SHARE, STOPPABLE_SPEED
 
 
 @kernel

@@ -9,7 +9,7 @@ finitely many such terms, so that every instant comes to an end (docs/theory/met
 from __future__ import annotations
 
 from watchsim.jit import kernel
-from watchsim.simulation.tolerances import LENIENCE_STEP, MOST_LENIENT
+from watchsim.tolerances import LENIENCE_STEP, MOST_LENIENT
 
 BASE, MODULUS = 1000003, 2147483647
 

@@ -12,7 +12,7 @@ from watchsim.jit import kernel
 from watchsim.simulation.events.closed_contacts import refresh
 from watchsim.simulation.motion.coupled_motion import grip_left, press_left
 from watchsim.simulation.record.write_buffers import keep_change
-from watchsim.simulation.tolerances import BEGIN_SLACK, FORCE_NOISE
+from watchsim.tolerances import BEGIN_SLACK, FORCE_NOISE
 
 
 @kernel

@@ -9,7 +9,7 @@ velocities counts as zero (`exactly`), at that instant and in that island.
 from __future__ import annotations
 
 from watchsim.jit import kernel
-from watchsim.simulation.tolerances import RATE_FLOOR, RATE_ROUNDING
+from watchsim.tolerances import RATE_FLOOR, RATE_ROUNDING
 
 
 @kernel

@@ -24,6 +24,13 @@ class Until:
     steps: float  # counted down; it may come back when none is left
 
 
+def new_until(slice_end: float = 0.0, end: float = 0.0, may_cut: bool = False, steps: float = 0.0) -> Until:
+    """How far the loop is to run."""
+    until = blank(Until)
+    until.slice_end, until.end, until.may_cut, until.steps = slice_end, end, int(may_cut), steps
+    return until
+
+
 class Used:
     """How much of the buffers is filled."""
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from watchsim.dynamics.delassus import drive_through_contacts, inverse_mass, size_class
 from watchsim.dynamics.small_systems import copy
-from watchsim.dynamics.tolerances import NO_TANGENTIAL, PARALLEL
 from watchsim.jit import kernel
 from watchsim.model.records import PG1996, SHIFTED
 from watchsim.simulation.event_kinds import EventKind
@@ -17,7 +16,7 @@ from watchsim.simulation.moreau.mobility import fill_mobility, push, rates_of
 from watchsim.simulation.moreau.percussion_laws import cone, residual
 from watchsim.simulation.moreau.prox_relaxation import relax
 from watchsim.simulation.record.write_buffers import keep_event
-from watchsim.simulation.tolerances import ENERGY_GAIN
+from watchsim.tolerances import ENERGY_GAIN, NO_TANGENTIAL, PARALLEL
 
 
 @kernel

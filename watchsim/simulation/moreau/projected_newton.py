@@ -8,9 +8,9 @@ equations singular: what they leave open stays as it was.
 from __future__ import annotations
 
 from watchsim.dynamics.small_systems import copy, solve_small
-from watchsim.dynamics.tolerances import RANK
 from watchsim.jit import kernel
 from watchsim.simulation.moreau.percussion_laws import bounds, improvement, size
+from watchsim.tolerances import RANK
 
 MODES = 20  # guesses of who sticks, slips or parts, before relaxation goes on
 

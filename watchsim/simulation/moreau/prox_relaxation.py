@@ -10,7 +10,7 @@ from __future__ import annotations
 from watchsim.jit import kernel
 from watchsim.simulation.moreau.percussion_laws import improved, size
 from watchsim.simulation.moreau.projected_newton import finish
-from watchsim.simulation.tolerances import SETTLED
+from watchsim.tolerances import SETTLED
 
 SWEEPS = 20000  # at each pace
 FIRST = 32  # sweeps before Newton's method is tried; again after twice as many

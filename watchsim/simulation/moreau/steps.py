@@ -21,7 +21,7 @@ from watchsim.simulation.motion.turning_points import sign
 from watchsim.simulation.options import OptionsRef
 from watchsim.simulation.record.write_buffers import keep_event, keep_row
 from watchsim.simulation.stops import Stop
-from watchsim.simulation.tolerances import STEP_ROUNDING
+from watchsim.tolerances import STEP_ROUNDING
 
 ROWS_PER_STEP, EVENTS_PER_CONTACT = 3, 2
 
@@ -42,7 +42,7 @@ def _passages(model, state, h, work, q, u, record):
             _keep_of(model, state, h, (i, -1, coordinate.level), (state.q, work.u, q, u), record)
     for j in range(len(model.joints)):
         joint = model.joints[j]
-        if joint.stiffness != 0.0:
+        if joint.watched == 1:
             _keep_of(model, state, h, (joint.coordinate, joint.on, joint.rest), (state.q, work.u, q, u), record)
 
 

@@ -14,7 +14,7 @@ from watchsim.contact.index_sets import OPEN, STICK
 from watchsim.dynamics.delassus import apply, fill_delassus
 from watchsim.dynamics.small_systems import solve_small, unit_scale
 from watchsim.jit import kernel
-from watchsim.simulation.tolerances import DEPENDENT_IN_STEPS, SLIP_WEIGHT
+from watchsim.tolerances import DEPENDENT_IN_STEPS, SLIP_WEIGHT
 
 # sine² of the angle below which a direction counts as one of the others, or as immovable
 

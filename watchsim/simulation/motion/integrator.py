@@ -13,7 +13,7 @@ from watchsim.simulation.loop_state.scratch import COUPLED, SUMS
 from watchsim.simulation.motion.coupled_motion import engage, motion
 from watchsim.simulation.motion.dop853 import E3, E5, STAGES, A, C, D
 from watchsim.simulation.motion.step_path import bound_accelerations
-from watchsim.simulation.tolerances import SMALLEST_STEP
+from watchsim.tolerances import SMALLEST_STEP
 
 # Safety is smaller than usual: the motion of coupled bodies grows sharper from step to step, and repeating a step costs more
 # than shortening it.

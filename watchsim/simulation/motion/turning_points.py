@@ -8,7 +8,7 @@ from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.motion.dense_output import coordinate_within
 from watchsim.simulation.motion.root_bracket import is_open, narrowed, next_time, opened
 from watchsim.simulation.record.write_buffers import keep_event
-from watchsim.simulation.tolerances import PASSAGE_RESOLUTION
+from watchsim.tolerances import PASSAGE_RESOLUTION
 
 
 @kernel
@@ -67,7 +67,7 @@ def keep_passages(model, state, step, end, record):
             i, on, rest = spring, -1, model.coordinates[spring].level
         else:
             joint = model.joints[spring - n]
-            if joint.stiffness == 0.0:
+            if joint.watched == 0:
                 continue
             i, on, rest = joint.coordinate, joint.on, joint.rest
         side = sign(along(state.u, i, on))

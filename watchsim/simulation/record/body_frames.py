@@ -62,7 +62,7 @@ def _own_speed(body: Body, u: Array) -> Array:
 
 
 def _on(carrier: Array, own: Array) -> Array:
-    """Frames told in carriers' frames."""
+    """Frames given in carriers' frames."""
     c, s = np.cos(carrier[:, 2]), np.sin(carrier[:, 2])
     x, y, angle = own.T
     return carrier + np.stack([c * x - s * y, s * x + c * y, angle], axis=1)

@@ -20,7 +20,7 @@ from watchsim.simulation.methods import MOREAU
 from watchsim.simulation.record.body_frames import frames
 from watchsim.simulation.record.overlap_instants import PairOfLayers, Poses, declared_pairs
 from watchsim.simulation.record.trajectory import between
-from watchsim.simulation.tolerances import OVERLAP_RESOLUTION, STEPPED_OVERLAP
+from watchsim.tolerances import OVERLAP_RESOLUTION, STEPPED_OVERLAP
 
 Array = NDArray[np.float64]
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from watchsim.model.records import frozen
 from watchsim.simulation.loop_state.state import State
 from watchsim.simulation.overlap_removal import directions, kinematics_at
-from watchsim.studies.limit_cycle.loop import Loop
+from watchsim.studies.limit_cycle.run_from_state import Loop
 
 ROUNDS = 30  # of Newton's method; faces are lines and arcs
 CLOSED = 0.1  # of what the event loop takes for a closed gap; some units in the last place

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from watchsim.analysis.timing.averages import Averages, averages
 from watchsim.analysis.timing.beats import beats
 from watchsim.analysis.verdicts.verdict import verdict
-from watchsim.analysis.verdicts.words import BACKWARDS, KNOCKS, STOPS, TICKS, TRIPS, UNSETTLED
+from watchsim.analysis.verdicts.verdict_kinds import BACKWARDS, KNOCKS, STOPS, TICKS, TRIPS, UNSETTLED
 from watchsim.dynamics.applied_forces import stored_energy
 from watchsim.scene.recording import Recording
 from watchsim.simulation.loop_state.state import State
@@ -19,7 +19,7 @@ from watchsim.simulation.loop_state.state_arrays import write_state
 from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.simulation.runner import Run
 from watchsim.simulation.stops import Stop
-from watchsim.studies.limit_cycle.loop import Loop
+from watchsim.studies.limit_cycle.run_from_state import Loop
 
 # What the search has met, where the run shows no more than that.
 WORDS = {

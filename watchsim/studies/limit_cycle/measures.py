@@ -14,8 +14,8 @@ from watchsim.analysis.timing.beats import HEARD
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.record.half_swings import first_noises, unevenness
 from watchsim.simulation.record.trajectory import Array
-from watchsim.studies.limit_cycle.loop import Events
-from watchsim.studies.limit_cycle.parts import Parts
+from watchsim.studies.limit_cycle.oscillator_and_wheel import Parts
+from watchsim.studies.limit_cycle.run_from_state import Events
 from watchsim.studies.limit_cycle.section import turns
 
 

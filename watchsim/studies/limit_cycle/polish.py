@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from watchsim.studies.limit_cycle.loop import Loop
 from watchsim.studies.limit_cycle.measures import Measures, measures
 from watchsim.studies.limit_cycle.return_map import Return, ReturnMap
+from watchsim.studies.limit_cycle.run_from_state import Loop
 from watchsim.studies.limit_cycle.shooting import Fixed
 
 NUDGE = 1e-3  # of the amplitude: how far apart the map's slope is measured

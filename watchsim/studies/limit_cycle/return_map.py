@@ -10,11 +10,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from watchsim.analysis.verdicts.words import BACKWARDS, KNOCKS, STOPS, TRIPS, UNSETTLED
+from watchsim.analysis.verdicts.verdict_kinds import BACKWARDS, KNOCKS, STOPS, TRIPS, UNSETTLED
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.loop_state.state import State
-from watchsim.studies.limit_cycle.loop import Events, Loop, SolverGaveUp, copied
-from watchsim.studies.limit_cycle.parts import Parts
+from watchsim.studies.limit_cycle.oscillator_and_wheel import Parts
+from watchsim.studies.limit_cycle.run_from_state import Events, Loop, SolverGaveUp, copied
 from watchsim.studies.limit_cycle.section import Section, is_touched, others_rest, turns
 
 EARLY, LATE = 0.03, 0.06  # of a period: how long before its end an oscillation is looked at, and for how long after

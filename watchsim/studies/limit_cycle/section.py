@@ -18,8 +18,8 @@ from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.loop_state.state import NO_CONTACT, State
 from watchsim.simulation.loop_state.state_arrays import arrays_of
 from watchsim.studies.limit_cycle.following import follow, in_force
-from watchsim.studies.limit_cycle.loop import Events, Loop, copied
-from watchsim.studies.limit_cycle.parts import Parts
+from watchsim.studies.limit_cycle.oscillator_and_wheel import Parts
+from watchsim.studies.limit_cycle.run_from_state import Events, Loop, copied
 
 LOOKS = 8  # in a period, for turning points
 LONGEST = 40  # periods until a clear turning point is met

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from watchsim.analysis.verdicts.words import UNSETTLED
+from watchsim.analysis.verdicts.verdict_kinds import UNSETTLED
 from watchsim.studies.limit_cycle.return_map import Return
 
 EXACT = 2e-14  # of the amplitude: less than rounding

@@ -43,19 +43,6 @@ class Here:
             yield number, row
 
 
-def chosen(workers: int, scheduler: str | None) -> Executor:
-    """The executor for so many processes, or for the cluster with a scheduler at that address."""
-    if scheduler is not None:
-        from watchsim.studies.workers.cluster import Cluster
-
-        return Cluster(scheduler)
-    if workers <= 1:
-        return Here()
-    from watchsim.studies.workers.processes import Processes
-
-    return Processes(workers)
-
-
 def finished(future: Any) -> tuple[int, Row] | None:
     """What a future of `worker.work` has made; None for a point that was cut short."""
     made: tuple[int, Row] | None = future.result()

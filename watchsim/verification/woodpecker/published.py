@@ -9,9 +9,9 @@ where a force begins or ends, where it leaves the cone of friction's edge and th
 from __future__ import annotations
 
 from watchsim.verification.compared import Row, compared
-from watchsim.verification.woodpecker.cycle import Cycle
 from watchsim.verification.woodpecker.exact_motion import moments
 from watchsim.verification.woodpecker.toy import BEAK, LOWER, UPPER, Toy, modal, start
+from watchsim.verification.woodpecker.woodpecker_cycle import Cycle
 
 NAME = "woodpecker toy"
 # One peck, with the last frame before each event. The sleeve slides on its lower edge and sticks; breaks loose, slides and lets

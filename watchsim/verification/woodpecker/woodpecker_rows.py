@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from watchsim.verification.compared import Row, compared
-from watchsim.verification.woodpecker.cycle import Cycle, find_cycle
 from watchsim.verification.woodpecker.published import FASTEST, NAME, published_rows
 from watchsim.verification.woodpecker.toy import Toy, modal
 from watchsim.verification.woodpecker.toy_stepping import step_to
+from watchsim.verification.woodpecker.woodpecker_cycle import Cycle, find_cycle
 
 STEPS, SLOW_STEPS = (5e-5, 5e-6), (5e-5, 5e-6, 5e-7)
 

@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from watchsim.analysis.verdicts.equilibrium.arms import Arms
+from watchsim.analysis.verdicts.equilibrium.lever_arms import Arms
 
 
 def at_lever(found: Arms, row: int, other: str, lever: str, way: float) -> float | None:

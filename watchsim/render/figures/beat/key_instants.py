@@ -13,12 +13,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from watchsim.analysis.contact_forces import absolute, forces
-from watchsim.analysis.timeline.oscillation import Beat, shown_beats
-from watchsim.analysis.timeline.table import title as phase_title
+from watchsim.analysis.timeline.shown_beats import Beat, shown_beats
+from watchsim.analysis.timeline.timeline_table import title as phase_title
 from watchsim.mechanism.compile import compile_scene
-from watchsim.render.figures.phase_bands import shade, spread
-from watchsim.render.figures.phase_plot import AFTER, around
-from watchsim.render.figures.style import (
+from watchsim.render.figures.figure_style import (
     CURVE,
     EDGE,
     FULL,
@@ -36,6 +34,8 @@ from watchsim.render.figures.style import (
     limits,
     panel,
 )
+from watchsim.render.figures.phase_bands import shade, spread
+from watchsim.render.figures.phase_plot import AFTER, around
 from watchsim.render.frame.filled_parts import loops_of, outline
 from watchsim.render.frame.pose_history import dense
 from watchsim.render.palette import FAINT, FORCE, INK, looks
@@ -67,14 +67,14 @@ class Instant:
 
 
 def plot_timeline(
-    run: Trajectory, window: Sequence[float] | None = None, width: float = FULL, told: list[Beat] | None = None
+    run: Trajectory, window: Sequence[float] | None = None, width: float = FULL, beats: list[Beat] | None = None
 ) -> Figure:
     """The last two beats of a window: the mechanism around the lever amid each phase, with the contact forces on the lever,
     above the angles of lever and balance in those phases.
 
     ValueError where no beat was recorded whole.
     """
-    beats_shown = (told or shown_beats(run, window, rubbed=False))[-MANY:]
+    beats_shown = (beats or shown_beats(run, window, rubbed=False))[-MANY:]
     across = ACROSS[width >= NARROW]
     box = _box(run)
     wide = (width - 2.0 * EDGE - (across - 1) * GAP) / across

@@ -13,9 +13,9 @@ import numpy as np
 from watchsim.analysis.timing.phases import Phase
 from watchsim.render.figures import usual_window
 from watchsim.render.figures.column_extremes import distinct
+from watchsim.render.figures.figure_style import CURVE, FULL, MM, NARROW, dress, figure, heading, key, limits, panel, title
+from watchsim.render.figures.kinematics_plot import Channel, channels
 from watchsim.render.figures.phase_bands import name_key, strong
-from watchsim.render.figures.plots import Channel, channels
-from watchsim.render.figures.style import CURVE, FULL, MM, NARROW, dress, figure, heading, key, limits, panel, title
 from watchsim.render.frame.pose_history import Window, choose, dense
 from watchsim.render.palette import FAINT, looks
 from watchsim.simulation.record.trajectory import Array, Trajectory

@@ -13,8 +13,8 @@ from itertools import pairwise
 import numpy as np
 
 from watchsim.analysis.contact_forces import forces
-from watchsim.analysis.timeline.oscillation import Beat
 from watchsim.analysis.timeline.rows import Stage
+from watchsim.analysis.timeline.shown_beats import Beat
 from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.scene.roles import roles
 from watchsim.simulation.record.body_frames import frames

@@ -12,7 +12,7 @@ from watchsim.analysis.timing.phases import Phase
 class Extras:
     """insets  places to enlarge (see `insets`)
     strip   the body whose angle and velocity run below the mechanism; None: no strip
-    phases  of the beats, in order: told by name, and shaded in the strip
+    phases  of the beats, in order: named, and shaded in the strip
     force   N: the force that the longest arrow stands for; 0: no arrows
     scale   N: a round force, for the key of the arrows
     """

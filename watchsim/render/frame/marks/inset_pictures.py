@@ -22,7 +22,7 @@ from watchsim.render.frame.marks.changing_words import Words
 from watchsim.render.frame.marks.insets import Inset
 from watchsim.render.frame.pose_matrix import pose_matrix
 from watchsim.render.frame.view import Frame
-from watchsim.render.style import Style
+from watchsim.render.picture_style import Style
 from watchsim.scene.scene import Scene
 
 Array = NDArray[np.float64]

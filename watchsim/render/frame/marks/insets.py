@@ -1,6 +1,6 @@
 """Which places does a picture show once more, enlarged?
 
-A place is told as a body ("lever"), one of its layers ("lever.STONES"), one outline of a layer ("lever.STONES.2", counted in
+A place is given as a body ("lever"), one of its layers ("lever.STONES"), one outline of a layer ("lever.STONES.2", counted in
 the order of the drawing), the "entry stone" or "exit stone" of an escapement, or a rectangle of the movement in millimetres
 ("-1.4, 1.9 : -0.8, 2.5"). What stays about where it is is shown in place; what goes far is followed.
 """

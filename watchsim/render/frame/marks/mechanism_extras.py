@@ -22,7 +22,7 @@ from watchsim.render.frame.marks.readouts import changing_speed_text, turn_text
 from watchsim.render.frame.marks.strip import Strip
 from watchsim.render.frame.pose_history import Window
 from watchsim.render.frame.view import Frame, View
-from watchsim.render.style import Style
+from watchsim.render.picture_style import Style
 from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.units import metric
 

@@ -21,7 +21,7 @@ from watchsim.render.frame.marks.readouts import clock
 from watchsim.render.frame.pose_history import Window, choose, dense
 from watchsim.render.frame.view import Frame
 from watchsim.render.palette import looks
-from watchsim.render.style import Style
+from watchsim.render.picture_style import Style
 from watchsim.scene.roles import roles
 from watchsim.simulation.record.trajectory import Trajectory
 
@@ -137,7 +137,7 @@ class Strip:
 
 
 def strip_body(run: Trajectory, asked: str | None) -> str:
-    """The body that a strip tells of: the one asked for, else the oscillator, else the first that moves."""
+    """The body that a strip shows: the one asked for, else the oscillator, else the first that moves."""
     own = asked or roles(run.scene).oscillator
     return choose(run, [own] if own else None)[0].name
 

@@ -23,7 +23,7 @@ from watchsim.render.frame.marks.readouts import Clock, clock, goes_round, readi
 from watchsim.render.frame.pose_history import Window, sampled
 from watchsim.render.frame.view import Frame
 from watchsim.render.palette import Finish, looks
-from watchsim.render.style import Style
+from watchsim.render.picture_style import Style
 from watchsim.scene.body import Body
 from watchsim.scene.roles import roles
 from watchsim.simulation.record.trajectory import Trajectory

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 
-from watchsim.construction.sound import drawing_of
+from watchsim.construction.outline_check import drawing_of
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.findings import Finding
 from watchsim.drawing.read import SNAP

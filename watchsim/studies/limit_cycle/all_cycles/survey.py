@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from watchsim.analysis.verdicts.words import UNSETTLED
+from watchsim.analysis.verdicts.verdict_kinds import UNSETTLED
 from watchsim.studies.limit_cycle.return_map import Return
 
 DOWN, UP = 16.0, 4.0  # times the amplitude that is known: how far the map is looked at

@@ -1,0 +1,318 @@
+"""Does the page show in a browser what the run says, without an error, a request, or a barrier?"""
+
+from __future__ import annotations
+
+import base64
+import io
+import json
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import imageio.v3 as iio
+import numpy as np
+import pytest
+from matplotlib.colors import to_rgb
+from pages.browser import opened
+from pages.pace import played
+from scipy.ndimage import maximum_filter
+
+from watchsim.analysis.contact_forces import forces
+from watchsim.geometry.polyline import polyline
+from watchsim.pages.report_page import report
+from watchsim.profiles_path import profiles_dir
+from watchsim.render.frame.coils import hairsprings
+from watchsim.render.frame.filled_parts import loops_of
+from watchsim.render.frame.pose_history import poses
+from watchsim.render.frame.stage import Stage
+from watchsim.render.movies.run_movie import frame
+from watchsim.render.palette import BLUED, BRASS, FIXED, NIGHT, RUBY, STEEL
+from watchsim.scene.file.load import load
+from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.simulation.simulate import simulate
+
+pytestmark = pytest.mark.slow
+SIZE = (1280, 720)
+FINISHES = (BRASS, STEEL, RUBY, FIXED, BLUED, NIGHT)
+BEATS_MB = 1.0
+
+
+@pytest.fixture(scope="module")
+def run() -> Trajectory:
+    return simulate(load(Path(str(profiles_dir())) / "swiss_lever" / "scene.toml"), duration=2.0)
+
+
+@pytest.fixture(scope="module")
+def written(run: Trajectory, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return report(run, tmp_path_factory.mktemp("page") / "watch.html")
+
+
+def filled(picture: Any, colour: str, mixed: float = 2.0) -> Any:
+    """Where a picture shows that colour, each channel off by no more than `mixed`."""
+    wanted = np.round(255.0 * np.array(to_rgb(colour)))
+    return np.all(np.abs(picture[..., :3].astype(float) - wanted) <= mixed, axis=-1)
+
+
+def strays(one: Any, other: Any, colour: str) -> int:
+    """Pixels of that colour in one picture that are more than a pixel away from any in the other, where edges may mix it."""
+    return int(np.sum(filled(one, colour) & ~maximum_filter(filled(other, colour, 60.0), size=3)))
+
+
+def enlarged(page: Any) -> None:
+    page.add_style_tag(
+        content=f"#picture {{ position: fixed; inset: 0; width: {SIZE[0]}px; height: {SIZE[1]}px; border: 0; z-index: 9 }}"
+    )
+    page.wait_for_timeout(200)
+
+
+def seconds_of_loading(page: Any) -> float:
+    """What loading takes of a processor, whatever else the machine does meanwhile."""
+    session = page.context.new_cdp_session(page)
+    session.send("Performance.enable", {"timeDomain": "threadTicks"})
+
+    def spent() -> float:
+        return next(one["value"] for one in session.send("Performance.getMetrics")["metrics"] if one["name"] == "TaskDuration")
+
+    before = spent()
+    page.reload()
+    while not page.text_content("#time"):  # the first frame has been drawn
+        page.wait_for_timeout(10)
+    after = spent()
+    return after - before if after >= before else after
+
+
+def test_ten_beats_are_under_a_megabyte(written: Path) -> None:
+    assert written.stat().st_size < BEATS_MB * 1e6
+
+
+@pytest.mark.parametrize(("width", "scheme"), [(1280, "light"), (768, "dark"), (360, "dark")])
+def test_it_opens_at_once_in_silence_and_fits(written: Path, width: int, scheme: str) -> None:
+    with opened(written, width, 740, scheme) as page:
+        loaded = seconds_of_loading(page)
+        page.keyboard.press("Space")
+        page.wait_for_timeout(500)
+        assert page.said == []
+        assert loaded < 1.0
+        assert set(page.asked) == {written.absolute().as_uri()}
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        assert page.evaluate("document.documentElement.dataset.theme") == scheme
+
+
+def test_outlines_are_where_the_run_and_its_movie_have_them(run: Trajectory, written: Path) -> None:
+    end = float(run.t[-1])
+    window = (end - 1.25, end)
+    stage = Stage(run, SIZE, window)
+    times = np.concatenate((np.linspace(*window, 14), run.events["t"][-6:]))
+    view = stage.view
+    with opened(written) as page:
+        enlarged(page)
+        for t in times.tolist():
+            page.evaluate("t => watchsim.seek(t)", t)
+            frames = {name: rows[0] for name, rows in poses(run, np.array([t])).items()}
+            page.evaluate("([c, s, a]) => watchsim.look(c, s, a)", [list(view.centre), view.scale, view.turn])
+            matrix = view.matrix(view.centre_at(frames))
+            middle = np.array(view.middle) - np.array(SIZE) / 2.0  # the movie keeps bands free at top and bottom
+            for body in run.scene.bodies:
+                points = np.concatenate([polyline(loop, 1e-6) for loop in loops_of(body)])
+                x, y, angle = frames[body.name]
+                c, s = np.cos(angle), np.sin(angle)
+                placed = np.stack((x + c * points[:, 0] - s * points[:, 1], y + s * points[:, 0] + c * points[:, 1]), axis=1)
+                expected = placed @ matrix[:2, :2].T + matrix[:2, 2] - middle
+                expected[:, 1] = SIZE[1] - expected[:, 1]
+                seen = np.array(page.evaluate("([name, points]) => watchsim.seen(name, points)", [body.name, points.tolist()]))
+                assert np.abs(seen - expected).max() < 0.02, (t, body.name)
+
+
+def test_pixels_agree_with_the_frames_of_a_movie(run: Trajectory, written: Path) -> None:
+    end = float(run.t[-1])
+    window = (end - 1.25, end)
+    view = Stage(run, SIZE, window).view
+    down = round(SIZE[1] / 2.0 - view.middle[1])
+    with opened(written) as page:
+        enlarged(page)
+        page.evaluate("watchsim.mark(false, false)")
+        for t in np.linspace(*window, 20).tolist():
+            # The movie's middle stands off that of the picture by whole and half pixels.
+            shift = np.array(SIZE) / 2.0 - np.array(view.middle)
+            c, s = np.cos(view.turn), np.sin(view.turn)
+            dx, dy = shift[0] / view.scale, (shift[1] - down) / view.scale
+            centre = [view.centre[0] + c * dx + s * dy, view.centre[1] - s * dx + c * dy]
+            page.evaluate("([c, s, a]) => watchsim.look(c, s, a)", [centre, view.scale, view.turn])
+            page.evaluate("t => watchsim.seek(t)", t)
+            shown = page.evaluate("document.getElementById('stage').toDataURL('image/png')")
+            drawn = iio.imread(io.BytesIO(base64.b64decode(shown.split(",", 1)[1])))
+            # Both without the bands of the movie: its words would hide parts, the page's would not.
+            movie = frame(run, t, SIZE, window)
+            assert drawn.shape[:2] == movie.shape[:2]
+            moved = np.roll(drawn, down, axis=0)
+            rows = slice(80, 640)
+            for finish in FINISHES:
+                ours, theirs = moved[rows], movie[rows]
+                assert filled(theirs, finish.fill).sum() > 0
+                assert strays(ours, theirs, finish.fill) == 0 and strays(theirs, ours, finish.fill) == 0, (t, finish)
+
+
+def test_a_hairspring_lies_where_movies_draw_it(run: Trajectory, written: Path) -> None:
+    (spring,) = hairsprings(run.scene)
+    with opened(written) as page:
+        for t in np.linspace(*page.evaluate("watchsim.window"), 20).tolist():
+            page.evaluate("t => watchsim.seek(t)", t)
+            ((*numbers,),) = (map(float, one[1:].split()) for one in page.evaluate("watchsim.coils()"))
+            seen = 1e-3 * np.array(numbers).reshape(-1, 2)
+            frames = {name: rows[0] for name, rows in poses(run, np.array([t])).items()}
+            assert np.abs(seen - spring.line(frames, len(seen) - 1)).max() < 1e-7
+
+
+def test_a_rim_is_drawn_faintly_and_chosen_with_its_balance(run: Trajectory, written: Path) -> None:
+    rim = next(loop for loop in run.scene.body("balance").decoration if loop.layer == "RIM" and not loop.hole)
+    edge = rim.edges[0]
+    inside = [[0.94 * edge.radius, 0.0]]
+    with opened(written) as page:
+        ((x, y),) = page.evaluate("([name, points]) => watchsim.seen(name, points)", ["balance", inside])
+        assert "RIM" in [part["layer"] for part in page.evaluate("watchsim.parts()") if part["pale"]]
+        page.click("#stage", position={"x": x, "y": y})
+        page.wait_for_timeout(100)
+        assert page.text_content("#release").startswith("Following balance")
+
+
+def test_values_and_forces_are_those_of_the_run(run: Trajectory, written: Path) -> None:
+    end = float(run.t[-1])
+    times = np.sort(np.random.default_rng(5).uniform(end - 1.25, end, 60))
+    q, u = run.sample(times)
+    own = run.slices["balance"].start
+    told = forces(run, times)
+    with opened(written) as page:
+        angle, velocity, moment = (
+            np.array(page.evaluate("([k, ts]) => ts.map((t) => watchsim.value(k, t))", [k, times.tolist()])) for k in range(3)
+        )
+        closed = page.evaluate("ts => ts.map((t) => watchsim.closed(t))", times.tolist())
+    assert np.abs(angle - np.degrees(q[:, own])).max() < 3e-4
+    assert np.abs(velocity - np.degrees(u[:, own])).max() < 2e-4 * np.degrees(np.abs(u[:, own]).max())
+    pivot = np.array(run.scene.body("balance").position)
+    expected = np.zeros(len(times))
+    for i in range(len(times)):
+        held = {
+            run.pairs[int(k)]: (told.normal[i, j], told.point[i, j], told.direction[i, j], told.tangential[i, j])
+            for j, k in enumerate(told.pairs)
+            if np.isfinite(told.point[i, j, 0])
+        }
+        assert len(closed[i]) == len(held), times[i]
+        sizes = sorted(one["force"][0] for one in closed[i])
+        assert np.allclose(sizes, sorted(float(value[0]) for value in held.values()), atol=0.004 * told.normal.max())
+        for pair, (normal, point, direction, tangential) in held.items():
+            if "balance" not in (pair.body_a, pair.body_b):
+                continue
+            force = normal * direction + tangential * np.array([-direction[1], direction[0]])
+            force = force if pair.body_a == "balance" else -force
+            arm = point - pivot
+            expected[i] += arm[0] * force[1] - arm[1] * force[0]
+    assert np.abs(moment - expected).max() < 0.01 * np.abs(moment).max() + 1e-12
+
+
+def test_keys_play_step_zoom_and_fade(written: Path) -> None:
+    with opened(written) as page:
+        now = lambda: page.text_content("#time")  # noqa: E731
+        other = (
+            "before => document.querySelector('#time').textContent !== before"  # what a key does is drawn with the next frame
+        )
+        page.focus("#stage")
+        before = now()
+        page.keyboard.press(".")
+        stepped = now()
+        assert stepped != before or page.text_content("#said")
+        page.keyboard.press("Space")
+        page.wait_for_timeout(300)
+        page.keyboard.press("Space")
+        assert now() != stepped
+        played = now()
+        page.keyboard.press("Home")
+        page.wait_for_function(other, arg=played)
+        first = now()
+        page.keyboard.press("Shift+ArrowRight")
+        page.wait_for_function(other, arg=first)
+        page.keyboard.press("n")
+        page.keyboard.press("x")
+        page.wait_for_selector('#parts button:first-child[aria-pressed="true"]')  # with the next frame
+        assert page.is_visible("#release")
+        page.keyboard.press("Escape")
+        page.keyboard.press("t")
+        page.keyboard.press("f")
+        page.wait_for_selector('#push[aria-pressed="true"]')
+        assert page.evaluate("document.documentElement.dataset.theme") == "dark"
+        assert page.said == []
+
+
+def test_a_click_follows_a_part(run: Trajectory, written: Path) -> None:
+    with opened(written) as page:
+        body = run.scene.body("lever")
+        stone = next(loop for loop in body.loops if loop.layer == "STONES")
+        inside = polyline(stone, 1e-5)[:-1].mean(axis=0)
+        ((x, y),) = page.evaluate("([name, points]) => watchsim.seen(name, points)", ["lever", [inside.tolist()]])
+        page.click("#stage", position={"x": x, "y": y})
+        page.wait_for_timeout(100)
+        assert page.text_content("#release").startswith("Following lever")
+        assert page.eval_on_selector("#whose", "box => box.selectedOptions[0].text") == "lever"
+        place = "([name, points]) => watchsim.seen(name, points)[0]"
+        there = np.array(page.evaluate(place, ["lever", [inside.tolist()]]))
+        page.evaluate("watchsim.seek(watchsim.window[0] + 0.3)")
+        assert np.allclose(page.evaluate(place, ["lever", [inside.tolist()]]), there, atol=1e-6)
+
+
+def test_an_audit_of_accessibility_passes(written: Path) -> None:
+    audit = pytest.importorskip(
+        "axe_playwright_python.sync_playwright", reason="axe is not installed: pip install 'watchsim[browser]'"
+    )
+    for width, scheme in ((1280, "light"), (1280, "dark"), (360, "light")):
+        with opened(written, width, 800, scheme) as page:
+            found = audit.Axe().run(page).response["violations"]
+            assert not found, json.dumps(
+                [(one["id"], [node["html"][:120] for node in one["nodes"]]) for one in found], indent=1
+            )
+
+
+def test_focus_goes_through_the_page_in_its_order(written: Path) -> None:
+    with opened(written) as page:
+        seen = []
+        for _ in range(60):
+            page.keyboard.press("Tab")
+            seen.append(page.evaluate("document.activeElement.id || document.activeElement.textContent"))
+        wanted = ("theme", "print", "stage", "back", "play", "next", "speed", "adapt", "scrub", "whose")
+        places = [seen.index(name) for name in wanted]
+        assert places == sorted(places)
+
+
+def test_saved_files_are_those_of_the_run(run: Trajectory, written: Path) -> None:
+    with opened(written) as page:
+        with page.expect_download() as waiting:
+            page.click("text=Everything")
+        with zipfile.ZipFile(waiting.value.path()) as archive:
+            names = archive.namelist()
+            assert archive.testzip() is None
+            assert {"scene.lock.toml", "summary.json", "beats.csv", "phases.csv"} <= set(names)
+            drawing = next(name for name in names if name.endswith(".dxf"))
+            content = archive.read(drawing)
+            assert content in run.scene.drawings.values()
+        with page.expect_download() as waiting:
+            page.click(f"text={drawing}")
+        assert Path(waiting.value.path()).read_bytes() == content
+
+
+def test_it_keeps_up_with_the_screen(written: Path) -> None:
+    """Drawing a frame at 1280 × 720 takes a fraction of the 16.7 ms that a screen leaves."""
+    with opened(written) as page:
+        enlarged(page)
+        page.evaluate("document.getElementById('push').click()")
+        page.evaluate("document.getElementById('play').click()")
+        took = []
+        for _ in range(20):
+            page.wait_for_timeout(50)
+            took.append(page.evaluate("watchsim.pace().drawn"))
+        assert np.percentile(took, 25) < 8.0
+
+
+def test_a_processor_has_time_for_sixty_frames_a_second(written: Path) -> None:
+    with opened(written, *SIZE) as page:
+        found = played(page, 4.0)
+        assert page.said == []
+    assert found.frames > 10
+    assert found.busy / found.frames < 1.0 / 60.0

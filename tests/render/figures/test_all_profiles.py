@@ -1,0 +1,38 @@
+"""Does every plot of every profile fit its page and its column, with nothing cut off?"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from render.figures.read_back import faults, width_mm
+
+import watchsim as ws
+from watchsim.commands.common.plot_kinds import KINDS, Request
+
+PROFILES = sorted(path.name for path in Path(str(ws.profiles_dir())).iterdir() if (path / "scene.toml").is_file())
+WITHOUT_BEATS = {"geneva", "incline", "involute_pair", "balance", "cam", "jumper", "ratchet", "verge"}
+# The wheel and the oscillator touch themselves; a detent is no lever.
+WITHOUT_PHASES = {"graham", "recoil_anchor", "detent", "pin_wheel", "cylinder", "duplex"}
+DURATION = {"graham": 4.0, "recoil_anchor": 4.0, "pin_wheel": 8.0}  # s: slow pendulums; a second of all others
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("profile", PROFILES)
+def test_nothing_is_clipped(profile: str) -> None:
+    scene = ws.load(ws.profiles_dir() / profile)
+    run = ws.simulate(scene, duration=DURATION.get(profile, min(1.0, scene.duration)), record="all")
+    drawn = set()
+    for width in (170.0, 85.0):
+        asked = Request(run, None, ("angle", "velocity", "acceleration"), None, width)
+        for kind, draw in KINDS.items():
+            try:
+                figure = draw(asked)
+            except ValueError:
+                continue
+            assert width_mm(figure) == pytest.approx(width)
+            assert faults(figure) == [], kind
+            drawn.add(kind)
+    assert {"kinematics", "phase-portrait", "forces"} <= drawn
+    of_beats = set() if profile in WITHOUT_PHASES else {"phases", "timeline", "torque"}
+    assert profile in WITHOUT_BEATS or drawn >= {"energy", "timing", "tape"} | of_beats, set(KINDS) - drawn

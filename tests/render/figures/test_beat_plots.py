@@ -1,0 +1,213 @@
+"""Do the plots of a beat show what the run and its tables hold?"""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+
+import numpy as np
+import pytest
+from matplotlib.patches import Rectangle
+from render.figures.read_back import area_of, faults, named, svg_curve, width_mm
+
+import watchsim as ws
+from watchsim.analysis.beat_tables import phases_csv
+from watchsim.analysis.energy import energy_shares
+from watchsim.analysis.timeline.shown_beats import shown_beats
+from watchsim.analysis.timeline.timeline_table import title
+from watchsim.render.figures.beat.torque_curve import pushes, torque_on
+from watchsim.render.figures.passing_phases import passing
+from watchsim.render.frame.marks.readouts import clock
+
+
+@pytest.fixture(scope="module")
+def run() -> ws.Trajectory:
+    return ws.simulate(ws.load(ws.profiles_dir() / "bench_lever"), duration=1.0)
+
+
+@pytest.fixture(scope="module")
+def rows(run: ws.Trajectory) -> list[dict[str, str]]:
+    return list(csv.DictReader(io.StringIO("".join(phases_csv(run, ws.beats(run))))))
+
+
+PLOTS = {
+    "kinematics": ws.plot_kinematics,
+    "phases": ws.plot_phases,
+    "timeline": ws.plot_timeline,
+    "portrait": ws.plot_phase_portrait,
+    "torque": ws.plot_torque,
+    "forces": ws.plot_forces,
+    "energy": ws.plot_energy,
+    "timing": ws.plot_timing,
+    "tape": ws.plot_tape,
+}
+
+
+@pytest.mark.parametrize("width", [170.0, 85.0])
+@pytest.mark.parametrize("kind", PLOTS)
+def test_every_plot_is_as_wide_as_asked_and_cuts_no_word(run: ws.Trajectory, kind: str, width: float) -> None:
+    figure = PLOTS[kind](run, width=width)
+    assert width_mm(figure) == pytest.approx(width)
+    assert faults(figure) == []
+    assert figure._repr_png_().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize("form", ["svg", "pdf"])
+@pytest.mark.parametrize("kind", PLOTS)
+def test_every_plot_is_written_as_vectors(run: ws.Trajectory, kind: str, form: str, tmp_path) -> None:
+    from watchsim.render.figures.figure_style import save
+
+    path = tmp_path / f"plot.{form}"
+    save(PLOTS[kind](run), path)
+    first = path.read_bytes()
+    assert first.startswith(b"%PDF" if form == "pdf" else b"<?xml")
+    assert form == "svg" or b"/Type3" not in first  # fonts that printers refuse
+
+
+def test_areas_of_torque_are_the_energies_of_phases_csv(run: ws.Trajectory, rows: list[dict[str, str]]) -> None:
+    figure = ws.plot_torque(run)
+    told = shown_beats(run)[-2:]
+    panels = [axes for axes in figure.axes if axes.collections]
+    assert len(panels) == 2
+    for axes, beat, found in zip(panels, told, pushes(run, told), strict=True):
+        own = {row["phase"] + row["on"]: row for row in rows if int(row["beat"]) == beat.stages[0].beat}
+        words = [text.get_text() for text in axes.texts]
+        largest = max(abs(one.stage.energy.to_balance) for one in found)
+        for one, filled in zip(found, axes.collections, strict=True):
+            assert filled.get_gid() == f"area {title(one.stage)}"
+            drawn = 1e-9 * math.radians(1.0) * area_of(filled) * (1.0 if axes.get_ylabel() == "torque (nN·m)" else 1e3)
+            row = own[one.stage.name + one.stage.phase.on]
+            whole = float(row["to_balance_J"])
+            drawn *= one.way
+            assert drawn == pytest.approx(one.forces, abs=1e-6 * largest)
+            # Two ways that share nothing: forces at the contacts and jumps, and the books of the balance.
+            assert drawn + one.impacts == pytest.approx(whole, abs=2e-4 * largest)
+            assert f"{round(1e9 * whole, 2) + 0.0:.2f}".replace("-", "−") in words
+            if abs(whole) > 0.1 * largest:
+                assert f"{1e9 * whole:+.1f} nJ".replace("-", "−") in words
+        assert sum(one.stage.energy.to_balance for one in found) > 0.0
+        assert own["unlock"]["to_balance_J"].startswith("-")
+
+
+def test_the_torque_is_what_accelerates_the_balance(run: ws.Trajectory) -> None:
+    beat = shown_beats(run)[-1]
+    stage = next(one for one in beat.stages if one.name == "impulse")
+    times = np.linspace(stage.phase.start, stage.phase.end, 42)[1:-1]
+    column = run.slices["balance"].start
+    (spring,), (damper,) = run.scene.springs, run.scene.damping
+    inertia = run.scene.body("balance").inertia
+    q, u = run.sample(times)
+    needed = inertia * run.acceleration(times)[:, column] + spring.stiffness * (q[:, column] - spring.rest)
+    needed = needed + damper.viscous * u[:, column]
+    told = torque_on(run, "balance", times)
+    assert np.abs(told).max() > 0.0
+    assert np.median(np.abs(told - needed)) < 1e-3 * np.abs(told).max()
+
+
+def test_bars_are_the_shares_of_the_account(run: ws.Trajectory) -> None:
+    figure = ws.plot_energy(run)
+    shares = energy_shares(run)
+    for name, share in shares.went_to.items():
+        _, bar = named(figure, f"energy {name}")
+        assert isinstance(bar, Rectangle) and bar.get_width() == pytest.approx(100.0 * share)
+    axes = figure.axes[1]
+    for stage in (one for one in shown_beats(run)[-2].stages if one.name != "locked"):
+        parts = ("stored", "damping", "friction", "impacts")
+        widths = {name: next(b for b in axes.patches if b.get_gid() == f"energy {title(stage)} {name}") for name in parts}
+        assert sum(bar.get_width() for bar in widths.values()) == pytest.approx(1e9 * stage.energy.supplied, abs=1e-3)
+        assert widths["friction"].get_width() == pytest.approx(1e9 * stage.energy.friction)
+        assert widths["impacts"].get_width() == pytest.approx(1e9 * sum(stage.energy.impacts.values()))
+
+
+def test_forces_are_those_of_the_contacts(run: ws.Trajectory) -> None:
+    figure = ws.plot_forces(run, window=(0.5, 0.62))
+    axes, line = named(figure, "force wheel-lever normal")
+    x, y = line.get_data()
+    time = clock((0.5, 0.62))
+    told = ws.forces(run, time.base + x[::25] / time.factor)
+    mine = [k for k, i in enumerate(told.pairs) if {run.pairs[i].body_a, run.pairs[i].body_b} == {"wheel", "lever"}]
+    factor = {"N": 1.0, "mN": 1e3, "µN": 1e6}[axes.get_ylabel().split("(")[1].rstrip(")")]
+    assert y[::25] == pytest.approx(factor * told.normal[:, mine].sum(axis=1), abs=2e-3 * y.max())
+    _, bearing = named(figure, "force bearings balance")
+    assert np.max(bearing.get_ydata()) > 0.0
+
+
+def test_a_window_with_too_many_instants_is_refused(run: ws.Trajectory, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("watchsim.render.figures.beat.force_plot.MOST", 300)
+    with pytest.raises(ValueError, match="choose a shorter window"):
+        ws.plot_forces(run, window=(0.1, 0.9))
+
+
+def test_the_portrait_passes_through_the_states_of_the_run(run: ws.Trajectory) -> None:
+    figure = ws.plot_phase_portrait(run, window=(0.4, 0.7))
+    _, line = named(figure, "lever portrait")
+    x, y = line.get_data()
+    column = run.slices["lever"].start
+    own = (run.t > 0.4) & (run.t < 0.7)
+    for values, drawn in ((run.q, x), (run.u, y)):
+        shown = np.degrees(values[own, column])
+        assert drawn.max() == pytest.approx(shown.max(), abs=1e-3 * np.ptp(shown))
+        assert drawn.min() == pytest.approx(shown.min(), abs=1e-3 * np.ptp(shown))
+
+
+def test_the_curve_in_the_file_is_that_of_the_run(run: ws.Trajectory) -> None:
+    figure = ws.plot_kinematics(run, ["balance"], ["angle", "velocity"], window=(0.2, 0.6))
+    for k, name in enumerate(("angle", "velocity")):
+        axes = figure.axes[k]
+        x, y = svg_curve(figure, axes, f"balance {name}")
+        exact = np.degrees(run.sample(1e-3 * x)[k][:, run.slices["balance"].start])
+        assert len(x) > 50
+        assert y == pytest.approx(exact, abs=2e-3 * np.ptp(exact))  # SVG carries six decimals of a point; x is rounded too
+
+
+def test_phases_are_shaded_when_they_are(run: ws.Trajectory) -> None:
+    window = (0.4, 0.7)
+    figure = ws.plot_kinematics(run, ["lever"], ["angle"], window)
+    shaded = sorted((band.get_x(), band.get_x() + band.get_width()) for band in figure.axes[0].patches)
+    expected = sorted(
+        (1e3 * (phase.start - 0.0), 1e3 * (phase.end - 0.0))
+        for beat in passing(run, window)
+        for phase in beat
+        if phase.name != "locked"
+    )
+    base = expected[0][0] - shaded[0][0]  # the plot counts from a round time
+    assert len(shaded) == len(expected) > 5
+    assert np.array(shaded) + base == pytest.approx(np.array(expected), abs=1e-6)
+    words = {text.get_text() for text in figure.texts}
+    assert {"unlock", "impulse", "drop"} <= words
+    assert ws.plot_kinematics(run).axes[0].patches == [] or len(passing(run, (0.0, 1.0))) <= 12
+
+
+def test_dots_of_timing_are_the_beats(run: ws.Trajectory) -> None:
+    figure, found = ws.plot_timing(run), ws.beats(run)
+    for name, values in (("amplitude", found.amplitude_deg), ("rate", found.rate_s_per_d), ("beat error", found.beat_error_ms)):
+        dots = [named(figure, f"{name} {way}")[1].get_data() for way in ("forward", "back")]
+        t, y = np.concatenate([one[0] for one in dots]), np.concatenate([one[1] for one in dots])
+        order = np.argsort(t)
+        assert t[order] == pytest.approx(found.t) and y[order] == pytest.approx(values, nan_ok=True)
+
+
+def test_pictures_stand_at_the_middle_of_each_phase(run: ws.Trajectory) -> None:
+    figure = ws.plot_timeline(run)
+    beats_shown = shown_beats(run)[-2:]
+    pictures = [axes for axes in figure.axes if not len(axes.get_xticks())]
+    phases = [one for beat in beats_shown for one in beat.stages if one.name != "locked"]
+    assert len(pictures) == len(phases) + len(beats_shown)
+    words = [text.get_text() for text in figure.texts]
+    assert any("unlock" in text for text in words) and any("at rest" in text for text in words)
+    lever = [axes.lines[0] for axes in figure.axes if axes.lines and axes.lines[0].get_gid() == "angle lever"]
+    for line, beat in zip(lever, beats_shown, strict=True):
+        x, y = line.get_data()
+        exact = np.degrees(run.sample(beat.start + 1e-3 * x)[0][:, run.slices["lever"].start])
+        assert y == pytest.approx(exact, abs=1e-6)
+
+
+def test_a_run_without_an_escapement_has_the_plots_that_need_none() -> None:
+    disc = ws.simulate(ws.load(ws.profiles_dir() / "incline"), duration=0.5)
+    for draw in (ws.plot_kinematics, ws.plot_phase_portrait, ws.plot_forces, ws.plot_energy):
+        for width in (170.0, 85.0):
+            assert faults(draw(disc, width=width)) == []
+    for draw in (ws.plot_torque, ws.plot_timeline, ws.plot_phases, ws.plot_timing):
+        with pytest.raises(ValueError):
+            draw(disc)

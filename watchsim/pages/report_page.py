@@ -1,0 +1,135 @@
+"""How does a run become a page that can be sent?
+
+report(run, "watch.html")
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from watchsim.analysis.summary import summary
+from watchsim.analysis.timing.phases import Phase, phases_within
+from watchsim.pages.files import packed_files
+from watchsim.pages.html import Markup, element, joined
+from watchsim.pages.player.canvas_outlines import drawn_parts
+from watchsim.pages.player.data import picture_size, player_data
+from watchsim.pages.player.motion import Channel, TooMuch, channels
+from watchsim.pages.player.stretch_shown import shown
+from watchsim.pages.poster import poster
+from watchsim.pages.self_contained_page import page
+from watchsim.pages.timing_sheet.timing_sheet import sheet, verdict
+from watchsim.render.frame.pose_history import Window, recorded
+from watchsim.results.tables import plain
+from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.storage.write import write_file
+
+ENDINGS = (".html", ".htm")
+HALVINGS = 12
+ALONE = Markup("<style>.skip,header,#sheet,footer{display:none!important}main{margin-top:0;padding-top:0}</style>")
+
+
+def report(
+    run: Trajectory,
+    path: str | os.PathLike[str] = "report.html",
+    window: Sequence[float] | None = None,
+    *,
+    numbers: Mapping[str, Any] | None = None,
+) -> Path:
+    """Write a run as one self-contained HTML file, and return its path: a player, linked plots, the timing sheet, the files.
+
+    window   (from, to) in seconds that the player shows; default the last ten beats, or all of the last stretch recorded
+    numbers  as in summary.json, where already at hand; default `summary(run)`
+
+    ValueError for a window that was not recorded, that holds too much motion for a page, or a path with another ending;
+    OSError where the file cannot be written: it is written whole or not at all.
+    """
+    target = check_page(path)
+    text = page_text(run, window, numbers)
+    write_file(target, lambda place: place.write_bytes(text.encode("utf-8", "replace")), "the page")
+    return target
+
+
+def check_page(path: str | os.PathLike[str]) -> Path:
+    """The path, if its ending is that of a page."""
+    target = Path(path)
+    if target.suffix.lower() not in ENDINGS:
+        raise ValueError(f"{path}: a page is written as HTML; choose a name that ends in .html")
+    return target
+
+
+def page_text(run: Trajectory, window: Sequence[float] | None = None, numbers: Mapping[str, Any] | None = None) -> str:
+    """The page as text; see `report`."""
+    told = plain(summary(run) if numbers is None else numbers)
+    span, moved, off = _motion(run, window)
+    size = picture_size(run, span)
+    found = phases_within(run, span)
+    opening = _opening(found, span)
+    parts = drawn_parts(run.scene, size)
+    data = player_data(run, span, moved, parts, found, opening)
+    files, left_out = packed_files(run, told)
+    data["files"] = files
+    places = {
+        "poster": poster(run, span, parts, opening),
+        "verdict": verdict(told) or Markup(""),
+        "lead": _lead(run, span),
+        "sheet": sheet(run, told),
+        "saved": _saved(left_out),
+        "made": _made(told, off),
+    }
+    return page(run.scene.title, places, data)
+
+
+def player_text(run: Trajectory, window: Sequence[float] | None = None) -> str:
+    """A page with the player and the plots only, for a frame in another page."""
+    span, moved, off = _motion(run, window)
+    size = picture_size(run, span)
+    found = phases_within(run, span)
+    opening = _opening(found, span)
+    data = player_data(run, span, moved, drawn_parts(run.scene, size), found, opening)
+    data["files"] = {"entries": [], "data": ""}
+    places = dict.fromkeys(("poster", "verdict", "lead", "saved"), Markup(""))
+    return page(run.scene.title, {**places, "sheet": ALONE, "made": _made({}, off)}, data)
+
+
+def _motion(run: Trajectory, window: Sequence[float] | None) -> tuple[Window, list[Channel], float]:
+    """What is shown, its rows, and how exact they are (m); a window nobody asked for is halved until it fits."""
+    span = shown(run, window)
+    size = picture_size(run, span)
+    for _ in range(HALVINGS):
+        try:
+            return span, *channels(run, span, size)
+        except TooMuch:
+            if window is not None:
+                raise
+            span = (0.5 * (span[0] + span[1]), span[1])
+    return span, *channels(run, span, size)
+
+
+def _opening(found: list[Phase], span: Window) -> float:
+    """The instant that the page opens with: amid an impulse where there is one."""
+    inside = [one for one in found if one.name == "impulse" and span[0] <= one.start and one.end <= span[1]]
+    return 0.5 * (inside[-1].start + inside[-1].end) if inside else span[0]
+
+
+def _lead(run: Trajectory, span: Window) -> str:
+    start, end = span
+    whole = f"{run.simulated:.6g} s simulated"
+    spans = recorded(run)
+    if start <= spans[0][0] and end >= run.simulated * (1.0 - 1e-9) and len(spans) == 1:
+        return f"{whole}, all of it shown"
+    return f"{whole}; shown: {start:.6g} s to {end:.6g} s"
+
+
+def _saved(left_out: list[str]) -> Markup:
+    if not left_out:
+        return Markup("")
+    return element("p", f"Too large for this page: {', '.join(left_out)}.", class_="note")
+
+
+def _made(numbers: Mapping[str, Any], off: float) -> Markup:
+    version = (numbers.get("versions") or {}).get("watchsim")
+    exact = f"{1e9 * off:.2g} nm" if off < 1e-6 else f"{1e6 * off:.2g} µm"
+    return joined((f"watchsim {version or ''}. ", f"Outlines stand within {exact} of the motion that was computed."))

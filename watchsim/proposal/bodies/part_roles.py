@@ -1,0 +1,118 @@
+"""Which part is driven, which drives, which swings, and which stands between them?"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from watchsim.proposal.bodies.centres import is_toothed
+from watchsim.proposal.bodies.part import Part
+from watchsim.proposal.bodies.part_names import DRIVER, FIXED, LEVER, OSCILLATOR, WHEEL, part_of, part_word
+
+FEWEST_TEETH = 8  # of an escape wheel; with fewer slots a wheel is driven step by step, as in a Geneva drive
+ROUNDISH = 0.4  # of its outlines on arcs about its pivot: a part that may turn through whole turns
+NAMES = {WHEEL: "wheel", LEVER: "lever", OSCILLATOR: "balance", DRIVER: "driver", FIXED: "banking"}
+
+
+@dataclass(eq=False)
+class Role:
+    """A part with its name and task: wheel, lever, oscillator, driver or fixed. `teeth` is 0 where it is no wheel."""
+
+    part: Part
+    name: str
+    task: str
+    why: str
+    teeth: int = 0
+
+    @property
+    def moves(self) -> bool:
+        return self.part.centre is not None and self.task != FIXED
+
+
+def roles_of(parts: Sequence[Part]) -> list[Role]:
+    """The role of every part, wheels first, then lever, oscillator, others, and what stands still."""
+    moving = [part for part in parts if part.centre is not None and part.kind != FIXED]
+    found = [Role(part, "", FIXED, _still(part)) for part in parts if part not in moving]
+    wheels = [part for part in moving if part.kind in (WHEEL, None) and teeth_of(part) > 0]
+    rest = [part for part in moving if part not in wheels]
+    for part in wheels:
+        count = teeth_of(part)
+        found.append(Role(part, "", WHEEL, f"it comes back onto itself {count} times in a turn", count))
+    for part in list(rest):
+        if part.kind == WHEEL:
+            found.append(Role(part, "", WHEEL, "the names of its layers say so"))
+            rest.remove(part)
+    swinging = _oscillator(rest, wheels)
+    for part in rest:
+        if swinging is not None and part is swinging[0]:
+            found.append(Role(part, "", OSCILLATOR, swinging[1]))
+        else:
+            named = part.kind == LEVER
+            task = LEVER if named or swinging is not None else DRIVER
+            found.append(Role(part, "", task, "the names of its layers say so" if named else "it turns and is no wheel"))
+    order = [DRIVER, WHEEL, LEVER, OSCILLATOR, FIXED]
+    found.sort(key=lambda role: order.index(role.task))
+    _name(found)
+    return found
+
+
+def teeth_of(part: Part) -> int:
+    """How often the part's outermost toothed piece comes back onto itself in a turn; 0 where none does."""
+    toothed = [piece.turned for piece in part.pieces if piece.turned is not None and is_toothed(piece.turned)]
+    centre = part.centre
+    about = [one for one in toothed if centre is not None and math.dist(one.centre, centre.at) <= 1e-2 * one.outer]
+    return max(about, key=lambda one: one.outer).fold if about else 0
+
+
+def _still(part: Part) -> str:
+    return "the names of its layers say so" if part.kind == FIXED else "nothing in the drawing shows a pivot of it"
+
+
+def _oscillator(rest: Sequence[Part], wheels: Sequence[Part]) -> tuple[Part, str] | None:
+    """What swings: what is called so; else the roundest; a single part beside an escape wheel swings itself."""
+    named = [part for part in rest if part.kind == OSCILLATOR]
+    if named:
+        return named[0], "the names of its layers say so"
+    if not wheels or max(teeth_of(part) for part in wheels) < FEWEST_TEETH:
+        return None
+    free = [part for part in rest if part.kind is None] or (list(rest) if len(rest) == 1 else [])
+    if len(rest) == 1 and free:
+        return free[0], "it is the only part beside the wheel: an anchor that swings itself"
+    if not free:
+        return None
+    roundest = max(free, key=_roundness)
+    if _roundness(roundest) >= ROUNDISH:
+        return roundest, "most of its outline lies on arcs about its pivot"
+    wheel = wheels[0]
+    assert wheel.centre is not None
+    at = wheel.centre.at
+    farthest = max(free, key=lambda part: math.dist(part.centre.at, at) if part.centre else 0.0)
+    return farthest, "it is the farthest from the wheel"
+
+
+def _roundness(part: Part) -> float:
+    if part.centre is None:
+        return 0.0
+    at = part.centre.at
+    about = sum(arc.length for piece in part.pieces for arc in piece.arcs if math.dist((arc.x, arc.y), at) <= 1e-2 * arc.radius)
+    return about / sum(piece.length for piece in part.pieces)
+
+
+def _name(roles: Sequence[Role]) -> None:
+    taken: set[str] = set()
+    for role in roles:
+        named = [(part_word(layer), part_of(layer)) for layer in role.part.layers]
+        words = [
+            word for word, kind in named if word is not None and (kind == role.task or role.task == DRIVER) and kind != FIXED
+        ]
+        words = words or [word for word, _ in named if word is not None and role.task == FIXED]
+        plain = words[0] if words else NAMES[role.task]
+        if role.task == OSCILLATOR and not words and not any(other.task == LEVER for other in roles):
+            plain = "anchor"
+        name, k = plain, 1
+        while name in taken:
+            k += 1
+            name = f"{plain}_{k}"
+        taken.add(name)
+        role.name = name

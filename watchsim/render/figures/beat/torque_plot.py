@@ -1,0 +1,163 @@
+"""Which torque acts on the balance over its angle, and what do unlocking and impulse take and give?
+
+plot_torque(run).savefig("torque.pdf")
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from watchsim.analysis.timeline.shown_beats import Beat, shown_beats
+from watchsim.analysis.timeline.timeline_table import title as phase_title
+from watchsim.render.figures.beat.torque_curve import Push, pushes
+from watchsim.render.figures.figure_style import (
+    CURVE,
+    FULL,
+    HAIR,
+    LEAD,
+    NARROW,
+    POINT,
+    SMALL,
+    dress,
+    figure,
+    heading,
+    panel,
+    title,
+)
+from watchsim.render.figures.phase_bands import bands
+from watchsim.render.palette import FAINT, INK
+from watchsim.scene.roles import roles
+from watchsim.simulation.record.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+NANO = 1e9
+TOP, LEFT, RIGHT, OVER, TALL, UNDER = 12.0, 12.0, 3.0, 5.0, 48.0, 11.0  # mm
+MANY = 2  # beats, one for each stone
+ROW = LEAD * SMALL * POINT  # mm, of the table
+COLUMNS = (0.0, 0.46, 0.64, 0.82, 1.0)  # of the panel's width: name, and the right sides of the numbers
+HEADS = ("energy to the balance (nJ)", "forces", "impacts", "together")
+LEAST = 0.02  # of the panel: an area narrower than this has its energy in the table only
+TOLD = 0.02  # of the largest: fainter energies are in the table only
+HIT = 0.02  # of the largest work in the beat: fainter impacts have no mark
+PREFIXES = ((1.0, "N·m"), (1e3, "mN·m"), (1e6, "µN·m"), (1e9, "nN·m"))
+
+
+def plot_torque(
+    run: Trajectory, window: Sequence[float] | None = None, width: float = FULL, beats: list[Beat] | None = None
+) -> Figure:
+    """The torque of all contacts on the balance over its angle, a panel for each of the last two beats of a window.
+
+    Positive with the swing, whichever way it goes. The area under a phase is the work of its forces; written on it is what the
+    phase gives to the balance in all, impacts included, as in phases.csv. ValueError where no beat was recorded whole, or the
+    run knows no forces.
+    """
+    beats_shown = (beats or shown_beats(run, window, rubbed=False))[-MANY:]
+    found = pushes(run, beats_shown)
+    across = len(found) if width >= NARROW else 1
+    rows = -(-len(found) // across)
+    table = ROW * (2.5 + max(len(one) for one in found))
+    step = OVER + TALL + UNDER + table
+    made = figure(width, TOP + rows * step)
+    name = roles(run.scene).oscillator
+    heading(
+        made,
+        run.scene.title,
+        f"Torque on {name}, with its swing; triangles: impacts",
+    )
+    largest = max((float(np.abs(one.torque).max()) for push in found for one in push), default=0.0) or 1.0
+    factor, unit = next(((f, u) for f, u in PREFIXES if largest * f >= 1.0), PREFIXES[-1])
+    wide = width / across - LEFT - RIGHT
+    span = [factor * one.way * value for push in found for one in push for value in (one.torque.min(), one.torque.max())]
+    for k, (beat, push) in enumerate(zip(beats_shown, found, strict=True)):
+        left, top = (k % across) * (LEFT + wide + RIGHT) + LEFT, TOP + (k // across) * step + OVER
+        axes = panel(made, left, top, wide, TALL)
+        _curve(axes, push, factor)
+        axes.set_ylim(min(*span, 0.0) - 0.16 * (max(span) - min(span)), max(*span, 0.0) + 0.16 * (max(span) - min(span)))
+        stone = beat.stages[0].pallet
+        title(axes, f"beat {beat.stages[0].beat}{f', {stone} stone' if stone else ''}")
+        axes.set_xlabel(f"angle of {name} (°)", labelpad=1.5)
+        axes.set_ylabel(f"torque ({unit})", labelpad=1.5)
+        _energies(axes, push, factor)
+        _table(axes, push, (TALL + UNDER) / TALL, ROW / TALL)
+    return made
+
+
+def _curve(axes: Axes, push: list[Push], factor: float) -> None:
+    """Areas in the colours of the phases, the curve on top, and marks where impacts hit."""
+    dress(axes)
+    axes.axhline(0.0, color=FAINT, linewidth=HAIR, zorder=2)
+    most = max((abs(one.stage.energy.to_balance) for one in push), default=0.0)
+    for one, (_, colour) in zip(push, bands(one.stage.phase for one in push), strict=True):
+        x, y = np.degrees(one.angle), factor * one.way * one.torque
+        gid = f"area {phase_title(one.stage)}"
+        axes.fill_between(x, y, 0.0, color=colour, linewidth=0.0, zorder=1, gid=gid)
+        axes.plot(x, y, color=INK, linewidth=CURVE, zorder=3, gid=f"torque {phase_title(one.stage)}")
+        for angle, work in one.struck:
+            if abs(work) > HIT * most:
+                mark = "^" if work > 0.0 else "v"
+                axes.plot([math.degrees(angle)], [0.0], mark, color=INK, markersize=3.5, markerfacecolor="white",
+                          markeredgewidth=0.6, zorder=4)  # fmt: skip
+    low, high = axes.get_xlim()
+    if push and push[0].angle[0] > push[-1].angle[-1]:  # time runs to the right
+        axes.set_xlim(high, low)
+
+
+def _energies(axes: Axes, push: list[Push], factor: float) -> None:
+    """What each phase gives, written above its area, or below it where it takes."""
+    low, high = sorted(axes.get_xlim())
+    most = max(abs(one.stage.energy.to_balance) for one in push)
+    for one in push:
+        x, given = np.degrees(one.angle), one.stage.energy.to_balance
+        if abs(x[-1] - x[0]) < LEAST * (high - low) or abs(given) < TOLD * most:
+            continue
+        up = given >= 0.0
+        torque = factor * one.way * one.torque
+        edge = float(torque.max() if up else torque.min())
+        text = f"{NANO * given:+.1f} nJ".replace("-", "−")
+        look: dict[str, Any] = {"ha": "center", "va": "bottom" if up else "top", "fontsize": SMALL, "color": INK, "zorder": 5}
+        place = (0.5 * (x[0] + x[-1]), max(edge, 0.0) if up else min(edge, 0.0))
+        axes.annotate(text, place, (0, 1.5 if up else -1.5), textcoords="offset points", **look)
+
+
+def _table(axes: Axes, push: list[Push], below: float, row: float) -> None:
+    """Under the panel: work of forces and of impacts, phase by phase; heights are shares of the panel's."""
+    from matplotlib.patches import Rectangle
+
+    rows: list[tuple[str, ...]] = [HEADS]
+    rows += [
+        (phase_title(one.stage), *(_nano(value) for value in (one.forces, one.impacts, one.stage.energy.to_balance)))
+        for one in push
+    ]
+    sums = [
+        sum(values) for values in zip(*((one.forces, one.impacts, one.stage.energy.to_balance) for one in push), strict=True)
+    ]
+    rows.append(("beat", *(_nano(value) for value in sums)))
+    colours = [None, *(colour for _, colour in bands(one.stage.phase for one in push)), None]
+    swatch = 2.2 / (axes.get_window_extent().width / axes.figure.dpi * 25.4)
+    for k, (cells, colour) in enumerate(zip(rows, colours, strict=True)):
+        y = 1.0 - below - (k + 0.5) * row
+        if colour is not None:
+            place = (COLUMNS[0], y - 0.35 * row)
+            axes.add_patch(Rectangle(place, swatch, 0.7 * row, color=colour, lw=0.0, transform=axes.transAxes, clip_on=False))
+        weight = "bold" if k in (0, len(rows) - 1) else "normal"
+        for i, text in enumerate(cells):
+            x = COLUMNS[0] + (1.6 * swatch if colour is not None else 0.0) if i == 0 else COLUMNS[i + 1]
+            look: dict[str, Any] = {
+                "ha": "left" if i == 0 else "right",
+                "va": "center",
+                "fontsize": SMALL,
+                "color": INK,
+                "weight": weight,
+            }
+            axes.text(x, y, text, transform=axes.transAxes, **look)
+
+
+def _nano(value: float) -> str:
+    return f"{round(NANO * value, 2) + 0.0:.2f}".replace("-", "−")

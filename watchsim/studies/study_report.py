@@ -1,0 +1,83 @@
+"""How is a study shown on a terminal?"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from watchsim.studies.axes import Axis
+from watchsim.studies.outputs import Output
+from watchsim.studies.parameter_sweep import Sweep
+from watchsim.studies.sensitivity import Effect, Sensitivity
+from watchsim.units import to
+
+LONGEST = 60  # rows that are printed whole
+ENDS = 10  # of a longer table: rows at each end
+DECIMALS = {"amplitude_deg": 3, "rate_s_per_d": 3, "beat_error_ms": 4, "period_s": 9, "multiplier": 6}
+
+
+def sweep_text(sweep: Sweep) -> str:
+    """The table for people: keys in usual units, outputs without their errors, verdicts."""
+    head = [_head(axis) for axis in sweep.axes] + [_title(one) for one in sweep.outputs] + ["verdict"]
+    body = [_line(sweep, row) for row in sweep.rows]
+    lines = [sweep.title, *_table(head, body)]
+    reasons = dict.fromkeys(row["message"] for row in sweep.rows if row["message"])
+    return "\n".join([*lines, *(f"  {reason}" for reason in list(reasons)[:ENDS])])
+
+
+def sensitivity_text(found: Sensitivity) -> str:
+    """The table for people: what 1 %, 10 µm or 0.1° do, the greatest effect first."""
+    head = ["by", "value", "change", *(_title(one) for one in found.outputs), ""]
+    body = []
+    for effect, row in zip(found.effects, found.rows(), strict=True):
+        effects = [_effect(effect, one.column) for one in found.outputs]
+        unit = f" {row['unit']}" if row["unit"] not in ("", "°", "%") else row["unit"]
+        body.append([row["key"], f"{row['value']:.5g}{unit}", row["change"], *effects, row["message"]])
+    level = f"{found.cycle.amplitude_deg:.3f}°, {found.cycle.rate_s_per_d:.3f} s/d, {found.cycle.beat_error_ms:.4f} ms"
+    return "\n".join([f"{found.title}: {level}".replace(" -", " −"), *_table(head, body)])
+
+
+def _head(axis: Axis) -> str:
+    return f"{axis.key} ({axis.usual})" if axis.usual else axis.key
+
+
+def _title(one: Output) -> str:
+    return f"{one.label} ({one.unit})" if one.unit else one.label
+
+
+def _line(sweep: Sweep, row: dict[str, Any]) -> list[str]:
+    keys = [_key(axis, row[axis.key]) for axis in sweep.axes]
+    return [*keys, *(_number(row[one.column], DECIMALS[one.column]) for one in sweep.outputs), row["verdict"] or "none"]
+
+
+def _key(axis: Axis, value: Any) -> str:
+    if isinstance(value, str):
+        return value
+    return f"{to(value, axis.usual) if axis.usual else value:.6g}".replace("-", "−")
+
+
+def _number(value: float | None, decimals: int) -> str:
+    return "" if value is None else f"{value:.{decimals}f}".replace("-", "−")
+
+
+def _effect(effect: Effect, column: str) -> str:
+    """The effect of the usual change; "0" below rounding, with a question mark where two step sizes disagree."""
+    value, derivative = effect.of(column, effect.quantity.change), effect.by[column]
+    if value is None:
+        return ""
+    if abs(value) <= derivative.rounding * abs(effect.quantity.change):
+        return "0"
+    return f"{value:+.3g}".replace("-", "−") + ("" if derivative.agrees else " ?")
+
+
+def _table(head: Sequence[str], body: list[list[str]]) -> list[str]:
+    """Columns as wide as their widest entry; the middle of a long table is left out."""
+    shown = body if len(body) <= LONGEST else [*body[:ENDS], ["…"] + [""] * (len(head) - 1), *body[-ENDS:]]
+    widths = [max(len(line[i]) for line in (list(head), *shown)) for i in range(len(head))]
+    return ["  " + "  ".join(_padded(line, widths)).rstrip() for line in (list(head), *shown)]
+
+
+def _padded(line: Sequence[str], widths: Sequence[int]) -> list[str]:
+    """The first and the last column to the left, numbers to the right."""
+    last = len(line) - 1
+    return [f"{text:<{w}}" if i in (0, last) else f"{text:>{w}}" for i, (text, w) in enumerate(zip(line, widths, strict=True))]
