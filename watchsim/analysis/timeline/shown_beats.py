@@ -57,7 +57,7 @@ def shown_beats(run: Trajectory, window: Sequence[float] | None = None, rubbed: 
     if parts.wheel is None:
         raise ValueError(f"phases are those of an escapement, and no driven wheel keeps {name} swinging")
     if parts.lever is None:
-        raise ValueError(f"an escapement without a lever or an anchor between {parts.wheel} and {name} has no phases")
+        raise ValueError(f"phases exist where there is a lever or an anchor; none stands between {parts.wheel} and {name}")
     if not can_be_told(run):
         raise ValueError("a timeline needs a run by events with all of them kept")
     found = beats(run)
