@@ -8,7 +8,7 @@ from dataclasses import replace
 import hunt_path  # noqa: F401
 import numpy as np
 import pytest
-from hunt import pool
+from hunt import pool, witness
 from hunt.generator.generate import mechanism
 from hunt.generator.parts import fixed, sliding
 from hunt.generator.shapes import box, circle
@@ -115,3 +115,11 @@ def test_views_are_not_the_scene():
     turned = Judge(scene, 1)
     runs = [turned.run(view.of(scene), 1e-9) for view in views(scene, 1, 2)]
     assert all(not np.allclose(run.scene.bodies[0].axis, (1.0, 0.0)) for run in runs)
+
+
+def test_steps_part_what_bodies_in_touch_pass_on_at_once():
+    """The second and third block touch from the start: the impact on one goes through both."""
+    apart = cradle()
+    third = replace(apart.bodies[2], position=(0.01, 0.0))
+    assert witness.merged(simulate(replace(apart, bodies=(*apart.bodies[:2], third))), 0.03, 0.0)
+    assert not witness.merged(simulate(two_discs()), 0.04, 1e-3)
