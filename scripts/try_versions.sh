@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Do the demo and the short tests pass with every Python that is here, with the lowest and the newest dependencies?
 #
-#   scripts/try_versions.sh [PYTHON ...]     default: python3.10 to python3.14, those that are found
+#   scripts/try_versions.sh [PYTHON[=lowest|=newest] ...]     default: python3.10 to python3.14, those that are found
 #
 # Lowest: the versions that pyproject.toml names, or the oldest that have wheels for that Python. A combination without wheels is
 # reported as left out, not as failed.
@@ -34,12 +34,15 @@ try() { # interpreter, word, constraints
 
 : >"$scratch/newest"
 sed -n '/^dependencies = \[/,/^\]/s/^ *"\([A-Za-z0-9_-]*\)>=\([0-9.]*\).*/\1==\2.*/p' pyproject.toml >"$scratch/lowest"
-for interpreter in "${interpreters[@]}"; do
+for wanted in "${interpreters[@]}"; do
+    interpreter=${wanted%%=*}
     if ! command -v "$interpreter" >/dev/null; then
         echo "$interpreter: not here"
         continue
     fi
-    try "$interpreter" lowest "$scratch/lowest"
-    try "$interpreter" newest "$scratch/newest"
+    for which in lowest newest; do
+        case $wanted in *=*) [ "${wanted#*=}" = "$which" ] || continue ;; esac
+        try "$interpreter" "$which" "$scratch/$which"
+    done
 done
 exit "$failed"

@@ -6,6 +6,7 @@ The only file that imports numba. `NUMBA_DISABLE_JIT=1` leaves kernels plain Pyt
 from __future__ import annotations
 
 import functools
+import hashlib
 import inspect
 import os
 import sys
@@ -37,7 +38,10 @@ def kernel(function: Function) -> Function:
 
 
 def entry(function: Function) -> Function:
-    """Compile `function`, for Python or for kernels to call, at its first call; later processes find the machine code."""
+    """Compile `function`, for Python or for kernels to call, at its first call; later processes find the machine code.
+
+    Other threads may run Python meanwhile.
+    """
     if not is_compiled():
         return function
     import numba
@@ -46,13 +50,13 @@ def entry(function: Function) -> Function:
     before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(folder or "")
     compiled: Function
     try:
-        compiled = numba.njit(cache=folder is not None, error_model="numpy", fastmath=False)(function)
+        compiled = numba.njit(cache=folder is not None, error_model="numpy", fastmath=False, nogil=True)(function)
         if folder is not None:
             checked_files(compiled, complain)
             _load_lightly(compiled)
     except (OSError, RuntimeError) as error:  # the disk has become full, or the folder has been taken away
         complain(f"The machine code cannot be kept in {folder} ({error}): it is compiled each time. {MOVE}")
-        compiled = numba.njit(error_model="numpy", fastmath=False)(function)
+        compiled = numba.njit(error_model="numpy", fastmath=False, nogil=True)(function)
     finally:
         numba.config.CACHE_DIR = before
     return compiled
@@ -168,7 +172,9 @@ def by_reference(record: type, module: str) -> Any:
 
     def __init__(self: Any, held: tuple[Any, ...]) -> None:
         self.held = held
-        types.Type.__init__(self, name=f"{record.__name__}{held}")
+        # In full it would hold those of all structs within, and stand in the name of every function: megabytes of names.
+        digest = hashlib.sha256(str(held).encode()).hexdigest()[:16]
+        types.Type.__init__(self, name=f"{record.__name__}({digest})")
 
     body = {"__module__": module, "__init__": __init__, "names": record._fields}  # type: ignore[attr-defined]
     struct = type(f"{record.__name__}Type", (types.Type,), body)

@@ -121,6 +121,9 @@ FIRST_STEP = 1e-3
 SMALLEST_STEP = 1e-14
 # Sizes of the scene, or radians: the longest flight. Large: a step of what runs away takes for ever; small: more steps.
 FLIGHT_SIZES = 1e4
+# Sizes of the scene, or radians: further away a position is rounded to a millionth of the size. Large: what runs away is
+# followed for ever; small: long falls and fast wheels end.
+FURTHEST_SIZES = 1e10
 # Of the time within a step: less is no progress. Large: contacts close late; small: the search stands still.
 TIME_ROUNDING = 4e-16
 # Of the time: bounds that close are one instant. Large: modes end late; small: needless evaluations.
@@ -135,6 +138,8 @@ SAME_INSTANT = 1e-3
 
 # m/s: in place of a bound that is zero, to be divided by. Large: closes late; small: division by zero.
 SLOWEST_CLOSING = 1e-300
+# Of what is left of a step: shorter looks deserve the finer bound. Large: dearer looks; small: more of them.
+FINE_LOOK = 1.0 / 64.0
 # Of the extent: steps in which a neighbour of a contact in force is watched. Large: late; small: slow.
 NEIGHBOUR_STRIDE = 0.25
 # Sine² of the angle between face and motion, drawings being rounded to a millionth. Large: falls through; small: jams.

@@ -71,9 +71,12 @@ ROTARY_VISCOUS = Dimension("rotary damping", ((2, 1, -1, -1), (2, 1, -1, 0)), "N
 LINEAR_VISCOUS = Dimension("damping", ((0, 1, -1, 0),), "N·s/m", ("mN·s/m", "N·s/m"))
 ROTARY_QUADRATIC = Dimension("rotary quadratic damping", ((2, 1, 0, -2),), "N·m·s²/rad²", ("µN·m·s²/rad²", "nN·m·s²/rad²"))
 LINEAR_QUADRATIC = Dimension("quadratic damping", ((-1, 1, 0, 0),), "N·s²/m²", ("mN·s²/m²", "N·s²/m²"))
+TRAVEL_PER_TURN = Dimension("travel per angle", ((1, 0, 0, -1), (1, 0, 0, 0)), "m/rad", ("mm/rev", "mm/rad"))
+PER_LENGTH = Dimension("angle per travel", ((-1, 0, 0, 1),), "rad/m", ("rev/mm", "rad/mm"))
 DIMENSIONS = (
     *(NUMBER, ANGLE, SPIN, LENGTH, MASS, TIME, SPEED, ACCELERATION, DENSITY, INERTIA, TORQUE, FORCE, FREQUENCY),
     *(ROTARY_STIFFNESS, LINEAR_STIFFNESS, ROTARY_VISCOUS, LINEAR_VISCOUS, ROTARY_QUADRATIC, LINEAR_QUADRATIC, RATE),
+    *(TRAVEL_PER_TURN, PER_LENGTH),
 )
 
 _PREFIXES = {"n": -9, "µ": -6, "u": -6, "m": -3, "c": -2, "d": -1, "k": 3, "M": 6}

@@ -1,10 +1,10 @@
 """Do random designs start without overlap, and do they tick?
 
-    python scripts/checks/try_designs.py [designs] [simulated] [seed] [design]
+    python scripts/checks/try_designs.py [designs] [simulated] [seed] [design] [seconds]
 
 Draws dimensions at random until so many designs (default 200) are accepted; refusals say why, and their reasons are counted.
 Each accepted design is drawn, read back from its drawings and looked at for overlap at the start; the first few (default 40)
-are simulated for 2 s, one line each. Exits with 1 where a drawing is not sound or bodies overlap.
+are simulated for so many seconds (default 2), one line each. Exits with 1 where a drawing is not sound or bodies overlap.
 """
 
 from __future__ import annotations
@@ -28,7 +28,6 @@ from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
 
 SPREAD = 0.3  # of most dimensions, on both sides of the default
-SECONDS = 2.0
 
 
 def numbers(design: Design, chance: random.Random) -> dict[str, float]:
@@ -64,10 +63,10 @@ def _choose_counts(found: dict[str, float], chance: random.Random) -> None:
     found["tooth_width"] = float(f"{min(8.0, pitch * chance.uniform(0.14, 0.22)):.4g}")
 
 
-def judged(design: Drawn) -> str:
+def judged(design: Drawn, seconds: float) -> str:
     """What a short run says of it."""
     scene = design.scene()
-    run = simulate(scene, duration=SECONDS)
+    run = simulate(scene, duration=seconds)
     told = summary(run)
     if run.stop is not Stop.DURATION:
         return f"{run.stop.name.lower()}: {run.stop_message}"
@@ -77,7 +76,7 @@ def judged(design: Drawn) -> str:
     return f"ticks: amplitude {told['amplitude_deg']:5.1f}°, rate {told['rate_s_per_d']:+8.1f} s/d{missed}"
 
 
-def main(count: int, simulated: int, seed: int, name: str) -> int:
+def main(count: int, simulated: int, seed: int, name: str, seconds: float) -> int:
     """The exit status."""
     design, chance = known.design(name), random.Random(seed)
     reasons: Counter[str] = Counter()
@@ -107,7 +106,7 @@ def main(count: int, simulated: int, seed: int, name: str) -> int:
         print(f"  refused {times:4d} times for {reason}")
     for number, drawn in enumerate(accepted[:simulated]):
         teeth = f"{drawn.values.teeth:3d} teeth  " if hasattr(drawn.values, "teeth") else ""
-        print(f"{number:3d} {teeth}{judged(drawn)}", flush=True)
+        print(f"{number:3d} {teeth}{judged(drawn, seconds)}", flush=True)
     return 1 if faults else 0
 
 
@@ -121,5 +120,6 @@ if __name__ == "__main__":
         simulated=(40, "of them simulated"),
         seed=(1, "of the random numbers"),
         design=("swiss_lever", "name of the design"),
+        seconds=(2.0, "simulated time"),
     )
-    sys.exit(main(asked.designs, asked.simulated, asked.seed, asked.design))
+    sys.exit(main(asked.designs, asked.simulated, asked.seed, asked.design, asked.seconds))

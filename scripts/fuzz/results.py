@@ -1,8 +1,8 @@
 """Does any damaged results folder bring watchsim down?
 
 Makes one folder, damages copies of it at random (files lost, cut, overwritten, exchanged; arrays and headers changed within
-sound archives), and has `plot`, `movie` or `run --resume` read them. A folder fails that brings exit status 4, a traceback, the
-death of the process, takes more than 20 s, or changes where the command refuses it. `--only K` repeats number K.
+sound archives), and has `plot`, `movie` or `run --resume` read them, or what `--command` names. A folder fails that brings
+exit status 4, a traceback, the death of the process, or takes more than 20 s. `--only K` repeats number K.
 """
 
 from __future__ import annotations
@@ -126,6 +126,9 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=200)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--only", type=int)
+    parser.add_argument(
+        "--command", choices=("plot", "movie", "resume", "report", "sound", "export"), help="read all by this one"
+    )
     args = parser.parse_args()
     from watchsim.cli import main as watchsim
 
@@ -141,7 +144,7 @@ def main() -> None:
             shutil.copytree(whole, folder)
             for _ in range(rng.choice((1, 1, 2))):
                 damage(rng, folder)
-            command = rng.choice(COMMANDS)
+            command = args.command or rng.choice(COMMANDS)
             words, took = scenes.in_a_process(Path(parent), _arguments(command, folder))
             slowest = max(slowest, (took, number))
             kind = words.splitlines()[0] if words else "nothing said"
@@ -162,6 +165,10 @@ def _arguments(command: str, folder: Path) -> list[str]:
         return ["plot", str(folder)]
     if command == "movie":
         return ["movie", str(folder), "--size", "64x64", "--window", "0.1 s:0.11 s", "--speed", "1/10"]
+    if command in ("report", "sound"):
+        return [command, str(folder)]
+    if command == "export":
+        return ["export", str(folder), "-o", str(folder.parent / "exported"), "--format", "glb", "--force"]
     return ["run", SCENE, "--resume", str(folder), "--duration", "0.21 s", "--no-plots"]
 
 

@@ -24,7 +24,7 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -59,7 +59,16 @@ COMMANDS = {
     "export": ["export", LEVER, "-o", "parts"],
     "picture": ["check", LEVER, "--png", "start.png"],
     "drawing": ["inspect", f"{LEVER}/wheel.dxf", "--png", "start.png"],
+    "report": ["report", "old"],
+    "sound": ["sound", "old"],
+    "design": ["new", "geneva", "-o", "drawn"],
+    "proposal": ["new", f"{LEVER}/wheel.dxf", "-o", "drawn"],
+    "sweep": ["sweep", LEVER, "contacts.0.friction=0.1,0.12,0.15", "--duration", "1.5 s", "--workers", "1", "-o", "study"],
+    "workers": ["sweep", LEVER, "contacts.0.friction=0.1,0.12,0.15", "--duration", "1.5 s", "--workers", "2", "-o", "study"],
+    "steady": ["steady", LEVER],
+    "turned": ["check", LEVER, "--turn", "--swing", "30°", "--movie", "turn.gif"],
 }
+ALONE = ("workers",)  # always processes of their own: a copy has no server of worker processes
 DEMO, SELDOM = "demo", 50  # which takes as long as all the others
 COMMANDS_AND_DEMO = {**COMMANDS, DEMO: ["demo", "-o", "shown"]}
 KEEPING = ("run", "long", "steps", "resume", "force")
@@ -77,7 +86,7 @@ def start(arguments: list[str], place: Path, fresh: bool) -> subprocess.Popen[st
     return subprocess.Popen(command, cwd=place, env=environment(), stdout=pipe, stderr=pipe, text=True)
 
 
-def faults(place: Path, before: dict[str, bytes]) -> list[str]:
+def faults(place: Path) -> list[str]:
     """What is wrong with what lies there."""
     from watchsim.results.read_results import read_results
     from watchsim.storage.scratch_folder import PREFIX
@@ -95,23 +104,27 @@ def faults(place: Path, before: dict[str, bytes]) -> list[str]:
         (place / "old" / "movie.mp4", b"moov"),
         (place / "start.png", b"IEND"),
         (place / "shown" / "swiss_lever" / "movie.mp4", b"moov"),
+        (place / "old" / "report.html", b"</html>"),
+        (place / "study" / "sweep.png", b"IEND"),
+        (place / "drawn" / "scene.toml", b"[scene]"),
+        (place / "turn.gif", b"\x3b"),
         (place / "old/plots/kinematics.pdf", b"%%EOF"),
     ):
         if path.exists() and ends not in path.read_bytes():
             found.append(f"{path.name} is not whole")
-    if "old/trajectory.npz" not in before:
-        found.append("no old run")
     return found
 
 
 def one(
-    number: int, which: int, made: Path, usual: Mapping[tuple[str, bool], float], place: Path
+    number: int, which: int, made: Path, usual: Mapping[tuple[str, bool], float], place: Path, names: Sequence[str]
 ) -> tuple[str, str, list[str]]:
     """Round `number` with signal `which`: the command, how it ended, what is wrong."""
     from watchsim.storage.write import sweep
 
     rng = random.Random(f"{number}")
-    name, fresh = (DEMO, False) if number % SELDOM == 1 else (list(COMMANDS)[number % len(COMMANDS)], number % FRESH == 0)
+    name, fresh = (names[number % len(names)], names[number % len(names)] in ALONE or number // len(names) % FRESH == 0)
+    if number % SELDOM == 1 and names == list(COMMANDS):
+        name, fresh = DEMO, False
     shutil.rmtree(place, ignore_errors=True)
     shutil.copytree(made, place)
     arguments = COMMANDS_AND_DEMO[name]
@@ -130,10 +143,10 @@ def one(
         wrong.append(said)
     if process.returncode in (130, 143) and "Results:" not in said and name in KEEPING and "writing what was" in said:
         wrong.append("results were announced and not written")
-    for folder in (place, place / "old", place / "old" / "plots", place / "shown"):
+    for folder in (place, place / "old", place / "old" / "plots", place / "shown", place / "study"):
         if which == signal.SIGKILL:  # what the next command does first
             sweep(folder)
-    wrong += faults(place, {"old/trajectory.npz": b""})
+    wrong += faults(place)
     if number % 5 == 0 and which == signal.SIGKILL:
         replacing = ["--force"] if "-o" in arguments and "--force" not in arguments else []
         again = start([*arguments, *replacing], place, fresh)
@@ -178,6 +191,7 @@ def main() -> None:
     parser.add_argument("--signal", choices=("KILL", "INT", "TERM"), default="KILL")
     parser.add_argument("--count", type=int, default=70)
     parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--command", choices=list(COMMANDS), action="append", help="only this one; may be given several times")
     args = parser.parse_args()
     which = getattr(signal, f"SIG{args.signal}")
     signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell may have switched it off for what runs behind
@@ -192,12 +206,15 @@ def main() -> None:
             cwd=made, env=environment(), check=True, capture_output=True,
         )  # fmt: skip
         (made / "old" / "mine.txt").write_text("mine")
-        load(COMMANDS, made, place)
-        kinds = [(name, fresh) for name in COMMANDS for fresh in (True, False)] + [(DEMO, False)]
+        names = args.command or list(COMMANDS)
+        load({name: COMMANDS[name] for name in names if name not in ALONE}, made, place)
+        kinds = [(name, fresh) for name in names for fresh in (True, False) if fresh or name not in ALONE] + [(DEMO, False)] * (
+            names == list(COMMANDS)
+        )
         usual = {(name, fresh): _usual(COMMANDS_AND_DEMO[name], fresh, made, place) for name, fresh in kinds}
         print({f"{name}{' fresh' * fresh}": round(seconds, 2) for (name, fresh), seconds in usual.items()}, flush=True)
         for number in range(args.first, args.first + args.count):
-            name, status, wrong = one(number, which, made, usual, place)
+            name, status, wrong = one(number, which, made, usual, place, names)
             ended[status] += 1
             if wrong:
                 wrong_rounds += 1

@@ -34,6 +34,8 @@ LOOKS = 8  # for overlap, evenly spread over the run
 SHIFT = 1e3  # tolerances of the size: drift of one tolerance, between faces at the smallest angle that is corrected, 1e-3
 OPPOSED = 1e-13  # rounding of forces that cancel, as a share of what they would give without each other
 MANY = 20_000  # events
+NESTED = 10.0  # times the square of the rebounds until a contact rests: bodies that rattle on what rattles itself
+AT_REST = 1e-6  # of the first rebound's speed
 SUDDEN = (EventKind.IMPACT, EventKind.ACCUMULATION, EventKind.JAM)
 
 
@@ -100,8 +102,7 @@ def faults(run: Trajectory, material: Material) -> Iterator[str]:
     if turned_over > 0.0 and residual > allowed:
         yield f"residual: {residual / turned_over:.1e} of the energy turned over"
     yield from _rise(run, kinetic + potential(scene, run), allowed, turned_over)
-    # What loses nothing may go on bouncing, however low.
-    if len(run.events) > MANY and all(contact.restitution < 1.0 for contact in run.scene.contacts):
+    if len(run.events) > most_events(run.scene):
         yield f"events: {len(run.events)}"
     deep, when = _overlap(run, material)
     if deep > OVERLAP * loose * material.size:
@@ -109,6 +110,14 @@ def faults(run: Trajectory, material: Material) -> Iterator[str]:
         yield f"overlap: {share:.1e} of the size at t = {when:.6g} s, reported {told:.1e}"
     yield from _shifts(run, SHIFT * max(run.tolerance, 1e-9) * material.size)
     yield from _jumps(run, m, float(kinetic.max()), loose)
+
+
+def most_events(scene: Scene) -> float:
+    """More are wrong. What loses nothing, or stands on it, may go on bouncing, however low; what loses little bounces long."""
+    restitution = max((contact.restitution for contact in scene.contacts), default=0.0)
+    if restitution in (0.0, 1.0):
+        return math.inf if restitution else MANY
+    return max(MANY, NESTED * (math.log(AT_REST) / math.log(restitution)) ** 2)
 
 
 def _rise(run: Trajectory, total: Array, allowed: float, scale: float) -> Iterator[str]:

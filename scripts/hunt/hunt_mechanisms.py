@@ -9,6 +9,7 @@ docs/reports/hunt.md.
     python scripts/hunt/hunt_mechanisms.py --only 17 --keep results/hunt --shrink
     python scripts/hunt/hunt_mechanisms.py --scene tests/data/hunt/blade.toml
 
+Ctrl-C and SIGTERM end the hunt with the table of what it has judged so far.
 Exit status: 0 all fine, 1 something was wrong, hung or gave up.
 """
 
@@ -16,9 +17,11 @@ from __future__ import annotations
 
 import argparse
 import re
+import signal
 import sys
 import time
 from collections import Counter
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +35,7 @@ from hunt.write import write_scene
 from watchsim.scene.file.load import load
 
 CLEAN = ("fine", "sensitive")
+TOLD = 500  # mechanisms between lines that say how far it is
 KINDS = ("fine", "sensitive", "wrong", "gave up", "hanging", "crashed")
 
 
@@ -117,12 +121,17 @@ def main() -> int:
         def work(number: int) -> Any:
             return verdict_of(number, args)
 
-        for number, answer in answers(numbers, work, args.jobs):
-            title, verdict = answer or ("?", Verdict("hanging", ["hanging: did not answer"]))
-            found.append((title, verdict))
-            report(str(number), title, verdict)
-            if args.keep and verdict.kind not in CLEAN and answer:
-                print(f"  kept as {kept(args, number, verdict)}", flush=True)
+        for ended in (signal.SIGINT, signal.SIGTERM):  # in the background the first one is ignored
+            signal.signal(ended, signal.default_int_handler)
+        with suppress(KeyboardInterrupt):
+            for number, answer in answers(numbers, work, args.jobs):
+                title, verdict = answer or ("?", Verdict("hanging", ["hanging: did not answer"]))
+                found.append((title, verdict))
+                report(str(number), title, verdict)
+                if args.keep and verdict.kind not in CLEAN and answer:
+                    print(f"  kept as {kept(args, number, verdict)}", flush=True)
+                if len(found) % TOLD == 0:
+                    print(f"{len(found)} judged in {time.perf_counter() - begun:.0f} s", flush=True)
     print(table(found))
     print(f"Classes of faults: {classes(found)}")
     runs, took = sum(verdict.runs for _, verdict in found), time.perf_counter() - begun

@@ -148,7 +148,7 @@ class Judge:
             if self.verdict.judged < 0.5:
                 self.verdict.kind = "sensitive"
         if with_witness and not self.verdict.reasons:
-            self.verdict.reasons += list(witness_fault(self, middle))
+            self.verdict.reasons += list(witness_fault(self, base, middle))
 
     def _compare(self, base: Trajectory, label: str, tolerance: float, distance: Array, spread: Array) -> None:
         allowed = np.maximum(FLOOR * tolerance, FACTOR * spread)
@@ -178,7 +178,7 @@ class Judge:
         """(samples,): how far twins with a change of 100 tolerances have drifted from the scene and from each other."""
         motions = [middle]
         for k in range(TWINS):
-            twin = perturbed(self.scene, LIKE * tolerance, self.seed + 1000 + k)
+            twin = perturbed(self.scene, LIKE * tolerance, self.seed + 1000 + k, 1.0 if k % 2 else -1.0)
             try:
                 run = self.run(twin, TOLERANCES[0])
             except SceneError:  # the change made bodies overlap at the start

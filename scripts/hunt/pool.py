@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Iterator
 from multiprocessing.connection import Connection, wait
 from typing import Any
 
-PATIENCE = 30.0  # s of processor time, for all runs of one mechanism
+PATIENCE = 60.0  # s of processor time, for all runs of one mechanism
 ASLEEP = 20.0  # times as long on the clock: a busy machine hangs nothing, but what waits for ever uses no processor
 Work = Callable[[int], Any]
 
@@ -48,7 +48,7 @@ def _serve(line: Connection, work: Work) -> None:
     while True:
         try:
             line.send(work(line.recv()))
-        except EOFError:
+        except (EOFError, KeyboardInterrupt):  # who ends the hunt ends its workers
             return
 
 

@@ -101,11 +101,11 @@ def views(scene: Scene, seed: int, count: int) -> list[View]:
     ]
 
 
-def perturbed(scene: Scene, share: float, seed: int) -> Scene:
+def perturbed(scene: Scene, share: float, seed: int, lean: float) -> Scene:
     """Velocities, forces, masses, laws and, outwards, places changed by up to that share of themselves or of the scene's own.
 
     Places are stretched from a point of the plane, so that what touches at the start parts rather than overlaps; outlines are
-    turned where that leaves them apart.
+    turned, with the sign of `lean`, where that leaves them apart: of two faces that meet flat either end may be first.
     """
     rng = np.random.default_rng(seed)
 
@@ -134,7 +134,7 @@ def perturbed(scene: Scene, share: float, seed: int) -> Scene:
             replace(c, friction=near(c.friction), restitution=min(near(c.restitution), 1.0)) for c in scene.contacts
         ),
     )
-    skewed = replace(twin, bodies=tuple(_skewed(body, share * float(rng.uniform(-1.0, 1.0))) for body in twin.bodies))
+    skewed = replace(twin, bodies=tuple(_skewed(body, share * lean * float(rng.uniform(0.1, 1.0))) for body in twin.bodies))
     return skewed if apart(skewed) else twin
 
 

@@ -21,10 +21,15 @@ SHOWN = {  # profile: simulated (s), instant (s), bodies to show close (None: al
     "graham": (2.0, 1.76, ["wheel"]),
     "recoil_anchor": (2.0, 1.76, ["wheel"]),
     "detent": (2.5, 2.1275, None),
+    "pin_pallet": (2.2, 2.101, None),
+    "pin_wheel": (4.0, 3.52, ["wheel"]),
+    "cylinder": (2.2, 2.1, None),
+    "duplex": (2.2, 2.1055, None),
     "involute_pair": (0.2, 0.2, None),
     "jumper": (0.6, 0.49, None),
     "cam": (0.2, 0.1, None),
     "ratchet": (0.2, 0.15, None),
+    "verge": (4.1, 4.0, ["verge"]),
 }
 
 

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from measured import REDRAW, keep, kept
 from numpy.typing import NDArray
 from one_day import whole_day
 
@@ -32,6 +33,7 @@ from watchsim.simulation.stops import Stop
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "reports" / "long-runs.md"
+IMAGES = ROOT / "docs" / "images"
 PIECE = 60.0  # s
 TOLD = (1, 2, 3, 5, 10, 15, 30, 45, 60)  # minutes that have a line in the table
 TIGHTER = 0.01  # of the tolerance, for comparison
@@ -217,7 +219,34 @@ def _line(run: Long, i: int) -> str:
     return f"| {i + 1} | {means} | {run.residual[i]:.1e} | {share:.0e} |"
 
 
-def picture(runs: list[Long], path: Path) -> None:
+@dataclasses.dataclass(frozen=True)
+class Course:
+    """What the picture shows of a long run: one entry per window of a minute."""
+
+    title: str
+    end: Floats  # s
+    amplitude: Floats  # °
+    residual: Floats  # J
+    supplied: Floats  # J
+
+
+def _keep(runs: list[Long]) -> None:
+    """One row for each minute in docs/reports/long-runs.csv."""
+    rows = ((run.title, *row) for run in runs for row in zip(run.end, run.amplitude, run.residual, run.supplied, strict=True))
+    columns = ("watch", "end_s", "amplitude_deg", "residual_J", "supplied_J")
+    keep("long-runs", (dict(zip(columns, row, strict=True)) for row in rows))
+
+
+def _kept() -> list[Course]:
+    rows = kept("long-runs")
+    columns = ("end_s", "amplitude_deg", "residual_J", "supplied_J")
+    return [
+        Course(title, *(np.array([row[name] for row in rows if row["watch"] == title]) for name in columns))
+        for title in dict.fromkeys(row["watch"] for row in rows)
+    ]
+
+
+def picture(runs: list[Course], path: Path) -> None:
     """Amplitude from its last value, the residual of the account, and its share of the work put in, over time."""
     from watchsim.render.figures.figure_style import CURVE, SERIES, dress, figure, key, save
     from watchsim.render.figures.figure_style import title as named
@@ -258,7 +287,11 @@ def main() -> None:
     parser.add_argument("--locked", type=float, default=86400.0, help="s, of the locked ones")
     parser.add_argument("--day", type=float, default=86400.0, help="s, of the run of which only statistics are kept; 0: none")
     parser.add_argument("--page", type=Path, default=PAGE)
+    parser.add_argument("--redraw", action="store_true", help=REDRAW)
     args = parser.parse_args()
+    if args.redraw:
+        picture(_kept(), IMAGES / "long_runs.png")
+        return
     if args.duration < 8.0 * PIECE:
         parser.error(f"--duration {args.duration:g}: at least eight minutes, for the slopes")
     scenes = {name: load(profiles_dir() / name / "scene.toml") for name in ("bench_lever", "swiss_lever")}
@@ -267,7 +300,8 @@ def main() -> None:
     runs = [long_run(scene, args.duration) for scene in scenes.values()]
     day = whole_day(scenes["swiss_lever"], args.day, COUNTED) if args.day else ""
     args.page.write_text(page(runs, stands, args.locked, day), encoding="utf-8")
-    picture(runs, args.page.parent.parent / "images" / "long_runs.png")
+    _keep(runs)
+    picture(_kept(), IMAGES / "long_runs.png")
     if short := failures(runs, stands):
         raise SystemExit("\n".join(short))
 

@@ -20,6 +20,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
+from measured import REDRAW, keep, kept
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
@@ -131,6 +132,7 @@ DRAWINGS: dict[str, Callable[[int, random.Random], Iterator[str]]] = {
 }
 
 
+ONE_CIRCLE = "a drawing of one circle"
 CURVES: dict[str, tuple[Callable[[int, random.Random], Iterator[str]], tuple[int, ...]]] = {
     "cubics": (wavy_splines, (100, 1000, 9000)),
     "outlines": (wavy_outlines, (10, 100, 760)),
@@ -174,7 +176,7 @@ def plot(results: dict[str, np.ndarray], empty: float, path: Path) -> None:
         label = f"{name} (n^{exponent(rows[:, 0], rows[:, 1] - empty):.2f})"
         lines += axes.loglog(rows[:, 0], rows[:, 1], mark, ls="-", color=colour, linewidth=CURVE, markersize=3.0, label=label)
     axes.axhline(empty, color=FAINT, linewidth=HAIR, linestyle=":")
-    axes.text(SIZES[-1], 1.04 * empty, "a drawing of one circle", fontsize=SMALL, color=FAINT, ha="right")
+    axes.text(SIZES[-1], 1.04 * empty, ONE_CIRCLE, fontsize=SMALL, color=FAINT, ha="right")
     dress(axes)
     axes.set(xlabel="edges", ylabel="processor time of watchsim inspect (s)")
     axes.xaxis.set_major_formatter(lambda n, _: f"{n:,.0f}".replace(",", " "))
@@ -224,13 +226,31 @@ def curves_text(repeats: int) -> str:
     )
 
 
+def _keep(results: dict[str, np.ndarray], empty: float) -> None:
+    """One row for each drawing in docs/reports/reading-speed.csv; the first is that of one circle."""
+    columns = ("drawing", "edges", "processor_s", "wall_s")
+    rows = [(ONE_CIRCLE, 1, empty, None), *((name, *row) for name, own in results.items() for row in own.tolist())]
+    keep("reading-speed", (dict(zip(columns, row, strict=True)) for row in rows))
+
+
+def _kept() -> tuple[dict[str, np.ndarray], float]:
+    first, *rows = kept("reading-speed")
+    names = dict.fromkeys(row["drawing"] for row in rows)
+    times = {name: [(row["edges"], row["processor_s"]) for row in rows if row["drawing"] == name] for name in names}
+    return {name: np.array(own) for name, own in times.items()}, first["processor_s"]
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--largest", type=int, default=SIZES[-1])
     parser.add_argument("--curves", action="store_true", help="measure curves only")
     parser.add_argument("--dry", action="store_true", help="print only, write nothing into docs")
+    parser.add_argument("--redraw", action="store_true", help=REDRAW)
     args = parser.parse_args()
+    if args.redraw:
+        plot(*_kept(), ROOT / "docs" / "images" / "reading_speed.png")
+        return
     page = ROOT / "docs" / "reports" / "reading-speed.md"
     curves = curves_text(args.repeats)
     print(curves)
@@ -255,6 +275,7 @@ def main() -> None:
     text = table(results, megabytes, empty) + "\n" + curves
     print(text)
     if not args.dry:
+        _keep(results, empty)
         plot(results, empty, ROOT / "docs" / "images" / "reading_speed.png")
         page.write_text(text)
 

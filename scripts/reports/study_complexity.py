@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from measured import REDRAW, keep, kept
 from numpy.typing import NDArray
 
 from watchsim.candidates.pair_cache import forget
@@ -251,11 +252,16 @@ is computed.
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="small scenes only, nothing is written")
+    parser.add_argument("--redraw", action="store_true", help=REDRAW)
     args = parser.parse_args()
+    if args.redraw:
+        plot([Row(**row) for row in kept("complexity")], ROOT / "docs" / "images" / "complexity.png")
+        return
     found = rows(args.quick)
     print(table(found))
     if args.quick:
         return
+    keep("complexity", map(dataclasses.asdict, found))
     plot(found, ROOT / "docs" / "images" / "complexity.png")
     growth = found[-1].known / found[0].known
     text = PAGE.format(

@@ -14,6 +14,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+from measured import REDRAW, keep, kept
 
 from watchsim.profiles_path import profiles_dir
 from watchsim.scene.file.load import load
@@ -28,6 +29,7 @@ from watchsim.verification.repeated_impacts import pulled_block
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "reports" / "convergence.md"
 PICTURE = "convergence.png"
+IMAGES = PAGE.parents[1] / "images"
 STEPS = (5e-5, 2e-5, 1e-5, 5e-6, 2e-6, 1e-6)
 INSTANTS = 4001  # at which levers are compared
 Found = dict[tuple[str, str], tuple[list[float], list[float]]]
@@ -190,15 +192,36 @@ def page(found: Found, steps: tuple[float, ...], seconds: float) -> str:
     return "\n".join(lines) + "\n"
 
 
+def _keep(found: Found) -> None:
+    """One row for each error in docs/reports/convergence.csv."""
+    rows = ((case, what, *pair) for (case, what), columns in found.items() for pair in zip(*columns, strict=True))
+    keep("convergence", (dict(zip(("case", "quantity", "step_s", "error"), row, strict=True)) for row in rows))
+
+
+def _kept() -> Found:
+    found: Found = {}
+    for row in kept("convergence"):
+        steps, errors = found.setdefault((row["case"], row["quantity"]), ([], []))
+        steps.append(row["step_s"])
+        errors.append(row["error"])
+    return found
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true", help="three steps, a fifth of a second")
     parser.add_argument("--page", type=Path, default=PAGE)
+    parser.add_argument("--redraw", action="store_true", help=REDRAW)
     args = parser.parse_args()
+    if args.redraw:
+        picture(_kept(), IMAGES / PICTURE)
+        return
     steps = STEPS[:3] if args.quick else STEPS
     seconds = 0.2 if args.quick else 0.5
     found = study([*inclines(steps), *sticking(steps), *levers(steps, seconds)])
     args.page.write_text(page(found, steps, seconds), encoding="utf-8")
+    if not args.quick:
+        _keep(found)
     picture(found, args.page.parent.parent / "images" / PICTURE)
 
 

@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
 import watchsim as ws
+from watchsim.analysis.contact_forces import _change, _modes
 from watchsim.mechanism.compile import compile_scene
 from watchsim.profiles_path import profiles_dir
 from watchsim.scene.file.load import load
-from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.event_kinds import EVENT_DTYPE, EventKind
 from watchsim.simulation.simulate import simulate
+from watchsim.storage.columns import blocks
 
 G = 9.81
 
@@ -170,3 +175,25 @@ def test_all_modes_are_among_those_told() -> None:
     run = simulate(load(profiles_dir() / "bench_lever"), 0.1)
     assert {int(kind) for kind in run.events["kind"]} >= {EventKind.CLOSE, EventKind.OPEN, EventKind.SLIDE}
     assert len(compile_scene(run.scene).model.contacts) == len(run.pairs)
+
+
+@pytest.mark.parametrize("at_once", [7, 1000])
+def test_modes_from_the_last_events_are_those_of_all_events(at_once: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever came before, handovers from one contact to the next included, however many events are looked at at once."""
+    monkeypatch.setattr("watchsim.analysis.contact_forces.blocks", partial(blocks, length=at_once))
+    rng = np.random.default_rng(4)
+    kinds = [EventKind.CLOSE, EventKind.OPEN, EventKind.STICK, EventKind.SLIDE, EventKind.HANDOVER]
+    for _ in range(20):
+        events = np.zeros(120, EVENT_DTYPE)
+        events["t"] = np.sort(rng.integers(0, 40, 120))
+        events["kind"] = rng.choice(kinds, 120)
+        events["contact"] = rng.integers(0, 5, 120)
+        other = (events["contact"] + rng.integers(1, 5, 120)) % 5
+        events["value"] = np.where(events["kind"] == EventKind.HANDOVER, other, rng.choice([-1.0, 1.0], 120))
+        run: Any = SimpleNamespace(events=events)
+        times = rng.permutation(rng.choice(np.arange(-1.0, 42.0), 9))
+        for time, found in zip(times, _modes(run, times), strict=True):
+            modes: dict[int, int] = {}
+            for event in events[events["t"] <= time]:
+                _change(modes, int(event["kind"]), int(event["contact"]), event["value"])
+            assert found == modes

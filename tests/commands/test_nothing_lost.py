@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import io
 import os
 import re
 import subprocess
@@ -163,8 +164,9 @@ def test_picture_files_are_whole_or_as_they_were(
     plot = tmp_path / "plot.png"
     plot.write_bytes(b"before")
 
-    def half(path: Path, *_: object, **__: object) -> None:
-        Path(path).write_bytes(b"half")
+    def half(path: Path | io.BytesIO, *_: object, **__: object) -> None:
+        if not isinstance(path, io.BytesIO):
+            Path(path).write_bytes(b"half")
         raise OSError(errno.ENOSPC, "No space left on device")
 
     monkeypatch.setattr("matplotlib.figure.Figure.savefig", lambda self, path, **_: half(path))
@@ -192,3 +194,50 @@ def test_fallback_names_what_fails(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(write_results, "write_trajectory", full)
     assert main([*SHORT, "-o", str(tmp_path / "out")]) == 2
     assert capsys.readouterr().err.count("No space left on device") >= 2
+
+
+def test_a_sound_that_cannot_be_written_says_so_and_nothing_else(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Each writing of the file itself fails once; no destructor complains besides."""
+    unheard: list[object] = []
+    monkeypatch.setattr(sys, "unraisablehook", unheard.append)
+    out = tmp_path / "out"
+    assert main(["run", LEVER, "--duration", "0.2 s", "--no-plots", "-o", str(out)]) == 0
+    with watched(Disk(tmp_path)) as disk:
+        assert main(["sound", str(out)]) == 0
+    (out / "tick.wav").unlink()
+    actions = [
+        number for number, (name, path, *_) in enumerate(disk.log, 1) if name in ("open", "write") and path.endswith(".wav")
+    ]
+    assert actions
+    for number in actions:
+        with watched(Disk(tmp_path, number)):
+            assert main(["sound", str(out)]) == 2
+        assert "could not write" in capsys.readouterr().err and not (out / "tick.wav").exists()
+    assert not unheard
+
+
+def test_a_study_whose_table_cannot_be_written_is_saved_elsewhere(
+    tmp_path: Path, elsewhere: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The disk fills up while the points are computed; the earlier study beside them is left as it was."""
+    from watchsim.studies import parameter_sweep
+
+    asked = ["sweep", LEVER, "contacts.0.friction=0.1,0.12", "--duration", "1.5 s", "--workers", "1", "--no-plots"]
+    target = tmp_path / "disk" / "study"
+    target.parent.mkdir()
+    assert main([*asked, "-o", str(target)]) == 0
+    before = (target / "sweep.csv").read_bytes()
+    original = parameter_sweep.computed
+
+    def full(*args: object, **options: object) -> None:
+        original(*args, **options)  # type: ignore[arg-type]
+        disk.failing, disk.count = len(disk.log) + 1, 10**6
+
+    monkeypatch.setattr(parameter_sweep, "computed", full)
+    with watched(Disk(target.parent)) as disk:
+        assert main([*asked, "-o", str(target), "--force"]) == 2
+    found = re.search(r"saved, without plots, in (\S+)", capsys.readouterr().err)
+    assert found and Path(found[1]).parent == elsewhere
+    assert (Path(found[1]) / "sweep.csv").read_bytes() == before == (target / "sweep.csv").read_bytes()

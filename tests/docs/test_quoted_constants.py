@@ -122,6 +122,7 @@ QUOTED = [
     (SCENE, "within {} % of which it must lie", 100.0 * read_scene.FAR_OFF),
     (DRAWINGS, "away than {} µm (`--fit`)", read.FIT / MICRO),
     (DRAWINGS, "Drawings of more than {} pieces", plane_projection.MOST_STROKES),
+    (DRAWINGS, "unfold into more than {} pieces", plane_projection.UNFOLDED),
     (DRAWINGS, "files above {} MB are refused", read.LARGEST_FILE / 1e6),
     (DRAWINGS, "elements more than {} deep", xml_elements.DEEPEST),
     (DRAWINGS, "unfold into more than {} elements", svg_file.MOST_VISITS),

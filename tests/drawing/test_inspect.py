@@ -155,3 +155,8 @@ def test_the_last_word_of_a_layer_says_what_it_holds(read_bytes: Reader) -> None
 def test_what_is_drawn_on_layers_of_bores_and_pivots_alone_is_the_part(read_bytes: Reader) -> None:
     report = inspect_report(read_bytes(d.dxf(d.circle(0, 0, 2, layer="HOLES") + d.circle(5, 0, 1, layer="PIVOT"))))
     assert report["area_mm2"] == pytest.approx(5 * math.pi, rel=1e-13)
+
+
+def test_points_are_in_millimetres(read_bytes: Reader) -> None:
+    drawing = read_bytes(d.dxf(d.circle(0, 0, 1) + d.record("POINT", *d.point(10, (3.0, -4.0)), layer="PIVOT")))
+    assert inspect_report(drawing)["points"] == [{"layer": "PIVOT", "x_mm": 3.0, "y_mm": -4.0}]

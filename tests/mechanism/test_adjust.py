@@ -133,3 +133,9 @@ def test_faults(scene, key, value, where, words):
     with pytest.raises(SceneError) as caught:
         scene.set(key, value)
     assert any(where in fault.key and words in fault.message for fault in caught.value.faults), str(caught.value)
+
+
+def test_an_unreadable_place_is_one_fault(scene):
+    with pytest.raises(SceneError) as caught:
+        scene.set(KEY, [{"near": ENTRY, "along": "2 µm", "face": ["1 kg", "0 mm"]}])
+    assert str(caught.value).count(f"{KEY}.0.face") == 1

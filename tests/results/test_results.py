@@ -18,13 +18,14 @@ from watchsim.results.archive import read_trajectory, write_trajectory
 from watchsim.results.read_results import read_results
 from watchsim.results.tables import json_text
 from watchsim.results.write_results import check_folder, write_results
+from watchsim.scene.force import Contact, Side
 
 SUMMARY = {"amplitude_deg": np.float64(270.5), "rate_s_per_d": math.nan, "impacts": np.int64(3), "stop": "DURATION"}
 
 
 @pytest.fixture
 def run():
-    return watch_run()
+    return watch_run(contacts=(Contact((Side("lever"), Side("banking"))),))
 
 
 def snapshot(folder):
@@ -178,6 +179,22 @@ def test_what_cannot_be_read_says_why(run, tmp_path, monkeypatch):
     write_trajectory(run, tmp_path / "t.npz")
     monkeypatch.undo()
     with pytest.raises(ValueError, match="has format 9; this version reads format 4"):
+        read_trajectory(tmp_path / "t.npz", run.scene)
+
+
+@pytest.mark.parametrize("name, at", [("pairs", 0), ("pairs", 1), ("events", "contact"), ("events", "body")])
+@pytest.mark.parametrize("number", [-2, 10**6])
+def test_numbers_that_lead_nowhere_are_found_when_read(run, tmp_path, name, at, number):
+    """A pair of primitives that are not there was looked up when a plot asked for its name: an IndexError."""
+    write_trajectory(run, tmp_path / "t.npz")
+    with np.load(tmp_path / "t.npz") as file:
+        arrays = dict(file)
+    if name == "pairs":
+        arrays[name][-1, at] = number
+    else:
+        arrays[name][at][-1] = number
+    np.savez(tmp_path / "t.npz", **arrays)
+    with pytest.raises(ValueError, match=r"t\.npz is damaged .* unknown"):
         read_trajectory(tmp_path / "t.npz", run.scene)
 
 

@@ -59,3 +59,12 @@ def test_no_two_layers_of_the_swiss_lever_share_a_place() -> None:
                 for s in (a, b)
             ]
             assert shapes[0].intersection(shapes[1]).area < 1e-3 * min(shape.area for shape in shapes), (a.layer, b.layer)
+
+
+def test_a_plate_without_a_layer_takes_that_of_its_body(tmp_path: Path) -> None:
+    plate = '[[bodies.wheel.solids]]\nthickness = "0.5 mm"\ndensity = "8 g/cm³"\n'
+    path = tmp_path / "scene.toml"
+    path.write_text(HEAD + plate, encoding="utf-8")
+    scene = load(path)
+    (slab,) = slabs(scene, 0.2e-3)
+    assert [slab.layer] == list(scene.body("wheel").layers) and slab.layer != "plate"

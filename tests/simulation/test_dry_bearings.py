@@ -158,3 +158,26 @@ def test_a_watch_with_dry_bearings_keeps_its_ledger() -> None:
     assert run.energy["residual_relative"] < 1e-8
     assert run.energy["dissipated"]["damping"] > plain.energy["dissipated"]["damping"]
     assert run.counts["lcp_failures"] == 0
+
+
+def test_a_turn_at_the_very_end_of_a_flight_is_a_turn() -> None:
+    """Flights last a quarter period, half swings two of them: rounding decides in which flight the turn lies.
+
+    The first one is a lever of the hunt, which went on against its friction for half a swing.
+    """
+    rng, rest = np.random.default_rng(401), 2.695
+    for n in range(40):
+        share = 1.0 + (0.1 * rng.uniform(-1.0, 1.0) if n else 0.0)
+        stiffness, torque, dry, inertia = 0.04419 * share, -1.179e-4, 1.32e-5 * share, 1.597e-6
+        half = math.pi * math.sqrt(inertia / stiffness)
+        body = Body("lever", "pivot", angle=rest, velocity=(-17.41,), inertia=inertia)
+        forces = {"torques": (Torque("lever", torque),), "damping": (Damping("lever", 0.0, 0.0, dry),)}
+        run = simulate(Scene("lever", (body,), springs=(Spring("lever", stiffness, rest),), **forces, duration=10.0 * half))
+        middle, push = rest + torque / stiffness, dry / stiffness
+        first = np.hypot(rest - (middle + push), 17.41 * math.sqrt(inertia / stiffness)) - push
+        turns = run.events[run.events["kind"] == EventKind.TURN]["value"]
+        # Each half swing falls short of the last one by what the friction stretches the spring on either side.
+        amplitudes = first - 2.0 * push * np.arange(len(turns))
+        assert len(turns) == 10
+        assert np.abs(turns - middle) == pytest.approx(amplitudes, abs=1e-9)
+        assert run.energy["residual_relative"] < 1e-9

@@ -68,6 +68,8 @@ def _opened(file: Any, mode: str = "r", buffering: int = -1, encoding: Any = Non
     if isinstance(file, int) or not set(mode) & set("wxa+"):
         return _open(file, mode, buffering, encoding, errors, newline, closefd, opener)
     raw = _Raw(file, mode.replace("b", "").replace("t", ""), closefd, opener)
+    if buffering == 0:
+        return raw
     buffer: Any = io.BufferedRandom(raw) if "+" in mode else io.BufferedWriter(raw)
     return buffer if "b" in mode else io.TextIOWrapper(buffer, encoding or "utf-8", errors, newline)
 

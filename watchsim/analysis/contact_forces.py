@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from watchsim.analysis.nonnegative import nonnegative
 from watchsim.contact.index_sets import OPEN, STICK
 from watchsim.contact.kinematics import Closed, closed_contacts
 from watchsim.contact.poses import poses
@@ -23,6 +24,7 @@ from watchsim.scene.recording import STATISTICS
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.methods import EVENT_DRIVEN
 from watchsim.simulation.record.trajectory import Array, Trajectory
+from watchsim.storage.columns import blocks
 
 MODES = (EventKind.CLOSE, EventKind.OPEN, EventKind.STICK, EventKind.SLIDE, EventKind.HANDOVER)
 SLACK = 1e-9  # of the largest force: rounding
@@ -84,7 +86,8 @@ def forces(run: Trajectory, times: Iterable[float] | None = None) -> Forces:
     q, u = run.sample(t)
     compiled = compile_scene(run.scene)
     where, speed = absolute(compiled, q, False), absolute(compiled, u, True)
-    found = [_instant(compiled, *row) for row in zip(t, where, speed, _modes(run, t), strict=True)]
+    mechanism = _Mechanism(compiled)
+    found = [_instant(mechanism, *row) for row in zip(t.tolist(), where, speed, _modes(run, t), strict=True)]
     pairs = np.array(sorted({int(k) for one in found for k in one.ids}), np.int64)
     shape = (len(t), len(pairs))
     out = Forces(t, pairs, np.zeros(shape), np.zeros(shape), np.full((*shape, 2), np.nan), np.full((*shape, 2), np.nan), {}, {})
@@ -101,6 +104,7 @@ def forces(run: Trajectory, times: Iterable[float] | None = None) -> Forces:
 def absolute(compiled: Compiled, values: Array, rates: bool) -> Array:
     """Coordinates in the movement from those that the trajectory gives: the inverse of `Compiled.relative`."""
     out = np.array(values)
+    out = out[:, : len(compiled.q)]  # what is geared to others follows from them
     for own, on, angle in compiled.against:  # carriers come before what they carry
         out[:, own] += (out[:, on] if on >= 0 else 0.0) + (0.0 if rates else angle)
     return out
@@ -108,21 +112,73 @@ def absolute(compiled: Compiled, values: Array, rates: bool) -> Array:
 
 def _modes(run: Trajectory, times: Array) -> Iterator[dict[int, int]]:
     """Contact -> mode of what is in force, at each of the times."""
-    told = run.events[np.isin(run.events["kind"], MODES)]
+    order = np.argsort(times, kind="stable")
+    first = times[order[0]] if len(times) else 0.0
+    waiting = order.tolist()[::-1]
     modes: dict[int, int] = {}
-    done = 0
     found: dict[int, dict[int, int]] = {}
-    for place in np.argsort(times, kind="stable").tolist():
-        stop = int(np.searchsorted(told["t"], times[place], side="right"))
-        for event in told[done:stop]:
-            _change(modes, event)
-        done = stop
-        found[place] = dict(modes)
+    for (part,) in blocks(run.events):
+        if not waiting:
+            break
+        told = part[np.isin(part["kind"], MODES)]
+        done = int(np.searchsorted(told["t"], first, side="right"))
+        modes = _Changes(told[:done], modes).modes()
+        while waiting and times[waiting[-1]] < part["t"][-1]:
+            stop = int(np.searchsorted(told["t"], times[waiting[-1]], side="right"))
+            _apply(modes, told[done:stop])
+            done = max(done, stop)
+            found[waiting.pop()] = dict(modes)
+        if waiting:
+            _apply(modes, told[done:])
+    found |= {place: dict(modes) for place in waiting}
     return (found[place] for place in range(len(times)))
 
 
-def _change(modes: dict[int, int], event: Any) -> None:
-    kind, contact, value = int(event["kind"]), int(event["contact"]), event["value"]
+class _Changes:
+    """Events that change modes, by contact: what a contact's mode is follows from the last of its own, not from all before."""
+
+    def __init__(self, events: NDArray[Any], earlier: dict[int, int]) -> None:
+        """`earlier`: the modes before the first of the events."""
+        gained, lost = events["contact"].astype(np.int64), events["value"].astype(np.int64)
+        handed = events["kind"] == EventKind.HANDOVER
+        self._events, self._earlier = events, earlier
+        self._of = np.concatenate((gained, lost[handed]))
+        self._at = np.concatenate((np.arange(len(events)), np.flatnonzero(handed)))
+        order = np.lexsort((self._at, self._of))
+        self._of, self._at = self._of[order], self._at[order]
+
+    def modes(self) -> dict[int, int]:
+        """Contact -> mode of what is in force after all of the events."""
+        found = {contact: self._mode(contact) for contact in {*np.unique(self._of).tolist(), *self._earlier}}
+        return {contact: mode for contact, mode in found.items() if mode is not None}
+
+    def _mode(self, contact: int) -> int | None:
+        """The mode of a contact after all of the events; None where it is open."""
+        otherwise, before = None, len(self._events)
+        while (number := self._last_of(contact, before)) is not None:
+            event = self._events[number]
+            if int(event["kind"]) != EventKind.HANDOVER:
+                own: dict[int, int] = {}
+                _change(own, int(event["kind"]), contact, event["value"])
+                return own.get(contact, otherwise)
+            if int(event["contact"]) != contact:  # to that one, from this
+                return otherwise
+            otherwise, contact, before = STICK, int(event["value"]), number
+        return self._earlier.get(contact, otherwise)
+
+    def _last_of(self, contact: int, before: int) -> int | None:
+        """The number of the last event before another that says something about a contact."""
+        first, end = np.searchsorted(self._of, (contact, contact + 1))
+        k = int(np.searchsorted(self._at[first:end], before))
+        return int(self._at[first + k - 1]) if k else None
+
+
+def _apply(modes: dict[int, int], events: NDArray[Any]) -> None:
+    for kind, contact, value in zip(*(events[name].tolist() for name in ("kind", "contact", "value")), strict=True):
+        _change(modes, kind, contact, value)
+
+
+def _change(modes: dict[int, int], kind: int, contact: int, value: float) -> None:
     if kind == EventKind.HANDOVER:
         modes[contact] = modes.pop(int(value), STICK)
     elif kind == EventKind.STICK:
@@ -133,28 +189,44 @@ def _change(modes: dict[int, int], event: Any) -> None:
         modes[contact] = int(value)
 
 
-def _instant(compiled: Compiled, t: float, q: Array, u: Array, modes: dict[int, int]) -> _Instant:
+class _Mechanism:
+    """What is the same at every instant, looked up once: mobilities, dry friction of bearings, friction of each contact."""
+
+    def __init__(self, compiled: Compiled) -> None:
+        model = self.model = compiled.model
+        self.mobility, self.dry = 1.0 / np.asarray(model.coordinates.mass), np.asarray(model.coordinates.coulomb)
+        self.prescribed = np.asarray(model.coordinates.driven) != 0
+        self.friction = np.asarray(model.laws.friction)[np.asarray(model.contacts.group)]
+        self.pose, self.closed = poses(len(model.bodies)), closed_contacts(1)
+
+    def room(self, contacts: int) -> Closed:
+        """Room for that many contacts, empty."""
+        if len(self.closed.ids) < contacts:
+            self.closed = closed_contacts(contacts)
+        self.closed.slots[:] = 0
+        return self.closed
+
+
+def _instant(mechanism: _Mechanism, t: float, q: Array, u: Array, modes: dict[int, int]) -> _Instant:
     """Forces of the contacts in `modes` at one state."""
-    model, ids = compiled.model, np.array(sorted(modes), np.int64)
-    closed, normal, h = closed_contacts(max(1, len(ids))), np.zeros((len(ids), 2)), np.zeros(len(q))
-    balance(model, float(t), q, u, ids, poses(len(model.bodies)), closed, normal, h)
-    mobility = 1.0 / model.coordinates.mass
-    dry = model.coordinates.coulomb
+    ids = np.array(sorted(modes), np.int64)
+    closed, normal, h = mechanism.room(len(ids)), np.zeros((len(ids), 2)), np.zeros(len(q))
+    balance(mechanism.model, t, q, u, ids, mechanism.pose, closed, normal, h)
+    dry, prescribed = mechanism.dry, mechanism.prescribed
     held = (dry > 0.0) & (u == 0.0)
-    prescribed = np.asarray(model.coordinates.driven) != 0
-    mobility[held | prescribed] = 0.0
+    mobility = np.where(held | prescribed, 0.0, mechanism.mobility)
     h -= np.where(held, 0.0, dry * np.sign(u))
     free = np.where(prescribed, h, mobility * h)
     rows = len(ids)
-    w_n, w_t = (_dense(closed, values, rows, len(q)) for values in (closed.w_N, closed.w_T))
-    kin = closed.kin[:rows]
     if not rows:
         return _Instant(ids, np.zeros((0, 2)), normal, np.zeros((0, 2)), np.zeros(len(q)), free)
+    w_n, w_t = (_dense(closed, values, rows, len(q)) for values in (closed.w_N, closed.w_T))
+    kin = closed.kin[:rows].view(np.ndarray)
     # Unknowns: the normal force of each contact, and the tangential one of those that stick.
     sticks = [i for i, k in enumerate(ids) if modes[int(k)] == STICK]
-    friction = np.array([model.laws[model.contacts[k].group].friction for k in ids])
+    friction = mechanism.friction[ids]
     slide = np.array([0.0 if modes[int(k)] == STICK else -friction[i] * modes[int(k)] for i, k in enumerate(ids)])
-    hold, bar = np.vstack((w_n, w_t[sticks])), np.concatenate((kin.bar_N, kin.bar_T[sticks]))
+    hold, bar = np.vstack((w_n, w_t[sticks])), np.concatenate((kin["bar_N"], kin["bar_T"][sticks]))
     system, right = hold * mobility, -bar - hold @ free
 
     def loaded(force: Array) -> Array:
@@ -174,7 +246,7 @@ def _instant(compiled: Compiled, t: float, q: Array, u: Array, modes: dict[int, 
         force = np.zeros((rows, 2))
         np.add.at(force, owner, share[:, None] * corners)
     load = loaded(force)
-    return _Instant(ids, force, normal, np.column_stack((kin.x, kin.y)), load, free + mobility * load)
+    return _Instant(ids, force, normal, np.column_stack((kin["x"], kin["y"])), load, free + mobility * load)
 
 
 def _dense(closed: Closed, values: Array, rows: int, width: int) -> Array:
@@ -195,12 +267,10 @@ def _least(system: Array, right: Array) -> Array:
 
 def _pressing(system: Array, right: Array) -> Array:
     """A solution without negative shares, near the smallest; as near to one as can be where rounding leaves none."""
-    from scipy.optimize import nnls
-
     high = 1.0 / np.maximum(np.abs(system).max(axis=1), np.finfo(float).tiny)
     scaled, target = system * high[:, None], right * high
     count = scaled.shape[1]
-    near, _ = nnls(np.vstack((scaled, GENTLE * np.eye(count))), np.append(target, np.zeros(count)))
+    near = nonnegative(np.vstack((scaled, GENTLE * np.eye(count))), np.append(target, np.zeros(count)))
     used = near > SMALLEST * near.max(initial=0.0)
     # The push towards small forces leaves the balance off by its square; among those in use the rest is put right.
     near[used] += np.linalg.lstsq(scaled[:, used], target - scaled @ near, rcond=SMALLEST)[0]
@@ -209,7 +279,7 @@ def _pressing(system: Array, right: Array) -> Array:
 
 def _pivots(run: Trajectory, compiled: Compiled, found: Forces, q: Array, u: Array, a: Array) -> Iterator[tuple[str, Array]]:
     """What the bearings in the movement take: change of momentum less weight less contacts, of a body with all it carries."""
-    hung, weighed = loads(run.scene.bodies)
+    hung, weighed, _ = loads(run.scene.bodies)
     on_a, on_b = _bodies_of(compiled, found.pairs)
     across = np.stack((-found.direction[:, :, 1], found.direction[:, :, 0]), axis=2)
     pressed = np.nan_to_num(found.normal[:, :, None] * found.direction + found.tangential[:, :, None] * across)
@@ -218,8 +288,7 @@ def _pivots(run: Trajectory, compiled: Compiled, found: Forces, q: Array, u: Arr
             continue
         own = [k for k, other in enumerate(hung) if i in (k, other.part_of, other.host)]
         sign = np.isin(on_a, own).astype(float) - np.isin(on_b, own).astype(float)
-        first = compiled.slices[body.name].start
-        angle, spin, turn = q[:, first], u[:, first], a[:, first]
+        angle, spin, turn = (compiled.own(i, values, rates) for values, rates in ((q, False), (u, True), (a, True)))
         c, s = np.cos(angle), np.sin(angle)
         moment = np.stack((c * load.moment[0] - s * load.moment[1], s * load.moment[0] + c * load.moment[1]), axis=1)
         change = turn[:, None] * np.stack((-moment[:, 1], moment[:, 0]), axis=1) - (spin * spin)[:, None] * moment
@@ -228,10 +297,10 @@ def _pivots(run: Trajectory, compiled: Compiled, found: Forces, q: Array, u: Arr
 
 def _drives(run: Trajectory, compiled: Compiled, load: Array, a: Array) -> Iterator[tuple[str, Array]]:
     """Against the contacts, and for the acceleration of as much mass or inertia as the scene gives the body."""
-    for body in run.scene.bodies:
+    for body, mass in zip(run.scene.bodies, loads(run.scene.bodies)[2], strict=True):
         if body.prescribed is not None:
             j = compiled.slices[body.name].start
-            yield body.name, (body.mass if body.motion == "slide" else body.inertia) * a[:, j] - load[:, j]
+            yield body.name, mass * a[:, j] - load[:, j]
 
 
 def _bodies_of(compiled: Compiled, pairs: NDArray[np.int64]) -> tuple[Array, Array]:

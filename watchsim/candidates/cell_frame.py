@@ -38,13 +38,20 @@ def choose_frames(bodies: Records, pairs: Records) -> None:
 
 
 def _is_seen(bodies: Records, b: int, carrier: int) -> bool:
-    """Does the frame of body b, seen from the carrier, only turn?"""
+    """Does the frame of body b, seen from the carrier, only turn, by an angle that one cell coordinate gives?"""
+    turns = bodies[carrier].motion != SLIDE
+    if turns and _is_geared(bodies[b]) and bodies[b].first != angle_of(bodies[carrier]):
+        return False
     return b == carrier or bodies[b].carrier == carrier or _is_coaxial(bodies[b], bodies[carrier])
 
 
 def _is_coaxial(body: Any, carrier: Any) -> bool:
     both_turn = body.motion == carrier.motion == PIVOT and body.carrier < 0
     return bool(both_turn and body.x == carrier.x and body.y == carrier.y)
+
+
+def _is_geared(body: Any) -> bool:
+    return bool(body.ratio != 1.0 or body.phase != 0.0)
 
 
 def seen_from(bodies: Records, b: int, frame: int) -> Any:
@@ -63,6 +70,8 @@ def seen_from(bodies: Records, b: int, frame: int) -> Any:
         body.x, body.y = c * body.x - s * body.y, s * body.x + c * body.y
     else:
         body.x, body.y = 0.0, 0.0
+    if b != frame and carrier.motion != SLIDE and body.first == angle_of(carrier):
+        body.ratio -= 1.0  # geared to the carrier, it turns by so much against it
     return body
 
 
@@ -72,7 +81,7 @@ def axes_of(bodies: Records, b: int, frame: int) -> list[Axis]:
     if body.carrier >= 0:
         arm = math.hypot(body.x, body.y)
         return [*_own(b, bodies[body.carrier], -1, arm), *_own(b, body, -1, 0.0)]
-    turning = frame != MOVEMENT and bodies[frame].motion != SLIDE
+    turning = frame != MOVEMENT and bodies[frame].motion != SLIDE and body.first != angle_of(bodies[frame])
     return _own(b, body, angle_of(bodies[frame]) if turning else -1, 0.0)
 
 
@@ -86,6 +95,6 @@ def _own(b: int, moving: Any, on: int, arm: float) -> list[Axis]:
     if moving.motion == FIXED:
         return []
     if moving.motion == PIVOT:
-        return [Axis(b, first, on, TURN, arm)]
+        return [Axis(b, first, on, TURN, arm)] if moving.ratio != 0.0 else []
     shifts = [Axis(b, first + i, -1, TRAVEL, 0.0) for i in range(2 if moving.motion == FREE else 1)]
     return [*shifts, Axis(b, first + 2, -1, TURN, arm)] if moving.motion == FREE else shifts

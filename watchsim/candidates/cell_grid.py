@@ -41,7 +41,9 @@ def choose_cells(bodies: Records, primitives: Records, contacts: Records, pairs:
     for pair in pairs:
         ids = near[pair.near_start : pair.near_stop]
         axes = {b: axes_of(bodies, b, pair.frame) for b in (int(pair.a), int(pair.b))}
-        if len(ids) <= FEW_CONTACTS or not 1 <= sum(map(len, axes.values())) <= 3:
+        used_by = [axis.coordinate for own in axes.values() for axis in own]
+        # A coordinate that moves both bodies, as that of two gears, would need cells of both.
+        if len(ids) <= FEW_CONTACTS or not 1 <= len(used_by) <= 3 or len(set(used_by)) < len(used_by):
             continue
         moving = [b for b in axes if axes[b]]
         used, _ = named_rows(np.concatenate([contacts.a[ids], contacts.b[ids]]), len(primitives))
@@ -53,12 +55,14 @@ def choose_cells(bodies: Records, primitives: Records, contacts: Records, pairs:
         cells: list[_Cells] = []
         parts = 1
         for b in moving:
-            slides = seen_from(bodies, b, pair.frame).motion == SLIDE
+            seen = seen_from(bodies, b, pair.frame)
+            slides = seen.motion == SLIDE
             fold = 1 if slides else AlikeContacts(primitives, contacts, pair, ids, b).fold
             fold = fold if parts * fold <= MOST_PARTS else 1
             parts *= fold
-            # Only a body's own angle, the last of its axes, brings its outline back onto itself.
-            cells += [_cells(axis, travel, reach[b], fold if axis is axes[b][-1] else 1) for axis in axes[b]]
+            # Only a body's own angle, the last of its axes, brings its outline back onto itself, and only there is it geared.
+            cells += [_cells(axis, travel, reach[b]) for axis in axes[b][:-1]]
+            cells.append(_cells(axes[b][-1], travel, reach[b], fold, seen.ratio))
         pair.axes, pair.listed = len(cells), 1
         for i, axis in enumerate(cells):
             for name, value in axis._asdict().items():
@@ -72,10 +76,13 @@ def _typical_length(rows: Records) -> float:
     return float(np.median(lengths)) if len(lengths) else 0.0
 
 
-def _cells(axis: Axis, travel: float, reach: float, fold: int) -> _Cells:
-    """Cells in which the points of a body within `reach` of its origin travel about `travel` metres."""
+def _cells(axis: Axis, travel: float, reach: float, fold: int = 1, ratio: float = 1.0) -> _Cells:
+    """Cells in which the points of a body within `reach` of its origin travel about `travel` metres.
+
+    `ratio`: how far the body itself goes when the coordinate changes by one.
+    """
     if axis.kind == TRAVEL:
-        return _Cells(axis.coordinate, axis.on, travel, 0, 1)
+        return _Cells(axis.coordinate, axis.on, travel / abs(ratio), 0, 1)
     cells = max(FEWEST, 2.0 * math.pi * (axis.arm + reach) / travel)
     turn = fold * math.ceil(cells / fold)
-    return _Cells(axis.coordinate, axis.on, 2.0 * math.pi / turn, turn, fold)
+    return _Cells(axis.coordinate, axis.on, 2.0 * math.pi / (turn * abs(ratio)), turn, fold)

@@ -25,6 +25,8 @@ class _Body(NamedTuple):
     angle: float
     axis_x: float
     axis_y: float
+    ratio: float
+    phase: float
 
 
 class CellMotion:
@@ -51,9 +53,10 @@ class CellMotion:
         value = {coordinate: at[:, axis] for axis, coordinate in enumerate(self.coordinates)}
         x, y, angle = (np.full(len(at), v) for v in (body.x, body.y, body.angle))
         if body.motion == PIVOT:
-            angle = value[body.first]
+            angle = np.full(len(at), body.phase) if body.ratio == 0.0 else body.ratio * value[body.first] + body.phase
         elif body.motion == SLIDE:
-            x, y = x + value[body.first] * body.axis_x, y + value[body.first] * body.axis_y
+            way = body.ratio * value[body.first] + body.phase
+            x, y = x + way * body.axis_x, y + way * body.axis_y
         elif body.motion == FREE:
             x, y, angle = (value[body.first + i] for i in range(3))
         return x, y, angle
@@ -69,11 +72,12 @@ class CellMotion:
 
     def _own_freedom(self, body: _Body, room: Array) -> tuple[float, float]:
         value = dict(zip(self.coordinates, room.tolist(), strict=True))
-        if body.motion == FIXED:
+        if body.motion == FIXED or body.ratio == 0.0:
             return 0.0, 0.0
         if body.motion == FREE:
             return math.hypot(value[body.first], value[body.first + 1]), value[body.first + 2]
-        return (0.0, value[body.first]) if body.motion == PIVOT else (value[body.first], 0.0)
+        way = abs(body.ratio) * value[body.first]
+        return (0.0, way) if body.motion == PIVOT else (way, 0.0)
 
 
 def _plain(body: Any) -> _Body:

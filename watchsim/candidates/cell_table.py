@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from watchsim.candidates.cell_frame import axes_of, seen_from
 from watchsim.candidates.cell_lookup import REACH, insert_cells
 from watchsim.candidates.equivalent_contacts import AlikeContacts
 from watchsim.candidates.pair_cache import Cell, Known, known_cells
@@ -115,7 +116,10 @@ class PairCells:
         self._parts = np.array([axis.part for axis in self.axes])
         self.start = int(self.pair.start)
         near = model.near[self.pair.near_start : self.pair.near_stop]
-        body = [int(model.coordinates[axis.coordinate].body) for axis in self.axes]
+        both = (int(self.pair.a), int(self.pair.b))
+        body = [axis.body for b in both for axis in axes_of(model.bodies, b, int(self.pair.frame))]
+        # Where a body is geared to turn against its coordinate, a later part of its turn is an earlier one of that.
+        self._sense = [1 if seen_from(model.bodies, b, int(self.pair.frame)).ratio > 0.0 else -1 for b in body]
         self._alike = [
             AlikeContacts(model.primitives, model.contacts, self.pair, near, b) if axis.fold > 1 else None
             for axis, b in zip(self.axes, body, strict=True)
@@ -161,7 +165,8 @@ class PairCells:
         first = np.repeat(np.arange(len(cells)) * int(self.pair.stop - self.pair.start), count)
         keys, lists = [], []
         for turns, moved in self._turned(found):
-            shift = np.array([turn * axis.part for turn, axis in zip(turns, self.axes, strict=True)])
+            each = zip(turns, self._sense, self.axes, strict=True)
+            shift = np.array([(sense * turn) % axis.fold * axis.part for turn, sense, axis in each])
             keys.append(self._keys(index + shift))
             lists.append(np.sort(first + moved) - first + self.start)
         return np.concatenate(keys), np.tile(count, len(keys)), np.concatenate(lists)

@@ -92,7 +92,7 @@ def _digest(model: Model, p: int) -> bytes:
     for b in (pair.a, pair.b):
         body = seen_from(model.bodies, int(b), int(pair.frame))
         for part in (body, model.bodies[body.carrier]) if body.carrier >= 0 else (body,):
-            where = [float(part[name]) for name in place.get(int(part.motion), ())]
+            where = [float(part[name]) for name in (*place.get(int(part.motion), ()), "ratio", "phase")]
             first = used.index(int(part.first)) if part.first in used else -1
             digest.update(repr((int(part.motion), first, bool(part.carrier >= 0), where)).encode())
     cells = [float(pair[f"{name}{i}"]) for i in range(pair.axes) for name in ("size", "wrap", "fold")]

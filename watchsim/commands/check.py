@@ -31,7 +31,7 @@ def options(parser: argparse.ArgumentParser) -> None:
         help="where to write a picture of the start position, what can ever touch in colour; of an escapement also "
         "FILE_function.png, its geometry of function",
     )
-    parser.add_argument("--dark", action="store_true", help="the picture of the start position on dark ground")
+    parser.add_argument("--dark", action="store_true", help="pictures, sheet and movie on dark ground")
     parser.add_argument("--sheet", metavar="FILE", help="where to write the geometry of function alone (.png, .svg or .pdf)")
     parser.add_argument(
         "--width", metavar="LENGTH", default="170 mm", help='of that sheet (default "%(default)s", or "85 mm" for a column)'
@@ -84,7 +84,7 @@ def run(args: argparse.Namespace) -> int:
     if args.turn and not wrong:
         from watchsim.commands.common.turned_by_hand import turned_by_hand
 
-        turned = turned_by_hand(scene, args.swing, args.movie, args.png)
+        turned = turned_by_hand(scene, args.swing, args.movie, args.png, args.dark)
         report["turn"] = turned.report
     elif args.png:
         _still(scene, compiled, pairs, report, args.png, args.dark)
@@ -93,7 +93,7 @@ def run(args: argparse.Namespace) -> int:
             sheets.append(Path(args.png).with_name(f"{Path(args.png).stem}_function.png"))
         say(f"Picture: {args.png}")
     for path in sheets:
-        _sheet(scene, compiled, function, path, width)
+        _sheet(scene, compiled, function, path, width, args.dark)
     if args.json:
         print_json(report)
     else:
@@ -106,8 +106,8 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _check_options(args: argparse.Namespace) -> None:
-    if args.dark and (args.turn or not args.png):
-        raise InputError("--dark: belongs to the picture of the start position: give --png, and no --turn.")
+    if args.dark and not (args.png or args.sheet or args.movie):
+        raise InputError("--dark: nothing is drawn; give --png, --sheet or --movie.")
     if not args.turn and (args.swing or args.movie):
         raise InputError(f"{'--swing' if args.swing else '--movie'}: needs --turn.")
 
@@ -119,12 +119,13 @@ def _still(scene: Scene, compiled: Compiled, pairs: ModelledPairs, report: Mappi
     still(scene, path, compiled, pairs, places, dark)
 
 
-def _sheet(scene: Scene, compiled: Compiled, function: Function, path: Path, width: float) -> None:
+def _sheet(scene: Scene, compiled: Compiled, function: Function, path: Path, width: float, on_dark: bool) -> None:
+    from watchsim.render.dark_figure import dark
     from watchsim.render.stills.function_sheet import function_sheet, write_sheet
 
     try:
         figure = function_sheet(scene, compiled, function, 1e3 * width)
     except ValueError as error:
         raise InputError(f"--sheet {path}: {error}.") from error
-    write_sheet(path, figure)
+    write_sheet(path, dark(figure) if on_dark else figure)
     say(f"Sheet: {path}")

@@ -43,6 +43,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--width", metavar="LENGTH", default="170 mm", help='as printed (default "%(default)s", or "85 mm" for a column)'
     )
+    parser.add_argument("--dark", action="store_true", help="on dark ground")
     parser.add_argument("--format", metavar="NAMES", default="png", help="png, svg, pdf, with commas (default %(default)s)")
     parser.add_argument(
         "-o", "--output", metavar="FILE", help="the file, ending optional; a folder for several kinds (default RUN/plots)"
@@ -53,6 +54,7 @@ def run(args: argparse.Namespace) -> int:
     from watchsim.commands.common.inputs import read_run
     from watchsim.commands.common.output_place import secured_file, swept_run
     from watchsim.commands.common.plot_kinds import KINDS, Request
+    from watchsim.render.dark_figure import dark
     from watchsim.render.figures.figure_style import save
     from watchsim.storage.write import write_file
 
@@ -72,7 +74,7 @@ def run(args: argparse.Namespace) -> int:
     drawn = 0
     for kind in kinds:
         try:
-            figure = KINDS[kind](asked)
+            figure = dark(KINDS[kind](asked)) if args.dark else KINDS[kind](asked)
         except ValueError as error:
             if len(kinds) == 1:
                 raise InputError(f"--phases: {error}." if args.phases else f"--kind {kind}: {error}.") from error

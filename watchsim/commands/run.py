@@ -22,10 +22,12 @@ from watchsim.commands.common.console import (
 )
 from watchsim.commands.common.output_place import secured_folder, swept_run
 from watchsim.commands.common.record_size import room_for
+from watchsim.commands.common.second_core import Meanwhile
 from watchsim.commands.common.write_run import Extras, goal_of, report_text, write
 from watchsim.simulation.methods import EVENT_DRIVEN, METHODS
 
 if TYPE_CHECKING:
+    from watchsim.results.tables import EventLines
     from watchsim.scene.scene import Scene
     from watchsim.simulation.record.trajectory import Trajectory
 
@@ -107,8 +109,10 @@ def run(args: argparse.Namespace) -> int:
         say(f"Note: {note.message}. {note.fix}")
     extras = Extras(not args.no_plots, args.movie, args.gif, args.error_bars, args.profile, args.report)
     with stopping.keeping():
-        trajectory = simulate_with_progress(scene, duration, args.tol, folder, method=method, step=step, start=start)
-        summary = write(trajectory, goal, extras, changed)
+        trajectory, lines = simulate_with_progress(
+            scene, duration, args.tol, folder, method=method, step=step, start=start, plots=extras.plots
+        )
+        summary = write(trajectory, goal, extras, changed, lines)
     if args.json:
         print_json(summary)
         for warning in summary["warnings"]:
@@ -127,18 +131,33 @@ def simulate_with_progress(
     method: str = EVENT_DRIVEN,
     step: float | None = None,
     start: Trajectory | None = None,
-) -> Trajectory:
-    """Simulate for results in `folder`, with a progress line on a terminal; a first run says that it compiles."""
+    plots: bool = False,
+) -> tuple[Trajectory, EventLines | None]:
+    """Simulate for results in `folder`, with a progress line on a terminal; a first run says that it compiles.
+
+    Also gives the events as far as they were made into text meanwhile; with `plots`, what draws them was loaded.
+    """
     from watchsim.simulation.simulate import simulate
     from watchsim.storage.write import real
 
     announce_compile()
-    progress = Progress("simulated s:")
+    beside = real(folder).parent
+    progress, meanwhile = Progress("simulated s:"), Meanwhile(scene, beside, plots)
+
+    def stepped(time: float, end: float) -> None:
+        meanwhile.progress()
+        progress(time, end)
+
+    follow = meanwhile.follow if start is None else None
+    lines = None
     try:
-        beside = real(folder).parent
-        return simulate(scene, duration, tolerance, progress=progress, method=method, step=step, start=start, stream=beside)
+        run = simulate(
+            scene, duration, tolerance, progress=stepped, method=method, step=step, start=start, stream=beside, follow=follow
+        )
     finally:
+        lines = meanwhile.end()
         progress.close()
+    return run, lines
 
 
 def _earlier(folder: str, scene: Scene) -> Trajectory:

@@ -33,8 +33,6 @@ if TYPE_CHECKING:
     from watchsim.studies.workers.executor import Executor
 
 HELP = "parameter study: table and plot; or what matters in a watch (--sensitivity)"
-FILES = ("rows.jsonl", "sweep.csv", "sweep.json", "sweep.parquet", "sweep.png", "sweep.svg", "sweep.pdf")
-FIGURES = (".png", ".svg", ".pdf")
 
 
 def options(parser: argparse.ArgumentParser) -> None:
@@ -81,6 +79,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _sweep(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...]) -> int:
+    from watchsim.commands.common.write_study import write_study
     from watchsim.studies.axes import axes_from_texts
     from watchsim.studies.parameter_sweep import swept
     from watchsim.studies.point import Question
@@ -104,7 +103,7 @@ def _sweep(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...]) 
                 question, axes, outputs, _executor(args, points), folder=folder, resume=args.resume, progress=progress
             )
         )
-        _write(folder, done.numbers(), sweep_table(done), None if args.no_plots else _figure_of_sweep(done))
+        write_study(folder, done.numbers(), sweep_table(done), None if args.no_plots else _figure_of_sweep(done))
     if args.json:
         from watchsim.results.tables import plain
 
@@ -121,6 +120,7 @@ def _sweep(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...]) 
 
 
 def _sensitivity(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...]) -> int:
+    from watchsim.commands.common.write_study import write_study
     from watchsim.studies.sensitivity import found
     from watchsim.studies.study_table import sensitivity_table
 
@@ -131,7 +131,7 @@ def _sensitivity(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, 
                 scene, args.keys or None, outputs, _executor(args, None), args.tol, folder, args.resume, progress
             )
         )
-        _write(folder, done.numbers(), sensitivity_table(done), None if args.no_plots else _figure_of_sensitivity(done))
+        write_study(folder, done.numbers(), sensitivity_table(done), None if args.no_plots else _figure_of_sensitivity(done))
     if args.json:
         from watchsim.results.tables import plain
 
@@ -197,13 +197,10 @@ def _folder(args: argparse.Namespace, scene: Scene) -> Path:
     what = "sensitivity" if args.sensitivity else "sweep"
     folder = Path(args.output or Path("results") / f"{name}-{what}")
     secured_folder(folder, "results", default=not args.output)
-    if folder.is_dir() and any(folder.iterdir()) and not args.resume:
-        if not args.force:
-            raise InputError(
-                f"{folder} exists already. Go on with it (--resume), begin anew in it (--force), or choose another folder (-o)."
-            )
-        for old in FILES:
-            (folder / old).unlink(missing_ok=True)
+    if folder.is_dir() and any(folder.iterdir()) and not (args.resume or args.force):
+        raise InputError(
+            f"{folder} exists already. Go on with it (--resume), begin anew in it (--force), or choose another folder (-o)."
+        )
     folder.mkdir(exist_ok=True)
     return folder
 
@@ -222,22 +219,3 @@ def _figure_of_sensitivity(done: Any) -> Any:
     from watchsim.render.figures.effects_plot import plot_sensitivity
 
     return plot_sensitivity(done) if done.effects else None
-
-
-def _write(folder: Path, numbers: dict[str, Any], table: dict[str, list[Any]], figure: Any) -> None:
-    """sweep.json, sweep.csv, sweep.parquet where pyarrow is installed, the plot as PNG, SVG and PDF."""
-    from watchsim.results.tables import json_text
-    from watchsim.storage.write import write_file
-    from watchsim.studies.study_table import csv_text, parquet_writer
-
-    text = json_text(numbers)
-    write_file(folder / "sweep.json", lambda path: path.write_text(text, encoding="utf-8"), "the numbers")
-    write_file(folder / "sweep.csv", lambda path: path.write_text(csv_text(table), encoding="utf-8"), "the table")
-    write = parquet_writer(table)
-    if write is not None:
-        write_file(folder / "sweep.parquet", write, "the table")
-    if figure is not None and not stopping.requested():
-        from watchsim.render.figures.figure_style import save
-
-        for ending in FIGURES:
-            write_file(folder / f"sweep{ending}", lambda path: save(figure, path), "the plot")

@@ -70,6 +70,7 @@ def _directions(model, b, row, sign, frame, out_closed):
     nx, ny, rx, ry = frame
     tx, ty = -ny, nx
     j = out_closed.slots[row]
+    sign *= body.ratio
     if body.motion == SLIDE:
         out_closed.coord[row, j] = body.first
         out_closed.w_N[row, j] = sign * (nx * body.axis_x + ny * body.axis_y)

@@ -33,7 +33,7 @@ def poses(bodies: int) -> np.recarray:
 
 @kernel
 def _ride(carrier, body, q, u, pose):
-    """Origin of a carried body: the point (body.x, body.y) of its carrier's frame."""
+    """Origin of a carried body: the point (body.x, body.y) of its carrier's frame. A carrier owns its coordinate."""
     i = carrier.first
     if carrier.motion == SLIDE:
         pose.rx, pose.ry = carrier.c * body.x - carrier.s * body.y, carrier.s * body.x + carrier.c * body.y
@@ -60,12 +60,14 @@ def place_body(model, b, q, u, out_pose):
     pose.x, pose.y, pose.c, pose.s = body.x, body.y, body.c, body.s
     pose.vx, pose.vy, pose.w = 0.0, 0.0, 0.0
     if body.motion == PIVOT:
-        pose.c, pose.s, pose.w = math.cos(q[i]), math.sin(q[i]), u[i]
+        angle = body.ratio * q[i] + body.phase
+        pose.c, pose.s, pose.w = math.cos(angle), math.sin(angle), body.ratio * u[i]
         if body.carrier >= 0:
             _ride(model.bodies[body.carrier], body, q, u, pose)
     elif body.motion == SLIDE:
-        pose.x, pose.y = body.x + q[i] * body.axis_x, body.y + q[i] * body.axis_y
-        pose.vx, pose.vy = u[i] * body.axis_x, u[i] * body.axis_y
+        way, speed = body.ratio * q[i] + body.phase, body.ratio * u[i]
+        pose.x, pose.y = body.x + way * body.axis_x, body.y + way * body.axis_y
+        pose.vx, pose.vy = speed * body.axis_x, speed * body.axis_y
     elif body.motion != FIXED:
         pose.x, pose.y, pose.c, pose.s = q[i], q[i + 1], math.cos(q[i + 2]), math.sin(q[i + 2])
         pose.vx, pose.vy, pose.w = u[i], u[i + 1], u[i + 2]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from watchsim.candidates.cell_lookup import along
+from watchsim.dynamics.line_springs import add_line_springs, line_spring_damping, line_spring_drive, line_spring_energy
 from watchsim.jit import entry, kernel
 from watchsim.model.records import OVER_TIME
 from watchsim.tolerances import KNOT_ROUNDING
@@ -47,15 +48,28 @@ def damping_force(model, i, u):
 
 @kernel
 def stretch(joint, q):
-    """How far the spring between a carried body and its carrier is wound, rad."""
+    """How far the spring between two coordinates is wound, rad or m."""
     return q[joint.coordinate] - q[joint.on] - joint.rest
 
 
 @kernel
 def joint_damping(joint, u):
-    """-c w - c2 w|w| with the turning rate w of a carried body against its carrier."""
+    """-c w - c2 w|w| with the speed w of the one coordinate against the other."""
     w = u[joint.coordinate] - u[joint.on]
     return -w * (joint.viscous + joint.quadratic * abs(w))
+
+
+@kernel
+def joint_force(joint, q, u):
+    """What acts on the one coordinate, and back on the other: drive, spring and damping."""
+    return joint.force - joint.stiffness * stretch(joint, q) + joint_damping(joint, u)
+
+
+@kernel
+def push_back(model, i, force, out_h):
+    """Take a force away from that on coordinate i, but where its motion is prescribed."""
+    if not model.coordinates[i].driven:
+        out_h[i] -= force
 
 
 @kernel
@@ -75,19 +89,23 @@ def forces(model, t, q, u, out_h):
         )
     for j in range(len(model.joints)):
         joint = model.joints[j]
-        torque = joint.force - joint.stiffness * stretch(joint, q) + joint_damping(joint, u)
+        torque = joint_force(joint, q, u)
         out_h[joint.coordinate] += torque
-        out_h[joint.on] -= torque
+        push_back(model, joint.on, torque, out_h)
+    add_line_springs(model, q, u, out_h)
     for j in range(len(model.tables)):
         table, force = model.tables[j], table_force(model, j, t, q)
         out_h[table.coordinate] += force
         if table.on >= 0:
-            out_h[table.on] -= force
+            push_back(model, table.on, force, out_h)
 
 
 @kernel
 def drive_power(model, t, q, u):
-    """Power of everything that is neither a spring nor damping (motor torques, gravity), W."""
+    """Power of everything that is neither a spring nor damping (motor torques, gravity), W.
+
+    So is what keeps a prescribed motion up against all that acts back on it.
+    """
     power = 0.0
     for i in range(len(model.coordinates)):
         if not model.coordinates[i].driven:
@@ -95,16 +113,21 @@ def drive_power(model, t, q, u):
     for j in range(len(model.joints)):
         joint = model.joints[j]
         power += (u[joint.coordinate] - u[joint.on]) * joint.force
+        if model.coordinates[joint.on].driven:
+            power += u[joint.on] * joint_force(joint, q, u)
     for j in range(len(model.tables)):
         table = model.tables[j]
         if model.coordinates[table.coordinate].driven:
             continue
-        power += along(u, table.coordinate, table.on) * table_force(model, j, t, q)
-    return power
+        force = table_force(model, j, t, q)
+        power += along(u, table.coordinate, table.on) * force
+        if table.on >= 0 and model.coordinates[table.on].driven:
+            power += u[table.on] * force
+    return power + line_spring_drive(model, q, u)
 
 
 @kernel
-def damping_power(model, u):
+def damping_power(model, q, u):
     """Power taken by viscous and quadratic damping, W; never negative."""
     power = 0.0
     for i in range(len(model.coordinates)):
@@ -112,7 +135,7 @@ def damping_power(model, u):
     for j in range(len(model.joints)):
         joint = model.joints[j]
         power -= (u[joint.coordinate] - u[joint.on]) * joint_damping(joint, u)
-    return power
+    return power + line_spring_damping(model, q, u)
 
 
 @kernel
@@ -135,7 +158,7 @@ def stored_energy(model, q, u):
             continue
         way = q[i] - coordinate.rest
         energy += 0.5 * (coordinate.mass * u[i] * u[i] + coordinate.stiffness * way * way)
-    return energy + joint_energy(model, q)
+    return energy + joint_energy(model, q) + line_spring_energy(model, q)
 
 
 @kernel

@@ -11,6 +11,7 @@ from watchsim.escapement.by_hand.hands import Hands
 from watchsim.escapement.by_hand.lever_sweep import Rest, Wheel
 from watchsim.escapement.quantity import Quantity, over_teeth
 from watchsim.escapement.tooth_passage import Passage, change_error
+from watchsim.model.records import ARC, FULL
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +23,7 @@ class Pallet:
     run          the rest of it: from the drop to the bank
     draw         of the locking face: angle between its normal and the line to the lever's pivot, lever on the bank; the
                  wheel's pressure pulls the lever to the bank where it is positive
-    draw_end     the same just before unlocking
+    draw_end     the same just before unlocking; nan for a round pin, where a tooth's corner rounds it and none is left
     recoil       of the wheel, driven back while the stone is unlocked; by an anchor without banking, from the lock to where it
                  is turned back
     lift         from unlocked to let off; lift_stone with the tooth's corner on the stone's face, lift_tooth with the stone's
@@ -71,13 +72,14 @@ def pallet(wheel: Wheel, beats: Sequence[Passage], side: float, detached: bool) 
         return _face_error(hands, one.start.stone if one.start.on_stone else one.start.tooth)
 
     none = over_teeth([], [], [])
+    rounded = all(_on_round_pin(hands, one.unlocked) for one in own)
     pushed = any(one.caught is not None for one in own)
     return Pallet(
         total_lock=mean(lambda one, _: side * (one.start.lever - one.unlocked.lever), of_lever) if detached else none,
         lock=mean(lambda one, earlier: side * (earlier.let_off.lever - one.unlocked.lever), of_lever),
         run=mean(lambda _, earlier: side * (earlier.end - earlier.let_off.lever), of_lever) if detached else none,
         draw=mean(lambda one, _: draw_angle(wheel, one.start, pivot, side), of_draw),
-        draw_end=mean(lambda one, _: draw_angle(wheel, one.unlocked, pivot, side), of_draw),
+        draw_end=none if rounded else mean(lambda one, _: draw_angle(wheel, one.unlocked, pivot, side), of_draw),
         recoil=mean(recoil, of_wheel),
         lift=mean(lambda one, _: side * (one.unlocked.lever - one.let_off.lever), of_lever),
         lift_stone=none if pushed else mean(lambda one, _: sum(s.turn for s in one.driven if s.first.on_stone), of_lever),
@@ -93,6 +95,12 @@ def draw_angle(wheel: Wheel, rest: Rest, pivot: tuple[float, float], side: float
     arm = math.dist(met.point, pivot)
     opening = met.rates[wheel.hands.body(wheel.parts.lever)]
     return math.asin(max(-1.0, min(1.0, side * opening / arm)))
+
+
+def _on_round_pin(hands: Hands, rest: Rest) -> bool:
+    """Does a corner of a tooth lie on the round of a pin?"""
+    stone = hands.model.primitives[rest.stone]
+    return rest.on_stone and stone.kind == ARC and stone.extent == FULL
 
 
 def _face_error(hands: Hands, primitive: int) -> float:

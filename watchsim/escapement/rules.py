@@ -74,7 +74,8 @@ def _friction(scene: Scene, function: Function) -> float:
 
 def _stone(name: str, one: Pallet, friction: float, detached: bool) -> Iterator[Judgement]:
     hold = math.degrees(math.atan(friction))
-    draw = math.degrees(min(one.draw.value, one.draw.worst, one.draw_end.value, one.draw_end.worst))
+    known = (each for quantity in (one.draw, one.draw_end) for each in (quantity.value, quantity.worst))
+    draw = math.degrees(min((each for each in known if not math.isnan(each)), default=math.nan))
     if detached and draw <= hold:
         message = f"the draw of the {name} stone falls to {draw:.2f}°; friction {friction:g} holds up to {hold:.2f}°"
         fix = "The lever is not drawn to its bank: turn the stone to more draw."

@@ -13,6 +13,7 @@ import numpy as np
 
 from watchsim.candidates.cell_frame import angle_of, choose_frames
 from watchsim.candidates.cell_grid import choose_cells
+from watchsim.mechanism.backlash import with_racks
 from watchsim.mechanism.contact_features import features
 from watchsim.mechanism.coordinates import forced_coordinates
 from watchsim.mechanism.declared_pairs import declared_contacts, near_contacts
@@ -20,6 +21,7 @@ from watchsim.model.records import BODY, MOTION_CODE, PRIMITIVE, Model, Records,
 from watchsim.scene.body import Body
 from watchsim.scene.carriers import Ride, rides
 from watchsim.scene.force import Side
+from watchsim.scene.gear_trains import Bond, bonds
 from watchsim.scene.scene import Scene
 from watchsim.tolerances import CLEARANCE
 
@@ -37,13 +39,25 @@ class Compiled:
     u: np.ndarray
     fastest: float  # 1/s, largest natural frequency of a spring, 0 without springs
     against: tuple[tuple[int, int, float], ...] = ()  # coordinates given relative to a carrier: (own, carrier's or -1, angle)
+    geared: tuple[tuple[int, float, float], ...] = ()  # further columns: `told` times that coordinate plus `shift`
 
     def relative(self, q: np.ndarray, rates: bool = False) -> np.ndarray:
-        """Rows of coordinates, or of their `rates`, as the scene gives them: carried bodies relative to their carriers."""
+        """Rows of coordinates, or of their `rates`, as the scene gives them: carried bodies relative to their carriers.
+
+        Behind them stand columns of the bodies geared to others, which have no coordinate of their own.
+        """
         out = np.array(q) if self.against else q
         for own, on, angle in self.against:
             out[:, own] -= (q[:, on] if on >= 0 else 0.0) + (0.0 if rates else angle)
+        if self.geared:
+            out = np.column_stack((out, *(told * out[:, to] + (0.0 if rates else shift) for to, told, shift in self.geared)))
         return out
+
+    def own(self, number: int, values: np.ndarray, rates: bool = False) -> np.ndarray:
+        """(rows,): the angle in the movement, or the travel, of the body of that number; `values` are rows of coordinates, or
+        of their `rates`."""
+        body = self.model.bodies[number]
+        return np.asarray(body.ratio * values[:, body.first] + (0.0 if rates else body.phase))
 
 
 def compile_scene(scene: Scene, prefilter: bool = True) -> Compiled:
@@ -52,11 +66,15 @@ def compile_scene(scene: Scene, prefilter: bool = True) -> Compiled:
     Without `prefilter` every declared pair of primitives is a candidate everywhere.
     """
     size = scene_size(scene)
+    scene, named = with_racks(scene, size)
     hung = rides(scene.bodies)
-    bodies, slices, q, u = _bodies(scene, hung)
+    bound = bonds(scene.bodies, hung)
+    bodies, q, u = _bodies(scene, hung, bound)
+    slices = _slices(scene, bodies)
     primitives, layers, owners, sides = _primitives(scene, hung, size)
+    owners = tuple(named.get(owner, owner) for owner in owners)
     contacts, laws, pairs = declared_contacts(scene, hung, sides, primitives)
-    forced = forced_coordinates(scene, hung, slices, size)
+    forced = forced_coordinates(scene, hung, bound, slices, size)
     pairs.clearance = CLEARANCE * size
     choose_frames(bodies, pairs)
     near = near_contacts(bodies, primitives, contacts, pairs)
@@ -67,15 +85,18 @@ def compile_scene(scene: Scene, prefilter: bool = True) -> Compiled:
         pairs.near_start, pairs.near_stop, pairs.listed = pairs.start, pairs.stop, 0
     parts = (bodies, *forced.parts, primitives, contacts, laws, pairs, near)
     model = Model(*(frozen(part) for part in parts))
-    return Compiled(model, layers, owners, slices, size, q, u, forced.fastest, _against(hung, bodies))
+    told = [(body.name, bond) for body, bond in zip(scene.bodies, bound, strict=True) if body.geared and body.name not in named]
+    geared = tuple((int(bodies[bond.to].first), bond.told, bond.shift) for _, bond in told)
+    slices |= {name: slice(len(q) + k, len(q) + k + 1) for k, (name, _) in enumerate(told)}
+    return Compiled(model, layers, owners, slices, size, q, u, forced.fastest, _against(hung, bodies, bound), geared)
 
 
-def _against(hung: tuple[Ride, ...], bodies: Records) -> tuple[tuple[int, int, float], ...]:
-    """The angles that the scene gives relative to a carrier."""
+def _against(hung: tuple[Ride, ...], bodies: Records, bound: tuple[Bond, ...]) -> tuple[tuple[int, int, float], ...]:
+    """The angles that the scene gives relative to a carrier, of bodies with a coordinate of their own."""
     return tuple(
         (int(bodies[i].first), angle_of(bodies[ride.turns_with]) if ride.turns_with >= 0 else -1, ride.angle)
         for i, ride in enumerate(hung)
-        if bodies[i].first >= 0 and (ride.turns_with >= 0 or ride.angle != 0.0)
+        if bodies[i].first >= 0 and bound[i].to == i and (ride.turns_with >= 0 or ride.angle != 0.0)
     )
 
 
@@ -93,9 +114,18 @@ def _reach(body: Body) -> float:
     return far
 
 
-def _bodies(scene: Scene, hung: tuple[Ride, ...]) -> tuple[Records, dict[str, slice], np.ndarray, np.ndarray]:
+def _slices(scene: Scene, bodies: Records) -> dict[str, slice]:
+    """The coordinates of each body that has some of its own."""
+    count = {"fixed": 0, "pivot": 1, "slide": 1, "free": 3}
+    return {
+        body.name: slice(int(row.first), int(row.first) + count[body.motion])
+        for body, row in zip(scene.bodies, bodies, strict=True)
+        if count[body.motion] and body.geared is None
+    }
+
+
+def _bodies(scene: Scene, hung: tuple[Ride, ...], bound: tuple[Bond, ...]) -> tuple[Records, np.ndarray, np.ndarray]:
     rows = records(BODY, len(scene.bodies))
-    slices: dict[str, slice] = {}
     q: list[float] = []
     u: list[float] = []
     for i, (body, ride) in enumerate(zip(scene.bodies, hung, strict=True)):
@@ -104,13 +134,17 @@ def _bodies(scene: Scene, hung: tuple[Ride, ...]) -> tuple[Records, dict[str, sl
         start = {"fixed": (), "pivot": (ride.start,), "slide": (0.0,), "free": (*body.position, body.angle)}[body.motion]
         # The whole record at once: writing one field takes as long.
         first = len(q) if start else -1
-        rows[i] = (MOTION_CODE[body.motion], first, *ride.place, ride.start, *body.axis, *direction, carrier)
-        if start:
-            slices[body.name] = slice(len(q), len(q) + len(start))
+        line = bound[i].ratio, bound[i].phase
+        rows[i] = (MOTION_CODE[body.motion], first, *ride.place, ride.start, *body.axis, *direction, carrier, *line)
+        if body.geared is not None:
+            continue
         q.extend(start)
         velocity = (ride.spin,) if body.motion == "pivot" else body.velocity
         u.extend(velocity if velocity else (0.0,) * len(start))
-    return rows, slices, np.array(q, float), np.array(u[: len(q)], float)
+    for i, bond in enumerate(bound):
+        if bond.to != i:
+            rows[i].first = rows[bond.to].first
+    return rows, np.array(q, float), np.array(u[: len(q)], float)
 
 
 def _primitives(

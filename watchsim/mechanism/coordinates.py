@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from watchsim.mechanism.line_springs_of import coordinates_of_lines, line_springs
 from watchsim.model.records import (
     CONSTANT,
     COORDINATE,
@@ -24,6 +25,7 @@ from watchsim.model.records import (
 from watchsim.scene.body import Body
 from watchsim.scene.carriers import Ride, Weighed, weigh
 from watchsim.scene.force import Torque
+from watchsim.scene.gear_trains import Bond, felt
 from watchsim.scene.oscillation import oscillators
 from watchsim.scene.scene import Scene
 
@@ -32,82 +34,124 @@ OVER = {"constant": CONSTANT, "angle": OVER_ANGLE, "time": OVER_TIME}
 
 @dataclass(frozen=True)
 class Forced:
-    """Coordinates, joints, force tables and their knots, in the model's order; the largest natural frequency."""
+    """Coordinates, joints, line springs, force tables and their knots, in the model's order; the largest natural frequency."""
 
-    parts: tuple[Records, Records, Records, np.ndarray]
+    parts: tuple[Records, Records, Records, Records, np.ndarray]
     fastest: float
 
 
 class _Targets:
-    """On which record do the springs, torques and damping of a body act: its coordinate, or the joint with its carrier?"""
+    """On which record does a spring, torque or damper act: its body's coordinate, or the joint with another body?"""
 
-    def __init__(self, scene: Scene, hung: tuple[Ride, ...], slices: dict[str, slice], rows: Records) -> None:
-        self.scene, self.rows = scene, rows
-        numbers = {body.name: i for i, body in enumerate(scene.bodies)}
-        acting = dict.fromkeys(
-            [one.body for one in oscillators(scene)] + [one.body for one in scene.torques] + [one.body for one in scene.damping]
-        )
-        self.slices, self.rides = slices, {name: hung[numbers[name]] for name in acting}
-        jointed = [name for name in acting if self.rides[name].turns_with >= 0]
-        self.joints = records(JOINT, len(jointed))
-        self._joint = dict(zip(jointed, self.joints, strict=True))
-        for name, joint in self._joint.items():
-            carrier = scene.bodies[self.rides[name].turns_with]
-            joint.coordinate, joint.on = slices[name].start, slices[carrier.name].stop - 1
+    def __init__(
+        self, scene: Scene, hung: tuple[Ride, ...], bound: tuple[Bond, ...], slices: dict[str, slice], rows: Records
+    ) -> None:
+        self.scene, self.slices, self.rows = scene, slices, rows
+        self._hung = {body.name: ride for body, ride in zip(scene.bodies, hung, strict=True)}
+        self.bonds = {body.name: bond for body, bond in zip(scene.bodies, bound, strict=True)}
+        acting: list[tuple[str, str | None]] = [(one.body, None) for one in oscillators(scene)]
+        for forces in (scene.springs, scene.torques, scene.damping):
+            acting += [(one.body, one.against) for one in forces]
+        other = {ends: number for ends in dict.fromkeys(acting) if (number := self._other(*ends)) >= 0}
+        self.joints = records(JOINT, len(other))
+        self._joint = dict(zip(other, self.joints, strict=True))
+        for (name, against), joint in self._joint.items():
+            joint.coordinate, joint.on, joint.watched = self.number(name), other[name, against], 0
+
+    def _other(self, name: str, against: str | None) -> int:
+        """The coordinate of the other end, -1 where there is none."""
+        if against is not None:
+            return self.number(against)
+        carrier = self._hung[name].turns_with
+        return self.number(self.scene.bodies[carrier].name) if carrier >= 0 and self.scene.body(name).geared is None else -1
 
     def number(self, name: str) -> int:
-        """The coordinate: a body's angle, or a sliding body's travel."""
-        part = self.slices[name]
-        return part.stop - 1 if self.scene.body(name).motion == "free" else part.start
+        """The coordinate: a body's angle, or a sliding body's travel; of the body that it is geared to."""
+        body = self._holder(name)
+        part = self.slices[body.name]
+        return part.stop - 1 if body.motion == "free" else part.start
 
-    def on(self, name: str) -> int:
-        """The angle of its carrier, against which it acts; -1 for none."""
-        return int(self._joint[name].on) if name in self._joint else -1
+    def _holder(self, name: str) -> Body:
+        return self.scene.bodies[self.bonds[name].to]
 
-    def row(self, name: str) -> Any:
-        return self._joint[name] if name in self._joint else self.rows[self.number(name)]
+    def on(self, name: str, against: str | None = None) -> int:
+        """The coordinate of the other end, such as the angle of its carrier; -1 for none."""
+        return int(self._joint[name, against].on) if (name, against) in self._joint else -1
 
-    def offset(self, name: str) -> float:
+    def row(self, name: str, against: str | None = None) -> Any:
+        return self._joint[name, against] if (name, against) in self._joint else self.rows[self.number(name)]
+
+    def ratio(self, name: str) -> float:
+        """How far the body goes, as the scene gives it, for one unit of the coordinate."""
+        return self.bonds[name].told
+
+    def place(self, name: str, value: float, against: str | None = None) -> float:
+        """The coordinate, or the difference of the two, at which the scene gives the body this angle or travel."""
+        bond = self.bonds[name]
+        away = self._offset(against) if against is not None else 0.0
+        return (value - bond.shift) / bond.told + self._offset(self._holder(name).name) - away
+
+    def _offset(self, name: str) -> float:
         """From an angle as the scene gives it to the coordinate, or to the difference of the two."""
-        return self.rides[name].angle if self.scene.body(name).motion == "pivot" else 0.0
+        return self._hung[name].angle if self.scene.body(name).motion == "pivot" else 0.0
 
 
-def forced_coordinates(scene: Scene, hung: tuple[Ride, ...], slices: dict[str, slice], size: float) -> Forced:
-    """Coordinates with their forces; joints; force tables and their knots."""
+def forced_coordinates(
+    scene: Scene, hung: tuple[Ride, ...], bound: tuple[Bond, ...], slices: dict[str, slice], size: float
+) -> Forced:
+    """Coordinates with their forces; joints; force tables and their knots.
+
+    What acts on a geared body acts on the coordinate of the one it is geared to, with its ratio as lever arm.
+    """
     count = sum(part.stop - part.start for part in slices.values())
     rows = records(COORDINATE, count)
     weighed = weigh(scene.bodies, hung)
+    masses = felt(scene.bodies, hung, weighed)
     for i, body in enumerate(scene.bodies):
         if body.name in slices:
             _inertias(scene, body, i, weighed[i], hung[i], rows[slices[body.name]], size)
-    targets = _Targets(scene, hung, slices, rows)
+            if any(bond.to == i != k for k, bond in enumerate(bound)) and body.prescribed is None:
+                rows[slices[body.name]].mass = masses[i]
+    targets = _Targets(scene, hung, bound, slices, rows)
+    _weigh_geared(scene, weighed, targets)
     for spring in scene.springs:
-        row = targets.row(spring.body)
+        row = targets.row(spring.body, spring.against)
         # Several springs on one coordinate add up to one: stiffnesses add, rests average.
-        total = row.stiffness + spring.stiffness
-        rest = spring.rest + targets.offset(spring.body)
-        row.rest = (row.stiffness * row.rest + spring.stiffness * rest) / total
+        stiffness = spring.stiffness * targets.ratio(spring.body) ** 2
+        total = row.stiffness + stiffness
+        rest = targets.place(spring.body, spring.rest, spring.against)
+        row.rest = (row.stiffness * row.rest + stiffness * rest) / total
         row.stiffness = total
     stiffest = _watch(scene, targets)
     for damping in scene.damping:
-        row = targets.row(damping.body)
-        row.viscous += damping.viscous
-        row.quadratic += damping.quadratic
-        row.coulomb += damping.coulomb
+        row, ratio = targets.row(damping.body, damping.against), abs(targets.ratio(damping.body))
+        row.viscous += ratio**2 * damping.viscous
+        row.quadratic += ratio**3 * damping.quadratic
+        row.coulomb += ratio * damping.coulomb
     tables, knots = _tables(scene, targets)
     joints = targets.joints
     if joints.coulomb.any():
-        raise ValueError("dry friction between a carried body and a carrier that turns is not simulated")
+        raise ValueError("dry friction between two bodies that turn is not simulated")
     rows.load = np.abs(rows.force) + np.hypot(rows.weight_x, rows.weight_y)
     tabled = {int(table.coordinate) for table in tables}
-    jointed = {*joints.coordinate.tolist(), *joints.on.tolist()}
+    lines = line_springs(scene)
+    held = coordinates_of_lines(scene, lines, slices, bound)
+    jointed = {*joints.coordinate.tolist(), *joints.on.tolist(), *(k for k, _ in held)}
     for i, row in enumerate(rows):
         row.linear = row.quadratic == 0.0 and row.weight_x == 0.0 and row.weight_y == 0.0 and i not in tabled | jointed
-    light = 1.0 / (1.0 / rows.mass[joints.coordinate] + 1.0 / rows.mass[joints.on])
-    fastest = float(np.sqrt(np.max([*(rows.stiffness / rows.mass), stiffest, *(joints.stiffness / light)], initial=0.0)))
+    inverse = np.where(rows.driven != 0, 0.0, 1.0 / rows.mass)
+    light = 1.0 / (inverse[joints.coordinate] + inverse[joints.on])
+    fastest = float(
+        np.sqrt(
+            np.max(
+                [*(rows.stiffness / rows.mass), stiffest, *(joints.stiffness / light), *(k / rows.mass[i] for i, k in held)],
+                initial=0.0,
+            )
+        )
+    )
     push = [*(np.abs(rows.force) / (rows.mass * rows.scale)), *(np.abs(joints.force) / light)]
     rows.rate = fastest or float(np.sqrt(np.max(push, initial=0.0))) or 1.0
-    return Forced((rows, joints, tables, knots), fastest)
+    return Forced((rows, joints, lines, tables, knots), fastest)
 
 
 def _watch(scene: Scene, targets: _Targets) -> float:
@@ -117,8 +161,10 @@ def _watch(scene: Scene, targets: _Targets) -> float:
         if targets.on(one.body) < 0:
             row = targets.row(one.body)
             plain = one.weight == 0.0 and scene.body(one.body).motion == "pivot"
-            row.watched, row.level = 1, row.rest if plain else one.rest + targets.offset(one.body)
+            row.watched, row.level = 1, row.rest if plain else targets.place(one.body, one.rest)
             largest = max(largest, (one.spring + one.weight) / one.inertia)
+        else:
+            targets.row(one.body).watched = 1
     return largest
 
 
@@ -143,22 +189,39 @@ def _inertias(scene: Scene, body: Body, number: int, weighed: Weighed, ride: Rid
         rows.force = (weighed.mass * gx, weighed.mass * gy, 0.0)
 
 
+def _weigh_geared(scene: Scene, weighed: tuple[Weighed, ...], targets: _Targets) -> None:
+    """Gravity on a sliding body that is geared to another; a geared one that turns is poised."""
+    gx, gy = scene.gravity
+    for body, load in zip(scene.bodies, weighed, strict=True):
+        if body.geared is not None and body.motion == "slide" and scene.body(body.geared.to).prescribed is None:
+            pull = load.mass * (gx * body.axis[0] + gy * body.axis[1])
+            targets.row(body.name).force += targets.ratio(body.name) * pull
+
+
 def _tables(scene: Scene, targets: _Targets) -> tuple[Records, np.ndarray]:
     """Constant torques go into the coordinates, the others into tables."""
     tabled: list[Torque] = []
     for torque in scene.torques:
         if torque.over == "constant":
-            targets.row(torque.body).force += torque.value
+            targets.row(torque.body, torque.against).force += targets.ratio(torque.body) * torque.value
         else:
             tabled.append(torque)
     paths = [body for body in scene.bodies if body.prescribed is not None and body.prescribed.table]
     tables = records(TABLE, len(tabled) + len(paths))
     knots: list[tuple[float, float]] = []
     for row, torque in zip(tables, tabled, strict=False):
-        row.coordinate, row.on, row.over = targets.number(torque.body), targets.on(torque.body), OVER[torque.over]
+        row.coordinate, row.on, row.over = (
+            targets.number(torque.body),
+            targets.on(torque.body, torque.against),
+            OVER[torque.over],
+        )
         row.start, row.count = len(knots), len(torque.table)
-        shift = targets.offset(torque.body) if torque.over == "angle" else 0.0
-        knots.extend((x + shift, value) for x, value in torque.table)
+        over_angle, ratio = torque.over == "angle", targets.ratio(torque.body)
+        knots.extend(
+            sorted(
+                (targets.place(torque.body, x, torque.against) if over_angle else x, ratio * value) for x, value in torque.table
+            )
+        )
     for row, body in zip(tables[len(tabled) :], paths, strict=True):
         assert body.prescribed is not None
         row.coordinate, row.on, row.over = targets.slices[body.name].start, -1, OVER_TIME

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from watchsim.mechanism.gears_in_words import gear_lines
 from watchsim.scene.body import Body
 from watchsim.scene.carriers import at_start
-from watchsim.scene.force import Damping, Mainspring, Spring
-from watchsim.scene.oscillation import Oscillator, oscillator, oscillators
+from watchsim.scene.force import Damping, LineSpring, Mainspring, Spring
+from watchsim.scene.oscillation import Oscillator, loads, oscillator, oscillators
 from watchsim.scene.roles import keeps_time
 from watchsim.scene.scene import Scene
 from watchsim.units import metric, show, to
@@ -18,8 +19,9 @@ SMALL = 0.1e-3  # m: less is not given in millimetres
 
 
 def force_lines(scene: Scene) -> Iterator[str]:
-    """A line for each centre distance, spring, drive, damper and contact, and for what swings by its weight."""
+    """A line for each centre distance, gear, spring, drive, damper and contact, and for what swings by its weight."""
     yield from _distance_lines(scene)
+    yield from gear_lines(scene)
     yield from _force_lines(scene)
     yield from _contact_lines(scene)
 
@@ -52,16 +54,28 @@ def _distance_lines(scene: Scene) -> Iterator[str]:
 
 def _force_lines(scene: Scene) -> Iterator[str]:
     for spring in scene.springs:
-        yield f"  spring on {spring.body}: {_spring(scene, spring)}"
+        yield f"  spring on {_ends(spring.body, spring.against)}: {_spring(scene, spring)}"
+    yield from map(_line_spring, scene.line_springs)
     yield from (_swing(scene, one) for one in oscillators(scene) if one.weight)
     for torque in scene.torques:
         unit = "N" if scene.body(torque.body).motion == "slide" else "N·m"
         text = metric(torque.value, unit) if not torque.table else f"{len(torque.table)} values over {torque.over}"
         if torque.mainspring is not None:
             text = f"{metric(torque.value, unit)}, {_mainspring(torque.mainspring)}"
-        yield f"  drive on {torque.body}: {text}"
+        yield f"  drive on {_ends(torque.body, torque.against)}: {text}"
     for damping in scene.damping:
-        yield f"  damping on {damping.body}: {_damping(scene, damping)}"
+        yield f"  damping on {_ends(damping.body, damping.against)}: {_damping(scene, damping)}"
+
+
+def _line_spring(spring: LineSpring) -> str:
+    first, second = spring.between
+    text = f"{metric(spring.stiffness, 'N/m')}, {length(spring.length)} long without force"
+    damped = f", damping {metric(spring.viscous, 'N·s/m')}" if spring.viscous else ""
+    return f"  spring from a point of {first} to one of {second or 'the movement'}: {text}{damped}"
+
+
+def _ends(body: str, against: str | None) -> str:
+    return body if against is None else f"{body} against {against}"
 
 
 def _mainspring(spring: Mainspring) -> str:
@@ -87,19 +101,32 @@ def _swing(scene: Scene, one: Oscillator) -> str:
 def _spring(scene: Scene, spring: Spring) -> str:
     body = scene.body(spring.body)
     linear = body.motion == "slide"
-    swinging = oscillator(scene.bodies, (spring,), (0.0, 0.0), spring.body)
-    hertz = swinging.hertz if swinging and swinging.hertz else math.nan
+    hertz = _hertz(scene, spring)
     stiffness = metric(spring.stiffness, "N/m" if linear else "N·m/rad")
     rest = place(spring.rest) if linear else turned(spring.rest)
-    beats = f" = {show(hertz, 'vph')}" if keeps_time(scene) else " while it touches nothing"
+    timed = keeps_time(scene) and spring.against is None
+    beats = (
+        f" = {show(hertz, 'vph')}" if timed else " while they touch nothing" if spring.against else " while it touches nothing"
+    )
     return f"{stiffness}, {show(hertz, 'Hz')}{beats}, at rest at {rest}"
+
+
+def _hertz(scene: Scene, spring: Spring) -> float:
+    """Of the body on this spring alone; between two bodies, of both against each other."""
+    if spring.against is None:
+        swinging = oscillator(scene.bodies, (spring,), (0.0, 0.0), spring.body)
+        return swinging.hertz if swinging and swinging.hertz else math.nan
+    masses = dict(zip((body.name for body in scene.bodies), loads(scene.bodies)[2], strict=True))
+    mobility = sum(1.0 / masses[name] for name in (spring.body, spring.against) if scene.body(name).prescribed is None)
+    return math.sqrt(spring.stiffness * mobility) / math.tau
 
 
 def _damping(scene: Scene, damping: Damping) -> str:
     viscous, quadratic = damping.viscous, damping.quadratic
     linear = scene.body(damping.body).motion == "slide"
     parts = [metric(viscous, "N·s/m" if linear else "N·m·s/rad")] if viscous else []
-    swinging = oscillator(scene.bodies, scene.springs, scene.gravity, damping.body)
+    single = damping.against is None
+    swinging = oscillator(scene.bodies, scene.springs, scene.gravity, damping.body) if single else None
     if viscous and swinging and swinging.hertz:
         parts.append(f"Q = {math.sqrt(swinging.stiffness * swinging.inertia) / viscous:.6g}")
     if quadratic:

@@ -59,9 +59,10 @@ def _body_entry(body: Body) -> dict[str, Any]:
         "centre_of_mass_m": list(body.centre_of_mass),
         "solids": [_solid_entry(solid) for solid in body.solids],
         "position_m": list(body.position),
-        "coordinates": COORDINATES[body.motion],
+        "coordinates": COORDINATES[body.motion] if body.geared is None else 0,
         "driven": body.prescribed is not None,
         **({"on": body.on} if body.on is not None else {}),
+        **({"geared": {"to": body.geared.to, "ratio": body.geared.ratio}} if body.geared is not None else {}),
     }
 
 

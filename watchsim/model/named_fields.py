@@ -6,6 +6,7 @@ numba passes it as one pointer, so that `state.clock.time` costs what `state.clo
 
 from __future__ import annotations
 
+import functools
 from typing import Any, TypeVar, cast, get_args, get_type_hints
 
 import numpy as np
@@ -16,6 +17,7 @@ Fields = TypeVar("Fields")
 _CODES = {float: "f8", int: "i8"}
 
 
+@functools.cache
 def dtype_of(fields: type) -> np.dtype[Any]:
     """The numpy type with the fields of that class, eight bytes each; `Annotated[Integers, 5]` is five of them."""
     described: list[tuple[Any, ...]] = []
@@ -30,7 +32,7 @@ def dtype_of(fields: type) -> np.dtype[Any]:
 
 def blank(fields: type[Fields]) -> Fields:
     """A record with these fields, all zero."""
-    return cast(Fields, np.zeros(1, dtype_of(fields)).view(np.recarray)[0])
+    return cast(Fields, np.zeros(1, dtype_of(cast(type, fields))).view(np.recarray)[0])
 
 
 def row_of(record: Any) -> NDArray[Any]:

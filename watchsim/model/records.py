@@ -35,6 +35,8 @@ BODY = np.dtype(
         ("c", "f8"),  # cosine and sine of `angle`
         ("s", "f8"),
         ("carrier", "i8"),  # the moving body in whose frame (x, y) lies, -1: the movement
+        ("ratio", "f8"),  # its angle, or the way along its axis, is ratio q + phase of its first coordinate: 1 and 0 but for
+        ("phase", "f8"),  # bodies geared to the one whose coordinate that is
     ]
 )
 
@@ -60,18 +62,34 @@ COORDINATE = np.dtype(
     ]
 )
 
-# What acts at the pivot of a body that is carried by a turning one: on its coordinate, and back on that of its carrier.
-# Angles are differences of the two; the fields of `coordinate` itself are then zero.
+# What acts between two coordinates, on the one and back on the other: at the pivot of a body that is carried by a turning one
+# (the fields of `coordinate` itself are then zero), or between any two bodies. Angles are differences of the two.
 JOINT = np.dtype(
     [
         ("coordinate", "i8"),
-        ("on", "i8"),  # the carrier's angle
+        ("on", "i8"),  # the carrier's angle, or the other body's coordinate
+        ("watched", "i8"),  # 1: turning points and passages of the difference are events
         ("force", "f8"),
         ("viscous", "f8"),
         ("quadratic", "f8"),
         ("coulomb", "f8"),  # always 0
         ("stiffness", "f8"),
         ("rest", "f8"),
+    ]
+)
+
+# A spring and damper along the line between a point of one body and a point of another, in their frames.
+LINE_SPRING = np.dtype(
+    [
+        ("a", "i8"),
+        ("b", "i8"),  # -1: the movement
+        ("xa", "f8"),
+        ("ya", "f8"),
+        ("xb", "f8"),
+        ("yb", "f8"),
+        ("stiffness", "f8"),
+        ("length", "f8"),  # without force
+        ("viscous", "f8"),
     ]
 )
 
@@ -169,6 +187,7 @@ class Model(NamedTuple):
     bodies: Records
     coordinates: Records
     joints: Records
+    lines: Records
     tables: Records
     knots: NDArray[np.float64]  # (knots, 2) abscissa, value of all tables
     primitives: Records

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from watchsim.analysis.summary import summary
-from watchsim.analysis.timing.phases import Phase, phases
+from watchsim.analysis.timing.phases import Phase, phases_within
 from watchsim.pages.files import packed_files
 from watchsim.pages.html import Markup, element, joined
 from watchsim.pages.player.canvas_outlines import drawn_parts
@@ -65,7 +65,7 @@ def page_text(run: Trajectory, window: Sequence[float] | None = None, numbers: M
     told = plain(summary(run) if numbers is None else numbers)
     span, moved, off = _motion(run, window)
     size = picture_size(run, span)
-    found = phases(run)
+    found = phases_within(run, span)
     opening = _opening(found, span)
     parts = drawn_parts(run.scene, size)
     data = player_data(run, span, moved, parts, found, opening)
@@ -75,7 +75,7 @@ def page_text(run: Trajectory, window: Sequence[float] | None = None, numbers: M
         "poster": poster(run, span, parts, opening),
         "verdict": verdict(told) or Markup(""),
         "lead": _lead(run, span),
-        "sheet": sheet(run, told, found),
+        "sheet": sheet(run, told),
         "saved": _saved(left_out),
         "made": _made(told, off),
     }
@@ -86,7 +86,7 @@ def player_text(run: Trajectory, window: Sequence[float] | None = None) -> str:
     """A page with the player and the plots only, for a frame in another page."""
     span, moved, off = _motion(run, window)
     size = picture_size(run, span)
-    found = phases(run)
+    found = phases_within(run, span)
     opening = _opening(found, span)
     data = player_data(run, span, moved, drawn_parts(run.scene, size), found, opening)
     data["files"] = {"entries": [], "data": ""}

@@ -15,6 +15,7 @@ from typing import Any
 from watchsim.pages.html import Markup, embedded, joined
 
 ASSETS = "watchsim.pages.assets"
+PLOTTING = ("uplot/LICENSE", "uplot/uPlot.iife.min.js", "uplot/uPlot.min.css")
 SCRIPTS = (
     "bytes",
     "motion",
@@ -34,13 +35,14 @@ SCRIPTS = (
 
 def page(title: str, parts: Mapping[str, Markup | str | None], data: Mapping[str, Any]) -> str:
     """The whole page; `parts` go into the places that the template names, escaped where they are no markup."""
-    script = "".join(_asset(f"{name}.js") for name in SCRIPTS)
+    licence, library, library_style = map(_asset, PLOTTING)
+    script = "".join((f"/*\n{licence}*/\n", library, *(_asset(f"{name}.js") for name in SCRIPTS)))
     script = f'"use strict";\n(() => {{\n{script}}})();\n'
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode("ascii")
     template = Template(_asset("page.html"))
     places: dict[str, object] = {name: joined(part) for name, part in parts.items()}
     return template.substitute(
-        places, title=joined(title), digest=digest, style=_asset("page.css"), script=script, data=embedded(data)
+        places, title=joined(title), digest=digest, style=library_style + _asset("page.css"), script=script, data=embedded(data)
     )
 
 

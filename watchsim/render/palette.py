@@ -24,6 +24,7 @@ PHASES = {  # of a beat; pale, to lie behind curves, and distinct for every kind
     "drop": "#f0d7e5",
     "run to banking": "#eebf99",
 }
+SECOND, ELSE = "#66c5ab", "#eeeeee"  # an impulse that follows another; any other phase
 PHASE_LINES = {  # the same for curves: Okabe and Ito's colours
     "unlock": "#0072b2",
     "catch-up": "#e69f00",

@@ -31,8 +31,8 @@ COLUMNS = ("t", "q", "u", "a", "events", "end_q", "end_u")
 NUMBERS = ("worst_penetration", "worst_residual", "overlap", "energy", "counts", "sums")
 
 
-def write_trajectory(run: Trajectory, path: Path) -> None:
-    """Write `path` (npz): t, q, u, a and events in full precision, and everything else but the scene."""
+def write_trajectory(run: Trajectory, path: Path | IO[bytes]) -> None:
+    """Write the file `path` (npz): t, q, u, a and events in full precision, and everything else but the scene."""
     header = {
         "format": FORMAT,
         "stop": run.stop.name,
@@ -114,15 +114,30 @@ def _check(run: Trajectory) -> None:
         raise ValueError("it holds something that is not a number")
     if any(array.dtype != np.float64 or array.shape not in ((0,), (width,)) for array in (run.end_q, run.end_u)):
         raise ValueError("its end is no state")
-    if not _in_order(run.t) or any(np.any(part["contact"] >= len(run.pairs)) for (part,) in blocks(run.events)):
+    if not _in_order(run.t) or any(not _within(part["contact"], -1, len(run.pairs)) for (part,) in blocks(run.events)):
         raise ValueError("its rows are out of order, or its events of unknown contacts")
     for (part,) in blocks(run.events):
-        if np.any(part["body"] >= len(run.scene.bodies)) or not set(np.unique(part["kind"]).tolist()) <= set(EventKind):
+        if not _within(part["body"], -1, len(run.scene.bodies)) or not set(np.unique(part["kind"]).tolist()) <= set(EventKind):
             raise ValueError("its events are of unknown bodies or kinds")
+    _check_pairs(as_pairs(run.pairs), len(run.scene.contacts))
     if not all(isinstance(getattr(run, name), (int, float)) for name in FLOATS) or not isinstance(run.stop_message, str):
         raise ValueError("its header holds something that is not a number")
     if not all(isinstance(mapping, dict) for mapping in (run.overlap, run.energy, run.counts, run.sums)):
         raise ValueError("its header holds no sums")
+
+
+def _check_pairs(pairs: Pairs, groups: int) -> None:
+    """ValueError where a contact is not one of two named primitives and of one of the scene's `groups` of contacts."""
+    table = pairs.table
+    if table.dtype.kind != "i" or table.shape != (len(table), 3):
+        raise ValueError("its contacts are no whole numbers, three each")
+    if not (_within(table[:, 0], 0, groups) and _within(table[:, 1:], 0, len(pairs.names))):
+        raise ValueError("its contacts are of unknown primitives")
+
+
+def _within(numbers: NDArray[Any], first: int, end: int) -> bool:
+    """True if all lie in [first, end)."""
+    return not numbers.size or bool(first <= numbers.min() and numbers.max() < end)
 
 
 def _finite(run: Trajectory) -> bool:

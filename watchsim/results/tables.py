@@ -7,7 +7,7 @@ import functools
 import io
 import json
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from enum import Enum
 from itertools import chain, repeat
 from pathlib import Path
@@ -16,8 +16,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.simulation.record.trajectory import EventKind, Trajectory
-from watchsim.storage.columns import blocks
+from watchsim.scene.scene import Scene
+from watchsim.simulation.record.trajectory import EventKind, Pair, Trajectory
+from watchsim.storage.columns import Columns, blocks
 
 EVENT_COLUMNS = (
     "t_s",
@@ -31,6 +32,7 @@ EVENT_COLUMNS = (
     "value",
 )
 
+PIECE = 1 << 20  # bytes that are written at a time
 ROWS = 1 << 13  # of the table that are made into text together
 NO_IMPULSE = "0.0,0.0,0.0,"  # of an event that is no impact
 
@@ -67,19 +69,40 @@ def write_events(run: Trajectory, path: Path) -> None:
     `value` is the direction of sliding, the end of an accumulation (s), a turning point (rad or m) or the velocity at rest
     position (rad/s or m/s), by the kind of event.
     """
-    names = [body.name for body in run.scene.bodies]
-    kinds = {int(kind): kind.name.lower() for kind in EventKind}
+    EventLines(run.scene, run.pairs).write(run, path)
 
-    @functools.cache
-    def sides(contact: int, body: int) -> str:
-        return _row(_sides(run, contact, body, names))
 
-    # What is the same in thousands of rows is made into text once, and of the rest a column at a time: half the time of a
-    # csv.writer that sees every field.
-    with path.open("w", newline="", encoding="utf-8") as file:
-        file.write(_row(EVENT_COLUMNS) + "\r\n")
-        for (part,) in blocks(run.events, length=ROWS):
-            file.write("".join(_lines(part, kinds, sides)))
+class EventLines:
+    """The rows of events.csv, which may be begun while the run goes on; text that is long lies in a file in `folder`."""
+
+    def __init__(self, scene: Scene, pairs: Sequence[Pair], folder: Path | None = None) -> None:
+        names = [body.name for body in scene.bodies]
+        self._kinds = {int(kind): kind.name.lower() for kind in EventKind}
+        self._sides = functools.cache(lambda contact, body: _row(_sides(pairs, contact, body, names)))
+        self._text = Columns()
+        self._text.folder = folder
+        self.rows = 0
+
+    def add(self, events: NDArray[Any]) -> None:
+        """The next events of the run, in order."""
+        for text in self._of(events):
+            self._text.append((np.frombuffer(text, np.uint8),))
+        self.rows += len(events)
+
+    def write(self, run: Trajectory, path: Path) -> None:
+        """Write the table of a run whose first events were added, with those that are missing."""
+        with path.open("wb") as file:
+            file.write((_row(EVENT_COLUMNS) + "\r\n").encode())
+            for whole in self._text.all():
+                for (part,) in blocks(whole, length=PIECE):
+                    file.write(part.data)
+            file.writelines(self._of(run.events[self.rows :]))
+
+    def _of(self, events: NDArray[Any]) -> Iterator[bytes]:
+        # What is the same in thousands of rows is made into text once, and of the rest a column at a time: half the time of a
+        # csv.writer that sees every field.
+        for (part,) in blocks(events, length=ROWS):
+            yield "".join(_lines(part, self._kinds, self._sides)).encode()
 
 
 def _lines(events: NDArray[Any], kinds: Mapping[int, str], sides: Callable[[int, int], str]) -> Iterator[str]:
@@ -113,10 +136,10 @@ def _row(fields: Iterable[object]) -> str:
     return out.getvalue()
 
 
-def _sides(run: Trajectory, contact: int, body: int, names: list[str]) -> tuple[object, str, str]:
+def _sides(pairs: Sequence[Pair], contact: int, body: int, names: list[str]) -> tuple[object, str, str]:
     if contact < 0:
         return "", names[body] if body >= 0 else "", ""
-    pair = run.pairs[contact]
+    pair = pairs[contact]
     first = f"{pair.layer_a} {pair.primitive_a} {pair.index_a}"
     second = f"{pair.layer_b} {pair.primitive_b} {pair.index_b}"
     return contact, f"{pair.body_a}/{pair.body_b}", f"{first} / {second}"

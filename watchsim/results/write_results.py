@@ -8,10 +8,12 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
+import tempfile
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 from watchsim.results.archive import write_trajectory
 from watchsim.results.scene_copy import LOCK, locked_drawings, travelling
@@ -27,6 +29,8 @@ FAILURE = "lcp_failure.json"  # only where the solver gave up on a complementari
 LATER = ("beats.csv", "phases.csv", "report.txt", "movie.mp4", "movie.gif", "tick.wav", "report.html", "import.png")
 OURS = frozenset((SUMMARY, LOCK, TRAJECTORY, EVENTS, STATE, FAILURE, *LATER))
 PLOTS = re.compile(r"(plots|drawings|plots/(kinematics|last_beats|tape)\.(png|svg|pdf))")
+
+PIECE = 1 << 20  # bytes that are copied at a time
 
 Extra = Mapping[str, str | bytes | Callable[[Path], object]]
 
@@ -73,7 +77,8 @@ def write_results(
 
     summary     numbers for summary.json (numpy values welcome; not-a-number becomes null)
     scene_lock  text of scene.lock.toml; by default made of the run's scene, whose drawings go into the folder with it
-    extra       more files: relative path -> text, bytes, or a function that writes the file it is given
+    extra       more files: relative path -> text, bytes, or a function that writes the file it is given; so for
+                trajectory.npz and events.csv where they were begun before (`Packed`, `tables.EventLines`)
     force       replace an existing results folder; files in it that are not ours are kept
 
     FileExistsError as from `check_folder`; OSError where the disk is full or the place not writable: what was there before
@@ -84,6 +89,33 @@ def write_results(
     real(target).parent.mkdir(parents=True, exist_ok=True)
     write_folder(target, filler(run, summary or {}, files), ours_in(real(target)), "the results")
     return target
+
+
+class Packed:
+    """trajectory.npz in the making: packed in a thread, which needs another core and no Python, into a file without a name.
+
+    `write` puts it where it belongs, as `extra` of `write_results` asks for; where the thread could not, it is packed anew.
+    """
+
+    def __init__(self, run: Trajectory, folder: Path) -> None:
+        self._run, self._threads = run, ThreadPoolExecutor(1)
+        self._made = self._threads.submit(self._pack, folder)
+
+    def _pack(self, folder: Path) -> IO[bytes]:
+        file = tempfile.TemporaryFile(dir=folder)  # noqa: SIM115 - until it is written
+        write_trajectory(self._run, file)
+        return file
+
+    def write(self, path: Path) -> None:
+        """Write `path`, once."""
+        try:
+            made = self._made.result()
+        except OSError:
+            write_trajectory(self._run, path)
+            return
+        made.seek(0)
+        with path.open("wb") as file:
+            shutil.copyfileobj(made, file, PIECE)
 
 
 def filler(run: Trajectory, summary: Mapping[str, Any], files: Extra) -> Callable[[Path], None]:
@@ -97,14 +129,15 @@ def bare_filler(run: Trajectory, files: Extra) -> Callable[[Path], None]:
 
 
 def _fill(place: Path, run: Trajectory, summary: Mapping[str, Any], files: Extra) -> None:
-    with ThreadPoolExecutor(1) as beside:  # packing needs another core, and no Python
-        packed = beside.submit(write_trajectory, run, place / TRAJECTORY)
+    packed = None if TRAJECTORY in files else Packed(run, place)
+    if EVENTS not in files:
         write_events(run, place / EVENTS)
-        (place / SUMMARY).write_text(json_text(summary), encoding="utf-8")
-        if run.failure is not None:
-            (place / FAILURE).write_text(json_text(run.failure), encoding="utf-8")
-        _fill_rest(place, run, files)
-        packed.result()
+    (place / SUMMARY).write_text(json_text(summary), encoding="utf-8")
+    if run.failure is not None:
+        (place / FAILURE).write_text(json_text(run.failure), encoding="utf-8")
+    _fill_rest(place, run, files)
+    if packed is not None:
+        packed.write(place / TRAJECTORY)
 
 
 def _fill_bare(place: Path, run: Trajectory, files: Extra) -> None:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from watchsim.drawing.profile import Profile
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Point
+from watchsim.scene.gear import Geared
 from watchsim.scene.prescribed import Prescribed
 from watchsim.scene.solid import Solid
 
@@ -27,6 +28,7 @@ class Body:
     solids          where mass and inertia come from, as far as they were not given as numbers
     prescribed      the law by which a driven body moves whatever it meets; mass and inertia then change nothing
     on              the body that carries it; position, angle and velocity are then given in that one's frame, relative to it
+    geared          to which body without play: its coordinate then follows from that one's
     """
 
     name: str
@@ -43,6 +45,7 @@ class Body:
     solids: tuple[Solid, ...] = field(default=())
     on: str | None = None
     prescribed: Prescribed | None = None
+    geared: Geared | None = None
 
     @property
     def layers(self) -> tuple[str, ...]:

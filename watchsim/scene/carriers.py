@@ -97,9 +97,6 @@ def _ride(bodies: tuple[Body, ...], i: int, c: int, found: dict[int, Ride], comp
     if body.motion not in ("pivot", "fixed"):
         complain(body.name, f'motion = "{body.motion}" on a carrier is not simulated. A carried body is pivoted or fixed there')
         return alone
-    if bodies[c].prescribed is not None and body.motion != "fixed":
-        complain(body.name, f"{bodies[c].name} is driven, and what is pivoted on a driven body is not simulated. Fix it there")
-        return alone
     below = found[c]
     base = below.part_of
     inside = body.position if base == c else _moved(body.position, below.place, below.angle)

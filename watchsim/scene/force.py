@@ -1,6 +1,7 @@
 """Which forces act on a body besides contacts?
 
-All act on the body's own coordinate: a pivoted body's angle (N·m, rad) or a sliding body's travel (N, m).
+All act on the body's own coordinate: a pivoted body's angle (N·m, rad) or a sliding body's travel (N, m). With `against` they
+act between two bodies, on the one and back on the other; angles, travels and speeds are then those of `body` less the other's.
 """
 
 from __future__ import annotations
@@ -8,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from watchsim.geometry.coil import Coil
+from watchsim.geometry.primitives import Point
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,6 +24,22 @@ class Spring:
     rest: float = 0.0
     frequency: float | None = None
     coil: Coil | None = None
+    against: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class LineSpring:
+    """A spring and damper between a point of one body and a point of another, or of the movement (None).
+
+    points     in the bodies' frames, m
+    stiffness  N/m; `length` (m) is that without force, `viscous` (N·s/m) acts on its rate
+    """
+
+    between: tuple[str, str | None]
+    points: tuple[Point, Point]
+    stiffness: float
+    length: float
+    viscous: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,6 +73,7 @@ class Torque:
     over: str = "constant"
     table: tuple[tuple[float, float], ...] = ()
     mainspring: Mainspring | None = None
+    against: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +84,7 @@ class Damping:
     viscous: float = 0.0
     quadratic: float = 0.0
     coulomb: float = 0.0
+    against: str | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,9 +15,10 @@ from watchsim.geometry.primitives import Point
 from watchsim.scene.body import Body
 from watchsim.scene.carriers import Ride, Weighed, rides, weigh
 from watchsim.scene.force import Spring
+from watchsim.scene.gear_trains import felt
 from watchsim.scene.scene import Scene
 
-Loads = tuple[tuple[Ride, ...], tuple[Weighed, ...]]
+Loads = tuple[tuple[Ride, ...], tuple[Weighed, ...], tuple[float, ...]]
 
 POISED = 1e-9  # of the radius of gyration: a centre of mass nearer to the pivot lies on it, but for rounding
 HALVINGS = 200
@@ -77,32 +78,32 @@ def nominal_frequency(scene: Scene) -> float | None:
     found = oscillators(scene)
     if not found or scene.nominal is not None:
         return scene.nominal
-    springs = [spring for spring in scene.springs if spring.body == found[0].body]
+    springs = [spring for spring in scene.springs if spring.body == found[0].body and spring.against is None]
     return (springs[0].frequency if len(springs) == 1 else None) or found[0].hertz
 
 
 def oscillator(bodies: tuple[Body, ...], springs: Iterable[Spring], gravity: Point, name: str) -> Oscillator | None:
     """How the body of that name swings; None where neither a spring nor gravity pulls it back."""
-    own = [spring for spring in springs if spring.body == name]
+    own = [spring for spring in springs if spring.body == name and spring.against is None]
     number = next((i for i, body in enumerate(bodies) if body.name == name), -1)
     if number < 0 or bodies[number].motion not in ("pivot", "slide"):
         return None
-    hung, weighed = loads(bodies)
-    body, load, ride = bodies[number], weighed[number], hung[number]
+    hung, weighed, masses = loads(bodies)
+    body, load, ride, mass = bodies[number], weighed[number], hung[number], masses[number]
     stiffness = sum(spring.stiffness for spring in own)
     middle = _middle(own, stiffness)
     if body.motion == "slide":
         if middle is None:
             return None
         pull = load.mass * (gravity[0] * body.axis[0] + gravity[1] * body.axis[1]) if ride.host < 0 else 0.0
-        return Oscillator(name, load.mass, stiffness, 0.0, middle + pull / stiffness)
+        return Oscillator(name, mass, stiffness, 0.0, middle + pull / stiffness)
     weight, hanging = _weight(load, ride, gravity)
     if weight == 0.0:
-        return None if middle is None else Oscillator(name, load.inertia, stiffness, 0.0, middle)
+        return None if middle is None else Oscillator(name, mass, stiffness, 0.0, middle)
     if middle is None:
-        return Oscillator(name, load.inertia, 0.0, weight, _nearest(hanging, body.angle), weight)
+        return Oscillator(name, mass, 0.0, weight, _nearest(hanging, body.angle), weight)
     rest = _balance(stiffness, middle, weight, _nearest(hanging, middle))
-    return Oscillator(name, load.inertia, stiffness, weight * math.cos(rest - hanging), rest, weight)
+    return Oscillator(name, mass, stiffness, weight * math.cos(rest - hanging), rest, weight)
 
 
 def _middle(springs: list[Spring], stiffness: float) -> float | None:
@@ -113,12 +114,16 @@ def _middle(springs: list[Spring], stiffness: float) -> float | None:
 
 
 def loads(bodies: tuple[Body, ...]) -> Loads:
-    """How each body hangs, and what it weighs with all it carries; what cannot be carried is complained of elsewhere."""
+    """How each body hangs, what it weighs with all it carries, and what its coordinate weighs with all that is geared to it.
+
+    What cannot be carried is complained of elsewhere.
+    """
     for known, found in _recent:
         if known is bodies:
             return found
     hung = rides(bodies, _in_silence)
-    found = hung, weigh(bodies, hung, _in_silence)
+    weighed = weigh(bodies, hung, _in_silence)
+    found = hung, weighed, felt(bodies, hung, weighed)
     _recent.appendleft((bodies, found))
     return found
 
@@ -128,7 +133,7 @@ def _in_silence(_name: str, _message: str) -> None:
 
 
 def _sprung(springs: Iterable[Spring]) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(spring.body for spring in springs))
+    return tuple(dict.fromkeys(spring.body for spring in springs if spring.against is None))
 
 
 def _hung(bodies: tuple[Body, ...], gravity: Point, driven: set[str]) -> Iterator[Oscillator]:

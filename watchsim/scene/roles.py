@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from watchsim.scene.gear_trains import goes_with
 from watchsim.scene.oscillation import oscillators
 from watchsim.scene.scene import Scene
 
@@ -22,14 +23,15 @@ class Roles:
 
 
 def roles(scene: Scene) -> Roles:
-    """The first that swings, a driven pivoted body besides it, and a moving body in contact with both, if only by what it
-    carries.
+    """The first that swings, a driven pivoted body besides it, and a moving body in contact with both.
+
+    A body may be driven through gears, and touch by way of what it carries.
 
     Of several driven bodies the wheel is the first that has such a lever, whatever the order of the torques: a lever may be
     knocked by a torque of its own.
     """
     oscillator = next((one.body for one in oscillators(scene)), None)
-    driven = [torque.body for torque in scene.torques if torque.body != oscillator]
+    driven = [name for torque in scene.torques for name in goes_with(scene, torque.body) if torque.body != oscillator]
     wheels = [name for name in driven if scene.body(name).motion == "pivot"]
     found = [(wheel, None if oscillator is None else _lever(scene, oscillator, wheel)) for wheel in wheels]
     wheel, lever = next((one for one in found if one[1] is not None), found[0] if found else (None, None))
@@ -90,9 +92,10 @@ def partners(scene: Scene, name: str) -> set[str]:
 
 
 def drive_direction(scene: Scene, name: str) -> float:
-    """+1 or -1: the way the torques on body `name` turn it (the mean of a table)."""
-    total = 0.0
+    """+1 or -1: the way the torques on body `name`, and on what is geared to it, turn it (the mean of a table)."""
+    total, ratios = 0.0, goes_with(scene, name)
     for torque in scene.torques:
-        if torque.body == name:
-            total += sum(value for _, value in torque.table) / len(torque.table) if torque.table else torque.value
+        if torque.body in ratios:
+            mean = sum(value for _, value in torque.table) / len(torque.table) if torque.table else torque.value
+            total += ratios[torque.body] * mean
     return -1.0 if total < 0.0 else 1.0

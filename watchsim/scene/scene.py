@@ -13,7 +13,8 @@ from watchsim.drawing.findings import Finding
 from watchsim.geometry.primitives import Point
 from watchsim.scene.body import Body
 from watchsim.scene.errors import Fault, SceneError
-from watchsim.scene.force import Contact, Damping, Spring, Torque
+from watchsim.scene.force import Contact, Damping, LineSpring, Spring, Torque
+from watchsim.scene.gear import Gear
 from watchsim.scene.recording import EVERYTHING, Recording
 
 
@@ -48,6 +49,8 @@ class Scene:
     duration        of a run, s; `tolerance` its relative error per step, `record` what is kept of it
     lift_angle      rad; `nominal` (Hz) is what the rate is measured against. None where the scene says nothing
     expect          numbers that a run promises
+    gears           with play; those without are `Body.geared`
+    line_springs    between points of two bodies, or of a body and the movement
     path, source    the file, and the TOML mapping that it holds
     findings        what the drawings said besides errors; `drawings` the files as they were read, by their names in the scene
     written         of a scene made from a design: `source` then holds the design's scene as well
@@ -69,6 +72,8 @@ class Scene:
     lift_angle: float | None = None
     nominal: float | None = None
     expect: tuple[Expectation, ...] = ()
+    gears: tuple[Gear, ...] = ()
+    line_springs: tuple[LineSpring, ...] = ()
     path: Path | None = field(default=None, compare=False)
     source: dict[str, Any] = field(default_factory=dict, repr=False, compare=False)
     findings: tuple[Finding, ...] = field(default=(), repr=False, compare=False)

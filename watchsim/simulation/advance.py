@@ -43,7 +43,7 @@ from watchsim.simulation.motion.turning_points import keep_passages
 from watchsim.simulation.options import OptionsRef
 from watchsim.simulation.record.write_buffers import keep_row
 from watchsim.simulation.stops import Stop
-from watchsim.tolerances import DEPENDENT_IN_STEPS, FINEST_ROWS, RATES_TURNED, SAME_INSTANT
+from watchsim.tolerances import DEPENDENT_IN_STEPS, FINEST_ROWS, FURTHEST_SIZES, RATES_TURNED, SAME_INSTANT
 
 TOUCHED, BEARING, KINDS = MONITORS, MONITORS + 1, MONITORS + 2  # what ends a step, besides the monitors of a contact
 FLIGHT_CELLS = 128
@@ -106,11 +106,14 @@ def _turns_rates(model, state, options, m, closed):
 
 
 @kernel
-def _is_finite(state):
-    for i in range(len(state.q)):
-        if not math.isfinite(state.q[i] + state.u[i]):
-            return False
-    return True
+def where_it_is(model, q, u):
+    """Stop.RUNNING where all coordinates and velocities are numbers and contacts can be resolved at them, or else why not."""
+    for i in range(len(q)):
+        if not math.isfinite(q[i] + u[i]):
+            return Stop.NOT_FINITE
+        if abs(q[i]) > FURTHEST_SIZES * model.coordinates[i].scale:
+            return Stop.FAR_AWAY
+    return Stop.RUNNING
 
 
 @kernel
@@ -259,8 +262,9 @@ def _loop(model, cells, state, options, until, scratch, record):
         code, event = _smooth_step(model, cells, state, options, until.end, scratch, record)
         if code != Stop.RUNNING:
             return _undone(code, state, before)
-        if not _is_finite(state):
-            return Stop.NOT_FINITE
+        code = where_it_is(model, state.q, state.u)
+        if code != Stop.RUNNING:
+            return code
         state.now.event_waits = 1 if event else 0
 
 

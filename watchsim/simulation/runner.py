@@ -41,7 +41,7 @@ from watchsim.simulation.record.trajectory import EVENT_DTYPE, Trajectory
 from watchsim.simulation.slice_pace import Pace
 from watchsim.simulation.start_clearance import clear_start
 from watchsim.simulation.start_clearance import warm_up as warm_up_start
-from watchsim.simulation.stop_details import unaccounted, unexplained, what_alternates
+from watchsim.simulation.stop_details import furthest, unaccounted, unexplained, what_alternates
 from watchsim.simulation.stops import Stop
 from watchsim.tolerances import FIRST_STEP
 
@@ -153,7 +153,7 @@ class Run:
         except KeyboardInterrupt:
             stop = Stop.INTERRUPTED
         except OverflowError:  # so far away that no cell has a number
-            stop = Stop.NOT_FINITE
+            stop = Stop.FAR_AWAY
         except MemoryError:
             stop = Stop.OUT_OF_MEMORY
         if self.saved is None:
@@ -182,6 +182,8 @@ class Run:
         elif stop == Stop.TOO_MANY_EVENTS:
             bodies = [self.scene.bodies[coordinate.body].name for coordinate in self.compiled.model.coordinates]
             words = what_alternates(self.scratch.ended, self.pairs, bodies)
+        elif stop == Stop.FAR_AWAY:
+            words = furthest(self.state, self.compiled.model, [body.name for body in self.scene.bodies])
         elif stop == Stop.LCP_FAILED:
             driven = {body.name for body in self.scene.bodies if body.prescribed is not None}
             failure = failure_of(self.state, self.scratch, self.pairs) if driven else None

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import functools
 import math
 import time
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
+from typing import Any
+
+from numpy.typing import NDArray
 
 from watchsim.mechanism.compile import compile_scene
 from watchsim.scene.recording import Recording, Window, as_recording
@@ -13,10 +17,12 @@ from watchsim.scene.scene import Scene
 from watchsim.simulation.methods import EVENT_DRIVEN, METHODS, MOREAU, USUAL_STEP
 from watchsim.simulation.record.joined_runs import joined
 from watchsim.simulation.record.saved_state import SavedState
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.simulation.record.trajectory import Pair, Trajectory
 from watchsim.simulation.runner import Progress, Run
 from watchsim.tolerances import COARSEST_TOLERANCE, FINEST_TOLERANCE
 from watchsim.units import TIME, UnitError, parse
+
+Follow = Callable[[Sequence[Pair], NDArray[Any]], object]
 
 
 def simulate(  # noqa: PLR0913 - options, by name
@@ -31,6 +37,7 @@ def simulate(  # noqa: PLR0913 - options, by name
     step: float | str | None = None,
     start: Trajectory | SavedState | None = None,
     stream: str | Path | None = None,
+    follow: Follow | None = None,
 ) -> Trajectory:
     """Simulate `scene` from 0 to `duration` at a relative error `tolerance` per step (both default to the scene's own).
 
@@ -46,6 +53,9 @@ def simulate(  # noqa: PLR0913 - options, by name
                `end_state` (the result holds what follows). The same bits come out as from one run, whatever was cut where.
     stream     a folder in whose file system rows and events are held where they would take more than some 50 MB of memory: in
                files without a name, which vanish with the last array of the trajectory that looks into them
+
+    follow     called as follow(pairs, events) with the events that are settled, in order, while the run goes on; the last ones
+               and what goes before `start` are in the trajectory only
 
     KeyboardInterrupt ends the run and keeps what was simulated. A solver that cannot go on does not raise: see
     `Trajectory.stop`. ValueError for a bad argument, and for a `start` of another scene or other settings; SceneError where
@@ -70,6 +80,8 @@ def simulate(  # noqa: PLR0913 - options, by name
         run = Run(scene, compiled, tolerance, recording)
     if stream is not None:
         run.kept.stream(Path(stream))
+    if follow is not None:
+        run.kept.follow = functools.partial(follow, run.pairs)
     if start is not None:
         _take_up(run, start, duration)
     ready = time.perf_counter()

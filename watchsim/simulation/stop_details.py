@@ -6,6 +6,9 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
+from watchsim.model.records import PIVOT, Model
 from watchsim.simulation.advance import BEARING, KINDS, TOUCHED
 from watchsim.simulation.loop_state.scratch import RECENT, Ended
 from watchsim.simulation.loop_state.state import State
@@ -48,3 +51,12 @@ def _cause(code: int, pairs: Sequence[Pair], bodies: Sequence[str]) -> str:
     if kind == BEARING:
         return f"dry friction in the bearing of {bodies[number]} holds or lets go"
     return _WORDS[kind].format(pairs[number])
+
+
+def furthest(state: State, model: Model, bodies: Sequence[str]) -> str:
+    """The body that has gone furthest, in words: how far, and to what its position is rounded."""
+    i = int(np.argmax(np.abs(state.q) / model.coordinates.scale))
+    b = int(model.coordinates[i].body)
+    turns = model.bodies[b].motion == PIVOT or i == model.bodies[b].first + 2
+    place, unit = abs(float(state.q[i])), "rad" if turns else "m"
+    return f"{bodies[b]} is at {place:.2g} {unit}, rounded to {np.spacing(place):.1g} {unit}. Check forces, masses and gravity"

@@ -21,6 +21,7 @@ class Stop(IntEnum):
     TOO_MANY_CONTACTS = 10
     LAST_STEP = 11
     OUT_OF_MEMORY = 12
+    FAR_AWAY = 13
     OVERLAP = 20
     UNEXPLAINED = 21
     LEDGER = 22
@@ -38,7 +39,7 @@ class Stop(IntEnum):
     @property
     def gave_up(self) -> bool:
         """True when the solver could not go on, or its result is known to be wrong (exit status 3)."""
-        could_not = Stop.TOO_MANY_EVENTS <= self <= Stop.TOO_MANY_CONTACTS or self == Stop.OUT_OF_MEMORY
+        could_not = Stop.TOO_MANY_EVENTS <= self <= Stop.TOO_MANY_CONTACTS or self in (Stop.OUT_OF_MEMORY, Stop.FAR_AWAY)
         return could_not or self.is_wrong
 
 
@@ -57,6 +58,7 @@ _SENTENCES = {
     ),
     Stop.STEP_TOO_SMALL: "the step became too small for the requested tolerance",
     Stop.NOT_FINITE: "a coordinate or velocity is no longer a finite number",
+    Stop.FAR_AWAY: "a body has gone so far that contacts are lost in the rounding of its position",
     Stop.OUT_OF_MEMORY: "there is no memory left to keep more; --record statistics needs the least",
     Stop.TOO_MANY_CONTACTS: "more contacts closed at once than there is room for",
     Stop.UNEXPLAINED: "velocities changed at an instant by more than the impulses there explain",

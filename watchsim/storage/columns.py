@@ -10,14 +10,14 @@ import contextlib
 import math
 import mmap
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import IO, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-MOST = 32e6  # bytes of columns in memory before they are written out
+MOST = 8e6  # bytes of columns in memory before they are written out
 NEXT = 4e6  # bytes that are written out together from then on
 BLOCK = 1 << 16  # rows that are worked on at a time, where a column need not lie in memory
 
@@ -112,6 +112,12 @@ def blocks(*arrays: NDArray[Any], length: int = BLOCK) -> Iterator[tuple[NDArray
     for first in range(0, len(arrays[0]), length):
         yield tuple(array[first : first + length] for array in arrays)
         let_go(*arrays)
+
+
+def rows_where(array: NDArray[Any], is_wanted: Callable[[NDArray[Any]], NDArray[np.bool_]]) -> NDArray[Any]:
+    """The rows for which `is_wanted`, asked of piece after piece, is true: of a mapped array a piece at a time is in memory."""
+    found = [part[is_wanted(part)] for (part,) in blocks(array)]
+    return np.concatenate(found) if found else array[:0]
 
 
 def let_go(*arrays: NDArray[Any]) -> None:

@@ -25,6 +25,7 @@ from watchsim.model.records import (
     COORDINATE,
     JOINT,
     LAW,
+    LINE_SPRING,
     PRIMITIVE,
     TABLE,
     TANGENTIAL_CODE,
@@ -64,7 +65,14 @@ class BareContacts:
         coordinates, laws, contacts = records(COORDINATE, self.n), records(LAW, self.m), records(CONTACT, self.m)
         coordinates.mass, laws.friction, contacts.group = self.mass, self.friction, np.arange(self.m)
         laws.kind, laws.tangential, laws.nu = TANGENTIAL_CODE[self.law], self.tangential, self.nu
-        none = {"bodies": BODY, "joints": JOINT, "tables": TABLE, "primitives": PRIMITIVE, "pairs": BODY_PAIR}
+        none = {
+            "bodies": BODY,
+            "joints": JOINT,
+            "lines": LINE_SPRING,
+            "tables": TABLE,
+            "primitives": PRIMITIVE,
+            "pairs": BODY_PAIR,
+        }
         parts = {name: records(dtype, 0) for name, dtype in none.items()}
         parts |= {"coordinates": coordinates, "contacts": contacts, "laws": laws}
         parts |= {"knots": np.zeros((0, 2)), "near": np.zeros(0, np.int64)}

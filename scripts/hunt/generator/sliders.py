@@ -170,7 +170,7 @@ def pressed(dice: Dice) -> Scene:
     long, thick = dice.uniform(10.0, 30.0) * MM, 2.0 * MM
     skew = dice.pick((0.0, dice.kink(0.1)))
     rise = skew * long if abs(skew) > 1e-9 else 0.0
-    flap = polygon([(1.0 * MM, 0.0), (long, rise), (long, thick), (1.0 * MM, thick)])
+    flap = polygon([(1.0 * MM, 0.0), (long, rise), (long, max(thick, rise + 0.5 * thick)), (1.0 * MM, thick)])
     bar = box(100.0 * MM, 5.0 * MM, (0.0, -2.5 * MM))
     bodies = [
         sliding("bar", bar, (0.0, 0.0), 0.0, dice.uniform(-0.5, 0.5), dice.log(0.01, 0.3)),

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 from scipy.special import j1
-from swiss_pictures import BLUE, GREEN, RED, dots, line, named, panels, saved
+from swiss_pictures import BLUE, GREEN, MARKED, RED, dots, line, named, panels, saved
 from swiss_studies import (
     DAY,
     NOMINAL,
@@ -73,7 +73,7 @@ def period(scene: ws.Scene) -> list[str]:
     shares = np.linspace(0.84, 1.2, 10)  # small swings must stay within 10 % of the nominal frequency
     heavier = over(scene, "bodies.balance.inertia", shares * inertia)
     stiffer = over(scene, "springs.0.stiffness", shares * stiffness)
-    figure, axes = panels(2, 2, height=2.7)
+    figure, axes = panels(2, 2, height=55.0)
     rows = []
     own: list[Floats] = []
     for i, (series, words, unit, factor) in enumerate(
@@ -84,7 +84,7 @@ def period(scene: ws.Scene) -> list[str]:
         dots(axes[i], factor * series.at, series, "period_s", "limit cycles", BLUE)
         line(axes[i], factor * series.at, free, "2π √(I/k)")
         named(axes[i], "", "period (s)")
-        axes[2 + i].plot(factor * series.at, own[i], color=RED, marker="o", markersize=3.5)
+        axes[2 + i].plot(factor * series.at, own[i], color=RED, **MARKED)
         named(axes[2 + i], f"{words} ({unit})", "escapement's own (ppm)", legend=False)
     picture = saved(figure, "period")
     for k in range(0, len(shares), 3):
@@ -205,7 +205,7 @@ def temperature(scene: ws.Scene) -> list[str]:
     exact = 2.0 * BRASS - 3.0 * STEEL
     inertia, stiffness = scene.body("balance").inertia, scene.springs[0].stiffness
     rows, slopes_told = [], []
-    figure, (axes,) = panels(1, height=3.0)
+    figure, (axes,) = panels(1, height=60.0)
     for words, beta, colour in (("steel spring", steel, BLUE), ("compensating alloy", exact, GREEN)):
         cycles = []
         for kelvin in TEMPERATURES:
@@ -265,12 +265,12 @@ def run_down() -> list[str]:
     spring = scene.source["torques"][0]["table"]
     turns, at_barrel = (np.array([parse(row[i], kind) for row in spring]) for i, kind in enumerate((ANGLE, TORQUE)))
     torque = EFFICIENCY / RATIO * np.interp(hours / HOURS_A_TURN * math.tau, turns, at_barrel)
-    figure, axes = panels(3, height=2.0)
-    axes[0].plot(hours, 1e6 * torque, color=FLAT_COLOUR, marker=".")
+    figure, axes = panels(3, height=42.0)
+    axes[0].plot(hours, 1e6 * torque, color=FLAT_COLOUR, **MARKED)
     named(axes[0], "", "torque (µN·m)", legend=False)
-    axes[1].errorbar(hours, amplitude, found.column("amplitude_deg_error"), color=BLUE, marker="o", markersize=3.5)
+    axes[1].errorbar(hours, amplitude, found.column("amplitude_deg_error"), color=BLUE, **MARKED)
     named(axes[1], "", "amplitude (°)", legend=False)
-    axes[2].errorbar(hours, rate, found.column("rate_s_per_d_error"), color=RED, marker="o", markersize=3.5)
+    axes[2].errorbar(hours, rate, found.column("rate_s_per_d_error"), color=RED, **MARKED)
     named(axes[2], "hours since full wind", "rate (s/d)", legend=False)
     picture = saved(figure, "run_down")
     rows = [

@@ -7,7 +7,7 @@ import math
 import re
 
 import numpy as np
-from swiss_pictures import BLUE, GOLD, GREEN, RED, dots, line, named, panels, saved
+from swiss_pictures import BLUE, CURVE, GOLD, GREEN, MARKED, RED, dots, line, named, panels, saved
 from swiss_studies import (
     DAY,
     JEWEL,
@@ -42,13 +42,13 @@ def torque(scene: ws.Scene, series: Series) -> list[str]:
             changed = scene.set("torques.0.value", -float(series.at[i]))
             works[i] = work_per_beat(changed, cycle)
             predicted[i] = amplitude_of_work(changed, cycle, works[i])
-    figure, (above, below) = panels(2, height=2.9)
+    figure, (above, below) = panels(2, height=58.0)
     dots(above, at, series, "amplitude_deg", "limit cycles", BLUE)
     line(above, at, law, "A ∝ √torque, through 1 µN·m")
     named(above, "", "amplitude (°)")
-    below.plot(at, 100.0 * (amplitude / law - 1.0), color=BLUE, marker="o", markersize=3.5, label="against A ∝ √torque")
+    below.plot(at, 100.0 * (amplitude / law - 1.0), color=BLUE, **MARKED, label="against A ∝ √torque")
     below.plot(
-        at, 100.0 * (amplitude / predicted - 1.0), color=RED, marker="s", markersize=3.0, label="against √(measured work)"
+        at, 100.0 * (amplitude / predicted - 1.0), color=RED, **{**MARKED, "marker": "s"}, label="against √(measured work)"
     )
     named(below, "torque at the escape wheel (µN·m)", "amplitude beyond the law (%)")
     picture = saved(figure, "torque")
@@ -100,14 +100,14 @@ def best(scene: ws.Scene, drawn: Series) -> list[str]:
     bare = smooth.set("damping.0.viscous", 0.0).set("run.duration", f"{LOSSLESS_RUN:g} s")
     small = np.array([0.02, 0.04, 0.06, 0.08, 0.1, 0.12]) * MICRO
     impacts = {e: over_torque(everywhere(bare, "restitution", e), small) for e in (0.0, 0.2)}
-    figure, (axes,) = panels(1, height=3.6)
+    figure, (axes,) = panels(1, height=75.0)
     dots(axes, drawn.at / MICRO, drawn, "amplitude_deg", "as drawn: friction 0.12, air", BLUE)
     dots(axes, without.at / MICRO, without, "amplitude_deg", "no friction, air", GREEN, "s")
     dots(axes, small / MICRO, impacts[0.2], "amplitude_deg", "no friction, no air: impacts alone", RED, "^")
     for cycle in drawn.cycles:
         if seen := re.search(r"from outside at (\d+)°", cycle.message):
             knock = f"the jewel reaches the back of the fork ({seen[1]}°)"
-            axes.axhline(float(seen[1]), color=GOLD, linestyle=":", linewidth=1.2, label=knock)
+            axes.axhline(float(seen[1]), color=GOLD, linestyle=":", linewidth=CURVE, label=knock)
             break
     named(axes, "torque at the escape wheel (µN·m)", "amplitude (°)")
     picture = saved(figure, "best")
@@ -168,7 +168,7 @@ def friction(scene: ws.Scene) -> list[str]:
     stones = over(weaker, f"contacts.{STONES}.friction", values)
     jewel = over(weaker, f"contacts.{JEWEL}.friction", values)
     bounce = both(weaker, "restitution", np.linspace(0.0, 0.5, 11))
-    figure, axes = panels(2, 2, share=False, height=2.7)
+    figure, axes = panels(2, 2, share=False, height=55.0)
     for upper, name, label in ((True, "amplitude_deg", "amplitude (°)"), (False, "rate_s_per_d", "rate (s/d)")):
         left, right = axes[:2] if upper else axes[2:]
         dots(left, stones.at, stones, name, "wheel on stones", BLUE)
@@ -217,7 +217,7 @@ def isochronism(scene: ws.Scene, series: Series) -> list[str]:
     slower = braked.of("amplitude_deg") * math.nan
     for i, factor in enumerate(braked.at / damping):
         slower[i] = -braked.of("rate_s_per_d")[i] * 2.0 * quality / factor * braked.of("amplitude_deg")[i] / DAY
-    figure, (axes,) = panels(1, height=3.6)
+    figure, (axes,) = panels(1, height=75.0)
     dots(axes, amplitude, series, "rate_s_per_d", "torque 0.2 to 1.5 µN·m", BLUE)
     dots(axes, braked.of("amplitude_deg"), braked, "rate_s_per_d", "damping × 4 to × 0.8, at 1 µN·m", RED, "s")
     line(axes, amplitude[good], law[good], f"Airy: impulse {mean:.1f}° late")

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 IMAGES = Path(__file__).resolve().parents[3] / "docs" / "images"
 BLUE, RED, GREEN, GOLD = (SERIES[k] for k in (0, 1, 2, 4))
 HEIGHT = 62.0  # mm, of a panel
+MARKED: dict[str, Any] = {"marker": "o", "markersize": 2.6, "linewidth": CURVE}  # points of a curve
 
 
 def panels(rows: int, columns: int = 1, *, share: bool = True, height: float = HEIGHT) -> tuple[Figure, list[Axes]]:
@@ -33,8 +34,7 @@ def panels(rows: int, columns: int = 1, *, share: bool = True, height: float = H
 def dots(axes: Axes, x: Floats, series: Series, name: str, label: str, colour: str, marker: str = "o") -> None:
     """Points of the limit cycles with their error bars."""
     y, bars = series.of(name), np.nan_to_num(series.of(f"{name}_error"))
-    axes.errorbar(x, y, yerr=bars, color=colour, marker=marker, markersize=2.6, linewidth=CURVE,
-                  elinewidth=HAIR, capsize=1.5, label=label)  # fmt: skip
+    axes.errorbar(x, y, yerr=bars, color=colour, elinewidth=HAIR, capsize=1.5, label=label, **{**MARKED, "marker": marker})
 
 
 def line(axes: Axes, x: Floats, y: Floats, label: str, colour: str = FAINT, style: str = "--") -> None:

@@ -12,8 +12,9 @@ from analysis.made_beats import DEGREE, lever_run, lever_scene
 from render.fake_runs import disc_run, watch_run
 
 from watchsim.analysis.summary import summary, summary_text
+from watchsim.analysis.timing import escape_wheel
 from watchsim.analysis.timing.beats import beats
-from watchsim.analysis.timing.escape_wheel import advance, missed_beats, progress
+from watchsim.analysis.timing.escape_wheel import Advance, advance, missed_beats, progress
 from watchsim.analysis.timing.rows_at_hand import is_recorded
 from watchsim.analysis.timing.standstill import standstill
 from watchsim.commands.common.run_pictures import filmed, last_beats
@@ -131,3 +132,12 @@ def test_the_movie_of_a_run_shows_the_last_swing_or_all_of_a_ratchet():
     assert last_beats(ratchet) == (pytest.approx(0.9 * run.t[-1]), run.t[-1])
     (start, end), speed = filmed(ratchet, 1 / 20)
     assert (start, end) == (run.t[0], run.t[-1]) and (end - start) / speed == pytest.approx(10.0)
+
+
+@pytest.mark.parametrize(("first", "missed"), [(5, 0), (4, 0), (6, 0), (2, 2), (7, 1), (8, 2)])
+def test_beats_missed_before_the_first_window(monkeypatch: pytest.MonkeyPatch, first: int, missed: int) -> None:
+    """At the fourth turning point the wheel should have come five half pitches, one more or less."""
+    came = Advance(0.2, np.arange(4.0, 9.0), 0.2 * (first + np.arange(5.0)))
+    monkeypatch.setattr(escape_wheel, "advance", lambda *_: came)
+    run = lever_run(6)
+    assert missed_beats(run, "wheel", beats(run)) == missed

@@ -120,6 +120,17 @@ def test_blocks_that_multiply_are_stopped(read_bytes: Reader) -> None:
     assert "too-large" in errors(drawing)
 
 
+def test_a_few_bytes_do_not_unfold_into_a_large_drawing(read_bytes: Reader) -> None:
+    """400 bytes asked for 60 000 pieces, which took seconds to look through; the same from a file of that size is read."""
+    small = d.dxf(
+        d.insert("B", (0, 0), (70, 12_000), (44, 2.0)),
+        blocks=d.block("B", d.lwpolyline([(0, 0), (1, 0), (1, 1), (0, 1), (0, 0.5)], True)),
+    )
+    assert len(small) < 500 and "unfolds into more than 50" in errors(read_bytes(small))["too-large"]
+    large = small.replace(b"0\nEOF\n", b"999\na comment of fifty characters, which nobody reads\n" * 400 + b"0\nEOF\n")
+    assert len(read_bytes(large).loops) == 12_000
+
+
 def test_more_pieces_than_a_drawing_can_have_are_refused_whole(read_bytes: Reader) -> None:
     """Half a drawing would be worse than none, and takes long to look through."""
     comb = "".join(d.line((k, 0), (k, 1)) for k in range(600))

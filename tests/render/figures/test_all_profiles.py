@@ -11,9 +11,10 @@ import watchsim as ws
 from watchsim.commands.common.plot_kinds import KINDS, Request
 
 PROFILES = sorted(path.name for path in Path(str(ws.profiles_dir())).iterdir() if (path / "scene.toml").is_file())
-WITHOUT_BEATS = {"geneva", "incline", "involute_pair", "balance", "cam", "jumper", "ratchet"}
-WITHOUT_PHASES = {"graham", "recoil_anchor", "detent"}  # the wheel and the pendulum touch themselves; a detent is no lever
-DURATION = {"graham": 4.0, "recoil_anchor": 4.0}  # s: slow pendulums; a second of all others
+WITHOUT_BEATS = {"geneva", "incline", "involute_pair", "balance", "cam", "jumper", "ratchet", "verge"}
+# The wheel and the oscillator touch themselves; a detent is no lever.
+WITHOUT_PHASES = {"graham", "recoil_anchor", "detent", "pin_wheel", "cylinder", "duplex"}
+DURATION = {"graham": 4.0, "recoil_anchor": 4.0, "pin_wheel": 8.0}  # s: slow pendulums; a second of all others
 
 
 @pytest.mark.slow

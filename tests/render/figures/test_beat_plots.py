@@ -175,7 +175,7 @@ def test_phases_are_shaded_when_they_are(run: ws.Trajectory) -> None:
     assert len(shaded) == len(expected) > 5
     assert np.array(shaded) + base == pytest.approx(np.array(expected), abs=1e-6)
     words = {text.get_text() for text in figure.texts}
-    assert {"unlocking", "impulse", "drop and lock"} <= words
+    assert {"unlock", "impulse", "drop"} <= words
     assert ws.plot_kinematics(run).axes[0].patches == [] or len(passing(run, (0.0, 1.0))) <= 12
 
 
@@ -195,7 +195,7 @@ def test_pictures_stand_at_the_middle_of_each_phase(run: ws.Trajectory) -> None:
     phases = [one for beat in beats_shown for one in beat.stages if one.name != "locked"]
     assert len(pictures) == len(phases) + len(beats_shown)
     words = [text.get_text() for text in figure.texts]
-    assert any("unlocking" in text for text in words) and any("at rest" in text for text in words)
+    assert any("unlock" in text for text in words) and any("at rest" in text for text in words)
     lever = [axes.lines[0] for axes in figure.axes if axes.lines and axes.lines[0].get_gid() == "angle lever"]
     for line, beat in zip(lever, beats_shown, strict=True):
         x, y = line.get_data()

@@ -16,8 +16,8 @@ from watchsim.analysis.timeline.shown_beats import shown_beats
 from watchsim.geometry.polyline import polyline
 from watchsim.render.frame.marks.extras import Extras
 from watchsim.render.frame.marks.force_arrows import ForceArrows, arrow_path
-from watchsim.render.frame.marks.insets import beside, inset
-from watchsim.render.frame.marks.pallet_stones import stone
+from watchsim.render.frame.marks.insets import beside, insets
+from watchsim.render.frame.marks.pallet_stones import PalletStones
 from watchsim.render.frame.marks.readouts import changing_speed_text
 from watchsim.render.frame.pose_history import poses
 from watchsim.render.frame.view import Frame
@@ -35,7 +35,7 @@ def near(picture, colour):
 
 @pytest.mark.parametrize("turn", [0.0, -0.5 * math.pi, 0.3])
 def test_an_inset_holds_the_rectangle_and_nothing_is_stretched(turn):
-    made = inset(watch_run(), (0.0, 2.0), "-1.4, 1.9 : -0.8, 2.5", BOX, turn)
+    made = insets(watch_run(), (0.0, 2.0), "-1.4, 1.9 : -0.8, 2.5", BOX, turn)
     matrix = made.matrix({})
     for x, y in ((-1.4e-3, 1.9e-3), (-0.8e-3, 2.5e-3), (-1.4e-3, 2.5e-3)):
         u, v, _ = matrix @ (x, y, 1.0)
@@ -46,7 +46,7 @@ def test_an_inset_holds_the_rectangle_and_nothing_is_stretched(turn):
 def test_what_goes_far_is_followed():
     run = disc_run()
     name = next(body.name for body in run.scene.bodies if body.motion == "free")
-    made = inset(run, (0.0, 2.0), name, BOX, 0.0)
+    made = insets(run, (0.0, 2.0), [name], [BOX], 0.0)[0]
     for t in (0.1, 0.9, 1.8):
         frames = {body: rows[0] for body, rows in poses(run, np.array([t])).items()}
         u, v, _ = made.matrix(frames) @ (*frames[name][:2], 1.0)
@@ -74,10 +74,10 @@ def test_an_outline_is_counted_from_one():
     run = watch_run()
     body = next(body for body in run.scene.bodies if body.name == "lever")
     layer = body.loops[0].layer
-    inset(run, (0.0, 2.0), f"lever.{layer}.1", BOX, 0.0)
+    insets(run, (0.0, 2.0), [f"lever.{layer}.1"], [BOX], 0.0)[0]
     for number in (0, 99, "x"):
         with pytest.raises(ValueError, match="counted"):
-            inset(run, (0.0, 2.0), f"lever.{layer}.{number}", BOX, 0.0)
+            insets(run, (0.0, 2.0), [f"lever.{layer}.{number}"], [BOX], 0.0)[0]
 
 
 def test_the_wheel_presses_on_the_stone_of_the_beat():
@@ -92,16 +92,16 @@ def test_the_wheel_presses_on_the_stone_of_the_beat():
         x, y, angle = run.pose("lever", t)
         c, s = math.cos(angle), math.sin(angle)
         own = np.array([[c, s], [-s, c]]) @ (place - (x, y))
-        body, loop = stone(run.scene, f"{beat.stages[0].pallet} stone")
+        body, loop = PalletStones(run.scene).stone(f"{beat.stages[0].pallet} stone")
         edges = LineString(polyline(loop, 1e-8))
         assert body.name == "lever" and edges.distance(Point(own)) < 2e-8
-        assert inset(run, (0.0, 0.6), f"{beat.stages[0].pallet} stone", BOX, 0.0).box == BOX
+        assert insets(run, (0.0, 0.6), [f"{beat.stages[0].pallet} stone"], [BOX], 0.0)[0].box == BOX
 
 
 def test_no_stones_no_inset():
     run = ws.simulate(ws.load(ws.profiles_dir() / "incline"), duration=0.05)
     with pytest.raises(ValueError, match=r'inset "exit stone" is not known.*nothing swings'):
-        inset(run, (0.0, 0.05), "exit stone", BOX, 0.0)
+        insets(run, (0.0, 0.05), ["exit stone"], [BOX], 0.0)[0]
 
 
 @pytest.mark.parametrize("size", [(1280.0, 500.0), (700.0, 1200.0)])

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from watchsim.simulation.motion import step_path
-from watchsim.simulation.motion.dense_output import dense
+from watchsim.simulation.motion.dense_output import dense, dense_bend
 
 NUMBERS = st.lists(st.floats(-1.0, 1.0), min_size=8, max_size=8)
 
@@ -19,7 +19,7 @@ def _step(numbers: list[float], length: float) -> types.SimpleNamespace:
     """A coupled step of one coordinate with these start value and coefficients of its continuous extension."""
     coefficients = np.array(numbers[1:]).reshape(7, 1)
     span = types.SimpleNamespace(start=0.0, length=length)
-    return types.SimpleNamespace(span=span, y0=np.array(numbers[:1]), dense=coefficients, bound=np.zeros(1))
+    return types.SimpleNamespace(span=span, y0=np.array(numbers[:1]), dense=coefficients, bound=np.zeros(1), jerk=np.zeros(1))
 
 
 def _plain(kernel):
@@ -42,6 +42,8 @@ def test_the_bound_holds_everywhere_in_the_step(numbers: list[float], length: fl
     _plain(step_path.bound_accelerations)(step, 1)
     bend = np.abs(_coefficients(numbers).deriv(2)(np.linspace(0.0, 1.0, 2001))) / length**2
     assert bend.max() <= step.bound[0] * (1.0 + 1e-9) + 1e-12 / length**2
+    jerk = np.abs(_coefficients(numbers).deriv(3)(np.linspace(0.0, 1.0, 2001))) / length**3
+    assert jerk.max() <= step.jerk[0] * (1.0 + 1e-9) + 1e-12 / length**3
 
 
 @given(NUMBERS, st.floats(0.0, 1.0))
@@ -50,6 +52,8 @@ def test_value_and_slope_are_the_polynomials(numbers: list[float], share: float)
     expected = _coefficients(numbers)
     assert value == pytest.approx(expected(share), abs=1e-13)
     assert slope == pytest.approx(0.5 * expected.deriv()(share), abs=1e-12)
+    bend = _plain(dense_bend)(_step(numbers, 2.0), 0, 2.0 * share)
+    assert bend == pytest.approx(0.25 * expected.deriv(2)(share), abs=1e-11)
 
 
 def test_the_bound_is_not_crude_for_a_smooth_path() -> None:

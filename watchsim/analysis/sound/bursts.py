@@ -14,7 +14,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import lfilter
 
 Array = NDArray[np.float64]
 
@@ -31,6 +30,8 @@ class Ringing:
 
     def block(self, count: int, times: Array, loudness: Array) -> Array:
         """The next `count` samples: what still rings, and the blows at `times` (s) within them."""
+        from scipy.signal import lfilter  # half a second to load, which a movie without sound need not wait for
+
         place = np.ceil(times * SAMPLES).astype(np.int64)
         late = place / SAMPLES - times
         own = place - self.sampled

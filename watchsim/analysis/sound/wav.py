@@ -69,7 +69,8 @@ def told(heard: Score) -> str | None:
 def write_score(place: Path, heard: Score, length: float, progress: Progress | None = None) -> None:
     """Write `length` seconds of a score, in which something sounds, as WAV."""
     factor = FULL / _peak(heard, length)
-    with wave.open(str(place), "wb") as file:
+    # Given a name that it cannot open, wave prints a traceback besides.
+    with place.open("wb") as raw, wave.open(raw, "wb") as file:
         file.setnchannels(1)
         file.setsampwidth(2)
         file.setframerate(SAMPLES)

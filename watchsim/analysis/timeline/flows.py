@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.analysis.contact_forces import absolute
+from watchsim.analysis.timeline.line_spring_rows import line_spring_energies
 from watchsim.mechanism.compile import Compiled
 from watchsim.model.records import OVER_TIME, Model
 from watchsim.simulation.record.trajectory import Array, Trajectory
@@ -60,6 +61,7 @@ def flows(run: Trajectory, compiled: Compiled, rows: slice = slice(None)) -> Flo
     for joint in model.joints:
         wound = q[:, joint.coordinate] - q[:, joint.on] - joint.rest
         stored = stored + 0.5 * joint.stiffness * wound**2
+    stored = stored + line_spring_energies(model, q)
     h = np.diff(t)
     step = h[:, None]
     # A constant force works on the way, the integral of the cubics; only what changes on the way needs Gauss's rule.
@@ -113,6 +115,7 @@ def _changing(model: Model) -> tuple[list[int], list[int]]:
     """The coordinates on which a force changes with place or time, and those with damping: their powers are integrated."""
     c = model.coordinates
     moved = {int(k) for k in np.flatnonzero((c.weight_x != 0.0) | (c.weight_y != 0.0))}
+    moved |= {int(k) for joint in model.joints if c.driven[joint.on] for k in (joint.coordinate, joint.on)}
     slowed = {int(k) for k in np.flatnonzero((c.coulomb != 0.0) | (c.viscous != 0.0) | (c.quadratic != 0.0))}
     for table in model.tables:
         moved |= {int(table.coordinate), *([int(table.on)] if table.on >= 0 else [])}
@@ -175,6 +178,12 @@ def _changing_power(model: Model, t: Array, q: Row, u: Row) -> Array:
         if on >= 0:
             power[:, on] -= value * u[on]
     power[:, np.asarray(c.driven) != 0] = 0.0
+    for joint in model.joints:
+        if c.driven[joint.on]:  # what keeps the prescribed motion up against spring and damping
+            own, on = int(joint.coordinate), int(joint.on)
+            w = u[own] - u[on]
+            held = joint.stiffness * (q[own] - q[on] - joint.rest) + w * (joint.viscous + joint.quadratic * np.abs(w))
+            power[:, on] -= held * u[on]
     return power
 
 

@@ -25,6 +25,7 @@ from watchsim.scene.roles import Roles, drive_direction, roles
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.methods import EVENT_DRIVEN
 from watchsim.simulation.record.trajectory import Array, Trajectory
+from watchsim.storage.columns import let_go
 
 LOSSES = (EventKind.IMPACT, EventKind.JAM)
 BEATS_AT_ONCE = 300  # some megabytes, which a processor has at hand
@@ -120,7 +121,7 @@ def stages(run: Trajectory, found: Beats | None = None, window: Sequence[float] 
     if not (parts.wheel and parts.lever):
         return
     rests = _rests(run, compiled, parts)
-    beats_told = (list(rows) for _, rows in groupby(each_phase(run, found), key=lambda row: row.beat))
+    beats_told = (list(rows) for _, rows in groupby(each_phase(run, found, window), key=lambda row: row.beat))
     wanted = (rows for rows in beats_told if window is None or window[0] <= rows[0].start <= window[1])
     while some := list(islice(wanted, BEATS_AT_ONCE)):
         told = [row for rows in some for row in rows]
@@ -129,6 +130,7 @@ def stages(run: Trajectory, found: Beats | None = None, window: Sequence[float] 
         made = flows(run, compiled, slice(first, last))
         stones = _pallets(run, compiled, parts, rests, [row for row in told if row.name == "unlock"])
         yield _columns(run, parts, compiled, made, told, stones)
+        let_go(run.t, run.q, run.u, run.a, run.events)
 
 
 def _columns(

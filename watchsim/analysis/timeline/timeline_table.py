@@ -11,21 +11,12 @@ from watchsim.scene.roles import roles
 from watchsim.simulation.record.trajectory import Trajectory
 
 NANO, KILO = 1e9, 1e-3
-TITLES = {
-    "unlock": "unlocking",
-    "catch-up": "catch-up",
-    "impulse": "impulse",
-    "drop": "drop and lock",
-    "run to banking": "run to banking",
-    "locked": "free oscillation",
-}
 WIDTH = 20
 
 
 def title(stage: Stage) -> str:
-    """What a phase is called in print."""
-    words = TITLES.get(stage.name, stage.name)
-    return f"{words} on {stage.phase.on}" if stage.phase.on else words
+    """What a phase is called, with what is pushed: as in phases.csv and on the page."""
+    return f"{stage.name} on {stage.phase.on}" if stage.phase.on else stage.name
 
 
 def timeline_text(run: Trajectory, told: list[Beat] | None = None) -> str:

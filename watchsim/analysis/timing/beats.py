@@ -6,11 +6,13 @@ turning points and passages, which are events of the run: found to rounding, wha
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 
-from watchsim.analysis.timing.body_contacts import Events
 from watchsim.analysis.timing.rows_at_hand import nominal_period
 from watchsim.analysis.timing.ticks import ticks
 from watchsim.displays import notebook_html
@@ -19,7 +21,7 @@ from watchsim.scene.roles import roles
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.record.half_swings import half_swings, since_two_before, unevenness
 from watchsim.simulation.record.trajectory import Array, Trajectory
-from watchsim.storage.columns import blocks
+from watchsim.storage.columns import rows_where
 
 DAY = 86400.0
 HEARD = 0.8  # share of the half swings that must have a tick, for the ticks to be what the beat error is measured by
@@ -103,7 +105,8 @@ def beats(run: Trajectory, body: str | None = None) -> Beats:
     name = _swinging(run, body)
     period, angular = nominal_period(run, name), run.scene.body(name).motion == "pivot"
     index = [one.name for one in run.scene.bodies].index(name)
-    own = np.concatenate([part[part["body"] == index] for (part,) in blocks(_unbroken(run))] or [run.events])
+    since = _unbroken_since(run)
+    own = rows_where(run.events, lambda part: (part["body"] == index) & (part["t"] >= since))
     crossings, turns = own[own["kind"] == EventKind.CROSS], own[own["kind"] == EventKind.TURN]
     complete, before, after = half_swings(crossings, turns)
     is_swing = np.abs(turns["value"][after] - turns["value"][before]) > 2.0 * STILL
@@ -125,11 +128,18 @@ def beats(run: Trajectory, body: str | None = None) -> Beats:
     )
 
 
-def _unbroken(run: Trajectory) -> Events:
-    """The events; where a recording has gaps, those after the last of them."""
-    if run.keep != STATISTICS or not run.spans:
-        return run.events
-    return run.events[run.events["t"] >= run.spans[-1][0]]
+def beats_within(found: Beats, window: Sequence[float]) -> Beats:
+    """The half swings in a window (s), and one before and after it."""
+    first, last = np.searchsorted(found.end, window[0]), np.searchsorted(found.start, window[1])
+    own = slice(max(int(first) - 1, 0), int(last) + 1)
+    columns = ((field.name, getattr(found, field.name)) for field in fields(found))
+    cut: dict[str, Any] = {name: values[own] for name, values in columns if isinstance(values, np.ndarray)}
+    return replace(found, before=found.before + own.start, **cut)
+
+
+def _unbroken_since(run: Trajectory) -> float:
+    """From when on (s) all events are there: where a recording has gaps, from the last of them."""
+    return run.spans[-1][0] if run.keep == STATISTICS and run.spans else -math.inf
 
 
 def _swinging(run: Trajectory, body: str | None) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -21,6 +21,12 @@ def contact_events(run: Trajectory, wanted: Callable[[Pair], bool], *kinds: Even
     """The rows of the event table that concern the wanted pairs of primitives, of those kinds (all if none are named)."""
     found = [part[_concerned(run, part, wanted, kinds)] for (part,) in blocks(run.events)]
     return np.concatenate(found) if found else run.events
+
+
+def contact_numbers(run: Trajectory, wanted: Callable[[Pair], bool]) -> set[int]:
+    """The wanted contacts that ever had an event."""
+    numbers = (part["contact"][_concerned(run, part, wanted, ())] for (part,) in blocks(run.events))
+    return {number for part in numbers for number in np.unique(part).tolist()}
 
 
 def contact_columns(run: Trajectory, wanted: Callable[[Pair], bool], names: list[str], *kinds: EventKind) -> list[Column]:
@@ -56,18 +62,25 @@ def between(first: str, others: set[str]) -> Callable[[Pair], bool]:
     return lambda pair: (pair.body_a == first and pair.body_b in others) or (pair.body_b == first and pair.body_a in others)
 
 
-def held(kinds: Column) -> NDArray[np.int64]:
-    """How many contacts hold after each of the events of these kinds."""
-    return np.cumsum((kinds == EventKind.CLOSE).astype(np.int64) - (kinds == EventKind.OPEN))
+def held(times: Column, kinds: Column, spans: Sequence[tuple[float, float]] = ()) -> NDArray[np.int32]:
+    """How many contacts hold after each of the events of these kinds, of one body that is free at some time.
+
+    A stretch that was recorded (`spans`, s) may begin while contacts hold, whose closing is no event of it: the count is
+    then below zero where none holds.
+    """
+    change = (kinds == EventKind.CLOSE).astype(np.int8) - (kinds == EventKind.OPEN)
+    begins = np.searchsorted(times, [start for start, _ in spans[1:]])
+    counts = [np.cumsum(own, dtype=np.int32) for own in np.split(change, begins)]
+    return np.concatenate([own - min(0, int(own.min(initial=0))) for own in counts], dtype=np.int32)
 
 
 def holding_at_end(run: Trajectory) -> list[Pair]:
     """The pairs whose contact is in force when the run ends."""
     last: dict[int, bool] = {}
-    columns = (run.events[name].tolist() for name in ("contact", "kind", "value"))
-    for contact, kind, value in zip(*columns, strict=True):
-        if kind in (EventKind.CLOSE, EventKind.OPEN):
-            last[contact] = kind == EventKind.CLOSE
-        elif kind == EventKind.HANDOVER:
-            last[int(value)], last[contact] = False, True
+    for (part,) in blocks(run.events):
+        for contact, kind, value in zip(*(part[name].tolist() for name in ("contact", "kind", "value")), strict=True):
+            if kind in (EventKind.CLOSE, EventKind.OPEN):
+                last[contact] = kind == EventKind.CLOSE
+            elif kind == EventKind.HANDOVER:
+                last[int(value)], last[contact] = False, True
     return [run.pairs[contact] for contact, closed in last.items() if closed]

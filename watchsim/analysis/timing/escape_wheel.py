@@ -11,6 +11,7 @@ from watchsim.analysis.timing.rows_at_hand import is_recorded
 from watchsim.analysis.timing.teeth import pitch
 from watchsim.scene.roles import drive_direction
 from watchsim.simulation.record.trajectory import Array, Trajectory
+from watchsim.storage.columns import blocks
 
 
 @dataclass(frozen=True)
@@ -30,7 +31,8 @@ class Advance:
 def progress(run: Trajectory, wheel: str, times: Array) -> Array:
     """Angle (rad) the wheel has turned since the start of the run in the sense of its drive, at recorded times (s)."""
     column = run.slices[wheel].start
-    return drive_direction(run.scene, wheel) * (run.sample(times)[0][:, column] - run.scene.body(wheel).angle)
+    angles = [run.sample(part)[0][:, column].copy() for (part,) in blocks(times)]  # of the others nothing is kept
+    return drive_direction(run.scene, wheel) * (np.concatenate(angles or [np.zeros(0)]) - run.scene.body(wheel).angle)
 
 
 def advance(run: Trajectory, wheel: str, found: Beats) -> Advance | None:

@@ -11,6 +11,7 @@ from watchsim.scene.roles import only_presses
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.record.half_swings import FEWEST_TURNS, Events
 from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.storage.columns import rows_where
 
 
 def why_no_timing(run: Trajectory, found: Beats | None, numbers: Mapping[str, Any], start: float = 0.0) -> str | None:
@@ -45,7 +46,7 @@ def _passages(run: Trajectory, found: Beats) -> int:
 
 def _own_events(run: Trajectory, found: Beats) -> Events:
     own = [body.name for body in run.scene.bodies].index(found.body)
-    return run.events[run.events["body"] == own]
+    return rows_where(run.events, lambda part: part["body"] == own)
 
 
 def _missing(run: Trajectory, found: Beats, start: float) -> str:

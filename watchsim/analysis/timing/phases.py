@@ -14,18 +14,18 @@ locked          until the next touch of pin and fork
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice, pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.analysis.timing.beats import Beats, beats
+from watchsim.analysis.timing.beats import Beats, beats, beats_within
 from watchsim.analysis.timing.body_contacts import between, contact_columns, held, involves
 from watchsim.analysis.timing.escape_wheel import progress
 from watchsim.analysis.timing.rows_at_hand import is_recorded
-from watchsim.scene.roles import Roles, roles
+from watchsim.scene.roles import Roles, keeps_time, roles
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.record.trajectory import Array, Pair, Trajectory
 
@@ -61,9 +61,9 @@ class _Contacts:
 
     times: Array
     angle: Array
-    held: NDArray[np.int64]
+    held: NDArray[np.int32]
     touching: NDArray[np.bool_]
-    on: NDArray[np.int64]  # numbers of `FACES`
+    on: NDArray[np.int8]  # numbers of `FACES`
     banking: Array
 
 
@@ -75,13 +75,23 @@ def phases(run: Trajectory, found: Beats | None = None) -> list[Phase]:
     return list(each_phase(run, found))
 
 
-def each_phase(run: Trajectory, found: Beats | None = None) -> Iterator[Phase]:
-    """The same one after the other: a long run has a great many."""
+def phases_within(run: Trajectory, window: Sequence[float]) -> list[Phase]:
+    """The phases of the beats that lie in a window (s), and of one before and after it."""
+    if not keeps_time(run.scene):
+        return []
+    near = beats_within(beats(run), window)
+    return phases(run, near) if len(near) else []
+
+
+def each_phase(run: Trajectory, found: Beats | None = None, window: Sequence[float] | None = None) -> Iterator[Phase]:
+    """The same one after the other, since a long run has a great many; only of beats that pass within a window (s)."""
     parts = roles(run.scene)
     if parts.wheel is None or parts.lever is None or parts.oscillator is None or len(run.t) == 0:
         return
     found = found or beats(run)
-    contacts, told = _contacts(run, parts), _told(run, found)
+    contacts, told = _contacts(run, parts, found), _told(run, found)
+    if window is not None:
+        told &= (found.end >= window[0]) & (found.tick <= window[1])
     at_entry, at_end = (progress(run, parts.wheel, np.where(told, t, run.t[0])) for t in (found.tick, found.end))
     ways = zip(at_entry.tolist(), at_end.tolist(), strict=True)
     rows = (phase for i, way in enumerate(ways) if told[i] for phase in _beat(found, contacts, i, way))
@@ -95,14 +105,19 @@ def _told(run: Trajectory, found: Beats) -> NDArray[np.bool_]:
     return heard & is_recorded(run, np.where(heard, found.tick, 0.0)) & is_recorded(run, found.end)
 
 
-def _contacts(run: Trajectory, parts: Roles) -> _Contacts:
+def _contacts(run: Trajectory, parts: Roles, found: Beats) -> _Contacts:
+    """Those of the beats `found`."""
     assert parts.wheel and parts.lever
     times, kinds, which = contact_columns(run, involves(parts.wheel), ["t", "kind", "contact"], *TOUCH, EventKind.OPEN)
     fixed = {body.name for body in run.scene.bodies if body.motion == "fixed"}
     (banking,) = contact_columns(run, between(parts.lever, fixed), ["t"], *TOUCH)
-    used, back = np.unique(which, return_inverse=True)
-    on = np.array([FACES.index(_face(run.pairs[contact], parts)) for contact in used.tolist()], np.int64)[back]
-    return _Contacts(times, progress(run, parts.wheel, times), held(kinds), kinds != EventKind.OPEN, on, banking)
+    first, end = np.searchsorted(times, (found.start[0], found.end[-1])) if len(found) else (0, 0)
+    near = slice(first, end)
+    used, back = np.unique(which[near], return_inverse=True)
+    on = np.array([FACES.index(_face(run.pairs[contact], parts)) for contact in used.tolist()], np.int8)[back]
+    holding, touching = held(times, kinds, run.spans)[near].copy(), kinds[near] != EventKind.OPEN
+    times = times[near].copy()
+    return _Contacts(times, progress(run, parts.wheel, times), holding, touching, on, banking)
 
 
 def _face(pair: Pair, parts: Roles) -> str:
@@ -120,19 +135,20 @@ def _beat(found: Beats, contacts: _Contacts, i: int, way: tuple[float, float]) -
     if marks is None:
         return
     unlocked, caught, let_off, lock = marks
-    yield Phase(i + 1, "unlock", float(entry), unlocked)
-    yield Phase(i + 1, "catch-up", unlocked, caught)
+    beat = found.before + i + 1
+    yield Phase(beat, "unlock", float(entry), unlocked)
+    yield Phase(beat, "catch-up", unlocked, caught)
     changes = [*_impulses(contacts, slice(first, last), caught, let_off), (let_off, "")]
     for (t0, on), (t1, _) in pairwise(changes):
-        yield Phase(i + 1, "impulse", t0, t1, on=on)
-    yield Phase(i + 1, "drop", let_off, lock)
+        yield Phase(beat, "impulse", t0, t1, on=on)
+    yield Phase(beat, "drop", let_off, lock)
     resting = lock
     met = int(np.searchsorted(contacts.banking, lock, side="left"))
     if met < len(contacts.banking) and contacts.banking[met] <= end:
         resting = float(contacts.banking[met])
-        yield Phase(i + 1, "run to banking", lock, resting)
+        yield Phase(beat, "run to banking", lock, resting)
     if i + 1 < len(found) and np.isfinite(found.tick[i + 1]):
-        yield Phase(i + 1, "locked", resting, float(found.tick[i + 1]))
+        yield Phase(beat, "locked", resting, float(found.tick[i + 1]))
 
 
 def _impulses(contacts: _Contacts, own: slice, caught: float, let_off: float) -> Iterator[tuple[float, str]]:

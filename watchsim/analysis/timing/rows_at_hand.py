@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 
 from watchsim.scene.oscillation import nominal_frequency, oscillator, oscillators
 from watchsim.simulation.record.trajectory import Array, Trajectory
+from watchsim.storage.columns import blocks, let_go
 
+AT_ONCE = 4096  # times that are looked up together
 LONGEST_STEP = 0.26  # periods: within a window rows are never further apart than a quarter of a swing
 
 
@@ -41,7 +43,13 @@ def is_recorded(run: Trajectory, times: Array) -> NDArray[np.bool_]:
     frequencies = [one.hertz for one in oscillators(run.scene) if one.hertz]
     if frequencies:
         longest = LONGEST_STEP / max(frequencies)
-    after = np.clip(np.searchsorted(run.t, times, side="left"), 0, len(run.t) - 1)
-    before = np.clip(np.searchsorted(run.t, times, side="right") - 1, 0, len(run.t) - 1)
-    inside = (times >= run.t[0]) & (times <= run.t[-1])
-    return inside & (run.t[after] - run.t[before] <= longest)
+    found = [_between_rows(run.t, part, longest) for (part,) in blocks(times, length=AT_ONCE)]
+    return np.concatenate(found) if found else np.zeros(0, bool)
+
+
+def _between_rows(t: Array, times: Array, longest: float) -> NDArray[np.bool_]:
+    after = np.clip(np.searchsorted(t, times, side="left"), 0, len(t) - 1)
+    before = np.clip(np.searchsorted(t, times, side="right") - 1, 0, len(t) - 1)
+    found: NDArray[np.bool_] = (times >= t[0]) & (times <= t[-1]) & (t[after] - t[before] <= longest)
+    let_go(t)
+    return found

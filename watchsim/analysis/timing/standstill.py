@@ -15,6 +15,7 @@ from watchsim.analysis.timing.teeth import pitch
 from watchsim.scene.roles import keeps_time, roles
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.storage.columns import rows_where
 
 HALF_SWINGS = 3  # without any advance of the wheel: the watch stands
 SMALLEST_ADVANCE = 0.01  # rad, for a wheel whose pitch is not known
@@ -52,7 +53,7 @@ def standstill(run: Trajectory, found: Beats) -> Standstill | None:
         earlier = np.flatnonzero(np.abs(progress(run, parts.wheel, run.t) - last) > STILL * least)
         since = float(run.t[earlier[-1]]) if len(earlier) else float(run.t[0])
     else:
-        crossings = run.events["t"][run.events["kind"] == EventKind.CROSS]
+        crossings = rows_where(run.events, lambda part: part["kind"] == EventKind.CROSS)["t"]
         since = float(crossings[-1]) if len(crossings) else 0.0
         if since >= start:
             return None

@@ -9,6 +9,7 @@ from watchsim.analysis.verdicts.equilibrium.lever_arms import Arms, arms
 from watchsim.analysis.verdicts.verdict_kinds import OVERBANKS, Verdict, degrees, torque_text, when
 from watchsim.analysis.verdicts.watch import Watch
 from watchsim.simulation.event_kinds import EventKind
+from watchsim.storage.columns import rows_where
 
 
 def overbanking(watch: Watch) -> Verdict | None:
@@ -17,7 +18,7 @@ def overbanking(watch: Watch) -> Verdict | None:
     if watch.lever is None or not watch.has_banking:
         return None
     own = [body.name for body in run.scene.bodies].index(watch.oscillator)
-    passed = run.events["t"][(run.events["body"] == own) & (run.events["kind"] == EventKind.CROSS)]
+    passed = rows_where(run.events, lambda part: (part["body"] == own) & (part["kind"] == EventKind.CROSS))["t"]
     since = float(passed[-1]) if len(passed) else 0.0
     if run.simulated - since < watch.found.nominal_period:
         return None
@@ -26,7 +27,7 @@ def overbanking(watch: Watch) -> Verdict | None:
     if not len(met) or not watch.recorded(met["t"][-1:]).all():
         return None
     t, contact = float(met["t"][-1]), int(met["contact"][-1])
-    bankings = set(np.unique(watch.events(watch.lever, watch.fixed, *EventKind)["contact"]).tolist())
+    bankings = watch.contacts(watch.lever, watch.fixed)
     banked = [number for number in in_force(run, [t])[0] if number in bankings]
     if not banked or not watch.has_shapes or not _pressed_on(arms(run, watch.compiled, t, [contact, *banked]), watch.lever):
         return None

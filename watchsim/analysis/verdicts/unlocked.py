@@ -9,14 +9,11 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from watchsim.analysis.timing.averages import last_window
 from watchsim.analysis.verdicts.equilibrium.in_force import in_force
 from watchsim.analysis.verdicts.equilibrium.lever_arms import Arms, arms
 from watchsim.analysis.verdicts.faces import Face, face
 from watchsim.analysis.verdicts.watch import Watch
-from watchsim.simulation.event_kinds import EventKind
 
 GRAZING = 0.05  # of the distance from the staff: a dart on its roller has less of an arm, a pin in the fork more
 MANY = 8  # turning points
@@ -32,7 +29,9 @@ def unlocked(watch: Watch) -> list[tuple[float, str, Face]]:
     start, _ = last_window(watch.run, watch.found.nominal_period)
     times = watch.found.end[watch.recorded(watch.found.end)]
     times = times[times >= start] if len(times) and times[-1] >= start else times[-MANY:]
-    pallets, forks, bankings = (_numbers(watch, others) for others in ({watch.wheel}, {watch.oscillator}, watch.fixed))
+    pallets, forks, bankings = (
+        watch.contacts(watch.lever, others) for others in ({watch.wheel}, {watch.oscillator}, watch.fixed)
+    )
     free, engaged = [], []
     for t, holding in zip(times.tolist(), in_force(watch.run, times.tolist()), strict=True):
         own, pins = ([number for number in holding if number in some] for some in (pallets, forks))
@@ -48,12 +47,6 @@ def unlocked(watch: Watch) -> list[tuple[float, str, Face]]:
             free += driven
     always = len(times) >= MANY and len(engaged) + len(free) >= len(times)
     return sorted(free + engaged, key=lambda one: one[0]) if always else free
-
-
-def _numbers(watch: Watch, others: set[str]) -> set[int]:
-    """Of the lever's contacts with some bodies, those that ever had an event."""
-    assert watch.lever is not None
-    return set(np.unique(watch.events(watch.lever, others, *EventKind)["contact"]).tolist())
 
 
 def _engaged(watch: Watch, told: Arms, row: int) -> bool:

@@ -9,12 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.analysis.timing.beats import Beats
-from watchsim.analysis.timing.body_contacts import Events, between, contact_events
+from watchsim.analysis.timing.body_contacts import Events, between, contact_events, contact_numbers
 from watchsim.analysis.timing.escape_wheel import progress
 from watchsim.analysis.timing.rows_at_hand import is_recorded
 from watchsim.analysis.timing.teeth import pitch
 from watchsim.analysis.verdicts.tooth_lean import Teeth, teeth
 from watchsim.mechanism.compile import Compiled, compile_scene
+from watchsim.scene.gear_trains import goes_with
 from watchsim.scene.oscillation import oscillators
 from watchsim.scene.recording import STATISTICS
 from watchsim.scene.roles import drive_direction, keeps_time, partners, roles
@@ -93,18 +94,27 @@ class Watch:
         """Contact events of body `first` with any of the others."""
         return contact_events(self.run, between(first, others), *kinds)
 
+    def contacts(self, first: str, others: set[str]) -> set[int]:
+        """The numbers of the contacts of body `first` with any of the others that ever had an event."""
+        return contact_numbers(self.run, between(first, others))
+
     def drive(self, t: float) -> float:
-        """N·m on the wheel at time `t` (s); tables over angle are read where the wheel was, 0 where that was not recorded."""
-        total = 0.0
+        """N·m on the wheel, if only through gears, at time `t` (s); tables over angle are read where the body was.
+
+        0 where that was not recorded.
+        """
+        total, ratios = 0.0, goes_with(self.run.scene, self.wheel)
         for torque in self.run.scene.torques:
-            if torque.body != self.wheel:
+            if torque.body not in ratios:
                 continue
+            value = 0.0
             if not torque.table:
-                total += torque.value
+                value = torque.value
             elif torque.over == "time":
-                total += float(np.interp(t, *np.array(torque.table).T))
+                value = float(np.interp(t, *np.array(torque.table).T))
             elif self.recorded(np.array([t])).all():
-                total += float(np.interp(self.angle(self.wheel, np.array([t]))[0], *np.array(torque.table).T))
+                value = float(np.interp(self.angle(torque.body, np.array([t]))[0], *np.array(torque.table).T))
+            total += ratios[torque.body] * value
         return total
 
     @cached_property

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from watchsim import stopping
 from watchsim.commands.common.console import Progress, say
+from watchsim.commands.common.second_core import Draw, drawn_apart
 
 if TYPE_CHECKING:
     from watchsim.simulation.record.trajectory import Trajectory
@@ -23,8 +24,8 @@ WHOLE_RUN = 10.0  # s that the movie of a whole run takes
 
 
 def pictures(run: Trajectory, plots: bool, movie: bool, gif: bool) -> dict[str, Callable[[Path], object]]:
-    """Name in the results folder -> what draws it into the file it is given."""
-    found = _plots(run) if plots else {}
+    """Name in the results folder -> what draws it into the file it is given; plots are begun at once (see `drawn_apart`)."""
+    found: dict[str, Any] = dict(drawn_apart(_plots(run))) if plots else {}
     if movie:
         found["movie.mp4"] = lambda path: _movie(run, path, slow=1 / 20)
     if gif:
@@ -60,7 +61,7 @@ def _drawn(draw: Callable[[Path], object]) -> Callable[[Path], None]:
     return attempt
 
 
-def _plots(run: Trajectory) -> dict[str, Callable[[Path], object]]:
+def _plots(run: Trajectory) -> dict[str, Draw]:
     """Kinematic plots: all that was recorded, and the last beats."""
     from watchsim.render.figures.kinematics_plot import Kinematics, write_png
 

@@ -21,7 +21,7 @@ class Turned:
     passes: bool
 
 
-def turned_by_hand(scene: Scene, swing: str | None, movie: str | None, picture: str | None) -> Turned:
+def turned_by_hand(scene: Scene, swing: str | None, movie: str | None, picture: str | None, on_dark: bool) -> Turned:
     """Turn the scene; write a movie and a picture where asked. SceneError where the scene is none that can be turned."""
     from watchsim.commands.common.output_place import secured_file
     from watchsim.turning.turn import turn
@@ -36,11 +36,11 @@ def turned_by_hand(scene: Scene, swing: str | None, movie: str | None, picture: 
     if picture:
         from watchsim.render.stills.turn_picture import turn_picture
 
-        turn_picture(found, Path(picture))
+        turn_picture(found, Path(picture), on_dark)
     if target is not None:
         from watchsim.render.movies.turn_movie import turn_movie
 
-        turn_movie(found, target)
+        turn_movie(found, target, on_dark)
         say(f"Movie: {target}")
     report = turn_report(found)
     return Turned(report, turn_text(found), report["verdict"] == PASSES)

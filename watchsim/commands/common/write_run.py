@@ -6,6 +6,7 @@ goes to another one; and what a fault of this program leaves of its numbers and 
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,6 +16,7 @@ from watchsim import stopping
 from watchsim.commands.common.console import InputError, Progress, say
 
 if TYPE_CHECKING:
+    from watchsim.results.tables import EventLines
     from watchsim.scene.scene import Scene
     from watchsim.simulation.record.trajectory import Trajectory
 
@@ -47,10 +49,13 @@ def goal_of(scene: Scene, folder: Path, replace: bool) -> Goal:
     return Goal(folder, replace, travelling(scene))
 
 
-def write(run: Trajectory, goal: Goal, extras: Extras, changed: Sequence[str] = ()) -> dict[str, Any]:
+def write(
+    run: Trajectory, goal: Goal, extras: Extras, changed: Sequence[str] = (), lines: EventLines | None = None
+) -> dict[str, Any]:
     """Write the results folder; returns the summary as written.
 
-    `changed` holds the options by which the run is another than the scene's own: its expectations are then not judged.
+    `changed` holds the options by which the run is another than the scene's own: its expectations are then not judged;
+    `lines` the events as far as they were made into text already.
     InputError where the results had to go elsewhere.
     """
     from watchsim.analysis.summary import tables
@@ -61,17 +66,30 @@ def write(run: Trajectory, goal: Goal, extras: Extras, changed: Sequence[str] = 
     if run.stop == Stop.INTERRUPTED:
         say("Interrupted: writing what was simulated; a second Ctrl-C abandons it ...")
     try:
+        drawn = pictures(run, extras.plots, extras.movie, extras.gif)  # a copy of the process is made before there are threads
+        packed = _begun(run, goal.folder, lines)
         numbers = _numbers(run, extras, changed, goal.folder)
         said = [*(f"Note: {note}" for note in numbers["notes"]), report_text(run, numbers)]
         told = {name: text.write for name, text in tables(run, real(goal.folder).parent).items()}
         report = "\n".join([*said, *_timeline(run)]) + "\n"
-        beside: dict[str, Any] = {**goal.scene, **told, "report.txt": report}
+        beside: dict[str, Any] = {**goal.scene, **packed, **told, "report.txt": report}
     except Exception:
         say(f"The numbers of this run could not be computed. Its motion is kept in {_bare(run, goal)}")
         raise
-    drawn = pictures(run, extras.plots, extras.movie, extras.gif) | (page(run, numbers) if extras.report else {})
+    drawn |= page(run, numbers) if extras.report else {}
     _save(run, goal, numbers, beside, drawn)
     return numbers
+
+
+def _begun(run: Trajectory, folder: Path, lines: EventLines | None) -> dict[str, Any]:
+    """What writes the motion, which is being packed from now on, and the events."""
+    from watchsim.results.write_results import EVENTS, TRAJECTORY, Packed
+    from watchsim.storage.write import real
+
+    begun: dict[str, Any] = {TRAJECTORY: Packed(run, real(folder).parent).write}
+    if lines is not None:
+        begun[EVENTS] = functools.partial(lines.write, run)
+    return begun
 
 
 def report_text(run: Trajectory, summary: dict[str, Any]) -> str:

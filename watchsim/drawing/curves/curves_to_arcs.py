@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 from watchsim.drawing.content import Stroke
 from watchsim.drawing.curves.ellipse_to_arcs import ellipses_edges
-from watchsim.drawing.curves.plane_projection import MOST_STROKES, Gathering, TooLarge, Waiting, cannot_follow
+from watchsim.drawing.curves.plane_projection import Gathering, TooLarge, Waiting, cannot_follow
 from watchsim.drawing.curves.plane_shapes import Conic, Spline, forward
 from watchsim.drawing.curves.spline_copies import SAME, Follower
 from watchsim.geometry.fitting.fit import Fit
@@ -32,7 +32,7 @@ def follow(found: Gathering) -> None:
             strokes += [Stroke(edge, curve.layer, curve.source, curve.run) for edge in fit.edges]
             if fitted:
                 _count(found, curve, fit)
-        if len(strokes) > MOST_STROKES:
+        if len(strokes) > found.most:
             raise TooLarge
     found.strokes = strokes + found.strokes[taken:]
 

@@ -17,6 +17,7 @@ from watchsim.drawing.findings import Finding
 from watchsim.geometry.primitives import TURN, Edge, Line
 
 MOST_STROKES = 250_000  # more is a fault in the file, not a drawing
+UNFOLDED = 50_000  # pieces that a small file may unfold into; one more for each of its bytes: see `most_strokes`
 MOST_COPIES = 50_000  # of blocks, likewise
 ROUNDING = 1e-11  # of the coordinates: a fit cannot be better than this
 
@@ -41,6 +42,7 @@ class Gathering:
 
     scale: float
     tolerance: float
+    most: int = MOST_STROKES  # pieces
     strokes: list[Stroke] = field(default_factory=list)
     waiting: list[Waiting] = field(default_factory=list)
     points: list[tuple[str, float, float]] = field(default_factory=list)
@@ -61,7 +63,12 @@ class Gathering:
 
 
 class TooLarge(Exception):
-    """The drawing unfolds into more than MOST_STROKES pieces or MOST_COPIES copies of blocks."""
+    """The drawing unfolds into more pieces than `Gathering.most`, or more than MOST_COPIES copies of blocks."""
+
+
+def most_strokes(size: int) -> int:
+    """How many pieces a file of `size` bytes may hold: some hundred bytes of nested arrays can ask for any number."""
+    return min(MOST_STROKES, UNFOLDED + size)
 
 
 def emit(found: Gathering, shape: Shape, layer: str, source: str, curves: int = 1, moved: float = 0.0) -> None:
@@ -83,7 +90,7 @@ def emit(found: Gathering, shape: Shape, layer: str, source: str, curves: int = 
         found.kinds[kind_of(shape)] += curves
         limit = max(found.tolerance - moved, ROUNDING * scale * reach(shape))
         found.waiting.append(Waiting(shape, layer, source, found.runs, len(found.strokes), limit, curves, moved))
-        if len(found.waiting) > MOST_STROKES:
+        if len(found.waiting) > found.most:
             raise TooLarge
     else:
         message = f"{source} is seen edge-on, as a line drawn there and back; it is left out"
@@ -105,7 +112,7 @@ def kind_of(shape: Conic | Spline) -> str:
 
 def keep(found: Gathering, edges: Iterable[Edge], layer: str, source: str) -> None:
     found.strokes.extend(Stroke(edge, layer, source, found.runs) for edge in edges)
-    if len(found.strokes) > MOST_STROKES:
+    if len(found.strokes) > found.most:
         raise TooLarge
 
 

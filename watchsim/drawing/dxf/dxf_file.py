@@ -14,7 +14,7 @@ from itertools import zip_longest
 from watchsim.drawing.content import Content, Inserted
 from watchsim.drawing.curves.affine import IDENTITY, Affine, shifted
 from watchsim.drawing.curves.curves_to_arcs import follow
-from watchsim.drawing.curves.plane_projection import MOST_COPIES, MOST_STROKES, Gathering, TooLarge, emit
+from watchsim.drawing.curves.plane_projection import MOST_COPIES, Gathering, TooLarge, emit, most_strokes
 from watchsim.drawing.curves.plane_shapes import Shape
 from watchsim.drawing.dxf.damaged_records import odd_copies, odd_radius, strange_groups, swallowed
 from watchsim.drawing.dxf.entities import READERS, Insert, heavyweight, insert, is_mesh
@@ -50,15 +50,15 @@ def read_dxf(data: bytes, units: str | None, fit: float) -> Content:
     except DxfError as error:
         return Content(findings=(Finding("unreadable", "error", str(error)),))
     name, scale, origin, notes = _unit_of(sections.insunits, stated)
-    found = Gathering(scale, fit)
+    found = Gathering(scale, fit, most_strokes(len(data)))
     walker = Walker(sections, found)
     try:
-        if len(sections.entities) > MOST_STROKES:
+        if len(sections.entities) > found.most:
             raise TooLarge
         walker.walk(walker.items(sections.entities), IDENTITY, "", ())
         follow(found)
     except TooLarge:
-        message = f"the drawing has more than {MOST_STROKES} pieces, or {MOST_COPIES} copies of blocks; nothing was read"
+        message = f"the drawing unfolds into more than {found.most} pieces, or {MOST_COPIES} copies of blocks; nothing was read"
         fix = "Look for curves made of points, and for arrays of blocks with huge counts."
         refusal = Finding("too-large", "error", message, fix)
         return Content(units=name, units_from=origin, findings=(*notes, *sections.findings, refusal))

@@ -14,7 +14,7 @@ from watchsim.drawing.content import Content
 from watchsim.drawing.curves.affine import IDENTITY, Affine, shifted
 from watchsim.drawing.curves.bezier_to_arcs import emit_row
 from watchsim.drawing.curves.curves_to_arcs import follow
-from watchsim.drawing.curves.plane_projection import Gathering, TooLarge
+from watchsim.drawing.curves.plane_projection import Gathering, TooLarge, most_strokes
 from watchsim.drawing.curves.plane_shapes import Dot
 from watchsim.drawing.dxf_records import LARGEST
 from watchsim.drawing.findings import Finding
@@ -65,7 +65,7 @@ def read_svg(data: bytes, units: str | None, fit: float) -> Content:
     values = styles.of(root)
     page = read_page(values, stated)
     notes = (*tree.findings, *page.findings, *other_pixels(root.attributes, tree.remarks, page))
-    found = Gathering(page.scale, fit)
+    found = Gathering(page.scale, fit, most_strokes(tree.size))
     walker = Walker(tree, styles, found)
     if not page.empty:
         try:

@@ -66,7 +66,7 @@ class Node:
 class Tree:
     """The root (None where the file is no XML at all), all elements by id, the style sheets, and what was wrong.
 
-    `remarks` are the comments before the root, where programs sign.
+    `remarks` are the comments before the root, where programs sign; `size`: how many bytes there were, unpacked.
     """
 
     root: Node | None
@@ -74,6 +74,7 @@ class Tree:
     sheets: tuple[str, ...]
     findings: tuple[Finding, ...]
     remarks: tuple[str, ...] = ()
+    size: int = 0
 
 
 def read_tree(data: bytes) -> Tree:
@@ -94,7 +95,7 @@ def read_tree(data: bytes) -> Tree:
     sheets = tuple(node.text for node in builder.styles)
     if builder.nameless and builder.root is not None:
         findings.append(_nameless(builder))
-    return Tree(builder.root, builder.by_id, sheets, tuple(findings), tuple(builder.remarks))
+    return Tree(builder.root, builder.by_id, sheets, tuple(findings), tuple(builder.remarks), len(data))
 
 
 def _nameless(builder: _Builder) -> Finding:

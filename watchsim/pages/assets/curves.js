@@ -89,19 +89,3 @@ const sampled = (rows, k, what, factor, from, to, step) => {
   found.push([to, factor * rows.at(to, k, what)]);
   return found;
 };
-
-// At most four points a pixel: first, least, largest, last, so that no spike is lost.
-const thinned = (points, from, to, width) => {
-  if (points.length <= 4 * width) return points;
-  const found = [];
-  let column = -1, first, least, most, last;
-  const flush = () => { if (column >= 0) { const own = [first, least, most, last]; own.sort((p, q) => p[2] - q[2]); own.forEach((p, i) => { if (i === 0 || p !== own[i - 1]) found.push(p); }); } };
-  points.forEach((p, index) => {
-    const c = Math.floor(((p[0] - from) / (to - from)) * width);
-    p[2] = index;
-    if (c !== column) { flush(); column = c; first = least = most = last = p; }
-    else { if (p[1] < least[1]) least = p; if (p[1] > most[1]) most = p; last = p; }
-  });
-  flush();
-  return found;
-};

@@ -104,7 +104,7 @@ const chips = data.bodies.slice(0, MANY).map((body, b) => {
 
 const showPlots = (b) => {
   if (!motion.rows[b]) return;
-  plots.show(b);
+  plots.show(b, look);
   $("whose").value = String(b);
   readLook(); plots.stale(); dirty = true;
 };

@@ -12,6 +12,7 @@ from watchsim.analysis.timing.timegrapher import noises
 from watchsim.pages.player.packed import doubles, floats
 from watchsim.render.frame.pose_history import Window
 from watchsim.simulation.record.trajectory import EventKind, Trajectory
+from watchsim.storage.columns import rows_where
 from watchsim.units import metric
 
 WORDS = {
@@ -32,8 +33,10 @@ FAINT = 1e-4  # of the loudest noise: cannot be heard
 
 def instants(run: Trajectory, window: Window) -> list[list[Any]]:
     """[t (s), what happens] for every instant with events, in order; the faintest left out where there are too many."""
-    events = run.events[(run.events["t"] >= window[0]) & (run.events["t"] <= window[1])]
-    events = events[events["kind"] != EventKind.HANDOVER]
+    start, end = window
+    events = rows_where(
+        run.events, lambda part: (part["t"] >= start) & (part["t"] <= end) & (part["kind"] != EventKind.HANDOVER)
+    )
     times, place = np.unique(events["t"], return_inverse=True)
     if len(times) > MOST:
         loud = np.zeros(len(times))
@@ -66,9 +69,8 @@ def _one(run: Trajectory, event: Any, names: list[str]) -> str:
 
 def heard(run: Trajectory, window: Window) -> dict[str, str]:
     """Noises of the window: t (s) and loudness, 1 for the loudest; energies (J) go with the square of it."""
-    times, energies = noises(run)
-    inside = (times >= window[0]) & (times <= window[1])
-    times, energies = times[inside], np.maximum(energies[inside], 0.0)
+    times, energies = noises(run, *window)
+    energies = np.maximum(energies, 0.0)
     loudest = float(energies.max(initial=0.0))
     if loudest <= 0.0:
         return {"t": doubles([]), "loud": floats([])}

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from array import array
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -36,11 +37,35 @@ class _Kind:
         return [joined((mark, self.name)), _mean(self.lasts), _mean(self.at), _mean(balance), _mean(lever), _mean(wheel)]
 
 
-def phase_tables(phases: list[Phase]) -> Iterator[Markup]:
+@dataclass
+class _Sums:
+    """A phase beat by beat, as it comes: what comes several times in a beat is added up. A long run has a great many."""
+
+    beat: int = 0
+    lasts: array[float] = field(default_factory=lambda: array("d"))
+    at: array[float] = field(default_factory=lambda: array("d"))
+    turns: array[float] = field(default_factory=lambda: array("d"))  # three a beat
+
+    def add(self, one: Phase) -> None:
+        if one.beat != self.beat:
+            self.beat = one.beat
+            self.lasts.append(0.0)
+            self.at.append(one.angles[2])
+            self.turns.extend((0.0, 0.0, 0.0))
+        self.lasts[-1] += 1e3 * (one.end - one.start)
+        for place, turn in zip((-3, -2, -1), one.turns, strict=True):
+            self.turns[place] += turn
+
+
+def phase_tables(phases: Iterable[Phase]) -> Iterator[Markup]:
     """The section, with a strip of time and a table for either direction of the balance; nothing where no phases are known."""
+    sums: dict[int, dict[tuple[str, str], _Sums]] = {odd: {} for odd, _ in SIDES}
+    for one in phases:
+        if one.name in ORDER:
+            sums[one.beat % 2].setdefault((one.name, one.on), _Sums()).add(one)
     parts: list[Markup] = []
     for odd, title in SIDES:
-        kinds = _kinds([one for one in phases if one.beat % 2 == odd])
+        kinds = _kinds(sums[odd])
         if not kinds:
             continue
         lengths = [(kind.name, float(np.mean(kind.lasts)), kind.number) for kind in kinds]
@@ -52,19 +77,13 @@ def phase_tables(phases: list[Phase]) -> Iterator[Markup]:
         yield section("phases", "Phases of a beat", *parts)
 
 
-def _kinds(phases: list[Phase]) -> list[_Kind]:
-    """In the order of a beat; an impulse apart for what it acts on. What comes several times in a beat is added up."""
-    first: dict[tuple[str, str], dict[int, list[Phase]]] = {}
-    for one in phases:
-        if one.name in ORDER:
-            first.setdefault((one.name, one.on), {}).setdefault(one.beat, []).append(one)
+def _kinds(sums: dict[tuple[str, str], _Sums]) -> list[_Kind]:
+    """In the order of a beat; an impulse apart for what it acts on."""
     found = []
-    for (name, on), beats in sorted(first.items(), key=lambda item: ORDER.index(item[0][0])):
-        own = list(beats.values())
-        lasts = np.array([1e3 * sum(one.end - one.start for one in beat) for beat in own])
-        turns = np.degrees([np.sum([one.turns for one in beat], axis=0) for beat in own])
-        at = np.degrees([beat[0].angles[2] for beat in own])
-        found.append(_Kind(f"{name} on {on}" if on else name, ORDER.index(name), lasts, at, turns))
+    for (name, on), own in sorted(sums.items(), key=lambda item: ORDER.index(item[0][0])):
+        turns = np.degrees(np.array(own.turns).reshape(-1, 3))
+        title = f"{name} on {on}" if on else name
+        found.append(_Kind(title, ORDER.index(name), np.array(own.lasts), np.degrees(np.array(own.at)), turns))
     return found
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from watchsim.analysis.energy import energy_shares
 from watchsim.analysis.headlines import expected_text, headlines
-from watchsim.analysis.timing.phases import Phase
+from watchsim.analysis.timing.phases import each_phase
 from watchsim.pages.charts import bars
 from watchsim.pages.html import Markup, element, joined, section, table
 from watchsim.pages.timing_sheet.function_tables import function_tables
@@ -30,11 +30,11 @@ VERDICTS = {
 JUDGED = {True: "✓ kept", False: "✗ missed", None: "not judged"}
 
 
-def sheet(run: Trajectory, numbers: Mapping[str, Any], phases: list[Phase]) -> Markup:
+def sheet(run: Trajectory, numbers: Mapping[str, Any]) -> Markup:
     """All sections of the sheet that this run has something to say to."""
     sections = (
         *timekeeping(run, numbers),
-        *phase_tables(phases),
+        *phase_tables(each_phase(run)),
         *function_tables(run.scene),
         *_energy(run),
         *_judgement(numbers),

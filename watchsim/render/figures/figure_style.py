@@ -5,6 +5,7 @@ A figure is as wide as it will be printed, so that a letter of 6 pt here is one 
 
 from __future__ import annotations
 
+import io
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -65,7 +66,7 @@ def heading(figure: Figure, title: str, words: str = "") -> None:
 
 def fit(text: Text, room: float) -> None:
     """Cut a text, measured as it is drawn, to `room` mm."""
-    figure = text.get_figure(root=True)
+    figure = text.get_figure()
     assert figure is not None
     whole = text.get_text()
     for _ in range(4):
@@ -110,11 +111,16 @@ def key(axes: Axes, entries: Sequence[tuple[Any, str]], **where: Any) -> None:
 
 
 def save(figure: Figure, path: Path | str) -> None:
-    """Write it in the format of the file's ending: letters as letters in PDF, as outlines in SVG, and the same every time."""
+    """Write it in the format of the file's ending: letters as letters in PDF, as outlines in SVG, and the same every time.
+
+    It is made in memory: matplotlib ends a PDF that cannot be written with an AttributeError instead of the disk's own words.
+    """
     import matplotlib
 
     with matplotlib.rc_context({"pdf.fonttype": 42, "svg.hashsalt": "watchsim", "svg.fonttype": "path"}):
         ending = Path(path).suffix[1:].lower()
         stamp = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(ending)
         packed: dict[str, Any] = {"pil_kwargs": {"compress_level": 3}} if ending == "png" else {}
-        figure.savefig(path, metadata=stamp, **packed)
+        made = io.BytesIO()
+        figure.savefig(made, format=ending, metadata=stamp, **packed)
+    Path(path).write_bytes(made.getvalue())

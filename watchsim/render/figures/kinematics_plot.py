@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import IO, TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -146,7 +146,7 @@ class Kinematics:
             yield axes, channel, quantity
 
 
-def write_png(figure: Figure, path: Path) -> None:
+def write_png(figure: Figure, path: Path | IO[bytes]) -> None:
     """As `figure.savefig(path)`, but without transparency and lightly packed: a tenth more bytes in half the time."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from PIL import Image

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, replace
+from dataclasses import replace
 from itertools import groupby
-from typing import Any
 
-import numpy as np
-
-from watchsim.analysis.timing.beats import Beats, beats
+from watchsim.analysis.timing.beats import beats, beats_within
 from watchsim.analysis.timing.phases import Phase, phases
 from watchsim.render.frame.pose_history import Window
 from watchsim.scene.roles import keeps_time, roles
@@ -22,7 +19,7 @@ def passing(run: Trajectory, window: Window) -> list[list[Phase]]:
     found = roles(run.scene)
     if found.wheel is None or found.lever is None or not keeps_time(run.scene):
         return []
-    near = _near(beats(run), window)
+    near = beats_within(beats(run), window)
     if not 0 < len(near) <= MOST + 2:
         return []
     start, end = window
@@ -32,12 +29,3 @@ def passing(run: Trajectory, window: Window) -> list[list[Phase]]:
         if one.end > start and one.start < end
     )
     return [list(own) for _, own in groupby(cut, key=lambda one: one.beat)]
-
-
-def _near(found: Beats, window: Window) -> Beats:
-    """The half swings in the window, and one before and after it."""
-    first, last = np.searchsorted(found.end, window[0]), np.searchsorted(found.start, window[1])
-    own = slice(max(int(first) - 1, 0), int(last) + 1)
-    columns = ((field.name, getattr(found, field.name)) for field in fields(found))
-    cut: dict[str, Any] = {name: values[own] for name, values in columns if isinstance(values, np.ndarray)}
-    return replace(found, **cut)

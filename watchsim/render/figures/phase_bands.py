@@ -7,17 +7,15 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from watchsim.analysis.timeline.rows import Stage
-from watchsim.analysis.timeline.timeline_table import TITLES, title
+from watchsim.analysis.timeline.timeline_table import title
 from watchsim.analysis.timing.phases import Phase
 from watchsim.render.figures.figure_style import EDGE, HAIR, LEAD, LETTER, MM, POINT, SMALL
-from watchsim.render.palette import FAINT, INK, PHASE_LINES, PHASES
+from watchsim.render.palette import ELSE, FAINT, INK, PHASE_LINES, PHASES, SECOND
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-SECOND = "#66c5ab"  # of an impulse that follows another
-ELSE = "#eeeeee"
 SWATCH, GAP = 2.6, 1.0  # mm
 APART = 3.5  # mm, from one name to the next swatch
 
@@ -70,15 +68,14 @@ def name_key(figure: Figure, names: Iterable[str], top: float, lines: bool = Fal
     row = LEAD * SMALL * POINT
     x, y = EDGE, top + 0.5 * row
     for name in names:
-        words = TITLES.get(name, name)
-        own = SWATCH + GAP + LETTER * SMALL * POINT * len(words)
+        own = SWATCH + GAP + LETTER * SMALL * POINT * len(name)
         if x > EDGE and x + own > wide - EDGE:
             x, y = EDGE, y + 1.15 * row
         tall = 0.7 if lines else 0.7 * row
         colour = strong(name) if lines else PHASES.get(name, ELSE)
         place, size = (x / wide, 1.0 - (y + 0.5 * tall) / high), (SWATCH / wide, tall / high)
         figure.add_artist(Rectangle(place, *size, color=colour, linewidth=0.0, transform=figure.transFigure))
-        figure.text((x + SWATCH + GAP) / wide, 1.0 - y / high, words, fontsize=SMALL, va="center_baseline", color=INK)
+        figure.text((x + SWATCH + GAP) / wide, 1.0 - y / high, name, fontsize=SMALL, va="center_baseline", color=INK)
         x += own + APART
     return y + 0.5 * row
 

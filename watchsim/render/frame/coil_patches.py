@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 import numpy as np
-from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 from matplotlib.transforms import IdentityTransform
 from numpy.typing import NDArray
 
 from watchsim.render.frame.coils import Hairspring, hairsprings
+from watchsim.render.frame.lasting_patch import LastingPatch
 from watchsim.render.frame.view import Frame
 from watchsim.render.palette import BLUED, FIXED, mixed
 from watchsim.render.picture_style import PALE, Style
@@ -27,24 +27,24 @@ class CoilPatches:
     one of the picture's, `unit` is the size of everything drawn."""
 
     def __init__(
-        self, scene: Scene, room: Frame, scale: float, style: Style, unit: float, own: Callable[[PathPatch], PathPatch]
+        self, scene: Scene, room: Frame, scale: float, style: Style, unit: float, own: Callable[[LastingPatch], LastingPatch]
     ) -> None:
         self._room, self._scale = room, scale
         colour = mixed(style.curve(BLUED), style.background, PALE)
         thin = {"fill": False, "edgecolor": colour, "capstyle": "round", "joinstyle": "bevel", "transform": IdentityTransform()}
         held = {"facecolor": FIXED.fill, "edgecolor": FIXED.edge, "linewidth": 0.5, "transform": IdentityTransform()}
         blank = Path(np.zeros((1, 2)))
-        self._drawn: list[tuple[Hairspring, int, tuple[PathPatch, PathPatch, PathPatch]]] = []
+        self._drawn: list[tuple[Hairspring, int, tuple[LastingPatch, LastingPatch, LastingPatch]]] = []
         for spring in hairsprings(scene):
             width = max(scale * spring.coil.width, THINNEST * unit, 0.7)
             looks = ({**thin, "linewidth": width}, {**thin, "linewidth": 2.0 * width}, held)
-            strip, collet, stud = (own(PathPatch(blank, **look)) for look in looks)
+            strip, collet, stud = (own(LastingPatch(blank, **look)) for look in looks)
             self._drawn.append((spring, spring.coil.chords(DEVIATION / scale), (strip, collet, stud)))
 
     def __bool__(self) -> bool:
         return bool(self._drawn)
 
-    def patches(self, frames: dict[str, Array], matrix: Array) -> Iterator[PathPatch]:
+    def patches(self, frames: dict[str, Array], matrix: Array) -> Iterator[LastingPatch]:
         """To be drawn for the poses x, y, angle of one instant; `matrix` maps metres to pixels. The next call moves them."""
         for spring, chords, (strip, collet, stud) in self._drawn:
             x, y = _seen(frames[spring.body][None, :2], matrix)[0].tolist()

@@ -11,7 +11,6 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.backend_bases import RendererBase
 from matplotlib.figure import Figure
-from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 from matplotlib.transforms import Affine2D, Bbox, IdentityTransform, Transform
 from numpy.typing import NDArray
@@ -20,6 +19,7 @@ from watchsim.geometry.primitives import Arc
 from watchsim.render.frame.coil_patches import CoilPatches
 from watchsim.render.frame.coloured_edges import Edges, edge_paths
 from watchsim.render.frame.filled_parts import Part, backdrop, is_round, loops_of, parts
+from watchsim.render.frame.lasting_patch import LastingPatch
 from watchsim.render.frame.pose_matrix import pose_matrix
 from watchsim.render.frame.view import Frame, View, size_of
 from watchsim.render.picture_style import Style
@@ -57,21 +57,21 @@ class Mechanism:
         for patch in self._patches:
             patch.draw(renderer)
 
-    def rings(self, points: Array, colour: str) -> list[PathPatch]:
+    def rings(self, points: Array, colour: str) -> list[LastingPatch]:
         """Rings around points (n, 2), pixels, with a pale rim, to be seen on steel, brass and ruby alike."""
         path, width = _rings(points, 7.0 * max(self._unit, 0.5)), max(2.4 * self._unit, 1.2)
         looks = ((self._style.background, 2.2 * width), (colour, width))
         place = IdentityTransform()
-        return [PathPatch(path, fill=False, edgecolor=shade, linewidth=line, transform=place) for shade, line in looks]
+        return [LastingPatch(path, fill=False, edgecolor=shade, linewidth=line, transform=place) for shade, line in looks]
 
-    def own(self, patch: PathPatch) -> PathPatch:
+    def own(self, patch: LastingPatch) -> LastingPatch:
         """The patch, drawn on this figure and only between the bands of words."""
         room = self._room
         patch.set_figure(self._figure)
         patch.set_clip_box(Bbox.from_bounds(room.left, room.bottom, room.width, room.height))
         return patch
 
-    def _compose(self) -> list[PathPatch]:
+    def _compose(self) -> list[LastingPatch]:
         """Patches to draw in every frame, in order; those that never move go to the figure itself."""
         shapes = parts(self._scene, CHORD / self._view.scale, HATCH * self._unit / self._view.scale)
         start = at_start(self._scene).bodies
@@ -79,8 +79,8 @@ class Mechanism:
         frames = {body.name: np.array([*body.position, body.angle]) for body in start}
         for body in still:
             self._transforms.pop(body)
-        live: list[PathPatch] = []
-        unmoved: list[PathPatch] = []
+        live: list[LastingPatch] = []
+        unmoved: list[LastingPatch] = []
         for part in shapes:
             if part.body in still:
                 fixed = Affine2D(self._view.matrix(self._view.centre) @ pose_matrix(frames[part.body]))
@@ -101,33 +101,33 @@ class Mechanism:
         live += self._pivots()
         return live
 
-    def _of_part(self, part: Part, transform: Transform) -> list[PathPatch]:
+    def _of_part(self, part: Part, transform: Transform) -> list[LastingPatch]:
         look = self._style.worn(part.finish)
         edge = {"edgecolor": look.edge, "joinstyle": "round", "capstyle": "round", "transform": transform}
         thin = max(1.1 * self._unit, 0.6)
         if not part.ground:
-            return [self.own(PathPatch(part.faces, facecolor=look.fill, linewidth=thin, **edge))]
+            return [self.own(LastingPatch(part.faces, facecolor=look.fill, linewidth=thin, **edge))]
         edge["edgecolor"] = self._style.line(look)
-        strokes = [] if part.strokes is None else [PathPatch(part.strokes, fill=False, linewidth=0.8 * thin, alpha=0.7, **edge)]
-        return [self.own(patch) for patch in (*strokes, PathPatch(part.faces, fill=False, linewidth=1.8 * thin, **edge))]
+        made = [] if part.strokes is None else [LastingPatch(part.strokes, fill=False, linewidth=0.8 * thin, alpha=0.7, **edge)]
+        return [self.own(patch) for patch in (*made, LastingPatch(part.faces, fill=False, linewidth=1.8 * thin, **edge))]
 
-    def _picked(self, edges: Edges) -> list[PathPatch]:
+    def _picked(self, edges: Edges) -> list[LastingPatch]:
         """Edges in colour, on top of their bodies."""
         look = {"fill": False, "edgecolor": edges.colour, "linewidth": max(PICKED * self._unit, 1.5), "capstyle": "round"}
         made = []
         for number, path in edge_paths(edges, CHORD / self._view.scale).items():
             body = self._scene.bodies[number]
             place = Affine2D(self._view.matrix(self._view.centre) @ pose_matrix(np.array([*body.position, body.angle])))
-            made.append(self.own(PathPatch(path, transform=self._transforms.get(body.name, place), **look)))
+            made.append(self.own(LastingPatch(path, transform=self._transforms.get(body.name, place), **look)))
         return made
 
-    def _shadow(self, part: Part) -> PathPatch:
+    def _shadow(self, part: Part) -> LastingPatch:
         shift = Affine2D().translate(SHADOW[0] * self._unit, SHADOW[1] * self._unit)
         return self.own(
-            PathPatch(part.faces, facecolor=self._style.shade, linewidth=0.0, transform=self._transforms[part.body] + shift)
+            LastingPatch(part.faces, facecolor=self._style.shade, linewidth=0.0, transform=self._transforms[part.body] + shift)
         )
 
-    def _spoke(self, name: str) -> PathPatch:
+    def _spoke(self, name: str) -> LastingPatch:
         """A radius drawn on a body so round that its turning could not be seen."""
         body = self._scene.body(name)
         bore = max(
@@ -137,12 +137,12 @@ class Mechanism:
         path = Path([(bore, 0.0), (bore + 0.9 * (reach - bore), 0.0)])
         width = max(2.0 * self._unit, 1.0)
         return self.own(
-            PathPatch(
+            LastingPatch(
                 path, fill=False, edgecolor=self._style.ink, linewidth=width, capstyle="round", transform=self._transforms[name]
             )
         )
 
-    def _pivots(self) -> list[PathPatch]:
+    def _pivots(self) -> list[LastingPatch]:
         """A small ring at every pivot; those on carriers move with them."""
         pivoted = [body for body in self._scene.bodies if body.motion == "pivot"]
         if not pivoted or self._view.follow is not None:
@@ -153,10 +153,10 @@ class Mechanism:
         patches = []
         if places:
             rings = _rings(np.array(places) @ matrix[:2, :2].T + matrix[:2, 2], radius)
-            patches.append(self.own(PathPatch(rings, transform=IdentityTransform(), **look)))
+            patches.append(self.own(LastingPatch(rings, transform=IdentityTransform(), **look)))
         moved = _rings(np.zeros((1, 2)), radius / self._view.scale)
         names = [body.name for body in pivoted if body.on is not None]
-        return patches + [self.own(PathPatch(moved, transform=self._transforms[name], **look)) for name in names]
+        return patches + [self.own(LastingPatch(moved, transform=self._transforms[name], **look)) for name in names]
 
 
 def _rings(points: Array, radius: float) -> Path:

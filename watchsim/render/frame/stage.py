@@ -12,11 +12,11 @@ from dataclasses import replace
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.patches import PathPatch
 from numpy.typing import NDArray
 
 from watchsim.render.frame.coloured_edges import Edges
 from watchsim.render.frame.filled_parts import loops_of
+from watchsim.render.frame.lasting_patch import LastingPatch
 from watchsim.render.frame.marks.extras import NOTHING, Extras
 from watchsim.render.frame.marks.mechanism_extras import Beside
 from watchsim.render.frame.marks.readouts import Clock
@@ -98,8 +98,8 @@ class Stage:
         matrix = self.view.matrix(self.view.centre_at(frames))
         self._mechanism.draw(renderer, frames, matrix)
 
-        def touching(matrix: Array) -> list[PathPatch]:
-            made: list[PathPatch] = []
+        def touching(matrix: Array) -> list[LastingPatch]:
+            made: list[LastingPatch] = []
             if contacts is not None and len(contacts) > 0:
                 made = self._mechanism.rings(contacts @ matrix[:2, :2].T + matrix[:2, 2], mark or self._style.contact)
             return made if press is None else made + self._beside.arrows(matrix, *press)

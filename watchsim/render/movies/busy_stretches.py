@@ -9,6 +9,7 @@ import numpy as np
 from watchsim.analysis.timing.phases import Phase
 from watchsim.render.frame.pose_history import Window
 from watchsim.simulation.record.trajectory import Array, EventKind, Trajectory
+from watchsim.storage.columns import rows_where
 
 TOLD = (EventKind.IMPACT, EventKind.CLOSE, EventKind.OPEN, EventKind.JAM, EventKind.ACCUMULATION)  # slow where these happen
 AROUND = 0.004  # of the window: what is slow around an event where no phases are known
@@ -23,8 +24,10 @@ def busy(run: Trajectory, found: list[Phase], window: Window) -> list[Window]:
         longest = max(end - start for start, end in lively)
         spans = np.array([(start - 0.1 * longest, end + 0.1 * longest) for start, end in lively])
         return list(_merged(spans, longest, window))
-    events = run.events[np.isin(run.events["kind"], TOLD)]
-    times = np.unique(events["t"][(events["t"] >= window[0]) & (events["t"] <= window[1])])
+    told = rows_where(
+        run.events, lambda part: np.isin(part["kind"], TOLD) & (part["t"] >= window[0]) & (part["t"] <= window[1])
+    )
+    times = np.unique(told["t"])
     around = AROUND * (window[1] - window[0])
     return list(_merged(np.column_stack((times - around, times + around)), MERGED * around, window))
 

@@ -23,6 +23,7 @@ Pixels = NDArray[np.uint8]
 
 ENDINGS = (".mp4", ".gif")
 AUDIO = "128k"  # bits per second of one channel
+PIPE = 2**20  # bytes: the most that Linux grants anybody
 
 
 def check_path(path: str | os.PathLike[str]) -> Path:
@@ -75,7 +76,7 @@ def _command(scratch: Path, size: tuple[int, int], fps: float, gif: bool, sound:
     # High definition is BT.709; untagged files show their colours differently from player to player.
     convert = ["-vf", "scale=out_color_matrix=bt709:out_range=tv,format=yuv420p"]
     tags = ["-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709"]
-    quality = ["-c:v", "libx264", "-preset", "veryfast", "-crf", "19", "-tune", "animation"]
+    quality = ["-c:v", "libx264", "-preset", "veryfast", "-crf", "19", "-tune", "animation", "-subq", "1"]
     heard = ["-an"] if sound is None else ["-i", str(sound), "-map", "0:v", "-map", "1:a", "-c:a", "aac", "-b:a", AUDIO]
     return [*head, *heard, *convert, *quality, *tags, "-movflags", "+faststart", str(scratch)]
 
@@ -85,6 +86,7 @@ def _run(command: list[str], frames: Iterable[bytes | memoryview]) -> None:
     pipe = subprocess.PIPE
     with subprocess.Popen(command, stdin=pipe, stderr=pipe, bufsize=0, start_new_session=True) as process:
         assert process.stdin is not None and process.stderr is not None
+        _widen(process.stdin)
         broken = False
         try:
             for frame in frames:
@@ -99,6 +101,16 @@ def _run(command: list[str], frames: Iterable[bytes | memoryview]) -> None:
         # Some releases of ffmpeg end with status 0 after a write that failed.
         if process.wait() != 0 or broken or _refusals(words):
             raise OSError(_reason(words))
+
+
+def _widen(pipe: IO[bytes]) -> None:
+    """A pipe that holds a quarter of a frame, where the system has such: drawing and encoding wait less for one another."""
+    try:
+        import fcntl
+
+        fcntl.fcntl(pipe, fcntl.F_SETPIPE_SZ, PIPE)
+    except (ImportError, AttributeError, OSError):
+        pass  # not Linux, or a limit below it: the usual pipe does as well, more slowly
 
 
 def _feed(pipe: IO[bytes], rest: memoryview) -> None:

@@ -16,6 +16,7 @@ from watchsim.render.movies.encoder import check_path, encode
 from watchsim.render.movies.gif_colours import shared_palette
 from watchsim.render.movies.picture_size import GIF_SIZE, MP4_SIZE
 from watchsim.render.movies.run_movie import GIF_FPS
+from watchsim.render.picture_style import DARK, LIGHT
 from watchsim.simulation.record.body_frames import frames
 from watchsim.simulation.record.trajectory import EVENT_DTYPE, Stop, Trajectory
 from watchsim.turning.turn import Turn
@@ -36,14 +37,14 @@ class ByHand(Clock):
         return "by hand"
 
 
-def turn_movie(found: Turn, path: str | os.PathLike[str]) -> Path:
-    """Write the last cycle as MP4 or GIF, by the ending of `path`; touches are ringed."""
+def turn_movie(found: Turn, path: str | os.PathLike[str], dark: bool = False) -> Path:
+    """Write the last cycle as MP4 or GIF, by the ending of `path`, on light or on dark ground; touches are ringed."""
     target = check_path(path)
     gif = target.suffix.lower() == ".gif"
     size, fps = (GIF_SIZE, GIF_FPS) if gif else (MP4_SIZE, FPS)
     rows, source = _frames(found)
     run = _as_run(found, rows)
-    stage = Stage(run, size, (0.0, float(run.t[-1])), clock=ByHand(0.0, 1.0, ""))
+    stage = Stage(run, size, (0.0, float(run.t[-1])), clock=ByHand(0.0, 1.0, ""), style=DARK if dark else LIGHT)
     palette = None
     if gif:
         some = np.unique(np.linspace(0, len(rows) - 1, 12).astype(int))

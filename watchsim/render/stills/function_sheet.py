@@ -5,6 +5,7 @@ One page 170 mm wide for print, or 85 mm for one column of text.
 
 from __future__ import annotations
 
+import io
 import math
 import os
 from collections.abc import Callable
@@ -81,7 +82,9 @@ def _places(count: int, width: float, shape: float) -> tuple[list[tuple[float, f
 
 def write_sheet(path: str | os.PathLike[str], figure: Figure) -> None:
     """Save it as PNG, SVG or PDF, by the ending of the name."""
-    write_file(Path(path), figure.savefig, "the sheet")
+    made = io.BytesIO()  # matplotlib has no sentence for a PDF that cannot be written
+    figure.savefig(made, format=Path(path).suffix[1:].lower())
+    write_file(Path(path), lambda scratch: scratch.write_bytes(made.getvalue()), "the sheet")
 
 
 def _views(views: Views) -> list[Callable[[Axes, float], None]]:

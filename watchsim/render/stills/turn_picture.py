@@ -13,6 +13,7 @@ import numpy as np
 from matplotlib.patches import PathPatch
 from matplotlib.transforms import Affine2D
 
+from watchsim.render.dark_figure import dark
 from watchsim.render.frame.filled_parts import Part, working
 from watchsim.render.frame.pose_matrix import pose_matrix
 from watchsim.render.palette import BACKGROUND, CONTACT, FAINT, GRID, INK, looks
@@ -35,9 +36,9 @@ BEFORE_AFTER = 12.0  # degrees of the led body that the plot shows beyond the fi
 MOMENTS = ("free", "back", "leaves", "meets")  # in this order of importance
 
 
-def turn_picture(found: Turn, path: Path) -> None:
-    """Write the picture as PNG."""
-    figure = _figure(found)
+def turn_picture(found: Turn, path: Path, on_dark: bool = False) -> None:
+    """Write the picture as PNG, on light or on dark ground."""
+    figure = dark(_figure(found)) if on_dark else _figure(found)
     write_file(path, lambda scratch: figure.savefig(scratch, format="png", dpi=DPI), "the picture")
 
 

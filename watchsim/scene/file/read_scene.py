@@ -21,6 +21,8 @@ from watchsim.scene.file.readers.read_bodies import read_bodies
 from watchsim.scene.file.readers.read_carriers import note_carriers
 from watchsim.scene.file.readers.read_contacts import read_contacts
 from watchsim.scene.file.readers.read_forces import read_damping, read_springs, read_torques
+from watchsim.scene.file.readers.read_gears import read_gears
+from watchsim.scene.file.readers.read_line_springs import read_line_springs
 from watchsim.scene.file.readers.read_settings import read_expectations, read_heading, read_run, read_timegrapher
 from watchsim.scene.file.readers.read_trains import with_trains
 from watchsim.scene.oscillation import frequency
@@ -47,10 +49,13 @@ def from_mapping(
     heading = read_heading(mapping, faults)
     read = read_bodies(mapping.get("bodies", {}), folder, faults, made)
     bodies, sound = with_trains(mapping, read.bodies, faults), read.sound
+    geared = read_gears(mapping, bodies, heading.gravity, faults)
+    bodies = geared.bodies
     springs = read_springs(mapping, bodies, faults)
     torques = read_torques(mapping, bodies, faults)
     damping = read_damping(mapping, bodies, springs, heading.gravity, faults)
     contacts = read_contacts(mapping, bodies, sound, heading.tangential_law, faults)
+    line_springs = read_line_springs(mapping, bodies, faults)
     note_carriers(bodies, damping, contacts, faults)
     duration, record, tolerance = read_run(mapping, faults)
     lift_angle, nominal = read_timegrapher(mapping, faults)
@@ -64,6 +69,8 @@ def from_mapping(
         torques=torques,
         damping=damping,
         contacts=contacts,
+        gears=geared.gears,
+        line_springs=line_springs,
         gravity=heading.gravity,
         tangential_law=heading.tangential_law,
         nu=heading.nu,

@@ -17,7 +17,7 @@ from watchsim.dynamics.delassus import apply, fill_inverse, inverse_mass
 from watchsim.dynamics.small_systems import copy
 from watchsim.jit import kernel
 from watchsim.simulation.event_kinds import EventKind
-from watchsim.simulation.events.closed_contacts import gather, refresh
+from watchsim.simulation.events.closed_contacts import gather, insert, refresh
 from watchsim.simulation.events.collision import approaching, collide
 from watchsim.simulation.events.handover import hand_over
 from watchsim.simulation.events.immovable import drop_immovable
@@ -46,6 +46,7 @@ def settle(model, cells, state, options, scratch, record):
     event = scratch.event
     event.pace[:] = 0.0
     place(model, state.q, state.u, event.pose)
+    _land(model, state, options, scratch.work, event)
     if not hand_over(model, cells, state, options, scratch, record):
         return Stop.CELL_UNKNOWN
     _release(model, state, options, event.pose, record)
@@ -68,6 +69,30 @@ def settle(model, cells, state, options, scratch, record):
     _go_on(model, state, _closed_of(state, m, event.listed, state.active), options, scratch, record)
     state.now.event_waits, state.now.touched = 0, NO_CONTACT
     return Stop.RUNNING
+
+
+@kernel
+def _land(model, state, options, work, event):
+    """Where a contact has just closed and one in force seems to have left its primitive, take back the drift of both.
+
+    A body that lands on a face rests on one corner when the other one meets it. Drift of the first gap turns the body, by more
+    than the joint of its fan of normals: it would be let go in the moment in which both are pressed.
+    """
+    m = state.now.awake_contacts
+    if state.now.touched == NO_CONTACT or m + 1 > len(event.closed.ids):
+        return
+    left = False
+    for j in range(m):
+        left = left or extent_margin(model, state.active[j], event.pose) < -LEFT_PRIMITIVE * options.extent
+    if not left:
+        return
+    fill_inverse(model, state.grip, work.inverse)
+    for j in range(m):
+        event.listed[j] = state.active[j]
+    m = insert(event.listed, m, state.now.touched)
+    place_contacts(model, event.listed, 0, m, event.pose, event.closed)
+    project_positions(event.closed, m, True, work, state.q)
+    place(model, state.q, state.u, event.pose)
 
 
 @kernel

@@ -109,5 +109,7 @@ def first_turn(model, state):
     first = math.inf
     for i in range(len(model.coordinates)):
         if state.awake[i] and model.coordinates[i].coulomb > 0.0:
+            if state.grip[i] * state.u[i] < 0.0:
+                return 0.0  # it turned at the very end of the last flight
             first = min(first, turning_time(model.coordinates[i], state.grip[i], state.q[i], state.u[i]))
     return first

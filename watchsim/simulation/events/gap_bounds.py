@@ -41,11 +41,11 @@ def body_bounds(model, b, length, step, path):
 def _own_bounds(body, length, step, path):
     """The same from the body's own coordinates alone."""
     i = body.first
-    bound = step.bound
+    bound, ratio = step.bound, abs(body.ratio)
     if body.motion == PIVOT:
-        return Bounds(0.0, abs(path.u[i]) + bound[i] * length, 0.0, bound[i])
+        return Bounds(0.0, ratio * (abs(path.u[i]) + bound[i] * length), 0.0, ratio * bound[i])
     if body.motion == SLIDE:
-        return Bounds(abs(path.u[i]) + bound[i] * length, 0.0, bound[i], 0.0)
+        return Bounds(ratio * (abs(path.u[i]) + bound[i] * length), 0.0, ratio * bound[i], 0.0)
     if body.motion == FREE:
         ax, ay = bound[i], bound[i + 1]
         acceleration = math.sqrt(ax * ax + ay * ay)

@@ -69,8 +69,14 @@ def time_to_zero(gap, rate, outside, bounds, options):
         if gap >= -options.behind:
             safe = min(safe, safe_time(gap + options.behind, -rate, closing, bend, distance))
         return safe
+    return safe_time(room_outside(gap, rate, options), -rate, closing, bend, distance)
+
+
+@kernel
+def room_outside(gap, rate, options):
+    """How far a gap on the free side may fall before it is due."""
     leaving = gap > options.gap_zero or rate > options.speed_zero
-    return safe_time(max(gap, 0.0) if leaving else gap + 2.0 * options.gap_zero, -rate, closing, bend, distance)
+    return max(gap, 0.0) if leaving else gap + 2.0 * options.gap_zero
 
 
 @kernel

@@ -13,14 +13,24 @@ from watchsim.candidates.cell_lookup import LISTED, UNKNOWN, candidate, candidat
 from watchsim.contact.gaps import normal_gap, placed_gap
 from watchsim.contact.index_sets import OPEN
 from watchsim.jit import kernel
+from watchsim.model.records import LINE
 from watchsim.simulation.events.gap_bounds import body_bounds, centre_distance, gap_bounds, next_stretch
 from watchsim.simulation.events.handover import is_beside_active
-from watchsim.simulation.events.safe_times import is_due, safe_time, time_held, time_immovable, time_outside, time_to_zero
+from watchsim.simulation.events.lasting_gap import time_apart, time_still
+from watchsim.simulation.events.safe_times import (
+    is_due,
+    room_outside,
+    safe_time,
+    time_held,
+    time_immovable,
+    time_outside,
+    time_to_zero,
+)
 from watchsim.simulation.loop_state.scratch import ask
 from watchsim.simulation.loop_state.state import NO_CONTACT
 from watchsim.simulation.motion.sleeping import is_at_rest
 from watchsim.simulation.motion.step_path import body_on_path
-from watchsim.tolerances import TIME_ROUNDING
+from watchsim.tolerances import FINE_LOOK, TIME_ROUNDING
 
 
 @kernel
@@ -59,7 +69,11 @@ def crossing(model, state, options, k, start, end, step, path):
         near = gap <= zero if outside else gap >= -options.behind
         if near and min(inside_a, inside_b) < 0.0:
             # At least the time in which the gap cannot pass through its rounding.
-            tau += max(beside, zero / closing)
+            wait = max(beside, zero / closing)
+            if wait < FINE_LOOK * (end - tau):
+                way_in = -inside_b if model.primitives[contact.b].kind == LINE else 0.0
+                wait = max(wait, time_still(model, state, k, max(zero, way_in), end - tau, tau, step, path))
+            tau += max(wait, TIME_ROUNDING * tau)
         elif is_due(gap, rate, outside, clear, options):
             wait = time_held(model, state, options, k, tau, rate, (closing, bend, swing, distance), path)
             if wait == 0.0:
@@ -69,6 +83,9 @@ def crossing(model, state, options, k, start, end, step, path):
         else:
             clear = clear and leaving if outside else clear
             safe = time_to_zero(gap, rate, outside, (closing, bend, distance), options)
+            if outside and safe < FINE_LOOK * (end - tau):
+                room = room_outside(gap, rate, options)
+                safe = max(safe, time_apart(model, state, k, room, end - tau, tau, step, path))
             safe = max(safe, time_immovable(model, options, k, rate, bend, path) if near and not leaving else 0.0)
             # Beside its primitives the gap may pass through zero: which side it is on afterwards is found anew.
             fresh = beside > safe

@@ -44,6 +44,7 @@ class Step(NamedTuple):
     q: Array
     u: Array
     bound: Array  # bound of each |q''| over the step
+    jerk: Array  # the same of each |q'''|
     y0: Array  # q, u, sums
     y1: Array
     stages: Array  # (16, 2 n + SUMS)
@@ -190,7 +191,7 @@ def asked_of(coordinates: int) -> Asked:
 
 def _step_room(n: int) -> Step:
     width = 2 * n + SUMS
-    vectors = {name: np.zeros(n) for name in ("q", "u", "bound")}
+    vectors = {name: np.zeros(n) for name in ("q", "u", "bound", "jerk")}
     wide = {name: np.zeros(width) for name in ("y0", "y1")}
     return Step(span=blank(Span), stages=np.zeros((16, width)), dense=np.zeros((7, width)), **vectors, **wide)
 

@@ -125,7 +125,7 @@ def room_for(model: Model) -> int:
 def new_state(model: Model, q: Array, u: Array) -> State:
     """The state at t = 0 with nothing decided yet."""
     n = len(model.coordinates)
-    rest, speed, joints = model.coordinates.rest.copy(), u.astype(float).copy(), model.joints
+    rest, speed, joints = model.coordinates.rest.copy(), u.astype(float).copy(), model.joints[model.joints.watched == 1]
     rest[joints.coordinate] = joints.rest + q[joints.on]
     speed[joints.coordinate] -= u[joints.on]
     now = blank(Now)

@@ -14,8 +14,9 @@ from watchsim.contact.gaps import extent_margin, normal_gap
 from watchsim.contact.index_sets import OPEN
 from watchsim.contact.kinematics import contact_kinematics
 from watchsim.contact.poses import place, point_of
-from watchsim.dynamics.applied_forces import driving_force, joint_damping, joint_energy, stretch, table_force
+from watchsim.dynamics.applied_forces import driving_force, joint_damping, joint_energy, push_back, stretch, table_force
 from watchsim.dynamics.delassus import drive_through_contacts
+from watchsim.dynamics.line_springs import add_line_springs, line_spring_damping, line_spring_drive, line_spring_energy
 from watchsim.dynamics.small_systems import copy
 from watchsim.jit import kernel
 from watchsim.simulation.events.immovable import is_immovable
@@ -83,11 +84,11 @@ def _free_velocity(model, state, h, work):
         table, force = model.tables[j], table_force(model, j, state.clock.time + 0.5 * h, work.q)
         work.force[table.coordinate] += force
         if table.on >= 0:
-            work.force[table.on] -= force
+            push_back(model, table.on, force, work.force)
     for j in range(len(model.joints)):
         joint = model.joints[j]
         work.force[joint.coordinate] += joint.force
-        work.force[joint.on] -= joint.force
+        push_back(model, joint.on, joint.force, work.force)
     for i in range(len(work.u)):
         coordinate = model.coordinates[i]
         change = 0.5 * h * work.damping[i] + 0.25 * h * h * coordinate.stiffness
@@ -106,6 +107,11 @@ def _free_velocity(model, state, h, work):
         torque = work.joint[j] - joint.stiffness * stretch(joint, work.q)
         work.free[joint.coordinate] += h * torque * work.inverse[joint.coordinate]
         work.free[joint.on] -= h * torque * work.inverse[joint.on]
+    if len(model.lines) > 0:
+        work.line[:] = 0.0
+        add_line_springs(model, work.q, work.foreseen, work.line)
+        for i in range(len(work.u)):
+            work.free[i] += h * work.line[i] * work.inverse[i]
 
 
 @kernel
@@ -167,15 +173,34 @@ def move(model, state, options, m, h, work, u):
         joint = model.joints[j]
         way = 0.5 * h * (work.u[joint.coordinate] + u[joint.coordinate] - work.u[joint.on] - u[joint.on])
         state.sums.damping -= work.joint[j] * way
+        if model.coordinates[joint.on].driven:
+            held = work.joint[j] - joint.stiffness * stretch(joint, work.q)
+            state.sums.drive += 0.5 * h * (work.u[joint.on] + u[joint.on]) * held
         spent = joint.stiffness * way * (stretch(joint, state.q) - 0.5 * way - stretch(joint, work.q))
         state.sums.correction -= spent
-    wound = joint_energy(model, state.q)
+    _book_line_springs(model, state, h, work, u)
+    wound = joint_energy(model, state.q) + line_spring_energy(model, state.q)
     _take_back(state, options, m, work)
-    state.sums.correction -= joint_energy(model, state.q) - wound
+    state.sums.correction -= joint_energy(model, state.q) + line_spring_energy(model, state.q) - wound
     for i in range(len(u)):
         coordinate = model.coordinates[i]
         after = coordinate.stiffness * (state.q[i] - coordinate.rest) ** 2
         state.sums.correction -= 0.5 * (after - work.wound[i])
+
+
+@kernel
+def _book_line_springs(model, state, h, work, u):
+    """Damping and drives of line springs over the step; what their forces do beyond that is the method's error."""
+    if len(model.lines) == 0:
+        return
+    done = line_spring_energy(model, state.q) - line_spring_energy(model, work.start)
+    for i in range(len(u)):
+        done += work.line[i] * 0.5 * h * (work.u[i] + u[i])
+    taken = h * line_spring_damping(model, work.q, work.foreseen)
+    driven = h * line_spring_drive(model, work.q, work.foreseen)
+    state.sums.damping += taken
+    state.sums.drive += driven
+    state.sums.correction -= done + taken - driven
 
 
 @kernel

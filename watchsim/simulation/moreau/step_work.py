@@ -49,7 +49,8 @@ class MoreauWork(NamedTuple):
     wound: Array  # by coordinate: twice the energy of its spring before positions are taken back
     force: Array  # drives and gravity at the middle
     damping: Array
-    joint: Array  # torque of the damping between a carried body and its carrier
+    line: Array  # what line springs do to each coordinate
+    joint: Array  # force of the damping between two coordinates
     mass: Array
     inverse: Array
     change: Array  # of velocities, by one percussion
@@ -69,7 +70,7 @@ def moreau_work(model: Model) -> MoreauWork:
     rows = 2 * room + len(dry)
     vectors = {
         name: np.zeros(n)
-        for name in ("q", "u", "free", "force", "damping", "joint", "mass", "inverse", "change", "foreseen", "start", "wound")
+        for name in ("q", "u", "free", "force", "damping", "line", "mass", "inverse", "change", "foreseen", "start", "wound")
     }
     by_row = {name: np.zeros(rows) for name in ("rates", "more")}
     return MoreauWork(
@@ -81,6 +82,7 @@ def moreau_work(model: Model) -> MoreauWork:
         restitution=np.zeros(room),
         dry=dry,
         asked=asked_of(n),
+        joint=np.zeros(len(model.joints)),
         **vectors,
         **by_row,
     )

@@ -42,7 +42,7 @@ def _passages(model, state, h, work, q, u, record):
             _keep_of(model, state, h, (i, -1, coordinate.level), (state.q, work.u, q, u), record)
     for j in range(len(model.joints)):
         joint = model.joints[j]
-        if joint.stiffness != 0.0:
+        if joint.watched == 1:
             _keep_of(model, state, h, (joint.coordinate, joint.on, joint.rest), (state.q, work.u, q, u), record)
 
 

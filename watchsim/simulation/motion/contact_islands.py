@@ -46,6 +46,10 @@ def label_islands(model, ids, m, out_label):
             _join(out_label, body.first, model.bodies[body.carrier].first)
     for j in range(len(model.joints)):
         _join(out_label, model.joints[j].coordinate, model.joints[j].on)
+    for j in range(len(model.lines)):
+        a, b = model.lines[j].a, model.lines[j].b
+        if b >= 0 and model.bodies[a].first >= 0 and model.bodies[b].first >= 0:
+            _join(out_label, model.bodies[a].first, model.bodies[b].first)
     for row in range(m):
         contact = model.contacts[ids[row]]
         i, j = _mover(model, model.primitives[contact.a].body), _mover(model, model.primitives[contact.b].body)

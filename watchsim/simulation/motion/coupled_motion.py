@@ -138,7 +138,7 @@ def motion(model, state, options, t, work, smooth):
         if state.awake[i] == 0:
             out[n + i] = 0.0
     out[2 * n] = drive_power(model, t, q, u) + driven
-    out[2 * n + 1] = damping_power(model, u) + drag_power(model, state.grip, u)
+    out[2 * n + 1] = damping_power(model, q, u) + drag_power(model, state.grip, u)
     out[2 * n + 2] = friction
     state.counts.evaluations += 1
     return smallest

@@ -27,6 +27,19 @@ def dense(step, i, tau):
 
 
 @kernel
+def dense_bend(step, i, tau):
+    """Second time derivative of component i of y at time tau after the start of a coupled step."""
+    h, d = step.span.length, step.dense
+    x = tau / h
+    w = 1.0 - x
+    value, slope, bend = d[5, i] + x * d[6, i], d[6, i], 0.0
+    for term in range(4, -1, -1):  # what is nested in `dense`, times w and x in turn
+        share, way = (w, -1.0) if term % 2 == 0 else (x, 1.0)
+        value, slope, bend = d[term, i] + share * value, share * slope + way * value, share * bend + 2.0 * way * slope
+    return (x * bend + 2.0 * slope) / (h * h)
+
+
+@kernel
 def dense_value(step, i, tau):
     """Component i of y alone."""
     return dense(step, i, tau)[0]

@@ -76,6 +76,14 @@ def acceleration_bound(coordinate, grip, q, u):
 
 
 @kernel
+def fastest_change(coordinate):
+    """What `acceleration_bound` times this bounds: the rate of change of the acceleration. 1/s."""
+    if coordinate.stiffness == 0.0:
+        return coordinate.viscous / coordinate.mass
+    return math.sqrt(coordinate.stiffness / coordinate.mass)
+
+
+@kernel
 def quarter_period(coordinate):
     """A quarter of the undamped period; infinity without a spring."""
     if coordinate.stiffness == 0.0:

@@ -15,7 +15,7 @@ from watchsim.contact.poses import place_body
 from watchsim.jit import kernel
 from watchsim.model.records import FREE
 from watchsim.simulation.loop_state.scratch import FLIGHT
-from watchsim.simulation.motion.dense_output import dense
+from watchsim.simulation.motion.dense_output import dense, dense_bend, flight_acceleration
 from watchsim.simulation.motion.free_motion import flow
 
 DEGREE = 7
@@ -23,32 +23,44 @@ DEGREE = 7
 TERMS = ((1, 0), (1, 1), (2, 1), (2, 2), (3, 2), (3, 3), (4, 3))
 
 
-def _second_derivative() -> NDArray[np.float64]:
-    """Bernstein coefficients (of degree 5, by row) of the second derivative of each term, by the definition of the basis."""
+def _derivative(order: int) -> NDArray[np.float64]:
+    """Bernstein coefficients, by row, of that derivative of each term, by the definition of the basis."""
     terms = np.array(
         [
             [math.comb(DEGREE - a - b, k - a) / math.comb(DEGREE, k) if k >= a else 0.0 for a, b in TERMS]
             for k in range(DEGREE + 1)
         ]
     )
-    return np.asarray(DEGREE * (DEGREE - 1) * np.diff(terms, n=2, axis=0))
+    return np.asarray(math.perm(DEGREE, order) * np.diff(terms, n=order, axis=0))
 
 
-BEND = _second_derivative()
+BEND, JERK = _derivative(2), _derivative(3)
 
 
 @kernel
 def bound_accelerations(step, n):
-    """Bounds of |q''| over the coupled step, for its n coordinates, into `step.bound`: no Bernstein polynomial exceeds them."""
+    """Bounds of |q''| and |q'''| over the coupled step, for its n coordinates, into `step.bound` and `step.jerk`."""
     h = step.span.length
     for i in range(n):
-        largest = 0.0
+        bend, jerk = 0.0, 0.0  # no Bernstein polynomial exceeds its largest coefficient
         for row in range(DEGREE - 1):
-            total = 0.0
+            second, third = 0.0, 0.0
             for term in range(DEGREE):
-                total += BEND[row, term] * step.dense[term, i]
-            largest = max(largest, abs(total))
-        step.bound[i] = largest / (h * h)
+                second += BEND[row, term] * step.dense[term, i]
+                if row < DEGREE - 2:
+                    third += JERK[row, term] * step.dense[term, i]
+            bend, jerk = max(bend, abs(second)), max(jerk, abs(third))
+        step.bound[i], step.jerk[i] = bend / (h * h), jerk / (h * h * h)
+
+
+@kernel
+def acceleration_on_path(model, state, step, i, tau, path):
+    """q'' of coordinate i at time tau of the step, at which it must stand in `path`."""
+    if state.awake[i] == 0:
+        return 0.0
+    if step.span.kind == FLIGHT:
+        return flight_acceleration(model, state, i, path.q[i], path.u[i])
+    return dense_bend(step, i, tau)
 
 
 @kernel

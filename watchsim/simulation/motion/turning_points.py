@@ -67,7 +67,7 @@ def keep_passages(model, state, step, end, record):
             i, on, rest = spring, -1, model.coordinates[spring].level
         else:
             joint = model.joints[spring - n]
-            if joint.stiffness == 0.0:
+            if joint.watched == 0:
                 continue
             i, on, rest = joint.coordinate, joint.on, joint.rest
         side = sign(along(state.u, i, on))

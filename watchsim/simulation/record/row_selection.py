@@ -50,6 +50,7 @@ class Kept:
         self._rows: list[tuple[Array, Bits]] = []  # of later parts, with those that stay for good
         self._events: list[tuple[Events, Bits]] = []
         self._met = 0  # rows met within the windows
+        self.follow: Callable[[Events], object] | None = None  # is given events as soon as they are settled, in order
         self._last = (0, np.nan, True)  # the last row met: part, time (s), whether within a window
 
     def stream(self, folder: Path) -> None:
@@ -143,7 +144,10 @@ class Kept:
         if row_stays.any():
             self._done.append(self._told(rows[row_stays]))
         if event_stays.any():
-            self._done_events.append([self._events_told(events[event_stays])])
+            settled = self._events_told(events[event_stays])
+            self._done_events.append([settled])
+            if self.follow is not None:
+                self.follow(settled)
         self._ends.append((self._done.rows, self._done_events.rows))
 
     def for_good(self, end: float, parts: int) -> Bits:

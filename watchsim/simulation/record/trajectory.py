@@ -142,7 +142,7 @@ class Trajectory:
         h = np.where(last, 1.0, h)
         q, u = between(s, h, (self.q[i], self.u[i], self.a[i]), (self.q[j], self.u[j], self.a[j]), self._noise)
         q, u = np.where(last, self.q[j], q), np.where(last, self.u[j], u)
-        let_go(self.q, self.u, self.a)
+        let_go(self.t, self.q, self.u, self.a)
         return q, u
 
     def acceleration(self, times: Array) -> Array:

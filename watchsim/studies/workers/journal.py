@@ -1,7 +1,8 @@
 """What of a study is kept if the machine is switched off now?
 
 A folder's `rows.jsonl`: first what the study is, then every finished row on a line of its own, on the disk before the next one.
-Whoever goes on reads it; a last line that was cut off is left out.
+Whoever goes on reads it; a last line that was cut off is left out. A row that cannot be written, as on a full disk, is written
+with the next one, and the study goes on.
 """
 
 from __future__ import annotations
@@ -15,6 +16,8 @@ from typing import IO, Any
 
 from watchsim.results.tables import plain
 from watchsim.scene.scene import Scene
+from watchsim.storage.disk import reason
+from watchsim.storage.write import write_file
 from watchsim.studies.point import Row
 
 NAME = "rows.jsonl"
@@ -34,33 +37,47 @@ class Journal:
     """Rows by their number. Use it in a `with` statement."""
 
     def __init__(self, folder: Path, study: Study, resume: bool) -> None:
-        """`study` says what is computed; ValueError where `resume` finds another one in the folder, with the difference."""
+        """`study` says what is computed; ValueError where `resume` finds another one in the folder, with the difference.
+
+        OSError where it cannot be written; an earlier journal is then still there.
+        """
         self.path = folder / NAME
         self.rows: dict[int, Row] = {}
-        whole = 0
-        if resume:
-            whole = self._read(study)
-        self._file: IO[bytes] = self.path.open("r+b" if whole else "wb")
-        self._file.truncate(whole)
-        self._file.seek(whole)
-        if not whole:
-            self._write(study)
+        self._owed = b""  # lines that are not on the disk yet
+        self._whole = self._read(study) if resume else 0  # bytes of the file that are whole lines
+        if not self._whole:
+            first = _line(study)
+            write_file(self.path, lambda place: place.write_bytes(first), "the rows")
+            self._whole = len(first)
+        try:
+            self._file: IO[bytes] = self.path.open("r+b", buffering=0)
+        except OSError as error:
+            raise type(error)(error.errno, f"could not write the rows to {self.path}: {reason(error)}") from error
 
     def __enter__(self) -> Journal:
         return self
 
     def __exit__(self, *_: object) -> None:
+        self._write()
         self._file.close()
 
     def add(self, number: int, row: Row) -> None:
-        """Keep one finished row, for good when this returns."""
+        """Keep one finished row: on the disk when this returns, where that can be written."""
         self.rows[number] = row
-        self._write({"point": number, **row})
+        self._owed += _line({"point": number, **row})
+        self._write()
 
-    def _write(self, record: Mapping[str, Any]) -> None:
-        self._file.write(json.dumps(plain(record), ensure_ascii=False, allow_nan=False).encode() + b"\n")
-        self._file.flush()
-        os.fsync(self._file.fileno())
+    def _write(self) -> None:
+        try:
+            self._file.seek(self._whole)
+            self._file.truncate()
+            left = memoryview(self._owed)
+            while left:
+                left = left[self._file.write(left) or 0 :]
+            os.fsync(self._file.fileno())
+        except OSError:
+            return
+        self._whole, self._owed = self._whole + len(self._owed), b""
 
     def _read(self, study: Study) -> int:
         """Take up the rows that are there; how many bytes of the file are whole lines."""
@@ -80,6 +97,10 @@ class Journal:
                 self.rows[int(record.pop("point"))] = record
             whole += len(line)
         return whole
+
+
+def _line(record: Mapping[str, Any]) -> bytes:
+    return json.dumps(plain(record), ensure_ascii=False, allow_nan=False).encode() + b"\n"
 
 
 def _compare(earlier: Study, now: Study, folder: Path) -> None:

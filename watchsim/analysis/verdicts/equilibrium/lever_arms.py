@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from watchsim.analysis.contact_forces import absolute
 from watchsim.contact.kinematics import closed_contacts
 from watchsim.contact.poses import poses
 from watchsim.dynamics.equations_of_motion import balance
@@ -47,8 +48,7 @@ def arms(run: Trajectory, compiled: Compiled, t: float, contacts: list[int]) -> 
     """Of the contacts with these numbers at a recorded time; loads are those of bodies that stand still."""
     q, u = (np.array(row) for row in run.at(t))
     places = {body.name: run.pose_of(body.name, q) for body in run.scene.bodies}
-    for own, on, angle in compiled.against:  # coordinates in the movement
-        q[own] += (q[on] if on >= 0 else 0.0) + angle
+    q, u = absolute(compiled, q[None], False)[0], absolute(compiled, u[None], True)[0]
     k, ids = len(contacts), np.array(contacts, np.int64)
     closed, way, h = closed_contacts(max(1, k)), np.zeros((k, 2)), np.zeros(len(q))
     balance(compiled.model, float(t), q, np.zeros(len(u)), ids, poses(len(compiled.model.bodies)), closed, way, h)
@@ -61,13 +61,13 @@ def arms(run: Trajectory, compiled: Compiled, t: float, contacts: list[int]) -> 
     return Arms(
         float(t),
         pairs,
-        {name: columns.start for name, columns in run.slices.items()},
+        {name: columns.start for name, columns in run.slices.items() if columns.start < len(q)},
         normal,
         across,
         np.column_stack((closed.kin.x, closed.kin.y))[:k],
         way,
         places,
-        np.array([run.scene.contacts[pair.group].friction for pair in pairs]),
+        np.array([compiled.model.laws[pair.group].friction for pair in pairs]),
         h,
         np.array(compiled.model.coordinates.coulomb),
     )

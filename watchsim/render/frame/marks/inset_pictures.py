@@ -11,13 +11,13 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.backend_bases import RendererBase
 from matplotlib.figure import Figure
-from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 from matplotlib.transforms import Affine2D, Bbox, IdentityTransform
 from numpy.typing import NDArray
 
 from watchsim.render.frame.coil_patches import CoilPatches
 from watchsim.render.frame.filled_parts import Part, parts
+from watchsim.render.frame.lasting_patch import LastingPatch
 from watchsim.render.frame.marks.changing_words import Words
 from watchsim.render.frame.marks.insets import Inset
 from watchsim.render.frame.pose_matrix import pose_matrix
@@ -27,7 +27,7 @@ from watchsim.scene.scene import Scene
 
 Array = NDArray[np.float64]
 Pixels = NDArray[np.uint8]
-Marks = Callable[[Array], list[PathPatch]]  # what is drawn at contacts, for a map from metres to pixels
+Marks = Callable[[Array], list[LastingPatch]]  # what is drawn at contacts, for a map from metres to pixels
 
 CHORD = 0.05  # pixels that a chord may stray from its arc
 HATCH = 13.0  # pixels between hatch strokes
@@ -36,7 +36,7 @@ HATCH = 13.0  # pixels between hatch strokes
 @dataclass(frozen=True)
 class _Shape:
     body: str
-    patches: tuple[PathPatch, ...]
+    patches: tuple[LastingPatch, ...]
     middle: Array  # m, in the body's frame
     reach: float
 
@@ -55,19 +55,19 @@ class InsetPicture:
         edge = Path([(box.left, box.bottom), (box.left + box.width, box.bottom + box.height)])
         frame = _rectangle(edge)
         self._sheet = self._own(
-            PathPatch(frame, facecolor=style.background, linewidth=0.0, transform=IdentityTransform()), False
+            LastingPatch(frame, facecolor=style.background, linewidth=0.0, transform=IdentityTransform()), False
         )
         look = {"fill": False, "edgecolor": style.faint, "linewidth": max(1.4 * unit, 1.0)}
-        self._border = self._own(PathPatch(frame, transform=IdentityTransform(), **look), False)
+        self._border = self._own(LastingPatch(frame, transform=IdentityTransform(), **look), False)
 
-    def place_in(self, matrix: Array, centre: tuple[float, float], room: Frame) -> PathPatch:
+    def place_in(self, matrix: Array, centre: tuple[float, float], room: Frame) -> LastingPatch:
         """The rectangle of the picture (its map `matrix`) that the inset enlarges."""
         half = 0.5 * np.array([self._inset.box.width, self._inset.box.height]) / self._inset.view.scale
         scale = float(np.hypot(*matrix[:2, 0]))
         middle = matrix[:2, :2] @ np.array(centre) + matrix[:2, 2]
         corners = _rectangle(Path(np.array([middle - scale * half, middle + scale * half])))
         look = {"fill": False, "edgecolor": self._style.ink, "linewidth": 0.8 * self._thin, "alpha": 0.55}
-        patch = PathPatch(corners, transform=IdentityTransform(), **look)
+        patch = LastingPatch(corners, transform=IdentityTransform(), **look)
         patch.set_figure(self._figure)
         patch.set_clip_box(Bbox.from_bounds(room.left, room.bottom, room.width, room.height))
         return patch
@@ -110,12 +110,12 @@ class InsetPicture:
         }
         if part.ground:
             paths = [part.faces] if part.strokes is None else [part.strokes, part.faces]
-            made = [PathPatch(path, fill=False, linewidth=self._thin, **edge) for path in paths]
+            made = [LastingPatch(path, fill=False, linewidth=self._thin, **edge) for path in paths]
         else:
-            made = [PathPatch(part.faces, facecolor=look.fill, linewidth=self._thin, **edge)]
+            made = [LastingPatch(part.faces, facecolor=look.fill, linewidth=self._thin, **edge)]
         return _Shape(part.body, tuple(map(self._own, made)), middle, float(np.hypot(*(points - middle).T).max()))
 
-    def _own(self, patch: PathPatch, clipped: bool = True) -> PathPatch:
+    def _own(self, patch: LastingPatch, clipped: bool = True) -> LastingPatch:
         patch.set_figure(self._figure)
         box = self._inset.box
         if clipped:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from watchsim.geometry.loop import Loop
 from watchsim.render.frame.filled_parts import loops_of, outline
-from watchsim.render.frame.marks.pallet_stones import STONES, stone
+from watchsim.render.frame.marks.pallet_stones import STONES, PalletStones
 from watchsim.render.frame.pose_history import Window, placed, swept
 from watchsim.render.frame.view import COARSE, Frame, View
 from watchsim.scene.body import Body
@@ -78,11 +78,16 @@ def beside(frame: Frame, count: int) -> tuple[Frame, tuple[Frame, ...]]:
     return Frame(frame.left, frame.bottom, frame.width, frame.height - down), boxes
 
 
-def inset(run: Trajectory, window: Window, place: str, box: Frame, turn: float) -> Inset:
-    """The inset of one place, the same way up as the picture. ValueError where there is no such place."""
+def insets(run: Trajectory, window: Window, places: Sequence[str], boxes: Sequence[Frame], turn: float) -> list[Inset]:
+    """An inset for each place and box, the same way up as the picture. ValueError where there is no such place."""
+    stones = PalletStones(run.scene)
+    return [_inset(run, window, place, box, turn, stones) for place, box in zip(places, boxes, strict=True)]
+
+
+def _inset(run: Trajectory, window: Window, place: str, box: Frame, turn: float, stones: PalletStones) -> Inset:
     if (corners := _rectangle(place)) is not None:
         return Inset(place.strip(), box, _fitted(corners, box, turn))
-    body, loops = _outlines(run, place)
+    body, loops = _outlines(run, place, stones)
     points = outline(loops, math.inf)
     points = outline(loops, COARSE * max(float(np.ptp(points, axis=0).max()), 1e-12))
     frames = swept(run, body, window)
@@ -108,10 +113,10 @@ def _rectangle(place: str) -> Array | None:
     return 1e-3 * np.array([(x0, y0), (x1, y0), (x1, y1), (x0, y1)])
 
 
-def _outlines(run: Trajectory, place: str) -> tuple[Body, Sequence[Loop]]:
+def _outlines(run: Trajectory, place: str, stones: PalletStones) -> tuple[Body, Sequence[Loop]]:
     if place in STONES and all(body.name != place for body in run.scene.bodies):
         try:
-            lever, loop = stone(run.scene, place)
+            lever, loop = stones.stone(place)
         except ValueError as error:
             raise ValueError(f"inset {error}") from None
         return lever, [loop]

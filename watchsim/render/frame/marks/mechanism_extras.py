@@ -9,15 +9,15 @@ from typing import Any
 import numpy as np
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
-from matplotlib.patches import PathPatch
 from matplotlib.transforms import IdentityTransform
 from numpy.typing import NDArray
 
+from watchsim.render.frame.lasting_patch import LastingPatch
 from watchsim.render.frame.marks.changing_words import Words
 from watchsim.render.frame.marks.extras import ARROW, STRIP_TALL, STRIP_WIDE, Extras
 from watchsim.render.frame.marks.force_arrows import arrow_path
 from watchsim.render.frame.marks.inset_pictures import InsetPicture
-from watchsim.render.frame.marks.insets import beside, inset
+from watchsim.render.frame.marks.insets import Inset, beside, insets
 from watchsim.render.frame.marks.readouts import changing_speed_text, turn_text
 from watchsim.render.frame.marks.strip import Strip
 from watchsim.render.frame.pose_history import Window
@@ -83,20 +83,17 @@ class Beside:
         self.room, self._boxes = shared.room, shared.insets
         self._longest = ARROW * min(self.room.width, self.room.height)
         self._insets: list[InsetPicture] = []
-        self._made: list[Any] = []
+        self._made: list[Inset] = []
 
     def look_at(self, view: View) -> None:
         """Prepare the insets, which stand the same way up as the picture's own view."""
         self._turn = view.turn
-        self._made = [
-            inset(self._run, self._window, place, box, view.turn)
-            for place, box in zip(self._extras.insets, self._boxes, strict=True)
-        ]
+        self._made = insets(self._run, self._window, self._extras.insets, self._boxes, view.turn)
         self._insets = [
             InsetPicture(self._figure, self._run.scene, one, self._unit, self._words, self._style) for one in self._made
         ]
 
-    def arrows(self, matrix: Array, points: Array, forces: Array) -> list[PathPatch]:
+    def arrows(self, matrix: Array, points: Array, forces: Array) -> list[LastingPatch]:
         """Arrows for forces (n, 2), N, at points (n, 2), m, in a picture with this map."""
         if not len(points) or self._extras.force <= 0.0:
             return []
@@ -111,7 +108,7 @@ class Beside:
         t: float,
         frames: dict[str, Array],
         matrix: Array,
-        marks: Callable[[Array], list[PathPatch]],
+        marks: Callable[[Array], list[LastingPatch]],
         out_pixels: Pixels,
     ) -> None:
         """Draw everything for the poses of the instant `t`, in a picture whose map from metres is `matrix`."""
@@ -154,8 +151,8 @@ class Beside:
             self._arrow(path).draw(renderer)
         self._words.write(metric(self._extras.scale, "N", 1), left + length + 0.6 * size, base, out_pixels)
 
-    def _arrow(self, path: Any) -> PathPatch:
+    def _arrow(self, path: Any) -> LastingPatch:
         look = {"facecolor": self._style.force, "edgecolor": self._style.background, "linewidth": max(0.9 * self._unit, 0.6)}
-        patch = PathPatch(path, transform=IdentityTransform(), **look)
+        patch = LastingPatch(path, transform=IdentityTransform(), **look)
         patch.set_figure(self._figure)
         return patch

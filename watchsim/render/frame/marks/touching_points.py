@@ -18,6 +18,7 @@ from watchsim.geometry.primitives import Point
 from watchsim.mechanism.compile import compile_scene
 from watchsim.model.records import LINE, Records
 from watchsim.simulation.record.trajectory import EventKind, Trajectory
+from watchsim.storage.columns import blocks
 
 Array = NDArray[np.float64]
 
@@ -28,7 +29,7 @@ class ContactMarks:
     def __init__(self, run: Trajectory) -> None:
         names = [body.name for body in run.scene.bodies]
         model = compile_scene(run.scene).model
-        told = _told(run.events)
+        told = np.concatenate([_told(part) for (part,) in blocks(run.events)] or [_told(run.events)])
         if len(told) and told["contact"].max() >= len(model.contacts):
             raise ValueError("contacts cannot be marked: the events of this run do not belong to its scene")
         self._history: dict[int, tuple[Array, NDArray[np.bool_]]] = {}

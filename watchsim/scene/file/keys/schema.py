@@ -64,10 +64,11 @@ SPRING: Keys = {
     "stiffness": Key(units.ROTARY_STIFFNESS, units.LINEAR_STIFFNESS),
     "rest": Key(units.ANGLE, units.LENGTH),
     "draw": PLAIN,
+    "against": PLAIN,
 }
 COIL: Keys = {"inner": LENGTH, "outer": LENGTH, "turns": NUMBER, "stud": ANGLE, "width": LENGTH}  # draw of a spring
 TORQUE: Keys = {
-    **{"body": PLAIN, "value": Key(units.TORQUE, units.FORCE), "over": PLAIN, "table": PLAIN},
+    **{"body": PLAIN, "value": Key(units.TORQUE, units.FORCE), "over": PLAIN, "table": PLAIN, "against": PLAIN},
     **{"ratio": NUMBER, "efficiency": NUMBER, "run_down": ANGLE, "train": PLAIN},
 }
 TRAIN: Keys = {"ratio": NUMBER, "inertia": Key(units.INERTIA)}  # of one wheel between mainspring and body
@@ -77,8 +78,17 @@ DAMPING: Keys = {
     "viscous": Key(units.ROTARY_VISCOUS, units.LINEAR_VISCOUS),
     "quadratic": Key(units.ROTARY_QUADRATIC, units.LINEAR_QUADRATIC),
     "coulomb": Key(units.TORQUE, units.FORCE),
+    "against": PLAIN,
 }
 CONTACT: Keys = {"between": PLAIN, "friction": NUMBER, "restitution": NUMBER, "tangential_restitution": NUMBER}
+GEAR: Keys = {
+    **{"between": PLAIN, "ratio": NUMBER, "backlash": Key(units.ANGLE, units.LENGTH)},
+    **{"restitution": NUMBER, "efficiency": NUMBER},
+}
+LINE_SPRING: Keys = {
+    **{"between": PLAIN, "points": LENGTH, "stiffness": Key(units.LINEAR_STIFFNESS)},
+    **{"length": LENGTH, "tension": Key(units.FORCE), "viscous": Key(units.LINEAR_VISCOUS)},
+}
 RUN: Keys = {"duration": Key(units.TIME), "record": Key(units.TIME), "tolerance": NUMBER}
 TIMEGRAPHER: Keys = {"lift_angle": ANGLE, "frequency": Key(units.FREQUENCY)}
 EXPECTATION: Keys = {"value": PLAIN, "tolerance": PLAIN}
@@ -86,7 +96,14 @@ LOCK: Keys = {"versions": PLAIN, "drawings": PLAIN, "design": PLAIN}
 
 TABLES = {"scene": SCENE, "run": RUN, "timegrapher": TIMEGRAPHER, "lock": LOCK}  # [name]
 NAMED = {"bodies": BODY, "expect": EXPECTATION}  # [name.anything]
-LISTED = {"springs": SPRING, "torques": TORQUE, "damping": DAMPING, "contacts": CONTACT}  # [[name]]
+LISTED = {
+    "springs": SPRING,
+    "torques": TORQUE,
+    "damping": DAMPING,
+    "contacts": CONTACT,
+    "gears": GEAR,
+    "line_springs": LINE_SPRING,
+}  # [[name]]
 DESIGN = "design"  # [design], whose keys are the dimensions of the design it names
 SECTIONS = (*TABLES, DESIGN, *NAMED, *LISTED)
 

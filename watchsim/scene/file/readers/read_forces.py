@@ -14,6 +14,7 @@ from watchsim.scene.body import Body
 from watchsim.scene.errors import Faults
 from watchsim.scene.file.keys.key_values import NAN, Table, shown
 from watchsim.scene.file.keys.schema import DAMPING, SPRING, TORQUE, Keys, nearest
+from watchsim.scene.file.readers.read_against import read_against
 from watchsim.scene.file.readers.read_coil import read_coil
 from watchsim.scene.file.readers.read_trains import BARREL, KEYS, mainspring_torque
 from watchsim.scene.force import Damping, Spring, Torque
@@ -28,7 +29,8 @@ class Entry:
 
     table: Table
     body: Body | None
-    mass: float  # what the body's coordinate weighs with what it carries, kg or kg·m²; NaN after a fault
+    against: str | None  # the body at the other end
+    mass: float  # of the body's coordinate, with what it carries and what is geared to it, kg or kg·m²; NaN after a fault
 
     @property
     def name(self) -> str:
@@ -72,15 +74,12 @@ def _entries(mapping: Mapping[str, Any], section: str, keys: Keys, bodies: tuple
         body = known.get(name) if isinstance(name, str) else None
         table = Table(element, f"{section}.{i}", keys, faults, body.motion if body else "pivot")
         _note_body(table, known)
-        yield Entry(table, body, masses.get(body.name, NAN) if body else NAN)
+        yield Entry(table, body, read_against(table, body, known), masses.get(body.name, NAN) if body else NAN)
 
 
 def _masses(bodies: tuple[Body, ...]) -> dict[str, float]:
-    """What the coordinate of each body weighs: turning its inertia, sliding its mass."""
-    weighed = loads(bodies)[1]
-    return {
-        body.name: load.inertia if body.motion == "pivot" else load.mass for body, load in zip(bodies, weighed, strict=True)
-    }
+    """What the coordinate of each body weighs: turning its inertia, sliding its mass, with all that is geared to it."""
+    return {body.name: mass for body, mass in zip(bodies, loads(bodies)[2], strict=True)}
 
 
 def _note_body(table: Table, known: Mapping[str, Body]) -> None:
@@ -93,12 +92,17 @@ def _note_body(table: Table, known: Mapping[str, Body]) -> None:
         table.fault("body", f'acts on a pivoted or a sliding body, and motion of {name} is "{known[name].motion}"', True)
     elif name in known and known[name].prescribed is not None:
         table.fault("body", f"{name} is driven: it moves as prescribed, whatever acts on it", True)
+    elif name in known and (geared := known[name].geared) and known[geared.to].prescribed is not None:
+        table.fault(
+            "body", f"{name} moves as prescribed, whatever acts on it: {geared.to}, to which it is geared, is driven", True
+        )
 
 
 def _spring(entry: Entry) -> Spring:
     stiffness = _stiffness(entry)
     frequency = math.sqrt(stiffness / entry.mass) / math.tau if "frequency" in entry.table and stiffness > 0.0 else None
-    return Spring(entry.name, stiffness, entry.table.quantity("rest"), frequency, read_coil(entry.table, entry.body))
+    coil = read_coil(entry.table, entry.body)
+    return Spring(entry.name, stiffness, entry.table.quantity("rest"), frequency, coil, entry.against)
 
 
 def _stiffness(entry: Entry) -> float:
@@ -125,7 +129,7 @@ def _torque(entry: Entry) -> Torque:
             table.fault("", 'missing: value = "-1.0 µN·m", or a table over angle or time')
         if "over" in table:
             table.fault("over", "belongs to a table; a value is constant")
-        return Torque(entry.name, table.quantity("value"))
+        return Torque(entry.name, table.quantity("value"), against=entry.against)
     if "value" in table:
         table.fault("value", "a torque is either a value or a table: leave one out")
     sliding = table.motion == "slide"
@@ -136,7 +140,8 @@ def _torque(entry: Entry) -> Torque:
     if over == BARREL and entry.body is not None:
         return mainspring_torque(table, entry.body, _rows(table, units.ANGLE))
     abscissa = units.TIME if over == "time" else units.LENGTH if sliding else units.ANGLE
-    return Torque(entry.name, over="time" if over == "time" else "angle", table=_rows(table, abscissa))
+    over = "time" if over == "time" else "angle"
+    return Torque(entry.name, over=over, table=_rows(table, abscissa), against=entry.against)
 
 
 def _rows(table: Table, abscissa: units.Dimension) -> tuple[tuple[float, float], ...]:
@@ -170,7 +175,7 @@ def _damping(entry: Entry, swinging: Oscillator | None) -> Damping:
         if table.quantity(key) < 0.0:
             table.fault(key, "negative damping would drive the body", with_value=True)
     viscous = _from_quality(entry, swinging) if "q_factor" in table else table.quantity("viscous")
-    return Damping(entry.name, viscous, table.quantity("quadratic"), table.quantity("coulomb"))
+    return Damping(entry.name, viscous, table.quantity("quadratic"), table.quantity("coulomb"), entry.against)
 
 
 def _from_quality(entry: Entry, swinging: Oscillator | None) -> float:

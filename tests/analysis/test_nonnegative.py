@@ -1,0 +1,27 @@
+"""Does the active-set method give what scipy's gives, and what no other choice betters?"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.optimize import nnls
+
+from watchsim.analysis.nonnegative import nonnegative
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_the_same_as_scipy(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    rows, columns = rng.integers(1, 9, 2)
+    system = np.vstack((rng.normal(size=(rows, columns)), 10.0 ** rng.uniform(-4.0, 0.0) * np.eye(columns)))
+    right = np.append(rng.normal(size=rows), np.zeros(columns))
+    expected, rest = nnls(system, right)
+    got = nonnegative(system, right)
+    assert np.all(got >= 0.0)
+    assert np.allclose(got, expected, rtol=1e-9, atol=1e-9 * max(1.0, expected.max()))
+    assert np.linalg.norm(system @ got - right) <= rest * (1.0 + 1e-9) + 1e-13
+
+
+def test_where_nothing_helps_all_is_zero() -> None:
+    assert np.array_equal(nonnegative(np.eye(3), -np.ones(3)), np.zeros(3))
+    assert np.array_equal(nonnegative(np.eye(2), np.array([3.0, -1.0])), [3.0, 0.0])

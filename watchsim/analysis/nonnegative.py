@@ -1,0 +1,48 @@
+"""Which x without negative entries brings A x nearest to b?
+
+The active-set method of Lawson and Hanson (Solving Least Squares Problems, 1974, ch. 23). Written out here because a run needs
+it for a few dozen systems of a few unknowns, and loading scipy's takes longer than solving them.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+LEAST = 1e-14  # of the largest |A| |b|: a slope below that is rounding
+TURNS = 10  # for each unknown; each turn lowers the distance, so that more are not needed but for rounding
+
+
+def nonnegative(system: Array, right: Array) -> Array:
+    """x (n,) with x >= 0 that makes |A x - b| smallest; A (m, n) should have independent columns, m >= n."""
+    count = system.shape[1]
+    x, used = np.zeros(count), np.zeros(count, bool)
+    least = LEAST * float(np.abs(system).max(initial=0.0) * np.abs(right).max(initial=0.0))
+    for _ in range(TURNS * count):
+        slope = np.where(used, -np.inf, system.T @ (right - system @ x))
+        best = int(np.argmax(slope))
+        if not slope[best] > least:
+            break
+        used[best] = True
+        x = _within(system, right, x, used)
+        if not used[best]:  # only rounding lets it out again at once
+            break
+    return x
+
+
+def _within(system: Array, right: Array, x: Array, used: NDArray[np.bool_]) -> Array:
+    """The best x that has only the `used` entries, from one that is feasible; those that would become negative leave `used`."""
+    while used.any():
+        best = np.zeros(len(x))
+        best[used] = np.linalg.lstsq(system[:, used], right, rcond=None)[0]
+        falling = np.flatnonzero(used & (best <= 0.0))
+        if not len(falling):
+            return best
+        way = x[falling] - best[falling]
+        steps = np.divide(x[falling], way, out=np.zeros(len(way)), where=way > 0.0)
+        x = np.maximum(x + steps.min() * (best - x), 0.0)
+        first = falling[np.argmin(steps)]
+        x[first], used[first] = 0.0, False
+    return np.zeros(len(x))

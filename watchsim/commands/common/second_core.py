@@ -1,0 +1,135 @@
+"""What does the second core of a machine do while a run is stepped, and while its numbers are worked out?
+
+The loop is machine code that leaves Python to others: meanwhile a thread loads what plots need and makes events into text. When
+the motion is known, the plots are drawn in a copy of the process, which has all that they show, and the process itself goes on
+with numbers and tables.
+"""
+
+from __future__ import annotations
+
+import functools
+import os
+import shutil
+import signal
+import sys
+import tempfile
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Any, NoReturn
+
+from watchsim import stopping
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from watchsim.results.tables import EventLines
+    from watchsim.scene.scene import Scene
+    from watchsim.simulation.record.trajectory import Pair
+
+Draw = Callable[[Path | IO[bytes]], object]
+PROMPT = 5e-4  # s that a thread may keep Python from another; the usual 5 ms would hold up every slice of the loop
+
+
+class Meanwhile:
+    """What a thread does while a run is stepped: loads what plots need, and makes its events into text, in files in `folder`.
+
+    Whatever goes wrong with it is done again where it is needed.
+    """
+
+    def __init__(self, scene: Scene, folder: Path, plots: bool) -> None:
+        self._scene, self._folder, self._plots = scene, folder, plots
+        self._lines: EventLines | None = None
+        self._work: list[Future[object]] = []
+        self._thread = ThreadPoolExecutor(1, thread_name_prefix="meanwhile")
+        self._before = sys.getswitchinterval()
+
+    def progress(self, *_: float) -> None:
+        """To be called while the run goes on: the loop is running, so that a thread may."""
+        if self._plots and not self._work:
+            self._do(load_plots)
+
+    def follow(self, pairs: Sequence[Pair], events: NDArray[Any]) -> None:
+        """The next events of the run."""
+        from watchsim.results.tables import EventLines
+
+        lines = self._lines = self._lines or EventLines(self._scene, pairs, self._folder)
+        self._do(lambda: lines.add(events))
+
+    def _do(self, work: Callable[[], object]) -> None:
+        sys.setswitchinterval(PROMPT)
+        self._work.append(self._thread.submit(work))
+
+    def end(self) -> EventLines | None:
+        """Wait until it is done; the events as far as they were made into text, None where they were not."""
+        self._thread.shutdown()
+        sys.setswitchinterval(self._before)
+        return None if any(one.exception() for one in self._work) else self._lines
+
+
+def load_plots() -> None:
+    """Load what plots need, fonts included."""
+    import watchsim.render.figures.kinematics_plot  # noqa: F401 - to have it
+    from watchsim.render.figures.figure_style import figure
+
+    empty = figure()
+    empty.text(0.5, 0.5, "0123456789 °/s", weight="bold")
+    empty.canvas.draw()
+
+
+def drawn_apart(draws: Mapping[str, Draw]) -> Mapping[str, Draw]:
+    """The same pictures, being drawn in a copy of this process from now on; those that it cannot draw are drawn here.
+
+    Only in a process of the command line, and where copies are safe: on macOS its own libraries forbid them.
+    """
+    if not (draws and stopping.installed() and sys.platform == "linux"):
+        return draws
+    try:
+        files: dict[str, IO[bytes]] = {name: tempfile.TemporaryFile() for name in draws}  # noqa: SIM115 - as long as the run
+        child = _copy_that(lambda: [(draw(files[name]), files[name].flush()) for name, draw in draws.items()])
+    except OSError:  # no room for another process, or for files
+        return draws
+
+    @functools.cache
+    def is_done() -> bool:
+        return os.waitpid(child, 0)[1] == 0
+
+    def written(name: str, target: Path | IO[bytes]) -> None:
+        if not (is_done() and isinstance(target, Path)):
+            draws[name](target)
+            return
+        files[name].seek(0)
+        with target.open("wb") as file:
+            shutil.copyfileobj(files[name], file)
+
+    return {name: functools.partial(written, name) for name in draws}
+
+
+def _copy_that(work: Callable[[], object]) -> int:
+    """The number of a copy of this process that does some work and ends, with status 0 where all went well."""
+    signals = set(signal.Signals)
+    held = signal.pthread_sigmask(signal.SIG_BLOCK, signals)
+    try:
+        child = os.fork()
+        if child == 0:
+            _work_alone(work)
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, held)
+    return child
+
+
+def _work_alone(work: Callable[[], object]) -> NoReturn:
+    """What the copy does: signals are for the one it is a copy of, and so is what there is to say."""
+    status = 1
+    try:
+        signal.set_wakeup_fd(-1)
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
+        signal.pthread_sigmask(signal.SIG_SETMASK, ())
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, 1)
+        os.dup2(nowhere, 2)
+        work()
+        status = 0
+    finally:
+        os._exit(status)
