@@ -6,6 +6,7 @@ Compiled code cannot be interrupted from within; a worker that does not answer i
 from __future__ import annotations
 
 import multiprocessing
+import signal
 import time
 from collections.abc import Callable, Iterable, Iterator
 from multiprocessing.connection import Connection, wait
@@ -45,10 +46,12 @@ class _Worker:
 
 
 def _serve(line: Connection, work: Work) -> None:
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)  # who ends the hunt ends its workers
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     while True:
         try:
             line.send(work(line.recv()))
-        except (EOFError, KeyboardInterrupt):  # who ends the hunt ends its workers
+        except EOFError:
             return
 
 
