@@ -1,6 +1,6 @@
 """How does the period of a verge depend on its drive? Prints the numbers of docs/guide/mechanisms.md.
 
-python scripts/reports/measure_verge.py
+python scripts/reports/escapements/measure_verge.py
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 Prints the numbers of docs/guide/mechanisms.md; takes some minutes.
 
-    python scripts/reports/measure_tourbillon.py
+    python scripts/reports/escapements/measure_tourbillon.py
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """How do amplitude and rate of the escapements on docs/guide/mechanisms.md depend on the drive, and where does the work go?
 
-    python scripts/reports/measure_escapements.py [seconds]
+    python scripts/reports/escapements/measure_escapements.py [seconds]
 
 Limit cycles (ws.steady) over the drive as Markdown tables, then a run of each profile (default 300 s): beats missed, shares of the
 drive's work, the energy account, processor time.
