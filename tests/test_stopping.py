@@ -65,7 +65,7 @@ KEPT = [
     ("watchsim.simulation.runner", "Run._slices"),
     ("watchsim.simulation.runner", "Run.trajectory"),
     ("watchsim.analysis.summary", "tables"),
-    ("watchsim.results.write_results", "write_events"),
+    ("watchsim.results.write_results", "_fill"),
     ("watchsim.storage.write", "sync_tree"),
     ("watchsim.storage.write", "sync_name"),
 ]

@@ -56,5 +56,5 @@ def test_engines_that_are_missing_are_named(tmp_path, capsys, monkeypatch) -> No
 
 def test_an_unknown_scene_is_refused(capsys) -> None:
     assert main(["bench", "--scene", "inclin"]) == 2
-    assert "there are incline; " in capsys.readouterr().err
+    assert "Choose from incline; " in capsys.readouterr().err
     assert bench.HELP

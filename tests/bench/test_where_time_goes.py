@@ -171,7 +171,7 @@ def test_what_is_not_done_is_not_told() -> None:
         "learning": {"count": 0, "seconds_each": 0.0, "seconds": 0.0, "share": 0.0},
     }
     first, second, third, fourth = profile_text(profile).splitlines()
-    assert first.split() == ["stepping", "0.0025", "s", "of", "the", "processor", "for", "5", "s", "simulated"]
+    assert first.split() == ["stepping", "0.0025", "s", "of", "processor", "time", "for", "5", "s", "simulated"]
     assert second.split() == ["accelerations", "of", "coupled", "bodies", "2000", "×", "1000", "ns", "=", "80.0", "%"]
     assert third.strip() == "1.25 × the sum of these, 1.25 × accelerations, gaps and problems alone"
     assert fourth.split() == ["the", "rest", "20.0", "%"]

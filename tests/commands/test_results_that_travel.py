@@ -63,7 +63,7 @@ def test_the_report_ends_with_the_timeline_of_the_last_oscillation(tmp_path: Pat
     report = (out / "report.txt").read_text(encoding="utf-8")
     assert report.startswith(said)
     assert report[len(said) :].startswith("\nTimeline, t = ")
-    assert report.count("unlocking") == 4  # of two beats, in the tables of motion and of energy
+    assert report.count("unlock ") == 4  # of two beats, in the tables of motion and of energy
 
 
 def test_variants_of_one_edited_drawing_stand_side_by_side(tmp_path: Path) -> None:

@@ -140,6 +140,6 @@ def test_a_run_that_goes_on_keeps_the_sums_of_both_parts() -> None:
 
 @pytest.mark.parametrize("bad", ["statistic", "", ((2.0, 1.0),)])
 def test_what_cannot_be_kept_is_refused(bad: object) -> None:
-    with pytest.raises(ValueError, match=r"there are all, events, statistics|a window runs from"):
+    with pytest.raises(ValueError, match=r"choose from all, events, statistics|a window runs from"):
         simulate(profile("incline"), 0.1, record=bad)
     assert EVERYTHING.row_windows[0][1] == np.inf
