@@ -21,9 +21,10 @@ def verify(slow: bool = False) -> list[Row]:
 
     `error` and `tolerance` are relative to the expected value, absolute where that is zero.
     """
-    scenes = [*swings(), *hard_cases(), *repeated_impacts(), *edge_cases()]
-    toy = woodpecker_rows(SLOW_STEPS if slow else STEPS)
-    return [*incline_rows(), *rows_of(scenes), *toy, *random_rows(MANY if slow else FEW)]
+    rows = incline_rows()
+    for scenes in (swings, hard_cases, repeated_impacts, edge_cases):
+        rows += rows_of([*scenes()])
+    return [*rows, *woodpecker_rows(SLOW_STEPS if slow else STEPS), *random_rows(MANY if slow else FEW)]
 
 
 def incline_rows() -> list[Row]:
