@@ -23,7 +23,8 @@ WITHOUT_BEATS = {
     "verge",
     "governor",
 }
-DURATION = {"graham": 4.0, "recoil_anchor": 4.0, "pin_wheel": 8.0}  # s: slow pendulums; a second of all others
+# s: slow pendulums, and wheels that stand still in every other half swing; a second of all others
+DURATION = {"graham": 4.0, "recoil_anchor": 4.0, "pin_wheel": 8.0, "detent": 2.0, "duplex": 2.0}
 
 
 @pytest.mark.slow
