@@ -10,6 +10,7 @@ from watchsim.pages.html import Markup, element
 from watchsim.pages.player.canvas_outlines import path_data
 from watchsim.render.frame.coils import hairsprings
 from watchsim.render.frame.filled_parts import Part
+from watchsim.render.frame.line_spring_shapes import zigzags
 from watchsim.render.frame.pose_history import Window, poses
 from watchsim.render.frame.view import Frame, View, room_of, view
 from watchsim.render.palette import BLUED, mixed
@@ -59,10 +60,14 @@ def poster(run: Trajectory, window: Window, parts: tuple[Part, ...], t: float) -
         )
         for number, spring in enumerate(hairsprings(run.scene))
     ]
+    lines = [
+        element("path", d=_points(spring.line(frames)), fill="none", stroke=BLUED.line, data_zigzag=number)
+        for number, spring in enumerate(zigzags(run.scene))
+    ]
     width, height = MM * (right - left + 2.0 * pad), MM * (top - bottom + 2.0 * pad)
     return element(
         "svg",
-        element("g", *coils, *groups, transform=_matrix(*place)),
+        element("g", *coils, *groups, *lines, transform=_matrix(*place)),
         id="poster",
         viewBox=f"0 0 {width:.4f} {height:.4f}",
         role="img",

@@ -20,6 +20,7 @@ SCRIPTS = (
     "bytes",
     "motion",
     "coil",
+    "zigzag",
     "scene",
     "view",
     "contacts",

@@ -224,19 +224,38 @@ def _rests(run: Trajectory, compiled: Compiled, parts: Roles) -> tuple[Array, ND
 def _pallets(
     run: Trajectory, compiled: Compiled, parts: Roles, rests: tuple[Array, NDArray[np.int64]], unlocking: list[Phase]
 ) -> dict[int, str]:
-    """For each beat the stone on which the wheel rested before: that of the last contact of wheel and lever until then."""
+    """For each beat the stone on which the wheel rested before: that of the last contact of wheel and lever until then.
+
+    None where there are none on either side: a balance that the wheel touches itself turns too far, and both pallets of a pin
+    wheel's anchor lie on the same side.
+    """
+    if parts.lever == parts.oscillator and not _has_pallets(run, compiled, parts):
+        return {}
     times, contacts = rests
     last = np.searchsorted(times, [row.start for row in unlocking], side="right") - 1
     found: dict[int, str] = {}
     sides: dict[int, str] = {}
     for row, k in zip(unlocking, last.tolist(), strict=True):
         if k >= 0:
-            p = compiled.model.contacts[int(contacts[k])]
-            stone = int(p.a if compiled.owners[int(p.a)] == parts.lever else p.b)
+            stone = _stone(compiled, parts, int(contacts[k]))
             if stone not in sides:
                 sides[stone] = _side(run, compiled, parts, stone, row.start)
             found[row.beat] = sides[stone]
     return found
+
+
+def _has_pallets(run: Trajectory, compiled: Compiled, parts: Roles) -> bool:
+    """Does an anchor have pallets on either side of the line to its wheel?"""
+    on_spring = any(spring.body == parts.oscillator for spring in run.scene.springs) and not any(run.scene.gravity)
+    both = {parts.wheel, parts.lever}
+    stones = {_stone(compiled, parts, k) for k, pair in enumerate(run.pairs) if {pair.body_a, pair.body_b} == both}
+    return not on_spring and len({_side(run, compiled, parts, one, float(run.t[0])) for one in stones}) > 1
+
+
+def _stone(compiled: Compiled, parts: Roles, contact: int) -> int:
+    """The primitive of the lever in a contact with the wheel."""
+    p = compiled.model.contacts[contact]
+    return int(p.a if compiled.owners[int(p.a)] == parts.lever else p.b)
 
 
 def _side(run: Trajectory, compiled: Compiled, parts: Roles, stone: int, time: float) -> str:

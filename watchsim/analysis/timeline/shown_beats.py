@@ -12,7 +12,8 @@ from watchsim.analysis.timing.rows_at_hand import nominal_period
 from watchsim.scene.roles import with_anchor
 from watchsim.simulation.record.trajectory import Trajectory
 
-RESTING = ("locked", "recoil")  # the last phase of a beat
+BEGINNING = ("unlock", "impulse")  # the first phase of a beat
+RESTING = ("locked", "recoil")  # and the last
 
 
 @dataclass(frozen=True)
@@ -31,8 +32,8 @@ class Beat:
 
     @property
     def first(self) -> str:
-        """What the beat begins with: the first touch of pin and fork, or of an anchor the impulse."""
-        return "first touch" if self.stages[0].name == "unlock" else "beginning of the impulse"
+        """What the beat begins with: the unlocking, or the impulse where the tooth slides straight onto the face."""
+        return f"beginning of the {'unlocking' if self.stages[0].name == 'unlock' else 'impulse'}"
 
     @property
     def end(self) -> float:

@@ -12,7 +12,8 @@ run to banking  from the lock, the end of the drop, until the lever first meets 
 locked          until the next touch of pin and fork
 
 An anchor that swings as one with the oscillator has an impulse, a drop, and then is locked (dead-beat) or has a recoil, until
-the next impulse begins.
+the next impulse begins. Where its tooth comes off its rest before it meets the face that is pushed (cylinder, duplex), there is
+an unlocking and a catch-up, too.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.analysis.timing.anchor_marks import STANDING, anchor_marks
+from watchsim.analysis.timing.anchor_marks import NEAR_REST, STANDING, Marks, anchor_marks
 from watchsim.analysis.timing.beats import Beats, beats, beats_within
 from watchsim.analysis.timing.body_contacts import between, contact_columns, held, involves
 from watchsim.analysis.timing.escape_wheel import progress
@@ -35,11 +36,10 @@ from watchsim.scene.roles import Roles, keeps_time, with_anchor
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.record.trajectory import Array, Pair, Trajectory
 
-Marks = tuple[float, float, float, float]
+LeverMarks = tuple[float, float, float, float]
 
 TOUCH = (EventKind.IMPACT, EventKind.CLOSE)
 RECOIL = 1e-3  # of the wheel's advance in a beat: a wheel that turns back less is led by a dead-beat anchor
-NEAR_REST = 0.1  # of the wheel's advance in the beat: a free run that ends so near to rest may be the drop
 AT_ONCE = 4000  # phases whose angles are looked up together
 FACES = ("stone", "tooth", "balance")
 
@@ -132,22 +132,33 @@ def _beats_of_anchor(
     """Of an anchor that swings as one with the oscillator: impulse, drop, then locked, or recoil where the wheel turns back."""
     assert parts.wheel
     at_rows = progress(run, parts.wheel, run.t)
-    needed = within | np.append(False, within[:-1])  # where a beat is locked ends with the impulse of the next
+    needed = within | np.append(False, within[:-1])  # where a beat is locked ends with the impulse of the next,
+    needed |= np.append(False, needed[:-1])  # or of the one after, where every other half swing has none
     told = needed & is_recorded(run, found.start) & is_recorded(run, found.end)
     marks = [
         anchor_marks(contacts.times, contacts.held, contacts.angle, run.t, at_rows, *span) if known else None
         for known, span in zip(told, zip(found.start.tolist(), found.end.tolist(), strict=True), strict=True)
     ]
-    for i, (own, after) in enumerate(zip_longest(marks, marks[1:])):
+    for i, (own, after) in enumerate(zip_longest(marks, _next_ones(marks, told))):
         if own is None or not within[i]:
             continue
         beat = found.before + i + 1
-        yield Phase(beat, "impulse", own.pushed, own.let_off)
+        if own.freed is not None and own.caught is not None:
+            yield Phase(beat, "unlock", own.moved, own.freed)
+            yield Phase(beat, "catch-up", own.freed, own.caught)
+        yield Phase(beat, "impulse", own.moved if own.caught is None else own.caught, own.let_off)
         yield Phase(beat, "drop", own.let_off, own.lock)
         if after is not None:
-            at_lock, back = progress(run, parts.wheel, np.array([own.lock, after.pushed])).tolist()
-            recoils = at_lock - back > RECOIL * (at_lock - float(np.interp(own.pushed, run.t, at_rows)))
-            yield Phase(beat, "recoil" if recoils else "locked", own.lock, after.pushed)
+            at_lock, back = progress(run, parts.wheel, np.array([own.lock, after.moved])).tolist()
+            recoils = at_lock - back > RECOIL * (at_lock - float(np.interp(own.moved, run.t, at_rows)))
+            yield Phase(beat, "recoil" if recoils else "locked", own.lock, after.moved)
+
+
+def _next_ones(marks: list[Marks | None], told: NDArray[np.bool_]) -> Iterator[Marks | None]:
+    """For each beat the marks of the next in which the wheel goes on: those after it, or of the second after it (duplex)."""
+    for i in range(1, len(marks)):
+        second = marks[i + 1] if told[i] and i + 1 < len(marks) else None
+        yield marks[i] or second
 
 
 def _told(run: Trajectory, found: Beats) -> NDArray[np.bool_]:
@@ -213,7 +224,7 @@ def _impulses(own: _Own, caught: float, let_off: float) -> Iterator[tuple[float,
             yield time, FACES[on]
 
 
-def _release_and_lock(own: _Own, at_entry: float, at_end: float) -> Marks | None:
+def _release_and_lock(own: _Own, at_entry: float, at_end: float) -> LeverMarks | None:
     """Release, first touch after it, last touch before the drop, and lock (s), among the wheel's events of one beat."""
     times, angle = own.times, own.angle
     way = at_end - at_entry

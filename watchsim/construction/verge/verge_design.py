@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from watchsim.construction.design import Conflict, Design
 from watchsim.construction.verge.verge_dimensions import Verge
-from watchsim.construction.verge.verge_outlines import far_side, near_side, verge
+from watchsim.construction.verge.verge_outlines import far_side, foliot, near_side, verge
 from watchsim.construction.verge.verge_proportions import depth, height, leaving, pitch
 from watchsim.construction.verge.verge_scene import scene_text
 from watchsim.drawing.sheet import Sheet
@@ -17,9 +17,9 @@ NARROWEST = 3.0  # degrees of a tooth
 
 
 def draw(values: Verge) -> dict[str, Sheet]:
-    """The verge and the two sides of the crown wheel."""
+    """The verge with its foliot, and the two sides of the crown wheel."""
     return {
-        "verge": Sheet(tuple(verge(values))),
+        "verge": Sheet((*verge(values), *foliot(values))),
         "near_side": Sheet(tuple(near_side(values))),
         "far_side": Sheet(tuple(far_side(values))),
     }

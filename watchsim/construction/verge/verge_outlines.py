@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from watchsim.construction.outline import circle
+from watchsim.construction.outline import circle, rounded
 from watchsim.construction.verge.verge_dimensions import Verge
 from watchsim.construction.verge.verge_proportions import depth, flag_length, height, pitch, start
 from watchsim.geometry.loop import Loop
@@ -14,6 +14,8 @@ AHEAD = 2  # teeth that have passed already
 STAFF = 0.45  # radius of the verge's staff, in depths
 THICK, THINNEST = 0.16, 0.08  # of a flag, in depths and in pitches, the smaller of the two
 RIM = 1.5  # of the crown wheel below its teeth, in their heights
+ARM = 200.0  # mm: reach of a foliot of 16 kg·cm²; one of another inertia is of the same shape
+BAR, WEIGHT_WIDE, WEIGHT_HIGH = 0.012, 0.10, 0.20  # of its reach
 
 
 def near_side(values: Verge) -> list[Loop]:
@@ -61,6 +63,23 @@ def verge(values: Verge) -> list[Loop]:
         _flag(values, "FAR_FLAG", half, -1.0),
         circle("STAFF", (0.0, 0.0), STAFF * depth(values)),
     ]
+
+
+def foliot(values: Verge) -> list[Loop]:
+    """A bar across the verge with a weight near either end: drawn only, its inertia is a number."""
+    reach = ARM * (values.foliot_inertia / 16.0) ** 0.2
+    bar, wide, high = 0.5 * BAR * reach, 0.5 * WEIGHT_WIDE * reach, 0.5 * WEIGHT_HIGH * reach
+    return [
+        _box("FOLIOT", 0.0, reach, bar),
+        *(_box("WEIGHTS", side * (reach - 2.0 * wide), wide, high) for side in (-1.0, 1.0)),
+    ]
+
+
+def _box(layer: str, x: float, half: float, tall: float) -> Loop:
+    """A plate with rounded corners about (x, 0), so wide and so high to either side."""
+    corner = 0.4 * min(half, tall)
+    corners = ((-half, -tall), (half, -tall), (half, tall), (-half, tall))
+    return Loop(tuple(rounded([(x + dx, dy, corner) for dx, dy in corners])), layer)
 
 
 def _flag(values: Verge, layer: str, angle: float, side: float) -> Loop:

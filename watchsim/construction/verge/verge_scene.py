@@ -17,6 +17,7 @@ schema = 1
 [bodies.verge]                       # with the foliot, seen along its axis
 drawing  = "verge.dxf"
 layers   = ["NEAR_FLAG", "FAR_FLAG"]
+draw     = ["FOLIOT", "WEIGHTS"]
 pivot    = ["0 mm", "0 mm"]
 inertia  = "{values.foliot_inertia:.15g} kg·cm²"
 

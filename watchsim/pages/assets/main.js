@@ -245,6 +245,7 @@ const toPaper = () => {
     group.setAttribute("transform", `matrix(${c} ${s} ${-s} ${c} ${1e3 * poses[b]} ${1e3 * poses[b + 1]})`);
   }
   for (const strip of document.querySelectorAll("#poster [data-coil]")) strip.setAttribute("d", scenery.coils[Number(strip.dataset.coil)].pathData(poses));
+  for (const line of document.querySelectorAll("#poster [data-zigzag]")) line.setAttribute("d", scenery.zigzags[Number(line.dataset.zigzag)].pathData(view, poses));
   root.classList.add("paper"); // the plots take the size that they have there
   plots.draw(player.t, look);
 };
@@ -271,6 +272,7 @@ window.watchsim = {
   closed: (t) => { const poses = motion.poses(t); return contacts.all.filter((one) => one.holds(t)).map((one) => ({ name: one.name, force: one.press(t), place: one.touch(view, poses).slice(0, 2) })); },
   value: (plot, t) => curves.of(plots.body)[plot].lines[0].value(t),
   coils: () => { const poses = motion.poses(player.t); return scenery.coils.map((coil) => coil.pathData(poses)); },
+  zigzags: () => { const poses = motion.poses(player.t); return scenery.zigzags.map((one) => one.pathData(view, poses)); },
   parts: () => scenery.parts.map(({ body, layer, pale }) => ({ body, layer, pale: Boolean(pale) })),
   pace: () => ({ fps, drawn }),
 };

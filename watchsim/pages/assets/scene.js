@@ -25,6 +25,7 @@ class Scenery {
     this.parts = data.parts.map((part) => ({ ...part, path: pathOf(part), strokes: part.ground ? strokesOf(part.ground) : null }));
     // What never moves lies below what does, but for what cannot touch and is larger than all that can: a balance's rim.
     this.coils = data.coils.map((told) => new Coil(told));
+    this.zigzags = data.line_springs.map((told) => new Zigzag(told));
     this.still = this.parts.filter((part) => data.bodies[part.body].still);
     const moving = this.parts.filter((part) => !data.bodies[part.body].still), first = moving.findIndex((part) => !part.pale);
     this.behind = moving.slice(0, first < 0 ? moving.length : first);
@@ -47,6 +48,7 @@ class Scenery {
     });
     ctx.globalAlpha = 1;
     this.bodies.forEach((body, b) => { if (body.motion === "pivot") this.ring(ctx, view, poses, b, look); });
+    for (const zigzag of this.zigzags) zigzag.draw(ctx, view, poses, look);
   }
 
   shadow(ctx, view, poses, part, look) {

@@ -13,6 +13,7 @@ from watchsim.pages.player.player_moments import heard, instants, named
 from watchsim.pages.player.touching import touching
 from watchsim.render.frame.coils import STUD, Hairspring, hairsprings
 from watchsim.render.frame.filled_parts import Part, is_round, loops_of
+from watchsim.render.frame.line_spring_shapes import SHARES, SIDES, Zigzag, zigzags
 from watchsim.render.frame.marks.readouts import goes_round
 from watchsim.render.frame.pose_history import Window, sampled
 from watchsim.render.frame.view import Frame, View, room_of, size_of, view
@@ -47,6 +48,7 @@ def player_data(
         "order": [names.index(body.name) for body in carried_last(scene.bodies)],
         "parts": [packed_part(part, names) for part in parts],
         "coils": [_coil(spring, names) for spring in hairsprings(scene)],
+        "line_springs": [_zigzag(spring, names) for spring in zigzags(scene)],
         "view": _view(run, window),
         "contacts": touching(run, window),
         "events": instants(run, window),
@@ -72,6 +74,18 @@ def _coil(spring: Hairspring, names: list[str]) -> dict[str, Any]:
         "block": STUD,
         "colours": [BLUED.line, BLUED.fill],
         "held": FIXED.fill,
+    }
+
+
+def _zigzag(spring: Zigzag, names: list[str]) -> dict[str, Any]:
+    """A spring between points, and in which colours it is drawn (on light and on dark ground)."""
+    return {
+        "bodies": [-1 if name is None else names.index(name) for name in spring.between],
+        "points": [point.tolist() for point in spring.points],
+        "half": spring.half,
+        "shares": SHARES.tolist(),
+        "sides": SIDES.tolist(),
+        "colours": [BLUED.line, BLUED.fill],
     }
 
 

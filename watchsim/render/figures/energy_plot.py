@@ -12,6 +12,7 @@ from watchsim.analysis.energy import energy_shares
 from watchsim.analysis.timeline.rows import Stage
 from watchsim.analysis.timeline.shown_beats import Beat, shown_beats
 from watchsim.analysis.timeline.timeline_table import title as phase_title
+from watchsim.render.figures.energy_unit import energy_unit
 from watchsim.render.figures.figure_style import (
     EDGE,
     FULL,
@@ -39,7 +40,6 @@ if TYPE_CHECKING:
 
 LEFT, RIGHT, ROW, OVER, UNDER, KEY = 27.0, 4.0, 5.0, 6.0, 9.0, 4.0  # mm
 WORDS = 27.0  # mm, beside a bar
-NANO = 1e9
 PARTS = ("stored", "damping", "friction", "impacts")  # of what is supplied
 COLOURS = dict(zip((*PARTS, "given back to the drive"), SERIES, strict=False))
 HATCHES = {"friction": "////", "impacts": "xxxx"}
@@ -75,7 +75,7 @@ def plot_energy(
     for k, (beat, own) in enumerate(zip(beats_shown, stages, strict=True)):
         left, up = (k % across) * (LEFT + wide + RIGHT) + LEFT, top + KEY + (k // across) * step + OVER
         axes = panel(made, left, up, wide, ROW * len(own))
-        _phases(axes, own, NANO * reach)
+        _phases(axes, own, reach)
         stone = beat.stages[0].pallet
         title(axes, f"beat {beat.stages[0].beat}{f', {stone} stone' if stone else ''}")
         if k == 0:
@@ -135,24 +135,25 @@ def _parts(stage: Stage) -> dict[str, float]:
 def _phases(axes: Axes, stages: list[Stage], reach: float) -> None:
     """Stacked bars: what was taken to the right of zero, what stores gave to the left; a line where the drive's work ends."""
     dress(axes, grid="x")
+    factor, unit = energy_unit(reach)
     for k, stage in enumerate(stages):
         ends = {True: 0.0, False: 0.0}
         for name, value in _parts(stage).items():
             up = value >= 0.0
             bar = axes.barh(
-                k, NANO * value, left=NANO * ends[up], height=0.66, color=COLOURS[name], gid=f"energy {k} {name}",
+                k, factor * value, left=factor * ends[up], height=0.66, color=COLOURS[name], gid=f"energy {k} {name}",
                 hatch=HATCHES.get(name), edgecolor="white", linewidth=0.0,
             )  # fmt: skip
             bar[0].set_gid(f"energy {phase_title(stage)} {name}")
             ends[up] += value
-        supplied = NANO * stage.energy.supplied
+        supplied = factor * stage.energy.supplied
         axes.plot([supplied, supplied], [k - 0.44, k + 0.44], color=INK, linewidth=1.2, gid=f"drive {phase_title(stage)}")
     axes.set_yticks(range(len(stages)), [phase_title(stage) for stage in stages])
     axes.set_ylim(len(stages) - 0.5, -0.5)
-    low = min(0.0, *(NANO * min(0.0, sum(min(v, 0.0) for v in _parts(stage).values())) for stage in stages))
-    axes.set_xlim(1.08 * low - 0.02 * reach, 1.08 * reach)
+    low = min(0.0, *(factor * min(0.0, sum(min(v, 0.0) for v in _parts(stage).values())) for stage in stages))
+    axes.set_xlim(1.08 * low - 0.02 * factor * reach, 1.08 * factor * reach)
     axes.axvline(0.0, color=FAINT, linewidth=HAIR)
-    axes.set_xlabel("energy (nJ)", labelpad=1.5)
+    axes.set_xlabel(f"energy ({unit})", labelpad=1.5)
     axes.tick_params(axis="y", length=0.0, labelsize=LABEL)
 
 

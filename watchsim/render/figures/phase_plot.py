@@ -93,11 +93,7 @@ def _column(
     for axes in panels[:-1]:
         axes.set_xticklabels([])
     stone = f", {beat.stages[0].pallet} stone" if beat is not None and beat.stages[0].pallet else ""
-    words = (
-        f"ms after t = {zero:.4f} s"
-        if beat is None
-        else f"ms from {'touch' if beat.first == 'first touch' else 'impulse'}{stone}"
-    )
+    words = f"ms after t = {zero:.4f} s" if beat is None else f"ms from {beat.first.removeprefix('beginning of the ')}{stone}"
     panels[-1].set_xlabel(words, fontsize=SMALL, labelpad=1.5)
     if beat is not None:
         name_above(panels[0], beat.stages, zero)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from watchsim.analysis.timeline.shown_beats import BEGINNING, RESTING
 from watchsim.analysis.timing.phases import Phase
 from watchsim.render.figures.passing_phases import passing
 from watchsim.render.frame.pose_history import Window, recorded, stretch
@@ -36,7 +37,7 @@ def one_cycle(run: Trajectory) -> Shown:
     if not hertz:
         return Shown((start, end), [])
     told = passing(run, (max(start, end - SEARCHED / hertz), end))
-    whole = [beat for beat in told if beat[0].name == "unlock" and beat[-1].name == "locked"][-2:]
+    whole = [beat for beat in told if beat[0].name in BEGINNING and beat[-1].name in RESTING][-2:]
     if len(whole) == 2:
         return Shown((whole[0][0].start, whole[1][-1].end), whole)
     return Shown((max(start, end - LONGER / hertz), end), told)

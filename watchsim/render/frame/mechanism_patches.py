@@ -1,7 +1,7 @@
 """Of which patches is the mechanism in a picture made, and in which order do they lie?
 
 From behind: the hairspring, what cannot touch and is larger than all that can (a balance's rim), what never moves, then the
-moving parts with their shadows, the largest first.
+moving parts with their shadows, the largest first, and springs between points.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from watchsim.render.frame.coil_patches import CoilPatches
 from watchsim.render.frame.coloured_edges import Edges, edge_paths
 from watchsim.render.frame.filled_parts import Part, backdrop, is_round, loops_of, parts
 from watchsim.render.frame.lasting_patch import LastingPatch
+from watchsim.render.frame.line_spring_patches import LineSpringPatches
 from watchsim.render.frame.pose_matrix import pose_matrix
 from watchsim.render.frame.view import Frame, View, size_of
 from watchsim.render.picture_style import Style
@@ -46,6 +47,7 @@ class Mechanism:
         self._figure, self._scene, self._view, self._room, self._unit, self._style = figure, scene, view, room, unit, style
         self._transforms = {body.name: Affine2D() for body in scene.bodies}
         self._springs = CoilPatches(scene, room, view.scale, style, unit, self.own)
+        self._lines = LineSpringPatches(scene, style, unit, self.own)
         self._patches = [*self._compose(), *(patch for edges in picked for patch in self._picked(edges))]
 
     def draw(self, renderer: RendererBase, frames: dict[str, Array], matrix: Array) -> None:
@@ -54,7 +56,7 @@ class Mechanism:
             transform.set_matrix(matrix @ pose_matrix(frames[body]))
         for patch in self._springs.patches(frames, matrix):
             patch.draw(renderer)
-        for patch in self._patches:
+        for patch in (*self._patches, *self._lines.patches(frames, matrix)):
             patch.draw(renderer)
 
     def rings(self, points: Array, colour: str) -> list[LastingPatch]:

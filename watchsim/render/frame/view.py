@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from watchsim.geometry.loop import Loop
 from watchsim.render.frame.coils import room_for
 from watchsim.render.frame.filled_parts import loops_of, outline
+from watchsim.render.frame.line_spring_shapes import fixed_ends, hooks
 from watchsim.render.frame.pose_history import Window, placed, swept
 from watchsim.scene.body import Body
 from watchsim.scene.carriers import at_start, is_still
@@ -87,7 +88,8 @@ def room_of(run: Trajectory, window: Window, zoom: Sequence[str] | None) -> tupl
     else:
         points = np.concatenate([_room(loops_of(body), body, frames[body.name]) for body in bodies])
         coils = [placed(room_for(run.scene, body.name), frames[body.name][:1]).reshape(-1, 2) for body in bodies]
-        points = np.concatenate((points, *coils))
+        hooked = [placed(hooks(run.scene, body.name), frames[body.name]).reshape(-1, 2) for body in bodies]
+        points = np.concatenate((points, *coils, *hooked, fixed_ends(run.scene)))
         points = np.concatenate((points, _ground_below(run, points)))
     return points, frames, _traveller(bodies, frames)
 

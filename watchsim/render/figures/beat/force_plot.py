@@ -14,6 +14,7 @@ import numpy as np
 
 from watchsim.analysis.contact_forces import Forces, forces
 from watchsim.analysis.timeline.rows import pair_name
+from watchsim.analysis.timeline.shown_beats import BEGINNING, RESTING
 from watchsim.analysis.timing.phases import Phase
 from watchsim.render.figures import usual_window
 from watchsim.render.figures.column_extremes import reduced
@@ -76,7 +77,7 @@ def plot_forces(run: Trajectory, window: Sequence[float] | None = None, width: f
     told = curves(run, spans)
     pairs = list(dict.fromkeys(name for one in told for name in one.normal))
     pivots = list(dict.fromkeys(name for one in told for name in one.pivots))
-    names = list(dict.fromkeys(one.name for beat in cycle.phases for one in beat if one.name != "locked"))
+    names = list(dict.fromkeys(one.name for beat in cycle.phases for one in beat if one.name not in RESTING))
     rows = len(pairs) + bool(pivots)
     if not rows:
         raise ValueError("no contact is closed there, and nothing turns on a pivot: there are no forces to plot")
@@ -131,8 +132,8 @@ def _instants(run: Trajectory, span: Window) -> Array:
 def _spans(run: Trajectory, cycle: Shown) -> list[Window]:
     """The beats of a cycle where they are whole, without their free oscillation; or the cycle."""
     found = []
-    for beat in (beat for beat in cycle.phases if beat[0].name == "unlock"):
-        end = max(one.end for one in beat if one.name != "locked")
+    for beat in (beat for beat in cycle.phases if beat[0].name in BEGINNING):
+        end = max(one.end for one in beat if one.name not in RESTING)
         way = end - beat[0].start
         found.append((max(beat[0].start - BEFORE * way, float(run.t[0])), min(end + AFTER * way, float(run.t[-1]))))
     return found[-2:] or [cycle.window]

@@ -37,7 +37,7 @@ from watchsim.render.figures.figure_style import (
 from watchsim.render.figures.phase_bands import shade, spread
 from watchsim.render.figures.phase_plot import AFTER, around
 from watchsim.render.frame.filled_parts import loops_of, outline
-from watchsim.render.frame.pose_history import dense
+from watchsim.render.frame.pose_history import dense, placed, poses
 from watchsim.render.palette import FAINT, FORCE, INK, looks
 from watchsim.render.posed import Posed
 from watchsim.scene.roles import with_anchor
@@ -76,14 +76,14 @@ def plot_timeline(
     """
     beats_shown = (beats or shown_beats(run, window, rubbed=False))[-MANY:]
     across = ACROSS[width >= NARROW]
-    box = _box(run)
+    instants = [key_instants(beat) for beat in beats_shown]
+    box = _box(run, [one.t for own in instants for one in own])
     wide = (width - 2.0 * EDGE - (across - 1) * GAP) / across
     tall = wide * min((box[3] - box[2]) / (box[1] - box[0]), TALLEST)
-    instants = [key_instants(beat) for beat in beats_shown]
     rows = [-(-len(one) // across) for one in instants]
     heights = [TITLE + count * (tall + WORDS) + LEADS + CURVES + FOOT for count in rows]
     made = figure(width, HEADING + sum(heights))
-    heading(made, run.scene.title, "Amid each phase; arrows: contact forces on the lever")
+    heading(made, run.scene.title, f"Amid each phase; arrows: contact forces on the {with_anchor(run.scene).lever}")
     posed = Posed(run.scene, compile_scene(run.scene))
     pushed = _pushed(run, [one for own in instants for one in own])
     largest = max((float(np.hypot(*force.T).max(initial=0.0)) for _, force in pushed), default=0.0)
@@ -109,15 +109,18 @@ def key_instants(beat: Beat) -> list[Instant]:
     return [*found, Instant(min(shown[-1].phase.end + AFTER * way, max(beat.end, shown[-1].phase.end)), END)]
 
 
-def _box(run: Trajectory) -> tuple[float, float, float, float]:
-    """Least and largest x, least and largest y (mm) of what can touch of the lever at the start, with room around it."""
-    name = with_anchor(run.scene).lever
+def _box(run: Trajectory, times: Sequence[float]) -> tuple[float, float, float, float]:
+    """Least and largest x, least and largest y (mm) of what can touch of the lever at the start, with room around it.
+
+    Of a balance or pendulum that the wheel touches itself at `times` (s), since it turns further.
+    """
+    parts = with_anchor(run.scene)
+    name = parts.lever
     assert name is not None
     body = run.scene.body(name)
     points = outline(body.loops or loops_of(body), 1e-3 * max(compile_scene(run.scene).size, 1e-9))
-    x0, y0, angle = run.pose(name, float(run.t[0]))
-    c, s = np.cos(angle), np.sin(angle)
-    x, y = x0 + c * points[:, 0] - s * points[:, 1], y0 + s * points[:, 0] + c * points[:, 1]
+    instants = np.array(times) if name == parts.oscillator else run.t[:1]
+    x, y = np.moveaxis(placed(points, poses(run, instants)[name]), -1, 0)
     side = ROOM * max(np.ptp(x), np.ptp(y))
     return tuple(1e3 * float(v) for v in (x.min() - side, x.max() + side, y.min() - side, y.max() + side))  # type: ignore[return-value]
 
@@ -224,8 +227,8 @@ def _curves(made: Figure, run: Trajectory, beat: Beat, instants: list[Instant], 
     axes.set_xlabel(f"time after the {beat.first} (ms)", labelpad=1.5)
     low, high = axes.get_xlim()
     at = [1e3 * (one.t - beat.start) for one in instants]
-    for k, (where, placed) in enumerate(zip(at, spread(at, 3.4 * (high - low) / wide), strict=True)):
-        share, up = (where - low) / (high - low), (placed - low) / (high - low)
+    for k, (where, moved) in enumerate(zip(at, spread(at, 3.4 * (high - low) / wide), strict=True)):
+        share, up = (where - low) / (high - low), (moved - low) / (high - low)
         style: dict[str, Any] = {"transform": axes.transAxes, "color": FAINT, "linewidth": HAIR, "clip_on": False}
         axes.plot((share, up), (1.0, 1.0 + 2.4 / CURVES), **style)
         look: dict[str, Any] = {"ha": "center", "va": "bottom", "fontsize": SMALL, "color": INK}

@@ -14,6 +14,7 @@ import numpy as np
 from watchsim.analysis.timeline.shown_beats import Beat, shown_beats
 from watchsim.analysis.timeline.timeline_table import title as phase_title
 from watchsim.render.figures.beat.torque_curve import Push, pushes
+from watchsim.render.figures.energy_unit import energy_unit
 from watchsim.render.figures.figure_style import (
     CURVE,
     FULL,
@@ -37,12 +38,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-NANO = 1e9
 TOP, LEFT, RIGHT, OVER, TALL, UNDER = 12.0, 12.0, 3.0, 5.0, 48.0, 11.0  # mm
 MANY = 2  # beats, one for each stone
 ROW = LEAD * SMALL * POINT  # mm, of the table
 COLUMNS = (0.0, 0.46, 0.64, 0.82, 1.0)  # of the panel's width: name, and the right sides of the numbers
-HEADS = ("energy to the balance (nJ)", "forces", "impacts", "together")
+HEADS = ("forces", "impacts", "together")
 LEAST = 0.02  # of the panel: an area narrower than this has its energy in the table only
 TOLD = 0.02  # of the largest: fainter energies are in the table only
 HIT = 0.02  # of the largest work in the beat: fainter impacts have no mark
@@ -73,6 +73,8 @@ def plot_torque(
     )
     largest = max((float(np.abs(one.torque).max()) for push in found for one in push), default=0.0) or 1.0
     factor, unit = next(((f, u) for f, u in PREFIXES if largest * f >= 1.0), PREFIXES[-1])
+    works = [value for push in found for one in push for value in (one.forces, one.impacts, one.stage.energy.to_balance)]
+    joules = energy_unit(max(map(abs, works), default=0.0))
     wide = width / across - LEFT - RIGHT
     span = [factor * one.way * value for push in found for one in push for value in (one.torque.min(), one.torque.max())]
     for k, (beat, push) in enumerate(zip(beats_shown, found, strict=True)):
@@ -84,8 +86,8 @@ def plot_torque(
         title(axes, f"beat {beat.stages[0].beat}{f', {stone} stone' if stone else ''}")
         axes.set_xlabel(f"angle of {name} (°)", labelpad=1.5)
         axes.set_ylabel(f"torque ({unit})", labelpad=1.5)
-        _energies(axes, push, factor)
-        _table(axes, push, (TALL + UNDER) / TALL, ROW / TALL)
+        _energies(axes, push, factor, joules)
+        _table(axes, push, (f"energy to {name} ({joules[1]})", joules[0]), (TALL + UNDER) / TALL, ROW / TALL)
     return made
 
 
@@ -109,8 +111,8 @@ def _curve(axes: Axes, push: list[Push], factor: float) -> None:
         axes.set_xlim(high, low)
 
 
-def _energies(axes: Axes, push: list[Push], factor: float) -> None:
-    """What each phase gives, written above its area, or below it where it takes."""
+def _energies(axes: Axes, push: list[Push], factor: float, joules: tuple[float, str]) -> None:
+    """What each phase gives, in the unit of `joules`, written above its area, or below it where it takes."""
     low, high = sorted(axes.get_xlim())
     most = max(abs(one.stage.energy.to_balance) for one in push)
     for one in push:
@@ -120,25 +122,28 @@ def _energies(axes: Axes, push: list[Push], factor: float) -> None:
         up = given >= 0.0
         torque = factor * one.way * one.torque
         edge = float(torque.max() if up else torque.min())
-        text = f"{NANO * given:+.1f} nJ".replace("-", "−")
+        text = f"{joules[0] * given:+.1f} {joules[1]}".replace("-", "−")
         look: dict[str, Any] = {"ha": "center", "va": "bottom" if up else "top", "fontsize": SMALL, "color": INK, "zorder": 5}
         place = (0.5 * (x[0] + x[-1]), max(edge, 0.0) if up else min(edge, 0.0))
         axes.annotate(text, place, (0, 1.5 if up else -1.5), textcoords="offset points", **look)
 
 
-def _table(axes: Axes, push: list[Push], below: float, row: float) -> None:
-    """Under the panel: work of forces and of impacts, phase by phase; heights are shares of the panel's."""
+def _table(axes: Axes, push: list[Push], head: tuple[str, float], below: float, row: float) -> None:
+    """Under the panel: work of forces and of impacts, phase by phase; heights are shares of the panel's.
+
+    `head`: what is told, and in how many to the joule.
+    """
     from matplotlib.patches import Rectangle
 
-    rows: list[tuple[str, ...]] = [HEADS]
+    rows: list[tuple[str, ...]] = [(head[0], *HEADS)]
     rows += [
-        (phase_title(one.stage), *(_nano(value) for value in (one.forces, one.impacts, one.stage.energy.to_balance)))
+        (phase_title(one.stage), *(_told(value, head[1]) for value in (one.forces, one.impacts, one.stage.energy.to_balance)))
         for one in push
     ]
     sums = [
         sum(values) for values in zip(*((one.forces, one.impacts, one.stage.energy.to_balance) for one in push), strict=True)
     ]
-    rows.append(("beat", *(_nano(value) for value in sums)))
+    rows.append(("beat", *(_told(value, head[1]) for value in sums)))
     colours = [None, *(colour for _, colour in bands(one.stage.phase for one in push)), None]
     swatch = 2.2 / (axes.get_window_extent().width / axes.figure.dpi * 25.4)
     for k, (cells, colour) in enumerate(zip(rows, colours, strict=True)):
@@ -159,5 +164,5 @@ def _table(axes: Axes, push: list[Push], below: float, row: float) -> None:
             axes.text(x, y, text, transform=axes.transAxes, **look)
 
 
-def _nano(value: float) -> str:
-    return f"{round(NANO * value, 2) + 0.0:.2f}".replace("-", "−")
+def _told(value: float, factor: float) -> str:
+    return f"{round(factor * value, 2) + 0.0:.2f}".replace("-", "−")
