@@ -27,6 +27,7 @@ SHOWN = {  # profile: simulated (s), instant (s), bodies to show close (None: al
     "cylinder": (2.2, 2.1, None),
     "duplex": (2.2, 2.1055, None),
     "involute_pair": (0.2, 0.2, None),
+    "cycloidal_pair": (0.2, 0.2, ["pinion"]),
     "jumper": (0.6, 0.49, None),
     "cam": (0.2, 0.1, None),
     "ratchet": (0.2, 0.15, None),
