@@ -32,6 +32,7 @@ SHOWN = {  # profile: simulated (s), instant (s), bodies to show close (None: al
     "cam": (0.2, 0.1, None),
     "ratchet": (0.2, 0.15, None),
     "verge": (4.1, 4.0, ["verge"]),
+    "remontoir": (1.0, 0.942, ["stop_wheel", "stop_lever", "wheel"]),
     "tourbillon": (5.1, 5.0, None),
 }
 
