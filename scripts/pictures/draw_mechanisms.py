@@ -27,10 +27,12 @@ SHOWN = {  # profile: simulated (s), instant (s), bodies to show close (None: al
     "cylinder": (2.2, 2.1, None),
     "duplex": (2.2, 2.1055, None),
     "involute_pair": (0.2, 0.2, None),
+    "cycloidal_pair": (0.2, 0.2, ["pinion"]),
     "jumper": (0.6, 0.49, None),
     "cam": (0.2, 0.1, None),
     "ratchet": (0.2, 0.15, None),
     "verge": (4.1, 4.0, ["verge"]),
+    "remontoir": (1.0, 0.942, ["stop_wheel", "stop_lever", "wheel"]),
     "tourbillon": (5.1, 5.0, None),
 }
 

@@ -20,6 +20,7 @@ _HOMES = {
     "recoil_anchor": "watchsim.construction.recoil_anchor.recoil_anchor_design",
     "verge": "watchsim.construction.verge.verge_design",
     "involute_pair": "watchsim.construction.involute_pair.involute_pair_design",
+    "cycloidal_pair": "watchsim.construction.cycloidal_pair.cycloidal_pair_design",
     "jumper": "watchsim.construction.jumper.jumper_design",
     "cam": "watchsim.construction.cam.cam_design",
     "ratchet": "watchsim.construction.ratchet.ratchet_design",

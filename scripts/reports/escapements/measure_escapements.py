@@ -52,7 +52,7 @@ def main(seconds: float) -> None:
 
 
 if __name__ == "__main__":
-    sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+    sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
     from usage import arguments
 
     main(arguments(__doc__, seconds=(300.0, "simulated time of the runs")).seconds)

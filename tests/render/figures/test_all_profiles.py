@@ -14,6 +14,7 @@ PROFILES = sorted(path.name for path in Path(str(ws.profiles_dir())).iterdir() i
 WITHOUT_BEATS = {
     "geneva",
     "geneva_stop",
+    "cycloidal_pair",
     "incline",
     "involute_pair",
     "balance",

@@ -10,11 +10,11 @@ import math
 from dataclasses import dataclass
 
 from watchsim.construction.involute_pair.involute_pair_dimensions import InvolutePair
-from watchsim.construction.outline import arc_between, circle, polar
+from watchsim.construction.outline import arc_between, polar
+from watchsim.construction.tooth_flanks import arc_through, gear_outline, other_flank
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Edge, Line, Point
 
-BORE = 0.25  # by the radius of the floor
 LAYER = "TEETH"
 
 
@@ -67,29 +67,25 @@ def pair(values: InvolutePair) -> tuple[Gear, Gear]:
 
 def outline(gear: Gear) -> list[Loop]:
     """The toothed contour and the bore."""
-    tooth = Loop(tuple(_tooth(gear)), LAYER)
-    pitch = 2.0 * math.pi / gear.teeth
-    edges = [edge for i in range(gear.teeth) for edge in tooth.moved(i * pitch, (0.0, 0.0)).edges]
-    return [Loop(tuple(edges), LAYER), circle(LAYER, (0.0, 0.0), BORE * gear.floor_radius, hole=True)]
+    return gear_outline(LAYER, _tooth(gear), gear.teeth, gear.floor_radius)
 
 
 def _tooth(gear: Gear) -> list[Edge]:
     """From the foot of a tooth's right flank over its tip to the foot of the next tooth's, counter-clockwise."""
     foot = math.degrees(gear.half_tooth(gear.flank_start))
     right = _flank(gear)
-    left = [edge.reversed() for edge in reversed([_mirrored(edge) for edge in right])]
-    next_foot = 360.0 / gear.teeth - foot
+    if gear.base_radius > gear.floor_radius:
+        right = [Line(*polar(gear.floor_radius, -foot), *right[0].start), *right]
+    left = other_flank(right)
     tip = arc_between(right[-1].end, left[0].start, (0.0, 0.0), True)
+    next_foot = 360.0 / gear.teeth - foot
     floor = arc_between(polar(gear.floor_radius, foot), polar(gear.floor_radius, next_foot), (0.0, 0.0), True)
-    if gear.base_radius <= gear.floor_radius:
-        return [*right, tip, *left, floor]
-    down = Line(*polar(gear.floor_radius, -foot), *right[0].start)
-    return [down, *right, tip, *left, _mirrored(down).reversed(), floor]
+    return [*right, tip, *left, floor]
 
 
 def _flank(gear: Gear) -> list[Edge]:
     """The right flank, outwards: arcs evenly spread over the involute's rolling angle."""
-    return [_through(*(_at(gear, t) for t in three)) for three in _rolling_angles(gear)]
+    return [arc_through(*(_at(gear, t) for t in three)) for three in _rolling_angles(gear)]
 
 
 def _rolling_angles(gear: Gear) -> list[tuple[float, float, float]]:
@@ -104,24 +100,6 @@ def _at(gear: Gear, rolled: float) -> Point:
     """The point of the right flank at that rolling angle."""
     radius = gear.base_radius * math.sqrt(1.0 + rolled * rolled)
     return polar(radius, -math.degrees(gear.half_tooth(radius)))
-
-
-def _through(first: Point, middle: Point, last: Point) -> Edge:
-    """The arc through three points."""
-    ax, ay = middle[0] - first[0], middle[1] - first[1]
-    bx, by = last[0] - first[0], last[1] - first[1]
-    cross = 2.0 * (ax * by - ay * bx)
-    a, b = ax * ax + ay * ay, bx * bx + by * by
-    centre = (first[0] + (by * a - ay * b) / cross, first[1] + (ax * b - bx * a) / cross)
-    return arc_between(first, last, centre, cross > 0.0)
-
-
-def _mirrored(edge: Edge) -> Edge:
-    """Across the x axis; still from foot to tip."""
-    if isinstance(edge, Line):
-        return Line(edge.x0, -edge.y0, edge.x1, -edge.y1)
-    start, end = (edge.start[0], -edge.start[1]), (edge.end[0], -edge.end[1])
-    return arc_between(start, end, (edge.x, -edge.y), edge.sweep < 0.0)
 
 
 def floor_left(gear: Gear) -> float:

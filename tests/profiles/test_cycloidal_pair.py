@@ -1,0 +1,111 @@
+"""Does a wheel with cycloidal teeth turn its pinion as exact curves do, evenly after the line of centres and not before it?"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from naive.rolled_teeth import Teeth
+from numpy.typing import NDArray
+
+import watchsim as ws
+from watchsim import designs
+from watchsim.construction.cycloidal_pair.cycloidal_pair_dimensions import CycloidalPair
+from watchsim.construction.cycloidal_pair.cycloidal_pair_meshing import lead_after_centres
+from watchsim.simulation.record.trajectory import Trajectory
+
+Array = NDArray[np.float64]
+
+
+def exact(values: CycloidalPair) -> Teeth:
+    rounding = values.ogive * values.pinion_teeth / 2.0 * math.tan(values.leaf / values.pinion_teeth)
+    heights = values.addendum, values.wheel_dedendum, values.tooth, values.leaf
+    return Teeth(values.wheel_teeth, values.pinion_teeth, *heights, rounding)
+
+
+def angles(run: Trajectory) -> tuple[Array, Array]:
+    """Wheel and pinion once the play is taken up, rad; the pinion's from where a leaf is on the line of centres."""
+    q = run.sample(np.linspace(0.3 * run.t[-1], run.t[-1], 801))[0]
+    return q[:, 0], math.pi - q[:, 1]
+
+
+def error(run: Trajectory, values: CycloidalPair) -> float:
+    """Largest difference from exact curves, rad of the pinion; which leaf it is does not matter."""
+    wheel, pinion = angles(run)
+    pitch = 2.0 * math.pi / values.pinion_teeth
+    off = pinion - exact(values).driven(wheel)
+    return float(np.abs(off - pitch * np.round(off / pitch)).max())
+
+
+def test_exact_curves_turn_evenly_after_the_line_of_centres() -> None:
+    """The oracle itself: half of the widths on the pitch circles plus the ratio, until the next leaf is met."""
+    values = CycloidalPair()
+    last = lead_after_centres(values) * 2.0 * math.pi / values.wheel_teeth
+    begin = -values.tooth / values.wheel_teeth  # the flank that leads is half a tooth ahead of the tooth's middle
+    wheel = begin + last * np.linspace(0.05, 0.5, 50)
+    even = 8.0 * wheel + 8.0 * values.tooth / values.wheel_teeth + values.leaf / values.pinion_teeth
+    assert np.abs(exact(values).driven(wheel) - even).max() < 1e-8
+
+
+def test_the_profile_turns_in_the_ratio_of_its_teeth() -> None:
+    """From pitch to pitch; the pinion's mean speed is torque / (8 drag) = 5 rad/s."""
+    run = ws.simulate(ws.load(ws.profiles_dir() / "cycloidal_pair"))
+    wheel, pinion = angles(run)
+    assert run.stop.name == "DURATION"
+    assert run.worst_penetration < 1e-9
+    assert run.energy["residual_relative"] < 1e-9
+    pitches = int((wheel[-1] - wheel[0]) / (2.0 * math.pi / 80))
+    moved = np.interp(wheel[0] + pitches * 2.0 * math.pi / 80, wheel, pinion) - pinion[0]
+    assert pitches > 4
+    assert moved == pytest.approx(pitches * 2.0 * math.pi / 10, abs=2e-5)
+    assert (pinion[-1] - pinion[0]) / (0.7 * run.t[-1]) == pytest.approx(5.0, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("chosen", "ripple"),
+    [
+        ({"pinion_teeth": 6, "wheel_teeth": 60, "ogive": 2.0, "addendum": 1.25}, 2.8e-2),
+        ({"pinion_teeth": 8, "ogive": 1.0, "addendum": 1.3}, 1.5e-3),
+        ({}, 1.9e-3),
+        ({"pinion_teeth": 12, "wheel_teeth": 96, "addendum": 1.62, "pinion_dedendum": 1.9, "ogive": 1.0}, 4.6e-4),
+    ],
+)
+def test_the_pinion_is_where_exact_curves_lead_it(chosen: dict[str, float], ripple: float) -> None:
+    """Whatever leads, epicycloid, tip, or radial flank before the line of centres: to what the arcs depart."""
+    values = CycloidalPair(**chosen)  # type: ignore[arg-type]
+    run = ws.simulate(designs.cycloidal_pair(**chosen).scene(), duration=1.0)
+    wheel, pinion = angles(run)
+    assert error(run, values) < 5e-5
+    assert np.ptp(pinion - values.wheel_teeth / values.pinion_teeth * wheel) == pytest.approx(ripple, rel=0.05)
+
+
+def test_the_error_falls_with_the_arcs() -> None:
+    """An arc through three points departs from the curve with the third power of its length."""
+    few, many = (
+        error(ws.simulate(designs.cycloidal_pair(arcs=arcs).scene(), duration=1.0), CycloidalPair(arcs=arcs)) for arcs in (3, 6)
+    )
+    assert few / many > 5.0
+
+
+def test_the_other_method_agrees_at_its_order() -> None:
+    scene = designs.cycloidal_pair().scene()
+    end = ws.simulate(scene, duration=0.1).end_q
+    few, many = (np.abs(ws.simulate(scene, duration=0.1, method="moreau", step=h).end_q - end).max() for h in (2e-5, 5e-6))
+    assert many < 0.4 * few
+    assert many < 1e-3
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        ({"addendum": 1.9}, "pointed"),
+        ({"tooth": 1.8, "leaf": 1.4}, "no play"),
+        ({"pinion_dedendum": 1.2}, "meet the floor of the pinion"),
+        ({"wheel_dedendum": 0.6}, "meet the floor of the wheel"),
+        ({"pinion_teeth": 6, "pinion_dedendum": 2.5, "addendum": 1.9}, "pointed"),
+    ],
+)
+def test_what_does_not_fit_is_told(wrong: dict[str, float], words: str) -> None:
+    with pytest.raises(ws.SceneError, match=words):
+        designs.cycloidal_pair(**wrong)
