@@ -55,6 +55,9 @@ LCP_ROUGH = 1e-9
 
 # Of its terms: an acceleration that small is zero. Large: late detachment; small: rounding decides.
 ACCELERATION_ROUNDING = 1e-11
+# Of a spring stretched by the size: the force whose rounding is that of a spring at rest, `GAP_ZERO` of the size. Large: late
+# detachment where a spring passes its rest; small: rounding of the place decides there.
+SPRING_AT_REST = 1e-3
 # Of G_N: a sliding contact pushed less open by its force is jammed. Large: jams early; small: huge forces.
 PAINLEVE = 1e-9
 # Of the fastest slip: one that slow has no direction. Large: mirror images differ; small: rounding takes sides.

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -67,6 +68,27 @@ def potential(scene: Scene, run: Trajectory) -> Array:
             found -= body.mass * q[:, 0] * (gx * body.axis[0] + gy * body.axis[1])
         else:
             found -= body.mass * (gx * q[:, 0] + gy * q[:, 1])
+    return found
+
+
+def pulls(scene: Scene, run: Trajectory, row: int) -> Array:
+    """(n,): forces of springs, constant drives and gravity at a row, the slope of `potential`, N or N·m."""
+    found = np.zeros(run.q.shape[1])
+    for spring in scene.springs:
+        k = run.slices[spring.body].start
+        found[k] -= spring.stiffness * (run.q[row, k] - spring.rest)
+    for torque in scene.torques:
+        found[run.slices[torque.body].start] += torque.value
+    gx, gy = scene.gravity
+    for body in scene.bodies:
+        if body.motion == "pivot":
+            k = run.slices[body.name].start
+            (x, y), c, s = body.centre_of_mass, math.cos(run.q[row, k]), math.sin(run.q[row, k])
+            found[k] += body.mass * (gy * (c * x - s * y) - gx * (s * x + c * y))
+        elif body.motion == "slide":
+            found[run.slices[body.name].start] += body.mass * (gx * body.axis[0] + gy * body.axis[1])
+        elif body.motion == "free":
+            found[run.slices[body.name]] += (body.mass * gx, body.mass * gy, 0.0)
     return found
 
 
@@ -159,6 +181,18 @@ def _lengths(scene: Scene) -> Array:
     return np.array(found)
 
 
+def _held(run: Trajectory, events: NDArray[Any], row: int, m: Array) -> Iterator[Array]:
+    """What contact forces will do while impacts end by rule, which such an end has taken back; nothing at all comes first.
+
+    The rule (method, 2.9) sets the velocities such that the motion is right at the end of that time T: the contacts make
+    the jump and what their forces do within T.
+    """
+    yield np.zeros(len(m))
+    ends = events["value"][events["kind"] == EventKind.ACCUMULATION]
+    if len(ends):
+        yield (run.a[row] - pulls(run.scene, run, row) / m) * float(ends.max() - run.t[row])
+
+
 def _jumps(run: Trajectory, m: Array, largest: float, loose: float) -> Iterator[str]:
     """Each jump of velocity must come from impulses that push, within the cones of friction, where outlines touch."""
     first = np.flatnonzero((np.diff(run.t) == 0.0) & np.append(True, np.diff(run.t)[:-1] > 0.0))
@@ -177,7 +211,8 @@ def _jumps(run: Trajectory, m: Array, largest: float, loose: float) -> Iterator[
             yield f"jump: without an impact at t = {t:.9g} s, of {math.sqrt(size[k] / largest):.1e} of the speed"
             return
         touches = touches or Touches(run.scene, run.slices, m, NEAR * loose)
-        share, points = touches.unexplained(run.q[then], jump)
+        found = [touches.unexplained(run.q[then], jump + held) for held in _held(run, here, then, m)]
+        share, points = min(found)
         part = math.sqrt(size[k] / largest)
         if share > OUTSIDE and share * part > JUMP * loose:
             yield (

@@ -8,16 +8,18 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-import hunt_path  # noqa: F401
+import hunt_path
 import numpy as np
 import pytest
-from hunt.books import faults
+from hunt.books import faults, potential, pulls
 from hunt.generator.material import Material
 from hunt.generator.parts import GRAVITY, fixed, free, pivoted, sliding
 from hunt.generator.shapes import box, circle
 
+from watchsim.scene.file.load import load
 from watchsim.scene.force import Contact, Side, Spring
 from watchsim.scene.scene import Scene
+from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
 
@@ -121,3 +123,28 @@ def test_energy_of_a_pendulum_is_that_of_its_fall():
     fastest = np.abs(run.sample(np.linspace(0.0, 0.5, 20001))[1]).max()
     assert math.isclose(0.5 * inertia * fastest**2, 0.1 * 9.81 * 0.1 * (1.0 - math.cos(0.5)), rel_tol=1e-6)
     assert list(faults(run, Material(scene))) == []
+
+
+@pytest.mark.parametrize("make", [two_discs, falling_block, pendulum])
+def test_pulls_are_the_slope_of_the_potential(make):
+    scene = make()
+    run = simulate(scene)
+    row, step = len(run.t) // 2, 1e-6
+    for k in range(run.q.shape[1]):
+        q = np.repeat(run.q[:1], 2, axis=0)
+        q[:] = run.q[row]
+        q[0, k] -= step
+        q[1, k] += step
+        low, high = potential(scene, replace(run, q=q, t=run.t[:2]))
+        assert pulls(scene, run, row)[k] == pytest.approx((low - high) / (2.0 * step), rel=1e-6, abs=1e-9)
+
+
+def test_dead_stop_at_the_end_of_impacts():
+    """What the contact forces do until then explains a small jump, never a fast body's stop."""
+    run = simulate(load(hunt_path.ROOT / "tests" / "data" / "hunt" / "blocks-801-570.toml"))
+    assert "impulse" not in classes(run)
+    ended = run.events[run.events["kind"] == EventKind.ACCUMULATION]
+    (row,) = np.flatnonzero((run.t[:-1] == ended["t"][0]) & (np.diff(run.t) == 0.0))
+    u = run.u.copy()
+    u[: row + 1] *= 10.0
+    assert "impulse" in classes(replace(run, u=u))

@@ -28,6 +28,7 @@ from watchsim.scene.force import Torque
 from watchsim.scene.gear_trains import Bond, felt
 from watchsim.scene.oscillation import oscillators
 from watchsim.scene.scene import Scene
+from watchsim.tolerances import SPRING_AT_REST
 
 OVER = {"constant": CONSTANT, "angle": OVER_ANGLE, "time": OVER_TIME}
 
@@ -132,7 +133,9 @@ def forced_coordinates(
     joints = targets.joints
     if joints.coulomb.any():
         raise ValueError("dry friction between two bodies that turn is not simulated")
-    rows.load = np.abs(rows.force) + np.hypot(rows.weight_x, rows.weight_y)
+    # A spring's force vanishes at its rest, but for the rounding of the place there.
+    at_rest = SPRING_AT_REST * rows.stiffness * rows.scale
+    rows.load = np.abs(rows.force) + np.hypot(rows.weight_x, rows.weight_y) + at_rest
     tabled = {int(table.coordinate) for table in tables}
     lines = line_springs(scene)
     held = coordinates_of_lines(scene, lines, slices, bound)

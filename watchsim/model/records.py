@@ -54,7 +54,7 @@ COORDINATE = np.dtype(
         ("watched", "i8"),  # 1: its turning points and passages are events
         ("weight_x", "f8"),  # gravity torque on an excentric rotor: cos(q) weight_y - sin(q) weight_x, see applied_forces.py
         ("weight_y", "f8"),
-        ("load", "f8"),  # magnitude of drive and weight whatever the angle: the scale of their rounding, N or N·m
+        ("load", "f8"),  # of drive, weight and spring wherever the body is: the scale of their rounding, N or N·m
         ("scale", "f8"),  # 1 rad, or the scene's size for a length
         ("rate", "f8"),  # 1/s: scale × rate is the velocity that error control treats as small
         ("linear", "i8"),  # 1: exact flight is possible (constant force, spring, viscous and dry damping only)
