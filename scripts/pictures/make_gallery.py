@@ -92,6 +92,29 @@ EXHIBITS = (
         "watchsim plot swiss --kind torque -o torque.png",
     ),
     Exhibit(
+        "cylinder.gif",
+        "Before the lever: the cylinder",
+        "A tooth rests on the cylinder outside and inside by turns; in between it lifts its lips.",
+        'watchsim movie cylinder --window "1.3 s:1.7 s" --speed adaptive --length 4s --fps 12 --size 400x640 --dark '
+        "--phases --forces -o cylinder.gif",
+        'watchsim run profiles/cylinder --duration "2 s" -o cylinder',
+    ),
+    Exhibit(
+        "duplex.png",
+        "A duplex amid each phase",
+        "The wheel goes on in every other half swing: out of the notch, onto the pallet, and to rest on the roller.",
+        "watchsim plot duplex --kind timeline -o duplex.png",
+        'watchsim run profiles/duplex --duration "2 s" -o duplex',
+    ),
+    Exhibit(
+        "pin_wheel.gif",
+        "A tower clock",
+        "The pin wheel with its pendulum of two seconds, at 4/3 of the true speed, and the pallets enlarged.",
+        'watchsim movie tower --window "4 s:8 s" --speed 4/3 --fps 12 --size 320x640 --phases '
+        "--inset pendulum.PALLETS -o pin_wheel.gif",
+        'watchsim run profiles/pin_wheel --duration "8 s" -o tower',
+    ),
+    Exhibit(
         "incline.gif",
         "Not only watches",
         "A disc rolls, slides and sticks on an incline: one of the benchmarks with a closed form.",

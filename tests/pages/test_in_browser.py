@@ -6,6 +6,7 @@ import base64
 import io
 import json
 import zipfile
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -19,15 +20,17 @@ from scipy.ndimage import maximum_filter
 
 from watchsim.analysis.contact_forces import forces
 from watchsim.geometry.polyline import polyline
-from watchsim.pages.report_page import report
+from watchsim.pages.report_page import page_text, report
 from watchsim.profiles_path import profiles_dir
 from watchsim.render.frame.coils import hairsprings
 from watchsim.render.frame.filled_parts import loops_of
+from watchsim.render.frame.line_spring_shapes import zigzags
 from watchsim.render.frame.pose_history import poses
 from watchsim.render.frame.stage import Stage
 from watchsim.render.movies.run_movie import frame
 from watchsim.render.palette import BLUED, BRASS, FIXED, NIGHT, RUBY, STEEL
 from watchsim.scene.file.load import load
+from watchsim.scene.force import LineSpring
 from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.simulation.simulate import simulate
 
@@ -161,6 +164,22 @@ def test_a_hairspring_lies_where_movies_draw_it(run: Trajectory, written: Path) 
             seen = 1e-3 * np.array(numbers).reshape(-1, 2)
             frames = {name: rows[0] for name, rows in poses(run, np.array([t])).items()}
             assert np.abs(seen - spring.line(frames, len(seen) - 1)).max() < 1e-7
+
+
+def test_a_spring_between_points_lies_where_movies_draw_it(run: Trajectory, tmp_path: Path) -> None:
+    hooked = LineSpring(("lever", "balance"), ((1e-4, 2e-4), (3e-4, 0.0)), stiffness=1.0, length=1e-3)
+    hung = replace(run, scene=replace(run.scene, line_springs=(hooked,)))
+    (spring,) = zigzags(hung.scene)
+    path = tmp_path / "hung.html"
+    path.write_text(page_text(hung), encoding="utf-8")
+    with opened(path) as page:
+        for t in np.linspace(*page.evaluate("watchsim.window"), 20).tolist():
+            page.evaluate("t => watchsim.seek(t)", t)
+            (text,) = page.evaluate("watchsim.zigzags()")
+            seen = 1e-3 * np.array([float(number) for number in text[1:].split()]).reshape(-1, 2)
+            frames = {name: rows[0] for name, rows in poses(hung, np.array([t])).items()}
+            assert np.abs(seen - spring.line(frames)).max() < 1e-7
+        assert page.said == []
 
 
 def test_a_rim_is_drawn_faintly_and_chosen_with_its_balance(run: Trajectory, written: Path) -> None:

@@ -26,6 +26,7 @@ Array = NDArray[np.float64]
 
 AIR = 0.12  # of an inset, around what it shows
 STAYS = 2.5  # what sweeps more than so many times its size is followed
+FOLLOWED = 1.0  # of its diagonal is in sight on every side of its middle: enough of what it meets
 MOST = 6  # insets
 ACROSS, DOWN = 0.37, 0.3  # share of a wide picture's width and of a tall one's height that insets take
 GAP = 0.012  # of the longer side
@@ -95,7 +96,7 @@ def _inset(run: Trajectory, window: Window, place: str, box: Frame, turn: float,
     low, high = points.min(axis=0), points.max(axis=0)
     if float(np.ptp(room, axis=0).max()) <= STAYS * float((high - low).max()):
         return Inset(place, box, _fitted(room, box, turn))
-    middle, half = 0.5 * (low + high), 0.5 * float(np.hypot(*(high - low)))
+    middle, half = 0.5 * (low + high), FOLLOWED * float(np.hypot(*(high - low)))
     around = placed(middle[None], frames[:1])[0] + np.array([(-half, -half), (half, half)])
     return Inset(place, box, _fitted(around, box, turn), body.name, (float(middle[0]), float(middle[1])))
 
