@@ -52,7 +52,7 @@ class Outcome:
         stay = [row for row, k in enumerate(ids) if self.mode[k] != OPEN]
         for row, kept in enumerate(stay):
             _kinematics(model, ids[kept], pose, row, closed)
-        _solve(model, closed, len(stay), self.mode, work)
+        _solve(model, closed, len(stay), self.mode, 1.0, work)
         _accelerate(model, closed, len(stay), work, self.again)
 
 

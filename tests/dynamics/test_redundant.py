@@ -17,7 +17,7 @@ def resting(case: Case, h: np.ndarray, sticks: bool = True) -> tuple[bool, np.nd
     """Forces unique?, forces, accelerations of the case with all contacts closed, at rest, under the generalized forces h."""
     case.work.h[:], case.work.inverse[:] = h, 1.0 / case.mass
     case.closed.kin.bar_N[:], case.closed.kin.bar_T[:] = 0.0, 0.0
-    unique = _solve(case.model, case.closed, case.m, np.full(case.m, STICK if sticks else 1, np.int8), case.work)
+    unique = _solve(case.model, case.closed, case.m, np.full(case.m, STICK if sticks else 1, np.int8), 1.0, case.work)
     a = np.zeros(case.n)
     _accelerate(case.model, case.closed, case.m, case.work, a)
     return bool(unique), case.work.force[: 2 * case.m].copy(), a

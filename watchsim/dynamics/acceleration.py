@@ -59,10 +59,11 @@ def accelerate(model, closed, m, work, out_a):
 
 
 @kernel
-def solve_mode(model, closed, m, mode, work):
+def solve_mode(model, closed, m, mode, lenience, work):
     """Forces of the first m contacts in their decided modes; `work.h`, `work.inverse` are given.
 
-    Fills `work.force`, `work.b`, `work.size`, `work.G`; True if the forces are unique.
+    `lenience`: what decides whether forces are unique is so many times `RANK`. Fills `work.force`, `work.b`, `work.size`,
+    `work.G`; True if the forces are unique.
     """
     fill_delassus(closed, m, work)
     gap_accelerations(model, closed, m, work, work.b, work.size)
@@ -82,7 +83,7 @@ def solve_mode(model, closed, m, mode, work):
         _equation(work, m, 2 * i, i)
         if work.tangent[i] >= 0:
             _equation(work, m, 2 * i + 1, work.tangent[i])
-    rank = solve_small(work.A, work.rhs, n, work.scale, work.order, work.x, RANK)
+    rank = solve_small(work.A, work.rhs, n, work.scale, work.order, work.x, RANK * lenience)
     if rank < n:
         smallest_forces(m, n, rank, work)
     for i in range(m):

@@ -113,5 +113,5 @@ class BareContacts:
     def forces(self, h: Array, mode: NDArray[np.int8]) -> Array:
         """Forces N, T, N, T, ... of the contacts that take part in their modes under the forces h."""
         self.work.inverse[:], self.work.h[:] = 1.0 / self.mass, h
-        _kernel(solve_mode)(self.model, self.closed, len(self.taken), mode, self.work)
+        _kernel(solve_mode)(self.model, self.closed, len(self.taken), mode, 1.0, self.work)
         return self.work.force[: 2 * len(self.taken)].copy()

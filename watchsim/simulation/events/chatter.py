@@ -99,7 +99,7 @@ def end_chatter(model, state, m, ended, work, event, room):
         contact_kinematics(model, k, event.pose, r, rest)
         ending[2 * r], ending[2 * r + 1] = N, T
         r += 1
-    solve_mode(model, rest, r, room.mode, work)
+    solve_mode(model, rest, r, room.mode, state.now.lenience, work)
     for row in range(2 * r):
         ending[row] -= work.force[row] * time
     # Less pressure for a moment is less friction, which will come: of what the impact took, no more than that is given back.

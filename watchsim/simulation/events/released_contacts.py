@@ -41,7 +41,7 @@ def let_go(model, state, m, options, work, event, record):
     The forces are left in `work`. Returns (number of contacts in force, are their forces unique?).
     """
     rest = event.rest
-    unique = solve_mode(model, rest, m, state.mode, work)
+    unique = solve_mode(model, rest, m, state.mode, state.now.lenience, work)
     for _ in range(2 * m):
         found, i, pulls = _weakest(model, state, m, options, work, rest)
         if not found:
@@ -57,5 +57,5 @@ def let_go(model, state, m, options, work, event, record):
         else:
             state.mode[k] = FORWARD if work.force[2 * i + 1] < 0.0 else BACKWARD
         keep_change(state, record, k, old)
-        unique = solve_mode(model, rest, m, state.mode, work)
+        unique = solve_mode(model, rest, m, state.mode, state.now.lenience, work)
     return m, unique

@@ -125,7 +125,7 @@ def motion(model, state, options, t, work, smooth):
     smallest, friction, driven, first = math.inf, 0.0, 0.0, 0
     while first < state.now.awake_contacts:
         m = place_contacts(model, state.active, first, state.upto[first], smooth.pose, closed)
-        solve_mode(model, closed, m, state.mode, work)
+        solve_mode(model, closed, m, state.mode, state.now.lenience, work)
         apply(closed, m, work.force, work.inverse, out[n : 2 * n])
         add_loads(closed, m, work.force, state.grip, smooth.load, smooth.terms)
         driven += drive_through_contacts(model, closed, m, work.force, u)
