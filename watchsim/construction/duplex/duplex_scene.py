@@ -52,7 +52,7 @@ q_factor = {values.q_factor!r}
 
 {contacts}
 [run]
-duration  = "20 s"
+duration  = "60 s"
 tolerance = 1e-12
 
 [timegrapher]
