@@ -80,7 +80,7 @@ QUOTED = [
     (METHOD, "turned over, or {} times the tolerance", tolerances.LEDGER_PER_TOLERANCE),
     (METHOD, "a bisection whenever {} steps have not halved", root_bracket.LOOK_EVERY),
     (METHOD, "Within an instant ({} ns)", INSTANT / NANO),
-    (METHOD, "cones and slips is made {} times larger", tolerances.LENIENCE_STEP),
+    (METHOD, "forces are not unique (2.4), is made {} times larger", tolerances.LENIENCE_STEP),
     (METHOD, "until the next instant, at most {} times", math.log(tolerances.MOST_LENIENT, tolerances.LENIENCE_STEP)),
     (METHOD, "and {} such terms, so decisions", math.log(tolerances.MOST_LENIENT, tolerances.LENIENCE_STEP) + 1),
     (METHOD, "More than {} events within an instant", advance.EVENTS_AT_ONCE),

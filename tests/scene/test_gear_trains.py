@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 import pytest
+from scene.made_gears import wheels
 
-from tests.scene.made_gears import wheels
 from watchsim.mechanism.compile import compile_scene
 from watchsim.mechanism.static_check import check_report, check_text
 from watchsim.scene.errors import SceneError

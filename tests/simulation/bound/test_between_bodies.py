@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 import pytest
+from scene.made_gears import read
 
 import watchsim as ws
-from tests.scene.made_gears import read
 from watchsim.mechanism.static_check import check_report, check_text
 from watchsim.scene.errors import SceneError
 

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 import tomllib
+from scene.made_gears import read, wheels
 
 import watchsim as ws
-from tests.scene.made_gears import read, wheels
 from watchsim.scene.file.read_scene import from_mapping
 from watchsim.scene.scene import Scene
 from watchsim.simulation.event_kinds import EventKind

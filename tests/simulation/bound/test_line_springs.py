@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 import pytest
+from scene.made_gears import read
 from scipy.integrate import solve_ivp
 
 import watchsim as ws
-from tests.scene.made_gears import read
 from watchsim.scene.errors import SceneError
 from watchsim.simulation.event_kinds import EventKind
 
