@@ -28,8 +28,8 @@ class LastingPatch(PathPatch):
         """The context for its edge, and the colour of its face (None: left empty)."""
         context = renderer.new_gc()
         edge, face = to_rgba(self.get_edgecolor()), to_rgba(self.get_facecolor())
-        alpha = self.get_alpha()
-        context.set_alpha(1.0 if alpha is None else alpha)
+        if (alpha := self.get_alpha()) is not None:  # any other would take the place of what the colours have
+            context.set_alpha(alpha)
         context.set_foreground(edge, isRGBA=True)
         context.set_linewidth(self.get_linewidth() if edge[3] else 0.0)
         context.set_capstyle(self.get_capstyle())
