@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import watchsim as ws
-from watchsim.analysis.contact_forces import _change, _modes
+from watchsim.analysis.modes_in_force import change, modes_in_force
 from watchsim.mechanism.compile import compile_scene
 from watchsim.profiles_path import profiles_dir
 from watchsim.scene.file.load import load
@@ -180,7 +180,7 @@ def test_all_modes_are_among_those_told() -> None:
 @pytest.mark.parametrize("at_once", [7, 1000])
 def test_modes_from_the_last_events_are_those_of_all_events(at_once: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Whatever came before, handovers from one contact to the next included, however many events are looked at at once."""
-    monkeypatch.setattr("watchsim.analysis.contact_forces.blocks", partial(blocks, length=at_once))
+    monkeypatch.setattr("watchsim.analysis.modes_in_force.blocks", partial(blocks, length=at_once))
     rng = np.random.default_rng(4)
     kinds = [EventKind.CLOSE, EventKind.OPEN, EventKind.STICK, EventKind.SLIDE, EventKind.HANDOVER]
     for _ in range(20):
@@ -192,8 +192,8 @@ def test_modes_from_the_last_events_are_those_of_all_events(at_once: int, monkey
         events["value"] = np.where(events["kind"] == EventKind.HANDOVER, other, rng.choice([-1.0, 1.0], 120))
         run: Any = SimpleNamespace(events=events)
         times = rng.permutation(rng.choice(np.arange(-1.0, 42.0), 9))
-        for time, found in zip(times, _modes(run, times), strict=True):
+        for time, found in zip(times, modes_in_force(run, times), strict=True):
             modes: dict[int, int] = {}
             for event in events[events["t"] <= time]:
-                _change(modes, int(event["kind"]), int(event["contact"]), event["value"])
+                change(modes, int(event["kind"]), int(event["contact"]), event["value"])
             assert found == modes

@@ -8,25 +8,22 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from watchsim.analysis.modes_in_force import modes_in_force
 from watchsim.analysis.nonnegative import nonnegative
-from watchsim.contact.index_sets import OPEN, STICK
+from watchsim.contact.index_sets import STICK
 from watchsim.contact.kinematics import Closed, closed_contacts
 from watchsim.contact.poses import poses
 from watchsim.dynamics.equations_of_motion import balance
 from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.scene.oscillation import loads
 from watchsim.scene.recording import STATISTICS
-from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.methods import EVENT_DRIVEN
 from watchsim.simulation.record.trajectory import Array, Trajectory
-from watchsim.storage.columns import blocks
 
-MODES = (EventKind.CLOSE, EventKind.OPEN, EventKind.STICK, EventKind.SLIDE, EventKind.HANDOVER)
 SLACK = 1e-9  # of the largest force: rounding
 GENTLE = 1e-4  # of a system scaled to 1: how much small forces are preferred
 SMALLEST = 1e-12  # of the largest: what counts in a system of redundant contacts
@@ -87,7 +84,7 @@ def forces(run: Trajectory, times: Iterable[float] | None = None) -> Forces:
     compiled = compile_scene(run.scene)
     where, speed = absolute(compiled, q, False), absolute(compiled, u, True)
     mechanism = _Mechanism(compiled)
-    found = [_instant(mechanism, *row) for row in zip(t.tolist(), where, speed, _modes(run, t), strict=True)]
+    found = [_instant(mechanism, *row) for row in zip(t.tolist(), where, speed, modes_in_force(run, t), strict=True)]
     pairs = np.array(sorted({int(k) for one in found for k in one.ids}), np.int64)
     shape = (len(t), len(pairs))
     out = Forces(t, pairs, np.zeros(shape), np.zeros(shape), np.full((*shape, 2), np.nan), np.full((*shape, 2), np.nan), {}, {})
@@ -108,85 +105,6 @@ def absolute(compiled: Compiled, values: Array, rates: bool) -> Array:
     for own, on, angle in compiled.against:  # carriers come before what they carry
         out[:, own] += (out[:, on] if on >= 0 else 0.0) + (0.0 if rates else angle)
     return out
-
-
-def _modes(run: Trajectory, times: Array) -> Iterator[dict[int, int]]:
-    """Contact -> mode of what is in force, at each of the times."""
-    order = np.argsort(times, kind="stable")
-    first = times[order[0]] if len(times) else 0.0
-    waiting = order.tolist()[::-1]
-    modes: dict[int, int] = {}
-    found: dict[int, dict[int, int]] = {}
-    for (part,) in blocks(run.events):
-        if not waiting:
-            break
-        told = part[np.isin(part["kind"], MODES)]
-        done = int(np.searchsorted(told["t"], first, side="right"))
-        modes = _Changes(told[:done], modes).modes()
-        while waiting and times[waiting[-1]] < part["t"][-1]:
-            stop = int(np.searchsorted(told["t"], times[waiting[-1]], side="right"))
-            _apply(modes, told[done:stop])
-            done = max(done, stop)
-            found[waiting.pop()] = dict(modes)
-        if waiting:
-            _apply(modes, told[done:])
-    found |= {place: dict(modes) for place in waiting}
-    return (found[place] for place in range(len(times)))
-
-
-class _Changes:
-    """Events that change modes, by contact: what a contact's mode is follows from the last of its own, not from all before."""
-
-    def __init__(self, events: NDArray[Any], earlier: dict[int, int]) -> None:
-        """`earlier`: the modes before the first of the events."""
-        gained, lost = events["contact"].astype(np.int64), events["value"].astype(np.int64)
-        handed = events["kind"] == EventKind.HANDOVER
-        self._events, self._earlier = events, earlier
-        self._of = np.concatenate((gained, lost[handed]))
-        self._at = np.concatenate((np.arange(len(events)), np.flatnonzero(handed)))
-        order = np.lexsort((self._at, self._of))
-        self._of, self._at = self._of[order], self._at[order]
-
-    def modes(self) -> dict[int, int]:
-        """Contact -> mode of what is in force after all of the events."""
-        found = {contact: self._mode(contact) for contact in {*np.unique(self._of).tolist(), *self._earlier}}
-        return {contact: mode for contact, mode in found.items() if mode is not None}
-
-    def _mode(self, contact: int) -> int | None:
-        """The mode of a contact after all of the events; None where it is open."""
-        otherwise, before = None, len(self._events)
-        while (number := self._last_of(contact, before)) is not None:
-            event = self._events[number]
-            if int(event["kind"]) != EventKind.HANDOVER:
-                own: dict[int, int] = {}
-                _change(own, int(event["kind"]), contact, event["value"])
-                return own.get(contact, otherwise)
-            if int(event["contact"]) != contact:  # to that one, from this
-                return otherwise
-            otherwise, contact, before = STICK, int(event["value"]), number
-        return self._earlier.get(contact, otherwise)
-
-    def _last_of(self, contact: int, before: int) -> int | None:
-        """The number of the last event before another that says something about a contact."""
-        first, end = np.searchsorted(self._of, (contact, contact + 1))
-        k = int(np.searchsorted(self._at[first:end], before))
-        return int(self._at[first + k - 1]) if k else None
-
-
-def _apply(modes: dict[int, int], events: NDArray[Any]) -> None:
-    for kind, contact, value in zip(*(events[name].tolist() for name in ("kind", "contact", "value")), strict=True):
-        _change(modes, kind, contact, value)
-
-
-def _change(modes: dict[int, int], kind: int, contact: int, value: float) -> None:
-    if kind == EventKind.HANDOVER:
-        modes[contact] = modes.pop(int(value), STICK)
-    elif kind == EventKind.STICK:
-        modes[contact] = STICK
-    elif kind == EventKind.OPEN or (kind == EventKind.CLOSE and int(value) == OPEN):
-        modes.pop(contact, None)
-    else:
-        modes[contact] = int(value)
 
 
 class _Mechanism:

@@ -1,18 +1,16 @@
-"""What does the scene of a wheel with cycloidal teeth and its pinion say?"""
+"""What does the scene of two gears in mesh say?"""
 
 from __future__ import annotations
 
 from watchsim.construction.contact_tables import contact_tables
-from watchsim.construction.cycloidal_pair.cycloidal_pair_dimensions import CycloidalPair
-from watchsim.construction.cycloidal_pair.cycloidal_pair_meshing import distance
-from watchsim.construction.design import told
+from watchsim.construction.design import Values, told
 
 TEXT = """\
-# A wheel with cycloidal teeth and its pinion, drawn to these dimensions:
+# {heading}, drawn to these dimensions:
 {dimensions}
 
 [scene]
-title  = "Cycloidal gears, {values.wheel_teeth} and {values.pinion_teeth} teeth"
+title  = "{title}, {values.wheel_teeth} and {values.pinion_teeth} teeth"
 schema = 1
 
 [bodies.wheel]                       # drives, counter-clockwise
@@ -48,13 +46,15 @@ tolerance = 1e-10
 CONTACTS: tuple[tuple[str, str] | tuple[str, str, str], ...] = (("wheel.TEETH", "pinion.TEETH"),)
 
 
-def scene_text(values: CycloidalPair) -> str:
-    """The text of scene.toml: both at rest, in the middle of the play."""
+def gear_pair_scene(values: Values, heading: str, title: str, distance: float) -> str:
+    """The text of scene.toml: both at rest, in the middle of the play; `distance` of the axes, mm."""
     pinion = (180.0 + 180.0 / values.pinion_teeth) % (360.0 / values.pinion_teeth)
     return TEXT.format(
+        heading=heading,
+        title=title,
         dimensions=told(values),
         values=values,
         contacts=contact_tables(values, *CONTACTS),
-        distance=distance(values),
+        distance=distance,
         pinion=pinion,
     )

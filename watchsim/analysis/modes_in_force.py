@@ -1,0 +1,99 @@
+"""Which contacts are in force at some times of a run, and in which mode?
+
+Events say how modes change. At the first of the times a contact's mode follows from the last event of its own; from there on
+each event is followed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.contact.index_sets import OPEN, STICK
+from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.record.trajectory import Array, Trajectory
+from watchsim.storage.columns import blocks
+
+MODES = (EventKind.CLOSE, EventKind.OPEN, EventKind.STICK, EventKind.SLIDE, EventKind.HANDOVER)
+
+
+def modes_in_force(run: Trajectory, times: Array) -> Iterator[dict[int, int]]:
+    """Contact -> mode of what is in force, at each of the times."""
+    order = np.argsort(times, kind="stable")
+    first = times[order[0]] if len(times) else 0.0
+    waiting = order.tolist()[::-1]
+    modes: dict[int, int] = {}
+    found: dict[int, dict[int, int]] = {}
+    for (part,) in blocks(run.events):
+        if not waiting:
+            break
+        told = part[np.isin(part["kind"], MODES)]
+        done = int(np.searchsorted(told["t"], first, side="right"))
+        modes = _Changes(told[:done], modes).modes()
+        while waiting and times[waiting[-1]] < part["t"][-1]:
+            stop = int(np.searchsorted(told["t"], times[waiting[-1]], side="right"))
+            _follow(modes, told[done:stop])
+            done = max(done, stop)
+            found[waiting.pop()] = dict(modes)
+        if waiting:
+            _follow(modes, told[done:])
+    found |= {place: dict(modes) for place in waiting}
+    return (found[place] for place in range(len(times)))
+
+
+class _Changes:
+    """Events that change modes, by contact: what a contact's mode is follows from the last of its own, not from all before."""
+
+    def __init__(self, events: NDArray[Any], earlier: dict[int, int]) -> None:
+        """`earlier`: the modes before the first of the events."""
+        gained, lost = events["contact"].astype(np.int64), events["value"].astype(np.int64)
+        handed = events["kind"] == EventKind.HANDOVER
+        self._events, self._earlier = events, earlier
+        self._of = np.concatenate((gained, lost[handed]))
+        self._at = np.concatenate((np.arange(len(events)), np.flatnonzero(handed)))
+        order = np.lexsort((self._at, self._of))
+        self._of, self._at = self._of[order], self._at[order]
+
+    def modes(self) -> dict[int, int]:
+        """Contact -> mode of what is in force after all of the events."""
+        found = {contact: self._mode(contact) for contact in {*np.unique(self._of).tolist(), *self._earlier}}
+        return {contact: mode for contact, mode in found.items() if mode is not None}
+
+    def _mode(self, contact: int) -> int | None:
+        """The mode of a contact after all of the events; None where it is open."""
+        otherwise, before = None, len(self._events)
+        while (number := self._last_of(contact, before)) is not None:
+            event = self._events[number]
+            if int(event["kind"]) != EventKind.HANDOVER:
+                own: dict[int, int] = {}
+                change(own, int(event["kind"]), contact, event["value"])
+                return own.get(contact, otherwise)
+            if int(event["contact"]) != contact:  # to that one, from this
+                return otherwise
+            otherwise, contact, before = STICK, int(event["value"]), number
+        return self._earlier.get(contact, otherwise)
+
+    def _last_of(self, contact: int, before: int) -> int | None:
+        """The number of the last event before another that says something about a contact."""
+        first, end = np.searchsorted(self._of, (contact, contact + 1))
+        k = int(np.searchsorted(self._at[first:end], before))
+        return int(self._at[first + k - 1]) if k else None
+
+
+def _follow(modes: dict[int, int], events: NDArray[Any]) -> None:
+    for kind, contact, value in zip(*(events[name].tolist() for name in ("kind", "contact", "value")), strict=True):
+        change(modes, kind, contact, value)
+
+
+def change(modes: dict[int, int], kind: int, contact: int, value: float) -> None:
+    if kind == EventKind.HANDOVER:
+        modes[contact] = modes.pop(int(value), STICK)
+    elif kind == EventKind.STICK:
+        modes[contact] = STICK
+    elif kind == EventKind.OPEN or (kind == EventKind.CLOSE and int(value) == OPEN):
+        modes.pop(contact, None)
+    else:
+        modes[contact] = int(value)
