@@ -9,9 +9,10 @@ from watchsim.drawing.dxf.write_dxf import dxf_text
 from watchsim.profiles_path import profiles_dir
 from watchsim.scene.carriers import start_poses
 from watchsim.scene.file.load import load
+from watchsim.scene.roles import keeps_time
 from watchsim.scene.scene import Scene
 
-NAMES = ("swiss_lever", "bench_lever", "set_a", "coaxial", "geneva", "graham", "recoil_anchor", "involute_pair")
+NAMES = ("swiss_lever", "bench_lever", "set_a", "coaxial", "geneva", "graham", "recoil_anchor", "involute_pair", "ratchet")
 
 
 def scene_of(name: str) -> Scene:
@@ -23,7 +24,7 @@ def assembly(scene: Scene, path: Path, layers: str = "own", marks: bool = True, 
 
     layers  own: as in the drawings of the parts; body: with the body's name before; loose: everything on layer 0
     """
-    springs = {spring.body for spring in scene.springs}
+    springs = {spring.body for spring in scene.springs} if keeps_time(scene) else set()
     loops, points = [], []
     for body in scene.bodies:
         x, y, angle = start_poses(scene)[body.name]

@@ -68,6 +68,26 @@ def test_an_assembly_gives_its_bodies_pivots_and_contacts(name: str, tmp_path: P
     assert guessed - EXTRA.get(name, set()) == wanted
 
 
+def test_a_click_without_a_name_is_known_by_its_one_side(tmp_path: Path) -> None:
+    """Unlike an anchor, which comes into the teeth whichever way it is turned; driven, the wheel runs free beneath it."""
+    real = scene_of("ratchet")
+    scene = written([assembly(real, tmp_path / "a.dxf", "own")], tmp_path / "free")
+    assert [spring.body for spring in scene.springs] == ["click"]
+    assert simulate(scene, 1.0).q[-1, 0] > math.tau / 4  # counter-clockwise, as it is wound
+    text = (tmp_path / "free" / "scene.toml").read_text()
+    held = text.replace('value = "1 µN·m"', 'value = "-1 µN·m"')
+    assert held != text
+    (tmp_path / "free" / "scene.toml").write_text(held)
+    assert abs(simulate(load(tmp_path / "free"), 1.0).q[-1, 0]) < math.tau / 24  # the other way the click holds it
+
+
+def test_a_driven_finger_moves_a_star_on_against_its_jumper(tmp_path: Path) -> None:
+    scene = written([assembly(scene_of("jumper"), tmp_path / "a.dxf", "body")], tmp_path / "out")
+    run = simulate(scene, 3.0)
+    star = run.slices["star"].start
+    assert abs(run.q[-1, star] - run.q[0, star]) / (math.tau / 7) == pytest.approx(3.0, abs=0.02)
+
+
 @pytest.mark.parametrize("name", ["swiss_lever", "bench_lever", "set_a"])
 def test_a_lever_escapement_goes_as_it_was_proposed(name: str, tmp_path: Path) -> None:
     """Locked at the start, driven the right way, and gaining amplitude: it ticks without any edit."""

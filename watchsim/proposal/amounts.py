@@ -11,8 +11,9 @@ from dataclasses import dataclass
 
 from watchsim.geometry.primitives import Point
 from watchsim.geometry.solids.mass import section
+from watchsim.proposal.bodies.one_sided import nose_of, toothing
 from watchsim.proposal.bodies.part import Part
-from watchsim.proposal.bodies.part_names import DRIVER, LEVER, OSCILLATOR, WHEEL
+from watchsim.proposal.bodies.part_names import CLICK, DRIVER, LEVER, OSCILLATOR, WHEEL
 from watchsim.proposal.bodies.part_roles import Role
 
 STEEL = 7850.0  # kg/m³
@@ -25,6 +26,8 @@ SHARE = 0.35  # of the drive's work that reaches the oscillator: usual for a lev
 LIGHT = 30.0  # times the lever's inertia: a balance with less is drawn without its rim
 HEAVY = 100.0  # times the wheel's inertia: an anchor with less is drawn without its pendulum
 STEPPED = 8  # teeth: a wheel with fewer is driven step by step, as in a Geneva drive
+LIFTING = 0.2  # of the drive's work that lifts a click
+BENT = 0.5  # rad by which the spring of a click is bent at the start: its force hardly changes
 TURNS = 1.0  # per second, of what has nothing to hold it back but damping
 
 
@@ -37,6 +40,15 @@ class Amount:
 
 
 @dataclass(frozen=True)
+class ClickSpring:
+    """What presses a click into the teeth: stiffness in N·m/rad, and the way (rad) from its start to its rest."""
+
+    body: str
+    stiffness: Amount
+    way: float
+
+
+@dataclass(frozen=True)
 class Amounts:
     inertia: dict[str, Amount]
     vph: Amount | None
@@ -44,6 +56,8 @@ class Amounts:
     torque: Amount | None
     viscous: Amount | None
     driven: str | None  # the body that the torque turns
+    clicks: tuple[ClickSpring, ...] = ()
+    turned: str | None = None  # the body that turns evenly, as a finger does that moves a star on against its jumper
 
 
 def amounts_of(roles: Sequence[Role], size: float, swing: float) -> Amounts:
@@ -58,10 +72,21 @@ def amounts_of(roles: Sequence[Role], size: float, swing: float) -> Amounts:
     if swinging is not None:
         inertia[swinging.name] = _oscillators(inertia, swinging, lever, wheel)
     driven = _driven(roles, wheel, swinging)
+    clicks = any(role.task == CLICK for role in roles)
+    turned = driven if clicks and any(role.task == DRIVER and role.name == driven for role in roles) else None
     if swinging is None:
         torque = Amount(1e-6 if watch else 1e-4, "nothing in the drawing says how strong the drive is")
         slow = Amount(torque.value / (2.0 * math.pi * TURNS), f"so that {driven} comes to about {TURNS:g} turn per second")
-        return Amounts(inertia, None, None, torque if driven else None, slow if driven else None, driven)
+        return Amounts(
+            inertia,
+            None,
+            None,
+            torque if driven else None,
+            slow if driven else None,
+            driven,
+            _clicks(roles, wheel, torque.value),
+            turned,
+        )
     beats = Amount(BEATS[watch], f"usual for {'a watch' if watch else 'a clock'} of this size ({1e3 * size:.3g} mm)")
     q = Amount(Q_FACTOR[watch], "usual; the escapement's own losses come on top")
     torque_amount = None
@@ -72,6 +97,22 @@ def amounts_of(roles: Sequence[Role], size: float, swing: float) -> Amounts:
         why = f"it makes up for what the {swinging.name} loses at {math.degrees(swing):.3g}°, {SHARE:.0%} of it reaching it"
         torque_amount = Amount(value, why)
     return Amounts(inertia, beats, q, torque_amount, None, driven)
+
+
+def _clicks(roles: Sequence[Role], wheel: Role | None, torque: float) -> tuple[ClickSpring, ...]:
+    """Springs so strong that lifting the click over a tooth takes a share of the drive's work."""
+    found = []
+    for role in roles:
+        teeth = toothing(wheel.part) if wheel is not None else None
+        if role.task != CLICK or wheel is None or teeth is None:
+            continue
+        nose = nose_of(role.part, wheel.part)
+        lift = (teeth.outer - teeth.inner) / nose.arm  # rad, about
+        bent = max(BENT, 2.0 * lift)
+        moment = LIFTING * torque * 2.0 * math.pi / teeth.fold / lift
+        why = f"lifting it over a tooth takes about {LIFTING:.0%} of the drive's work"
+        found.append(ClickSpring(role.name, Amount(moment / bent, why), nose.inward * bent))
+    return tuple(found)
 
 
 def _plate(part: Part, thickness: float) -> float:

@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.material_polygons import material, placed
-from watchsim.proposal.bodies.part_names import DRIVER, FIXED, LEVER, OSCILLATOR, WHEEL, facing_by_name
+from watchsim.proposal.bodies.part_names import CLICK, DRIVER, FIXED, LEVER, OSCILLATOR, WHEEL, facing_by_name
 from watchsim.proposal.bodies.part_roles import Role
 from watchsim.proposal.bodies.piece import Piece, Region
 
 Floats = NDArray[np.float64]
-SWING = math.radians(15.0)  # of a lever, to either side
+SWING = math.radians(15.0)  # of a lever or click, to either side
 STEPS = 7
 MARGIN = 0.01  # of the whole size: what comes as near as this is taken to meet
 OVER = 0.02  # of the smaller area: what overlaps more lies at different heights
@@ -127,7 +127,7 @@ def _swung(role: Role, piece: Piece) -> list[Floats]:
     """The outer points of a piece at some angles of its body; of what stands still where it is."""
     if not role.moves:
         return [piece.points]
-    swing = SWING if role.task in (LEVER, OSCILLATOR) else math.pi
+    swing = SWING if role.task in (LEVER, OSCILLATOR, CLICK) else math.pi
     return [about(piece.points, _at(role), angle) for angle in np.linspace(-swing, swing, STEPS).tolist()]
 
 

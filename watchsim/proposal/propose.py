@@ -15,7 +15,7 @@ from watchsim.mechanism.overlap import overlaps
 from watchsim.proposal.amounts import amounts_of
 from watchsim.proposal.bodies.grouped_pieces import parts_of
 from watchsim.proposal.bodies.layers import apart
-from watchsim.proposal.bodies.part_names import WHEEL
+from watchsim.proposal.bodies.part_names import CLICK, OSCILLATOR, WHEEL
 from watchsim.proposal.bodies.part_roles import Role, roles_of
 from watchsim.proposal.bodies.piece import Piece, pieces_of
 from watchsim.proposal.bodies.source import Source, is_mark, read_source, size_of
@@ -124,15 +124,23 @@ def _plan(
     left_out: Sequence[str],
 ) -> Plan:
     wheel = next((role for role in roles if role.task == WHEEL), None)
-    lean = lean_of(wheel.part) if wheel is not None else 0
-    way = "clockwise" if lean < 0 else "counter-clockwise"
-    why = (
-        f"{way}: the tips of the teeth lean that way" if lean else "clockwise: the drawing does not say which way it is driven"
-    )
+    lean, why = _direction(wheel, {role.task for role in roles})
     start = start_of(roles, () if places else met, lean or -1)
     amounts = amounts_of(roles, size, start.swing)
     title = paths[0].stem if len(paths) == 1 else ", ".join(path.stem for path in paths)
     return Plan(title, sources, drawn(sources, roles), roles, met, unlikely, start, amounts, places, lean or -1, why, left_out)
+
+
+def _direction(wheel: Role | None, tasks: set[str]) -> tuple[int, str]:
+    """Which way the wheel is driven, 0 where the drawing does not say, and why: a click lets it turn against its teeth."""
+    lean = lean_of(wheel.part) if wheel is not None else 0
+    if not lean:
+        return 0, "clockwise: the drawing does not say which way it is driven"
+    held = CLICK in tasks and OSCILLATOR not in tasks
+    way = "clockwise" if (lean < 0) != held else "counter-clockwise"
+    if held:
+        return -lean, f"{way}: the click slides over the backs of the teeth, whose tips lean the other way; that way it holds"
+    return lean, f"{way}: the tips of the teeth lean that way"
 
 
 def _overlapping(files: dict[str, bytes]) -> set[int]:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from watchsim.proposal.amounts import Amount, Amounts
-from watchsim.proposal.bodies.part_names import OSCILLATOR
+from watchsim.proposal.bodies.part_names import CLICK, OSCILLATOR
 from watchsim.proposal.bodies.part_roles import Role
 from watchsim.proposal.bodies.source import Source
 from watchsim.proposal.facing import Facing
@@ -22,6 +22,7 @@ TASKS = {
     "wheel": "the wheel",
     "lever": "the lever",
     "oscillator": "the oscillator",
+    "click": "the click",
     "driver": "the driver",
     "fixed": "stands still",
 }
@@ -121,6 +122,13 @@ def _body(plan: Plan, role: Role) -> Iterator[str]:
     angle = plan.start.angles.get(role.name, 0.0)
     if angle:
         yield plan.guess(f"{key}.angle", _text(f"{math.degrees(angle):.6g}°"), plan.start.why.get(role.name, "as needed"))
+    if plan.amounts.turned == role.name:
+        yield 'motion = "driven"'
+        way = "clockwise" if plan.direction < 0 else "counter-clockwise"
+        yield plan.guess(
+            f"{key}.velocity", _text(f"{60 * plan.direction} rpm"), f"it turns {way}, evenly, and moves the wheel on"
+        )
+        return
     inertia = plan.amounts.inertia[role.name]
     yield plan.guess(f"{key}.inertia", _text(f"{1e10 * inertia.value:.3g} mg·cm²"), inertia.why)
 
@@ -164,7 +172,14 @@ def _forces(plan: Plan) -> Iterator[str]:
             yield plan.guess("springs.0.rest", _text(f"{math.degrees(plan.start.rest):.6g}°"), plan.start.rest_why)
         yield from ("", "[[damping]]", f"body = {_text(swinging.name)}")
         yield plan.guess("damping.0.q_factor", f"{amounts.q_factor.value:g}", amounts.q_factor.why)
-    if amounts.driven is not None and amounts.torque is not None:
+    for k, spring in enumerate(amounts.clicks):
+        rest = plan.start.angles.get(spring.body, 0.0) + spring.way
+        yield from ("", "[[springs]]", f"body = {_text(spring.body)}")
+        yield plan.guess(f"springs.{k}.stiffness", _text(f"{1e6 * spring.stiffness.value:.3g} µN·m/rad"), spring.stiffness.why)
+        yield plan.guess(
+            f"springs.{k}.rest", _text(f"{math.degrees(rest):.6g}°"), "in the teeth: it presses the click on the wheel"
+        )
+    if amounts.driven is not None and amounts.torque is not None and amounts.turned is None:
         value = plan.direction * amounts.torque.value
         yield from ("", "[[torques]]", f"body = {_text(amounts.driven)}")
         why = f"{plan.direction_why}; {amounts.torque.why}"
@@ -174,7 +189,9 @@ def _forces(plan: Plan) -> Iterator[str]:
 
 
 def _slowed(plan: Plan, viscous: Amount) -> Iterator[str]:
-    for k, role in enumerate(role for role in plan.roles if role.moves):
+    for k, role in enumerate(
+        role for role in plan.roles if role.moves and role.task != CLICK and role.name != plan.amounts.turned
+    ):
         yield from ("", "[[damping]]", f"body = {_text(role.name)}")
         yield plan.guess(f"damping.{k}.viscous", _text(f"{1e9 * viscous.value:.3g} nN·m·s/rad"), viscous.why)
 

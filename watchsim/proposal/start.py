@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from watchsim.proposal.bodies.part_names import LEVER, OSCILLATOR, WHEEL
+from watchsim.proposal.bodies.part_names import CLICK, LEVER, OSCILLATOR, WHEEL
 from watchsim.proposal.bodies.part_roles import Role
 from watchsim.proposal.bodies.piece import Piece
 from watchsim.proposal.clearance import clearance, overlaps
@@ -96,7 +96,7 @@ def _searched(roles: Sequence[Role], facings: Sequence[Facing], angles: dict[str
     """The first angles, nearest to those drawn, at which nothing overlaps: the most open ones of the wheel."""
     ways: dict[str, list[float]] = {}
     for role in roles:
-        if role.task == LEVER:
+        if role.task in (LEVER, CLICK):
             ways[role.name] = LEVER_ANGLES
         elif role.task == OSCILLATOR and not turns_fully(role):
             drawn = angles[role.name]

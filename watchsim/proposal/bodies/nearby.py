@@ -18,18 +18,30 @@ BESIDE = 1e-6  # m: outlines this close lie on each other
 
 def take_in(parts: list[Part]) -> None:
     """Give pieces without a centre to the body in whose material, or along whose outline, they lie."""
-    for part in [part for part in parts if part.centre is None and part.kind != FIXED]:
-        around = [other for other in parts if other.centre is not None and not are_apart(part, other)]
-        body = max(around, key=lambda other: (_share(part, other), -other.area), default=None)
-        if body is not None and _share(part, body) >= INSIDE:
-            unite(body, part, "they lie in each other")
-            parts.remove(part)
+    while _take_in_some(parts):  # an arm lies in its hub, the stone at its end in the arm
+        pass
     for part in [part for part in parts if part.centre is None and part.kind == OSCILLATOR]:  # a rod fixed to an anchor
         if not any(other.centre is not None and other.kind == OSCILLATOR for other in parts):
             body = next((other for other in parts if other.kind == LEVER and other.centre and _meet(part, other)), None)
             if body is not None:
                 unite(body, part, "they lie in each other")
                 parts.remove(part)
+
+
+def _take_in_some(parts: list[Part]) -> bool:
+    before = len(parts)
+    for part in [part for part in parts if part.centre is None and part.kind != FIXED]:
+        around = [other for other in parts if other.centre is not None and not are_apart(part, other)]
+        body = max(around, key=lambda other: (_in_each_other(part, other), -other.area), default=None)
+        if body is not None and _in_each_other(part, body) >= INSIDE:
+            unite(body, part, "they lie in each other")
+            parts.remove(part)
+    return len(parts) < before
+
+
+def _in_each_other(part: Part, body: Part) -> float:
+    """How much of the part lies in the body, or of the body, a hub, in the part."""
+    return max(_share(part, body), _share(body, part))
 
 
 def _meet(part: Part, other: Part) -> bool:

@@ -7,12 +7,15 @@ from __future__ import annotations
 
 import re
 
-WHEEL, LEVER, OSCILLATOR, DRIVER, FIXED = "wheel", "lever", "oscillator", "driver", "fixed"
+WHEEL, LEVER, OSCILLATOR, CLICK, DRIVER, FIXED = "wheel", "lever", "oscillator", "click", "driver", "fixed"
 
 # Words for a part itself; a layer name that begins with one names its part.
 PARTS = {
     **dict.fromkeys(("wheel", "escapewheel", "rad", "gangrad", "ankerrad", "hemmungsrad", "roue", "gear", "pinion"), WHEEL),
+    **dict.fromkeys(("ratchet", "sperrrad", "sperrad", "rochet", "star", "stern", "étoile"), WHEEL),
     **dict.fromkeys(("lever", "anker", "anchor", "ancre", "detent"), LEVER),
+    **dict.fromkeys(("click", "pawl", "jumper", "klinke", "sperrklinke", "sperrkegel", "raste", "cliquet", "sautoir"), CLICK),
+    **dict.fromkeys(("driver", "crank", "finger", "kurbel", "mitnehmer", "manivelle", "doigt"), DRIVER),
     **dict.fromkeys(("balance", "unruh", "balancier", "pendulum", "pendel", "pendule", "foliot"), OSCILLATOR),
     **dict.fromkeys(("banking", "bankings", "bank", "banks", "plate", "platine", "frame", "bridge", "wall", "stop"), FIXED),
     **dict.fromkeys(("stops", "fixed", "ground", "base", "cock", "anschlag"), FIXED),
@@ -24,13 +27,14 @@ FEATURES = {
     **dict.fromkeys(("gabel", "stein", "steine", "fourchette", "palette", "palettes", "levée", "levees"), LEVER),
     **dict.fromkeys(("roller", "table", "safety", "impulse", "jewel", "rim", "hebelstein", "bob", "rod"), OSCILLATOR),
 }
-TEETH = frozenset(("teeth", "tooth", "zahn", "zaehne", "zähne", "dents", "wheel", "gear", "pinion", "rad"))
+TEETH = frozenset(("teeth", "tooth", "zahn", "zaehne", "zähne", "dents", "wheel", "gear", "pinion", "rad", "ratchet", "star"))
 STONES = frozenset(("pallet", "pallets", "stone", "stones", "stein", "steine", "palette", "palettes", "teeth"))
+CLICKS = frozenset(("click", "pawl", "jumper", "nose", "beak", "klinke", "sperrklinke", "cliquet", "sautoir", "bec"))
 FORK = frozenset(("fork", "horn", "horns", "gabel", "fourchette"))
 PIN = frozenset(("pin", "jewel", "impulse", "hebelstein"))
 GUARD = frozenset(("dart", "guard"))
 ROLLER = frozenset(("safety", "roller"))
-FACING = ((TEETH, STONES), (FORK, PIN), (GUARD, ROLLER))
+FACING = ((TEETH, STONES), (TEETH, CLICKS), (FORK, PIN), (GUARD, ROLLER))
 
 
 def tokens(name: str) -> list[str]:

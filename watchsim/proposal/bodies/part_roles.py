@@ -1,4 +1,4 @@
-"""Which part is driven, which drives, which swings, and which stands between them?"""
+"""Which part is driven, which drives, which swings, which holds, and which stands between them?"""
 
 from __future__ import annotations
 
@@ -7,17 +7,18 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from watchsim.proposal.bodies.centres import is_toothed
+from watchsim.proposal.bodies.one_sided import is_one_sided
 from watchsim.proposal.bodies.part import Part
-from watchsim.proposal.bodies.part_names import DRIVER, FIXED, LEVER, OSCILLATOR, WHEEL, part_of, part_word
+from watchsim.proposal.bodies.part_names import CLICK, DRIVER, FIXED, LEVER, OSCILLATOR, WHEEL, part_of, part_word
 
 FEWEST_TEETH = 8  # of an escape wheel; with fewer slots a wheel is driven step by step, as in a Geneva drive
 ROUNDISH = 0.4  # of its outlines on arcs about its pivot: a part that may turn through whole turns
-NAMES = {WHEEL: "wheel", LEVER: "lever", OSCILLATOR: "balance", DRIVER: "driver", FIXED: "banking"}
+NAMES = {WHEEL: "wheel", LEVER: "lever", OSCILLATOR: "balance", CLICK: "click", DRIVER: "driver", FIXED: "banking"}
 
 
 @dataclass(eq=False)
 class Role:
-    """A part with its name and task: wheel, lever, oscillator, driver or fixed. `teeth` is 0 where it is no wheel."""
+    """A part with its name and task: wheel, lever, oscillator, click, driver or fixed. `teeth` is 0 where it is no wheel."""
 
     part: Part
     name: str
@@ -31,7 +32,7 @@ class Role:
 
 
 def roles_of(parts: Sequence[Part]) -> list[Role]:
-    """The role of every part, wheels first, then lever, oscillator, others, and what stands still."""
+    """The role of every part, wheels first, then lever, oscillator, click, others, and what stands still."""
     moving = [part for part in parts if part.centre is not None and part.kind != FIXED]
     found = [Role(part, "", FIXED, _still(part)) for part in parts if part not in moving]
     wheels = [part for part in moving if part.kind in (WHEEL, None) and teeth_of(part) > 0]
@@ -43,6 +44,11 @@ def roles_of(parts: Sequence[Part]) -> list[Role]:
         if part.kind == WHEEL:
             found.append(Role(part, "", WHEEL, "the names of its layers say so"))
             rest.remove(part)
+    for part in list(rest):
+        why = _click(part, rest, wheels)
+        if why is not None:
+            found.append(Role(part, "", CLICK, why))
+            rest.remove(part)
     swinging = _oscillator(rest, wheels)
     for part in rest:
         if swinging is not None and part is swinging[0]:
@@ -51,7 +57,7 @@ def roles_of(parts: Sequence[Part]) -> list[Role]:
             named = part.kind == LEVER
             task = LEVER if named or swinging is not None else DRIVER
             found.append(Role(part, "", task, "the names of its layers say so" if named else "it turns and is no wheel"))
-    order = [DRIVER, WHEEL, LEVER, OSCILLATOR, FIXED]
+    order = [DRIVER, WHEEL, LEVER, OSCILLATOR, CLICK, FIXED]
     found.sort(key=lambda role: order.index(role.task))
     _name(found)
     return found
@@ -67,6 +73,16 @@ def teeth_of(part: Part) -> int:
 
 def _still(part: Part) -> str:
     return "the names of its layers say so" if part.kind == FIXED else "nothing in the drawing shows a pivot of it"
+
+
+def _click(part: Part, rest: Sequence[Part], wheels: Sequence[Part]) -> str | None:
+    """Why this part is a click; None where it is none."""
+    if part.kind == CLICK:
+        return "the names of its layers say so"
+    alone = len(rest) == 1 and len(wheels) == 1 and not any(part_word(layer) for layer in part.layers)
+    if alone and is_one_sided(part, wheels[0]):
+        return "it comes into the teeth when it is turned one way, and clear of them the other way, unlike an anchor"
+    return None
 
 
 def _oscillator(rest: Sequence[Part], wheels: Sequence[Part]) -> tuple[Part, str] | None:
