@@ -75,6 +75,8 @@ DEPENDENT = 1e-20
 VELOCITY_ROUNDING = 4e-15
 # Sine² of the angle between parallel directions. Large: slanted ones pass; small: friction stays open.
 PARALLEL = 1e-12
+# The same where friction locks bodies. Large: these stop too soon; small: problems of rounding rank.
+DEAD_CENTRE = 1e-10
 # Of the slip: approach by which the force of a jammed contact acts. Large: others carry it; small: below rounding.
 NUDGE = 1e-6
 # Of the friction cone: a tangential impulse that small has no sign. Large: pg1996 is blunted; small: rounding.
