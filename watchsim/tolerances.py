@@ -75,6 +75,11 @@ DEPENDENT = 1e-20
 VELOCITY_ROUNDING = 4e-15
 # Sine² of the angle between parallel directions. Large: slanted ones pass; small: friction stays open.
 PARALLEL = 1e-12
+# The same where friction locks bodies. Large: these stop too soon; small: problems of rounding rank.
+DEAD_CENTRE = 1e-10
+# Of the speeds of bodies, over their reach: spins that small may be rounding of either, squared. Large: slow turns part late;
+# small: rounding makes forces.
+SPIN_ROUNDING = 1e-9
 # Of the slip: approach by which the force of a jammed contact acts. Large: others carry it; small: below rounding.
 NUDGE = 1e-6
 # Of the friction cone: a tangential impulse that small has no sign. Large: pg1996 is blunted; small: rounding.
@@ -165,6 +170,8 @@ SHARP_TURN = 1e-2
 
 # Of the terms of a gap rate: less is zero where it must be exact. Large: shallow kinks pass; small: endless impacts.
 RATE_ROUNDING = 1e-12
+# rad: normals of outlines turn that much by rounding, which makes gap rates of slips. Large, small: as above.
+TILT_ROUNDING = 1e-13
 # Of the size per second: the same where nothing moves. Large, small: as above.
 RATE_FLOOR = 1e-15
 # Times that: rates that cannot all be zero. Large: bodies are stopped; small: rounding makes impacts.

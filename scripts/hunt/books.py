@@ -29,6 +29,7 @@ JUMP = (
     3e-5  # of the largest speed, in the metric of the masses: joints up to 1e-5 rad are handed over as tangent, without impact
 )
 NEAR = 1e-6  # of the size: outlines this close touch
+ONWARD = 1e-4  # of the size: bodies that turn this far part by its square, less than `NEAR`
 OUTSIDE = 1e-3  # share of a jump that no impulses of the contacts explain
 AUDITED = 6  # jumps of a run
 LOOKS = 8  # for overlap, evenly spread over the run
@@ -193,6 +194,15 @@ def _held(run: Trajectory, events: NDArray[Any], row: int, m: Array) -> Iterator
         yield (run.a[row] - pulls(run.scene, run, row) / m) * float(ends.max() - run.t[row])
 
 
+def _onward(run: Trajectory, row: int) -> Array:
+    """(n,): where the motion before a jam leads to within `ONWARD` of the size.
+
+    On the line of centres the two ends of a cone are parallel. What locks there is found from the cones that open behind it.
+    """
+    way: Array = run.u[row] * (ONWARD * reach(run.scene) / float(np.abs(run.u[row] * _lengths(run.scene)).max()))
+    return run.q[row] + way
+
+
 def _jumps(run: Trajectory, m: Array, largest: float, loose: float) -> Iterator[str]:
     """Each jump of velocity must come from impulses that push, within the cones of friction, where outlines touch."""
     first = np.flatnonzero((np.diff(run.t) == 0.0) & np.append(True, np.diff(run.t)[:-1] > 0.0))
@@ -212,6 +222,8 @@ def _jumps(run: Trajectory, m: Array, largest: float, loose: float) -> Iterator[
             return
         touches = touches or Touches(run.scene, run.slices, m, NEAR * loose)
         found = [touches.unexplained(run.q[then], jump + held) for held in _held(run, here, then, m)]
+        if (here["kind"] == EventKind.JAM).any():
+            found.append(touches.unexplained(_onward(run, row), jump))
         share, points = min(found)
         part = math.sqrt(size[k] / largest)
         if share > OUTSIDE and share * part > JUMP * loose:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from watchsim.contact.gaps import margins_of, shape_of_contact
 from watchsim.jit import by_reference, kernel
 from watchsim.model.records import FREE, PIVOT, SLIDE, Records, records
+from watchsim.tolerances import SPIN_ROUNDING
 
 KINEMATICS = np.dtype(
     [
@@ -135,6 +136,10 @@ def contact_kinematics(model, k, pose, row, out_closed):
     reach_a, reach_b = abs(xa) + abs(ya), abs(xb) + abs(yb)
     speed = abs(v_t) + abs(v_n)
     kin.bar_size = (abs(turning) + abs(pb.w)) * speed + abs(spin * travel) + square_a * reach_a + square_b * reach_b
+    if reach_a + reach_b > 0.0:
+        # Spins are rounded by what the bodies' speeds are: of bodies that travel flush nothing else is left of all terms.
+        rounded = SPIN_ROUNDING * (abs(pa.vx) + abs(pa.vy) + abs(pb.vx) + abs(pb.vy))
+        kin.bar_size += rounded * rounded / (reach_a + reach_b)
     inside_a, inside_b = margins_of(contact, a, b, pa, pb, shape)
     kin.margin = min(inside_a, inside_b)
     kin.x, kin.y = pa.x + xa, pa.y + ya

@@ -16,7 +16,7 @@ from watchsim.dynamics.handedness import restore_directions, reverse_directions
 from watchsim.dynamics.problem_kinds import Level, Rung
 from watchsim.dynamics.solver_fallbacks import keep_basis, solve_contacts
 from watchsim.jit import kernel
-from watchsim.tolerances import NUDGE, PARALLEL, VELOCITY_ROUNDING
+from watchsim.tolerances import NUDGE, PAINLEVE, PARALLEL, VELOCITY_ROUNDING
 
 
 @kernel
@@ -50,6 +50,7 @@ def _compress(model, closed, m, u, jam, work):
     contact_velocities(closed, m, u, work.b)
     _drop_rounding(closed, m, u, work.b)
     reverse_directions(work, m, 2 * m, elements, work.b)
+    _grip_more(m, jam, work)
     fill_matrix(work, m, elements)
     fill_rhs(work, m, elements, work.b)
     nudged = _nudge(m, jam, work)
@@ -73,6 +74,19 @@ def _drop_rounding(closed, m, u, out_rates):
         for row in range(2 * i, 2 * i + 2):
             if abs(out_rates[row]) <= VELOCITY_ROUNDING * terms:
                 out_rates[row] = 0.0
+
+
+@kernel
+def _grip_more(m, jam, work):
+    """Let friction grip by as little more as takes contacts that count as jammed past the bound where they are.
+
+    They count as jammed shortly before it (`PAINLEVE`), where a force still parts their bodies, by next to nothing.
+    """
+    for i in range(m):
+        own, both = work.G[2 * i, 2 * i], work.G[2 * i, 2 * i + 1]
+        if jam > 0.0 and work.tangent[i] >= 0 and abs(own - work.drag[i] * both) <= PAINLEVE * own:
+            work.drag[i] = (1.0 + PAINLEVE) * own / both
+            work.width[work.tangent[i]] = 2.0 * work.drag[i]
 
 
 @kernel

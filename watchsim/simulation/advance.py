@@ -203,7 +203,8 @@ def _settle(model, cells, state, options, scratch, record):
         begin_instant(state)
     elif state.now.events > EVENTS_AT_ONCE:
         return Stop.TOO_MANY_EVENTS
-    touched, impacts, lost = state.now.touched, state.counts.impacts, state.sums.impacts - state.sums.drive
+    touched, blows = state.now.touched, state.counts.impacts + state.counts.jams
+    lost = state.sums.impacts - state.sums.drive
     before = kinetic_energy(model, state.u)
     code = settle(model, cells, state, options, scratch, record)
     if code != Stop.RUNNING:
@@ -212,7 +213,7 @@ def _settle(model, cells, state, options, scratch, record):
     after = kinetic_energy(model, state.u) + (state.sums.impacts - state.sums.drive - lost)
     if not is_explained(model, options, before, after, state.worst.kinetic_energy):
         return Stop.UNEXPLAINED
-    if state.counts.impacts > impacts:
+    if state.counts.impacts + state.counts.jams > blows:
         forget_decisions(state)
     elif touched < 0 and not decide_once(state):
         return Stop.TOO_MANY_EVENTS

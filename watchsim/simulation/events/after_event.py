@@ -19,6 +19,7 @@ from watchsim.jit import kernel
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.events.closed_contacts import gather, insert, refresh
 from watchsim.simulation.events.collision import approaching, collide
+from watchsim.simulation.events.dead_centre import hold_at_dead_centre, stop_at_dead_centre
 from watchsim.simulation.events.handover import hand_over
 from watchsim.simulation.events.immovable import drop_immovable
 from watchsim.simulation.events.mode_decision import decide
@@ -152,6 +153,7 @@ def _go_on(model, state, f, options, scratch, record):
         if not unique:
             state.counts.redundant_sets += 1
         apply(rest, m, work.force, work.inverse, state.a)
+        hold_at_dead_centre(model, state, m, work, rest)
         add_terms(rest, m, work.force, event.terms)
     f = _closed_of(state, f, state.active, state.active)
     find_sleepers(model, state, options, event, f)
@@ -208,6 +210,10 @@ def _resolve(model, state, island, m, options, scratch, record):
                 continue
             stop_held(event.label, island, state.grip, state.u)
             return Stop.RUNNING, r
+        if stop_at_dead_centre(model, state, r, work, event.rest, record):
+            place(model, state.q, state.u, event.pose)
+            refresh(model, m, event.closed, event.pose)
+            continue
         if not _slides(r, options.speed_zero, event.rest):
             state.counts.lcp_failures += 1
             return Stop.LCP_FAILED, 0

@@ -9,7 +9,7 @@ velocities counts as zero (`exactly`), at that instant and in that island.
 from __future__ import annotations
 
 from watchsim.jit import kernel
-from watchsim.tolerances import RATE_FLOOR, RATE_ROUNDING
+from watchsim.tolerances import RATE_FLOOR, RATE_ROUNDING, TILT_ROUNDING
 
 
 @kernel
@@ -22,10 +22,11 @@ def note_pace(u, out_pace):
 @kernel
 def rounding_of(closed, i, options, pace):
     """What counts as rounding in the gap rate of contact i, m/s."""
-    terms = 0.0
+    terms, across = 0.0, 0.0
     for k in range(closed.slots[i]):
         terms += abs(closed.w_N[i, k]) * pace[closed.coord[i, k]]
-    return RATE_ROUNDING * terms + RATE_FLOOR * options.size
+        across += abs(closed.w_T[i, k]) * pace[closed.coord[i, k]]
+    return RATE_ROUNDING * terms + TILT_ROUNDING * across + RATE_FLOOR * options.size
 
 
 @kernel

@@ -49,6 +49,8 @@ def press_left(work, i, zero):
 def grip_left(friction, work, i, zero):
     """How far the friction force of contact i, which sticks, is from its bound, with the share `zero` of its terms on top."""
     normal = work.force[2 * i]
+    if normal == 0.0 and work.size[2 * i] == 0.0:
+        return 1.0
     slack = zero * work.size[2 * i] / work.G[2 * i, 2 * i]
     return friction * normal - abs(work.force[2 * i + 1]) + slack
 
