@@ -152,6 +152,8 @@ FINE_LOOK = 1.0 / 64.0
 NEIGHBOUR_STRIDE = 0.25
 # Sine² of the angle between face and motion, drawings being rounded to a millionth. Large: falls through; small: jams.
 IMMOVABLE = 1e-12
+# Extents before the end of a primitive: where forces are read again. Large: a pull before is not seen; small: beyond the end.
+WITHIN_ENDS = 8.0
 
 # --- Contacts that pass from primitive to primitive, in `extent`s or rad ---
 

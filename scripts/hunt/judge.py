@@ -178,7 +178,7 @@ class Judge:
         """(samples,): how far twins with a change of 100 tolerances have drifted from the scene and from each other."""
         motions = [middle]
         for k in range(TWINS):
-            twin = perturbed(self.scene, LIKE * tolerance, self.seed + 1000 + k, 1.0 if k % 2 else -1.0)
+            twin = perturbed(self.scene, LIKE * tolerance, 2 * self.seed + 1000 + k, 1.0 if k % 2 else -1.0)
             try:
                 run = self.run(twin, TOLERANCES[0])
             except SceneError:  # the change made bodies overlap at the start

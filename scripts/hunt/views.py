@@ -102,10 +102,11 @@ def views(scene: Scene, seed: int, count: int) -> list[View]:
 
 
 def perturbed(scene: Scene, share: float, seed: int, lean: float = 1.0) -> Scene:
-    """Velocities, forces, masses, laws and, outwards, places changed by up to that share of themselves or of the scene's own.
+    """Velocities, forces, masses, laws and places changed by up to that share of themselves or of the scene's own.
 
-    Places are stretched from a point of the plane, so that what touches at the start parts rather than overlaps; outlines are
-    turned, with the sign of `lean`, where that leaves them apart: of two faces that meet flat either end may be first.
+    Places are stretched from a point of the plane, or with `lean` -1 drawn towards it, and outlines are turned, the other way
+    with the other `lean`, where that leaves them apart: of two faces that meet flat either end may be first, and a gap that
+    hardly closes may or may not. Seeds 2 n and 2 n + 1 turn outlines by the same angles. What touches at the start is stretched.
     """
     rng = np.random.default_rng(seed)
 
@@ -114,17 +115,14 @@ def perturbed(scene: Scene, share: float, seed: int, lean: float = 1.0) -> Scene
 
     size = max(math.dist(a.position, b.position) for a in scene.bodies for b in scene.bodies)
     centre = (size * rng.uniform(-1.0, 1.0), size * rng.uniform(-1.0, 1.0))
-    stretch = 1.0 + share * float(rng.uniform(0.0, 1.0)) * float(rng.random() < 0.7)
+    stretch = share * float(rng.uniform(0.0, 1.0)) * float(rng.random() < 0.7)
     speeds = _typical_speeds(scene)
     bodies = []
     for body in scene.bodies:
-        (x, y), (mx, my) = body.position, centre
-        position = (mx + stretch * (x - mx), my + stretch * (y - my))
         velocity = tuple(near(v, speeds[body.motion if i < 2 else "pivot"]) for i, v in enumerate(body.velocity))
-        inertia, mass = near(body.inertia), near(body.mass)
-        bodies.append(replace(body, position=position, velocity=velocity, inertia=inertia, mass=mass))
+        bodies.append(replace(body, velocity=velocity, inertia=near(body.inertia), mass=near(body.mass)))
     gravity = _turned(scene.gravity, share * float(rng.uniform(-1.0, 1.0)))
-    twin = replace(
+    changed = replace(
         scene,
         bodies=tuple(bodies),
         gravity=gravity,
@@ -134,8 +132,20 @@ def perturbed(scene: Scene, share: float, seed: int, lean: float = 1.0) -> Scene
             replace(c, friction=near(c.friction), restitution=min(near(c.restitution), 1.0)) for c in scene.contacts
         ),
     )
-    skewed = replace(twin, bodies=tuple(_skewed(body, share * lean * float(rng.uniform(0.1, 1.0))) for body in twin.bodies))
-    return skewed if apart(skewed) else twin
+    angles = share * lean * np.random.default_rng(seed // 2).uniform(0.1, 1.0, len(bodies))
+    twins = [_stretched(changed, centre, 1.0 + sign * stretch) for sign in (lean, 1.0)]
+    for twin in twins:
+        skewed = replace(twin, bodies=tuple(_skewed(body, float(by)) for body, by in zip(twin.bodies, angles, strict=True)))
+        if apart(skewed):
+            return skewed
+    return twins[1]
+
+
+def _stretched(scene: Scene, centre: Point, factor: float) -> Scene:
+    """All places that far from a point of the plane."""
+    mx, my = centre
+    places = [(mx + factor * (b.position[0] - mx), my + factor * (b.position[1] - my)) for b in scene.bodies]
+    return replace(scene, bodies=tuple(replace(b, position=p) for b, p in zip(scene.bodies, places, strict=True)))
 
 
 def _skewed(body: Body, angle: float) -> Body:

@@ -7,11 +7,11 @@ import math
 from watchsim.contact.index_sets import STICK
 from watchsim.jit import kernel
 from watchsim.simulation.loop_state.scratch import MONITORS
-from watchsim.simulation.motion.coupled_motion import TANGENTIAL, motion
+from watchsim.simulation.motion.coupled_motion import EXTENT, TANGENTIAL, motion
 from watchsim.simulation.motion.dense_output import dense_value
 from watchsim.simulation.motion.free_motion import turning_time
 from watchsim.simulation.motion.root_bracket import is_open, narrowed, next_time, opened
-from watchsim.tolerances import ROOT_RESOLUTION, SLIP_SLACK
+from watchsim.tolerances import ROOT_RESOLUTION, SLIP_SLACK, WITHIN_ENDS
 
 SAMPLES = 8
 NONE_FIRED = -1  # in the place of a monitor's code
@@ -71,36 +71,57 @@ def _root(model, state, options, which, low, high, scratch):
 def first_leave(model, state, options, smallest, scratch):
     """(time, code of the monitor): when in the coupled step one is first no longer positive; infinity if all stay positive.
 
-    `smallest`: the smallest monitor at the stages of the step.
+    `smallest`: the smallest monitor at the stages of the step. Beyond the end of a primitive forces mean nothing: where two
+    contacts change places, the one that pulls before pushes then, so that monitors are read again just before one leaves.
     """
     if smallest > 0.0:
         return math.inf, NONE_FIRED
-    length = scratch.step.span.length
-    before = 0.0
+    length, before = scratch.step.span.length, 0.0
     for sample in range(SAMPLES + 1):
         tau = length * sample / SAMPLES
         if _evaluate(model, state, options, tau, scratch) <= 0.0:
-            return _earliest(model, state, options, before, tau, scratch)
+            break
         before = tau
-    return math.inf, NONE_FIRED
+    if before == length:
+        return math.inf, NONE_FIRED
+    best, code, left = _earliest(model, state, options, before, tau, scratch)
+    for _ in range(SAMPLES):
+        if not (left and before < best and state.now.awake_contacts > 1):
+            break
+        tau = _while_within(model, state, options, before, best, scratch)
+        if _evaluate(model, state, options, tau, scratch) > 0.0:
+            break
+        best, code, left = _earliest(model, state, options, before, tau, scratch)
+    return best, code
+
+
+@kernel
+def _while_within(model, state, options, before, best, scratch):
+    """The last time of the step at which the contacts that have left by `best` were still within their primitives, or nearly."""
+    _evaluate(model, state, options, before, scratch)
+    nearest = math.inf
+    for j in range(state.now.awake_contacts):
+        nearest = min(nearest, scratch.smooth.monitors[MONITORS * j + EXTENT])
+    return best - min(WITHIN_ENDS * options.extent / nearest, 0.5) * (best - before)
 
 
 @kernel
 def _earliest(model, state, options, before, tau, scratch):
-    """The earliest root among the monitors that are not positive at tau, all of them positive at `before`, and its code."""
-    smooth, fired = scratch.smooth, 0
+    """The earliest root among the monitors not positive at tau, all positive at `before`, its code; had a contact left by tau?"""
+    smooth, fired, left = scratch.smooth, 0, False
     for code in range(MONITORS * state.now.awake_contacts + len(model.coordinates)):
         if smooth.monitors[code] <= 0.0:
             smooth.fired[fired] = code
             fired += 1
+            left = left or (code < MONITORS * state.now.awake_contacts and code % MONITORS == EXTENT)
     if tau == 0.0:
-        return 0.0, smooth.fired[0]
+        return 0.0, smooth.fired[0], False
     best, first = tau, smooth.fired[0]
     for j in range(fired):
         root = _root(model, state, options, smooth.fired[j], before, best, scratch)
         if root < best:
             best, first = root, smooth.fired[j]
-    return best, first
+    return best, first, left
 
 
 @kernel
