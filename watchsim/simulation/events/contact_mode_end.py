@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from watchsim.contact.index_sets import STICK
+from watchsim.dynamics.small_systems import copy
 from watchsim.jit import kernel
 from watchsim.simulation.loop_state.scratch import MONITORS
 from watchsim.simulation.motion.coupled_motion import TANGENTIAL, motion
@@ -40,14 +41,12 @@ def _evaluate(model, state, options, tau, scratch):
 
 @kernel
 def _root(model, state, options, which, low, high, scratch):
-    """Time at which one monitor, positive at low, passes zero; `high` where it is still positive then."""
+    """Time at which one monitor, positive at low, passes zero; `high` where it is still positive then.
+
+    The monitors at low are in `smooth.before`, those at high in `smooth.monitors`.
+    """
     monitors = scratch.smooth.monitors
-    _evaluate(model, state, options, low, scratch)
-    f_low = monitors[which]
-    _evaluate(model, state, options, high, scratch)
-    f_high = monitors[which]
-    if not f_low > 0.0:
-        return low
+    f_low, f_high = scratch.smooth.before[which], monitors[which]
     if f_high > 0.0:
         return high  # another one has fired before
     slack = _slack(model, state, options, which)
@@ -75,28 +74,33 @@ def first_leave(model, state, options, smallest, scratch):
     """
     if smallest > 0.0:
         return math.inf, NONE_FIRED
-    length = scratch.step.span.length
+    length, smooth = scratch.step.span.length, scratch.smooth
+    codes = MONITORS * state.now.awake_contacts + len(model.coordinates)
+    for code in range(codes):
+        if smooth.before[code] <= 0.0:
+            return 0.0, code
     before = 0.0
-    for sample in range(SAMPLES + 1):
+    for sample in range(1, SAMPLES + 1):
         tau = length * sample / SAMPLES
         if _evaluate(model, state, options, tau, scratch) <= 0.0:
-            return _earliest(model, state, options, before, tau, scratch)
+            return _earliest(model, state, options, codes, before, tau, scratch)
         before = tau
+        copy(smooth.monitors, smooth.before)
     return math.inf, NONE_FIRED
 
 
 @kernel
-def _earliest(model, state, options, before, tau, scratch):
-    """The earliest root among the monitors that are not positive at tau, all of them positive at `before`, and its code."""
+def _earliest(model, state, options, codes, before, tau, scratch):
+    """The earliest root among the `codes` monitors that are not positive at tau, all positive at `before`, and its code."""
     smooth, fired = scratch.smooth, 0
-    for code in range(MONITORS * state.now.awake_contacts + len(model.coordinates)):
+    for code in range(codes):
         if smooth.monitors[code] <= 0.0:
             smooth.fired[fired] = code
             fired += 1
-    if tau == 0.0:
-        return 0.0, smooth.fired[0]
     best, first = tau, smooth.fired[0]
     for j in range(fired):
+        if j > 0:
+            _evaluate(model, state, options, best, scratch)
         root = _root(model, state, options, smooth.fired[j], before, best, scratch)
         if root < best:
             best, first = root, smooth.fired[j]
