@@ -84,6 +84,12 @@ def _is_carried(model, k):
 
 
 @kernel
+def may_last(room, rate, time):
+    """False where a gap with this much room falls so fast that `time_apart` finds no more than `time`: the last looks at a touch."""
+    return 3.0 * max(-rate, 0.0) * time < room
+
+
+@kernel
 def time_still(model, state, k, room, left, tau, step, path):
     """A time up to `left` seconds in which the place of contact k moves by no more than `room` on either body, or 0.
 
