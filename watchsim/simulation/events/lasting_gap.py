@@ -85,7 +85,7 @@ def _is_carried(model, k):
 
 @kernel
 def may_last(room, rate, time):
-    """False where a gap with this much room falls so fast that `time_apart` finds no more than `time`: the last looks at a touch."""
+    """False where `time_apart` would find no more than `time`, so fast does a gap with this much room fall."""
     return 3.0 * max(-rate, 0.0) * time < room
 
 
