@@ -61,7 +61,7 @@ def _largest_mutual(A, i, n, s):
     """Largest sqrt|A_ij A_ji| s_j; the mutual coefficient does not change with the units of x and y."""
     largest = 0.0
     for j in range(n):
-        if j != i:
+        if j != i and A[i, j] != 0.0 and A[j, i] != 0.0:
             largest = max(largest, math.sqrt(abs(A[i, j])) * math.sqrt(abs(A[j, i])) * s[j])
     return largest
 
@@ -70,14 +70,19 @@ def _largest_mutual(A, i, n, s):
 def _balance(A, n, work):
     """Make the largest coefficients of row i and of column i alike, keeping R_i C_i (Osborne 1960).
 
-    All at once in each sweep, with half the exponent: the result does not depend on the order of the unknowns.
+    All at once in each sweep, with half the exponent: the result does not depend on the order of the unknowns. A sweep that
+    changes nothing is the last one.
     """
     r, c, s = work.row_scale, work.column_scale, work.trial
     for i in range(n):
         s[i] = c[i]
     for _ in range(SWEEPS):
+        balanced = True
         for i in range(n):
             work.load[i] = _unbalance(A, n, i, work)
+            balanced = balanced and work.load[i] == 1.0
+        if balanced:
+            return
         for i in range(n):
             r[i] *= work.load[i]
             c[i] /= work.load[i]

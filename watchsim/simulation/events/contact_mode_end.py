@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from watchsim.contact.index_sets import STICK
+from watchsim.dynamics.small_systems import copy
 from watchsim.jit import kernel
 from watchsim.simulation.loop_state.scratch import MONITORS
 from watchsim.simulation.motion.coupled_motion import EXTENT, TANGENTIAL, motion
@@ -40,14 +41,12 @@ def _evaluate(model, state, options, tau, scratch):
 
 @kernel
 def _root(model, state, options, which, low, high, scratch):
-    """Time at which one monitor, positive at low, passes zero; `high` where it is still positive then."""
+    """Time at which one monitor, positive at low, passes zero; `high` where it is still positive then.
+
+    The monitors at low are in `smooth.before`, those at high in `smooth.monitors`.
+    """
     monitors = scratch.smooth.monitors
-    _evaluate(model, state, options, low, scratch)
-    f_low = monitors[which]
-    _evaluate(model, state, options, high, scratch)
-    f_high = monitors[which]
-    if not f_low > 0.0:
-        return low
+    f_low, f_high = scratch.smooth.before[which], monitors[which]
     if f_high > 0.0:
         return high  # another one has fired before
     slack = _slack(model, state, options, which)
@@ -76,19 +75,29 @@ def first_leave(model, state, options, smallest, scratch):
     """
     if smallest > 0.0:
         return math.inf, NONE_FIRED
-    length, before = scratch.step.span.length, 0.0
-    for sample in range(SAMPLES + 1):
+    length, smooth = scratch.step.span.length, scratch.smooth
+    codes = MONITORS * state.now.awake_contacts + len(model.coordinates)
+    for code in range(codes):
+        if smooth.before[code] <= 0.0:
+            return 0.0, code
+    before = 0.0
+    for sample in range(1, SAMPLES + 1):
         tau = length * sample / SAMPLES
         if _evaluate(model, state, options, tau, scratch) <= 0.0:
-            break
+            return _first_before(model, state, options, before, tau, scratch)
         before = tau
-    if before == length:
-        return math.inf, NONE_FIRED
+        copy(smooth.monitors, smooth.before)
+    return math.inf, NONE_FIRED
+
+
+@kernel
+def _first_before(model, state, options, before, tau, scratch):
+    """(time, code of the monitor): the first to end between `before`, where all are positive, and tau, where some are not."""
     best, code, left = _earliest(model, state, options, before, tau, scratch)
     for _ in range(SAMPLES):
         if not (left and before < best and state.now.awake_contacts > 1):
             break
-        tau = _while_within(model, state, options, before, best, scratch)
+        tau = _while_within(state, options, before, best, scratch)
         if _evaluate(model, state, options, tau, scratch) > 0.0:
             break
         best, code, left = _earliest(model, state, options, before, tau, scratch)
@@ -96,12 +105,11 @@ def first_leave(model, state, options, smallest, scratch):
 
 
 @kernel
-def _while_within(model, state, options, before, best, scratch):
+def _while_within(state, options, before, best, scratch):
     """The last time of the step at which the contacts that have left by `best` were still within their primitives, or nearly."""
-    _evaluate(model, state, options, before, scratch)
     nearest = math.inf
     for j in range(state.now.awake_contacts):
-        nearest = min(nearest, scratch.smooth.monitors[MONITORS * j + EXTENT])
+        nearest = min(nearest, scratch.smooth.before[MONITORS * j + EXTENT])
     return best - min(WITHIN_ENDS * options.extent / nearest, 0.5) * (best - before)
 
 
@@ -114,10 +122,10 @@ def _earliest(model, state, options, before, tau, scratch):
             smooth.fired[fired] = code
             fired += 1
             left = left or (code < MONITORS * state.now.awake_contacts and code % MONITORS == EXTENT)
-    if tau == 0.0:
-        return 0.0, smooth.fired[0], False
     best, first = tau, smooth.fired[0]
     for j in range(fired):
+        if j > 0:
+            _evaluate(model, state, options, best, scratch)
         root = _root(model, state, options, smooth.fired[j], before, best, scratch)
         if root < best:
             best, first = root, smooth.fired[j]

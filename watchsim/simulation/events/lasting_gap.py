@@ -14,7 +14,7 @@ from watchsim.contact.gaps import normal_gap
 from watchsim.contact.poses import point_of
 from watchsim.jit import kernel
 from watchsim.model.records import FIXED, FREE, PIVOT, SLIDE
-from watchsim.simulation.motion.step_path import acceleration_on_path
+from watchsim.simulation.motion.step_path import acceleration_on_path, jerk_bound
 
 
 @kernel
@@ -24,7 +24,7 @@ def _material_point(model, state, step, b, rx, ry, left, tau, path):
     i = body.first
     if body.motion == SLIDE:
         a = body.ratio * acceleration_on_path(model, state, step, i, tau, path)
-        return pose.vx, pose.vy, a * body.axis_x, a * body.axis_y, abs(body.ratio) * step.jerk[i]
+        return pose.vx, pose.vy, a * body.axis_x, a * body.axis_y, abs(body.ratio) * jerk_bound(model, state, step, i)
     if body.motion == FIXED:
         return 0.0, 0.0, 0.0, 0.0, 0.0
     turn = i if body.motion == PIVOT else i + 2
@@ -33,10 +33,11 @@ def _material_point(model, state, step, b, rx, ry, left, tau, path):
     if body.motion == FREE:
         ax += acceleration_on_path(model, state, step, i, tau, path)
         ay += acceleration_on_path(model, state, step, i + 1, tau, path)
-        jerk = step.jerk[i] + step.jerk[i + 1]
+        jerk = jerk_bound(model, state, step, i) + jerk_bound(model, state, step, i + 1)
     bound = abs(body.ratio) * step.bound[turn]
     fastest = abs(w) + bound * left
-    jerk += (abs(body.ratio) * step.jerk[turn] + 3.0 * bound * fastest + fastest**3) * math.sqrt(rx * rx + ry * ry)
+    change = abs(body.ratio) * jerk_bound(model, state, step, turn)
+    jerk += (change + 3.0 * bound * fastest + fastest**3) * math.sqrt(rx * rx + ry * ry)
     return pose.vx - w * ry, pose.vy + w * rx, ax, ay, jerk
 
 
@@ -80,6 +81,12 @@ def _is_carried(model, k):
     contact = model.contacts[k]
     a, b = model.primitives[contact.a].body, model.primitives[contact.b].body
     return model.bodies[a].carrier >= 0 or model.bodies[b].carrier >= 0
+
+
+@kernel
+def may_last(room, rate, time):
+    """False where `time_apart` would find no more than `time`, so fast does a gap with this much room fall."""
+    return 3.0 * max(-rate, 0.0) * time < room
 
 
 @kernel

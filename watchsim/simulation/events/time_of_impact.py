@@ -16,7 +16,7 @@ from watchsim.jit import kernel
 from watchsim.model.records import LINE
 from watchsim.simulation.events.gap_bounds import body_bounds, centre_distance, gap_bounds, next_stretch
 from watchsim.simulation.events.handover import is_beside_active
-from watchsim.simulation.events.lasting_gap import time_apart, time_still
+from watchsim.simulation.events.lasting_gap import may_last, time_apart, time_still
 from watchsim.simulation.events.safe_times import (
     is_due,
     room_outside,
@@ -85,7 +85,8 @@ def crossing(model, state, options, k, start, end, step, path):
             safe = time_to_zero(gap, rate, outside, (closing, bend, distance), options)
             if outside and safe < FINE_LOOK * (end - tau):
                 room = room_outside(gap, rate, options)
-                safe = max(safe, time_apart(model, state, k, room, end - tau, tau, step, path))
+                if may_last(room, rate, safe):
+                    safe = max(safe, time_apart(model, state, k, room, end - tau, tau, step, path))
             safe = max(safe, time_immovable(model, options, k, rate, bend, path) if near and not leaving else 0.0)
             # Beside its primitives the gap may pass through zero: which side it is on afterwards is found anew.
             fresh = beside > safe

@@ -44,7 +44,6 @@ class Step(NamedTuple):
     q: Array
     u: Array
     bound: Array  # bound of each |q''| over the step
-    jerk: Array  # the same of each |q'''|
     y0: Array  # q, u, sums
     y1: Array
     stages: Array  # (16, 2 n + SUMS)
@@ -63,6 +62,7 @@ class Smooth(NamedTuple):
     closed: Closed  # the contacts of one island after another
     engaged: Modes  # by body: 1 if a contact in force touches it
     monitors: Array  # by code (coupled_motion.py)
+    before: Array  # the same at an earlier time of the step, at first at its start
     fired: Integers  # codes of those that are not positive (contact_mode_end.py)
     load: Array  # force on each coordinate that dry friction holds
     terms: Array  # sum of the magnitudes it is made of
@@ -191,7 +191,7 @@ def asked_of(coordinates: int) -> Asked:
 
 def _step_room(n: int) -> Step:
     width = 2 * n + SUMS
-    vectors = {name: np.zeros(n) for name in ("q", "u", "bound", "jerk")}
+    vectors = {name: np.zeros(n) for name in ("q", "u", "bound")}
     wide = {name: np.zeros(width) for name in ("y0", "y1")}
     return Step(span=blank(Span), stages=np.zeros((16, width)), dense=np.zeros((7, width)), **vectors, **wide)
 
@@ -205,6 +205,7 @@ def _smooth_room(n: int, bodies: int, room: int) -> Smooth:
         closed=closed_contacts(room),
         engaged=np.zeros(bodies, np.int8),
         monitors=np.zeros(monitors),
+        before=np.zeros(monitors),
         fired=np.zeros(monitors, np.int64),
         load=np.zeros(n),
         terms=np.zeros(n),

@@ -10,7 +10,7 @@ import math
 from watchsim.jit import kernel
 from watchsim.simulation.loop_state.scratch import FLIGHT
 from watchsim.simulation.motion.dense_output import coordinate_within, flight_acceleration
-from watchsim.simulation.motion.free_motion import acceleration_bound, fastest_change, quarter_period
+from watchsim.simulation.motion.free_motion import acceleration_bound, quarter_period
 from watchsim.simulation.record.write_buffers import is_kept, keep_row
 from watchsim.tolerances import FLIGHT_SIZES
 
@@ -75,10 +75,9 @@ def begin_flight(model, state, length, out_step):
     step.span.start, step.span.length = state.clock.time, length
     for i in range(len(model.coordinates)):
         step.q[i], step.u[i] = state.q[i], state.u[i]
-        step.bound[i], step.jerk[i] = 0.0, 0.0
+        step.bound[i] = 0.0
         if state.awake[i]:
             step.bound[i] = acceleration_bound(model.coordinates[i], state.grip[i], state.q[i], state.u[i])
-            step.jerk[i] = step.bound[i] * fastest_change(model.coordinates[i])
 
 
 @kernel

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 
+from watchsim.dynamics.small_systems import copy
 from watchsim.jit import kernel
 from watchsim.simulation.loop_state.scratch import COUPLED, SUMS
 from watchsim.simulation.motion.coupled_motion import engage, motion
@@ -24,16 +25,19 @@ SAFETY, SHRINK, GROW = 0.78, 0.2, 6.0
 def _stage(model, state, options, s, h, scratch):
     """Derivative of stage s into `stages[s]`; returns the smallest monitor."""
     step, smooth = scratch.step, scratch.smooth
-    width = len(step.y0)
+    y0, y, stages = step.y0, smooth.y, step.stages
+    width = len(y0)
     for i in range(width):
-        total = 0.0
-        for j in range(s):
-            if A[s, j] != 0.0:
-                total += A[s, j] * step.stages[j, i]
-        smooth.y[i] = step.y0[i] + h * total
+        y[i] = 0.0
+    for j in range(s):
+        share = A[s, j]
+        if share != 0.0:
+            for i in range(width):
+                y[i] += share * stages[j, i]
+    for i in range(width):
+        y[i] = y0[i] + h * y[i]
     smallest = motion(model, state, options, step.span.start + C[s] * h, scratch.work, smooth)
-    for i in range(width):
-        step.stages[s, i] = smooth.dy[i]
+    copy(smooth.dy, stages[s])
     return smallest
 
 
@@ -96,9 +100,11 @@ def coupled_step(model, state, options, longest, scratch):
     engage(model, state, scratch.smooth)
     h = min(state.clock.step, longest)
     shrunk = False
+    at_start = _stage(model, state, options, 0, h, scratch)  # whatever the length of the step
+    copy(scratch.smooth.monitors, scratch.smooth.before)
     while True:
-        smallest = math.inf
-        for s in range(STAGES + 1):
+        smallest = at_start
+        for s in range(1, STAGES + 1):
             smallest = min(smallest, _stage(model, state, options, s, h, scratch))
         for i in range(len(step.y0)):
             step.y1[i] = scratch.smooth.y[i]

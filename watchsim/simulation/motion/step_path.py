@@ -16,7 +16,7 @@ from watchsim.jit import kernel
 from watchsim.model.records import FREE
 from watchsim.simulation.loop_state.scratch import FLIGHT
 from watchsim.simulation.motion.dense_output import dense, dense_bend, flight_acceleration
-from watchsim.simulation.motion.free_motion import flow
+from watchsim.simulation.motion.free_motion import fastest_change, flow
 
 DEGREE = 7
 # The continuous extension is y0 + sum of dense[t] x^a (1 - x)^b, with these exponents (a, b).
@@ -39,18 +39,33 @@ BEND, JERK = _derivative(2), _derivative(3)
 
 @kernel
 def bound_accelerations(step, n):
-    """Bounds of |q''| and |q'''| over the coupled step, for its n coordinates, into `step.bound` and `step.jerk`."""
+    """Bounds of |q''| over the coupled step, for its n coordinates, into `step.bound`."""
     h = step.span.length
     for i in range(n):
-        bend, jerk = 0.0, 0.0  # no Bernstein polynomial exceeds its largest coefficient
-        for row in range(DEGREE - 1):
-            second, third = 0.0, 0.0
-            for term in range(DEGREE):
-                second += BEND[row, term] * step.dense[term, i]
-                if row < DEGREE - 2:
-                    third += JERK[row, term] * step.dense[term, i]
-            bend, jerk = max(bend, abs(second)), max(jerk, abs(third))
-        step.bound[i], step.jerk[i] = bend / (h * h), jerk / (h * h * h)
+        step.bound[i] = _largest_coefficient(BEND, step.dense, i) / (h * h)
+
+
+@kernel
+def jerk_bound(model, state, step, i):
+    """A bound of |q'''| of coordinate i over the step."""
+    if state.awake[i] == 0:
+        return 0.0
+    if step.span.kind == FLIGHT:
+        return step.bound[i] * fastest_change(model.coordinates[i])
+    h = step.span.length
+    return _largest_coefficient(JERK, step.dense, i) / (h * h * h)
+
+
+@kernel
+def _largest_coefficient(derivative, dense, i):
+    """The largest Bernstein coefficient of that derivative of coordinate i, which no value of the polynomial exceeds."""
+    largest = 0.0
+    for row in range(len(derivative)):
+        total = 0.0
+        for term in range(DEGREE):
+            total += derivative[row, term] * dense[term, i]
+        largest = max(largest, abs(total))
+    return largest
 
 
 @kernel

@@ -31,7 +31,7 @@ STRETCH = 48  # chords of an outline that are brought along together
 MOST = 1 << 21  # distances of stretches worked out at once
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Outlines:
     """One layer, or all of a body's, in the body's frame (m): rings around material with a word for holes, and open faces."""
 
@@ -48,15 +48,6 @@ class Outlines:
     def points(self) -> int:
         return sum(len(points) for points, _ in self.rings)
 
-    def shrunk(self, depth: float) -> list[Any]:
-        """Its material, shrunk by `depth`, as prepared polygons; corners stay sharp."""
-        import shapely
-
-        polygons = material([(_shifted(points, depth, closed=True), hole) for points, hole in self.rings])
-        polygons = [polygon for polygon in polygons if not polygon.is_empty]
-        for polygon in polygons:
-            shapely.prepare(polygon)
-        return polygons
 
     def shifted_faces(self, depth: float) -> list[Array]:
         """Its open faces, `depth` further inside their material."""
@@ -97,8 +88,14 @@ def _middle(rows: Complex) -> Complex:
 
 
 @functools.lru_cache(maxsize=256)
-def _shrunk(loops: tuple[Loop, ...], deviation: float, depth: float) -> list[Any]:
-    return outlines_of(loops, deviation).shrunk(depth)
+def _shrunk(outlines: Outlines, depth: float) -> NDArray[Any]:
+    """(polygons, 1): their material, shrunk by `depth`, as prepared polygons; corners stay sharp."""
+    import shapely
+
+    polygons = material([(_shifted(points, depth, closed=True), hole) for points, hole in outlines.rings])
+    found = np.array([polygon for polygon in polygons if not polygon.is_empty], object)
+    shapely.prepare(found)
+    return found[:, None]
 
 
 def _shifted(points: Array, depth: float, closed: bool) -> Array:
@@ -117,10 +114,12 @@ class PairOfLayers:
     """The two sides of a declared contact."""
 
     def __init__(self, contact: int, sides: tuple[Side, Side], loops: tuple[tuple[Loop, ...], ...], depth: float, chord: float):
-        self.contact, self.sides, self._loops, self._chord = contact, sides, loops, chord
+        self.contact, self.sides, self._loops = contact, sides, loops
         self._outlines = [outlines_of(one, chord) for one in loops]
         # The larger side stays where it is.
         self._still = int(self._outlines[1].points > self._outlines[0].points)
+        still, mover = self._outlines[self._still], self._outlines[1 - self._still]
+        self._reach = np.square(mover.radii[:, None] + still.radii)  # of two stretches that come near
         self.look_for(depth)
 
     def look_for(self, depth: float) -> None:
@@ -132,12 +131,13 @@ class PairOfLayers:
         still, mover, depth = self._still, 1 - self._still, self._depth
         any_faces = any(outlines.faces for outlines in self._outlines)
         self._drawn = True
-        self._shrunk: list[list[Any]] = [[], []]
-        self._shrunk[still] = _shrunk(self._loops[still], self._chord, depth)
+        nothing = np.zeros((0, 1), object)
+        self._shrunk = [nothing, nothing]
+        self._shrunk[still] = _shrunk(self._outlines[still], depth)
         if self._outlines[still].radius <= self._outlines[mover].radius:
             # Only then can the other one swallow it.
-            self._shrunk[mover] = _shrunk(self._loops[mover], self._chord, depth)
-        self._whole = [_shrunk(loops, self._chord, 0.0) if any_faces else [] for loops in self._loops]
+            self._shrunk[mover] = _shrunk(self._outlines[mover], depth)
+        self._whole = [_shrunk(outlines, 0.0) if any_faces else nothing for outlines in self._outlines]
         self._faces = [outlines.shifted_faces(depth) for outlines in self._outlines]
 
     def overlapping(self, poses: tuple[Poses, Poses]) -> Integers:
@@ -155,7 +155,7 @@ class PairOfLayers:
         seen = shift[places], twist[places]
         hit = self._crossing(*seen)
         hit |= self._within(self._shrunk[self._still], mover, seen)
-        if self._shrunk[1 - self._still]:
+        if len(self._shrunk[1 - self._still]):
             hit |= self._within(self._shrunk[1 - self._still], still, _inverse(seen))
         if still.faces or mover.faces:
             hit |= self._behind(self._still, _inverse(seen)) | self._behind(1 - self._still, seen)
@@ -171,26 +171,23 @@ class PairOfLayers:
         for first in range(0, len(shift), block):
             at = slice(first, first + block)
             centres = twist[at, None] * mover.centres + shift[at, None]
-            near = np.abs(centres[:, :, None] - still.centres) <= mover.radii[:, None] + still.radii
-            instant, stretch = np.nonzero(near.any(axis=2))
+            x, y = centres.real[:, :, None] - still.centres.real, centres.imag[:, :, None] - still.centres.imag
+            instant, stretch = np.nonzero((x * x + y * y <= self._reach).any(axis=2))
             if not len(instant):
                 continue
             instant += first
             lines = shapely.linestrings(_real(twist[instant, None] * mover.stretches[stretch] + shift[instant, None]))
-            for polygon in self._shrunk[self._still]:
-                hit[instant[shapely.intersects(polygon, lines)]] = True
+            hit[instant[shapely.intersects(self._shrunk[self._still], lines).any(axis=0)]] = True
         return hit
 
     @staticmethod
-    def _within(polygons: list[Any], other: Outlines, seen: Poses) -> Bits:
+    def _within(polygons: NDArray[Any], other: Outlines, seen: Poses) -> Bits:
         """Does a ring of the other lie wholly within one of the polygons? One point of it says so, where nothing crosses."""
         import shapely
 
-        hit = np.zeros(len(seen[0]), bool)
         at = seen[1][:, None] * other.starts + seen[0][:, None]
-        for polygon in polygons:
-            hit |= shapely.intersects_xy(polygon, at.real, at.imag).any(axis=1)
-        return hit
+        within: Bits = shapely.intersects_xy(polygons[:, :, None], at.real, at.imag).any(axis=(0, 2))
+        return within
 
     def _behind(self, side: int, seen: Poses) -> Bits:
         """Does something of the other side reach behind the open faces of this one, between their ends?"""
@@ -200,7 +197,7 @@ class PairOfLayers:
         for face in self._faces[side]:
             at = seen[1][:, None] * _complex(face) + seen[0][:, None]
             lines, ends = shapely.linestrings(_real(at)), at[:, [0, -1]]
-            for polygon in self._whole[1 - side]:
+            for polygon in self._whole[1 - side][:, 0]:
                 # What hangs over an end of the face has come round it.
                 round_it = shapely.intersects_xy(polygon, ends.real, ends.imag).any(axis=1)
                 hit |= shapely.intersects(polygon, lines) & ~round_it
