@@ -13,6 +13,7 @@ import importlib.machinery
 import importlib.util
 import io
 import json
+import math
 import os
 import resource
 import signal
@@ -29,7 +30,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = str(ROOT / "watchsim") + os.sep
 MODULE = 0  # the "line" of what is done while a file is imported
-OPTIONS = ["-x", "-q", "-p", "no:cacheprovider", "--no-header", "-W", "ignore"]
+OPTIONS = ["-q", "-p", "no:cacheprovider", "--no-header", "-W", "ignore"]
 LIBRARIES = ("numba", "scipy.spatial", "scipy.interpolate", "scipy.optimize", "shapely", "ezdxf", "hypothesis", "mpmath")
 
 
@@ -50,24 +51,49 @@ class Reached:
 
 
 class _Recorder:
-    """A plugin of pytest that writes down what each test calls."""
+    """A plugin of pytest that writes down what each test calls. Tests that fail, or take longer, are left out."""
 
-    def __init__(self) -> None:
+    def __init__(self, longest: float) -> None:
         self.reached = Reached()
         self._codes: set[CodeType] = set()
+        self._longest = longest if math.isfinite(longest) else 0.0  # 0: no alarm
+        self._left_out = False
 
     @pytest.hookimpl(hookwrapper=True)
     def pytest_runtest_protocol(self, item: Any) -> Iterator[None]:
-        self._codes = set()
+        self._codes, self._left_out = set(), False
         begun = time.process_time()
         sys.setprofile(self._note)
         yield
         sys.setprofile(None)
+        if self._left_out:
+            return
         self.reached.seconds[item.nodeid] = time.process_time() - begun
         files = ((code.co_filename, code.co_firstlineno) for code in self._codes)
         self.reached.called[item.nodeid] = {
             (file.removeprefix(PACKAGE), line) for file, line in files if file.startswith(PACKAGE)
         }
+
+    @pytest.hookimpl(hookwrapper=True)
+    def pytest_runtest_setup(self) -> Iterator[None]:
+        yield from self._within_the_time()
+
+    @pytest.hookimpl(hookwrapper=True)
+    def pytest_runtest_call(self) -> Iterator[None]:
+        yield from self._within_the_time()
+
+    def pytest_runtest_logreport(self, report: Any) -> None:
+        self._left_out |= bool(report.failed)
+
+    def _within_the_time(self) -> Iterator[None]:
+        signal.signal(signal.SIGPROF, self._too_long)
+        signal.setitimer(signal.ITIMER_PROF, self._longest)
+        yield
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
+
+    def _too_long(self, *_: object) -> None:
+        self._left_out = True
+        pytest.skip("takes too long to be run for every fault")
 
     def _note(self, frame: FrameType, event: str, _: object) -> None:
         if event == "call":
@@ -82,10 +108,19 @@ def load() -> None:
     sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
 
 
-def recorded(tests: Sequence[str]) -> Reached:
-    """Run the tests once; SystemExit where one fails without any fault."""
-    recorder = _Recorder()
-    status, said = _in_a_copy(lambda: (_pytest(list(tests), [recorder]), _dumped(recorder.reached))[0:2], None)
+def recorded(tests: Sequence[str], longest: float = math.inf) -> Reached:
+    """Run the tests once; SystemExit where one fails without any fault.
+
+    With `longest` (s of processor time) only those count that take no longer and pass: as plain Python some need the compiler.
+    """
+    recorder = _Recorder(longest)
+
+    def work() -> tuple[int, str]:
+        status = _pytest(list(tests), [recorder])
+        passed = status == 0 or (math.isfinite(longest) and status == pytest.ExitCode.TESTS_FAILED)
+        return 0 if passed else status, _dumped(recorder.reached)
+
+    status, said = _in_a_copy(work, None)
     if status != 0:
         raise SystemExit(f"the tests fail without any fault: {said[-2000:]}")
     loaded = json.loads(said)
@@ -98,7 +133,7 @@ def fails(tests: Sequence[str], file: str, source: str, limit: float) -> bool:
     def work() -> tuple[int, str]:
         faulty: Any = _Faulty(f"watchsim.{file.removesuffix('.py').replace('/', '.')}", PACKAGE + file, source)
         sys.meta_path.insert(0, faulty)
-        return _pytest(list(tests), []), ""
+        return _pytest(["-x", *tests], []), ""
 
     return _in_a_copy(work, limit)[0] != 0
 

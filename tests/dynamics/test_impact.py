@@ -27,7 +27,7 @@ def singles(count: int) -> list[tuple[Case, np.ndarray]]:
 
 def test_one_contact_in_closed_form() -> None:
     regimes = set()
-    for case, u in singles(1000):
+    for case, u in singles(400):
         solved, after, force = case.impact(u)
         before = rates(case, u)
         G = (case.G[0, 0], case.G[0, 1], case.G[1, 1])

@@ -22,6 +22,10 @@ from watchsim.render.frame.pose_history import poses, sampled
         (0.123456, "0.1235 of true speed"),
         (1e-7, "1e-07 of true speed"),
         (2.0, "2 × true speed"),
+        (1.2, "1.2 × true speed"),
+        (1.0625, "1.062 × true speed"),
+        (9 / 11, "9/11 of true speed"),
+        (10 / 11, "0.9091 of true speed"),
     ],
 )
 def test_speed(speed, text):

@@ -91,7 +91,7 @@ def material(side: Side, pose: tuple[float, float, float]) -> shapely.Geometry:
     return shapely.union_all([shapely.Polygon(chords((loop,), pose, 5e-6)[:, :2]) for loop in loops])
 
 
-@pytest.mark.parametrize("tolerance", [1e-7, 1e-9])
+@pytest.mark.parametrize("tolerance", [1e-7, pytest.param(1e-9, marks=pytest.mark.slow)])
 def test_nothing_runs_through_anything(tolerance: float) -> None:
     """Bodies as polygons at two thousand instants: no overlap beyond a nanometre of depth, whatever the solver reports."""
     done = simulate(profile("bench_lever"), 0.5, tolerance)

@@ -101,10 +101,11 @@ def test_killed_at_each_action(tmp_path: Path, old: bool) -> None:
     raise AssertionError("there is no end to it")
 
 
-def test_killed_at_each_action_of_clearing_up(tmp_path: Path) -> None:
+@pytest.mark.parametrize("step", [5, pytest.param(1, marks=pytest.mark.slow)])
+def test_killed_at_each_action_of_clearing_up(step: int, tmp_path: Path) -> None:
     """A sweep that dies half way is finished by the next one."""
     root = tmp_path / "disk"
-    for first in range(20, 45):
+    for first in range(20, 45, step):
         for number in range(1, MOST):
             target = begin(root, True)
             killed_at(root, first, lambda target=target: write_folder(target, fill, ours, "the results"))

@@ -171,26 +171,39 @@ def test_the_steady_command(capsys):
     assert main(["steady", str(BENCH), "--tol", "3"]) == 2
 
 
+def stopped(folder: Path, count: int, number: int) -> tuple[list[str], int]:
+    """The command of a sweep over so many points that gets a signal after its first rows, and the status it ends with."""
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    asked = ["sweep", str(BENCH), f"torques.0.value=-5:-8:{count} µN·m", "--no-plots", "-o", str(folder)]
+    started = subprocess.Popen(
+        [sys.executable, "-m", "watchsim", *asked, "--workers", "2"],
+        env=environment,
+        start_new_session=True,
+        stdout=subprocess.DEVNULL,
+    )
+    journal = folder / NAME
+    while not (journal.is_file() and journal.read_bytes().count(b"\n") >= 5) and started.poll() is None:
+        time.sleep(0.02)
+    os.kill(started.pid, number)
+    return asked, started.wait(60)
+
+
 @pytest.mark.skipif(os.name == "nt", reason="signals to groups of processes")
 @pytest.mark.parametrize("number, status", [(signal.SIGINT, 130), (signal.SIGKILL, -9)])
 def test_stopped_from_outside(tmp_path, number, status):
     """Finished rows are kept, no worker stays behind, and --resume gives the rows of a sweep that nobody has stopped."""
-    folder, environment = tmp_path / "study", {**os.environ, "PYTHONPATH": str(ROOT)}
-    asked = ["sweep", str(BENCH), "torques.0.value=-5:-8:30 µN·m", "--workers", "2", "--no-plots", "-o", str(folder)]
-    started = subprocess.Popen(
-        [sys.executable, "-m", "watchsim", *asked], env=environment, start_new_session=True, stdout=subprocess.DEVNULL
-    )
+    for count in (20, 80, 320):  # where this process has to wait for its turn, a short sweep is done before it is stopped
+        folder = tmp_path / f"study{count}"
+        asked, ended = stopped(folder, count, number)
+        if ended != 0:
+            break
+    assert ended == status
     journal = folder / NAME
-    while not (journal.is_file() and journal.read_bytes().count(b"\n") >= 5):
-        assert started.poll() is None
-        time.sleep(0.02)
-    os.kill(started.pid, number)
-    assert started.wait(60) == status
     kept = journal.read_bytes().count(b"\n") - 1
-    assert 4 <= kept < 30
-    assert main([*asked[:-5], "--workers", "1", "--no-plots", "-o", str(folder), "--resume"]) == 0
+    assert 4 <= kept < count
+    assert main([*asked, "--workers", "1", "--resume"]) == 0
     rows = [json.loads(line) for line in journal.read_text(encoding="utf-8").splitlines()[1:]]
-    assert sorted(row["point"] for row in rows) == list(range(30))
+    assert sorted(row["point"] for row in rows) == list(range(count))
     told = json.loads((folder / "sweep.json").read_text(encoding="utf-8"))["rows"]
     amplitudes = [row["amplitude_deg"] for row in told]
     assert amplitudes == sorted(amplitudes)

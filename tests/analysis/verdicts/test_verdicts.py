@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,8 +18,9 @@ from watchsim.analysis.verdicts.equilibrium.lever_arms import arms
 from watchsim.analysis.verdicts.equilibrium.statics import at_lever
 from watchsim.analysis.verdicts.faces import face
 from watchsim.analysis.verdicts.knocking import _angles, knocks
+from watchsim.analysis.verdicts.overbanking import overbanking
 from watchsim.analysis.verdicts.tripping import tripping
-from watchsim.analysis.verdicts.unlocked import unlocked
+from watchsim.analysis.verdicts.unlocked import _engaged, unlocked
 from watchsim.analysis.verdicts.verdict import verdict
 from watchsim.analysis.verdicts.verdict_kinds import Verdict
 from watchsim.analysis.verdicts.watch import watch_of
@@ -94,6 +97,31 @@ def test_in_a_mirror_and_under_other_names_it_is_the_same_fault(fault):
 def test_a_guard_pin_keeps_the_lever_from_going_over():
     """The same knock on the lever with the dart in place."""
     assert judged(knocked(swiss(), 2.05, -2e-6), 4.0).name == "unsettled"
+
+
+def test_the_first_strike_from_outside_shows_that_it_overbanks():
+    """Before it the same half swing saw the pin inside the fork, with the lever on its way to the banking."""
+    run = simulate(knocked(unguarded(swiss()), 2.05, -2e-6), 4.0)
+    struck = replace(run, events=run.events[run.events["t"] < 2.1])
+    found = overbanking(watch_of(struck, beats(run)))
+    assert found is not None and found.t == pytest.approx(2.05, abs=1e-3) and "outside at −21.8°" in found.message
+    before = replace(run, events=run.events[run.events["t"] < 2.05])
+    assert overbanking(watch_of(before, beats(run))) is None
+
+
+@pytest.mark.parametrize("way", [0.0, 40.0, 90.0, 200.0, 270.0])
+@pytest.mark.parametrize(("slope", "engaged"), [(2.0, False), (-2.0, False), (4.0, True), (-4.0, True), (90.0, True)])
+def test_a_pin_in_the_fork_has_an_arm_a_dart_on_its_roller_has_none(way, slope, engaged):
+    """The arm about the staff of a force that leans from the radius by an angle is the radius times its sine, wherever."""
+    staff, radius = np.array([3e-3, -2e-3]), 0.5e-3
+    out = np.array([math.cos(math.radians(way)), math.sin(math.radians(way))])
+    arm = radius * math.sin(math.radians(slope))
+    told = SimpleNamespace(
+        places={"balance": (*staff, 1.0)},
+        point=np.array([(7.0, 7.0), staff + radius * out]),
+        of=lambda row, body: (arm, 9.0) if (row, body) == (1, "balance") else (9.0, 9.0),
+    )
+    assert _engaged(SimpleNamespace(oscillator="balance"), told, 1) == engaged
 
 
 def test_a_watch_that_ticks_and_one_that_will():

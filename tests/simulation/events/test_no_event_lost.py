@@ -93,7 +93,7 @@ def outlines(body: Body, t: np.ndarray, gravity: tuple[float, float]) -> np.ndar
 @pytest.mark.parametrize(
     "motions", [("pivot", "fixed"), ("pivot", "pivot"), ("slide", "pivot"), ("free", "fixed"), ("free", "pivot")]
 )
-@pytest.mark.parametrize("wanted", [2, pytest.param(20, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("wanted", [1, pytest.param(20, marks=pytest.mark.slow)])
 def test_the_first_touch_is_the_one_that_brute_force_sees(motions: tuple[str, str], wanted: int) -> None:
     rng = np.random.default_rng(sum(map(ord, "".join(motions))))
     met = missed = 0
@@ -119,7 +119,7 @@ def test_the_first_touch_is_the_one_that_brute_force_sees(motions: tuple[str, st
         met, missed = met + (told < math.inf), missed + (told == math.inf)
 
 
-@pytest.mark.parametrize("wanted", [3, pytest.param(20, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("wanted", [1, pytest.param(20, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("motions", CELLED)
 def test_cells_change_no_bit_of_random_collisions(
     motions: tuple[str, str], wanted: int, monkeypatch: pytest.MonkeyPatch
@@ -128,7 +128,7 @@ def test_cells_change_no_bit_of_random_collisions(
     monkeypatch.setattr(cell_grid, "FEW_CONTACTS", 0)
     rng = np.random.default_rng(sum(map(ord, "".join(motions))) + 1)
     events = compared = 0
-    while compared < wanted or events < 20:
+    while compared < wanted or events < 10:
         a, b = (random_body(name, motion, rng) for name, motion in zip("ab", motions, strict=True))
         gravity, start = (0.0, float(rng.choice([0.0, -3.0]))), np.zeros(1)
         if shapely.distance(outlines(a, start, gravity), outlines(b, start, gravity))[0] < 1e-3:
