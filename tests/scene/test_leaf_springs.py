@@ -36,7 +36,9 @@ def stiffness_by_bending(modulus: float, length: float, width: float, thickness:
 
 def test_it_is_as_stiff_as_a_cantilever() -> None:
     bent = stiffness_by_bending(200e9, 5e-3, 5e-4, 8e-5)
-    assert made(SLIDER, body='motion = "slide"\naxis = [1.0, 0.0]\nmass = "1 g"').springs[0].stiffness == pytest.approx(bent, 1e-8)
+    assert made(SLIDER, body='motion = "slide"\naxis = [1.0, 0.0]\nmass = "1 g"').springs[0].stiffness == pytest.approx(
+        bent, 1e-8
+    )
     assert made(LEAF).springs[0].stiffness == pytest.approx(4e-6 * bent, 1e-8)
     line = f'[[line_springs]]\nbetween = ["click"]\npoints = [["1 mm", "0 mm"], ["5 mm", "0 mm"]]\n{SLIDER}'
     assert made(LEAF, line).line_springs[0].stiffness == pytest.approx(bent, 1e-8)
@@ -47,8 +49,12 @@ def test_it_is_as_stiff_as_a_cantilever() -> None:
 def test_it_yields_once_the_preload_is_exceeded(side: float, pull: float) -> None:
     """A torque of `pull` times the preload: no motion up to 1, beyond (pull - 1) preload / stiffness from the stop."""
     preload = 3e-6 * side
-    more = f'[[torques]]\nbody = "click"\nvalue = "{-preload * pull!r} N·m"\n[[damping]]\nbody = "click"\nviscous = "5 µN·m·s/rad"'
-    scene = made(f'stiffness = "50 µN·m/rad"\npreload = "{preload!r} N·m"\nstop = "10°"', more, 'inertia = "100 g·mm²"\nangle = "10°"')
+    more = (
+        f'[[torques]]\nbody = "click"\nvalue = "{-preload * pull!r} N·m"\n[[damping]]\nbody = "click"\nviscous = "5 µN·m·s/rad"'
+    )
+    scene = made(
+        f'stiffness = "50 µN·m/rad"\npreload = "{preload!r} N·m"\nstop = "10°"', more, 'inertia = "100 g·mm²"\nangle = "10°"'
+    )
     run = ws.simulate(scene, duration=3.0)
     expected = math.radians(10.0) - preload / 5e-5 * max(pull - 1.0, 0.0)
     assert run.end_q[0] == pytest.approx(expected, abs=1e-11)

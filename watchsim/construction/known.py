@@ -24,6 +24,7 @@ _HOMES = {
     "jumper": "watchsim.construction.jumper.jumper_design",
     "cam": "watchsim.construction.cam.cam_design",
     "ratchet": "watchsim.construction.ratchet.ratchet_design",
+    "winding_click": "watchsim.construction.winding_click.winding_click_design",
 }
 
 NAMES = tuple(_HOMES)
