@@ -31,7 +31,7 @@ def teeth(count: int) -> tuple[Array, Array]:
 
 
 def least_recoil(count: int, bank: float) -> float:
-    """Degrees, by the drawn corners: from where a point is nearest to the axis of the nose until the face meets it at the bank."""
+    """Degrees, by the drawn corners: from where a point lets the nose off until its face meets it at the bank."""
     root, point = teeth(count)
     leaves = brentq(lambda one: np.hypot(*nose(one)) - (R + NOSE), math.radians(-80.0), 0.0)
 

@@ -23,6 +23,7 @@ _HOMES = {
     "cycloidal_pair": "watchsim.construction.cycloidal_pair.cycloidal_pair_design",
     "jumper": "watchsim.construction.jumper.jumper_design",
     "cam": "watchsim.construction.cam.cam_design",
+    "snail": "watchsim.construction.snail.snail_design",
     "ratchet": "watchsim.construction.ratchet.ratchet_design",
     "winding_click": "watchsim.construction.winding_click.winding_click_design",
 }

@@ -8,7 +8,8 @@ Friction of the teeth takes a share of the work whichever body drives. The racks
 that the tooth slides along the flank by as much as the two bodies go together; what a body puts in is then N (1 + µ), what
 comes out at the other N (1 - µ), and µ = (1 - η) / (1 + η) gives the efficiency η.
 
-The stop of a spring is such a tooth, on a rack moved by the spring's body, and one flank: fixed, or on a rack of the other body.
+The stop of a spring is such a tooth, on a rack moved by the spring's body, and one flank, of the movement or on a rack of the
+other body.
 """
 
 from __future__ import annotations
@@ -73,7 +74,7 @@ def _racks(scene: Scene, gear: Gear, number: int, size: float) -> tuple[Body, Bo
 
 
 def _stop(scene: Scene, spring: Spring, number: int, size: float) -> tuple[Body, Body]:
-    """The rack of the spring's body with the tooth, and the flank on which it comes to a stop: of the movement, or a rack too."""
+    """The rack of the spring's body with the tooth; the flank that stops it, of the movement or on a rack of the other body."""
     assert spring.stop is not None
     body, other = scene.body(spring.body), scene.body(spring.against) if spring.against else None
     turns = body.motion == "pivot"

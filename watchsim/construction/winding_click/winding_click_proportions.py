@@ -62,7 +62,7 @@ def least_recoil(values: WindingClick) -> float:
 
 
 def nose_in_teeth(values: WindingClick) -> tuple[float, float]:
-    """With the click on its bank: how far along the locking face the nose touches it, and how far it is from the back before."""
+    """With the click on its bank: how far up the locking face the nose touches it, and how far it is from the back before."""
     turn, middle = held(values), nose(values, values.bank)
     seen = polar(math.hypot(*middle), angle_of(middle) - turn)
     root, back = saw.root(teeth(values)), math.radians(saw.back(teeth(values)))
