@@ -32,8 +32,10 @@ def conflicts(values: Snail) -> Iterator[Conflict]:
         return
     if radius(values, 1) + 4.0 * values.pin_radius > values.distance:
         yield Conflict("distance", f"the first step, {radius(values, 1):.4g} mm high, would reach the rack's axis")
-    if room(values) <= 0.0:
-        yield Conflict("pin_radius", "the pin does not find room on the lowest step while the snail turns")
+    narrowest = min(range(1, values.steps + 1), key=lambda step: room(values, step))
+    if room(values, narrowest) <= 0.0:
+        what = "a smaller pin, or a tail as long as the distance, so that its pin passes through the snail's axis"
+        yield Conflict("pin_radius", f"the pin does not find room on step {narrowest} while the snail turns: {what}")
     yield from _weak(values)
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from watchsim.construction.outline import along, arc_between, circle, polar, rounded, turned
 from watchsim.construction.snail.snail_dimensions import Snail
 from watchsim.construction.snail.snail_proportions import boundary, gathered, radius
@@ -47,11 +49,12 @@ def stop(values: Snail) -> list[Loop]:
 def _teeth(values: Snail) -> Loop:
     """A sector with a tooth more at either end than there are steps."""
     outer, count = RACK * values.tail, values.steps + 2
-    corners = [polar(0.1 * outer, SPOKE)]
+    hub = BAR * values.pin_radius
+    corners = [polar(hub, SPOKE + 45.0)]
     for i in range(count):
         at = SPOKE - i * values.tooth
         corners += [polar(outer, at), polar((1.0 - DEPTH) * outer, at)]
-    inside = (1.0 - 4.0 * DEPTH) * outer
-    end = SPOKE - count * values.tooth
-    corners += [polar(inside, end), polar(inside, SPOKE - 0.35 * (SPOKE - end)), polar(0.1 * outer, SPOKE - 25.0)]
+    inside, end = (1.0 - 4.0 * DEPTH) * outer, SPOKE - count * values.tooth
+    narrow = SPOKE - math.degrees(3.0 * hub / inside)
+    corners += [polar(inside, end), polar(inside, max(narrow, 0.5 * (SPOKE + end))), polar(hub, SPOKE - 45.0)]
     return Loop(tuple(rounded([(*corner, 0.0) for corner in reversed(corners)])), "RACK")

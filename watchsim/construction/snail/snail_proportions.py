@@ -59,8 +59,9 @@ def leaf_stiffness(values: Snail) -> float:
     return STEEL * width * thick**3 / (4.0 * length**3) * arm**2 * 1e-9
 
 
-def room(values: Snail) -> float:
-    """Degrees that are left on the lowest step beside the pin, while the snail turns under it."""
-    step = boundary(values, values.steps) - boundary(values, 1) + 360.0
-    beside = math.degrees(math.asin(values.pin_radius / (values.least + values.pin_radius)))
-    return 0.5 * min(step, 360.0 / values.steps) - beside - 0.5 * (LIFTED - FALLS) * 360.0 / values.steps
+def room(values: Snail, step: int) -> float:
+    """Degrees that are left on a step beside the pin, on the nearer side, while the snail turns under it."""
+    after = boundary(values, step + 1) if step < values.steps else boundary(values, 1) - 360.0
+    half = min(boundary(values, step) - middle(values, step), middle(values, step) - after)
+    beside = math.degrees(math.asin(values.pin_radius / math.hypot(*pin(values, step))))
+    return half - beside - 0.5 * (LIFTED - FALLS) * 360.0 / values.steps

@@ -65,13 +65,18 @@ CONTACTS = (("rack.PIN", "snail.STEPS"), ("rack.TAIL", "stop.STOP"))
 def scene_text(values: Snail) -> str:
     """The text of scene.toml: the rack gathered up, the first step coming under its pin."""
     sizes = (("length", values.leaf_length), ("width", values.leaf_width), ("thickness", values.leaf_thickness))
-    leaf = [f'modulus = "{STEEL * 1e-9:g} GPa"', *(f'{name} = "{size!r} mm"' for name, size in (*sizes, ("arm", values.leaf_arm)))]
+    leaf = [
+        f'modulus = "{STEEL * 1e-9:g} GPa"',
+        *(f'{name} = "{size!r} mm"' for name, size in (*sizes, ("arm", values.leaf_arm))),
+    ]
     rows = []
     for i in range(values.steps):
         free, taken = values.hour * (i + FALLS), values.hour * (i + LIFTED)
         times = (free, free + SUDDEN, taken, taken + EASE * values.hour)
         torques = (-values.lifting, 0.0, 0.0, -values.lifting)
-        rows.append("    " + " ".join(f'["{time:.9g} s", "{torque:.15g} mN·m"],' for time, torque in zip(times, torques, strict=True)))
+        rows.append(
+            "    " + " ".join(f'["{time:.9g} s", "{torque:.15g} mN·m"],' for time, torque in zip(times, torques, strict=True))
+        )
     pitch = 360.0 / values.steps
     return TEXT.format(
         dimensions=told(values),
