@@ -60,6 +60,7 @@ MASS = Dimension("mass", ((0, 1, 0, 0),), "kg", ("g", "mg"))
 TIME = Dimension("time", ((0, 0, 1, 0),), "s", ("ms", "s"))
 SPEED = Dimension("speed", ((1, 0, -1, 0),), "m/s", ("m/s", "mm/s"))
 ACCELERATION = Dimension("acceleration", ((1, 0, -2, 0),), "m/s²", ("mm/s²", "m/s²"))
+PRESSURE = Dimension("modulus of elasticity", ((-1, 1, -2, 0),), "Pa", ("MPa", "GPa"))
 DENSITY = Dimension("density", ((-3, 1, 0, 0),), "kg/m³", ("kg/m³", "g/cm³"))
 INERTIA = Dimension("inertia", ((2, 1, 0, 0),), "kg·m²", ("g·cm²", "mg·cm²"))
 TORQUE = Dimension("torque", ((2, 1, -2, 0),), "N·m", ("mN·m", "µN·m"))
@@ -74,12 +75,12 @@ LINEAR_QUADRATIC = Dimension("quadratic damping", ((-1, 1, 0, 0),), "N·s²/m²"
 TRAVEL_PER_TURN = Dimension("travel per angle", ((1, 0, 0, -1), (1, 0, 0, 0)), "m/rad", ("mm/rev", "mm/rad"))
 PER_LENGTH = Dimension("angle per travel", ((-1, 0, 0, 1),), "rad/m", ("rev/mm", "rad/mm"))
 DIMENSIONS = (
-    *(NUMBER, ANGLE, SPIN, LENGTH, MASS, TIME, SPEED, ACCELERATION, DENSITY, INERTIA, TORQUE, FORCE, FREQUENCY),
+    *(NUMBER, ANGLE, SPIN, LENGTH, MASS, TIME, SPEED, ACCELERATION, PRESSURE, DENSITY, INERTIA, TORQUE, FORCE, FREQUENCY),
     *(ROTARY_STIFFNESS, LINEAR_STIFFNESS, ROTARY_VISCOUS, LINEAR_VISCOUS, ROTARY_QUADRATIC, LINEAR_QUADRATIC, RATE),
     *(TRAVEL_PER_TURN, PER_LENGTH),
 )
 
-_PREFIXES = {"n": -9, "µ": -6, "u": -6, "m": -3, "c": -2, "d": -1, "k": 3, "M": 6}
+_PREFIXES = {"n": -9, "µ": -6, "u": -6, "m": -3, "c": -2, "d": -1, "k": 3, "M": 6, "G": 9}
 _METRIC = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 _PREFIXABLE: dict[str, Unit] = {
     "m": Unit(Fraction(1), 0, (1, 0, 0, 0)),
@@ -87,6 +88,7 @@ _PREFIXABLE: dict[str, Unit] = {
     "s": Unit(Fraction(1), 0, (0, 0, 1, 0)),
     "N": Unit(Fraction(1), 0, (1, 1, -2, 0)),
     "J": Unit(Fraction(1), 0, (2, 1, -2, 0)),
+    "Pa": Unit(Fraction(1), 0, (-1, 1, -2, 0)),
     "Hz": Unit(Fraction(1), 0, (0, 0, -1, 0)),
     "rad": Unit(Fraction(1), 0, (0, 0, 0, 1)),
 }

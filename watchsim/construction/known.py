@@ -18,12 +18,15 @@ _HOMES = {
     "geneva_stop": "watchsim.construction.geneva_stop.geneva_stop_design",
     "graham": "watchsim.construction.graham.graham_design",
     "recoil_anchor": "watchsim.construction.recoil_anchor.recoil_anchor_design",
+    "grasshopper": "watchsim.construction.grasshopper.grasshopper_design",
     "verge": "watchsim.construction.verge.verge_design",
     "involute_pair": "watchsim.construction.involute_pair.involute_pair_design",
     "cycloidal_pair": "watchsim.construction.cycloidal_pair.cycloidal_pair_design",
     "jumper": "watchsim.construction.jumper.jumper_design",
     "cam": "watchsim.construction.cam.cam_design",
+    "snail": "watchsim.construction.snail.snail_design",
     "ratchet": "watchsim.construction.ratchet.ratchet_design",
+    "winding_click": "watchsim.construction.winding_click.winding_click_design",
 }
 
 NAMES = tuple(_HOMES)

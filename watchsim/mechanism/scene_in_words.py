@@ -108,7 +108,15 @@ def _spring(scene: Scene, spring: Spring) -> str:
     beats = (
         f" = {show(hertz, 'vph')}" if timed else " while they touch nothing" if spring.against else " while it touches nothing"
     )
-    return f"{stiffness}, {show(hertz, 'Hz')}{beats}, at rest at {rest}"
+    return f"{stiffness}, {show(hertz, 'Hz')}{beats}, at rest at {rest}{_stop(spring, linear)}"
+
+
+def _stop(spring: Spring, linear: bool) -> str:
+    if spring.stop is None:
+        return ""
+    at = place(spring.stop) if linear else turned(spring.stop)
+    preload = metric(abs(spring.stiffness * (spring.rest - spring.stop)), "N" if linear else "N·m", 4)
+    return f", pressed on its stop at {at} with {preload}, restitution {spring.restitution:g}"
 
 
 def _hertz(scene: Scene, spring: Spring) -> float:

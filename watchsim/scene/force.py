@@ -16,7 +16,8 @@ from watchsim.geometry.primitives import Point
 class Spring:
     """A spring: -stiffness (q - rest), N·m/rad or N/m.
 
-    `frequency` (Hz) where that is how it was given; `coil` is how it is drawn.
+    `frequency` (Hz) where that is how it was given; `coil` is how it is drawn. At `stop` (rad or m) the body comes to a stop on
+    its way to `rest`, with impacts of Poisson's `restitution`.
     """
 
     body: str
@@ -25,6 +26,8 @@ class Spring:
     frequency: float | None = None
     coil: Coil | None = None
     against: str | None = None
+    stop: float | None = None
+    restitution: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

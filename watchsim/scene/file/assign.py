@@ -7,14 +7,17 @@ from typing import Any
 
 from watchsim.scene.errors import Faults
 from watchsim.scene.file.keys.key_values import shown
-from watchsim.scene.file.keys.schema import LISTED, NAMED, SECTIONS, TABLES, key_at, nearest, siblings
+from watchsim.scene.file.keys.schema import LISTED, NAMED, SECTIONS, TABLES, WITHIN, key_at, nearest, siblings
 from watchsim.scene.file.readers.read_bodies import motion_of
 from watchsim.units import NUMBER, Dimension
 
 # Keys that say the same thing: setting one takes the others away.
 INSTEAD_OF = {
-    "frequency": ("stiffness",),
-    "stiffness": ("frequency",),
+    "frequency": ("stiffness", "leaf"),
+    "stiffness": ("frequency", "leaf"),
+    "leaf": ("frequency", "stiffness"),
+    "rest": ("preload",),
+    "preload": ("rest",),
     "q_factor": ("viscous",),
     "viscous": ("q_factor",),
     "value": ("table", "over", "ratio", "efficiency", "run_down", "train"),
@@ -63,9 +66,9 @@ def _enter(mapping: dict[str, Any], path: tuple[str, ...], faults: Faults) -> tu
         faults.add(key, f"{section} has no entry {path[1]}: there are {len(elements)}, counted from 0")
         return None, ()
     holder, rest = elements[int(path[1])], path[2:]
-    if section == "springs" and rest[:1] == ("draw",) and len(rest) > 1:
-        drawn = holder.setdefault("draw", {})
-        return (drawn, rest[1:]) if isinstance(drawn, dict) else (None, ())
+    if (section, rest[0]) in WITHIN and len(rest) > 1:
+        inner = holder.setdefault(rest[0], {})
+        return (inner, rest[1:]) if isinstance(inner, dict) else (None, ())
     if rest[0] == "train" and len(rest) > 2:
         return _enter_train(holder, rest, key, faults)
     return holder, rest
@@ -148,7 +151,7 @@ def _advice(path: tuple[str, ...]) -> str:
     depth = 1 if path[0] in TABLES else 2
     if path[2:3] in (("solids",), ("adjust",)) and len(path) > 4:
         depth = 5 if path[2] == "adjust" and path[4].isdigit() and len(path) > 5 else 4
-    if path[0] == "springs" and path[2:3] == ("draw",) and len(path) > 3:
+    if (path[0], *path[2:3]) in WITHIN and len(path) > 3:
         depth = 3
     if len(path) <= depth:
         if path[0] == "expect":

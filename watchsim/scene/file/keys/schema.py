@@ -65,8 +65,16 @@ SPRING: Keys = {
     "rest": Key(units.ANGLE, units.LENGTH),
     "draw": PLAIN,
     "against": PLAIN,
+    "leaf": PLAIN,
+    "preload": Key(units.TORQUE, units.FORCE),
+    "stop": Key(units.ANGLE, units.LENGTH),
+    "restitution": NUMBER,
 }
 COIL: Keys = {"inner": LENGTH, "outer": LENGTH, "turns": NUMBER, "stud": ANGLE, "width": LENGTH}  # draw of a spring
+LEAF: Keys = {  # leaf of a spring
+    "modulus": Key(units.PRESSURE),
+    **{"length": LENGTH, "width": LENGTH, "thickness": LENGTH, "arm": LENGTH},
+}
 TORQUE: Keys = {
     **{"body": PLAIN, "value": Key(units.TORQUE, units.FORCE), "over": PLAIN, "table": PLAIN, "against": PLAIN},
     **{"ratio": NUMBER, "efficiency": NUMBER, "run_down": ANGLE, "train": PLAIN},
@@ -87,7 +95,7 @@ GEAR: Keys = {
 }
 LINE_SPRING: Keys = {
     **{"between": PLAIN, "points": LENGTH, "stiffness": Key(units.LINEAR_STIFFNESS)},
-    **{"length": LENGTH, "tension": Key(units.FORCE), "viscous": Key(units.LINEAR_VISCOUS)},
+    **{"length": LENGTH, "tension": Key(units.FORCE), "viscous": Key(units.LINEAR_VISCOUS), "leaf": PLAIN},
 }
 RUN: Keys = {"duration": Key(units.TIME), "record": Key(units.TIME), "tolerance": NUMBER}
 TIMEGRAPHER: Keys = {"lift_angle": ANGLE, "frequency": Key(units.FREQUENCY)}
@@ -104,6 +112,7 @@ LISTED = {
     "gears": GEAR,
     "line_springs": LINE_SPRING,
 }  # [[name]]
+WITHIN = {("springs", "draw"): COIL, ("springs", "leaf"): LEAF, ("line_springs", "leaf"): LEAF}  # name = { … } in a list
 DESIGN = "design"  # [design], whose keys are the dimensions of the design it names
 SECTIONS = (*TABLES, DESIGN, *NAMED, *LISTED)
 
@@ -126,8 +135,8 @@ def key_at(path: tuple[str, ...]) -> Key | None:
         if rest[1] == "swing" and len(rest) == 3:
             return SWING.get(rest[2])
         return NAMED[section].get(rest[1])
-    if section == "springs" and rest[1] == "draw" and len(rest) >= 3:
-        return COIL.get(rest[2])
+    if (section, rest[1]) in WITHIN and len(rest) >= 3:
+        return WITHIN[section, rest[1]].get(rest[2])
     if section == "torques" and rest[1] == "train" and len(rest) >= 4:
         return TRAIN.get(rest[3])
     return LISTED[section].get(rest[1])
@@ -142,8 +151,8 @@ def siblings(path: tuple[str, ...]) -> tuple[str, ...]:
         if path[2:3] == ("adjust",) and len(path) > 4:
             return tuple(ADJUST)
         return tuple(SOLID if path[2:3] == ("solids",) and len(path) > 4 else NAMED[section])
-    if section == "springs" and path[2:3] == ("draw",) and len(path) > 3:
-        return tuple(COIL)
+    if (section, *path[2:3]) in WITHIN and len(path) > 3:
+        return tuple(WITHIN[section, path[2]])
     return tuple(LISTED[section]) if section in LISTED else SECTIONS
 
 

@@ -16,6 +16,7 @@ from watchsim.scene.file.keys.key_values import NAN, Table, shown
 from watchsim.scene.file.keys.schema import DAMPING, SPRING, TORQUE, Keys, nearest
 from watchsim.scene.file.readers.read_against import read_against
 from watchsim.scene.file.readers.read_coil import read_coil
+from watchsim.scene.file.readers.read_leaf import leaf_stiffness, read_rest, read_stop
 from watchsim.scene.file.readers.read_trains import BARREL, KEYS, mainspring_torque
 from watchsim.scene.force import Damping, Spring, Torque
 from watchsim.scene.oscillation import Oscillator, loads, oscillator
@@ -29,12 +30,16 @@ class Entry:
 
     table: Table
     body: Body | None
-    against: str | None  # the body at the other end
+    other: Body | None  # at the other end
     mass: float  # of the body's coordinate, with what it carries and what is geared to it, kg or kg·m²; NaN after a fault
 
     @property
     def name(self) -> str:
         return self.body.name if self.body else ""
+
+    @property
+    def against(self) -> str | None:
+        return self.other.name if self.other else None
 
 
 def read_springs(mapping: Mapping[str, Any], bodies: tuple[Body, ...], faults: Faults) -> tuple[Spring, ...]:
@@ -74,7 +79,8 @@ def _entries(mapping: Mapping[str, Any], section: str, keys: Keys, bodies: tuple
         body = known.get(name) if isinstance(name, str) else None
         table = Table(element, f"{section}.{i}", keys, faults, body.motion if body else "pivot")
         _note_body(table, known)
-        yield Entry(table, body, read_against(table, body, known), masses.get(body.name, NAN) if body else NAN)
+        other = known.get(read_against(table, body, known) or "")
+        yield Entry(table, body, other, masses.get(body.name, NAN) if body else NAN)
 
 
 def _masses(bodies: tuple[Body, ...]) -> dict[str, float]:
@@ -102,20 +108,25 @@ def _spring(entry: Entry) -> Spring:
     stiffness = _stiffness(entry)
     frequency = math.sqrt(stiffness / entry.mass) / math.tau if "frequency" in entry.table and stiffness > 0.0 else None
     coil = read_coil(entry.table, entry.body)
-    return Spring(entry.name, stiffness, entry.table.quantity("rest"), frequency, coil, entry.against)
+    rest = read_rest(entry.table, entry.body, stiffness, entry.other)
+    stop = read_stop(entry.table, entry.body, entry.other, rest)
+    return Spring(entry.name, stiffness, rest, frequency, coil, entry.against, *stop)
 
 
 def _stiffness(entry: Entry) -> float:
-    """Of a spring given by its stiffness, or by the frequency at which it makes its body swing."""
+    """Of a spring given by its stiffness, by the frequency at which it makes its body swing, or by the size of a leaf."""
     table = entry.table
-    if "stiffness" in table and "frequency" in table:
-        table.fault("frequency", "stiffness and frequency say the same thing: leave one out")
+    given = [key for key in ("stiffness", "frequency", "leaf") if key in table]
+    if len(given) > 1:
+        table.fault(given[1], f"{' and '.join(given)} say the same thing: leave one out")
         return NAN
+    if "leaf" in table:
+        return leaf_stiffness(table, table.motion == "pivot")
     if "frequency" in table:
         frequency = table.positive("frequency", "it is the frequency of the free oscillation")
         return entry.mass * (math.tau * frequency) ** 2
     if "stiffness" not in table and table.is_table:
-        table.fault("", 'a spring needs frequency = "28800 vph" or stiffness = "0.758 µN·m/rad"')
+        table.fault("", 'a spring needs frequency = "28800 vph", stiffness = "0.758 µN·m/rad" or leaf = { … }')
     return table.positive("stiffness", "a spring pulls back")
 
 

@@ -12,6 +12,7 @@ from watchsim.scene.errors import Faults
 from watchsim.scene.file.keys.key_values import NAN, UNREADABLE, Table
 from watchsim.scene.file.keys.schema import LINE_SPRING, nearest
 from watchsim.scene.file.readers.read_forces import listed
+from watchsim.scene.file.readers.read_leaf import leaf_stiffness
 from watchsim.scene.force import LineSpring
 from watchsim.units import LENGTH
 
@@ -31,9 +32,7 @@ def read_line_springs(mapping: Mapping[str, Any], bodies: tuple[Body, ...], faul
 def _line_spring(table: Table, known: Mapping[str, Body]) -> LineSpring | None:
     ends = _ends(table, known)
     points = _points(table)
-    if "stiffness" not in table and table.is_table:
-        table.fault("", 'missing: stiffness = "20 N/m"')
-    stiffness, viscous = table.positive("stiffness", "a spring pulls back"), table.quantity("viscous")
+    stiffness, viscous = _stiffness(table), table.quantity("viscous")
     if viscous < 0.0:
         table.fault("viscous", "negative damping would drive the bodies", with_value=True)
     if "length" in table and "tension" in table:
@@ -50,6 +49,16 @@ def _line_spring(table: Table, known: Mapping[str, Body]) -> LineSpring | None:
     first, second = ends
     assert first is not None
     return LineSpring((first.name, second.name if second else None), points, stiffness, length, viscous)
+
+
+def _stiffness(table: Table) -> float:
+    if "leaf" in table:
+        if "stiffness" in table:
+            table.fault("leaf", "stiffness and leaf say the same thing: leave one out")
+        return leaf_stiffness(table, turns=False)
+    if "stiffness" not in table and table.is_table:
+        table.fault("", 'missing: stiffness = "20 N/m", or leaf = { … }')
+    return table.positive("stiffness", "a spring pulls back")
 
 
 def at_start(body: Body | None, point: Point) -> Point:

@@ -1,0 +1,67 @@
+"""How high are the steps of a snail, and where do they stand?
+
+The snail's axis is the origin, the rack's lies to the right at the distance d. With the tail, of length l, at the angle ψ from
+the line of centres its pin is s = √(d² + l² - 2 d l cos ψ) from the snail's axis. At step n the rack has fallen by n teeth, so
+
+    r_n = s(ψ₀ - n tooth) - pin_radius
+
+and the middle of the step stands where the pin then is, a turn / steps further for each hour. Millimetres, degrees.
+"""
+
+from __future__ import annotations
+
+import math
+
+from watchsim.construction.outline import angle_of, polar
+from watchsim.construction.snail.snail_dimensions import Snail
+from watchsim.geometry.primitives import Point
+
+FALLS, LIFTED = 0.3, 0.7  # of an hour: the rack is let go, and gathered up again
+STEEL = 200e9  # Pa
+
+
+def gathered(values: Snail) -> float:
+    """ψ₀ of the tail, gathered up. ValueError where the pin cannot come to the lowest step."""
+    d, tail, low = values.distance, values.tail, values.least + values.pin_radius
+    return math.degrees(math.acos((d**2 + tail**2 - low**2) / (2.0 * d * tail))) + values.steps * values.tooth
+
+
+def pin(values: Snail, fallen: float) -> Point:
+    """Its middle, with the rack fallen by so many teeth."""
+    return polar(values.tail, 180.0 - gathered(values) + fallen * values.tooth, (values.distance, 0.0))
+
+
+def radius(values: Snail, step: int) -> float:
+    return math.hypot(*pin(values, step)) - values.pin_radius
+
+
+def middle(values: Snail, step: int) -> float:
+    """Direction of the middle of a step on the snail as it is drawn, with the first step under the pin."""
+    return angle_of(pin(values, step)) - (step - 1) * 360.0 / values.steps
+
+
+def boundary(values: Snail, step: int) -> float:
+    """Between a step and the one before, which stands counter-clockwise of it; before the first is the last."""
+    before = middle(values, step - 1) if step > 1 else middle(values, values.steps) + 360.0
+    return 0.5 * (middle(values, step) + before)
+
+
+def fall_time(values: Snail, fallen: float) -> float:
+    """s for so many teeth, on the leaf alone: (P / k) (1 - cos ω t) rad, P its preload and ω² = k / J."""
+    preload, stiffness = 1e-6 * values.leaf_force * values.leaf_arm, leaf_stiffness(values)
+    cosine = 1.0 - stiffness / preload * math.radians(fallen * values.tooth)
+    return math.acos(cosine) / math.sqrt(stiffness / (1e-10 * values.rack_inertia))
+
+
+def leaf_stiffness(values: Snail) -> float:
+    """N·m/rad, on the rack."""
+    length, width, thick, arm = values.leaf_length, values.leaf_width, values.leaf_thickness, values.leaf_arm
+    return STEEL * width * thick**3 / (4.0 * length**3) * arm**2 * 1e-9
+
+
+def room(values: Snail, step: int) -> float:
+    """Degrees that are left on a step beside the pin, on the nearer side, while the snail turns under it."""
+    after = boundary(values, step + 1) if step < values.steps else boundary(values, 1) - 360.0
+    half = min(boundary(values, step) - middle(values, step), middle(values, step) - after)
+    beside = math.degrees(math.asin(values.pin_radius / math.hypot(*pin(values, step))))
+    return half - beside - 0.5 * (LIFTED - FALLS) * 360.0 / values.steps
