@@ -8,6 +8,8 @@ from watchsim.construction.design import Design
 
 _HOMES = {
     "swiss_lever": "watchsim.construction.swiss_lever.swiss_lever_design",
+    "remontoir": "watchsim.construction.remontoir.remontoir_design",
+    "tourbillon": "watchsim.construction.tourbillon.tourbillon_design",
     "coaxial": "watchsim.construction.coaxial.coaxial_design",
     "detent": "watchsim.construction.detent.detent_design",
     "pin_pallet": "watchsim.construction.pin_pallet.pin_pallet_design",
@@ -23,6 +25,7 @@ _HOMES = {
     "cycloidal_pair": "watchsim.construction.cycloidal_pair.cycloidal_pair_design",
     "jumper": "watchsim.construction.jumper.jumper_design",
     "cam": "watchsim.construction.cam.cam_design",
+    "governor": "watchsim.construction.governor.governor_design",
     "ratchet": "watchsim.construction.ratchet.ratchet_design",
 }
 
