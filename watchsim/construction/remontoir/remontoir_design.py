@@ -14,7 +14,7 @@ from watchsim.construction.swiss_lever import swiss_lever_conflicts as lever
 from watchsim.construction.swiss_lever.swiss_lever_design import draw as draw_lever
 from watchsim.drawing.sheet import Sheet
 
-SURE, SPARE = 1.5, 1.2  # times what lets a tooth go, and times what winds the spring
+SURE, SPARE = 1.5, 1.1  # times what lets a tooth go, and times what winds the spring
 
 
 def draw(values: Remontoir) -> dict[str, Sheet]:

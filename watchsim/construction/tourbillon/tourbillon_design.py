@@ -12,17 +12,17 @@ from watchsim.construction.tourbillon.tourbillon_scene import scene_text
 from watchsim.drawing.sheet import Sheet
 from watchsim.geometry.loop import Loop
 
-# Shares of the distance from wheel to balance: a foot under the wheel, two arms over the balance.
+# Shares of the distance from wheel to balance, and the radius of each corner: a foot under the wheel, two arms over the balance.
 BRIDGE = (
-    *((-0.224, -1.178), (-0.112, -1.318), (0.112, -1.318), (0.224, -1.178), (0.154, 0.0), (0.365, 0.589), (0.28, 0.701)),
-    *((0.0, 0.337), (-0.28, 0.701), (-0.365, 0.589), (-0.154, 0.0)),
+    *((-0.23, -1.2, 0.1), (0.0, -1.34, 0.3), (0.23, -1.2, 0.1), (0.12, 0.0, 0.15), (0.38, 0.55, 0.05), (0.28, 0.71, 0.05)),
+    *((0.0, 0.22, 0.08), (-0.28, 0.71, 0.05), (-0.38, 0.55, 0.05), (-0.12, 0.0, 0.15)),
 )
 
 
 def draw(values: Tourbillon) -> dict[str, Sheet]:
     """The sheets of the lever, and the carriage about the balance's axis."""
     scale = swiss(values).balance_pivot[1]
-    bridge = Loop(tuple(rounded([(scale * x, scale * y, 0.0) for x, y in BRIDGE])), "BRIDGE")
+    bridge = Loop(tuple(rounded([(scale * x, scale * y, scale * radius) for x, y, radius in BRIDGE])), "BRIDGE")
     return {**draw_lever(values), "carriage": Sheet((bridge,))}
 
 
