@@ -2,7 +2,7 @@
 
 Simulates each profile and draws it at an instant at which its parts work on each other; of the clocks the wheel is shown close.
 
-    python scripts/pictures/draw_mechanisms.py
+    python scripts/pictures/draw_mechanisms.py [profile]
 """
 
 from __future__ import annotations
@@ -31,14 +31,16 @@ SHOWN = {  # profile: simulated (s), instant (s), bodies to show close (None: al
     "jumper": (0.6, 0.49, None),
     "cam": (0.2, 0.1, None),
     "ratchet": (0.2, 0.15, None),
-    "verge": (4.1, 4.0, ["verge"]),
+    "verge": (4.5, 4.42, ["verge"]),
     "remontoir": (1.0, 0.942, ["stop_wheel", "stop_lever", "wheel"]),
     "tourbillon": (5.1, 5.0, None),
+    "governor": (1.1, 1.0, None),
 }
 
 
-def main() -> None:
-    for name, (duration, instant, close) in SHOWN.items():
+def main(only: str) -> None:
+    for name in [only] if only else SHOWN:
+        duration, instant, close = SHOWN[name]
         run = ws.simulate(ws.load(ws.profiles_dir() / name / "scene.toml"), duration=duration)
         imageio.imwrite(IMAGES / f"{name}.png", ws.frame(run, instant, size=SIZE, zoom=close))
 
@@ -47,5 +49,4 @@ if __name__ == "__main__":
     sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
     from usage import arguments
 
-    arguments(__doc__)
-    main()
+    main(arguments(__doc__, only=("", "one of the profiles")).only)

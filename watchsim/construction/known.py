@@ -8,6 +8,8 @@ from watchsim.construction.design import Design
 
 _HOMES = {
     "swiss_lever": "watchsim.construction.swiss_lever.swiss_lever_design",
+    "remontoir": "watchsim.construction.remontoir.remontoir_design",
+    "tourbillon": "watchsim.construction.tourbillon.tourbillon_design",
     "coaxial": "watchsim.construction.coaxial.coaxial_design",
     "detent": "watchsim.construction.detent.detent_design",
     "pin_pallet": "watchsim.construction.pin_pallet.pin_pallet_design",
@@ -25,6 +27,7 @@ _HOMES = {
     "jumper": "watchsim.construction.jumper.jumper_design",
     "cam": "watchsim.construction.cam.cam_design",
     "snail": "watchsim.construction.snail.snail_design",
+    "governor": "watchsim.construction.governor.governor_design",
     "ratchet": "watchsim.construction.ratchet.ratchet_design",
     "winding_click": "watchsim.construction.winding_click.winding_click_design",
 }

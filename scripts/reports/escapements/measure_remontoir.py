@@ -27,9 +27,8 @@ def amplitude_and_rate(scene: ws.Scene) -> tuple[float, float, float]:
 
 def main() -> None:
     remontoir, plain = ws.load(ws.profiles_dir() / "remontoir"), ws.designs.swiss_lever().scene()
-    train = next(i for i, torque in enumerate(remontoir.torques) if torque.body == "stop_wheel")
     for share in (1.0, 0.8, 0.6):
-        held = amplitude_and_rate(remontoir.set(f"torques.{train}.value", 12e-6 * share))
+        held = amplitude_and_rate(remontoir.set("design.train", 12e-6 * share))
         free = amplitude_and_rate(plain.set("torques.0.value", -1e-6 * share))
         print(f"{100 * share:3.0f} %: remontoir {held[0]:.3f}° (range {held[1]:.3f}°), {held[2]:+.3f} s/d;", end=" ")
         print(f"without {free[0]:.3f}° (range {free[1]:.3f}°), {free[2]:+.3f} s/d", flush=True)

@@ -21,7 +21,7 @@ TURN, SETTLED = 60.0, 120.0  # s
 
 def tourbillon(off: float) -> ws.Scene:
     """With the balance's centre of mass `off` (m) beside its axis."""
-    return ws.load(ws.profiles_dir() / "tourbillon").set("bodies.balance.centre_of_mass.0", off)
+    return ws.load(ws.profiles_dir() / "tourbillon").set("design.poise_error", off)
 
 
 def upright(position: float, off: float) -> ws.Scene:

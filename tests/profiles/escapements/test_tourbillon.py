@@ -15,7 +15,7 @@ TURN = 60.0  # s
 
 
 def tourbillon(off: str = OFF) -> Scene:
-    return ws.load(ws.profiles_dir() / "tourbillon").set("bodies.balance.centre_of_mass.0", off)
+    return ws.load(ws.profiles_dir() / "tourbillon").set("design.poise_error", off)
 
 
 def upright(position: float, off: str = OFF) -> Scene:
@@ -52,6 +52,25 @@ def test_the_other_method_agrees_at_its_order() -> None:
     errors = [abs(end[column] - exact.end_q[column]) for end in ends]
     assert errors[1] < 0.6 * errors[0]
     assert errors[1] < 1e-2
+
+
+@pytest.mark.parametrize("changed", [{"ratio": 8, "frequency": "21600 vph"}, {"teeth": 20, "lever_to_balance": "5 mm"}])
+def test_others_turn_too(changed: dict[str, object]) -> None:
+    made = ws.designs.tourbillon(**changed)
+    run = ws.simulate(made.scene(), duration=1.0)
+    ratio, teeth = made.values.ratio, made.values.teeth
+    beats = made.values.frequency / 3600.0
+    carriage = run.end_q[run.slices["carriage"].start]
+    assert ws.summary(run)["missed_beats"] == 0
+    assert carriage == pytest.approx(-beats * math.pi / teeth / ratio, abs=1.5 * math.pi / teeth / ratio)
+
+
+def test_the_carriage_is_poised() -> None:
+    """Masses of all but the balance, in the drawing at rest, about the axis."""
+    scene = ws.designs.tourbillon().scene()
+    moment = sum(scene.body(name).mass * scene.body(name).position[1] for name in ("wheel", "lever"))
+    carriage = scene.body("carriage")
+    assert carriage.mass * carriage.centre_of_mass[1] == pytest.approx(-moment, rel=1e-12)
 
 
 @pytest.mark.slow

@@ -31,9 +31,9 @@ class CycloidalPair:
     arcs: int = dim(
         6, "", 1, 16, "arcs that the addendum of each flank is drawn with, through points of the epicycloid", CHOSEN
     )
-    torque: float = dim(80.0, "µN·m", 1e-4, 1e6, "driving the wheel", CHOSEN)
-    drag: float = dim(2.0, "µN·m·s/rad", 1e-6, 1e6, "load on the pinion, in proportion to its speed", CHOSEN)
-    pinion_inertia: float = dim(2.0, "mg·cm²", 1e-4, 1e6, "pinion with what it turns", CHOSEN)
+    torque: float = dim(40.0, "µN·m", 1e-4, 1e6, "driving the wheel", CHOSEN)
+    drag: float = dim(1.0, "µN·m·s/rad", 1e-6, 1e6, "load on the pinion, in proportion to its speed", CHOSEN)
+    pinion_inertia: float = dim(10.0, "mg·cm²", 1e-4, 1e6, "pinion with what it turns", "a brass wheel of 8 mm on its arbor")
     wheel_inertia: float = dim(50.0, "mg·cm²", 1e-4, 1e6, "wheel with what turns it", CHOSEN)
     friction: float = dim(0.0, "", 0.0, 0.4, "coefficient of friction between flanks", "0: to see the form of the teeth alone")
     restitution: float = dim(0.0, "", 0.0, 0.9, "coefficient of restitution between flanks", CHOSEN)

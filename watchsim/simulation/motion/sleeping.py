@@ -45,6 +45,12 @@ def add_terms(closed, m, force, out_terms):
 
 
 @kernel
+def _will_change(model, table, t):
+    """A force over time has knots left; behind the last one it is as constant as any other."""
+    return table.over == OVER_TIME and t < model.knots[table.start + table.count - 1, 0]
+
+
+@kernel
 def find_sleepers(model, state, options, event, f):
     """Set `state.awake`: an island with a contact or a bearing that holds sleeps if it is still and nothing depends on time.
 
@@ -66,7 +72,7 @@ def find_sleepers(model, state, options, event, f):
         if touched[label[i]] == 0 or not _is_still(model, state, options, i, event.terms[i]):
             _wake(state, label, label[i])
     for j in range(len(model.tables)):
-        if model.tables[j].over == OVER_TIME:
+        if _will_change(model, model.tables[j], state.clock.time):
             _wake(state, label, label[model.tables[j].coordinate])
     for i in range(n):
         if model.coordinates[i].driven:

@@ -1,0 +1,120 @@
+"""Does every profile run for five minutes, fast and with its energy account closed, and does time stepping agree?
+
+    python scripts/reports/make_profiles_page.py [--page FILE]
+
+Writes docs/reports/profiles.md; takes some three minutes of processor time.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+import watchsim as ws
+
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "reports" / "profiles.md"
+LONG = 300.0  # s
+WINDOW = 0.5  # s over which both methods are compared: some beats of a watch
+WINDOWS = {  # slower mechanisms: until each contact has closed a few times
+    **{"balance": 4.0, "geneva": 2.0, "geneva_stop": 4.0, "governor": 5.0, "incline": 1.0, "jumper": 1.0},
+    **{"graham": 4.0, "recoil_anchor": 4.0, "pin_wheel": 8.0, "verge": 10.0},
+}
+STEPS = (16e-5, 8e-5, 4e-5, 2e-5, 1e-5)  # of time stepping, shares of the window
+EXACT = 1e-10  # tolerance of the motion that time stepping is compared with
+
+
+@dataclass(frozen=True)
+class Found:
+    """What one profile did: promises kept of all, multiple of real time, the account, errors of time stepping and their order."""
+
+    name: str
+    kept: str
+    speed: float
+    residual: float
+    stopped: str
+    coarse: float
+    fine: float
+    order: float
+
+    def row(self) -> str:
+        mark = "" if self.stopped == "DURATION" else f" ({self.stopped})"
+        return (
+            f"| `{self.name}`{mark} | {self.kept} | {self.speed:.0f} | {self.residual:.0e} | {WINDOWS.get(self.name, WINDOW):g} s "
+            f"| {self.coarse:.0e} | {self.fine:.0e} | {self.order:.1f} |"
+        )
+
+
+def five_minutes(scene: ws.Scene) -> tuple[float, float, str]:
+    """Multiple of real time (processor time, once the solver is loaded), the account, why it stopped."""
+    ws.simulate(scene, duration=min(1.0, scene.duration), record="statistics")
+    begun = time.process_time()
+    run = ws.simulate(scene, duration=LONG, record="statistics")
+    spent = time.process_time() - begun
+    return run.simulated / spent, abs(run.energy["residual_relative"]), run.stop.name
+
+
+def stepping_errors(scene: ws.Scene, window: float) -> list[float]:
+    """Mean difference of time stepping, as a share of each coordinate's range: of the worst coordinate, for each step."""
+    exact = ws.simulate(scene, duration=window, record="all", tolerance=EXACT)
+    reach = np.maximum(np.ptp(exact.q, axis=0), 1e-9)
+    found = []
+    for share in STEPS:
+        run = ws.simulate(scene, duration=window, method="moreau", step=share * window, record="all")
+        apart = np.abs(run.q - exact.sample(run.t)[0]) / reach
+        found.append(float(apart.mean(axis=0).max()))
+    return found
+
+
+def order_of(errors: list[float]) -> float:
+    """Slope of the straight line through the logarithms of step and error."""
+    return float(np.polyfit(np.log(STEPS), np.log(errors), 1)[0])
+
+
+def measured(name: str) -> Found:
+    scene = ws.load(ws.profiles_dir() / name / "scene.toml")
+    promises = ws.summary(ws.simulate(scene, record="statistics"))["expect"]
+    kept = f"{sum(one['ok'] for one in promises)} of {len(promises)}"
+    speed, residual, stopped = five_minutes(scene)
+    errors = stepping_errors(scene, WINDOWS.get(name, WINDOW))
+    return Found(name, kept, speed, residual, stopped, errors[0], errors[-1], order_of(errors))
+
+
+HEAD = """# Every profile
+
+Each scene under `profiles/` is run as it promises (`[expect]`, with every change: `tests/profiles/test_every_profile.py`), for {long:g} s
+(nightly), and by time stepping (`--method moreau`), which shares neither the search for events nor the solver of contact problems. Written by
+`scripts/reports/make_profiles_page.py`.
+
+*Speed*: multiple of real time over {long:g} s, processor time. *Account*: what is missing in the energy, as a share of the work put in. *Error*: mean
+difference of time stepping from the event-driven motion over a window from the start, as a share of the coordinate's range, the
+worst coordinate, with steps of {coarse:g} and {fine:g} of the window; *order*: slope of the straight line through the logarithms of
+step and error, five steps.
+
+| profile | `[expect]` kept | speed | account | window | error, coarse | error, fine | order |
+|---|---|---:|---:|---:|---:|---:|---:|
+"""
+
+
+def main(page: Path) -> None:
+    names = sorted(path.parent.name for path in ws.profiles_dir().glob("*/scene.toml"))
+    rows = []
+    for name in names:
+        rows.append(measured(name).row())
+        print(rows[-1], flush=True)
+    page.write_text(
+        HEAD.format(long=LONG, coarse=STEPS[0], fine=STEPS[-1]) + "\n".join(rows) + "\n" + REASONS, encoding="utf-8"
+    )
+
+
+REASONS = """
+"""
+
+if __name__ == "__main__":
+    sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+    from usage import arguments
+
+    main(arguments(__doc__, page=(PAGE, "where the page goes")).page)
