@@ -16,7 +16,7 @@ from watchsim.dynamics.impact import energy_change, impact
 from watchsim.dynamics.small_systems import copy
 from watchsim.jit import kernel
 from watchsim.simulation.event_kinds import EventKind
-from watchsim.simulation.events.chatter import chatter_time, end_chatter, may_be_chatter, return_time
+from watchsim.simulation.events.chatter import chatter_time, end_chatter, may_be_chatter, pressed_time, return_time
 from watchsim.simulation.events.closed_contacts import refresh
 from watchsim.simulation.events.impulse_check import kinetic_energy
 from watchsim.simulation.events.mode_decision import count_problems, decide
@@ -109,8 +109,8 @@ def _end_rebounds(model, state, island, m, options, scratch):
             continue
         ending = back / (1.0 - share) if share < 1.0 else math.inf
         # A rebound that rises by no more than rounding is none, whatever its restitution: it would go on by rounding alone.
-        # One that loses nothing would go on for ever: it is none where it stays within what counts as closed.
-        lowest = HIDDEN_REBOUND * options.gap_zero if share < 1.0 else options.gap_close
+        # One that loses next to nothing would go on for ever: it is none where it stays within what counts as closed.
+        lowest = min(options.gap_close, HIDDEN_REBOUND * options.gap_zero / (1.0 - share)) if share < 1.0 else options.gap_close
         hidden = 0.25 * event.closed.kin[i].gN_dot * back <= lowest
         if ending < options.accumulation_time or hidden:
             room.restitution[i] = 0.0
@@ -143,7 +143,9 @@ def collide(model, state, island, m, options, jam, scratch, record):
     _write(model, state, m, jam, event.closed, room, record, ended, ends)
     note_pace(state.u, event.pace)
     if jam == 0.0 and may_be_chatter(m, options, event, room) and _accelerations(model, state, island, m, options, scratch):
-        time = chatter_time(state, m, options, event)
+        time, apart = chatter_time(state, m, options, event)
+        if apart and 0.0 < time < math.inf:
+            time = max(time, pressed_time(model, state, island, m, options, work, event, room))
         if 0.0 < time < math.inf:
             _end_chatter(model, state, m, time, scratch, record)
     return True
@@ -165,7 +167,7 @@ def _end_chatter(model, state, m, time, scratch, record):
             return  # the impacts go on one by one
     for i in range(m):
         if event.closed.kin[i].gN_dot > event.zero[i]:
-            back = state.clock.time + return_time(event.closed, i, state.a)
+            back = state.clock.time + min(time, return_time(event.closed, i, state.a))
             keep_event(state, record, EventKind.ACCUMULATION, event.closed.ids[i], -1, back)
             state.counts.accumulations += 1
     place(model, state.q, state.u, event.pose)
