@@ -20,7 +20,7 @@ from watchsim.simulation.events.chatter import chatter_time, end_chatter, may_be
 from watchsim.simulation.events.closed_contacts import refresh
 from watchsim.simulation.events.impulse_check import kinetic_energy
 from watchsim.simulation.events.mode_decision import count_problems, decide
-from watchsim.simulation.events.zero_rates import note_pace
+from watchsim.simulation.events.zero_rates import note_pace, rounding_of, set_rate_zeros
 from watchsim.simulation.record.write_buffers import keep_event
 from watchsim.tolerances import ENERGY_GAIN, HIDDEN_REBOUND
 
@@ -82,6 +82,20 @@ def _rebounds(i, options, event, room):
 
 
 @kernel
+def _rebounds_unseen(m, options, event, room):
+    """True if a contact rebounds at a rate that counts as zero without being rounding: a rebound all the same.
+
+    Where friction jams, a rate that counts as zero cannot be taken back, and the contact would leave and return for ever.
+    """
+    for i in range(m):
+        rate = event.closed.kin[i].gN_dot
+        if room.restitution[i] > 0.0 and room.impulse[2 * i] > 0.0 and 0.0 < rate <= event.zero[i]:
+            if rate > rounding_of(event.closed, i, options, event.pace):
+                return True
+    return False
+
+
+@kernel
 def _accelerations(model, state, island, m, options, scratch):
     """Accelerations of the island after the impact into `state.a`; False if there are none."""
     work, event = scratch.work, scratch.event
@@ -97,6 +111,8 @@ def _end_rebounds(model, state, island, m, options, scratch):
     """Flag the rebounds that would end within `accumulation_time` (restitution 0); returns (any?, the latest end)."""
     event, room = scratch.event, scratch.impact
     latest, found, worth = 0.0, False, False
+    if _rebounds_unseen(m, options, event, room):
+        set_rate_zeros(event.closed, m, True, options, event.pace, event.zero)
     for i in range(m):
         worth = worth or _rebounds(i, options, event, room)
     if not worth or not _accelerations(model, state, island, m, options, scratch):
