@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.candidates.cell_frame import TRAVEL, Axis, axes_of, seen_from
+from watchsim.candidates.cell_frame import MOVEMENT, TRAVEL, Axis, axes_of, seen_from
 from watchsim.candidates.chords import chords
 from watchsim.candidates.equivalent_contacts import AlikeContacts
 from watchsim.candidates.named_rows import named_rows
@@ -47,10 +47,13 @@ def choose_cells(bodies: Records, primitives: Records, contacts: Records, pairs:
             continue
         moving = [b for b in axes if axes[b]]
         used, _ = named_rows(np.concatenate([contacts.a[ids], contacts.b[ids]]), len(primitives))
-        mine = {b: primitives[used[primitives.body[used] == b]] for b in moving}
+        mine = {b: primitives[used[primitives.body[used] == b]] for b in axes}
         reach = {b: float(np.hypot(*chords(rows, pair.clearance).points.T).max(initial=0.0)) for b, rows in mine.items()}
         piece = _typical_length(primitives[used])
-        largest = max(reach.values())
+        largest = max(reach[b] for b in moving)
+        travels = any(axis.kind == TRAVEL for own in axes.values() for axis in own)
+        if travels and pair.frame == MOVEMENT and all(bodies[b].carrier < 0 for b in axes):
+            pair.reach = sum(reach.values()) + 2.0 * pair.clearance
         travel = min(max(FINEST_SHARE * largest, piece), CELL_SHARE * largest) or pair.clearance
         cells: list[_Cells] = []
         parts = 1

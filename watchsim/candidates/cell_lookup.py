@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 
 from watchsim.jit import entry, kernel
-from watchsim.model.records import NO_KEY
+from watchsim.model.records import FREE, NO_KEY, SLIDE
 
 UNKNOWN, LISTED, ALL = -1, 0, 1
 MARGIN = 0.5  # a cell's answer holds this share of its size beyond its faces
+APART = 0.25  # of their reach: bodies that are this much further apart need no cells
 REACH = 1 << 16  # cell indices beyond it fall back to all that can touch
 
 
@@ -66,10 +67,51 @@ def insert_cells(keys, start, count, new_keys, new_start, new_count):
 
 
 @kernel
+def _origin(body, q):
+    """Where the origin of a body is that nothing carries."""
+    if body.motion == FREE:
+        return q[body.first], q[body.first + 1]
+    way = body.ratio * q[body.first] + body.phase if body.motion == SLIDE else 0.0
+    return body.x + way * body.axis_x, body.y + way * body.axis_y
+
+
+@kernel
+def _between(model, pair, q):
+    """How far the bodies of a pair, whose `reach` is known, at least are from a touch, m; negative where they may touch."""
+    ax, ay = _origin(model.bodies[pair.a], q)
+    bx, by = _origin(model.bodies[pair.b], q)
+    return math.sqrt((ax - bx) ** 2 + (ay - by) ** 2) - pair.reach
+
+
+@kernel
+def _is_apart(model, pair, q):
+    """True if the bodies of a pair have flown so far apart that nothing of them is near."""
+    return pair.reach > 0.0 and _between(model, pair, q) > APART * pair.reach
+
+
+@kernel
+def _rate(body, rate):
+    """How fast the origin of a body moves, from the rates (or bounds of second derivatives) of the coordinates."""
+    if body.motion == FREE:
+        return math.sqrt(rate[body.first] ** 2 + rate[body.first + 1] ** 2)
+    return abs(body.ratio * rate[body.first]) if body.motion == SLIDE else 0.0
+
+
+@kernel
+def _time_apart(model, pair, q, u, acceleration):
+    """A time during which the bodies of a pair that are apart do not come together."""
+    a, b = model.bodies[pair.a], model.bodies[pair.b]
+    speed, bound = _rate(a, u) + _rate(b, u), _rate(a, acceleration) + _rate(b, acceleration)
+    return _time_to_leave(_between(model, pair, q), speed, bound)
+
+
+@kernel
 def candidates(model, cells, p, q):
     """Candidates of body pair p at q: (UNKNOWN | LISTED | ALL, start, count)."""
     pair = model.pairs[p]
     if pair.listed:
+        if _is_apart(model, pair, q):
+            return ALL, 0, 0
         key = cell_key(model, p, q)
         if key != NO_KEY:
             slot = find_slot(cells.keys, key)
@@ -106,6 +148,8 @@ def time_in_cell(model, p, q, u, acceleration):
     pair = model.pairs[p]
     if pair.axes == 0:
         return math.inf
+    if _is_apart(model, pair, q):
+        return _time_apart(model, pair, q, u, acceleration)
     if pair.frame >= 0:
         return _time_in_relative_cell(pair, q, u, acceleration)
     i = pair.c0
@@ -131,9 +175,11 @@ def _time_in_relative_cell(pair, q, u, acceleration):
 
 
 @kernel
-def time_through_cells(model, p, u, acceleration, cells):
+def time_through_cells(model, p, q, u, acceleration, cells):
     """A time in which body pair p passes at most about `cells` cells along each coordinate."""
     pair = model.pairs[p]
+    if _is_apart(model, pair, q):
+        return _time_apart(model, pair, q, u, acceleration)
     time = math.inf
     if pair.axes > 0:
         time = min(time, _time_through(pair, u, acceleration, pair.c0, pair.on0, cells * pair.size0))

@@ -130,9 +130,9 @@ def decide_modes(model, closed, m, bearings, speed_zero, work, out_grip, out_mod
     rung = solve_contacts(work, m, elements)
     if rung == Rung.FAILED:
         return False
-    if pressed and rung == Rung.LEMKE:
+    if pressed:
         fill_rhs(work, m, elements, work.loaded)
-        keep_basis(work, m, elements)
+        keep_basis(work, m, elements, rung)
     read_forces(work, m, elements, work.force)
     for i in range(m):
         if work.x[i] > 0.0 and is_paradox(work, m, i):

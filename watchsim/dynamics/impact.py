@@ -57,9 +57,9 @@ def _compress(model, closed, m, u, jam, work):
     nudged = _keep_sliding(m, work) or nudged
     note_posed(work, m, elements, 0, Level.COMPRESSION)
     rung = solve_contacts(work, m, elements)
-    if nudged and rung == Rung.LEMKE:
+    if nudged and rung != Rung.FAILED:
         fill_rhs(work, m, elements, work.b)
-        keep_basis(work, m, elements)
+        keep_basis(work, m, elements, rung)
     read_forces(work, m, elements, work.force)
     return rung != Rung.FAILED, elements
 

@@ -58,9 +58,15 @@ def _detour(work, n, rough):
 
 
 @kernel
-def keep_basis(work, m, elements):
-    """After Lemke and a small change of `work.rhs`: the solution with the same active unknowns, if it still is one."""
+def keep_basis(work, m, elements, rung):
+    """After a small change of `work.rhs`: the solution with the same active unknowns, if it still is one.
+
+    `rung`: the one that solved the problem; only Lemke's method on its first path leaves what is active.
+    """
     n = m + 2 * elements
+    if rung != Rung.LEMKE:
+        for i in range(n):
+            work.lcp.is_active[i] = 1 if work.x[i] > 0.0 else 0
     magnitude = scale(work.A, work.rhs, n, work.lcp)
     solve_active(n, work.lcp)
     if is_solution(n, work.lcp):

@@ -160,6 +160,7 @@ BODY_PAIR = np.dtype(
         ("near_stop", "i8"),
         ("listed", "i8"),  # 0: all of `near` are candidates in every cell, nothing is asked
         ("clearance", "f8"),  # m: primitives count as able to touch when they come this close
+        ("reach", "f8"),  # m: with their origins further apart they cannot; 0: not asked
         ("axes", "i8"),  # 0: no cells, all of `near` are candidates; else the number of cell coordinates
         ("c0", "i8"),  # cell coordinates and their cell sizes; a pivot's index wraps after `wrap` cells (0: no wrap)
         ("c1", "i8"),

@@ -133,7 +133,7 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
         begin_flight(model, state, min(length, left), scratch.step)
         # A long flight would ask about cells far behind the first event.
         for p in range(len(model.pairs)):
-            length = min(length, time_through_cells(model, p, state.u, scratch.step.bound, FLIGHT_CELLS))
+            length = min(length, time_through_cells(model, p, state.q, state.u, scratch.step.bound, FLIGHT_CELLS))
         scratch.step.span.length = min(length, left)
         leave = first_turn(model, state)
     else:

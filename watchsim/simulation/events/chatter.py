@@ -14,11 +14,12 @@ import math
 
 from watchsim.contact.index_sets import BACKWARD, FORWARD, STICK
 from watchsim.contact.kinematics import contact_kinematics
-from watchsim.dynamics.acceleration import solve_mode
+from watchsim.dynamics.acceleration import decide_modes, solve_mode
 from watchsim.dynamics.delassus import apply, contact_velocities
 from watchsim.dynamics.impact import plastic_impact
 from watchsim.jit import kernel
 from watchsim.simulation.events.impulse_check import kinetic_energy
+from watchsim.simulation.events.mode_decision import standing_bearings
 from watchsim.tolerances import CHATTER_BACK, CHATTER_GAIN, WITHIN_CONE
 
 
@@ -50,20 +51,43 @@ def return_time(closed, i, a):
 
 @kernel
 def chatter_time(state, m, options, event):
-    """Time until all contacts that leave are back, s; infinity if one of them comes further than `gap_close`.
+    """(time until the contacts that leave are back, s; does one of them not come back by itself?).
 
-    The accelerations are in `state.a`.
+    Infinity if one that does comes further than `gap_close`. The accelerations are in `state.a`.
     """
-    latest = 0.0
+    latest, apart = 0.0, False
     for i in range(m):
         rate = event.closed.kin[i].gN_dot
         if rate <= event.zero[i]:
             continue
         back = return_time(event.closed, i, state.a)
+        if back == math.inf:
+            apart = True
         # It rises on a parabola, to a quarter of the way it would go at its first speed.
-        if 0.25 * rate * back > options.gap_close:
+        elif 0.25 * rate * back > options.gap_close:
+            return math.inf, apart
+        else:
+            latest = max(latest, back)
+    return latest, apart
+
+
+@kernel
+def pressed_time(model, state, island, m, options, work, event, room):
+    """The same of contacts that come back only once others have: a block on one that falls with it until that one lands.
+
+    The forces that all m contacts had if none of them left say what presses each of them back then.
+    """
+    bearings = standing_bearings(event.label, island, room.grip, work.dry)
+    if not decide_modes(model, event.closed, m, bearings, options.speed_zero, work, room.grip, room.mode):
+        return math.inf
+    latest = 0.0
+    for i in range(m):
+        rate, pressed = event.closed.kin[i].gN_dot, work.force[2 * i] * work.G[2 * i, 2 * i]
+        if rate <= event.zero[i] or return_time(event.closed, i, state.a) < math.inf:
+            continue
+        if not 0.5 * rate * rate <= options.gap_close * pressed:
             return math.inf
-        latest = max(latest, back)
+        latest = max(latest, 2.0 * rate / pressed)
     return latest
 
 

@@ -16,11 +16,11 @@ from watchsim.dynamics.impact import energy_change, impact
 from watchsim.dynamics.small_systems import copy
 from watchsim.jit import kernel
 from watchsim.simulation.event_kinds import EventKind
-from watchsim.simulation.events.chatter import chatter_time, end_chatter, may_be_chatter, return_time
+from watchsim.simulation.events.chatter import chatter_time, end_chatter, may_be_chatter, pressed_time, return_time
 from watchsim.simulation.events.closed_contacts import refresh
 from watchsim.simulation.events.impulse_check import kinetic_energy
 from watchsim.simulation.events.mode_decision import count_problems, decide
-from watchsim.simulation.events.zero_rates import note_pace
+from watchsim.simulation.events.zero_rates import note_pace, rounding_of, set_rate_zeros
 from watchsim.simulation.record.write_buffers import keep_event
 from watchsim.tolerances import ENERGY_GAIN, HIDDEN_REBOUND
 
@@ -82,6 +82,20 @@ def _rebounds(i, options, event, room):
 
 
 @kernel
+def _rebounds_unseen(m, options, event, room):
+    """True if a contact rebounds at a rate that counts as zero without being rounding: a rebound all the same.
+
+    Where friction jams, a rate that counts as zero cannot be taken back, and the contact would leave and return for ever.
+    """
+    for i in range(m):
+        rate = event.closed.kin[i].gN_dot
+        if room.restitution[i] > 0.0 and room.impulse[2 * i] > 0.0 and 0.0 < rate <= event.zero[i]:
+            if rate > rounding_of(event.closed, i, options, event.pace):
+                return True
+    return False
+
+
+@kernel
 def _accelerations(model, state, island, m, options, scratch):
     """Accelerations of the island after the impact into `state.a`; False if there are none."""
     work, event = scratch.work, scratch.event
@@ -97,6 +111,8 @@ def _end_rebounds(model, state, island, m, options, scratch):
     """Flag the rebounds that would end within `accumulation_time` (restitution 0); returns (any?, the latest end)."""
     event, room = scratch.event, scratch.impact
     latest, found, worth = 0.0, False, False
+    if _rebounds_unseen(m, options, event, room):
+        set_rate_zeros(event.closed, m, True, options, event.pace, event.zero)
     for i in range(m):
         worth = worth or _rebounds(i, options, event, room)
     if not worth or not _accelerations(model, state, island, m, options, scratch):
@@ -109,8 +125,8 @@ def _end_rebounds(model, state, island, m, options, scratch):
             continue
         ending = back / (1.0 - share) if share < 1.0 else math.inf
         # A rebound that rises by no more than rounding is none, whatever its restitution: it would go on by rounding alone.
-        # One that loses nothing would go on for ever: it is none where it stays within what counts as closed.
-        lowest = HIDDEN_REBOUND * options.gap_zero if share < 1.0 else options.gap_close
+        # One that loses next to nothing would go on for ever: it is none where it stays within what counts as closed.
+        lowest = min(options.gap_close, HIDDEN_REBOUND * options.gap_zero / (1.0 - share)) if share < 1.0 else options.gap_close
         hidden = 0.25 * event.closed.kin[i].gN_dot * back <= lowest
         if ending < options.accumulation_time or hidden:
             room.restitution[i] = 0.0
@@ -143,7 +159,9 @@ def collide(model, state, island, m, options, jam, scratch, record):
     _write(model, state, m, jam, event.closed, room, record, ended, ends)
     note_pace(state.u, event.pace)
     if jam == 0.0 and may_be_chatter(m, options, event, room) and _accelerations(model, state, island, m, options, scratch):
-        time = chatter_time(state, m, options, event)
+        time, apart = chatter_time(state, m, options, event)
+        if apart and 0.0 < time < math.inf:
+            time = max(time, pressed_time(model, state, island, m, options, work, event, room))
         if 0.0 < time < math.inf:
             _end_chatter(model, state, m, time, scratch, record)
     return True
@@ -165,7 +183,7 @@ def _end_chatter(model, state, m, time, scratch, record):
             return  # the impacts go on one by one
     for i in range(m):
         if event.closed.kin[i].gN_dot > event.zero[i]:
-            back = state.clock.time + return_time(event.closed, i, state.a)
+            back = state.clock.time + min(time, return_time(event.closed, i, state.a))
             keep_event(state, record, EventKind.ACCUMULATION, event.closed.ids[i], -1, back)
             state.counts.accumulations += 1
     place(model, state.q, state.u, event.pose)
