@@ -48,7 +48,6 @@ class Outlines:
     def points(self) -> int:
         return sum(len(points) for points, _ in self.rings)
 
-
     def shifted_faces(self, depth: float) -> list[Array]:
         """Its open faces, `depth` further inside their material."""
         return [_shifted(points, depth, closed=False) for points in self.faces]
