@@ -24,6 +24,7 @@ VARIABLE = "WATCHSIM_CACHE"
 MOVE = f"The environment variable {VARIABLE} names another folder."
 DIGESTS_KEPT = 3
 IN_USE_SECONDS = 3600.0  # another process may be compiling into a folder it has just made
+_JIT = b"from watchsim.jit import "  # quicker to look for
 _KERNELS = re.compile(r"^from watchsim\.jit import .*\b(?:kernel|entry)\b", re.MULTILINE)
 # At the top of a file: what a function imports for itself, no kernel reaches.
 _IMPORT = re.compile(r"^from (watchsim(?:\.\w+)*) import \(?([\w, ]*)", re.MULTILINE)
@@ -59,33 +60,38 @@ def source_digest(package: Path) -> str:
 
     versions = (platform.python_version(), platform.machine(), version("numba"), version("numpy"))
     digest = hashlib.sha256(" ".join((str(package), *versions)).encode())
-    for path in _reachable_sources(package):
-        digest.update(str(path.relative_to(package)).encode() + b"\0" + path.read_bytes())
+    for path, source in _reachable_sources(package).items():
+        digest.update(os.path.relpath(path, package).encode() + b"\0" + source)
     return digest.hexdigest()[:16]
 
 
-def _reachable_sources(package: Path) -> list[Path]:
-    """The files that define kernels and all they import from the package, sorted."""
-    texts = {path: path.read_text(encoding="utf-8") for path in package.rglob("*.py")}
-    waiting = [path for path, text in texts.items() if _KERNELS.search(text)]
-    reached: set[Path] = set()
+def _reachable_sources(package: Path) -> dict[str, bytes]:
+    """The files that define kernels and all they import from the package, sorted, with what they hold."""
+    # Paths as text: objects of `pathlib` would take most of the time.
+    sources: dict[str, bytes] = {}
+    for folder, _, names in os.walk(package):
+        for path in (os.path.join(folder, name) for name in names if name.endswith(".py")):  # noqa: PTH118
+            with open(path, "rb") as file:  # noqa: PTH123
+                sources[path] = file.read()
+    waiting = [path for path, source in sources.items() if _JIT in source and _KERNELS.search(source.decode())]
+    reached: set[str] = set()
     while waiting:
         path = waiting.pop()
         if path not in reached:
             reached.add(path)
-            waiting.extend(found for found in _imported(package, texts[path]) if found in texts)
-    return sorted(reached)
+            waiting.extend(found for found in _imported(package, sources[path].decode()) if found in sources)
+    return {path: sources[path] for path in sorted(reached)}
 
 
-def _imported(package: Path, text: str) -> Iterable[Path]:
+def _imported(package: Path, text: str) -> Iterable[str]:
     """The files that `from watchsim.x import y` may mean: x.py or x/__init__.py; of the package itself, y.py."""
     for name, wanted in _IMPORT.findall(text):
-        stem = package.joinpath(*name.split(".")[1:])
-        if stem == package:
-            yield from (package / f"{each.strip()}.py" for each in wanted.split(","))
+        stem = str(package) + name.removeprefix("watchsim").replace(".", os.sep)
+        if stem == str(package):
+            yield from (f"{stem}{os.sep}{each.strip()}.py" for each in wanted.split(","))
         else:
-            yield stem.with_suffix(".py")
-            yield stem / "__init__.py"
+            yield f"{stem}.py"
+            yield f"{stem}{os.sep}__init__.py"
 
 
 def _user_folder() -> Path:

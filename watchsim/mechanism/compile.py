@@ -60,11 +60,21 @@ class Compiled:
         return np.asarray(body.ratio * values[:, body.first] + (0.0 if rates else body.phase))
 
 
+_last: dict[bool, tuple[Scene, Compiled]] = {}  # by `prefilter`: the scene asked about last, which most often is the next one
+
+
 def compile_scene(scene: Scene, prefilter: bool = True) -> Compiled:
-    """Flatten a checked scene (SI units). Coordinates follow the order of the bodies.
+    """Flatten a checked scene (SI units), into arrays that nobody writes to. Coordinates follow the order of the bodies.
 
     Without `prefilter` every declared pair of primitives is a candidate everywhere.
     """
+    known = _last.get(prefilter)
+    if known is None or known[0] is not scene:
+        known = _last[prefilter] = scene, _compiled(scene, prefilter)
+    return known[1]
+
+
+def _compiled(scene: Scene, prefilter: bool) -> Compiled:
     size = scene_size(scene)
     scene, named = with_racks(scene, size)
     hung = rides(scene.bodies)
@@ -88,7 +98,9 @@ def compile_scene(scene: Scene, prefilter: bool = True) -> Compiled:
     told = [(body.name, bond) for body, bond in zip(scene.bodies, bound, strict=True) if body.geared and body.name not in named]
     geared = tuple((int(bodies[bond.to].first), bond.told, bond.shift) for _, bond in told)
     slices |= {name: slice(len(q) + k, len(q) + k + 1) for k, (name, _) in enumerate(told)}
-    return Compiled(model, layers, owners, slices, size, q, u, forced.fastest, _against(hung, bodies, bound), geared)
+    return Compiled(
+        model, layers, owners, slices, size, frozen(q), frozen(u), forced.fastest, _against(hung, bodies, bound), geared
+    )
 
 
 def _against(hung: tuple[Ride, ...], bodies: Records, bound: tuple[Bond, ...]) -> tuple[tuple[int, int, float], ...]:
