@@ -10,7 +10,6 @@ import pytest
 from watchsim.contact.index_sets import BACKWARD, FORWARD, OPEN, STICK
 from watchsim.contact.kinematics import closed_contacts, contact_kinematics
 from watchsim.contact.poses import place, poses
-from watchsim.dynamics.acceleration import accelerate, decide_modes, solve_mode
 from watchsim.dynamics.delassus import contact_work
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Line
@@ -20,15 +19,14 @@ from watchsim.model.records import LINE
 from watchsim.scene.body import Body
 from watchsim.scene.force import Contact, Side
 from watchsim.scene.scene import Scene
+from watchsim.verification.contact_problems import accelerate, decide_modes, solve_mode
 
 R, M, KAPPA, G = 0.05, 2.0, 0.4, 9.81
 J = KAPPA * M * R * R
 SLOW = 1e-9
 ROOM = 6
 
-_place, _kinematics, _decide, _solve, _accelerate = (
-    callable_kernel(kernel) for kernel in (place, contact_kinematics, decide_modes, solve_mode, accelerate)
-)
+_place, _kinematics = callable_kernel(place), callable_kernel(contact_kinematics)
 
 
 class Outcome:
@@ -44,16 +42,16 @@ class Outcome:
         work.h[:] = h
         self.grip = np.zeros(n, np.int8)
         self.gaps = closed.kin.g[:m].copy()
-        self.solved = _decide(model, closed, m, 0, SLOW, work, self.grip, self.mode)
+        self.solved = decide_modes(model, closed, m, 0, SLOW, work, self.grip, self.mode)
         self.force, self.a = work.force[: 2 * m].copy(), np.zeros(n)
-        _accelerate(model, closed, m, work, self.a)
+        accelerate(model, closed, m, work, self.a)
         # The equality system of the decided mode has the same answer as the complementarity problem that chose it.
         self.again = np.zeros(n)
         stay = [row for row, k in enumerate(ids) if self.mode[k] != OPEN]
         for row, kept in enumerate(stay):
             _kinematics(model, ids[kept], pose, row, closed)
-        _solve(model, closed, len(stay), self.mode, 1.0, work)
-        _accelerate(model, closed, len(stay), work, self.again)
+        solve_mode(model, closed, len(stay), self.mode, 1.0, work)
+        accelerate(model, closed, len(stay), work, self.again)
 
 
 def disc_on_plane(mu: float) -> tuple[Compiled, int]:

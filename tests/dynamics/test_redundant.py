@@ -7,19 +7,16 @@ import pytest
 from random_contacts import Case
 
 from watchsim.contact.index_sets import STICK
-from watchsim.dynamics.acceleration import accelerate, decide_modes, solve_mode
-from watchsim.jit import callable_kernel
-
-_solve, _accelerate, _decide = (callable_kernel(kernel) for kernel in (solve_mode, accelerate, decide_modes))
+from watchsim.verification.contact_problems import accelerate, decide_modes, solve_mode
 
 
 def resting(case: Case, h: np.ndarray, sticks: bool = True) -> tuple[bool, np.ndarray, np.ndarray]:
     """Forces unique?, forces, accelerations of the case with all contacts closed, at rest, under the generalized forces h."""
     case.work.h[:], case.work.inverse[:] = h, 1.0 / case.mass
     case.closed.kin.bar_N[:], case.closed.kin.bar_T[:] = 0.0, 0.0
-    unique = _solve(case.model, case.closed, case.m, np.full(case.m, STICK if sticks else 1, np.int8), 1.0, case.work)
+    unique = solve_mode(case.model, case.closed, case.m, np.full(case.m, STICK if sticks else 1, np.int8), 1.0, case.work)
     a = np.zeros(case.n)
-    _accelerate(case.model, case.closed, case.m, case.work, a)
+    accelerate(case.model, case.closed, case.m, case.work, a)
     return bool(unique), case.work.force[: 2 * case.m].copy(), a
 
 
@@ -90,7 +87,7 @@ def test_a_lever_on_its_banking_with_a_tooth_that_sticks() -> None:
     assert np.all(force[::2] > 0.0)
     assert np.all(np.abs(force[1::2]) <= case.friction * force[::2] * (1.0 + 1e-9))
     mode, grip = np.zeros(2, np.int8), np.zeros(2, np.int8)
-    assert _decide(case.model, case.closed, 2, 0, 1e-9, case.work, grip, mode)
+    assert decide_modes(case.model, case.closed, 2, 0, 1e-9, case.work, grip, mode)
     assert list(mode) == [STICK, STICK]
 
 

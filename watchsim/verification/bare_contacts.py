@@ -6,7 +6,6 @@ can be put to them.
 
 from __future__ import annotations
 
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -14,9 +13,8 @@ from numpy.typing import NDArray
 
 from watchsim.contact.index_sets import OPEN
 from watchsim.contact.kinematics import Closed, closed_contacts
-from watchsim.dynamics.acceleration import decide_modes, solve_mode
 from watchsim.dynamics.delassus import ContactWork, contact_work
-from watchsim.dynamics.impact import energy_change, impact
+from watchsim.dynamics.impact import energy_change
 from watchsim.jit import callable_kernel
 from watchsim.model.records import (
     BODY,
@@ -33,14 +31,12 @@ from watchsim.model.records import (
     frozen,
     records,
 )
+from watchsim.verification.contact_problems import decide_modes, impact, solve_mode
 
 Array = NDArray[np.float64]
 
 
-@cache
-def _kernel(function: Any) -> Any:
-    """Compiled for calls from Python when it is first needed."""
-    return callable_kernel(function)
+_energy_change = callable_kernel(energy_change)
 
 
 class BareContacts:
@@ -90,12 +86,12 @@ class BareContacts:
         """Solved?, velocities after, impulses N, T, N, T, ... of the contacts that take part."""
         after, m = u.copy(), len(self.taken)
         shares = (self.restitution if restitution is None else restitution)[self.taken]
-        solved = _kernel(impact)(self.model, self.closed, m, shares, 0.0, self.work, after)
+        solved = impact(self.model, self.closed, m, shares, 0.0, self.work, after)
         return bool(solved), after, self.work.force[: 2 * m].copy()
 
     def energy_change(self) -> float:
         """Of the impact just solved, as the kernel says, J."""
-        return float(_kernel(energy_change)(len(self.taken), self.work)[0])
+        return float(_energy_change(len(self.taken), self.work)[0])
 
     def kinetic(self, u: Array) -> float:
         """J."""
@@ -107,11 +103,11 @@ class BareContacts:
         for row, i in enumerate(self.taken):
             self.closed.kin[row].gN_dot, self.closed.kin[row].gT_dot = self.W[2 * i : 2 * i + 2] @ u
         self.work.h[:] = h
-        solved = _kernel(decide_modes)(self.model, self.closed, len(self.taken), 0, speed_zero, self.work, grip, mode)
+        solved = decide_modes(self.model, self.closed, len(self.taken), 0, speed_zero, self.work, grip, mode)
         return bool(solved), mode
 
     def forces(self, h: Array, mode: NDArray[np.int8]) -> Array:
         """Forces N, T, N, T, ... of the contacts that take part in their modes under the forces h."""
         self.work.inverse[:], self.work.h[:] = 1.0 / self.mass, h
-        _kernel(solve_mode)(self.model, self.closed, len(self.taken), mode, 1.0, self.work)
+        solve_mode(self.model, self.closed, len(self.taken), np.asarray(mode, np.int8), 1.0, self.work)
         return self.work.force[: 2 * len(self.taken)].copy()
