@@ -54,7 +54,7 @@ def pendulum(at: Points) -> list[Loop]:
     pivot = (-at.arm, 0.0)
     arms = [_bar(pivot, stop, 0.6 * r, layer) for stop, layer in zip(stops, ("ENTRY_ARM", "EXIT_ARM"), strict=True)]
     bob = (0.0, -values.pendulum)
-    drawn = [_bar((0.0, 0.0), pivot, 0.3 * unit, "FRAME"), *arms, _bar((0.0, 0.0), bob, 0.4 * unit, "ROD")]
+    drawn = [_bar((0.0, 0.0), pivot, 0.3 * unit, "FRAME"), *arms, _bar((0.0, 0.0), bob, 0.2 * unit, "ROD")]
     return [
         *(circle("STOPS", stop, r) for stop in stops),
         *drawn,
