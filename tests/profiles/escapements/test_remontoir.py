@@ -109,7 +109,8 @@ def test_the_amplitude_stays_while_the_drive_falls_by_two_fifths() -> None:
 
 
 @pytest.mark.parametrize(
-    "changed", [{"stop_teeth": 5}, {"stop_teeth": 8, "train": "16 µN·m"}, {"arm": "6 mm", "eccentricity": "0.25 mm"}, {"teeth": 16}]
+    "changed",
+    [{"stop_teeth": 5}, {"stop_teeth": 8, "train": "16 µN·m"}, {"arm": "6 mm", "eccentricity": "0.25 mm"}, {"teeth": 16}],
 )
 def test_others_wind_too(changed: dict[str, object]) -> None:
     """Half a pitch of the stop wheel for half a turn of the escape wheel, none missed."""

@@ -22,5 +22,7 @@ class Governor:
     height: float = dim(35.0, "mm", 1.0, 1000.0, "of the vanes along the axis", CHOSEN)
     thickness: float = dim(1.0, "mm", 0.05, 20.0, "of the vanes", CHOSEN)
     fly_inertia: float = dim(15.0, "g·cm²", 1e-4, 1e7, "fly with its arbor", CHOSEN)
-    drag_coefficient: float = dim(1.2, "", 0.5, 2.5, "of a vane across the air", "plates across a stream: 1.1 to 2 (Hoerner 1965)")
+    drag_coefficient: float = dim(
+        1.2, "", 0.5, 2.5, "of a vane across the air", "plates across a stream: 1.1 to 2 (Hoerner 1965)"
+    )
     air: float = dim(1.2, "kg/m³", 0.1, 5.0, "density", "at 20 °C and sea level")
