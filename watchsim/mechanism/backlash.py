@@ -8,6 +8,11 @@ Friction of the teeth takes a share of the work whichever body drives. The racks
 that the tooth slides along the flank by as much as the two bodies go together; what a body puts in is then N (1 + µ), what
 comes out at the other N (1 - µ), and µ = (1 - η) / (1 + η) gives the efficiency η.
 
+Of a body and the carriage it rides on, which rolls round a fixed wheel, the angle of the one is against the other: with
+ψ = r φ the body turns by (1 + r) φ in the movement. The tooth of the fixed wheel moves nothing; its force acts on the carriage
+where the body's pivot is, as N (1 + µ) R + N (1 - µ) ρ, ρ and R = r ρ being the pitch radii, N (1 - µ) ρ on the body. The
+carriage's rack is askew by (r - 1) / (r + 1) for it, and the efficiency is that of the same gears with the carriage held.
+
 The stop of a spring is such a tooth, on a rack moved by the spring's body, and one flank, of the movement or on a rack of the
 other body.
 """
@@ -16,10 +21,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import NamedTuple
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import TURN, Arc, Line, Point
 from watchsim.scene.body import Body
+from watchsim.scene.carriers import Ride, rides
 from watchsim.scene.force import Contact, Side, Spring
 from watchsim.scene.gearing import Gear, Geared
 from watchsim.scene.scene import Scene
@@ -41,8 +48,9 @@ def with_racks(scene: Scene, size: float) -> tuple[Scene, dict[str, str]]:
         bodies += stops
         named |= {stops[0].name: spring.body, stops[1].name: spring.against or spring.body}
         contacts.append(Contact((Side(stops[0].name), Side(stops[1].name)), restitution=spring.restitution))
+    hung = rides(scene.bodies)
     for k, gear in enumerate(scene.gears):
-        racks = _racks(scene, gear, k, size)
+        racks = _racks(scene, gear, k, size, _ways(scene, hung, gear, size))
         bodies += racks
         named |= {rack.name: name for rack, name in zip(racks, gear.between, strict=True)}
         friction = (1.0 - gear.efficiency) / (1.0 + gear.efficiency)
@@ -51,25 +59,43 @@ def with_racks(scene: Scene, size: float) -> tuple[Scene, dict[str, str]]:
     return replace(scene, bodies=tuple(bodies), contacts=tuple(contacts)), named
 
 
-def _racks(scene: Scene, gear: Gear, number: int, size: float) -> tuple[Body, Body]:
+class Ways(NamedTuple):
+    """`far`: how far each body moves its rack, by `reach`, the pitch radius (m) of the second; `askew`: their tangents."""
+
+    far: tuple[float, float]
+    askew: tuple[float, float]
+    reach: float
+
+
+def _ways(scene: Scene, hung: tuple[Ride, ...], gear: Gear, size: float) -> Ways:
+    names = [body.name for body in scene.bodies]
+    first, second = (names.index(name) for name in gear.between)
+    r = gear.ratio
+    if hung[first].turns_with != second and hung[second].turns_with != first:
+        return Ways((r, 1.0), (1.0, -1.0), pitch_radius(scene.bodies[first], scene.bodies[second], r, size))
+    against = (r - 1.0) / (r + 1.0)
+    if hung[second].turns_with == first:
+        return Ways((1.0 + r, 1.0), (against, -1.0), _rolling_radius(hung[second], r, size))
+    return Ways((r, 1.0 + r), (1.0, against), _rolling_radius(hung[first], r, size))
+
+
+def _racks(scene: Scene, gear: Gear, k: int, size: float, ways: Ways) -> tuple[Body, Body]:
     """The rack of the first body with the tooth, that of the second with the flanks."""
-    first, second = (scene.body(name) for name in gear.between)
-    reach = pitch_radius(first, second, gear.ratio, size)
-    askew = 1.0 if gear.efficiency < 1.0 else 0.0
-    tooth, play = TOOTH * size, 0.5 * gear.backlash * reach
+    tooth, play = TOOTH * size, 0.5 * gear.backlash * ways.reach
     apart, far = tooth + play, FLANK * size
     flanks = (Line(apart, far, apart, -far), Line(-apart, -far, -apart, far))
-    ends: tuple[tuple[Body, float, float, tuple[Loop, ...]], ...] = (
-        (first, gear.ratio * reach, askew, (Loop((Arc(0.0, 0.0, tooth, 0.0, TURN),), LAYER),)),
-        (second, reach, -askew, tuple(Loop((flank,), LAYER, closed=False) for flank in flanks)),
+    shapes: tuple[tuple[Loop, ...], ...] = (
+        (Loop((Arc(0.0, 0.0, tooth, 0.0, TURN),), LAYER),),
+        tuple(Loop((flank,), LAYER, closed=False) for flank in flanks),
     )
     made = []
-    for body, arm, slope, loops in ends:
-        holder = body.geared or Geared(body.name, 1.0)
+    for name, way, askew, loops in zip(gear.between, ways.far, ways.askew, shapes, strict=True):
+        holder = scene.body(name).geared or Geared(name, 1.0)
+        slope = askew if gear.efficiency < 1.0 else 0.0
         long = math.hypot(1.0, slope)
         axis: Point = (1.0 / long, slope / long)
-        geared = Geared(holder.to, holder.ratio * arm * long)
-        made.append(Body(f"{body.name} gear {number}", "slide", axis=axis, loops=loops, geared=geared))
+        geared = Geared(holder.to, holder.ratio * way * ways.reach * long)
+        made.append(Body(f"{name} gear {k}", "slide", axis=axis, loops=loops, geared=geared))
     return made[0], made[1]
 
 
@@ -93,6 +119,11 @@ def _rack(name: str, body: Body, reach: float, loops: tuple[Loop, ...]) -> Body:
     """Slides along x as far as the body's circumference at `reach` goes."""
     holder = body.geared or Geared(body.name, 1.0)
     return Body(name, "slide", axis=(1.0, 0.0), loops=loops, geared=Geared(holder.to, holder.ratio * reach))
+
+
+def _rolling_radius(carried: Ride, ratio: float, size: float) -> float:
+    """Pitch radius of the second of a carriage and what it carries, m; the scene's size where both are on one axis."""
+    return math.hypot(*carried.place) / abs(1.0 + ratio) or size
 
 
 def pitch_radius(first: Body, second: Body, ratio: float, size: float) -> float:

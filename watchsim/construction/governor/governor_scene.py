@@ -8,7 +8,7 @@ from watchsim.construction.design import told
 from watchsim.construction.governor.governor_dimensions import Governor
 
 TEXT = """\
-# The governor of a striking train: a weight on a drum drives a fly through gears, and the air on its vanes takes what the weight
+# The governor of a striking train: a weight on a drum drives a fly through gears, and the air on its vanes takes what that
 # gives. From rest it comes up to the speed at which both are equal, {terminal:.4g} rad/s of the fly. Drawn to these dimensions:
 {dimensions}
 

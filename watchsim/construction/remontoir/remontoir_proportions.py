@@ -1,9 +1,9 @@
 """Which places and moments follow from the dimensions of a remontoir?
 
-The stop wheel's pointed teeth lock by turns on two pallets, one and a half pitches apart. Both locking faces are arcs about the
-stop lever's pivot, so that a tooth at rest does not turn the lever; the centres are as far apart as makes a tooth's motion point at
-that pivot, or away from it. The eccentric disc turns clockwise with the escape wheel; by START it stands ahead of the line from the
-lever's pivot at the beginning. Millimetres, degrees.
+The stop wheel's pointed teeth lock by turns on two pallets, one and a half pitches apart. Both locking faces are arcs about
+the stop lever's pivot, so that a tooth at rest does not turn the lever; the centres are as far apart as makes a tooth's
+motion point at that pivot, or away from it. The eccentric disc turns clockwise with the escape wheel; at the beginning it
+stands at START to the line from the lever's pivot through the axis. Millimetres, degrees.
 """
 
 from __future__ import annotations

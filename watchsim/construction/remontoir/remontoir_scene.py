@@ -20,8 +20,8 @@ from watchsim.construction.swiss_lever.swiss_lever_scene import CLEAR, parts, re
 
 HEAD = """\
 # A remontoir before a Swiss lever: the train does not drive the escape wheel but winds a weak spring on its arbor. An eccentric
-# disc on the escape wheel leads a stop lever; twice in a turn it lets a tooth of the stop wheel go, and the train winds the spring
-# by half a turn. So the escapement feels the spring alone, whatever the mainspring does. Drawn to these dimensions:
+# disc on the escape wheel leads a stop lever; twice in a turn it lets a tooth of the stop wheel go, and the train winds the
+# spring by half a turn. So the escapement feels the spring alone, whatever the mainspring does. Drawn to these dimensions:
 {dimensions}
 
 [scene]

@@ -12,7 +12,7 @@ from watchsim.construction.tourbillon.tourbillon_scene import scene_text
 from watchsim.drawing.sheet import Sheet
 from watchsim.geometry.loop import Loop
 
-# Shares of the distance from wheel to balance, and the radius of each corner: a foot under the wheel, two arms over the balance.
+# Shares of the distance from wheel to balance, with each corner's radius: a foot under the wheel, two arms over the balance.
 BRIDGE = (
     *((-0.23, -1.2, 0.1), (0.0, -1.34, 0.3), (0.23, -1.2, 0.1), (0.12, 0.0, 0.15), (0.38, 0.55, 0.05), (0.28, 0.71, 0.05)),
     *((0.0, 0.22, 0.08), (-0.28, 0.71, 0.05), (-0.38, 0.55, 0.05), (-0.12, 0.0, 0.15)),

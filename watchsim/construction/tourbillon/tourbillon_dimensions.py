@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from watchsim.construction.dimension import dim
-from watchsim.construction.swiss_lever.swiss_lever_dimensions import CHOSEN, ESTIMATE, SwissLever
+from watchsim.construction.swiss_lever.swiss_lever_dimensions import ESTIMATE, SwissLever
 
 
 @dataclass(frozen=True)

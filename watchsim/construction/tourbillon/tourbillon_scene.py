@@ -8,8 +8,8 @@ from watchsim.construction.swiss_lever.swiss_lever_scene import parts, rest
 from watchsim.construction.tourbillon.tourbillon_dimensions import Tourbillon
 
 HEAD = """\
-# A tourbillon: a Swiss lever on a carriage, the balance on its axis. The escape pinion rolls round the fixed fourth wheel, whose
-# teeth are {values.ratio} times its own, and the train drives the carriage. The watch stands upright, and the balance is out of
+# A tourbillon: a Swiss lever on a carriage, the balance on its axis. The escape pinion rolls round the fixed fourth wheel, of
+# {values.ratio} times its teeth, and the train drives the carriage. The watch stands upright, and the balance is out of
 # poise: what this gains in one position it loses in the opposite one. Drawn to these dimensions:
 {dimensions}
 
@@ -60,4 +60,4 @@ def scene_text(values: Tourbillon) -> str:
         "banking": carried,
     }
     drive = DRIVE.format(values=values, torque=-values.ratio * values.torque)
-    return head + parts(values, design.balance_pivot[1], more) + drive + rest(values, "1e-10")
+    return head + parts(values, design.balance_pivot[1], more) + drive + rest(values, "1e-11")

@@ -18,7 +18,7 @@ from watchsim.scene.errors import Faults
 from watchsim.scene.file.keys.key_values import NAN, Table
 from watchsim.scene.file.keys.schema import GEAR, nearest
 from watchsim.scene.file.readers.read_forces import listed
-from watchsim.scene.gear_trains import note_gears, reached
+from watchsim.scene.gear_trains import CARRIED, note_gears, reached
 from watchsim.scene.gearing import Gear, Geared
 from watchsim.units import NUMBER, PER_LENGTH, TRAVEL_PER_TURN, Dimension
 
@@ -54,6 +54,7 @@ def read_gears(mapping: Mapping[str, Any], bodies: tuple[Body, ...], gravity: Po
     ranks = _ranks(mapping, bodies, hung, pulled)
     rigid = [(table, gear) for table, gear in read if gear.backlash == 0.0]
     bound = _bound(rigid, known, ranks)
+    _note_carried([(table, gear) for table, gear in read if gear.backlash > 0.0], list(known), hung)
     _note_double([(table, gear) for table, gear in read if gear.backlash > 0.0], bound)
     spun = _with_velocities(bodies, bound, mapping, faults)
     note_gears(spun, hung, pulled, lambda name, message: faults.add(_key(rigid, name), message))
@@ -91,8 +92,6 @@ def _gear(table: Table, known: Mapping[str, Body]) -> Gear | None:
         table.fault("restitution", "must lie between 0 (no rebound) and 1 (nothing lost)", with_value=True)
     if not 0.0 < efficiency <= 1.0:
         table.fault("efficiency", "is a share of the work: above 0, at most 1", with_value=True)
-    if backlash > 0.0 and (first.on is not None or second.on is not None):
-        table.fault("backlash", "gears with play between carried bodies are not simulated: leave it out", with_value=True)
     return Gear((first.name, second.name), ratio, backlash, restitution, efficiency)
 
 
@@ -167,6 +166,20 @@ def _note_double(loose: list[tuple[Table, Gear]], bound: Mapping[str, Geared]) -
         a, b = (bound[name].to if name in bound else name for name in gear.between)
         if a == b:
             table.fault("between", f"{' and '.join(gear.between)} are bound to each other already, without play", True)
+
+
+def _note_carried(loose: list[tuple[Table, Gear]], names: list[str], hung: tuple[Ride, ...]) -> None:
+    """Play between angles of which one is against a third body would be a contact of three coordinates."""
+    for table, gear in loose:
+        numbers = [names.index(name) for name in gear.between]
+        carriers = [hung[number].turns_with for number in numbers]
+        if carriers == [-1, -1]:
+            continue
+        if carriers not in ([-1, numbers[0]], [numbers[1], -1]):
+            why = f"play between these would bind three angles, theirs and that of what carries them. {CARRIED}"
+            table.fault("between", why, with_value=True)
+        elif gear.ratio == -1.0:
+            table.fault("ratio", "with play must not be -1: the carried body would not turn in the movement", with_value=True)
 
 
 def _with_velocities(
