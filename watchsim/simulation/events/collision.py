@@ -89,9 +89,9 @@ def _rebounds_unseen(m, options, event, room):
     """
     for i in range(m):
         rate = event.closed.kin[i].gN_dot
-        if room.restitution[i] > 0.0 and room.impulse[2 * i] > 0.0 and 0.0 < rate <= event.zero[i]:
-            if rate > rounding_of(event.closed, i, options, event.pace):
-                return True
+        slowly = room.restitution[i] > 0.0 and room.impulse[2 * i] > 0.0 and 0.0 < rate <= event.zero[i]
+        if slowly and rate > rounding_of(event.closed, i, options, event.pace):
+            return True
     return False
 
 

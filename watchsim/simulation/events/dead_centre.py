@@ -1,8 +1,8 @@
 """Does friction lock two bodies where their contact lies on the line of centres?
 
-There w_T is parallel to w_N, so that forces with w_N λ_N + w_T λ_T = 0 move nothing, however large they are. Where they lie within
-the cone of friction and press, and the bodies' motion would close the gap between them, no finite force lets the motion go
-on: as soon as the contact has left the line of centres a finite motion needs an infinite force, and it stops both bodies
+There w_T is parallel to w_N, so that forces with w_N lambda_N + w_T lambda_T = 0 move nothing, however large they are. Where
+they lie within the cone of friction and press, and the bodies' motion would close the gap between them, no finite force
+lets the motion go on: just beyond the line of centres an impulse stops both bodies, the larger the nearer it is to that line
 (docs/theory/method.md 2.6).
 """
 
@@ -29,7 +29,7 @@ def stop_at_dead_centre(model, state, r, work, rest, record):
         kin = rest.kin[i]
         if not _locks(model, rest, i, work):
             continue
-        # Forces without effect do work on the gap's own acceleration: these press it open by -λ_N (w̄_N + w̄_T λ_T / λ_N).
+        # What the forces without effect would have to make up for, which they cannot: sigma·w̄.
         if kin.bar_N - kin.bar_T * work.G[2 * i, 2 * i] / work.G[2 * i, 2 * i + 1] >= 0.0:
             continue
         before = kinetic_energy(model, state.u)
@@ -45,7 +45,10 @@ def stop_at_dead_centre(model, state, r, work, rest, record):
 
 @kernel
 def hold_at_dead_centre(model, state, m, work, rest):
-    """Take the accelerations from bodies that stand, locked by one of the m contacts in force in `rest`; forces are in `work`."""
+    """Take the accelerations from bodies that stand, locked by one of the m contacts in force in `rest`.
+
+    The forces are in `work`.
+    """
     for i in range(m):
         if state.mode[rest.ids[i]] != STICK or not work.force[2 * i] > 0.0 or not _locks(model, rest, i, work):
             continue
