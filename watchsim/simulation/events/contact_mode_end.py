@@ -97,7 +97,7 @@ def first_leave(model, state, options, smallest, scratch):
 
 @kernel
 def _while_within(model, state, options, before, best, scratch):
-    """The last time of the step at which the contacts that have left by `best` were still within their primitives, or nearly."""
+    """A time just before `best`, at which the contacts that have left by then were within their primitives."""
     _evaluate(model, state, options, before, scratch)
     nearest = math.inf
     for j in range(state.now.awake_contacts):
@@ -107,7 +107,7 @@ def _while_within(model, state, options, before, best, scratch):
 
 @kernel
 def _earliest(model, state, options, before, tau, scratch):
-    """The earliest root among the monitors not positive at tau, all positive at `before`, its code; had a contact left by tau?"""
+    """The earliest root among the monitors that fire at tau and not `before`; its code; had a contact left by tau?"""
     smooth, fired, left = scratch.smooth, 0, False
     for code in range(MONITORS * state.now.awake_contacts + len(model.coordinates)):
         if smooth.monitors[code] <= 0.0:
