@@ -106,7 +106,7 @@ def perturbed(scene: Scene, share: float, seed: int, lean: float = 1.0) -> Scene
 
     Places are stretched from a point of the plane, or with `lean` -1 drawn towards it, and outlines are turned, the other way
     with the other `lean`, where that leaves them apart: of two faces that meet flat either end may be first, and a gap that
-    hardly closes may or may not. Seeds 2 n and 2 n + 1 turn outlines by the same angles. What touches at the start is stretched.
+    hardly closes may or may not. Seeds 2 n and 2 n + 1 turn outlines by the same angles. What touches is stretched.
     """
     rng = np.random.default_rng(seed)
 

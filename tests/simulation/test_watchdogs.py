@@ -36,7 +36,7 @@ from watchsim.tolerances import LENIENCE_STEP, MOST_LENIENT
 ROOT = Path(jit.__file__).resolve().parents[1]
 SABOTAGE = """
 import sys
-import watchsim.simulation.advance as advance
+import watchsim.simulation.accepted_step as step
 import watchsim.simulation.events.after_event as settle
 from moving_scenes import profile
 from watchsim.simulation.simulate import simulate
@@ -51,7 +51,7 @@ print(run.stop_message)
 """
 
 
-@pytest.mark.parametrize("place", ["advance", "settle"])
+@pytest.mark.parametrize("place", ["step", "settle"])
 def test_a_correction_that_stops_bodies_ends_the_run(place: str, tmp_path: Path) -> None:
     """Corrections replaced, in plain Python, by one that stops all motion: the run says so and keeps what it has."""
     environment = {

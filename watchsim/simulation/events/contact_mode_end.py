@@ -106,7 +106,7 @@ def _first_before(model, state, options, before, tau, scratch):
 
 @kernel
 def _while_within(state, options, before, best, scratch):
-    """The last time of the step at which the contacts that have left by `best` were still within their primitives, or nearly."""
+    """A time just before `best`, at which the contacts that have left by then were within their primitives."""
     nearest = math.inf
     for j in range(state.now.awake_contacts):
         nearest = min(nearest, scratch.smooth.before[MONITORS * j + EXTENT])
@@ -115,7 +115,7 @@ def _while_within(state, options, before, best, scratch):
 
 @kernel
 def _earliest(model, state, options, before, tau, scratch):
-    """The earliest root among the monitors not positive at tau, all positive at `before`, its code; had a contact left by tau?"""
+    """The earliest root among the monitors that fire at tau and not `before`; its code; had a contact left by tau?"""
     smooth, fired, left = scratch.smooth, 0, False
     for code in range(MONITORS * state.now.awake_contacts + len(model.coordinates)):
         if smooth.monitors[code] <= 0.0:
