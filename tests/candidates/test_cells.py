@@ -205,7 +205,7 @@ def test_cells_learnt_bit_by_bit_are_the_same() -> None:
 @pytest.mark.parametrize("u", [(1.0, 0.0), (-3.0, 3.0), (0.2, -5.0), (0.0, 0.0), (math.inf, 1.0)])
 def test_the_cells_ahead_are_learned_with_the_one_asked_about(u: tuple[float, float]) -> None:
     """The same candidates as asked for one by one, and fewer questions on the way that the bodies move."""
-    scene, compiled = pair("pivot", "pivot")
+    _, compiled = pair("pivot", "pivot")
     finder, row = CellFinder(compiled.model), compiled.model.pairs[0]
     q, pace = np.array([0.1, 0.2]), np.array(u) / np.array([row.size0, row.size1])
     cells = finder.learn(0, q, np.array(u))
