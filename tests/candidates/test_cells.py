@@ -200,3 +200,19 @@ def test_cells_learnt_bit_by_bit_are_the_same() -> None:
         parts = np.split(found, np.cumsum(count)[:-1])
         alone |= {int(key): part.tolist() for key, part in zip(keys, parts, strict=True)}
     assert alone == tables[0]
+
+
+@pytest.mark.parametrize("u", [(1.0, 0.0), (-3.0, 3.0), (0.2, -5.0), (0.0, 0.0), (math.inf, 1.0)])
+def test_the_cells_ahead_are_learned_with_the_one_asked_about(u: tuple[float, float]) -> None:
+    """The same candidates as asked for one by one, and fewer questions on the way that the bodies move."""
+    _, compiled = pair("pivot", "pivot")
+    finder, row = CellFinder(compiled.model), compiled.model.pairs[0]
+    q, pace = np.array([0.1, 0.2]), np.array(u) / np.array([row.size0, row.size1])
+    cells = finder.learn(0, q, np.array(u))
+    assert listed(compiled, cells, q)[0] == LISTED
+    fastest = np.abs(pace).max()
+    for step in range(11) if 0.0 < fastest < math.inf else ():
+        there = q + step / fastest * np.array(u)
+        how, ids = listed(compiled, cells, there)
+        assert how == LISTED
+        assert ids == listed(compiled, CellFinder(compiled.model).learn(0, there), there)[1]

@@ -12,21 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from watchsim.analysis.balanced_forces import Mechanism
 from watchsim.analysis.modes_in_force import modes_in_force
-from watchsim.analysis.nonnegative import nonnegative
-from watchsim.contact.index_sets import STICK
-from watchsim.contact.kinematics import Closed, closed_contacts
-from watchsim.contact.poses import poses
-from watchsim.dynamics.equations_of_motion import balance
 from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.scene.oscillation import loads
 from watchsim.scene.recording import STATISTICS
 from watchsim.simulation.methods import EVENT_DRIVEN
 from watchsim.simulation.record.trajectory import Array, Trajectory
-
-SLACK = 1e-9  # of the largest force: rounding
-GENTLE = 1e-4  # of a system scaled to 1: how much small forces are preferred
-SMALLEST = 1e-12  # of the largest: what counts in a system of redundant contacts
 
 
 @dataclass(frozen=True)
@@ -56,19 +48,6 @@ class Forces:
         return f"<Forces at {len(self.t)} instants: {most}; pivots of {', '.join(self.pivots) or 'nothing'}>"
 
 
-@dataclass(frozen=True)
-class _Instant:
-    """Contacts in force with their forces (m, 2), normals (m, 2) and points (m, 2); of the coordinates what the contacts do to
-    them (n,) and their accelerations (n,)."""
-
-    ids: NDArray[np.int64]
-    force: Array
-    normal: Array
-    point: Array
-    load: Array
-    acceleration: Array
-
-
 def forces(run: Trajectory, times: Iterable[float] | None = None) -> Forces:
     """Forces at these times (s), by default at all rows; after an impact where one happens at that time.
 
@@ -83,18 +62,22 @@ def forces(run: Trajectory, times: Iterable[float] | None = None) -> Forces:
     q, u = run.sample(t)
     compiled = compile_scene(run.scene)
     where, speed = absolute(compiled, q, False), absolute(compiled, u, True)
-    mechanism = _Mechanism(compiled)
-    found = [_instant(mechanism, *row) for row in zip(t.tolist(), where, speed, modes_in_force(run, t), strict=True)]
-    pairs = np.array(sorted({int(k) for one in found for k in one.ids}), np.int64)
+    mechanism = Mechanism(compiled)
+    alike: dict[tuple[tuple[int, int], ...], list[int]] = {}  # instants by what is in force
+    for row, modes in enumerate(modes_in_force(run, t)):
+        alike.setdefault(tuple(sorted(modes.items())), []).append(row)
+    pairs = np.array(sorted({k for in_force in alike for k, _ in in_force}), np.int64)
     shape = (len(t), len(pairs))
     out = Forces(t, pairs, np.zeros(shape), np.zeros(shape), np.full((*shape, 2), np.nan), np.full((*shape, 2), np.nan), {}, {})
-    for row, one in enumerate(found):
-        columns = np.searchsorted(pairs, one.ids)
-        out.normal[row, columns], out.tangential[row, columns] = one.force.T
-        out.direction[row, columns], out.point[row, columns] = one.normal, one.point
-    turning = np.array([one.acceleration for one in found])
+    load, turning = np.zeros(where.shape), np.zeros(where.shape)
+    for in_force, rows in alike.items():
+        found = mechanism.balanced(t[rows], where[rows], speed[rows], dict(in_force))
+        place = np.ix_(np.array(rows), np.searchsorted(pairs, found.ids))
+        out.normal[place], out.tangential[place] = found.force[:, :, 0], found.force[:, :, 1]
+        out.direction[place], out.point[place] = found.normal, found.point
+        load[rows], turning[rows] = found.load, found.acceleration
     out.pivots.update(_pivots(run, compiled, out, where, speed, turning))
-    out.drives.update(_drives(run, compiled, np.array([one.load for one in found]), turning))
+    out.drives.update(_drives(run, compiled, load, turning))
     return out
 
 
@@ -105,96 +88,6 @@ def absolute(compiled: Compiled, values: Array, rates: bool) -> Array:
     for own, on, angle in compiled.against:  # carriers come before what they carry
         out[:, own] += (out[:, on] if on >= 0 else 0.0) + (0.0 if rates else angle)
     return out
-
-
-class _Mechanism:
-    """What is the same at every instant, looked up once: mobilities, dry friction of bearings, friction of each contact."""
-
-    def __init__(self, compiled: Compiled) -> None:
-        model = self.model = compiled.model
-        self.mobility, self.dry = 1.0 / np.asarray(model.coordinates.mass), np.asarray(model.coordinates.coulomb)
-        self.prescribed = np.asarray(model.coordinates.driven) != 0
-        self.friction = np.asarray(model.laws.friction)[np.asarray(model.contacts.group)]
-        self.pose, self.closed = poses(len(model.bodies)), closed_contacts(1)
-
-    def room(self, contacts: int) -> Closed:
-        """Room for that many contacts, empty."""
-        if len(self.closed.ids) < contacts:
-            self.closed = closed_contacts(contacts)
-        self.closed.slots[:] = 0
-        return self.closed
-
-
-def _instant(mechanism: _Mechanism, t: float, q: Array, u: Array, modes: dict[int, int]) -> _Instant:
-    """Forces of the contacts in `modes` at one state."""
-    ids = np.array(sorted(modes), np.int64)
-    closed, normal, h = mechanism.room(len(ids)), np.zeros((len(ids), 2)), np.zeros(len(q))
-    balance(mechanism.model, t, q, u, ids, mechanism.pose, closed, normal, h)
-    dry, prescribed = mechanism.dry, mechanism.prescribed
-    held = (dry > 0.0) & (u == 0.0)
-    mobility = np.where(held | prescribed, 0.0, mechanism.mobility)
-    h -= np.where(held, 0.0, dry * np.sign(u))
-    free = np.where(prescribed, h, mobility * h)
-    rows = len(ids)
-    if not rows:
-        return _Instant(ids, np.zeros((0, 2)), normal, np.zeros((0, 2)), np.zeros(len(q)), free)
-    w_n, w_t = (_dense(closed, values, rows, len(q)) for values in (closed.w_N, closed.w_T))
-    kin = closed.kin[:rows].view(np.ndarray)
-    # Unknowns: the normal force of each contact, and the tangential one of those that stick.
-    sticks = [i for i, k in enumerate(ids) if modes[int(k)] == STICK]
-    friction = mechanism.friction[ids]
-    slide = np.array([0.0 if modes[int(k)] == STICK else -friction[i] * modes[int(k)] for i, k in enumerate(ids)])
-    hold, bar = np.vstack((w_n, w_t[sticks])), np.concatenate((kin["bar_N"], kin["bar_T"][sticks]))
-    system, right = hold * mobility, -bar - hold @ free
-
-    def loaded(force: Array) -> Array:
-        return force[:, 0] @ w_n + force[:, 1] @ w_t
-
-    unknown = _least(system @ np.vstack((w_n + slide[:, None] * w_t, w_t[sticks])).T, right)
-    force = np.column_stack((unknown[:rows], slide * unknown[:rows]))
-    force[sticks, 1] = unknown[rows:]
-    if np.any(np.abs(force[:, 1]) > friction * force[:, 0] + SLACK * np.abs(force).max()):
-        # Redundant contacts: among all that balance, forces that press and stay within their cones of friction.
-        edges = np.array([[1.0, slide[i]] if i not in sticks else [1.0, friction[i]] for i in range(rows)])
-        more = np.column_stack((np.ones(len(sticks)), -friction[sticks]))
-        owner = np.concatenate((np.arange(rows), np.array(sticks, int)))
-        corners = np.vstack((edges, more))
-        ways = corners[:, :1] * w_n[owner] + corners[:, 1:] * w_t[owner]
-        share = _pressing(system @ ways.T, right)
-        force = np.zeros((rows, 2))
-        np.add.at(force, owner, share[:, None] * corners)
-    load = loaded(force)
-    return _Instant(ids, force, normal, np.column_stack((kin["x"], kin["y"])), load, free + mobility * load)
-
-
-def _dense(closed: Closed, values: Array, rows: int, width: int) -> Array:
-    out = np.zeros((rows, width))
-    for row in range(rows):
-        for slot in range(closed.slots[row]):
-            out[row, closed.coord[row, slot]] += values[row, slot]
-    return out
-
-
-def _least(system: Array, right: Array) -> Array:
-    """The smallest solution, of a system scaled to a unit diagonal: contacts have lever arms of millimetres."""
-    if system.size == 1 and system[0, 0] != 0.0:
-        return np.asarray(right / system[0])
-    scale = np.sqrt(np.abs(np.diag(system)))
-    scale = np.where(scale > 0.0, 1.0 / np.where(scale > 0.0, scale, 1.0), 1.0)
-    scaled: Array = np.linalg.lstsq(system * np.outer(scale, scale), right * scale, rcond=SMALLEST)[0]
-    return scaled * scale
-
-
-def _pressing(system: Array, right: Array) -> Array:
-    """A solution without negative shares, near the smallest; as near to one as can be where rounding leaves none."""
-    high = 1.0 / np.maximum(np.abs(system).max(axis=1), np.finfo(float).tiny)
-    scaled, target = system * high[:, None], right * high
-    count = scaled.shape[1]
-    near = nonnegative(np.vstack((scaled, GENTLE * np.eye(count))), np.append(target, np.zeros(count)))
-    used = near > SMALLEST * near.max(initial=0.0)
-    # The push towards small forces leaves the balance off by its square; among those in use the rest is put right.
-    near[used] += np.linalg.lstsq(scaled[:, used], target - scaled @ near, rcond=SMALLEST)[0]
-    return near
 
 
 def _pivots(run: Trajectory, compiled: Compiled, found: Forces, q: Array, u: Array, a: Array) -> Iterator[tuple[str, Array]]:

@@ -1,6 +1,6 @@
 """Which contacts are candidates in each cell of two bodies' configuration space?
 
-Asked for once (broad_phase.py), together with the neighbouring cells, which will be entered next. What is found holds as well
+Asked for once (broad_phase.py), together with the cells ahead, on the way that the bodies move. What is found holds as well
 for every part of a turn by which an outline comes back onto itself, and for later runs with the same geometry.
 """
 
@@ -24,6 +24,7 @@ from watchsim.model.records import NO_KEY, Cells, Model
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 AROUND = {1: 16, 2: 4, 3: 1}  # cells asked about together, to each side, by number of axes
+BESIDE, AHEAD = {1: 4, 2: 1, 3: 1}, {1: 24, 2: 16, 3: 3}  # of bodies that move: to each side of their way, and along it
 MOST = 1 << 20  # cells in the table; beyond it everything is forgotten, so that no run fills the memory
 
 
@@ -39,14 +40,14 @@ class CellFinder:
         for p, pair in self._pairs.items():
             self._insert_cells(p, pair.known.cells())
 
-    def learn(self, p: int, q: Array) -> Cells:
-        """Find the cell of body pair p at q and its neighbours; returns the new table."""
+    def learn(self, p: int, q: Array, u: Array | None = None) -> Cells:
+        """Find the cell of body pair p at q and its neighbours, or those ahead at velocities u; returns the new table."""
         start = time.perf_counter()
         pair = self._pairs[p]
         before = len(pair.known)
         if self.number > MOST:
             self._forget()
-        self._insert_cells(p, pair.known_around(q))
+        self._insert_cells(p, pair.known_around(q, u))
         self.learned += len(pair.known) - before
         self.seconds += time.perf_counter() - start
         return self.cells
@@ -96,6 +97,10 @@ class _Axis(NamedTuple):
         """In which cell along it q lies, not wrapped."""
         return math.floor((q[self.coordinate] - (q[self.on] if self.on >= 0 else 0.0)) / self.size)
 
+    def pace_of(self, u: Array) -> float:
+        """Cells that velocities pass in a second."""
+        return float(u[self.coordinate] - (u[self.on] if self.on >= 0 else 0.0)) / self.size
+
     @property
     def part(self) -> int:
         """Cells after which everything repeats, 0 for a length."""
@@ -111,8 +116,7 @@ class PairCells:
             _Axis(*(self.pair[f"{name}{i}"].item() for name in ("c", "on", "size", "wrap", "fold")))
             for i in range(self.pair.axes)
         ]
-        reach = AROUND[len(self.axes)]
-        self._steps = np.array(list(itertools.product(range(-reach, reach + 1), repeat=len(self.axes))))
+        self._around, self._beside = (self._block(reach[len(self.axes)]) for reach in (AROUND, BESIDE))
         self._parts = np.array([axis.part for axis in self.axes])
         self.start = int(self.pair.start)
         near = model.near[self.pair.near_start : self.pair.near_stop]
@@ -127,14 +131,28 @@ class PairCells:
         loose = [alike.loose for alike in self._alike if alike is not None]
         self.known: Known = known_cells(model, p, np.concatenate([np.zeros(0, np.int64), *loose]))
 
+    def _block(self, reach: int) -> Integers:
+        """Steps from a cell to itself and all its neighbours within `reach`, (cells, axes)."""
+        return np.array(list(itertools.product(range(-reach, reach + 1), repeat=len(self.axes))))
+
+    def _steps(self, u: Array | None) -> Integers:
+        """Steps from a cell to those that are asked about with it: around it, or along the way that bodies move."""
+        pace = np.array([axis.pace_of(u) for axis in self.axes]) if u is not None else np.zeros(1)
+        fastest = np.abs(pace).max()
+        if not 0.0 < fastest < math.inf:
+            return self._around
+        way = np.arange(AHEAD[len(self.axes)] + 1)[:, None] * (pace / fastest)
+        along = np.rint(way).astype(np.int64)
+        return np.unique((along[:, None] + self._beside).reshape(-1, len(self.axes)), axis=0)
+
     def around(self, q: Array) -> tuple[Integers, Integers, Integers]:
         """Of the cell of q and its neighbours: keys of cells, numbers of candidates, and these one after another."""
         return self.everywhere(self.known_around(q))
 
-    def known_around(self, q: Array) -> list[Cell]:
-        """The cell of q and its neighbours, of each the alike one in the first part of a turn; all of them known now."""
+    def known_around(self, q: Array, u: Array | None = None) -> list[Cell]:
+        """The cell of q and those near it (see `learn`), of each the alike one in the first part of a turn; all known now."""
         parts = self._parts
-        block = np.array([axis.cell_of(q) for axis in self.axes]) + self._steps
+        block = np.array([axis.cell_of(q) for axis in self.axes]) + self._steps(u)
         block = block[((np.abs(block) < REACH) | (parts > 0)).all(axis=1)]
         turns = np.where(parts > 0, block // np.maximum(parts, 1), 0)
         base = block - turns * parts

@@ -31,6 +31,9 @@ def regions_depth(a: Any, b: Any, allowed: float) -> tuple[float, Point]:
     """
     import shapely
 
+    shapely.prepare(a)
+    if not shapely.dwithin(a, b, allowed):  # quicker by far than to find where they are nearest
+        return -1.0, (0.0, 0.0)
     parts = common_parts(a, b, allowed)
     if not parts:
         line = shapely.shortest_line(a, b)

@@ -83,6 +83,7 @@ class Run:
         self.record = new_record(model, ROWS + ROWS_PER_STEP, EVENTS + EVENTS_PER_CONTACT * room_for(model), windows)
         self.watch = OverlapWatch(scene, compiled, self.method, self.kept.windows)
         self.stored_at_start = stored_energy(model, self.state.q, self.state.u)
+        self._usual_energy = usual_energy(model)
         self.saved: SavedState | None = None
         self._parts_before = 0  # what was flushed before the state was saved
 
@@ -143,7 +144,7 @@ class Run:
 
     def _learn(self) -> None:
         """Look up the cell that the loop has met."""
-        self.finder.learn(int(self.scratch.asked.cell.pair), self.scratch.asked.at.copy())
+        self.finder.learn(int(self.scratch.asked.cell.pair), self.scratch.asked.at.copy(), self.state.u)
 
     def to_the_end(self, duration: float, progress: Progress | None) -> Stop:
         """Run until the duration is over or something ends the run for good."""
@@ -168,7 +169,7 @@ class Run:
 
     def _ledger_fails(self) -> bool:
         """Is the residual of the energy ledger more than rounding?"""
-        held = max(float(self.state.worst.kinetic_energy), self.stored_at_start, usual_energy(self.compiled.model))
+        held = max(float(self.state.worst.kinetic_energy), self.stored_at_start, self._usual_energy)
         return ledger_fails(self._energy(), held, self.tolerance)
 
     def _details(self, stop: Stop) -> str:
@@ -209,7 +210,10 @@ class Run:
             stop = self._advance(until, self.record)
             if stop == Stop.CELL_UNKNOWN:
                 self._learn()
-            elif stop == Stop.BUFFER_FULL:
+                if interrupted():
+                    return Stop.INTERRUPTED
+                continue
+            if stop == Stop.BUFFER_FULL:
                 self.flush()
             elif stop == Stop.LAST_STEP:
                 # The next step is cut short by the end. Who goes on later must go on from here, to take it whole.

@@ -165,7 +165,8 @@ def test_the_order_in_which_cells_are_learned_does_not_matter(monkeypatch: pytes
     known._store.clear()
     plain = simulate(scene, 0.3)
     known._store.clear()
-    monkeypatch.setattr(cell_table, "AROUND", {1: 0, 2: 0, 3: 0})
+    for name in ("AROUND", "BESIDE", "AHEAD"):
+        monkeypatch.setattr(cell_table, name, {1: 0, 2: 0, 3: 0})
     other = simulate(scene, 0.3)
     assert 0 < other.counts["cells_asked"] < plain.counts["cells_asked"]
     assert_same(plain, other)

@@ -65,7 +65,7 @@ class MoreauRun(Run):
         return Stop(int(code))
 
     def _learn(self) -> None:
-        self.finder.learn(int(self.work.asked.cell.pair), self.work.asked.at.copy())
+        self.finder.learn(int(self.work.asked.cell.pair), self.work.asked.at.copy(), self.state.u)
 
     def _counts(self) -> dict[str, int]:
         return {**super()._counts(), "sweeps": int(self.work.kept.sweeps)}

@@ -1,0 +1,155 @@
+"""Which forces balance the same contacts, in the same modes, at many instants?
+
+A contact in force does not accelerate apart, a sticking one does not slip, a sliding one rubs (docs/theory/method.md 2.4). The
+linear systems of all instants are solved together.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from watchsim.analysis.nonnegative import nonnegative
+from watchsim.contact.index_sets import STICK
+from watchsim.contact.kinematics import Closed, closed_contacts
+from watchsim.contact.poses import poses
+from watchsim.dynamics.equations_of_motion import balance
+from watchsim.mechanism.compile import Compiled
+
+Array = NDArray[np.float64]
+
+SLACK = 1e-9  # of the largest force: rounding
+GENTLE = 1e-4  # of a system scaled to 1: how much small forces are preferred
+SMALLEST = 1e-12  # of the largest: what counts in a system of redundant contacts
+
+
+class Balanced(NamedTuple):
+    """At n instants the m contacts `ids` with their forces, normals and points, each (n, m, 2); what the contacts do to the
+    coordinates, and their accelerations, (n, coordinates)."""
+
+    ids: NDArray[np.int64]
+    force: Array
+    normal: Array
+    point: Array
+    load: Array
+    acceleration: Array
+
+
+class _Seen(NamedTuple):
+    """Kinematics of m contacts at n instants, and the forces h of all else."""
+
+    w_N: Array  # (n, m, coordinates)
+    w_T: Array
+    bar: Array  # (n, 2, m): bar terms along normals and tangents
+    normal: Array  # (n, m, 2)
+    point: Array
+    h: Array  # (n, coordinates)
+
+
+class Mechanism:
+    """What is the same at every instant, looked up once: mobilities, dry friction of bearings, friction of each contact."""
+
+    def __init__(self, compiled: Compiled) -> None:
+        model = self.model = compiled.model
+        self.mobility, self.dry = 1.0 / np.asarray(model.coordinates.mass), np.asarray(model.coordinates.coulomb)
+        self.prescribed = np.asarray(model.coordinates.driven) != 0
+        self.friction = np.asarray(model.laws.friction)[np.asarray(model.contacts.group)]
+
+    def balanced(self, t: Array, q: Array, u: Array, modes: Mapping[int, int]) -> Balanced:
+        """Forces of the contacts in `modes` at times t (n,) with coordinates q and velocities u (n, coordinates)."""
+        ids = np.array(sorted(modes), np.int64)
+        seen = self._seen(t, q, u, ids)
+        held = (self.dry > 0.0) & (u == 0.0)
+        mobility = np.where(held | self.prescribed, 0.0, self.mobility)
+        h = seen.h - np.where(held, 0.0, self.dry * np.sign(u))
+        free = np.where(self.prescribed, h, mobility * h)
+        force = self._forces(seen, mobility, free, ids, np.array([modes[k] for k in ids.tolist()]))
+        load = (force[:, :, :1] * seen.w_N + force[:, :, 1:] * seen.w_T).sum(axis=1)
+        return Balanced(ids, force, seen.normal, seen.point, load, free + mobility * load)
+
+    def _seen(self, t: Array, q: Array, u: Array, ids: NDArray[np.int64]) -> _Seen:
+        times, contacts, width = len(t), len(ids), q.shape[1]
+        shape = (times, contacts, width)
+        points = np.zeros((times, contacts, 2))
+        seen = _Seen(np.zeros(shape), np.zeros(shape), np.zeros((times, 2, contacts)), points, points.copy(), np.zeros(q.shape))
+        pose, closed = poses(len(self.model.bodies)), closed_contacts(max(contacts, 1))
+        kin = closed.kin[:contacts].view(np.ndarray)
+        for row, time in enumerate(t.tolist()):
+            balance(self.model, time, q[row], u[row], ids, pose, closed, seen.normal[row], seen.h[row])
+            if contacts:
+                _spread(closed, contacts, seen.w_N[row], seen.w_T[row])
+                seen.bar[row, 0], seen.bar[row, 1] = kin["bar_N"], kin["bar_T"]
+                seen.point[row, :, 0], seen.point[row, :, 1] = kin["x"], kin["y"]
+        return seen
+
+    def _forces(self, seen: _Seen, mobility: Array, free: Array, ids: NDArray[np.int64], modes: NDArray[np.int64]) -> Array:
+        """(n, m, 2): along normal and tangent. The smallest where contacts are redundant."""
+        rows, friction = len(ids), self.friction[ids]
+        force = np.zeros((len(free), rows, 2))
+        if not rows:
+            return force
+        # Unknowns: the normal force of each contact, and the tangential one of those that stick.
+        sticks = np.flatnonzero(modes == STICK)
+        slide = np.where(modes == STICK, 0.0, -friction * modes)
+        hold = np.concatenate((seen.w_N, seen.w_T[:, sticks]), axis=1)
+        bar = np.concatenate((seen.bar[:, 0], seen.bar[:, 1, sticks]), axis=1)
+        push = np.concatenate((seen.w_N + slide[:, None] * seen.w_T, seen.w_T[:, sticks]), axis=1)
+        system, right = hold * mobility[:, None, :], -bar - (hold @ free[:, :, None])[:, :, 0]
+        unknown = _least(system @ push.transpose(0, 2, 1), right)
+        force[:, :, 0], force[:, :, 1] = unknown[:, :rows], slide * unknown[:, :rows]
+        force[:, sticks, 1] = unknown[:, rows:]
+        most = np.abs(force).max(axis=(1, 2))
+        beyond = (np.abs(force[:, :, 1]) > friction * force[:, :, 0] + SLACK * most[:, None]).any(axis=1)
+        for k in np.flatnonzero(beyond):
+            force[k] = _within_cones(system[k], right[k], (seen.w_N[k], seen.w_T[k]), (sticks, slide, friction))
+        return force
+
+
+def _spread(closed: Closed, rows: int, out_N: Array, out_T: Array) -> None:
+    """The force directions of the first contacts, by coordinate."""
+    for row, slots in enumerate(closed.slots[:rows].tolist()):
+        for slot in range(slots):
+            j = closed.coord[row, slot]
+            out_N[row, j] += closed.w_N[row, slot]
+            out_T[row, j] += closed.w_T[row, slot]
+
+
+def _least(system: Array, right: Array) -> Array:
+    """The smallest solutions (n, m), of systems scaled to a unit diagonal: contacts have lever arms of millimetres."""
+    scale = np.sqrt(np.abs(np.diagonal(system, axis1=1, axis2=2)))
+    scale = np.where(scale > 0.0, 1.0 / np.where(scale > 0.0, scale, 1.0), 1.0)
+    inverse = np.linalg.pinv(system * scale[:, :, None] * scale[:, None, :], rcond=SMALLEST)
+    solved: Array = (inverse @ (right * scale)[:, :, None])[:, :, 0] * scale
+    return solved
+
+
+def _within_cones(
+    system: Array, right: Array, directions: tuple[Array, Array], laws: tuple[NDArray[np.int64], Array, Array]
+) -> Array:
+    """Forces (m, 2) of redundant contacts: among all that balance, those that press and stay within their cones of friction."""
+    (w_n, w_t), (sticks, slide, friction) = directions, laws
+    rows = len(slide)
+    tangents = slide.copy()
+    tangents[sticks] = friction[sticks]
+    owner = np.concatenate((np.arange(rows), sticks))
+    corners = np.column_stack((np.ones(len(owner)), np.concatenate((tangents, -friction[sticks]))))
+    ways = corners[:, :1] * w_n[owner] + corners[:, 1:] * w_t[owner]
+    share = _pressing(system @ ways.T, right)
+    force = np.zeros((rows, 2))
+    np.add.at(force, owner, share[:, None] * corners)
+    return force
+
+
+def _pressing(system: Array, right: Array) -> Array:
+    """A solution without negative shares, near the smallest; as near to one as can be where rounding leaves none."""
+    high = 1.0 / np.maximum(np.abs(system).max(axis=1), np.finfo(float).tiny)
+    scaled, target = system * high[:, None], right * high
+    count = scaled.shape[1]
+    near = nonnegative(np.vstack((scaled, GENTLE * np.eye(count))), np.append(target, np.zeros(count)))
+    used = near > SMALLEST * near.max(initial=0.0)
+    # The push towards small forces leaves the balance off by its square; among those in use the rest is put right.
+    near[used] += np.linalg.lstsq(scaled[:, used], target - scaled @ near, rcond=SMALLEST)[0]
+    return near
