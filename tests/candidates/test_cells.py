@@ -90,7 +90,7 @@ def random_q(scene: Scene, rng: np.random.Generator) -> np.ndarray:
     return np.array(q)
 
 
-@pytest.mark.parametrize("poses", [40, pytest.param(300, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("poses", [15, pytest.param(300, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", CASES)
 def test_no_touching_pair_is_lost(name: str, poses: int) -> None:
     scene, compiled = pair(*CASES[name])

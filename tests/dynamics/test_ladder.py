@@ -11,7 +11,8 @@ from naive.lcp_oracle import residual, solutions
 from random_contacts import random_case
 
 from watchsim.dynamics.coulomb import add_element, fill_matrix, fill_rhs
-from watchsim.dynamics.delassus import ContactWork, contact_work
+from watchsim.dynamics.delassus import ContactWork, ContactWorkRef, contact_work
+from watchsim.dynamics.lcp.lemke_pivoting import LcpWorkRef
 from watchsim.dynamics.problem_kinds import Rung
 from watchsim.dynamics.solver_fallbacks import (
     _detour,
@@ -19,12 +20,36 @@ from watchsim.dynamics.solver_fallbacks import (
     enumerate_modes,
     solve_contacts,
 )
-from watchsim.jit import callable_kernel
+from watchsim.jit import entry
 
-_add, _fill, _load, _solve, _copositive, _other_paths, _enumerate = (
-    callable_kernel(kernel)
-    for kernel in (add_element, fill_matrix, fill_rhs, solve_contacts, _solve_copositive, _detour, enumerate_modes)
-)
+ADD, FILL, LOAD, SOLVE, COPOSITIVE, OTHER_PATHS, ENUMERATE = range(7)
+NONE = np.zeros(0)
+
+
+@entry
+def _asked(what, work, m, size, coefficient, b):
+    """One entry for the whole ladder: what its rungs share is compiled once."""
+    room = ContactWorkRef(LcpWorkRef(*work.lcp), *work[1:])
+    answer = 0
+    if what == ADD:
+        add_element(room, m, size, (coefficient, 0.0, 0.0))
+    elif what == FILL:
+        answer = int(fill_matrix(room, m, size))
+    elif what == LOAD:
+        fill_rhs(room, m, size, b)
+    elif what == SOLVE:
+        answer = solve_contacts(room, m, size) + 0  # a number, not a Rung
+    elif what == COPOSITIVE:
+        answer = int(_solve_copositive(room, m, size))
+    elif what == OTHER_PATHS:
+        answer = int(_detour(room, size, m > 0))
+    else:
+        answer = int(enumerate_modes(room, m, size))
+    return answer
+
+
+def asked(what: int, work: ContactWork, m: int, size: int, coefficient: float = 0.0, b: np.ndarray = NONE) -> int:
+    return int(_asked(what, work, m, size, coefficient, b))
 
 
 def compression(rng: np.random.Generator, m: int, n: int, friction: float) -> tuple[ContactWork, int, np.ndarray, np.ndarray]:
@@ -38,9 +63,9 @@ def filled(G: np.ndarray, b: np.ndarray, mu: np.ndarray) -> tuple[ContactWork, i
     work = contact_work(m, 1)
     work.G[: 2 * m, : 2 * m], work.drag[:m] = G, mu
     for i in range(m):
-        _add(work, i, i, (2.0 * mu[i], 0.0, 0.0))
-    size = _fill(work, m, m)
-    _load(work, m, m, b)
+        asked(ADD, work, i, i, 2.0 * mu[i])
+    size = asked(FILL, work, m, m)
+    asked(LOAD, work, m, m, b=b)
     return work, size, work.A[:size, :size].copy(), work.rhs[:size].copy()
 
 
@@ -51,7 +76,7 @@ def check_against_the_oracle(count: int, seed: int) -> tuple[int, int]:
     for trial in range(count):
         m = 1 + trial % 2
         work, size, A, b = compression(rng, m, 1 + trial % 4, 3.0)
-        rung = _solve(work, m, m)
+        rung = asked(SOLVE, work, m, m)
         truth = solutions(A, b)
         if rung != Rung.FAILED:
             assert residual(A, b, work.x[:size]) < 1e-9
@@ -74,9 +99,9 @@ def test_a_solution_is_found_exactly_when_there_is_one_many_times() -> None:
 
 
 ALONE = {  # one rung: problems given to it, how many of them it solves at least
-    "copositive form": (lambda work, m, size: _copositive(work, m, m), 300, 285),
-    "other paths": (lambda work, m, size: _other_paths(work, size, False), 300, 270),
-    "enumeration": (lambda work, m, size: _enumerate(work, m, m), 60, 60),
+    "copositive form": (lambda work, m, size: asked(COPOSITIVE, work, m, m), 300, 285),
+    "other paths": (lambda work, m, size: asked(OTHER_PATHS, work, 0, size), 300, 270),
+    "enumeration": (lambda work, m, size: asked(ENUMERATE, work, m, m), 60, 60),
 }
 
 
@@ -110,7 +135,7 @@ def test_small_approaches_beside_fast_slips_are_seen(number: int) -> None:
         A[row, column] = value
     work, size = contact_work(problem["contacts"], 1), len(rhs)
     work.A[:size, :size], work.rhs[:size] = A, rhs
-    assert _other_paths(work, size, True)
+    assert asked(OTHER_PATHS, work, 1, size)
     assert residual(A, rhs, work.x[:size]) < 1e-9 * -rhs.min()
 
 
@@ -123,7 +148,7 @@ def test_a_jammed_rotor_needs_the_second_rung() -> None:
         mu = rng.uniform(0.0, 3.0)
         arms = np.array([a, b])
         work, size, A, rhs = filled(np.outer(arms, arms), arms * -np.sign(a) * rng.uniform(0.1, 1.0), np.array([mu]))
-        rung = _solve(work, 1, 1)
+        rung = asked(SOLVE, work, 1, 1)
         assert rung != Rung.FAILED
         assert residual(A, rhs, work.x[:size]) < 1e-9
         rungs[rung] += 1
@@ -143,7 +168,7 @@ def test_badly_scaled_contacts(decades: float) -> None:
         rates = case.W @ rng.normal(size=3)
         plain = filled(case.G, rates, case.friction)
         scaled = filled(case.G * np.outer(unit, unit), rates * unit, case.friction)
-        assert Rung.FAILED not in (_solve(plain[0], 2, 2), _solve(scaled[0], 2, 2))
+        assert Rung.FAILED not in (asked(SOLVE, plain[0], 2, 2), asked(SOLVE, scaled[0], 2, 2))
         np.testing.assert_allclose(scaled[0].x[:2], plain[0].x[:2], rtol=1e-9, atol=1e-11)
 
 
@@ -152,5 +177,5 @@ def test_more_contacts_than_coordinates_are_solved_quickly() -> None:
     rng = np.random.default_rng(101)
     for _ in range(20):
         work, size, A, b = compression(rng, 12, 3, 0.5)
-        if _solve(work, 12, 12) != Rung.FAILED:
+        if asked(SOLVE, work, 12, 12) != Rung.FAILED:
             assert residual(A, b, work.x[:size]) < 1e-8

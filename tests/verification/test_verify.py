@@ -13,7 +13,7 @@ from watchsim.verification.all_checks import rows_of, verify_text
 from watchsim.verification.benchmarks import Check, inclines, swings
 from watchsim.verification.compared import compared
 from watchsim.verification.edge_cases import edge_cases
-from watchsim.verification.hard_cases import hard_cases
+from watchsim.verification.hard_cases import hard_cases, wedges
 from watchsim.verification.random_problems import random_rows
 from watchsim.verification.repeated_impacts import repeated_impacts
 
@@ -30,6 +30,22 @@ def test_benchmark(benchmark) -> None:
     wrong = [row for row in rows if not row["ok"]]
     assert not wrong, verify_text(wrong)
     assert len(rows) == len(benchmark.checks)
+
+
+def test_the_wedge_lies_on_both_walls_of_its_slot() -> None:
+    """Each wall is a line through two corners of the wedge, longer than its side, with the slot's material outside."""
+    half_angle = 0.2
+    for benchmark in wedges(half_angle):
+        wedge, slot = (benchmark.scene.body(name) for name in ("wedge", "slot"))
+        corners = [complex(*edge.start) for edge in wedge.loops[0].edges]
+        for loop, sign in zip(slot.loops, (1.0, -1.0), strict=True):
+            (wall,) = loop.edges
+            start, way = complex(*wall.start), complex(*wall.end) - complex(*wall.start)
+            off = [((corner - start) / way) for corner in corners]
+            touching = [one for one in off if abs(one.imag) * abs(way) < 1e-15]
+            assert len(touching) == 2 and all(0.0 < one.real < 1.0 for one in touching)
+            assert all(one.imag < 1e-15 for one in off)  # material on the left of a wall
+            assert abs(way.real / way.imag) == pytest.approx(math.tan(half_angle)) and way.real * way.imag * sign > 0.0
 
 
 def test_random_problems() -> None:

@@ -63,7 +63,7 @@ def heap(rng: np.random.Generator, place: str, count: int) -> Scene:
 
 
 MANY = 12  # scenes
-SOME = [(place, count, (MANY, 4, 1)[count - 1]) for place in PLACES for count in (1, 2, 3) if (place, count) != ("groove", 3)]
+SOME = [(place, count, (MANY, 2, 1)[count - 1]) for place in PLACES for count in (1, 2, 3) if (place, count) != ("groove", 3)]
 ALL = [pytest.param(place, count, MANY, marks=pytest.mark.slow) for place, count, scenes in SOME if scenes < MANY]
 
 
