@@ -28,7 +28,7 @@ MOVIES = {  # profile: simulated, window, speed, further options
     "cycloidal_pair": ("0.4 s", "0.1 s:0.4 s", "1/12", "--zoom pinion"),
     "jumper": ("1 s", "0 s:1 s", "1/4", ""),
     "cam": ("0.3 s", "0 s:0.3 s", "1/10", ""),
-    "snail": ("5.9 s", "3.5 s:5.8 s", "1/2", "--zoom snail,rack"),
+    "snail": ("5.9 s", "3.5 s:5.8 s", "1/2", ""),
     "ratchet": ("0.5 s", "0 s:0.5 s", "1/8", ""),
     "winding_click": ("0.5 s", "0 s:0.5 s", "1/8", ""),
     "remontoir": ("1 s", "0.93 s:0.96 s", "1/120", "--zoom stop_wheel,stop_lever,wheel"),

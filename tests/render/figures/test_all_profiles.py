@@ -21,11 +21,13 @@ WITHOUT_BEATS = {
     "cam",
     "jumper",
     "ratchet",
+    "snail",
+    "winding_click",
     "verge",
     "governor",
 }
 # s: slow pendulums, and wheels that stand still in every other half swing; a second of all others
-DURATION = {"graham": 4.0, "recoil_anchor": 4.0, "pin_wheel": 8.0, "detent": 2.0, "duplex": 2.0}
+DURATION = {"graham": 4.0, "recoil_anchor": 4.0, "pin_wheel": 8.0, "detent": 2.0, "grasshopper": 4.0, "duplex": 2.0}
 
 
 @pytest.mark.slow
