@@ -19,7 +19,7 @@ MOVIES = {  # profile: simulated, window, speed, further options
     "graham": ("5 s", "4 s:5 s", "1/4", "--zoom wheel"),
     "recoil_anchor": ("5 s", "4 s:5 s", "1/4", "--zoom wheel"),
     "grasshopper": ("5 s", "4 s:5 s", "1/4", "--zoom wheel,entry,exit"),
-    "detent": ("2.6 s", "2 s:2.5 s", "1/8", ""),
+    "detent": ("2.6 s", "2 s:2.5 s", "adaptive", "--length 4s"),
     "pin_pallet": ("2.6 s", "2 s:2.4 s", "adaptive", "--length 4s --zoom wheel,lever"),
     "pin_wheel": ("6 s", "4 s:6 s", "1/2", "--zoom wheel"),
     "cylinder": ("2.6 s", "2 s:2.4 s", "adaptive", "--length 4s"),
