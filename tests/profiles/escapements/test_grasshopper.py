@@ -52,8 +52,8 @@ def test_the_tooth_goes_as_a_link_with_two_pins() -> None:
 def test_it_gains_with_drive_as_airys_formula_says() -> None:
     """The torque m = T pitch / (4 release) changes its side at ±release: Δω/ω = 2 m √(1 - (release / A)²) / (π k A).
 
-    The circular error and 1/(8Q²) are taken off. The rest is the ratio of the two angles, which is not quite even, and the friction
-    of nibs that slide on their teeth while the pendulum swings beyond what the stops are set for.
+    The circular error and 1/(8Q²) are taken off. The rest is the ratio of the two angles, which is not quite even, and the
+    friction of nibs that slide on their teeth while the pendulum swings beyond what the stops are set for.
     """
     gains = []
     for torque in (0.6, 0.7, 0.8):
