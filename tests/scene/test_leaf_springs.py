@@ -124,3 +124,9 @@ def test_a_size_of_the_leaf_can_be_set() -> None:
     thicker = scene.set("springs.0.leaf.thickness", "0.16 mm")
     assert thicker.springs[0].stiffness == pytest.approx(8.0 * scene.springs[0].stiffness)
     assert scene.set("springs.0.stiffness", "1 µN·m/rad").springs[0].stiffness == 1e-6
+
+
+def test_results_hold_a_scene_that_reads_the_same(tmp_path: Path) -> None:
+    scene = made(LEAF + '\npreload = "10 µN·m"\nstop = "0°"')
+    ws.write_results(ws.simulate(scene, duration=0.01), tmp_path / "run")
+    assert ws.read_results(tmp_path / "run").scene.springs == scene.springs

@@ -119,11 +119,16 @@ def _check(run: Trajectory) -> None:
     for (part,) in blocks(run.events):
         if not _within(part["body"], -1, len(run.scene.bodies)) or not set(np.unique(part["kind"]).tolist()) <= set(EventKind):
             raise ValueError("its events are of unknown bodies or kinds")
-    _check_pairs(as_pairs(run.pairs), len(run.scene.contacts))
+    _check_pairs(as_pairs(run.pairs), _groups(run.scene))
     if not all(isinstance(getattr(run, name), (int, float)) for name in FLOATS) or not isinstance(run.stop_message, str):
         raise ValueError("its header holds something that is not a number")
     if not all(isinstance(mapping, dict) for mapping in (run.overlap, run.energy, run.counts, run.sums)):
         raise ValueError("its header holds no sums")
+
+
+def _groups(scene: Scene) -> int:
+    """How many contacts there are: those declared, of stops of springs, and of gears with play."""
+    return len(scene.contacts) + sum(spring.stop is not None for spring in scene.springs) + len(scene.gears)
 
 
 def _check_pairs(pairs: Pairs, groups: int) -> None:

@@ -97,7 +97,8 @@ def _start(body: Body) -> dict[str, Any]:
 def _complete_forces(source: dict[str, Any], scene: Scene) -> None:
     for entry, spring in zip(source.get("springs", []), scene.springs, strict=True):
         unit = "rad" if scene.body(spring.body).motion == "pivot" else "m"
-        entry.setdefault("rest", _si(spring.rest, unit))
+        if "preload" not in entry:
+            entry.setdefault("rest", _si(spring.rest, unit))
     for entry in source.get("contacts", []):
         for key in ("friction", "restitution", "tangential_restitution"):
             entry.setdefault(key, 0.0)

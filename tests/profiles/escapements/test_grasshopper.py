@@ -16,7 +16,7 @@ STIFFNESS = 0.5 * 9.81 * 0.25  # N·m per rad of the pendulum
 
 
 def held(pivot: np.ndarray, nib: np.ndarray) -> np.ndarray:
-    """Angles at the wheel of a point at its circle, R from its axis, by the circle about `pivot` through `nib` at first (mm)."""
+    """Directions from the wheel's axis of the place R away and as far from each `pivot` as `nib` is from the first (mm)."""
     length, far = math.dist(pivot[0], nib), np.hypot(*pivot.T)
     half = np.arccos((R**2 + far**2 - length**2) / (2.0 * R * far))
     return np.arctan2(pivot[:, 1], pivot[:, 0]) + half
@@ -52,8 +52,8 @@ def test_the_tooth_goes_as_a_link_with_two_pins() -> None:
 def test_it_gains_with_drive_as_airys_formula_says() -> None:
     """The torque m = T pitch / (4 release) changes its side at ±release: Δω/ω = 2 m √(1 - (release / A)²) / (π k A).
 
-    Without friction at the pallets' faces, which holds them on the teeth, it does not run; the rest of the difference is the wheel
-    and the pallets that it moves. The circular error and 1/(8Q²) are taken off.
+    The circular error and 1/(8Q²) are taken off. The rest is the ratio of the two angles, which is not quite even, and the
+    friction of nibs that slide on their teeth while the pendulum swings beyond what the stops are set for.
     """
     gains = []
     for torque in (0.6, 0.7, 0.8):

@@ -21,11 +21,14 @@ WITHOUT_BEATS = {
     "cam",
     "jumper",
     "ratchet",
+    "snail",
+    "winding_click",
     "verge",
     "governor",
 }
+TWO_PALLETS = {"grasshopper"}  # each a body of its own: which phase a beat is in, no table knows
 # s: slow pendulums, and wheels that stand still in every other half swing; a second of all others
-DURATION = {"graham": 4.0, "recoil_anchor": 4.0, "pin_wheel": 8.0, "detent": 2.0, "duplex": 2.0}
+DURATION = {"graham": 4.0, "recoil_anchor": 4.0, "pin_wheel": 8.0, "detent": 2.0, "grasshopper": 4.0, "duplex": 2.0}
 
 
 @pytest.mark.slow
@@ -45,5 +48,5 @@ def test_nothing_is_clipped(profile: str) -> None:
             assert faults(figure) == [], kind
             drawn.add(kind)
     assert {"kinematics", "phase-portrait", "forces"} <= drawn
-    of_beats = {"energy", "timing", "tape", "phases", "timeline", "torque"}
+    of_beats = {"energy", "timing", "tape"} | ({"phases", "timeline", "torque"} if profile not in TWO_PALLETS else set())
     assert profile in WITHOUT_BEATS or drawn >= of_beats, set(KINDS) - drawn

@@ -259,3 +259,9 @@ def test_between_the_two_limits_friction_holds_gears_at_rest(tmp_path) -> None:
     more = '[[torques]]\nbody = "wheel"\nvalue = "1 mN·m"\n[[torques]]\nbody = "pinion"\nvalue = "0.11875 mN·m"'
     run = ws.simulate(wheels(tmp_path, -8.0, gears='backlash = "1°"\nefficiency = 0.9', more=more))
     assert run.end_u == pytest.approx([0.0, 0.0], abs=1e-12)
+
+
+def test_a_run_of_gears_with_play_can_be_read_back(tmp_path) -> None:
+    run = ws.simulate(wheels(tmp_path, -8.0, gears='backlash = "1°"'), duration=0.05)
+    ws.write_results(run, tmp_path / "run")
+    assert (ws.read_results(tmp_path / "run").q == run.q).all()

@@ -30,5 +30,7 @@ class Grasshopper:
     torque: float = dim(0.8, "mN·m", 1e-3, 1e4, "on the wheel", CHOSEN)
     wheel_inertia: float = dim(30.0, "g·mm²", 1e-3, 1e7, "wheel with the train as felt here", "light: a pallet drives it back")
     gravity: float = dim(9.81, "m/s²", 0.1, 100.0, "acceleration of gravity", "9.81 m/s²")
-    friction: float = dim(0.2, "", 0.0, 0.5, "coefficient of friction, in all contacts", "wood on brass, dry")
+    friction: float = dim(
+        0.2, "", 0.1, 0.5, "coefficient of friction, in all contacts; it holds the nibs", "wood on brass, dry"
+    )
     restitution: float = dim(0.0, "", 0.0, 0.9, "coefficient of restitution, in all contacts", CHOSEN)

@@ -15,9 +15,9 @@ from watchsim.scene.errors import Faults
 from watchsim.scene.file.keys.key_values import NAN, Table, shown
 from watchsim.scene.file.keys.schema import DAMPING, SPRING, TORQUE, Keys, nearest
 from watchsim.scene.file.readers.read_against import read_against
-from watchsim.scene.file.readers.read_coil import read_coil
-from watchsim.scene.file.readers.read_leaf import leaf_stiffness, read_rest, read_stop
 from watchsim.scene.file.readers.read_trains import BARREL, KEYS, mainspring_torque
+from watchsim.scene.file.readers.springs.read_coil import read_coil
+from watchsim.scene.file.readers.springs.read_leaf import leaf_stiffness, read_rest, read_stop
 from watchsim.scene.force import Damping, Spring, Torque
 from watchsim.scene.oscillation import Oscillator, loads, oscillator
 
@@ -126,7 +126,7 @@ def _stiffness(entry: Entry) -> float:
         frequency = table.positive("frequency", "it is the frequency of the free oscillation")
         return entry.mass * (math.tau * frequency) ** 2
     if "stiffness" not in table and table.is_table:
-        table.fault("", 'a spring needs frequency = "28800 vph", stiffness = "0.758 µN·m/rad" or leaf = { … }')
+        table.fault("", 'a spring needs frequency = "28800 vph" or stiffness = "0.758 µN·m/rad"; a leaf spring, leaf = { … }')
     return table.positive("stiffness", "a spring pulls back")
 
 

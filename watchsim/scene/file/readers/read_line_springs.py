@@ -12,7 +12,7 @@ from watchsim.scene.errors import Faults
 from watchsim.scene.file.keys.key_values import NAN, UNREADABLE, Table
 from watchsim.scene.file.keys.schema import LINE_SPRING, nearest
 from watchsim.scene.file.readers.read_forces import listed
-from watchsim.scene.file.readers.read_leaf import leaf_stiffness
+from watchsim.scene.file.readers.springs.read_leaf import leaf_stiffness
 from watchsim.scene.force import LineSpring
 from watchsim.units import LENGTH
 
