@@ -87,3 +87,59 @@ def test_gravity_lends_what_the_centre_of_mass_has_fallen(tmp_path: Path) -> Non
     fallen = 10e-3 * (1.5 * np.diff(centre.real)[0] - 9.81 * np.diff(centre.imag)[0])
     assert _work_of_gravity(run) == pytest.approx(fallen, rel=1e-12)
     assert run.energy["in_J"] == pytest.approx(fallen, rel=1e-7)
+
+
+LINE = """
+[scene]
+title = "a slide between two springs"
+[bodies.slide]
+motion = "slide"
+axis = [1.0, 0.0]
+mass = "3 g"
+[bodies.shaker]
+motion = "{shaker}"
+axis = [1.0, 0.0]
+{moves}
+[[line_springs]]
+between = ["slide"]
+points = [["-1 mm", "0 mm"], ["-11 mm", "0 mm"]]
+stiffness = "20 N/m"
+length = "7 mm"
+viscous = "0.05 N·s/m"
+[[line_springs]]
+between = ["slide", "shaker"]
+points = [["1 mm", "0 mm"], ["15 mm", "0 mm"]]
+stiffness = "8 N/m"
+length = "14 mm"
+viscous = "0.02 N·s/m"
+[run]
+duration = "0.3 s"
+"""
+
+
+def test_damping_of_springs_between_points_is_no_friction(tmp_path: Path) -> None:
+    """What a damped swing in a line has lost, by its closed form; the shaker stands still."""
+    path = tmp_path / "scene.toml"
+    path.write_text(LINE.format(shaker="fixed", moves="").replace("axis = [1.0, 0.0]\n\n", "\n"), encoding="utf-8")
+    scene = load(path)
+    found = flows(simulate(scene), compile_scene(scene))
+    m, k, c, off = 3e-3, 28.0, 0.07, 3e-3 * 20.0 / 28.0  # the left one begins 3 mm too long, the right one without force
+    decay, w = 0.5 * c / m, np.sqrt(k / m - (0.5 * c / m) ** 2)
+    t = found.t
+    x = off * np.exp(-decay * t) * (np.cos(w * t) + decay / w * np.sin(w * t))
+    v = -off * np.exp(-decay * t) * (k / m) / w * np.sin(w * t)
+    lost = 0.5 * k * off**2 - 0.5 * (k * x**2 + m * v**2)
+    assert found.damped.sum(axis=1) == pytest.approx(lost, abs=1e-7 * lost[-1])
+    assert np.abs(found.drive).max() == 0.0
+
+
+def test_what_shakes_a_spring_between_points_drives_it(tmp_path: Path) -> None:
+    path = tmp_path / "scene.toml"
+    moves = 'swing = { amplitude = "2 mm", frequency = "15 Hz" }\n'
+    path.write_text(LINE.format(shaker="driven", moves=moves), encoding="utf-8")
+    scene = load(path)
+    run = simulate(scene)
+    found = flows(run, compile_scene(scene))
+    gained = found.stored - found.stored[0] + found.damped.sum(axis=1)
+    assert found.drive == pytest.approx(gained, abs=1e-7 * found.damped.sum(axis=1)[-1])
+    assert found.damped[-1].sum() == pytest.approx(run.energy["dissipated"]["damping"], rel=1e-6)

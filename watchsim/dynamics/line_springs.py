@@ -95,6 +95,16 @@ def line_spring_energies(model, q, out_energy):
         out_energy[row] = line_spring_energy(model, q[row])
 
 
+@entry
+def line_spring_powers(model, q, u, out_taken, out_held):
+    """For rows of coordinates: what the damping of each takes, W (rows, springs), and what keeps prescribed motions up, W."""
+    for row in range(len(q)):
+        for j in range(len(model.lines)):
+            _, rate, _, _ = _line(model, model.lines[j], q[row], u[row])
+            out_taken[row, j] = model.lines[j].viscous * rate * rate
+        out_held[row] = line_spring_drive(model, q[row], u[row])
+
+
 @kernel
 def line_spring_damping(model, q, u):
     """Power that their damping takes, W."""

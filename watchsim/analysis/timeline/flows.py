@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.analysis.contact_forces import absolute
-from watchsim.analysis.timeline.line_spring_rows import line_spring_energies
+from watchsim.analysis.timeline.line_spring_rows import held_by_lines, line_spring_energies, line_spring_power
 from watchsim.mechanism.compile import Compiled
 from watchsim.model.records import OVER_TIME, Model
 from watchsim.simulation.record.trajectory import Array, Trajectory
@@ -77,6 +77,10 @@ def flows(run: Trajectory, compiled: Compiled, rows: slice = slice(None)) -> Flo
                 driven += weight * step * _changing_power(model, t[:-1] + node * h, place(node), us)
             if slowed:
                 damped += weight * step * _damping_power(model, us)
+            if len(model.lines):
+                held, taken = line_spring_power(model, place(node), us)
+                driven += weight * step * held
+                damped += weight * step * taken
     free = _in_flight(model, own, (q, u, a)) & (h > 0.0)[:, None]
     damped = np.where(free, own[:-1] - own[1:] + driven, damped)
     swept = step * (0.5 * (q[:-1] + q[1:]) + step * (0.1 * (u[:-1] - u[1:]) + step * (a[:-1] + a[1:]) / 120.0))
@@ -122,7 +126,7 @@ def _changing(model: Model) -> tuple[list[int], list[int]]:
     for joint in model.joints:
         if joint.viscous != 0.0 or joint.quadratic != 0.0:
             slowed |= {int(joint.coordinate), int(joint.on)}
-    return sorted(moved), sorted(slowed)
+    return sorted(moved | held_by_lines(model)), sorted(slowed)
 
 
 def _position(h: Array, rows: tuple[Array, Array, Array], wanted: list[int]) -> Callable[[float], Row]:
