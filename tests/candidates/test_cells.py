@@ -6,6 +6,7 @@ The poses that touch are found by `true_contacts`, which shares no code with the
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -120,8 +121,9 @@ def test_candidates_stay_complete_for_the_promised_time(name: str) -> None:
     """No motion with the given speeds and accelerations leaves the cell's margin before `time_in_cell`."""
     scene, compiled = pair(*CASES[name])
     row, rng = compiled.model.pairs[0], np.random.default_rng(11)
-    for _ in range(100):
-        q = random_q(scene, rng)
+    poses = [q for q in (random_q(scene, rng) for _ in range(150)) if not_apart(compiled, q)]
+    assert len(poses) > 50
+    for q in poses:
         u, a = rng.normal(size=len(q)), np.abs(rng.normal(size=len(q))) * rng.choice([0.0, 1.0, 100.0])
         time = _time_in_cell(compiled.model, 0, q, u, a)
         assert time > 0.0
@@ -162,14 +164,46 @@ def test_keys_of_different_cells_differ() -> None:
     assert min(keys) >= 0
 
 
+def not_apart(compiled: Compiled, q: np.ndarray) -> bool:
+    """Does the pair need a cell at q?"""
+    return listed(compiled, CellFinder(compiled.model).cells, q)[0] != ALL
+
+
+def test_bodies_apart_do_not_meet_in_the_promised_time() -> None:
+    """However they move with the given speeds and accelerations, the outlines' circles about the origins stay apart."""
+    scene, compiled = pair("free", "fixed")
+    rng = np.random.default_rng(3)
+    reach = [max(math.hypot(*edge.point(f / 16.0)) for edge in body.loops[0].edges for f in range(17)) for body in scene.bodies]
+    met = 0
+    for _ in range(300):
+        q = random_q(scene, rng) * (6.0, 6.0, 1.0)
+        if not_apart(compiled, q):
+            continue
+        met += 1
+        u, a = rng.normal(size=3), np.abs(rng.normal(size=3)) * rng.choice([0.0, 1.0, 100.0])
+        time = _time_in_cell(compiled.model, 0, q, u, a)
+        assert time > 0.0
+        far = math.dist(q[:2], scene.bodies[1].position) - sum(reach)
+        assert math.hypot(*u[:2]) * time + 0.5 * math.hypot(*a[:2]) * time**2 <= far
+    assert met > 100
+
+
 def test_far_away_every_pair_is_a_candidate() -> None:
-    compiled = pair("free", "fixed")[1]
-    row = compiled.model.pairs[0]
-    q = np.array([1.5 * REACH * row.size0, 0.0, 0.0])
+    """Beyond the range of keys, of bodies that have slid there together."""
+    slides = pair("slide", "slide")[0]
+    both = tuple(replace(body, axis=(0.6, 0.8)) for body in slides.bodies)
+    compiled = compile_scene(replace(slides, bodies=both))
+    way = 1.5 * REACH * compiled.model.pairs[0].size0
+    q = np.array([way, way])
     assert cell_key(compiled.model, 0, q) == -1
-    how, ids = listed(compiled, CellFinder(compiled.model).learn(0, q), q)
+    how, ids = listed(compiled, CellFinder(compiled.model).cells, q)
     assert how == ALL
-    assert len(ids) == len(compiled.model.near)
+    assert len(ids) == len(compiled.model.near) > 0
+
+
+def test_apart_nothing_is_a_candidate() -> None:
+    compiled = pair("free", "fixed")[1]
+    assert listed(compiled, CellFinder(compiled.model).cells, np.array([10.0, 0.0, 0.0])) == (ALL, set())
 
 
 def table_of(cells: Cells) -> dict[int, list[int]]:
