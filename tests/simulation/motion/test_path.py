@@ -17,14 +17,6 @@ from watchsim.simulation.motion.dense_output import dense, dense_bend
 NUMBERS = st.lists(st.floats(-1.0, 1.0), min_size=8, max_size=8)
 
 
-@pytest.fixture(autouse=True, scope="module")
-def _plain_parts() -> Iterator[None]:
-    """Kernels that are parts of others cannot be called from Python."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(step_path, "_largest_coefficient", _plain(step_path._largest_coefficient))
-        yield
-
-
 def _step(numbers: list[float], length: float) -> types.SimpleNamespace:
     """A coupled step of one coordinate with these start value and coefficients of its continuous extension."""
     coefficients = np.array(numbers[1:]).reshape(7, 1)
@@ -35,6 +27,14 @@ def _step(numbers: list[float], length: float) -> types.SimpleNamespace:
 def _plain(kernel):
     """The kernel as plain Python: one polynomial needs no compiler."""
     return getattr(kernel, "py_func", kernel)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def plain_parts() -> Iterator[None]:
+    """Plain kernels call plain ones."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(step_path, "_largest_coefficient", _plain(step_path._largest_coefficient))
+        yield
 
 
 def _coefficients(numbers: list[float]) -> np.polynomial.Polynomial:
@@ -53,7 +53,7 @@ def test_the_bound_holds_everywhere_in_the_step(numbers: list[float], length: fl
     bend = np.abs(_coefficients(numbers).deriv(2)(np.linspace(0.0, 1.0, 2001))) / length**2
     assert bend.max() <= step.bound[0] * (1.0 + 1e-9) + 1e-12 / length**2
     jerk = np.abs(_coefficients(numbers).deriv(3)(np.linspace(0.0, 1.0, 2001))) / length**3
-    bound = _plain(step_path.jerk_bound)(None, types.SimpleNamespace(awake=np.ones(1)), step, 0)
+    bound = _plain(step_path.jerk_bound)(None, types.SimpleNamespace(awake=[1]), step, 0)
     assert jerk.max() <= bound * (1.0 + 1e-9) + 1e-12 / length**3
 
 
