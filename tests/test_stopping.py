@@ -74,11 +74,13 @@ KEPT = [
 ]
 
 
-# All three signals have one handler; that each of them reaches it is tried in the loop and while files are renamed.
+# All three signals have one handler; that each of them reaches it is tried once in short, at night in the loop and while files
+# are renamed.
 @pytest.mark.parametrize(
     ("home", "name", "number"),
     [(*place, signal.SIGINT) for place in KEPT]
-    + [(*place, number) for place in (KEPT[0], KEPT[-1]) for number in (signal.SIGTERM, signal.SIGHUP)],
+    + [(*KEPT[0], signal.SIGTERM), (*KEPT[-1], signal.SIGHUP)]
+    + [pytest.param(*case, marks=pytest.mark.slow) for case in ((*KEPT[-1], signal.SIGTERM), (*KEPT[0], signal.SIGHUP))],
 )
 def test_what_was_simulated_is_kept(home: str, name: str, number: int, tmp_path: Path) -> None:
     folder = tmp_path / "out"

@@ -28,6 +28,7 @@ def read(value: object) -> tuple[Recording, list[str]]:
         ("all", Recording()),
         ("statistics", Recording(keep="statistics")),
         ("every 10", Recording(stride=10)),
+        ("every 1", Recording(stride=1)),
         (["179 s", "180 s"], Recording(WINDOWS[:1])),
         ([["179 s", "180 s"], ["1 s", "2000 ms"]], Recording(WINDOWS)),
         (["statistics", ["179 s", "180 s"]], Recording(WINDOWS[:1], "statistics")),

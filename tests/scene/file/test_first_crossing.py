@@ -1,0 +1,33 @@
+"""Which written polygons cross themselves? Judged against shapely, on grids so coarse that corners lie on sides."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import shapely
+
+from watchsim.scene.file.outlines.written_shapes import first_crossing
+
+
+def folds_back(points: list[tuple[int, int]]) -> bool:
+    """A side that returns on its neighbour: no crossing of two sides that are no neighbours."""
+    ways = np.diff(np.array([*points, *points[:2]]), axis=0)
+    return any(a[0] * b[1] == a[1] * b[0] and a @ b < 0 for a, b in pairwise(ways))
+
+
+def test_it_is_found_where_sides_meet_and_nowhere_else() -> None:
+    rng = np.random.default_rng(5)
+    simple = crossed = touched = 0
+    while min(simple, crossed, touched) < 30:
+        points = [(int(x), int(y)) for x, y in rng.integers(0, 5, (rng.integers(3, 7), 2))]
+        if len(set(points)) < len(points) or folds_back(points):
+            continue
+        found = first_crossing(points)
+        assert (found is None) == shapely.LinearRing(points).is_simple, points
+        if found is None:
+            simple += 1
+            continue
+        sides = [shapely.LineString([points[i], points[(i + 1) % len(points)]]) for i in found]
+        assert sides[0].intersects(sides[1]), points
+        crossed, touched = crossed + sides[0].crosses(sides[1]), touched + sides[0].touches(sides[1])
