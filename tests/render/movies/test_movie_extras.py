@@ -183,7 +183,7 @@ def test_arrows_tell_the_force_on_a_rolling_disc():
 
 
 def test_no_arrow_stands_for_a_stop_that_is_not_drawn():
-    """The tooth presses the click against its stop, and only the tooth is seen; about the wheel's axis its moment is the drive."""
+    """A tooth presses the click against its stop, and only the tooth is seen: its moment on the wheel is the drive's."""
     run = ws.simulate(ws.designs.winding_click(friction=0.0).scene())
     (((x, y),), ((fx, fy),)) = ForceArrows(run, np.array([run.t[-1]])).at(0)
     assert abs(x * fy - y * fx) == pytest.approx(0.5e-3, rel=1e-6)
