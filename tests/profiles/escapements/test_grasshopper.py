@@ -88,7 +88,12 @@ REFUSED = [
     ({"torque": "1.2 mN·m"}, "would sustain"),
     ({"torque": "0.4 mN·m"}, "would sustain"),
     ({"span": 30}, "puts the pallets"),
-    ({"nib": "1.4 mm"}, "stays among the teeth"),
+    ({"span": 9}, "would swing into the teeth"),
+    ({"nib": "1.15 mm"}, "stays among the teeth"),
+    ({"nib": "1.4 mm"}, "meets the floor"),
+    ({"overswing": "0.85°"}, "passes over its tooth"),
+    ({"pallet_torque": "0.1 µN·m"}, "slow to clear the teeth"),
+    ({"pallet_torque": "60 µN·m"}, "pulls the pallets off"),
     ({"height": "3 mm"}, "at this pitch"),
 ]
 
