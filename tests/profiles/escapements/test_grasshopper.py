@@ -88,6 +88,7 @@ REFUSED = [
     ({"torque": "1.2 mN·m"}, "would sustain"),
     ({"torque": "0.4 mN·m"}, "would sustain"),
     ({"span": 30}, "puts the pallets"),
+    ({"teeth": 58, "tip_radius": "24.9 mm", "span": 9, "release": "1.13°", "overswing": "0.8°"}, "cut into the teeth"),
     ({"span": 9}, "would swing into the teeth"),
     ({"nib": "1.15 mm"}, "stays among the teeth"),
     ({"nib": "1.4 mm"}, "meets the floor"),
