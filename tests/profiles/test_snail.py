@@ -97,6 +97,7 @@ REFUSED = [
     ({"leaf_force": "15 mN"}, "the leaf slackens before the lowest step"),
     ({"lifting": "0.13 mN·m"}, "to gather the rack up"),
     ({"hour": "0.2 s"}, "no time to come to rest"),
+    ({"tail": "24.5 mm", "least": "5 mm"}, "find room on step 12"),
     ({"pin_radius": "1.6 mm"}, "find room on step 12"),
     ({"tooth": "4.5°", "least": "2 mm", "leaf_force": "80 mN", "lifting": "1 mN·m"}, "would reach the rack's axis"),
 ]

@@ -79,16 +79,22 @@ def test_work_of_the_drive_and_amplitude() -> None:
 
 
 def test_time_stepping_agrees() -> None:
-    off = stepping_errors(designs.grasshopper().scene(), 4.0, (4e-5, 1e-5))
-    assert off[1] < 2e-4
-    assert off[1] < 0.5 * off[0]
+    off = stepping_errors(designs.grasshopper().scene(), 2.2, (1e-4, 5e-5))
+    assert off[1] < 1e-5
+    assert off[1] < 0.6 * off[0]
 
 
 REFUSED = [
     ({"torque": "1.2 mN·m"}, "would sustain"),
     ({"torque": "0.4 mN·m"}, "would sustain"),
     ({"span": 30}, "puts the pallets"),
-    ({"nib": "1.4 mm"}, "stays among the teeth"),
+    ({"teeth": 58, "tip_radius": "24.9 mm", "span": 9, "release": "1.13°", "overswing": "0.8°"}, "cut into the teeth"),
+    ({"span": 9}, "would swing into the teeth"),
+    ({"nib": "1.15 mm"}, "stays among the teeth"),
+    ({"nib": "1.4 mm"}, "meets the floor"),
+    ({"overswing": "0.85°"}, "passes over its tooth"),
+    ({"pallet_torque": "0.1 µN·m"}, "slow to clear the teeth"),
+    ({"pallet_torque": "60 µN·m"}, "pulls the pallets off"),
     ({"height": "3 mm"}, "at this pitch"),
 ]
 

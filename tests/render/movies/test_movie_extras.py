@@ -180,3 +180,10 @@ def test_arrows_tell_the_force_on_a_rolling_disc():
     assert math.hypot(*press[0]) == pytest.approx(weight * math.hypot(math.cos(slope), math.sin(slope) / 3.0), rel=1e-6)
     up = -np.array(run.scene.gravity) / math.hypot(*run.scene.gravity)
     assert press[0] @ up == pytest.approx(weight * (math.cos(slope) ** 2 + math.sin(slope) ** 2 / 3.0), rel=1e-6)
+
+
+def test_no_arrow_stands_for_a_stop_that_is_not_drawn():
+    """A tooth presses the click against its stop, and only the tooth is seen: its moment on the wheel is the drive's."""
+    run = ws.simulate(ws.designs.winding_click(friction=0.0).scene())
+    (((x, y),), ((fx, fy),)) = ForceArrows(run, np.array([run.t[-1]])).at(0)
+    assert abs(x * fy - y * fx) == pytest.approx(0.5e-3, rel=1e-6)

@@ -63,6 +63,11 @@ def pendulum(at: Points) -> list[Loop]:
     ]
 
 
+def arm_clearance(at: Points) -> float:
+    """mm from the line through a pallet's nib to the near edge of its arm."""
+    return NEAR * _unit(at)
+
+
 def _stop(at: Points, side: int) -> tuple[float, float]:
     """On the far side of the pallet that lies on it."""
     beside = turned((HELD * at.length, -side * (FAR + PIN) * _unit(at)), at.stopped(side))

@@ -60,8 +60,19 @@ def leaf_stiffness(values: Snail) -> float:
 
 
 def room(values: Snail, step: int) -> float:
-    """Degrees that are left on a step beside the pin, on the nearer side, while the snail turns under it."""
+    """Degrees that are left on a step beside the pin, on the nearer side, while the snail turns under it.
+
+    On the last step also where the pin, on its way down and up, passes the wall of the first.
+    """
     after = boundary(values, step + 1) if step < values.steps else boundary(values, 1) - 360.0
-    half = min(boundary(values, step) - middle(values, step), middle(values, step) - after)
-    beside = math.degrees(math.asin(values.pin_radius / math.hypot(*pin(values, step))))
-    return half - beside - 0.5 * (LIFTED - FALLS) * 360.0 / values.steps
+    before_wall = middle(values, step) - after
+    rooms = [boundary(values, step) - middle(values, step) - _beside(values, step), before_wall - _beside(values, step)]
+    if step == values.steps:
+        here = angle_of(pin(values, step))
+        rooms += [before_wall - here + angle_of(pin(values, m)) - _beside(values, m) for m in range(2, step)]
+    return min(rooms) - 0.5 * (LIFTED - FALLS) * 360.0 / values.steps
+
+
+def _beside(values: Snail, step: int) -> float:
+    """Half the pin, seen from the snail's axis."""
+    return math.degrees(math.asin(values.pin_radius / math.hypot(*pin(values, step))))

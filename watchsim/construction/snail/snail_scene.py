@@ -75,7 +75,7 @@ def scene_text(values: Snail) -> str:
         times = (free, free + SUDDEN, taken, taken + EASE * values.hour)
         torques = (-values.lifting, 0.0, 0.0, -values.lifting)
         rows.append(
-            "    " + " ".join(f'["{time:.9g} s", "{torque:.15g} mN·m"],' for time, torque in zip(times, torques, strict=True))
+            "    " + " ".join(f'["{time:.15g} s", "{torque:.15g} mN·m"],' for time, torque in zip(times, torques, strict=True))
         )
     pitch = 360.0 / values.steps
     return TEXT.format(

@@ -13,6 +13,7 @@ from matplotlib.path import Path
 from numpy.typing import NDArray
 
 from watchsim.analysis.contact_forces import forces
+from watchsim.mechanism.compile import compile_scene
 from watchsim.simulation.record.trajectory import Trajectory
 
 Array = NDArray[np.float64]
@@ -29,6 +30,7 @@ class ForceArrows:
         self._at: list[tuple[Array, Array]] = []
         order = {body.name: k for k, body in enumerate(run.scene.bodies)}
         fixed = {body.name for body in run.scene.bodies if body.motion == "fixed"}
+        drawn = _drawn(run)
         for start in range(0, len(times), AT_ONCE):
             told = forces(run, times[start : start + AT_ONCE])
             n, turned = told.direction, np.stack((-told.direction[..., 1], told.direction[..., 0]), axis=-1)
@@ -37,7 +39,7 @@ class ForceArrows:
             sign = [1.0 if _rank(one.body_a, order, fixed) > _rank(one.body_b, order, fixed) else -1.0 for one in pairs]
             on_later = on_a * np.array(sign).reshape(1, -1, 1)
             for points, own in zip(told.point, on_later, strict=True):
-                held = np.isfinite(points[:, 0])
+                held = np.isfinite(points[:, 0]) & drawn[told.pairs]
                 self._at.append((points[held], own[held]))
         sizes = [float(np.hypot(*own.T).max()) for _, own in self._at if len(own)]
         self.largest = max(sizes, default=0.0)
@@ -53,6 +55,13 @@ class ForceArrows:
             return 0.0
         power = 10.0 ** math.floor(math.log10(self.largest))
         return next(step * power for step in (5.0, 2.0, 1.0) if step * power <= self.largest * (1.0 + 1e-9))
+
+
+def _drawn(run: Trajectory) -> NDArray[np.bool_]:
+    """For each contact: is it between bodies of the scene, and not of gears with play or of a stop, which have no place?"""
+    model = compile_scene(run.scene).model
+    body, contacts = model.primitives.body, model.contacts
+    return np.asarray(np.maximum(body[contacts.a], body[contacts.b]) < len(run.scene.bodies))
 
 
 def _rank(name: str, order: dict[str, int], fixed: set[str]) -> int:
