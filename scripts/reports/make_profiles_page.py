@@ -1,8 +1,8 @@
 """Does every profile run for five minutes, fast and with its energy account closed, and does time stepping agree?
 
-    python scripts/reports/make_profiles_page.py [--page FILE]
+    python scripts/reports/make_profiles_page.py [page]
 
-Writes docs/reports/profiles.md; takes some three minutes of processor time.
+Writes docs/reports/profiles.md; takes some five minutes of processor time.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import numpy as np
 import watchsim as ws
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "reports" / "profiles.md"
-LONG = 300.0  # s
+LONG, TRIES = 300.0, 3  # s; the fastest run counts, others shared the processor
 WINDOW = 0.5  # s over which both methods are compared: some beats of a watch
 WINDOWS = {  # slower mechanisms: until each contact has closed a few times
     **{"balance": 4.0, "geneva": 2.0, "geneva_stop": 4.0, "governor": 5.0, "incline": 1.0, "jumper": 1.0},
@@ -51,10 +51,12 @@ class Found:
 def five_minutes(scene: ws.Scene) -> tuple[float, float, str]:
     """Multiple of real time (processor time, once the solver is loaded), the account, why it stopped."""
     ws.simulate(scene, duration=min(1.0, scene.duration), record="statistics")
-    begun = time.process_time()
-    run = ws.simulate(scene, duration=LONG, record="statistics")
-    spent = time.process_time() - begun
-    return run.simulated / spent, abs(run.energy["residual_relative"]), run.stop.name
+    spent = []
+    for _ in range(TRIES):
+        begun = time.process_time()
+        run = ws.simulate(scene, duration=LONG, record="statistics")
+        spent.append(time.process_time() - begun)
+    return run.simulated / min(spent), abs(run.energy["residual_relative"]), run.stop.name
 
 
 def stepping_errors(scene: ws.Scene, window: float) -> list[float]:
@@ -91,7 +93,7 @@ Each scene under `profiles/` is run as it promises (`[expect]`, with every chang
 
 *Speed*: multiple of real time over {long:g} s, processor time. *Account*: what is missing in the energy, as a share of the work put in. *Error*: mean
 difference of time stepping from the event-driven motion over a window from the start, as a share of the coordinate's range, the
-worst coordinate, with steps of {coarse:g} and {fine:g} of the window; *order*: slope of the straight line through the logarithms of
+worst coordinate, with steps {coarse:g} and {fine:g} of the window long; *order*: slope of the straight line through the logarithms of
 step and error, five steps.
 
 | profile | `[expect]` kept | speed | account | window | error, coarse | error, fine | order |
@@ -111,6 +113,10 @@ def main(page: Path) -> None:
 
 
 REASONS = """
+None of them is chaotic within its window, so that no statistics are needed. Which step an impact falls into is a matter of chance: errors scatter about the
+line, most where there are few impacts (`geneva_stop`). Where no contact closes (`balance`), or the smooth part of the motion dominates, the
+order is that of the midpoint rule, 2. With the coarsest steps, 80 µs of a watch, some impacts are missed (`bench_lever`, `remontoir`), which makes the
+slope steeper than 1.
 """
 
 if __name__ == "__main__":

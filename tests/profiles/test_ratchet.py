@@ -55,3 +55,11 @@ def test_what_does_not_fit_is_refused() -> None:
         designs.ratchet(winding="0.5 mN·m")
     with pytest.raises(ws.SceneError, match="does not reach deep enough"):
         designs.ratchet(nose_radius="0.4 mm")
+
+
+def test_it_sleeps_once_the_hand_has_let_go() -> None:
+    """The torque of the hand is a table over time; behind its last knot nothing changes any more, and no step is needed."""
+    scene = ws.load(ws.profiles_dir() / "ratchet")
+    short, long = (ws.simulate(scene, duration=duration) for duration in (1.0, 5.0))
+    assert long.counts["steps"] < short.counts["steps"] + 20
+    assert (long.end_q == short.end_q).all()

@@ -20,7 +20,6 @@ from watchsim.simulation.simulate import simulate
 SHARED = Path(__file__).resolve().parents[3] / "shared" / "drawings"
 EXTRA = {  # guessed and not so
     "coaxial": {frozenset((("lever", "FORK"), ("balance", "IMPULSE_STONE")))},
-    "swiss_lever": {frozenset((("wheel", "TEETH"), ("balance", "RIM")))},  # they pass within 1 % of the whole
 }
 WITHOUT = {"coaxial": ("RIM",)}  # else the lever's impulse stone, under an arm of the rim, is given to the balance
 

@@ -235,3 +235,60 @@ def test_what_does_not_belong_is_refused(asked, capsys):
     assert main(["check", str(PROFILES / "bench_lever"), *asked]) == 2
     told = capsys.readouterr().err
     assert "--" in told or ".mp4 or .gif" in told
+
+
+TRAIN = """
+[design]
+of = "swiss_lever"
+[bodies.third]
+position = ["20 mm", "0 mm"]
+inertia = "10 mg·cm²"
+[[gears]]
+between = ["third", "wheel"]
+ratio = {ratio}
+{play}
+[[torques]]
+body = "third"
+value = "{torque} µN·m"
+[[torques]]
+body = "wheel"
+value = "0 µN·m"
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("ratio", "torque", "play"), [(-8.0, 8.0, ""), (6.5, -8.0, ""), (-8.0, 8.0, 'backlash = "0.5°"')])
+def test_a_train_turns_with_its_wheel(tmp_path: Path, ratio: float, torque: float, play: str) -> None:
+    """As the lever by itself, whichever body is driven, and the third wheel by what the ratio says."""
+    (tmp_path / "scene.toml").write_text(TRAIN.format(ratio=ratio, torque=torque, play=play), encoding="utf-8")
+    geared, plain = turn(ws.load(tmp_path), SWING), turn(ws.designs.swiss_lever().scene(), SWING)
+    assert geared.wheel == "wheel" and geared.advanced == pytest.approx(1.0, abs=1e-3)
+    assert geared.cycle.q[-1][0] == pytest.approx(plain.cycle.q[-1][0], abs=1e-6)
+    wheel, third = (geared.cycle.q[:, geared.names.index(name)] for name in ("wheel", "third"))
+    assert wheel - wheel[0] == pytest.approx(ratio * (third - third[0]), abs=1e-9)
+
+
+@pytest.mark.parametrize("ratio", [-3.0, 0.5])
+def test_a_driven_arbor_turns_the_ratchet_that_is_geared_to_it(tmp_path: Path, ratio: float) -> None:
+    """The click is lifted as without the gears, by the wheel, which is what the teeth are counted on."""
+    arbor = f"""
+[bodies.arbor]
+position = ["9 mm", "0 mm"]
+inertia = "1 mg·cm²"
+[[gears]]
+between = ["arbor", "wheel"]
+ratio = {ratio}
+"""
+    driven = f'[[torques]]\nbody = "arbor"\nvalue = "{math.copysign(1.0, -ratio)} µN·m"'
+    text = RATCHET.replace('[[torques]]\nbody = "wheel"\nvalue = "-1 µN·m"', driven) + arbor
+    found = []
+    for name, content in (("plain", RATCHET), ("geared", text)):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "scene.toml").write_text(content, encoding="utf-8")
+        found.append(turn(ws.load(tmp_path / name)))
+    plain, geared = found
+    assert geared.wheel == "wheel" and geared.teeth == plain.teeth == 4
+    assert geared.cycle.q[-1][:2] == pytest.approx(plain.cycle.q[-1], abs=1e-9)
+    assert geared.advanced == pytest.approx(1.0)
+    wheel, arbor_angle = geared.cycle.q[:, 0], geared.cycle.q[:, 2]
+    assert wheel - wheel[0] == pytest.approx(ratio * (arbor_angle - arbor_angle[0]), abs=1e-9)

@@ -30,7 +30,8 @@ class Forces:
     tangential  along t, the normal turned by +90°, on body A, N (n, k)
     direction   the normal, out of body B's material (n, k, 2); nan where it is open
     point       where it touches, m (n, k, 2); nan where it is open
-    pivots      name of a pivoted body -> force on it from its bearing in the movement, N (n, 2)
+    pivots      name of a pivoted body -> force on it from its bearing in the movement, N (n, 2); what gears ([[gears]] say no
+                pressure angle) and springs between points do to it is left out
     drives      name of a driven body -> torque, N·m, or force along its axis, N, that keeps its motion up (n,)
     """
 

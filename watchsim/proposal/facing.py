@@ -48,10 +48,21 @@ def facings(roles: Sequence[Role], size: float) -> tuple[list[Facing], list[Faci
             if not (one.moves or other.moves) or _misses(one, other):
                 continue
             met = [facing for a in one.part.layers for b in other.part.layers if (facing := _facing(one, a, other, b, size))]
-            named = [facing for facing in met if facing.by_name]
-            likely += named or met
-            others += [facing for facing in met if named and facing not in named]
+            kept = [facing for facing in met if facing.by_name] or [one for one in met if not _lies_over(one, roles)]
+            likely += kept
+            others += [facing for facing in met if facing not in kept]
     return likely, others
+
+
+def _lies_over(facing: Facing, roles: Sequence[Role]) -> bool:
+    """Does a layer of the oscillator that covers a lever in the drawing meet a wheel? That is at the lever's height."""
+    sides = ((facing.first, facing.first_layer), (facing.second, facing.second_layer))
+    if {role.task for role, _ in sides} != {WHEEL, OSCILLATOR}:
+        return False
+    role, layer = next(side for side in sides if side[0].task == OSCILLATOR)
+    own = [piece for piece in role.part.pieces if piece.layer == layer]
+    levers = [piece for other in roles if other.task == LEVER for piece in other.part.pieces]
+    return any(_overlap(piece, other) > OVER for piece in own for other in levers)
 
 
 def named_facings(roles: Sequence[Role]) -> list[Facing]:

@@ -2,7 +2,7 @@
 
 A state of coordinates is free of overlap from the start and stays so. Bodies go as far as the exact distance allows (a body
 whose points travel no faster than r per unit of its coordinate may move by distance / r), and what a moved body runs into is
-pushed away, along the one coordinate it has, by the least that frees the two.
+pushed away, along the one coordinate it has, by the least that frees the two. Bodies geared to each other go together.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 
 from watchsim.geometry.primitives import Point
 from watchsim.scene.body import Body
+from watchsim.scene.gear_trains import goes_with
 from watchsim.scene.scene import Scene
 from watchsim.turning.couples import Couple, Near, couples, opening, pose_of
 
@@ -43,11 +44,32 @@ class Assembly:
     couples: tuple[Couple, ...]
     q: list[float]
     stay: set[int] = field(default_factory=set)  # bodies that nothing pushes away: fixed ones, and the one that is led
+    trains: dict[int, dict[int, float]] = field(default_factory=dict)  # body -> how far each geared to it goes for one unit
     _known: dict[int, tuple[float, float, Near]] = field(default_factory=dict)
 
     def of(self, number: int) -> Iterator[Couple]:
-        """The couples of a body."""
-        return (couple for couple in self.couples if number in (couple.a, couple.b))
+        """The couples of a body and of all that are geared to it."""
+        train = self.train(number)
+        return (couple for couple in self.couples if couple.a in train or couple.b in train)
+
+    def train(self, number: int) -> dict[int, float]:
+        """The bodies that move with one, itself included: how far each goes for one unit of it."""
+        return self.trains.get(number) or {number: 1.0}
+
+    def other(self, couple: Couple, number: int) -> int:
+        """The body of a couple that does not move with `number`."""
+        return couple.b if couple.a in self.train(number) else couple.a
+
+    def place(self, number: int, value: float) -> None:
+        """Set the coordinate of a body, and of all that are geared to it."""
+        way = value - self.q[number]
+        for one, ratio in self.train(number).items():
+            self.q[one] = value if one == number else self.q[one] + ratio * way
+
+    def opening(self, couple: Couple, near: Near, number: int) -> float:
+        """How the distance of a couple grows with the coordinate of a body, m/rad or m/m."""
+        train = self.train(number)
+        return sum(train[side] * opening(self.bodies, couple, near, side) for side in (couple.a, couple.b) if side in train)
 
     def near(self, couple: Couple) -> Near:
         a, b = self.q[couple.a], self.q[couple.b]
@@ -61,6 +83,10 @@ class Assembly:
 
     def speed(self, couple: Couple, number: int) -> float:
         """A bound of how fast points of body `number` travel per unit of its coordinate."""
+        train = self.train(number)
+        return sum(abs(train[side]) * self._own_speed(couple, side) for side in (couple.a, couple.b) if side in train)
+
+    def _own_speed(self, couple: Couple, number: int) -> float:
         return couple.reach[0 if number == couple.a else 1] if self.bodies[number].motion == "pivot" else 1.0
 
     def touches(self) -> list[tuple[Couple, Near]]:
@@ -73,7 +99,9 @@ class Assembly:
         known = self._known.get(id(couple))
         if known is not None:
             a, b, near = known
-            ways = (abs(self.q[n] - q) * self.speed(couple, n) for n, q in ((couple.a, a), (couple.b, b)) if not math.isnan(q))
+            ways = (
+                abs(self.q[n] - q) * self._own_speed(couple, n) for n, q in ((couple.a, a), (couple.b, b)) if not math.isnan(q)
+            )
             left = near.distance - sum(ways)
             if left > NEARBY:
                 return left
@@ -105,13 +133,13 @@ class Assembly:
             if safe <= 0.0:
                 return gone, nearest
             for step in (bold, safe) if bold > safe else (safe,):
-                self.q[number] = way + start if gone + step >= abs(way) else start + sign * (gone + step)
+                self.place(number, way + start if gone + step >= abs(way) else start + sign * (gone + step))
                 stopped = self.blocker(number)
                 if stopped is None:
                     gone += step
                     break
             else:  # what was to be along or away from a body has closed the last nanometres after all
-                self.q[number] = start + sign * gone
+                self.place(number, start + sign * gone)
                 return gone, stopped
             if gone >= abs(way):
                 return abs(way), None
@@ -120,7 +148,7 @@ class Assembly:
     def _steps(self, couple: Couple, number: int, sign: float, speed: float) -> tuple[float, float]:
         """A step of the body that is safe beside the other one, and one that would close the gap at its present rate."""
         near = self.near(couple)
-        rate = sign * opening(self.bodies, couple, near, number)
+        rate = sign * self.opening(couple, near, number)
         if near.distance <= CLOSE_UP:
             # As close as it was left: on along it, or away from it, in small steps; else it is what stops the body.
             return (CREEP / speed, CREEP / speed) if rate >= 0.0 else (0.0, 0.0)
@@ -132,7 +160,7 @@ class Assembly:
         place = before.on_a
         if number in self.stay or depth > 3:
             raise Jam(couple, place, "neither can give way")
-        rate = opening(self.bodies, couple, before, number)
+        rate = self.opening(couple, before, number)
         reach = self.speed(couple, number)
         if abs(rate) <= LEVERAGE * reach:
             raise Jam(couple, place, f"the push goes through the pivot of {self.bodies[number].name}")
@@ -142,24 +170,24 @@ class Assembly:
         ]
         low, high = 0.0, 1e-10 / reach
         while True:
-            self.q[number] = start + sign * high
+            self.place(number, start + sign * high)
             if self.near(couple).free:
                 break
             low, high = high, 2.0 * high
             if high * reach > LARGEST_PUSH:
-                self.q[number] = start
+                self.place(number, start)
                 raise Jam(couple, place, f"{self.bodies[number].name} cannot be pushed out of the way")
         for _ in range(HALVINGS):
             middle = 0.5 * (low + high)
-            self.q[number] = start + sign * middle
+            self.place(number, start + sign * middle)
             low, high = (low, middle) if self.near(couple).free else (middle, high)
-        self.q[number] = start + sign * high
+        self.place(number, start + sign * high)
         for one, was in others:
             if not self.is_free(one):
                 if not was.distance > 0.0:
                     raise Jam(one, was.on_a, "they overlapped before")
                 try:
-                    self.push(one.b if one.a == number else one.a, one, was, depth + 1)
+                    self.push(self.other(one, number), one, was, depth + 1)
                 except Jam as jam:
                     jam.passed_on.append(couple)
                     raise
@@ -171,4 +199,6 @@ def assembly(scene: Scene) -> Assembly:
     for body in scene.bodies:
         q.append(body.angle if body.motion == "pivot" else 0.0 if body.motion == "slide" else math.nan)
     fixed = {i for i, body in enumerate(scene.bodies) if body.motion == "fixed"}
-    return Assembly(scene.bodies, couples(scene), q, fixed)
+    names = {body.name: i for i, body in enumerate(scene.bodies)}
+    trains = {i: {names[other]: far for other, far in goes_with(scene, name).items()} for name, i in names.items()}
+    return Assembly(scene.bodies, couples(scene), q, fixed, trains)

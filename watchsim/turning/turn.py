@@ -14,6 +14,7 @@ import numpy as np
 from watchsim.candidates.symmetry import turn_symmetry
 from watchsim.mechanism.compile import compile_scene
 from watchsim.scene.errors import Fault, SceneError
+from watchsim.scene.gear_trains import goes_with
 from watchsim.scene.oscillation import Oscillator, oscillators
 from watchsim.scene.roles import drive_direction, keeps_time
 from watchsim.scene.scene import Scene
@@ -57,7 +58,7 @@ def turn(scene: Scene, swing: float | None = None) -> Turn:
     _refuse(scene)
     oscillator = swinging(scene)
     name = None if oscillator is None else oscillator.body
-    wheel = next(torque.body for torque in scene.torques if torque.body != name)
+    wheel = _driven(scene, name)
     names = [body.name for body in scene.bodies]
     parts = assembly(scene)
     sign, number = drive_direction(scene, wheel), names.index(wheel)
@@ -66,12 +67,12 @@ def turn(scene: Scene, swing: float | None = None) -> Turn:
     if oscillator is None:
         rests = {names.index(one.body): one.rest for one in scene.springs}
         pressed = {i: math.copysign(1.0, rest - parts.q[i]) for i, rest in rests.items()}
-        parts.stay.add(number)
+        parts.stay.update(parts.train(number))
         cycle = Cycle(parts, number, pressed, pitch, rests)
         cycle.follow([parts.q[number] + sign * pitch])
         return Turn(scene, cycle, teeth, None, wheel, 0)
     led = names.index(oscillator.body)
-    parts.stay.add(led)
+    parts.stay.update(parts.train(led))
     start = parts.q[led] - oscillator.rest
     reach = swing if swing is not None else abs(start) if abs(start) > BALANCE or _hangs(scene, led) else SWING
     far, near = oscillator.rest + math.copysign(reach, start or -1.0), oscillator.rest - math.copysign(reach, start or -1.0)
@@ -92,8 +93,16 @@ def closes(found: Turn) -> bool:
     """Does the cycle end as it began, but for whole teeth?"""
     q = found.cycle.q
     back = np.abs(q[-1] - q[found.first])
-    others = [back[i] for i, body in enumerate(found.scene.bodies) if body.motion != "fixed" and body.name != found.wheel]
+    train = goes_with(found.scene, found.wheel)
+    others = [back[i] for i, body in enumerate(found.scene.bodies) if body.motion != "fixed" and body.name not in train]
     return abs(found.advanced - round(found.advanced)) < CLOSED and all(way < CLOSED for way in others)
+
+
+def _driven(scene: Scene, oscillator: str | None) -> str:
+    """The wheel that is pressed: what is driven, or the first in its train that may touch something."""
+    driven = next(torque.body for torque in scene.torques if torque.body != oscillator)
+    touching = {side.body for contact in scene.contacts for side in contact.sides}
+    return next((name for name in goes_with(scene, driven) if name in touching and scene.body(name).motion == "pivot"), driven)
 
 
 def _hangs(scene: Scene, led: int) -> bool:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.geometry.primitives import Point
-from watchsim.turning.couples import Couple, motion_at, opening
+from watchsim.turning.couples import Couple, motion_at
 from watchsim.turning.moves import LEVERAGE, Assembly, Jam
 
 FINE, FINEST = math.radians(0.1), math.radians(0.0005)  # steps of a turning body; lengths: times the reach of its outlines
@@ -115,10 +115,10 @@ class Cycle:
         """Move the led body, and push out of its way what it meets."""
         beside = [one for one in self.assembly.of(self.led) if self.assembly.room(one) <= REGARDED]
         before = [self.assembly.near(one) for one in beside]
-        self.assembly.q[self.led] = target
+        self.assembly.place(self.led, target)
         for one, near in zip(beside, before, strict=True):
             if not self.assembly.is_free(one):
-                self.assembly.push(one.b if one.a == self.led else one.a, one, near)
+                self.assembly.push(self.assembly.other(one, self.led), one, near)
 
     def _press(self) -> None:
         """Let every pressed body go on until it is held."""
@@ -145,10 +145,10 @@ class Cycle:
 
     def _yields(self, number: int, couple: Couple) -> bool:
         """Drive what holds the pressed body a little out of the way; False where it stays."""
-        other = couple.b if couple.a == number else couple.a
-        if other in self.assembly.stay or other in self.pressed:
+        other = self.assembly.other(couple, number)
+        if other in self.assembly.stay or not self.pressed.keys().isdisjoint(self.assembly.train(other)):
             return False
-        rate = opening(self.assembly.bodies, couple, self.assembly.near(couple), other)
+        rate = self.assembly.opening(couple, self.assembly.near(couple), other)
         reach = self.assembly.speed(couple, other)
         if abs(rate) <= LEVERAGE * reach:
             return False

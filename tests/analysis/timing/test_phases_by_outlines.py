@@ -25,7 +25,7 @@ from watchsim.simulation.record.trajectory import Trajectory
 TOUCHING, FREE, RISE = 2e-8, 1e-7, 2e-9  # m; RISE: of an arc above its chords
 BEGUN = 0.3  # of a phase: a gap opens with the square of time
 PARTS = {  # profile -> phase -> layers that touch in it, wheel and balance
-    "cylinder": {name: ("TEETH", "SHELL") for name in ("unlock", "impulse", "locked")},
+    "cylinder": dict.fromkeys(("unlock", "impulse", "locked"), ("TEETH", "SHELL")),
     "duplex": {"unlock": ("RESTING", "ROLLER"), "impulse": ("IMPULSE", "PALLET"), "locked": ("RESTING", "ROLLER")},
 }
 

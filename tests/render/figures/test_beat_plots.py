@@ -16,6 +16,7 @@ from watchsim.analysis.beat_tables import phases_csv
 from watchsim.analysis.energy import energy_shares
 from watchsim.analysis.timeline.shown_beats import shown_beats
 from watchsim.analysis.timeline.timeline_table import title
+from watchsim.render.figures.beat.force_plot import left_out
 from watchsim.render.figures.beat.torque_curve import pushes, torque_on
 from watchsim.render.figures.passing_phases import passing
 from watchsim.render.frame.marks.readouts import clock
@@ -212,3 +213,9 @@ def test_a_run_without_an_escapement_has_the_plots_that_need_none() -> None:
     for draw in (ws.plot_torque, ws.plot_timeline, ws.plot_phases, ws.plot_timing):
         with pytest.raises(ValueError):
             draw(disc)
+
+
+def test_bearings_of_geared_bodies_say_what_is_left_out() -> None:
+    profiles = ws.profiles_dir()
+    assert left_out(ws.load(profiles / "tourbillon")) == ", without gears"
+    assert left_out(ws.load(profiles / "swiss_lever")) == ""

@@ -134,3 +134,17 @@ def test_a_sleeper_under_a_changing_torque_moves_when_that_turns() -> None:
     assert [event["t"] for event in opened] == pytest.approx([1.0], abs=1e-6)
     # From then on angle'' = 100 (t - 1): angle = 100/6 (t - 1)³.
     assert done.q[-1][0] == pytest.approx(100.0 / 6.0 * 0.5**3, rel=1e-6)
+
+
+def test_what_stands_still_is_woken_by_a_force_that_is_yet_to_change() -> None:
+    """Pressed on a stop for five seconds, then drawn away on time."""
+    bodies = (
+        Body("rotor", "pivot", (0.0, 0.0), 0.0, inertia=4e-12, loops=(tip(2e-3),)),
+        Body("stop", "fixed", (2e-3 * math.cos(0.1), 2e-3 * math.sin(0.1) + 0.3e-3), loops=(circle(0.2e-3),)),
+    )
+    table = ((0.0, 0.0), (0.2, 1e-6), (5.0, 1e-6), (5.001, -1e-6))
+    torque = Torque("rotor", over="time", table=table)
+    scene = Scene("pressed", bodies, torques=(torque,), damping=(Damping("rotor", 1e-9),), contacts=touching("rotor", "stop"))
+    held = simulate(scene, 4.9)
+    assert np.all(held.u[-1] == 0.0)
+    assert simulate(scene, 5.01).end_q[0] < held.end_q[0] - 1e-4

@@ -36,6 +36,7 @@ from watchsim.render.figures.usual_window import Shown
 from watchsim.render.frame.marks.readouts import clock
 from watchsim.render.frame.pose_history import Window
 from watchsim.render.palette import looks
+from watchsim.scene.scene import Scene
 from watchsim.simulation.record.trajectory import Array, Trajectory
 
 if TYPE_CHECKING:
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 LEFT, RIGHT, OVER, TALL, BETWEEN, FOOT = 13.0, 3.0, 5.0, 23.0, 3.0, 7.0  # mm
+BEARINGS = "bearings"
 KEY = 5.0  # mm, of the names of phases
 MOST = 12_000  # instants; each takes a quarter of a millisecond
 FINE = 400  # instants at least
@@ -122,6 +124,13 @@ def _summed(run: Trajectory, found: Forces, own: slice) -> Curves:
     return Curves(found.t[own], normal, tangential, loads)
 
 
+def left_out(scene: Scene) -> str:
+    """What acts on pivoted bodies and is in no contact: its share of their bearings' loads is not known here."""
+    geared = bool(scene.gears) or any(body.geared is not None for body in scene.bodies)
+    unknown = [word for word, there in (("gears", geared), ("line springs", bool(scene.line_springs))) if there]
+    return f", without {' and '.join(unknown)}" if unknown else ""
+
+
 def _instants(run: Trajectory, span: Window) -> Array:
     inside = run.t[(run.t > span[0]) & (run.t < span[1])]
     edges = np.unique(np.concatenate(([span[0]], inside, [span[1]])))
@@ -160,7 +169,7 @@ def _column(
     ]  # fmt: skip
     if pivots:
         loads = [(n, one.pivots[n], worn[n].line, DASHES[k % len(DASHES)]) for k, n in enumerate(pivots)]
-        groups.append(("bearings", loads))
+        groups.append((BEARINGS, loads))
     for panel_axes, (name, lines) in zip(axes, groups, strict=True):
         dress(panel_axes)
         factor, unit = scale(values for _, values, _, _ in lines)
@@ -171,7 +180,7 @@ def _column(
                 *reduced(x, factor * values), linestyle=dashes, color=colour, linewidth=CURVE, gid=gid, zorder=3
             )
         if first or wide:
-            title(panel_axes, name)
+            title(panel_axes, name if name != BEARINGS else BEARINGS + left_out(run.scene))
         if first:
             panel_axes.set_ylabel(f"force ({unit})", labelpad=1.5)
         where: dict[str, Any] = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "ncols": len(lines), "borderaxespad": 0.0}
