@@ -172,6 +172,9 @@ SHARP_TURN = 1e-2
 
 # Of the terms of a gap rate: less is zero where it must be exact. Large: shallow kinks pass; small: endless impacts.
 RATE_ROUNDING = 1e-12
+# Of the rate that an impulse takes away: what the impact problem leaves of a zero. Large: slow rebounds go on for ever; small:
+# rounding rebounds.
+REBOUND_ROUNDING = 1e-10
 # rad: normals of outlines turn that much by rounding, which makes gap rates of slips. Large, small: as above.
 TILT_ROUNDING = 1e-13
 # Of the size per second: the same where nothing moves. Large, small: as above.

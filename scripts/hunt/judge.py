@@ -64,13 +64,15 @@ class _Hanging(Exception):
 
 
 class _Clock:
-    """Ends a run that takes too long; the solver looks at it between slices."""
+    """Ends a run that takes too long; the solver looks at it between slices, the first of which may have been compiled."""
 
     def __init__(self) -> None:
-        self._end = time.process_time() + PATIENCE
+        self._end = math.inf
 
     def __call__(self, _simulated: float, _duration: float) -> None:
-        if time.process_time() > self._end:
+        now = time.process_time()
+        self._end = min(self._end, now + PATIENCE)
+        if now > self._end:
             raise KeyboardInterrupt
 
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from watchsim.contact.gaps import margins_of, shape_of_contact
 from watchsim.jit import by_reference, kernel
 from watchsim.model.records import FREE, PIVOT, SLIDE, Records, records
-from watchsim.tolerances import SPIN_ROUNDING
+from watchsim.tolerances import SPIN_ROUNDING, TILT_ROUNDING
 
 KINEMATICS = np.dtype(
     [
@@ -62,6 +62,13 @@ def closed_contacts(room: int) -> Closed:
 
 
 @kernel
+def _share(direction, axis):
+    """Of a direction along an axis; of one across it rounding alone is left, by which no force may hold or move a body."""
+    share = direction[0] * axis[0] + direction[1] * axis[1]
+    return share if abs(share) > TILT_ROUNDING else 0.0
+
+
+@kernel
 def _directions(model, b, row, sign, frame, out_closed):
     """Append body b's entries of w_N, w_T; frame = (nx, ny, arm_x, arm_y), the arm from the body's origin to the contact.
 
@@ -74,8 +81,8 @@ def _directions(model, b, row, sign, frame, out_closed):
     sign *= body.ratio
     if body.motion == SLIDE:
         out_closed.coord[row, j] = body.first
-        out_closed.w_N[row, j] = sign * (nx * body.axis_x + ny * body.axis_y)
-        out_closed.w_T[row, j] = sign * (tx * body.axis_x + ty * body.axis_y)
+        out_closed.w_N[row, j] = sign * _share((nx, ny), (body.axis_x, body.axis_y))
+        out_closed.w_T[row, j] = sign * _share((tx, ty), (body.axis_x, body.axis_y))
         out_closed.slots[row] = j + 1
         return
     turn = body.first

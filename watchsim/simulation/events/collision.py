@@ -20,9 +20,9 @@ from watchsim.simulation.events.chatter import chatter_time, end_chatter, may_be
 from watchsim.simulation.events.closed_contacts import refresh
 from watchsim.simulation.events.impulse_check import kinetic_energy
 from watchsim.simulation.events.mode_decision import count_problems, decide
-from watchsim.simulation.events.zero_rates import note_pace, rounding_of, set_rate_zeros
+from watchsim.simulation.events.zero_rates import note_pace, rounding_of
 from watchsim.simulation.record.write_buffers import keep_event
-from watchsim.tolerances import ENERGY_GAIN, HIDDEN_REBOUND
+from watchsim.tolerances import ENERGY_GAIN, HIDDEN_REBOUND, REBOUND_ROUNDING
 
 
 @kernel
@@ -82,17 +82,25 @@ def _rebounds(i, options, event, room):
 
 
 @kernel
-def _rebounds_unseen(m, options, event, room):
-    """True if a contact rebounds at a rate that counts as zero without being rounding: a rebound all the same.
+def _see_rebounds(m, options, event, work, room):
+    """Take nothing but rounding for zero where a contact rebounds at a rate that counts as zero: a rebound all the same.
 
     Where friction jams, a rate that counts as zero cannot be taken back, and the contact would leave and return for ever.
     """
     for i in range(m):
         rate = event.closed.kin[i].gN_dot
         slowly = room.restitution[i] > 0.0 and room.impulse[2 * i] > 0.0 and 0.0 < rate <= event.zero[i]
-        if slowly and rate > rounding_of(event.closed, i, options, event.pace):
-            return True
-    return False
+        if slowly and rate > _rounding(i, options, event, work, room):
+            for j in range(m):
+                event.zero[j] = _rounding(j, options, event, work, room)
+            return
+
+
+@kernel
+def _rounding(i, options, event, work, room):
+    """What is rounding in the gap rate of contact i after the impact, m/s: of speeds, and of what its impulse changed."""
+    changed = room.impulse[2 * i] * work.G[2 * i, 2 * i]
+    return rounding_of(event.closed, i, options, event.pace) + REBOUND_ROUNDING * changed
 
 
 @kernel
@@ -111,8 +119,7 @@ def _end_rebounds(model, state, island, m, options, scratch):
     """Flag the rebounds that would end within `accumulation_time` (restitution 0); returns (any?, the latest end)."""
     event, room = scratch.event, scratch.impact
     latest, found, worth = 0.0, False, False
-    if _rebounds_unseen(m, options, event, room):
-        set_rate_zeros(event.closed, m, True, options, event.pace, event.zero)
+    _see_rebounds(m, options, event, scratch.work, room)
     for i in range(m):
         worth = worth or _rebounds(i, options, event, room)
     if not worth or not _accelerations(model, state, island, m, options, scratch):
@@ -152,12 +159,12 @@ def collide(model, state, island, m, options, jam, scratch, record):
             room.impulse[row] = work.force[row]
         place(model, state.q, state.u, event.pose)
         refresh(model, m, event.closed, event.pose)
+        note_pace(state.u, event.pace)
         found, end = _end_rebounds(model, state, island, m, options, scratch)
         if not found:
             break
         ended, ends = True, max(ends, end)
     _write(model, state, m, jam, event.closed, room, record, ended, ends)
-    note_pace(state.u, event.pace)
     if jam == 0.0 and may_be_chatter(m, options, event, room) and _accelerations(model, state, island, m, options, scratch):
         time, apart = chatter_time(state, m, options, event)
         if apart and 0.0 < time < math.inf:
