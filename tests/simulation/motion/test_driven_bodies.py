@@ -12,6 +12,7 @@ import watchsim as ws
 from watchsim.scene.errors import SceneError
 from watchsim.scene.scene import Scene
 from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.stops import Stop
 
 BOX = '[["-10 mm", "0 mm"], ["10 mm", "0 mm"], ["10 mm", "10 mm"], ["-10 mm", "10 mm"]]'
 FLOOR = '[["-2000 mm", "-10 mm"], ["2000 mm", "-10 mm"], ["2000 mm", "0 mm"], ["-2000 mm", "0 mm"]]'
@@ -188,3 +189,10 @@ def test_a_body_without_a_way_out_ends_the_run_and_is_named(tmp_path: Path) -> N
     assert run.simulated == pytest.approx(0.5, abs=1e-9)
     assert run.stop.name not in ("DURATION", "RUNNING")
     assert "pusher, which is driven, leaves block no way out" in run.stop_message
+
+
+def test_a_driven_finger_may_strike_what_has_not_moved_yet() -> None:
+    """All energy comes in at that instant; its rounding was once taken for a change that no impulse explains."""
+    run = ws.simulate(ws.designs.jumper(teeth=5, crank="5 mm").scene(), 0.46, tolerance=1e-11)
+    assert run.stop == Stop.DURATION, run.stop_message
+    assert run.energy["residual_relative"] < 1e-9
