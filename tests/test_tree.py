@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from pathlib import Path
 
@@ -39,3 +40,10 @@ def test_no_two_neighbours_differ_by_their_ending_alone() -> None:
     here = {path.with_suffix("") for path in sources("watchsim")}
     endings = ("s", "es", "ed", "ing", "er", "ion")
     assert [str(path) for path in here for ending in endings if path.with_name(path.name + ending) in here] == []
+
+
+def test_every_script_answers_help() -> None:
+    """By a parser of its own, or by `usage`."""
+    scripts = [path for path in (ROOT / "scripts").rglob("*.py") if "__main__" in path.read_text(encoding="utf-8")]
+    silent = [path.name for path in scripts if not re.search("ArgumentParser|usage", path.read_text(encoding="utf-8"))]
+    assert len(scripts) > 30 and silent == []

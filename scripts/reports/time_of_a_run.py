@@ -8,6 +8,7 @@ they cost time of the processor, but none on the clock where there is a second c
 
 from __future__ import annotations
 
+import argparse
 import builtins
 import functools
 import importlib
@@ -92,7 +93,12 @@ def _clock(module: str, attribute: str, what: str) -> None:
 
 
 def main() -> None:
-    scene, duration, folder = sys.argv[1:4]
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("scene")
+    parser.add_argument("duration", help='with its unit: "180 s"')
+    parser.add_argument("folder", help="for the results; it is written anew")
+    asked = parser.parse_args()
+    scene, duration, folder = asked.scene, asked.duration, asked.folder
     sys.argv = ["watchsim", "run", scene, "--duration", duration, "-o", folder, "--force"]
     leave, number = os._exit, os.getpid()
 
