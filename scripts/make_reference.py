@@ -221,4 +221,7 @@ def main() -> None:
 
 
 if __name__ == "__main__":
+    from usage import arguments
+
+    arguments(__doc__)
     main()
