@@ -12,12 +12,12 @@ from __future__ import annotations
 
 import math
 
+from watchsim.construction.leaf_text import STEEL
 from watchsim.construction.outline import angle_of, polar
 from watchsim.construction.snail.snail_dimensions import Snail
 from watchsim.geometry.primitives import Point
 
 FALLS, LIFTED = 0.3, 0.7  # of an hour: the rack is let go, and gathered up again
-STEEL = 200e9  # Pa
 
 
 def gathered(values: Snail) -> float:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from watchsim.construction.contact_tables import contact_tables
 from watchsim.construction.design import told
+from watchsim.construction.leaf_text import leaf_text
 from watchsim.construction.snail.snail_dimensions import Snail
-from watchsim.construction.snail.snail_proportions import FALLS, LIFTED, STEEL
+from watchsim.construction.snail.snail_proportions import FALLS, LIFTED
 
 SUDDEN = 1e-6  # s: over which the rack is let go
 EASE = 0.02  # of an hour, over which it is taken hold of
@@ -64,11 +65,6 @@ CONTACTS = (("rack.PIN", "snail.STEPS"), ("rack.TAIL", "stop.STOP"))
 
 def scene_text(values: Snail) -> str:
     """The text of scene.toml: the rack gathered up, the first step coming under its pin."""
-    sizes = (("length", values.leaf_length), ("width", values.leaf_width), ("thickness", values.leaf_thickness))
-    leaf = [
-        f'modulus = "{STEEL * 1e-9:g} GPa"',
-        *(f'{name} = "{size!r} mm"' for name, size in (*sizes, ("arm", values.leaf_arm))),
-    ]
     rows = []
     for i in range(values.steps):
         free, taken = values.hour * (i + FALLS), values.hour * (i + LIFTED)
@@ -84,7 +80,7 @@ def scene_text(values: Snail) -> str:
         contacts=contact_tables(values, *CONTACTS),
         angle=-0.5 * pitch,
         speed=pitch / values.hour,
-        leaf=", ".join(leaf),
+        leaf=leaf_text(values),
         preload=values.leaf_force * values.leaf_arm,  # mN·mm = µN·m
         table="\n".join(rows),
         duration=round((values.steps - 1 + END) * values.hour, 9),

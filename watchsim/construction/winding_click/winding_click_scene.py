@@ -6,11 +6,11 @@ import math
 
 from watchsim.construction.contact_tables import contact_tables
 from watchsim.construction.design import told
+from watchsim.construction.leaf_text import leaf_text
 from watchsim.construction.winding_click.winding_click_dimensions import WindingClick
 from watchsim.construction.winding_click.winding_click_proportions import distance, held, least_recoil
 
 BEGIN, EASE, AFTER = 0.05, 0.02, 0.13  # s: before the hand winds, over which it takes hold and lets go, and after
-STEEL = 200.0  # GPa
 
 TEXT = """\
 # A winding click with recoil, drawn to these dimensions:
@@ -70,8 +70,6 @@ BEYOND = 1.0  # rad past the full mainspring: as far as its table goes
 def scene_text(values: WindingClick) -> str:
     """The text of scene.toml: the click holds, the wheel is wound until its spring is full, and let go."""
     full, times = held(values) + values.full, (BEGIN, BEGIN + EASE, BEGIN + values.wound_for, BEGIN + values.wound_for + EASE)
-    sizes = (("length", values.leaf_length), ("width", values.leaf_width), ("thickness", values.leaf_thickness))
-    leaf = [f'modulus = "{STEEL:g} GPa"', *(f'{name} = "{size!r} mm"' for name, size in (*sizes, ("arm", values.leaf_arm)))]
     return TEXT.format(
         dimensions=told(values),
         values=values,
@@ -80,7 +78,7 @@ def scene_text(values: WindingClick) -> str:
         pitch=360.0 / values.teeth,
         wheel=held(values),
         distance=distance(values),
-        leaf=", ".join(leaf),
+        leaf=leaf_text(values),
         preload=values.leaf_force * values.leaf_arm,  # mN·mm = µN·m
         held=-values.mainspring,
         full=full,
