@@ -156,3 +156,12 @@ def contact_kinematics(model, k, pose, row, out_closed):
     _directions(model, b.body, row, -1.0, (nx, ny, xb, yb), out_closed)
     if model.bodies[a.body].carrier >= 0 or model.bodies[b.body].carrier >= 0:
         _add_carriers(model, a.body, b.body, row, (nx, ny), pose, out_closed)
+
+
+@kernel
+def gap_acceleration(closed, i, a):
+    """g_N'' of row i of `closed` under the accelerations a of the coordinates: w_N·a + w̄_N."""
+    total = closed.kin[i].bar_N
+    for k in range(closed.slots[i]):
+        total += closed.w_N[i, k] * a[closed.coord[i, k]]
+    return total

@@ -24,19 +24,14 @@ from watchsim.simulation.events.handover import hand_over
 from watchsim.simulation.events.immovable import drop_immovable
 from watchsim.simulation.events.mode_decision import decide
 from watchsim.simulation.events.released_contacts import let_go
-from watchsim.simulation.events.zero_rates import note_pace, rounding_of, set_rate_zeros
+from watchsim.simulation.events.zero_rates import contradicts, note_pace, set_rate_zeros
 from watchsim.simulation.loop_state.state import NO_CONTACT
 from watchsim.simulation.motion.contact_islands import island_of, label_islands, place_contacts, sort_by_island
-from watchsim.simulation.motion.drift_projection import (
-    find_correction,
-    project_positions,
-    project_velocities,
-    rate_left,
-)
+from watchsim.simulation.motion.drift_projection import project_positions, project_velocities
 from watchsim.simulation.motion.sleeping import add_terms, begin_terms, find_sleepers
 from watchsim.simulation.record.write_buffers import keep_change, keep_event
 from watchsim.simulation.stops import Stop
-from watchsim.tolerances import CONTRADICTING_RATE, DEPENDENT_AT_EVENTS, DEPENDENT_IN_STEPS, LEFT_PRIMITIVE
+from watchsim.tolerances import DEPENDENT_AT_EVENTS, DEPENDENT_IN_STEPS, LEFT_PRIMITIVE
 
 ROUNDS = 16  # impacts in a row at one instant
 
@@ -205,7 +200,7 @@ def _resolve(model, state, island, m, options, scratch, record):
             continue
         r, solved = decide(model, state, island, m, options, work, event, state.grip)
         if solved:
-            if not exactly and _contradicts(r, options, work, event):
+            if not exactly and contradicts(model, state, r, options, work, event):
                 exactly = True
                 continue
             stop_held(event.label, island, state.grip, state.u)
@@ -221,21 +216,6 @@ def _resolve(model, state, island, m, options, scratch, record):
         refresh(model, m, event.closed, event.pose)
         jam = options.speed_zero
     return Stop.TOO_MANY_EVENTS, 0
-
-
-@kernel
-def _contradicts(r, options, work, event):
-    """True if the contacts decided to be in force, of the r in `event.rest`, cannot all have a gap rate of zero.
-
-    Their rates then only seemed to be zero.
-    """
-    rest = event.rest
-    find_correction(rest, r, event.decided, DEPENDENT_AT_EVENTS, work)
-    for i in range(r):
-        left = abs(rate_left(rest, r, i, work)) if event.decided[rest.ids[i]] != OPEN else 0.0
-        if left > CONTRADICTING_RATE * rounding_of(rest, i, options, event.pace):
-            return True
-    return False
 
 
 @kernel

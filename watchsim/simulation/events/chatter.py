@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 
 from watchsim.contact.index_sets import BACKWARD, FORWARD, STICK
-from watchsim.contact.kinematics import contact_kinematics
+from watchsim.contact.kinematics import contact_kinematics, gap_acceleration
 from watchsim.dynamics.acceleration import decide_modes, solve_mode
 from watchsim.dynamics.delassus import apply, contact_velocities
 from watchsim.dynamics.impact import plastic_impact
@@ -43,9 +43,7 @@ def may_be_chatter(m, options, event, room):
 @kernel
 def return_time(closed, i, a):
     """Time after which contact i, leaving at its rate under the accelerations a, is closed again, s; infinity if it is not."""
-    closing = -closed.kin[i].bar_N
-    for k in range(closed.slots[i]):
-        closing -= closed.w_N[i, k] * a[closed.coord[i, k]]
+    closing = -gap_acceleration(closed, i, a)
     return 2.0 * closed.kin[i].gN_dot / closing if closing > 0.0 else math.inf
 
 

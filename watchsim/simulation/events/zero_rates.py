@@ -8,8 +8,12 @@ velocities counts as zero (`exactly`), at that instant and in that island.
 
 from __future__ import annotations
 
+from watchsim.contact.index_sets import OPEN
+from watchsim.contact.kinematics import gap_acceleration
+from watchsim.dynamics.acceleration import accelerate
 from watchsim.jit import kernel
-from watchsim.tolerances import RATE_FLOOR, RATE_ROUNDING, TILT_ROUNDING
+from watchsim.simulation.motion.drift_projection import find_correction, rate_left
+from watchsim.tolerances import CONTRADICTING_RATE, DEPENDENT_AT_EVENTS, RATE_FLOOR, RATE_ROUNDING, TILT_ROUNDING
 
 
 @kernel
@@ -34,3 +38,40 @@ def set_rate_zeros(closed, m, exactly, options, pace, out_zero):
     """For each of the m contacts the magnitude up to which its gap rate is zero, m/s."""
     for i in range(m):
         out_zero[i] = rounding_of(closed, i, options, pace) if exactly else options.speed_zero
+
+
+@kernel
+def contradicts(model, state, r, options, work, event):
+    """True if the modes decided for the r contacts in `event.rest` show that their gap rates only seemed to be zero.
+
+    Those in force cannot all have none, or one that opens goes on closing. Accelerations are left in `state.a`.
+    """
+    if _sinks(model, state, r, options, work, event):
+        return True
+    rest = event.rest
+    find_correction(rest, r, event.decided, DEPENDENT_AT_EVENTS, work)
+    for i in range(r):
+        left = abs(rate_left(rest, r, i, work)) if event.decided[rest.ids[i]] != OPEN else 0.0
+        if left > CONTRADICTING_RATE * rounding_of(rest, i, options, event.pace):
+            return True
+    return False
+
+
+@kernel
+def _sinks(model, state, r, options, work, event):
+    """True if one of the r contacts that opens would sink in by more than `gap_zero` before its acceleration parts it.
+
+    It would touch again at once, and again, since nothing takes its approach away.
+    """
+    rest, known = event.rest, False
+    for i in range(r):
+        rate = rest.kin[i].gN_dot
+        if event.decided[rest.ids[i]] != OPEN or rate >= -rounding_of(rest, i, options, event.pace):
+            continue
+        if not known:
+            accelerate(model, rest, r, work, state.a)
+            known = True
+        room = max(rest.kin[i].g, 0.0) + options.gap_zero
+        if rate * rate > 2.0 * room * gap_acceleration(rest, i, state.a):
+            return True
+    return False
