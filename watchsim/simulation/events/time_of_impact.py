@@ -32,23 +32,26 @@ from watchsim.simulation.motion.sleeping import is_at_rest
 from watchsim.simulation.motion.step_path import body_on_path
 from watchsim.tolerances import FINE_LOOK, TIME_ROUNDING
 
+LOOKS_AT_ONCE = 64  # at one contact, before the others have their turn
+
 
 @kernel
 def crossing(model, state, options, k, start, end, step, path):
-    """First time in [start, end) at which open contact k closes inside its primitives; infinity if it does not.
+    """(time, closes?): open contact k closes at that time within [start, end), or does not until then.
 
-    The two bodies must stand where they are at `start`.
+    After `LOOKS_AT_ONCE` looks the time may be short of `end`. The two bodies must stand where they are at `start`.
     """
     contact = model.contacts[k]
     body_a, body_b = model.primitives[contact.a].body, model.primitives[contact.b].body
     length, closing, bend, swing = next_stretch(model, options, k, end - start, step, path)
     if closing == 0.0 and length == end - start:
-        return math.inf
+        return end, False
     zero = options.gap_zero
     tau, stretch = start, start + length
     # `outside`: on the free side; `clear`: has been further than rounding from it since.
     fresh, outside, clear, beside = True, True, False, 0.0
-    while tau < end:
+    last_look = state.counts.gap_evaluations + LOOKS_AT_ONCE
+    while tau < end and state.counts.gap_evaluations < last_look:
         if tau > start:
             body_on_path(model, state, step, body_a, tau, path)
             body_on_path(model, state, step, body_b, tau, path)
@@ -78,7 +81,8 @@ def crossing(model, state, options, k, start, end, step, path):
             wait = time_held(model, state, options, k, tau, rate, (closing, bend, swing, distance), path)
             if wait == 0.0:
                 soon = outside and clear and gap > 0.0 and rate * (end - tau) < -gap
-                return min(end, tau + gap / -rate) if soon else tau
+                time = min(end, tau + gap / -rate) if soon else tau
+                return time, time < end
             tau += wait
         else:
             clear = clear and leaving if outside else clear
@@ -94,7 +98,7 @@ def crossing(model, state, options, k, start, end, step, path):
             tau += beside if fresh else max(safe, TIME_ROUNDING * tau)
         if stretch < end:
             tau = min(tau, stretch)
-    return math.inf
+    return min(tau, end), False
 
 
 @kernel
@@ -124,12 +128,12 @@ def _place_pair(model, state, pair, tau, step, path):
 
 @kernel
 def _first_of(model, cells, state, options, p, tau, until, step, path):
-    """(known, time, contact) of the first closing in [tau, until) among the candidates of pair p in one cell."""
+    """(known, time up to which all is found, time, contact) of the first closing in [tau, until) of pair p in one cell."""
     pair = model.pairs[p]
-    best, who = until, NO_CONTACT
+    best, who, reached = until, NO_CONTACT, until
     how, start, count = candidates(model, cells, p, path.q)
     if how == UNKNOWN:
-        return False, 0.0, NO_CONTACT
+        return False, tau, until, NO_CONTACT
     if how == LISTED:
         state.counts.cells_looked_up += 1
     bounds = (body_bounds(model, pair.a, until - tau, step, path), body_bounds(model, pair.b, until - tau, step, path))
@@ -144,9 +148,31 @@ def _first_of(model, cells, state, options, p, tau, until, step, path):
     for j in range(doubts):
         if j > 0:
             _place_pair(model, state, pair, tau, step, path)
-        root = crossing(model, state, options, path.doubt[j], tau, best, step, path)
-        if root < best:
-            best, who = root, path.doubt[j]
+        reached, closes = crossing(model, state, options, path.doubt[j], tau, reached, step, path)
+        if closes:
+            best, who = reached, path.doubt[j]
+    return True, reached, best, who
+
+
+@kernel
+def _search(model, cells, state, options, p, first, step, path):
+    """(known, time, contact): the first closing known when pair p has had its turn; `first`: the one known before.
+
+    Goes on from where the last turn ended, `path.searched`, to the first closing, or to where a contact has had its looks.
+    """
+    pair, tau = model.pairs[p], path.searched[p]
+    best, who = first
+    looking = True
+    while looking and tau < best:
+        _place_pair(model, state, pair, tau, step, path)
+        until = min(best, tau + time_in_cell(model, p, path.q, path.u, step.bound))
+        known, tau, root, k = _first_of(model, cells, state, options, p, tau, until, step, path)
+        if not known:
+            return False, best, who
+        if k >= 0:
+            best, who = root, k
+        looking = tau == until
+    path.searched[p] = tau
     return True, best, who
 
 
@@ -154,23 +180,23 @@ def _first_of(model, cells, state, options, p, tau, until, step, path):
 def first_touch(model, cells, state, options, end, scratch):
     """(known, time, contact) of the first closing in [0, end) of the current step, or NO_CONTACT.
 
-    `known` is False when a cell was met that nobody has asked about: it is then in `scratch.asked`.
+    `known` is False when a cell was met that nobody has asked about: it is then in `scratch.asked`. Pairs take turns: looks
+    that a slow gap needs until the end are wasted where another one closes long before.
     """
     best, who, step, path = end, NO_CONTACT, scratch.step, scratch.path
     for p in range(len(model.pairs)):
         pair = model.pairs[p]
-        if is_at_rest(model, state, pair.a) and is_at_rest(model, state, pair.b):
-            continue
-        tau = 0.0
-        while tau < best:
-            _place_pair(model, state, pair, tau, step, path)
-            until = min(best, tau + time_in_cell(model, p, path.q, path.u, step.bound))
-            known, root, k = _first_of(model, cells, state, options, p, tau, until, step, path)
+        rests = is_at_rest(model, state, pair.a) and is_at_rest(model, state, pair.b)
+        path.searched[p] = math.inf if rests else 0.0
+    unfinished = True
+    while unfinished:
+        unfinished = False
+        for p in range(len(model.pairs)):
+            if path.searched[p] >= best:
+                continue
+            known, best, who = _search(model, cells, state, options, p, (best, who), step, path)
             if not known:
                 ask(scratch.asked, p, path.q)
                 return False, 0.0, NO_CONTACT
-            if k >= 0:
-                best, who = root, k
-                break
-            tau = until
+            unfinished = unfinished or path.searched[p] < best
     return True, best, who

@@ -79,6 +79,7 @@ class Path(NamedTuple):
     pose: Any
     probe: Closed  # kinematics of one contact
     doubt: Integers  # candidates that may close within a stretch
+    searched: Array  # by pair: the time of the step up to which the first closing is known
 
 
 PathRef = by_reference(Path, __name__)
@@ -176,7 +177,7 @@ def scratch_by_reference(scratch):
         StepRef(*scratch.step),
         ContactWorkRef(LcpWorkRef(*scratch.work.lcp), *scratch.work[1:]),
         SmoothRef(smooth.y, smooth.dy, smooth.pose, ClosedRef(*smooth.closed), *smooth[4:]),
-        PathRef(path.q, path.u, path.pose, ClosedRef(*path.probe), path.doubt),
+        PathRef(path.q, path.u, path.pose, ClosedRef(*path.probe), *path[4:]),
         EventRoomRef(event.pose, ClosedRef(*event.closed), ClosedRef(*event.rest), *event[3:]),
         ImpactRoomRef(*scratch.impact),
         AskedRef(*scratch.asked),
@@ -236,6 +237,10 @@ def _impact_room(n: int, contacts: int, room: int) -> ImpactRoom:
     return ImpactRoom(restitution=np.zeros(room), before=np.zeros(n), grip=grip, mode=mode, **by_row)
 
 
+def _path_room(n: int, bodies: int, contacts: int, pairs: int) -> Path:
+    return Path(np.zeros(n), np.zeros(n), poses(bodies), closed_contacts(1), np.zeros(contacts, np.int64), np.zeros(pairs))
+
+
 def new_scratch(model: Model) -> Scratch:
     """Room to work for one model."""
     n, bodies, contacts, room = len(model.coordinates), len(model.bodies), len(model.contacts), room_for(model)
@@ -243,7 +248,7 @@ def new_scratch(model: Model) -> Scratch:
         step=_step_room(n),
         work=contact_work(room, n),
         smooth=_smooth_room(n, bodies, room),
-        path=Path(np.zeros(n), np.zeros(n), poses(bodies), closed_contacts(1), np.zeros(contacts, np.int64)),
+        path=_path_room(n, bodies, contacts, len(model.pairs)),
         event=_event_room(n, bodies, contacts, room),
         impact=_impact_room(n, contacts, room),
         asked=asked_of(n),
