@@ -44,7 +44,7 @@ def set_rate_zeros(closed, m, exactly, options, pace, out_zero):
 def contradicts(model, state, r, options, work, event):
     """True if the modes decided for the r contacts in `event.rest` show that their gap rates only seemed to be zero.
 
-    Those in force cannot all have none, or one that opens goes on closing. Accelerations are left in `state.a`.
+    Those in force cannot all have none, or the one that has just closed goes on closing. Writes to `state.a`.
     """
     if _sinks(model, state, r, options, work, event):
         return True
@@ -59,19 +59,17 @@ def contradicts(model, state, r, options, work, event):
 
 @kernel
 def _sinks(model, state, r, options, work, event):
-    """True if one of the r contacts that opens would sink in by more than `gap_zero` before its acceleration parts it.
+    """True if the contact that has just closed opens, and would sink in by more than `gap_zero` before it is parted.
 
-    It would touch again at once, and again, since nothing takes its approach away.
+    It would close again at once, and again, since nothing takes its approach away.
     """
-    rest, known = event.rest, False
+    rest = event.rest
     for i in range(r):
         rate = rest.kin[i].gN_dot
-        if event.decided[rest.ids[i]] != OPEN or rate >= -rounding_of(rest, i, options, event.pace):
+        if rest.ids[i] != state.now.touched or event.decided[rest.ids[i]] != OPEN:
             continue
-        if not known:
+        if rate < -rounding_of(rest, i, options, event.pace):
             accelerate(model, rest, r, work, state.a)
-            known = True
-        room = max(rest.kin[i].g, 0.0) + options.gap_zero
-        if rate * rate > 2.0 * room * gap_acceleration(rest, i, state.a):
-            return True
+            room = max(rest.kin[i].g, 0.0) + options.gap_zero
+            return rate * rate > 2.0 * room * gap_acceleration(rest, i, state.a)
     return False
