@@ -26,35 +26,42 @@ from watchsim.simulation.events.safe_times import (
     time_outside,
     time_to_zero,
 )
+from watchsim.simulation.events.waiting_contacts import drop_first, put
 from watchsim.simulation.loop_state.scratch import ask
 from watchsim.simulation.loop_state.state import NO_CONTACT
 from watchsim.simulation.motion.sleeping import is_at_rest
 from watchsim.simulation.motion.step_path import body_on_path
 from watchsim.tolerances import FINE_LOOK, TIME_ROUNDING
 
-LOOKS_AT_ONCE = 64  # at one contact, before the others have their turn
+LOOKS_AT_ONCE = 16  # at one contact, before one that could close earlier has its turn
+
+
+@kernel
+def _place(model, state, bodies, tau, step, path):
+    """Bring two bodies to time tau of the step."""
+    body_on_path(model, state, step, bodies[0], tau, path)
+    body_on_path(model, state, step, bodies[1], tau, path)
 
 
 @kernel
 def crossing(model, state, options, k, start, end, step, path):
     """(time, closes?): open contact k closes at that time within [start, end), or does not until then.
 
-    After `LOOKS_AT_ONCE` looks the time may be short of `end`. The two bodies must stand where they are at `start`.
+    After `LOOKS_AT_ONCE` looks the time may be short of `end`.
     """
     contact = model.contacts[k]
     body_a, body_b = model.primitives[contact.a].body, model.primitives[contact.b].body
+    _place(model, state, (body_a, body_b), start, step, path)
     length, closing, bend, swing = next_stretch(model, options, k, end - start, step, path)
     if closing == 0.0 and length == end - start:
         return end, False
-    zero = options.gap_zero
     tau, stretch = start, start + length
     # `outside`: on the free side; `clear`: has been further than rounding from it since.
     fresh, outside, clear, beside = True, True, False, 0.0
     last_look = state.counts.gap_evaluations + LOOKS_AT_ONCE
     while tau < end and state.counts.gap_evaluations < last_look:
         if tau > start:
-            body_on_path(model, state, step, body_a, tau, path)
-            body_on_path(model, state, step, body_b, tau, path)
+            _place(model, state, (body_a, body_b), tau, step, path)
         if tau >= stretch:
             length, closing, bend, swing = next_stretch(model, options, k, end - tau, step, path)
             stretch = tau + length
@@ -62,20 +69,20 @@ def crossing(model, state, options, k, start, end, step, path):
         distance = centre_distance(model, k, path.pose)
         state.counts.gap_evaluations += 1
         if fresh or not outside:
-            outside, clear = gap >= -zero, beside > 0.0  # what lay beside its primitives was no contact until now
+            outside, clear = gap >= -options.gap_zero, beside > 0.0  # what lay beside its primitives was no contact until now
         fresh = True
-        leaving = gap > zero or rate > options.speed_zero
+        leaving = gap > options.gap_zero or rate > options.speed_zero
         clear = clear or (outside and leaving)  # a contact that has just rebounded returns to this gap by falling only
         inside_a, inside_b = inside_a + options.extent, inside_b + options.extent  # beyond their ends still counts
         beside = time_outside(model, k, inside_a, inside_b, (closing, swing), distance)
         # Positions jump where drift is taken back: a gap may have closed by that.
-        near = gap <= zero if outside else gap >= -options.behind
+        near = gap <= options.gap_zero if outside else gap >= -options.behind
         if near and min(inside_a, inside_b) < 0.0:
             # At least the time in which the gap cannot pass through its rounding.
-            wait = max(beside, zero / closing)
+            wait = max(beside, options.gap_zero / closing)
             if wait < FINE_LOOK * (end - tau):
                 way_in = -inside_b if model.primitives[contact.b].kind == LINE else 0.0
-                wait = max(wait, time_still(model, state, k, max(zero, way_in), end - tau, tau, step, path))
+                wait = max(wait, time_still(model, state, k, max(options.gap_zero, way_in), end - tau, tau, step, path))
             tau += max(wait, TIME_ROUNDING * tau)
         elif is_due(gap, rate, outside, clear, options):
             wait = time_held(model, state, options, k, tau, rate, (closing, bend, swing, distance), path)
@@ -102,8 +109,8 @@ def crossing(model, state, options, k, start, end, step, path):
 
 
 @kernel
-def _stays_open(model, state, options, k, length, first, bounds, path):
-    """True if one look at the current poses shows that contact k cannot close in the next `length` seconds.
+def _stays_open_for(model, state, options, k, length, first, bounds, path):
+    """A time in which contact k cannot close, from one look at the current poses; infinity if it is `length` or more.
 
     `bounds` are the `body_bounds` of the pair's bodies, of body `first` and of the other one.
     """
@@ -111,92 +118,75 @@ def _stays_open(model, state, options, k, length, first, bounds, path):
     gap, rate = here.gap, here.rate
     state.counts.gap_evaluations += 1
     if -options.behind <= gap <= options.gap_zero:
-        return False
+        return 0.0
     # Behind its primitive a contact must come out before it can close.
     room, approach = (gap, -rate) if gap > 0.0 else (-gap, rate)
     # The circle may be on either body of the pair.
     in_order = model.primitives[model.contacts[k].a].body == first
     closing, bend, _ = gap_bounds(model, k, length, bounds[0 if in_order else 1], bounds[1 if in_order else 0], path)
-    return room > closing * length or safe_time(room, approach, closing, bend, centre_distance(model, k, path.pose)) >= length
+    if room > closing * length:
+        return math.inf
+    safe = safe_time(room, approach, closing, bend, centre_distance(model, k, path.pose))
+    return math.inf if safe >= length else safe
 
 
 @kernel
-def _place_pair(model, state, pair, tau, step, path):
-    body_on_path(model, state, step, pair.a, tau, path)
-    body_on_path(model, state, step, pair.b, tau, path)
+def _list(model, cells, state, options, p, span, count, step, path):
+    """(known, number waiting): put the contacts of pair p that may close in its cell among those that wait.
 
-
-@kernel
-def _first_of(model, cells, state, options, p, tau, until, step, path):
-    """(known, time up to which all is found, time, contact) of the first closing in [tau, until) of pair p in one cell."""
-    pair = model.pairs[p]
-    best, who, reached = until, NO_CONTACT, until
-    how, start, count = candidates(model, cells, p, path.q)
+    With them when the pair enters its next cell. `span`: the time at which it is in this cell, and the end of the search.
+    """
+    pair, waiting, tau, end = model.pairs[p], path.waiting, span[0], span[1]
+    _place(model, state, (pair.a, pair.b), tau, step, path)
+    until = min(end, tau + time_in_cell(model, p, path.q, path.u, step.bound))
+    how, start, number = candidates(model, cells, p, path.q)
     if how == UNKNOWN:
-        return False, tau, until, NO_CONTACT
+        return False, count
     if how == LISTED:
         state.counts.cells_looked_up += 1
     bounds = (body_bounds(model, pair.a, until - tau, step, path), body_bounds(model, pair.b, until - tau, step, path))
-    doubts = 0
-    for place in range(start, start + count):
+    for place in range(start, start + number):
         k = candidate(model, cells, how, place)
         if state.mode[k] != OPEN or is_beside_active(model, state, k):
             continue
-        if not _stays_open(model, state, options, k, until - tau, pair.a, bounds, path):
-            path.doubt[doubts] = k
-            doubts += 1
-    for j in range(doubts):
-        if j > 0:
-            _place_pair(model, state, pair, tau, step, path)
-        reached, closes = crossing(model, state, options, path.doubt[j], tau, reached, step, path)
-        if closes:
-            best, who = reached, path.doubt[j]
-    return True, reached, best, who
-
-
-@kernel
-def _search(model, cells, state, options, p, first, step, path):
-    """(known, time, contact): the first closing known when pair p has had its turn; `first`: the one known before.
-
-    Goes on from where the last turn ended, `path.searched`, to the first closing, or to where a contact has had its looks.
-    """
-    pair, tau = model.pairs[p], path.searched[p]
-    best, who = first
-    looking = True
-    while looking and tau < best:
-        _place_pair(model, state, pair, tau, step, path)
-        until = min(best, tau + time_in_cell(model, p, path.q, path.u, step.bound))
-        known, tau, root, k = _first_of(model, cells, state, options, p, tau, until, step, path)
-        if not known:
-            return False, best, who
-        if k >= 0:
-            best, who = root, k
-        looking = tau == until
-    path.searched[p] = tau
-    return True, best, who
+        stays = tau + _stays_open_for(model, state, options, k, until - tau, pair.a, bounds, path)
+        if stays < until:
+            count = put(waiting, count, k, p, (tau, until, stays))
+    if until < end:
+        count = put(waiting, count, NO_CONTACT, p, (until, until, until))
+    return True, count
 
 
 @kernel
 def first_touch(model, cells, state, options, end, scratch):
     """(known, time, contact) of the first closing in [0, end) of the current step, or NO_CONTACT.
 
-    `known` is False when a cell was met that nobody has asked about: it is then in `scratch.asked`. Pairs take turns: looks
-    that a slow gap needs until the end are wasted where another one closes long before.
+    `known` is False when a cell was met that nobody has asked about: it is then in `scratch.asked`. The contact that could
+    close first is looked at next: what lies far off is not searched beyond the first closing, however long the step.
     """
     best, who, step, path = end, NO_CONTACT, scratch.step, scratch.path
+    count, known = 0, True
     for p in range(len(model.pairs)):
-        pair = model.pairs[p]
-        rests = is_at_rest(model, state, pair.a) and is_at_rest(model, state, pair.b)
-        path.searched[p] = math.inf if rests else 0.0
-    unfinished = True
-    while unfinished:
-        unfinished = False
-        for p in range(len(model.pairs)):
-            if path.searched[p] >= best:
-                continue
-            known, best, who = _search(model, cells, state, options, p, (best, who), step, path)
+        if is_at_rest(model, state, model.pairs[p].a) and is_at_rest(model, state, model.pairs[p].b):
+            continue
+        known, count = _list(model, cells, state, options, p, (0.0, end), count, step, path)
+        if not known:
+            ask(scratch.asked, p, path.q)
+            return False, 0.0, NO_CONTACT
+    while count > 0 and path.waiting[0].stays_open < best:
+        first = path.waiting[0]
+        k, p, start, until = first.contact, first.pair, first.start, first.until
+        count = drop_first(path.waiting, count)
+        if k == NO_CONTACT:
+            known, count = _list(model, cells, state, options, p, (start, best), count, step, path)
             if not known:
                 ask(scratch.asked, p, path.q)
                 return False, 0.0, NO_CONTACT
-            unfinished = unfinished or path.searched[p] < best
+            continue
+        until = min(until, best)
+        time, closes = crossing(model, state, options, k, start, until, step, path)
+        if closes:
+            best, who = time, k
+        elif time < until:
+            count = put(path.waiting, count, k, p, (time, until, time))
     return True, best, who

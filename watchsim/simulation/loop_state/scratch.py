@@ -15,8 +15,8 @@ from watchsim.contact.poses import poses
 from watchsim.dynamics.delassus import ContactWork, ContactWorkRef, contact_work
 from watchsim.dynamics.lcp.lemke_pivoting import LcpWorkRef
 from watchsim.jit import by_reference, inlined, kernel
-from watchsim.model.named_fields import blank
-from watchsim.model.records import Model
+from watchsim.model.named_fields import blank, dtype_of
+from watchsim.model.records import Model, records
 from watchsim.simulation.loop_state.state import room_for
 
 Array = NDArray[np.float64]
@@ -71,6 +71,16 @@ class Smooth(NamedTuple):
 SmoothRef = by_reference(Smooth, __name__)
 
 
+class Waiting:
+    """A contact that may close, or, with `contact` NO_CONTACT, a pair of bodies that then enters its next cell."""
+
+    contact: int
+    pair: int
+    start: float  # s in the step: where the next look begins
+    until: float  # s in the step: where the pair leaves its cell
+    stays_open: float  # s in the step: it cannot close before
+
+
 class Path(NamedTuple):
     """Where bodies are within a step (step_path.py), and which contacts may close there (time_of_impact.py)."""
 
@@ -78,8 +88,7 @@ class Path(NamedTuple):
     u: Array
     pose: Any
     probe: Closed  # kinematics of one contact
-    doubt: Integers  # candidates that may close within a stretch
-    searched: Array  # by pair: the time of the step up to which the first closing is known
+    waiting: Any  # records of `Waiting`: contacts that may close, the one that could be first in front
 
 
 PathRef = by_reference(Path, __name__)
@@ -237,8 +246,8 @@ def _impact_room(n: int, contacts: int, room: int) -> ImpactRoom:
     return ImpactRoom(restitution=np.zeros(room), before=np.zeros(n), grip=grip, mode=mode, **by_row)
 
 
-def _path_room(n: int, bodies: int, contacts: int, pairs: int) -> Path:
-    return Path(np.zeros(n), np.zeros(n), poses(bodies), closed_contacts(1), np.zeros(contacts, np.int64), np.zeros(pairs))
+def _path_room(n: int, bodies: int, entries: int) -> Path:
+    return Path(np.zeros(n), np.zeros(n), poses(bodies), closed_contacts(1), records(dtype_of(Waiting), entries))
 
 
 def new_scratch(model: Model) -> Scratch:
@@ -248,7 +257,7 @@ def new_scratch(model: Model) -> Scratch:
         step=_step_room(n),
         work=contact_work(room, n),
         smooth=_smooth_room(n, bodies, room),
-        path=_path_room(n, bodies, contacts, len(model.pairs)),
+        path=_path_room(n, bodies, contacts + len(model.pairs)),
         event=_event_room(n, bodies, contacts, room),
         impact=_impact_room(n, contacts, room),
         asked=asked_of(n),
