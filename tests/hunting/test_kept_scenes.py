@@ -9,7 +9,7 @@ import hunt_path
 import pytest
 from hunt.hunt_mechanisms import judged_file
 
-SLOW = ("gears-3-7",)  # six seconds; gears are judged in tests of their own, too
+SLOW = ("gears-3-7", "blocks-801-12218", "levers-801-17734")  # four to ten seconds each
 SCENES = [
     pytest.param(path, id=path.stem, marks=[pytest.mark.slow] if path.stem in SLOW else [])
     for path in sorted((hunt_path.ROOT / "tests" / "data" / "hunt").glob("*.toml"))
