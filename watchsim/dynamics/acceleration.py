@@ -85,7 +85,7 @@ def solve_mode(model, closed, m, mode, lenience, work):
             _equation(work, m, 2 * i + 1, work.tangent[i])
     rank = solve_small(work.A, work.rhs, n, work.scale, work.order, work.x, RANK * lenience)
     if rank < n:
-        smallest_forces(m, n, rank, work)
+        smallest_forces(model, closed, m, n, rank, lenience, work)
     for i in range(m):
         work.force[2 * i] = work.x[i]
         t = work.tangent[i]
