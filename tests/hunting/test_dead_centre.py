@@ -9,7 +9,7 @@ from __future__ import annotations
 import hunt_path
 import numpy as np
 import pytest
-from hunt.books import masses
+from hunt.energies import masses
 from hunt.impulses import Touches, touching
 
 from watchsim.scene.file.load import load
