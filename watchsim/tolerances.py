@@ -64,8 +64,8 @@ PAINLEVE = 1e-9
 NO_HAND = 1e-9
 # Of the largest force: by so much a law may be missed. Large: forces that pull; small: needless searches.
 LAW_SLACK = 1e-9
-# Of the force at which a mode ends: by so much laws may be missed where they leave no forces at all, less than the half at which
-# one begins (`BEGIN_SLACK`). Large: a mode that has ended begins anew; small: modes end where time cannot go on.
+# Of the force at which a mode ends: by so much laws may be missed that leave no forces at all, less than `BEGIN_SLACK`. Large: a
+# mode that has ended begins anew; small: modes end where time cannot go on.
 LAW_SHARE = 0.25
 # What a free direction of length one does for a law by rounding. Large: laws unmet; small: boundless forces.
 LAW_ROUNDING = 1e-11

@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 
 NEAR = 1e-6  # of the size: outlines this close touch
 LOOKS = 12  # each at a quarter of the time of the one before
+ALIKE = 0.995  # cosine of the angle by which a normal may turn meanwhile
 PASSED_ON = 1e-9  # of the fastest approach of an instant: slower ones are carried along
 
 
@@ -45,11 +46,16 @@ def _is_graze(run: Trajectory, touches: Touches, event: np.void, row: int, gap: 
     A gap that closes at v and turns within a time t gets no deeper than v t / 2.
     """
     pair = run.pairs[int(event["contact"])]
-    longest = 2.0 * gap / -float(event["value"])
+    bodies, speed, u = (pair.body_a, pair.body_b), -float(event["value"]), run.u[row]
+    closing = [normal for normal, rate in touches.gap_rates(run.q[row], u, bodies) if rate < -0.5 * speed]
     for look in range(LOOKS):
-        after = longest * 0.25**look
-        q = run.q[row] + after * (run.u[row] + 0.5 * after * run.a[row])
-        rates = touches.gap_rates(q, run.u[row] + after * run.a[row], (pair.body_a, pair.body_b))
+        after = 2.0 * gap / speed * 0.25**look
+        q = run.q[row] + after * (u + 0.5 * after * run.a[row])
+        rates = [
+            rate
+            for (x, y), rate in touches.gap_rates(q, u + after * run.a[row], bodies)
+            if any(x * nx + y * ny > ALIKE for nx, ny in closing)
+        ]
         if rates and min(rates) >= 0.0:
             return True
     return False
