@@ -103,9 +103,9 @@ FINEST_TOLERANCE, COARSEST_TOLERANCE = 1e-13, 1e-2
 GAP_ZERO = 1e-13
 # Of the size: gaps that small take part in an impact. Large: merges events; small: splits simultaneous ones.
 GAP_CLOSE = 2e-10
-# Of the size: `behind`. Drawings are rounded to a millionth of a way along a face, and so far may sink in what no motion takes
-# out again (`IMMOVABLE`). Large: accepts contacts on the far side; small: falls through.
-BEHIND_LEAST, BEHIND_MOST = 1e-6, 2e-5
+# Of the size: `behind`; a body sinks into faces that rise by less than `IMMOVABLE` says. Large: accepts contacts on the far side,
+# and looks at more gaps; small: falls through.
+BEHIND_LEAST, BEHIND_MOST = 1e-7, 2e-5
 # Of the size, for each of the tolerance: drift lets a corner land so far behind. Large, small: as above.
 BEHIND_PER_TOLERANCE = 20.0
 # Times the joint of outlines: `extent`. Large: contacts stick out; small: they slip through joints.
