@@ -64,8 +64,8 @@ PAINLEVE = 1e-9
 NO_HAND = 1e-9
 # Of the largest force: by so much a law may be missed. Large: forces that pull; small: needless searches.
 LAW_SLACK = 1e-9
-# Of the force at which a mode ends: by so much laws may be missed that leave no forces at all, less than `BEGIN_SLACK`. Large: a
-# mode that has ended begins anew; small: modes end where time cannot go on.
+# Of the force at which a mode ends: by so much laws may be missed that leave no forces at all, less than `BEGIN_SLACK`.
+# Large: a mode that has ended begins anew; small: modes end where time cannot go on.
 LAW_SHARE = 0.25
 # What a free direction of length one does for a law by rounding. Large: laws unmet; small: boundless forces.
 LAW_ROUNDING = 1e-11
@@ -103,8 +103,8 @@ FINEST_TOLERANCE, COARSEST_TOLERANCE = 1e-13, 1e-2
 GAP_ZERO = 1e-13
 # Of the size: gaps that small take part in an impact. Large: merges events; small: splits simultaneous ones.
 GAP_CLOSE = 2e-10
-# Of the size: `behind`; a body sinks into faces that rise by less than `IMMOVABLE` says. Large: accepts contacts on the far side,
-# and looks at more gaps; small: falls through.
+# Of the size: `behind`; a body sinks into faces that rise by less than `IMMOVABLE` says. Large: accepts contacts on the far
+# side, and looks at more gaps; small: falls through.
 BEHIND_LEAST, BEHIND_MOST = 1e-7, 2e-5
 # Of the size, for each of the tolerance: drift lets a corner land so far behind. Large, small: as above.
 BEHIND_PER_TOLERANCE = 20.0
