@@ -50,6 +50,12 @@ class Touches:
             return 1.0, points
         return float(nnls(matrix, wanted / length, maxiter=50 * matrix.shape[1] + 100)[1]), points
 
+    def gap_rates(self, q: Array, u: Array, pair: tuple[str, str]) -> list[tuple[Point, float]]:
+        """Normal and opening rate (m/s) of each place where two bodies touch."""
+        a, b = (self._scene.body(name) for name in pair)
+        found = touching(self._placed(a, q), self._placed(b, q), self._near)
+        return [(normal, float((self._column(a, q, at, normal) - self._column(b, q, at, normal)) @ u)) for at, normal in found]
+
     def _placed(self, body: Body, q: Array) -> list[Edge]:
         x, y, angle = _pose(body, q[self._slices.get(body.name, slice(0, 0))])
         return [moved(edge, angle, (x, y)) for loop in body.loops for edge in loop.edges]

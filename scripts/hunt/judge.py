@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 
 from hunt.books import faults
 from hunt.generator.material import Material, reach
+from hunt.grazes import grazed
 from hunt.views import View, perturbed, views
 from hunt.witness import witness_fault
 from watchsim.scene.errors import SceneError
@@ -125,25 +126,25 @@ class Judge:
         base = self.run(self.scene, TOLERANCES[0], prefilter=not self._roams or self.seed % 8 == 0)
         self.verdict.events = len(base.events)
         sound = self.book(base, "as described")
-        others: list[tuple[str, float, Array]] = []
+        others: list[tuple[str, float, Trajectory, Array]] = []
         for tolerance in TOLERANCES[1:]:
             run = self.run(self.scene, tolerance)
             sound &= self.book(run, f"tolerance {tolerance:g}")
-            others.append((f"tolerance {tolerance:g}", max(tolerance, TOLERANCES[0]), self.motion(run)))
+            others.append((f"tolerance {tolerance:g}", max(tolerance, TOLERANCES[0]), run, self.motion(run)))
         for k, view in enumerate(views(self.scene, self.seed, ORIENTATIONS)):
             run = self.run(view.of(self.scene), TOLERANCES[0])
             sound &= self.book(run, f"orientation {k + 1}")
-            others.append((f"orientation {k + 1}", TOLERANCES[0], self.motion(run, view)))
+            others.append((f"orientation {k + 1}", TOLERANCES[0], run, self.motion(run, view)))
         if not sound:
             return
         middle = self.motion(base)
-        apart = [(label, tol, _drift(middle, motion)) for label, tol, motion in others]
-        doubtful = [entry for entry in apart if entry[2][-1] > FLOOR * entry[1]]
+        apart = [(label, tol, run, _drift(middle, motion)) for label, tol, run, motion in others]
+        doubtful = [entry for entry in apart if entry[3][-1] > FLOOR * entry[1]]
         spread: dict[float, Array] = {}
-        for label, tolerance, distance in doubtful:
+        for label, tolerance, run, distance in doubtful:
             if tolerance not in spread:
                 spread[tolerance] = self.spread(middle, tolerance)
-            self._compare(base, label, tolerance, distance, spread[tolerance])
+            self._compare((base, run), label, tolerance, distance, spread[tolerance])
         if spread:
             wide = spread.get(TOLERANCES[0], spread.get(TOLERANCES[1]))
             assert wide is not None
@@ -153,10 +154,16 @@ class Judge:
         if with_witness and not self.verdict.reasons:
             self.verdict.reasons += list(witness_fault(self, base, middle))
 
-    def _compare(self, base: Trajectory, label: str, tolerance: float, distance: Array, spread: Array) -> None:
+    def _compare(
+        self, runs: tuple[Trajectory, Trajectory], label: str, tolerance: float, distance: Array, spread: Array
+    ) -> None:
+        base, _ = runs
         allowed = np.maximum(FLOOR * tolerance, FACTOR * spread)
         if label.startswith("tolerance"):
             allowed += self._cut_short(base, tolerance)
+        if (distance > allowed).any():
+            error = tolerance * self.material.size
+            allowed += sum(grazed(run, error, self._weights, self.times) for run in runs)
         beyond = np.flatnonzero(distance > allowed)
         if len(beyond):
             k = beyond[0]

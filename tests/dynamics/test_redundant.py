@@ -118,3 +118,36 @@ def test_bodies_a_million_million_times_apart_keep_all_their_forces() -> None:
     assert unique
     assert force[::2] == pytest.approx([9.81, 9.81e-12], rel=1e-13)
     assert a == pytest.approx([0.0, 0.0], abs=1e-14)
+
+
+def test_forces_do_not_turn_what_dry_friction_holds() -> None:
+    """A lever pressed against another one that its dry bearing holds: of the forces that keep it, only some leave that one.
+
+    Without motion the moment of N and T about the pressed lever's pivot is given, N a + T b = M. The smallest of them turn the
+    held one by more than its friction; the nearest that do not end at it, N c + T d = friction.
+    """
+    (a, b), (c, d), moment, dry = (1.5, 0.4), (1.0, -0.8), 2.0, 0.6
+    case = Case(np.array([0.3, 0.5]), np.array([[a, c], [b, d]]), np.array([0.9]), np.zeros(1))
+    case.model.coordinates.flags.writeable = True
+    case.model.coordinates[1].coulomb = dry
+    case.work.h[:], case.work.inverse[:] = [-moment, 0.0], [1.0 / 0.3, 0.0]
+    case.closed.kin.bar_N[:], case.closed.kin.bar_T[:] = 0.0, 0.0
+    plain = moment * np.array([a, b]) / (a * a + b * b)
+    assert plain @ [c, d] > dry
+    unique = solve_mode(case.model, case.closed, 1, np.full(1, STICK, np.int8), 1.0, case.work)
+    assert not unique
+    assert case.work.force[:2] == pytest.approx(np.linalg.solve([[a, b], [c, d]], [moment, dry]), rel=1e-9)
+
+
+def test_laws_that_leave_no_forces_are_missed_by_as_little() -> None:
+    """A block on two legs, about to tip: one leg would pull by 1e-12 of the weight. No forces obey the laws, but nearly so."""
+    W = np.zeros((4, 3))
+    W[0::2, 0], W[1::2, 1] = 1.0, 1.0  # N up, T along; four forces for three coordinates
+    W[0::2, 2], W[1::2, 2] = [-1.0, 1.0], 1.0
+    for pull, obeyed in ((1e-12, True), (1e-6, False)):
+        case = Case(np.ones(3), W, np.full(2, 0.5), np.zeros(2))
+        h = np.array([-1.0, -0.3, -1.3 - pull])  # N1 + N2 = 1, T1 + T2 = 0.3, N2 - N1 + 0.3 = 1.3 + pull
+        _, force, a = resting(case, h)
+        assert a == pytest.approx(np.zeros(3), abs=1e-12)
+        assert force[::2] == pytest.approx([-0.5 * pull, 1.0 + 0.5 * pull], abs=1e-13)
+        assert bool(abs(force[1]) < 1e-9) == obeyed  # else half of the friction is where nothing presses

@@ -33,6 +33,7 @@ motion = "free"
 mass = "1 g"
 inertia = "50 g·mm²"
 position = ["0 mm", "20 mm"]
+velocity = ["0.1 m/s", "0 m/s"]
 [bodies.ground]
 line = [["1 m", "0 mm"], ["-1 m", "0 mm"]]
 motion = "fixed"
@@ -65,6 +66,11 @@ def test_the_run_is_kept_with_the_problem_and_what_to_try(tmp_path) -> None:
     assert "disc.circle" in contact["between"]
     # The disc's own numbers: 1/m for both directions and the radius squared over the inertia for the tangential one.
     np.testing.assert_allclose(failure["G"], [[1e3, 0.0], [0.0, 1e3 + 0.01**2 / 5e-8]], rtol=1e-12, atol=1e-9)
+    # In the directions of the contact, whichever way round the problem has them.
+    np.testing.assert_allclose(failure["b"], [contact["gap_rate_m_per_s"], contact["slip_m_per_s"]], rtol=1e-12)
+    sign = np.where(np.isin(np.arange(2), failure["reversed"]), -1.0, 1.0)
+    np.testing.assert_allclose(failure["rhs"][1] / failure["rhs"][0], (sign * failure["b"])[1] / failure["b"][0], rtol=1e-12)
+    assert abs(abs(contact["slip_m_per_s"]) - 0.1) < 1e-12
     assert len(failure["A"]) == len(failure["rhs"]) == 3
     assert failure["what_to_try"]
     assert (folder / "trajectory.npz").is_file()

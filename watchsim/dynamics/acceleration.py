@@ -85,7 +85,7 @@ def solve_mode(model, closed, m, mode, lenience, work):
             _equation(work, m, 2 * i + 1, work.tangent[i])
     rank = solve_small(work.A, work.rhs, n, work.scale, work.order, work.x, RANK * lenience)
     if rank < n:
-        smallest_forces(m, n, rank, work)
+        smallest_forces(model, closed, m, n, rank, lenience, work)
     for i in range(m):
         work.force[2 * i] = work.x[i]
         t = work.tangent[i]
@@ -129,6 +129,7 @@ def decide_modes(model, closed, m, bearings, speed_zero, work, out_grip, out_mod
     note_posed(work, m, elements, bearings, Level.ACCELERATION)
     rung = solve_contacts(work, m, elements)
     if rung == Rung.FAILED:
+        restore_directions(work, rows, work.b)
         return False
     if pressed:
         fill_rhs(work, m, elements, work.loaded)
@@ -136,6 +137,7 @@ def decide_modes(model, closed, m, bearings, speed_zero, work, out_grip, out_mod
     read_forces(work, m, elements, work.force)
     for i in range(m):
         if work.x[i] > 0.0 and is_paradox(work, m, i):
+            restore_directions(work, rows, work.b)
             return False
     for i in range(m):
         out_mode[closed.ids[i]] = _mode_of(closed, i, m, elements, bearings, work)

@@ -179,6 +179,7 @@ def impact(model, closed, m, restitution, jam, work, out_u):
     """
     solved, elements = _compress(model, closed, m, out_u, jam, work)
     if not solved:
+        restore_directions(work, 2 * m, work.b)
         return False
     returns = False
     for i in range(m):
@@ -186,6 +187,7 @@ def impact(model, closed, m, restitution, jam, work, out_u):
             returns = True
     if returns:
         if not _expand(model, closed, m, restitution, elements, work):
+            restore_directions(work, 2 * m, work.b)
             return False
         for row in range(2 * m):
             work.force[row] += work.more[row]

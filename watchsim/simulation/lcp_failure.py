@@ -8,6 +8,8 @@ from __future__ import annotations
 from collections.abc import Container, Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from watchsim.dynamics.lcp.outcome import LcpOutcome
 from watchsim.dynamics.problem_kinds import Level
 from watchsim.simulation.loop_state.scratch import Scratch
@@ -33,6 +35,7 @@ def failure_of(state: State, scratch: Scratch, pairs: Sequence[Pair]) -> dict[st
     level       of the problem: acceleration, compression or expansion
     contacts    bodies and primitives in words with contact number, mode, gap rate and slip; two rows of G each, N then T
     G, b        Delassus matrix and the accelerations or velocities of its rows without contact forces
+    reversed    rows of G and b that A and rhs have with the opposite sign (dynamics/handedness.py)
     A, rhs      of y = A x + rhs in the scaling of dynamics/coulomb.py
     """
     work = scratch.work
@@ -51,6 +54,7 @@ def failure_of(state: State, scratch: Scratch, pairs: Sequence[Pair]) -> dict[st
         "bearings": work.dry[:bearings].tolist(),
         "G": work.G[:rows, :rows].tolist(),
         "b": work.b[:rows].tolist(),
+        "reversed": np.flatnonzero(work.hand[:rows] < 0.0).tolist(),
         "A": work.A[:n, :n].tolist(),
         "rhs": work.rhs[:n].tolist(),
     }

@@ -19,7 +19,7 @@ from watchsim.jit import kernel
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.events.closed_contacts import gather, insert, refresh
 from watchsim.simulation.events.collision import approaching, collide
-from watchsim.simulation.events.dead_centre import hold_at_dead_centre, stop_at_dead_centre
+from watchsim.simulation.events.dead_centre import hold_at_dead_centre, stands_at_dead_centre, stop_at_dead_centre
 from watchsim.simulation.events.handover import hand_over
 from watchsim.simulation.events.immovable import drop_immovable
 from watchsim.simulation.events.mode_decision import decide
@@ -199,16 +199,18 @@ def _resolve(model, state, island, m, options, scratch, record):
             jam = 0.0
             continue
         r, solved = decide(model, state, island, m, options, work, event, state.grip)
+        if stop_at_dead_centre(model, state, r, solved, work, event, record):
+            place(model, state.q, state.u, event.pose)
+            refresh(model, m, event.closed, event.pose)
+            continue
         if solved:
             if not exactly and contradicts(model, state, r, options, work, event):
                 exactly = True
                 continue
             stop_held(event.label, island, state.grip, state.u)
             return Stop.RUNNING, r
-        if stop_at_dead_centre(model, state, r, work, event.rest, record):
-            place(model, state.q, state.u, event.pose)
-            refresh(model, m, event.closed, event.pose)
-            continue
+        if stands_at_dead_centre(model, state, island, r, work, event):
+            return Stop.RUNNING, r
         if not _slides(r, options.speed_zero, event.rest):
             state.counts.lcp_failures += 1
             return Stop.LCP_FAILED, 0

@@ -9,7 +9,6 @@ lets the motion go on: just beyond the line of centres an impulse stops both bod
 from __future__ import annotations
 
 from watchsim.contact.index_sets import STICK
-from watchsim.dynamics.delassus import fill_delassus
 from watchsim.jit import kernel
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.events.impulse_check import kinetic_energy
@@ -18,16 +17,16 @@ from watchsim.tolerances import DEAD_CENTRE
 
 
 @kernel
-def stop_at_dead_centre(model, state, r, work, rest, record):
-    """Stop what the r contacts in `rest`, for which there are no finite forces, lock on the line of centres; True if anything.
+def stop_at_dead_centre(model, state, r, solved, work, event, record):
+    """Stop what the r contacts in `event.rest` lock on the line of centres; True if anything.
 
-    `work.inverse` is given; fills `work.G`.
+    There no finite forces let the motion go on. That their problem is `solved`, with modes in `event.decided`, is no sign that
+    there are any: two directions that are one to rounding give forces of 10¹⁴ N. `work.G` and `work.inverse` are its own.
     """
-    found = False
-    fill_delassus(rest, r, work)
+    found, rest = False, event.rest
     for i in range(r):
         kin = rest.kin[i]
-        if not _locks(model, rest, i, work):
+        if (solved and event.decided[rest.ids[i]] != STICK) or not _locks(model, rest, i, work):
             continue
         # What the forces without effect would have to make up for, which they cannot: sigma·w̄.
         if kin.bar_N - kin.bar_T * work.G[2 * i, 2 * i] / work.G[2 * i, 2 * i + 1] >= 0.0:
@@ -41,6 +40,23 @@ def stop_at_dead_centre(model, state, r, work, rest, record):
         state.counts.jams += 1
         found = True
     return found
+
+
+@kernel
+def stands_at_dead_centre(model, state, island, r, work, event):
+    """Let an island of two bodies that stand, locked on the line of centres by its only contact, hold; True if it is one.
+
+    Forces exist, but the rounding of the lever arms, which are one vector, decides whether the problem for them has a solution.
+    """
+    rest = event.rest
+    if r != 1 or not _locks(model, rest, 0, work):
+        return False
+    for j in range(len(event.label)):
+        other = j != rest.coord[0, 0] and j != rest.coord[0, 1]
+        if event.label[j] == island and (other or state.u[j] != 0.0):
+            return False
+    event.decided[rest.ids[0]] = STICK
+    return True
 
 
 @kernel
