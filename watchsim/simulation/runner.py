@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from watchsim.candidates.broad_phase import load_shapely
 from watchsim.candidates.cell_table import CellFinder
 from watchsim.dynamics.applied_forces import stored_energy
 from watchsim.mechanism.compile import Compiled
@@ -50,6 +51,13 @@ Progress = Callable[[float, float], None]  # simulated time, duration
 ROWS, EVENTS = 20000, 20000
 
 _warm: set[type[Run]] = set()  # ways of stepping whose kernels are loaded
+
+
+def load_for(compiled: Compiled) -> None:
+    """Load what a run needs before it can be made: once in a process, 40 ms that say nothing about the scene."""
+    if len(compiled.model.contacts):
+        load_shapely()
+    stored_energy(compiled.model, compiled.q, compiled.u)
 
 
 class Run:
@@ -135,6 +143,7 @@ class Run:
         if type(self) not in _warm:
             nowhere = new_record(self.compiled.model, 0, 0, self.record.windows)
             self._advance(new_until(), nowhere)
+            self.finder.warm_up()
             _warm.add(type(self))
         warm_up_start(self.scene, self.compiled.model)
 
