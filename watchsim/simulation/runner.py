@@ -125,9 +125,9 @@ class Run:
     def save(self) -> SavedState:
         """The state now, with the sums over all events so far."""
         self.flush()
-        self.watch.see()
         self._parts_before = self.kept.parts
         state = save_state(self.compiled, self.settings(), self.arrays(), self.stored_at_start, self.tally.arrays())
+        self.watch.fill_in_later(state.arrays["overlap"])
         return dataclasses.replace(state, recorded=self.kept.unfinished())
 
     def flush(self) -> None:
@@ -204,7 +204,7 @@ class Run:
 
     def _look(self) -> None:
         """Look at the state now for bodies inside each other."""
-        self.watch.see((np.array([self.state.clock.time]), self.state.q[None].copy()))
+        self.watch.see((float(self.state.clock.time), self.state.q.copy()))
 
     def _overlaps(self) -> bool:
         return self.watch.fails(float(self.state.worst.penetration))

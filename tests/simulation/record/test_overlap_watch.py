@@ -26,7 +26,7 @@ from watchsim.scene.recording import Recording
 from watchsim.scene.scene import Scene
 from watchsim.simulation.record import overlap_instants
 from watchsim.simulation.record.overlap_instants import PairOfLayers
-from watchsim.simulation.record.overlap_watch import BLOCK, EARLY, chosen_moves
+from watchsim.simulation.record.watched_instants import BLOCK, EARLY, chosen_moves
 from watchsim.simulation.runner import Run
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
@@ -135,8 +135,11 @@ def test_results_without_it_can_still_be_read(tmp_path) -> None:
     assert read_results(tmp_path / "run").worst_overlap == 0.0
 
 
-def pair(first: tuple[Loop, ...], second: tuple[Loop, ...], depth: float = 1e-6) -> PairOfLayers:
-    return PairOfLayers(0, (Side("a"), Side("b")), (first, second), depth, depth / 8)
+DEPTH = 1e-6
+
+
+def pair(first: tuple[Loop, ...], second: tuple[Loop, ...]) -> PairOfLayers:
+    return PairOfLayers(0, (Side("a"), Side("b")), (first, second), DEPTH / 8)
 
 
 def at(*poses: tuple[float, float, float]) -> overlap_instants.Poses:
@@ -174,7 +177,7 @@ def test_pairs(name: str, first: tuple[Loop, ...], second: tuple[Loop, ...], pos
     place = complex(x, y) * np.exp(1j * turn) + complex(7 * MM, -3 * MM)
     one, other = at((7 * MM, -3 * MM, turn), (0.0, 0.0, 0.0)), at((place.real, place.imag, angle + turn), (1.0, 0.0, 0.0))
     looked = pair(first, second)
-    assert looked.overlapping((one, other)).tolist() == ([0] if depth else [])
+    assert looked.overlapping((one, other), DEPTH).tolist() == ([0] if depth else [])
     if depth:
         assert looked.deepest((one, other), 0)[0] >= 0.99 * depth
 
