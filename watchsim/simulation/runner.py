@@ -34,6 +34,7 @@ from watchsim.simulation.methods import EVENT_DRIVEN
 from watchsim.simulation.options import Options, natural_step, options_for
 from watchsim.simulation.record.contact_names import pairs_of
 from watchsim.simulation.record.overlap_watch import OverlapWatch
+from watchsim.simulation.record.overlap_watch import warm_up as warm_up_watch
 from watchsim.simulation.record.row_selection import Kept, columns_of, tail_length
 from watchsim.simulation.record.saved_state import SavedState, save_state
 from watchsim.simulation.record.scene_coordinates import events_of_scene, rows_of_scene
@@ -146,6 +147,8 @@ class Run:
             self.finder.warm_up()
             _warm.add(type(self))
         warm_up_start(self.scene, self.compiled.model)
+        if self.scene.contacts:
+            warm_up_watch()
 
     def _advance(self, until: Until, record: Any) -> Stop:
         code = advance(self.compiled.model, self.finder.cells, self.state, self.options, until, self.scratch, record)

@@ -14,12 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.mechanism.compile import Compiled
+from watchsim.model.records import records
 from watchsim.scene.recording import WHOLE_RUN, Window
 from watchsim.scene.scene import Scene
 from watchsim.simulation.methods import MOREAU
 from watchsim.simulation.record.body_frames import frames
-from watchsim.simulation.record.overlap_instants import Pairs, Poses, declared_pairs
-from watchsim.simulation.record.watched_instants import STRIDE, chosen_moves, instants_within
+from watchsim.simulation.record.overlap_instants import Layers, declared_pairs
+from watchsim.simulation.record.overlap_sieve import PAIR, STRETCH, sieve
+from watchsim.simulation.record.watched_instants import STRIDE, chosen_moves, instants_within, longest_moves
 from watchsim.tolerances import OVERLAP_RESOLUTION, STEPPED_OVERLAP
 
 Array = NDArray[np.float64]
@@ -33,6 +35,21 @@ NO_OVERLAP = -1  # in the place of a contact's number
 FOUND = np.dtype([(name, "f8") for name in ("rows", "looks", "depth", "time", "x", "y", "contact")])
 
 
+def warm_up() -> None:
+    """Load or compile the kernels that look for overlaps."""
+    none = np.zeros(0, np.int64)
+    longest_moves(np.zeros((0, 1)), 0, 0, none, none)
+    sieve(
+        records(PAIR, 0),
+        records(STRETCH, 0),
+        np.zeros((0, 2)),
+        np.zeros((0, 0, 3)),
+        0.0,
+        np.zeros((0, 2)),
+        np.zeros((0, 0), bool),
+    )
+
+
 class OverlapWatch:
     """What has been seen so far. `numbers` is all that a saved state needs of it, `found` the same with names."""
 
@@ -41,7 +58,7 @@ class OverlapWatch:
         self.resolution = OVERLAP_RESOLUTION * compiled.size
         self._stepped = STEPPED_OVERLAP * compiled.size if method == MOREAU else 0.0
         self._sees_rows = windows == WHOLE_RUN
-        self._pairs: Pairs | None = None
+        self._layers: Layers | None = None
         self._scale = np.array(compiled.model.coordinates.scale)
         self._last: Array | None = None  # row
         self._waiting: list[tuple[Array, Array]] = []  # chosen moves: rows before and after
@@ -102,9 +119,9 @@ class OverlapWatch:
         """Look at what waits, and at further instants: time (s) and coordinates of the model (n,)."""
         waiting, self._waiting = self._waiting, []
         owed, self._owed = self._owed, []
-        if self._pairs is None:
-            self._pairs = declared_pairs(self._scene, CHORD * self.resolution)
-        if not self._pairs or not (waiting or now):
+        if self._layers is None:
+            self._layers = declared_pairs(self._scene, CHORD * self.resolution)
+        if not self._layers.pairs or not (waiting or now):
             return
         n = len(self._scale)
         none = np.zeros((0, 1 + 3 * n))
@@ -112,22 +129,22 @@ class OverlapWatch:
         within = instants_within(before, after, self._scale, self._stepped > 0.0)
         times = np.append(within.times, [t for t, _ in now])
         q = np.concatenate([within.q, *(at[None] for _, at in now)])
-        self._look(self._pairs, times, q, [(int(within.ends[moves]), numbers) for moves, numbers in owed])
+        self._look(self._layers, times, q, [(int(within.ends[moves]), numbers) for moves, numbers in owed])
 
-    def _look(self, pairs: Pairs, times: Array, q: Array, owed: list[tuple[int, Array]]) -> None:
+    def _look(self, layers: Layers, times: Array, q: Array, owed: list[tuple[int, Array]]) -> None:
         """Look at all pairs at some instants; `owed`: numbers as they are after the first so many of these."""
         places = frames(self._scene, self._compiled.slices, self._compiled.relative(q))
-        poses = {name: (place[:, 0] + 1j * place[:, 1], np.exp(1j * place[:, 2])) for name, place in places.items()}
-        both = [(poses[pair.sides[0].body], poses[pair.sides[1].body]) for pair in pairs]
+        where = np.array([places[name] for name in layers.bodies])
         looks, done = int(self.found.looks), 0
         while done <= len(times):
-            at = self._next_overlap(pairs, both, done, len(times))
+            hits = layers.overlapping(where[:, done:], self._bar)
+            at = done + int(np.argmax(np.append(hits.any(axis=0), True)))
             for count, numbers in owed:
                 if done <= count <= at:
                     self.found.looks = looks + count
                     numbers[1:] = self.numbers[1:]  # all but the rows
             if at < len(times):
-                self._measure(pairs, both, at, float(times[at]))
+                self._measure(layers, hits[:, at - done], where[:, at], float(times[at]))
             done = at + 1
         self.found.looks = looks + len(times)
 
@@ -136,26 +153,14 @@ class OverlapWatch:
         """How deep an overlap must be to be measured: one for all pairs, whatever is looked at together."""
         return max(self.resolution, DEEPER * float(self.found.depth))
 
-    def _next_overlap(self, pairs: Pairs, both: list[tuple[Poses, Poses]], done: int, end: int) -> int:
-        """The next instant, from number `done`, with an overlap of any pair; `end` where there is none."""
-        left, bar = slice(done, None), self._bar
-        hits = [
-            pair.overlapping(((a[0][left], a[1][left]), (b[0][left], b[1][left])), bar)
-            for pair, (a, b) in zip(pairs, both, strict=True)
-        ]
-        return min((done + int(hit[0]) for hit in hits if len(hit)), default=end)
-
-    def _measure(self, pairs: Pairs, both: list[tuple[Poses, Poses]], at: int, t: float) -> None:
-        """Measure the overlaps at instant number `at`."""
-        here, bar = slice(at, at + 1), self._bar
-        for pair, (a, b) in zip(pairs, both, strict=True):
-            poses = (a[0][here], a[1][here]), (b[0][here], b[1][here])
-            if len(pair.overlapping(poses, bar)):
-                depth, place = pair.deepest(poses, 0)
-                if depth > self.found.depth:
-                    found = self.found
-                    found.depth, found.time, found.contact = depth, t, pair.contact
-                    found.x, found.y = place
+    def _measure(self, layers: Layers, hit: NDArray[np.bool_], where: Array, t: float) -> None:
+        """Measure the overlaps of the pairs that are `hit`, bodies being `where` (bodies, 3)."""
+        for k in np.flatnonzero(hit):
+            pair, found = layers.pairs[k], self.found
+            depth, place = pair.deepest([where[layers.bodies.index(side.body)] for side in pair.sides])
+            if depth > found.depth:
+                found.depth, found.time, found.contact = depth, t, pair.contact
+                found.x, found.y = place
 
     def words(self) -> str:
         """The worst overlap in words."""

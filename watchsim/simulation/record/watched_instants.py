@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from watchsim.jit import entry
 from watchsim.simulation.record.trajectory import between
 
 Array = NDArray[np.float64]
@@ -32,6 +33,18 @@ class Instants(NamedTuple):
     ends: Integers
 
 
+@entry
+def longest_moves(rows, start, stop, columns, out_row):
+    """For each of some columns the row in start … stop - 1 from which it is furthest to the next one."""
+    for i in range(len(columns)):
+        out_row[i] = start
+    for row in range(start + 1, stop):
+        for i in range(len(columns)):
+            best, k = out_row[i], columns[i]
+            if abs(rows[row + 1, k] - rows[row, k]) > abs(rows[best + 1, k] - rows[best, k]):
+                out_row[i] = row
+
+
 def chosen_moves(rows: Array, n: int, first: int) -> NDArray[np.int64]:
     """Between which rows to look: places of the rows before. n coordinates; `first` rows of the run came before these.
 
@@ -43,10 +56,10 @@ def chosen_moves(rows: Array, n: int, first: int) -> NDArray[np.int64]:
         number = (first + start) // BLOCK
         if number % EVERY:
             continue
-        some = slice(1, 1 + n) if n <= FEW else 1 + (number // EVERY * FEW + np.arange(FEW)) % n
-        q = rows[start : start + BLOCK + 1, some].T.copy()  # a coordinate after another: read much faster
-        way = q[:, 1:] - q[:, :-1]
-        chosen += (start + np.argmax(np.abs(way, out=way), axis=1)).tolist()
+        columns = np.arange(1, 1 + n) if n <= FEW else 1 + (number // EVERY * FEW + np.arange(FEW)) % n
+        longest = np.zeros(len(columns), np.int64)
+        longest_moves(rows, start, min(start + BLOCK, len(rows) - 1), columns, longest)
+        chosen += longest.tolist()
     chosen += [number - first for number in EARLY if 0 <= number - first < len(rows) - 1]
     places = np.unique(np.array(chosen, np.int64))
     return places[rows[places + 1, 0] > rows[places, 0]]
