@@ -27,7 +27,7 @@ from watchsim.scene.file.readers import read_settings
 from watchsim.simulation import advance
 from watchsim.simulation.moreau import prox_relaxation
 from watchsim.simulation.motion import root_bracket
-from watchsim.simulation.record import overlap_watch
+from watchsim.simulation.record import overlap_watch, watched_instants
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 WORDS = {
@@ -93,10 +93,10 @@ QUOTED = [
     (METHOD, "by more than {} times the rounding", tolerances.FURTHEST_TAKEN_BACK),
     (METHOD, "deeper than {} of the scene's size", tolerances.OVERLAP_RESOLUTION),
     (METHOD, "chords deviate by {} of that", overlap_watch.CHORD),
-    (METHOD, "(of {} coordinates at a time)", overlap_watch.FEW),
-    (METHOD, "within a way, steps of {} of the", overlap_watch.STRIDE),
+    (METHOD, "(of {} coordinates at a time)", watched_instants.FEW),
+    (METHOD, "within a way, steps of {} of the", watched_instants.STRIDE),
     (METHOD, "the state at each {} of the scene's duration", overlap_watch.LOOKS),
-    (METHOD, "when {} instants have come together", overlap_watch.TOGETHER),
+    (METHOD, "when {} ways between rows have come together", overlap_watch.TOGETHER),
     (METHOD, "fails beyond {} of the size", tolerances.STEPPED_OVERLAP),
     (METHOD, "and {} of the overlap is taken back", tolerances.TAKEN_BACK),
     (METHOD, "by {} of their own mobility", tolerances.YIELD),
@@ -144,7 +144,7 @@ def test_a_quoted_constant_is_that_of_the_code(page, words, value):
 
 
 def test_the_rows_looked_at_in_any_case():
-    assert (0, *(4**i for i in range(6))) == overlap_watch.EARLY
+    assert (0, *(4**i for i in range(6))) == watched_instants.EARLY
     assert "rows 0, 1, 4, 16 … 1024" in (DOCS / METHOD).read_text(encoding="utf-8")
 
 

@@ -25,6 +25,11 @@ Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 
+def load_shapely() -> None:
+    """Import the library, which takes a twentieth of a second once in a process."""
+    import shapely  # noqa: F401
+
+
 class PairSearch:
     """The primitives of one pair of bodies as shapely geometries, and the motion that a cell allows."""
 
@@ -71,6 +76,7 @@ class PairSearch:
         self._reach = _largest(np.hypot(*self._drawn.points.T), self._drawn.first) + self._drawn.sag
         self._still = _shapes(still.points, still.first)
         shapely.prepare(self._still)
+        (self._still_centre,), (self._still_radius,) = _circles(still.points[None], still.first)
         self._tree = shapely.STRtree(self._still)
 
     def candidates(self, index: Integers) -> tuple[Integers, Integers]:
@@ -95,14 +101,13 @@ class PairSearch:
             return np.zeros(0, np.int64), np.zeros(0, np.int64)
         points, distance = self._seen(at, room, used)
         first, cells = _firsts(self._drawn, used), len(at)
+        within = (distance[:, row] + self._still_sag[other]) * (1.0 + PLANE_ROUNDING)
+        # Most are far apart, which circles around them tell sooner.
+        cell, place = np.nonzero(self._circles_near(points, first, row, other, within))
         every = np.append((first[:-1] + points.shape[1] * np.arange(cells)[:, None]).ravel(), points.shape[0] * points.shape[1])
         shapes = _shapes(points.reshape(-1, 2), every).reshape(cells, len(used))
-        near = shapely.dwithin(
-            np.broadcast_to(self._still[other], (cells, len(other))),
-            shapes[:, row],
-            (distance[:, row] + self._still_sag[other]) * (1.0 + PLANE_ROUNDING),
-        )
-        cell, place = np.nonzero(near)
+        near = shapely.dwithin(self._still[other[place]], shapes[cell, row[place]], within[cell, place])
+        cell, place = cell[near], place[near]
         wanted = mover[place] * self._others + other[place]
         left = np.searchsorted(self._wanted, wanted, side="left")
         several = np.searchsorted(self._wanted, wanted, side="right") - left
@@ -110,6 +115,12 @@ class PairSearch:
         cell, local = np.repeat(cell, several), self._local[np.repeat(left, several) + nth]
         possible = self._regions.possible(cell, local, at, room)
         return cell[possible], local[possible]
+
+    def _circles_near(self, points: Array, first: Integers, row: Integers, other: Integers, within: Array) -> NDArray[np.bool_]:
+        """(places, pairs): come the circles around mover `row` and still primitive `other` as near as `within`?"""
+        centre, radius = _circles(points, first)
+        apart = np.abs(centre[:, row] - self._still_centre[other])
+        return apart * (1.0 - PLANE_ROUNDING) <= within + radius[:, row] + self._still_radius[other]
 
     def _in_block(self, centre: Array, room: Array) -> tuple[Integers, Integers]:
         """Pairs (row of mover, row of other) that could touch within `room` of `centre` along each axis."""
@@ -145,6 +156,13 @@ class PairSearch:
 def _largest(values: Array, first: Integers) -> Array:
     """The largest value of each primitive's points, (..., points)."""
     return np.maximum.reduceat(values, first[:-1], axis=-1) if len(first) > 1 else values
+
+
+def _circles(points: Array, first: Integers) -> tuple[NDArray[np.complex128], Array]:
+    """Centres and radii (places, primitives) of circles around each primitive's points, (places, points, 2)."""
+    low, high = (extreme.reduceat(points, first[:-1], axis=1) for extreme in (np.minimum, np.maximum))
+    half = 0.5 * (high - low)
+    return 0.5 * ((low + high) @ (1.0, 1.0j)), np.hypot(half[..., 0], half[..., 1])
 
 
 def _firsts(drawn: Chords, used: Integers) -> Integers:

@@ -52,6 +52,10 @@ class CellFinder:
         self.seconds += time.perf_counter() - start
         return self.cells
 
+    def warm_up(self) -> None:
+        """Load or compile the kernel that fills the table."""
+        self._insert(*(np.zeros(0, np.int64),) * 3)
+
     def _forget(self) -> None:
         self.number = self._entries = 0
         self._inside: set[tuple[int, Cell]] = set()  # pairs of bodies and cells of theirs that the table holds
@@ -61,7 +65,8 @@ class CellFinder:
         """Put cells of body pair p into the table that it does not hold yet."""
         new = [cell for cell in cells if (p, cell) not in self._inside]
         self._inside.update((p, cell) for cell in new)
-        self._insert(*self._pairs[p].everywhere(new))
+        if new:
+            self._insert(*self._pairs[p].everywhere(new))
 
     def _insert(self, keys: Integers, count: Integers, found: Integers) -> None:
         """Put cells into the table, which doubles so that it is never more than half full."""

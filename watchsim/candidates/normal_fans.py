@@ -7,7 +7,7 @@ side of too many.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,30 @@ Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 
+class _Pieces(NamedTuple):
+    """What counts of primitives, a column each: to pick rows of whole records takes longer than all that is done with them."""
+
+    x: Array
+    y: Array
+    radius: Array
+    nx: Array
+    ny: Array
+    tx: Array
+    ty: Array
+    side: Array
+    length: Array
+    kind: Array
+    fan: Array
+
+    def at(self, rows: Integers) -> _Pieces:
+        return _Pieces._make([column[rows] for column in self])
+
+
+def _pieces(primitives: Records, clearance: float) -> _Pieces:
+    columns = [np.array(primitives[name], float) for name in _Pieces._fields[:-1]]
+    return _Pieces._make([*columns, _fan(primitives, clearance)])
+
+
 class Regions:
     """The contacts of one pair of bodies, and where they can lie."""
 
@@ -28,9 +52,8 @@ class Regions:
         self._motion, self._clearance = CellMotion(model.bodies, pair), float(pair.clearance)
         self._bodies = (int(pair.a), int(pair.b))
         contacts = model.contacts[pair.start : pair.stop]
-        # Of primitives there are few, of contacts many: their fields are looked up where they are needed.
         self._circle, self._met = np.array(contacts.a), np.array(contacts.b)
-        self._primitives, self._fan = model.primitives, _fan(model.primitives, self._clearance)
+        self._pieces = _pieces(model.primitives, self._clearance)
         self._is_first = np.asarray(model.primitives.body == pair.a)
 
     def possible(self, place: Integers, contact: Integers, at: Array, room: Array) -> NDArray[np.bool_]:
@@ -51,8 +74,7 @@ class Regions:
         """The same for contacts whose circle is on the first of `bodies`."""
         (ax, ay, turn_a), (bx, by, turn_b) = (tuple(v[place] for v in self._motion.pose(body, at)) for body in bodies)
         (shift_a, swing_a), (shift_b, swing_b) = (self._motion.freedom(body, room) for body in bodies)
-        rows, others = self._circle[contact], self._met[contact]
-        circle, met = self._primitives[rows], self._primitives[others]
+        circle, met = self._pieces.at(self._circle[contact]), self._pieces.at(self._met[contact])
         # The circle's centre in the frame of the body that it meets, and how far it may be from there.
         x, y = _turned(circle.x, circle.y, turn_a)
         x, y = _turned(ax + x - bx, ay + y - by, -turn_b)
@@ -70,9 +92,9 @@ class Regions:
         safe = np.where(distance > 0.0, distance, 1.0)
         nx, ny = (np.where(straight, n, met.side * d / safe) for n, d in ((met.nx, dx), (met.ny, dy)))
         swing = np.where(straight, 0.0, np.where(travel < distance, np.arcsin(np.minimum(travel / safe, 1.0)), np.pi))
-        onto &= straight | (_angle(nx, ny, met.nx, met.ny) <= self._fan[others] + swing)
+        onto &= straight | (_angle(nx, ny, met.nx, met.ny) <= met.fan + swing)
         mx, my = _turned(-nx, -ny, turn_b - turn_a)
-        inside = _angle(mx, my, circle.nx, circle.ny) <= self._fan[rows] + swing + swing_a + swing_b
+        inside = _angle(mx, my, circle.nx, circle.ny) <= circle.fan + swing + swing_a + swing_b
         return (gap <= travel) & onto & inside
 
 

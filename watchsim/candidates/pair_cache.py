@@ -51,7 +51,8 @@ class Known:
             if not new:
                 return
             count, found = self._search.candidates(index[new])
-            parts = np.split(found.astype(np.int64), np.cumsum(count)[:-1])
+            found, stops = found.astype(np.int64), np.cumsum(count).tolist()
+            parts = [found[start:stop] for start, stop in zip([0, *stops], stops, strict=False)]
             self._found.update(zip(map(tuple, index[new].tolist()), parts, strict=True))
 
     def answers(self, cells: list[Cell]) -> tuple[Integers, Integers]:

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from watchsim.candidates.broad_phase import load_shapely
 from watchsim.candidates.cell_table import CellFinder
 from watchsim.dynamics.applied_forces import stored_energy
 from watchsim.mechanism.compile import Compiled
@@ -33,6 +34,7 @@ from watchsim.simulation.methods import EVENT_DRIVEN
 from watchsim.simulation.options import Options, natural_step, options_for
 from watchsim.simulation.record.contact_names import pairs_of
 from watchsim.simulation.record.overlap_watch import OverlapWatch
+from watchsim.simulation.record.overlap_watch import warm_up as warm_up_watch
 from watchsim.simulation.record.row_selection import Kept, columns_of, tail_length
 from watchsim.simulation.record.saved_state import SavedState, save_state
 from watchsim.simulation.record.scene_coordinates import events_of_scene, rows_of_scene
@@ -50,6 +52,13 @@ Progress = Callable[[float, float], None]  # simulated time, duration
 ROWS, EVENTS = 20000, 20000
 
 _warm: set[type[Run]] = set()  # ways of stepping whose kernels are loaded
+
+
+def load_for(compiled: Compiled) -> None:
+    """Load what a run needs before it can be made: once in a process, 40 ms that say nothing about the scene."""
+    if len(compiled.model.contacts):
+        load_shapely()
+    stored_energy(compiled.model, compiled.q, compiled.u)
 
 
 class Run:
@@ -117,9 +126,9 @@ class Run:
     def save(self) -> SavedState:
         """The state now, with the sums over all events so far."""
         self.flush()
-        self.watch.see()
         self._parts_before = self.kept.parts
         state = save_state(self.compiled, self.settings(), self.arrays(), self.stored_at_start, self.tally.arrays())
+        self.watch.fill_in_later(state.arrays["overlap"])
         return dataclasses.replace(state, recorded=self.kept.unfinished())
 
     def flush(self) -> None:
@@ -135,8 +144,11 @@ class Run:
         if type(self) not in _warm:
             nowhere = new_record(self.compiled.model, 0, 0, self.record.windows)
             self._advance(new_until(), nowhere)
+            self.finder.warm_up()
             _warm.add(type(self))
         warm_up_start(self.scene, self.compiled.model)
+        if self.scene.contacts:
+            warm_up_watch()
 
     def _advance(self, until: Until, record: Any) -> Stop:
         code = advance(self.compiled.model, self.finder.cells, self.state, self.options, until, self.scratch, record)
@@ -195,7 +207,7 @@ class Run:
 
     def _look(self) -> None:
         """Look at the state now for bodies inside each other."""
-        self.watch.see((np.array([self.state.clock.time]), self.state.q[None].copy()))
+        self.watch.see((float(self.state.clock.time), self.state.q.copy()))
 
     def _overlaps(self) -> bool:
         return self.watch.fails(float(self.state.worst.penetration))

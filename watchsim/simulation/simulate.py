@@ -18,7 +18,7 @@ from watchsim.simulation.methods import EVENT_DRIVEN, METHODS, MOREAU, USUAL_STE
 from watchsim.simulation.record.joined_runs import joined
 from watchsim.simulation.record.saved_state import SavedState
 from watchsim.simulation.record.trajectory import Pair, Trajectory
-from watchsim.simulation.runner import Progress, Run
+from watchsim.simulation.runner import Progress, Run, load_for
 from watchsim.tolerances import COARSEST_TOLERANCE, FINEST_TOLERANCE
 from watchsim.units import TIME, UnitError, parse
 
@@ -71,6 +71,9 @@ def simulate(  # noqa: PLR0913 - options, by name
     tolerance = scene.tolerance if tolerance is None else float(tolerance)
     _check(duration, tolerance, method, step)
     compiled = compile_scene(scene, prefilter)
+    loading = time.perf_counter()
+    load_for(compiled)
+    loading = time.perf_counter() - loading
     recording = as_recording(record) or scene.record
     if method == MOREAU:
         from watchsim.simulation.moreau.time_stepping import MoreauRun
@@ -84,14 +87,13 @@ def simulate(  # noqa: PLR0913 - options, by name
         run.kept.follow = functools.partial(follow, run.pairs)
     if start is not None:
         _take_up(run, start, duration)
-    ready = time.perf_counter()
+    warming = time.perf_counter()
     run.warm_up()
-    warm = time.perf_counter()
+    loading += time.perf_counter() - warming
     if start is None:
         run.begin()
     stop = run.to_the_end(duration, progress)
-    wall = time.perf_counter() - warm + ready - begun
-    made = run.trajectory(stop, wall, compile_time=warm - ready)
+    made = run.trajectory(stop, time.perf_counter() - begun - loading, compile_time=loading)
     if isinstance(start, Trajectory):
         return joined(start, made, None if stream is None else Path(stream))
     return made

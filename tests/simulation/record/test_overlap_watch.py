@@ -24,9 +24,8 @@ from watchsim.scene.body import Body
 from watchsim.scene.force import Contact, Side
 from watchsim.scene.recording import Recording
 from watchsim.scene.scene import Scene
-from watchsim.simulation.record import overlap_instants
-from watchsim.simulation.record.overlap_instants import PairOfLayers
-from watchsim.simulation.record.overlap_watch import BLOCK, EARLY, chosen_moves
+from watchsim.simulation.record.overlap_instants import Layers, PairOfLayers
+from watchsim.simulation.record.watched_instants import BLOCK, EARLY, chosen_moves
 from watchsim.simulation.runner import Run
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
@@ -135,13 +134,11 @@ def test_results_without_it_can_still_be_read(tmp_path) -> None:
     assert read_results(tmp_path / "run").worst_overlap == 0.0
 
 
-def pair(first: tuple[Loop, ...], second: tuple[Loop, ...], depth: float = 1e-6) -> PairOfLayers:
-    return PairOfLayers(0, (Side("a"), Side("b")), (first, second), depth, depth / 8)
+DEPTH = 1e-6
 
 
-def at(*poses: tuple[float, float, float]) -> overlap_instants.Poses:
-    x, y, angle = np.array(poses).T
-    return x + 1j * y, np.exp(1j * angle)
+def layers(first: tuple[Loop, ...], second: tuple[Loop, ...]) -> Layers:
+    return Layers((PairOfLayers(0, (Side("a"), Side("b")), (first, second), DEPTH / 8),))
 
 
 SQUARE = (box(2 * MM, 2 * MM),)
@@ -172,11 +169,12 @@ def test_pairs(name: str, first: tuple[Loop, ...], second: tuple[Loop, ...], pos
     """The same at every place and angle of the two together."""
     x, y, angle = pose
     place = complex(x, y) * np.exp(1j * turn) + complex(7 * MM, -3 * MM)
-    one, other = at((7 * MM, -3 * MM, turn), (0.0, 0.0, 0.0)), at((place.real, place.imag, angle + turn), (1.0, 0.0, 0.0))
-    looked = pair(first, second)
-    assert looked.overlapping((one, other)).tolist() == ([0] if depth else [])
+    one = [(7 * MM, -3 * MM, turn), (7 * MM, -3 * MM, turn), (0.0, 0.0, 0.0)]
+    other = [(place.real, place.imag, angle + turn), (place.real, place.imag, angle + turn), (1.0, 0.0, 0.0)]
+    where, looked = np.array([one, other]), layers(first, second)
+    assert looked.overlapping(where, DEPTH).tolist() == [[depth > 0.0, depth > 0.0, False]]
     if depth:
-        assert looked.deepest((one, other), 0)[0] >= 0.99 * depth
+        assert looked.pairs[0].deepest(where[:, 0])[0] >= 0.99 * depth
 
 
 def test_rows_are_chosen_at_the_start_and_where_they_are_far_apart() -> None:

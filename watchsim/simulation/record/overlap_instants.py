@@ -1,15 +1,13 @@
 """Do two layers overlap at some of many instants, by more than a given depth?
 
-Both are polygons of chords. One is shrunk by that depth and stays where it is (prepared once); stretches of the other's outline
-are brought to it, those alone that come near. Nothing here is shared with the gap functions of contacts. Points and poses are
-complex numbers: a pose is (place of the frame's origin, turn of unit size).
+Both are polygons of chords. A compiled sieve lets pass what stays away (overlap_sieve.py); of the rest polygons judge: one
+layer is shrunk by that depth, and the other's outline must not reach into it. No gap function of a contact is asked.
+Points and poses are complex numbers: a pose is (place of the frame's origin, turn of unit size).
 """
 
 from __future__ import annotations
 
-import functools
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -17,9 +15,12 @@ from numpy.typing import NDArray
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Point
-from watchsim.mechanism.material_polygons import chord_points, material, placed
+from watchsim.mechanism.material_polygons import material, placed
 from watchsim.mechanism.overlap_depth import face_depth, regions_depth
+from watchsim.model.records import Records, records
 from watchsim.scene.force import Side
+from watchsim.simulation.record.layer_outlines import CHORDS, Outlines, outlines_of, shrunk_material, stretches_of
+from watchsim.simulation.record.overlap_sieve import PAIR, STRETCH, sieve
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -27,200 +28,125 @@ Poses = tuple[Complex, Complex]
 Bits = NDArray[np.bool_]
 Integers = NDArray[np.int64]
 
-STRETCH = 48  # chords of an outline that are brought along together
-MOST = 1 << 21  # distances of stretches worked out at once
-
-
-@dataclass(frozen=True, eq=False)
-class Outlines:
-    """One layer, or all of a body's, in the body's frame (m): rings around material with a word for holes, and open faces."""
-
-    rings: tuple[tuple[Array, bool], ...]
-    faces: tuple[Array, ...]
-    starts: Complex  # a point of each outer ring
-    stretches: Complex  # (stretches, STRETCH + 1) points of the rings, the last ones repeated
-    centres: Complex  # (stretches,) of circles around them
-    radii: Array
-    centre: complex  # of a circle around everything
-    radius: float
-
-    @property
-    def points(self) -> int:
-        return sum(len(points) for points, _ in self.rings)
-
-    def shifted_faces(self, depth: float) -> list[Array]:
-        """Its open faces, `depth` further inside their material."""
-        return [_shifted(points, depth, closed=False) for points in self.faces]
-
-
-@functools.lru_cache(maxsize=256)
-def outlines_of(loops: tuple[Loop, ...], deviation: float) -> Outlines:
-    """Outlines with chords no further than `deviation` (m) from their arcs."""
-    drawn = [(chord_points(loop, deviation), loop) for loop in loops if loop.edges]
-    rings = tuple((points, loop.hole) for points, loop in drawn if loop.closed)
-    faces = tuple(points for points, loop in drawn if not loop.closed)
-    parts = [np.zeros((0, STRETCH + 1), complex)]
-    for points, _ in rings:
-        count = -(-(len(points) - 1) // STRETCH)
-        places = np.minimum(np.arange(count)[:, None] * STRETCH + np.arange(STRETCH + 1), len(points) - 1)
-        parts.append(_complex(points)[places])
-    stretches = np.concatenate(parts)
-    centres = _middle(stretches)
-    radii = np.abs(stretches - centres[:, None]).max(axis=1, initial=0.0)
-    starts = np.array([complex(*points[0]) for points, hole in rings if not hole], complex)
-    every = np.concatenate([np.zeros(0, complex), *(_complex(points) for points, _ in rings), *map(_complex, faces)])
-    if not len(every):
-        return Outlines(rings, faces, starts, stretches, centres, radii, 0.0, -np.inf)
-    centre = complex(_middle(every[None])[0])
-    return Outlines(rings, faces, starts, stretches, centres, radii, centre, float(np.abs(every - centre).max()))
-
-
-def _complex(points: Array) -> Complex:
-    return points[:, 0] + 1j * points[:, 1]
-
-
-def _middle(rows: Complex) -> Complex:
-    """The middle of the box around each row of points."""
-    low, high = rows.real.min(axis=1) + 1j * rows.imag.min(axis=1), rows.real.max(axis=1) + 1j * rows.imag.max(axis=1)
-    middle: Complex = 0.5 * (low + high)
-    return middle
-
-
-@functools.lru_cache(maxsize=256)
-def _shrunk(outlines: Outlines, depth: float) -> NDArray[Any]:
-    """(polygons, 1): their material, shrunk by `depth`, as prepared polygons; corners stay sharp."""
-    import shapely
-
-    polygons = material([(_shifted(points, depth, closed=True), hole) for points, hole in outlines.rings])
-    found = np.array([polygon for polygon in polygons if not polygon.is_empty], object)
-    shapely.prepare(found)
-    return found[:, None]
-
-
-def _shifted(points: Array, depth: float, closed: bool) -> Array:
-    """The chain of chords, each moved by `depth` to its left, where the material is."""
-    points = points[np.append(True, np.any(np.diff(points, axis=0) != 0.0, axis=1))]
-    along = np.diff(points, axis=0)
-    left = np.column_stack((-along[:, 1], along[:, 0])) / np.hypot(*along.T)[:, None]
-    before, after = (left[-1:], left[:1]) if closed else (left[:1], left[-1:])
-    one, two = np.concatenate([before, left]), np.concatenate([left, after])
-    # Where the outline turns back on itself the corner of the shifted chords would lie nowhere.
-    bend = np.maximum(1.0 + (one * two).sum(axis=1), 0.02)
-    return points + depth * (one + two) / bend[:, None]
+MARGIN = 0.5  # of the depth: how near the shrunk outline the other one is left to the polygons
 
 
 class PairOfLayers:
     """The two sides of a declared contact."""
 
-    def __init__(self, contact: int, sides: tuple[Side, Side], loops: tuple[tuple[Loop, ...], ...], depth: float, chord: float):
+    def __init__(self, contact: int, sides: tuple[Side, Side], loops: tuple[tuple[Loop, ...], ...], chord: float):
         self.contact, self.sides, self._loops = contact, sides, loops
         self._outlines = [outlines_of(one, chord) for one in loops]
         # The larger side stays where it is.
-        self._still = int(self._outlines[1].points > self._outlines[0].points)
-        still, mover = self._outlines[self._still], self._outlines[1 - self._still]
-        self._reach = np.square(mover.radii[:, None] + still.radii)  # of two stretches that come near
-        self.look_for(depth)
+        self._is_second = int(self._outlines[1].points > self._outlines[0].points)
+        self.still, self.mover = self._outlines[self._is_second], self._outlines[1 - self._is_second]
+        self.bodies = sides[self._is_second].body, sides[1 - self._is_second].body
+        self.swallows = self.still.radius <= self.mover.radius  # can the mover hold the other within?
+        self.has_faces = bool(self.still.faces or self.mover.faces)
 
-    def look_for(self, depth: float) -> None:
-        """Overlaps deeper than `depth` (m) count from now on."""
-        self._depth, self._drawn = depth, False
-
-    def _draw(self) -> None:
-        """Shrink the material by the depth; left until they first come near."""
-        still, mover, depth = self._still, 1 - self._still, self._depth
-        any_faces = any(outlines.faces for outlines in self._outlines)
-        self._drawn = True
-        nothing = np.zeros((0, 1), object)
-        self._shrunk = [nothing, nothing]
-        self._shrunk[still] = _shrunk(self._outlines[still], depth)
-        if self._outlines[still].radius <= self._outlines[mover].radius:
-            # Only then can the other one swallow it.
-            self._shrunk[mover] = _shrunk(self._outlines[mover], depth)
-        self._whole = [_shrunk(outlines, 0.0) if any_faces else nothing for outlines in self._outlines]
-        self._faces = [outlines.shifted_faces(depth) for outlines in self._outlines]
-
-    def overlapping(self, poses: tuple[Poses, Poses]) -> Integers:
-        """At which instants they overlap; `poses` of both bodies, by instant."""
-        still, mover = self._outlines[self._still], self._outlines[1 - self._still]
-        (origin, turn), (place, turned) = poses[self._still], poses[1 - self._still]
-        back = turn.conj()
-        shift, twist = (place - origin) * back, turned * back
-        near = np.abs(twist * mover.centre + shift - still.centre) <= still.radius + mover.radius
-        places = np.flatnonzero(near)
-        if not len(places):
-            return places
-        if not self._drawn:
-            self._draw()
-        seen = shift[places], twist[places]
-        hit = self._crossing(*seen)
-        hit |= self._within(self._shrunk[self._still], mover, seen)
-        if len(self._shrunk[1 - self._still]):
-            hit |= self._within(self._shrunk[1 - self._still], still, _inverse(seen))
-        if still.faces or mover.faces:
-            hit |= self._behind(self._still, _inverse(seen)) | self._behind(1 - self._still, seen)
-        return places[hit]
-
-    def _crossing(self, shift: Complex, twist: Complex) -> Bits:
-        """Does some of the moved outline lie in the shrunk material of the other?"""
-        import shapely
-
-        still, mover = self._outlines[self._still], self._outlines[1 - self._still]
-        hit = np.zeros(len(shift), bool)
-        block = max(1, MOST // max(1, len(mover.radii) * len(still.radii)))
-        for first in range(0, len(shift), block):
-            at = slice(first, first + block)
-            centres = twist[at, None] * mover.centres + shift[at, None]
-            x, y = centres.real[:, :, None] - still.centres.real, centres.imag[:, :, None] - still.centres.imag
-            instant, stretch = np.nonzero((x * x + y * y <= self._reach).any(axis=2))
-            if not len(instant):
-                continue
-            instant += first
-            lines = shapely.linestrings(_real(twist[instant, None] * mover.stretches[stretch] + shift[instant, None]))
-            hit[instant[shapely.intersects(self._shrunk[self._still], lines).any(axis=0)]] = True
+    def overlapping(self, still: Array, mover: Array, depth: float) -> Bits:
+        """Whether they overlap by more than `depth` (m); `still` and `mover` (instants, 3): x, y (m), angle (rad)."""
+        back = np.exp(-1j * still[:, 2])
+        shift = (mover[:, 0] - still[:, 0] + 1j * (mover[:, 1] - still[:, 1])) * back
+        seen = shift, np.exp(1j * mover[:, 2]) * back
+        hit = _reaches_into(self.mover, shrunk_material(self.still, depth), seen)
+        if self.swallows:
+            hit |= _reaches_into(self.still, shrunk_material(self.mover, depth), _inverse(seen))
+        if self.has_faces:
+            hit |= self._behind(self._is_second, _inverse(seen), depth) | self._behind(1 - self._is_second, seen, depth)
         return hit
 
-    @staticmethod
-    def _within(polygons: NDArray[Any], other: Outlines, seen: Poses) -> Bits:
-        """Does a ring of the other lie wholly within one of the polygons? One point of it says so, where nothing crosses."""
-        import shapely
-
-        at = seen[1][:, None] * other.starts + seen[0][:, None]
-        within: Bits = shapely.intersects_xy(polygons[:, :, None], at.real, at.imag).any(axis=(0, 2))
-        return within
-
-    def _behind(self, side: int, seen: Poses) -> Bits:
+    def _behind(self, side: int, seen: Poses, depth: float) -> Bits:
         """Does something of the other side reach behind the open faces of this one, between their ends?"""
         import shapely
 
         hit = np.zeros(len(seen[0]), bool)
-        for face in self._faces[side]:
-            at = seen[1][:, None] * _complex(face) + seen[0][:, None]
+        whole = shrunk_material(self._outlines[1 - side], 0.0)
+        for face in self._outlines[side].shifted_faces(depth):
+            at = seen[1][:, None] * (face[:, 0] + 1j * face[:, 1]) + seen[0][:, None]
             lines, ends = shapely.linestrings(_real(at)), at[:, [0, -1]]
-            for polygon in self._whole[1 - side][:, 0]:
+            for part in shapely.get_parts(whole):
                 # What hangs over an end of the face has come round it.
-                round_it = shapely.intersects_xy(polygon, ends.real, ends.imag).any(axis=1)
-                hit |= shapely.intersects(polygon, lines) & ~round_it
+                round_it = shapely.intersects_xy(part, ends.real, ends.imag).any(axis=1)
+                hit |= shapely.intersects(part, lines) & ~round_it
             for other in self._outlines[1 - side].faces:
                 met = shapely.intersection(shapely.LineString(other), lines)
                 hit |= shapely.get_num_geometries(met) >= 2
         return hit
 
-    def deepest(self, poses: tuple[Poses, Poses], instant: int) -> tuple[float, Point]:
-        """How deep they overlap (m) at one of the instants, and where in the movement."""
+    def deepest(self, where: Sequence[Array]) -> tuple[float, Point]:
+        """How deep they overlap (m), and where in the movement; `where` the two bodies are: x, y (m), angle (rad)."""
         import shapely
 
         regions, faces = [], []
-        for outlines, loops, (origin, turn) in zip(self._outlines, self._loops, poses, strict=True):
-            place = complex(origin[instant])
-            at = (place.real, place.imag, float(np.angle(turn[instant])))
-            regions.append(shapely.union_all(material([(placed(points, at), hole) for points, hole in outlines.rings])))
-            edges = [loop.moved(at[2], at[:2]).edges for loop in loops if loop.edges and not loop.closed]
-            faces.append([(placed(points, at), own) for points, own in zip(outlines.faces, edges, strict=True)])
+        for outlines, loops, at in zip(self._outlines, self._loops, where, strict=True):
+            x, y, angle = at.tolist()
+            rings = [(placed(points, (x, y, angle)), hole) for points, hole in outlines.rings]
+            regions.append(shapely.union_all(material(rings)))
+            edges = [loop.moved(angle, (x, y)).edges for loop in loops if loop.edges and not loop.closed]
+            faces.append([(placed(points, (x, y, angle)), own) for points, own in zip(outlines.faces, edges, strict=True)])
         found = [regions_depth(regions[0], regions[1], 0.0)]
         for one, other in ((0, 1), (1, 0)):
             shapes = [regions[other], *(shapely.LineString(points) for points, _ in faces[other])]
             found += [face_depth(points, edges, shape, 0.0) for points, edges in faces[one] for shape in shapes]
         return max(found)
+
+
+class Layers:
+    """All pairs of layers of a scene."""
+
+    def __init__(self, pairs: tuple[PairOfLayers, ...]) -> None:
+        self.pairs = pairs
+        self.bodies = sorted({side.body for pair in pairs for side in pair.sides})
+        self._sieve: tuple[float, Records, Records, Array] | None = None  # depth, pairs, stretches, points
+        self._room = np.zeros((CHORDS + 1, 2))
+
+    def overlapping(self, where: Array, depth: float) -> Bits:
+        """(pairs, instants): do they overlap by more than `depth` (m)?
+
+        `where` (bodies, instants, 3): x, y (m) and angle (rad) of `bodies`.
+        """
+        if self._sieve is None or self._sieve[0] != depth:
+            self._sieve = depth, *self._records(depth)
+        found = np.zeros((len(self.pairs), where.shape[1]), bool)
+        sieve(*self._sieve[1:], np.ascontiguousarray(where), MARGIN * depth, self._room, found)
+        if found.any():
+            for pair, left in zip(self.pairs, found, strict=True):
+                still, mover = (where[self.bodies.index(body)][left] for body in pair.bodies)
+                left[left] = pair.overlapping(still, mover, depth)
+        return found
+
+    def _records(self, depth: float) -> tuple[Records, Records, Array]:
+        """What the sieve reads: pairs, stretches and points."""
+        rows = records(PAIR, len(self.pairs))
+        stretches, points = [records(STRETCH, 0)], [np.zeros((0, 2))]
+        for row, pair in zip(rows, self.pairs, strict=True):
+            row.still, row.mover = (self.bodies.index(body) for body in pair.bodies)
+            (row.still_x, row.still_y), (row.mover_x, row.mover_y) = pair.still.centre, pair.mover.centre
+            row.reach, row.swallows, row.open = pair.still.radius + pair.mover.radius, pair.swallows, pair.has_faces
+            for name, (some, joined) in (("still", stretches_of(pair.still, depth)), ("mover", stretches_of(pair.mover, 0.0))):
+                first, before = sum(len(part) for part in stretches), sum(len(part) for part in points)
+                row[f"{name}_first"], row[f"{name}_stop"] = first, first + len(some)
+                moved = some.copy()
+                moved.first += before
+                moved.last += before
+                stretches.append(moved)
+                points.append(joined)
+        return rows, np.concatenate(stretches).view(np.recarray), np.concatenate(points)
+
+
+def _reaches_into(outlines: Outlines, shrunk: Any, seen: Poses) -> Bits:
+    """Does a ring reach into some material, or lie within? `seen`: where its frame stands in the frame of the material."""
+    import shapely
+
+    hit = np.zeros(len(seen[0]), bool)
+    for ring, hole in outlines.rings:
+        at = seen[1][:, None] * (ring[:, 0] + 1j * ring[:, 1]) + seen[0][:, None]
+        hit |= shapely.intersects(shrunk, shapely.linestrings(_real(at)))
+        if not hole:
+            # What nothing crosses lies wholly within where one of its points does.
+            hit |= shapely.intersects_xy(shrunk, at[:, 0].real, at[:, 0].imag)
+    return hit
 
 
 def _inverse(seen: Poses) -> Poses:
@@ -235,8 +161,17 @@ def _real(points: Complex) -> Array:
     return np.ascontiguousarray(points).view(np.float64).reshape(*points.shape, 2)
 
 
-def declared_pairs(scene: Any, depth: float, chord: float) -> Iterator[PairOfLayers]:
+_last: list[tuple[Any, float, Layers]] = []  # the scene asked about last, which most often is the next one
+
+
+def declared_pairs(scene: Any, chord: float) -> Layers:
     """The two sides of every declared contact whose bodies can move against each other."""
+    if not _last or _last[0][0] is not scene or _last[0][1] != chord:
+        _last[:] = [(scene, chord, Layers(tuple(_pairs(scene, chord))))]
+    return _last[0][2]
+
+
+def _pairs(scene: Any, chord: float) -> Iterator[PairOfLayers]:
     for number, contact in enumerate(scene.contacts):
         bodies = [scene.body(side.body) for side in contact.sides]
         loops = tuple(
@@ -244,4 +179,4 @@ def declared_pairs(scene: Any, depth: float, chord: float) -> Iterator[PairOfLay
             for body, side in zip(bodies, contact.sides, strict=True)
         )
         if all(loops):
-            yield PairOfLayers(number, contact.sides, loops, depth, chord)
+            yield PairOfLayers(number, contact.sides, loops, chord)

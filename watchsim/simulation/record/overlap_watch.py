@@ -14,29 +14,40 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.mechanism.compile import Compiled
+from watchsim.model.records import records
 from watchsim.scene.recording import WHOLE_RUN, Window
 from watchsim.scene.scene import Scene
 from watchsim.simulation.methods import MOREAU
 from watchsim.simulation.record.body_frames import frames
-from watchsim.simulation.record.overlap_instants import PairOfLayers, Poses, declared_pairs
-from watchsim.simulation.record.trajectory import between
+from watchsim.simulation.record.overlap_instants import Layers, declared_pairs
+from watchsim.simulation.record.overlap_sieve import PAIR, STRETCH, sieve
+from watchsim.simulation.record.watched_instants import STRIDE, chosen_moves, instants_within, longest_moves
 from watchsim.tolerances import OVERLAP_RESOLUTION, STEPPED_OVERLAP
 
 Array = NDArray[np.float64]
 
 CHORD = 1.0 / 8.0  # of the resolution: deviation of chords from arcs
-BLOCK = 32768  # rows, of which the longest moves of each coordinate are looked at. Large: less is seen; small: costs time
-EVERY = 2  # of the blocks: one in so many. Large, small: as above
-FEW = 8  # coordinates whose longest moves are looked at in one block; of more, others in the next
-STRIDE = 0.1  # of the scene's size: moves between two rows are looked at in such steps
-MOST_STEPS = 7  # in one move
-TOGETHER = 64  # instants looked at together
-EARLY = (0, 1, 4, 16, 64, 256, 1024)  # rows looked at in any case
+TOGETHER = 24  # moves looked at together
 DEEPER = 1.25  # times the worst so far: what is measured next
 LOOKS = 16  # in a scene's duration, where no rows are recorded
 NO_OVERLAP = -1  # in the place of a contact's number
 # What has been found: rows seen, instants looked at; of the worst overlap its depth (m), time (s), place (m), contact.
 FOUND = np.dtype([(name, "f8") for name in ("rows", "looks", "depth", "time", "x", "y", "contact")])
+
+
+def warm_up() -> None:
+    """Load or compile the kernels that look for overlaps."""
+    none = np.zeros(0, np.int64)
+    longest_moves(np.zeros((0, 1)), 0, 0, none, none)
+    sieve(
+        records(PAIR, 0),
+        records(STRETCH, 0),
+        np.zeros((0, 2)),
+        np.zeros((0, 0, 3)),
+        0.0,
+        np.zeros((0, 2)),
+        np.zeros((0, 0), bool),
+    )
 
 
 class OverlapWatch:
@@ -47,10 +58,11 @@ class OverlapWatch:
         self.resolution = OVERLAP_RESOLUTION * compiled.size
         self._stepped = STEPPED_OVERLAP * compiled.size if method == MOREAU else 0.0
         self._sees_rows = windows == WHOLE_RUN
-        self._pairs: list[PairOfLayers] | None = None
+        self._layers: Layers | None = None
         self._scale = np.array(compiled.model.coordinates.scale)
         self._last: Array | None = None  # row
-        self._waiting: list[tuple[Array, Array]] = []  # times and coordinates of chosen rows
+        self._waiting: list[tuple[Array, Array]] = []  # chosen moves: rows before and after
+        self._owed: list[tuple[int, Array]] = []  # numbers to be filled in, and how many moves waited then
         self.numbers = np.zeros(len(FOUND.names or ()))
         self.found = self.numbers.view(FOUND).view(np.recarray)[0]
         self.found.contact = NO_OVERLAP
@@ -61,7 +73,8 @@ class OverlapWatch:
 
     def fails(self, admitted: float) -> bool:
         """True if bodies have overlapped by more than the limit."""
-        return bool(self.found.depth > self.limit(admitted))
+        depth = float(self.found.depth)
+        return depth > 0.0 and depth > self.limit(admitted)
 
     def next_look(self, t: float) -> float:
         """The time after t (s) at which the state must be looked at, for want of rows; infinity where there are rows."""
@@ -78,13 +91,18 @@ class OverlapWatch:
             return
         if self._last is not None and self._is_far(rows[0]):
             # A long way between two parts of the rows is always looked at.
-            self._waiting.append(self._instants(np.concatenate([self._last, rows[:1]]), np.zeros(1, np.int64)))
+            self._waiting.append((self._last, rows[:1].copy()))
         self._last = rows[-1:].copy()
         moves = chosen_moves(rows, len(self._scale), first)
         if len(moves):
-            self._waiting.append(self._instants(rows, moves))
-        if sum(len(times) for times, _ in self._waiting) >= TOGETHER:
+            self._waiting.append((rows[moves], rows[moves + 1]))
+        if self._waits >= TOGETHER:
             self.see()
+
+    @property
+    def _waits(self) -> int:
+        """How many moves wait to be looked at."""
+        return sum(len(before) for before, _ in self._waiting)
 
     def _is_far(self, row: Array) -> bool:
         """Is it, from the last row seen to this one, further than what lies between any two rows may go unseen?"""
@@ -92,64 +110,57 @@ class OverlapWatch:
         way = np.abs(row[1 : 1 + len(self._scale)] - self._last[0, 1 : 1 + len(self._scale)]) / self._scale
         return bool(row[0] > self._last[0, 0] and way.max(initial=0.0) > STRIDE)
 
-    def _instants(self, rows: Array, moves: NDArray[np.int64]) -> tuple[Array, Array]:
-        """Times and coordinates within the moves from rows `moves` to the next ones; only at rows where time is stepped."""
-        n = len(self._scale)
-        if self._stepped:
-            return rows[moves + 1, 0], rows[moves + 1, 1 : 1 + n]
-        way = np.abs(rows[moves + 1, 1 : 1 + n] - rows[moves, 1 : 1 + n]) / self._scale
-        steps = np.clip(np.ceil(way.max(axis=1, initial=0.0) / STRIDE), 1, MOST_STEPS).astype(np.int64)
-        move = np.repeat(moves, steps)
-        nth = np.arange(len(move)) - np.repeat(np.cumsum(steps) - steps, steps)
-        share = ((nth + 1.0) / (np.repeat(steps, steps) + 1.0))[:, None]
-        h = (rows[move + 1, 0] - rows[move, 0])[:, None]
-        ends = [(at[:, 1 : 1 + n], at[:, 1 + n : 1 + 2 * n], at[:, 1 + 2 * n :]) for at in (rows[move], rows[move + 1])]
-        q, _ = between(share, h, ends[0], ends[1], np.zeros(n))
-        return rows[move, 0] + share[:, 0] * h[:, 0], q
+    def fill_in_later(self, numbers: Array) -> None:
+        """Bring `numbers`, a copy of the watch's own, up to date when what waits now has been looked at: with what comes next,
+        since each look at all pairs costs as much as a dozen instants."""
+        self._owed.append((self._waits, numbers))
 
-    def see(self, *now: tuple[Array, Array]) -> None:
-        """Look at what waits, and at further instants: times, and coordinates of the model (instants, n)."""
-        instants, self._waiting = [*self._waiting, *now], []
-        if self._pairs is None:
-            self._pairs = list(declared_pairs(self._scene, self._bar, CHORD * self.resolution))
-        if not instants or not self._pairs:
+    def see(self, *now: tuple[float, Array]) -> None:
+        """Look at what waits, and at further instants: time (s) and coordinates of the model (n,)."""
+        waiting, self._waiting = self._waiting, []
+        owed, self._owed = self._owed, []
+        if self._layers is None:
+            self._layers = declared_pairs(self._scene, CHORD * self.resolution)
+        if not self._layers.pairs or not (waiting or now):
             return
-        times, q = (np.concatenate(parts) for parts in zip(*instants, strict=True))
-        self.found.looks += len(times)
+        n = len(self._scale)
+        none = np.zeros((0, 1 + 3 * n))
+        before, after = (np.concatenate([none, *rows]) for rows in zip(*waiting, strict=True)) if waiting else (none, none)
+        within = instants_within(before, after, self._scale, self._stepped > 0.0)
+        times = np.append(within.times, [t for t, _ in now])
+        q = np.concatenate([within.q, *(at[None] for _, at in now)])
+        self._look(self._layers, times, q, [(int(within.ends[moves]), numbers) for moves, numbers in owed])
+
+    def _look(self, layers: Layers, times: Array, q: Array, owed: list[tuple[int, Array]]) -> None:
+        """Look at all pairs at some instants; `owed`: numbers as they are after the first so many of these."""
         places = frames(self._scene, self._compiled.slices, self._compiled.relative(q))
-        poses = {name: (place[:, 0] + 1j * place[:, 1], np.exp(1j * place[:, 2])) for name, place in places.items()}
-        both = [(poses[pair.sides[0].body], poses[pair.sides[1].body]) for pair in self._pairs]
-        done = 0
-        while done < len(times):
-            done = self._next_overlap(self._pairs, times, both, done)
+        where = np.array([places[name] for name in layers.bodies])
+        looks, done = int(self.found.looks), 0
+        while done <= len(times):
+            hits = layers.overlapping(where[:, done:], self._bar)
+            at = done + int(np.argmax(np.append(hits.any(axis=0), True)))
+            for count, numbers in owed:
+                if done <= count <= at:
+                    self.found.looks = looks + count
+                    numbers[1:] = self.numbers[1:]  # all but the rows
+            if at < len(times):
+                self._measure(layers, hits[:, at - done], where[:, at], float(times[at]))
+            done = at + 1
+        self.found.looks = looks + len(times)
 
     @property
     def _bar(self) -> float:
         """How deep an overlap must be to be measured: one for all pairs, whatever is looked at together."""
         return max(self.resolution, DEEPER * float(self.found.depth))
 
-    def _next_overlap(self, pairs: list[PairOfLayers], times: Array, both: list[tuple[Poses, Poses]], done: int) -> int:
-        """Measure the overlaps of the next instant, from number `done`, that has any; returns the number of the one after."""
-        left = slice(done, None)
-        hits = [
-            done + pair.overlapping(((a[0][left], a[1][left]), (b[0][left], b[1][left])))
-            for pair, (a, b) in zip(pairs, both, strict=True)
-        ]
-        if not any(len(hit) for hit in hits):
-            return len(times)
-        at = min(int(hit[0]) for hit in hits if len(hit))
-        before = self._bar
-        for pair, hit, poses in zip(pairs, hits, both, strict=True):
-            if len(hit) and hit[0] == at:
-                depth, place = pair.deepest(poses, at)
-                if depth > self.found.depth:
-                    found = self.found
-                    found.depth, found.time, found.contact = depth, times[at], pair.contact
-                    found.x, found.y = place
-        if self._bar > before:
-            for pair in pairs:
-                pair.look_for(self._bar)
-        return at + 1
+    def _measure(self, layers: Layers, hit: NDArray[np.bool_], where: Array, t: float) -> None:
+        """Measure the overlaps of the pairs that are `hit`, bodies being `where` (bodies, 3)."""
+        for k in np.flatnonzero(hit):
+            pair, found = layers.pairs[k], self.found
+            depth, place = pair.deepest([where[layers.bodies.index(side.body)] for side in pair.sides])
+            if depth > found.depth:
+                found.depth, found.time, found.contact = depth, t, pair.contact
+                found.x, found.y = place
 
     def words(self) -> str:
         """The worst overlap in words."""
@@ -172,24 +183,3 @@ class OverlapWatch:
             "x_mm": 1e3 * float(self.found.x) if sides else None,
             "y_mm": 1e3 * float(self.found.y) if sides else None,
         }
-
-
-def chosen_moves(rows: Array, n: int, first: int) -> NDArray[np.int64]:
-    """Between which rows to look: places of the rows before. n coordinates; `first` rows of the run came before these.
-
-    A contact that is lost shows in a long way without an event: of each block of rows the longest moves of the coordinates are
-    chosen; and some of the first rows, since what is lost at the start may be over soon after.
-    """
-    chosen: list[int] = []
-    for start in range(0, len(rows) - 1, BLOCK):
-        number = (first + start) // BLOCK
-        if number % EVERY:
-            continue
-        for i in range(n) if n <= FEW else (number // EVERY * FEW + np.arange(FEW)) % n:
-            q = rows[start : start + BLOCK + 1, 1 + i]
-            way = q[1:] - q[:-1]
-            up, down = int(np.argmax(way)), int(np.argmin(way))
-            chosen.append(start + (up if way[up] >= -way[down] else down))
-    chosen += [number - first for number in EARLY if 0 <= number - first < len(rows) - 1]
-    places = np.unique(np.array(chosen, np.int64))
-    return places[rows[places + 1, 0] > rows[places, 0]]

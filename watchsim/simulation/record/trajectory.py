@@ -42,7 +42,7 @@ class Trajectory:
     pairs              the contacts that `contact` of an event counts, with bodies, layers and primitives
     stop, stop_message  why the run ended
     simulated          the time reached, s; `end_q` and `end_u` (n,) belong to it
-    wall, compile      what the run took in all, and what of it was compiling or loading the solver, s
+    wall, compile      what the run took, and what compiling or loading the solver took besides, s
     method, tolerance, step  of the run; `step` (s) only of a method with fixed steps
     worst_penetration  the deepest gap of a contact that counted, m
     worst_residual     the worst violation of a complementarity condition, as a share of the problem's largest term

@@ -1,0 +1,185 @@
+"""At which instants could two layers overlap by more than a depth? The compiled sieve before the polygons.
+
+One layer is shrunk by that depth. The other one passes where its outline stays away from the shrunk one by half the depth and
+does not lie wholly within, nor the other way round. What merely touches passes; what does not pass is for the polygons to judge
+(overlap_instants.py). Nothing here is shared with the gap functions of contacts: chords against chords, circles around
+stretches of them first.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from watchsim.jit import entry, kernel
+
+STRETCH = np.dtype(
+    [
+        ("x", "f8"),  # of a circle around some chords, m
+        ("y", "f8"),
+        ("radius", "f8"),
+        ("half", "f8"),  # m, half of its longest chord
+        ("first", "i8"),  # the chords join points first … last
+        ("last", "i8"),
+        ("begins", "i8"),  # 1 if the first point begins an outer ring
+    ]
+)
+PAIR = np.dtype(
+    [
+        ("still", "i8"),  # body whose shrunk outline stays where it is
+        ("mover", "i8"),  # body whose outline is brought to it
+        ("still_x", "f8"),  # centre of a circle around everything, m
+        ("still_y", "f8"),
+        ("mover_x", "f8"),
+        ("mover_y", "f8"),
+        ("reach", "f8"),  # m, sum of their radii
+        ("still_first", "i8"),  # stretches of the shrunk outline
+        ("still_stop", "i8"),
+        ("mover_first", "i8"),  # stretches of the other one
+        ("mover_stop", "i8"),
+        ("swallows", "i8"),  # 1 if the mover could hold the other within
+        ("open", "i8"),  # 1 if open faces are to be looked at wherever the circles meet
+    ]
+)
+
+
+@entry
+def sieve(pairs, stretches, points, where, margin, room, out_left):
+    """Write True into `out_left` (pairs, instants) where a pair does not pass.
+
+    `where` (bodies, instants, 3): x, y (m), angle (rad); `margin`: how near (m) outlines count; `room`: for a stretch's points.
+    """
+    for k in range(len(pairs)):
+        pair = pairs[k]
+        before_x, before_y, before_c, before_s, was_left = math.nan, 0.0, 0.0, 0.0, False
+        for i in range(where.shape[1]):
+            still, mover = where[pair.still, i], where[pair.mover, i]
+            # The mover's frame in the other one's.
+            back_c, back_s = math.cos(still[2]), -math.sin(still[2])
+            x, y = _turned(mover[0] - still[0], mover[1] - still[1], back_c, back_s)
+            c, s = _turned(math.cos(mover[2]), math.sin(mover[2]), back_c, back_s)
+            # Two bodies that rest on each other are looked at once.
+            if not (x == before_x and y == before_y and c == before_c and s == before_s):
+                was_left = _is_left(pair, stretches, points, (x, y, c, s), margin, room)
+                before_x, before_y, before_c, before_s = x, y, c, s
+            out_left[k, i] = was_left
+
+
+@kernel
+def _turned(x, y, c, s):
+    return c * x - s * y, s * x + c * y
+
+
+@kernel
+def _moved(px, py, frame):
+    """A point of a frame that stands at x, y with the cosine and sine of its angle."""
+    x, y, c, s = frame
+    return c * px - s * py + x, s * px + c * py + y
+
+
+@kernel
+def _is_left(pair, stretches, points, frame, margin, room):
+    """True if the pair does not pass where the mover's `frame` (x, y, cosine, sine) stands so."""
+    x, y, c, s = frame
+    mx, my = _moved(pair.mover_x, pair.mover_y, frame)
+    if math.hypot(mx - pair.still_x, my - pair.still_y) > pair.reach + margin:
+        return False
+    if pair.open == 1:
+        return True
+    for m in range(pair.mover_first, pair.mover_stop):
+        if _comes_near(stretches[m], pair, stretches, points, frame, margin, room):
+            return True
+    for m in range(pair.mover_first, pair.mover_stop):
+        if stretches[m].begins == 1:
+            px, py = _moved(points[stretches[m].first, 0], points[stretches[m].first, 1], frame)
+            if _winding(px, py, pair.still_first, pair.still_stop, stretches, points) != 0:
+                return True
+    if pair.swallows == 1:
+        for m in range(pair.still_first, pair.still_stop):
+            if stretches[m].begins == 1:
+                px, py = _turned(points[stretches[m].first, 0] - x, points[stretches[m].first, 1] - y, c, -s)
+                if _winding(px, py, pair.mover_first, pair.mover_stop, stretches, points) != 0:
+                    return True
+    return False
+
+
+@kernel
+def _comes_near(moved, pair, stretches, points, frame, margin, room):
+    """Does a stretch of the mover come within `margin` of the other outline?"""
+    mx, my = _moved(moved.x, moved.y, frame)
+    is_placed = False
+    for k in range(pair.still_first, pair.still_stop):
+        other = stretches[k]
+        dx, dy, reach = mx - other.x, my - other.y, moved.radius + other.radius + margin
+        if dx * dx + dy * dy > reach * reach:
+            continue
+        if not is_placed:
+            is_placed = True
+            for j in range(moved.first, moved.last + 1):
+                room[j - moved.first, 0], room[j - moved.first, 1] = _moved(points[j, 0], points[j, 1], frame)
+        reach = moved.half + other.radius + margin
+        for j in range(moved.last - moved.first):
+            dx, dy = 0.5 * (room[j, 0] + room[j + 1, 0]) - other.x, 0.5 * (room[j, 1] + room[j + 1, 1]) - other.y
+            if dx * dx + dy * dy <= reach * reach and _chord_comes_near(room[j], room[j + 1], other, points, margin):
+                return True
+    return False
+
+
+@kernel
+def _chord_comes_near(a, b, other, points, margin):
+    """Does the chord from a to b come within `margin` of a chord of the stretch?"""
+    left, right = min(a[0], b[0]) - margin, max(a[0], b[0]) + margin
+    low, high = min(a[1], b[1]) - margin, max(a[1], b[1]) + margin
+    for k in range(other.first, other.last):
+        p, q = points[k], points[k + 1]
+        if (p[0] < left and q[0] < left) or (p[0] > right and q[0] > right):
+            continue
+        if (p[1] < low and q[1] < low) or (p[1] > high and q[1] > high):
+            continue
+        if _cross(a, b, p, q) or min(_apart(a, p, q), _apart(b, p, q), _apart(p, a, b), _apart(q, a, b)) < margin:
+            return True
+    return False
+
+
+@kernel
+def _side(p, a, b):
+    """Positive where p lies left of the line from a to b."""
+    return (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])
+
+
+@kernel
+def _cross(a, b, p, q):
+    """True if the chords from a to b and from p to q cross."""
+    return (_side(p, a, b) > 0.0) != (_side(q, a, b) > 0.0) and (_side(a, p, q) > 0.0) != (_side(b, p, q) > 0.0)
+
+
+@kernel
+def _apart(p, a, b):
+    """The distance of p from the chord from a to b."""
+    dx, dy = b[0] - a[0], b[1] - a[1]
+    squared = dx * dx + dy * dy
+    share = ((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / squared if squared > 0.0 else 0.0
+    share = min(max(share, 0.0), 1.0)
+    return math.hypot(p[0] - a[0] - share * dx, p[1] - a[1] - share * dy)
+
+
+@kernel
+def _winding(x, y, first, stop, stretches, points):
+    """How often the rings of some stretches go round a point: not 0 within material, holes running the other way round."""
+    turns = 0
+    for k in range(first, stop):
+        other = stretches[k]
+        if abs(y - other.y) > other.radius or x > other.x + other.radius:
+            continue
+        for j in range(other.first, other.last):
+            p, q = points[j], points[j + 1]
+            if (p[1] <= y) == (q[1] <= y):
+                continue
+            # A chord that crosses the height of the point counts where it lies to the right.
+            side = (q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0])
+            if q[1] > p[1] and side > 0.0:
+                turns += 1
+            elif q[1] <= p[1] and side < 0.0:
+                turns -= 1
+    return turns
