@@ -26,6 +26,8 @@ def test_kept_code_is_loaded_without_the_compiler_which_still_works_afterwards(t
     assert python(f"{head}print(tiny.total(x))", **cache) == "6.0"
     ask = "print(tiny.total(x), sum(tiny.total.stats.cache_hits.values()), 'numba.np.arraymath' in sys.modules)"
     assert python(head + ask, **cache) == "6.0 1 False"
+    unread = "library = next(iter(tiny.total.overloads.values())).library; print(tiny.total(x), library._shared_module)"
+    assert python(f"{head}tiny.total(x); {unread}", **cache) == "6.0 None"
     compiled = "print(tiny.total(x), tiny.both(x), tiny.square(x), tiny.total(x.astype(int)), tiny.total(x))"
     assert python(head + compiled, **cache) == "6.0 20.0 14.0 6 6.0"
 

@@ -73,18 +73,66 @@ def _load_lightly(compiled: Any) -> None:
         from numba.core.runtime import rtsys
     except ImportError:
         return
-    if not all(hasattr(cache, name) for name in ("_load_overload", "_guard_against_spurious_io_errors")):
+    if not all(hasattr(cache, name) for name in ("_load_overload", "_index_key", "_cache_file", "_impl")):
         return
 
     def load_overload(signature: Any, target: Any) -> Any:
         rtsys.initialize(target)  # the counter of references, which wrappers for calls from Python use
         try:
-            return cache._load_overload(signature, target)  # type: ignore[union-attr]
+            data = cache._cache_file.load(cache._index_key(signature, target.codegen()))  # type: ignore[union-attr]
+            return None if data is None else _rebuilt(cache, target, data)
         except Exception as error:  # whatever it is, the function can be compiled
             complain(f"Machine code in {cache.cache_path} cannot be used ({error}): compiled again. {MOVE}")  # type: ignore[union-attr]
             return None
 
     cache.load_overload = load_overload  # type: ignore[union-attr]
+
+
+def _rebuilt(cache: Any, target: Any, data: Any) -> Any:
+    """What numba makes of a file of its cache, but for the code in LLVM's language, which is put by.
+
+    It lies beside the machine code for functions that are compiled later and call this one: with a large function two thirds of
+    the time that loading takes, and hardly ever asked for.
+    """
+    (name, kind, code), about, *rest = data
+    library_class = _lazy_library()
+    if kind != "object" or library_class is None:
+        return cache._impl.rebuild(target, data)
+    from llvmlite import binding
+
+    machine_code, intermediate = code
+    names = (about.llvm_func_name, about.llvm_cpython_wrapper_name, about.llvm_cfunc_wrapper_name)
+    defined = "".join(f'define void @"{one}"() {{ ret void }}\n' for one in names)  # numba looks up what is named here only
+    code = machine_code, binding.parse_assembly(defined).as_bitcode()
+    made = cache._impl.rebuild(target, ((name, kind, code), about, *rest))
+    made.library.__class__ = library_class
+    made.library._shared_module, made.library._intermediate = None, intermediate
+    return made
+
+
+@functools.lru_cache(maxsize=1)
+def _lazy_library() -> type | None:
+    """Machine code whose LLVM code is read when it is asked for, or None where this numba is built differently."""
+    try:
+        from llvmlite import binding
+        from numba.core.codegen import JITCodeLibrary, JITCPUCodegen
+    except ImportError:
+        return None
+    if JITCPUCodegen._library_class is not JITCodeLibrary or not hasattr(JITCodeLibrary, "_get_module_for_linking"):
+        return None
+
+    class LazyLibrary(JITCodeLibrary):
+        """As every library from the cache, whose `_shared_module` is None until somebody links it."""
+
+        _intermediate: bytes
+        _shared_module: Any
+
+        def _get_module_for_linking(self) -> Any:
+            if self._shared_module is None:
+                self._shared_module = binding.parse_bitcode(self._intermediate)
+            return super()._get_module_for_linking()
+
+    return LazyLibrary
 
 
 def callable_kernel(function: Function) -> Function:

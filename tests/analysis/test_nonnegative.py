@@ -25,3 +25,17 @@ def test_the_same_as_scipy(seed: int) -> None:
 def test_where_nothing_helps_all_is_zero() -> None:
     assert np.array_equal(nonnegative(np.eye(3), -np.ones(3)), np.zeros(3))
     assert np.array_equal(nonnegative(np.eye(2), np.array([3.0, -1.0])), [3.0, 0.0])
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_wherever_it_begins_the_same_comes_out(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    rows, columns = rng.integers(2, 9, 2)
+    system = np.vstack((rng.normal(size=(rows, columns)), 10.0 ** rng.uniform(-4.0, 0.0) * np.eye(columns)))
+    right = np.append(rng.normal(size=rows), np.zeros(columns))
+    expected, _ = nnls(system, right)
+    for likely in (expected > 0.0, expected == 0.0, rng.random(columns) < 0.5, np.ones(columns, bool)):
+        before = likely.copy()
+        got = nonnegative(system, right, likely)
+        assert np.allclose(got, expected, rtol=1e-9, atol=1e-9 * max(1.0, expected.max()))
+        assert np.array_equal(likely, before)

@@ -59,9 +59,9 @@ def test_events_made_into_text_meanwhile_are_the_same_table(tmp_path: Path, monk
     monkeypatch.setattr("watchsim.simulation.runner.EVENTS", 20)
     monkeypatch.setattr("watchsim.simulation.runner.ROWS", 100)
     scene = load(profiles_dir() / "bench_lever")
-    meanwhile = Meanwhile(scene, tmp_path, plots=False)
+    meanwhile = Meanwhile(scene, tmp_path)
     run = simulate(scene, 0.3, progress=meanwhile.progress, follow=meanwhile.follow)
-    lines = meanwhile.end()
+    lines, _ = meanwhile.end()
     assert lines is not None and 50 < lines.rows <= len(run.events)
     lines.write(run, tmp_path / "begun.csv")
     write_events(run, tmp_path / "whole.csv")
@@ -74,6 +74,6 @@ def test_what_fails_meanwhile_is_left_to_others(tmp_path: Path, monkeypatch: pyt
 
     monkeypatch.setattr(EventLines, "add", fails)
     scene, before = load(profiles_dir() / "bench_lever"), sys.getswitchinterval()
-    meanwhile = Meanwhile(scene, tmp_path, plots=False)
+    meanwhile = Meanwhile(scene, tmp_path)
     meanwhile.follow([], np.zeros(0))
-    assert meanwhile.end() is None and sys.getswitchinterval() == before
+    assert meanwhile.end() == (None, None) and sys.getswitchinterval() == before

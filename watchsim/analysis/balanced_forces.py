@@ -103,8 +103,10 @@ class Mechanism:
         force[:, sticks, 1] = unknown[:, rows:]
         most = np.abs(force).max(axis=(1, 2))
         beyond = (np.abs(force[:, :, 1]) > friction * force[:, :, 0] + SLACK * most[:, None]).any(axis=1)
+        pressing = None  # what presses at one instant most likely does at the next
         for k in np.flatnonzero(beyond):
-            force[k] = _within_cones(system[k], right[k], (seen.w_N[k], seen.w_T[k]), (sticks, slide, friction))
+            ways = (seen.w_N[k], seen.w_T[k])
+            force[k], pressing = _within_cones(system[k], right[k], ways, (sticks, slide, friction), pressing)
         return force
 
 
@@ -127,9 +129,14 @@ def _least(system: Array, right: Array) -> Array:
 
 
 def _within_cones(
-    system: Array, right: Array, directions: tuple[Array, Array], laws: tuple[NDArray[np.int64], Array, Array]
-) -> Array:
-    """Forces (m, 2) of redundant contacts: among all that balance, those that press and stay within their cones of friction."""
+    system: Array,
+    right: Array,
+    directions: tuple[Array, Array],
+    laws: tuple[NDArray[np.int64], Array, Array],
+    likely: NDArray[np.bool_] | None,
+) -> tuple[Array, NDArray[np.bool_]]:
+    """Forces (m, 2) of redundant contacts: among all that balance, those that press and stay within their cones of friction;
+    and which edges of the cones they lie along, `likely` ones to begin with."""
     (w_n, w_t), (sticks, slide, friction) = directions, laws
     rows = len(slide)
     tangents = slide.copy()
@@ -137,19 +144,20 @@ def _within_cones(
     owner = np.concatenate((np.arange(rows), sticks))
     corners = np.column_stack((np.ones(len(owner)), np.concatenate((tangents, -friction[sticks]))))
     ways = corners[:, :1] * w_n[owner] + corners[:, 1:] * w_t[owner]
-    share = _pressing(system @ ways.T, right)
+    share, used = _pressing(system @ ways.T, right, likely)
     force = np.zeros((rows, 2))
     np.add.at(force, owner, share[:, None] * corners)
-    return force
+    return force, used
 
 
-def _pressing(system: Array, right: Array) -> Array:
-    """A solution without negative shares, near the smallest; as near to one as can be where rounding leaves none."""
+def _pressing(system: Array, right: Array, likely: NDArray[np.bool_] | None) -> tuple[Array, NDArray[np.bool_]]:
+    """A solution without negative shares, near the smallest; as near to one as can be where rounding leaves none. And which
+    shares it has."""
     high = 1.0 / np.maximum(np.abs(system).max(axis=1), np.finfo(float).tiny)
     scaled, target = system * high[:, None], right * high
     count = scaled.shape[1]
-    near = nonnegative(np.vstack((scaled, GENTLE * np.eye(count))), np.append(target, np.zeros(count)))
+    near = nonnegative(np.vstack((scaled, GENTLE * np.eye(count))), np.append(target, np.zeros(count)), likely)
     used = near > SMALLEST * near.max(initial=0.0)
     # The push towards small forces leaves the balance off by its square; among those in use the rest is put right.
     near[used] += np.linalg.lstsq(scaled[:, used], target - scaled @ near, rcond=SMALLEST)[0]
-    return near
+    return near, used

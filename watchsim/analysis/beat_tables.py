@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
-from collections.abc import Iterable, Iterator, Sequence
-from itertools import chain, islice
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,8 +35,11 @@ def beats_csv(found: Beats) -> Iterator[str]:
     scale = math.degrees(1.0) if found.angular else 1.0
     turn, amplitude = scale * found.end_at, scale * found.amplitude
     columns = (found.t, found.tick, found.end, turn, amplitude, found.period_s, found.rate_s_per_d, found.beat_error_ms)
-    numbers = range(found.before + 1, found.before + 1 + len(found.t))
-    return _text(header, zip(numbers, *map(_cells, columns), strict=True))
+    yield _row(header)
+    for first in range(0, len(found), ROWS_AT_ONCE):
+        some = [_cells(column[first : first + ROWS_AT_ONCE]) for column in columns]
+        numbers = range(found.before + 1 + first, found.before + 1 + first + len(some[0]))
+        yield _lines([list(map(str, numbers)), *some])
 
 
 def phases_csv(run: Trajectory, found: Beats) -> Iterator[str]:
@@ -50,39 +50,38 @@ def phases_csv(run: Trajectory, found: Beats) -> Iterator[str]:
     Energies and impulse are empty for a run by fixed steps, whose contacts have no smooth forces.
     """
     known = can_be_told(run)
-    return _text(PHASE_COLUMNS, (row for part in stages(run, found) for row in _phase_rows(part, known)))
+    yield _row(PHASE_COLUMNS)
+    for part in stages(run, found):
+        yield _lines(_phase_columns(part, known))
 
 
-def _phase_rows(part: Stages, known: bool) -> Iterator[Sequence[object]]:
-    phases = part.phases
-    starts, ends = (np.array([getattr(row, name) for row in phases]) for name in ("start", "end"))
+def _phase_columns(part: Stages, known: bool) -> list[list[str]]:
+    phases, count = part.phases, len(part.phases)
+    rows = phases.rows
     turned, rates = (
-        np.degrees(np.stack(pair, axis=2)).reshape(len(phases), -1)  # of each body one beside the other
-        for pair in (
-            (np.array([row.angles for row in phases]), np.array([row.turns for row in phases])),
-            (part.start_rates, part.end_rates),
-        )
+        np.degrees(np.stack(pair, axis=2)).reshape(count, -1)  # of each body one beside the other
+        for pair in ((phases.angles, phases.turns), (part.start_rates, part.end_rates))
     )
-    energies = [part.impulse, part.supplied, part.stored, part.to_balance, part.damping, part.friction]
-    energies.append(np.array([sum(one.values()) for one in part.impacts]))
-    columns = [
-        *([row.beat for row in phases], [row.name for row in phases], starts, 1e3 * (ends - starts), *turned.T),
-        *([row.on for row in phases], part.pallets, *rates.T),
-        *(energies if known else [np.full(len(phases), math.nan)] * len(energies)),
-    ]
-    return zip(*(_cells(one) if isinstance(one, np.ndarray) else one for one in columns), strict=True)
+    energies = [part.impulse, part.supplied, part.stored, part.to_balance, part.damping, part.friction, part.impacts.whole]
+    if not known:
+        energies = [np.full(count, math.nan)] * len(energies)
+    numbers = (_cells(one) for one in (rows.start, 1e3 * (rows.end - rows.start), *turned.T))
+    beats = list(map(str, rows.beat.tolist()))
+    return [beats, rows.names, *numbers, rows.faces, part.pallets, *map(_cells, rates.T), *map(_cells, energies)]
 
 
-def _cells(column: NDArray[np.float64]) -> list[object]:
-    """The numbers; "" for what is not finite."""
-    values = column.tolist()
-    return values if np.isfinite(column).all() else [x if math.isfinite(x) else "" for x in values]
+def _cells(column: NDArray[np.float64]) -> list[str]:
+    """The numbers, such that they read back as the same; nothing for what is not finite."""
+    told = list(map(repr, column.tolist()))
+    for k in np.flatnonzero(~np.isfinite(column)).tolist():
+        told[k] = ""
+    return told
 
 
-def _text(header: Sequence[str], rows: Iterable[Sequence[object]]) -> Iterator[str]:
-    """Some thousand rows at a time: of a long run there are hundreds of thousands."""
-    lines = chain([header], rows)
-    while some := list(islice(lines, ROWS_AT_ONCE)):
-        out = io.StringIO()
-        csv.writer(out, lineterminator="\n").writerows(some)
-        yield out.getvalue()
+def _row(fields: Sequence[str]) -> str:
+    """One line; no name in these tables needs quotes."""
+    return ",".join(fields) + "\n"
+
+
+def _lines(columns: Sequence[Sequence[str]]) -> str:
+    return "".join(map(_row, zip(*columns, strict=True)))

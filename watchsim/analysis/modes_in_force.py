@@ -6,7 +6,6 @@ each event is followed.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -20,28 +19,36 @@ from watchsim.storage.columns import blocks
 MODES = (EventKind.CLOSE, EventKind.OPEN, EventKind.STICK, EventKind.SLIDE, EventKind.HANDOVER)
 
 
-def modes_in_force(run: Trajectory, times: Array) -> Iterator[dict[int, int]]:
+def modes_in_force(run: Trajectory, times: Array) -> list[dict[int, int]]:
     """Contact -> mode of what is in force, at each of the times."""
     order = np.argsort(times, kind="stable")
-    first = times[order[0]] if len(times) else 0.0
-    waiting = order.tolist()[::-1]
+    sorted_times, places = times[order], order.tolist()
     modes: dict[int, int] = {}
-    found: dict[int, dict[int, int]] = {}
+    found: list[dict[int, int]] = [{} for _ in places]
+    asked = 0  # how many of the times are done
     for (part,) in blocks(run.events):
-        if not waiting:
+        if asked == len(places):
             break
         told = part[np.isin(part["kind"], MODES)]
-        done = int(np.searchsorted(told["t"], first, side="right"))
+        t = np.ascontiguousarray(told["t"])
+        done = int(np.searchsorted(t, sorted_times[0], side="right"))
         modes = _Changes(told[:done], modes).modes()
-        while waiting and times[waiting[-1]] < part["t"][-1]:
-            stop = int(np.searchsorted(told["t"], times[waiting[-1]], side="right"))
-            _follow(modes, told[done:stop])
-            done = max(done, stop)
-            found[waiting.pop()] = dict(modes)
-        if waiting:
+        for stop in np.searchsorted(t, sorted_times[asked : _before(sorted_times, part["t"][-1])], side="right").tolist():
+            if stop > done:
+                _follow(modes, told[done:stop])
+                done = stop
+            found[places[asked]] = dict(modes)
+            asked += 1
+        if asked < len(places):
             _follow(modes, told[done:])
-    found |= {place: dict(modes) for place in waiting}
-    return (found[place] for place in range(len(times)))
+    for place in places[asked:]:
+        found[place] = dict(modes)
+    return found
+
+
+def _before(times: Array, end: float) -> int:
+    """How many of the times, in order, come before `end`."""
+    return int(np.searchsorted(times, end, side="left"))
 
 
 class _Changes:

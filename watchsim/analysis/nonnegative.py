@@ -15,10 +15,13 @@ LEAST = 1e-14  # of the largest |A| |b|: a slope below that is rounding
 TURNS = 10  # for each unknown; each turn lowers the distance, so that more are not needed but for rounding
 
 
-def nonnegative(system: Array, right: Array) -> Array:
-    """x (n,) with x >= 0 that makes |A x - b| smallest; A (m, n) should have independent columns, m >= n."""
+def nonnegative(system: Array, right: Array, likely: NDArray[np.bool_] | None = None) -> Array:
+    """x (n,) with x >= 0 that makes |A x - b| smallest; A (m, n) should have independent columns, m >= n.
+
+    `likely` are the entries that are probably above zero, such as those of a similar system: if so, most of the work is saved.
+    """
     count = system.shape[1]
-    x, used = np.zeros(count), np.zeros(count, bool)
+    x, used = _begun(system, right, likely)
     least = LEAST * float(np.abs(system).max(initial=0.0) * np.abs(right).max(initial=0.0))
     for _ in range(TURNS * count):
         slope = np.where(used, -np.inf, system.T @ (right - system @ x))
@@ -30,6 +33,17 @@ def nonnegative(system: Array, right: Array) -> Array:
         if not used[best]:  # only rounding lets it out again at once
             break
     return x
+
+
+def _begun(system: Array, right: Array, likely: NDArray[np.bool_] | None) -> tuple[Array, NDArray[np.bool_]]:
+    """Where to begin, and which entries are in use there: the best with the likely ones, if none of them is negative."""
+    x = np.zeros(system.shape[1])
+    if likely is not None and likely.any():
+        x[likely] = np.linalg.lstsq(system[:, likely], right, rcond=None)[0]
+        if np.all(x[likely] > 0.0):
+            return x, likely.copy()
+        x[:] = 0.0
+    return x, np.zeros(len(x), bool)
 
 
 def _within(system: Array, right: Array, x: Array, used: NDArray[np.bool_]) -> Array:

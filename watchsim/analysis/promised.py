@@ -40,7 +40,7 @@ def expectation_faults(scene: Scene) -> list[Fault]:
     """A fault for each expectation that no run of the scene can answer."""
     if not scene.expect:
         return []
-    numbers = summary(_not_begun(dataclasses.replace(scene, expect=())))
+    numbers = summary(dataclasses.replace(not_begun(scene), scene=dataclasses.replace(scene, expect=())))
     lines = key_lines(scene.path.read_text(encoding="utf-8-sig")) if scene.path and scene.path.is_file() else {}
     faults = Faults(str(scene.path or "scene"), lines)
     for expectation, wrong in zip(scene.expect, mistakes(scene.expect, numbers), strict=True):
@@ -71,7 +71,8 @@ def impossible(expectation: Expectation, scene: Scene) -> str:
     return f'no run of this scene gives "{expectation.key}": {why}. Leave it out'
 
 
-def _not_begun(scene: Scene) -> Trajectory:
+def not_begun(scene: Scene) -> Trajectory:
+    """A run of the scene with nothing in it but where its bodies stand."""
     compiled = compile_scene(scene)
     q = compiled.relative(compiled.q[None])
     rest = np.zeros_like(q)

@@ -52,8 +52,8 @@ def run(args: argparse.Namespace) -> int:
     scene = load_scene(str(profiles_dir() / "swiss_lever"))
     goal = goal_of(scene, folder, args.force)
     with stopping.keeping():
-        trajectory, lines = simulate_with_progress(scene, DURATION, None, folder, plots=True)
-        summary = write(trajectory, goal, Extras(movie=True, gif=True), changed=["--duration"], lines=lines)
+        trajectory, begun = simulate_with_progress(scene, DURATION, None, folder, plots=True)
+        summary = write(trajectory, goal, Extras(movie=True, gif=True), changed=["--duration"], begun=begun)
     print(f"   {_ticking(summary)}")
     print(f"   Plots, movie.mp4, movie.gif and all numbers (report.txt): {args.output}/swiss_lever")
     if args.details:

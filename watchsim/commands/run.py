@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import functools
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,12 +23,11 @@ from watchsim.commands.common.console import (
 )
 from watchsim.commands.common.output_place import secured_folder, swept_run
 from watchsim.commands.common.record_size import room_for
-from watchsim.commands.common.second_core import Meanwhile
+from watchsim.commands.common.second_core import Begun, Meanwhile
 from watchsim.commands.common.write_run import Extras, goal_of, report_text, write
 from watchsim.simulation.methods import EVENT_DRIVEN, METHODS
 
 if TYPE_CHECKING:
-    from watchsim.results.tables import EventLines
     from watchsim.scene.scene import Scene
     from watchsim.simulation.record.trajectory import Trajectory
 
@@ -109,10 +109,10 @@ def run(args: argparse.Namespace) -> int:
         say(f"Note: {note.message}. {note.fix}")
     extras = Extras(not args.no_plots, args.movie, args.gif, args.error_bars, args.profile, args.report)
     with stopping.keeping():
-        trajectory, lines = simulate_with_progress(
+        trajectory, begun = simulate_with_progress(
             scene, duration, args.tol, folder, method=method, step=step, start=start, plots=extras.plots
         )
-        summary = write(trajectory, goal, extras, changed, lines)
+        summary = write(trajectory, goal, extras, changed, begun)
     if args.json:
         print_json(summary)
         for warning in summary["warnings"]:
@@ -132,32 +132,36 @@ def simulate_with_progress(
     step: float | None = None,
     start: Trajectory | None = None,
     plots: bool = False,
-) -> tuple[Trajectory, EventLines | None]:
+) -> tuple[Trajectory, Begun]:
     """Simulate for results in `folder`, with a progress line on a terminal; a first run says that it compiles.
 
-    Also gives the events as far as they were made into text meanwhile; with `plots`, what draws them was loaded.
+    Also gives what was made ready meanwhile, of `plots` too where they are wanted.
     """
+    from watchsim.commands.common.run_pictures import empty_panels
     from watchsim.simulation.simulate import simulate
     from watchsim.storage.write import real
 
     announce_compile()
     beside = real(folder).parent
-    progress, meanwhile = Progress("simulated s:"), Meanwhile(scene, beside, plots)
+    progress, meanwhile = (
+        Progress("simulated s:"),
+        Meanwhile(scene, beside, functools.partial(empty_panels, scene) if plots else None),
+    )
 
     def stepped(time: float, end: float) -> None:
         meanwhile.progress()
         progress(time, end)
 
     follow = meanwhile.follow if start is None else None
-    lines = None
+    begun = Begun()
     try:
         run = simulate(
             scene, duration, tolerance, progress=stepped, method=method, step=step, start=start, stream=beside, follow=follow
         )
     finally:
-        lines = meanwhile.end()
+        begun = meanwhile.end()
         progress.close()
-    return run, lines
+    return run, begun
 
 
 def _earlier(folder: str, scene: Scene) -> Trajectory:

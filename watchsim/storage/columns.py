@@ -17,7 +17,7 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import NDArray
 
-MOST = 8e6  # bytes of columns in memory before they are written out
+MOST = 32e6  # bytes of columns in memory before they are written out: minutes of a watch
 NEXT = 4e6  # bytes that are written out together from then on
 BLOCK = 1 << 16  # rows that are worked on at a time, where a column need not lie in memory
 

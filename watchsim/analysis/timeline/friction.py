@@ -11,7 +11,7 @@ import numpy as np
 
 from watchsim.analysis.contact_forces import Forces, forces
 from watchsim.analysis.timeline.flows import NODES, WEIGHTS
-from watchsim.analysis.timeline.rows import pair_name
+from watchsim.analysis.timeline.impact_losses import pair_name
 from watchsim.simulation.record.body_frames import frames, speeds
 from watchsim.simulation.record.trajectory import Array, Trajectory
 

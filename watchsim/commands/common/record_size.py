@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 ROWS, EVENTS = 500, 160  # of a period of an escapement, measured: 395 and 156 (Swiss lever), 479 and 125 (bench lever)
 EVENT_BYTES = 52
 WORTH_A_NOTE = 64e6  # bytes on the disk that somebody may want to know of before a run
-WRITTEN = 2.2  # times what is recorded: the files in which it is held, the packed ones, and the table of events
+WRITTEN = 2.7  # times what is recorded: the files in which it is held, the archive, and the tables of events and phases
 
 
 def record_size(scene: Scene, duration: float) -> float:

@@ -12,6 +12,8 @@ from watchsim.commands.common.console import Progress, say
 from watchsim.commands.common.second_core import Draw, drawn_apart
 
 if TYPE_CHECKING:
+    from watchsim.render.figures.kinematics_plot import Kinematics
+    from watchsim.scene.scene import Scene
     from watchsim.simulation.record.trajectory import Trajectory
 
 
@@ -23,9 +25,14 @@ MOST_PLOTTED = 12  # bodies, in the plots that come with a run; each costs a fif
 WHOLE_RUN = 10.0  # s that the movie of a whole run takes
 
 
-def pictures(run: Trajectory, plots: bool, movie: bool, gif: bool) -> dict[str, Callable[[Path], object]]:
-    """Name in the results folder -> what draws it into the file it is given; plots are begun at once (see `drawn_apart`)."""
-    found: dict[str, Any] = dict(drawn_apart(_plots(run))) if plots else {}
+def pictures(
+    run: Trajectory, plots: bool, movie: bool, gif: bool, panels: Kinematics | None = None
+) -> dict[str, Callable[[Path], object]]:
+    """Name in the results folder -> what draws it into the file it is given; plots are begun at once (see `drawn_apart`).
+
+    `panels` are those of `empty_panels`, where there are any.
+    """
+    found: dict[str, Any] = dict(drawn_apart(_plots(run, panels))) if plots else {}
     if movie:
         found["movie.mp4"] = lambda path: _movie(run, path, slow=1 / 20)
     if gif:
@@ -61,18 +68,31 @@ def _drawn(draw: Callable[[Path], object]) -> Callable[[Path], None]:
     return attempt
 
 
-def _plots(run: Trajectory) -> dict[str, Draw]:
+def empty_panels(scene: Scene) -> Kinematics:
+    """The panels of the plots that come with a run, drawn once, which is half the work: made while the run goes on."""
+    from watchsim.analysis.promised import not_begun
+    from watchsim.render.figures.kinematics_plot import Kinematics
+
+    panels = Kinematics(not_begun(scene), _shown(scene))
+    panels.figure.canvas.draw()
+    return panels
+
+
+def _shown(scene: Scene) -> list[str]:
+    return [body.name for body in scene.bodies if body.motion != "fixed"][:MOST_PLOTTED]
+
+
+def _plots(run: Trajectory, panels: Kinematics | None) -> dict[str, Draw]:
     """Kinematic plots: all that was recorded, and the last beats."""
     from watchsim.render.figures.kinematics_plot import Kinematics, write_png
 
     if len(run.t) < 2:
         return {}
-    moving = [body.name for body in run.scene.bodies if body.motion != "fixed"]
-    if len(moving) > MOST_PLOTTED:
-        say(f"Plots of {MOST_PLOTTED} of {len(moving)} moving bodies; watchsim plot RUN --bodies NAMES draws others.")
-    shown_bodies = moving[:MOST_PLOTTED]
+    moving = sum(body.motion != "fixed" for body in run.scene.bodies)
+    if moving > MOST_PLOTTED:
+        say(f"Plots of {MOST_PLOTTED} of {moving} moving bodies; watchsim plot RUN --bodies NAMES draws others.")
     windows = {"plots/kinematics.png": None, "plots/last_beats.png": last_beats(run)}
-    shown = functools.cache(lambda: Kinematics(run, shown_bodies))
+    shown = functools.cache(lambda: panels.of(run) if panels else Kinematics(run, _shown(run.scene)))
 
     def plot(window: tuple[float, float] | None) -> Any:
         return lambda path: write_png(shown().show(window), path)

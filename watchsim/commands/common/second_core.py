@@ -1,8 +1,8 @@
 """What does the second core of a machine do while a run is stepped, and while its numbers are worked out?
 
-The loop is machine code that leaves Python to others: meanwhile a thread loads what plots need and makes events into text. When
-the motion is known, the plots are drawn in a copy of the process, which has all that they show, and the process itself goes on
-with numbers and tables.
+The loop is machine code that leaves Python to others: meanwhile a thread makes panels of plots, and text of events. When
+the motion is known, the plots are drawn in a copy of the process, which has all that they show, and the process itself
+goes on with numbers and tables.
 """
 
 from __future__ import annotations
@@ -16,38 +16,48 @@ import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any, NoReturn
+from typing import IO, TYPE_CHECKING, Any, NamedTuple, NoReturn, TypeVar
 
 from watchsim import stopping
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from watchsim.render.figures.kinematics_plot import Kinematics
     from watchsim.results.tables import EventLines
     from watchsim.scene.scene import Scene
     from watchsim.simulation.record.trajectory import Pair
 
+Done = TypeVar("Done")
 Draw = Callable[[Path | IO[bytes]], object]
 PROMPT = 5e-4  # s that a thread may keep Python from another; the usual 5 ms would hold up every slice of the loop
 
 
+class Begun(NamedTuple):
+    """What was done meanwhile: the events as far as they were made into text, and the empty panels of the plots."""
+
+    lines: EventLines | None = None
+    panels: Kinematics | None = None
+
+
 class Meanwhile:
-    """What a thread does while a run is stepped: loads what plots need, and makes its events into text, in files in `folder`.
+    """What a thread does while a run is stepped: makes its events into text, in files in `folder`, and `panels` for its plots.
 
     Whatever goes wrong with it is done again where it is needed.
     """
 
-    def __init__(self, scene: Scene, folder: Path, plots: bool) -> None:
-        self._scene, self._folder, self._plots = scene, folder, plots
+    def __init__(self, scene: Scene, folder: Path, panels: Callable[[], Kinematics] | None = None) -> None:
+        self._scene, self._folder, self._panels = scene, folder, panels
         self._lines: EventLines | None = None
-        self._work: list[Future[object]] = []
+        self._made: list[Future[Kinematics]] = []  # the panels, once they were asked for
+        self._work: list[Future[Any]] = []
         self._thread = ThreadPoolExecutor(1, thread_name_prefix="meanwhile")
         self._before = sys.getswitchinterval()
 
     def progress(self, *_: float) -> None:
         """To be called while the run goes on: the loop is running, so that a thread may."""
-        if self._plots and not self._work:
-            self._do(load_plots)
+        if self._panels and not self._made:
+            self._made.append(self._do(self._panels))
 
     def follow(self, pairs: Sequence[Pair], events: NDArray[Any]) -> None:
         """The next events of the run."""
@@ -56,25 +66,19 @@ class Meanwhile:
         lines = self._lines = self._lines or EventLines(self._scene, pairs, self._folder)
         self._do(lambda: lines.add(events))
 
-    def _do(self, work: Callable[[], object]) -> None:
+    def _do(self, work: Callable[[], Done]) -> Future[Done]:
         sys.setswitchinterval(PROMPT)
-        self._work.append(self._thread.submit(work))
+        begun = self._thread.submit(work)
+        self._work.append(begun)
+        return begun
 
-    def end(self) -> EventLines | None:
-        """Wait until it is done; the events as far as they were made into text, None where they were not."""
+    def end(self) -> Begun:
+        """Wait until it is done; nothing of it where something failed."""
         self._thread.shutdown()
         sys.setswitchinterval(self._before)
-        return None if any(one.exception() for one in self._work) else self._lines
-
-
-def load_plots() -> None:
-    """Load what plots need, fonts included."""
-    import watchsim.render.figures.kinematics_plot  # noqa: F401 - to have it
-    from watchsim.render.figures.figure_style import figure
-
-    empty = figure()
-    empty.text(0.5, 0.5, "0123456789 °/s", weight="bold")
-    empty.canvas.draw()
+        if any(one.exception() for one in self._work):
+            return Begun()
+        return Begun(self._lines, self._made[0].result() if self._made else None)
 
 
 def drawn_apart(draws: Mapping[str, Draw]) -> Mapping[str, Draw]:

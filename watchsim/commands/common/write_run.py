@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from watchsim import stopping
 from watchsim.commands.common.console import InputError, Progress, say
+from watchsim.commands.common.second_core import Begun
 
 if TYPE_CHECKING:
     from watchsim.results.tables import EventLines
@@ -50,12 +51,12 @@ def goal_of(scene: Scene, folder: Path, replace: bool) -> Goal:
 
 
 def write(
-    run: Trajectory, goal: Goal, extras: Extras, changed: Sequence[str] = (), lines: EventLines | None = None
+    run: Trajectory, goal: Goal, extras: Extras, changed: Sequence[str] = (), begun: Begun | None = None
 ) -> dict[str, Any]:
     """Write the results folder; returns the summary as written.
 
     `changed` holds the options by which the run is another than the scene's own: its expectations are then not judged;
-    `lines` the events as far as they were made into text already.
+    `begun` what was made ready while it went on.
     InputError where the results had to go elsewhere.
     """
     from watchsim.analysis.summary import tables
@@ -66,8 +67,10 @@ def write(
     if run.stop == Stop.INTERRUPTED:
         say("Interrupted: writing what was simulated; a second Ctrl-C abandons it ...")
     try:
-        drawn = pictures(run, extras.plots, extras.movie, extras.gif)  # a copy of the process is made before there are threads
-        packed = _begun(run, goal.folder, lines)
+        begun = begun or Begun()
+        # A copy of the process is made before there are threads.
+        drawn = pictures(run, extras.plots, extras.movie, extras.gif, begun.panels)
+        packed = _begun(run, goal.folder, begun.lines)
         numbers = _numbers(run, extras, changed, goal.folder)
         said = [*(f"Note: {note}" for note in numbers["notes"]), report_text(run, numbers)]
         told = {name: text.write for name, text in tables(run, real(goal.folder).parent).items()}

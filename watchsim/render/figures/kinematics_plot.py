@@ -109,6 +109,11 @@ class Kinematics:
         for axes, channel, quantity in self._each():
             _panel(axes, channel, quantity, worn[channel.body.name].line)
 
+    def of(self, run: Trajectory) -> Kinematics:
+        """The same panels, from now on of this run, which must be one of the same scene."""
+        self.run = run
+        return self
+
     def show(self, window: Sequence[float] | None = None) -> Figure:
         """The figure, now of this window (s); default all that was recorded."""
         span = stretch(self.run, window)

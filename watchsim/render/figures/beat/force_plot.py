@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from watchsim.analysis.contact_forces import Forces, forces
-from watchsim.analysis.timeline.rows import pair_name
+from watchsim.analysis.timeline.impact_losses import pair_name
 from watchsim.analysis.timeline.shown_beats import BEGINNING, RESTING
 from watchsim.analysis.timing.phases import Phase
 from watchsim.render.figures import usual_window

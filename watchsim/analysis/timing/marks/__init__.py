@@ -1,0 +1,1 @@
+"""Which events of the wheel mark the phases of a beat?"""
