@@ -78,6 +78,7 @@ LEAF: Keys = {  # leaf of a spring
 TORQUE: Keys = {
     **{"body": PLAIN, "value": Key(units.TORQUE, units.FORCE), "over": PLAIN, "table": PLAIN, "against": PLAIN},
     **{"ratio": NUMBER, "efficiency": NUMBER, "run_down": ANGLE, "train": PLAIN},
+    **{"period": Key(units.TIME)},
 }
 TRAIN: Keys = {"ratio": NUMBER, "inertia": Key(units.INERTIA)}  # of one wheel between mainspring and body
 DAMPING: Keys = {
