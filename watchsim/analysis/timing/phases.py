@@ -13,7 +13,7 @@ locked          until the next touch of pin and fork
 
 An anchor that swings as one with the oscillator has an impulse, a drop, and then is locked (dead-beat) or has a recoil, until
 the next impulse begins. Where its tooth comes off its rest before it meets the face that is pushed (cylinder, duplex), there is
-an unlocking and a catch-up, too.
+an unlocking and a catch-up, too. Pallets hinged on the oscillator (grasshopper) have their own file, `hinged_pallets`.
 """
 
 from __future__ import annotations
@@ -31,8 +31,9 @@ from watchsim.analysis.timing.anchor_marks import NEAR_REST, STANDING, Marks, an
 from watchsim.analysis.timing.beats import Beats, beats, beats_within
 from watchsim.analysis.timing.body_contacts import between, contact_columns, held, involves
 from watchsim.analysis.timing.escape_wheel import progress
+from watchsim.analysis.timing.hinged_pallets import hinged_beats
 from watchsim.analysis.timing.rows_at_hand import is_recorded
-from watchsim.scene.roles import Roles, keeps_time, with_anchor
+from watchsim.scene.roles import Roles, hinged_pallets, keeps_time, with_anchor
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.record.trajectory import Array, Pair, Trajectory
 
@@ -48,7 +49,8 @@ FACES = ("stone", "tooth", "balance")
 class Phase:
     """A stretch of a beat, s; angles at its start and turns during it, rad, of wheel, lever and oscillator.
 
-    `beat` counts the half swings from 1 as in beats.csv. `on` says of an impulse on what: stone, tooth or balance.
+    `beat` counts the half swings from 1 as in beats.csv. `on` says of an impulse on what: stone, tooth or balance, or on which
+    pallet, where each is a body of its own.
     """
 
     beat: int
@@ -105,6 +107,9 @@ def each_phase(run: Trajectory, found: Beats | None = None, window: Sequence[flo
     if parts.wheel is None or parts.lever is None or parts.oscillator is None or len(run.t) == 0:
         return
     found = found or beats(run)
+    if hinged := hinged_pallets(run.scene):
+        yield from _with_angles(run, parts, [Phase(*row) for row in hinged_beats(run, parts.wheel, hinged, found, window)])
+        return
     contacts = _contacts(run, parts, found)
     within = np.ones(len(found), bool)
     if window is not None:
