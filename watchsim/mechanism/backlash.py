@@ -50,7 +50,7 @@ def with_racks(scene: Scene, size: float) -> tuple[Scene, dict[str, str]]:
         contacts.append(Contact((Side(stops[0].name), Side(stops[1].name)), restitution=spring.restitution))
     hung = rides(scene.bodies)
     for k, gear in enumerate(scene.gears):
-        racks = _racks(scene, gear, k, size, _ways(scene, hung, gear, size))
+        racks = _racks(scene, gear, k, size, rack_ways(scene, hung, gear, size))
         bodies += racks
         named |= {rack.name: name for rack, name in zip(racks, gear.between, strict=True)}
         friction = (1.0 - gear.efficiency) / (1.0 + gear.efficiency)
@@ -67,7 +67,8 @@ class Ways(NamedTuple):
     reach: float
 
 
-def _ways(scene: Scene, hung: tuple[Ride, ...], gear: Gear, size: float) -> Ways:
+def rack_ways(scene: Scene, hung: tuple[Ride, ...], gear: Gear, size: float) -> Ways:
+    """How gears with play move their racks, in a scene of that size (m)."""
     names = [body.name for body in scene.bodies]
     first, second = (names.index(name) for name in gear.between)
     r = gear.ratio

@@ -92,7 +92,7 @@ DAMPING: Keys = {
 CONTACT: Keys = {"between": PLAIN, "friction": NUMBER, "restitution": NUMBER, "tangential_restitution": NUMBER}
 GEAR: Keys = {
     **{"between": PLAIN, "ratio": NUMBER, "backlash": Key(units.ANGLE, units.LENGTH)},
-    **{"restitution": NUMBER, "efficiency": NUMBER},
+    **{"restitution": NUMBER, "efficiency": NUMBER, "pressure_angle": ANGLE},
 }
 LINE_SPRING: Keys = {
     **{"between": PLAIN, "points": LENGTH, "stiffness": Key(units.LINEAR_STIFFNESS)},
