@@ -10,7 +10,6 @@ import watchsim as ws
 
 PROFILES = sorted(path.parent.name for path in Path(str(ws.profiles_dir())).glob("*/scene.toml"))
 LONG, WORST = 300.0, 1e-9  # s; residual of the energy account, as a share of what goes in
-ONCE = ("snail",)  # its striking train is given for one turn; gathered up after the last step the rack meets the snail's wall
 
 
 @pytest.mark.parametrize("name", PROFILES)
@@ -25,7 +24,7 @@ def test_it_keeps_what_it_promises(name: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", [name for name in PROFILES if name not in ONCE])
+@pytest.mark.parametrize("name", PROFILES)
 def test_it_runs_for_five_minutes(name: str) -> None:
     run = ws.simulate(ws.load(ws.profiles_dir() / name), duration=LONG, record="statistics")
     assert run.stop.name == "DURATION"

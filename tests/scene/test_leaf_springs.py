@@ -98,6 +98,29 @@ def test_a_slider_has_a_stop_too() -> None:
     assert run.sample(np.array([before]))[1][0, 0] == pytest.approx(-w * 1.5e-3 * math.sqrt(8.0 / 9.0), rel=1e-6)
 
 
+def test_a_carried_body_stops_against_its_carrier() -> None:
+    """Angles are those against the carrier: free in space both go on together, with their common momentum about its axis."""
+    carrier = '[bodies.carrier]\ncircle = "1 mm"\nposition = ["5 mm", "0 mm"]\nangle = "40°"\ninertia = "300 g·mm²"\n'
+    body = 'on = "carrier"\ninertia = "100 g·mm²"\nmass = "1 g"\nposition = ["7 mm", "0 mm"]\nangle = "0.2 rad"'
+    scene = made('stiffness = "1 nN·m/rad"\npreload = "-10 nN·m"\nstop = "0.1 rad"', carrier, body)
+    run = ws.simulate(scene.set("bodies.click.velocity", "-1 rad/s"), duration=2.0)
+    # The click has -1 rad/s against the carrier, which stands; with its mass 7 mm out the carrier has 300 + 49 g·mm².
+    assert run.end_u[run.slices["carrier"].start] == pytest.approx(-100.0 / 449.0, rel=1e-6)
+    assert run.end_u[run.slices["click"].start] == pytest.approx(0.0, abs=1e-9)
+    assert run.end_q[run.slices["click"].start] == pytest.approx(0.1, abs=1e-12)
+    assert run.energy["residual_relative"] < 1e-9
+
+
+def test_a_stop_between_three_angles_is_refused() -> None:
+    carrier = '[bodies.carrier]\ninertia = "300 g·mm²"\n[bodies.wheel]\ninertia = "300 g·mm²"\nposition = ["5 mm", "0 mm"]\n'
+    with pytest.raises(SceneError, match="between three angles"):
+        made(
+            'against = "wheel"\nstiffness = "1 nN·m/rad"\nrest = "1 rad"\nstop = "0 rad"',
+            carrier,
+            'on = "carrier"\ninertia = "1 g·mm²"\nmass = "1 g"',
+        )
+
+
 FAULTS = [
     (LEAF + '\nstiffness = "1 µN·m/rad"', "stiffness and leaf say the same thing"),
     (SLIDER, 'missing: arm. Write e.g. leaf = { modulus = "200 GPa"'),

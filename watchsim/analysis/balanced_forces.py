@@ -38,7 +38,7 @@ class Balanced(NamedTuple):
     acceleration: Array
 
 
-class _Seen(NamedTuple):
+class Seen(NamedTuple):
     """Kinematics of m contacts at n instants, and the forces h of all else."""
 
     w_N: Array  # (n, m, coordinates)
@@ -61,7 +61,7 @@ class Mechanism:
     def balanced(self, t: Array, q: Array, u: Array, modes: Mapping[int, int]) -> Balanced:
         """Forces of the contacts in `modes` at times t (n,) with coordinates q and velocities u (n, coordinates)."""
         ids = np.array(sorted(modes), np.int64)
-        seen = self._seen(t, q, u, ids)
+        seen = self.seen(t, q, u, ids)
         held = (self.dry > 0.0) & (u == 0.0)
         mobility = np.where(held | self.prescribed, 0.0, self.mobility)
         h = seen.h - np.where(held, 0.0, self.dry * np.sign(u))
@@ -70,11 +70,12 @@ class Mechanism:
         load = (force[:, :, :1] * seen.w_N + force[:, :, 1:] * seen.w_T).sum(axis=1)
         return Balanced(ids, force, seen.normal, seen.point, load, free + mobility * load)
 
-    def _seen(self, t: Array, q: Array, u: Array, ids: NDArray[np.int64]) -> _Seen:
+    def seen(self, t: Array, q: Array, u: Array, ids: NDArray[np.int64]) -> Seen:
+        """Kinematics of these contacts, and all other forces."""
         times, contacts, width = len(t), len(ids), q.shape[1]
         shape = (times, contacts, width)
         points = np.zeros((times, contacts, 2))
-        seen = _Seen(np.zeros(shape), np.zeros(shape), np.zeros((times, 2, contacts)), points, points.copy(), np.zeros(q.shape))
+        seen = Seen(np.zeros(shape), np.zeros(shape), np.zeros((times, 2, contacts)), points, points.copy(), np.zeros(q.shape))
         pose, closed = poses(len(self.model.bodies)), closed_contacts(max(contacts, 1))
         kin = closed.kin[:contacts].view(np.ndarray)
         for row, time in enumerate(t.tolist()):
@@ -85,7 +86,7 @@ class Mechanism:
                 seen.point[row, :, 0], seen.point[row, :, 1] = kin["x"], kin["y"]
         return seen
 
-    def _forces(self, seen: _Seen, mobility: Array, free: Array, ids: NDArray[np.int64], modes: NDArray[np.int64]) -> Array:
+    def _forces(self, seen: Seen, mobility: Array, free: Array, ids: NDArray[np.int64], modes: NDArray[np.int64]) -> Array:
         """(n, m, 2): along normal and tangent. The smallest where contacts are redundant."""
         rows, friction = len(ids), self.friction[ids]
         force = np.zeros((len(free), rows, 2))

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.analysis.balanced_forces import Mechanism
+from watchsim.analysis.mesh_forces import Loads, Motion, Pressed, mesh_forces
 from watchsim.analysis.modes_in_force import modes_in_force
 from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.scene.oscillation import loads
@@ -30,8 +31,8 @@ class Forces:
     tangential  along t, the normal turned by +90°, on body A, N (n, k)
     direction   the normal, out of body B's material (n, k, 2); nan where it is open
     point       where it touches, m (n, k, 2); nan where it is open
-    pivots      name of a pivoted body -> force on it from its bearing in the movement, N (n, 2); what gears ([[gears]] say no
-                pressure angle) and springs between points do to it is left out
+    pivots      name of a pivoted body -> force on it from its bearing in the movement, N (n, 2), with that of the teeth of
+                [[gears]] (`mesh_forces`); what springs between points do to it is left out
     drives      name of a driven body -> torque, N·m, or force along its axis, N, that keeps its motion up (n,)
     """
 
@@ -77,7 +78,10 @@ def forces(run: Trajectory, times: Iterable[float] | None = None) -> Forces:
         out.normal[place], out.tangential[place] = found.force[:, :, 0], found.force[:, :, 1]
         out.direction[place], out.point[place] = found.normal, found.point
         load[rows], turning[rows] = found.load, found.acceleration
-    out.pivots.update(_pivots(run, compiled, out, where, speed, turning))
+    motion = Motion(t, where, speed, turning)
+    both = Loads(pairs, np.stack((out.normal, out.tangential), axis=2), _pressed(out))
+    meshed = list(mesh_forces(run.scene, compiled, motion, both))
+    out.pivots.update(_pivots(run, compiled, motion, both, meshed))
     out.drives.update(_drives(run, compiled, load, turning))
     return out
 
@@ -91,22 +95,31 @@ def absolute(compiled: Compiled, values: Array, rates: bool) -> Array:
     return out
 
 
-def _pivots(run: Trajectory, compiled: Compiled, found: Forces, q: Array, u: Array, a: Array) -> Iterator[tuple[str, Array]]:
+def _pressed(found: Forces) -> Array:
+    """Force on body A of each contact, N (n, k, 2)."""
+    across = np.stack((-found.direction[:, :, 1], found.direction[:, :, 0]), axis=2)
+    return np.asarray(np.nan_to_num(found.normal[:, :, None] * found.direction + found.tangential[:, :, None] * across))
+
+
+def _pivots(
+    run: Trajectory, compiled: Compiled, motion: Motion, loads_found: Loads, meshed: list[Pressed]
+) -> Iterator[tuple[str, Array]]:
     """What the bearings in the movement take: change of momentum less weight less contacts, of a body with all it carries."""
     hung, weighed, _ = loads(run.scene.bodies)
-    on_a, on_b = _bodies_of(compiled, found.pairs)
-    across = np.stack((-found.direction[:, :, 1], found.direction[:, :, 0]), axis=2)
-    pressed = np.nan_to_num(found.normal[:, :, None] * found.direction + found.tangential[:, :, None] * across)
+    on_a, on_b = _bodies_of(compiled, loads_found.ids)
     for i, (body, ride, load) in enumerate(zip(run.scene.bodies, hung, weighed, strict=True)):
         if body.motion != "pivot" or ride.host >= 0:
             continue
         own = [k for k, other in enumerate(hung) if i in (k, other.part_of, other.host)]
         sign = np.isin(on_a, own).astype(float) - np.isin(on_b, own).astype(float)
-        angle, spin, turn = (compiled.own(i, values, rates) for values, rates in ((q, False), (u, True), (a, True)))
+        angle, spin, turn = (
+            compiled.own(i, values, rates) for values, rates in ((motion.q, False), (motion.u, True), (motion.a, True))
+        )
         c, s = np.cos(angle), np.sin(angle)
         moment = np.stack((c * load.moment[0] - s * load.moment[1], s * load.moment[0] + c * load.moment[1]), axis=1)
         change = turn[:, None] * np.stack((-moment[:, 1], moment[:, 0]), axis=1) - (spin * spin)[:, None] * moment
-        yield body.name, change - load.mass * np.array(run.scene.gravity) - np.einsum("k,nkx->nx", sign, pressed)
+        pressed = np.einsum("k,nkx->nx", sign, loads_found.pressed) + sum(one.force for one in meshed if one.body in own)
+        yield body.name, change - load.mass * np.array(run.scene.gravity) - pressed
 
 
 def _drives(run: Trajectory, compiled: Compiled, load: Array, a: Array) -> Iterator[tuple[str, Array]]:

@@ -207,8 +207,11 @@ def status(run: Trajectory, summary: dict[str, Any]) -> int:
 
 
 def _unlike(scene: Scene) -> str:
-    """Words about a pivoted body that is so much lighter than another that a slip is likely; "" where there is none."""
-    turning = sorted((body.inertia, body.name) for body in scene.bodies if body.motion == "pivot")
+    """Words about a pivoted body that is so much lighter than another that a slip is likely; "" where there is none.
+
+    A driven body has no inertia that matters, whatever it is given.
+    """
+    turning = sorted((body.inertia, body.name) for body in scene.bodies if body.motion == "pivot" and body.prescribed is None)
     if not turning or turning[-1][0] < FAR * turning[0][0]:
         return ""
     (least, light), (most, heavy) = turning[0], turning[-1]

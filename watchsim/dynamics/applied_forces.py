@@ -7,7 +7,7 @@ import math
 from watchsim.candidates.cell_lookup import along
 from watchsim.dynamics.line_springs import add_line_springs, line_spring_damping, line_spring_drive, line_spring_energy
 from watchsim.jit import entry, kernel
-from watchsim.model.records import OVER_TIME
+from watchsim.model.records import OVER_TIME, REPEATED
 from watchsim.tolerances import KNOT_ROUNDING
 
 
@@ -76,7 +76,22 @@ def push_back(model, i, force, out_h):
 def table_force(model, j, t, q):
     """What table j gives at time t and coordinates q."""
     table = model.tables[j]
+    if table.over == REPEATED:
+        return table_value(model, table, t - _whole_periods(model, table, t))
     return table_value(model, table, t if table.over == OVER_TIME else along(q, table.coordinate, table.on))
+
+
+@kernel
+def _period(model, table):
+    """Of a repeated table, s: its last knot is the first, a period later."""
+    return model.knots[table.start + table.count - 1, 0] - model.knots[table.start, 0]
+
+
+@kernel
+def _whole_periods(model, table, t):
+    """How long all periods of a repeated table that are over at t lasted, s."""
+    period = _period(model, table)
+    return period * math.floor((t - model.knots[table.start, 0]) / period)
 
 
 @kernel
@@ -167,9 +182,20 @@ def next_knot(model, t):
     first = math.inf
     for j in range(len(model.tables)):
         table = model.tables[j]
-        if table.over == OVER_TIME:
-            for i in range(table.start, table.start + table.count):
-                if model.knots[i, 0] > t * (1.0 + KNOT_ROUNDING):
-                    first = min(first, model.knots[i, 0])
-                    break
+        if table.over < OVER_TIME:
+            continue
+        begun = _whole_periods(model, table, t) if table.over == REPEATED else 0.0
+        after = _knot_after(model, table, t, begun)
+        if after == math.inf and table.over == REPEATED:  # at its last knot, to rounding
+            after = _knot_after(model, table, t, begun + _period(model, table))
+        first = min(first, after)
     return first
+
+
+@kernel
+def _knot_after(model, table, t, begun):
+    """Time of the first knot after t of one table that began at `begun`; infinity if there is none."""
+    for i in range(table.start, table.start + table.count):
+        if begun + model.knots[i, 0] > t * (1.0 + KNOT_ROUNDING):
+            return begun + model.knots[i, 0]
+    return math.inf

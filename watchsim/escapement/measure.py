@@ -22,6 +22,7 @@ from watchsim.escapement.tooth_passage import NotMeasured, Passage
 from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.scene.gear_trains import ungeared
 from watchsim.scene.oscillation import oscillators
+from watchsim.scene.roles import hinged_pallets
 from watchsim.scene.scene import Scene
 
 FARTHEST = math.radians(60.0)  # an anchor or a lever is not turned further
@@ -58,6 +59,8 @@ def measure(scene: Scene, compiled: Compiled | None = None) -> Function:
     parts = parts_of(scene, compiled)
     if isinstance(parts, str):
         return Function(None, missing=(("geometry of function", f"no escapement with a lever or an anchor: {parts}"),))
+    if hinged := hinged_pallets(scene):
+        return Function(parts, missing=(("lock, draw, drop", _no_lock(parts, hinged)),))
     missing: list[tuple[str, str]] = []
     hands = Hands(compiled)
     whole = pitch(scene, parts.wheel)
@@ -91,6 +94,15 @@ def measure(scene: Scene, compiled: Compiled | None = None) -> Function:
     if made is not None and guards is None:
         missing.append(("freedoms of guard pin and horns", f"nothing but the pin stops {parts.lever} between its banks"))
     return Function(parts, number, banks, pallets, sides, (shown[0], shown[1]), made, guards, pushes, tuple(missing))
+
+
+def _no_lock(parts: Parts, hinged: tuple[str, ...]) -> str:
+    """Why there is nothing to measure of pallets that are hinged on the oscillator."""
+    pair = " and ".join(hinged)
+    return (
+        f"there is none. A tooth stays with one of {pair}, which are hinged on {parts.balance}, until the other has caught "
+        f"another tooth, and {parts.wheel} never stands. Impulse and recoil of each: watchsim plot RUN --phases"
+    )
 
 
 def _start(wheel: Wheel, hands: Hands) -> Rest:

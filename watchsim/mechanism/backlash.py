@@ -14,7 +14,7 @@ where the body's pivot is, as N (1 + µ) R + N (1 - µ) ρ, ρ and R = r ρ bein
 carriage's rack is askew by (r - 1) / (r + 1) for it, and the efficiency is that of the same gears with the carriage held.
 
 The stop of a spring is such a tooth, on a rack moved by the spring's body, and one flank, of the movement or on a rack of the
-other body.
+other body, or of the carrier.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ def with_racks(scene: Scene, size: float) -> tuple[Scene, dict[str, str]]:
         contacts.append(Contact((Side(stops[0].name), Side(stops[1].name)), restitution=spring.restitution))
     hung = rides(scene.bodies)
     for k, gear in enumerate(scene.gears):
-        racks = _racks(scene, gear, k, size, _ways(scene, hung, gear, size))
+        racks = _racks(scene, gear, k, size, rack_ways(scene, hung, gear, size))
         bodies += racks
         named |= {rack.name: name for rack, name in zip(racks, gear.between, strict=True)}
         friction = (1.0 - gear.efficiency) / (1.0 + gear.efficiency)
@@ -67,7 +67,8 @@ class Ways(NamedTuple):
     reach: float
 
 
-def _ways(scene: Scene, hung: tuple[Ride, ...], gear: Gear, size: float) -> Ways:
+def rack_ways(scene: Scene, hung: tuple[Ride, ...], gear: Gear, size: float) -> Ways:
+    """How gears with play move their racks, in a scene of that size (m)."""
     names = [body.name for body in scene.bodies]
     first, second = (names.index(name) for name in gear.between)
     r = gear.ratio
@@ -106,6 +107,9 @@ def _stop(scene: Scene, spring: Spring, number: int, size: float) -> tuple[Body,
     turns = body.motion == "pivot"
     reach, tooth = size if turns else 1.0, TOOTH * size
     start = (body.angle - (other.angle if other else 0.0)) if turns else 0.0
+    if body.on is not None:  # its angle is given against its carrier, and so is the stop
+        carrier = rides(scene.bodies)[scene.bodies.index(body)].turns_with
+        other = scene.bodies[carrier] if carrier >= 0 else None
     side = math.copysign(1.0, spring.stop - spring.rest)  # on which the body is free
     wall, far = -side * (tooth + abs(start - spring.stop) * reach), side * FLANK * size
     flank = (Loop((Line(wall, -far, wall, far),), STOP, closed=False),)

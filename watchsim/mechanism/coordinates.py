@@ -17,6 +17,7 @@ from watchsim.model.records import (
     OVER_ANGLE,
     OVER_TIME,
     PIVOT,
+    REPEATED,
     SLIDE,
     TABLE,
     Records,
@@ -216,7 +217,7 @@ def _tables(scene: Scene, targets: _Targets) -> tuple[Records, np.ndarray]:
         row.coordinate, row.on, row.over = (
             targets.number(torque.body),
             targets.on(torque.body, torque.against),
-            OVER[torque.over],
+            OVER[torque.over] if torque.period is None else REPEATED,
         )
         row.start, row.count = len(knots), len(torque.table)
         over_angle, ratio = torque.over == "angle", targets.ratio(torque.body)

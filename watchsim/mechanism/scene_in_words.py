@@ -60,6 +60,8 @@ def _force_lines(scene: Scene) -> Iterator[str]:
     for torque in scene.torques:
         unit = "N" if scene.body(torque.body).motion == "slide" else "N·m"
         text = metric(torque.value, unit) if not torque.table else f"{len(torque.table)} values over {torque.over}"
+        if torque.period is not None:
+            text = f"{len(torque.table) - 1} values over time, again after {metric(torque.period, 's')}"
         if torque.mainspring is not None:
             text = f"{metric(torque.value, unit)}, {_mainspring(torque.mainspring)}"
         yield f"  drive on {_ends(torque.body, torque.against)}: {text}"

@@ -21,7 +21,7 @@ MOTION_CODE = {"fixed": FIXED, "pivot": PIVOT, "slide": SLIDE, "free": FREE}
 CORNER, LINE, ARC = 0, 1, 2
 KIND_WORD = ("corner", "line", "arc")
 
-CONSTANT, OVER_ANGLE, OVER_TIME = 0, 1, 2
+CONSTANT, OVER_ANGLE, OVER_TIME, REPEATED = 0, 1, 2, 3  # REPEATED: over time, again and again
 
 BODY = np.dtype(
     [

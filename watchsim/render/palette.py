@@ -102,6 +102,8 @@ def finish(body: Body, layer: str, look: Finish) -> Finish:
     if body.motion == "fixed":
         return look
     own = _of_layer(name, sheet)
+    if own is not None and len(body.layers) == 1:
+        own = look  # told from this layer; another where a body wears that already, so that pictures and legends agree
     if body.layers and layer not in body.layers and any(loop.layer == layer for loop in body.decoration):
         if own is None:
             # Of a body of which only stones can touch, the rest is no stone.
@@ -128,7 +130,7 @@ def mixed(colour: str, ground: str, share: float) -> str:
 
 def _told(body: Body) -> Finish | None:
     """What the words say of a body: its only layer if that has a finish of its own, else its name, else its layers."""
-    if len(body.layers) == 1 and (own := finish(body, body.layers[0], PLATE)) is not PLATE:
+    if len(body.layers) == 1 and (own := _of_layer(body.name.lower(), body.layers[0].lower())) is not None:
         return own
     layers = (_match(layer.lower(), _LAYERS) for layer in body.layers)
     return _match(body.name.lower(), _BODIES) or next((look for look in layers if look is not None), None)

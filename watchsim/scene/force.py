@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from watchsim.geometry.coil import Coil
 from watchsim.geometry.primitives import Point
 
@@ -69,6 +71,7 @@ class Torque:
 
     `over` is "constant", "angle" or "time"; `table` holds (abscissa, value) pairs in SI, ascending. Where a `mainspring` drives
     the body through a train, `table` says what that comes to over the body's own angle, and `value` what it is at the start.
+    A table over time with a `period` (s) repeats: its last row is the first, a period later.
     """
 
     body: str
@@ -77,6 +80,13 @@ class Torque:
     table: tuple[tuple[float, float], ...] = ()
     mainspring: Mainspring | None = None
     against: str | None = None
+    period: float | None = None
+
+    def over_time(self, t: float) -> float:
+        """Value of a table over time at `t` (s)."""
+        times, values = zip(*self.table, strict=True)
+        since = t if self.period is None else times[0] + (t - times[0]) % self.period
+        return float(np.interp(since, times, values))
 
 
 @dataclass(frozen=True, slots=True)

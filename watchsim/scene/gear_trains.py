@@ -62,7 +62,7 @@ def ungeared(scene: Scene) -> Scene:
     """The scene with every body free of the others, as parts are that are turned by hand out of their train."""
     if not scene.gears and all(body.geared is None for body in scene.bodies):
         return scene
-    return replace(scene, bodies=tuple(replace(body, geared=None) for body in scene.bodies), gears=())
+    return replace(scene, bodies=tuple(replace(body, geared=None) for body in scene.bodies), gears=(), rigid_gears=())
 
 
 def goes_with(scene: Scene, name: str) -> dict[str, float]:

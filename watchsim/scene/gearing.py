@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+
+PRESSURE_ANGLE = math.radians(20.0)  # of gears that say nothing else: ISO 53
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,12 +21,13 @@ class Geared:
 
 @dataclass(frozen=True, slots=True)
 class Gear:
-    """Gears with play between two bodies, each with a coordinate of its own (or geared without play to one that has).
+    """Gears between two bodies; with play each has a coordinate of its own (or is geared without play to one that has).
 
     ratio        how far the second goes for one unit of the first: rad/rad, m/rad, rad/m or m/m
     backlash     how far the second can go while the first is held, rad or m; in the middle of it at the start
     restitution  Poisson's, of the impacts when the play is used up
     efficiency   share of the work put in at either body that comes out at the other; the rest is friction of the teeth
+    pressure_angle  rad, of the line of action to the common tangent; changes no motion, only what bearings take
     """
 
     between: tuple[str, str]
@@ -31,3 +35,4 @@ class Gear:
     backlash: float
     restitution: float = 0.0
     efficiency: float = 1.0
+    pressure_angle: float = PRESSURE_ANGLE

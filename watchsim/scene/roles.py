@@ -39,11 +39,23 @@ def roles(scene: Scene) -> Roles:
 
 
 def with_anchor(scene: Scene) -> Roles:
-    """The same; a pendulum with its anchor, driven by the wheel itself, is the lever, too."""
+    """The same; a pendulum with its anchor, driven by the wheel itself, is the lever, too; so is one with hinged pallets."""
     found = roles(scene)
+    if hinged_pallets(scene):
+        return replace(found, lever=found.oscillator)
     if found.wheel is None or found.oscillator is None or found.lever is not None or not keeps_time(scene):
         return found
     return replace(found, lever=found.oscillator) if found.oscillator in partners(scene, found.wheel) else found
+
+
+def hinged_pallets(scene: Scene) -> tuple[str, ...]:
+    """The bodies, two or more, that turn on the oscillator itself and touch the wheel, as in a grasshopper escapement."""
+    found = roles(scene)
+    if found.oscillator is None or found.wheel is None or not keeps_time(scene):
+        return ()
+    touched = partners(scene, found.wheel)
+    hinged = [b.name for b in scene.bodies if b.on == found.oscillator and b.motion == "pivot" and b.name in touched]
+    return tuple(hinged) if len(hinged) > 1 else ()
 
 
 def _lever(scene: Scene, oscillator: str, wheel: str) -> str | None:

@@ -49,7 +49,7 @@ class Scene:
     duration        of a run, s; `tolerance` its relative error per step, `record` what is kept of it
     lift_angle      rad; `nominal` (Hz) is what the rate is measured against. None where the scene says nothing
     expect          numbers that a run promises
-    gears           with play; those without are `Body.geared`
+    gears           with play; those without are `Body.geared`, and, two by two, `rigid_gears`
     line_springs    between points of two bodies, or of a body and the movement
     path, source    the file, and the TOML mapping that it holds
     findings        what the drawings said besides errors; `drawings` the files as they were read, by their names in the scene
@@ -73,6 +73,7 @@ class Scene:
     nominal: float | None = None
     expect: tuple[Expectation, ...] = ()
     gears: tuple[Gear, ...] = ()
+    rigid_gears: tuple[Gear, ...] = ()
     line_springs: tuple[LineSpring, ...] = ()
     path: Path | None = field(default=None, compare=False)
     source: dict[str, Any] = field(default_factory=dict, repr=False, compare=False)

@@ -27,6 +27,10 @@ ADVICE = (
     "Restitution 0 at these contacts: then only the compression must be solved.",
     "A tighter tolerance, or a start a little away from this position.",
 )
+JAM = (
+    "This is a jam: a driven body goes on whatever is in its way. See it with watchsim movie RUN --contacts. Let the other be "
+    "out of the way by then, make room in the drawing, or drive by a torque instead"
+)
 
 
 def failure_of(state: State, scratch: Scratch, pairs: Sequence[Pair]) -> dict[str, Any]:
@@ -61,14 +65,14 @@ def failure_of(state: State, scratch: Scratch, pairs: Sequence[Pair]) -> dict[st
 
 
 def driven_into(failure: Mapping[str, Any] | None, pairs: Sequence[Pair], driven: Container[str]) -> str:
-    """Which driven body left which other no way out, in words; "" where none takes part in the failed problem."""
+    """Which driven body jams which other, and what to change; "" where none takes part in the failed problem."""
     found: dict[str, None] = {}  # each sentence once, in order
     for contact in failure["contacts"] if failure else ():
         pair = pairs[contact["number"]]
         for own, other in ((pair.body_a, pair.body_b), (pair.body_b, pair.body_a)):
             if own in driven:
                 found[f"{own}, which is driven, leaves {other} no way out at {pair}"] = None
-    return "; ".join(found)
+    return f"{'; '.join(found)}. {JAM}" if found else ""
 
 
 def _contact(k: int, kinematics: Any, state: State, pairs: Sequence[Pair]) -> dict[str, Any]:

@@ -185,7 +185,7 @@ class Run:
         return ledger_fails(self._energy(), held, self.tolerance)
 
     def _details(self, stop: Stop) -> str:
-        """What is known of where and why, behind a colon; "" where the cause says it all."""
+        """The cause and what is known of where and why; where a driven body jams another, that is the cause."""
         if stop == Stop.OVERLAP:
             words = self.watch.words()
         elif stop == Stop.LEDGER:
@@ -201,9 +201,11 @@ class Run:
             driven = {body.name for body in self.scene.bodies if body.prescribed is not None}
             failure = failure_of(self.state, self.scratch, self.pairs) if driven else None
             words = driven_into(failure, self.pairs, driven)
+            if words:
+                return words
         else:
             words = ""
-        return f": {words}" if words else ""
+        return f"{stop.sentence}: {words}" if words else stop.sentence
 
     def _look(self) -> None:
         """Look at the state now for bodies inside each other."""
@@ -272,7 +274,7 @@ class Run:
             events=events,
             pairs=self.pairs,
             stop=stop,
-            stop_message=f"t = {self.state.clock.time:.9g} s: {stop.sentence}{words}",
+            stop_message=f"t = {self.state.clock.time:.9g} s: {words}",
             simulated=float(self.state.clock.time),
             wall=wall,
             compile=compile_time,

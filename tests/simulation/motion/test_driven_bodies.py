@@ -188,7 +188,9 @@ def test_a_body_without_a_way_out_ends_the_run_and_is_named(tmp_path: Path) -> N
     # 5 mm to the block, 5 mm to the wall with it.
     assert run.simulated == pytest.approx(0.5, abs=1e-9)
     assert run.stop.name not in ("DURATION", "RUNNING")
-    assert "pusher, which is driven, leaves block no way out" in run.stop_message
+    assert "pusher, which is driven, leaves block no way out at block" in run.stop_message
+    assert "complementarity" not in run.stop_message
+    assert "This is a jam: a driven body goes on whatever is in its way" in run.stop_message
 
 
 def test_a_driven_finger_may_strike_what_has_not_moved_yet() -> None:

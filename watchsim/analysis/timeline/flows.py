@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from watchsim.analysis.contact_forces import absolute
 from watchsim.analysis.timeline.line_spring_rows import held_by_lines, line_spring_energies, line_spring_power
 from watchsim.mechanism.compile import Compiled
-from watchsim.model.records import OVER_TIME, Model
+from watchsim.model.records import OVER_TIME, REPEATED, Model
 from watchsim.simulation.record.trajectory import Array, Trajectory
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(5)
@@ -174,7 +174,9 @@ def _changing_power(model: Model, t: Array, q: Row, u: Row) -> Array:
     for table in model.tables:
         knots = model.knots[table.start : table.start + table.count]
         own, on = int(table.coordinate), int(table.on)
-        x = t if table.over == OVER_TIME else q[own] - (q[on] if on >= 0 else 0.0)
+        x = t if table.over >= OVER_TIME else q[own] - (q[on] if on >= 0 else 0.0)
+        if table.over == REPEATED:
+            x = knots[0, 0] + (t - knots[0, 0]) % (knots[-1, 0] - knots[0, 0])
         value = np.interp(x, knots[:, 0], knots[:, 1])
         power[:, own] += value * u[own]
         if on >= 0:

@@ -13,7 +13,7 @@ locked          until the next touch of pin and fork
 
 An anchor that swings as one with the oscillator has an impulse, a drop, and then is locked (dead-beat) or has a recoil, until
 the next impulse begins. Where its tooth comes off its rest before it meets the face that is pushed (cylinder, duplex), there is
-an unlocking and a catch-up, too.
+an unlocking and a catch-up, too. Pallets hinged on the oscillator (grasshopper) have their own file, `hinged_pallets`.
 """
 
 from __future__ import annotations
@@ -27,11 +27,12 @@ from numpy.typing import NDArray
 from watchsim.analysis.timing.beats import Beats, beats, beats_within
 from watchsim.analysis.timing.escape_wheel import progress
 from watchsim.analysis.timing.marks.anchor_phases import anchor_phases
+from watchsim.analysis.timing.marks.hinged_phases import hinged_phases
 from watchsim.analysis.timing.marks.lever_phases import lever_phases
 from watchsim.analysis.timing.marks.stretches import Stretches
 from watchsim.analysis.timing.marks.wheel_contacts import wheel_contacts
 from watchsim.analysis.timing.rows_at_hand import is_recorded
-from watchsim.scene.roles import Roles, keeps_time, with_anchor
+from watchsim.scene.roles import Roles, hinged_pallets, keeps_time, with_anchor
 from watchsim.simulation.record.trajectory import Array, Trajectory
 
 AT_ONCE = 300  # beats; their rows are some megabytes, which a processor has at hand
@@ -41,7 +42,8 @@ AT_ONCE = 300  # beats; their rows are some megabytes, which a processor has at 
 class Phase:
     """A stretch of a beat, s; angles at its start and turns during it, rad, of wheel, lever and oscillator.
 
-    `beat` counts the half swings from 1 as in beats.csv. `on` says of an impulse on what: stone, tooth or balance.
+    `beat` counts the half swings from 1 as in beats.csv. `on` says of an impulse on what: stone, tooth or balance, or on which
+    pallet, where each is a body of its own.
     """
 
     beat: int
@@ -117,10 +119,12 @@ def phase_columns(run: Trajectory, found: Beats | None = None, window: Sequence[
 
 def _stretches(run: Trajectory, parts: Roles, found: Beats, within: NDArray[np.bool_]) -> Iterator[Stretches]:
     """Without angles."""
+    assert parts.wheel
+    if pallets := hinged_pallets(run.scene):
+        return hinged_phases(run, parts.wheel, pallets, found, within, AT_ONCE)
     contacts = wheel_contacts(run, parts, found, within)
     if parts.lever == parts.oscillator:
         return anchor_phases(run, parts, found, contacts, within, AT_ONCE)
-    assert parts.wheel
     told = np.flatnonzero(within & _told(run, found))
     ways = (progress(run, parts.wheel, found.tick[told]), progress(run, parts.wheel, found.end[told]))
     return lever_phases(found, contacts, told, ways, AT_ONCE)

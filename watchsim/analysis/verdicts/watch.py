@@ -111,7 +111,7 @@ class Watch:
             if not torque.table:
                 value = torque.value
             elif torque.over == "time":
-                value = float(np.interp(t, *np.array(torque.table).T))
+                value = torque.over_time(t)
             elif self.recorded(np.array([t])).all():
                 value = float(np.interp(self.angle(torque.body, np.array([t]))[0], *np.array(torque.table).T))
             total += ratios[torque.body] * value

@@ -32,11 +32,16 @@ def conflicts(values: Snail) -> Iterator[Conflict]:
         return
     if radius(values, 1) + 4.0 * values.pin_radius > values.distance:
         yield Conflict("distance", f"the first step, {radius(values, 1):.4g} mm high, would reach the rack's axis")
+    if weak := list(_weak(values)):
+        yield from weak
+        return
     narrowest = min(range(1, values.steps + 1), key=lambda step: room(values, step))
     if room(values, narrowest) <= 0.0:
-        what = "a smaller pin, or a tail as long as the distance, so that its pin passes through the snail's axis"
+        what = (
+            "a smaller pin, a tail as long as the distance, so that its pin passes through the snail's axis, "
+            "or more torque to gather the rack up"
+        )
         yield Conflict("pin_radius", f"the pin does not find room on step {narrowest} while the snail turns: {what}")
-    yield from _weak(values)
 
 
 def _weak(values: Snail) -> Iterator[Conflict]:
@@ -49,6 +54,7 @@ def _weak(values: Snail) -> Iterator[Conflict]:
         return
     if 1e3 * values.lifting <= 1.2 * preload:
         yield Conflict("lifting", f"must be above {1.2e-3 * preload:.4g} mN·m to gather the rack up against its leaf")
+        return
     slowest = fall_time(values, values.steps) / (QUIET * (LIFTED - FALLS))
     if values.hour < slowest:
         yield Conflict("hour", f"must be above {slowest:.4g} s, else the rack has no time to come to rest")

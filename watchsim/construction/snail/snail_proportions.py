@@ -17,7 +17,9 @@ from watchsim.construction.outline import angle_of, polar
 from watchsim.construction.snail.snail_dimensions import Snail
 from watchsim.geometry.primitives import Point
 
-FALLS, LIFTED = 0.3, 0.7  # of an hour: the rack is let go, and gathered up again
+FALLS, LIFTED = 0.25, 0.6  # of an hour: the rack is let go, and gathered up again
+UNDER = 0.5  # of an hour: the middle of a step is under the pin
+EASE = 0.02  # of an hour, over which the rack is taken hold of
 
 
 def gathered(values: Snail) -> float:
@@ -59,18 +61,27 @@ def leaf_stiffness(values: Snail) -> float:
     return STEEL * width * thick**3 / (4.0 * length**3) * arm**2 * 1e-9
 
 
+def rise_time(values: Snail) -> float:
+    """s until the rack, fallen to the lowest step, is gathered up; longer than it takes, since the leaf yields."""
+    left = 1e-3 * values.lifting - 1e-6 * values.leaf_force * values.leaf_arm
+    inertia = 1e-10 * values.rack_inertia
+    return EASE * values.hour + math.sqrt(2.0 * math.radians(values.steps * values.tooth) * inertia / left)
+
+
 def room(values: Snail, step: int) -> float:
     """Degrees that are left on a step beside the pin, on the nearer side, while the snail turns under it.
 
-    On the last step also where the pin, on its way down and up, passes the wall of the first.
+    The wall behind the last step rises to the first: it must not come before the pin, on its way up, has passed it.
     """
+    pitch, here = 360.0 / values.steps, middle(values, step)
     after = boundary(values, step + 1) if step < values.steps else boundary(values, 1) - 360.0
-    before_wall = middle(values, step) - after
-    rooms = [boundary(values, step) - middle(values, step) - _beside(values, step), before_wall - _beside(values, step)]
+    ahead, behind = (UNDER - FALLS) * pitch, (LIFTED - UNDER) * pitch
+    rooms = [boundary(values, step) - here - _beside(values, step) - ahead, here - after - _beside(values, step) - behind]
     if step == values.steps:
-        here = angle_of(pin(values, step))
-        rooms += [before_wall - here + angle_of(pin(values, m)) - _beside(values, m) for m in range(2, step)]
-    return min(rooms) - 0.5 * (LIFTED - FALLS) * 360.0 / values.steps
+        behind += pitch * rise_time(values) / values.hour
+        way = [angle_of(pin(values, m)) - angle_of(pin(values, step)) - _beside(values, m) for m in range(1, step)]
+        rooms += [here - after + one - behind for one in way]
+    return min(rooms)
 
 
 def _beside(values: Snail, step: int) -> float:

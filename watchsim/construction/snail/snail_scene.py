@@ -6,11 +6,10 @@ from watchsim.construction.contact_tables import contact_tables
 from watchsim.construction.design import told
 from watchsim.construction.leaf_text import leaf_text
 from watchsim.construction.snail.snail_dimensions import Snail
-from watchsim.construction.snail.snail_proportions import FALLS, LIFTED
+from watchsim.construction.snail.snail_proportions import EASE, FALLS, LIFTED
 
 SUDDEN = 1e-6  # s: over which the rack is let go
-EASE = 0.02  # of an hour, over which it is taken hold of
-END = 0.65  # of the last hour: the rack lies on the lowest step
+END = 0.58  # of the last hour: the rack lies on the lowest step
 
 TEXT = """\
 # The snail of a striking train with its rack, drawn to these dimensions:
@@ -48,11 +47,10 @@ leaf    = {{ {leaf} }}
 preload = "{preload!r} µN·m"
 
 [[torques]]                          # the striking train gathers the rack up, and lets it go once in each hour
-body  = "rack"
-over  = "time"
-table = [
-{table}
-]
+body   = "rack"
+over   = "time"
+table  = [{table}]
+period = "{values.hour!r} s"
 
 {contacts}
 [run]
@@ -65,14 +63,10 @@ CONTACTS = (("rack.PIN", "snail.STEPS"), ("rack.TAIL", "stop.STOP"))
 
 def scene_text(values: Snail) -> str:
     """The text of scene.toml: the rack gathered up, the first step coming under its pin."""
-    rows = []
-    for i in range(values.steps):
-        free, taken = values.hour * (i + FALLS), values.hour * (i + LIFTED)
-        times = (free, free + SUDDEN, taken, taken + EASE * values.hour)
-        torques = (-values.lifting, 0.0, 0.0, -values.lifting)
-        rows.append(
-            "    " + " ".join(f'["{time:.15g} s", "{torque:.15g} mN·m"],' for time, torque in zip(times, torques, strict=True))
-        )
+    free, taken = values.hour * FALLS, values.hour * LIFTED
+    times = (free, free + SUDDEN, taken, taken + EASE * values.hour)
+    torques = (-values.lifting, 0.0, 0.0, -values.lifting)
+    rows = [f'["{time:.15g} s", "{torque:.15g} mN·m"]' for time, torque in zip(times, torques, strict=True)]
     pitch = 360.0 / values.steps
     return TEXT.format(
         dimensions=told(values),
@@ -82,6 +76,6 @@ def scene_text(values: Snail) -> str:
         speed=pitch / values.hour,
         leaf=leaf_text(values),
         preload=values.leaf_force * values.leaf_arm,  # mN·mm = µN·m
-        table="\n".join(rows),
+        table=", ".join(rows),
         duration=round((values.steps - 1 + END) * values.hour, 9),
     )

@@ -1,7 +1,7 @@
 """Of which patches is the mechanism in a picture made, and in which order do they lie?
 
 From behind: the hairspring, what cannot touch and is larger than all that can (a balance's rim), what never moves, then the
-moving parts with their shadows, the largest first, and springs between points.
+moving parts with their shadows, the largest first, stops of springs, and springs between points.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from watchsim.render.frame.filled_parts import Part, backdrop, is_round, loops_o
 from watchsim.render.frame.lasting_patch import LastingPatch
 from watchsim.render.frame.line_spring_patches import LineSpringPatches
 from watchsim.render.frame.pose_matrix import pose_matrix
+from watchsim.render.frame.spring_stop_patches import SpringStopPatches
 from watchsim.render.frame.view import Frame, View, size_of
 from watchsim.render.picture_style import Style
 from watchsim.scene.carriers import at_start, is_still
@@ -48,6 +49,7 @@ class Mechanism:
         self._transforms = {body.name: Affine2D() for body in scene.bodies}
         self._springs = CoilPatches(scene, room, view.scale, style, unit, self.own)
         self._lines = LineSpringPatches(scene, style, unit, self.own)
+        self._stops = SpringStopPatches(scene, style, unit, self.own)
         self._patches = [*self._compose(), *(patch for edges in picked for patch in self._picked(edges))]
 
     def draw(self, renderer: RendererBase, frames: dict[str, Array], matrix: Array) -> None:
@@ -56,7 +58,7 @@ class Mechanism:
             transform.set_matrix(matrix @ pose_matrix(frames[body]))
         for patch in self._springs.patches(frames, matrix):
             patch.draw(renderer)
-        for patch in (*self._patches, *self._lines.patches(frames, matrix)):
+        for patch in (*self._patches, *self._stops.patches(frames, matrix), *self._lines.patches(frames, matrix)):
             patch.draw(renderer)
 
     def rings(self, points: Array, colour: str) -> list[LastingPatch]:
@@ -118,6 +120,8 @@ class Mechanism:
         look = {"fill": False, "edgecolor": edges.colour, "linewidth": max(PICKED * self._unit, 1.5), "capstyle": "round"}
         made = []
         for number, path in edge_paths(edges, CHORD / self._view.scale).items():
+            if number >= len(self._scene.bodies):
+                continue  # the rack of a gear or a stop, which is nowhere
             body = self._scene.bodies[number]
             place = Affine2D(self._view.matrix(self._view.centre) @ pose_matrix(np.array([*body.position, body.angle])))
             made.append(self.own(LastingPatch(path, transform=self._transforms.get(body.name, place), **look)))

@@ -70,6 +70,7 @@ def from_mapping(
         damping=damping,
         contacts=contacts,
         gears=geared.gears,
+        rigid_gears=geared.rigid,
         line_springs=line_springs,
         gravity=heading.gravity,
         tangential_law=heading.tangential_law,

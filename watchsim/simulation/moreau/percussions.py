@@ -16,7 +16,7 @@ from watchsim.simulation.moreau.mobility import fill_mobility, push, rates_of
 from watchsim.simulation.moreau.percussion_laws import cone, residual
 from watchsim.simulation.moreau.prox_relaxation import relax
 from watchsim.simulation.record.write_buffers import keep_event
-from watchsim.tolerances import ENERGY_GAIN, NO_TANGENTIAL, PARALLEL
+from watchsim.tolerances import ENERGY_GAIN, NO_TANGENTIAL, NUDGE, PARALLEL
 
 
 @kernel
@@ -81,11 +81,16 @@ def _compress(model, state, m, work):
 
 @kernel
 def _keep_sliding(model, m, work):
-    """Where slip and approach stop together, their directions being parallel, friction is what it was while they lasted."""
+    """Where slip and approach stop together, their directions being parallel, friction is what it was while they lasted.
+
+    Against a driven body slip is left when approach has stopped, and Coulomb's law says which way friction acts.
+    """
     laws = work.laws
     for i in range(m):
         N, T, slip = 2 * i, 2 * i + 1, work.rates[2 * i + 1]
-        if slip != 0.0 and laws.G[N, T] ** 2 > (1.0 - PARALLEL) * laws.G[N, N] * laws.G[T, T]:
+        if slip == 0.0 or laws.G[N, T] ** 2 <= (1.0 - PARALLEL) * laws.G[N, N] * laws.G[T, T]:
+            continue
+        if abs(slip - laws.G[N, T] / laws.G[N, N] * work.rates[N]) <= NUDGE * abs(slip):
             one_way = -_law(model, work, i).friction if slip > 0.0 else _law(model, work, i).friction
             laws.ends[i, 1], laws.ends[i, 3] = one_way, one_way
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from watchsim.contact.index_sets import STICK
 from watchsim.jit import kernel
-from watchsim.model.records import FREE, OVER_TIME
+from watchsim.model.records import FREE, OVER_TIME, REPEATED
 from watchsim.simulation.motion.contact_islands import island_of
 
 
@@ -46,7 +46,9 @@ def add_terms(closed, m, force, out_terms):
 
 @kernel
 def _will_change(model, table, t):
-    """A force over time has knots left; behind the last one it is as constant as any other."""
+    """A force over time has knots left; behind the last one it is as constant as any other. One that repeats always has."""
+    if table.over == REPEATED:
+        return True
     return table.over == OVER_TIME and t < model.knots[table.start + table.count - 1, 0]
 
 

@@ -85,7 +85,7 @@ def with_springs_held(scene: Scene) -> Scene:
 def why_no_section(compiled: Compiled, parts: Parts) -> str:
     """Why no turning point can stand for the whole state; "" where one can."""
     model = compiled.model
-    if any(table.over == OVER_TIME for table in model.tables):
+    if any(table.over >= OVER_TIME for table in model.tables):
         return "a torque over time drives the mechanism, so that no state of it comes back"
     if any(own == parts.coordinate for own, _, _ in compiled.against) or model.coordinates[parts.coordinate].watched == 0:
         return "the oscillator rides on a moving body"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 from typing import NamedTuple
 
@@ -15,12 +15,13 @@ from watchsim.simulation.record.trajectory import Array
 NAMES = ("unlock", "catch-up", "impulse", "drop", "run to banking", "locked", "recoil")
 FACES = ("stone", "tooth", "balance", "")  # on what the wheel pushes in an impulse; the last is for other phases
 NOTHING = FACES.index("")
+COLUMNS = ("beat", "name", "start", "end", "on")
 
 Codes = NDArray[np.int8]
 
 
 class Stretch(NamedTuple):
-    """One phase of the half swing number `beat`, s; `name` of `NAMES`, `on` of `FACES`."""
+    """One phase of the half swing number `beat`, s; `name` of `NAMES`; `on` of `FACES`, or a hinged pallet."""
 
     beat: int
     name: str
@@ -31,20 +32,21 @@ class Stretch(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Stretches:
-    """Phases in order, (n,): number of the half swing, place in `NAMES`, s, s, and place in `FACES`."""
+    """Phases in order, (n,): number of the half swing, place in `NAMES`, s, s, and place in `words`."""
 
     beat: NDArray[np.int64]
     name: Codes
     start: Array
     end: Array
     on: Codes
+    words: tuple[str, ...] = FACES
 
     def __len__(self) -> int:
         return len(self.beat)
 
     def __getitem__(self, chosen: NDArray[np.bool_] | NDArray[np.int64]) -> Stretches:
         """Only some rows."""
-        return Stretches(self.beat[chosen], self.name[chosen], self.start[chosen], self.end[chosen], self.on[chosen])
+        return replace(self, **{name: getattr(self, name)[chosen] for name in COLUMNS})
 
     @property
     def names(self) -> list[str]:
@@ -52,7 +54,7 @@ class Stretches:
 
     @property
     def faces(self) -> list[str]:
-        return [FACES[code] for code in self.on.tolist()]
+        return [self.words[code] for code in self.on.tolist()]
 
     @property
     def first(self) -> NDArray[np.int64]:
@@ -69,5 +71,6 @@ def gathered(beats: Iterator[list[Stretch]], at_once: int) -> Iterator[Stretches
 def in_columns(rows: Sequence[Stretch]) -> Stretches:
     """The same in columns."""
     beat, name, start, end, on = zip(*rows, strict=True) if rows else ((),) * 5
-    codes = (np.array([words.index(one) for one in column], np.int8) for words, column in ((NAMES, name), (FACES, on)))
-    return Stretches(np.array(beat, np.int64), next(codes), np.array(start, float), np.array(end, float), next(codes))
+    words = (*FACES, *sorted(set(on).difference(FACES)))
+    codes = (np.array([known.index(one) for one in column], np.int8) for known, column in ((NAMES, name), (words, on)))
+    return Stretches(np.array(beat, np.int64), next(codes), np.array(start, float), np.array(end, float), next(codes), words)

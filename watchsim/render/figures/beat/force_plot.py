@@ -126,7 +126,7 @@ def _summed(run: Trajectory, found: Forces, own: slice) -> Curves:
 
 def left_out(scene: Scene) -> str:
     """What acts on pivoted bodies and is in no contact: its share of their bearings' loads is not known here."""
-    geared = bool(scene.gears) or any(body.geared is not None for body in scene.bodies)
+    geared = not scene.rigid_gears and any(body.geared is not None for body in scene.bodies)  # a scene made in Python
     unknown = [word for word, there in (("gears", geared), ("line springs", bool(scene.line_springs))) if there]
     return f", without {' and '.join(unknown)}" if unknown else ""
 

@@ -40,7 +40,7 @@ from watchsim.render.frame.filled_parts import loops_of, outline
 from watchsim.render.frame.pose_history import dense, placed, poses
 from watchsim.render.palette import FAINT, FORCE, INK, looks
 from watchsim.render.posed import Posed
-from watchsim.scene.roles import with_anchor
+from watchsim.scene.roles import hinged_pallets, with_anchor
 from watchsim.simulation.record.trajectory import Array, Trajectory
 
 if TYPE_CHECKING:
@@ -83,7 +83,7 @@ def plot_timeline(
     rows = [-(-len(one) // across) for one in instants]
     heights = [TITLE + count * (tall + WORDS) + LEADS + CURVES + FOOT for count in rows]
     made = figure(width, HEADING + sum(heights))
-    heading(made, run.scene.title, f"Amid each phase; arrows: contact forces on the {with_anchor(run.scene).lever}")
+    heading(made, run.scene.title, f"Amid each phase; arrows: contact forces on the {' and '.join(_pushed_bodies(run))}")
     posed = Posed(run.scene, compile_scene(run.scene))
     pushed = _pushed(run, [one for own in instants for one in own])
     largest = max((float(np.hypot(*force.T).max(initial=0.0)) for _, force in pushed), default=0.0)
@@ -109,18 +109,23 @@ def key_instants(beat: Beat) -> list[Instant]:
     return [*found, Instant(min(shown[-1].phase.end + AFTER * way, max(beat.end, shown[-1].phase.end)), END)]
 
 
+def _pushed_bodies(run: Trajectory) -> tuple[str, ...]:
+    """The lever or anchor, or the pallets that are hinged on the oscillator."""
+    return hinged_pallets(run.scene) or (str(with_anchor(run.scene).lever),)
+
+
 def _box(run: Trajectory, times: Sequence[float]) -> tuple[float, float, float, float]:
     """Least and largest x, least and largest y (mm) of what can touch of the lever at the start, with room around it.
 
     Of a balance or pendulum that the wheel touches itself at `times` (s), since it turns further.
     """
     parts = with_anchor(run.scene)
-    name = parts.lever
-    assert name is not None
-    body = run.scene.body(name)
-    points = outline(body.loops or loops_of(body), 1e-3 * max(compile_scene(run.scene).size, 1e-9))
-    instants = np.array(times) if name == parts.oscillator else run.t[:1]
-    x, y = np.moveaxis(placed(points, poses(run, instants)[name]), -1, 0)
+    instants = np.array(times) if parts.lever == parts.oscillator else run.t[:1]
+    found, close = [], 1e-3 * max(compile_scene(run.scene).size, 1e-9)
+    for name in _pushed_bodies(run):
+        body = run.scene.body(name)
+        found.append(placed(outline(body.loops or loops_of(body), close), poses(run, instants)[name]).reshape(-1, 2))
+    x, y = np.concatenate(found).T
     side = ROOM * max(np.ptp(x), np.ptp(y))
     return tuple(1e3 * float(v) for v in (x.min() - side, x.max() + side, y.min() - side, y.max() + side))  # type: ignore[return-value]
 
@@ -177,14 +182,14 @@ def _arrows(axes: Axes, points: Array, arrows: Array) -> None:
 
 def _pushed(run: Trajectory, instants: list[Instant]) -> list[tuple[Array, Array]]:
     """Where contacts press on the lever (mm) and how (N)."""
-    name = with_anchor(run.scene).lever
+    names = _pushed_bodies(run)
     try:
         told = forces(run, [one.t for one in instants])
     except ValueError:
         return [(np.zeros((0, 2)), np.zeros((0, 2)))] * len(instants)
     across = np.stack((-told.direction[..., 1], told.direction[..., 0]), axis=-1)
     whole = told.normal[..., None] * told.direction + told.tangential[..., None] * across
-    sides = np.array([_side(run, int(k), name) for k in told.pairs]).reshape(-1)
+    sides = np.array([_side(run, int(k), names) for k in told.pairs]).reshape(-1)
     found = []
     for k in range(len(instants)):
         held = np.isfinite(told.point[k, :, 0]) & (sides != 0.0)
@@ -192,10 +197,10 @@ def _pushed(run: Trajectory, instants: list[Instant]) -> list[tuple[Array, Array
     return found
 
 
-def _side(run: Trajectory, contact: int, name: str | None) -> float:
-    """+1 where the body is the one that the forces are given for, -1 where it is the other one."""
+def _side(run: Trajectory, contact: int, names: Sequence[str]) -> float:
+    """+1 where the contact's forces are given for one of these bodies, -1 where it is the other one."""
     pair = run.pairs[contact]
-    return {pair.body_a: 1.0, pair.body_b: -1.0}.get(name or "", 0.0)
+    return float(pair.body_a in names) - float(pair.body_b in names)
 
 
 def _curves(made: Figure, run: Trajectory, beat: Beat, instants: list[Instant], top: float) -> None:

@@ -78,6 +78,7 @@ LEAF: Keys = {  # leaf of a spring
 TORQUE: Keys = {
     **{"body": PLAIN, "value": Key(units.TORQUE, units.FORCE), "over": PLAIN, "table": PLAIN, "against": PLAIN},
     **{"ratio": NUMBER, "efficiency": NUMBER, "run_down": ANGLE, "train": PLAIN},
+    **{"period": Key(units.TIME)},
 }
 TRAIN: Keys = {"ratio": NUMBER, "inertia": Key(units.INERTIA)}  # of one wheel between mainspring and body
 DAMPING: Keys = {
@@ -91,7 +92,7 @@ DAMPING: Keys = {
 CONTACT: Keys = {"between": PLAIN, "friction": NUMBER, "restitution": NUMBER, "tangential_restitution": NUMBER}
 GEAR: Keys = {
     **{"between": PLAIN, "ratio": NUMBER, "backlash": Key(units.ANGLE, units.LENGTH)},
-    **{"restitution": NUMBER, "efficiency": NUMBER},
+    **{"restitution": NUMBER, "efficiency": NUMBER, "pressure_angle": ANGLE},
 }
 LINE_SPRING: Keys = {
     **{"between": PLAIN, "points": LENGTH, "stiffness": Key(units.LINEAR_STIFFNESS)},

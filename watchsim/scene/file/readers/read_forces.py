@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Any
 
 from watchsim import units
@@ -14,6 +13,7 @@ from watchsim.scene.body import Body
 from watchsim.scene.errors import Faults
 from watchsim.scene.file.keys.key_values import NAN, Table, shown
 from watchsim.scene.file.keys.schema import DAMPING, SPRING, TORQUE, Keys, nearest
+from watchsim.scene.file.readers.force_table import repeated, rows_of
 from watchsim.scene.file.readers.read_against import read_against
 from watchsim.scene.file.readers.read_trains import BARREL, KEYS, mainspring_torque
 from watchsim.scene.file.readers.springs.read_coil import read_coil
@@ -138,8 +138,9 @@ def _torque(entry: Entry) -> Torque:
     if "table" not in table:
         if "value" not in table and table.is_table:
             table.fault("", 'missing: value = "-1.0 µN·m", or a table over angle or time')
-        if "over" in table:
-            table.fault("over", "belongs to a table; a value is constant")
+        for key in ("over", "period"):
+            if key in table:
+                table.fault(key, "belongs to a table; a value is constant")
         return Torque(entry.name, table.quantity("value"), against=entry.against)
     if "value" in table:
         table.fault("value", "a torque is either a value or a table: leave one out")
@@ -148,33 +149,16 @@ def _torque(entry: Entry) -> Torque:
     if "over" not in table:
         table.fault("", f'a table needs over = "{choices[0]}" or over = "time"')
     over = table.one_of("over", choices, choices[0])
+    if "period" in table and over != "time":
+        table.fault("period", 'belongs to a table with over = "time"')
     if over == BARREL and entry.body is not None:
-        return mainspring_torque(table, entry.body, _rows(table, units.ANGLE))
+        return mainspring_torque(table, entry.body, rows_of(table, units.ANGLE))
     abscissa = units.TIME if over == "time" else units.LENGTH if sliding else units.ANGLE
     over = "time" if over == "time" else "angle"
-    return Torque(entry.name, over=over, table=_rows(table, abscissa), against=entry.against)
-
-
-def _rows(table: Table, abscissa: units.Dimension) -> tuple[tuple[float, float], ...]:
-    """(abscissa, value) pairs with ascending abscissae."""
-    value, ordinate = table.mapping["table"], table.keys["value"].dimension_for(table.motion) or units.TORQUE
-    if not isinstance(value, (list, tuple)) or len(value) < 2:
-        example = f'[["0 {abscissa.usual[1]}", "0 {ordinate.usual[1]}"], ["1 {abscissa.usual[1]}", "1 {ordinate.usual[1]}"]]'
-        table.fault("table", f"a list of at least two pairs is needed here, such as table = {example}", with_value=True)
-        return ()
-    rows = tuple(_row(table, i, row, (abscissa, ordinate)) for i, row in enumerate(value))
-    for i, (before, after) in enumerate(pairwise(rows)):
-        if after[0] <= before[0]:
-            table.fault(f"table.{i + 1}", "its first column must ascend")
-    return rows
-
-
-def _row(table: Table, i: int, row: object, dimensions: tuple[units.Dimension, units.Dimension]) -> tuple[float, float]:
-    if not isinstance(row, (list, tuple)) or len(row) != 2:
-        table.faults.add(f"{table.path}.table.{i}", "two values are needed in each row", shown(row))
-        return (NAN, NAN)
-    x, y = (table.parsed(f"table.{i}.{j}", item, dimensions[j]) for j, item in enumerate(row))
-    return (x, y)
+    rows, period = rows_of(table, abscissa), None
+    if "period" in table and over == "time":
+        rows, period = repeated(table, rows)
+    return Torque(entry.name, over=over, table=rows, against=entry.against, period=period)
 
 
 def _damping(entry: Entry, swinging: Oscillator | None) -> Damping:

@@ -19,7 +19,7 @@ from watchsim.scene.file.keys.key_values import NAN, Table
 from watchsim.scene.file.keys.schema import GEAR, nearest
 from watchsim.scene.file.readers.read_forces import listed
 from watchsim.scene.gear_trains import CARRIED, note_gears, reached
-from watchsim.scene.gearing import Gear, Geared
+from watchsim.scene.gearing import PRESSURE_ANGLE, Gear, Geared
 from watchsim.units import NUMBER, PER_LENGTH, TRAVEL_PER_TURN, Dimension
 
 SAME = 1e-9  # of a velocity that is given twice
@@ -30,22 +30,24 @@ DIMENSION: dict[tuple[str, str], Dimension] = {  # of a ratio, by the motions of
     ("slide", "pivot"): PER_LENGTH,
     ("slide", "slide"): NUMBER,
 }
+MOST_PRESSURE = math.radians(45.0)
 PLAY = ("restitution", "efficiency")  # what needs play
 
 
 @dataclass(frozen=True, slots=True)
 class ReadGears:
-    """The bodies, those without play bound to each other, and the gears with play."""
+    """The bodies, those without play bound to each other, the gears with play, and those without."""
 
     bodies: tuple[Body, ...]
     gears: tuple[Gear, ...]
+    rigid: tuple[Gear, ...]
 
 
 def read_gears(mapping: Mapping[str, Any], bodies: tuple[Body, ...], gravity: Point, faults: Faults) -> ReadGears:
     """Faults are noted for unknown bodies, for what turns neither nor slides, and for bindings that contradict each other."""
     tables = [Table(one, f"gears.{i}", GEAR, faults) for i, one in enumerate(listed(mapping, "gears", faults))]
     if not tables:
-        return ReadGears(bodies, ())
+        return ReadGears(bodies, (), ())
     known = {body.name: body for body in bodies}
     read = [(table, gear) for table in tables if (gear := _gear(table, known)) is not None]
     hung = rides(bodies, _in_silence)
@@ -58,7 +60,7 @@ def read_gears(mapping: Mapping[str, Any], bodies: tuple[Body, ...], gravity: Po
     _note_double([(table, gear) for table, gear in read if gear.backlash > 0.0], bound)
     spun = _with_velocities(bodies, bound, mapping, faults)
     note_gears(spun, hung, pulled, lambda name, message: faults.add(_key(rigid, name), message))
-    return ReadGears(spun, tuple(gear for _, gear in read if gear.backlash > 0.0))
+    return ReadGears(spun, tuple(gear for _, gear in read if gear.backlash > 0.0), tuple(gear for _, gear in rigid))
 
 
 def _in_silence(_name: str, _message: str) -> None:
@@ -92,7 +94,12 @@ def _gear(table: Table, known: Mapping[str, Body]) -> Gear | None:
         table.fault("restitution", "must lie between 0 (no rebound) and 1 (nothing lost)", with_value=True)
     if not 0.0 < efficiency <= 1.0:
         table.fault("efficiency", "is a share of the work: above 0, at most 1", with_value=True)
-    return Gear((first.name, second.name), ratio, backlash, restitution, efficiency)
+    pressure = table.quantity("pressure_angle", PRESSURE_ANGLE)
+    if not 0.0 <= pressure < MOST_PRESSURE:
+        table.fault(
+            "pressure_angle", f"must lie between 0° and {math.degrees(MOST_PRESSURE):g}°; usual is 20°", with_value=True
+        )
+    return Gear((first.name, second.name), ratio, backlash, restitution, efficiency, pressure)
 
 
 def _ratio(table: Table, dimension: Dimension) -> float:

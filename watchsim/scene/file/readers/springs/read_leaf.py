@@ -61,9 +61,10 @@ def read_stop(table: Table, body: Body | None, other: Body | None, rest: float) 
             table.fault("restitution", 'belongs to a spring with a stop, such as stop = "0°": leave it out')
         return None, 0.0
     stop = table.quantity("stop")
-    for one in (body, other):
-        if one is not None and one.on is not None:
-            table.fault("stop", f"{one.name} is carried by {one.on}: draw the stop, and declare the contact with it")
+    carried = next((one for one in (body, other) if one is not None and one.on is not None), None)
+    if carried is not None and other is not None:
+        why = f"{carried.name} is carried by {carried.on}, and a stop between three angles is no contact of two bodies"
+        table.fault("stop", f"{why}: draw the stop, and declare the contact with it")
     if other is not None and other.prescribed is not None:
         table.fault("stop", f"{other.name} is driven: draw the stop, and declare the contact with it")
     if rest == stop:
