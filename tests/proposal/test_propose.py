@@ -21,7 +21,6 @@ SHARED = Path(__file__).resolve().parents[3] / "shared" / "drawings"
 EXTRA = {  # guessed and not so
     "coaxial": {frozenset((("lever", "FORK"), ("balance", "IMPULSE_STONE")))},
 }
-WITHOUT = {"coaxial": ("RIM",)}  # else the lever's impulse stone, under an arm of the rim, is given to the balance
 
 
 def written(paths: list[Path], folder: Path) -> Scene:
@@ -46,7 +45,7 @@ def partner(scene: Scene, real: Scene, name: str) -> str:
 @pytest.mark.parametrize("name", NAMES)
 def test_an_assembly_gives_its_bodies_pivots_and_contacts(name: str, tmp_path: Path) -> None:
     real = scene_of(name)
-    scene = written([assembly(real, tmp_path / f"{name}.dxf", "own", without=WITHOUT.get(name, ()))], tmp_path / "out")
+    scene = written([assembly(real, tmp_path / f"{name}.dxf", "own")], tmp_path / "out")
     names = {body.name: partner(scene, real, body.name) for body in scene.bodies}
     assert sorted(names.values()) == sorted(body.name for body in real.bodies)
     assert not overlaps(scene)
@@ -206,3 +205,29 @@ def test_no_drawing_brings_it_down() -> None:
             assert "scene.toml" in propose([path]).files
         except NothingToPropose as error:
             assert str(error)
+
+
+BARE = {  # layers named after features alone, or not at all: parts by profile, each with its layers and its task
+    "cam": {("CAM",): "driver", ("END", "SHAFT"): "lever"},
+    "geneva_stop": {("DISC", "PIN", "PLATE"): "driver", ("CROSS",): "wheel"},
+    "duplex": {("IMPULSE", "RESTING"): "wheel", ("PALLET", "RIM", "ROLLER"): "oscillator"},
+    "pin_wheel": {("PINS", "RIM"): "wheel", ("ANCHOR", "BOB", "PALLETS", "ROD"): "oscillator"},
+    "cylinder": {("RIM", "TEETH"): "wheel", ("BALANCE", "SHELL"): "oscillator"},
+}
+
+
+@pytest.mark.parametrize("name", BARE)
+def test_bare_names_give_way_to_geometry(name: str, tmp_path: Path) -> None:
+    """Teeth make a wheel, a pin beside the pivot a driver, and a stone belongs to what it lies in."""
+    found = propose([assembly(scene_of(name), tmp_path / f"{name}.dxf")])
+    assert {tuple(sorted(role.part.layers)): role.task for role in found.roles} == BARE[name]
+
+
+def test_a_rim_over_the_lever_takes_nothing_of_it(tmp_path: Path) -> None:
+    """The balance runs round the pivot of the lever: what lies under it may be the lever's, such as its impulse stone."""
+    found = propose([assembly(scene_of("coaxial"), tmp_path / "coaxial.dxf")])
+    (lever,) = (role for role in found.roles if role.task == "lever")
+    (balance,) = (role for role in found.roles if role.task == "oscillator")
+    # Each has a stone on the layer IMPULSE_STONE, which is parted in two.
+    assert all(any(layer.startswith("IMPULSE_STONE") for layer in role.part.layers) for role in (lever, balance))
+    assert "RIM" in balance.part.layers

@@ -47,7 +47,7 @@ def centre_of(piece: Piece, marks: Sequence[Mark]) -> Centre | None:
         mark = next((one for one in marks if math.dist(one.at, symmetry.centre) <= SAME), None)
         at = symmetry.centre if mark is None else mark.at
         return Centre(at, SURE, f"the outline comes back onto itself {symmetry.fold} times in a turn about it", mark)
-    inside = [mark for mark in marks if _holds(piece, mark.at)]
+    inside = [mark for mark in marks if holds(piece, mark.at)]
     if len(inside) == 1:
         return Centre(inside[0].at, LIKELY, f"the one point of layer {inside[0].layer} that lies in its outline", inside[0])
     return None if marks else hole_of(piece)
@@ -67,5 +67,6 @@ def hole_of(piece: Piece) -> Centre | None:
     return Centre(nearest.centre, LIKELY, f"the centre of its hole of radius {1e3 * nearest.radius:.4g} mm")
 
 
-def _holds(piece: Piece, place: Point) -> bool:
+def holds(piece: Piece, place: Point) -> bool:
+    """Does an outer outline of the piece run round the place?"""
     return any(not loop.hole and winding(loop, place) != 0 for loop in piece.loops)

@@ -10,12 +10,20 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 
 from watchsim.geometry.primitives import Point
-from watchsim.proposal.bodies.centres import SURE, Centre, centre_of, hole_of
-from watchsim.proposal.bodies.nearby import BESIDE, give_to_close, give_to_nearest, nearest_to_each_other, take_in
+from watchsim.proposal.bodies.centres import SURE, Centre, centre_of, holds, hole_of
+from watchsim.proposal.bodies.nearby import (
+    BESIDE,
+    give_to_close,
+    give_to_nearest,
+    nearest_to_each_other,
+    take_in,
+    take_in_misnamed,
+)
 from watchsim.proposal.bodies.part import Part, are_apart, join
 from watchsim.proposal.bodies.part_names import FIXED, hints_of, part_of, part_word, tokens
 from watchsim.proposal.bodies.piece import Piece
 from watchsim.proposal.bodies.source import Mark, Source
+from watchsim.proposal.bodies.toothed import call_wheel
 
 
 def parts_of(sources: Sequence[Source], pieces: Sequence[Piece]) -> list[Part]:
@@ -30,17 +38,24 @@ def parts_of(sources: Sequence[Source], pieces: Sequence[Piece]) -> list[Part]:
 def _in_one_drawing(source: Source, pieces: Sequence[Piece], alone: bool) -> list[Part]:
     marks = _distinct(source.marks)
     parts = [_single(piece, marks, source) for piece in pieces]
+    above = _above_others(parts, marks)
+    parts = [part for part in parts if part not in above]
     if alone:  # one of several files: a drawing of one part, unless blocks or marks say otherwise
         parts = _of_one_file(source, parts, marks)
     join(parts, _one_block(source), "they are one block")
     join(parts, _one_centre, "they have the same centre")
     join(parts, _one_name, "the names of their layers begin alike")
     join(parts, _same_kind(parts), "the names of their layers belong to the same kind of part")
+    call_wheel(parts)
     take_in(parts)
+    if all(_turns_about(parts, mark) for mark in marks):  # no pivot is left for a body that only a feature's name tells of
+        take_in_misnamed(parts)
     join(parts, _one_layer(parts), "they lie on one layer")
     _give_marks(parts, marks)
     give_to_nearest(parts)
     give_to_close(parts)
+    parts += above
+    join(parts, _one_centre, "they have the same centre")
     join(parts, _both_left_over, "nothing shows a centre")
     for part in parts:
         if part.centre is None and part.kind != FIXED and part.kind is not None:
@@ -118,6 +133,28 @@ def _one_layer(parts: Sequence[Part]) -> Callable[[Part, Part], bool]:
         return len(there) < len(parts) and len(centres) <= 1 and nearest_to_each_other(one, other, parts)
 
     return together
+
+
+def _turns_about(parts: Sequence[Part], mark: Mark) -> bool:
+    return any(part.centre is not None and math.dist(mark.at, part.centre.at) <= BESIDE for part in parts)
+
+
+def _above_others(parts: Sequence[Part], marks: Sequence[Mark]) -> list[Part]:
+    """The pieces, such as a balance's rim over the lever, whose outline runs round the pivot of another body as well.
+
+    They lie above that body, and what lies within their outline need not belong to them: they are set aside, where something
+    else shows their centre.
+    """
+    found: list[Part] = []
+    for part in parts:
+        centre = part.centre
+        if centre is None or centre.worth < SURE:
+            continue
+        others = (mark for mark in marks if math.dist(mark.at, centre.at) > BESIDE)
+        alone = not any(_one_centre(part, other) for other in parts if other is not part)
+        if not alone and any(holds(part.pieces[0], mark.at) for mark in others):
+            found.append(part)
+    return found
 
 
 def _both_left_over(one: Part, other: Part) -> bool:

@@ -8,7 +8,7 @@ import numpy as np
 
 from watchsim.proposal.bodies.centres import is_toothed
 from watchsim.proposal.bodies.part import Part, are_apart, unite
-from watchsim.proposal.bodies.part_names import FIXED, LEVER, OSCILLATOR, WHEEL
+from watchsim.proposal.bodies.part_names import FIXED, LEVER, OSCILLATOR, WHEEL, part_word
 
 INSIDE = 0.3  # of a piece in the material of a body: it belongs to it
 BORDER = 0.2  # of a piece's outline on that of a body: it belongs to it
@@ -26,6 +26,20 @@ def take_in(parts: list[Part]) -> None:
             if body is not None:
                 unite(body, part, "they lie in each other")
                 parts.remove(part)
+
+
+def take_in_misnamed(parts: list[Part]) -> None:
+    """Where no body is of the kind that a feature's name speaks of, it belongs to the one in which it lies all the same."""
+    for part in [part for part in parts if part.centre is None and part.kind is not None and part.kind != FIXED]:
+        if any(part_word(layer) for layer in part.layers) or any(one.centre and one.kind == part.kind for one in parts):
+            continue
+        around = [other for other in parts if other is not part and not _is_wheel(other)]
+        body = max(around, key=lambda other: _in_each_other(part, other), default=None)
+        if body is not None and body.centre is not None and _in_each_other(part, body) >= INSIDE:
+            kind = body.kind
+            unite(body, part, "they lie in each other, and no other part is of the kind that its name speaks of")
+            body.kind = kind
+            parts.remove(part)
 
 
 def _take_in_some(parts: list[Part]) -> bool:

@@ -15,6 +15,8 @@ PARTS = {
     **dict.fromkeys(("ratchet", "sperrrad", "sperrad", "rochet", "star", "stern", "étoile"), WHEEL),
     **dict.fromkeys(("lever", "anker", "anchor", "ancre", "detent"), LEVER),
     **dict.fromkeys(("click", "pawl", "jumper", "klinke", "sperrklinke", "sperrkegel", "raste", "cliquet", "sautoir"), CLICK),
+    **dict.fromkeys(("cam", "came", "nocken"), DRIVER),
+    **dict.fromkeys(("cross", "malteserkreuz", "croix"), WHEEL),
     **dict.fromkeys(("driver", "crank", "finger", "kurbel", "mitnehmer", "manivelle", "doigt"), DRIVER),
     **dict.fromkeys(("balance", "unruh", "balancier", "pendulum", "pendel", "pendule", "foliot"), OSCILLATOR),
     **dict.fromkeys(("banking", "bankings", "bank", "banks", "plate", "platine", "frame", "bridge", "wall", "stop"), FIXED),

@@ -6,10 +6,10 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from watchsim.proposal.bodies.centres import is_toothed
 from watchsim.proposal.bodies.one_sided import is_one_sided
 from watchsim.proposal.bodies.part import Part
 from watchsim.proposal.bodies.part_names import CLICK, DRIVER, FIXED, LEVER, OSCILLATOR, WHEEL, part_of, part_word
+from watchsim.proposal.bodies.toothed import teeth_of
 
 FEWEST_TEETH = 8  # of an escape wheel; with fewer slots a wheel is driven step by step, as in a Geneva drive
 ROUNDISH = 0.4  # of its outlines on arcs about its pivot: a part that may turn through whole turns
@@ -50,9 +50,12 @@ def roles_of(parts: Sequence[Part]) -> list[Role]:
             found.append(Role(part, "", CLICK, why))
             rest.remove(part)
     swinging = _oscillator(rest, wheels)
+    driven = _driven(rest) if swinging is None and not wheels and not found else None
     for part in rest:
         if swinging is not None and part is swinging[0]:
             found.append(Role(part, "", OSCILLATOR, swinging[1]))
+        elif driven is not None and part is driven[0]:
+            found.append(Role(part, "", *driven[1:]))
         else:
             named = part.kind == LEVER
             task = LEVER if named or swinging is not None else DRIVER
@@ -61,14 +64,6 @@ def roles_of(parts: Sequence[Part]) -> list[Role]:
     found.sort(key=lambda role: order.index(role.task))
     _name(found)
     return found
-
-
-def teeth_of(part: Part) -> int:
-    """How often the part's outermost toothed piece comes back onto itself in a turn; 0 where none does."""
-    toothed = [piece.turned for piece in part.pieces if piece.turned is not None and is_toothed(piece.turned)]
-    centre = part.centre
-    about = [one for one in toothed if centre is not None and math.dist(one.centre, centre.at) <= 1e-2 * one.outer]
-    return max(about, key=lambda one: one.outer).fold if about else 0
 
 
 def _still(part: Part) -> str:
@@ -105,6 +100,23 @@ def _oscillator(rest: Sequence[Part], wheels: Sequence[Part]) -> tuple[Part, str
     at = wheel.centre.at
     farthest = max(free, key=lambda part: math.dist(part.centre.at, at) if part.centre else 0.0)
     return farthest, "it is the farthest from the wheel"
+
+
+def _driven(rest: Sequence[Part]) -> tuple[Part, str, str] | None:
+    """Of two parts of which one drives, by its name or by a pin away from its pivot: the other, its task, and why."""
+    if len(rest) != 2:
+        return None
+    for one, other in (rest, rest[::-1]):
+        if one.kind == DRIVER and other.kind is None:
+            return other, LEVER, "the names of the other's layers say that it drives"
+        if _has_pin(one) and not _has_pin(other) and other.kind in (None, WHEEL):
+            return other, WHEEL, "the other has a pin beside its pivot, which drives it"
+    return None
+
+
+def _has_pin(part: Part) -> bool:
+    discs = [piece for piece in part.pieces if piece.is_disc]
+    return any(part.centre is not None and math.dist(disc.centroid, part.centre.at) > 1e-2 * disc.length for disc in discs)
 
 
 def _roundness(part: Part) -> float:
