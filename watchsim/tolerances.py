@@ -103,9 +103,8 @@ FINEST_TOLERANCE, COARSEST_TOLERANCE = 1e-13, 1e-2
 GAP_ZERO = 1e-13
 # Of the size: gaps that small take part in an impact. Large: merges events; small: splits simultaneous ones.
 GAP_CLOSE = 2e-10
-# Of the size: `behind`; a body sinks into faces that rise by less than `IMMOVABLE` says. Large: accepts contacts on the far
-# side, and looks at more gaps; small: falls through.
-BEHIND_LEAST, BEHIND_MOST = 1e-7, 2e-5
+# Of the size: `behind`. Large: accepts contacts on the far side, and looks at more gaps; small: falls through.
+BEHIND_LEAST, BEHIND_MOST = 2e-8, 2e-5
 # Of the size, for each of the tolerance: drift lets a corner land so far behind. Large, small: as above.
 BEHIND_PER_TOLERANCE = 20.0
 # Times the joint of outlines: `extent`. Large: contacts stick out; small: they slip through joints.
@@ -249,8 +248,6 @@ FURTHEST_TAKEN_BACK = 50.0
 IMMOBILE = 1e-6
 # Of one: residual of a problem without solution. Large: wedges refused early; small: huge moves.
 NO_CHANGE_LEFT = 1e-9
-# Of the size: deeper overlaps are taken back before a run. Large: wedged bodies start; small: needless changes.
-OVERLAP_AT_START = 2e-8
 # Times `gap_zero`: overlap left. Large: begins with overlaps; small: never ends.
 OVERLAP_GONE = 10.0
 

@@ -20,7 +20,7 @@ from watchsim.scene.errors import SceneError
 from watchsim.scene.scene import Scene
 from watchsim.simulation.options import Options, options_for
 from watchsim.simulation.overlap_removal import kinematics_at, overlapping_rows, taken_back_from
-from watchsim.tolerances import OVERLAP_AT_START, TOUCH_REACH
+from watchsim.tolerances import TOUCH_REACH
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -61,7 +61,7 @@ def _clear(
     closed = kinematics_at(model, q)
     if unknown := [met for met in touching if not _is_known(met, compiled, model, closed, near)]:
         return q, 0.0, [(met, _words(met, NO_GAP)) for met in unknown]
-    overlapping = overlapping_rows(model, closed, options, near, OVERLAP_AT_START * options.size)
+    overlapping = overlapping_rows(model, closed, options, near, options.behind)
     if not len(overlapping):
         return q, 0.0, []
     moved = taken_back_from(model, q, options, near)

@@ -14,7 +14,6 @@ from watchsim.mechanism.compile import Compiled
 from watchsim.model.records import frozen
 from watchsim.simulation.options import Options
 from watchsim.simulation.overlap_removal import kinematics_at, overlapping_rows, taken_back_from
-from watchsim.tolerances import OVERLAP_AT_START
 
 DEEPEST = (1e-6, 1e-5)  # m: how deep an overlap may be; tried in turn, since far behind a face other faces are near
 
@@ -24,7 +23,7 @@ def freed_start(compiled: Compiled, options: Options) -> NDArray[np.float64] | N
     ids = np.unique(compiled.model.near)
     model = compiled.model._replace(contacts=frozen(compiled.model.contacts[ids]))
     for near in DEEPEST:
-        if not len(overlapping_rows(model, kinematics_at(model, compiled.q), options, near, OVERLAP_AT_START * options.size)):
+        if not len(overlapping_rows(model, kinematics_at(model, compiled.q), options, near, options.behind)):
             continue
         q = taken_back_from(model, compiled.q, options, near)
         if q is not None:
