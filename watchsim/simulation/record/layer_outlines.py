@@ -32,6 +32,7 @@ class Outlines:
     faces: tuple[Array, ...]
     centre: tuple[float, float]  # of a circle around everything
     radius: float
+    smallest: float  # radius of a circle around its smallest outer ring
 
     @property
     def points(self) -> int:
@@ -54,9 +55,9 @@ def outlines_of(loops: tuple[Loop, ...], deviation: float) -> Outlines:
     faces = tuple(points for points, loop in drawn if not loop.closed)
     every = np.concatenate([np.zeros((0, 2)), *(points for points, _ in rings), *faces])
     if not len(every):
-        return Outlines(rings, faces, (0.0, 0.0), -np.inf)
-    centre, radius = _circle(every)
-    return Outlines(rings, faces, centre, radius)
+        return Outlines(rings, faces, (0.0, 0.0), -np.inf, np.inf)
+    smallest = min((_circle(points)[1] for points, hole in rings if not hole), default=np.inf)
+    return Outlines(rings, faces, *_circle(every), smallest)
 
 
 def _circle(points: Array) -> tuple[tuple[float, float], float]:
@@ -70,25 +71,34 @@ def stretches_of(outlines: Outlines, depth: float) -> tuple[Records, Array]:
     """The rings, shrunk by `depth`, in stretches of CHORDS chords (STRETCH), and the points (n, 2) that these join."""
     rings = outlines.shrunk_rings(depth) if depth > 0.0 else outlines.rings
     longest = LONGEST * outlines.radius
-    bounds, divided, begun = [], [np.zeros((0, 2))], 0
+    parts, firsts, lasts, begins, begun = [np.zeros((0, 2))], [], [], [], 0
     for ring, hole in rings:
         points = _divided(ring, longest)
-        way = np.append(0.0, np.cumsum(np.hypot(*np.diff(points, axis=0).T)))
-        first = 0
-        while first < len(points) - 1:
-            far = int(np.searchsorted(way, way[first] + 1.01 * longest, side="right")) - 1
-            last = max(first + 1, min(first + CHORDS, far))
-            bounds.append((begun + first, begun + last, int(first == 0 and not hole)))
-            first = last
+        chords = len(points) - 1
+        way = np.cumsum(np.hypot(*np.diff(points, axis=0).T)) // longest
+        first = np.flatnonzero((np.arange(chords) % CHORDS == 0) | np.append(False, way[1:] != way[:-1]))
+        firsts.append(begun + first)
+        lasts.append(begun + np.append(first[1:], chords))
+        begins.append((first == 0) & (not hole))
+        parts.append(points)
         begun += len(points)
-        divided.append(points)
-    joined = np.concatenate(divided)
-    out = records(STRETCH, len(bounds))
-    for row, (first, last, begins) in zip(out, bounds, strict=True):
-        (row.x, row.y), row.radius = _circle(joined[first : last + 1])
-        row.half = 0.5 * np.hypot(*np.diff(joined[first : last + 1], axis=0).T).max()
-        row.first, row.last, row.begins = first, last, begins
+    joined = np.concatenate(parts)
+    out = records(STRETCH, sum(map(len, firsts)))
+    if len(out):
+        out.first, out.last, out.begins = (np.concatenate(values) for values in (firsts, lasts, begins))
+        _put_circles(out, joined)
     return out, joined
+
+
+def _put_circles(stretches: Records, points: Array) -> None:
+    """Fill in the circles around stretches, and their longest chords."""
+    ends = np.column_stack([stretches.first, stretches.last + 1]).ravel()  # each second range is of no stretch
+    more = np.concatenate([points, points[-1:]])
+    low, high = np.minimum.reduceat(more, ends)[::2], np.maximum.reduceat(more, ends)[::2]
+    stretches.x, stretches.y = (0.5 * (low + high)).T
+    stretches.radius = 0.5 * np.hypot(*(high - low).T)
+    chords = np.append(np.hypot(*np.diff(points, axis=0).T), 0.0)
+    stretches.half = 0.5 * np.maximum.reduceat(chords, ends - [0, 1] * len(stretches))[::2]
 
 
 def _divided(points: Array, longest: float) -> Array:

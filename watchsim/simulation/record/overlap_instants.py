@@ -41,7 +41,7 @@ class PairOfLayers:
         self._is_second = int(self._outlines[1].points > self._outlines[0].points)
         self.still, self.mover = self._outlines[self._is_second], self._outlines[1 - self._is_second]
         self.bodies = sides[self._is_second].body, sides[1 - self._is_second].body
-        self.swallows = self.still.radius <= self.mover.radius  # can the mover hold the other within?
+        self.swallows = self.still.smallest <= self.mover.radius  # can the mover hold a ring of the other within?
         self.has_faces = bool(self.still.faces or self.mover.faces)
 
     def overlapping(self, still: Array, mover: Array, depth: float) -> Bits:

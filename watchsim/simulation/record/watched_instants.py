@@ -37,12 +37,12 @@ class Instants(NamedTuple):
 def longest_moves(rows, start, stop, columns, out_row):
     """For each of some columns the row in start … stop - 1 from which it is furthest to the next one."""
     for i in range(len(columns)):
-        out_row[i] = start
-    for row in range(start + 1, stop):
-        for i in range(len(columns)):
-            best, k = out_row[i], columns[i]
-            if abs(rows[row + 1, k] - rows[row, k]) > abs(rows[best + 1, k] - rows[best, k]):
-                out_row[i] = row
+        k, longest, place = columns[i], 0.0, start
+        for row in range(start, stop):
+            way = abs(rows[row + 1, k] - rows[row, k])
+            if way > longest:
+                longest, place = way, row
+        out_row[i] = place
 
 
 def chosen_moves(rows: Array, n: int, first: int) -> NDArray[np.int64]:
