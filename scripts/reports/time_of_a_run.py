@@ -28,7 +28,8 @@ PARTS = (  # module, name, what
     ("watchsim.analysis.summary", "summary", "summary.json"),
     ("watchsim.analysis.summary", "tables", "beats.csv, phases.csv"),
     ("watchsim.results.tables", "EventLines.add", "events.csv, made into text beside the stepping"),
-    ("watchsim.results.archive", "write_trajectory", "trajectory.npz, packed beside the rest"),
+    ("watchsim.commands.common.run_pictures", "empty_panels", "panels of the plots, made beside the stepping"),
+    ("watchsim.results.archive", "write_trajectory", "trajectory.npz, written beside the rest"),
     ("watchsim.commands.common.write_run", "_timeline", "the timeline in report.txt"),
 )
 PLOTTING = "importing matplotlib, beside the stepping"

@@ -102,7 +102,9 @@ class Kept:
             # What comes next decides about the last row.
             waits = row_stays | (np.arange(len(rows)) == len(rows) - 1)
             rows, row_stays = rows[waits], row_stays[waits]
-        self._rows.append((rows.copy(), row_stays))
+        else:
+            rows = rows.copy()
+        self._rows.append((rows, row_stays))
         self._events.append((events.copy(), event_stays))
         while self._is_decided():
             self._finish()
@@ -142,7 +144,7 @@ class Kept:
         rows, row_stays = self._rows.pop(0)
         events, event_stays = self._events.pop(0)
         if row_stays.any():
-            self._done.append(self._told(rows[row_stays]))
+            self._done.append(self._told(rows if row_stays.all() else rows[row_stays]))
         if event_stays.any():
             settled = self._events_told(events[event_stays])
             self._done_events.append([settled])
