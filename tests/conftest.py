@@ -6,7 +6,9 @@ are the folders whose made-up scenes and drawings tests in other folders use, to
 
 from __future__ import annotations
 
+import signal
 import sys
+from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -64,3 +66,14 @@ def good() -> Any:
     from made_scenes import GOOD
 
     return GOOD
+
+
+@pytest.fixture
+def heard() -> Iterator[None]:
+    """Commands hear what they are sent: who runs the tests behind something else (nohup, &) may have it switched off."""
+    ignored = [one for one in (signal.SIGINT, signal.SIGHUP) if signal.getsignal(one) is signal.SIG_IGN]
+    for one in ignored:
+        signal.signal(one, signal.SIG_DFL)
+    yield
+    for one in ignored:
+        signal.signal(one, signal.SIG_IGN)
