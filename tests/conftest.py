@@ -22,8 +22,9 @@ SHARED = ("contact", "drawing", "drawing/damaged", "scene", "simulation")
 sys.path[:0] = [str(HERE), *(str(HERE / name) for name in SHARED)]
 
 # A test says whether the program is right, not whether the machine has something else to do.
-settings.register_profile("any machine", deadline=None, suppress_health_check=[HealthCheck.too_slow])
-settings.load_profile("any machine")
+for name, examples in (("short", 25), ("nightly", 300)):
+    settings.register_profile(name, deadline=None, max_examples=examples, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("short")
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

@@ -82,14 +82,18 @@ def test_what_was_simulated_is_kept(home: str, name: str, number: int, tmp_path:
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+NOTHING_MADE = [
+    ("watchsim.cli", "main"),
+    ("watchsim.commands.common.inputs", "load_scene"),
+    ("watchsim.simulation.runner", "Run.warm_up"),
+]
+
+
 @pytest.mark.parametrize(
-    ("home", "name"),
-    [
-        ("watchsim.cli", "main"),
-        ("watchsim.commands.common.inputs", "load_scene"),
-        ("watchsim.simulation.runner", "Run.warm_up"),
-    ],
+    ("home", "name", "number"),
+    [(*place, signal.SIGINT) for place in NOTHING_MADE]
+    + [(*NOTHING_MADE[1], signal.SIGTERM)]
+    + [pytest.param(*place, signal.SIGTERM, marks=pytest.mark.slow) for place in NOTHING_MADE[::2]],
 )
 def test_where_nothing_was_made_it_ends_at_once(home: str, name: str, number: int, tmp_path: Path) -> None:
     done = stopped(["run", str(LEVER), "--duration", "0.3 s", "-o", str(tmp_path / "out")], home, name, number)
