@@ -50,7 +50,10 @@ AREAS = {  # name -> (files, tests)
             "tests/drawing/test_profile.py",
         ),
     ),
-    "scene": (("scene/**/*.py", "mechanism/*.py", "units.py"), ("tests/scene", "tests/mechanism", "tests/test_units.py")),
+    "scene": (
+        ("scene/**/*.py", "mechanism/*.py", "units.py"),
+        ("tests/scene", "tests/mechanism", "tests/test_units.py", "tests/simulation/bound"),
+    ),
     "analysis": (
         ("analysis/**/*.py", "results/*.py", "verification/**/*.py"),
         ("tests/analysis", "tests/results", "tests/verification", "tests/render/figures/test_tape_plot.py"),
