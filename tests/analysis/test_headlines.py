@@ -14,8 +14,8 @@ from watchsim.scene.scene import Scene
 from watchsim.simulation.methods import MOREAU
 from watchsim.simulation.stops import Stop
 
-SCENE = Scene("Made up", tuple(Body(name, motion) for name, motion in
-              (("disc", "free"), ("rack", "slide"), ("arm", "pivot"), ("frame", "fixed"))))  # fmt: skip
+MOTIONS = {"disc": "free", "rack": "slide", "arm": "pivot", "frame": "fixed"}
+SCENE = Scene("Made up", tuple(Body(*each) for each in MOTIONS.items()))
 STATE = {"x_m_error": 0.0, "y_m_error": 0.0, "angle_rad_error": 0.0}
 NUMBERS: dict[str, Any] = {
     **{"verdict": "ticks", "verdict_message": "the watch ticks", "timing_message": "no more is known"},
@@ -50,6 +50,7 @@ NUMBERS: dict[str, Any] = {
         *({"key": key, "ok": None, "message": "not checked: changed by --set"} for key in ("x", "y")),
     ],
 }
+SILENT = {**dict.fromkeys(NUMBERS["timegrapher"]), "message": "nothing is heard"}
 LINES = """\
 Made up
   verdict      the watch ticks
@@ -116,12 +117,12 @@ def test_every_line(monkeypatch: pytest.MonkeyPatch) -> None:
         ({"counts": {"lcp": 1}, "lcp_failures": 0}, "1 contact problem, the worst left"),
         ({"realtime_factor": 0.0}, "speed        not measured"),
         ({"compile": 0.9}, "20 × real time, 0.5 s\n"),
-        ({"overlap": {"looks": 1, "between": None, "resolution_m": 2e-6}}, "1 check of the outlines themselves found no overlap"),
+        ({"overlap": {"looks": 1, "between": None, "resolution_m": 2e-6}}, "1 check of the outlines themselves found no"),
         ({"error_bars": {"complete": False}}, "none: the more exact run did not finish"),
         ({"simulated_s": 0.0}, "impacts      1234; 4321 events"),
         ({"stop_message": ""}, "end          " + Stop.DURATION.sentence),
-        ({"timegrapher": {**dict.fromkeys(NUMBERS["timegrapher"]), "message": "nothing is heard"}}, "timegrapher  nothing is heard"),
+        ({"timegrapher": SILENT}, "timegrapher  nothing is heard"),
     ],
-)  # fmt: skip
+)
 def test_otherwise(monkeypatch: pytest.MonkeyPatch, changes: dict[str, object], line: str) -> None:
     assert line in "\n".join(lines(monkeypatch, **changes)) + "\n"
