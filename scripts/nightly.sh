@@ -12,7 +12,7 @@ python3 -m venv "$environment"
 "$environment/bin/pip" install --quiet '.[test]'
 
 echo "== all tests"
-"$environment/bin/pytest" -n auto --dist worksteal -m "slow or not slow" --durations=20
+"$environment/bin/pytest" -n auto --dist worksteal -m "slow or not slow" --hypothesis-profile=nightly --durations=20
 
 echo "== small faults planted in the code"
 "$environment/bin/python" scripts/checks/plant_faults.py --count 60 --minutes 240 --output "$scratch/faults.jsonl"

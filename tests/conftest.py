@@ -6,7 +6,10 @@ are the folders whose made-up scenes and drawings tests in other folders use, to
 
 from __future__ import annotations
 
+import gc
+import signal
 import sys
+from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -15,13 +18,15 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 HERE = Path(__file__).resolve().parent
+YOUNG = 100_000  # new objects until garbage is looked for: Python's 700 are for small programs
 UNCOMPILED = ("construction", "drawing", "geometry", "storage")  # folders
 SHARED = ("contact", "drawing", "drawing/damaged", "scene", "simulation")
 sys.path[:0] = [str(HERE), *(str(HERE / name) for name in SHARED)]
 
 # A test says whether the program is right, not whether the machine has something else to do.
-settings.register_profile("any machine", deadline=None, suppress_health_check=[HealthCheck.too_slow])
-settings.load_profile("any machine")
+for name, examples in (("short", 25), ("nightly", 300)):
+    settings.register_profile(name, deadline=None, max_examples=examples, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("short")
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
@@ -41,6 +46,13 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         first = list(islice(plain, share))
         dealt += [*first, *islice(others, max(0, part - len(first)))]
     items[:] = [*dealt, *plain, *others]
+
+
+def pytest_collection_finish() -> None:
+    """What is loaded by now stays: looking through it for garbage again and again took an eighth of the processor time."""
+    gc.collect()
+    gc.freeze()
+    gc.set_threshold(YOUNG)
 
 
 def pytest_report_header() -> str:
@@ -64,3 +76,14 @@ def good() -> Any:
     from made_scenes import GOOD
 
     return GOOD
+
+
+@pytest.fixture
+def heard() -> Iterator[None]:
+    """Commands hear what they are sent: who runs the tests behind something else (nohup, &) may have it switched off."""
+    ignored = [one for one in (signal.SIGINT, signal.SIGHUP) if signal.getsignal(one) is signal.SIG_IGN]
+    for one in ignored:
+        signal.signal(one, signal.SIG_DFL)
+    yield
+    for one in ignored:
+        signal.signal(one, signal.SIG_IGN)

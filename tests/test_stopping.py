@@ -7,7 +7,6 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -17,7 +16,7 @@ from watchsim.profiles_path import profiles_dir
 from watchsim.results.read_results import read_results
 
 LEVER = profiles_dir() / "bench_lever"
-pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="signals of Unix")
+pytestmark = [pytest.mark.skipif(sys.platform == "win32", reason="signals of Unix"), pytest.mark.usefixtures("heard")]
 
 # A process of the command line in which `moment` is a function of the package before whose call the signal comes.
 CODE = """
@@ -42,17 +41,6 @@ setattr(owner, last, watched)
 from watchsim.process import process
 process()
 """
-
-
-@pytest.fixture(autouse=True)
-def heard() -> Iterator[None]:
-    """Commands hear what they are sent: who runs the tests behind something else (nohup, &) may have it switched off."""
-    ignored = [one for one in (signal.SIGINT, signal.SIGHUP) if signal.getsignal(one) is signal.SIG_IGN]
-    for one in ignored:
-        signal.signal(one, signal.SIG_DFL)
-    yield
-    for one in ignored:
-        signal.signal(one, signal.SIG_IGN)
 
 
 def stopped(arguments: list[str], home: str, name: str, number: int, times: int = 1) -> subprocess.CompletedProcess[str]:
@@ -84,7 +72,7 @@ KEPT = [
 )
 def test_what_was_simulated_is_kept(home: str, name: str, number: int, tmp_path: Path) -> None:
     folder = tmp_path / "out"
-    done = stopped(["run", str(LEVER), "--duration", "0.3 s", "-o", str(folder)], home, name, number)
+    done = stopped(["run", str(LEVER), "--duration", "0.3 s", "--no-plots", "-o", str(folder)], home, name, number)
     assert done.returncode == 128 + number, done.stderr
     assert "Traceback" not in done.stderr
     run = read_results(folder)
@@ -94,14 +82,18 @@ def test_what_was_simulated_is_kept(home: str, name: str, number: int, tmp_path:
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+NOTHING_MADE = [
+    ("watchsim.cli", "main"),
+    ("watchsim.commands.common.inputs", "load_scene"),
+    ("watchsim.simulation.runner", "Run.warm_up"),
+]
+
+
 @pytest.mark.parametrize(
-    ("home", "name"),
-    [
-        ("watchsim.cli", "main"),
-        ("watchsim.commands.common.inputs", "load_scene"),
-        ("watchsim.simulation.runner", "Run.warm_up"),
-    ],
+    ("home", "name", "number"),
+    [(*place, signal.SIGINT) for place in NOTHING_MADE]
+    + [(*NOTHING_MADE[1], signal.SIGTERM)]
+    + [pytest.param(*place, signal.SIGTERM, marks=pytest.mark.slow) for place in NOTHING_MADE[::2]],
 )
 def test_where_nothing_was_made_it_ends_at_once(home: str, name: str, number: int, tmp_path: Path) -> None:
     done = stopped(["run", str(LEVER), "--duration", "0.3 s", "-o", str(tmp_path / "out")], home, name, number)

@@ -43,9 +43,17 @@ AREAS = {  # name -> (files, tests)
     "reader": (("drawing/**/*.py",), ("tests/drawing",)),
     "geometry": (
         ("geometry/**/*.py",),
-        ("tests/geometry", "tests/drawing/chaining/test_chain.py", "tests/drawing/curves/test_splines.py"),
+        (
+            "tests/geometry",
+            "tests/drawing/chaining/test_chain.py",
+            "tests/drawing/curves/test_splines.py",
+            "tests/drawing/test_profile.py",
+        ),
     ),
-    "scene": (("scene/**/*.py", "mechanism/*.py", "units.py"), ("tests/scene", "tests/mechanism", "tests/test_units.py")),
+    "scene": (
+        ("scene/**/*.py", "mechanism/*.py", "units.py"),
+        ("tests/scene", "tests/mechanism", "tests/test_units.py", "tests/simulation/bound"),
+    ),
     "analysis": (
         ("analysis/**/*.py", "results/*.py", "verification/**/*.py"),
         ("tests/analysis", "tests/results", "tests/verification", "tests/render/figures/test_tape_plot.py"),

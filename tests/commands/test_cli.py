@@ -121,7 +121,7 @@ def test_run_writes_a_results_folder_and_keeps_one_that_exists(tmp_path: Path, c
 
 def test_plot_and_movie_of_a_results_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = tmp_path / "out"
-    main(["run", str(LEVER), "--duration", "0.1 s", "-o", str(folder)])
+    main(["run", str(LEVER), "--duration", "0.1 s", "--no-plots", "-o", str(folder)])
     options = ["--bodies", "lever", "--window", "0.055 s:0.07 s", "--format", "png,svg", "-o", str(tmp_path / "beat")]
     assert main(["plot", str(folder), *options]) == 0
     assert (tmp_path / "beat.png").exists() and (tmp_path / "beat.svg").exists()
@@ -176,7 +176,7 @@ def test_interrupt_keeps_what_was_simulated(tmp_path: Path, monkeypatch: pytest.
 
     monkeypatch.setattr(command, "Progress", Impatient)
     folder = tmp_path / "out"
-    assert main(["run", str(LEVER), "--duration", "3600 s", "-o", str(folder)]) == 130
+    assert main(["run", str(LEVER), "--duration", "3600 s", "--no-plots", "-o", str(folder)]) == 130
     kept = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     assert 0.1 < kept["simulated_s"] < 3600.0
 
@@ -184,11 +184,12 @@ def test_interrupt_keeps_what_was_simulated(tmp_path: Path, monkeypatch: pytest.
 def test_a_resumed_run_is_the_run_that_never_stopped(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """0.2 s, then on to 0.4 s in the same folder: rows and events as of 0.4 s at once; another scene is refused."""
     half, whole = tmp_path / "half", tmp_path / "whole"
-    assert main(["run", str(LEVER), "--duration", "0.2 s", "-o", str(half)]) == 0
-    assert main(["run", str(LEVER), "--set", "torques.0.value=-5 µN·m", "--resume", str(half), "--duration", "0.4 s"]) == 2
+    run = ["run", str(LEVER), "--no-plots"]
+    assert main([*run, "--duration", "0.2 s", "-o", str(half)]) == 0
+    assert main([*run, "--set", "torques.0.value=-5 µN·m", "--resume", str(half), "--duration", "0.4 s"]) == 2
     assert "another scene" in capsys.readouterr().err
-    assert main(["run", str(LEVER), "--resume", str(half), "--duration", "0.4 s"]) == 0
-    assert main(["run", str(LEVER), "--duration", "0.4 s", "-o", str(whole)]) == 0
+    assert main([*run, "--resume", str(half), "--duration", "0.4 s"]) == 0
+    assert main([*run, "--duration", "0.4 s", "-o", str(whole)]) == 0
     assert (half / "events.csv").read_bytes() == (whole / "events.csv").read_bytes()
     one, other = (read_results(folder) for folder in (half, whole))
     assert np.array_equal(one.t, other.t) and np.array_equal(one.q, other.q)
@@ -199,10 +200,8 @@ def test_moreau_and_error_bars(tmp_path: Path, capsys: pytest.CaptureFixture[str
     incline = str(ROOT / "profiles" / "incline")
     truth = 1.14671466467341916  # x after 1 s, see the scene file
     for options in (["--method", "moreau", "--step", "100 µs"], []):
-        code = main(
-            ["run", incline, "--duration", "1 s", "--error-bars", "--json", "--force", "-o", str(tmp_path / "r"), *options]
-        )
-        assert code == 0
+        run = ["run", incline, "--duration", "1 s", "--error-bars", "--json", "--no-plots", "--force", *options]
+        assert main([*run, "-o", str(tmp_path / "r")]) == 0
         told = json.loads(capsys.readouterr().out)
         disc = told["bodies"]["disc"]
         assert told["error_bars"]["complete"] is True

@@ -46,7 +46,7 @@ def test_a_run_in_files_is_the_run_in_memory(monkeypatch: pytest.MonkeyPatch, tm
         if name == "files":
             monkeypatch.setattr("watchsim.storage.columns.MOST", 1e4)
         folder.parent.mkdir()
-        assert main(["run", SCENE, "--duration", "1 s", "--record", "all", "-o", str(folder)]) == FINE
+        assert main(["run", SCENE, "--duration", "1 s", "--record", "all", "--no-plots", "-o", str(folder)]) == FINE
         assert main(["run", SCENE, "--duration", "1.5 s", "--resume", str(folder)]) == FINE
         assert [path.name for path in folder.parent.iterdir()] == ["run"]
     runs = [read_results(folder) for folder in folders.values()]
@@ -108,6 +108,7 @@ def test_windows_of_any_kind_cost_no_run(capsys, tmp_path) -> None:
     assert main([*run, *two]) == FINE
     assert {path.name for path in (tmp_path / "two" / "plots").iterdir()} == {"kinematics.png", "last_beats.png"}
     assert last_beats(read_results(tmp_path / "two")) == (pytest.approx(0.3), pytest.approx(0.4))
+    run.append("--no-plots")
     assert main([*run, "--record", "0.21 s:0.2101 s", "-o", str(tmp_path / "short")]) == FINE
     kept = read_results(tmp_path / "short").t
     assert len(kept) < 30 and kept[0] <= 0.21 and kept[-1] >= 0.2101

@@ -76,7 +76,7 @@ def test_rates_directions_and_bar_terms(arrangement: tuple[str, str, bool]) -> N
     n, free = len(compiled.q), uncarried(arrangement)
     names = [body.name for body in scene.bodies if body.name in {side.body for side in scene.contacts[0].sides}]
 
-    @settings(max_examples=12, deadline=None)
+    @settings(max_examples=12)
     @given(st.integers(0, 10000), numbers)
     def check(choice: int, values: list[float]) -> None:
         k = choice % len(compiled.model.contacts)

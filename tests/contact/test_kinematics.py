@@ -25,7 +25,7 @@ BAND = 1e-6  # m: contacts this close to the end of a primitive are not asked wh
 
 _normal_gap = callable_kernel(normal_gap)
 motions = st.lists(st.floats(-3.0, 3.0), min_size=12, max_size=12)
-checked = settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
+checked = settings(suppress_health_check=[HealthCheck.filter_too_much])
 
 
 def quotient(function, x: float = 0.0):
@@ -149,7 +149,7 @@ def test_margin_says_whether_the_contact_lies_inside_both_primitives(kind: str) 
     """A point just off the surface, along the normal, is nearest to the contact point exactly when that is inside."""
     off = 1e-2
 
-    @settings(checked, max_examples=60)
+    @checked
     @given(st.sampled_from(PAIRS), st.integers(0, 1000), motions)
     def check(pair: tuple[str, str], choice: int, numbers: list[float]) -> None:
         scene, compiled = two_bodies(*pair)
@@ -172,7 +172,7 @@ def test_margin_says_whether_the_contact_lies_inside_both_primitives(kind: str) 
     check()
 
 
-@settings(checked, max_examples=60)
+@checked
 @given(motions)
 def test_smallest_valid_gap_is_the_distance_of_the_bodies(numbers: list[float]) -> None:
     scene, compiled = two_bodies("fixed", "free")

@@ -23,17 +23,16 @@ STEPS = 40  # of the search for a pose that touches
 
 
 class Looks(NamedTuple):
-    """Every contact of a compiled scene at one pose."""
+    """Contacts of a compiled scene at one pose."""
 
     gap: Array  # m
     inside: Array  # rad or m: how far inside both primitives, negative outside
 
 
-def looks(scene: Scene, compiled: Compiled, q: Array) -> Looks:
-    """Gaps and margins of all contacts at q."""
-    poses = _poses(scene, compiled, q)
-    a = compiled.model.primitives[compiled.model.contacts.a]
-    b = compiled.model.primitives[compiled.model.contacts.b]
+def looks(scene: Scene, compiled: Compiled, q: Array, those: slice = slice(None)) -> Looks:
+    """Gaps and margins of those contacts at q."""
+    poses, contacts = _poses(scene, compiled, q), compiled.model.contacts[those]
+    a, b = compiled.model.primitives[contacts.a], compiled.model.primitives[contacts.b]
     centre, start = _world(poses[a.body], a.x, a.y), _world(poses[b.body], b.x, b.y)
     turn_a, turn_b = poses[a.body, 2], poses[b.body, 2]
     offset = centre - start
@@ -71,20 +70,24 @@ def touches(scene: Scene, compiled: Compiled, rng: np.random.Generator, poses: I
 
 def _closed(scene: Scene, compiled: Compiled, k: int, q: Array, i: int) -> Array | None:
     """The pose at which contact k touches when coordinate i alone is changed; None where Newton's method finds none."""
-    q = q.copy()
+    q, alone = q.copy(), slice(k, k + 1)
+
+    def gap_at(q: Array) -> float:
+        return float(looks(scene, compiled, q, alone).gap[0])
+
     for _ in range(STEPS):
-        gap = looks(scene, compiled, q).gap[k]
+        gap = gap_at(q)
         if abs(gap) < 1e-12:
             break
         h = 1e-6
         step = np.zeros(len(q))
         step[i] = h
-        slope = (looks(scene, compiled, q + step).gap[k] - looks(scene, compiled, q - step).gap[k]) / (2.0 * h)
+        slope = (gap_at(q + step) - gap_at(q - step)) / (2.0 * h)
         if abs(slope) < 1e-3:
             return None
         q[i] -= np.clip(gap / slope, -0.3, 0.3)
-    last = looks(scene, compiled, q)
-    return q if abs(last.gap[k]) < 1e-9 and last.inside[k] >= 0.0 else None
+    last = looks(scene, compiled, q, alone)
+    return q if abs(last.gap[0]) < 1e-9 and last.inside[0] >= 0.0 else None
 
 
 def _world(pose: Array, x: Array, y: Array) -> NDArray[np.complex128]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from watchsim.drawing.bores import lies
@@ -89,7 +89,6 @@ def test_no_bores_need_no_plate() -> None:
     assert lies([disc(0, 0, 1)], [])[0].depth == 0
 
 
-@settings(deadline=None)
 @given(st.floats(-7, 7), st.floats(-7, 7), st.floats(0.05, 6))
 def test_circles_in_a_ring_are_sorted_by_their_distances(x: float, y: float, r: float) -> None:
     """Against the plain inequalities of circles, for bores that do not just touch."""

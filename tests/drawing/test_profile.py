@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from made_outlines import parts
 from same_outlines import compare
 from trimesh.path import Path2D, entities
@@ -19,7 +19,6 @@ from watchsim.geometry.primitives import TURN, Arc, Line
 ROOT = Path(__file__).resolve().parents[2]
 
 
-@settings(deadline=None, max_examples=60)
 @given(parts())
 def test_random_outlines_come_back(loops: tuple[Loop, ...]) -> None:
     """Centres come from three points: a flat arc has its ends to 1e-12, its centre as well as they fix it."""

@@ -11,7 +11,7 @@ from pathlib import Path
 import dxf_text as d
 import pytest
 import svg_text as s
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from watchsim.drawing.drawing import Drawing
@@ -89,7 +89,6 @@ def kinds(drawing: Drawing) -> list[list[str]]:
     return sorted(sorted(type(edge).__name__ for edge in loop.edges) for loop in drawing.loops)
 
 
-@settings(deadline=None, max_examples=60)
 @given(outlines(), holes(), st.randoms(use_true_random=False), st.floats(-3.2, 3.2), st.floats(0.1, 20.0), st.booleans())
 def test_the_same_outline_however_it_is_written_turned_mirrored_and_scaled(
     outer: list[Corner], inner: list[Corner], rng: random.Random, angle: float, scale: float, mirrored: bool
@@ -120,7 +119,6 @@ def test_the_same_outline_however_it_is_written_turned_mirrored_and_scaled(
         assert abs(found_centroid - where) <= SAME * (abs(where) + 3.0 * by), name
 
 
-@settings(deadline=None, max_examples=60)
 @given(outlines(), holes(), st.floats(-180.0, 180.0), st.booleans())
 def test_a_block_turned_and_mirrored_by_its_insert_is_the_same(
     outer: list[Corner], inner: list[Corner], degrees: float, mirrored: bool
@@ -146,7 +144,6 @@ def as_path(corners: list[Corner]) -> str:
     return " ".join([*words, "Z"])
 
 
-@settings(deadline=None, max_examples=60)
 @given(outlines(), st.floats(-180.0, 180.0), st.floats(0.1, 20.0), st.booleans())
 def test_an_svg_path_turned_mirrored_and_scaled_by_its_transform_is_the_same(
     outer: list[Corner], degrees: float, scale: float, mirrored: bool
@@ -172,7 +169,6 @@ def test_an_svg_path_turned_mirrored_and_scaled_by_its_transform_is_the_same(
     assert abs(found_centroid - where) <= SAME * (abs(where) + 3.0 * scale)
 
 
-@settings(deadline=None, max_examples=40)
 @given(outlines())
 def test_area_and_moment_agree_with_a_fine_polygon(outer: list[Corner]) -> None:
     """Chords of the arcs, in complex numbers: the error falls with the square of their number."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import fields, replace
 
@@ -9,6 +10,7 @@ import measure_lever
 import pytest
 from escapement.made import mirrored_scene, renamed_scene, swiss_scene, turned_scene
 
+from watchsim.construction.swiss_lever.swiss_lever_points import Swiss
 from watchsim.construction.swiss_lever.swiss_lever_roller import banking
 from watchsim.escapement.function_report import text
 from watchsim.escapement.measure import Function, measure
@@ -54,11 +56,17 @@ def numbers(function: Function) -> dict[str, float]:
     return found | {"pin_shake": degrees(function.fork.pin_shake)}
 
 
+@functools.cache
+def made(name: str) -> tuple[Swiss, Function]:
+    """A design, and what is measured of its drawing."""
+    scene, design = swiss_scene(**DESIGNS[name])
+    return design, measure(scene)
+
+
 @pytest.mark.parametrize("name", DESIGNS)
 def test_measured_is_what_was_chosen(name):
     """The drawing's decimals move what they make by some 1e-8°."""
-    scene, design = swiss_scene(**DESIGNS[name])
-    function = measure(scene)
+    design, function = made(name)
     assert function.missing == () and function.teeth == design.teeth
     assert function.pallets and function.banks and function.fork and function.safety
     assert math.degrees(function.banks[0] - function.banks[1]) == pytest.approx(2.0 * design.bank, abs=1e-6)
@@ -81,8 +89,7 @@ def test_measured_is_what_was_chosen(name):
 @pytest.mark.parametrize("name", DESIGNS)
 def test_draw_and_recoil_follow_from_the_construction(name):
     """The face leans by the draw from the radius of the wheel at the corner; the toe stands beside that corner."""
-    scene, design = swiss_scene(**DESIGNS[name])
-    function = measure(scene)
+    design, function = made(name)
     assert function.pallets
     for side, one in zip((1, -1), function.pallets, strict=True):
         # At the corner the line to the lever's pivot is square to the radius: the face has turned with the lever since.

@@ -48,9 +48,10 @@ def test_each_broken_rule_is_found(code):
 def test_friction_decides_about_draw():
     """The least draw is 11° at the exit stone's corner: it holds up to a coefficient of tan 11°."""
     scene = load(SWISS)
-    limit = math.tan(math.radians(11.0))
+    limit, function = math.tan(math.radians(11.0)), measure(scene)
     for friction, broken in ((limit - 1e-4, False), (limit + 1e-4, True)):
-        assert ("draw" in codes(scene.set("contacts.0.friction", friction))) is broken
+        found = judgements(scene.set("contacts.0.friction", friction), function)
+        assert ("draw" in {one.code for one in found}) is broken
 
 
 def test_lift_angle_and_beat():

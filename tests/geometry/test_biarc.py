@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from watchsim.geometry.fitting.biarc import arc_from, arcs_from, biarc_joints
@@ -20,7 +20,6 @@ def test_arc_from_semicircle_and_line() -> None:
     assert isinstance(arc_from((0.0, 0.0), (1.0, 0.0), (2.0, 0.0)), Line)
 
 
-@settings(deadline=None, max_examples=80)
 @given(st.floats(-1.2, 1.2), st.floats(-1.2, 1.2), st.floats(1e-6, 10.0), st.floats(-3.2, 3.2), st.floats(0.2, 5.0))
 def test_biarc_meets_points_and_tangents(u: float, v: float, length: float, turn: float, ratio: float) -> None:
     p, q = np.array([[0.3, -0.2]]), np.array([[0.3 + length * math.cos(turn), -0.2 + length * math.sin(turn)]])

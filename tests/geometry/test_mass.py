@@ -189,7 +189,6 @@ def arc_between(a: Point, b: Point, sweep: float) -> Arc:
     return Arc(cx, cy, math.hypot(a[0] - cx, a[1] - cy), math.atan2(a[1] - cy, a[0] - cx), sweep)
 
 
-@settings(deadline=None, max_examples=60)
 @given(outlines(), st.floats(-7, 7), st.floats(-0.1, 0.1), st.floats(-0.1, 0.1))
 def test_rigid_motion_changes_nothing_but_the_place(loop: Loop, angle: float, dx: float, dy: float) -> None:
     before, after = section([loop]), section([loop.moved(angle, (dx, dy))])
@@ -202,7 +201,6 @@ def test_rigid_motion_changes_nothing_but_the_place(loop: Loop, angle: float, dx
     assert after.about(after.centroid).polar == pytest.approx(own, rel=1e-10, abs=0.0)
 
 
-@settings(deadline=None, max_examples=40)
 @given(outlines())
 def test_reversed_counts_negative(loop: Loop) -> None:
     one, other = section([loop]), section([loop.reversed()])
@@ -211,7 +209,7 @@ def test_reversed_counts_negative(loop: Loop) -> None:
     assert other.about(p).polar == pytest.approx(-one.about(p).polar, rel=1e-11, abs=0.0)
 
 
-@settings(deadline=None, max_examples=25)
+@settings(max_examples=25)
 @given(outlines())
 def test_against_fine_polygon(loop: Loop) -> None:
     """Independent of the closed forms: sampled outline, Gauss's formula in numpy."""
@@ -222,7 +220,6 @@ def test_against_fine_polygon(loop: Loop) -> None:
     assert area(loop) == pytest.approx(gauss, rel=2e-6, abs=0.0)
 
 
-@settings(deadline=None, max_examples=40)
 @given(outlines(), st.floats(-3.0, 3.0), st.floats(-0.01, 0.01))
 def test_mirror_images_have_the_same_moments(loop: Loop, angle: float, x: float) -> None:
     """Across any line, with the material still on the left; the image of the image is the outline itself."""

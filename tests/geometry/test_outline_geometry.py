@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from watchsim.geometry.edge_table import table_of
@@ -33,7 +33,6 @@ def test_extents_of_a_circle_and_of_arcs() -> None:
     assert extents([]) is None
 
 
-@settings(deadline=None, max_examples=60)
 @given(st.floats(-9, 9), st.floats(-TURN, TURN).filter(lambda s: abs(s) > 1e-3))
 def test_extents_hold_every_point_and_no_more(start: float, sweep: float) -> None:
     arc = Arc(0.5, -0.25, 2.0, start, sweep)
@@ -55,7 +54,6 @@ def test_inside_a_circle_to_the_last_digits() -> None:
     assert winding(RING.reversed(), (1.0, 2.0)) == -1
 
 
-@settings(deadline=None, max_examples=150)
 @given(st.floats(-2, 4), st.floats(-2, 2))
 def test_inside_agrees_with_a_fine_polygon(x: float, y: float) -> None:
     shapely = pytest.importorskip("shapely")

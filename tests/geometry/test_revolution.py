@@ -8,7 +8,7 @@ import mpmath
 import numpy as np
 import pytest
 import trimesh
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from watchsim.geometry.loop import Loop
@@ -116,7 +116,6 @@ def test_trimesh_solid_converges_to_it_with_the_square_of_the_step() -> None:
     assert orders == pytest.approx(2.0, abs=0.01)
 
 
-@settings(deadline=None, max_examples=40)
 @given(st.floats(-3.0, 3.0), st.floats(-0.05, 0.05), st.floats(-0.05, 0.05), st.booleans())
 def test_the_solid_does_not_depend_on_where_it_is_drawn(angle: float, dx: float, dy: float, below: bool) -> None:
     drum = Loop((Line(-1e-3, 1e-3, 1e-3, 1e-3), Arc(0.0, 1e-3, 1e-3, 0.0, math.pi)))

@@ -111,6 +111,7 @@ def test_drawn_layers_belong_to_their_body_only(desk: Path) -> None:
         ('["WHEEL_ARMS"]', '["TEETH"]', "this layer can touch, and is drawn anyway"),
         ('["WHEEL_ARMS"]', '["MARK"]', "there is no closed outline on this layer"),
         ("hole near [1.1 mm, 2 mm]", "hole near [1.1, 2]", 'write pivot = "hole near [1.1 mm, 2 mm]"'),
+        ("hole near [1.1 mm, 2 mm]", "hole near [1.1 mm, 2]", 'write pivot = "hole near [1.1 mm, 2 mm]"'),
         ("hole near [1.1 mm, 2 mm]", "rivet near [1 mm, 2 mm]", "write hole, circle or point near a place"),
         ("hole near [1.1 mm, 2 mm]", "hole near 1 mm", "write hole, circle or point near a place"),
         ("hole near [1.1 mm, 2 mm]", "circle near [1.2 mm, 5.5 mm]", "are about equally near"),

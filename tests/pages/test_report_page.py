@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from render.fake_runs import disc_run, watch_run
 from scipy.interpolate import BPoly
@@ -204,7 +204,6 @@ def test_too_much_motion_is_refused_or_cut(monkeypatch: pytest.MonkeyPatch, leve
     assert end == pytest.approx(0.6) and 0.0 < end - start < 0.6
 
 
-@settings(max_examples=60)
 @given(st.lists(st.floats(-1.0, 1.0), min_size=0, max_size=60), st.sets(st.integers(0, 59)))
 def test_thinning_keeps_ends_and_fits(values: list[float], forced: set[int]) -> None:
     y = np.cumsum(values)

@@ -17,7 +17,7 @@ BENCH = ws.profiles_dir() / "bench_lever"
 
 @pytest.fixture(scope="module")
 def found():
-    return ws.sensitivity(BENCH, workers=2)
+    return ws.sensitivity(BENCH)
 
 
 def effects(found, column):

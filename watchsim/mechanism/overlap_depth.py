@@ -42,7 +42,7 @@ def regions_depth(a: Any, b: Any, allowed: float) -> tuple[float, Point]:
         return 0.0, line.coords[0]
     points = np.concatenate([shapely.get_coordinates(part) for part in parts])
     vertices = shapely.points(points)
-    depths = np.maximum(shapely.distance(vertices, a.boundary), shapely.distance(vertices, b.boundary))
+    depths = np.maximum(_from_boundary(vertices, a), _from_boundary(vertices, b))
     worst, widest = int(np.argmax(depths)), max(parts, key=_width)
     if _width(widest) > depths[worst]:
         return _width(widest), widest.representative_point().coords[0]
@@ -56,9 +56,21 @@ def common_parts(a: Any, b: Any, allowed: float) -> list[Any]:
     """
     import shapely
 
-    parts = [part for part in shapely.get_parts(shapely.intersection(a, b)) if part.area > 0.0]
-    inside = [part.representative_point() for part in parts]
-    return [part for part, p in zip(parts, inside, strict=True) if max(a.distance(p), b.distance(p)) <= allowed]
+    parts = np.array([part for part in shapely.get_parts(shapely.intersection(a, b)) if part.area > 0.0], object)
+    inside = shapely.point_on_surface(parts)
+    for region in (a, b):
+        shapely.prepare(region)
+    return list(parts[shapely.dwithin(a, inside, allowed) & shapely.dwithin(b, inside, allowed)])
+
+
+def _from_boundary(points: Any, region: Any) -> Floats:
+    """Distances of points from the boundary of a region; by an index, for outlines that coincide have thousands in common."""
+    import shapely
+
+    ends, ring = shapely.get_coordinates(shapely.get_parts(region.boundary), return_index=True)
+    edges = shapely.linestrings(np.stack([ends[:-1], ends[1:]], axis=1)[ring[:-1] == ring[1:]])
+    found: tuple[Any, Floats] = shapely.STRtree(edges).query_nearest(points, return_distance=True, all_matches=False)
+    return found[1]
 
 
 def _width(region: Any) -> float:

@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 import dxf_text as d
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from watchsim.drawing.chaining.chain import chain
@@ -264,7 +264,6 @@ def outlines(draw: st.DrawFn) -> list[Edge]:
     return edges
 
 
-@settings(deadline=None, max_examples=60)
 @given(outlines(), st.randoms(use_true_random=False), st.floats(-4, 4))
 def test_any_order_and_direction_gives_the_same_loop(edges: list[Edge], rng: random.Random, angle: float) -> None:
     shuffled = [edge if rng.random() < 0.5 else edge.reversed() for edge in Loop(tuple(edges)).moved(angle, (2e-3, 1e-3)).edges]

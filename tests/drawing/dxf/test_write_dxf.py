@@ -26,7 +26,7 @@ def read_back(text: str, folder: Path):
     return read(path)
 
 
-@settings(deadline=None, max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(parts())
 def test_random_outlines_come_back_the_same(tmp_path: Path, loops: tuple[Loop, ...]) -> None:
     again = read_back(dxf_text(loops), tmp_path)

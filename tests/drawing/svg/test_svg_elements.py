@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import svg_text as s
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from watchsim.drawing.drawing import Drawing
@@ -147,7 +147,6 @@ def written(functions: list[tuple]) -> str:
     return " ".join(f"{name}({','.join(map(str, numbers))})" for name, *numbers in functions)
 
 
-@settings(max_examples=150, deadline=None)
 @given(st.lists(FUNCTION, max_size=5))
 def test_transformations_are_products_of_matrices(functions: list[tuple]) -> None:
     truth = np.eye(3)
@@ -158,7 +157,6 @@ def test_transformations_are_products_of_matrices(functions: list[tuple]) -> Non
     assert columns == pytest.approx(truth[:2], abs=1e-11 * max(1.0, np.max(np.abs(truth))))
 
 
-@settings(max_examples=60, deadline=None)
 @given(st.lists(st.lists(FUNCTION, max_size=2), min_size=1, max_size=4))
 def test_groups_nest(levels: list[list[tuple]]) -> None:
     from watchsim.drawing.svg.svg_file import read_svg
@@ -216,7 +214,6 @@ def test_a_view_box_of_the_same_size_scales_by_one_exactly() -> None:
 TOOTH = '<path id="tooth" d="M1 2L30 4 20 25z"/>'
 
 
-@settings(max_examples=40, deadline=None)
 @given(st.lists(FUNCTION, max_size=2), NUMBER, NUMBER)
 def test_use_is_a_translation_inside_its_transformation(functions: list[tuple], x: float, y: float) -> None:
     from watchsim.drawing.svg.svg_file import read_svg

@@ -86,7 +86,6 @@ def samples(shape: Shape) -> list[tuple[float, float]]:
     return [point[:2] for point in shape.points]
 
 
-@settings(max_examples=200, deadline=None)
 @given(commands())
 def test_every_way_of_writing_draws_the_same(path: list[tuple]) -> None:
     plain = read_path(written(path, False, False))
@@ -104,7 +103,6 @@ def test_every_way_of_writing_draws_the_same(path: list[tuple]) -> None:
             assert abs(len(one) - len(two)) <= 2 * sum(kind == "Z" for kind, *_ in path), text
 
 
-@settings(max_examples=60, deadline=None)
 @given(commands(), st.booleans())
 def test_edges_lie_on_the_curve_and_the_curve_on_edges(path: list[tuple], compact: bool) -> None:
     from watchsim.drawing.svg.svg_file import read_svg
@@ -238,7 +236,7 @@ def test_an_ellipse_of_cubics_and_a_semicircle_are_no_circle(read_svg: Reader) -
     assert "near-circle" not in s.codes(ellipse)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.integers(3, 12), st.floats(0.5, 20.0))
 def test_smooth_rows_of_cubics_share_their_arcs(count: int, size: float) -> None:
     """A wave cut into many pieces needs no more arcs than the whole, and they join tangentially."""

@@ -42,7 +42,6 @@ def gauss(text: str) -> float:
     return total
 
 
-@settings(deadline=None, max_examples=30)
 @given(parts())
 def test_random_outlines_enclose_the_same_area(loops: tuple[Loop, ...]) -> None:
     assert gauss(svg_text(loops)) == pytest.approx(1e6 * section(loops).area, rel=3e-4)
@@ -80,7 +79,7 @@ def written(loops: tuple[Loop, ...]) -> tuple[Loop, ...]:
     return tuple(quartered(loop, loop.layer not in pierced) for loop in loops)
 
 
-@settings(deadline=None, max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(parts())
 def test_random_outlines_come_back_the_same(tmp_path: Path, loops: tuple[Loop, ...]) -> None:
     again, chains = read_back(svg_text(loops), tmp_path)

@@ -37,7 +37,7 @@ def texts(figure: Figure) -> list[Text]:
 
 def faults(figure: Figure) -> list[str]:
     """Words that stand out of the figure, or are smaller than print allows."""
-    figure.canvas.draw()
+    figure.draw_without_rendering()
     renderer = figure.canvas.get_renderer()
     whole, found = figure.bbox, []
     for text in texts(figure):

@@ -19,7 +19,7 @@ QUIET = np.sin(3.0 * X)
 
 
 @given(st.integers(0, MILLION - 1), st.sampled_from([-50.0, 3.0, 1e6]))
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 def test_a_spike_of_one_sample_in_a_million_survives(place: int, height: float) -> None:
     y = QUIET.copy()
     y[place] = height

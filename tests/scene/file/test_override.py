@@ -145,7 +145,7 @@ def test_malformed_assignments(text):
         assignments([text])
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=50, deadline=None)
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.floats(min_value=-1e3, max_value=1e3))
 def test_set_keeps_every_bit(scene, value):
     assert scene.set("bodies.lever.angle", value).body("lever").angle == value

@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from made_scenes import circle, drawing, square
 
@@ -207,7 +207,6 @@ SHAPES = st.tuples(st.floats(0.05, 0.49), st.floats(-1.0, 1.0), st.floats(-1.0, 
 
 
 @given(cells=CELLS, data=st.data(), pivot=st.tuples(st.floats(-9e-3, 9e-3), st.floats(-9e-3, 9e-3)))
-@settings(deadline=None)
 def test_bores_on_another_layer_weigh_what_holes_on_their_own_layer_do(cells, data, pivot) -> None:
     """A plate of 6 x 6 cells of 1 mm, some with a disc or a square anywhere in them, drawn either way round."""
     bores, holes = [], []

@@ -17,6 +17,7 @@ import numpy as np
 import shapely
 import trimesh
 from numpy.typing import NDArray
+from shapely.geometry.polygon import orient
 from trimesh.path import Path2D, entities
 from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
@@ -76,11 +77,10 @@ def revolved(profile: Iterable[Loop], deviation: float) -> trimesh.Trimesh | Non
     sections = chords(Arc(0.0, 0.0, widest, 0.0, TURN), deviation)
     parts = []
     for part in pieces(region(closed, deviation, MM)):
-        for number, ring in enumerate((part.exterior, *part.interiors)):
+        clockwise = orient(part, -1.0)  # as revolve wants outer rings, seen so
+        for ring in (clockwise.exterior, *clockwise.interiors):
             line = np.asarray(ring.coords)[:, ::-1].copy()  # (radius, height)
             line[:, 0] = np.maximum(line[:, 0], 0.0)
-            if ring.is_ccw == (number == 0):  # revolve wants outer rings clockwise as seen here
-                line = line[::-1]
             parts.append(trimesh.creation.revolve(line, sections=sections))
     return _together(parts) if parts else None
 
