@@ -7,7 +7,6 @@ friction cone or turn a bearing that dry friction holds, the smallest ones that 
 
 from __future__ import annotations
 
-from watchsim.dynamics.delassus import inverse_mass
 from watchsim.dynamics.lcp.lemke_pivoting import lemke_checked
 from watchsim.dynamics.lcp.outcome import LcpOutcome
 from watchsim.dynamics.small_systems import null_vectors
@@ -89,7 +88,7 @@ def _fill_laws(model, closed, m, n, lenience, work):
                 laws = _begin_law(work, n, laws, 0.0, _slack(work, i, lenience))
                 work.B[laws - 1, i], work.B[laws - 1, t] = work.width[i], side
     for j in range(len(model.coordinates)):
-        if work.inverse[j] == 0.0 and model.coordinates[j].coulomb > 0.0 and inverse_mass(model.coordinates[j]) > 0.0:
+        if work.inverse[j] == 0.0 and model.coordinates[j].coulomb > 0.0 and not model.coordinates[j].driven:
             laws = _hold_bearing(model, closed, m, n, j, laws, lenience, work)
     return laws
 

@@ -17,7 +17,7 @@ from watchsim.simulation.accepted_step import accept_coupled
 from watchsim.simulation.events.after_event import settle
 from watchsim.simulation.events.impulse_check import is_explained, kinetic_energy
 from watchsim.simulation.events.mode_recurrence import begin_instant, decide_once, forget_decisions
-from watchsim.simulation.events.time_of_impact import first_touch
+from watchsim.simulation.first_closing.time_of_impact import first_touch
 from watchsim.simulation.loop_state.buffers import RecordRef
 from watchsim.simulation.loop_state.scratch import MONITORS, RECENT, scratch_by_reference
 from watchsim.simulation.loop_state.state import StateRef

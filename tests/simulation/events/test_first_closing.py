@@ -17,7 +17,7 @@ from watchsim.scene.body import Body
 from watchsim.scene.file.load import load
 from watchsim.scene.force import Contact, Side, Torque
 from watchsim.scene.scene import Scene
-from watchsim.simulation.events.waiting_contacts import drop_first, put
+from watchsim.simulation.first_closing.waiting_contacts import drop_first, put
 from watchsim.simulation.loop_state.scratch import Waiting
 from watchsim.simulation.simulate import simulate
 

@@ -19,8 +19,8 @@ from watchsim.simulation.advance import advance
 from watchsim.simulation.events.closed_contacts import gather, refresh
 from watchsim.simulation.events.collision import approaching, collide
 from watchsim.simulation.events.mode_decision import decide
-from watchsim.simulation.events.time_of_impact import first_touch
 from watchsim.simulation.events.zero_rates import set_rate_zeros
+from watchsim.simulation.first_closing.time_of_impact import first_touch
 from watchsim.simulation.loop_state.buffers import RecordRef
 from watchsim.simulation.loop_state.scratch import scratch_by_reference
 from watchsim.simulation.loop_state.state import StateRef

@@ -1,5 +1,5 @@
-"""When does the next event happen, and what follows it?
+"""What follows an event?
 
-In: a smooth step. Out: the time of impact of the first open contact (`time_of_impact`), and the state and modes after the event
+In: the state at the end of a step, and the contact that has closed if one has. Out: the state and the modes after the event
 (`after_event`). Imports `simulation.motion` and below.
 """

@@ -14,10 +14,10 @@ from watchsim.contact.gaps import normal_gap, placed_gap
 from watchsim.contact.index_sets import OPEN
 from watchsim.jit import kernel
 from watchsim.model.records import LINE
-from watchsim.simulation.events.gap_bounds import body_bounds, centre_distance, gap_bounds, next_stretch
 from watchsim.simulation.events.handover import is_beside_active
-from watchsim.simulation.events.lasting_gap import may_last, time_apart, time_still
-from watchsim.simulation.events.safe_times import (
+from watchsim.simulation.first_closing.gap_bounds import body_bounds, centre_distance, gap_bounds, next_stretch
+from watchsim.simulation.first_closing.lasting_gap import may_last, time_apart, time_still
+from watchsim.simulation.first_closing.safe_times import (
     is_due,
     room_outside,
     safe_time,
@@ -26,7 +26,7 @@ from watchsim.simulation.events.safe_times import (
     time_outside,
     time_to_zero,
 )
-from watchsim.simulation.events.waiting_contacts import drop_first, put
+from watchsim.simulation.first_closing.waiting_contacts import drop_first, put
 from watchsim.simulation.loop_state.scratch import ask
 from watchsim.simulation.loop_state.state import NO_CONTACT
 from watchsim.simulation.motion.sleeping import is_at_rest
