@@ -7,6 +7,7 @@ import dataclasses
 import errno
 import json
 import math
+import zipfile
 
 import numpy as np
 import pytest
@@ -54,8 +55,14 @@ def test_events_in_words(run, tmp_path):
     assert [float(impact[name]) for name in ("impulse_N_s", "tangential_impulse_N_s", "energy_lost_J")] == [2e-9, -3e-10, 4e-12]
 
 
-def test_a_trajectory_comes_back_to_the_last_bit(run, tmp_path):
+@pytest.mark.parametrize("as_it_is", [0.0, 1e3, 1e9])  # bytes: all arrays are packed, the long ones, none
+def test_a_trajectory_comes_back_to_the_last_bit(run, tmp_path, monkeypatch, as_it_is):
+    monkeypatch.setattr("watchsim.results.archive.AS_IT_IS", as_it_is)
     write_trajectory(run, tmp_path / "t.npz")
+    with zipfile.ZipFile(tmp_path / "t.npz") as packed:
+        ways = {info.filename: info.compress_type for info in packed.infolist()}
+    assert ways["q.npy"] == (zipfile.ZIP_DEFLATED if run.q.nbytes > as_it_is else zipfile.ZIP_STORED)
+    assert ways["end_q.npy"] == (zipfile.ZIP_DEFLATED if run.end_q.nbytes > as_it_is else zipfile.ZIP_STORED)
     back = read_trajectory(tmp_path / "t.npz", run.scene)
     for name in ("t", "q", "u", "a", "events"):
         assert np.array_equal(getattr(back, name), getattr(run, name)), name

@@ -121,6 +121,20 @@ def test_a_second_window_is_drawn_as_in_a_figure_of_its_own():
         assert np.array_equal(first, second), window
 
 
+def test_panels_drawn_empty_before_show_a_run_as_others_do():
+    """As the command makes them while a run goes on."""
+    run = watch_run()
+    nothing = {name: getattr(run, name)[:1] for name in ("t", "q", "u", "a")}
+    panels = Kinematics(dataclasses.replace(run, **nothing))
+    panels.figure.canvas.draw()
+    for window in (None, (1.4, 1.75)):
+        shown = [plot_kinematics(run, window=window), panels.of(run).show(window)]
+        for figure in shown:
+            figure.canvas.draw()
+        first, second = (np.asarray(figure.canvas.buffer_rgba()) for figure in shown)
+        assert np.array_equal(first, second), window
+
+
 def test_the_light_png_shows_the_same_pixels(tmp_path):
     figure = plot_kinematics(watch_run(), window=(0.4, 0.75))
     figure.savefig(tmp_path / "usual.png")
