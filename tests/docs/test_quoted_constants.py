@@ -96,6 +96,7 @@ QUOTED = [
     (METHOD, "(of {} coordinates at a time)", watched_instants.FEW),
     (METHOD, "within a way, steps of {} of the", watched_instants.STRIDE),
     (METHOD, "the state at each {} of the scene's duration", overlap_watch.LOOKS),
+    (METHOD, "looked at when {} have come together", overlap_watch.STATES_TOGETHER),
     (METHOD, "when {} ways between rows have come together", overlap_watch.TOGETHER),
     (METHOD, "fails beyond {} of the size", tolerances.STEPPED_OVERLAP),
     (METHOD, "and {} of the overlap is taken back", tolerances.TAKEN_BACK),

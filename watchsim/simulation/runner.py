@@ -173,6 +173,7 @@ class Run:
             self.saved = self.save()
         self.flush()
         self._look()
+        self.watch.see()
         if stop not in (Stop.DURATION, Stop.INTERRUPTED):
             return stop
         if self._overlaps():
@@ -208,8 +209,8 @@ class Run:
         return f"{stop.sentence}: {words}" if words else stop.sentence
 
     def _look(self) -> None:
-        """Look at the state now for bodies inside each other."""
-        self.watch.see((float(self.state.clock.time), self.state.q.copy()))
+        """Look, soon, at the state now for bodies inside each other."""
+        self.watch.see_state(float(self.state.clock.time), self.state.q.copy())
 
     def _overlaps(self) -> bool:
         return self.watch.fails(float(self.state.worst.penetration))

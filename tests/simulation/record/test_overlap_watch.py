@@ -147,10 +147,7 @@ RING = (circle(3 * MM), circle(2 * MM).reversed())
 RING = (RING[0], dataclasses.replace(RING[1], hole=True))
 
 
-def moved_circle(radius: float, x: float) -> Loop:
-    return circle(radius).moved(0.0, (x, 0.0))
-
-
+TWO = tuple(circle(0.2 * MM).moved(0.0, (x, 0.0)) for x in (-4 * MM, 4 * MM))
 FACE = (Loop((Line(2 * MM, 0.0, -2 * MM, 0.0),), closed=False),)
 
 PLACED = [
@@ -160,7 +157,7 @@ PLACED = [
     ("crossed", BAR, BAR, (0.0, 0.0, 0.5 * math.pi), 0.25 * MM),
     ("swallowed", SQUARE, (circle(0.2 * MM),), (0.1 * MM, 0.0, 0.0), 0.7 * MM),
     ("swallowing", (circle(0.2 * MM),), SQUARE, (0.1 * MM, 0.0, 0.0), 0.7 * MM),
-    ("one of two swallowed", (*SQUARE, moved_circle(0.2 * MM, 9 * MM)), (circle(1 * MM),), (9 * MM, 0.0, 0.0), 0.4 * MM),
+    ("one of two swallowed", TWO, SQUARE, (4.1 * MM, 0.0, 0.0), 0.7 * MM),
     ("in the hole of a ring", RING, SQUARE, (0.0, 0.0, 0.3), 0.0),
     ("in the ring itself", RING, (circle(0.2 * MM),), (2.5 * MM, 0.0, 0.0), 0.3 * MM),
     ("resting on a face", FACE, SQUARE, (0.0, 1 * MM, 0.0), 0.0),

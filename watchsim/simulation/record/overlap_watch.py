@@ -28,6 +28,7 @@ Array = NDArray[np.float64]
 
 CHORD = 1.0 / 8.0  # of the resolution: deviation of chords from arcs
 TOGETHER = 24  # moves looked at together
+STATES_TOGETHER = 4  # where no rows are recorded: states looked at together
 DEEPER = 1.25  # times the worst so far: what is measured next
 LOOKS = 16  # in a scene's duration, where no rows are recorded
 NO_OVERLAP = -1  # in the place of a contact's number
@@ -62,7 +63,8 @@ class OverlapWatch:
         self._scale = np.array(compiled.model.coordinates.scale)
         self._last: Array | None = None  # row
         self._waiting: list[tuple[Array, Array]] = []  # chosen moves: rows before and after
-        self._owed: list[tuple[int, Array]] = []  # numbers to be filled in, and how many moves waited then
+        self._states: list[tuple[float, Array]] = []  # times and coordinates that wait besides
+        self._owed: list[tuple[int, int, Array]] = []  # numbers to be filled in; how many moves and states waited then
         self.numbers = np.zeros(len(FOUND.names or ()))
         self.found = self.numbers.view(FOUND).view(np.recarray)[0]
         self.found.contact = NO_OVERLAP
@@ -113,23 +115,31 @@ class OverlapWatch:
     def fill_in_later(self, numbers: Array) -> None:
         """Bring `numbers`, a copy of the watch's own, up to date when what waits now has been looked at: with what comes next,
         since each look at all pairs costs as much as a dozen instants."""
-        self._owed.append((self._waits, numbers))
+        self._owed.append((self._waits, len(self._states), numbers))
 
-    def see(self, *now: tuple[float, Array]) -> None:
-        """Look at what waits, and at further instants: time (s) and coordinates of the model (n,)."""
-        waiting, self._waiting = self._waiting, []
-        owed, self._owed = self._owed, []
+    def see_state(self, t: float, q: Array) -> None:
+        """Look, soon, at a state: time (s) and coordinates of the model (n,)."""
+        self._states.append((t, q))
+        if len(self._states) >= STATES_TOGETHER:
+            self.see()
+
+    def see(self) -> None:
+        """Look at all that waits."""
+        waiting, states, owed = self._waiting, self._states, self._owed
+        self._waiting, self._states, self._owed = [], [], []
         if self._layers is None:
             self._layers = declared_pairs(self._scene, CHORD * self.resolution)
-        if not self._layers.pairs or not (waiting or now):
+        if not self._layers.pairs or not (waiting or states):
             return
         n = len(self._scale)
         none = np.zeros((0, 1 + 3 * n))
         before, after = (np.concatenate([none, *rows]) for rows in zip(*waiting, strict=True)) if waiting else (none, none)
         within = instants_within(before, after, self._scale, self._stepped > 0.0)
-        times = np.append(within.times, [t for t, _ in now])
-        q = np.concatenate([within.q, *(at[None] for _, at in now)])
-        self._look(self._layers, times, q, [(int(within.ends[moves]), numbers) for moves, numbers in owed])
+        times = np.append(within.times, [t for t, _ in states])
+        q = np.concatenate([within.q, *(at[None] for _, at in states)])
+        # Where rows are seen, there is no state but that at the end; elsewhere there are no moves.
+        due = [(int(within.ends[moves]) + count, numbers) for moves, count, numbers in owed]
+        self._look(self._layers, times, q, due)
 
     def _look(self, layers: Layers, times: Array, q: Array, owed: list[tuple[int, Array]]) -> None:
         """Look at all pairs at some instants; `owed`: numbers as they are after the first so many of these."""

@@ -183,14 +183,19 @@ def between(s: Array, h: Array, left: tuple[Array, ...], right: tuple[Array, ...
     The derivative of the quintic in q is the cubic in u and a bump, which makes up for the way that the cubic misses. Over a
     short time an error of q of the size of the tolerance would make much of it; rows are close enough for the cubic there.
     """
+    u0, a0, u1, a1 = h * left[1], h * h * left[2], h * right[1], h * h * right[2]
+    cubic = u0 + s * (a0 + s * (3.0 * (u1 - u0) - 2.0 * a0 - a1 + s * (2.0 * (u0 - u1) + a0 + a1)))
+    missed = right[0] - left[0] - 0.5 * (u0 + u1) - (a0 - a1) / 12.0
+    bump = 30.0 * np.where(np.abs(missed) > noise, missed, 0.0) * (s * (1.0 - s)) ** 2
+    return place_between(s, h, left, right), (cubic + bump) / h
+
+
+def place_between(s: Array, h: Array, left: tuple[Array, ...], right: tuple[Array, ...]) -> Array:
+    """The same, q alone."""
     q0, u0, a0 = left[0], h * left[1], h * h * left[2]
     q1, u1, a1 = right[0], h * right[1], h * h * right[2]
     d = q1 - q0
     c3 = 10.0 * d - 6.0 * u0 - 4.0 * u1 - 1.5 * a0 + 0.5 * a1
     c4 = -15.0 * d + 8.0 * u0 + 7.0 * u1 + 1.5 * a0 - a1
     c5 = 6.0 * d - 3.0 * (u0 + u1) - 0.5 * (a0 - a1)
-    q = q0 + s * (u0 + s * (0.5 * a0 + s * (c3 + s * (c4 + s * c5))))
-    cubic = u0 + s * (a0 + s * (3.0 * (u1 - u0) - 2.0 * a0 - a1 + s * (2.0 * (u0 - u1) + a0 + a1)))
-    missed = d - 0.5 * (u0 + u1) - (a0 - a1) / 12.0
-    bump = 30.0 * np.where(np.abs(missed) > noise, missed, 0.0) * (s * (1.0 - s)) ** 2
-    return q, (cubic + bump) / h
+    return q0 + s * (u0 + s * (0.5 * a0 + s * (c3 + s * (c4 + s * c5))))

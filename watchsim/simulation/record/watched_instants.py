@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.jit import entry
-from watchsim.simulation.record.trajectory import between
+from watchsim.simulation.record.trajectory import place_between
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -81,5 +81,4 @@ def instants_within(before: Array, after: Array, scale: Array, stepped: bool) ->
     first, last = before[move], after[move]
     h = last[:, :1] - first[:, :1]
     left, right = ((at[:, 1 : 1 + n], at[:, 1 + n : 1 + 2 * n], at[:, 1 + 2 * n :]) for at in (first, last))
-    q, _ = between(share, h, left, right, np.zeros(n))
-    return Instants(first[:, 0] + share[:, 0] * h[:, 0], q, ends)
+    return Instants(first[:, 0] + share[:, 0] * h[:, 0], place_between(share, h, left, right), ends)
