@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -47,7 +49,7 @@ def test_any_flushes(name: str, seed: int) -> None:
     events["t"] = np.sort(rng.uniform(0.0, times[-1], 60))
     kept, tail, end = Kept(recording, 1.7), 1.7, float(times[-1])
     borders = [0.0, *np.sort(rng.uniform(0.0, end, 5)), end + 1.0]
-    for low, high in zip(borders, borders[1:], strict=False):
+    for low, high in pairwise(borders):
         rows = np.zeros((int(((times >= low) & (times < high)).sum()), 4))
         rows[:, 0] = times[(times >= low) & (times < high)]
         kept.flush(rows, events[(events["t"] >= low) & (events["t"] < high)])
