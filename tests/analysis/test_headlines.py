@@ -126,3 +126,17 @@ def test_every_line(monkeypatch: pytest.MonkeyPatch) -> None:
 )
 def test_otherwise(monkeypatch: pytest.MonkeyPatch, changes: dict[str, object], line: str) -> None:
     assert line in "\n".join(lines(monkeypatch, **changes)) + "\n"
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "expected"),
+    [
+        (-3.0, 1e-9, "−3.000000 s/d, scatter 0.000001 s/d"),
+        (-1e-9, 1e-9, "below 0.000001 s/d"),
+        (0.0, 0.0, "0 s/d"),
+        (-0.04, 0.3, "0.0 s/d, scatter 0.3 s/d"),
+        (-12.3456, None, "−12.346 s/d"),
+    ],
+)
+def test_scatter_of_what_is_negative_or_next_to_nothing(value: float, error: float | None, expected: str) -> None:
+    assert told.with_scatter(value, error, " s/d") == expected

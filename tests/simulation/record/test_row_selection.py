@@ -63,3 +63,13 @@ def test_any_flushes(name: str, seed: int) -> None:
         assert left["t"].tolist() == own
     else:
         assert left["t"].tolist() == events["t"].tolist()
+
+
+@pytest.mark.parametrize(
+    ("end", "expected"),
+    [(0.5, ((0.0, 0.5),)), (6.0, ((0.0, 2.0), (4.0, 6.0))), (3.0, ((0.0, 3.0),)), (10.0, ((0.0, 2.0), (4.0, 10.0)))],
+)
+def test_stretches_that_are_kept(end: float, expected: tuple[tuple[float, float], ...]) -> None:
+    """From the start to the end of the run at most; what overlaps is one."""
+    kept = Kept(Recording(((0.5, 2.0), (-1.0, 1.0), (4.0, 9.0)), "statistics"), 1.7)
+    assert np.array(kept.spans(end)) == pytest.approx(np.array(expected))
