@@ -128,7 +128,7 @@ order is that of the midpoint rule, 2. With the coarsest steps, 80 µs of a watc
 slope steeper than 1.
 
 Windows and steps that differ have a reason. `grasshopper`: its exit pallet stands still until 0.53 s; over 0.5 s its range is 2·10⁻⁶ rad, and a share
-of that is one of rounding (order 0.4). Over 4 s the coarsest steps, 640 µs, lose a tooth. `geneva_stop`: its finger leaves each slot round a corner within 0.14 to
+of that is one of rounding (order 0.4). Over 4 s the coarsest steps, 640 and 320 µs, lose teeth. `geneva_stop`: its finger leaves each slot round a corner within 0.14 to
 0.2 ms; steps of 640 to 40 µs do not see that (order 0.6), and four times finer ones are taken. `snail`: its rack is let go within a microsecond, which no step sees; the error
 of that, too, goes with the step.
 

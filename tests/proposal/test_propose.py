@@ -19,7 +19,10 @@ from watchsim.simulation.simulate import simulate
 
 SHARED = Path(__file__).resolve().parents[3] / "shared" / "drawings"
 EXTRA = {  # guessed and not so
-    "coaxial": {frozenset((("lever", "FORK"), ("balance", "IMPULSE_STONE")))},
+    "coaxial": {
+        frozenset((("lever", "FORK"), ("balance", "IMPULSE_STONE"))),
+        frozenset((("lever", "LOCKING_STONES"), ("banking", "PINS"))),
+    },
 }
 
 
