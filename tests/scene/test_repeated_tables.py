@@ -1,4 +1,4 @@
-"""Does a torque over time with a `period` repeat, also before its first row, and is a table that cannot repeat refused?"""
+"""Does a torque over time with a `period` act again and again, from before its first row on, and is nonsense refused?"""
 
 from __future__ import annotations
 
