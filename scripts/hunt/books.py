@@ -151,10 +151,12 @@ def _jumps(run: Trajectory, m: Array, largest: float, loose: float) -> Iterator[
         row, then = int(first[k]), int(last[k])
         t, jump = run.t[row], run.u[then] - run.u[row]
         here = run.events[run.events["t"] == t]
+        touches = touches or Touches(run.scene, run.slices, m, NEAR * loose)
         if not np.isin(here["kind"], SUDDEN).any():
+            if touches.turn(run.q[then], run.u[row], jump) <= JUMP:
+                continue
             yield f"jump: without an impact at t = {t:.9g} s, of {math.sqrt(size[k] / largest):.1e} of the speed"
             return
-        touches = touches or Touches(run.scene, run.slices, m, NEAR * loose)
         found = [touches.unexplained(run.q[then], jump + held) for held in _held(run, here, then, m)]
         if (here["kind"] == EventKind.JAM).any():
             found.append(touches.unexplained(_onward(run, row), jump))

@@ -20,6 +20,8 @@ from watchsim.scene.scene import Scene
 
 Array = NDArray[np.float64]
 
+STRAY = 1e-3  # share of a jump: the directions of two faces that pass for one differ by their turn, with levers of all lengths
+
 
 class Touches:
     """The contacts of a scene at given coordinates: where outlines come as `near` as that share of the size."""
@@ -30,25 +32,45 @@ class Touches:
 
     def unexplained(self, q: Array, jump: Array) -> tuple[float, int]:
         """The share of a jump (m/s, rad/s) that no pushing impulses explain, and the number of touching points."""
-        columns, points = [], 0
+        columns = []
+        rows = list(self._rows(q))
+        for friction, normal, tangent in rows:
+            columns += [normal + mu * tangent for mu in {friction, -friction}]
+        return self._left(columns, jump), len(rows)
+
+    def turn(self, q: Array, before: Array, jump: Array) -> float:
+        """By what angle (rad) a face must turn where a body slides on to it, to make this jump by the force on it.
+
+        A face taken for a smooth continuation also pulls. Infinity where neither push nor pull at one place makes the jump.
+        """
+        smallest, slip = math.inf, 0.0
+        for _, normal, tangent in self._rows(q):
+            slip = max(slip, float(abs(tangent @ before)))
+            if self._left([normal, -normal], jump) <= STRAY:
+                smallest = min(smallest, float(abs(normal @ jump)))
+        return smallest / slip if slip > 0.0 else math.inf
+
+    def _rows(self, q: Array) -> Iterator[tuple[float, Array, Array]]:
+        """Friction, and the generalised directions along normal and tangent, (n,) each, of each place where bodies touch."""
         placed = {body.name: self._placed(body, q) for body in self._scene.bodies}
         for contact in self._scene.contacts:
             a, b = (self._scene.body(side.body) for side in contact.sides)
-            for (x, y), (nx, ny) in touching(placed[a.name], placed[b.name], self._near):
-                points += 1
-                for mu in {contact.friction, -contact.friction}:
-                    push = (nx - mu * ny, ny + mu * nx)
-                    columns.append(self._column(a, q, (x, y), push) - self._column(b, q, (x, y), push))
+            for at, (nx, ny) in touching(placed[a.name], placed[b.name], self._near):
+                normal, tangent = (self._column(a, q, at, e) - self._column(b, q, at, e) for e in ((nx, ny), (-ny, nx)))
+                yield contact.friction, normal, tangent
+
+    def _left(self, columns: list[Array], jump: Array) -> float:
+        """The share of a jump that no sum of these impulses with factors of at least zero makes."""
         wanted = self._root * jump
         length = float(np.linalg.norm(wanted))
         if not columns or length == 0.0:
-            return float(length > 0.0), points
+            return float(length > 0.0)
         matrix = np.array(columns).T / self._root[:, None]
         scales = np.linalg.norm(matrix, axis=0)
         matrix = matrix[:, scales > 0.0] / scales[scales > 0.0]
         if not matrix.shape[1]:
-            return 1.0, points
-        return float(nnls(matrix, wanted / length, maxiter=50 * matrix.shape[1] + 100)[1]), points
+            return 1.0
+        return float(nnls(matrix, wanted / length, maxiter=50 * matrix.shape[1] + 100)[1])
 
     def gap_rates(self, q: Array, u: Array, pair: tuple[str, str]) -> list[tuple[Point, float]]:
         """Normal and opening rate (m/s) of each place where two bodies touch."""
