@@ -83,7 +83,7 @@ def test_rolling_disc_needs_friction_of_its_cone():
 
 @pytest.mark.parametrize("turn", [1e-7, 1e-3])
 def test_turn_of_a_face_on_to_which_a_disc_slides(turn):
-    """A disc that slides at v and is pulled on to a face that falls away by d has v d more across the floor; no spin of its own."""
+    """A disc that slides at v and is pulled on to a face that falls away by d gets v d across the floor, and no spin."""
     bodies = (fixed("floor", box(1.0, 0.2, (0.0, -0.1))), free("disc", circle(0.1), (0.0, 0.1), 2.0))
     made = Scene("disc", bodies, contacts=(Contact((Side("floor"), Side("disc")), 0.3, 0.0),))
     touches = Touches(made, {"disc": slice(0, 3)}, np.array([2.0, 2.0, 0.01]), 1e-6)
