@@ -20,6 +20,7 @@ from watchsim.scene.scene import Scene
 
 Array = NDArray[np.float64]
 
+LEANING = 1e-3  # rad: a face that leans less against a normal is flush with it
 STRAY = 1e-3  # share of a jump: the directions of two faces that pass for one differ by their turn, with levers of all lengths
 
 
@@ -33,7 +34,7 @@ class Touches:
     def unexplained(self, q: Array, jump: Array) -> tuple[float, int]:
         """The share of a jump (m/s, rad/s) that no pushing impulses explain, and the number of touching points."""
         columns = []
-        rows = list(self._rows(q))
+        rows = list(self.rows(q))
         for friction, normal, tangent in rows:
             columns += [normal + mu * tangent for mu in {friction, -friction}]
         return self._left(columns, jump), len(rows)
@@ -44,18 +45,24 @@ class Touches:
         A face taken for a smooth continuation also pulls. Infinity where neither push nor pull at one place makes the jump.
         """
         smallest, slip = math.inf, 0.0
-        for _, normal, tangent in self._rows(q):
+        for _, normal, tangent in self.rows(q):
             slip = max(slip, float(abs(tangent @ before)))
             if self._left([normal, -normal], jump) <= STRAY:
                 smallest = min(smallest, float(abs(normal @ jump)))
         return smallest / slip if slip > 0.0 else math.inf
 
-    def _rows(self, q: Array) -> Iterator[tuple[float, Array, Array]]:
-        """Friction, and the generalised directions along normal and tangent, (n,) each, of each place where bodies touch."""
+    def rows(self, q: Array, apart: bool = False) -> Iterator[tuple[float, Array, Array]]:
+        """Friction, and the generalised directions along normal and tangent, (n,) each, of each place where bodies touch.
+
+        Where corners meet, edges that cannot be touched there have normals, too; `apart`: only those that part the bodies.
+        """
         placed = {body.name: self._placed(body, q) for body in self._scene.bodies}
         for contact in self._scene.contacts:
             a, b = (self._scene.body(side.body) for side in contact.sides)
             for at, (nx, ny) in touching(placed[a.name], placed[b.name], self._near):
+                sides = ((placed[a.name], (nx, ny)), (placed[b.name], (-nx, -ny)))
+                if apart and not all(_beyond(edges, at, outward, self._near) for edges, outward in sides):
+                    continue
                 normal, tangent = (self._column(a, q, at, e) - self._column(b, q, at, e) for e in ((nx, ny), (-ny, nx)))
                 yield contact.friction, normal, tangent
 
@@ -120,6 +127,16 @@ def touching(first: list[Edge], second: list[Edge], near: float) -> Iterator[tup
             if normal := _at(a, corner, near):
                 yield corner, (-normal[0], -normal[1])
         yield from _round(a, b, near)
+
+
+def _beyond(edges: list[Edge], point: Point, normal: Point, near: float) -> bool:
+    """Do all edges that end at a point lead away from it to the side to which the normal points?"""
+    ways = [(edge.start, edge.tangent(0.0), 1.0) for edge in edges] + [(edge.end, edge.tangent(1.0), -1.0) for edge in edges]
+    return all(
+        way * (tx * normal[0] + ty * normal[1]) >= -LEANING
+        for (x, y), (tx, ty), way in ways
+        if math.hypot(x - point[0], y - point[1]) <= near
+    )
 
 
 def _boxes(edges: list[Edge], near: float) -> Array:

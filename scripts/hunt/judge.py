@@ -86,7 +86,7 @@ class Judge:
         self.material = Material(scene)
         self.times = np.linspace(0.0, scene.duration, SAMPLES + 1)[1:]
         self.verdict = Verdict()
-        self._weights = _weights(scene)
+        self.weights = _weights(scene)
         # Free bodies meet so many cells that looking them up would be most of the hunt.
         self._roams = any(body.motion == "free" for body in scene.bodies)
 
@@ -97,9 +97,9 @@ class Judge:
     def motion(self, run: Trajectory, view: View | None = None) -> Array:
         """(samples, n): lengths as shares of the scene's size, seen from where the scene was described."""
         if len(run.t) == 0:
-            return np.full((len(self.times), len(self._weights)), np.nan)
+            return np.full((len(self.times), len(self.weights)), np.nan)
         q, _ = run.sample(self.times)
-        return (q if view is None else view.back(self.scene, run.slices, q)) * self._weights
+        return (q if view is None else view.back(self.scene, run.slices, q)) * self.weights
 
     def book(self, run: Trajectory, label: str) -> bool:
         """Notes what is wrong with a run by itself; True where nothing is."""
@@ -163,7 +163,7 @@ class Judge:
             allowed += self._cut_short(base, tolerance)
         if (distance > allowed).any():
             error = tolerance * self.material.size
-            allowed += sum(grazed(run, error, self._weights, self.times) for run in runs)
+            allowed += sum(grazed(run, error, self.weights, self.times) for run in runs)
         beyond = np.flatnonzero(distance > allowed)
         if len(beyond):
             k = beyond[0]
@@ -181,7 +181,7 @@ class Judge:
         ended = base.events["t"][base.events["kind"] == EventKind.ACCUMULATION]
         if not len(ended):
             return np.zeros(len(self.times))
-        fastest = float(np.abs(base.a * self._weights).max())  # sizes per second squared
+        fastest = float(np.abs(base.a * self.weights).max())  # sizes per second squared
         return np.sqrt(2.0 * fastest * tolerance) * np.maximum(self.times - ended.min(), 0.0)
 
     def spread(self, middle: Array, tolerance: float) -> Array:

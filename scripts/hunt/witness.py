@@ -4,7 +4,7 @@ It shares the gap functions with the event-driven solver, and neither events nor
 so two steps say how far it can be trusted: it contradicts where the event-driven motion lies ten times further from the finer
 one than the two lie from each other and twins of 1e-4 from the scene, and where finer steps do not come nearer. A step takes
 impacts that follow each other within it for one, and parts an impact that is passed on through bodies in touch; where that
-comes out otherwise, what comes after is not compared.
+comes out otherwise, what comes after is not compared. Nor is what the laws leave open (`hunt.open_motion`).
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from hunt.open_motion import open_motion
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.methods import MOREAU
 from watchsim.simulation.record.trajectory import Trajectory
@@ -53,6 +54,8 @@ def witness_fault(judge: Judge, base: Trajectory, middle: Array) -> Iterator[str
         fine = finer
     k = beyond[0]
     if merged(base, judge.times[k], MERGED_STEPS * judge.scene.duration / STEPS[-1]):
+        return
+    if closer[k] <= open_motion(base, judge.times[k], judge.weights):
         return
     yield f"witness: Moreau is {closer[k]:.1e} of the size away at t = {judge.times[k]:.6g} s, its steps {own[k]:.1e}"
 
