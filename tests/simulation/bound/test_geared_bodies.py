@@ -211,7 +211,14 @@ def test_forces_are_those_without_the_gears() -> None:
     times = np.linspace(0.11, 0.19, 9)
     here, there = ws.forces(one, times), ws.forces(other, times)
     assert np.sort(here.normal.ravel()) == pytest.approx(np.sort(there.normal.ravel()), rel=1e-4, abs=1e-9)
-    assert there.pivots["wheel"] == pytest.approx(here.pivots["wheel"], rel=1e-4, abs=1e-9)
+    wheel, train = geared.body("wheel"), geared.body("train")
+    way = np.subtract(wheel.position, train.position)
+    radius = float(np.hypot(*way)) / 9.0  # of the wheel's pitch circle: it turns eight times as fast
+    out, across = way / np.hypot(*way), np.array([-way[1], way[0]]) / np.hypot(*way)
+    torque = plain.torques[0].value - wheel.inertia * other.acceleration(times)[:, other.slices["wheel"].start]
+    meshing = there.pivots["wheel"] - here.pivots["wheel"]  # the bearing holds against the tooth
+    assert meshing @ across == pytest.approx(torque / radius, rel=1e-4)
+    assert np.abs(meshing @ out) == pytest.approx(np.abs(torque) / radius * math.tan(math.radians(20.0)), rel=1e-4)
 
 
 def test_gears_with_play_rebound_by_their_restitution(tmp_path) -> None:
