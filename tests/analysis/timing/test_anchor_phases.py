@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -16,6 +17,8 @@ from watchsim.pages.timing_sheet.phase_tables import phase_tables
 from watchsim.profiles_path import profiles_dir
 from watchsim.render.figures.passing_phases import passing
 from watchsim.scene.file.load import load
+from watchsim.scene.force import Spring
+from watchsim.scene.roles import roles
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.simulation.simulate import simulate
@@ -95,3 +98,19 @@ def test_contacts_that_hold_before_the_first_event_are_counted():
 def test_the_table_of_an_anchor_names_no_lever(graham):
     (made,) = phase_tables(phases(graham))
     assert "balance turns" in made and "lever turns" not in made and "locked" not in made
+
+
+@pytest.mark.parametrize("sprung", [False, True])
+def test_the_pallets_of_an_anchor_take_turns(sprung):
+    """Also where a pendulum hangs on a spring."""
+    scene = load(profiles_dir() / "graham" / "scene.toml")
+    name = roles(scene).oscillator
+    spring = (Spring(name, 1e-6 * scene.body(name).inertia),) if sprung else ()
+    told = [beat.stages[0].pallet for beat in shown_beats(simulate(replace(scene, springs=spring), 6.0))]
+    assert set(told[:2]) == {"entry", "exit"} and told[2:] == told[:-2]
+
+
+@pytest.mark.parametrize(("name", "duration"), [("cylinder", 2.0), ("duplex", 2.0), ("pin_wheel", 6.0)])
+def test_without_stones_on_either_side_none_is_named(name, duration):
+    told = [beat.stages[0].pallet for beat in shown_beats(run_of(name, duration))]
+    assert len(told) > 1 and not any(told)
