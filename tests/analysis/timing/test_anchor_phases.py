@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import replace
 
@@ -12,6 +13,7 @@ from watchsim.analysis.timeline.shown_beats import shown_beats
 from watchsim.analysis.timeline.timeline_table import timeline_text
 from watchsim.analysis.timing.beats import beats
 from watchsim.analysis.timing.body_contacts import held
+from watchsim.analysis.timing.marks.anchor_phases import _next_ones
 from watchsim.analysis.timing.phases import phases
 from watchsim.pages.timing_sheet.phase_tables import phase_tables
 from watchsim.profiles_path import profiles_dir
@@ -114,3 +116,11 @@ def test_the_pallets_of_an_anchor_take_turns(sprung):
 def test_without_stones_on_either_side_none_is_named(name, duration):
     told = [beat.stages[0].pallet for beat in shown_beats(run_of(name, duration))]
     assert len(told) > 1 and not any(told)
+
+
+@pytest.mark.parametrize("told", list(itertools.product((False, True), repeat=4)))
+def test_a_wheel_that_goes_on_every_second_beat_is_followed_to_the_end(told):
+    """As in a duplex escapement; a beat that is not told has no second."""
+    marks = ["a", None, "c", None]
+    wanted = [marks[i + 1] or (marks[i + 2] if told[i + 1] and i < 2 else None) for i in range(3)]
+    assert list(_next_ones(marks, np.array(told))) == wanted
