@@ -48,6 +48,7 @@ AREAS = {  # name -> (files, tests)
             "tests/drawing/chaining/test_chain.py",
             "tests/drawing/curves/test_splines.py",
             "tests/drawing/test_profile.py",
+            "tests/render/test_glb_motion.py",
         ),
     ),
     "scene": (

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any
 
-from watchsim.analysis.error_bars import NUMBERS, with_error_bars
+import pytest
+
+from watchsim.analysis import error_bars
+from watchsim.analysis.error_bars import NUMBERS, more_exact, with_error_bars
 from watchsim.analysis.headlines import _compared
+from watchsim.simulation.methods import EVENT_DRIVEN, MOREAU
 
 
 def numbers(rate: float, scatter: float | None, stop: str = "DURATION") -> dict[str, Any]:
@@ -37,3 +42,28 @@ def test_the_words_follow() -> None:
     assert told["error bars"].startswith("of the computation, from a second run") and told[""] == "rate ± 0.2 s/d"
     assert failed == {"error bars": "none: the more exact run did not finish"}
     assert not list(_compared(numbers(5.0, 0.5)))
+
+
+@pytest.mark.parametrize(("tolerance", "tighter"), [(1e-6, 1e-8), (1e-12, 1e-13)])
+def test_the_second_run_is_a_hundred_times_as_exact(monkeypatch: pytest.MonkeyPatch, tolerance: float, tighter: float) -> None:
+    """But no more so than numbers of 16 digits allow; it is as long as the first one was."""
+    (asked, how) = second_run(monkeypatch, method=EVENT_DRIVEN, tolerance=tolerance, step=None)
+    assert asked == ("the scene", 7.0, pytest.approx(tighter, rel=1e-12)) and "step" not in how
+
+
+def test_the_second_run_takes_half_the_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked, how = second_run(monkeypatch, method=MOREAU, tolerance=1e-6, step=4e-6)
+    assert asked == ("the scene", 7.0, 1e-6) and (how["method"], how["step"]) == (MOREAU, 2e-6)
+
+
+def second_run(monkeypatch: pytest.MonkeyPatch, **run: Any) -> tuple[tuple[Any, ...], dict[str, Any]]:
+    monkeypatch.setattr(error_bars, "simulate", lambda *asked, **how: (asked, how))
+    first: Any = SimpleNamespace(scene="the scene", simulated=7.0, **run)
+    found: Any = more_exact(first)
+    return found
+
+
+def test_half_the_step_leaves_half_the_error_of_the_first_order() -> None:
+    """What is still to come after halving is as much again."""
+    first, second = ({**numbers(rate, 0.0), "method": MOREAU} for rate in (5.0, 5.25))
+    assert with_error_bars(first, second)["rate_s_per_d_error"] == 0.5

@@ -119,6 +119,7 @@ def test_every_line(monkeypatch: pytest.MonkeyPatch) -> None:
         ({"compile": 0.9}, "20 × real time, 0.5 s\n"),
         ({"overlap": {"looks": 1, "between": None, "resolution_m": 2e-6}}, "1 check of the outlines themselves found no"),
         ({"error_bars": {"complete": False}}, "none: the more exact run did not finish"),
+        ({"error_bars": NUMBERS["error_bars"] | {"differences": {"amplitude_deg": 0.0}}}, "amplitude ± 0.000000°"),
         ({"simulated_s": 0.0}, "impacts      1234; 4321 events"),
         ({"stop_message": ""}, "end          " + Stop.DURATION.sentence),
         ({"timegrapher": SILENT}, "timegrapher  nothing is heard"),

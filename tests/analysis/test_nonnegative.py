@@ -39,3 +39,15 @@ def test_wherever_it_begins_the_same_comes_out(seed: int) -> None:
         got = nonnegative(system, right, likely)
         assert np.allclose(got, expected, rtol=1e-9, atol=1e-9 * max(1.0, expected.max()))
         assert np.array_equal(likely, before)
+
+
+@pytest.mark.parametrize("seed", [*range(20), 111, 187])
+def test_columns_that_are_nearly_alike(seed: int) -> None:
+    """Then entries come into use and leave it again and again."""
+    rng = np.random.default_rng(seed)
+    columns, rows = int(rng.integers(5, 25)), int(rng.integers(3, 15))
+    alike = rng.normal(size=(rows, 3)) @ rng.normal(size=(3, columns)) + 0.05 * rng.normal(size=(rows, columns))
+    system = np.vstack((alike, 10.0 ** rng.uniform(-3.0, 0.0) * np.eye(columns)))
+    right = np.append(rng.normal(size=rows), np.zeros(columns))
+    expected, _ = nnls(system, right)
+    assert np.allclose(nonnegative(system, right), expected, rtol=1e-8, atol=1e-8 * max(1.0, expected.max()))

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from analysis.made_beats import lever_scene
 
-from watchsim.analysis.promised import expectation_faults
+from watchsim.analysis.promised import expectation_faults, impossible
 from watchsim.analysis.summary import summary
 from watchsim.cli import main
 from watchsim.commands.common.console import BAD_INPUT
 from watchsim.profiles_path import profiles_dir
 from watchsim.scene.file.load import load
-from watchsim.scene.scene import Expectation
+from watchsim.scene.scene import Expectation, Scene
 from watchsim.simulation.simulate import simulate
 
 SCENE = profiles_dir() / "bench_lever" / "scene.toml"
@@ -57,3 +59,38 @@ def test_a_slip_is_told_before_the_run(line: str, message: str, tmp_path: Path, 
         told = capsys.readouterr().err
         assert message in told and f"scene.toml:{number}" in told
     assert not (tmp_path / "out").exists()
+
+
+def sliding(scene: Scene) -> Scene:
+    bodies = tuple(dataclasses.replace(b, motion="slide", mass=1e-6) if b.name == "balance" else b for b in scene.bodies)
+    return dataclasses.replace(scene, bodies=bodies)
+
+
+NO_SPRING, NO_LIFT, ALONE, NO_DRIVE = (
+    lambda scene: dataclasses.replace(scene, springs=()),
+    lambda scene: dataclasses.replace(scene, lift_angle=None),
+    lambda scene: dataclasses.replace(scene, contacts=(), torques=()),
+    lambda scene: dataclasses.replace(scene, torques=()),
+)
+
+
+@pytest.mark.parametrize(
+    ("key", "change", "why"),
+    [
+        ("amplitude", NO_SPRING, "nothing in it swings on a spring or by gravity"),
+        ("amplitude", sliding, "balance slides, so it has no amplitude in degrees"),
+        ("timegrapher.amplitude_deg", sliding, "balance slides, so it has no amplitude in degrees"),
+        ("rate", sliding, ""),
+        ("amplitude", NO_LIFT, ""),
+        ("timegrapher.amplitude_deg", NO_LIFT, "it names no lift_angle under [timegrapher]"),
+        ("timegrapher.rate_s_per_d", NO_LIFT, ""),
+        ("timegrapher.rate_s_per_d", ALONE, "nothing may touch balance, so no beat is heard"),
+        ("efficiency", NO_DRIVE, "no driven wheel keeps the oscillator going"),
+        ("missed_beats", NO_DRIVE, "no driven wheel keeps the oscillator going"),
+        ("impacts", NO_SPRING, ""),
+        *((key, lambda scene: scene, "") for key in ("amplitude", "rate", "efficiency", "timegrapher.amplitude_deg")),
+    ],
+)
+def test_what_no_run_can_give_is_refused(key: str, change: Callable[[Scene], Scene], why: str) -> None:
+    said = impossible(Expectation(key, 0.0, 1.0, ""), change(lever_scene()))
+    assert said == (f'no run of this scene gives "{key}": {why}. Leave it out' if why else "")

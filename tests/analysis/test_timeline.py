@@ -164,6 +164,8 @@ def test_the_printed_table(swiss):
     text = timeline_text(swiss)
     assert "entry stone" in text and "exit stone" in text and "impulse on tooth" in text
     assert text.count("the account closes to") == 2 and max(len(line) for line in text.splitlines()) < 170
+    energies = text[text.index("energy in nJ") :].splitlines()[1:]
+    assert len({len(line) for line in energies if not line.startswith(("beat", "  the account"))}) == 1  # one below the other
 
 
 @pytest.mark.parametrize("width", [170.0, 85.0])

@@ -20,6 +20,14 @@ def test_arc_from_semicircle_and_line() -> None:
     assert isinstance(arc_from((0.0, 0.0), (1.0, 0.0), (2.0, 0.0)), Line)
 
 
+@pytest.mark.parametrize("direction", [0.0, 0.5, math.pi / 2, 3.0, -math.pi / 2])
+def test_an_arc_of_a_radius_above_a_million_chords_is_a_line(direction: float) -> None:
+    """Where it leaves its chord at an angle ε, that is twice ε of a chord over the radius."""
+    end = (1.0 + 3e-3 * math.cos(direction), 2.0 + 3e-3 * math.sin(direction))
+    for off, kind in ((4.9e-7, Line), (-4.9e-7, Line), (5.1e-7, Arc), (-5.1e-7, Arc)):
+        assert type(arc_from((1.0, 2.0), (math.cos(direction + off), math.sin(direction + off)), end)) is kind
+
+
 @given(st.floats(-1.2, 1.2), st.floats(-1.2, 1.2), st.floats(1e-6, 10.0), st.floats(-3.2, 3.2), st.floats(0.2, 5.0))
 def test_biarc_meets_points_and_tangents(u: float, v: float, length: float, turn: float, ratio: float) -> None:
     p, q = np.array([[0.3, -0.2]]), np.array([[0.3 + length * math.cos(turn), -0.2 + length * math.sin(turn)]])

@@ -68,3 +68,9 @@ def test_even_a_spring_turned_too_far_is_drawn() -> None:
     for angle in (-100.0, 100.0):
         line = short.line(angle, 50)
         assert np.isfinite(line).all() and np.all(np.diff(np.hypot(*line.T)) > 0.0)
+
+
+def test_chords_of_a_turn_are_neither_too_few_nor_too_many() -> None:
+    assert [COIL.chords(deviation) for deviation in (1e-2, 1e-12)] == [24 * 13, 180 * 13]
+    half = COIL.outer * (1.0 - math.cos(math.pi / 60.0))  # how far a sixtieth of a turn lies from its chord
+    assert COIL.chords(half) == pytest.approx(60 * 13, rel=2e-3)

@@ -11,6 +11,8 @@ import numpy as np
 import pytest
 from curves import Known, involute, least_arcs, quarter_ellipse, smooth, spiral, spline
 
+from watchsim.geometry.fitting import fit as fitting
+from watchsim.geometry.fitting.curve import Curve
 from watchsim.geometry.fitting.fit import Fit, fit_all, fit_arcs
 from watchsim.geometry.primitives import Arc, Line
 
@@ -170,3 +172,32 @@ def test_jump_of_curvature_is_an_end_of_arcs() -> None:
     (middle,) = curve.points(np.array([1.0]))
     assert any(math.dist(edge.end, middle) < 1e-16 for edge in fit.edges)
     assert true_distance(curve, fit, 0.0, 2.0) <= fit.deviation * (1.0 + 1e-9)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_bound_holds_for_high_degree_and_unequal_weights(seed: int) -> None:
+    """Where weight and distance have terms beyond the cubic, which are only bounded."""
+    rng = np.random.default_rng(seed)
+    points = 1e-3 * np.column_stack((np.arange(7.0), rng.uniform(-1.0, 1.0, 7)))
+    curve = spline(6, [0] * 7 + [1] * 7, points, (10.0 ** rng.uniform(-1.0, 1.0, 7)).tolist())
+    for tolerance in (1e-4, 1e-6):
+        fit = fit_arcs(curve, tolerance)
+        measured = true_distance(curve, fit, 0.0, 1.0)
+        assert measured <= fit.deviation * (1.0 + 1e-6) <= tolerance * (1.0 + 2e-6)
+        assert fit.deviation <= 1.1 * measured
+
+
+def test_a_curve_along_which_no_chain_is_found_is_halved(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Made so here: nothing is found along more than an eighth of a span."""
+    found, longest = fitting._chains, 0.125
+
+    def few(curves: list[Curve], *others: object) -> list[object]:
+        whole = found(curves, *others)
+        return [chain if np.ptp(curve.breaks) <= longest else None for curve, chain in zip(curves, whole, strict=True)]
+
+    monkeypatch.setattr(fitting, "_chains", few)
+    curve = CURVES["cubic with inflection"]
+    fit = fit_arcs(curve, 1e-6)
+    assert true_distance(curve, fit, 0.0, 1.0) <= fit.deviation * (1.0 + 1e-9) <= 1e-6
+    for one, other in pairwise(fit.edges):
+        assert math.dist(one.end, other.start) < 1e-15

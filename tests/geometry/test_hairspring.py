@@ -103,3 +103,11 @@ def test_the_picture_is_a_strip_of_the_spiral() -> None:
     assert turned == pytest.approx(2.0 * spiral.turns, rel=1e-6)
     r = np.hypot(x, y)
     assert (r.min(), r.max()) == pytest.approx((1e-3 - 2.5e-5, 3e-3 + 2.5e-5))
+
+
+def test_a_strip_along_a_slanted_line_is_a_rectangle() -> None:
+    """Counter-clockwise, its corners half a width to either side of the ends."""
+    loop = ribbon(Line(1e-3, 2e-3, 4e-3, 6e-3), 1e-3)
+    corners = [(1.4e-3, 1.7e-3), (4.4e-3, 5.7e-3), (3.6e-3, 6.3e-3), (0.6e-3, 2.3e-3)]
+    for edge, here, there in zip(loop.edges, corners, [*corners[1:], corners[0]], strict=True):
+        assert edge.start == pytest.approx(here) and edge.end == pytest.approx(there)

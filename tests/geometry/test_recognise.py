@@ -102,3 +102,9 @@ def test_straight_curve_that_turns_back_near_its_end_is_not_one_line() -> None:
     ends = [edge.end[0] for edge in fit_arcs(curve, 1e-7).edges]
     assert max(ends) == pytest.approx(furthest, abs=1e-10) and furthest > 3.0008e-3
     assert ends[-1] == pytest.approx(3e-3, abs=1e-15)
+
+
+def test_weights_along_a_straight_line_bend_nothing() -> None:
+    points = 1e-3 * np.array([(0, 0), (1, 2), (2, 4), (5, 10)])
+    (part,) = parts(spline(3, [0] * 4 + [1] * 4, points, [9.0, 1.0, 4.0, 0.2]), 1e-7)
+    assert part.edge == Line(0.0, 0.0, 5e-3, 10e-3)

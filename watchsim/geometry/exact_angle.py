@@ -19,7 +19,7 @@ def cos_sin(angle: Decimal) -> tuple[Decimal, Decimal]:
         rest = angle - quarters * QUARTER  # within an eighth of a turn either way
         term, k = Decimal(1), 0
         sums = [Decimal(0), Decimal(0)]
-        while abs(term) > Decimal(10) ** -DIGITS and k < 2 * DIGITS:
+        while abs(term) > Decimal(10) ** -DIGITS:
             sums[k % 2] += -term if k % 4 >= 2 else term
             k += 1
             term *= rest / k

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,11 +13,14 @@ from watchsim.analysis.timeline.shown_beats import shown_beats
 from watchsim.analysis.timeline.timeline_table import timeline_text
 from watchsim.analysis.timing.beats import beats
 from watchsim.analysis.timing.body_contacts import held
+from watchsim.analysis.timing.marks.anchor_phases import _next_ones
 from watchsim.analysis.timing.phases import phases
 from watchsim.pages.timing_sheet.phase_tables import phase_tables
 from watchsim.profiles_path import profiles_dir
 from watchsim.render.figures.passing_phases import passing
 from watchsim.scene.file.load import load
+from watchsim.scene.force import Spring
+from watchsim.scene.roles import roles
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.simulation.simulate import simulate
@@ -95,3 +100,27 @@ def test_contacts_that_hold_before_the_first_event_are_counted():
 def test_the_table_of_an_anchor_names_no_lever(graham):
     (made,) = phase_tables(phases(graham))
     assert "balance turns" in made and "lever turns" not in made and "locked" not in made
+
+
+@pytest.mark.parametrize("sprung", [False, True])
+def test_the_pallets_of_an_anchor_take_turns(sprung):
+    """Also where a pendulum hangs on a spring."""
+    scene = load(profiles_dir() / "graham" / "scene.toml")
+    name = roles(scene).oscillator
+    spring = (Spring(name, 1e-6 * scene.body(name).inertia),) if sprung else ()
+    told = [beat.stages[0].pallet for beat in shown_beats(simulate(replace(scene, springs=spring), 6.0))]
+    assert set(told[:2]) == {"entry", "exit"} and told[2:] == told[:-2]
+
+
+@pytest.mark.parametrize(("name", "duration"), [("cylinder", 2.0), ("duplex", 2.0), ("pin_wheel", 6.0)])
+def test_without_stones_on_either_side_none_is_named(name, duration):
+    told = [beat.stages[0].pallet for beat in shown_beats(run_of(name, duration))]
+    assert len(told) > 1 and not any(told)
+
+
+@pytest.mark.parametrize("told", list(itertools.product((False, True), repeat=4)))
+def test_a_wheel_that_goes_on_every_second_beat_is_followed_to_the_end(told):
+    """As in a duplex escapement; a beat that is not told has no second."""
+    marks = ["a", None, "c", None]
+    wanted = [marks[i + 1] or (marks[i + 2] if told[i + 1] and i < 2 else None) for i in range(3)]
+    assert list(_next_ones(marks, np.array(told))) == wanted

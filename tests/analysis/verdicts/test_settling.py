@@ -15,7 +15,11 @@ from watchsim.simulation.event_kinds import EventKind
 
 
 def swung(amplitude, count=160):
-    """Half swings of amplitude(t) degrees."""
+    return told(amplitude, count)[1]
+
+
+def told(amplitude, count=160):
+    """Half swings of amplitude(t) degrees, and what is said of them."""
     events = Events()
     for k in range(count):
         way = 1.0 if k % 2 == 0 else -1.0
@@ -23,7 +27,7 @@ def swung(amplitude, count=160):
         events.passage(middle, EventKind.CROSS, way)
         events.passage(end, EventKind.TURN, way * amplitude(end) * DEGREE)
     run = balance_only(events, count * 0.5 * PERIOD)
-    return unsettled(watch_of(run, beats(run)))
+    return run, unsettled(watch_of(run, beats(run)))
 
 
 @pytest.mark.parametrize(("start", "goal", "constant"), [(200.0, 280.0, 8.0), (300.0, 260.0, 20.0), (100.0, 240.0, 5.0)])
@@ -59,3 +63,17 @@ def test_a_steady_loss_has_no_end_foretold():
 def test_where_it_goes_is_said_as_exactly_as_it_differs(start, goal, said):
     found = swung(lambda t: goal + (start - goal) * math.exp(-t / 8.0), 80)
     assert said in found.message, found.message
+
+
+def test_a_drift_counts_beyond_three_standard_errors():
+    """Told by a regression of another make: of means over an oscillation about the straight line through each stretch."""
+    known, noise = {}, np.random.default_rng(5).normal(0.0, 1.0, 161)
+    for scatter in np.linspace(1.5, 5.0, 36):
+        run, said = told(lambda t, by=scatter: 280.0 - 0.02 * t * t + by * noise[round(2.0 * t / PERIOD)])
+        stretches = np.split(beats(run).amplitude_deg[-120:].reshape(-1, 2).mean(axis=1), 3)
+        off = np.concatenate([part - np.polyval(np.polyfit(range(20), part, 1), range(20)) for part in stretches])
+        error = math.sqrt(2.0 / 20.0 * np.mean(off**2))
+        known[abs(stretches[2].mean() - stretches[1].mean()) / error] = said is not None
+    assert [drifts for errors, drifts in known.items() if 2.4 < errors < 3.0].count(False) > 2
+    assert [drifts for errors, drifts in known.items() if 3.0 < errors < 3.6].count(True) > 2
+    assert all(drifts == (errors > 3.0) for errors, drifts in known.items())

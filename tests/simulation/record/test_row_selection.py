@@ -9,7 +9,7 @@ import pytest
 
 from watchsim.scene.recording import Recording
 from watchsim.simulation.event_kinds import EVENT_DTYPE
-from watchsim.simulation.record.row_selection import Kept
+from watchsim.simulation.record.row_selection import Kept, tail_length
 
 WINDOWS = ((4.0, 6.5), (6.2, 8.0), (11.3, 11.4), (19.0, 30.0))
 RECORDINGS = {
@@ -73,3 +73,19 @@ def test_stretches_that_are_kept(end: float, expected: tuple[tuple[float, float]
     """From the start to the end of the run at most; what overlaps is one."""
     kept = Kept(Recording(((0.5, 2.0), (-1.0, 1.0), (4.0, 9.0)), "statistics"), 1.7)
     assert np.array(kept.spans(end)) == pytest.approx(np.array(expected))
+
+
+def test_stretches_of_a_run_shorter_than_its_tail() -> None:
+    """All of it, and nothing before it."""
+    assert Kept(Recording(keep="statistics"), 1.7).spans(0.5) == ((0.0, 0.5),)
+
+
+def test_a_stretch_joins_the_one_just_before_it() -> None:
+    kept = Kept(Recording(((0.0, 1.0), (3.0, 5.0), (4.0, 6.0))), 1.7)
+    assert kept.spans(9.0) == ((0.0, 1.0), (3.0, 6.0))
+
+
+@pytest.mark.parametrize(("hertz", "seconds"), [(None, 2.0), (8.0, 2.5), (4.0, 3.0), (1.0, 12.0)])
+def test_length_of_the_tail(hertz: float | None, seconds: float) -> None:
+    """Two seconds or eight periods, whichever is longer, and four periods more."""
+    assert tail_length(hertz) == seconds

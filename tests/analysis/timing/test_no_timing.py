@@ -1,0 +1,60 @@
+"""Is it said why a run gives no amplitude, or no rate?"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from analysis.made_beats import DEGREE, PERIOD, Events, balance_only, lever_scene, steady_swings
+
+from watchsim.analysis.timing.beats import beats
+from watchsim.analysis.timing.no_timing import why_no_timing
+from watchsim.simulation.event_kinds import EventKind
+
+UNKNOWN = {"amplitude_deg": None, "rate_s_per_d": None}
+
+
+def turned(count: int, crossed: bool) -> Events:
+    events = Events()
+    for k in range(count):
+        if crossed:
+            events.passage((k + 0.5) * 0.5 * PERIOD, EventKind.CROSS, 1.0 - 2.0 * (k % 2))
+        events.passage((k + 1) * 0.5 * PERIOD, EventKind.TURN, 100.0 * DEGREE * (1.0 - 2.0 * (k % 2)))
+    return events
+
+
+@pytest.mark.parametrize(
+    ("events", "duration", "why"),
+    [
+        (turned(0, False), 10.0, "balance never passed its rest position"),
+        (turned(5, False), 10.0, "balance never passed its rest position"),
+        (turned(1, True), 10.0, "balance turned back only once in 10 s"),
+        (turned(2, True), 10.0, "balance turned back only twice in 10 s"),
+        (turned(2, True), 0.45, "the run of 0.45 s is too short: balance needs 0.5 s for two oscillations"),
+        (turned(0, False), 0.2, "the run of 0.2 s is too short: balance needs 0.5 s for two oscillations"),
+        (turned(9, True), 10.0, "the last 7.5 s hold too few whole swings of balance"),
+    ],
+)
+def test_what_is_too_little(events: Events, duration: float, why: str) -> None:
+    scene = replace(lever_scene(), torques=(), contacts=())
+    run = balance_only(events, duration, scene)
+    assert why_no_timing(run, beats(run), UNKNOWN, 2.5) == f"no amplitude and rate: {why}"
+
+
+def test_only_what_is_missing_is_named() -> None:
+    run = balance_only(steady_swings(8, 200.0 * DEGREE), 10.0)
+    found = beats(run)
+    assert why_no_timing(run, found, {"amplitude_deg": 200.0, "rate_s_per_d": 0.0}) is None
+    said = why_no_timing(run, found, {"amplitude_deg": 200.0, "rate_s_per_d": None})
+    assert said is not None and said.startswith("no rate: ")
+
+
+def test_what_never_swings() -> None:
+    still = replace(lever_scene(), springs=())
+    run = balance_only(Events(), 1.0, still)
+    assert why_no_timing(run, None, UNKNOWN) == "no amplitude and rate: no body has a spring, and there is no gravity"
+    heavy = replace(run, scene=replace(still, gravity=(0.0, -9.81)))
+    said = why_no_timing(heavy, None, UNKNOWN)
+    assert said is not None and said.endswith("and none that is not driven hangs beside its pivot")
+    fixed = replace(still, bodies=(still.body("banking"),))
+    assert why_no_timing(replace(run, scene=fixed), None, UNKNOWN) is None
