@@ -40,7 +40,7 @@ LONGEST_PLAIN = 3.0  # s for one test of kernels in plain Python, a hundred time
 COMPILED = "kernels"
 PLAIN = "plain"
 AREAS = {  # name -> (files, tests)
-    "reader": (("drawing/**/*.py",), ("tests/drawing",)),
+    "reader": (("drawing/**/*.py",), ("tests/drawing", "tests/construction")),
     "geometry": (
         ("geometry/**/*.py",),
         (
