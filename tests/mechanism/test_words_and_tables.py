@@ -35,6 +35,8 @@ def test_the_columns_of_pairs(name: str, count: int) -> None:
     lines = list(pair_lines(entry))
     assert len(lines) == {1: 2, 2: 4}[count] and len({len(line) for line in lines}) == 1
     assert f"  {name} - lever" in lines[1] and lines[1].count("123,456") == len(HEADINGS)
+    longest = max(len("pairs of edges and corners"), len(f"  {name} - lever"))
+    assert lines[0].index("   declared") == longest and lines[1].index("    123,456") == longest
     assert (count == 1) or lines[3].startswith("  together")
 
 
