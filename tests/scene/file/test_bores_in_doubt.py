@@ -22,8 +22,5 @@ def test_what_crosses_or_meets_another_inside_or_covers_a_hole(
     """A bore outside the material that meets another one changes nothing."""
     covered = None if around is None else Loop((), hole=around)
     lie = Lie(outlines, holes, crosses, covered, None, meets)
-    if crosses is not None or around is True:
-        expected = True
-    else:
-        expected = meets is not None and outlines > holes
+    expected = crosses is not None or around is True or (meets is not None and outlines > holes)
     assert _doubtful(lie) is expected
