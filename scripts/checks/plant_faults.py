@@ -40,7 +40,7 @@ LONGEST_PLAIN = 3.0  # s for one test of kernels in plain Python, a hundred time
 COMPILED = "kernels"
 PLAIN = "plain"
 AREAS = {  # name -> (files, tests)
-    "reader": (("drawing/**/*.py",), ("tests/drawing",)),
+    "reader": (("drawing/**/*.py",), ("tests/drawing", "tests/construction")),
     "geometry": (
         ("geometry/**/*.py",),
         (
@@ -66,6 +66,9 @@ AREAS = {  # name -> (files, tests)
             "render/figures/speed_plot.py",
             "render/frame/marks/readouts.py",
             "render/movies/encoder.py",
+            "render/movies/busy_stretches.py",
+            "render/keyframes.py",
+            "render/fewest_rows.py",
         ),
         ("tests/render",),
     ),

@@ -21,6 +21,7 @@ import sys
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from types import CodeType, FrameType
 from typing import Any
@@ -42,12 +43,25 @@ class Reached:
     called: dict[str, set[tuple[str, int]]] = field(default_factory=dict)
 
     def tests(self, file: str, function: int) -> list[str]:
-        """The tests that reach a function, quickest first; of what is done at import, those that reach anything of the file."""
+        """The tests that reach a function, quickest first; of what is done at import, those that reach anything of the file.
+
+        Tests that import the file themselves come before these: they may look at its constants and call nothing.
+        """
+        whole = function == MODULE
+        own = _importers(file) if whole else frozenset()
         hit = [
             name for name, called in self.called.items()
-            if (file, function) in called or (function == MODULE and any(one == file for one, _ in called))
+            if (file, function) in called or (whole and (name.split("::")[0] in own or any(one == file for one, _ in called)))
         ]  # fmt: skip
-        return sorted(hit, key=lambda name: self.seconds[name])
+        return sorted(hit, key=lambda name: (name.split("::")[0] not in own, self.seconds[name]))
+
+
+@cache
+def _importers(file: str) -> frozenset[str]:
+    """The test files that name the module of a file."""
+    module = f"watchsim.{file.removesuffix('.py').replace('/', '.')} import"
+    found = (path for path in (ROOT / "tests").rglob("test_*.py") if module in path.read_text(encoding="utf-8"))
+    return frozenset(path.relative_to(ROOT).as_posix() for path in found)
 
 
 class _Recorder:

@@ -164,6 +164,11 @@ def test_the_printed_table(swiss):
     text = timeline_text(swiss)
     assert "entry stone" in text and "exit stone" in text and "impulse on tooth" in text
     assert text.count("the account closes to") == 2 and max(len(line) for line in text.splitlines()) < 170
+    told = shown_beats(swiss)
+    assert text.startswith(f"Timeline, t = {told[0].start:.6f} s to {told[1].end:.6f} s\n")
+    for beat, line in zip(told, (line.split() for line in text.splitlines() if line.startswith("  end ")), strict=True):
+        assert float(line[1]) == pytest.approx(1e3 * (beat.end - beat.start), abs=1e-3)
+        assert [float(one) for one in line[2::2]] == pytest.approx(np.degrees(beat.stages[-1].end_angles), abs=1e-3)
     energies = text[text.index("energy in nJ") :].splitlines()[1:]
     assert len({len(line) for line in energies if not line.startswith(("beat", "  the account"))}) == 1  # one below the other
 

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
 
-from watchsim.candidates.symmetry import turn_symmetry
+from watchsim.candidates.broad_phase import _largest
+from watchsim.candidates.chords import chords
+from watchsim.candidates.symmetry import _mismatch, turn_symmetry
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line, moved
 from watchsim.mechanism.contact_features import features
@@ -71,3 +74,25 @@ def test_a_spoilt_tooth_ends_the_symmetry_unless_it_is_rounding(spoilt: float, f
 
 def test_no_primitives_have_no_symmetry() -> None:
     assert turn_symmetry(wheel(5)[:0], TOLERANCE).fold == 1
+
+
+@pytest.mark.parametrize("change", [3e-5, -3e-5])
+def test_holes_of_unlike_radii_miss_by_twice_the_difference(change: float) -> None:
+    """Both the one that is larger and the one whose image is."""
+    rows = wheel(4, spokes=4)
+    holes = np.flatnonzero(rows.extent > 0)
+    image = np.arange(len(rows))
+    image[holes] = np.roll(holes, -1)
+    drawn = chords(rows, math.inf)
+    ends = drawn.points[drawn.first[:-1]], drawn.points[drawn.first[1:] - 1]
+    before = _mismatch(rows, ends, image, math.pi / 2.0)[holes]
+    rows.radius[holes[1]] += change
+    more = _mismatch(rows, ends, image, math.pi / 2.0)[holes] - before
+    assert more == pytest.approx([2.0 * abs(change), 2.0 * abs(change), 0.0, 0.0], abs=1e-12)
+
+
+def test_largest_of_each_group() -> None:
+    values = np.random.default_rng(2).normal(size=(3, 11))
+    first = np.array([0, 1, 4, 9, 11])
+    naive = [[max(row[a:b]) for a, b in pairwise(first)] for row in values.tolist()]
+    assert _largest(values, first).tolist() == naive

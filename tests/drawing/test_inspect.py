@@ -12,6 +12,9 @@ import pytest
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.findings import Finding
 from watchsim.drawing.inspection import finding_lines, inspect_report, inspect_text
+from watchsim.drawing.read import smallness
+from watchsim.geometry.loop import Loop
+from watchsim.geometry.primitives import TURN, Arc
 
 Reader = Callable[..., Drawing]
 
@@ -160,3 +163,12 @@ def test_what_is_drawn_on_layers_of_bores_and_pivots_alone_is_the_part(read_byte
 def test_points_are_in_millimetres(read_bytes: Reader) -> None:
     drawing = read_bytes(d.dxf(d.circle(0, 0, 1) + d.record("POINT", *d.point(10, (3.0, -4.0)), layer="PIVOT")))
     assert inspect_report(drawing)["points"] == [{"layer": "PIVOT", "x_mm": 3.0, "y_mm": -4.0}]
+
+
+@pytest.mark.parametrize(("apart", "tiny"), [((0.0, 0.0), True), ((3e-3, 0.0), False), ((0.0, 3e-3), False)])
+def test_a_drawing_hardly_larger_than_one_point_is_told(apart: tuple[float, float], tiny: bool) -> None:
+    """Two small circles, which have no ends apart: on each other, side by side, one above the other."""
+    loops = tuple(Loop((Arc(x, y, 1e-7, 0.0, TURN),)) for x, y in ((0.0, 0.0), apart))
+    found = smallness(loops, 1e-6)
+    assert [finding.code for finding in found] == (["tiny"] if tiny else [])
+    assert not tiny or "0.2 µm across, and ends within 1 µm" in found[0].message

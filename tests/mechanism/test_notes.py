@@ -59,6 +59,7 @@ def test_nothing_is_said_of_what_is_plain(tmp_path: Path) -> None:
         FLAT + DISC.replace("inertia", 'mass = "1 g"\npivot = ["0 mm", "2 mm"]\ninertia') + END,
         HEAD + DISC.replace("inertia", 'mass = "1 g"\ninertia') + END,
         FLAT + DISC.replace("inertia", 'velocity = "10 °/s"\ninertia') + SPRING + END,
+        *(FLAT + DISC.replace("inertia", f'angle = "{side}9°"\ninertia') + SPRING + END for side in ("", "-")),
     ):
         (tmp_path / "scene.toml").write_text(text, encoding="utf-8")
         assert notes(load(tmp_path)) == ()

@@ -8,7 +8,7 @@ import pytest
 
 from watchsim.scene.body import Body
 from watchsim.scene.force import Contact, Side, Spring, Torque
-from watchsim.scene.roles import Roles, roles
+from watchsim.scene.roles import Roles, is_driven, roles, with_anchor
 from watchsim.scene.scene import Scene
 
 BODIES = tuple(Body(name, "pivot", inertia=1.0) for name in ("third", "wheel", "fork", "balance"))
@@ -35,3 +35,17 @@ def test_what_is_not_there_is_not_found() -> None:
     assert roles(Scene("", BODIES, (Spring("balance", 1.0),), torques, contacts=TOUCHES[:1])) == Roles("balance", "wheel", None)
     assert roles(Scene("", BODIES, (), torques, contacts=TOUCHES)) == Roles(None, "wheel", None)
     assert roles(Scene("", BODIES, (Spring("balance", 1.0),), contacts=TOUCHES)) == Roles("balance", None, None)
+
+
+def test_a_scene_is_driven_where_any_torque_puts_work_in() -> None:
+    nothing, value, table = Torque("fork", 0.0), Torque("wheel", -1.0), Torque("wheel", table=((0.0, 1.0), (1.0, 2.0)))
+    for torques, driven in (((), False), ((nothing,), False), ((nothing, value), True), ((nothing, table), True)):
+        assert is_driven(Scene("", BODIES, torques=torques)) is driven
+
+
+@pytest.mark.parametrize("touches", [TOUCHES, TOUCHES[:1]])
+def test_only_a_pendulum_that_touches_the_wheel_itself_is_its_own_lever(touches: tuple[Contact, ...]) -> None:
+    direct = Contact((Side("wheel"), Side("balance")))
+    springs, torques = (Spring("balance", 1.0),), (Torque("wheel", 1.0),)
+    swing = Scene("", BODIES, springs, torques, contacts=(*touches, direct), lift_angle=1.0)
+    assert with_anchor(swing) == (LEVER if len(touches) > 1 else Roles("balance", "wheel", "balance"))

@@ -64,6 +64,11 @@ def test_blows_ring_as_the_formula_says_however_it_is_cut(blocks):
     assert np.concatenate(made) == pytest.approx(by_hand(times, loudness, 2000), abs=1e-10)
 
 
+def test_a_blow_begins_as_loud_as_it_is():
+    """The shares of its tones sum to one."""
+    assert Ringing().block(10, np.zeros(1), np.array([0.7]))[0] == pytest.approx(0.7, rel=1e-12)
+
+
 def test_a_blow_outside_its_block_is_refused():
     with pytest.raises(ValueError, match="outside"):
         Ringing().block(10, np.array([1.0]), np.ones(1))

@@ -103,6 +103,19 @@ def test_a_tick_is_the_first_noise_after_a_silence():
     assert found.tick == pytest.approx(found.t - 4e-3, abs=1e-12)
 
 
+@pytest.mark.parametrize(("silence", "heard"), [(0.095, False), (0.105, True)])
+def test_a_tenth_of_half_a_period_is_silence(silence, heard):
+    """After a knock just before the turning point: what comes sooner rings on from it."""
+    events = steady_swings(6, 4.7)
+    for k in range(7):
+        knock = k * 0.125 - 5e-3
+        events.touch(knock, EventKind.IMPACT, PIN)
+        events.touch(knock + silence * 0.125, EventKind.IMPACT, PIN)
+    found = beats(balance_only(events, 0.75))
+    expected = found.start - 5e-3 + silence * 0.125 if heard else found.end - 5e-3
+    assert found.tick == pytest.approx(expected, abs=1e-12)
+
+
 def test_of_several_turns_after_a_knock_the_outermost_counts():
     events = steady_swings(6, 4.7)
     for t in (0.126, 0.127):

@@ -141,3 +141,15 @@ def test_beats_missed_before_the_first_window(monkeypatch: pytest.MonkeyPatch, f
     monkeypatch.setattr(escape_wheel, "advance", lambda *_: came)
     run = lever_run(6)
     assert missed_beats(run, "wheel", beats(run)) == missed
+
+
+@pytest.mark.parametrize(
+    ("share", "word"), [(0.45, "balance swinging, now at −90°"), (0.55, "balance held at −90° since t = ")]
+)
+def test_a_balance_that_has_not_moved_for_half_a_period_is_held(share, word):
+    run = lever_run(20, missed=range(12, 20))
+    still = run.t > run.simulated - share * 0.25
+    q = run.q.copy()
+    q[:, 0] = np.where(still, -0.5 * math.pi, 0.0)
+    held = replace(run, q=q)
+    assert word in standstill(held, beats(held)).message

@@ -12,7 +12,7 @@ import pytest
 from watchsim.analysis.timing.beats import Beats
 from watchsim.analysis.timing.marks.anchor_marks import NEAR_REST, STANDING
 from watchsim.analysis.timing.marks.lever_phases import lever_phases
-from watchsim.analysis.timing.marks.stretches import FACES, Stretch
+from watchsim.analysis.timing.marks.stretches import FACES, Stretch, in_columns
 from watchsim.analysis.timing.marks.wheel_contacts import WheelContacts
 
 BEATS = 60
@@ -91,3 +91,8 @@ def test_together_as_one_by_one(seed: int, size: int, monkeypatch: pytest.Monkey
     assert got == expected
     assert len({row.beat for row in expected}) > 10
     assert all(len(part.first) <= size for part in parts)
+
+
+def test_without_phases_every_column_is_empty():
+    empty = in_columns([])
+    assert len(empty) == 0 and empty.names == [] and empty.faces == [] and empty.first.tolist() == []

@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
 
 import dxf_text as d
 import pytest
 
-from watchsim.drawing.chaining.crossings import crossings
+from watchsim.drawing.chaining.crossings import Meeting, crossings, stretches
 from watchsim.drawing.chaining.outline_source import Outline
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.findings import Finding
@@ -114,6 +116,17 @@ def test_lines_and_arcs_that_lie_partly_on_each_other(read_bytes: Reader) -> Non
     assert "LINE #A and LINE #B" in lines.message and "(2, 0)" in lines.message and "(3, 0)" in lines.message
     assert "ARC #C and ARC #D" in arcs.message
     assert math.atan2(arcs.y_mm or 0.0, (arcs.x_mm or 0.0) - 9.0) == pytest.approx(math.radians(105), abs=1e-9)
+
+
+@pytest.mark.parametrize("start", [0.0, 100.0, 200.0, 359.0])
+def test_an_arc_on_a_circle_lies_on_it_wherever_that_begins(start: float) -> None:
+    """From 90° to 200°, the circle from anywhere; beside it an arc that meets it nowhere."""
+    arc = Arc(1e-3, 2e-3, 5e-3, math.radians(90.0), math.radians(110.0))
+    whole = Arc(1e-3, 2e-3, 5e-3, math.radians(start), math.tau)
+    layer: Any = SimpleNamespace(edges=[whole, arc])
+    ((p, q),) = stretches(layer, Meeting(0, 1, [arc.end, arc.start]))
+    assert {p, q} == {arc.start, arc.end}
+    assert stretches(layer, Meeting(0, 1, [arc.end])) == []
 
 
 def test_a_spike_shorter_on_the_way_back(read_bytes: Reader) -> None:

@@ -12,7 +12,7 @@ from shapely import LineString, distance
 from shapely import points as shapely_points
 
 from watchsim.drawing.curves.plane_shapes import Spline
-from watchsim.drawing.curves.spline_copies import Follower
+from watchsim.drawing.curves.spline_copies import Follower, motion_between
 from watchsim.drawing.drawing import Drawing
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.polyline import polyline
@@ -93,3 +93,13 @@ def test_blocks_turned_and_mirrored_lie_where_they_are_inserted(read_bytes: Read
     for image, loop in zip(images, drawing.open_chains, strict=True):
         assert furthest(image, loop) <= 1.002e-7
     assert drawing.fitted_curves == 4 and drawing.fitted_deviation <= 1e-7 * (1 + 1e-6)
+
+
+@pytest.mark.parametrize("name", MOTIONS)
+@pytest.mark.parametrize("turn", [1.0, 1j, -1.0])
+def test_the_motion_between_points_is_found(name: str, turn: complex) -> None:
+    """Whichever of them lies furthest out."""
+    z = turn * CONTROL
+    motion, away = motion_between(z, MOTIONS[name](z), "mirrored" in name)
+    assert away < 1e-14 * 10.0 and abs(motion.turn) == pytest.approx(1.0)
+    assert motion_between(z, 1.01 * MOTIONS[name](z), "mirrored" in name)[1] > 5e-3

@@ -167,10 +167,10 @@ def test_only_hidden_or_only_text_is_empty(read_bytes: Reader) -> None:
 def test_what_a_damaged_boundary_swallows_is_said(read_bytes: Reader) -> None:
     """The group code 0 before an entity became something else: it is part of the record before it."""
     corners = "".join(d.record("VERTEX", *d.point(10, p)) for p in ((0, 0), (4, 0), (4, 4)))
-    polyline = d.record("POLYLINE", (66, 1), (70, 1)) + corners + d.record("SEQEND")
+    polyline = d.record("POLYLINE", (66, 1), (70, 1)) + corners + d.record("SEQEND", layer="ROW")
     swallowed = d.circle(9, 0, 1).replace("0\n", "62\n", 1)
     after_row = read_bytes(d.dxf(polyline + swallowed))
-    assert [finding.code for finding in after_row.findings] == ["strange-group"]
+    assert [(finding.code, finding.layer) for finding in after_row.findings] == [("strange-group", "ROW")]
     after_text = read_bytes(d.dxf(d.circle(0, 0, 1) + d.record("TEXT", *d.point(10, (0, 0)), (40, 1.0), (1, "x")) + swallowed))
     assert "names two layers" in errors(after_text)["damaged"]
 

@@ -11,6 +11,7 @@ import pytest
 from ezdxf.math import ConstructionEllipse
 
 from watchsim.drawing.drawing import Drawing
+from watchsim.drawing.dxf_records import decoded
 from watchsim.geometry.extent import extents
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import TURN, Arc, Line
@@ -298,3 +299,26 @@ def test_flat_bulges_are_arcs(size: float, hand: float, read_bytes: Reader) -> N
     (edge,) = [edge for edge in loop.edges if isinstance(edge, Arc)]
     assert edge.point(0.5)[1] == pytest.approx(-hand * 0.5e-3 * size, rel=1e-6, abs=1e-15)
     assert edge.radius == pytest.approx(0.25e-3 * (1.0 / size + size), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("tags", "sweep"),
+    [
+        ((), 2.0 * math.pi),
+        (((42, 1.0),), 1.0),
+        (((41, 1.0),), 2.0 * math.pi - 1.0),
+        (((41, 5.0), (42, 1.0)), 2.0 * math.pi - 4.0),
+    ],
+)
+def test_an_ellipse_runs_all_round_where_its_ends_are_not_given(
+    read_bytes: Reader, tags: tuple[tuple[int, float], ...], sweep: float
+) -> None:
+    """With equal axes the parameter is the angle."""
+    entity = d.record("ELLIPSE", *d.point(10, (1, 2)), *d.point(11, (3, 4)), (40, 1.0), *tags)
+    drawing = read_bytes(d.dxf(entity))
+    (loop,) = (*drawing.loops, *drawing.open_chains)
+    assert loop.closed is (not tags) and sum(edge.length for edge in loop.edges) == pytest.approx(5e-3 * sweep, rel=1e-9)
+
+
+def test_escaped_letters_are_decoded() -> None:
+    assert decoded(r" \U+00B5m \U+2300 5 ") == "µm ⌀ 5" and decoded(r"\P 5") == r"\P 5"

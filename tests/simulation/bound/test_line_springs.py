@@ -173,6 +173,8 @@ def test_what_cannot_be_is_a_fault(tmp_path) -> None:
 
     points = 'points = [["0 mm", "0 mm"], ["9 mm", "0 mm"]]\nstiffness = "1 N/m"\n'
     assert "there is no body" in faults(points + 'between = ["lever", "slyde"]')["line_springs.3.between.1"]
+    for between in ('["lever", "lever"]', "[]", '["lever", "slide", "disc"]'):
+        assert "one or two bodies are needed" in faults(f"{points}between = {between}")["line_springs.3.between"]
     assert "from its pivot" in faults('stiffness = "1 N/m"\nbetween = ["lever"]')["line_springs.3"]
     assert "leave one out" in faults(points + 'between = ["lever"]\nlength = "1 mm"\ntension = "1 N"')["line_springs.3.tension"]
     assert "shorter than nothing" in faults(points + 'between = ["lever"]\ntension = "1 N"')["line_springs.3.tension"]

@@ -252,9 +252,7 @@ class _Builder:
 
 def _was_recoded(data: bytes) -> bool:
     """Is this UTF-8 although its first line may still say UTF-16?"""
-    return (
-        data[:3] != b"\xef\xbb\xbf" and re.match(rb"\s*<\?xml[^>]*encoding\s*=\s*[\"']utf-16", data, re.IGNORECASE) is not None
-    )
+    return re.match(rb"\s*<\?xml[^>]*encoding\s*=\s*[\"']utf-16", data, re.IGNORECASE) is not None
 
 
 def _resolved(tag: str, spaces: dict[str, str]) -> str:
