@@ -87,7 +87,7 @@ def _land(model, state, options, work, event):
         event.listed[j] = state.active[j]
     m = insert(event.listed, m, state.now.touched)
     place_contacts(model, event.listed, 0, m, event.pose, event.closed)
-    project_positions(event.closed, m, True, work, state.q)
+    project_positions(event.closed, m, True, options.behind, work, state.q)
     place(model, state.q, state.u, event.pose)
 
 
@@ -100,7 +100,7 @@ def _settle_island(model, state, island, span, options, scratch, record):
     m = place_contacts(model, event.listed, span[0], span[1], event.pose, closed)
     m = drop_immovable(model, state, m, event, record)
     note_pace(state.u, event.pace)
-    deepest = project_positions(closed, m, False, work, state.q)
+    deepest = project_positions(closed, m, False, options.behind, work, state.q)
     if deepest > 0.0:
         state.worst.penetration = max(state.worst.penetration, deepest)
         place(model, state.q, state.u, event.pose)
@@ -142,7 +142,7 @@ def _go_on(model, state, f, options, scratch, record):
     first = 0
     while first < f:
         m = place_contacts(model, state.active, first, state.upto[first], event.pose, rest)
-        _correct(state, m, work, rest, event.trial)
+        _correct(state, m, options, work, rest, event.trial)
         first += m
         m, unique = let_go(model, state, m, options, work, event, record)
         if not unique:
@@ -156,9 +156,9 @@ def _go_on(model, state, f, options, scratch, record):
 
 
 @kernel
-def _correct(state, m, work, rest, out_trial):
+def _correct(state, m, options, work, rest, out_trial):
     """Exact zero gaps and rates of an island's m contacts in force; no slip against the mode where it was too slow to count."""
-    deepest = project_positions(rest, m, True, work, state.q)
+    deepest = project_positions(rest, m, True, options.behind, work, state.q)
     state.worst.penetration = max(state.worst.penetration, deepest)
     for i in range(m):
         k = rest.ids[i]
