@@ -103,7 +103,7 @@ FINEST_TOLERANCE, COARSEST_TOLERANCE = 1e-13, 1e-2
 GAP_ZERO = 1e-13
 # Of the size: gaps that small take part in an impact. Large: merges events; small: splits simultaneous ones.
 GAP_CLOSE = 2e-10
-# Of the size: `behind`. Large: accepts contacts on the far side, and looks at more gaps; small: falls through.
+# Of the size: `behind`; the largest is `sunk`. Large: accepts contacts on the far side, and more looks; small: falls through.
 BEHIND_LEAST, BEHIND_MOST = 2e-8, 2e-5
 # Of the size, for each of the tolerance: drift lets a corner land so far behind. Large, small: as above.
 BEHIND_PER_TOLERANCE = 20.0

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from hunt.energies import masses
 from hunt.impulses import Touches, touching
-from hunt.views import views
+from hunt.views import perturbed, views
 
 from watchsim.scene.file.load import load
 from watchsim.simulation.event_kinds import EventKind
@@ -61,3 +61,12 @@ def test_forces_that_rounding_allows_do_not_carry_them_over():
         assert run.simulated == seen.duration
         assert not run.u[run.t > jam["t"]].any()
         assert jam["t"] == pytest.approx(0.0748486, abs=2e-7)
+
+
+@pytest.mark.parametrize("twin", [0, 4])
+def test_what_an_impact_leaves_of_a_slip_is_no_slip(twin):
+    """It stops a disc and a bar with 1e6 N s across a face of 2e-6 rad; the rounding of mu times that counted as motion."""
+    scene = perturbed(load(SCENES / "kink-801-11924.toml"), 1e-5, 2 * 11924 + 1000 + twin, -1.0)
+    run = simulate(scene)
+    assert run.simulated == scene.duration
+    assert abs(run.u[-1]).max() < 1e-4

@@ -91,7 +91,7 @@ def _follow_step(model, state, options, end, scratch):
     first = 0
     while first < state.now.awake_contacts:
         m = place_contacts(model, state.active, first, state.upto[first], pose, closed)
-        deepest = project_positions(closed, m, True, work, state.q)
+        deepest = project_positions(closed, m, True, options.behind, work, state.q)
         state.worst.penetration = max(state.worst.penetration, deepest)
         if _turns_rates(model, state, options, m, closed):
             place(model, state.q, state.u, pose)

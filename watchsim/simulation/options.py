@@ -36,6 +36,7 @@ class Options(NamedTuple):
     gap_zero: float  # m: a gap this small is zero to rounding. Large: early contacts; small: below the rounding of positions
     gap_close: float  # m: gaps this small take part in an impact. Large: merges events; small: splits simultaneous ones
     behind: float  # m: a step may end this far behind a contact. Large: accepts contacts on the far side; small: falls through
+    sunk: float  # m: so far behind, where flat faces have let it. Large: accepts contacts on the far side; small: falls through
     extent: float  # m: how far beyond its primitive's end a contact counts. Large: sticks out; small: slips through joints
     speed_zero: float  # m/s: slower is zero. Large: freezes slow sliding; small: below the rounding of velocities
     force_zero: float  # share of a contact's force terms that counts as zero. Large: late detachment; small: rounding decides
@@ -59,6 +60,7 @@ def options_for(size: float, tolerance: float, max_step: float) -> Options:
         gap_close=GAP_CLOSE * size,
         # A corner that lands flat comes within its primitives only when it has landed: as far behind as drift has let it.
         behind=max(BEHIND_LEAST, min(BEHIND_PER_TOLERANCE * tolerance, BEHIND_MOST)) * size,
+        sunk=BEHIND_MOST * size,
         extent=EXTENT_PER_JOINT * JOINT_RESOLUTION * size,
         # Velocities drift off their contacts by about the tolerance within a step.
         speed_zero=max(SPEED_ZERO, SPEED_PER_TOLERANCE * tolerance) * size,

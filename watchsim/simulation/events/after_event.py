@@ -31,7 +31,7 @@ from watchsim.simulation.motion.drift_projection import project_positions, proje
 from watchsim.simulation.motion.sleeping import add_terms, begin_terms, find_sleepers
 from watchsim.simulation.record.write_buffers import keep_change, keep_event
 from watchsim.simulation.stops import Stop
-from watchsim.tolerances import DEPENDENT_AT_EVENTS, DEPENDENT_IN_STEPS, LEFT_PRIMITIVE
+from watchsim.tolerances import DEPENDENT_AT_EVENTS, DEPENDENT_IN_STEPS, LEFT_PRIMITIVE, VELOCITY_ROUNDING
 
 ROUNDS = 16  # impacts in a row at one instant
 
@@ -87,7 +87,7 @@ def _land(model, state, options, work, event):
         event.listed[j] = state.active[j]
     m = insert(event.listed, m, state.now.touched)
     place_contacts(model, event.listed, 0, m, event.pose, event.closed)
-    project_positions(event.closed, m, True, work, state.q)
+    project_positions(event.closed, m, True, options.behind, work, state.q)
     place(model, state.q, state.u, event.pose)
 
 
@@ -100,7 +100,7 @@ def _settle_island(model, state, island, span, options, scratch, record):
     m = place_contacts(model, event.listed, span[0], span[1], event.pose, closed)
     m = drop_immovable(model, state, m, event, record)
     note_pace(state.u, event.pace)
-    deepest = project_positions(closed, m, False, work, state.q)
+    deepest = project_positions(closed, m, False, options.behind, work, state.q)
     if deepest > 0.0:
         state.worst.penetration = max(state.worst.penetration, deepest)
         place(model, state.q, state.u, event.pose)
@@ -142,7 +142,7 @@ def _go_on(model, state, f, options, scratch, record):
     first = 0
     while first < f:
         m = place_contacts(model, state.active, first, state.upto[first], event.pose, rest)
-        _correct(state, m, work, rest, event.trial)
+        _correct(state, m, options, work, rest, event.trial)
         first += m
         m, unique = let_go(model, state, m, options, work, event, record)
         if not unique:
@@ -156,9 +156,9 @@ def _go_on(model, state, f, options, scratch, record):
 
 
 @kernel
-def _correct(state, m, work, rest, out_trial):
+def _correct(state, m, options, work, rest, out_trial):
     """Exact zero gaps and rates of an island's m contacts in force; no slip against the mode where it was too slow to count."""
-    deepest = project_positions(rest, m, True, work, state.q)
+    deepest = project_positions(rest, m, True, options.behind, work, state.q)
     state.worst.penetration = max(state.worst.penetration, deepest)
     for i in range(m):
         k = rest.ids[i]
@@ -190,27 +190,30 @@ def _resolve(model, state, island, m, options, scratch, record):
     found, and the modes asked for again.
     """
     work, event = scratch.work, scratch.event
-    jam, exactly = 0.0, False
+    jam, exactly, hit = 0.0, False, False
     for _ in range(ROUNDS):
         set_rate_zeros(event.closed, m, exactly, options, event.pace, event.zero)
         if jam > 0.0 or approaching(m, event.closed, event.zero):
             if not collide(model, state, island, m, options, jam, scratch, record):
                 return Stop.LCP_FAILED, 0
-            jam = 0.0
+            jam, hit = 0.0, jam == 0.0
             continue
         r, solved = decide(model, state, island, m, options, work, event, state.grip)
         if stop_at_dead_centre(model, state, r, solved, work, event, record):
             place(model, state.q, state.u, event.pose)
             refresh(model, m, event.closed, event.pose)
             continue
+        if stands_at_dead_centre(model, state, island, r, solved, work, event):
+            return Stop.RUNNING, r
         if solved:
             if not exactly and contradicts(model, state, r, options, work, event):
                 exactly = True
                 continue
             stop_held(event.label, island, state.grip, state.u)
             return Stop.RUNNING, r
-        if stands_at_dead_centre(model, state, island, r, work, event):
-            return Stop.RUNNING, r
+        if hit and _stop_rounding(model, state, m, r, options, scratch):
+            hit = False
+            continue
         if not _slides(r, options.speed_zero, event.rest):
             state.counts.lcp_failures += 1
             return Stop.LCP_FAILED, 0
@@ -235,6 +238,30 @@ def _hold_gaps(model, state, r, options, work, event):
         work.inverse[j] = inverse_mass(model.coordinates[j])
     project_velocities(rest, r, event.trial, DEPENDENT_AT_EVENTS, work, state.u)
     place(model, state.q, state.u, event.pose)
+
+
+@kernel
+def _stop_rounding(model, state, m, r, options, scratch):
+    """Stop the slips of the r contacts in `event.rest` that are rounding of the impact just solved; True if there are any.
+
+    The tangential impulse is sought within its cone, mu Lambda_N to either side: slips are rounded by what that much would do.
+    """
+    work, event, found = scratch.work, scratch.event, False
+    closed, rest = event.closed, event.rest
+    for i in range(r):
+        k, slip, rounding = rest.ids[i], abs(rest.kin[i].gT_dot), 0.0
+        friction = model.laws[model.contacts[k].group].friction
+        for j in range(m):
+            if closed.ids[j] == k:
+                rounding = VELOCITY_ROUNDING * friction * scratch.impact.impulse[2 * j] * work.G[2 * i + 1, 2 * i + 1]
+        stops = options.speed_zero < slip <= rounding
+        event.trial[k] = STICK if stops else OPEN
+        found = found or stops
+    if found:
+        project_velocities(rest, r, event.trial, DEPENDENT_AT_EVENTS, work, state.u)
+        place(model, state.q, state.u, event.pose)
+        refresh(model, m, closed, event.pose)
+    return found
 
 
 @kernel

@@ -8,7 +8,7 @@ lets the motion go on: just beyond the line of centres an impulse stops both bod
 
 from __future__ import annotations
 
-from watchsim.contact.index_sets import STICK
+from watchsim.contact.index_sets import OPEN, STICK
 from watchsim.jit import kernel
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.events.impulse_check import kinetic_energy
@@ -43,13 +43,14 @@ def stop_at_dead_centre(model, state, r, solved, work, event, record):
 
 
 @kernel
-def stands_at_dead_centre(model, state, island, r, work, event):
+def stands_at_dead_centre(model, state, island, r, solved, work, event):
     """Let an island of two bodies that stand, locked on the line of centres by its only contact, hold; True if it is one.
 
-    Forces exist, but the rounding of the lever arms, which are one vector, decides whether the problem for them has a solution.
+    Forces exist, but the rounding of the lever arms, which are one vector, decides whether the problem for them is `solved`,
+    and whether that lets them begin to roll, which the lock forbids either way.
     """
     rest = event.rest
-    if r != 1 or not _locks(model, rest, 0, work):
+    if r != 1 or (solved and event.decided[rest.ids[0]] == OPEN) or not _locks(model, rest, 0, work):
         return False
     for j in range(len(event.label)):
         other = j != rest.coord[0, 0] and j != rest.coord[0, 1]

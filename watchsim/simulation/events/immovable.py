@@ -19,12 +19,33 @@ from watchsim.tolerances import IMMOVABLE
 @kernel
 def is_immovable(model, closed, i):
     """True if the gap of row i of `closed` changes by next to nothing however its bodies move."""
-    across, along = 0.0, 0.0
+    across, along, _ = _mobilities(model, closed, i)
+    return across <= IMMOVABLE * along
+
+
+@kernel
+def has_one_way(model, closed, i, depth):
+    """True if faces along which the bodies of row i of `closed` move are immovable, there or where they are sunk in by `depth`.
+
+    They are where the bodies move past each other in one direction only. A circle of reduced radius r that has sunk in meets
+    the next face beside its place on the last one where that turns by up to sqrt(2 depth/r), and by so much directions differ.
+    """
+    across, along, both = _mobilities(model, closed, i)
+    reduced = abs(model.contacts[closed.ids[i]].reduced)
+    turned = IMMOVABLE + 2.0 * depth / reduced if reduced > 0.0 else IMMOVABLE
+    return across * along - both * both <= turned * (across + along) ** 2
+
+
+@kernel
+def _mobilities(model, closed, i):
+    """What a force along the normal does along it, a tangential one along its own direction, and either along the other's."""
+    across, along, both = 0.0, 0.0, 0.0
     for slot in range(closed.slots[i]):
         inverse = inverse_mass(model.coordinates[closed.coord[i, slot]])
         across += closed.w_N[i, slot] ** 2 * inverse
         along += closed.w_T[i, slot] ** 2 * inverse
-    return across <= IMMOVABLE * along
+        both += closed.w_N[i, slot] * closed.w_T[i, slot] * inverse
+    return across, along, both
 
 
 @kernel

@@ -26,6 +26,7 @@ from watchsim.simulation.first_closing.safe_times import (
     time_outside,
     time_to_zero,
 )
+from watchsim.simulation.first_closing.sunk_level import sunk_level
 from watchsim.simulation.first_closing.waiting_contacts import drop_first, put
 from watchsim.simulation.loop_state.scratch import ask
 from watchsim.simulation.loop_state.state import NO_CONTACT
@@ -44,6 +45,16 @@ def _place(model, state, bodies, tau, step, path):
 
 
 @kernel
+def _look(model, state, options, k, anew, level, path):
+    """(gap of contact k above its level, rate, how far it is inside either primitive, level, which is found `anew` or kept)."""
+    state.counts.gap_evaluations += 1
+    gap, rate, inside_a, inside_b = placed_gap(model, k, path.pose)
+    if anew:
+        level = sunk_level(model, options, k, gap, inside_b, path)
+    return gap - level, rate, inside_a + options.extent, inside_b + options.extent, level  # beyond their ends still counts
+
+
+@kernel
 def crossing(model, state, options, k, start, end, step, path):
     """(time, closes?): open contact k closes at that time within [start, end), or does not until then.
 
@@ -56,8 +67,8 @@ def crossing(model, state, options, k, start, end, step, path):
     if closing == 0.0 and length == end - start:
         return end, False
     tau, stretch = start, start + length
-    # `outside`: on the free side; `clear`: has been further than rounding from it since.
-    fresh, outside, clear, beside = True, True, False, 0.0
+    # `outside`: on the free side; `clear`: has been further than rounding from it since. Gaps count from `level`.
+    fresh, outside, clear, beside, level = True, True, False, 0.0, 0.0
     last_look = state.counts.gap_evaluations + LOOKS_AT_ONCE
     while tau < end and state.counts.gap_evaluations < last_look:
         if tau > start:
@@ -65,15 +76,14 @@ def crossing(model, state, options, k, start, end, step, path):
         if tau >= stretch:
             length, closing, bend, swing = next_stretch(model, options, k, end - tau, step, path)
             stretch = tau + length
-        gap, rate, inside_a, inside_b = placed_gap(model, k, path.pose)
+        anew = fresh or beside > 0.0  # what lay beside its primitives was no contact until now
+        gap, rate, inside_a, inside_b, level = _look(model, state, options, k, anew, level, path)
         distance = centre_distance(model, k, path.pose)
-        state.counts.gap_evaluations += 1
         if fresh or not outside:
-            outside, clear = gap >= -options.gap_zero, beside > 0.0  # what lay beside its primitives was no contact until now
+            outside, clear = gap >= -options.gap_zero, beside > 0.0
         fresh = True
         leaving = gap > options.gap_zero or rate > options.speed_zero
         clear = clear or (outside and leaving)  # a contact that has just rebounded returns to this gap by falling only
-        inside_a, inside_b = inside_a + options.extent, inside_b + options.extent  # beyond their ends still counts
         beside = time_outside(model, k, inside_a, inside_b, (closing, swing), distance)
         # Positions jump where drift is taken back: a gap may have closed by that.
         near = gap <= options.gap_zero if outside else gap >= -options.behind
@@ -117,7 +127,7 @@ def _stays_open_for(model, state, options, k, length, first, bounds, path):
     here = normal_gap(model, k, path.pose)
     gap, rate = here.gap, here.rate
     state.counts.gap_evaluations += 1
-    if -options.behind <= gap <= options.gap_zero:
+    if -options.behind <= gap <= options.gap_zero or sunk_level(model, options, k, gap, 0.0, path) < 0.0:
         return 0.0
     # Behind its primitive a contact must come out before it can close.
     room, approach = (gap, -rate) if gap > 0.0 else (-gap, rate)

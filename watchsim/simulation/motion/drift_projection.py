@@ -20,8 +20,11 @@ from watchsim.tolerances import DEPENDENT_IN_STEPS, SLIP_WEIGHT
 
 
 @kernel
-def project_positions(closed, m, both, work, out_q):
-    """Close the gaps of the first m contacts (only negative ones unless `both`); returns the deepest penetration found, m."""
+def project_positions(closed, m, both, behind, work, out_q):
+    """Close the gaps of the first m contacts (only negative ones unless `both`); returns the deepest penetration found, m.
+
+    What is deeper than `behind` (m) is no drift but what flat faces have let bodies sink in (events/immovable.py), and stays.
+    """
     deepest, furthest = 0.0, 0.0
     for i in range(m):
         deepest = max(deepest, -closed.kin[i].g)
@@ -32,7 +35,7 @@ def project_positions(closed, m, both, work, out_q):
     for i in range(m):
         for j in range(m):
             work.A[i, j] = work.G[2 * i, 2 * j]
-        work.rhs[i] = -closed.kin[i].g if both or closed.kin[i].g < 0.0 else 0.0
+        work.rhs[i] = -closed.kin[i].g if (both or closed.kin[i].g < 0.0) and closed.kin[i].g >= -behind else 0.0
         work.scale[i] = _scale_of(work, 2 * i, DEPENDENT_IN_STEPS)
     solve_small(work.A, work.rhs, m, work.scale, work.order, work.x, DEPENDENT_IN_STEPS)
     for i in range(m):
