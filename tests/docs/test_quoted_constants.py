@@ -69,7 +69,7 @@ QUOTED = [
     (METHOD, "has just taken or {} of the kinetic energy", tolerances.CHATTER_BACK),
     (METHOD, "({} in any case), the impacts go on", tolerances.CHATTER_GAIN),
     (METHOD, "turn by less than {} rad are handed over as tangent", tolerances.SMOOTH_TURN),
-    (METHOD, "there, at most {} of the energy and, with friction", tolerances.SMOOTH_TURN**2),
+    (METHOD, "So the error is at most {} of the energy times", tolerances.SMOOTH_TURN**2),
     (METHOD, "all but sin²φ ≤ {} of it", tolerances.DEPENDENT_IN_STEPS),
     (METHOD, "({} at events, where rates", tolerances.DEPENDENT_AT_EVENTS),
     (METHOD, "a gap rate that is not rounding ({} of its terms)", tolerances.CONTRADICTING_RATE * tolerances.RATE_ROUNDING),

@@ -17,7 +17,7 @@ from watchsim.geometry.solids.mass import mass_properties
 from watchsim.geometry.solids.meshes import Piece, Placed, glb, laid, plate, revolved, stl, turned_about
 from watchsim.geometry.solids.revolution import turned
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 PIN_LEVER = ROOT.parent / "shared" / "drawings" / "pin_lever" / "siconos_pin_lever_wheel.dxf"
 HALF_DISC = Loop((Arc(0.0, 0.0, 1e-3, 0.0, math.pi), Line(-1e-3, 0.0, 1e-3, 0.0)), "BALL")
 

@@ -13,7 +13,7 @@ from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import TURN, Arc, Line
 from watchsim.geometry.solids.mass import section
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "scripts" / "checks"))
 
 from measure_inertia import moments  # noqa: E402
