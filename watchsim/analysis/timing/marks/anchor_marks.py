@@ -51,9 +51,9 @@ def anchor_marks(
     i, j = np.searchsorted(rows, (start, let_off))
     if j <= i or let_off < start or not runs[drop] > 0.0:
         return None
-    earlier = at_rows[i : j + 1]
+    when, earlier = np.append(start, rows[i : j + 1]), np.append(before, at_rows[i : j + 1])  # recoils end at it
     way = float(angle[drop + 1] - earlier.min())
-    moved = float(rows[i + np.flatnonzero(earlier <= earlier.min() + STANDING * way)[-1]])
+    moved = float(when[np.flatnonzero(earlier <= earlier.min() + STANDING * way)[-1]])
     free = np.where(t[:drop] >= moved, runs[:drop], 0.0)
     if not free.max(initial=0.0) > CATCHES_UP * way:
         return Marks(moved, None, None, let_off, lock)
