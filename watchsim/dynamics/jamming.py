@@ -19,7 +19,7 @@ def press_unloaded(model, closed, m, work):
     """
     pressed = False
     for i in range(m):
-        if not _jams(work, m, i) or not _is_unloaded(model, closed, i, work):
+        if not _jams(work, m, i, PAINLEVE) or not _is_unloaded(model, closed, i, work):
             continue
         if work.tangent[i] < 0:
             work.rhs[i] = max(0.0, work.rhs[i])
@@ -41,21 +41,21 @@ def _is_unloaded(model, closed, i, work):
 
 
 @kernel
-def is_paradox(work, m, i):
+def is_paradox(work, m, i, near=PAINLEVE):
     """True if contact i, all by itself, slides such that a normal force on it pulls its bodies together, or nearly so.
 
-    Works with the G and drag of `solve_mode` and `decide_modes`.
+    Works with the G and drag of `solve_mode` and `decide_modes`. `near`: the share of G_N by which it may still part them.
     """
-    return work.tangent[i] < 0 and _jams(work, m, i)
+    return work.tangent[i] < 0 and _jams(work, m, i, near)
 
 
 @kernel
-def _jams(work, m, i):
+def _jams(work, m, i, near):
     """The same of a contact without slip, in the direction in which it would begin to slide."""
     own = work.G[2 * i, 2 * i]
     if own == 0.0:
         return False
-    if own - work.drag[i] * work.G[2 * i, 2 * i + 1] > PAINLEVE * own:
+    if own - work.drag[i] * work.G[2 * i, 2 * i + 1] > near * own:
         return False
     for j in range(m):
         if j != i and (work.G[2 * i, 2 * j] != 0.0 or work.G[2 * i, 2 * j + 1] != 0.0 or work.G[2 * i + 1, 2 * j] != 0.0):

@@ -19,7 +19,7 @@ from watchsim.dynamics.jamming import is_paradox
 from watchsim.jit import kernel
 from watchsim.simulation.loop_state.scratch import MONITORS
 from watchsim.simulation.motion.contact_islands import place_contacts
-from watchsim.tolerances import SLIP_SLACK
+from watchsim.tolerances import PAINLEVE, PAINLEVE_WATCHED, SLIP_SLACK
 
 NORMAL, TANGENTIAL, EXTENT, PARADOX = range(MONITORS)
 
@@ -80,7 +80,7 @@ def _watch(model, state, options, first, m, work, smooth):
         values[code + NORMAL] = press_left(work, i, state.now.lenience * options.force_zero)
         values[code + TANGENTIAL] = _tangential_monitor(model, state, options, i, work, closed)
         values[code + EXTENT] = closed.kin[i].margin + 2.0 * options.extent
-        values[code + PARADOX] = -1.0 if is_paradox(work, m, i) else 1.0
+        values[code + PARADOX] = -1.0 if is_paradox(work, m, i, PAINLEVE_WATCHED * PAINLEVE) else 1.0
         for kind in range(MONITORS):
             smallest = min(smallest, values[code + kind])
     return smallest
