@@ -8,12 +8,12 @@ are then exact to rounding.
 from __future__ import annotations
 
 from watchsim.contact.gaps import extent_margin
-from watchsim.contact.index_sets import FORWARD, OPEN, STICK
+from watchsim.contact.index_sets import OPEN, STICK
 from watchsim.contact.poses import place
 from watchsim.dynamics.acceleration import accelerate
 from watchsim.dynamics.applied_forces import forces
 from watchsim.dynamics.bearing_friction import add_drag, stop_held
-from watchsim.dynamics.delassus import apply, fill_inverse, inverse_mass
+from watchsim.dynamics.delassus import apply, fill_inverse
 from watchsim.dynamics.small_systems import copy
 from watchsim.jit import kernel
 from watchsim.simulation.event_kinds import EventKind
@@ -22,6 +22,7 @@ from watchsim.simulation.events.collision import approaching, collide
 from watchsim.simulation.events.dead_centre import hold_at_dead_centre, stands_at_dead_centre, stop_at_dead_centre
 from watchsim.simulation.events.handover import hand_over
 from watchsim.simulation.events.immovable import drop_immovable
+from watchsim.simulation.events.jammed_contacts import hold_gaps, slides, stop_rounding
 from watchsim.simulation.events.mode_decision import decide
 from watchsim.simulation.events.released_contacts import let_go
 from watchsim.simulation.events.zero_rates import contradicts, note_pace, set_rate_zeros
@@ -31,7 +32,7 @@ from watchsim.simulation.motion.drift_projection import project_positions, proje
 from watchsim.simulation.motion.sleeping import add_terms, begin_terms, find_sleepers
 from watchsim.simulation.record.write_buffers import keep_change, keep_event
 from watchsim.simulation.stops import Stop
-from watchsim.tolerances import DEPENDENT_AT_EVENTS, DEPENDENT_IN_STEPS, LEFT_PRIMITIVE, VELOCITY_ROUNDING
+from watchsim.tolerances import DEPENDENT_AT_EVENTS, DEPENDENT_IN_STEPS, LEFT_PRIMITIVE
 
 ROUNDS = 16  # impacts in a row at one instant
 
@@ -211,66 +212,16 @@ def _resolve(model, state, island, m, options, scratch, record):
                 continue
             stop_held(event.label, island, state.grip, state.u)
             return Stop.RUNNING, r
-        if hit and _stop_rounding(model, state, m, r, options, scratch):
+        if hit and stop_rounding(model, state, m, r, options, scratch):
             hit = False
             continue
-        if not _slides(r, options.speed_zero, event.rest):
+        if not slides(r, options.speed_zero, event.rest):
             state.counts.lcp_failures += 1
             return Stop.LCP_FAILED, 0
-        _hold_gaps(model, state, r, options, work, event)
+        hold_gaps(model, state, r, options, work, event)
         refresh(model, m, event.closed, event.pose)
         jam = options.speed_zero
     return Stop.TOO_MANY_EVENTS, 0
-
-
-@kernel
-def _hold_gaps(model, state, r, options, work, event):
-    """Zero the gap rates of the r contacts in `event.rest`, and the slip of those that hold.
-
-    The gaps of jammed contacts must not open, however slowly, or there is nothing to stop.
-    """
-    rest = event.rest
-    for i in range(r):
-        k = rest.ids[i]
-        holds = model.laws[model.contacts[k].group].friction > 0.0 and abs(rest.kin[i].gT_dot) <= options.speed_zero
-        event.trial[k] = STICK if holds else FORWARD
-    for j in range(len(model.coordinates)):
-        work.inverse[j] = inverse_mass(model.coordinates[j])
-    project_velocities(rest, r, event.trial, DEPENDENT_AT_EVENTS, work, state.u)
-    place(model, state.q, state.u, event.pose)
-
-
-@kernel
-def _stop_rounding(model, state, m, r, options, scratch):
-    """Stop the slips of the r contacts in `event.rest` that are rounding of the impact just solved; True if there are any.
-
-    The tangential impulse is sought within its cone, mu Lambda_N to either side: slips are rounded by what that much would do.
-    """
-    work, event, found = scratch.work, scratch.event, False
-    closed, rest = event.closed, event.rest
-    for i in range(r):
-        k, slip, rounding = rest.ids[i], abs(rest.kin[i].gT_dot), 0.0
-        friction = model.laws[model.contacts[k].group].friction
-        for j in range(m):
-            if closed.ids[j] == k:
-                rounding = VELOCITY_ROUNDING * friction * scratch.impact.impulse[2 * j] * work.G[2 * i + 1, 2 * i + 1]
-        stops = options.speed_zero < slip <= rounding
-        event.trial[k] = STICK if stops else OPEN
-        found = found or stops
-    if found:
-        project_velocities(rest, r, event.trial, DEPENDENT_AT_EVENTS, work, state.u)
-        place(model, state.q, state.u, event.pose)
-        refresh(model, m, closed, event.pose)
-    return found
-
-
-@kernel
-def _slides(r, speed_zero, rest):
-    """True if one of the r contacts in I_N slides."""
-    for i in range(r):
-        if abs(rest.kin[i].gT_dot) > speed_zero:
-            return True
-    return False
 
 
 @kernel
