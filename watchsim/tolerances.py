@@ -192,6 +192,9 @@ RATES_TURNED = 0.1
 DEPENDENT_IN_STEPS = 1e-6
 # The same at events, of rates that count as zero. Large: needless impulses; small: bodies are stopped.
 DEPENDENT_AT_EVENTS = 1e-2
+# Times `behind`: a way along a face to take back drift, one tolerance of it at 1e-3 rad. Large: bodies jump off the face they
+# met; small: they keep drift.
+TAKEN_BACK_ALONG = 50.0
 # Of slips against gap rates where they compete. Large: gap rates suffer; small: slips drift.
 SLIP_WEIGHT = 0.5
 # Times `speed_zero`: slips against their direction by less do not end a mode. Large: late; small: modes alternate.

@@ -14,7 +14,7 @@ from watchsim.contact.index_sets import OPEN, STICK
 from watchsim.dynamics.delassus import apply, fill_delassus
 from watchsim.dynamics.small_systems import solve_small, unit_scale
 from watchsim.jit import kernel
-from watchsim.tolerances import DEPENDENT_IN_STEPS, SLIP_WEIGHT
+from watchsim.tolerances import DEPENDENT_IN_STEPS, SLIP_WEIGHT, TAKEN_BACK_ALONG
 
 # sine² of the angle below which a direction counts as one of the others, or as immovable
 
@@ -23,7 +23,7 @@ from watchsim.tolerances import DEPENDENT_IN_STEPS, SLIP_WEIGHT
 def project_positions(closed, m, both, behind, work, out_q):
     """Close the gaps of the first m contacts (only negative ones unless `both`); returns the deepest penetration found, m.
 
-    What is deeper than `behind` (m) is no drift but what flat faces have let bodies sink in (events/immovable.py), and stays.
+    What is no drift but what flat faces have let bodies sink in (events/immovable.py) stays. `behind`: see `_has_drifted`.
     """
     deepest, furthest = 0.0, 0.0
     for i in range(m):
@@ -35,13 +35,24 @@ def project_positions(closed, m, both, behind, work, out_q):
     for i in range(m):
         for j in range(m):
             work.A[i, j] = work.G[2 * i, 2 * j]
-        work.rhs[i] = -closed.kin[i].g if (both or closed.kin[i].g < 0.0) and closed.kin[i].g >= -behind else 0.0
+        gap = closed.kin[i].g
+        work.rhs[i] = -gap if (both or gap < 0.0) and _has_drifted(work, i, gap, behind) else 0.0
         work.scale[i] = _scale_of(work, 2 * i, DEPENDENT_IN_STEPS)
     solve_small(work.A, work.rhs, m, work.scale, work.order, work.x, DEPENDENT_IN_STEPS)
     for i in range(m):
         work.correction[2 * i], work.correction[2 * i + 1] = work.x[i], 0.0
     apply(closed, m, work.correction, work.inverse, out_q)
     return deepest
+
+
+@kernel
+def _has_drifted(work, i, gap, behind):
+    """False if contact i is deeper than `behind` (m), or so deep that taking it back would move it far along its face.
+
+    Bodies that have sunk in meet a face at its joint. On the way back to where it has no gap they would leave that face.
+    """
+    along = abs(work.G[2 * i, 2 * i + 1]) * -gap
+    return gap >= -behind and along <= TAKEN_BACK_ALONG * behind * work.G[2 * i, 2 * i]
 
 
 @kernel
