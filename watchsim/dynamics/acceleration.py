@@ -42,11 +42,25 @@ def gap_accelerations(model, closed, m, work, out_b, out_size):
 
 
 @kernel
-def row_terms(work, rows, row):
-    """The sum of the magnitudes of its terms: the scale of its rounding."""
+def _fill_worth(work, m):
+    """The normal force that each contact's own terms make, into `work.worth`: the scale of its rounding, if they cancel."""
+    for i in range(m):
+        own = work.G[2 * i, 2 * i]
+        work.worth[i] = work.size[2 * i] / own if own > 0.0 else 0.0
+
+
+@kernel
+def row_terms(work, m, rows, row):
+    """The sum of the magnitudes of its terms: the scale of its rounding.
+
+    What another contact passes on has the rounding of that one's terms, even where these cancel and it passes on nothing.
+    """
     total = work.size[row]
     for j in range(rows):
         total += abs(work.G[row, j] * work.force[j])
+    for i in range(m):
+        if i != row // 2:
+            total += (abs(work.G[row, 2 * i]) + abs(work.drag[i] * work.G[row, 2 * i + 1])) * work.worth[i]
     return total
 
 
@@ -67,6 +81,7 @@ def solve_mode(model, closed, m, mode, lenience, work):
     """
     fill_delassus(closed, m, work)
     gap_accelerations(model, closed, m, work, work.b, work.size)
+    _fill_worth(work, m)
     n = m
     for i in range(m):
         state = mode[closed.ids[i]]
@@ -91,7 +106,7 @@ def solve_mode(model, closed, m, mode, lenience, work):
         t = work.tangent[i]
         work.force[2 * i + 1] = work.x[t] if t >= 0 else -work.drag[i] * work.x[i]
     for row in range(2 * m):
-        work.size[row] = row_terms(work, 2 * m, row)
+        work.size[row] = row_terms(work, m, 2 * m, row)
     return rank == n
 
 
@@ -118,6 +133,7 @@ def decide_modes(model, closed, m, bearings, speed_zero, work, out_grip, out_mod
     fill_delassus(closed, m, work)
     fill_bearings(closed, m, bearings, work)
     gap_accelerations(model, closed, m, work, work.b, work.size)
+    _fill_worth(work, m)
     elements = _elements(model, closed, m, bearings, speed_zero, work)
     _free_bearings(work, m, bearings)
     rows = 2 * m + bearings
@@ -203,7 +219,7 @@ def _mode_of(closed, i, m, elements, bearings, work):
     whose friction is at the other end is what the LCP may miss.
     """
     rows = 2 * m + bearings
-    if work.x[i] <= 0.0 and _row_acceleration(work, rows, 2 * i) > ACCELERATION_ROUNDING * row_terms(work, rows, 2 * i):
+    if work.x[i] <= 0.0 and _row_acceleration(work, rows, 2 * i) > ACCELERATION_ROUNDING * row_terms(work, m, rows, 2 * i):
         return OPEN
     if work.tangent[i] < 0:
         if work.x[i] <= 0.0 and is_paradox(work, m, i):
@@ -212,7 +228,7 @@ def _mode_of(closed, i, m, elements, bearings, work):
     slip = _row_acceleration(work, rows, 2 * i + 1)
     # lambda_T is the difference of terms as large as the friction cone.
     terms = abs(work.force[2 * i + 1]) + work.drag[i] * work.force[2 * i]
-    size = ACCELERATION_ROUNDING * (row_terms(work, rows, 2 * i + 1) + work.G[2 * i + 1, 2 * i + 1] * terms)
+    size = ACCELERATION_ROUNDING * (row_terms(work, m, rows, 2 * i + 1) + work.G[2 * i + 1, 2 * i + 1] * terms)
     e = work.tangent[i]
     is_reversed = work.hand[2 * i + 1] < 0.0
     if slip > size and work.x[m + e] == 0.0:
@@ -229,7 +245,7 @@ def _decide_grips(model, m, bearings, work, out_grip):
     for p in range(bearings):
         i, row = work.dry[p], 2 * m + p
         moves = _row_acceleration(work, rows, row)
-        terms = row_terms(work, rows, row) + work.inverse[i] * model.coordinates[i].coulomb
+        terms = row_terms(work, m, rows, row) + work.inverse[i] * model.coordinates[i].coulomb
         if abs(moves) > ACCELERATION_ROUNDING * terms:
             out_grip[i] = FORWARD if moves > 0.0 else BACKWARD
             work.h[i] -= out_grip[i] * model.coordinates[i].coulomb

@@ -41,6 +41,7 @@ class ContactWork(NamedTuple):
     G: Array  # (rows, rows)
     b: Array  # (rows,) accelerations or velocities of the gaps without contact forces
     size: Array  # (rows,) the same with all terms taken positive: the scale of rounding
+    worth: Array  # (room,) normal force that a contact's own terms make without those of others: the scale of its rounding
     force: Array  # (rows,) lambda or Lambda
     more: Array  # (rows,) impulses of the expansion
     rates: Array  # (rows,) velocities of the gaps at the start of the expansion, its least impulses included
@@ -88,6 +89,7 @@ def contact_work(room: int, coordinates: int) -> ContactWork:
         G=np.zeros((rows, rows)),
         b=np.zeros(rows),
         size=np.zeros(rows),
+        worth=np.zeros(room),
         force=np.zeros(rows),
         more=np.zeros(rows),
         rates=np.zeros(rows),

@@ -32,10 +32,7 @@ def accept_coupled(model, state, options, end, touched, scratch):
     """
     before = _follow_step(model, state, options, end, scratch)
     if touched != NO_CONTACT:
-        closes = _closing_time(model, state, options, end, touched, scratch)
-        if closes < end:
-            end = closes
-            before = _follow_step(model, state, options, end, scratch)
+        end, before = _follow_to_touch(model, state, options, (end, before), touched, scratch)
     smooth = scratch.smooth
     n = len(model.coordinates)
     state.sums.drive += smooth.y[2 * n]
@@ -48,24 +45,29 @@ def accept_coupled(model, state, options, end, touched, scratch):
 
 
 @kernel
-def _closing_time(model, state, options, end, touched, scratch):
-    """When contact `touched`, closed at `end` of a coupled step, closes on the way without drift; `end` where not before.
+def _follow_to_touch(model, state, options, followed, touched, scratch):
+    """Bring the state, which is where a coupled step ends, to where contact `touched` closes on the way without drift.
 
-    Between nearly parallel faces the drift of a contact in force is a long way to the next face. The state is left anywhere.
+    `followed` and what is returned: (time, kinetic energy before drift is taken back, J). The end of the step stays the end
+    where the contact does not close before. Between nearly parallel faces the drift of a contact in force is a long way to the
+    next face.
     """
-    pose, tau = scratch.smooth.pose, end
+    pose, (end, before) = scratch.smooth.pose, followed
+    tau, kinetic = end, before
     for _ in range(NEWTON_STEPS):
         place(model, state.q, state.u, pose)
         look = normal_gap(model, touched, pose)
         if abs(look.gap) <= HIDDEN_REBOUND * options.gap_zero:
-            return tau
+            return tau, kinetic
         if (tau == end and look.gap > 0.0) or look.rate >= 0.0:
-            return end
-        tau = min(tau - look.gap / look.rate, end)
-        if tau <= 0.0:
-            return end
-        _follow_step(model, state, options, tau, scratch)
-    return end
+            break
+        earlier = min(tau - look.gap / look.rate, end)
+        if earlier <= 0.0:
+            break
+        tau, kinetic = earlier, _follow_step(model, state, options, earlier, scratch)
+    if tau < end:
+        _follow_step(model, state, options, end, scratch)
+    return end, before
 
 
 @kernel

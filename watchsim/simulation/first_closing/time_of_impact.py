@@ -97,8 +97,9 @@ def crossing(model, state, options, k, start, end, step, path):
         elif is_due(gap, rate, outside, clear, options):
             wait = time_held(model, state, options, k, tau, rate, (closing, bend, swing, distance), path)
             if wait == 0.0:
-                soon = outside and clear and gap > 0.0 and rate * (end - tau) < -gap
-                time = min(end, tau + gap / -rate) if soon else tau
+                # Not gap/-rate, which lies far behind where the gap has only begun to fall.
+                rest = safe_time(gap, -rate, closing, bend, distance) if outside and clear and gap > 0.0 else 0.0
+                time = min(end, tau + rest)
                 return time, time < end
             tau += wait
         else:
