@@ -1,4 +1,4 @@
-"""Do rebounds without loss go on as long as something resists or their play stays, and end where it closes without resistance?"""
+"""Do rebounds without loss go on where something resists or their play stays, and end where it closes without resistance?"""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ from watchsim.simulation.events.chatter import chatter_time, end_chatter, may_be
 from watchsim.simulation.events.closed_contacts import refresh
 from watchsim.simulation.events.impulse_check import kinetic_energy
 from watchsim.simulation.events.mode_decision import count_problems, decide
-from watchsim.simulation.events.shrinking_play import comes_back_endlessly
+from watchsim.simulation.events.shrinking_play import end_endless
 from watchsim.simulation.events.zero_rates import note_pace, rounding_of
 from watchsim.simulation.record.write_buffers import keep_event
 from watchsim.tolerances import ENERGY_GAIN, HIDDEN_REBOUND, REBOUND_ROUNDING
@@ -143,18 +143,6 @@ def _end_rebounds(model, state, island, m, options, scratch):
 
 
 @kernel
-def _end_endless(state, m, jam, options, event, room):
-    """Take the restitution from what would rebound without end; True if anything."""
-    found = False
-    for i in range(m):
-        rate = event.closed.kin[i].gN_dot
-        if jam == 0.0 and rate < -event.zero[i] and room.restitution[i] > 0.0:
-            if comes_back_endlessly(state, options, event.closed.ids[i], rate):
-                room.restitution[i], found = 0.0, True
-    return found
-
-
-@kernel
 def collide(model, state, island, m, options, jam, scratch, record):
     """Resolve the impact of the island's m closed contacts: new velocities, kinematics, events. False if none is found.
 
@@ -163,7 +151,7 @@ def collide(model, state, island, m, options, jam, scratch, record):
     work, event, room = scratch.work, scratch.event, scratch.impact
     copy(state.u, room.before)
     _law_restitution(model, event.closed, m, room.restitution)
-    ended, ends = _end_endless(state, m, jam, options, event, room), state.clock.time
+    ended, ends = jam == 0.0 and end_endless(state, m, options, event, room), state.clock.time
     for _ in range(1 + m):
         if not _solve(model, state, m, jam, work, event.closed, room):
             copy(room.before, state.u)

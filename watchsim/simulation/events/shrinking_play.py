@@ -13,14 +13,26 @@ from watchsim.tolerances import ENDLESS_REBOUNDS, SAME_RATE, SHRUNK_PLAY
 
 
 @kernel
-def comes_back_endlessly(state, options, k, rate):
+def end_endless(state, m, options, event, room):
+    """Take the restitution from those of the m closed contacts that would rebound without end; True if from any."""
+    found = False
+    for i in range(m):
+        rate = event.closed.kin[i].gN_dot
+        hit = rate < -event.zero[i] and room.restitution[i] > 0.0
+        if hit and _comes_back_endlessly(state, options, event.closed.ids[i], rate):
+            room.restitution[i], found = 0.0, True
+    return found
+
+
+@kernel
+def _comes_back_endlessly(state, options, k, rate):
     """Note that contact k is hit at this gap rate; True if it is back ever sooner, though no faster.
 
     Within `accumulation_time` each time, `ENDLESS_REBOUNDS` times at least, and in the end in `SHRUNK_PLAY` of the first time.
     """
     seen, time = state.returning, state.clock.time
     away = time - seen.last
-    if seen.contact != k:
+    if seen.contact != k or away == 0.0:
         if away > options.accumulation_time:  # nor does the other one come back as soon
             seen.contact, seen.last, seen.hits = k, time, 0
         return False
