@@ -217,6 +217,12 @@ MOST_LENIENT = 1e7
 ENERGY_GAIN = 1e-12
 # Times `gap_zero`: lower rebounds are rounding. Large: stops small rebounds; small: goes on by rounding alone.
 HIDDEN_REBOUND = 20.0
+# That many within `accumulation_time` of each other may be endless. Large: more impacts; small: rows of bodies are stopped.
+ENDLESS_REBOUNDS = 1000
+# Of the first time between them: endless ones come that soon. Large: what comes back evenly is stopped; small: more impacts.
+SHRUNK_PLAY = 0.5
+# Of their gap rate: endless ones change by no more. Large: what springs back is stopped; small: losses hide them.
+SAME_RATE = 0.1
 # Of the kinetic energy spared by friction while contacts are apart. Large: energy appears; small: chatter goes on.
 CHATTER_GAIN = 1e-8
 # The same where the impact has just taken more. Large: motion of near jams changes; small: chatter goes on.

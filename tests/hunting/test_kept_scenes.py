@@ -10,7 +10,7 @@ import pytest
 from hunt.hunt_mechanisms import judged_file
 
 # One to ten seconds of processor time each.
-SLOW = ("gears-3-7", "blocks-801-12218", "levers-801-17734", "wave-801-16576", "kink-801-11924")
+SLOW = ("gears-3-7", "levers-2001-15091", "blocks-801-12218", "levers-801-17734", "wave-801-16576", "kink-801-11924")
 SCENES = [
     pytest.param(path, id=path.stem, marks=[pytest.mark.slow] if path.stem in SLOW else [])
     for path in sorted((hunt_path.ROOT / "tests" / "data" / "hunt").glob("*.toml"))

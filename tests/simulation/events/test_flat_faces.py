@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 from moving_scenes import circle, polygon, touching
 
@@ -47,6 +48,18 @@ def test_a_disc_that_sank_in_meets_the_next_face(flat: float, kink: float, toler
     foot = RADIUS * math.tan(kink) if RADIUS * (1.0 / math.cos(kink) - 1.0) < sunk else 0.5 * RADIUS * kink + sunk / kink
     assert run.u[-1, 0] == pytest.approx(KEPT * SPEED, rel=1e-6)
     assert run.q[-1, 0] == pytest.approx(way_after(foot - FLAT), abs=1e-9)
+
+
+@pytest.mark.parametrize("kink", [1.1e-3, 2e-3])
+@pytest.mark.parametrize("depth", [3e-10, 8e-10])
+def test_a_disc_that_sank_in_by_next_to_nothing_stops_at_the_joint(depth: float, kink: float) -> None:
+    """Back to where it touched the next face it would go by 0.15 to 0.7 um, off that face."""
+    disc = Body("rider", "pivot", (0.0, RADIUS), inertia=5e-6, loops=(circle(RADIUS),))
+    sunk = RADIUS * (1.0 / math.cos(kink) - 1.0) + depth
+    run = simulate(passed(sunk / FLAT, kink, disc))
+    assert np.abs(np.diff(run.q, axis=0)[np.diff(run.t) == 0.0]).max() == 0.0
+    assert run.worst_penetration == pytest.approx(depth, rel=1e-3)
+    assert run.q[-1, 0] == pytest.approx(way_after(RADIUS * math.tan(kink) - FLAT), abs=1e-9)
 
 
 @pytest.mark.parametrize("kink", [2e-6, 1e-4, 2e-3, 0.3])

@@ -20,6 +20,7 @@ from watchsim.simulation.events.chatter import chatter_time, end_chatter, may_be
 from watchsim.simulation.events.closed_contacts import refresh
 from watchsim.simulation.events.impulse_check import kinetic_energy
 from watchsim.simulation.events.mode_decision import count_problems, decide
+from watchsim.simulation.events.shrinking_play import end_endless
 from watchsim.simulation.events.zero_rates import note_pace, rounding_of
 from watchsim.simulation.record.write_buffers import keep_event
 from watchsim.tolerances import ENERGY_GAIN, HIDDEN_REBOUND, REBOUND_ROUNDING
@@ -150,7 +151,7 @@ def collide(model, state, island, m, options, jam, scratch, record):
     work, event, room = scratch.work, scratch.event, scratch.impact
     copy(state.u, room.before)
     _law_restitution(model, event.closed, m, room.restitution)
-    ended, ends = False, 0.0
+    ended, ends = jam == 0.0 and end_endless(state, m, options, event, room), state.clock.time
     for _ in range(1 + m):
         if not _solve(model, state, m, jam, work, event.closed, room):
             copy(room.before, state.u)

@@ -33,12 +33,13 @@ def hold_gaps(model, state, r, options, work, event):
 
 @kernel
 def stop_rounding(model, state, m, r, options, scratch):
-    """Stop the slips of the r contacts in `event.rest` that are rounding of the impact just solved; True if there are any.
+    """Stop velocities and slips at the r contacts in `event.rest` that are rounding of the impact just solved; True if any.
 
     The tangential impulse is sought within its cone, mu Lambda_N to either side: slips are rounded by what that much would do.
     """
-    work, event, found = scratch.work, scratch.event, False
+    work, event = scratch.work, scratch.event
     closed, rest = event.closed, event.rest
+    found = _stop_bodies(r, event, state.u)
     for i in range(r):
         k, slip, rounding = rest.ids[i], abs(rest.kin[i].gT_dot), 0.0
         friction = model.laws[model.contacts[k].group].friction
@@ -52,6 +53,18 @@ def stop_rounding(model, state, m, r, options, scratch):
         project_velocities(rest, r, event.trial, DEPENDENT_AT_EVENTS, work, state.u)
         place(model, state.q, state.u, event.pose)
         refresh(model, m, closed, event.pose)
+    return found
+
+
+@kernel
+def _stop_bodies(r, event, out_u):
+    """Zero velocities that are rounding of what they were at this instant: a body that should stand has no w̄; True if any."""
+    rest, found = event.rest, False
+    for i in range(r):
+        for slot in range(rest.slots[i]):
+            j = rest.coord[i, slot]
+            if 0.0 < abs(out_u[j]) <= VELOCITY_ROUNDING * event.pace[j]:
+                out_u[j], found = 0.0, True
     return found
 
 

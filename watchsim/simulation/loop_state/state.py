@@ -43,6 +43,16 @@ class Now:
     lenience: float  # by how much more than usual forces and slips may miss their laws until the next instant
 
 
+class Returning:
+    """The contact that is hit again and again, see events/shrinking_play.py."""
+
+    contact: int
+    hits: int  # within `accumulation_time` of each other, at about the same gap rate
+    last: float  # when it was hit last, s
+    away: float  # for how long it was at first, s
+    rate: float  # its gap rate at the hit that ended that, m/s
+
+
 class Sums:
     """Energy that has come in and gone, J."""
 
@@ -106,6 +116,7 @@ class State(NamedTuple):
     active: Integers  # closed contacts of awake bodies, then those of sleeping ones, by island (contact_islands.py)
     upto: Integers  # by place in `active`, of awake bodies: the place behind the last contact of the same island
     now: Now
+    returning: Returning
     side_u: NDArray[np.int8]  # last sign of the velocity of a sprung coordinate
     side_q: NDArray[np.int8]  # and of its distance from rest
     sums: Sums
@@ -130,6 +141,8 @@ def new_state(model: Model, q: Array, u: Array) -> State:
     speed[joints.coordinate] -= u[joints.on]
     now = blank(Now)
     now.event_waits, now.touched, now.lenience = 1, NO_CONTACT, 1.0
+    returning = blank(Returning)
+    returning.contact = NO_CONTACT
     return State(
         clock=blank(Clock),
         q=q.astype(float).copy(),
@@ -141,6 +154,7 @@ def new_state(model: Model, q: Array, u: Array) -> State:
         active=np.zeros(room_for(model), np.int64),
         upto=np.zeros(room_for(model), np.int64),
         now=now,
+        returning=returning,
         side_u=np.sign(speed).astype(np.int8),
         side_q=np.sign(q - rest).astype(np.int8),
         sums=blank(Sums),

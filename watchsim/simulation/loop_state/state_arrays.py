@@ -17,6 +17,7 @@ Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 NUMBERS = 6  # integer fields of `Now`; its lenience is an array of its own
+HITS = 2  # integer fields of `Returning`, the first
 
 
 class StateArrays(NamedTuple):
@@ -39,6 +40,8 @@ class StateArrays(NamedTuple):
     worst: Array
     decided: Integers
     lenience: Array
+    returning: Integers
+    returned: Array
 
 
 def arrays_of(state: State) -> StateArrays:
@@ -47,6 +50,7 @@ def arrays_of(state: State) -> StateArrays:
     parts |= {name: words_of(parts[name], float) for name in ("clock", "sums", "worst")}
     parts["counts"] = words_of(state.counts, int)
     parts["numbers"], parts["lenience"] = words_of(state.now, int)[:NUMBERS], row_of(state.now)["lenience"]
+    parts["returning"], parts["returned"] = words_of(state.returning, int)[:HITS], words_of(state.returning, float)[HITS:]
     return StateArrays(**parts)
 
 

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from watchsim.mechanism.compile import Compiled
 
 TALLIED = ("kinds", "beats", "moments", "last", "carried")
+LATER = ("returning", "returned")  # not in states of earlier versions: they begin blank
 ASKED = ("method", "step", "tolerance")
 
 
@@ -87,10 +88,11 @@ class SavedState:
         """Write the state into `arrays`; ValueError where another version of the package has saved it."""
         shapes = {name: array.shape for name, array in self.arrays.items()}
         row = self.recorded.get("row", np.zeros(0)).shape in ((0,), (1 + 3 * len(arrays["q"]),))
-        if shapes != {name: array.shape for name, array in arrays.items()} or not row:
+        known = {name: array.shape for name, array in arrays.items() if name in self.arrays or name not in LATER}
+        if shapes != known or not row:
             raise ValueError("the saved state was written by another version of watchsim; begin anew")
-        for name, array in arrays.items():
-            array[...] = self.arrays[name]
+        for name in shapes:
+            arrays[name][...] = self.arrays[name]
 
 
 def save_state(
