@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from watchsim.contact.index_sets import OPEN, STICK
 from watchsim.dynamics.delassus import apply, fill_delassus
-from watchsim.dynamics.small_systems import solve_small, unit_scale
+from watchsim.dynamics.small_systems import keep_independent, solve_small, unit_scale
 from watchsim.jit import kernel
 from watchsim.tolerances import DEPENDENT_IN_STEPS, SLIP_WEIGHT
 
@@ -33,15 +33,54 @@ def project_positions(closed, m, both, behind, work, out_q):
         return deepest
     fill_delassus(closed, m, work)
     for i in range(m):
-        for j in range(m):
-            work.A[i, j] = work.G[2 * i, 2 * j]
-        work.rhs[i] = -closed.kin[i].g if (both or closed.kin[i].g < 0.0) and closed.kin[i].g >= -behind else 0.0
-        work.scale[i] = _scale_of(work, 2 * i, DEPENDENT_IN_STEPS)
-    solve_small(work.A, work.rhs, m, work.scale, work.order, work.x, DEPENDENT_IN_STEPS)
-    for i in range(m):
-        work.correction[2 * i], work.correction[2 * i + 1] = work.x[i], 0.0
+        work.row[i] = 2 * i
+    n = m
+    if not _close(closed, n, both, behind, work):
+        n = _choose(closed, m, both, behind, work)
+        _close(closed, n, both, behind, work)
+    for row in range(2 * m):
+        work.correction[row] = 0.0
+    for i in range(n):
+        work.correction[work.row[i]] = work.x[i]
     apply(closed, m, work.correction, work.inverse, out_q)
     return deepest
+
+
+@kernel
+def _wanted(closed, row, both, behind):
+    """By how much the gap of this row shall change, m."""
+    gap = closed.kin[row // 2].g
+    return -gap if (both or gap < 0.0) and gap >= -behind else 0.0
+
+
+@kernel
+def _close(closed, n, both, behind, work):
+    """What closes the gaps of the n rows in `work.row` into `work.x`; False where their directions depend on each other."""
+    for i in range(n):
+        for j in range(n):
+            work.A[i, j] = work.G[work.row[i], work.row[j]]
+        work.rhs[i] = _wanted(closed, work.row[i], both, behind)
+        work.scale[i] = _scale_of(work, work.row[i], DEPENDENT_IN_STEPS)
+    return solve_small(work.A, work.rhs, n, work.scale, work.order, work.x, DEPENDENT_IN_STEPS) == n
+
+
+@kernel
+def _choose(closed, m, both, behind, work):
+    """Leave in `work.row` gaps whose directions do not depend on each other, of m; returns their number.
+
+    Not all can be closed: those are that the bodies meet first on the way there, so that none of the others is pressed in.
+    """
+    for i in range(m):
+        scale = _scale_of(work, 2 * i, DEPENDENT_IN_STEPS)
+        wanted, place = scale * _wanted(closed, 2 * i, both, behind), i
+        while place > 0 and work.rhs[place - 1] < wanted:
+            work.rhs[place], work.row[place], work.scale[place] = work.rhs[place - 1], work.row[place - 1], work.scale[place - 1]
+            place -= 1
+        work.rhs[place], work.row[place], work.scale[place] = wanted, 2 * i, scale
+    for i in range(m):
+        for j in range(m):
+            work.A[i, j] = work.scale[i] * work.G[work.row[i], work.row[j]] * work.scale[j]
+    return keep_independent(work.A, m, DEPENDENT_IN_STEPS, work.row)
 
 
 @kernel
