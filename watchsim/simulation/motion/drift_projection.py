@@ -71,12 +71,13 @@ def _choose(closed, m, both, behind, work):
     Not all can be closed: those are that the bodies meet first on the way there, so that none of the others is pressed in.
     """
     for i in range(m):
-        scale = _scale_of(work, 2 * i, DEPENDENT_IN_STEPS)
-        wanted, place = scale * _wanted(closed, 2 * i, both, behind), i
+        wanted, place = _scale_of(work, 2 * i, DEPENDENT_IN_STEPS) * _wanted(closed, 2 * i, both, behind), i
         while place > 0 and work.rhs[place - 1] < wanted:
-            work.rhs[place], work.row[place], work.scale[place] = work.rhs[place - 1], work.row[place - 1], work.scale[place - 1]
+            work.rhs[place], work.row[place] = work.rhs[place - 1], work.row[place - 1]
             place -= 1
-        work.rhs[place], work.row[place], work.scale[place] = wanted, 2 * i, scale
+        work.rhs[place], work.row[place] = wanted, 2 * i
+    for i in range(m):
+        work.scale[i] = _scale_of(work, work.row[i], DEPENDENT_IN_STEPS)
     for i in range(m):
         for j in range(m):
             work.A[i, j] = work.scale[i] * work.G[work.row[i], work.row[j]] * work.scale[j]
