@@ -91,3 +91,23 @@ def null_vectors(A, n, rank, scale, order, out_rows):
             row[order[k]] = total / A[k, k]
         for j in range(n):
             row[j] *= scale[j]
+
+
+@kernel
+def keep_independent(A, n, smallest, out_list):
+    """Of the first n entries of a list keep those that do not depend on earlier ones; returns how many.
+
+    A (leading n × n block, overwritten) holds the products of what they stand for, each with each, ones on its diagonal; what
+    is left of one without the earlier ones counts as zero up to `smallest`.
+    """
+    kept = 0
+    for k in range(n):
+        if A[k, k] <= smallest:
+            continue
+        for i in range(k + 1, n):
+            factor = A[i, k] / A[k, k]
+            for j in range(k + 1, n):
+                A[i, j] -= factor * A[k, j]
+        out_list[kept] = out_list[k]
+        kept += 1
+    return kept

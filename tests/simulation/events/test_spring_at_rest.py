@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 import pytest
-from moving_scenes import polygon
+from moving_scenes import polygon, turned
 
 from watchsim.scene.body import Body
 from watchsim.scene.force import Contact, Side, Spring
@@ -51,3 +51,22 @@ def test_part_at_rest(tilt: float, place: float, friction: float, tolerance: flo
     assert run.u[-1, 1] == pytest.approx(rate * DRAWN, rel=10.0 * tolerance)
     travelled = DRAWN + rate * DRAWN * (run.simulated - quarter)
     assert run.q[-1, 1] - run.q[0, 1] == pytest.approx(travelled, rel=10.0 * tolerance)
+
+
+@pytest.mark.parametrize("turn", [0.0, 1.3, 0.16 * 26])  # the last was one of 360 starts in which no time went on
+def test_a_row_parts_at_rest(turn: float) -> None:
+    """The middle one of three has no spring: what it passes on has the rounding of the force that the spring loses."""
+    place = 1e-3 / 3.0
+    wedge = polygon((-0.004, -0.004), (0.004, 0.0), (-0.004, 0.004))
+    blocks = tuple(
+        Body(name, "slide", (0.008 * i - DRAWN + place, 0.0), velocity=(0.0,), mass=PUSHED, loops=(wedge,))
+        for i, name in enumerate("abc")
+    )
+    contacts = tuple(Contact((Side(one), Side(other)), 0.0, 0.0) for one, other in ("ab", "bc"))
+    scene = Scene("row", blocks, springs=(Spring("a", STIFFNESS, DRAWN),), contacts=contacts, duration=0.15)
+    run = simulate(turned(scene, turn))
+    assert not run.stop.gave_up
+    rate = math.sqrt(STIFFNESS / (3.0 * PUSHED))
+    assert run.u[-1, 1:] == pytest.approx([rate * DRAWN] * 2, rel=1e-8)
+    after = run.simulated - 0.5 * math.pi / rate
+    assert run.q[-1, 1:] - run.q[0, 1:] == pytest.approx([DRAWN + rate * DRAWN * after] * 2, rel=1e-8)

@@ -73,6 +73,19 @@ def time_to_zero(gap, rate, outside, bounds, options):
 
 
 @kernel
+def time_to_touch(gap, rate, bounds, options):
+    """In how long a gap closes that is zero to rounding and falls: where its tangent vanishes, unless it could be deeper then.
+
+    A gap that has only begun to fall has a tangent that vanishes much later. `bounds`: closing, bend, distance.
+    """
+    closing, bend, distance = bounds
+    if gap <= 0.0:
+        return 0.0
+    time = gap / -rate
+    return time if 0.5 * bend * time * time <= options.gap_zero else safe_time(gap, -rate, closing, bend, distance)
+
+
+@kernel
 def room_outside(gap, rate, options):
     """How far a gap on the free side may fall before it is due."""
     leaving = gap > options.gap_zero or rate > options.speed_zero

@@ -24,6 +24,7 @@ from watchsim.simulation.first_closing.safe_times import (
     time_held,
     time_immovable,
     time_outside,
+    time_to_touch,
     time_to_zero,
 )
 from watchsim.simulation.first_closing.sunk_level import sunk_level
@@ -97,9 +98,8 @@ def crossing(model, state, options, k, start, end, step, path):
         elif is_due(gap, rate, outside, clear, options):
             wait = time_held(model, state, options, k, tau, rate, (closing, bend, swing, distance), path)
             if wait == 0.0:
-                # Not gap/-rate, which lies far behind where the gap has only begun to fall.
-                rest = safe_time(gap, -rate, closing, bend, distance) if outside and clear and gap > 0.0 else 0.0
-                time = min(end, tau + rest)
+                rest = time_to_touch(gap, rate, (closing, bend, distance), options) if outside and clear else 0.0
+                time = tau + rest if tau + rest < end else tau
                 return time, time < end
             tau += wait
         else:

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from watchsim.contact.index_sets import OPEN, STICK
 from watchsim.dynamics.delassus import apply, fill_delassus
-from watchsim.dynamics.small_systems import solve_small, unit_scale
+from watchsim.dynamics.small_systems import keep_independent, solve_small, unit_scale
 from watchsim.jit import kernel
 from watchsim.tolerances import DEPENDENT_IN_STEPS, SLIP_WEIGHT, TAKEN_BACK_ALONG
 
@@ -33,26 +33,65 @@ def project_positions(closed, m, both, behind, work, out_q):
         return deepest
     fill_delassus(closed, m, work)
     for i in range(m):
-        for j in range(m):
-            work.A[i, j] = work.G[2 * i, 2 * j]
-        gap = closed.kin[i].g
-        work.rhs[i] = -gap if (both or gap < 0.0) and _has_drifted(work, i, gap, behind) else 0.0
-        work.scale[i] = _scale_of(work, 2 * i, DEPENDENT_IN_STEPS)
-    solve_small(work.A, work.rhs, m, work.scale, work.order, work.x, DEPENDENT_IN_STEPS)
-    for i in range(m):
-        work.correction[2 * i], work.correction[2 * i + 1] = work.x[i], 0.0
+        work.row[i] = 2 * i
+    n = m
+    if not _close(closed, n, both, behind, work):
+        n = _choose(closed, m, both, behind, work)
+        _close(closed, n, both, behind, work)
+    for row in range(2 * m):
+        work.correction[row] = 0.0
+    for i in range(n):
+        work.correction[work.row[i]] = work.x[i]
     apply(closed, m, work.correction, work.inverse, out_q)
     return deepest
 
 
 @kernel
-def _has_drifted(work, i, gap, behind):
-    """False if contact i is deeper than `behind` (m), or so deep that taking it back would move it far along its face.
+def _wanted(closed, row, both, behind, work):
+    """By how much the gap of this row shall change, m."""
+    gap = closed.kin[row // 2].g
+    return -gap if (both or gap < 0.0) and _has_drifted(work, row, gap, behind) else 0.0
+
+
+@kernel
+def _has_drifted(work, row, gap, behind):
+    """False if a contact is deeper than `behind` (m), or so deep that taking it back would move it far along its face.
 
     Bodies that have sunk in meet a face at its joint. On the way back to where it has no gap they would leave that face.
     """
-    along = abs(work.G[2 * i, 2 * i + 1]) * -gap
-    return gap >= -behind and along <= TAKEN_BACK_ALONG * behind * work.G[2 * i, 2 * i]
+    along = abs(work.G[row, row + 1]) * -gap
+    return gap >= -behind and along <= TAKEN_BACK_ALONG * behind * work.G[row, row]
+
+
+@kernel
+def _close(closed, n, both, behind, work):
+    """What closes the gaps of the n rows in `work.row` into `work.x`; False where their directions depend on each other."""
+    for i in range(n):
+        for j in range(n):
+            work.A[i, j] = work.G[work.row[i], work.row[j]]
+        work.rhs[i] = _wanted(closed, work.row[i], both, behind, work)
+        work.scale[i] = _scale_of(work, work.row[i], DEPENDENT_IN_STEPS)
+    return solve_small(work.A, work.rhs, n, work.scale, work.order, work.x, DEPENDENT_IN_STEPS) == n
+
+
+@kernel
+def _choose(closed, m, both, behind, work):
+    """Leave in `work.row` gaps whose directions do not depend on each other, of m; returns their number.
+
+    Not all can be closed: those are that the bodies meet first on the way there, so that none of the others is pressed in.
+    """
+    for i in range(m):
+        wanted, place = _scale_of(work, 2 * i, DEPENDENT_IN_STEPS) * _wanted(closed, 2 * i, both, behind, work), i
+        while place > 0 and work.rhs[place - 1] < wanted:
+            work.rhs[place], work.row[place] = work.rhs[place - 1], work.row[place - 1]
+            place -= 1
+        work.rhs[place], work.row[place] = wanted, 2 * i
+    for i in range(m):
+        work.scale[i] = _scale_of(work, work.row[i], DEPENDENT_IN_STEPS)
+    for i in range(m):
+        for j in range(m):
+            work.A[i, j] = work.scale[i] * work.G[work.row[i], work.row[j]] * work.scale[j]
+    return keep_independent(work.A, m, DEPENDENT_IN_STEPS, work.row)
 
 
 @kernel
