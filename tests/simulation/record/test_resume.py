@@ -20,6 +20,7 @@ from watchsim.candidates import pair_cache as known
 from watchsim.results.state_file import read_state, write_state
 from watchsim.scene.recording import Recording
 from watchsim.scene.scene import Scene
+from watchsim.simulation.record.saved_state import LATER
 from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
@@ -191,3 +192,12 @@ def test_another_scene_is_refused() -> None:
         simulate(scene, 0.1, start=first, method="moreau")
     with pytest.raises(ValueError, match=r"has reached 0\.05 s already"):
         simulate(scene, 0.05, start=first)
+
+
+def test_a_state_without_what_came_later_goes_on() -> None:
+    scene = profile("bench_lever")
+    first = simulate(scene, 0.05).end_state
+    assert first is not None
+    older = dataclasses.replace(first, arrays={name: part for name, part in first.arrays.items() if name not in LATER})
+    assert len(older.arrays) == len(first.arrays) - len(LATER)
+    assert_same(simulate(scene, 0.1, start=older), simulate(scene, 0.1, start=first))
