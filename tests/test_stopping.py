@@ -68,11 +68,13 @@ KEPT = [
 ]
 
 
+NEIGHBOURS = {KEPT[1], KEPT[4]}  # stopped as what comes after them is
+
 # All three signals have one handler; that each of them reaches it is tried once in short, at night in the loop and while files
 # are renamed.
 @pytest.mark.parametrize(
     ("home", "name", "number"),
-    [(*place, signal.SIGINT) for place in KEPT]
+    [pytest.param(*place, signal.SIGINT, marks=[pytest.mark.slow] if place in NEIGHBOURS else []) for place in KEPT]
     + [(*KEPT[0], signal.SIGTERM), (*KEPT[-1], signal.SIGHUP)]
     + [pytest.param(*case, marks=pytest.mark.slow) for case in ((*KEPT[-1], signal.SIGTERM), (*KEPT[0], signal.SIGHUP))],
 )
