@@ -7,6 +7,7 @@ are the folders whose made-up scenes and drawings tests in other folders use, to
 from __future__ import annotations
 
 import gc
+import os
 import signal
 import sys
 import time
@@ -26,6 +27,8 @@ YOUNG = 100_000  # new objects until garbage is looked for: Python's 700 are for
 UNCOMPILED = ("construction", "drawing", "escapement", "geometry", "storage")  # folders
 LARGEST = ("advance.advance", "steps.advance_fixed")  # what takes half a minute and more to compile: file and function
 PATIENCE = 300.0  # s to wait for another worker's machine code
+# Matrices here are small: threads of the linear algebra would only wait for each other, at the cost of the other worker.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 COMPILED = pytest.StashKey[bool]()
 SHARED = ("contact", "drawing", "drawing/damaged", "scene", "simulation")
 sys.path[:0] = [str(HERE), *(str(HERE / name) for name in SHARED)]
