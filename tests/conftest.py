@@ -64,7 +64,7 @@ def is_plain(item: pytest.Item) -> bool:
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:
-    """The first worker compiles what is largest before its first test that may need it; the others wait rather than do so, too."""
+    """The first worker compiles what is largest before its first test that may need it; the others wait for that."""
     workerinput = getattr(item.config, "workerinput", None)
     if workerinput is None or is_plain(item) or item.config.stash.get(COMPILED, False):
         return

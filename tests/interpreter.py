@@ -9,8 +9,8 @@ from pathlib import Path
 
 from watchsim import jit
 
-# Of the copy under test. `python -c` and `python -m` look in the current folder first: they are started there, or a checkout that
-# the tests were called from would be taken, and its machine code compiled, too.
+# Of the copy under test. `python -c` and `python -m` look in the current folder first: started where the tests were called,
+# they would take a checkout that lies there, and compile its machine code, too.
 ROOT = Path(jit.__file__).resolve().parents[1]
 
 

@@ -70,6 +70,7 @@ KEPT = [
 
 NEIGHBOURS = {KEPT[1], KEPT[4]}  # stopped as what comes after them is
 
+
 # All three signals have one handler; that each of them reaches it is tried once in short, at night in the loop and while files
 # are renamed.
 @pytest.mark.parametrize(

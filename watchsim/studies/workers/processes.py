@@ -63,7 +63,7 @@ def start_method() -> Any:
 
 
 def _start_server() -> None:
-    """With the path of this process: by itself it looks in the current folder first, where another copy of the package may lie."""
+    """With the path of this process: by itself it looks in the current folder first, where another copy may lie."""
     from multiprocessing import forkserver
 
     path = {"PYTHONSAFEPATH": "1", "PYTHONPATH": os.pathsep.join(place or os.curdir for place in sys.path)}
