@@ -26,7 +26,7 @@ HERE = Path(__file__).resolve().parent
 YOUNG = 100_000  # new objects until garbage is looked for: Python's 700 are for small programs
 UNCOMPILED = ("construction", "drawing", "escapement", "geometry", "storage")  # folders
 LARGEST = ("advance.advance", "steps.advance_fixed")  # what takes half a minute and more to compile: file and function
-PATIENCE = 300.0  # s to wait for another worker's machine code
+PATIENCE = 120.0  # s to wait for the machine code of the first worker; after that each compiles for itself
 # Matrices here are small: threads of the linear algebra would only wait for each other, at the cost of the other worker.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 COMPILED = pytest.StashKey[bool]()
