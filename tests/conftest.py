@@ -7,8 +7,10 @@ are the folders whose made-up scenes and drawings tests in other folders use, to
 from __future__ import annotations
 
 import gc
+import os
 import signal
 import sys
+import time
 from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
@@ -17,9 +19,17 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, settings
 
+from watchsim.jit import is_cached
+from watchsim.machine_code import cache_folder
+
 HERE = Path(__file__).resolve().parent
 YOUNG = 100_000  # new objects until garbage is looked for: Python's 700 are for small programs
-UNCOMPILED = ("construction", "drawing", "geometry", "storage")  # folders
+UNCOMPILED = ("construction", "drawing", "escapement", "geometry", "storage")  # folders
+LARGEST = ("advance.advance", "steps.advance_fixed")  # what takes half a minute and more to compile: file and function
+PATIENCE = 120.0  # s to wait for the machine code of the first worker; after that each compiles for itself
+# Matrices here are small: threads of the linear algebra would only wait for each other, at the cost of the other worker.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+COMPILED = pytest.StashKey[bool]()
 SHARED = ("contact", "drawing", "drawing/damaged", "scene", "simulation")
 sys.path[:0] = [str(HERE), *(str(HERE / name) for name in SHARED)]
 
@@ -37,7 +47,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     workers = int(getattr(config, "workerinput", {}).get("workercount", 1))
     if workers == 1:
         return
-    compiled = [item.path.relative_to(HERE).parts[0] not in UNCOMPILED for item in items]
+    compiled = [not is_plain(item) for item in items]
     plain = iter([item for item, is_so in zip(items, compiled, strict=True) if not is_so])
     others = iter([item for item, is_so in zip(items, compiled, strict=True) if is_so])
     part, share = -(-len(items) // workers), -(-compiled.count(False) // (workers - 1))
@@ -46,6 +56,35 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         first = list(islice(plain, share))
         dealt += [*first, *islice(others, max(0, part - len(first)))]
     items[:] = [*dealt, *plain, *others]
+
+
+def is_plain(item: pytest.Item) -> bool:
+    """Does it need no machine code that takes long to compile?"""
+    return item.path.relative_to(HERE).parts[0] in UNCOMPILED
+
+
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """The first worker compiles what is largest before its first test that may need it; the others wait for that."""
+    workerinput = getattr(item.config, "workerinput", None)
+    if workerinput is None or is_plain(item) or item.config.stash.get(COMPILED, False):
+        return
+    item.config.stash[COMPILED] = True
+    if workerinput["workerid"] == "gw0":
+        compile_largest()
+    else:
+        until = time.monotonic() + PATIENCE
+        while not all(map(is_cached, LARGEST)) and cache_folder() is not None and time.monotonic() < until:
+            time.sleep(0.2)
+
+
+def compile_largest() -> None:
+    """By both methods, a scene that moves at once."""
+    import watchsim
+    from watchsim.simulation.methods import METHODS
+
+    scene = watchsim.load(watchsim.profiles_dir() / "incline")
+    for method in METHODS:
+        watchsim.simulate(scene, duration=1e-3, method=method)
 
 
 def pytest_collection_finish() -> None:

@@ -10,6 +10,8 @@ from pathlib import Path
 import imageio.v3 as imageio
 import numpy as np
 import pytest
+from interpreter import ROOT as COPY
+from interpreter import python
 
 from watchsim.cli import COMMANDS, main
 from watchsim.results.read_results import read_results
@@ -46,7 +48,7 @@ SUMMARY_KEYS = [
 
 def test_help_names_every_command_and_loads_nothing_heavy() -> None:
     code = "import sys; from watchsim.cli import parser; print(parser().format_help()); print(sorted(sys.modules))"
-    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    told = python(code)
     assert all(f"  {name} " in told for name in COMMANDS)
     loaded = told.splitlines()[-1]
     assert not [name for name in ("numpy", "numba", "matplotlib", "shapely", "ezdxf", "scipy") if f"'{name}'" in loaded]
@@ -215,7 +217,7 @@ def test_moreau_and_error_bars(tmp_path: Path, capsys: pytest.CaptureFixture[str
 
 def test_a_process_ends_with_the_status_of_its_command(tmp_path):
     def status(*words: str) -> int:
-        return subprocess.run([sys.executable, "-m", "watchsim", *words], cwd=ROOT, capture_output=True, check=False).returncode
+        return subprocess.run([sys.executable, "-m", "watchsim", *words], cwd=COPY, capture_output=True, check=False).returncode
 
     assert status("--version") == 0
     assert status("check", str(tmp_path / "nowhere")) == 2

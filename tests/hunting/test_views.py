@@ -19,7 +19,7 @@ from watchsim.simulation.simulate import simulate
 VIEW = View(2.1, True, {"b0": 0.7, "b1": 3.0, "s0": 1.0, "a": 2.0, "p0": 1.1, "bar": 0.4})
 
 
-@pytest.mark.parametrize("family", sorted(FAMILIES))
+@pytest.mark.parametrize("family", [pytest.param(one, marks=[pytest.mark.slow] * (one == "crowd")) for one in sorted(FAMILIES)])
 def test_same_start_seen_otherwise(family):
     """Distances between bodies at the start do not depend on the view, and coordinates are the scene's own again."""
     scene = mechanism(7, 3, family)

@@ -6,13 +6,12 @@ import base64
 import html
 import io
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import imageio.v3 as iio
 import numpy as np
 import pytest
+from interpreter import python
 from pages.browser import opened
 from render.fake_runs import disc_run, watch_run
 
@@ -154,5 +153,4 @@ def test_a_notebook_asks_for_these() -> None:
 def test_the_function_is_not_hidden_by_a_package() -> None:
     """`watchsim.report` is a function, whatever has been imported before."""
     code = "import watchsim as ws; ws.load(ws.profiles_dir() / 'balance')._repr_html_(); print(callable(ws.report))"
-    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert told.stdout.strip() == "True"
+    assert python(code) == "True"

@@ -26,7 +26,7 @@ def exact(values: CycloidalPair) -> Teeth:
 
 def angles(run: Trajectory) -> tuple[Array, Array]:
     """Wheel and pinion once the play is taken up, rad; the pinion's from where a leaf is on the line of centres."""
-    q = run.sample(np.linspace(0.3 * run.t[-1], run.t[-1], 801))[0]
+    q = run.sample(np.linspace(0.3 * run.t[-1], run.t[-1], 401))[0]
     return q[:, 0], math.pi - q[:, 1]
 
 

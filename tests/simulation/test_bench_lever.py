@@ -91,13 +91,13 @@ def material(side: Side, pose: tuple[float, float, float]) -> shapely.Geometry:
     return shapely.union_all([shapely.Polygon(chords((loop,), pose, 5e-6)[:, :2]) for loop in loops])
 
 
-@pytest.mark.parametrize("tolerance", [1e-7, pytest.param(1e-9, marks=pytest.mark.slow)])
-def test_nothing_runs_through_anything(tolerance: float) -> None:
-    """Bodies as polygons at two thousand instants: no overlap beyond a nanometre of depth, whatever the solver reports."""
+@pytest.mark.parametrize(("tolerance", "instants"), [(1e-7, 501), pytest.param(1e-9, 2001, marks=pytest.mark.slow)])
+def test_nothing_runs_through_anything(tolerance: float, instants: int) -> None:
+    """Bodies as polygons at many instants: no overlap beyond a nanometre of depth, whatever the solver reports."""
     done = simulate(profile("bench_lever"), 0.5, tolerance)
     for contact in profile("bench_lever").contacts:
         placed = [material(side, (0.0, 0.0, 0.0)) for side in contact.sides]
-        for t in np.linspace(0.0, 0.5, 2001):
+        for t in np.linspace(0.0, 0.5, instants):
             now = []
             for side, shape in zip(contact.sides, placed, strict=True):
                 x, y, angle = done.pose(side.body, t)

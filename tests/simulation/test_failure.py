@@ -8,6 +8,7 @@ import subprocess
 import sys
 
 import numpy as np
+from interpreter import ROOT
 
 SCRIPT = """
 from watchsim.dynamics import acceleration, impact
@@ -49,9 +50,8 @@ def test_the_run_is_kept_with_the_problem_and_what_to_try(tmp_path) -> None:
     scene, folder = tmp_path / "scene.toml", tmp_path / "results"
     scene.write_text(SCENE, encoding="utf-8")
     command = [sys.executable, "-c", SCRIPT, str(scene), str(folder)]
-    done = subprocess.run(
-        command, env={**os.environ, "NUMBA_DISABLE_JIT": "1"}, check=False, capture_output=True, text=True, encoding="utf-8"
-    )
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "NUMBA_DISABLE_JIT": "1"}
+    done = subprocess.run(command, env=environment, cwd=ROOT, check=False, capture_output=True, text=True, encoding="utf-8")
     assert done.returncode == 3, done.stderr
     assert "lcp_failure.json" in done.stderr
     failure = json.loads((folder / "lcp_failure.json").read_text(encoding="utf-8"))

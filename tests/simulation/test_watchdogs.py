@@ -60,7 +60,12 @@ def test_a_correction_that_stops_bodies_ends_the_run(place: str, tmp_path: Path)
         "NUMBA_DISABLE_JIT": "1",
     }
     done = subprocess.run(
-        [sys.executable, "-c", SABOTAGE.format(place=place)], env=environment, capture_output=True, text=True, check=True
+        [sys.executable, "-c", SABOTAGE.format(place=place)],
+        env=environment,
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
     )
     stop, message = done.stdout.splitlines()[:2]
     assert stop == "UNEXPLAINED"

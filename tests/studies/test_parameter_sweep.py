@@ -54,6 +54,31 @@ def test_two_workers_and_another_order_give_the_same(bench, table):
     assert list(reversed(ws.sweep(bench, backwards, workers=2).rows)) == list(table.rows)
 
 
+WHERE = """
+from watchsim.studies.workers.processes import start_method
+
+def place():
+    import watchsim
+
+    return watchsim.__file__
+
+if __name__ == "__main__":
+    with start_method().Pool(1) as pool:
+        print(pool.apply(place))
+"""
+
+
+def test_workers_import_the_package_that_started_them(tmp_path):
+    """Whatever lies in the current folder, such as a checkout of another state."""
+    (tmp_path / "here" / "watchsim").mkdir(parents=True)
+    (tmp_path / "here" / "watchsim" / "__init__.py").write_text("raise RuntimeError('not this one')")
+    (tmp_path / "where.py").write_text(WHERE)
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    asked = [sys.executable, str(tmp_path / "where.py")]
+    told = subprocess.run(asked, env=environment, cwd=tmp_path / "here", capture_output=True, text=True, check=True).stdout
+    assert told.strip() == ws.__file__
+
+
 def test_by_runs(bench, table):
     """The end of a run that has settled is the cycle."""
     runs = ws.sweep(bench, {"torques.0.value": [-6e-6]}, steady=False, duration="40 s")
@@ -178,6 +203,7 @@ def stopped(folder: Path, count: int, number: int) -> tuple[list[str], int]:
     started = subprocess.Popen(
         [sys.executable, "-m", "watchsim", *asked, "--workers", "2"],
         env=environment,
+        cwd=ROOT,
         start_new_session=True,
         stdout=subprocess.DEVNULL,
     )

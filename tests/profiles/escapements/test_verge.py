@@ -86,9 +86,9 @@ def test_the_period_is_that_of_a_torque_that_changes_its_sign(torque: float, vis
         found = solve_ivp(rates, (0.0, 1e4), [-a, -speed], events=at_a, rtol=1e-10, atol=1e-12)
         return float(found.y[1, -1]), float(found.t[-1])
 
-    speed, half = 0.1, 0.0
-    for _ in range(200):
-        speed, half = let_go(speed)
+    before, (speed, half) = 0.1, let_go(0.1)
+    while abs(speed - before) > 1e-9 * speed:
+        before, (speed, half) = speed, let_go(speed)
     assert period(narrow(torque, viscous, 60.0)) == pytest.approx(2.0 * half, rel=0.045)
 
 

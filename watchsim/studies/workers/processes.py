@@ -7,6 +7,8 @@ threads; elsewhere they are started anew.
 from __future__ import annotations
 
 import multiprocessing
+import os
+import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
@@ -54,5 +56,24 @@ def start_method() -> Any:
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(["watchsim.studies.workers.worker"])
+    if sys.version_info >= (3, 11):  # before, each worker imports the package for itself
+        context.set_forkserver_preload(["watchsim.studies.workers.worker"])
+        _start_server()
     return context
+
+
+def _start_server() -> None:
+    """With the path of this process: by itself it looks in the current folder first, where another copy may lie."""
+    from multiprocessing import forkserver
+
+    path = {"PYTHONSAFEPATH": "1", "PYTHONPATH": os.pathsep.join(place or os.curdir for place in sys.path)}
+    before = {name: os.environ.get(name) for name in path}
+    os.environ.update(path)
+    try:
+        forkserver.ensure_running()
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
