@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import functools
 import math
+from dataclasses import replace
 from unittest.mock import patch
 
 import numpy as np
@@ -19,8 +20,9 @@ from watchsim.candidates import cell_grid
 from watchsim.candidates.broad_phase import PairSearch
 from watchsim.candidates.cell_motion import CellMotion
 from watchsim.geometry.loop import Loop
-from watchsim.mechanism.compile import Compiled
+from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.model.records import ARC, CORNER, FULL, LINE
+from watchsim.scene.gearing import Geared
 from watchsim.scene.scene import Scene
 
 Pose = tuple[float, float, float]
@@ -33,13 +35,22 @@ def block(name: str) -> tuple[Loop, ...]:
 
 
 @functools.cache
-def made(*given: str | bool) -> tuple[Scene, Compiled]:
-    """Two bodies of these motions, or what is carried in that arrangement, with cells however few contacts there are."""
+def made(*given: str | bool | float) -> tuple[Scene, Compiled]:
+    """Two bodies of these motions, or what is carried in that arrangement (body a geared to its carriage by the last
+    number), with cells however few contacts there are."""
     with patch.object(cell_grid, "FEW_CONTACTS", 0):
-        return two_bodies.__wrapped__(*given) if len(given) == 2 else carried_scene(*given, block, (0.25, 0.1))
+        if len(given) == 2:
+            return two_bodies.__wrapped__(*given)
+        scene, compiled = carried_scene(*given[:3], block, (0.25, 0.1))
+        if len(given) == 3:
+            return scene, compiled
+        bodies = [replace(one, geared=Geared("carriage", given[3])) if one.name == "a" else one for one in scene.bodies]
+        scene = replace(scene, bodies=tuple(bodies))
+        return scene, compile_scene(scene)
 
 
-CASES = [one for one in (*PAIRS, *ARRANGEMENTS) if made(*one)[1].model.pairs[0].axes > 0]
+GEARED = [("pivot", partner, False, ratio) for partner in ("beside", "carrier", "part", "fixed") for ratio in (2.5, -0.4)]
+CASES = [one for one in (*PAIRS, *ARRANGEMENTS, *GEARED) if made(*one)[1].model.pairs[0].axes > 0]
 each_case = pytest.mark.parametrize("case", CASES, ids=lambda case: "-".join(map(str, case)))
 
 
@@ -55,9 +66,9 @@ def poses(scene: Scene, compiled: Compiled, q: np.ndarray) -> list[Pose]:
 def coordinates(compiled: Compiled, at: np.ndarray, rest: np.ndarray) -> np.ndarray:
     """Coordinates whose cell coordinates are `at`; the others as in `rest`."""
     q, pair = rest.copy(), compiled.model.pairs[0]
-    for i in range(pair.axes):
+    for i in sorted(range(pair.axes), key=lambda i: int(pair[f"on{i}"])):  # first those that are told by themselves
         on = int(pair[f"on{i}"])
-        q[pair[f"c{i}"]] = at[i] + (rest[on] if on >= 0 else 0.0)
+        q[pair[f"c{i}"]] = at[i] + (q[on] if on >= 0 else 0.0)
     return q
 
 
@@ -94,7 +105,7 @@ def changes(axes: int, rng: np.random.Generator) -> list[np.ndarray]:
 
 
 @each_case
-def test_no_point_gets_farther_than_promised_and_some_get_as_far(case: tuple[str | bool, ...]) -> None:
+def test_no_point_gets_farther_than_promised_and_some_get_as_far(case: tuple[str | bool | float, ...]) -> None:
     scene, compiled = made(*case)
     model, rng, pair = compiled.model, np.random.default_rng(3), compiled.model.pairs[0]
     search, n = PairSearch(model, 0, NONE), len(compiled.q)
@@ -123,7 +134,7 @@ def test_no_point_gets_farther_than_promised_and_some_get_as_far(case: tuple[str
 
 
 @each_case
-def test_bodies_are_where_they_are_and_move_as_far_as_they_may(case: tuple[str | bool, ...]) -> None:
+def test_bodies_are_where_they_are_and_move_as_far_as_they_may(case: tuple[str | bool | float, ...]) -> None:
     """One body as seen from the other, and for each coordinate alone how far origins move and by how much bodies turn."""
     scene, compiled = made(*case)
     pair, rng = compiled.model.pairs[0], np.random.default_rng(5)
@@ -142,3 +153,4 @@ def test_bodies_are_where_they_are_and_move_as_far_as_they_may(case: tuple[str |
 def test_every_motion_is_among_the_cases() -> None:
     assert {motion for pair in PAIRS for motion in pair} == set(DEGREES)
     assert set(PAIRS) < set(CASES) and len(CASES) >= len(PAIRS) + 5
+    assert {one[1] for one in CASES if len(one) == 4} >= {"carrier", "part"}
