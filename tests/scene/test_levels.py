@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from itertools import combinations
 from pathlib import Path
 
 import pytest
 
+from watchsim.geometry.loop import Loop
+from watchsim.geometry.primitives import Arc
 from watchsim.geometry.solids.enclosed_area import region
+from watchsim.scene.body import Body
 from watchsim.scene.file.load import load
 from watchsim.scene.layer_heights import Slab, slabs
+from watchsim.scene.scene import Scene
+from watchsim.scene.solid import PLATE, UPRIGHT, Solid, Weight
 
 ROOT = Path(__file__).resolve().parents[2]
 HEAD = '[bodies.wheel]\ncircle = "3 mm"\ninertia = "1 mg·cm²"\n'
@@ -68,3 +74,15 @@ def test_a_plate_without_a_layer_takes_that_of_its_body(tmp_path: Path) -> None:
     scene = load(path)
     (slab,) = slabs(scene, 0.2e-3)
     assert [slab.layer] == list(scene.body("wheel").layers) and slab.layer != "plate"
+
+
+@pytest.mark.parametrize(
+    ("kind", "layers", "name"), [(PLATE, ("RIM",), "RIM"), (PLATE, ("RIM", "HUB"), PLATE), (UPRIGHT, ("RIM",), UPRIGHT)]
+)
+def test_a_solid_without_a_layer_is_called_after_the_only_one_if_it_is_a_plate(
+    kind: str, layers: tuple[str, ...], name: str
+) -> None:
+    rings = tuple(Loop((Arc(0.0, 0.0, 1e-3 * k, 0.0, math.tau),), layer) for k, layer in enumerate(layers, 1))
+    solid = Solid(kind, "", Weight(1e-6, (0.0, 0.0), 1e-12), 8e3, rings[:1], 0.2e-3)
+    body = Body("balance", "pivot", inertia=1e-12, loops=rings, solids=(solid,))
+    assert slabs(Scene("one", (body,)), 0.2e-3)[0].layer == name
