@@ -12,6 +12,7 @@ from watchsim.analysis.summary import summary
 from watchsim.analysis.timing.beats import beats
 from watchsim.scene.recording import EVERYTHING, Recording
 from watchsim.simulation import runner as running
+from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.record.tally import Tally
 from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.simulation.runner import ROWS
@@ -46,6 +47,7 @@ def test_sums_are_those_of_the_beats() -> None:
         assert told["squares"] == pytest.approx(((known - known.mean()) ** 2).sum(), rel=1e-9)
     kinds = whole().events["kind"]
     assert sums["events_by_kind"]["impact"] == (kinds == 1).sum() > 1000
+    assert sums["events_by_kind"] == {kind.name.lower(): int((kinds == kind).sum()) for kind in EventKind}
 
 
 @pytest.mark.parametrize("parts", [2, 7, 100])
