@@ -9,19 +9,23 @@ from __future__ import annotations
 import functools
 import math
 from dataclasses import replace
+from itertools import islice
 from unittest.mock import patch
 
 import numpy as np
 import pytest
 from carried_scenes import ARRANGEMENTS, carried_scene, places
 from pair_scenes import DEGREES, body_pose, outline, two_bodies
+from true_contacts import touches
 
 from watchsim.candidates import cell_grid
 from watchsim.candidates.broad_phase import PairSearch
 from watchsim.candidates.cell_motion import CellMotion
+from watchsim.candidates.normal_fans import Regions
 from watchsim.geometry.loop import Loop
 from watchsim.mechanism.compile import Compiled, compile_scene
 from watchsim.model.records import ARC, CORNER, FULL, LINE
+from watchsim.scene.body import Body
 from watchsim.scene.gearing import Geared
 from watchsim.scene.scene import Scene
 
@@ -36,20 +40,25 @@ def block(name: str) -> tuple[Loop, ...]:
 
 @functools.cache
 def made(*given: str | bool | float) -> tuple[Scene, Compiled]:
-    """Two bodies of these motions, or what is carried in that arrangement (body a geared to its carriage by the last
-    number), with cells however few contacts there are."""
+    """Two bodies of these motions, or what is carried in that arrangement (body a geared, so many times as
+    fast, to its carriage or to another body), with cells however few contacts there are."""
     with patch.object(cell_grid, "FEW_CONTACTS", 0):
         if len(given) == 2:
             return two_bodies.__wrapped__(*given)
         scene, compiled = carried_scene(*given[:3], block, (0.25, 0.1))
         if len(given) == 3:
             return scene, compiled
-        bodies = [replace(one, geared=Geared("carriage", given[3])) if one.name == "a" else one for one in scene.bodies]
+        drive = Body("drive", "pivot", (9.0, 9.0), inertia=1.0)
+        bodies = [replace(one, geared=Geared(given[4], given[3])) if one.name == "a" else one for one in (*scene.bodies, drive)]
         scene = replace(scene, bodies=tuple(bodies))
         return scene, compile_scene(scene)
 
 
-GEARED = [("pivot", partner, False, ratio) for partner in ("beside", "carrier", "part", "fixed") for ratio in (2.5, -0.4)]
+GEARED = [
+    ("pivot", partner, False, ratio, to)
+    for partner in ("beside", "carrier", "part", "fixed")
+    for ratio, to in ((2.5, "carriage"), (-0.4, "carriage"), (-0.4, "drive"))
+]
 CASES = [one for one in (*PAIRS, *ARRANGEMENTS, *GEARED) if made(*one)[1].model.pairs[0].axes > 0]
 each_case = pytest.mark.parametrize("case", CASES, ids=lambda case: "-".join(map(str, case)))
 
@@ -59,6 +68,10 @@ def poses(scene: Scene, compiled: Compiled, q: np.ndarray) -> list[Pose]:
     pair, names = compiled.model.pairs[0], [body.name for body in scene.bodies]
     if any(body.on for body in scene.bodies):
         where = places(scene, compiled, q)
+        for body in scene.bodies:
+            if body.geared and body.geared.to != body.on:  # what does not carry it turns it in the movement
+                (x, y, turn), carrier = where[body.name], where[str(body.on)]
+                where[body.name] = x, y, turn - carrier[2]
         return [where[names[b]] for b in (pair.a, pair.b)]
     return [body_pose(scene, names[b], q) for b in (pair.a, pair.b)]
 
@@ -150,7 +163,24 @@ def test_bodies_are_where_they_are_and_move_as_far_as_they_may(case: tuple[str |
             assert (shift, turn) == pytest.approx((math.dist(old[:2], new[:2]), abs(new[2] - old[2])), rel=1e-3, abs=1e-15)
 
 
+@pytest.mark.parametrize("case", [one for one in CASES if one[-1] != "drive"], ids=lambda case: "-".join(map(str, case)))
+def test_no_contact_that_touches_within_reach_is_taken_for_impossible(case: tuple[str | bool | float, ...]) -> None:
+    """From a pose where it touches the cell coordinates are changed a little or a lot, and may change by so much."""
+    scene, compiled = made(*case)
+    model, pair, rng = compiled.model, compiled.model.pairs[0], np.random.default_rng(8)
+    regions, met = Regions(model, 0), 0
+    starts = (rng.uniform(-1.0, 1.0, len(compiled.q)) for _ in range(8))
+    for k, q in islice(touches(scene, compiled, rng, starts), 6):
+        there = [q[pair[f"c{i}"]] - (q[pair[f"on{i}"]] if pair[f"on{i}"] >= 0 else 0.0) for i in range(pair.axes)]
+        for size in (1e-3, 0.03, 0.3, 1.0):
+            room = size * rng.uniform(0.1, 1.0, len(there))
+            at = np.array(there) + room * rng.choice([-1.0, 1.0], len(there))
+            assert regions.possible(np.zeros(1, int), np.array([k - pair.start]), at[None], room).all()
+        met += 1
+    assert met > 0 or case != ("free", "fixed")
+
+
 def test_every_motion_is_among_the_cases() -> None:
     assert {motion for pair in PAIRS for motion in pair} == set(DEGREES)
     assert set(PAIRS) < set(CASES) and len(CASES) >= len(PAIRS) + 5
-    assert {one[1] for one in CASES if len(one) == 4} >= {"carrier", "part"}
+    assert {one[1] for one in CASES if len(one) == 5} >= {"carrier", "part"}

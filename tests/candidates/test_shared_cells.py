@@ -9,6 +9,7 @@ import pytest
 from pair_scenes import outline
 
 from watchsim.candidates.asymmetric_contacts import LooseContacts
+from watchsim.candidates.broad_phase import PairSearch
 from watchsim.candidates.chords import chords
 from watchsim.candidates.equivalent_contacts import _numbers_later
 from watchsim.candidates.pair_cache import forget, known_cells
@@ -86,3 +87,18 @@ def test_arcs_that_turn_reach_as_far_as_their_true_curves(coarse: float) -> None
     true = [float(np.hypot(*points.T).max()) for points in np.split(fine.points, fine.first[1:-1])]
     assert np.all(loose._reach >= np.array(true) - 1e-12) and loose._drawn.sag.max() > 0.1 * coarse
     assert np.all(loose._reach <= np.array(true) + 2.0 * loose._drawn.sag + 1e-12)
+
+
+@pytest.mark.parametrize("motions", [("pivot", "pivot"), ("free", "fixed")])
+def test_candidates_are_the_same_in_any_unit_of_length(motions: tuple[str, str]) -> None:
+    """A power of two smaller: to the bit the same picture, a thousandth in size."""
+    lists = []
+    for unit in (1.0, 2.0**-10):
+        bodies = [
+            Body(name, motion, (x * unit, 0.0), mass=1.0, inertia=1.0, loops=(outline(unit, (0.2 * unit, 0.1 * unit)),))
+            for name, motion, x in zip("ab", motions, (0.0, 0.6), strict=True)
+        ]
+        model = model_of(*bodies, meet=(("a", "b"),))
+        cells = np.random.default_rng(3).integers(-9, 9, (30, int(model.pairs[0].axes)))
+        lists.append([part.tolist() for part in PairSearch(model, 0, NONE).candidates(cells)])
+    assert lists[0] == lists[1] and lists[0][1]

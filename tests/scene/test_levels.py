@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from watchsim.geometry.loop import Loop
-from watchsim.geometry.primitives import Arc
+from watchsim.geometry.primitives import Arc, Line
 from watchsim.geometry.solids.enclosed_area import region
 from watchsim.scene.body import Body
 from watchsim.scene.file.load import load
@@ -86,3 +86,20 @@ def test_a_solid_without_a_layer_is_called_after_the_only_one_if_it_is_a_plate(
     solid = Solid(kind, "", Weight(1e-6, (0.0, 0.0), 1e-12), 8e3, rings[:1], 0.2e-3)
     body = Body("balance", "pivot", inertia=1e-12, loops=rings, solids=(solid,))
     assert slabs(Scene("one", (body,)), 0.2e-3)[0].layer == name
+
+
+@pytest.mark.parametrize(("apart", "together"), [(0.0, True), (1.0, False)])
+def test_layers_of_one_body_that_meet_lie_at_one_height(apart: float, together: bool) -> None:
+    """A wide plate covers the one layer, so that it lies higher; the other goes with it where they are side by side."""
+
+    def block(layer: str, x: float, width: float, height: float) -> Loop:
+        corners = [(x, 0.0), (x + width, 0.0), (x + width, height), (x, height)]
+        ends = corners[1:] + corners[:1]
+        return Loop(tuple(Line(*(1e-3 * c for c in (*a, *b))) for a, b in zip(corners, ends, strict=True)), layer)
+
+    wide = Body("wide", "fixed", loops=(block("PLATE", -9.0, 9.5, 5.0),))
+    two = Body("two", "pivot", inertia=1e-9, loops=(block("LEFT", 0.0, 1.0, 1.0), block("RIGHT", 1.0 + apart, 1.0, 1.0)))
+    found = {slab.layer: slab.middle for slab in slabs(Scene("beside", (wide, two)), 0.2e-3)}
+    assert found["LEFT"] > found["PLATE"] == pytest.approx(0.1e-3)
+    assert (found["RIGHT"] == found["LEFT"]) == together
+    assert together or found["RIGHT"] == found["PLATE"]

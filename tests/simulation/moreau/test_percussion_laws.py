@@ -7,8 +7,9 @@ import pytest
 
 from watchsim.jit import callable_kernel
 from watchsim.simulation.moreau.percussion_laws import Laws, cone, laws, residual
+from watchsim.simulation.moreau.prox_relaxation import relax
 
-_cone, _residual = callable_kernel(cone), callable_kernel(residual)
+_cone, _residual, _relax = (callable_kernel(kernel) for kernel in (cone, residual, relax))
 
 
 def random_laws(seed: int, mass: float, speed: float) -> Laws:
@@ -47,3 +48,14 @@ def test_the_share_is_the_naive_one_whatever_the_units(seed: int) -> None:
 
 def test_of_nothing_there_is_no_share() -> None:
     assert _residual(laws(2, 1), 2, 5) == 0.0
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_sweeps_settle_after_as_many_in_any_units(seed: int) -> None:
+    """Powers of two, so that every rounding is the same; where they settle, the laws are obeyed."""
+    counts = []
+    for mass, speed in ((1.0, 1.0), (2.0**-30, 2.0**-10), (2.0**20, 2.0**5)):
+        made = random_laws(seed, mass, speed)
+        counts.append(_relax(made, 2, 1))
+        assert counts[-1][1] and naive(made) < 1e-9
+    assert counts[0] == counts[1] == counts[2]
