@@ -54,7 +54,7 @@ AREAS = {  # name -> (files, tests)
     ),
     "scene": (
         ("scene/**/*.py", "mechanism/*.py", "units.py"),
-        ("tests/scene", "tests/mechanism", "tests/test_units.py", "tests/simulation/bound"),
+        ("tests/scene", "tests/mechanism", "tests/designs", "tests/test_units.py", "tests/simulation/bound"),
     ),
     "analysis": (
         ("analysis/**/*.py", "results/*.py", "verification/**/*.py"),
