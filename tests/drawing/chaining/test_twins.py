@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from watchsim.drawing.chaining.twins import MOST, distance
+from watchsim.drawing.chaining.twins import MOST, distance, finding
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Line
 
@@ -39,3 +39,10 @@ def test_of_many_edges_those_of_a_shifted_outline_are_found(count: int) -> None:
     plain = round_polygon(count)
     moved = plain + np.where(plain[:, :1] < 0.0, 0.01, 0.0) * plain
     assert distance(polygon(plain), polygon(moved), 1.0) == pytest.approx(0.01, rel=0.02)
+
+
+def test_the_finding_stands_on_the_outline() -> None:
+    """In the middle of its first edge, in millimetres."""
+    loop = polygon(np.array([[2e-3, 5e-3], [4e-3, 5e-3], [4e-3, 9e-3]]))
+    found = finding(loop, 3e-9)
+    assert (found.x_mm, found.y_mm) == pytest.approx((3.0, 5.0)) and "within 3 nm" in found.message
