@@ -37,6 +37,7 @@ PATIENCE = 5.0  # times what the tests take without a fault; an endless loop is 
 LEAST = 120.0  # s
 LONGEST = 40.0  # s of tests for one fault, the quickest of those that reach it
 LONGEST_PLAIN = 3.0  # s for one test of kernels in plain Python, a hundred times slower than compiled
+Harmless = dict[tuple[str, str, str], set[str]]  # (file, before, after) -> lines of code in which that is so; "": in all
 COMPILED = "kernels"
 PLAIN = "plain"
 AREAS = {  # name -> (files, tests)
@@ -53,7 +54,7 @@ AREAS = {  # name -> (files, tests)
     ),
     "scene": (
         ("scene/**/*.py", "mechanism/*.py", "units.py"),
-        ("tests/scene", "tests/mechanism", "tests/test_units.py", "tests/simulation/bound"),
+        ("tests/scene", "tests/mechanism", "tests/designs", "tests/test_units.py", "tests/simulation/bound"),
     ),
     "analysis": (
         ("analysis/**/*.py", "results/*.py", "verification/**/*.py"),
@@ -91,8 +92,11 @@ class Planted:
     file: str
     fault: Fault
 
-    def key(self) -> tuple[str, str, str]:
-        return self.file, self.fault.before, self.fault.after
+    def is_judged(self, known: Harmless) -> bool:
+        """Is it known as harmless, wherever such a thing stands in the file or in that line of code?"""
+        codes = known.get((self.file, self.fault.before, self.fault.after), set())
+        text = (ROOT / "watchsim" / self.file).read_text(encoding="utf-8").splitlines()[self.fault.line - 1]
+        return not codes.isdisjoint(("", text.strip()))
 
 
 class Copy:
@@ -148,12 +152,14 @@ def chosen(area: str, count: int, seed: int) -> list[Planted]:
     return random.Random(f"{seed} {area}").sample(found, min(count, len(found)))
 
 
-def judged() -> dict[tuple[str, str, str], str]:
-    """(file, before, after) -> why that fault changes nothing that matters."""
-    if not JUDGED.is_file():
-        return {}
-    with JUDGED.open(newline="", encoding="utf-8") as file:
-        return {(row["file"], row["before"], row["after"]): row["why"] for row in csv.DictReader(file)}
+def judged() -> Harmless:
+    """What changes nothing that matters, for the reasons given in the list."""
+    known: Harmless = {}
+    if JUDGED.is_file():
+        with JUDGED.open(newline="", encoding="utf-8") as file:
+            for row in csv.DictReader(file):
+                known.setdefault((row["file"], row["before"], row["after"]), set()).add(row["code"])
+    return known
 
 
 def main() -> int:
@@ -172,7 +178,7 @@ def main() -> int:
             for planted in chosen(area, given.count, given.seed):
                 if time.monotonic() - begun > 60.0 * given.minutes:
                     break
-                verdict = "judged" if planted.key() in known else ""
+                verdict = "judged" if planted.is_judged(known) else ""
                 if not verdict:
                     verdict = "noticed" if try_out(planted) else "missed"
                 tally[area, verdict] += 1

@@ -164,6 +164,17 @@ def test_keys_of_different_cells_differ() -> None:
     assert min(keys) >= 0
 
 
+def test_the_candidates_here_are_those_of_the_cell() -> None:
+    scene, compiled = pair("pivot", "pivot")
+    finder, rng = CellFinder(compiled.model), np.random.default_rng(13)
+    found = 0
+    for q in (random_q(scene, rng) for _ in range(10)):
+        here = set(PairCells(compiled.model, 0).here(q).tolist())
+        assert here == listed(compiled, finder.learn(0, q), q)[1]
+        found += len(here)
+    assert found > 0
+
+
 def not_apart(compiled: Compiled, q: np.ndarray) -> bool:
     """Does the pair need a cell at q?"""
     return listed(compiled, CellFinder(compiled.model).cells, q)[0] != ALL

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from watchsim.drawing.bores import lies
+from watchsim.drawing.drawn_material import layer_roles
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import TURN, Arc, Line
 
@@ -103,3 +105,17 @@ def test_circles_in_a_ring_are_sorted_by_their_distances(x: float, y: float, r: 
     if not crosses:
         assert lie.taken == (inside and not in_hole and not round_hole)
         assert (lie.around is not None) == (round_hole or far + 5.0 < r)
+
+
+def test_a_layer_called_a_pivot_is_a_mark_only_while_it_holds_circles_alone() -> None:
+    """An arbor drawn with a square is a part; bores are bores whatever their outline; alone, marks are the parts."""
+    part, mark, square = (
+        replace(one, layer=name)
+        for one, name in ((box(0, 0, 9, 9), "PART"), (disc(1, 1, 1), "PIVOT"), (box(3, 3, 4, 4), "PIVOT"))
+    )
+    half = Loop((Arc(0.0, 0.0, MM, 0.0, math.pi), Line(-MM, 0.0, MM, 0.0)), "PIVOT")
+    bore = replace(box(5, 5, 6, 6), layer="BORES")
+    assert layer_roles([part, mark, bore]) == {"PART": "material", "PIVOT": "mark", "BORES": "bore"}
+    for other in ([square], [mark, square], [square, mark], [half]):
+        assert layer_roles([part, *other]) == {"PART": "material", "PIVOT": "material"}
+    assert layer_roles([mark]) == {"PIVOT": "material"}

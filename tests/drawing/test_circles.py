@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 
 import pytest
 
-from watchsim.drawing.circles import circle_of
+from watchsim.drawing.circles import circle_of, circle_reports
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import TURN, Arc, Line
 
@@ -39,3 +40,11 @@ def test_arcs_of_one_circle_are_that_circle(edges: tuple[Arc, ...]) -> None:
 )
 def test_anything_else_is_none(edges: tuple[Arc | Line, ...]) -> None:
     assert circle_of(Loop(edges)) is None
+
+
+def test_what_is_said_of_circles_is_where_they_are() -> None:
+    """In millimetres; a hole is said to be one, and other outlines are not told of."""
+    square = tuple(Line(*a, *b) for a, b in pairwise([(0.0, 0.0), (1e-3, 0.0), (1e-3, 1e-3), (0.0, 0.0)]))
+    loops = [Loop(THIRDS, layer="rim"), Loop(square), Loop((RIGHT, LEFT), layer="bore", hole=True)]
+    where = {"x_mm": 1.0, "y_mm": 2.0, "radius_mm": 5.0}
+    assert circle_reports(loops) == [{"layer": "rim", **where, "hole": False}, {"layer": "bore", **where, "hole": True}]

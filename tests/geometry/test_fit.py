@@ -13,7 +13,7 @@ from curves import Known, involute, least_arcs, quarter_ellipse, smooth, spiral,
 
 from watchsim.geometry.fitting import fit as fitting
 from watchsim.geometry.fitting.curve import Curve
-from watchsim.geometry.fitting.fit import Fit, fit_all, fit_arcs
+from watchsim.geometry.fitting.fit import Fit, _chord, fit_all, fit_arcs
 from watchsim.geometry.primitives import Arc, Line
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "naive"))
@@ -201,3 +201,12 @@ def test_a_curve_along_which_no_chain_is_found_is_halved(monkeypatch: pytest.Mon
     assert true_distance(curve, fit, 0.0, 1.0) <= fit.deviation * (1.0 + 1e-9) <= 1e-6
     for one, other in pairwise(fit.edges):
         assert math.dist(one.end, other.start) < 1e-15
+
+
+@pytest.mark.parametrize("apart", [0.0, 1e-3])
+def test_a_curve_too_short_to_follow_is_the_line_between_its_ends_if_they_differ(apart: float) -> None:
+    points = np.array([[1.0, 2.0], [1.0 + 5e-4, 2.0 + 1e-9], [1.0 + apart, 2.0]])
+    curve = Curve(np.column_stack((points, np.ones(3)))[None], np.array([0.0, 1.0]))
+    fit = _chord(curve, 1e-9, 1e-6)
+    assert fit.deviation == 1e-9
+    assert fit.edges == ((Line(1.0, 2.0, 1.0 + apart, 2.0),) if apart else ())

@@ -84,3 +84,12 @@ def test_a_mass_is_told_where_there_is_one(desk, good):
     )
     assert "mass" not in bare
     assert told.count("mass 1 mg") == 1
+
+
+def test_what_is_carried_is_weighed_with_its_carrier_however_light(desk):
+    """A balance of 40 mg on a carriage: together 140 mg, and what turns with the carriage is its inertia and m r²."""
+    text = '[bodies.carriage]\nmass = "100 mg"\ninertia = "30 mg·cm²"\n[bodies.balance]\non = "carriage"\n'
+    text += 'position = ["5 mm", "0 mm"]\nmass = "40 mg"\ninertia = "12 mg·cm²"\n'
+    scene = load(desk.scene(text))
+    words = check_text(check_report(scene, ()), scene)
+    assert "with balance: mass 140 mg, inertia 40 mg·cm²" in words

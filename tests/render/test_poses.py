@@ -119,3 +119,11 @@ def test_bodies_are_chosen_by_name():
     for wrong in (["lver"], ["banking"], []):
         with pytest.raises(ValueError, match="wheel, lever, balance"):
             choose(run, wrong)
+
+
+def test_a_record_of_one_row_is_known_at_that_instant_and_one_of_none_nowhere():
+    full = watch_run()
+    one, none = ({name: getattr(full, name)[:count] for name in ("t", "q", "u", "a")} for count in (1, 0))
+    assert recorded(replace(full, spans=(), **one)) == ((0.0, 0.0),)
+    with pytest.raises(ValueError, match="no row"):
+        recorded(replace(full, spans=(), **none))

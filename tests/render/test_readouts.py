@@ -8,7 +8,16 @@ import numpy as np
 import pytest
 from render.fake_runs import slide_run, watch_run
 
-from watchsim.render.frame.marks.readouts import clock, decimals_for, reading, scale_bar, signed, speed_text, turn_text
+from watchsim.render.frame.marks.readouts import (
+    changing_speed_text,
+    clock,
+    decimals_for,
+    reading,
+    scale_bar,
+    signed,
+    speed_text,
+    turn_text,
+)
 from watchsim.render.frame.pose_history import poses, sampled
 
 
@@ -93,3 +102,29 @@ def test_room_for_a_slider_is_that_of_its_whole_travel():
     assert float(tell(frames[0]).split()[0]) == pytest.approx(2.0 * math.sin(0.5), abs=6e-3)
     assert [float(text.replace("−", "-").split()[0]) for text in ends] == pytest.approx([-2.0, 2.0], abs=6e-3)
     assert [text.split()[1] for text in ends] == ["mm", "mm"]
+
+
+@pytest.mark.parametrize(
+    ("speed", "text"),
+    [
+        (1.004, "true speed"),
+        (0.996, "true speed"),
+        (0.7, "0.7 × true speed"),
+        (0.5, "1/2 of true speed"),
+        (1 / 43.2, "1/43 of true speed"),
+        (1 / 432.0, "1/430 of true speed"),
+        (2.46, "2.5 × true speed"),
+    ],
+)
+def test_a_speed_that_changes_has_two_digits(speed: float, text: str) -> None:
+    assert changing_speed_text(speed) == text
+
+
+@pytest.mark.parametrize("exponent", range(-6, 1))
+@pytest.mark.parametrize("step", [1, 2, 5])
+def test_a_scale_bar_as_wide_as_its_room_fits(step: int, exponent: int) -> None:
+    """To the last digit; with a hair less room it is the next smaller one."""
+    length = step * 10.0**exponent
+    smaller = {1: 0.5, 2: 0.5, 5: 0.4}[step]
+    assert scale_bar(length)[0] == pytest.approx(length, rel=1e-12)
+    assert scale_bar(length * (1.0 - 1e-6))[0] == pytest.approx(smaller * length, rel=1e-12)

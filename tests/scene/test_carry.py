@@ -184,3 +184,16 @@ def test_check_tells_the_carrier_and_what_has_no_mass(tmp_path) -> None:
     assert report["bodies"]["balance"]["on"] == "carriage"
     assert "on carriage at (3 mm, 0 mm)" in check_text(report, scene)
     assert read(tmp_path, lock_text(scene, tmp_path)) == scene
+
+
+@pytest.mark.parametrize(("off", "refused"), [(0.0, False), (1e-13, False), (1e-6, True)])
+def test_rounding_of_the_places_is_no_lack_of_balance(tmp_path, off: float, refused: bool) -> None:
+    """Two equal weights on either side of a free carrier without outlines, one of them a little off."""
+    text = '[scene]\ntitle = "free"\n[bodies.carriage]\nmotion = "free"\nmass = "100 mg"\ninertia = "30 mg·cm²"\n'
+    for name, x in (("left", -3e-3), ("right", 3e-3 + off)):
+        text += f'[bodies.{name}]\non = "carriage"\nposition = ["{x!r} m", "0 mm"]\nmass = "40 mg"\ninertia = "12 mg·cm²"\n'
+    text += '[run]\nduration = "1 s"\n'
+    if refused:
+        assert "centre of mass moves" in faults(tmp_path, text)["bodies.carriage"]
+    else:
+        assert read(tmp_path, text).body("right").mass == pytest.approx(40e-6)

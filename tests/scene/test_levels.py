@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from itertools import combinations
 from pathlib import Path
 
 import pytest
 
+from watchsim.geometry.loop import Loop
+from watchsim.geometry.primitives import Arc, Line
 from watchsim.geometry.solids.enclosed_area import region
+from watchsim.scene.body import Body
 from watchsim.scene.file.load import load
 from watchsim.scene.layer_heights import Slab, slabs
+from watchsim.scene.scene import Scene
+from watchsim.scene.solid import PLATE, UPRIGHT, Solid, Weight
 
 ROOT = Path(__file__).resolve().parents[2]
 HEAD = '[bodies.wheel]\ncircle = "3 mm"\ninertia = "1 mg·cm²"\n'
@@ -68,3 +74,32 @@ def test_a_plate_without_a_layer_takes_that_of_its_body(tmp_path: Path) -> None:
     scene = load(path)
     (slab,) = slabs(scene, 0.2e-3)
     assert [slab.layer] == list(scene.body("wheel").layers) and slab.layer != "plate"
+
+
+@pytest.mark.parametrize(
+    ("kind", "layers", "name"), [(PLATE, ("RIM",), "RIM"), (PLATE, ("RIM", "HUB"), PLATE), (UPRIGHT, ("RIM",), UPRIGHT)]
+)
+def test_a_solid_without_a_layer_is_called_after_the_only_one_if_it_is_a_plate(
+    kind: str, layers: tuple[str, ...], name: str
+) -> None:
+    rings = tuple(Loop((Arc(0.0, 0.0, 1e-3 * k, 0.0, math.tau),), layer) for k, layer in enumerate(layers, 1))
+    solid = Solid(kind, "", Weight(1e-6, (0.0, 0.0), 1e-12), 8e3, rings[:1], 0.2e-3)
+    body = Body("balance", "pivot", inertia=1e-12, loops=rings, solids=(solid,))
+    assert slabs(Scene("one", (body,)), 0.2e-3)[0].layer == name
+
+
+@pytest.mark.parametrize(("apart", "together"), [(0.0, True), (1.0, False)])
+def test_layers_of_one_body_that_meet_lie_at_one_height(apart: float, together: bool) -> None:
+    """A wide plate covers the one layer, so that it lies higher; the other goes with it where they are side by side."""
+
+    def block(layer: str, x: float, width: float, height: float) -> Loop:
+        corners = [(x, 0.0), (x + width, 0.0), (x + width, height), (x, height)]
+        ends = corners[1:] + corners[:1]
+        return Loop(tuple(Line(*(1e-3 * c for c in (*a, *b))) for a, b in zip(corners, ends, strict=True)), layer)
+
+    wide = Body("wide", "fixed", loops=(block("PLATE", -9.0, 9.5, 5.0),))
+    two = Body("two", "pivot", inertia=1e-9, loops=(block("LEFT", 0.0, 1.0, 1.0), block("RIGHT", 1.0 + apart, 1.0, 1.0)))
+    found = {slab.layer: slab.middle for slab in slabs(Scene("beside", (wide, two)), 0.2e-3)}
+    assert found["LEFT"] > found["PLATE"] == pytest.approx(0.1e-3)
+    assert (found["RIGHT"] == found["LEFT"]) == together
+    assert together or found["RIGHT"] == found["PLATE"]

@@ -11,6 +11,7 @@ import pytest
 from shapely import LineString, distance
 from shapely import points as shapely_points
 
+from watchsim.drawing.curves.affine import Affine
 from watchsim.drawing.curves.plane_shapes import Spline
 from watchsim.drawing.curves.spline_copies import Follower, motion_between
 from watchsim.drawing.drawing import Drawing
@@ -103,3 +104,8 @@ def test_the_motion_between_points_is_found(name: str, turn: complex) -> None:
     motion, away = motion_between(z, MOTIONS[name](z), "mirrored" in name)
     assert away < 1e-14 * 10.0 and abs(motion.turn) == pytest.approx(1.0)
     assert motion_between(z, 1.01 * MOTIONS[name](z), "mirrored" in name)[1] > 5e-3
+
+
+def test_a_map_that_is_not_told_leaves_everything_where_it_is() -> None:
+    assert Affine().direction((1.0, 2.0, 3.0)) == (1.0, 2.0, 3.0)
+    assert Affine().origin == (0.0, 0.0, 0.0)

@@ -11,7 +11,9 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
+from watchsim.drawing.curves.spline_to_arcs import spline_from
 from watchsim.drawing.drawing import Drawing
+from watchsim.drawing.dxf_records import DxfError
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.polyline import polyline
 from watchsim.geometry.primitives import TURN, Arc, Line
@@ -209,3 +211,13 @@ def test_fit_points_with_tangents_start_and_end_along_them(read_bytes: Reader) -
 def test_spline_of_one_point_is_said(read_bytes: Reader) -> None:
     drawing = read_bytes(d.dxf(d.circle(0, 0, 1) + spline(3, (0, 0, 0, 0, 1, 1, 1, 1), [(2, 1)] * 4)))
     assert [finding.code for finding in drawing.findings] == ["zero-length"]
+
+
+def test_weights_of_very_unlike_size_are_refused() -> None:
+    """Up to a factor of a thousand million they are taken."""
+    points = [(0.0, 0.0, 0.0), (1.0, 1.0, 0.0), (2.0, 0.0, 0.0)]
+    knots = [0.0] * 3 + [1.0] * 3
+    assert spline_from(2, False, knots, [1.0, 0.9e9, 1.0], points, []).weights == [1.0, 0.9e9, 1.0]
+    for weights in ([1.0, 1.1e9, 1.0], [1.0, -1.0, 1.0], [0.0, 1.0, 1.0], [1.0, 1.0]):
+        with pytest.raises(DxfError, match="weights"):
+            spline_from(2, False, knots, weights, points, [])

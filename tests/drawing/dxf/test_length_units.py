@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+import dxf_text as d
 import pytest
 
 from watchsim.drawing.length_units import INSUNITS
+from watchsim.drawing.read import read
 
 # DXF reference, HEADER section, $INSUNITS; in metres from their definitions.
 REFERENCE = {
@@ -42,3 +46,13 @@ def test_every_code_has_its_length(code: int) -> None:
 
 def test_there_is_no_other() -> None:
     assert set(INSUNITS) == set(REFERENCE)
+
+
+def test_a_unit_that_cannot_be_read_is_none(tmp_path: Path) -> None:
+    """Said as an error; not taken for inches, nor for what the next file says."""
+    path = tmp_path / "damaged.dxf"
+    entities = f"0\nSECTION\n2\nENTITIES\n{d.circle(0.0, 0.0, 1.0)}0\nENDSEC\n0\nEOF\n"
+    path.write_text(d.header(4).replace("70\n4", "70\nfour") + entities)
+    drawing = read(path)
+    assert drawing.units is None
+    assert any("$INSUNITS" in finding.message for finding in drawing.findings if finding.severity == "error")

@@ -6,6 +6,7 @@ import math
 from pathlib import Path
 
 import ezdxf
+import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from made_outlines import parts
@@ -13,6 +14,7 @@ from same_outlines import compare, same_edge
 
 from watchsim.drawing.dxf.write_dxf import dxf_text
 from watchsim.drawing.read import read
+from watchsim.drawing.sheet import Sheet
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import TURN, Arc, Line
 from watchsim.geometry.solids.mass import section
@@ -82,3 +84,20 @@ def test_open_chains_stay_open(tmp_path: Path) -> None:
     chain = Loop((Line(0.0, 0.0, 1e-3, 0.0), Arc(1e-3, 1e-3, 1e-3, -math.pi / 2, 1.0)), "FACE", closed=False)
     (again,) = read_back(dxf_text((chain,)), tmp_path).open_chains
     assert all(same_edge(a, b, 1e-15) for a, b in zip(chain.edges, again.edges, strict=True))
+
+
+@pytest.mark.parametrize("sweep", [2.0, -2.0, 5.0, -5.0])
+def test_a_made_sheet_holds_arcs_of_either_sense(tmp_path: Path, sweep: float) -> None:
+    """Arcs of the format run anticlockwise only: the outline read is the one that was put in."""
+    arc = Arc(1.0, 2.0, 3.0, 0.3, sweep)
+    path = tmp_path / "sheet.dxf"
+    loop = Loop((arc, Line(*arc.end, *arc.start)), layer="part")
+    path.write_bytes(Sheet((loop,), None).dxf())
+    (drawn,) = ezdxf.readfile(path).modelspace().query("ARC")
+    assert drawn.dxf.center.isclose((1.0, 2.0, 0.0))
+    (again,) = read(path).loops
+    (turned,) = [edge for edge in again.edges if isinstance(edge, Arc)]
+    ends = np.array(sorted([arc.start, arc.end]))
+    assert np.array(sorted([turned.start, turned.end])) == pytest.approx(1e-3 * ends)
+    assert abs(turned.sweep) == pytest.approx(abs(sweep))
+    assert turned.point(0.5) == pytest.approx(tuple(1e-3 * np.array(arc.point(0.5))))

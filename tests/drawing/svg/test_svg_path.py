@@ -16,7 +16,8 @@ from hypothesis import strategies as st
 
 from watchsim.drawing.curves.plane_shapes import Conic, Shape, Spline, Straight
 from watchsim.drawing.drawing import Drawing
-from watchsim.drawing.svg.path_data import read_path
+from watchsim.drawing.svg.path_data import elliptic_arc, read_path
+from watchsim.drawing.svg.xml_elements import SvgError
 from watchsim.geometry.primitives import Arc, Line
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
@@ -264,3 +265,10 @@ def test_smooth_rows_of_cubics_share_their_arcs(count: int, size: float) -> None
         assert math.dist(a.tangent(1.0), b.tangent(0.0)) < 1e-5
     truth = svg_curve.points([("M", *p[0]), ("C", *p[1:].ravel())], 500)
     assert np.max(s.distances(truth, edges)) < 1.01e-4
+
+
+@pytest.mark.parametrize("radii", [(1.0, 1e-13), (1e-13, 1.0)])
+def test_radii_as_unlike_as_no_ellipse_is_are_refused(radii: tuple[float, float]) -> None:
+    with pytest.raises(SvgError, match="radii as different"):
+        elliptic_arc((0.0, 0.0), (1.0, 0.0), *radii, 0.0, False, True)
+    assert isinstance(elliptic_arc((0.0, 0.0), (1.0, 0.0), 1.0, 1e-3, 0.0, False, True), Conic)

@@ -131,3 +131,14 @@ def test_a_bore_shares_the_path_of_its_ring() -> None:
     text = svg_text(ring)
     assert text.count("<path") == 1 and "<circle" not in text
     assert gauss(text) == pytest.approx(3.0 * math.pi, rel=1e-3)
+
+
+def test_the_page_holds_the_drawing_and_little_more() -> None:
+    """An outline far from the origin, y up in the drawing and down on the page."""
+    points = [(3e-3, 7e-3), (9e-3, 7e-3), (9e-3, 9e-3), (3e-3, 9e-3)]
+    text = svg_text([Loop(tuple(Line(*a, *b) for a, b in zip(points, points[1:] + points[:1], strict=True)))])
+    root = ET.fromstring(text)
+    left, top, width, height = (float(word) for word in root.get("viewBox", "").split())
+    assert left < 3.0 and 9.0 < left + width < 9.0 + 6.0 and left > 3.0 - 3.0
+    assert top < -9.0 and -7.0 < top + height < -7.0 + 3.0 and top > -9.0 - 3.0
+    assert (root.get("width"), root.get("height")) == (f"{width!r}mm", f"{height!r}mm")

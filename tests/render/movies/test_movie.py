@@ -13,7 +13,7 @@ from render.fake_runs import disc_run, slide_run, watch_run
 
 from watchsim.render.frame.pose_history import poses
 from watchsim.render.frame.stage import Stage
-from watchsim.render.movies import encoder
+from watchsim.render.movies import encoder, run_movie
 from watchsim.render.movies.gif_colours import shared_palette
 from watchsim.render.movies.run_movie import frame, movie
 from watchsim.render.palette import BACKGROUND, BLUED, BRASS, INK, NIGHT, RUBY
@@ -184,3 +184,21 @@ def test_frames_lie_as_far_apart_as_speed_and_rate_say(speed, fps, window, tmp_p
     assert len(shown) == round((window[1] - window[0]) * fps / speed) + 1
     assert shown == pytest.approx([window[0] + k * speed / fps for k in range(len(shown))], rel=1e-12)
     assert iio.immeta(tmp_path / "a.mp4", plugin="FFMPEG")["fps"] == fps
+
+
+@pytest.mark.parametrize(("speed", "step"), [(0.05, 0.05 / 60.0), ("adaptive", None)])
+def test_the_clock_has_the_decimals_of_the_slowest_frames(speed, step, tmp_path, monkeypatch):
+    """At adaptive speed those that lie nearest to each other."""
+    asked, known = {}, []
+
+    def noted(times, *_, **more):
+        known.append(times)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(run_movie, "Stage", lambda *_, **more: asked.update(more))
+    monkeypatch.setattr(run_movie, "Film", lambda stage, run, plan, *_: noted(plan.times))
+    with pytest.raises(KeyboardInterrupt):
+        movie(watch_run(), tmp_path / "a.mp4", speed=speed, size=SMALL)
+    apart = np.diff(known[0])
+    assert asked["step"] == pytest.approx(step or apart.min(), rel=0.05)
+    assert step or apart.max() > 3.0 * apart.min()

@@ -102,3 +102,19 @@ def test_outlines_that_cross_stop_contacts_and_masses_only(tmp_path: Path) -> No
     assert "two outlines cross at (9.5, 0.866025) mm" in faults(tmp_path, 'layers = ["GROUND", "MARK"]\n', plate + cross)
     solid = 'layers = ["GROUND"]\n[[bodies.ground.solids]]\nlayer = "MARK"\nthickness = "1 mm"\ndensity = "1 g/cm³"\n'
     assert "two outlines cross" in faults(tmp_path, solid, plate + cross)
+
+
+@pytest.mark.parametrize(("unit", "beside", "refused"), [("mm", 1e-6, False), ("µm", 1e-6, False), ("mm", 1e-11, True)])
+def test_a_point_counts_as_on_the_chain_by_a_share_of_its_length(
+    tmp_path: Path, unit: str, beside: float, refused: bool
+) -> None:
+    """Chains of 10 mm and of 10 µm, points beside them in the same unit: less than a thousand-millionth says nothing."""
+    code = {"mm": 4, "µm": 13}[unit]
+    (tmp_path / "ground.dxf").write_bytes(d.dxf(d.line((-5, 0), (5, 0), layer="GROUND"), units=code))
+    text = HEAD + f'material = {{ GROUND = ["0 {unit}", "{beside!r} {unit}"] }}\n' + BALL + CONTACT
+    (tmp_path / "scene.toml").write_text(text, encoding="utf-8")
+    if refused:
+        with pytest.raises(SceneError, match="lies on the chain"):
+            load(tmp_path / "scene.toml")
+    else:
+        assert load(tmp_path / "scene.toml").body("ground").loops[0].edges[0].tangent(0.0) == pytest.approx((1.0, 0.0))

@@ -229,3 +229,10 @@ def test_holes_are_taken_out_of_a_plate(balance):
     body = loaded(balance, PLATE, body=BODY.replace('pivot = "PIVOT"\n', "")).body("balance")
     assert body.mass == pytest.approx(12e-6 * HEIGHT * RHO, rel=1e-12)
     assert body.inertia == pytest.approx(HEIGHT * RHO * (4e-3**4 - 2e-3**4) / 6, rel=1e-12)
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_check_says_how_many_copies_there_are(balance, count):
+    scene = loaded(balance, f'layer = "WEIGHT"\ncount = {count}\n' + PLATE, 'layer = "ROLLER"\n' + PLATE)
+    text = check_text(check_report(scene, ()), scene)
+    assert (f"WEIGHT × {count}" in text) == (count > 1)

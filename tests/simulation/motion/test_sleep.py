@@ -11,9 +11,12 @@ from reference import rolling
 from reference.block import block, stops_at
 from reference.rolling import Disc
 
+from watchsim.jit import callable_kernel
+from watchsim.mechanism.compile import compile_scene
 from watchsim.scene.body import Body
 from watchsim.scene.force import Damping, Spring, Torque
 from watchsim.scene.scene import Scene
+from watchsim.simulation.motion.sleeping import _share_terms
 from watchsim.simulation.record.trajectory import EventKind
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
@@ -148,3 +151,17 @@ def test_what_stands_still_is_woken_by_a_force_that_is_yet_to_change() -> None:
     held = simulate(scene, 4.9)
     assert np.all(held.u[-1] == 0.0)
     assert simulate(scene, 5.01).end_q[0] < held.end_q[0] - 1e-4
+
+
+def test_the_three_coordinates_of_a_free_body_share_their_rounding() -> None:
+    """The largest of the three, each seen as a force: a torque counts by the radius of gyration. Others keep theirs."""
+    bodies = (
+        Body("wheel", "pivot", (0.0, 0.0), inertia=2.0),
+        Body("one", "free", (1.0, 0.0), mass=2.0, inertia=8.0),
+        Body("slide", "slide", (0.0, 3.0), mass=1.0),
+        Body("other", "free", (5.0, 0.0), mass=1.0, inertia=0.25),
+    )
+    model = compile_scene(Scene("terms", bodies)).model
+    terms = np.array([7.0, 1.0, 3.0, 10.0, 9.0, 1.0, 2.0, 2.0])
+    callable_kernel(_share_terms)(model, terms)
+    assert terms == pytest.approx([7.0, 5.0, 5.0, 10.0, 9.0, 4.0, 4.0, 2.0])

@@ -25,7 +25,8 @@ from watchsim.scene.force import Contact, Side
 from watchsim.scene.recording import Recording
 from watchsim.scene.scene import Scene
 from watchsim.simulation.record.overlap_instants import Layers, PairOfLayers
-from watchsim.simulation.record.watched_instants import BLOCK, EARLY, chosen_moves
+from watchsim.simulation.record.overlap_watch import OverlapWatch
+from watchsim.simulation.record.watched_instants import BLOCK, EARLY, STRIDE, chosen_moves
 from watchsim.simulation.runner import Run
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
@@ -199,3 +200,16 @@ def test_open_faces_in_motion() -> None:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Run, "begin", lambda run: None)
         assert simulate(scene).stop == Stop.OVERLAP
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize("coordinate", [0, 1])
+def test_a_long_way_between_rows_counts_in_either_direction(coordinate: int, sign: float) -> None:
+    """By its own scale; at one and the same time, as at an impact, nothing lies between."""
+    watch = object.__new__(OverlapWatch)
+    watch._scale, watch._last = np.array([1.0, 0.01]), np.array([[2.0, 0.5, 0.5, 0.0, 0.0, 0.0, 0.0]])
+    for share, later, far in ((1.01, 0.1, True), (0.99, 0.1, False), (1.01, 0.0, False)):
+        row = watch._last[0].copy()
+        row[0] += later
+        row[1 + coordinate] += sign * share * STRIDE * watch._scale[coordinate]
+        assert watch._is_far(row) == far

@@ -10,8 +10,12 @@ from moving_scenes import profile
 
 from watchsim.analysis.summary import summary
 from watchsim.analysis.timing.beats import beats
+from watchsim.scene.body import Body
+from watchsim.scene.force import Spring
 from watchsim.scene.recording import EVERYTHING, Recording
+from watchsim.scene.scene import Scene
 from watchsim.simulation import runner as running
+from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.record.tally import Tally
 from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.simulation.runner import ROWS
@@ -46,6 +50,14 @@ def test_sums_are_those_of_the_beats() -> None:
         assert told["squares"] == pytest.approx(((known - known.mean()) ** 2).sum(), rel=1e-9)
     kinds = whole().events["kind"]
     assert sums["events_by_kind"]["impact"] == (kinds == 1).sum() > 1000
+    assert sums["events_by_kind"] == {kind.name.lower(): int((kinds == kind).sum()) for kind in EventKind}
+
+
+def test_an_oscillator_that_is_the_first_of_the_bodies_is_counted() -> None:
+    balance = Body("balance", "pivot", velocity=(3.0,), inertia=1e-9)
+    run = simulate(Scene("one", (balance,), springs=(Spring("balance", 1e-9 * (2.0 * np.pi) ** 2),)), 5.3)
+    assert run.sums["half_swings"] == len(beats(run)) > 5
+    assert run.sums["amplitude"]["mean"] == pytest.approx(1.5 / np.pi, rel=1e-9)
 
 
 @pytest.mark.parametrize("parts", [2, 7, 100])

@@ -1,0 +1,186 @@
+"""How far can a primitive get from where it is drawn, while the cell coordinates of two bodies change a little?
+
+The truth are dense points of the true curves at random coordinates, placed by the words of the manual (`places`), against the
+chords of the search. What is promised must hold, and must not be much more than what happens.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from dataclasses import replace
+from itertools import islice
+from unittest.mock import patch
+
+import numpy as np
+import pytest
+from carried_scenes import ARRANGEMENTS, carried_scene, places
+from pair_scenes import DEGREES, body_pose, outline, two_bodies
+from true_contacts import touches
+
+from watchsim.candidates import cell_grid
+from watchsim.candidates.broad_phase import PairSearch
+from watchsim.candidates.cell_motion import CellMotion
+from watchsim.candidates.normal_fans import Regions
+from watchsim.geometry.loop import Loop
+from watchsim.mechanism.compile import Compiled, compile_scene
+from watchsim.model.records import ARC, CORNER, FULL, LINE
+from watchsim.scene.body import Body
+from watchsim.scene.gearing import Geared
+from watchsim.scene.scene import Scene
+
+Pose = tuple[float, float, float]
+NONE = np.zeros(0, np.int64)
+PAIRS = [("pivot", "pivot"), ("pivot", "fixed"), ("slide", "slide"), ("free", "fixed"), ("fixed", "free")]
+
+
+def block(name: str) -> tuple[Loop, ...]:
+    return (outline(1.0, (0.2, 0.1)),) if name != "a" else (outline(0.35, (0.1, -0.15)),)
+
+
+@functools.cache
+def made(*given: str | bool | float) -> tuple[Scene, Compiled]:
+    """Two bodies of these motions, or what is carried in that arrangement (body a geared, so many times as
+    fast, to its carriage or to another body), with cells however few contacts there are."""
+    with patch.object(cell_grid, "FEW_CONTACTS", 0):
+        if len(given) == 2:
+            return two_bodies.__wrapped__(*given)
+        scene, compiled = carried_scene(*given[:3], block, (0.25, 0.1))
+        if len(given) == 3:
+            return scene, compiled
+        drive = Body("drive", "pivot", (9.0, 9.0), inertia=1.0)
+        bodies = [replace(one, geared=Geared(given[4], given[3])) if one.name == "a" else one for one in (*scene.bodies, drive)]
+        scene = replace(scene, bodies=tuple(bodies))
+        return scene, compile_scene(scene)
+
+
+GEARED = [
+    ("pivot", partner, False, ratio, to)
+    for partner in ("beside", "carrier", "part", "fixed")
+    for ratio, to in ((2.5, "carriage"), (-0.4, "carriage"), (-0.4, "drive"))
+]
+CASES = [one for one in (*PAIRS, *ARRANGEMENTS, *GEARED) if made(*one)[1].model.pairs[0].axes > 0]
+each_case = pytest.mark.parametrize("case", CASES, ids=lambda case: "-".join(map(str, case)))
+
+
+def poses(scene: Scene, compiled: Compiled, q: np.ndarray) -> list[Pose]:
+    """Of the bodies, in the order of the model's pair, with none of the package's candidates."""
+    pair, names = compiled.model.pairs[0], [body.name for body in scene.bodies]
+    if any(body.on for body in scene.bodies):
+        where = places(scene, compiled, q)
+        for body in scene.bodies:
+            if body.geared and body.geared.to != body.on:  # what does not carry it turns it in the movement
+                (x, y, turn), carrier = where[body.name], where[str(body.on)]
+                where[body.name] = x, y, turn - carrier[2]
+        return [where[names[b]] for b in (pair.a, pair.b)]
+    return [body_pose(scene, names[b], q) for b in (pair.a, pair.b)]
+
+
+def coordinates(compiled: Compiled, at: np.ndarray, rest: np.ndarray) -> np.ndarray:
+    """Coordinates whose cell coordinates are `at`; the others as in `rest`."""
+    q, pair = rest.copy(), compiled.model.pairs[0]
+    for i in sorted(range(pair.axes), key=lambda i: int(pair[f"on{i}"])):  # first those that are told by themselves
+        on = int(pair[f"on{i}"])
+        q[pair[f"c{i}"]] = at[i] + (q[on] if on >= 0 else 0.0)
+    return q
+
+
+def curve(row: np.record) -> np.ndarray:
+    """Dense points of a primitive, as complex numbers."""
+    start = complex(row.x, row.y)
+    if row.kind == CORNER:
+        return np.array([start])
+    if row.kind == LINE:
+        return start + np.linspace(0.0, row.length, 9) * complex(row.tx, row.ty)
+    half = math.pi if row.extent == FULL else math.atan2(row.half_sin, row.half_cos)
+    middle = math.atan2(row.side * row.ny, row.side * row.nx)
+    return start + row.radius * np.exp(1j * (middle + np.linspace(-half, half, 1281)))
+
+
+def seen(points: np.ndarray, mover: Pose, other: Pose) -> np.ndarray:
+    """Points of one body in the frame of the other."""
+    world = complex(*mover[:2]) + np.exp(1j * mover[2]) * points
+    return (world - complex(*other[:2])) * np.exp(-1j * other[2])
+
+
+def from_chords(points: np.ndarray, chain: np.ndarray) -> float:
+    """The largest distance of points from a chain of straight pieces, or from its only point."""
+    if len(chain) == 1:
+        return float(np.abs(points - chain[0]).max())
+    start, way = chain[:-1], np.diff(chain)
+    share = np.clip(((points[:, None] - start) * way.conj()).real / np.abs(way) ** 2, 0.0, 1.0)
+    return float(np.abs(points[:, None] - start - share * way).min(axis=1).max())
+
+
+def changes(axes: int, rng: np.random.Generator) -> list[np.ndarray]:
+    """How far coordinates may change: not at all, one alone, all at once."""
+    return [np.zeros(axes), *(1e-3 * np.eye(axes)), rng.uniform(1e-4, 1e-2, axes)]
+
+
+@each_case
+def test_no_point_gets_farther_than_promised_and_some_get_as_far(case: tuple[str | bool | float, ...]) -> None:
+    scene, compiled = made(*case)
+    model, rng, pair = compiled.model, np.random.default_rng(3), compiled.model.pairs[0]
+    search, n = PairSearch(model, 0, NONE), len(compiled.q)
+    mover = search._bodies[0]
+    near = model.near[pair.near_start : pair.near_stop]
+    used = np.unique([model.contacts.a[near], model.contacts.b[near]])
+    rows = model.primitives[used[model.primitives.body[used] == mover]]
+    order = [0, 1] if mover == pair.a else [1, 0]
+    for room in changes(int(pair.axes), rng):
+        at, rest = rng.uniform(-3.0, 3.0, pair.axes), rng.uniform(-3.0, 3.0, n)
+        points, distance = search._seen(at[None], room, np.arange(len(rows)))
+        chains = [part @ (1.0, 1.0j) for part in np.split(points[0], search._drawn.first[1:-1])]
+        promised, met = distance[0] - pair.clearance, np.zeros(len(rows))
+        for _ in range(6):
+            q = coordinates(compiled, at + room * rng.choice([-1.0, 1.0], len(room)), rest)
+            both = poses(scene, compiled, q)
+            one, other = (both[i] for i in order)
+            met = np.maximum(met, [from_chords(seen(curve(row), one, other), c) for row, c in zip(rows, chains, strict=True)])
+        assert np.all(met <= promised + 1e-12)
+        if np.count_nonzero(room) == 0:
+            assert met[rows.kind == ARC] == pytest.approx(promised[rows.kind == ARC], rel=1e-2)
+            assert np.all(promised[rows.kind == ARC] > 0.0)
+        elif np.count_nonzero(room) == 1:
+            corners = rows.kind == CORNER
+            assert met[corners] == pytest.approx(promised[corners], rel=2e-3, abs=1e-12)
+
+
+@each_case
+def test_bodies_are_where_they_are_and_move_as_far_as_they_may(case: tuple[str | bool | float, ...]) -> None:
+    """One body as seen from the other, and for each coordinate alone how far origins move and by how much bodies turn."""
+    scene, compiled = made(*case)
+    pair, rng = compiled.model.pairs[0], np.random.default_rng(5)
+    motion, bodies = CellMotion(compiled.model.bodies, pair), (int(pair.a), int(pair.b))
+    for room in changes(int(pair.axes), rng)[1:-1]:
+        at, rest = rng.uniform(-3.0, 3.0, pair.axes), rng.uniform(-3.0, 3.0, len(compiled.q))
+        here, there = ([tuple(float(v[0]) for v in motion.pose(b, x[None])) for b in bodies] for x in (at, at + room))
+        a, b = poses(scene, compiled, coordinates(compiled, at, rest))
+        grid = np.array([0.3 + 0.1j, -0.7j])
+        assert seen(grid, *here) == pytest.approx(seen(grid, a, b), abs=1e-13)
+        for body, old, new in zip(bodies, here, there, strict=True):
+            shift, turn = motion.freedom(body, room)
+            assert (shift, turn) == pytest.approx((math.dist(old[:2], new[:2]), abs(new[2] - old[2])), rel=1e-3, abs=1e-15)
+
+
+@pytest.mark.parametrize("case", [one for one in CASES if one[-1] != "drive"], ids=lambda case: "-".join(map(str, case)))
+def test_no_contact_that_touches_within_reach_is_taken_for_impossible(case: tuple[str | bool | float, ...]) -> None:
+    """From a pose where it touches the cell coordinates are changed a little or a lot, and may change by so much."""
+    scene, compiled = made(*case)
+    model, pair, rng = compiled.model, compiled.model.pairs[0], np.random.default_rng(8)
+    regions, met = Regions(model, 0), 0
+    starts = (rng.uniform(-1.0, 1.0, len(compiled.q)) for _ in range(8))
+    for k, q in islice(touches(scene, compiled, rng, starts), 6):
+        there = [q[pair[f"c{i}"]] - (q[pair[f"on{i}"]] if pair[f"on{i}"] >= 0 else 0.0) for i in range(pair.axes)]
+        for size in (1e-3, 0.03, 0.3, 1.0):
+            room = size * rng.uniform(0.1, 1.0, len(there))
+            at = np.array(there) + room * rng.choice([-1.0, 1.0], len(there))
+            assert regions.possible(np.zeros(1, int), np.array([k - pair.start]), at[None], room).all()
+        met += 1
+    assert met > 0 or case != ("free", "fixed")
+
+
+def test_every_motion_is_among_the_cases() -> None:
+    assert {motion for pair in PAIRS for motion in pair} == set(DEGREES)
+    assert set(PAIRS) < set(CASES) and len(CASES) >= len(PAIRS) + 5
+    assert {one[1] for one in CASES if len(one) == 5} >= {"carrier", "part"}

@@ -1,0 +1,104 @@
+"""Which answers do alike parts and alike pairs of bodies share, and which bodies need no cells?"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from pair_scenes import outline
+
+from watchsim.candidates.asymmetric_contacts import LooseContacts
+from watchsim.candidates.broad_phase import PairSearch
+from watchsim.candidates.chords import chords
+from watchsim.candidates.equivalent_contacts import _numbers_later
+from watchsim.candidates.pair_cache import forget, known_cells
+from watchsim.mechanism.compile import compile_scene
+from watchsim.model.records import Model
+from watchsim.scene.body import Body
+from watchsim.scene.force import Contact, Side
+from watchsim.scene.scene import Scene
+
+NONE = np.zeros(0, np.int64)
+
+
+def model_of(*bodies: Body, meet: tuple[tuple[str, str], ...]) -> Model:
+    contacts = tuple(Contact((Side(one), Side(other))) for one, other in meet)
+    return compile_scene(Scene("shared", bodies, contacts=contacts)).model
+
+
+def wheel(name: str, x: float, **more: object) -> Body:
+    return Body(name, "pivot", (x, 0.0), 0.0, inertia=1.0, loops=(outline(1.0, (0.2, 0.1)),), **more)
+
+
+def test_the_same_two_bodies_behind_others_share_what_is_known() -> None:
+    """Numbers are counted from the pair's own; another place of one of them is another pair."""
+    forget()
+    a, b = wheel("a", 0.0), wheel("b", 0.6)
+    alone = model_of(a, b, meet=(("a", "b"),))
+    behind = model_of(wheel("c", 0.0), a, b, meet=(("a", "b"),))
+    other = model_of(a, replace(b, position=(0.61, 0.0)), meet=(("a", "b"),))
+    known = known_cells(alone, 0, NONE)
+    assert int(behind.pairs[0].a) == 1 and known_cells(behind, 0, NONE) is known
+    assert known_cells(other, 0, NONE) is not known
+    forget()
+    assert known_cells(alone, 0, NONE) is not known
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_contacts_are_renumbered_as_a_list_would(seed: int) -> None:
+    """Also the last ones, which may not be declared; several groups of the same primitives."""
+    rng = np.random.default_rng(seed)
+    every = [(a, b, group) for a in range(7) for b in range(7, 12) for group in range(2)]
+    some = sorted(every[i] for i in rng.choice(len(every), 45, replace=False))
+    part = np.rec.fromrecords(some, dtype=[("a", "i8"), ("b", "i8"), ("group", "i8")])
+    before = np.concatenate([np.roll(np.arange(7), int(rng.integers(1, 7))), np.arange(7, 12)])
+    number, declared = _numbers_later(part, before)
+    for (a, b, group), place, is_there in zip(some, number.tolist(), declared.tolist(), strict=True):
+        wanted = (int(before[a]), int(before[b]), group)
+        assert is_there == (wanted in some)
+        assert not is_there or some[place] == wanted
+    assert 0 < np.count_nonzero(declared) < len(some)
+
+
+@pytest.mark.parametrize("carried", [False, True])
+def test_only_bodies_that_nothing_carries_are_told_apart_by_their_origins(carried: bool) -> None:
+    """A carrier that is the first body of all counts, too: the place of what it carries is no coordinate."""
+    free = Body("free", "free", (2.0, 0.0), mass=1.0, inertia=1.0, loops=(outline(0.5, (0.1, -0.1)),))
+    arm = Body("arm", "slide", (0.0, 0.0), axis=(1.0, 0.0), mass=1.0)
+    block = Body("block", "fixed", (0.1, 0.0), loops=(outline(1.0, (0.2, 0.1)),), on="arm" if carried else None)
+    pair = model_of(arm, block, free, meet=(("block", "free"),)).pairs[0]
+    assert (pair.reach > 0.0) == (not carried and pair.axes > 0)
+    assert carried or pair.axes > 0
+
+
+@pytest.mark.parametrize("coarse", [0.02, 0.1])
+def test_arcs_that_turn_reach_as_far_as_their_true_curves(coarse: float) -> None:
+    """Of contacts with a primitive that is anywhere on its ring: the farthest point from the origin, plus at most two sags."""
+    model = model_of(wheel("a", 0.0), wheel("b", 0.6), meet=(("a", "b"),))
+    model = model._replace(pairs=model.pairs.copy())
+    model.pairs.clearance = coarse
+    pair, rows = model.pairs[0], model.primitives
+    a, b = model.contacts.a, model.contacts.b
+    ids = np.flatnonzero(rows.body[a] == pair.a)
+    loose = LooseContacts(model, 0, ids, a[ids], b[ids])
+    partners = rows[np.unique(b[ids])]
+    fine = chords(partners, 1e-7, 4000)
+    true = [float(np.hypot(*points.T).max()) for points in np.split(fine.points, fine.first[1:-1])]
+    assert np.all(loose._reach >= np.array(true) - 1e-12) and loose._drawn.sag.max() > 0.1 * coarse
+    assert np.all(loose._reach <= np.array(true) + 2.0 * loose._drawn.sag + 1e-12)
+
+
+@pytest.mark.parametrize("motions", [("pivot", "pivot"), ("free", "fixed")])
+def test_candidates_are_the_same_in_any_unit_of_length(motions: tuple[str, str]) -> None:
+    """A power of two smaller: to the bit the same picture, a thousandth in size."""
+    lists = []
+    for unit in (1.0, 2.0**-10):
+        bodies = [
+            Body(name, motion, (x * unit, 0.0), mass=1.0, inertia=1.0, loops=(outline(unit, (0.2 * unit, 0.1 * unit)),))
+            for name, motion, x in zip("ab", motions, (0.0, 0.6), strict=True)
+        ]
+        model = model_of(*bodies, meet=(("a", "b"),))
+        cells = np.random.default_rng(3).integers(-9, 9, (30, int(model.pairs[0].axes)))
+        lists.append([part.tolist() for part in PairSearch(model, 0, NONE).candidates(cells)])
+    assert lists[0] == lists[1] and lists[0][1]
