@@ -24,6 +24,7 @@ from watchsim.simulation.events.handover import hand_over
 from watchsim.simulation.events.immovable import drop_immovable
 from watchsim.simulation.events.jammed_contacts import hold_gaps, slides, stop_rounding
 from watchsim.simulation.events.mode_decision import decide
+from watchsim.simulation.events.parallel_contacts import drop_later
 from watchsim.simulation.events.released_contacts import let_go
 from watchsim.simulation.events.zero_rates import contradicts, note_pace, set_rate_zeros
 from watchsim.simulation.loop_state.state import NO_CONTACT
@@ -100,6 +101,7 @@ def _settle_island(model, state, island, span, options, scratch, record):
     fill_inverse(model, state.grip, work.inverse)
     m = place_contacts(model, event.listed, span[0], span[1], event.pose, closed)
     m = drop_immovable(model, state, m, event, record)
+    m = drop_later(model, state, m, options, work, event)
     note_pace(state.u, event.pace)
     deepest = project_positions(closed, m, False, options.behind, work, state.q)
     if deepest > 0.0:
