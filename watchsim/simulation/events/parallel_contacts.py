@@ -49,11 +49,11 @@ def _may_wait(state, closed, i, least):
 
 @kernel
 def _is_behind(m, i, least, work):
-    """True if what closes the gap of one of the m rows, given in `work.rhs`, leaves row i, which it moves alike, open by more."""
+    """True if closing a row that moves the bodies alike leaves row i open by more than `least`; gaps (m) are in `work.rhs`."""
     own = work.G[2 * i, 2 * i]
     for j in range(m):
         both, other = work.G[2 * i, 2 * j], work.G[2 * j, 2 * j]
-        if j != i and both > 0.0 and both * both >= (1.0 - DEPENDENT_IN_STEPS) * own * other:
-            if work.rhs[i] - work.rhs[j] * math.sqrt(own / other) > least:
-                return True
+        is_parallel = j != i and both > 0.0 and both * both >= (1.0 - DEPENDENT_IN_STEPS) * own * other
+        if is_parallel and work.rhs[i] - work.rhs[j] * math.sqrt(own / other) > least:
+            return True
     return False
