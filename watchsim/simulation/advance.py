@@ -22,6 +22,7 @@ from watchsim.simulation.loop_state.buffers import RecordRef
 from watchsim.simulation.loop_state.scratch import MONITORS, RECENT, scratch_by_reference
 from watchsim.simulation.loop_state.state import StateRef
 from watchsim.simulation.motion.contact_mode_end import NONE_FIRED, first_leave, first_turn
+from watchsim.simulation.motion.first_steps import begin_mode, note_first_step
 from watchsim.simulation.motion.free_flight import (
     FLIGHT_PHASE,
     add_flight_sums,
@@ -67,7 +68,7 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
     """One smooth step up to its first event; returns (Stop code, event?)."""
     left = end_time - state.clock.time
     flying, spacing, code = can_fly(model, state), math.inf, NONE_FIRED
-    proposed = state.clock.step
+    proposed, allowed = state.clock.step, 0.0
     if flying:
         length, spacing = flight_length(model, state, options)
         begin_flight(model, state, min(length, left), scratch.step)
@@ -78,7 +79,7 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
         leave = first_turn(model, state)
     else:
         longest = min(left, options.max_step, next_knot(model, state.clock.time) - state.clock.time)
-        made, smallest = coupled_step(model, state, options, longest, scratch)
+        made, smallest, allowed = coupled_step(model, state, options, longest, scratch)
         if not made:
             return Stop.STEP_TOO_SMALL, False
         leave, code = first_leave(model, state, options, smallest, scratch)
@@ -100,6 +101,7 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
             return Stop.UNEXPLAINED, False
         if end < min(length, touch, leave):
             state.clock.time = step.span.start + end
+        note_first_step(state, allowed)
         keep_inner_rows(model, options, end, scratch.step, record)
         keep_row(state, record, state.clock.time, state.q, state.u, state.a)
     keep_passages(model, state, step, end, record)
@@ -162,6 +164,7 @@ def _settle(model, cells, state, options, scratch, record):
         forget_decisions(state)
     elif touched < 0 and not decide_once(state):
         return Stop.TOO_MANY_EVENTS
+    begin_mode(model, state)
     state.now.events += 1
     state.counts.instants += 1
     keep_passages(model, state, scratch.step, 0.0, record)
