@@ -15,6 +15,7 @@ from watchsim.jit import entry, kernel
 from watchsim.model.records import CellsRef, ModelRef
 from watchsim.simulation.accepted_step import accept_coupled
 from watchsim.simulation.events.after_event import settle
+from watchsim.simulation.events.first_steps import begin_mode, note_first_step
 from watchsim.simulation.events.impulse_check import is_explained, kinetic_energy
 from watchsim.simulation.events.mode_recurrence import begin_instant, decide_once, forget_decisions
 from watchsim.simulation.first_closing.time_of_impact import first_touch
@@ -22,7 +23,6 @@ from watchsim.simulation.loop_state.buffers import RecordRef
 from watchsim.simulation.loop_state.scratch import MONITORS, RECENT, scratch_by_reference
 from watchsim.simulation.loop_state.state import StateRef
 from watchsim.simulation.motion.contact_mode_end import NONE_FIRED, first_leave, first_turn
-from watchsim.simulation.motion.first_steps import begin_mode, note_first_step
 from watchsim.simulation.motion.free_flight import (
     FLIGHT_PHASE,
     add_flight_sums,

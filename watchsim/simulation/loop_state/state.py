@@ -88,7 +88,7 @@ COUNT_NAMES = (
 
 
 class FirstSteps:
-    """The lengths that first steps in a mode were allowed, see motion/first_steps.py; key 0: no mode, length 0: not known."""
+    """The lengths that first steps in a mode were allowed, see events/first_steps.py; key 0: no mode, length 0: not known."""
 
     begun: int  # place of the mode that has just begun
     before: int  # number of that mode, or of the last one before a flight

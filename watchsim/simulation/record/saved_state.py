@@ -19,6 +19,7 @@ from watchsim.mechanism.compile import Compiled
 
 TALLIED = ("kinds", "beats", "moments", "last", "carried")
 ASKED = ("method", "step", "tolerance")
+LATER = ("first",)  # arrays that older versions do not save: nothing is remembered there
 
 
 @dataclass(frozen=True)
@@ -85,12 +86,13 @@ class SavedState:
 
     def restore(self, arrays: Mapping[str, NDArray[Any]]) -> None:
         """Write the state into `arrays`; ValueError where another version of the package has saved it."""
-        shapes = {name: array.shape for name, array in self.arrays.items()}
+        own = {**{name: np.zeros_like(arrays[name]) for name in LATER if name in arrays}, **self.arrays}
+        shapes = {name: array.shape for name, array in own.items()}
         row = self.recorded.get("row", np.zeros(0)).shape in ((0,), (1 + 3 * len(arrays["q"]),))
         if shapes != {name: array.shape for name, array in arrays.items()} or not row:
             raise ValueError("the saved state was written by another version of watchsim; begin anew")
         for name, array in arrays.items():
-            array[...] = self.arrays[name]
+            array[...] = own[name]
 
 
 def save_state(

@@ -1,6 +1,6 @@
 """How long is the first step in a mode?
 
-The step before was made under other forces: tried with its length, two of three first steps of a lever are rejected. But a mechanism
+The step before was made under other forces: tried with its length, three of ten steps of a lever are rejected. But a mechanism
 meets its modes again at every beat. So the length that the errors of a first step allowed is remembered, and tried when the
 same mode follows on the same one; whether the step is good is judged as that of any other.
 """
