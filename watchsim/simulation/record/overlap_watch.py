@@ -39,7 +39,7 @@ FOUND = np.dtype([(name, "f8") for name in ("rows", "looks", "depth", "time", "x
 def warm_up() -> None:
     """Load or compile the kernels that look for overlaps."""
     none = np.zeros(0, np.int64)
-    longest_moves(np.zeros((0, 1)), 0, 0, none, none)
+    longest_moves(np.zeros((0, 1)), 0, 0, none, np.zeros(0), none)
     sieve(
         records(PAIR, 0),
         records(STRETCH, 0),

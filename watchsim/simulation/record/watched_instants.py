@@ -34,15 +34,14 @@ class Instants(NamedTuple):
 
 
 @entry
-def longest_moves(rows, start, stop, columns, out_row):
-    """For each of some columns the row in start … stop - 1 from which it is furthest to the next one."""
-    for i in range(len(columns)):
-        k, longest, place = columns[i], 0.0, start
-        for row in range(start, stop):
-            way = abs(rows[row + 1, k] - rows[row, k])
-            if way > longest:
-                longest, place = way, row
-        out_row[i] = place
+def longest_moves(rows, start, stop, columns, out_way, out_row):
+    """For each of some columns the row in start … stop - 1 from which it is furthest to the next one, and how far."""
+    out_way[:], out_row[:] = 0.0, start
+    for row in range(start, stop):  # once through the rows: they come from memory
+        for i in range(len(columns)):
+            way = abs(rows[row + 1, columns[i]] - rows[row, columns[i]])
+            if way > out_way[i]:
+                out_way[i], out_row[i] = way, row
 
 
 def chosen_moves(rows: Array, n: int, first: int) -> NDArray[np.int64]:
@@ -58,10 +57,10 @@ def chosen_moves(rows: Array, n: int, first: int) -> NDArray[np.int64]:
             continue
         columns = np.arange(1, 1 + n) if n <= FEW else 1 + (number // EVERY * FEW + np.arange(FEW)) % n
         longest = np.zeros(len(columns), np.int64)
-        longest_moves(rows, start, min(start + BLOCK, len(rows) - 1), columns, longest)
+        longest_moves(rows, start, min(start + BLOCK, len(rows) - 1), columns, np.zeros(len(columns)), longest)
         chosen += longest.tolist()
     chosen += [number - first for number in EARLY if 0 <= number - first < len(rows) - 1]
-    places = np.unique(np.array(chosen, np.int64))
+    places = np.array(sorted(set(chosen)), np.int64)
     return places[rows[places + 1, 0] > rows[places, 0]]
 
 
