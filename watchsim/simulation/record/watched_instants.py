@@ -59,7 +59,7 @@ def chosen_moves(rows: Array, n: int, first: int) -> NDArray[np.int64]:
         longest = np.zeros(len(columns), np.int64)
         longest_moves(rows, start, min(start + BLOCK, len(rows) - 1), columns, np.zeros(len(columns)), longest)
         chosen += longest.tolist()
-    chosen += [number - first for number in EARLY if 0 <= number - first < len(rows) - 1]
+    chosen += [number - first for number in EARLY if first <= number < first + len(rows) - 1]
     places = np.array(sorted(set(chosen)), np.int64)
     return places[rows[places + 1, 0] > rows[places, 0]]
 
@@ -70,11 +70,12 @@ def instants_within(before: Array, after: Array, scale: Array, stepped: bool) ->
     `scale`: for each coordinate what moves a point by the scene's size: 1 rad, or that size (m).
     """
     n = len(scale)
-    if stepped:
+    if stepped or not len(before):
         return Instants(after[:, 0], after[:, 1 : 1 + n], np.arange(len(after) + 1))
     way = np.abs(after[:, 1 : 1 + n] - before[:, 1 : 1 + n]) / scale
-    steps = np.clip(np.ceil(way.max(axis=1, initial=0.0) / STRIDE), 1, MOST_STEPS).astype(np.int64)
-    ends = np.append(0, np.cumsum(steps))
+    steps = np.minimum(np.maximum(np.ceil(way.max(axis=1) / STRIDE), 1), MOST_STEPS).astype(np.int64)
+    ends = np.zeros(len(steps) + 1, np.int64)
+    np.cumsum(steps, out=ends[1:])
     move = np.repeat(np.arange(len(steps)), steps)
     share = ((np.arange(len(move)) - ends[move] + 1.0) / (steps[move] + 1.0))[:, None]
     first, last = before[move], after[move]
