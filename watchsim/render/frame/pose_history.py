@@ -112,9 +112,7 @@ def swept(run: Trajectory, body: Body, window: Window) -> Array:
     return np.column_stack((np.tile(body.position, (len(angles), 1)), angles))
 
 
-def dense(
-    run: Trajectory, window: Window, least: int = 2000, accelerations: bool = True
-) -> tuple[Array, Array, Array, Array]:
+def dense(run: Trajectory, window: Window, least: int = 2000, accelerations: bool = True) -> tuple[Array, Array, Array, Array]:
     """t (m,), q, u and a (m, n) over the window: every row that a picture shows, and points between rows far apart.
 
     Without `accelerations` there are none of them, (0, n): to gather them takes as long as any of the others.
