@@ -44,6 +44,7 @@ def taken(array: NDArray[np.float64], rows: NDArray[np.intp]) -> Array:
     """These rows of an array that may lie in a file."""
     parts = []
     for (part,) in blocks(rows, length=AT_ONCE):
-        parts.append(array[part])
+        first, last = part[0], part[-1]
+        parts.append(array[first : last + 1] if last - first == len(part) - 1 else array[part])  # they rise
         let_go(array)
     return np.concatenate(parts) if parts else array[:0]

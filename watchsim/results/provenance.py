@@ -7,6 +7,7 @@ and digests of the drawings. It loads again to an equal scene.
 from __future__ import annotations
 
 import copy
+import functools
 import os
 import platform
 from collections.abc import Mapping
@@ -55,6 +56,12 @@ def _undrawn(entry: dict[str, Any], made: frozenset[str]) -> dict[str, Any]:
 
 def versions() -> dict[str, str]:
     """Python and the packages that decide the numbers, as far as they are installed."""
+    return dict(_installed())
+
+
+@functools.cache
+def _installed() -> Mapping[str, str]:
+    """Looked up once: it means reading what every package says of itself."""
     found = {"python": platform.python_version()}
     for package in PACKAGES:
         try:

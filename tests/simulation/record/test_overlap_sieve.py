@@ -112,6 +112,8 @@ def test_stretches_cover_their_outlines() -> None:
 
 def test_the_longest_moves_are_those_of_numpy() -> None:
     rows = np.random.default_rng(1).normal(size=(500, 7))
-    found = np.zeros(3, np.int64)
-    longest_moves(rows, 100, 400, np.array([1, 3, 6]), found)
-    assert found.tolist() == [100 + int(np.argmax(np.abs(np.diff(rows[100:401, k])))) for k in (1, 3, 6)]
+    ways, found = np.full(3, np.inf), np.zeros(3, np.int64)
+    longest_moves(rows, 100, 400, np.array([1, 3, 6]), ways, found)
+    expected = np.abs(np.diff(rows[100:401, [1, 3, 6]], axis=0))
+    assert found.tolist() == (100 + expected.argmax(axis=0)).tolist()
+    assert ways.tolist() == expected.max(axis=0).tolist()

@@ -56,7 +56,8 @@ def flows(run: Trajectory, compiled: Compiled, rows: slice = slice(None)) -> Flo
     c = model.coordinates
     way = q - np.asarray(c.rest)
     own = 0.5 * (np.asarray(c.mass) * u**2 + np.asarray(c.stiffness) * way**2)
-    own -= np.asarray(c.weight_y) * np.sin(q) + np.asarray(c.weight_x) * np.cos(q)  # what the weight of a turning body has done
+    hung = np.flatnonzero((c.weight_x != 0.0) | (c.weight_y != 0.0))  # what the weight of turning bodies has done
+    own[:, hung] -= np.asarray(c.weight_y)[hung] * np.sin(q[:, hung]) + np.asarray(c.weight_x)[hung] * np.cos(q[:, hung])
     own[:, np.asarray(c.driven) != 0] = 0.0  # a prescribed motion holds no energy that counts
     stored = own.sum(axis=1)
     for joint in model.joints:

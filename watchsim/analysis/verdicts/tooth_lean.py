@@ -7,6 +7,7 @@ each radius the middle of a tooth is the phase of ∫ exp(i Z φ) dφ over its m
 from __future__ import annotations
 
 import cmath
+import functools
 import math
 from dataclasses import dataclass
 
@@ -58,6 +59,7 @@ def teeth(scene: Scene, wheel: str) -> Teeth | None:
     return Teeth(whole, cmath.phase(outer / inner) * whole / math.tau, cmath.phase(outer) * whole / math.tau)
 
 
+@functools.lru_cache(maxsize=64)
 def _points(loop: Loop) -> np.ndarray:
     """Complex points along the outline, closed."""
     ends = [complex(*edge.point(i / PIECES)) for edge in loop.edges for i in range(PIECES)]

@@ -117,7 +117,7 @@ class Kinematics:
     def show(self, window: Sequence[float] | None = None) -> Figure:
         """The figure, now of this window (s); default all that was recorded."""
         span = stretch(self.run, window)
-        t, *motion = dense(self.run, span)
+        t, *motion = dense(self.run, span, accelerations=QUANTITIES[2] in self._quantities)
         told = clock(span)
         x = (t - told.base) * told.factor
         phases = passing(self.run, span)

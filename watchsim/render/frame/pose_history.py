@@ -112,9 +112,10 @@ def swept(run: Trajectory, body: Body, window: Window) -> Array:
     return np.column_stack((np.tile(body.position, (len(angles), 1)), angles))
 
 
-def dense(run: Trajectory, window: Window, least: int = 2000) -> tuple[Array, Array, Array, Array]:
+def dense(run: Trajectory, window: Window, least: int = 2000, accelerations: bool = True) -> tuple[Array, Array, Array, Array]:
     """t (m,), q, u and a (m, n) over the window: every row that a picture shows, and points between rows far apart.
 
+    Without `accelerations` there are none of them, (0, n): to gather them takes as long as any of the others.
     At an impact both rows of that instant are kept, so that a jump stays a jump. Stretches that were not recorded are NaN.
     """
     start, stop = window
@@ -127,14 +128,12 @@ def dense(run: Trajectory, window: Window, least: int = 2000) -> tuple[Array, Ar
     rank = np.arange(len(left)) - np.repeat(np.cumsum(extra) - extra, extra) + 1
     between = times[left] + gaps[left] * rank / (extra[left] + 1)
     added = np.concatenate(([start], between, [stop]))
-    between_rows = (*run.sample(added), run.acceleration(added))
-    t = np.concatenate((at_rows, added))
-    order = np.argsort(t, kind="stable")
-    t = t[order]
-    rows = (taken(run.q, inside), taken(run.u, inside), taken(run.a, inside))
-    q, u, a = (np.concatenate(parts)[order] for parts in zip(rows, between_rows, strict=True))
+    place = np.searchsorted(at_rows, added, side="right")
+    t = np.insert(at_rows, place, added)
+    q, u = (np.insert(taken(rows, inside), place, new, 0) for rows, new in zip((run.q, run.u), run.sample(added), strict=True))
+    a = np.insert(taken(run.a, inside), place, run.acceleration(added), 0) if accelerations else run.a[:0]
     spans = recorded(run)
     if len(spans) > 1:
         known = np.any([(t >= low) & (t <= high) for low, high in spans], axis=0)[:, None]
-        q, u, a = (np.where(known, values, np.nan) for values in (q, u, a))
+        q, u, a = (np.where(known, values, np.nan) if len(values) else values for values in (q, u, a))
     return t, q, u, a

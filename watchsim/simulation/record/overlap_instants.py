@@ -123,7 +123,8 @@ class Layers:
         for row, pair in zip(rows, self.pairs, strict=True):
             row.still, row.mover = (self.bodies.index(body) for body in pair.bodies)
             (row.still_x, row.still_y), (row.mover_x, row.mover_y) = pair.still.centre, pair.mover.centre
-            row.reach, row.swallows, row.open = pair.still.radius + pair.mover.radius, pair.swallows, pair.has_faces
+            row.still_radius, row.mover_radius = pair.still.radius, pair.mover.radius
+            row.swallows, row.open = pair.swallows, pair.has_faces
             for name, (some, joined) in (("still", stretches_of(pair.still, depth)), ("mover", stretches_of(pair.mover, 0.0))):
                 first, before = sum(len(part) for part in stretches), sum(len(part) for part in points)
                 row[f"{name}_first"], row[f"{name}_stop"] = first, first + len(some)

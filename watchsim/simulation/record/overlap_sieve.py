@@ -33,7 +33,8 @@ PAIR = np.dtype(
         ("still_y", "f8"),
         ("mover_x", "f8"),
         ("mover_y", "f8"),
-        ("reach", "f8"),  # m, sum of their radii
+        ("still_radius", "f8"),
+        ("mover_radius", "f8"),
         ("still_first", "i8"),  # stretches of the shrunk outline
         ("still_stop", "i8"),
         ("mover_first", "i8"),  # stretches of the other one
@@ -83,7 +84,7 @@ def _is_left(pair, stretches, points, frame, margin, room):
     """True if the pair does not pass where the mover's `frame` (x, y, cosine, sine) stands so."""
     x, y, c, s = frame
     mx, my = _moved(pair.mover_x, pair.mover_y, frame)
-    if math.hypot(mx - pair.still_x, my - pair.still_y) > pair.reach + margin:
+    if math.hypot(mx - pair.still_x, my - pair.still_y) > pair.still_radius + pair.mover_radius + margin:
         return False
     if pair.open == 1:
         return True
@@ -93,21 +94,31 @@ def _is_left(pair, stretches, points, frame, margin, room):
     for m in range(pair.mover_first, pair.mover_stop):
         if stretches[m].begins == 1:
             px, py = _moved(points[stretches[m].first, 0], points[stretches[m].first, 1], frame)
-            if _winding(px, py, pair.still_first, pair.still_stop, stretches, points) != 0:
+            near = _is_within(px - pair.still_x, py - pair.still_y, pair.still_radius)
+            if near and _winding(px, py, pair.still_first, pair.still_stop, stretches, points) != 0:
                 return True
     if pair.swallows == 1:
         for m in range(pair.still_first, pair.still_stop):
             if stretches[m].begins == 1:
                 px, py = _turned(points[stretches[m].first, 0] - x, points[stretches[m].first, 1] - y, c, -s)
-                if _winding(px, py, pair.mover_first, pair.mover_stop, stretches, points) != 0:
+                near = _is_within(px - pair.mover_x, py - pair.mover_y, pair.mover_radius)
+                if near and _winding(px, py, pair.mover_first, pair.mover_stop, stretches, points) != 0:
                     return True
     return False
+
+
+@kernel
+def _is_within(x, y, radius):
+    """True for a way x, y no longer than a radius."""
+    return x * x + y * y <= radius * radius
 
 
 @kernel
 def _comes_near(moved, pair, stretches, points, frame, margin, room):
     """Does a stretch of the mover come within `margin` of the other outline?"""
     mx, my = _moved(moved.x, moved.y, frame)
+    if not _is_within(mx - pair.still_x, my - pair.still_y, pair.still_radius + moved.radius + margin):
+        return False  # as most of a large mover
     is_placed = False
     for k in range(pair.still_first, pair.still_stop):
         other = stretches[k]

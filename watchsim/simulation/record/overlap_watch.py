@@ -39,7 +39,7 @@ FOUND = np.dtype([(name, "f8") for name in ("rows", "looks", "depth", "time", "x
 def warm_up() -> None:
     """Load or compile the kernels that look for overlaps."""
     none = np.zeros(0, np.int64)
-    longest_moves(np.zeros((0, 1)), 0, 0, none, none)
+    longest_moves(np.zeros((0, 1)), 0, 0, none, np.zeros(0), none)
     sieve(
         records(PAIR, 0),
         records(STRETCH, 0),
@@ -133,9 +133,9 @@ class OverlapWatch:
             return
         n = len(self._scale)
         none = np.zeros((0, 1 + 3 * n))
-        before, after = (np.concatenate([none, *rows]) for rows in zip(*waiting, strict=True)) if waiting else (none, none)
+        before, after = map(np.concatenate, zip(*waiting, strict=True)) if waiting else (none, none)
         within = instants_within(before, after, self._scale, self._stepped > 0.0)
-        times = np.append(within.times, [t for t, _ in states])
+        times = np.concatenate((within.times, [t for t, _ in states]))
         q = np.concatenate([within.q, *(at[None] for _, at in states)])
         # Where rows are seen, there is no state but that at the end; elsewhere there are no moves.
         due = [(int(within.ends[moves]) + count, numbers) for moves, count, numbers in owed]
@@ -148,7 +148,7 @@ class OverlapWatch:
         looks, done = int(self.found.looks), 0
         while done <= len(times):
             hits = layers.overlapping(where[:, done:], self._bar)
-            at = done + int(np.argmax(np.append(hits.any(axis=0), True)))
+            at = done + (int(hits.any(axis=0).argmax()) if hits.any() else hits.shape[1])
             for count, numbers in owed:
                 if done <= count <= at:
                     self.found.looks = looks + count

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from watchsim.mechanism.compile import Compiled
 
 TALLIED = ("kinds", "beats", "moments", "last", "carried")
-LATER = ("returning", "returned")  # not in states of earlier versions: they begin blank
+LATER = ("returning", "returned", "first")  # not in states of earlier versions: they begin blank
 ASKED = ("method", "step", "tolerance")
 
 
@@ -86,13 +86,13 @@ class SavedState:
 
     def restore(self, arrays: Mapping[str, NDArray[Any]]) -> None:
         """Write the state into `arrays`; ValueError where another version of the package has saved it."""
-        shapes = {name: array.shape for name, array in self.arrays.items()}
+        own = {**{name: np.zeros_like(arrays[name]) for name in LATER if name in arrays}, **self.arrays}
+        shapes = {name: array.shape for name, array in own.items()}
         row = self.recorded.get("row", np.zeros(0)).shape in ((0,), (1 + 3 * len(arrays["q"]),))
-        known = {name: array.shape for name, array in arrays.items() if name in self.arrays or name not in LATER}
-        if shapes != known or not row:
+        if shapes != {name: array.shape for name, array in arrays.items()} or not row:
             raise ValueError("the saved state was written by another version of watchsim; begin anew")
-        for name in shapes:
-            arrays[name][...] = self.arrays[name]
+        for name, array in arrays.items():
+            array[...] = own[name]
 
 
 def save_state(

@@ -34,15 +34,14 @@ class Instants(NamedTuple):
 
 
 @entry
-def longest_moves(rows, start, stop, columns, out_row):
-    """For each of some columns the row in start … stop - 1 from which it is furthest to the next one."""
-    for i in range(len(columns)):
-        k, longest, place = columns[i], 0.0, start
-        for row in range(start, stop):
-            way = abs(rows[row + 1, k] - rows[row, k])
-            if way > longest:
-                longest, place = way, row
-        out_row[i] = place
+def longest_moves(rows, start, stop, columns, out_way, out_row):
+    """For each of some columns the row in start … stop - 1 from which it is furthest to the next one, and how far."""
+    out_way[:], out_row[:] = 0.0, start
+    for row in range(start, stop):  # once through the rows: they come from memory
+        for i in range(len(columns)):
+            way = abs(rows[row + 1, columns[i]] - rows[row, columns[i]])
+            if way > out_way[i]:
+                out_way[i], out_row[i] = way, row
 
 
 def chosen_moves(rows: Array, n: int, first: int) -> NDArray[np.int64]:
@@ -58,10 +57,10 @@ def chosen_moves(rows: Array, n: int, first: int) -> NDArray[np.int64]:
             continue
         columns = np.arange(1, 1 + n) if n <= FEW else 1 + (number // EVERY * FEW + np.arange(FEW)) % n
         longest = np.zeros(len(columns), np.int64)
-        longest_moves(rows, start, min(start + BLOCK, len(rows) - 1), columns, longest)
+        longest_moves(rows, start, min(start + BLOCK, len(rows) - 1), columns, np.zeros(len(columns)), longest)
         chosen += longest.tolist()
-    chosen += [number - first for number in EARLY if 0 <= number - first < len(rows) - 1]
-    places = np.unique(np.array(chosen, np.int64))
+    chosen += [number - first for number in EARLY if first <= number < first + len(rows) - 1]
+    places = np.array(sorted(set(chosen)), np.int64)
     return places[rows[places + 1, 0] > rows[places, 0]]
 
 
@@ -71,11 +70,12 @@ def instants_within(before: Array, after: Array, scale: Array, stepped: bool) ->
     `scale`: for each coordinate what moves a point by the scene's size: 1 rad, or that size (m).
     """
     n = len(scale)
-    if stepped:
+    if stepped or not len(before):
         return Instants(after[:, 0], after[:, 1 : 1 + n], np.arange(len(after) + 1))
     way = np.abs(after[:, 1 : 1 + n] - before[:, 1 : 1 + n]) / scale
-    steps = np.clip(np.ceil(way.max(axis=1, initial=0.0) / STRIDE), 1, MOST_STEPS).astype(np.int64)
-    ends = np.append(0, np.cumsum(steps))
+    steps = np.minimum(np.maximum(np.ceil(way.max(axis=1) / STRIDE), 1), MOST_STEPS).astype(np.int64)
+    ends = np.zeros(len(steps) + 1, np.int64)
+    np.cumsum(steps, out=ends[1:])
     move = np.repeat(np.arange(len(steps)), steps)
     share = ((np.arange(len(move)) - ends[move] + 1.0) / (steps[move] + 1.0))[:, None]
     first, last = before[move], after[move]
