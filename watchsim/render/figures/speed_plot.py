@@ -20,18 +20,23 @@ NAMES = {
 }
 MARKS = {"pfeiffer-glocker": "o", "moreau": "s", "pymunk": "^", "box2d": "v", "mujoco": "D"}
 AXES = (("error_state", "error of the place after 3 s (m)"), ("error_amplitude_deg", "error of the amplitude (°)"))
-TALL = 75.0  # mm
+ACROSS = 3  # panels beside each other
+TALL = 62.0  # mm, a row of panels
 LEAST = 1e-14  # what comes out exactly is drawn here
 
 
 def plot_speed(rows: Sequence[Mapping[str, Any]], path: Path) -> None:
     """Processor time per simulated second over error, both logarithmic, a panel for each scene; the file's ending decides."""
     scenes = [name for name in dict.fromkeys(row["scene"] for row in rows) if _drawn(rows, name)]
-    made = figure(FULL, TALL, layout="constrained")
-    panels = made.subplots(1, len(scenes), squeeze=False)[0]
-    for axes, scene in zip(panels, scenes, strict=True):
+    across, down = min(ACROSS, len(scenes)), -(-len(scenes) // ACROSS)
+    made = figure(FULL, TALL * down, layout="constrained")
+    panels = made.subplots(down, across, squeeze=False).ravel()
+    for axes, scene in zip(panels, scenes, strict=False):
         _panel(axes, scene, [row for row in rows if row["scene"] == scene])
-    panels[0].set_ylabel("processor time per simulated second (s)")
+    for empty in panels[len(scenes) :]:
+        empty.set_axis_off()
+    for first in panels[::across]:
+        first.set_ylabel("time per simulated second (s)")
     shown = {label: line for axes in panels for line, label in zip(*axes.get_legend_handles_labels(), strict=True)}
     made.legend(list(shown.values()), list(shown), loc="outside lower center", ncols=len(shown), frameon=False, fontsize=SMALL)
     save(made, path)
