@@ -15,7 +15,6 @@ from watchsim.jit import entry, kernel
 from watchsim.model.records import CellsRef, ModelRef
 from watchsim.simulation.accepted_step import accept_coupled
 from watchsim.simulation.events.after_event import settle
-from watchsim.simulation.events.first_steps import begin_mode, note_first_step
 from watchsim.simulation.events.impulse_check import is_explained, kinetic_energy
 from watchsim.simulation.events.mode_recurrence import begin_instant, decide_once, forget_decisions
 from watchsim.simulation.first_closing.time_of_impact import first_touch
@@ -68,7 +67,7 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
     """One smooth step up to its first event; returns (Stop code, event?)."""
     left = end_time - state.clock.time
     flying, spacing, code = can_fly(model, state), math.inf, NONE_FIRED
-    proposed, allowed = state.clock.step, 0.0
+    proposed = state.clock.step
     if flying:
         length, spacing = flight_length(model, state, options)
         begin_flight(model, state, min(length, left), scratch.step)
@@ -79,7 +78,7 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
         leave = first_turn(model, state)
     else:
         longest = min(left, options.max_step, next_knot(model, state.clock.time) - state.clock.time)
-        made, smallest, allowed = coupled_step(model, state, options, longest, scratch)
+        made, smallest = coupled_step(model, state, options, longest, scratch)
         if not made:
             return Stop.STEP_TOO_SMALL, False
         leave, code = first_leave(model, state, options, smallest, scratch)
@@ -101,7 +100,6 @@ def _smooth_step(model, cells, state, options, end_time, scratch, record):
             return Stop.UNEXPLAINED, False
         if end < min(length, touch, leave):
             state.clock.time = step.span.start + end
-        note_first_step(state, allowed)
         keep_inner_rows(model, options, end, scratch.step, record)
         keep_row(state, record, state.clock.time, state.q, state.u, state.a)
     keep_passages(model, state, step, end, record)
@@ -164,7 +162,6 @@ def _settle(model, cells, state, options, scratch, record):
         forget_decisions(state)
     elif touched < 0 and not decide_once(state):
         return Stop.TOO_MANY_EVENTS
-    begin_mode(model, state)
     state.now.events += 1
     state.counts.instants += 1
     keep_passages(model, state, scratch.step, 0.0, record)

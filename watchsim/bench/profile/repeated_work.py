@@ -42,7 +42,8 @@ def moments_again(model, cells, state, own, moment, options, until, scratch, rec
         own.active[:], own.upto[:], own.numbers[:] = moment.active, moment.upto, moment.numbers
         own.side_u[:], own.side_q[:] = moment.side_u, moment.side_q
         own.sums[:], own.counts[:], own.worst[:] = moment.sums, moment.counts, moment.worst
-        own.decided[:], own.lenience[:], own.first[:] = moment.decided, moment.lenience, moment.first
+        own.decided[:], own.lenience[:] = moment.decided, moment.lenience
+        own.returning[:], own.returned[:] = moment.returning, moment.returned
         record.used.rows, record.used.events = 0, 0
         code = advance(model, cells, state, options, until, scratch, record)
     return code

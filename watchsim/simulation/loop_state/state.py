@@ -20,7 +20,6 @@ Integers = NDArray[np.int64]
 
 ROOM, ROOM_PER_COORDINATE = 48, 2  # contacts closed at once: at least, and in large scenes
 DECISIONS = 32  # sets of modes remembered at one instant
-MODES = 64  # whose first steps are remembered
 NO_CONTACT = -1  # in the place of a contact's number
 
 
@@ -97,15 +96,6 @@ COUNT_NAMES = (
 )
 
 
-class FirstSteps:
-    """The lengths that first steps in a mode were allowed, see events/first_steps.py; key 0: no mode, length 0: not known."""
-
-    begun: int  # place of the mode that has just begun
-    before: int  # number of that mode, or of the last one before a flight
-    keys: Annotated[Integers, MODES]
-    lengths: Annotated[Array, MODES]  # s
-
-
 class Worst:
     """The largest met so far."""
 
@@ -133,7 +123,6 @@ class State(NamedTuple):
     counts: Counts
     worst: Worst
     decided: Integers  # keys of the sets of modes decided at this instant, see mode_recurrence.py
-    first: FirstSteps  # how long first steps in a mode are
 
 
 StateRef = by_reference(State, __name__)
@@ -172,5 +161,4 @@ def new_state(model: Model, q: Array, u: Array) -> State:
         counts=blank(Counts),
         worst=blank(Worst),
         decided=np.zeros(DECISIONS, np.int64),
-        first=blank(FirstSteps),
     )

@@ -42,14 +42,13 @@ class StateArrays(NamedTuple):
     lenience: Array
     returning: Integers
     returned: Array
-    first: Integers
 
 
 def arrays_of(state: State) -> StateArrays:
     """The arrays of a state: what is written into them is written into the state."""
     parts: dict[str, NDArray[Any]] = {name: getattr(state, name) for name in StateArrays._fields if hasattr(state, name)}
     parts |= {name: words_of(parts[name], float) for name in ("clock", "sums", "worst")}
-    parts |= {name: words_of(parts[name], int) for name in ("counts", "first")}
+    parts["counts"] = words_of(state.counts, int)
     parts["numbers"], parts["lenience"] = words_of(state.now, int)[:NUMBERS], row_of(state.now)["lenience"]
     parts["returning"], parts["returned"] = words_of(state.returning, int)[:HITS], words_of(state.returning, float)[HITS:]
     return StateArrays(**parts)

@@ -102,17 +102,11 @@ def _defect(model, options, h, step):
 
 
 @kernel
-def _factor(error):
-    """By how much longer or shorter a step with that error should be."""
-    return min(GROW, max(SHRINK, SAFETY * error**-0.125)) if error > 0.0 else GROW
-
-
-@kernel
 def coupled_step(model, state, options, longest, scratch):
     """One accepted step of at most `longest` seconds from the state, left in `scratch.step`.
 
-    Returns (made: False if it gets too small, the smallest monitor met at its stages, the length that its errors allow a step
-    from the same state). Proposes the next length in `state.clock.step`.
+    Returns (made: False if it gets too small, the smallest monitor met at its stages). Proposes the next length in
+    `state.clock.step`.
     """
     step = scratch.step
     n = len(model.coordinates)
@@ -124,7 +118,7 @@ def coupled_step(model, state, options, longest, scratch):
         step.y0[2 * n + i] = 0.0
     engage(model, state, scratch.smooth)
     h = min(state.clock.step, longest)
-    shrunk, worse = False, 0.0
+    shrunk = False
     at_start = _stage(model, state, options, 0, h, scratch)  # whatever the length of the step
     copy(scratch.smooth.monitors, scratch.smooth.before)
     while True:
@@ -138,12 +132,12 @@ def coupled_step(model, state, options, longest, scratch):
             step.span.length = h
             smallest = min(smallest, _extend(model, state, options, h, scratch))
             defect = _defect(model, options, h, step)
-            error, worse = defect if defect > 1.0 else error, max(error, defect)
-        factor = _factor(error)
+            error = defect if defect > 1.0 else error
+        factor = min(GROW, max(SHRINK, SAFETY * error**-0.125)) if error > 0.0 else GROW
         if error <= 1.0:
             break
         if not h > SMALLEST_STEP * options.max_step:
-            return False, smallest, h
+            return False, smallest
         state.counts.rejected_steps += 1
         shrunk = True
         h *= min(1.0, factor) if error < math.inf else SHRINK
@@ -153,4 +147,4 @@ def coupled_step(model, state, options, longest, scratch):
     state.clock.step = min(options.max_step, proposed)
     bound_accelerations(step, n)
     state.counts.steps += 1
-    return True, smallest, min(options.max_step, h * _factor(worse))
+    return True, smallest

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from watchsim.mechanism.compile import Compiled
 
 TALLIED = ("kinds", "beats", "moments", "last", "carried")
-LATER = ("returning", "returned", "first")  # not in states of earlier versions: they begin blank
+LATER = ("returning", "returned")  # not in states of earlier versions: they begin blank
 ASKED = ("method", "step", "tolerance")
 
 
