@@ -33,8 +33,8 @@ class Part:
     """A kernel whose dispatcher is made when a compiler asks for its type: hardly ever, since entries are in the cache."""
 
     def __init__(self, function: Callable[..., Any]) -> None:
-        functools.update_wrapper(self, function)
         self.py_func = function
+        self.__name__, self.__doc__, self.__module__ = function.__name__, function.__doc__, function.__module__
 
     @functools.cached_property
     def dispatcher(self) -> Any:

@@ -37,10 +37,10 @@ def reduced(x: Array, y: Array, columns: int = COLUMNS) -> tuple[Array, Array]:
 
 
 def bands(x: Array, y: Array, columns: int = COLUMNS) -> list[tuple[Array, Array, Array]]:
-    """What a dense curve over rising `x` covers: x, the least and the largest value of each column, for each stretch without a gap.
+    """The area that a dense curve over rising `x` covers: x, least and largest value of each column, stretch by stretch.
 
-    Filling an area takes a hundredth of the time that thousands of strokes beside each other take. Empty where the points are so
-    few that a curve is to be drawn; gaps within a column are lost.
+    Filling it takes a hundredth of the time that thousands of strokes beside each other take. Empty where the points are so few
+    that a curve is to be drawn. Gaps part the stretches, but for those within a column.
     """
     if len(x) <= 4 * columns or not x[-1] > x[0]:
         return []

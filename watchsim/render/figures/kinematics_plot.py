@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, TYPE_CHECKING
+from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -117,7 +117,7 @@ class Kinematics:
         return self
 
     def show(self, window: Sequence[float] | None = None, dots: bool = False) -> Figure:
-        """The figure, now of this window (s), default all that was recorded; for `dots` only what those of `write_png` can show."""
+        """The figure, now of this window (s), default all recorded; for `dots` only as fine as `write_png` shows it."""
         span = stretch(self.run, window)
         t, *motion = dense(self.run, span, accelerations=QUANTITIES[2] in self._quantities)
         told = clock(span)
@@ -206,7 +206,7 @@ def _curve(axes: Axes, line: Line2D, x: Array, y: Array, columns: int) -> None:
     line.set_data(*(((), ()) if areas else reduced(x, y, columns)))
     for middle, low, high in areas:
         outline = np.column_stack((np.append(middle, middle[::-1]), np.append(low, high[::-1])))
-        look = {"color": line.get_color(), "linewidth": line.get_linewidth(), "zorder": line.get_zorder()}
+        look: dict[str, Any] = {"color": line.get_color(), "linewidth": line.get_linewidth(), "zorder": line.get_zorder()}
         axes.add_artist(Polygon(outline, joinstyle="round", gid=line.get_gid(), **look))  # its limits are known
 
 
