@@ -6,6 +6,7 @@ out. Each run is a whole one, and nothing is estimated: this shares nothing with
 
 from __future__ import annotations
 
+import dis
 import types
 from collections.abc import Callable
 from typing import Any
@@ -79,6 +80,11 @@ def _with_clock(kernel: Any, place: int) -> Any:
     return jit.kernel(clocked)
 
 
+def globals_read(function: Any) -> set[str]:
+    """Names that the function looks up in its module: `co_names` holds those of attributes, too."""
+    return {step.argval for step in dis.get_instructions(function) if step.opname == "LOAD_GLOBAL"}
+
+
 def clocked_loop(entry: Any, names: tuple[str, ...]) -> tuple[Callable[..., Any], Callable[[], dict[str, tuple[int, int]]]]:
     """(`entry` with clocks around the named kernels below it, what reads them: name -> (ticks, calls)).
 
@@ -89,7 +95,7 @@ def clocked_loop(entry: Any, names: tuple[str, ...]) -> tuple[Callable[..., Any]
 
     def anew(function: Any) -> Any:
         around = dict(function.__globals__)
-        for name in function.__code__.co_names:
+        for name in globals_read(function):
             if hasattr(around.get(name), "targetoptions"):
                 around[name] = kernel_anew(around[name])
         copy = types.FunctionType(function.__code__, around, f"anew_{function.__name__}", function.__defaults__)
