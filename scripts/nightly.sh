@@ -20,10 +20,10 @@ step() { # step NAME COMMAND...: run it, say how long it took, and remember it i
 
 rm -rf "$environment"
 python3 -m venv "$environment"
-"$environment/bin/pip" install --quiet '.[test]'
+"$environment/bin/pip" install --quiet '.[test,browser,notebook]'
 PATH=$PWD/$environment/bin:$PATH
 
-step "all tests" pytest -n auto --dist worksteal -m "slow or not slow" --hypothesis-profile=nightly --durations=20
+step "all tests" pytest -n auto --dist worksteal -m "slow or not slow" --hypothesis-profile=nightly --durations=20 -rs
 
 step "small faults planted in the code" \
     python scripts/checks/plant_faults.py --count 60 --minutes 240 --output "$scratch/faults.jsonl"
