@@ -17,10 +17,15 @@ from watchsim.analysis.beat_tables import phases_csv
 from watchsim.analysis.energy import energy_shares
 from watchsim.analysis.timeline.shown_beats import shown_beats
 from watchsim.analysis.timeline.timeline_table import title
+from watchsim.geometry.loop import Loop
+from watchsim.geometry.primitives import Line
+from watchsim.render.figures.beat import force_plot
 from watchsim.render.figures.beat.force_plot import left_out
 from watchsim.render.figures.beat.torque_curve import pushes, torque_on
 from watchsim.render.figures.passing_phases import passing
 from watchsim.render.frame.marks.readouts import clock
+from watchsim.scene.body import Body
+from watchsim.scene.scene import Scene
 
 
 @pytest.fixture(scope="module")
@@ -222,3 +227,51 @@ def test_bearings_of_geared_bodies_say_what_is_left_out() -> None:
     assert left_out(tourbillon) == ""
     assert left_out(dataclasses.replace(tourbillon, rigid_gears=())) == ", without gears"  # as a scene made in Python may be
     assert left_out(ws.load(profiles / "swiss_lever")) == ""
+
+
+def test_beats_side_by_side_have_forces_in_one_unit(run: ws.Trajectory, monkeypatch: pytest.MonkeyPatch) -> None:
+    made, told = force_plot.curves, []
+
+    def unequal(run: ws.Trajectory, spans: object) -> list[force_plot.Curves]:
+        """The first beat with a thousandth of the forces."""
+        first, second = made(run, spans)  # type: ignore[arg-type]
+        first = dataclasses.replace(first, normal={name: 1e-3 * values for name, values in first.normal.items()})
+        told.extend((first, second))
+        return told
+
+    monkeypatch.setattr(force_plot, "curves", unequal)
+    figure = ws.plot_forces(run)
+    lines = [line for axes in figure.axes for line in axes.lines if line.get_gid() == "force wheel-lever normal"]
+    drawn = [np.max(line.get_ydata()) for line in lines]
+    largest = [one.normal["wheel-lever"].max() for one in told]
+    assert drawn[0] / drawn[1] == pytest.approx(largest[0] / largest[1], rel=1e-6)
+    assert drawn[1] > 1.0
+
+
+def test_a_load_that_hardly_changes_is_not_magnified() -> None:
+    run = ws.simulate(ws.load(ws.profiles_dir() / "governor"), duration=0.2)
+    for width in (170.0, 85.0):
+        figure = ws.plot_forces(run, width=width)
+        assert faults(figure) == []
+        axes, line = named(figure, "force bearings drum")
+        values = np.asarray(line.get_ydata())
+        assert 0.0 < np.ptp(values) < 1e-3 * values.max() < np.ptp(axes.get_ylim())
+        assert axes.get_ylim()[0] < values.min() and values.max() < axes.get_ylim()[1]
+
+
+@pytest.mark.parametrize("speed", [0.0, 1e-13])
+def test_a_body_at_rest_but_for_rounding_is_a_point_in_its_portrait(speed: float) -> None:
+    ring = (Line(-1.0, -1.0, 1.0, -1.0), Line(1.0, -1.0, 0.0, 1.0), Line(0.0, 1.0, -1.0, -1.0))
+    still, turning = (
+        Body(name, "pivot", (place, 0.0), 0.3, (velocity,), mass=0.0, inertia=0.1, loops=(Loop(ring),))
+        for name, place, velocity in (("still", 0.0, speed), ("turning", 5.0, 2.0))
+    )
+    run = ws.simulate(Scene("turning", (still, turning)), 1.0)
+    for width in (170.0, 85.0):
+        figure = ws.plot_phase_portrait(run, width=width)
+        assert faults(figure) == []
+        axes, point = named(figure, "still at rest")
+        assert point.get_xydata() == pytest.approx(np.array([[np.degrees(0.3), 0.0]]), abs=1e-9)
+        assert all(np.ptp(ends) > 9e-5 for ends in (axes.get_xlim(), axes.get_ylim()))
+        with pytest.raises(KeyError):
+            named(figure, "turning at rest")

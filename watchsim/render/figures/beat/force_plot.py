@@ -28,6 +28,7 @@ from watchsim.render.figures.figure_style import (
     figure,
     heading,
     key,
+    limits,
     panel,
     title,
 )
@@ -48,6 +49,7 @@ BEARINGS = "bearings"
 KEY = 5.0  # mm, of the names of phases
 MOST = 12_000  # instants; each takes a quarter of a millisecond
 FINE = 400  # instants at least
+FLAT = 1e-2  # a range smaller than this part of the largest force is not magnified
 ROOMY = 50.0  # mm, a panel over which name and key stand side by side
 JUST = 1e-6  # of a step: so long before its end its contacts still hold
 BEFORE, AFTER = 0.08, 0.12  # of a beat's phases: what is shown besides
@@ -88,12 +90,13 @@ def plot_forces(run: Trajectory, window: Sequence[float] | None = None, width: f
     heading(made, run.scene.title, "Forces at contacts, and loads of bearings")
     if names:
         name_key(made, names, HEADING)
+    units = _units(told)
     wide = width / len(spans) - LEFT - RIGHT
     for c, (span, one) in enumerate(zip(spans, told, strict=True)):
         own = [beat for beat in cycle.phases if beat[-1].end > span[0] and beat[0].start < span[1]]
         left = c * (LEFT + wide + RIGHT) + LEFT
         axes = [panel(made, left, top + k * (OVER + TALL + BETWEEN) + OVER, wide, TALL) for k in range(rows)]
-        _column(axes, run, span, (one, own), (pairs, pivots), first=c == 0, wide=wide >= ROOMY)
+        _column(axes, run, span, (one, own), (pairs, pivots, units), first=c == 0, wide=wide >= ROOMY)
     _same_limits(made.axes, rows)
     return made
 
@@ -153,12 +156,12 @@ def _column(
     run: Trajectory,
     span: Window,
     shown: tuple[Curves, list[list[Phase]]],
-    names: tuple[list[str], list[str]],
+    names: tuple[list[str], list[str], dict[str, tuple[float, str]]],
     first: bool,
     wide: bool,
 ) -> None:
     one, phases = shown
-    pairs, pivots = names
+    pairs, pivots, units = names
     told, worn = clock(span), looks(run.scene)
     x = (one.t - told.base) * told.factor
     nothing = np.zeros(len(x))
@@ -172,13 +175,16 @@ def _column(
         groups.append((BEARINGS, loads))
     for panel_axes, (name, lines) in zip(axes, groups, strict=True):
         dress(panel_axes)
-        factor, unit = scale(values for _, values, _, _ in lines)
+        factor, unit = units[name]
         handles = []
         for label, values, colour, dashes in lines:
             gid = f"force {name} {label}"
             handles += panel_axes.plot(
                 *reduced(x, factor * values), linestyle=dashes, color=colour, linewidth=CURVE, gid=gid, zorder=3
             )
+        drawn = np.concatenate([factor * values for _, values, _, _ in lines])
+        limits(panel_axes, float(drawn.min()), float(drawn.max()), 0.05, FLAT, 1.0)
+        panel_axes.ticklabel_format(axis="y", useOffset=False)
         if first or wide:
             title(panel_axes, name if name != BEARINGS else BEARINGS + left_out(run.scene))
         if first:
@@ -192,6 +198,16 @@ def _column(
     for panel_axes in axes[:-1]:
         panel_axes.set_xticklabels([])
     axes[-1].set_xlabel(told.label if wide or not told.base else f"{told.unit} after {told.base:.9g} s", labelpad=1.5)
+
+
+def _units(told: Sequence[Curves]) -> dict[str, tuple[float, str]]:
+    """Factor and unit of each row of panels, the same for the beats side by side."""
+    rows: dict[str, list[Array]] = {}
+    for one in told:
+        for name, values in (*one.normal.items(), *one.tangential.items()):
+            rows.setdefault(name, []).append(values)
+        rows.setdefault(BEARINGS, []).extend(one.pivots.values())
+    return {name: scale(values) for name, values in rows.items()}
 
 
 def scale(values: object) -> tuple[float, str]:
