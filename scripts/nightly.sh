@@ -1,45 +1,56 @@
 #!/usr/bin/env bash
 # What is too slow for every change: all tests, whether they notice small faults, the kernels with their index checks on, and the
-# demo from a fresh environment.
+# demo from a fresh environment. Every step is run, whatever became of those before; the exit status is 1 if one failed.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 environment=.venv-nightly
 scratch=$(mktemp -d)
+failed=()
 trap 'rm -rf "$scratch"' EXIT
+trap 'exit 130' INT # a step may take Ctrl-C for its own end: the next one would begin
+
+step() { # step NAME COMMAND...: run it, say how long it took, and remember it if it fails
+    local name=$1 start=$SECONDS
+    shift
+    printf '== %s\n' "$name"
+    "$@" || failed+=("$name (status $?)")
+    printf '== %s: %d s\n\n' "$name" $((SECONDS - start))
+}
+
 rm -rf "$environment"
 python3 -m venv "$environment"
-"$environment/bin/pip" install --quiet '.[test]'
+"$environment/bin/pip" install --quiet '.[test,browser,notebook]'
+PATH=$PWD/$environment/bin:$PATH
 
-echo "== all tests"
-"$environment/bin/pytest" -n auto --dist worksteal -m "slow or not slow" --hypothesis-profile=nightly --durations=20
+step "all tests" pytest -n auto --dist worksteal -m "slow or not slow" --hypothesis-profile=nightly --durations=20 -rs
 
-echo "== small faults planted in the code"
-"$environment/bin/python" scripts/checks/plant_faults.py --count 60 --minutes 240 --output "$scratch/faults.jsonl"
+step "small faults planted in the code" \
+    python scripts/checks/plant_faults.py --count 60 --minutes 240 --output "$scratch/faults.jsonl"
 
 # numba reads past the end of an array without a word unless asked; machine code with the checks in it is kept apart.
-echo "== kernels with index checks"
-NUMBA_BOUNDSCHECK=1 WATCHSIM_CACHE="$scratch/checked" "$environment/bin/pytest" tests/candidates tests/contact tests/dynamics tests/simulation
+step "kernels with index checks" env NUMBA_BOUNDSCHECK=1 WATCHSIM_CACHE="$scratch/checked" \
+    pytest tests/candidates tests/contact tests/dynamics tests/simulation
 
-echo "== an hour of each lever, a locked day, and the other method"
 mkdir -p "$scratch/images" "$scratch/reports"
-"$environment/bin/python" scripts/reports/measure_long_runs.py --page "$scratch/reports/long-runs.md"
-"$environment/bin/python" scripts/reports/study_convergence.py --quick --page "$scratch/reports/convergence.md"
-cat "$scratch/reports/long-runs.md" "$scratch/reports/convergence.md"
+step "an hour of each lever, a locked day" python scripts/reports/measure_long_runs.py --page "$scratch/reports/long-runs.md"
+step "the other method" python scripts/reports/study_convergence.py --quick --page "$scratch/reports/convergence.md"
+step "kinks, orientations, curves of many arcs" \
+    python scripts/reports/ordinary/measure_ordinary_mechanisms.py --page "$scratch/reports/ordinary-mechanisms.md"
+step "the pages of these" cat "$scratch"/reports/{long-runs,convergence,ordinary-mechanisms}.md
 
-echo "== kinks, orientations, curves of many arcs"
-"$environment/bin/python" scripts/reports/ordinary/measure_ordinary_mechanisms.py --page "$scratch/ordinary-mechanisms.md"
-cat "$scratch/ordinary-mechanisms.md"
+step "random mechanisms, others every night" \
+    python scripts/hunt/hunt_mechanisms.py --seed "$(date +%Y%m%d)" --count 1000 --jobs "$(nproc)"
+for signal in KILL INT TERM; do
+    step "commands at random moments: $signal" python scripts/fuzz/stops.py --signal "$signal" --count 70
+done
+step "a disk that fails" python scripts/fuzz/disk.py
+step "damaged scenes" python scripts/fuzz/scenes.py --count 2000
+step "damaged results" python scripts/fuzz/results.py --count 500
 
-echo "== random mechanisms, others every night"
-"$environment/bin/python" scripts/hunt/hunt_mechanisms.py --seed "$(date +%Y%m%d)" --count 1000 --jobs "$(nproc)"
-echo "== killed, interrupted, damaged, out of room"
-for signal in KILL INT TERM; do "$environment/bin/python" scripts/fuzz/stops.py --signal "$signal" --count 70; done
-"$environment/bin/python" scripts/fuzz/disk.py
-"$environment/bin/python" scripts/fuzz/scenes.py --count 2000
-"$environment/bin/python" scripts/fuzz/results.py --count 500
+step "benchmarks" watchsim verify --slow
+step "restitution and friction from 0 to 1" python scripts/checks/measure_grid.py "$scratch/grid.csv"
+step "demo" watchsim demo -o "$scratch/demo"
 
-echo "== benchmarks and demo"
-"$environment/bin/watchsim" verify --slow
-"$environment/bin/python" scripts/checks/measure_grid.py "$scratch/grid.csv"
-"$environment/bin/watchsim" demo -o "$scratch/demo"
+[ ${#failed[@]} -eq 0 ] || { printf 'Failed: %s\n' "${failed[@]}"; exit 1; }
+printf 'All passed in %d s.\n' "$SECONDS"

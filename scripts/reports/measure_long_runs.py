@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -246,7 +247,7 @@ def _kept() -> list[Course]:
     ]
 
 
-def picture(runs: list[Course], path: Path) -> None:
+def picture(runs: Sequence[Course | Long], path: Path) -> None:
     """Amplitude from its last value, the residual of the account, and its share of the work put in, over time."""
     from watchsim.render.figures.figure_style import CURVE, SERIES, dress, figure, key, save
     from watchsim.render.figures.figure_style import title as named
@@ -300,8 +301,9 @@ def main() -> None:
     runs = [long_run(scene, args.duration) for scene in scenes.values()]
     day = whole_day(scenes["swiss_lever"], args.day, COUNTED) if args.day else ""
     args.page.write_text(page(runs, stands, args.locked, day), encoding="utf-8")
-    _keep(runs)
-    picture(_kept(), IMAGES / "long_runs.png")
+    if args.page == PAGE:
+        _keep(runs)
+    picture(runs, args.page.parent.parent / "images" / "long_runs.png")
     if short := failures(runs, stands):
         raise SystemExit("\n".join(short))
 

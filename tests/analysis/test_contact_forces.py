@@ -164,7 +164,7 @@ def test_plots_show_accelerations_on_request() -> None:
     run = simulate(load(profiles_dir() / "bench_lever"), 0.3)
     figure = ws.plot_kinematics(run, bodies=["lever"], quantities=["velocity", "acceleration"])
     labels = [axes.get_ylabel() for axes in figure.axes]
-    assert labels == ["angular velocity (°/s)", "angular acceleration (°/s²)"]
+    assert labels == ["angular velocity (°/s)", "acceleration (°/s²)"]
     (line,) = figure.axes[1].get_lines()
     assert np.nanmax(np.abs(line.get_ydata())) == pytest.approx(
         math.degrees(np.abs(run.a[:, run.slices["lever"].start]).max()), rel=1e-6

@@ -1,11 +1,13 @@
 """How long is a run in each of its kernels? The event loop, compiled anew with a clock around some of them.
 
 The processor's own counter is read when such a kernel begins and when it ends; what kernels with a clock take within is left
-out. Each run is a whole one, and nothing is estimated: this shares nothing with watchsim.bench but the kernels.
+out. Each call is kept by itself: a run does the same again every time, and of the same call in several runs the quickest is the
+one that nothing interrupted. Nothing is estimated: this shares nothing with watchsim.bench but the kernels.
 """
 
 from __future__ import annotations
 
+import dis
 import types
 from collections.abc import Callable
 from typing import Any
@@ -19,8 +21,9 @@ from numba.extending import intrinsic
 
 from watchsim import jit
 
-WITHIN, FIRST = 0, 1  # places on the board: ticks of the clocks within, then ticks and calls of each kernel
-BOARD = np.zeros(100, np.int64)
+WITHIN, FIRST = 0, 1  # places on the board: ticks of the clocks within, then for each kernel its calls and the ticks of each
+CALLS = 200_000  # of one kernel that find room
+BOARD = np.zeros(FIRST + 10 * (1 + CALLS), np.int64)
 WORD = ir.IntType(64)
 
 
@@ -62,7 +65,7 @@ def write(_context: Any, _place: Any, _number: Any) -> Any:
 
 
 def _with_clock(kernel: Any, place: int) -> Any:
-    """The kernel, its ticks and calls added up at this place of the board."""
+    """The kernel, its calls counted at this place of the board and their ticks put behind it."""
 
     def clocked(*arguments):  # type: ignore[no-untyped-def]
         before = read(WITHIN)
@@ -70,8 +73,9 @@ def _with_clock(kernel: Any, place: int) -> Any:
         begun = ticks()
         result = kernel(*arguments)
         taken = ticks() - begun
-        write(place, read(place) + taken - read(WITHIN))
-        write(place + 1, read(place + 1) + 1)
+        calls = read(place) + 1
+        write(place, calls)
+        write(place + min(calls, CALLS), taken - read(WITHIN))
         write(WITHIN, before + taken)
         return result
 
@@ -79,17 +83,23 @@ def _with_clock(kernel: Any, place: int) -> Any:
     return jit.kernel(clocked)
 
 
-def clocked_loop(entry: Any, names: tuple[str, ...]) -> tuple[Callable[..., Any], Callable[[], dict[str, tuple[int, int]]]]:
-    """(`entry` with clocks around the named kernels below it, what reads them: name -> (ticks, calls)).
+def globals_read(function: Any) -> set[str]:
+    """Names that the function looks up in its module: `co_names` holds those of attributes, too."""
+    return {step.argval for step in dis.get_instructions(function) if step.opname == "LOAD_GLOBAL"}
+
+
+def clocked_loop(entry: Any, names: tuple[str, ...]) -> tuple[Callable[..., Any], Callable[[], dict[str, np.ndarray]]]:
+    """(`entry` with clocks around the named kernels below it, what reads them: name -> ticks of each call since the last time).
 
     Each kernel below the entry is compiled anew under a name of its own: under the old one, the machine code that is loaded for
     the old one would be called.
     """
     made: dict[tuple[str, str], Any] = {}
+    parts = BOARD[FIRST:].reshape(-1, 1 + CALLS)[: len(names)]
 
     def anew(function: Any) -> Any:
         around = dict(function.__globals__)
-        for name in function.__code__.co_names:
+        for name in globals_read(function):
             if hasattr(around.get(name), "targetoptions"):
                 around[name] = kernel_anew(around[name])
         copy = types.FunctionType(function.__code__, around, f"anew_{function.__name__}", function.__defaults__)
@@ -104,12 +114,13 @@ def clocked_loop(entry: Any, names: tuple[str, ...]) -> tuple[Callable[..., Any]
         if key not in made:
             made[key] = jit.kernel(anew(function))
             if function.__name__ in names:
-                made[key] = _with_clock(made[key], FIRST + 2 * names.index(function.__name__))
+                made[key] = _with_clock(made[key], FIRST + (1 + CALLS) * names.index(function.__name__))
         return made[key]
 
-    def clocks() -> dict[str, tuple[int, int]]:
-        numbers = BOARD[FIRST : FIRST + 2 * len(names)].reshape(-1, 2).tolist()
-        BOARD[:] = 0
-        return {name: (spent, calls) for name, (spent, calls) in zip(names, numbers, strict=True)}
+    def clocks() -> dict[str, np.ndarray]:
+        assert parts[:, 0].max() <= CALLS
+        found = {name: part[1 : 1 + part[0]].copy() for name, part in zip(names, parts, strict=True)}
+        parts[:, 0] = 0
+        return found
 
     return numba.njit(error_model="numpy")(anew(entry.py_func)), clocks

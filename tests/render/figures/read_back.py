@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import re
+from itertools import combinations
 from xml.etree import ElementTree
 
 import numpy as np
@@ -15,6 +16,7 @@ POINTS = 72.0  # per inch, the unit of SVG files
 SVG = "{http://www.w3.org/2000/svg}"
 SMALLEST = 6.0  # pt
 SLACK = 0.5  # dots
+OVERLAP = 2.0  # dots that boxes of words may share: letters do not fill theirs
 
 
 def texts(figure: Figure) -> list[Text]:
@@ -36,12 +38,15 @@ def texts(figure: Figure) -> list[Text]:
 
 
 def faults(figure: Figure) -> list[str]:
-    """Words that stand out of the figure, or are smaller than print allows."""
+    """Words that stand out of the figure or over one another, or are smaller than print allows."""
     figure.draw_without_rendering()
     renderer = figure.canvas.get_renderer()
     whole, found = figure.bbox, []
-    for text in texts(figure):
-        box = text.get_window_extent(renderer)
+    boxes = [(text, text.get_window_extent(renderer)) for text in texts(figure)]
+    for (text, box), (other, own) in combinations(boxes, 2):
+        if min(box.x1, own.x1) - max(box.x0, own.x0) > OVERLAP and min(box.y1, own.y1) - max(box.y0, own.y0) > OVERLAP:
+            found.append(f"{text.get_text()!r} and {other.get_text()!r} stand over one another")
+    for text, box in boxes:
         out = (whole.x0 - box.x0, whole.y0 - box.y0, box.x1 - whole.x1, box.y1 - whole.y1)
         if max(out) > SLACK:
             found.append(f"{text.get_text()!r} stands {max(out):.1f} dots out of the figure")

@@ -33,7 +33,7 @@ DURATION = {"graham": 4.0, "recoil_anchor": 4.0, "pin_wheel": 8.0, "detent": 2.0
 
 @pytest.mark.slow
 @pytest.mark.parametrize("profile", PROFILES)
-def test_nothing_is_clipped(profile: str) -> None:
+def test_nothing_is_clipped(profile: str, caplog: pytest.LogCaptureFixture) -> None:
     scene = ws.load(ws.profiles_dir() / profile)
     run = ws.simulate(scene, duration=DURATION.get(profile, min(1.0, scene.duration)), record="all")
     drawn = set()
@@ -47,6 +47,7 @@ def test_nothing_is_clipped(profile: str) -> None:
             assert width_mm(figure) == pytest.approx(width)
             assert faults(figure) == [], kind
             drawn.add(kind)
+    assert caplog.messages == []  # what matplotlib would say to the user
     assert {"kinematics", "phase-portrait", "forces"} <= drawn
     of_beats = {"energy", "timing", "tape"} | ({"phases", "timeline", "torque"} if profile not in TWO_PALLETS else set())
     assert profile in WITHOUT_BEATS or drawn >= of_beats, set(KINDS) - drawn

@@ -17,10 +17,16 @@ from watchsim.analysis.beat_tables import phases_csv
 from watchsim.analysis.energy import energy_shares
 from watchsim.analysis.timeline.shown_beats import shown_beats
 from watchsim.analysis.timeline.timeline_table import title
+from watchsim.geometry.loop import Loop
+from watchsim.geometry.primitives import Line
+from watchsim.render.figures.beat import force_plot, key_instants
+from watchsim.render.figures.beat.force_curves import Curves
 from watchsim.render.figures.beat.force_plot import left_out
 from watchsim.render.figures.beat.torque_curve import pushes, torque_on
 from watchsim.render.figures.passing_phases import passing
 from watchsim.render.frame.marks.readouts import clock
+from watchsim.scene.body import Body
+from watchsim.scene.scene import Scene
 
 
 @pytest.fixture(scope="module")
@@ -137,7 +143,7 @@ def test_forces_are_those_of_the_contacts(run: ws.Trajectory) -> None:
 
 
 def test_a_window_with_too_many_instants_is_refused(run: ws.Trajectory, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("watchsim.render.figures.beat.force_plot.MOST", 300)
+    monkeypatch.setattr("watchsim.render.figures.beat.force_curves.MOST", 300)
     with pytest.raises(ValueError, match="choose a shorter window"):
         ws.plot_forces(run, window=(0.1, 0.9))
 
@@ -206,6 +212,25 @@ def test_pictures_stand_at_the_middle_of_each_phase(run: ws.Trajectory) -> None:
         assert y == pytest.approx(exact, abs=1e-6)
 
 
+def test_pictures_of_a_tall_lever_show_all_of_it(
+    run: ws.Trajectory, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    def scales(tallest: float) -> tuple[np.ndarray, np.ndarray]:
+        monkeypatch.setattr(key_instants, "TALLEST", tallest)
+        figure = ws.plot_timeline(run)
+        assert faults(figure) == []
+        axes = figure.axes[0]
+        size = axes.get_position().size * figure.get_size_inches()
+        assert np.ptp(axes.get_xlim()) / size[0] == pytest.approx(np.ptp(axes.get_ylim()) / size[1])
+        return np.array([axes.get_xlim(), axes.get_ylim()]), size
+
+    whole, size = scales(10.0)
+    low, lower = scales(0.3)
+    assert lower[1] < size[1]
+    assert np.all(low[:, 0] <= whole[:, 0] + 1e-9) and np.all(low[:, 1] >= whole[:, 1] - 1e-9)
+    assert caplog.messages == []
+
+
 def test_a_run_without_an_escapement_has_the_plots_that_need_none() -> None:
     disc = ws.simulate(ws.load(ws.profiles_dir() / "incline"), duration=0.5)
     for draw in (ws.plot_kinematics, ws.plot_phase_portrait, ws.plot_forces, ws.plot_energy):
@@ -222,3 +247,64 @@ def test_bearings_of_geared_bodies_say_what_is_left_out() -> None:
     assert left_out(tourbillon) == ""
     assert left_out(dataclasses.replace(tourbillon, rigid_gears=())) == ", without gears"  # as a scene made in Python may be
     assert left_out(ws.load(profiles / "swiss_lever")) == ""
+
+
+def test_beats_side_by_side_have_forces_in_one_unit(run: ws.Trajectory, monkeypatch: pytest.MonkeyPatch) -> None:
+    made, told = force_plot.curves, []
+
+    def unequal(run: ws.Trajectory, spans: object) -> list[Curves]:
+        """The first beat with a thousandth of the forces."""
+        first, second = made(run, spans)  # type: ignore[arg-type]
+        first = dataclasses.replace(first, normal={name: 1e-3 * values for name, values in first.normal.items()})
+        told.extend((first, second))
+        return told
+
+    monkeypatch.setattr(force_plot, "curves", unequal)
+    figure = ws.plot_forces(run)
+    lines = [line for axes in figure.axes for line in axes.lines if line.get_gid() == "force wheel-lever normal"]
+    drawn = [np.max(line.get_ydata()) for line in lines]
+    largest = [one.normal["wheel-lever"].max() for one in told]
+    assert drawn[0] / drawn[1] == pytest.approx(largest[0] / largest[1], rel=1e-6)
+    assert drawn[1] > 1.0
+
+
+@pytest.mark.parametrize("count", [2, 6, 12])
+def test_the_names_of_many_bearings_stand_above_their_panel(count: int) -> None:
+    bodies = tuple(
+        Body(f"wheel_{k}", "pivot", (k, 0.0), 0.0, (1.0,), mass=1.0, inertia=0.1, centre_of_mass=(0.1, 0.0))
+        for k in range(count)
+    )
+    run = ws.simulate(Scene("wheels", bodies), 0.1)
+    for width in (170.0, 85.0):
+        figure = ws.plot_forces(run, width=width)
+        assert faults(figure) == []
+        assert {text.get_text() for text in figure.axes[0].get_legend().get_texts()} == {body.name for body in bodies}
+
+
+def test_a_load_that_hardly_changes_is_not_magnified() -> None:
+    run = ws.simulate(ws.load(ws.profiles_dir() / "governor"), duration=0.2)
+    for width in (170.0, 85.0):
+        figure = ws.plot_forces(run, width=width)
+        assert faults(figure) == []
+        axes, line = named(figure, "force bearings drum")
+        values = np.asarray(line.get_ydata())
+        assert 0.0 < np.ptp(values) < 1e-3 * values.max() < np.ptp(axes.get_ylim())
+        assert axes.get_ylim()[0] < values.min() and values.max() < axes.get_ylim()[1]
+
+
+@pytest.mark.parametrize("speed", [0.0, 1e-13])
+def test_a_body_at_rest_but_for_rounding_is_a_point_in_its_portrait(speed: float) -> None:
+    ring = (Line(-1.0, -1.0, 1.0, -1.0), Line(1.0, -1.0, 0.0, 1.0), Line(0.0, 1.0, -1.0, -1.0))
+    still, turning = (
+        Body(name, "pivot", (place, 0.0), 0.3, (velocity,), mass=0.0, inertia=0.1, loops=(Loop(ring),))
+        for name, place, velocity in (("still", 0.0, speed), ("turning", 5.0, 2.0))
+    )
+    run = ws.simulate(Scene("turning", (still, turning)), 1.0)
+    for width in (170.0, 85.0):
+        figure = ws.plot_phase_portrait(run, width=width)
+        assert faults(figure) == []
+        axes, point = named(figure, "still at rest")
+        assert point.get_xydata() == pytest.approx(np.array([[np.degrees(0.3), 0.0]]), abs=1e-9)
+        assert all(np.ptp(ends) > 9e-5 for ends in (axes.get_xlim(), axes.get_ylim()))
+        with pytest.raises(KeyError):
+            named(figure, "turning at rest")

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from analysis.made_beats import PERIOD, PIN, balance_only, steady_swings
 from analysis.made_faults import swiss
+from render.figures.read_back import faults
 
 from watchsim.analysis.tape import tape
 from watchsim.render.figures.tape_plot import PAPER, plot_tape
@@ -52,11 +53,12 @@ def test_the_picture_holds_both_traces_and_three_curves():
 def test_what_leaves_the_paper_comes_back_on_the_other_side():
     figure = plot_tape(ticking(PERIOD / (1.0 + 100.0 / 86400.0)))
     assert figure.axes[0].get_ylim() != (-0.5 * PAPER, 0.5 * PAPER)
-    figure = plot_tape(ticking(PERIOD / (1.0 + 6000.0 / 86400.0)))
+    figure = plot_tape(ticking(PERIOD / (1.0 + 6000.0 / 86400.0)), width=85.0)
     assert figure.axes[0].get_ylim() == (-0.5 * PAPER, 0.5 * PAPER)
     for line in figure.axes[0].get_lines()[:2]:
         assert np.abs(line.get_ydata()).max() <= 0.5 * PAPER
-    assert "comes back" in figure.axes[0].get_title(loc="left")
+    assert "wrapped" in figure.axes[0].get_title(loc="left")
+    assert faults(figure) == []
 
 
 def test_without_beats_there_is_no_paper():

@@ -97,10 +97,18 @@ def title(axes: Axes, words: str, colour: str = INK) -> None:
     axes.set_title(words, loc="left", fontsize=LABEL, weight="bold", color=colour, y=1.0, pad=3.0)  # y: not searched for
 
 
-def limits(axes: Axes, low: float, high: float, share: float = 0.08, flat: float = 1e-6) -> None:
+def limits(axes: Axes, low: float, high: float, share: float = 0.08, flat: float = 1e-6, unit: float = 1e-300) -> None:
     """Room above and below the values; what differs by rounding only is not blown up."""
-    room = max(share * (high - low), 0.5 * flat * max(abs(low), abs(high), 1e-300))
-    axes.set_ylim(low - room, high + room)
+    axes.set_ylim(*with_room(low, high, share, flat, unit))
+
+
+def with_room(low: float, high: float, share: float, flat: float, unit: float) -> tuple[float, float]:
+    """From where to where an axis goes that shows values from `low` to `high`.
+
+    It leaves `share` of their range on both sides, and is no shorter than the part `flat` of the largest, or of `unit`.
+    """
+    room = max(share * (high - low), 0.5 * flat * max(abs(low), abs(high), unit))
+    return low - room, high + room
 
 
 def key(axes: Axes, entries: Sequence[tuple[Any, str]], **where: Any) -> None:

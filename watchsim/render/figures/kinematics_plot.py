@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from watchsim.analysis.timing.phases import Phase
 from watchsim.render.figures.column_extremes import COLUMNS, bands, reduced
-from watchsim.render.figures.figure_style import CURVE, FULL, NARROW, dress, figure, heading, key, title
+from watchsim.render.figures.figure_style import CURVE, FULL, NARROW, dress, figure, heading, key, limits, title
 from watchsim.render.figures.passing_phases import passing
 from watchsim.render.figures.phase_bands import name_key, shade
 from watchsim.render.figures.plot_margins import place_panels
@@ -57,7 +57,8 @@ class Channel:
 
 ROTATION = (
     {"angle": "°", "velocity": "°/s", "acceleration": "°/s²"},
-    {"angle": "angle", "velocity": "angular velocity", "acceleration": "angular acceleration"},
+    # "angular acceleration" is longer than a panel is high; its unit says the same.
+    {"angle": "angle", "velocity": "angular velocity", "acceleration": "acceleration"},
 )
 TRAVEL = (
     {"angle": "mm", "velocity": "mm/s", "acceleration": "mm/s²"},
@@ -215,9 +216,7 @@ def _limits(axes: Axes, values: Array, angle: bool) -> None:
     from matplotlib.ticker import MaxNLocator, ScalarFormatter, StrMethodFormatter
 
     low, high = float(np.nanmin(values)), float(np.nanmax(values))
-    least = FLAT * max(abs(low), abs(high), 1.0)
-    room = max(0.08 * (high - low), 0.5 * least)
-    axes.set_ylim(low - room, high + room)
+    limits(axes, low, high, flat=FLAT, unit=1.0)
     if angle and high - low > 60.0:
         axes.yaxis.set_major_locator(MaxNLocator(nbins=9, steps=[1, 1.5, 1.8, 3, 3.6, 4.5, 6, 9, 10]))
     else:

@@ -6,6 +6,7 @@ longer than the plot.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -55,9 +56,25 @@ def place_panels(figure: Figure, panels: NDArray[np.object_], above: float) -> N
             axes.xaxis.label.set_verticalalignment("center")
 
 
+def spare_labels(axis: Axis, length: float, steps: Sequence[float], most: int = 5) -> None:
+    """Numbers at multiples of `steps`, at most so many, and so few that they stand apart on an x axis of that length (pt)."""
+    from matplotlib.ticker import MaxNLocator
+
+    for bins in range(most, 0, -1):
+        axis.set_major_locator(MaxNLocator(nbins=bins, steps=steps))
+        ticks = _ticks(axis)
+        apart = length * (ticks[1] - ticks[0]) / float(np.ptp(axis.get_view_interval())) if len(ticks) > 1 else length
+        if _label_width(axis) + GAP <= apart:
+            return
+
+
 def _label_width(axis: Axis) -> float:
     """Of its widest tick label (pt)."""
-    low, high = sorted(axis.get_view_interval())
-    ticks = [tick for tick in axis.get_major_locator().tick_values(low, high) if low <= tick <= high]
-    texts = axis.get_major_formatter().format_ticks(ticks)
+    texts = axis.get_major_formatter().format_ticks(_ticks(axis))
     return max((DIGIT * TICK * sum(0.5 if c in ",." else 1.0 for c in text) for text in texts), default=0.0)
+
+
+def _ticks(axis: Axis) -> list[float]:
+    """Those in sight."""
+    low, high = sorted(axis.get_view_interval())
+    return [tick for tick in axis.get_major_locator().tick_values(low, high) if low <= tick <= high]

@@ -98,7 +98,7 @@ def _paper(axes: Axes, shown: Tape, inside: slice) -> None:
     axes.set_ylabel("gain (ms)")
     words = "rising gains, falling loses"
     if wrapped:
-        words = f"{PAPER:g} ms wide; what leaves on one side comes back on the other"
+        words = f"{PAPER:g} ms wide, wrapped round"
     axes.set_title(words, loc="left", fontsize=SMALL, color=FAINT, y=1.0, pad=3.0)
     _legend(axes)
     _guides(axes, float(t[0]), float(t[-1]))

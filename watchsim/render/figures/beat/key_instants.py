@@ -142,12 +142,12 @@ def _pictures(
     run, posed = drawn
     top, wide, tall = place
     compiled = posed.compiled
+    scale = max((box[1] - box[0]) / wide, (box[3] - box[2]) / tall)  # the same both ways, and all of the box in sight
     for k, (one, points, force) in enumerate(shown):
         left, up = EDGE + (k % across) * (wide + GAP), top + (k // across) * (tall + WORDS)
         axes = panel(made, left, up, wide, tall)
-        axes.set_aspect("equal", adjustable="datalim")
-        axes.set_xlim(box[0], box[1])
-        axes.set_ylim(box[2], box[3])
+        axes.set_xlim(*_spread(box[0], box[1], scale * wide))
+        axes.set_ylim(*_spread(box[2], box[3], scale * tall))
         axes.set_xticks([])
         axes.set_yticks([])
         axes.spines[:].set_color(FAINT)
@@ -156,6 +156,11 @@ def _pictures(
         _arrows(axes, points, force)
         for i, line in enumerate(_lines(f"{k + 1} {one.words}", wide)):
             _words(made, left, up + tall + (i + 0.5) * LINE + 0.4, line)
+
+
+def _spread(low: float, high: float, length: float) -> tuple[float, float]:
+    """A stretch of that length about the same middle."""
+    return 0.5 * (low + high - length), 0.5 * (low + high + length)
 
 
 def _lines(words: str, wide: float) -> list[str]:

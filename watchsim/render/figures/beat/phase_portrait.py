@@ -13,9 +13,23 @@ import numpy as np
 from watchsim.analysis.timing.phases import Phase
 from watchsim.render.figures import usual_window
 from watchsim.render.figures.column_extremes import distinct
-from watchsim.render.figures.figure_style import CURVE, FULL, MM, NARROW, dress, figure, heading, key, limits, panel, title
+from watchsim.render.figures.figure_style import (
+    CURVE,
+    FULL,
+    MM,
+    NARROW,
+    dress,
+    figure,
+    heading,
+    key,
+    limits,
+    panel,
+    title,
+    with_room,
+)
 from watchsim.render.figures.kinematics_plot import Channel, channels
 from watchsim.render.figures.phase_bands import name_key, strong
+from watchsim.render.figures.plot_margins import INCH, spare_labels
 from watchsim.render.frame.pose_history import Window, choose, dense
 from watchsim.render.palette import FAINT, looks
 from watchsim.simulation.record.trajectory import Array, Trajectory
@@ -32,6 +46,8 @@ POINTS = 6000  # of a curve at least, for its bends
 STYLES = ("-", "--")  # of x and y
 WIDER = 1.8  # a phase against the rest of the curve
 MOST = 12  # bodies
+AT_REST = 1e-3  # of a panel: a curve that is shorter both ways is drawn as a point
+FLAT = 1e-4  # a range smaller than this part of the value (or of 1 unit) is not magnified: a body at rest shows no rounding
 
 
 def plot_phase_portrait(
@@ -41,7 +57,7 @@ def plot_phase_portrait(
 
     window  (from, to) in seconds; default the last oscillation, or all of the last stretch where nothing keeps time
 
-    An impact is a vertical line. ValueError as of `plot_kinematics`.
+    An impact is a vertical line, a body at rest a point. ValueError as of `plot_kinematics`.
     """
     cycle = usual_window.shown(run, window)
     span, phases = cycle.window, cycle.phases
@@ -89,14 +105,19 @@ def _portrait(axes: Axes, channel: Channel, rows: tuple[Array, Array, Array], ph
             own = slice(*np.searchsorted(t, (phase.start, phase.end)).tolist())
             own = slice(own.start, own.stop + 1)
             axes.plot(x[own], y[own], color=strong(phase.name), linewidth=WIDER * CURVE, zorder=3, solid_capstyle="butt")
-    values = channel.factor * u[:, channel.columns]
-    limits(axes, float(np.nanmin(values)), float(np.nanmax(values)))
-    axes.xaxis.set_major_locator(MaxNLocator(nbins=5, steps=[1, 2, 3, 4.5, 5, 9, 10]))
-    axes.yaxis.set_major_locator(MaxNLocator(nbins=5, steps=[1, 2, 5, 10]))
+    places, speeds = (channel.factor * values[:, channel.columns] for values in (q, u))
+    axes.set_xlim(*with_room(float(np.nanmin(places)), float(np.nanmax(places)), 0.05, FLAT, 1.0))
+    limits(axes, float(np.nanmin(speeds)), float(np.nanmax(speeds)), flat=FLAT, unit=1.0)
+    if np.ptp(places, axis=0).max() < AT_REST * np.ptp(axes.get_xlim()) and np.ptp(speeds) < AT_REST * np.ptp(axes.get_ylim()):
+        axes.plot(places[-1], speeds[-1], "o", color=colour, markersize=3.0, zorder=4, gid=f"{channel.body.name} at rest")
     axes.ticklabel_format(useOffset=False)
+    axes.yaxis.set_offset_position("right")  # opposite the title
+    wide = axes.get_window_extent().width / axes.figure.dpi
+    spare_labels(axes.xaxis, INCH * wide, steps=[1, 2, 3, 4.5, 5, 9, 10])
+    axes.yaxis.set_major_locator(MaxNLocator(nbins=5, steps=[1, 2, 5, 10]))
     axes.set_xlabel(f"{channel.names['angle']} ({channel.units['angle']})", labelpad=1.5)
     axes.set_ylabel(f"{channel.names['velocity']} ({channel.units['velocity']})")
-    axes.yaxis.set_label_coords(-LABEL_AT / (axes.get_window_extent().width / axes.figure.dpi / MM), 0.5, axes.transAxes)
+    axes.yaxis.set_label_coords(-LABEL_AT * MM / wide, 0.5, axes.transAxes)
     axes.yaxis.label.set_verticalalignment("center")
     if channel.legend:
         key(axes, list(zip(lines, channel.legend, strict=True)), loc="best")
