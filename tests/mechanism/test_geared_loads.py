@@ -49,7 +49,7 @@ def test_gravity_pulls_an_oblique_rack_along_its_axis(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("ratio", [8.0, -3.0, 0.25])
 def test_a_planet_rolls_where_its_rim_stands_still(ratio: float, tmp_path: Path) -> None:
-    """Carried 5 mm from the axis at unit rate, turning at 1 + ratio: on the line of centres its speed is zero at the pitch point."""
+    """Carried 5 mm from the axis at unit rate, turning at 1 + ratio: at the pitch point both speeds cancel."""
     scene = read(tmp_path, PLANET.format(ratio=ratio))
     ways = rack_ways(scene, rides(scene.bodies), scene.gears[0], 1.0)
     inwards = math.copysign(ways.reach, 1.0 + ratio)
