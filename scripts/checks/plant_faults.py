@@ -38,14 +38,16 @@ LEAST = 120.0  # s
 LONGEST = 40.0  # s of tests for one fault, the quickest of those that reach it
 LONGEST_PLAIN = 3.0  # s for one test of kernels in plain Python, a hundred times slower than compiled
 Harmless = dict[tuple[str, str, str], set[str]]  # (file, before, after) -> lines of code in which that is so; "": in all
+RECORDS = "tests/records"
 COMPILED = "kernels"
 PLAIN = "plain"
 AREAS = {  # name -> (files, tests)
-    "reader": (("drawing/**/*.py",), ("tests/drawing", "tests/construction")),
+    "reader": (("drawing/**/*.py",), ("tests/drawing", "tests/construction", RECORDS)),
     "geometry": (
         ("geometry/**/*.py",),
         (
             "tests/geometry",
+            RECORDS,
             "tests/drawing/chaining/test_chain.py",
             "tests/drawing/curves/test_splines.py",
             "tests/drawing/test_profile.py",
@@ -54,11 +56,11 @@ AREAS = {  # name -> (files, tests)
     ),
     "scene": (
         ("scene/**/*.py", "mechanism/*.py", "units.py"),
-        ("tests/scene", "tests/mechanism", "tests/designs", "tests/test_units.py", "tests/simulation/bound"),
+        ("tests/scene", "tests/mechanism", "tests/designs", "tests/test_units.py", "tests/simulation/bound", RECORDS),
     ),
     "analysis": (
         ("analysis/**/*.py", "results/*.py", "verification/**/*.py"),
-        ("tests/analysis", "tests/results", "tests/verification", "tests/render/figures/test_tape_plot.py"),
+        ("tests/analysis", "tests/results", "tests/verification", "tests/render/figures/test_tape_plot.py", RECORDS),
     ),
     "pictures": (
         (
@@ -71,7 +73,7 @@ AREAS = {  # name -> (files, tests)
             "render/keyframes.py",
             "render/fewest_rows.py",
         ),
-        ("tests/render",),
+        ("tests/render", RECORDS),
     ),
     "plain": (
         ("dynamics/**/*.py", "candidates/*.py", "contact/*.py", "simulation/**/*.py", "tolerances.py"),

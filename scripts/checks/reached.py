@@ -45,6 +45,8 @@ class Reached:
     def tests(self, file: str, function: int) -> list[str]:
         """The tests that reach a function, quickest first; of what is done at import, those that reach anything of the file.
 
+        So they are for a function that no test reaches: it may be called while tests are collected.
+
         Tests that import the file themselves come before these: they may look at its constants and call nothing.
         """
         whole = function == MODULE
@@ -53,6 +55,8 @@ class Reached:
             name for name, called in self.called.items()
             if (file, function) in called or (whole and (name.split("::")[0] in own or any(one == file for one, _ in called)))
         ]  # fmt: skip
+        if not hit and not whole:
+            return self.tests(file, MODULE)
         return sorted(hit, key=lambda name: (name.split("::")[0] not in own, self.seconds[name]))
 
 

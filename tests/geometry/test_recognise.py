@@ -82,6 +82,34 @@ def test_four_cubics_beyond_the_tolerance_and_spirals_are_none() -> None:
     assert all(part.edge is None for part in parts(spiral(2e-3, 1e-4, 1.0), 1e-7))
 
 
+def uneven_circle(centre: tuple[float, float], radius: float, sweeps: list[float]) -> Curve:
+    """A circle of rational parabolas, each with its own share of the turn (rad)."""
+    borders = np.concatenate(([0.0], np.cumsum(sweeps)))
+    angles, weights = [0.0], [1.0]
+    for start, sweep in zip(borders, sweeps, strict=False):
+        angles += [start + 0.5 * sweep, start + sweep]
+        weights += [math.cos(0.5 * sweep), 1.0]
+    points = np.column_stack((np.cos(angles), np.sin(angles))) * radius / np.array(weights)[:, None] + np.array(centre)
+    knots = [0, *np.repeat(np.arange(len(sweeps) + 1), 2).tolist(), len(sweeps)]
+    return spline(2, knots, points, weights)
+
+
+def test_a_circle_is_known_by_its_points_however_they_crowd_on_one_side() -> None:
+    fit = whole_circle(uneven_circle((3e-3, -1e-3), 2e-3, [0.2, 0.3, 0.5, 1.0, 2.0, TURN - 4.0]), 1e-9)
+    assert fit is not None
+    (edge,) = fit.edges
+    assert isinstance(edge, Arc) and (edge.x, edge.y, edge.radius) == pytest.approx((3e-3, -1e-3, 2e-3), rel=1e-9)
+
+
+def test_how_far_a_curve_is_open_is_measured_along_its_control_polygon() -> None:
+    """Sides of 3 mm, 4 mm and 1 mm, the ends 2 mm and 4 mm apart; what has no length is open."""
+    sides = spline(3, [0, 0, 0, 0, 1, 1, 1, 1], 1e-3 * np.array([(0.0, 0.0), (3.0, 0.0), (3.0, 4.0), (2.0, 4.0)]))
+    assert sides.open_by() == pytest.approx(math.hypot(2.0, 4.0) / 8.0, rel=1e-12)
+    turned = spline(3, [0, 0, 0, 0, 1, 1, 1, 1], 1e-3 * np.array([(0.0, 0.0), (0.0, 3.0), (-4.0, 3.0), (-4.0, 2.0)]))
+    assert turned.open_by() == pytest.approx(math.hypot(2.0, 4.0) / 8.0, rel=1e-12)
+    assert spline(2, [0, 0, 0, 1, 1, 1], np.zeros((3, 2))).open_by() == math.inf
+
+
 def test_joined_makes_one_circle_of_four_quarters() -> None:
     quarters = [Arc(1e-3, 2e-3, 5e-3, k * math.pi / 2, math.pi / 2) for k in range(4)]
     edges, moved = joined(quarters, 1e-7)

@@ -94,6 +94,14 @@ def test_in_a_mirror_and_under_other_names_it_is_the_same_fault(fault):
     assert abs(found.torque) == pytest.approx(drive) and "anker" in found.message
 
 
+def test_a_balance_at_rest_beside_the_fork_is_named():
+    """Its spring holds it at 90°, where its pin is far from the fork."""
+    scene = swiss(springs_0_rest="90°", bodies_balance_angle="90°", bodies_balance_velocity="0 °/s")
+    found = judged(scene, 3.0)
+    assert found.name == "stops" and "rests on" in found.message
+    assert "balance is at rest at 0° and does not touch lever" in found.message
+
+
 def test_a_guard_pin_keeps_the_lever_from_going_over():
     """The same knock on the lever with the dart in place."""
     assert judged(knocked(swiss(), 2.05, -2e-6), 4.0).name == "unsettled"

@@ -13,6 +13,7 @@ from watchsim.drawing.chaining.chain import chain
 from watchsim.drawing.content import Stroke
 from watchsim.drawing.drawing import Drawing
 from watchsim.geometry import near_edges
+from watchsim.geometry.edge_table import table_of
 from watchsim.geometry.primitives import TURN, Arc
 
 MEGABYTE = 1 << 20
@@ -39,6 +40,16 @@ def test_a_heap_of_circles_takes_no_more_memory_than_its_limits_allow(monkeypatc
     assert len(chains.loops) == 3000
     found = {(finding.code, finding.severity) for finding in chains.findings}
     assert {("crossing", "error"), ("crowded", "error"), ("crowded", "warning")} <= found
+
+
+def test_the_crowd_that_took_all_the_room_is_named_and_no_other_place(monkeypatch: pytest.MonkeyPatch) -> None:
+    """40 circles over each other and, far away, 60."""
+    monkeypatch.setattr(near_edges, "MOST_PAIRS", 1000)
+    most = [Arc(0.1 + 1e-7 * k, 0.1, 1e-3, 0.0, TURN) for k in range(60)]
+    table = table_of([stroke.edge for stroke in heap(40, 1e-7)] + most)
+    crowds = near_edges.near_pairs(table, 1e-6).crowds
+    assert crowds
+    assert all(abs(x - 0.1) < 5e-3 and abs(y - 0.1) < 5e-3 for x, y in crowds), crowds
 
 
 def test_rings_in_rings_are_told_apart_in_parts(read_bytes: Callable[..., Drawing], monkeypatch: pytest.MonkeyPatch) -> None:

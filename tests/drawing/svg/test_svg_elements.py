@@ -350,3 +350,10 @@ def test_text_pictures_and_strangers_are_counted(read_svg: Reader) -> None:
 def test_selectors_that_are_not_read_are_errors_only_where_they_hide(read_svg: Reader, selector: str) -> None:
     assert "css" in s.errors(read_svg(s.svg(f"<style>{selector}{{display:none}}</style>{BOX}/>")))
     assert not read_svg(s.svg(f"<style>{selector}{{fill:red}}</style>{BOX}/>")).findings
+
+
+def test_a_path_that_is_closed_in_part_only_waits_for_others_and_names_no_layer(read_svg: Callable[..., Drawing]) -> None:
+    tip, whole = s.path("M0 0 h2 v2 z M5 5 h3", 'id="tip"'), s.path("M0 9 h2 v2 z", 'id="whole"')
+    drawing = read_svg(s.svg(f'<g id="RIM">{tip}{whole}</g>'))
+    assert {loop.layer for loop in drawing.loops} == {"RIM", "whole"}
+    assert {chain.layer for chain in drawing.open_chains} == {"RIM"}

@@ -147,6 +147,7 @@ def test_mass_of_a_brass_ring_about_any_point() -> None:
     assert ring.centre == pytest.approx((1e-3, 0.0), rel=TINY, abs=1e-17)
     assert ring.inertia == pytest.approx(own + mass * 1e-6, rel=TINY, abs=0.0)
     assert ring.inertia_about((1e-3, 0.0)) == pytest.approx(own, rel=1e-11, abs=0.0)
+    assert ring.inertia_about((4e-3, -4e-3)) == pytest.approx(own + mass * 25e-6, rel=1e-11, abs=0.0), "3 mm and 4 mm away"
 
 
 def test_no_area_is_refused() -> None:
