@@ -60,7 +60,7 @@ def stopped(arguments: list[str], home: str, name: str, number: int, times: int 
 
 KEPT = [
     ("watchsim.simulation.runner", "Run._slices"),
-    ("watchsim.simulation.runner", "Run.trajectory"),
+    ("watchsim.simulation.simulate", "trajectory_of"),
     ("watchsim.analysis.summary", "tables"),
     ("watchsim.results.write_results", "_fill"),
     ("watchsim.storage.write", "sync_tree"),

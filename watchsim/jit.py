@@ -25,16 +25,31 @@ def kernel(function: Function) -> Function:
     Division by zero gives inf or nan as in numpy; no fast-math, which would make isnan(nan) False. Parts own no memory and
     count no references: the entry's caller holds all arrays.
     """
-    if not is_compiled():
-        return function
-    import numba
+    part: Any = Part(function)
+    return part if is_compiled() else function
 
-    # No wrapper for calls from Python: unpacking records there would take longer to compile than the kernels themselves.
-    options = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True, "_nrt": False}
-    if (compiler := _part_compiler()) is not None:
-        options["pipeline_class"] = compiler
-    compiled: Function = numba.njit(**options)(function)
-    return compiled
+
+class Part:
+    """A kernel whose dispatcher is made when a compiler asks for its type: hardly ever, since entries are in the cache."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self.py_func = function
+        self.__name__, self.__doc__, self.__module__ = function.__name__, function.__doc__, function.__module__
+
+    @functools.cached_property
+    def dispatcher(self) -> Any:
+        """What numba compiles."""
+        import numba
+
+        # No wrapper for calls from Python: unpacking records there would take longer to compile than the kernels themselves.
+        options = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True, "_nrt": False}
+        if (compiler := _part_compiler()) is not None:
+            options["pipeline_class"] = compiler
+        return numba.njit(**options)(self.py_func)
+
+    @property
+    def _numba_type_(self) -> Any:
+        return self.dispatcher._numba_type_
 
 
 def entry(function: Function) -> Function:

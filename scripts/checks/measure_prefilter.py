@@ -24,6 +24,7 @@ from watchsim.mechanism.compile import compile_scene  # noqa: E402
 from watchsim.scene.file.load import load  # noqa: E402
 from watchsim.scene.recording import EVERYTHING  # noqa: E402
 from watchsim.scene.scene import Scene  # noqa: E402
+from watchsim.simulation.frozen_run import trajectory_of  # noqa: E402
 from watchsim.simulation.loop_state.state_arrays import arrays_of  # noqa: E402
 from watchsim.simulation.runner import Run  # noqa: E402
 from watchsim.simulation.stops import Stop  # noqa: E402
@@ -80,7 +81,7 @@ def main() -> int:
         told("what follows", shapely - first_shapely, total - first)
     brute = simulated(scene, seconds, False)
     told("brute force", 0.0, brute.spent()[0])
-    events = [run.trajectory(Stop.DURATION, 0.0, 0.0).events for run in (watch.run, brute.run)]
+    events = [trajectory_of(run, Stop.DURATION, 0.0, 0.0).events for run in (watch.run, brute.run)]
     same = events[0].tobytes() == events[1].tobytes()
     ends = [arrays_of(run.state) for run in (watch.run, brute.run)]
     same &= all(np.array_equal(getattr(ends[0], name), getattr(ends[1], name)) for name in ("clock", "q", "u", "a"))

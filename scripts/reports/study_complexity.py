@@ -29,6 +29,7 @@ from watchsim.scene.body import Body
 from watchsim.scene.file.load import load
 from watchsim.scene.recording import EVERYTHING
 from watchsim.scene.scene import Scene
+from watchsim.simulation.frozen_run import trajectory_of
 from watchsim.simulation.record.saved_state import SavedState
 from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.simulation.runner import Run
@@ -155,7 +156,7 @@ def loop_time(scene: Scene, prefilter: bool, duration: float = DURATION) -> tupl
 
 
 def events_of(run: Run) -> NDArray[Any]:
-    return run.trajectory(Stop.DURATION, 0.0, 0.0).events
+    return trajectory_of(run, Stop.DURATION, 0.0, 0.0).events
 
 
 def measure(scene: Scene, whole_turn: bool) -> Row:

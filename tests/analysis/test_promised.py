@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from analysis.made_beats import lever_scene
 
-from watchsim.analysis.promised import expectation_faults, impossible
+from watchsim.analysis.promised import USUAL, expectation_faults, impossible, not_begun
 from watchsim.analysis.summary import summary
 from watchsim.cli import main
 from watchsim.commands.common.console import BAD_INPUT
@@ -39,6 +39,13 @@ def test_every_number_of_a_run_may_be_promised(method: str) -> None:
     promised = tuple(Expectation(name, 0.0, 1.0, "") for name in names(numbers))
     assert len(promised) > 80 and {"timegrapher.amplitude_deg", "energy.dissipated.friction"} <= {one.key for one in promised}
     assert expectation_faults(dataclasses.replace(scene, expect=promised)) == []
+
+
+@pytest.mark.parametrize("name", ["bench_lever", "incline"])
+def test_what_is_promised_most_often_is_in_every_summary(name: str) -> None:
+    usual, all_of = dict(USUAL), summary(not_begun(load(profiles_dir() / name)))
+    energy = usual.pop("energy")
+    assert isinstance(energy, dict) and set(energy) <= set(all_of["energy"]) and set(usual) <= set(all_of)
 
 
 @pytest.mark.parametrize(

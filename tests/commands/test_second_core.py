@@ -63,6 +63,22 @@ def test_events_made_into_text_meanwhile_are_the_same_table(tmp_path: Path, monk
     run = simulate(scene, 0.3, progress=meanwhile.progress, follow=meanwhile.follow)
     lines, _ = meanwhile.end()
     assert lines is not None and 50 < lines.rows <= len(run.events)
+    lines.settle(run)
+    write_events(run, tmp_path / "whole.csv")
+    for name in ("begun.csv", "again.csv"):  # in another place, where the first could not be written to
+        lines.write(run, tmp_path / name)
+        assert (tmp_path / name).read_bytes() == (tmp_path / "whole.csv").read_bytes()
+
+
+def test_events_that_the_disk_did_not_take_are_written_anew(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    run = simulate(load(profiles_dir() / "bench_lever"), 0.1)
+    lines = EventLines(run.scene, run.pairs, tmp_path)
+
+    def full(_: int) -> None:
+        raise OSError
+
+    monkeypatch.setattr("watchsim.results.tables.os.fsync", full)
+    lines.settle(run)
     lines.write(run, tmp_path / "begun.csv")
     write_events(run, tmp_path / "whole.csv")
     assert (tmp_path / "begun.csv").read_bytes() == (tmp_path / "whole.csv").read_bytes()

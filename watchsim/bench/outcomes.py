@@ -17,6 +17,7 @@ from watchsim.bench.sampled_swings import swing
 from watchsim.bench.scenarios import Scenario
 from watchsim.mechanism.compile import compile_scene
 from watchsim.scene.recording import Recording
+from watchsim.simulation.frozen_run import trajectory_of
 from watchsim.simulation.methods import EVENT_DRIVEN, MOREAU
 from watchsim.simulation.moreau.time_stepping import MoreauRun
 from watchsim.simulation.record.trajectory import Trajectory
@@ -65,7 +66,7 @@ def _own_run(scenario: Scenario, method: str, setting: float, duration: float) -
     taken = time.process_time() - begun
     if stop == Stop.INTERRUPTED:
         raise KeyboardInterrupt  # half a run is no result
-    return run.trajectory(stop, taken, 0.0), taken
+    return trajectory_of(run, stop, taken, 0.0), taken
 
 
 def _own(scenario: Scenario, method: str, setting: float) -> Outcome:

@@ -7,7 +7,9 @@ import functools
 import io
 import json
 import math
+import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from enum import Enum
 from itertools import chain, repeat
 from pathlib import Path
@@ -18,7 +20,8 @@ from numpy.typing import NDArray
 
 from watchsim.scene.scene import Scene
 from watchsim.simulation.record.trajectory import EventKind, Pair, Trajectory
-from watchsim.storage.columns import Columns, blocks
+from watchsim.storage.columns import blocks
+from watchsim.storage.nameless import give_name, nameless
 
 EVENT_COLUMNS = (
     "t_s",
@@ -32,7 +35,7 @@ EVENT_COLUMNS = (
     "value",
 )
 
-PIECE = 1 << 20  # bytes that are written at a time
+HEAD = (",".join(EVENT_COLUMNS) + "\r\n").encode()
 ROWS = 1 << 13  # of the table that are made into text together
 NO_IMPULSE = "0.0,0.0,0.0,"  # of an event that is no impact
 
@@ -73,30 +76,48 @@ def write_events(run: Trajectory, path: Path) -> None:
 
 
 class EventLines:
-    """The rows of events.csv, which may be begun while the run goes on; text that is long lies in a file in `folder`."""
+    """The rows of events.csv, which may be begun while the run goes on, in a file in `folder` that has no name yet.
+
+    Then `add` takes the first ones, and `settle` the others.
+    """
 
     def __init__(self, scene: Scene, pairs: Sequence[Pair], folder: Path | None = None) -> None:
         names = [body.name for body in scene.bodies]
         self._kinds = {int(kind): kind.name.lower() for kind in EventKind}
         self._sides = functools.cache(lambda contact, body: _row(_sides(pairs, contact, body, names)))
-        self._text = Columns()
-        self._text.folder = folder
+        self._begun = nameless(folder) if folder else None
+        self._settled: Future[None] | None = None
         self.rows = 0
+        if self._begun:
+            self._begun.write(HEAD)
 
     def add(self, events: NDArray[Any]) -> None:
         """The next events of the run, in order."""
-        for text in self._of(events):
-            self._text.append((np.frombuffer(text, np.uint8),))
+        assert self._begun
+        self._begun.writelines(self._of(events))
         self.rows += len(events)
 
+    def settle(self, run: Trajectory) -> None:
+        """Add what is missing of a run, and let a thread wait until the disk has it all."""
+        assert self._begun
+        thread = ThreadPoolExecutor(1)
+        self._settled = thread.submit(self._finish, run)
+        thread.shutdown(wait=False)
+
+    def _finish(self, run: Trajectory) -> None:
+        assert self._begun
+        self.add(run.events[self.rows :])
+        self._begun.flush()
+        os.fsync(self._begun.fileno())
+
     def write(self, run: Trajectory, path: Path) -> None:
-        """Write the table of a run whose first events were added, with those that are missing."""
+        """Write the table of a run: what was begun, once it is settled, or anew where that failed."""
+        if self._begun and self._settled and not self._settled.exception():
+            give_name(self._begun, path)
+            return
         with path.open("wb") as file:
-            file.write((_row(EVENT_COLUMNS) + "\r\n").encode())
-            for whole in self._text.all():
-                for (part,) in blocks(whole, length=PIECE):
-                    file.write(part.data)
-            file.writelines(self._of(run.events[self.rows :]))
+            file.write(HEAD)
+            file.writelines(self._of(run.events))
 
     def _of(self, events: NDArray[Any]) -> Iterator[bytes]:
         # What is the same in thousands of rows is made into text once, and of the rest a column at a time: half the time of a

@@ -8,8 +8,6 @@ from __future__ import annotations
 
 import os
 import re
-import shutil
-import tempfile
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -20,6 +18,7 @@ from watchsim.results.scene_copy import LOCK, locked_drawings, travelling
 from watchsim.results.state_file import write_state
 from watchsim.results.tables import json_text, write_events
 from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.storage.nameless import give_name, nameless
 from watchsim.storage.scratch_folder import PREFIX
 from watchsim.storage.write import real, write_folder
 
@@ -29,8 +28,6 @@ FAILURE = "lcp_failure.json"  # only where the solver gave up on a complementari
 LATER = ("beats.csv", "phases.csv", "report.txt", "movie.mp4", "movie.gif", "tick.wav", "report.html", "import.png")
 OURS = frozenset((SUMMARY, LOCK, TRAJECTORY, EVENTS, STATE, FAILURE, *LATER))
 PLOTS = re.compile(r"(plots|drawings|plots/(kinematics|last_beats|tape)\.(png|svg|pdf))")
-
-PIECE = 1 << 20  # bytes that are copied at a time
 
 Extra = Mapping[str, str | bytes | Callable[[Path], object]]
 
@@ -102,20 +99,20 @@ class Packed:
         self._made = self._threads.submit(self._pack, folder)
 
     def _pack(self, folder: Path) -> IO[bytes]:
-        file = tempfile.TemporaryFile(dir=folder)  # noqa: SIM115 - until it is written
+        file = nameless(folder)
         write_trajectory(self._run, file)
+        file.flush()
+        os.fsync(file.fileno())  # as it must be in the end: waiting for the disk is work for a thread
         return file
 
     def write(self, path: Path) -> None:
-        """Write `path`, once."""
+        """Write `path`."""
         try:
             made = self._made.result()
         except OSError:
             write_trajectory(self._run, path)
             return
-        made.seek(0)
-        with path.open("wb") as file:
-            shutil.copyfileobj(made, file, PIECE)
+        give_name(made, path)
 
 
 def filler(run: Trajectory, summary: Mapping[str, Any], files: Extra) -> Callable[[Path], None]:

@@ -1,14 +1,14 @@
 """How does a simulation run from Python, whatever the stepping?
 
 The compiled loop is called slice by slice; unknown cells, full buffers, progress and interrupts are dealt with between
-slices. A frozen trajectory is handed back.
+slices. What is handed back stands in `frozen_run`.
 """
 
 from __future__ import annotations
 
 import dataclasses
 import functools
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -25,7 +25,6 @@ from watchsim.scene.scene import Scene
 from watchsim.simulation.advance import EVENTS_PER_CONTACT, ROWS_PER_STEP, advance
 from watchsim.simulation.energy_ledger import ledger, ledger_fails, usual_energy
 from watchsim.simulation.interrupts import held_interrupts
-from watchsim.simulation.lcp_failure import driven_into, failure_of
 from watchsim.simulation.loop_state.buffers import Until, new_record, new_until
 from watchsim.simulation.loop_state.scratch import new_scratch
 from watchsim.simulation.loop_state.state import COUNT_NAMES, State, new_state, room_for
@@ -35,15 +34,13 @@ from watchsim.simulation.options import Options, natural_step, options_for
 from watchsim.simulation.record.contact_names import pairs_of
 from watchsim.simulation.record.overlap_watch import OverlapWatch
 from watchsim.simulation.record.overlap_watch import warm_up as warm_up_watch
-from watchsim.simulation.record.row_selection import Kept, columns_of, tail_length
+from watchsim.simulation.record.row_selection import Kept, tail_length
 from watchsim.simulation.record.saved_state import SavedState, save_state
 from watchsim.simulation.record.scene_coordinates import events_of_scene, rows_of_scene
 from watchsim.simulation.record.tally import Tally
-from watchsim.simulation.record.trajectory import EVENT_DTYPE, Trajectory
 from watchsim.simulation.slice_pace import Pace
 from watchsim.simulation.start_clearance import clear_start
 from watchsim.simulation.start_clearance import warm_up as warm_up_start
-from watchsim.simulation.stop_details import furthest, unaccounted, unexplained, what_alternates
 from watchsim.simulation.stops import Stop
 from watchsim.tolerances import FIRST_STEP
 
@@ -94,7 +91,7 @@ class Run:
         self.stored_at_start = stored_energy(model, self.state.q, self.state.u)
         self._usual_energy = usual_energy(model)
         self.saved: SavedState | None = None
-        self._parts_before = 0  # what was flushed before the state was saved
+        self.parts_before = 0  # what was flushed before the state was saved
 
     def begin(self) -> None:
         """Begin at the scene's start; SceneError where bodies overlap there (see `start.clear_start`)."""
@@ -113,9 +110,9 @@ class Run:
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Everything the future depends on, besides the model and the settings."""
-        return {**arrays_of(self.state)._asdict(), "worst_residual": self._worst_residual(), "overlap": self.watch.numbers}
+        return {**arrays_of(self.state)._asdict(), "worst_residual": self.worst_residual(), "overlap": self.watch.numbers}
 
-    def _worst_residual(self) -> NDArray[np.float64]:
+    def worst_residual(self) -> NDArray[np.float64]:
         """(1,): the worst violation of a complementarity condition so far."""
         return words_of(self.scratch.work.lcp.worst, float)
 
@@ -126,7 +123,7 @@ class Run:
     def save(self) -> SavedState:
         """The state now, with the sums over all events so far."""
         self.flush()
-        self._parts_before = self.kept.parts
+        self.parts_before = self.kept.parts
         state = save_state(self.compiled, self.settings(), self.arrays(), self.stored_at_start, self.tally.arrays())
         self.watch.fill_in_later(state.arrays["overlap"])
         return dataclasses.replace(state, recorded=self.kept.unfinished())
@@ -183,30 +180,7 @@ class Run:
     def _ledger_fails(self) -> bool:
         """Is the residual of the energy ledger more than rounding?"""
         held = max(float(self.state.worst.kinetic_energy), self.stored_at_start, self._usual_energy)
-        return ledger_fails(self._energy(), held, self.tolerance)
-
-    def _details(self, stop: Stop) -> str:
-        """The cause and what is known of where and why; where a driven body jams another, that is the cause."""
-        if stop == Stop.OVERLAP:
-            words = self.watch.words()
-        elif stop == Stop.LEDGER:
-            words = unaccounted(self._energy())
-        elif stop == Stop.UNEXPLAINED:
-            words = unexplained(self.state, self.pairs)
-        elif stop == Stop.TOO_MANY_EVENTS:
-            bodies = [self.scene.bodies[coordinate.body].name for coordinate in self.compiled.model.coordinates]
-            words = what_alternates(self.scratch.ended, self.pairs, bodies)
-        elif stop == Stop.FAR_AWAY:
-            words = furthest(self.state, self.compiled.model, [body.name for body in self.scene.bodies])
-        elif stop == Stop.LCP_FAILED:
-            driven = {body.name for body in self.scene.bodies if body.prescribed is not None}
-            failure = failure_of(self.state, self.scratch, self.pairs) if driven else None
-            words = driven_into(failure, self.pairs, driven)
-            if words:
-                return words
-        else:
-            words = ""
-        return f"{stop.sentence}: {words}" if words else stop.sentence
+        return ledger_fails(self.energy(), held, self.tolerance)
 
     def _look(self) -> None:
         """Look, soon, at the state now for bodies inside each other."""
@@ -249,54 +223,8 @@ class Run:
             if interrupted():
                 return Stop.INTERRUPTED
 
-    def _all_kept(self) -> tuple[Sequence[NDArray[np.float64]], NDArray[Any]]:
-        """t, q, u, a and the events."""
-        nothing = columns_of(np.zeros((0, 1 + 3 * len(self.state.q))))
-        return self.kept.closed(float(self.state.clock.time)) or (nothing, np.zeros(0, EVENT_DTYPE))
-
-    def trajectory(self, stop: Stop, wall: float, compile_time: float) -> Trajectory:
-        """Everything kept, as a frozen value."""
-        compiled = self.compiled
-        (t, q, u, a), events = self._all_kept()
-        words = self._details(stop)
-        saved = self.saved
-        if saved is not None:
-            before = self.kept.counts(float(self.state.clock.time), self._parts_before)
-            stays = self.kept.for_good(float(self.state.clock.time), self._parts_before)
-            recorded = {**saved.recorded, "stays": stays}
-            saved = dataclasses.replace(saved, rows=before[0], events=before[1], recorded=recorded)
-        return Trajectory(
-            scene=self.scene,
-            t=t,
-            q=q,
-            u=u,
-            a=a,
-            slices=compiled.slices,
-            events=events,
-            pairs=self.pairs,
-            stop=stop,
-            stop_message=f"t = {self.state.clock.time:.9g} s: {words}",
-            simulated=float(self.state.clock.time),
-            wall=wall,
-            compile=compile_time,
-            method=self.method,
-            tolerance=self.tolerance,
-            worst_penetration=float(self.state.worst.penetration),
-            worst_residual=float(self._worst_residual()[0]),
-            overlap=self.watch.result(float(self.state.worst.penetration)),
-            energy=self._energy(),
-            counts=self._counts(),
-            step=self.step,
-            end_q=compiled.relative(self.state.q[None])[0].copy(),
-            end_u=compiled.relative(self.state.u[None], rates=True)[0].copy(),
-            keep=self.kept.recording.keep,
-            spans=self.kept.spans(float(self.state.clock.time)),
-            sums=self.tally.finished(),
-            end_state=saved,
-            failure=failure_of(self.state, self.scratch, self.pairs) if stop == Stop.LCP_FAILED else None,
-        )
-
-    def _counts(self) -> dict[str, int]:
+    def counts(self) -> dict[str, int]:
+        """How much work was done: the names of COUNT_NAMES and of the cells."""
         counts = {name: int(value) for name, value in zip(COUNT_NAMES, words_of(self.state.counts, int), strict=True)}
         counts["cells"] = self.finder.number
         counts["cells_asked"] = self.finder.learned
@@ -307,7 +235,7 @@ class Run:
         sums = self.state.sums
         return {"friction": float(sums.friction), "damping": float(sums.damping), "impacts": float(sums.impacts)}
 
-    def _energy(self) -> dict[str, Any]:
+    def energy(self) -> dict[str, Any]:
         """The ledger: work in = stored + dissipated + residual, J."""
         at_end = stored_energy(self.compiled.model, self.state.q, self.state.u)
         return ledger(float(self.state.sums.drive), self._dissipated(), (self.stored_at_start, at_end), self.compiled.model)

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from watchsim.mechanism.compile import compile_scene
 from watchsim.scene.recording import Recording, Window, as_recording
 from watchsim.scene.scene import Scene
+from watchsim.simulation.frozen_run import trajectory_of
 from watchsim.simulation.methods import EVENT_DRIVEN, METHODS, MOREAU, USUAL_STEP
 from watchsim.simulation.record.joined_runs import joined
 from watchsim.simulation.record.saved_state import SavedState
@@ -93,7 +94,7 @@ def simulate(  # noqa: PLR0913 - options, by name
     if start is None:
         run.begin()
     stop = run.to_the_end(duration, progress)
-    made = run.trajectory(stop, time.perf_counter() - begun - loading, compile_time=loading)
+    made = trajectory_of(run, stop, time.perf_counter() - begun - loading, compile_time=loading)
     if isinstance(start, Trajectory):
         return joined(start, made, None if stream is None else Path(stream))
     return made

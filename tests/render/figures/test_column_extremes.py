@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
@@ -11,7 +12,9 @@ from hypothesis import strategies as st
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from watchsim.render.figures.column_extremes import COLUMNS, distinct, reduced
+from watchsim.render.figures.column_extremes import COLUMNS, bands, distinct, reduced
+
+Areas = Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]]  # x, lower and upper edge
 
 MILLION = 1_000_000
 X = np.linspace(0.0, 180.0, MILLION)
@@ -29,14 +32,16 @@ def test_a_spike_of_one_sample_in_a_million_survives(place: int, height: float) 
     assert np.all(np.diff(x) >= 0.0)
 
 
-def pixels(x: np.ndarray, y: np.ndarray, columns: int) -> np.ndarray:
-    """A curve over its whole width, one dot thick and without shades between ink and paper."""
+def pixels(x: np.ndarray, y: np.ndarray, columns: int, areas: Areas = ()) -> np.ndarray:
+    """A curve and areas over the whole width, edges one dot thick and without shades between ink and paper."""
     figure = Figure(figsize=(columns / 100.0, 3.0), dpi=100)
     FigureCanvasAgg(figure)
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.axis("off")
     (line,) = axes.plot(x, y, color="black", linewidth=0.72, antialiased=False)
     line.get_path().should_simplify = False  # matplotlib's own thinning is not what is tested
+    for area in areas:
+        axes.fill_between(*area, color="black", linewidth=0.72, antialiased=False)
     axes.set_xlim(0.0, 180.0)
     axes.set_ylim(-5.0, 5.0)
     out = io.BytesIO()
@@ -51,6 +56,31 @@ def test_the_picture_is_that_of_all_points() -> None:
     assert len(reduced(X, y)[0]) < MILLION / 50
     whole, thin = pixels(X, y, dots), pixels(*reduced(X, y), dots)
     assert np.mean(whole == 0) > 0.02 and np.mean(whole != thin) < 5e-3  # rounding at the edges of the ink
+
+
+@pytest.mark.parametrize("swings", [0.5, 20.0, 200.0, 5000.0])
+def test_an_area_covers_what_the_curve_covers(swings: float) -> None:
+    rng = np.random.default_rng(9)
+    y = np.sin(2.0 * np.pi * swings / 180.0 * X) + 3.0 * (rng.random(MILLION) > 0.99999)
+    dots = 400
+    areas = bands(X, y, 2 * dots)
+    whole, filled = pixels(X, y, dots), pixels(X[:0], y[:0], dots, areas)
+    assert len(areas) == 1 and len(areas[0][0]) == 2 * dots
+    ink, other = whole == 0, whole != filled
+    # Only dots at an edge may differ: those with paper and ink around them.
+    around = [np.roll(ink, (i, j), (0, 1)) for i in (-1, 0, 1) for j in (-1, 0, 1)]
+    at_edge = np.any(around, axis=0) & ~np.all(around, axis=0)
+    assert not np.any(other & ~at_edge) and np.mean(other) < 2e-2
+
+
+def test_areas_end_at_gaps_and_few_points_are_a_curve() -> None:
+    y = QUIET.copy()
+    y[300_000:600_000] = np.nan
+    (first, low, high), (second, *_) = bands(X, y)
+    assert (first[0], second[-1]) == (X[0], X[-1])
+    assert abs(first[-1] - X[299_999]) < 180.0 / COLUMNS and abs(second[0] - X[600_000]) < 180.0 / COLUMNS
+    assert np.nanmin(low) >= -1.0 and np.nanmax(high) <= 1.0 and np.all(low <= high)
+    assert bands(X[:1000], QUIET[:1000]) == [] == bands(X[:0], QUIET[:0])
 
 
 def test_every_column_reaches_as_far_as_with_all_points() -> None:

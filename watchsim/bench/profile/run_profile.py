@@ -17,6 +17,7 @@ from watchsim.candidates.pair_cache import forget
 from watchsim.mechanism.compile import compile_scene
 from watchsim.scene.recording import Recording
 from watchsim.scene.scene import Scene
+from watchsim.simulation.frozen_run import trajectory_of
 from watchsim.simulation.loop_state.buffers import Until
 from watchsim.simulation.methods import EVENT_DRIVEN
 from watchsim.simulation.record.trajectory import Trajectory
@@ -78,7 +79,7 @@ def profile_of(run: Trajectory) -> dict[str, Any]:
     duration = min(run.simulated, LONGEST)
     learning = _learning(run.scene, run.tolerance, duration)
     again, stop, stepping = _quickest(run.scene, run.tolerance, duration)
-    counts = again.trajectory(stop, stepping, 0.0).counts | {"calls": again.calls}
+    counts = trajectory_of(again, stop, stepping, 0.0).counts | {"calls": again.calls}
     walk = Walk(run.scene, run.tolerance, duration)
     costs = kernel_costs(walk) | {"call": walk.call_seconds() + (stepping - again.looping) / again.calls}
     count = {name: counts[COUNTED_AS.get(name, name)] for name in WORDS}

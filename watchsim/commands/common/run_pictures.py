@@ -95,7 +95,7 @@ def _plots(run: Trajectory, panels: Kinematics | None) -> dict[str, Draw]:
     shown = functools.cache(lambda: panels.of(run) if panels else Kinematics(run, _shown(run.scene)))
 
     def plot(window: tuple[float, float] | None) -> Any:
-        return lambda path: write_png(shown().show(window), path)
+        return lambda path: write_png(shown().show(window, dots=True), path)
 
     return {name: plot(window) for name, window in windows.items()}
 

@@ -56,6 +56,8 @@ class Meanwhile:
 
     def progress(self, *_: float) -> None:
         """To be called while the run goes on: the loop is running, so that a thread may."""
+        if not self._work:
+            self._do(_load)
         if self._panels and not self._made:
             self._made.append(self._do(self._panels))
 
@@ -79,6 +81,12 @@ class Meanwhile:
         if any(one.exception() for one in self._work):
             return Begun()
         return Begun(self._lines, self._made[0].result() if self._made else None)
+
+
+def _load() -> None:
+    """Load what works out the numbers of a run."""
+    import watchsim.analysis.summary
+    import watchsim.analysis.timeline.timeline_table  # noqa: F401
 
 
 def drawn_apart(draws: Mapping[str, Draw]) -> Mapping[str, Draw]:

@@ -91,6 +91,7 @@ def _begun(run: Trajectory, folder: Path, lines: EventLines | None) -> dict[str,
 
     begun: dict[str, Any] = {TRAJECTORY: Packed(run, real(folder).parent).write}
     if lines is not None:
+        lines.settle(run)
         begun[EVENTS] = functools.partial(lines.write, run)
     return begun
 

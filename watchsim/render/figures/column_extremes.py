@@ -18,7 +18,7 @@ def reduced(x: Array, y: Array, columns: int = COLUMNS) -> tuple[Array, Array]:
     """The points of a curve over rising `x` that a picture so many columns wide needs, in order; gaps (nan) stay gaps."""
     if len(x) <= 4 * columns or not x[-1] > x[0]:
         return x, y
-    place = np.minimum(((x - x[0]) * (columns / (x[-1] - x[0]))).astype(np.int64), columns - 1)
+    place = _columns(x, columns)
     begins = np.flatnonzero(np.diff(place, prepend=-1))
     ends = np.append(begins[1:], len(x)) - 1
     lengths = ends - begins + 1
@@ -34,6 +34,28 @@ def reduced(x: Array, y: Array, columns: int = COLUMNS) -> tuple[Array, Array]:
     kept += [opened, np.maximum(opened - 1, 0), np.minimum(closed + 1, len(x) - 1)]
     rows = np.unique(np.concatenate(kept))
     return x[rows], y[rows]
+
+
+def bands(x: Array, y: Array, columns: int = COLUMNS) -> list[tuple[Array, Array, Array]]:
+    """The area that a dense curve over rising `x` covers: x, least and largest value of each column, stretch by stretch.
+
+    Filling it takes a hundredth of the time that thousands of strokes beside each other take. Empty where the points are so few
+    that a curve is to be drawn. Gaps part the stretches, but for those within a column.
+    """
+    if len(x) <= 4 * columns or not x[-1] > x[0]:
+        return []
+    begins = np.flatnonzero(np.diff(_columns(x, columns), prepend=-1))
+    middle = 0.5 * (x[begins] + x[np.append(begins[1:], len(x)) - 1])
+    middle[0], middle[-1] = x[0], x[-1]
+    low, high = np.fmin.reduceat(y, begins), np.fmax.reduceat(y, begins)
+    known = np.isfinite(low)
+    edges = np.flatnonzero(np.diff(known.astype(np.int8), prepend=0, append=0))
+    return [(middle[i:j], low[i:j], high[i:j]) for i, j in edges.reshape(-1, 2).tolist()]
+
+
+def _columns(x: Array, columns: int) -> NDArray[np.int64]:
+    """In which column each point stands."""
+    return np.minimum(((x - x[0]) * (columns / (x[-1] - x[0]))).astype(np.int64), columns - 1)
 
 
 def distinct(x: Array, y: Array, cells: int = COLUMNS) -> tuple[Array, Array]:

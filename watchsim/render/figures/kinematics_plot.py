@@ -9,13 +9,13 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, TYPE_CHECKING
+from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.analysis.timing.phases import Phase
-from watchsim.render.figures.column_extremes import reduced
+from watchsim.render.figures.column_extremes import COLUMNS, bands, reduced
 from watchsim.render.figures.figure_style import CURVE, FULL, NARROW, dress, figure, heading, key, limits, title
 from watchsim.render.figures.passing_phases import passing
 from watchsim.render.figures.phase_bands import name_key, shade
@@ -29,6 +29,7 @@ from watchsim.simulation.record.trajectory import Trajectory
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
 
 Array = NDArray[np.float64]
 
@@ -39,6 +40,7 @@ MANY, LOW = 24, 20.0  # so many rows, and the height of each of more
 KEY, KEY_GAP = 6.5, 1.0  # mm, where the names of phases begin, and room below them
 FLAT = 1e-6  # a range smaller than this part of the value (or of 1 unit) is shown as flat, not magnified
 STYLES = ("-", "--")  # of x and y
+DOT_COLUMNS = 2  # in which the values of a curve are looked at, to each dot of a picture's width
 
 
 @dataclass(frozen=True)
@@ -115,20 +117,21 @@ class Kinematics:
         self.run = run
         return self
 
-    def show(self, window: Sequence[float] | None = None) -> Figure:
-        """The figure, now of this window (s); default all that was recorded."""
+    def show(self, window: Sequence[float] | None = None, dots: bool = False) -> Figure:
+        """The figure, now of this window (s), default all recorded; for `dots` only as fine as `write_png` shows it."""
         span = stretch(self.run, window)
         t, *motion = dense(self.run, span, accelerations=QUANTITIES[2] in self._quantities)
         told = clock(span)
         x = (t - told.base) * told.factor
         phases = passing(self.run, span)
+        columns = DOT_COLUMNS * round(self._panels[0, 0].bbox.width) if dots else COLUMNS
         for axes, channel, quantity in self._each():
             values = channel.factor * motion[QUANTITIES.index(quantity)][:, channel.columns]
+            for patch in list(axes.patches):
+                patch.remove()
             for line, column in zip(axes.get_lines(), values.T, strict=True):
-                line.set_data(*reduced(x, column))
+                _curve(axes, line, x, column, columns)
             _limits(axes, values, quantity == "angle" and channel.units is ROTATION[0])
-            for band in list(axes.patches):
-                band.remove()
             for beat in phases:
                 shade(axes, beat, told.base, told.factor)
         for axes in self._panels[-1]:
@@ -194,6 +197,18 @@ def _panel(axes: Axes, channel: Channel, quantity: str, colour: str) -> None:
         lines += axes.plot([], [], STYLES[k], color=colour, linewidth=CURVE, solid_joinstyle="round", gid=name, zorder=3)
     if channel.legend:
         key(axes, list(zip(lines, channel.legend, strict=True)), loc="upper left", ncols=len(channel.legend))
+
+
+def _curve(axes: Axes, line: Line2D, x: Array, y: Array, columns: int) -> None:
+    """Draw y over x: as a line, or where its points are dense as the area that it covers; dashed ones stay lines."""
+    from matplotlib.patches import Polygon
+
+    areas = bands(x, y, columns) if line.get_linestyle() == STYLES[0] else []
+    line.set_data(*(((), ()) if areas else reduced(x, y, columns)))
+    for middle, low, high in areas:
+        outline = np.column_stack((np.append(middle, middle[::-1]), np.append(low, high[::-1])))
+        look: dict[str, Any] = {"color": line.get_color(), "linewidth": line.get_linewidth(), "zorder": line.get_zorder()}
+        axes.add_artist(Polygon(outline, joinstyle="round", gid=line.get_gid(), **look))  # its limits are known
 
 
 def _limits(axes: Axes, values: Array, angle: bool) -> None:

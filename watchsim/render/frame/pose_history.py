@@ -128,10 +128,15 @@ def dense(run: Trajectory, window: Window, least: int = 2000, accelerations: boo
     rank = np.arange(len(left)) - np.repeat(np.cumsum(extra) - extra, extra) + 1
     between = times[left] + gaps[left] * rank / (extra[left] + 1)
     added = np.concatenate(([start], between, [stop]))
-    place = np.searchsorted(at_rows, added, side="right")
-    t = np.insert(at_rows, place, added)
-    q, u = (np.insert(taken(rows, inside), place, new, 0) for rows, new in zip((run.q, run.u), run.sample(added), strict=True))
-    a = np.insert(taken(run.a, inside), place, run.acceleration(added), 0) if accelerations else run.a[:0]
+    place = np.searchsorted(at_rows, between, side="right")
+
+    def merged(rows: Array, new: Array) -> Array:
+        inner = np.insert(rows, place, new[1:-1], 0) if len(place) else rows
+        return np.concatenate((new[:1], inner, new[-1:]))
+
+    t = merged(at_rows, added)
+    q, u = (merged(taken(rows, inside), new) for rows, new in zip((run.q, run.u), run.sample(added), strict=True))
+    a = merged(taken(run.a, inside), run.acceleration(added)) if accelerations else run.a[:0]
     spans = recorded(run)
     if len(spans) > 1:
         known = np.any([(t >= low) & (t <= high) for low, high in spans], axis=0)[:, None]

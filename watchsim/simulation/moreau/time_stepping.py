@@ -49,7 +49,7 @@ class MoreauRun(Run):
         own = {name: kept[name] for name in ("depth", "sweeps", "row_time")}
         return {**super().arrays(), "memory": self.work.memory, **own}
 
-    def _worst_residual(self) -> NDArray[np.float64]:
+    def worst_residual(self) -> NDArray[np.float64]:
         return cast(NDArray[np.float64], row_of(self.work.kept)["violation"])
 
     def settings(self) -> dict[str, Any]:
@@ -67,8 +67,8 @@ class MoreauRun(Run):
     def _learn(self) -> None:
         self.finder.learn(int(self.work.asked.cell.pair), self.work.asked.at.copy(), self.state.u)
 
-    def _counts(self) -> dict[str, int]:
-        return {**super()._counts(), "sweeps": int(self.work.kept.sweeps)}
+    def counts(self) -> dict[str, int]:
+        return {**super().counts(), "sweeps": int(self.work.kept.sweeps)}
 
     def _ledger_fails(self) -> bool:
         """Never: the error of the ledger goes with the step, which the user has chosen."""

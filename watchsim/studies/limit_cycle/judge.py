@@ -14,6 +14,7 @@ from watchsim.analysis.verdicts.verdict import verdict
 from watchsim.analysis.verdicts.verdict_kinds import BACKWARDS, KNOCKS, STOPS, TICKS, TRIPS, UNSETTLED
 from watchsim.dynamics.applied_forces import stored_energy
 from watchsim.scene.recording import Recording
+from watchsim.simulation.frozen_run import trajectory_of
 from watchsim.simulation.loop_state.state import State
 from watchsim.simulation.loop_state.state_arrays import write_state
 from watchsim.simulation.record.trajectory import Trajectory
@@ -52,7 +53,7 @@ def run_from(loop: Loop, state: State | None, duration: float) -> Trajectory:
     if stop == Stop.INTERRUPTED:
         raise KeyboardInterrupt
     loop.simulated += float(run.state.clock.time)
-    return run.trajectory(stop, 0.0, 0.0)
+    return trajectory_of(run, stop, 0.0, 0.0)
 
 
 def judged(run: Trajectory, suspicion: str = "", since_start: bool = False) -> Judgement:
