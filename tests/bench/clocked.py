@@ -100,7 +100,7 @@ def clocked_loop(entry: Any, names: tuple[str, ...]) -> tuple[Callable[..., Any]
     def anew(function: Any) -> Any:
         around = dict(function.__globals__)
         for name in globals_read(function):
-            if hasattr(around.get(name), "targetoptions"):
+            if hasattr(around.get(name), "py_func"):
                 around[name] = kernel_anew(around[name])
         copy = types.FunctionType(function.__code__, around, f"anew_{function.__name__}", function.__defaults__)
         copy.__module__, copy.__qualname__ = function.__module__, f"anew_{function.__qualname__}"
@@ -109,7 +109,7 @@ def clocked_loop(entry: Any, names: tuple[str, ...]) -> tuple[Callable[..., Any]
     def kernel_anew(kernel: Any) -> Any:
         function = kernel.py_func
         key = function.__module__, function.__qualname__
-        if kernel.targetoptions.get("inline") == "always":
+        if getattr(kernel, "targetoptions", {}).get("inline") == "always":
             return kernel
         if key not in made:
             made[key] = jit.kernel(anew(function))

@@ -73,8 +73,10 @@ def test_shares_are_those_of_clocks_within_the_loop(name: str, duration: float, 
     for part, other in zip(plain.state, timed.state, strict=True):
         assert np.array_equal(part, other)
     apart: dict[str, tuple[float, float]] = {}
-    for _ in range(3):  # other programs may slow down one measurement, but not each
-        work, read = profile_of(made)["work"], read_clocks(loop, clocks, name, duration)
+    work: dict[str, Any] = {}
+    for _ in range(5):  # other programs may slow down one measurement of a cost, but not each
+        found, read = profile_of(made)["work"], read_clocks(loop, clocks, name, duration)
+        work = {kind: min(found[kind], work.get(kind, found[kind]), key=lambda one: one["seconds"]) for kind in found}
         assert read["motion"][1] == work["evaluation"]["count"]
         assert read["_settle"][1] == work["instant"]["count"]
         assert read["_smooth_step"][1] == sum(work[one]["count"] for one in SMOOTH)
