@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from watchsim import units
-from watchsim.units import UnitError, parse, show, to
+from watchsim.units import UnitError, metric, parse, show, to
 
 USUAL = [
     ("12 mg·cm²", units.INERTIA, 1.2e-9),
@@ -142,3 +142,7 @@ def test_shown_for_people():
     assert show(0.00012, "mm") == "0.12 mm"
     assert show(-1.5 * math.pi, "°") == "-270°"
     assert show(4.0, "vph") == "28800 vph"
+
+
+def test_a_number_that_is_rounded_up_to_a_thousand_takes_the_next_prefix() -> None:
+    assert [metric(value, "m") for value in (0.9999999, -999.9999999, 0.99999)] == ["1 m", "-1 km", "999.99 mm"]

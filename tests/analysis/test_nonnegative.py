@@ -55,10 +55,11 @@ def test_columns_that_are_nearly_alike(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", range(10))
 def test_in_other_units_it_is_the_same_to_the_bit(seed: int) -> None:
-    """Forces of a watch are as small as 1e-9 N; a power of two changes no digit."""
+    """Forces and lever arms of a watch are small numbers; a power of two changes no digit."""
     rng = np.random.default_rng(seed)
     alike = rng.normal(size=(6, 3)) @ rng.normal(size=(3, 9)) + 0.05 * rng.normal(size=(6, 9))
-    right, unit = rng.normal(size=6), 2.0**-30
+    right, unit = rng.normal(size=6), 2.0**-60
     likely = rng.random(9) < 0.5
     assert np.array_equal(nonnegative(alike, right * unit, likely), unit * nonnegative(alike, right, likely))
     assert np.array_equal(nonnegative(alike, right * unit), unit * nonnegative(alike, right))
+    assert np.array_equal(nonnegative(alike * unit, right), nonnegative(alike, right) / unit)

@@ -6,12 +6,13 @@ import math
 from collections.abc import Callable
 
 import dxf_text as d
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from watchsim.drawing.drawing import Drawing
-from watchsim.drawing.facets import facets
+from watchsim.drawing.facets import curvatures, facets
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Line
 
@@ -115,3 +116,13 @@ def test_pieces_of_one_part_are_paired_over_a_gap(read_bytes: Reader) -> None:
     halves = d.lwpolyline([(0, 0), (4, 0), (4, 4)], False) + d.lwpolyline([(0, 0.2), (0, 4), (3.9, 4)], False)
     found = read_bytes(d.dxf(halves)).findings
     assert sorted(round(math.dist((f.x_mm, f.y_mm), f.other_mm), 3) for f in found) == [0.1, 0.2]
+
+
+def test_a_piece_without_length_hides_the_curvature_at_its_two_ends_only() -> None:
+    """Elsewhere it is that of the circle, 1 / r."""
+    angles = np.linspace(0.0, math.tau, 25)
+    corners = 2e-3 * np.column_stack((np.cos(angles), np.sin(angles)))
+    ways = np.diff(np.insert(corners, 10, corners[10], axis=0), axis=0)
+    found = curvatures(ways)
+    assert np.flatnonzero(np.isnan(found)).tolist() == [9, 10]
+    assert np.delete(found, [9, 10]) == pytest.approx(500.0, rel=1e-9)

@@ -13,7 +13,7 @@ from watchsim.geometry.edge_table import table_of
 from watchsim.geometry.extent import edge_extents, extents, total_length
 from watchsim.geometry.inside import winding
 from watchsim.geometry.loop import Loop
-from watchsim.geometry.polyline import polyline
+from watchsim.geometry.polyline import chords, polyline
 from watchsim.geometry.primitives import TURN, Arc, Line
 
 RING = Loop((Arc(1.0, 2.0, 3.0, 0.7, TURN),))
@@ -108,3 +108,12 @@ def test_columns_of_many_edges_are_those_of_each(seed: int) -> None:
     assert table.end == pytest.approx(np.array([edge.end for edge in edges]), abs=1e-14)
     low, high = table.box[:, :2].min(axis=0), table.box[:, 2:].max(axis=0)
     assert extents([Loop(tuple(edges), "", False)]) == pytest.approx((*low, *high), abs=1e-14)
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_a_turn_has_three_chords_at_least_whichever_way_it_runs(way: float) -> None:
+    """However much they may be off; else as many as the sagitta r (1 - cos(step / 2)) asks for."""
+    assert chords(Arc(0.0, 0.0, 1e-3, 0.5, way * 2.0 * math.pi), 1e-3) == 3
+    assert chords(Arc(0.0, 0.0, 1e-3, 0.5, way * 1.0), 1e-3) == 1
+    step = 2.0 * math.acos(1.0 - 1e-3)
+    assert chords(Arc(0.0, 0.0, 1e-3, 0.5, way * 3.0), 1e-6) == math.ceil(3.0 / step)

@@ -83,6 +83,12 @@ def test_each_outline_moves_on_its_own_radius(scene):
         assert (new.x - old.x) / 3e-6 == pytest.approx(old.x / far)
 
 
+def test_without_another_place_the_radius_is_that_from_the_pivot(scene):
+    """The lever's pivot is marked by a layer of its drawing, with one point on it."""
+    marked, said = (scene.set(KEY, [{"near": ENTRY, "radial": "3 µm", **about}]) for about in ({}, {"about": "PIVOT"}))
+    assert near(stones(marked), stones(said)) and not near(stones(marked), stones(scene), 1e-7)
+
+
 def test_mass_and_inertia_follow(tmp_path):
     part = '[bodies.wheel]\ndrawing = "a.dxf"\npivot = ["0 mm", "0 mm"]\n{}'
     solids = '[[bodies.wheel.solids]]\nlayer = "STONES"\nthickness = "1 mm"\ndensity = "4 g/cm³"\n'

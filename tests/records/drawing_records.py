@@ -8,9 +8,11 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
 
+import dxf_text as d
 import mutate_dxf
 import mutate_svg
 import random_dxf
+import svg_text as s
 from records.wording import said
 
 from watchsim.drawing.drawing import Drawing
@@ -23,6 +25,7 @@ from watchsim.geometry.loop import Loop
 from watchsim.geometry.solids.mass import section, section_of_loop
 
 RANDOM, DAMAGED = (0, 1, 2, 3, 6, 8, 9, 10, 11), 40  # seeds of small ones; how many
+FACETS = (12, 36, 90, 360)  # of an egg
 FEW = 12  # outlines, one by one
 SEEN = 1e-6  # µm: a deviation below is that of floating point
 OPTIONS = ({"units": "inch"}, {"snap": 2e-4}, {"fit": 1e-5}, {"fit": 1e-9})
@@ -43,9 +46,40 @@ def records() -> dict[str, Callable[[Path], str]]:
     for seed in RANDOM:
         data, _ = random_dxf.drawing(random.Random(f"record {seed}"))
         found[f"random blocks {seed}"] = partial(damaged, data, "dxf")
+        found[f"turned and torn {seed}"] = partial(damaged, transformed(random.Random(f"record {seed}")), "svg")
+    for count in FACETS:
+        found[f"{count} facets"] = partial(damaged, faceted(count), "dxf")
     for ending in ("dxf", "svg"):
         found[f"written again as {ending}"] = partial(written_again, ending)
     return found
+
+
+def faceted(count: int) -> bytes:
+    """An egg as a polygon, once with even pieces and once with uneven ones, a double corner among them, far off the origin."""
+    even = [math.tau * k / count for k in range(count)]
+    uneven = [angle + 0.4 / count * math.sin(7.0 * angle) for angle in even]
+    eggs = [
+        [(x + 3.0 * math.cos(angle) + 0.4 * math.cos(2.0 * angle), 2.0 * math.sin(angle)) for angle in angles]
+        for x, angles in ((0.0, even), (2e4, [*uneven, uneven[-1]]))
+    ]
+    return d.dxf("".join(d.lwpolyline(egg, True) for egg in eggs))
+
+
+def transformed(rng: random.Random) -> bytes:
+    """Arcs, circles and curves under two random maps each, some of them half a circle far off."""
+    maps = (
+        lambda: f"translate({rng.uniform(-9, 9):.3f} {rng.uniform(-9, 9):.3f})",
+        lambda: f"rotate({rng.uniform(-360, 360):.2f} 3 4)",
+        lambda: f"scale({rng.choice((1, -1, 0.5, 2))} {rng.choice((1, -1, 0.5, 2))})",
+        lambda: f"skewX({rng.uniform(-40, 40):.2f})",
+        lambda: f"matrix(0 {rng.choice((1, -1))} 1 0 {rng.uniform(-9, 9):.3f} 0)",
+    )
+    shapes = []
+    for _ in range(5):
+        r, far = round(rng.uniform(0.3, 2.0), 3), rng.choice((0, 0, 12345))
+        path = rng.choice((f"M{far} 1a{r} {r} 0 0 1 {2 * r} 0z", f"M1 {far}a{r} 1 30 1 0 1 1z", f"M{far} 0q{r} 3 4 0t1 -2z"))
+        shapes.append(s.path(path, f'transform="{rng.choice(maps)()} {rng.choice(maps)()}"'))
+    return s.svg("".join(shapes)).encode()
 
 
 def inspected(data: bytes, ending: str, folder: Path) -> str:

@@ -1,4 +1,4 @@
-"""Which made-up scenes use, between them, every key and most units of a scene file?"""
+"""Which made-up scenes use, between them, every table and most keys and units of a scene file?"""
 
 from __future__ import annotations
 

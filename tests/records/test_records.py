@@ -1,6 +1,6 @@
 """Does the program still say of many drawings, scenes and runs what it said before?
 
-What is kept holds on any machine. Where something moves for a reason, `python scripts/checks/make_records.py` shows what and
+What is kept holds on any machine. Where something moves for a reason, `python scripts/make_records.py` shows what and
 writes the records anew. That a number is right is for other tests to say.
 """
 

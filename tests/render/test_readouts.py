@@ -87,6 +87,7 @@ def test_poses_in_words():
         (20.0, "picture turned by 20° counter-clockwise"),
         (270.0, "picture turned by 90° clockwise"),
         (180.0, "picture turned by 180°"),
+        (-180.0, "picture turned by 180°"),
     ],
 )
 def test_a_turned_picture_says_so(degrees, text):

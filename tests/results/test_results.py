@@ -205,6 +205,13 @@ def test_numbers_that_lead_nowhere_are_found_when_read(run, tmp_path, name, at, 
         read_trajectory(tmp_path / "t.npz", run.scene)
 
 
+@pytest.mark.parametrize("name", ["overlap", "energy", "counts", "sums"])
+def test_sums_that_are_no_table_are_found_when_read(run, name):
+    archive._check(run)
+    with pytest.raises(ValueError, match="holds no sums"):
+        archive._check(dataclasses.replace(run, **{name: [1.0]}))
+
+
 def test_json_is_strict():
     assert json.loads(json_text({"a": [np.inf, np.array([1.5, np.nan])], "b": (True, None, "µ")})) == {
         **{"a": [None, [1.5, None]]},

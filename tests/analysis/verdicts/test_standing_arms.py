@@ -8,7 +8,7 @@ from typing import Any
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from watchsim.analysis.verdicts.standing import _passes
+from watchsim.analysis.verdicts.standing import _passes, _told_apart
 
 ARM = st.sampled_from([0.0, 1e-5, 3e-4, 9e-4, 2.5e-3]).flatmap(lambda size: st.sampled_from([size, -size]))  # m
 
@@ -41,3 +41,9 @@ def test_as_by_trying_all_turns(a: float, b: float, c: float, d: float, way: flo
     edges = sorted(-way * lever / wheel for lever, wheel in ((a, c), (b, d)) if wheel)
     assume(len(edges) < 2 or edges[1] - edges[0] > 1e-9 or edges[0] == edges[1])
     assert _passes("wheel", "lever", found, way) is some_turn(found, way)
+
+
+def test_two_torques_have_the_fewest_digits_that_tell_them_apart() -> None:
+    assert _told_apart(1.6e-6, 4.3e-6) == ("1.6 µN·m", "4.3 µN·m")
+    assert _told_apart(1.234567e-6, 1.21e-6) == ("1.23 µN·m", "1.21 µN·m")
+    assert _told_apart(1.234567e-6, 1.23e-6) == ("1.2346 µN·m", "1.23 µN·m")

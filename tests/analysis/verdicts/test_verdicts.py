@@ -11,7 +11,7 @@ import pytest
 from analysis.made_beats import lever_run
 from analysis.made_faults import chipped, knocked, renamed, swiss, toothless, turned_over, unguarded
 
-from watchsim.analysis.timing.beats import beats
+from watchsim.analysis.timing.beats import Beats, beats
 from watchsim.analysis.verdicts.backwards import _against_teeth
 from watchsim.analysis.verdicts.equilibrium.in_force import in_force
 from watchsim.analysis.verdicts.equilibrium.lever_arms import arms
@@ -156,6 +156,16 @@ def test_the_angle_of_a_knock_is_that_of_the_balance_then():
     true = run.sample(times)[0][:, run.slices["balance"].start]
     assert len(times) > 10 and np.degrees(np.abs(_angles(watch, times) - true)).max() < 15.0
     assert np.degrees(np.abs(true)).min() > 330.0
+
+
+def test_angles_are_those_from_rest_wherever_that_is():
+    """Half swings of 2 s that are true sines of 3 rad about 0.4 rad."""
+    passages = np.array([1.0, 3.0, 5.0])
+    ends = 0.4 + 3.0 * np.array([-1.0, 1.0, -1.0, 1.0])
+    found = Beats("balance", True, 4.0, passages, passages - 1.0, passages + 1.0, ends[:-1], ends[1:], passages, passages)
+    times = np.linspace(0.1, 5.9, 30)
+    got = _angles(SimpleNamespace(found=found, rest=0.4), times)
+    assert got == pytest.approx(-3.0 * np.cos(0.5 * math.pi * times), abs=1e-12)
 
 
 @pytest.mark.parametrize("share", [0.995, 1.005])

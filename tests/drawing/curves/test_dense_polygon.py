@@ -34,3 +34,12 @@ def test_a_curve_that_swings_too_far_is_refused_on_either_side() -> None:
         assert refused[0] == refused[1]
         outcomes.append(refused[0])
     assert 3 < sum(outcomes) < 27
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1e3])
+def test_what_is_refused_is_refused_in_any_unit_of_length(unit: float) -> None:
+    for seed in range(30):
+        rng = np.random.default_rng(seed)
+        heading = np.cumsum(rng.uniform(0.0, 0.12, 12) * rng.choice([-1.0, 1.0]))
+        points = np.cumsum(rng.uniform(0.3, 1.0, 12)[:, None] * np.column_stack((np.cos(heading), np.sin(heading))), axis=0)
+        assert (smooth(points, 0.025) is None) == (smooth(unit * points, unit * 0.025) is None)

@@ -8,7 +8,8 @@ import pytest
 
 from watchsim.drawing.curves.affine import unit
 from watchsim.drawing.curves.bezier_to_arcs import circle_of
-from watchsim.drawing.curves.plane_shapes import Spline
+from watchsim.drawing.curves.plane_projection import reach
+from watchsim.drawing.curves.plane_shapes import Conic, Spline, Straight
 
 KAPPA = 4.0 / 3.0 * (math.sqrt(2.0) - 1.0)  # of the radius: the usual Béziers of a quarter
 
@@ -46,3 +47,10 @@ def test_what_turns_back_is_no_circle() -> None:
 def test_a_direction_without_length_is_straight_up() -> None:
     assert unit((0.0, 0.0, 0.0)) == (0.0, 0.0, 1.0)
     assert unit((0.0, 3.0, 4.0)) == (0.0, 0.6, 0.8)
+
+
+def test_rounding_is_that_of_the_largest_coordinate() -> None:
+    """Of all control points in both directions; a circle reaches beyond its centre by its radius."""
+    assert reach(Spline(2, [0.0] * 3 + [1.0] * 3, [(1.0, 2.0, 0.0), (-900.0, 3.0, 0.0), (5.0, 70.0, 0.0)], [])) == 900.0
+    assert reach(Conic((4.0, -50.0, 0.0), (0.0, 3.0, 0.0), (-3.0, 0.0, 0.0), 0.0, math.tau)) == 53.0
+    assert reach(Straight((1.0, -2.0, 0.0), (9.0, 0.0, 0.0))) == 2.0

@@ -221,3 +221,29 @@ def test_weights_of_very_unlike_size_are_refused() -> None:
     for weights in ([1.0, 1.1e9, 1.0], [1.0, -1.0, 1.0], [0.0, 1.0, 1.0], [1.0, 1.0]):
         with pytest.raises(DxfError, match="weights"):
             spline_from(2, False, knots, weights, points, [])
+
+
+PLACES = [(0.0, 0.0), (1.0, 2.0), (3.0, 2.5), (4.0, 0.0), (3.0, -2.0), (1.0, -1.5)]
+
+
+def knotless(*tags: tuple[int, object]) -> bytes:
+    control = [tag for place in PLACES for tag in d.point(10, place)]
+    return d.dxf(d.record("SPLINE", (71, 3), (73, len(PLACES)), *tags, *control))
+
+
+def test_an_open_spline_without_knots_is_clamped_and_uniform(read_bytes: Callable[..., Drawing]) -> None:
+    knots = [(40, float(knot)) for knot in (0, 0, 0, 0, 1, 2, 3, 3, 3, 3)]
+    bare, told = read_bytes(knotless((70, 8))), read_bytes(knotless((70, 8), (72, len(knots)), *knots))
+    assert bare.open_chains == told.open_chains and len(bare.open_chains) == 1
+
+
+def test_a_closed_spline_without_knots_runs_round(read_bytes: Callable[..., Drawing]) -> None:
+    """Between two spans a uniform cubic is (p + 4 q + r) / 6 of three neighbouring control points."""
+    (loop,) = read_bytes(knotless((70, 9))).loops
+    points = 1e3 * polyline(loop, 1e-8)
+    for k in range(len(PLACES)):
+        before, here, after = (np.array(PLACES[(k + shift) % len(PLACES)]) for shift in (-1, 0, 1))
+        place = (before + 4.0 * here + after) / 6.0
+        sides, offs = np.diff(points, axis=0), place - points[:-1]
+        share = np.clip(np.sum(sides * offs, axis=1) / np.sum(sides * sides, axis=1), 0.0, 1.0)
+        assert np.min(np.hypot(*(offs - share[:, None] * sides).T)) < 2e-4

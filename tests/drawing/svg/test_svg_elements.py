@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.svg.transforms import Box, fitted, transform
+from watchsim.drawing.svg.xml_elements import SvgError
 from watchsim.geometry.extent import extents
 from watchsim.geometry.primitives import Arc
 from watchsim.geometry.solids.mass import area
@@ -357,3 +358,11 @@ def test_a_path_that_is_closed_in_part_only_waits_for_others_and_names_no_layer(
     drawing = read_svg(s.svg(f'<g id="RIM">{tip}{whole}</g>'))
     assert {loop.layer for loop in drawing.loops} == {"RIM", "whole"}
     assert {chain.layer for chain in drawing.open_chains} == {"RIM"}
+
+
+@pytest.mark.parametrize("map_", ["scale({0} 1) scale({1} 1)", "scale(1 {0}) scale(1 {1})", "scale({0} 1) translate({1} 0)"])
+def test_transforms_that_go_together_beyond_any_drawing_are_refused_in_every_direction(map_: str) -> None:
+    for sign in ("", "-"):
+        with pytest.raises(SvgError, match="beyond any drawing"):
+            transform(map_.format(f"{sign}2e6", "1e6"))
+        transform(map_.format(f"{sign}2e5", "1e6"))

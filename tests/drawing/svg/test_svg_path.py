@@ -272,3 +272,14 @@ def test_radii_as_unlike_as_no_ellipse_is_are_refused(radii: tuple[float, float]
     with pytest.raises(SvgError, match="radii as different"):
         elliptic_arc((0.0, 0.0), (1.0, 0.0), *radii, 0.0, False, True)
     assert isinstance(elliptic_arc((0.0, 0.0), (1.0, 0.0), 1.0, 1e-3, 0.0, False, True), Conic)
+
+
+@pytest.mark.parametrize("far", [0.0, 1e3, 1e6])
+def test_half_a_circle_is_half_a_circle_however_far_it_lies_from_the_origin(far: float) -> None:
+    """The rounding of its ends must not show as the square root of itself."""
+    rng = np.random.default_rng(7)
+    for x, y, radius in rng.uniform((-far, -far, 0.3), (far, far, 0.9), (50, 3)).tolist():
+        shape = elliptic_arc((x, y), (x + 2.0 * radius, y), radius, radius, 0.0, False, True)
+        assert isinstance(shape, Conic)
+        assert abs(shape.sweep) == pytest.approx(math.pi, abs=1e-12)
+        assert shape.centre[:2] == pytest.approx((x + radius, y), abs=1e-15 * max(1.0, far) * 2.0)

@@ -11,13 +11,13 @@ import sys
 import tempfile
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT / "tests"), *(str(ROOT / "tests" / name) for name in ("drawing", "drawing/damaged", "scene"))]
 
 from records.test_records import KEPT, TOPICS, said_of  # noqa: E402
 from records.wording import moved, sections, written  # noqa: E402
 
-ABOUT = ("Made by scripts/checks/make_records.py: what the program said. See tests/records/test_records.py.", "")
+ABOUT = ("Made by scripts/make_records.py: what the program said. See tests/records/test_records.py.", "")
 
 
 def main() -> int:
