@@ -55,6 +55,16 @@ class Reached:
         ]  # fmt: skip
         return sorted(hit, key=lambda name: (name.split("::")[0] not in own, self.seconds[name]))
 
+    def text(self) -> str:
+        """As JSON."""
+        return json.dumps({"seconds": self.seconds, "called": {name: sorted(hits) for name, hits in self.called.items()}})
+
+    @classmethod
+    def of(cls, text: str) -> Reached:
+        """What `text` has written."""
+        loaded = json.loads(text)
+        return cls(loaded["seconds"], {name: {(file, line) for file, line in hits} for name, hits in loaded["called"].items()})
+
 
 @cache
 def _importers(file: str) -> frozenset[str]:
@@ -132,13 +142,12 @@ def recorded(tests: Sequence[str], longest: float = math.inf) -> Reached:
     def work() -> tuple[int, str]:
         status = _pytest(list(tests), [recorder])
         passed = status == 0 or (math.isfinite(longest) and status == pytest.ExitCode.TESTS_FAILED)
-        return 0 if passed else status, _dumped(recorder.reached)
+        return 0 if passed else status, recorder.reached.text()
 
     status, said = _in_a_copy(work, None)
     if status != 0:
         raise SystemExit(f"the tests fail without any fault: {said[-2000:]}")
-    loaded = json.loads(said)
-    return Reached(loaded["seconds"], {name: {(file, line) for file, line in hits} for name, hits in loaded["called"].items()})
+    return Reached.of(said)
 
 
 def fails(tests: Sequence[str], file: str, source: str, limit: float) -> bool:
@@ -186,10 +195,6 @@ class _Faulty(importlib.machinery.SourceFileLoader):
 def _pytest(tests: list[str], plugins: list[object]) -> int:
     os.chdir(ROOT)
     return int(pytest.main([*OPTIONS, *tests], plugins=plugins))
-
-
-def _dumped(reached: Reached) -> str:
-    return json.dumps({"seconds": reached.seconds, "called": {name: sorted(hits) for name, hits in reached.called.items()}})
 
 
 def _in_a_copy(work: Any, limit: float | None) -> tuple[int, str]:

@@ -1,7 +1,8 @@
 """How is a record of runs kept, and what has moved against it?
 
-A text of blocks. [name of the run], then a line for each quantity with its numbers and how far a run may be off (`1.5±2e-12`), a
-line with all counts that are not zero (`steps 7, evaluations 98±6`; `rows ?`: differs from machine to machine), and one with bounds.
+A text of blocks: [name of the run], then a line for each quantity with its numbers and how far a run may be off
+(`1.5±2e-12`), a line with all counts that are not zero (`steps 7, evaluations 98±6`; `rows ?`: differs by chance), and one
+with bounds.
 
 How far a run may be off comes from copies of it, changed by what rounding elsewhere may come to.
 """
@@ -75,7 +76,9 @@ def written(records: Mapping[str, Recorded]) -> str:
     blocks = ["# Written by scripts/checks/record_runs.py; record_file.py says what stands here.\n"]
     for run, kept in records.items():
         lines = [f"[{run}]"]
-        lines += [f"{name}: {' '.join(map(_number, numbers))}" for name, numbers in kept.values.items() if any(map(any, numbers))]
+        lines += [
+            f"{name}: {' '.join(map(_number, numbers))}" for name, numbers in kept.values.items() if any(map(any, numbers))
+        ]
         lines.append(f"{COUNTS}: {', '.join(f'{name} {_count(n)}' for name, n in kept.counts.items() if n != (0, 0))}")
         lines.append(f"{WORST}: {' '.join(f'{x:.2g}' for x in kept.worst)}")
         blocks.append("\n".join(lines) + "\n")

@@ -97,9 +97,7 @@ def nudged(scene: Scene, share: float, seed: int) -> Scene:
         return value * (1.0 + share * float(rng.uniform(-1.0, 1.0)))
 
     bodies = tuple(
-        dataclasses.replace(
-            body, velocity=tuple(map(near, body.velocity)), mass=near(body.mass), inertia=near(body.inertia)
-        )
+        dataclasses.replace(body, velocity=tuple(map(near, body.velocity)), mass=near(body.mass), inertia=near(body.inertia))
         for body in scene.bodies
     )
     return dataclasses.replace(
