@@ -1,0 +1,42 @@
+"""What is left behind where no impulses are found, and what does the plastic impact over a time come to?"""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from plain_kernels import in_python
+
+from watchsim.dynamics import impact as impacts
+
+
+@pytest.mark.parametrize("solved", [(False, True), (True, False), (True, True)])
+def test_directions_are_put_back_whether_an_impact_is_solved_or_not(solved: tuple[bool, bool]) -> None:
+    """All 2 m rows, once; velocities are changed, by all impulses, only where both phases are solved."""
+    m, put_back, applied = 3, [], []
+    work = SimpleNamespace(force=np.array([1.0, 0.5, 0.0, 0.0, 2.0, -0.25]), more=np.arange(6.0), b=object(), inverse=None)
+    kernel = in_python(
+        impacts.impact,
+        _compress=lambda *_: (solved[0], 2),
+        _expand=lambda *_: solved[1],
+        restore_directions=lambda work, rows, b: put_back.append((rows, b)),
+        apply=lambda closed, m, force, inverse, u: applied.append((m, force.tolist())),
+    )
+    assert kernel(None, None, m, np.array([0.0, 0.5, 0.3]), 0.0, work, None) is all(solved)
+    assert put_back == [(2 * m, work.b)]
+    assert applied == ([(m, [1.0, 1.5, 2.0, 3.0, 6.0, 4.75])] if all(solved) else [])
+
+
+@pytest.mark.parametrize("restitution", [(0.0, 0.5, 0.0), (0.0, 0.0, 0.0)])
+def test_without_restitution_where_something_was_hit_there_is_no_expansion(restitution: tuple[float, ...]) -> None:
+    """The one that could rebound carries no impulse."""
+    work = SimpleNamespace(force=np.array([1.0, 0.5, 0.0, 0.0, 2.0, -0.25]), more=np.zeros(6), b=None, inverse=None)
+
+    def expand(*_):
+        raise AssertionError
+
+    kernel = in_python(
+        impacts.impact, _compress=lambda *_: (True, 2), _expand=expand, restore_directions=lambda *_: None, apply=lambda *_: None
+    )
+    assert kernel(None, None, 3, np.array(restitution), 0.0, work, None)
