@@ -2,7 +2,8 @@
 
 The cache of kernels is keyed by all their sources together. What was compiled from files that do not import the changed one,
 not even through others, is handed on to the new key: `python kept_code.py KEY FILE`, with the key before the change and the
-file's path in the package, writes there and prints the new key. Tests' own kernels are not handed on.
+file's path in the package, writes there and prints the new key; without arguments it only prints the key. Tests' own kernels
+are not handed on.
 """
 
 from __future__ import annotations
@@ -36,6 +37,8 @@ def hand_on(before: Path, after: Path, changed: Path) -> None:
 if __name__ == "__main__":
     now = cache_folder()
     assert now is not None
-    if now.name != sys.argv[1]:
-        hand_on(now.parent / sys.argv[1], now, PACKAGE / sys.argv[2])
+    if sys.argv[1:]:
+        key, file = sys.argv[1:]
+        if now.name != key:
+            hand_on(now.parent / key, now, PACKAGE / file)
     print(now.name)

@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from plain_kernels import in_python
+from random_contacts import random_case
 
 from watchsim.dynamics import impact as impacts
 
@@ -37,6 +38,36 @@ def test_without_restitution_where_something_was_hit_there_is_no_expansion(resti
         raise AssertionError
 
     kernel = in_python(
-        impacts.impact, _compress=lambda *_: (True, 2), _expand=expand, restore_directions=lambda *_: None, apply=lambda *_: None
+        impacts.impact,
+        _compress=lambda *_: (True, 2),
+        _expand=expand,
+        restore_directions=lambda *_: None,
+        apply=lambda *_: None,
     )
     assert kernel(None, None, 3, np.array(restitution), 0.0, work, None)
+
+
+@pytest.mark.parametrize(("m", "n"), [(1, 3), (2, 6), (3, 6), (4, 8)])
+def test_the_plastic_impact_over_a_time_obeys_the_laws_at_the_rates_that_free_motion_leads_to(m: int, n: int) -> None:
+    """Signorini and Coulomb, from the matrices alone; the rates are left as they were found."""
+    rng = np.random.default_rng(10 * m + n)
+    solved = 0
+    for _ in range(20):
+        case, u, time = random_case(rng, m, n), rng.normal(size=n), rng.uniform(0.1, 1.0)
+        work = case.work
+        work.h[:n], work.inverse[:n] = rng.normal(size=n), 1.0 / case.mass
+        free = case.W @ (u + time * work.h[:n] / case.mass)
+        if not in_python(impacts.plastic_impact)(case.model, case.closed, m, time, u, work):
+            continue
+        solved += 1
+        force = work.force[: 2 * m]
+        after = free + case.G @ force
+        scale = np.abs(free).max()
+        np.testing.assert_allclose(work.b[: 2 * m], free, atol=1e-12 * scale)
+        N, T, opening, slip = force[::2], force[1::2], after[::2], after[1::2]
+        assert N.min() >= 0.0 and opening.min() >= -1e-9 * scale
+        assert np.abs(N * opening).max() <= 1e-9 * scale * max(1.0, N.max())
+        assert np.all(np.abs(T) <= case.friction * N + 1e-9)
+        sliding = np.abs(slip) > 1e-9 * scale
+        np.testing.assert_allclose(T[sliding], -np.sign(slip[sliding]) * (case.friction * N)[sliding], atol=1e-9)
+    assert solved >= 15
