@@ -20,7 +20,7 @@ from recorded_scenes import all_names, nudged, run_of, scene_of, told  # noqa: E
 
 SHARE = 1e-13
 COPIES = 5
-MOST_CELLS = 400  # looked at from Python: most of what a short run takes
+MOST_CELLS = 200  # looked at from Python: most of what a short run takes
 
 
 def recorded(name: str) -> Recorded | None:

@@ -15,7 +15,7 @@ KINETIC = 7.0  # J, before drift is taken back, at the end of the step
 
 
 def follow(*gap: float) -> tuple[tuple[float, float], list[float]]:
-    """(time, energy) where a gap with these coefficients (m, m/s, ...) closes, and the times that were looked at besides END."""
+    """(time, energy) where a gap with these coefficients (m, m/s, ...) closes, and the other times looked at."""
     now = [END]
     looked: list[float] = []
 
