@@ -45,13 +45,15 @@ class Reached:
     def tests(self, file: str, function: int) -> list[str]:
         """The tests that reach a function, quickest first; of what is done at import, those that reach anything of the file.
 
-        Tests that import the file themselves come before these: they may look at its constants and call nothing.
+        Or of files that import from it: nothing of a table of constants is called. Tests that import the file themselves come
+        before these: they may look at its constants and call nothing.
         """
         whole = function == MODULE
-        own = _importers(file) if whole else frozenset()
+        own, users = (_importers(file), _users(file)) if whole else (frozenset(), frozenset())
         hit = [
             name for name, called in self.called.items()
-            if (file, function) in called or (whole and (name.split("::")[0] in own or any(one == file for one, _ in called)))
+            if (file, function) in called
+            or (whole and (name.split("::")[0] in own or any(one == file or one in users for one, _ in called)))
         ]  # fmt: skip
         return sorted(hit, key=lambda name: (name.split("::")[0] not in own, self.seconds[name]))
 
@@ -69,9 +71,19 @@ class Reached:
 @cache
 def _importers(file: str) -> frozenset[str]:
     """The test files that name the module of a file."""
+    return _naming(file, ROOT / "tests", "test_*.py", ROOT)
+
+
+@cache
+def _users(file: str) -> frozenset[str]:
+    """The files of the package that import from a file."""
+    return _naming(file, Path(PACKAGE), "*.py", Path(PACKAGE))
+
+
+def _naming(file: str, folder: Path, pattern: str, base: Path) -> frozenset[str]:
     module = f"watchsim.{file.removesuffix('.py').replace('/', '.')} import"
-    found = (path for path in (ROOT / "tests").rglob("test_*.py") if module in path.read_text(encoding="utf-8"))
-    return frozenset(path.relative_to(ROOT).as_posix() for path in found)
+    found = (path for path in folder.rglob(pattern) if module in path.read_text(encoding="utf-8"))
+    return frozenset(path.relative_to(base).as_posix() for path in found)
 
 
 class _Recorder:
