@@ -71,3 +71,17 @@ def test_the_plastic_impact_over_a_time_obeys_the_laws_at_the_rates_that_free_mo
         sliding = np.abs(slip) > 1e-9 * scale
         np.testing.assert_allclose(T[sliding], -np.sign(slip[sliding]) * (case.friction * N)[sliding], atol=1e-9)
     assert solved >= 15
+
+
+@pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
+def test_rates_are_dropped_that_are_the_rounding_of_their_terms(scale: float) -> None:
+    """In any unit of speed."""
+    case = random_case(np.random.default_rng(3), 2, 3)
+    u = scale * np.array([0.3, -2.0, 0.7])
+    terms = (np.abs(case.W) @ np.abs(u)).reshape(2, 2).sum(axis=1)
+    rounding = np.repeat(4e-15 * terms, 2)
+    rates = rounding * np.array([0.9, -1.1, -0.9, 1.1])
+    kept = rates.copy()
+    in_python(impacts._drop_rounding)(case.closed, 2, u, rates)
+    np.testing.assert_array_equal(rates, np.where(np.abs(kept) <= rounding, 0.0, kept))
+    assert np.count_nonzero(rates) == 2
