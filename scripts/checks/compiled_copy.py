@@ -59,7 +59,7 @@ class CompiledCopy:
             path.write_text(source, encoding="utf-8")
             self.key(key, file)
             first, others = ([one for one in tests if one.startswith(FIRST) is so] for so in (True, False))
-            return not (self.seconds(first, limit)[0] and self.seconds(others, limit)[0])
+            return not all(self.seconds(some, limit)[0] for some in (first, others) if some)
         finally:
             path.write_bytes(whole)
             os.utime(path, ns=(stat.st_atime_ns, stat.st_mtime_ns))  # numba asks whether a file is as old as its machine code
