@@ -56,7 +56,7 @@ def rates(motion: int, point: tuple[float, float], t: float) -> list[np.ndarray]
 @pytest.mark.parametrize("point", [(0.3, -0.2), (0.0, 0.0), (-0.01, 0.5)])
 def test_a_material_point_moves_as_its_body_and_no_bound_is_exceeded(motion: int, point: tuple[float, float]) -> None:
     ratio = 1.0 if motion == FREE else RATIO
-    x, y, turn = frame(motion, 0.0)
+    turn = frame(motion, 0.0)[2]
     ahead, behind = frame(motion, 1e-6), frame(motion, -1e-6)
     vx, vy, w = ((one - other) / 2e-6 for one, other in zip(ahead, behind, strict=True))
     body = SimpleNamespace(first=0, motion=motion, ratio=ratio, axis_x=AXIS[0], axis_y=AXIS[1])
