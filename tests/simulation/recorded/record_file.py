@@ -40,7 +40,7 @@ def recorded_of(told: Told, copies: Sequence[Told]) -> Recorded | None:
     counts: dict[str, tuple[int, int] | None] = {}
     for name, count in told.counts.items():
         off = max(abs(copy.counts[name] - count) for copy in copies)
-        counts[name] = None if off > LOOSE * count else (count, COUNT_MARGIN * off)
+        counts[name] = None if off > LOOSE * abs(count) else (count, COUNT_MARGIN * off)
     values = {}
     for name, numbers in told.values.items():
         if name in counts and (counts[name] is None or counts[name][1] != 0):

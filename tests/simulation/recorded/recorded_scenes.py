@@ -138,4 +138,5 @@ def told(run: Trajectory) -> Told:
         name = f"{kind.name.lower()} events"
         values[name] = [float(own["t"].sum()), float(np.abs(own["value"]).sum())]
         counts[name] = len(own)
+    counts |= {f"{what} of events": int(events[what].sum(dtype=np.int64)) for what in ("contact", "body")}  # their numbers
     return Told(values, counts, [run.worst_penetration, max(run.worst_residual, abs(energy["residual_relative"]))])
