@@ -8,21 +8,30 @@ are not handed on.
 
 from __future__ import annotations
 
+import ast
 import shutil
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
-from watchsim.machine_code import PACKAGE, _imported, _reachable_sources, cache_folder
+from watchsim.machine_code import PACKAGE, cache_folder
 
 
 def dependents(changed: Path) -> set[str]:
     """The names (without .py) of the files that import a file, directly or not, and its own."""
-    sources = {Path(path): text.decode() for path, text in _reachable_sources(PACKAGE).items()}
-    imported = {path: {Path(one) for one in _imported(PACKAGE, text)} for path, text in sources.items()}
+    imported = {path: set(_imported(path)) for path in PACKAGE.rglob("*.py")}
     found = {changed}
     while more := {path for path, uses in imported.items() if uses & found} - found:
         found |= more
     return {path.stem for path in found}
+
+
+def _imported(path: Path) -> Iterator[Path]:
+    """The files that a file may import from, at its top or within a function."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and node.module and node.module.split(".")[0] == PACKAGE.name:
+            module = PACKAGE.joinpath(*node.module.split(".")[1:])
+            yield from (module.with_suffix(".py"), *(module / f"{name.name}.py" for name in node.names))
 
 
 def hand_on(before: Path, after: Path, changed: Path) -> None:
