@@ -9,6 +9,7 @@ import pytest
 from plain_kernels import in_python
 
 from watchsim.simulation.moreau import one_step, percussions
+from watchsim.tolerances import NUDGE
 
 STEP = 0.1
 MASS, STIFFNESS, VISCOUS, QUADRATIC = np.array([2.0, 0.5]), np.array([30.0, 4.0]), np.array([0.3, 0.0]), np.array([0.1, 0.7])
@@ -72,3 +73,18 @@ def test_a_tangential_percussion_that_small_in_its_cone_has_no_sign(size: float,
             back = 0.8 * 0.5 * T
             expected = (back, 0.0, 0.0, mu) if sign > 0.0 else (0.0, -mu, back, 0.0)
             assert (low, low_slope, high, high_slope) == pytest.approx(expected, rel=1e-12, abs=0.0)
+
+
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+@pytest.mark.parametrize("beside", [-2.0, -0.5, 0.0, 0.5, 2.0])
+def test_friction_goes_one_way_where_slip_and_approach_stop_together(sign: float, beside: float) -> None:
+    """By `NUDGE` of the slip at most may they miss each other; the second contact's directions are not parallel."""
+    slip = sign * 0.3
+    G = np.array([[4.0, 2.0, 0.0, 0.0], [2.0, 1.0, 0.0, 0.0], [0.0, 0.0, 4.0, 2.0], [0.0, 0.0, 2.0, 1.1]])
+    normal = (slip - beside * NUDGE * abs(slip)) / 0.5
+    laws = SimpleNamespace(G=G, ends=np.full((2, 4), 9.0))
+    work = SimpleNamespace(laws=laws, rates=np.array([normal, slip, normal, slip]))
+    instead = {"_law": lambda model, work, i: SimpleNamespace(friction=0.4)}
+    in_python(percussions._keep_sliding, **instead)(None, 2, work)
+    one_way = [9.0, -0.4 * sign, 9.0, -0.4 * sign]
+    assert laws.ends.tolist() == [one_way if abs(beside) < 1.0 else [9.0] * 4, [9.0] * 4]
