@@ -193,7 +193,8 @@ def test_corner_on_corner_is_met_by_an_edge_first() -> None:
 def test_an_outline_that_lies_within_another_without_crossing_it_is_found_wherever_both_stand(angle: float, far: float) -> None:
     """The depth is that of its edge deepest inside, which the placing of both together does not change."""
     c, s = math.cos(angle), math.sin(angle)
-    x, y = 3.2, 0.5  # of the small block in the frame of the long one, turned by a quarter
+    # The small block lies 20 and 30 m from the origin of its own frame, which is turned by a quarter against the long one's.
+    x, y = 3.2 + 30.0, 0.5 - 20.0
     there = (far + c * x - s * y, -far + s * x + c * y, angle + 0.5 * math.pi)
-    found = distance(block(8.0, 2.0), (far, -far, angle), block(0.5, 1.0), there)
+    found = distance(block(8.0, 2.0), (far, -far, angle), block(0.5, 1.0).moved(0.0, (20.0, 30.0)), there)
     assert found.value == pytest.approx(-0.75, abs=1e-9)  # of the edge at 0.25, below the long side at 1

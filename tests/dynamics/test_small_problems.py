@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 from plain_kernels import in_python
 
+from watchsim.dynamics.delassus import fill_bearings
 from watchsim.dynamics.lcp import basis
-from watchsim.dynamics.solver_fallbacks import fill_copositive
+from watchsim.dynamics.lcp.outcome import LcpOutcome
+from watchsim.dynamics.solver_fallbacks import _solve_copositive, fill_copositive
 from watchsim.tolerances import LCP_RESIDUAL, LCP_ROUNDING
 
 
@@ -79,3 +81,41 @@ def test_the_copositive_form_is_the_same_problem_in_other_unknowns(blocks: tuple
     np.testing.assert_allclose(found[m : m + elements], slip + lines[m:], atol=1e-13)
     np.testing.assert_allclose(found[m + elements : m + 2 * elements], slip - lines[m:], atol=1e-13)
     np.testing.assert_allclose(found[m + 2 * elements :], half - plus - minus, atol=1e-13)
+
+
+def test_bearings_and_contacts_share_the_rows_of_what_forces_do() -> None:
+    """W M⁻¹ Wᵀ with a row of one for each bearing, by whole matrices."""
+    rng = np.random.default_rng(9)
+    w_N, w_T, coord = rng.normal(size=(3, 2)), rng.normal(size=(3, 2)), np.array([[0, 2], [3, 1], [1, 0]])
+    inverse, dry = np.array([0.5, 2.0, 4.0, 0.25]), [2, 0]
+    W = np.zeros((8, 4))
+    for j in range(3):
+        W[2 * j, coord[j]], W[2 * j + 1, coord[j]] = w_N[j], w_T[j]
+    W[[6, 7], dry] = 1.0
+    expected = W * inverse @ W.T
+    work = SimpleNamespace(G=np.full((8, 8), np.nan), inverse=inverse, dry=dry)
+    work.G[:6, :6] = expected[:6, :6]
+    closed = SimpleNamespace(slots=[2, 2, 2], coord=coord, w_N=w_N, w_T=w_T)
+    in_python(fill_bearings)(closed, 3, 2, work)
+    np.testing.assert_allclose(work.G, expected, atol=1e-14)
+
+
+def test_an_answer_of_the_copositive_form_is_checked_as_one_of_the_first_form() -> None:
+    """All of its unknowns: forces, places in the intervals of friction, and speeds of slip."""
+    m, elements, asked = 2, 2, []
+    work = SimpleNamespace(
+        A=np.arange(16.0).reshape(4, 4) / 10.0, rhs=np.array([0.0, 0.0, -1.0, 5.0, 1.0, 2.0]), x=np.full(6, np.nan),
+        other_x=np.array([0.5, 0.25, 0.1, 0.3, 0.2, 0.0, 9.0, 9.0]), block=np.array([0, 1]), width=np.array([0.8, 0.4]),
+        B=None, other_rhs=None, lcp=None,
+    )  # fmt: skip
+    instead = {
+        "fill_copositive": lambda *_: 8,
+        "lemke_checked": lambda *_: LcpOutcome.SOLVED,
+        "_is_solved": lambda work, n: asked.append(n) or True,
+    }
+    assert in_python(_solve_copositive, **instead)(work, m, elements)
+    assert asked == [m + 2 * elements]
+    half = [0.5 * (1.0 + 0.8 * 0.5), 0.5 * (2.0 + 0.4 * 0.25)]
+    friction = [half[0] + 0.1 - 0.2, half[1] + 0.3]
+    slip = work.rhs[2:4] + work.A[2:4] @ [0.5, 0.25, *friction]
+    assert work.x == pytest.approx([0.5, 0.25, *friction, *np.maximum(0.0, -slip)])

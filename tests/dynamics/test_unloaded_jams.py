@@ -15,8 +15,10 @@ UNIT, LOAD = 4.0, 0.3
 
 
 def settled(tangent: int, rhs: float, slip: float = -2.0, jams: bool = True, unloaded: bool = True) -> tuple[bool, float]:
-    """(is anything pressed?, right-hand side of the contact's normal row) of the second of two contacts; the first does not jam."""
-    work = SimpleNamespace(tangent=[0, tangent], rhs=np.array([9.0, rhs]), loaded=np.array([0.0, 5.0, 0.0, slip]), unit=[1.0, UNIT])
+    """(is anything pressed?, right-hand side of its normal row) of the second of two contacts; the first does not jam."""
+    work = SimpleNamespace(
+        tangent=[0, tangent], rhs=np.array([9.0, rhs]), loaded=np.array([0.0, 5.0, 0.0, slip]), unit=[1.0, UNIT]
+    )
     instead = {
         "_jams": lambda work, m, i, near: i == 1 and jams,
         "_is_unloaded": lambda model, closed, i, work: i == 1 and unloaded,

@@ -9,7 +9,9 @@ from plain_kernels import in_python
 from watchsim.simulation.motion.free_motion import SERIES, _phi
 
 
-@pytest.mark.parametrize("z", [1e-300, 1e-9, 1e-4, 0.3 * SERIES, 0.999 * SERIES, -0.999 * SERIES, 1.001 * SERIES, 0.3, 7.0, 60.0, -2.0])
+@pytest.mark.parametrize(
+    "z", [1e-300, 1e-9, 1e-4, 0.3 * SERIES, 0.999 * SERIES, -0.999 * SERIES, 1.001 * SERIES, 0.3, 7.0, 60.0, -2.0]
+)
 def test_both_differences_have_all_their_digits(z: float) -> None:
     with mpmath.workdps(40):
         x = mpmath.mpf(z)

@@ -141,5 +141,5 @@ def test_a_contact_beside_one_in_force_is_held_until_point_or_normal_could_have_
 @pytest.mark.parametrize("tau", [2.0, 2e-3])
 def test_no_wait_is_shorter_than_the_rounding_of_time(tau: float) -> None:
     assert held(-1.0, 0.0, wait=0.25, tau=tau) == 0.25
-    assert held(-1.0, 0.0, wait=1e-30, tau=tau) == pytest.approx(4e-16 * tau)
+    assert held(-1.0, 0.0, wait=1e-30, tau=tau) == pytest.approx(4e-16 * tau, abs=0.0)
     assert held(-1.0, 0.0, wait=0.0, tau=tau) == 0.0

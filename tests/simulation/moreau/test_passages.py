@@ -35,10 +35,11 @@ def kept(place: float, speed: float, bend: float, carrier: bool = False) -> tupl
 
 @pytest.mark.parametrize("seed", range(40))
 @pytest.mark.parametrize("carrier", [False, True])
-def test_turns_and_passages_are_those_of_the_parabola(seed: int, carrier: bool) -> None:
+@pytest.mark.parametrize("unit", [1.0, 1e-4])
+def test_turns_and_passages_are_those_of_the_parabola(seed: int, carrier: bool, unit: float) -> None:
     """A passage counts where the ends lie on either side of the rest position, towards which the spring moves at first."""
     place, speed, bend = np.random.default_rng(seed).uniform([-0.5, 0.1, -9.0], [1.0, 2.0, 9.0])
-    speed *= -np.sign(place - REST)
+    place, speed, bend = REST + unit * (place - REST), -unit * speed * np.sign(place - REST), unit * bend
     way = np.polynomial.Polynomial([place - REST, speed, 0.5 * bend])
     expected = []
     turn = -speed / bend
@@ -50,7 +51,7 @@ def test_turns_and_passages_are_those_of_the_parabola(seed: int, carrier: bool) 
     found, sides = kept(place, speed, bend, carrier)
     assert [kind for kind, _, _ in found] == [kind for kind, _, _ in expected]
     for one, other in zip(found, expected, strict=True):
-        assert one == pytest.approx(other, abs=1e-9)
+        assert one == pytest.approx(other, rel=1e-8, abs=1e-9 * unit)
     assert sides == [np.sign(way.deriv()(STEP)), np.sign(way(STEP))]
 
 
