@@ -56,3 +56,10 @@ def test_depth_means_nothing_between_flat_faces() -> None:
 
 def test_a_free_pair_of_directions_is_no_single_way() -> None:
     assert not asked(has_one_way, 0.0, w_N=[1.0, 0.5], w_T=[-0.5, 1.0])
+
+
+@pytest.mark.parametrize("length", [1e-3, 1.0, 1e3])
+def test_how_far_either_force_reaches_does_not_matter(length: float) -> None:
+    """Parallel directions are one, others two, though one has a thousand times the lever arms of the other."""
+    assert asked(has_one_way, 0.0, w_N=[1.0, 0.5], w_T=[-2.0 * length, -length])
+    assert not asked(has_one_way, 0.0, w_N=[1.0, 0.5], w_T=[-0.5 * length, length])
