@@ -1,10 +1,10 @@
 """Do the tests notice small faults in the code?
 
 Faults are planted one at a time at random places (a seed says which), and the tests that reach the place are run until one
-fails (see reached.py). Those of the kernels go into a copy of the project, which compiles them, and all tests of that part
-are run; in the area "plain" kernels run as the plain Python that they are, by those tests that are quick even so: nothing
-need be compiled. What none of the
-tests notices is listed; what was judged harmless stands in scripts/checks/faults_judged.csv with the reason.
+fails (see reached.py). In the area "plain" kernels run as the plain Python that they are, by those tests that are quick even
+so: nothing need be compiled. In the area "kernels" what these miss goes into a copy of the project, which compiles what depends
+on it: the recorded runs first, then all tests of that part, the cheapest files first. What none of the tests notices is listed;
+what was judged harmless stands in scripts/checks/faults_judged.csv with the reason.
 Ends with 1 where fewer than 95 % of all others were noticed.
 """
 
@@ -16,8 +16,6 @@ import json
 import math
 import os
 import random
-import shutil
-import subprocess
 import sys
 import tempfile
 import time
@@ -26,12 +24,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+from compiled_copy import CompiledCopy
 from faults import Fault, faults
-from reached import fails, function_of, load, recorded
+from reached import Reached, fails, function_of, load, recorded
 
 ROOT = Path(__file__).resolve().parents[2]
 JUDGED = ROOT / "scripts" / "checks" / "faults_judged.csv"
-COPIED = ("watchsim", "profiles", "tests", "scripts", "pyproject.toml", "README.md")
 ENOUGH = 0.95
 PATIENCE = 5.0  # times what the tests take without a fault; an endless loop is noticed, too
 LEAST = 120.0  # s
@@ -101,49 +99,6 @@ class Planted:
         return not codes.isdisjoint(("", text.strip()))
 
 
-class Copy:
-    """A copy of the project in which faults are planted and tests are run."""
-
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
-        for name in COPIED:
-            source = ROOT / name
-            if source.is_dir():
-                shutil.copytree(source, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
-            else:
-                shutil.copy(source, folder / name)
-
-    def seconds(self, tests: tuple[str, ...], limit: float | None) -> tuple[bool, float]:
-        """Do the tests pass, and how long did they take? Too long is a failure."""
-        command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *tests]
-        environment = os.environ | {
-            **{"PYTHONPATH": str(self.folder), "PYTHONDONTWRITEBYTECODE": "1"},
-            "WATCHSIM_CACHE": str(self.folder / "cache"),
-        }
-        start = time.monotonic()
-        try:
-            run = subprocess.run(command, cwd=self.folder, env=environment, capture_output=True, timeout=limit, check=False)
-            passed = run.returncode == 0
-        except subprocess.TimeoutExpired:
-            passed = False
-        return passed, time.monotonic() - start
-
-    def notices(self, planted: Planted, tests: tuple[str, ...], limit: float) -> bool:
-        path = self.folder / "watchsim" / planted.file
-        whole = path.read_bytes()
-        kept = set(self._machine_code())
-        try:
-            path.write_text(planted.fault.source, encoding="utf-8")
-            return not self.seconds(tests, limit)[0]
-        finally:
-            path.write_bytes(whole)
-            for folder in set(self._machine_code()) - kept:
-                shutil.rmtree(folder, ignore_errors=True)
-
-    def _machine_code(self) -> list[Path]:
-        return list(self.folder.glob("cache/**/kernels/*"))
-
-
 def chosen(area: str, count: int, seed: int) -> list[Planted]:
     """A random sample of all faults of an area, every file with the chance of its size."""
     found = []
@@ -171,12 +126,15 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--minutes", type=float, default=600.0, help="begin no fault after that time (default %(default)s)")
     parser.add_argument("--output", type=Path, help="where to write all faults as JSON lines")
+    parser.add_argument("--seconds", type=float, default=LONGEST, help="of tests for one fault (default %(default)s)")
+    parser.add_argument("--longest", type=float, default=LONGEST_PLAIN, help="s, of one test in plain Python (%(default)s)")
+    parser.add_argument("--reached", type=Path, help="folder in which is kept which tests reach what, for the next sample")
     given = parser.parse_args()
     begun, known = time.monotonic(), judged()
     tally: Counter[tuple[str, str]] = Counter()
     with tempfile.TemporaryDirectory(prefix="faults-") as scratch:
         for area in given.areas:
-            try_out = compiled(Path(scratch), area) if area == COMPILED else interpreted(area)
+            try_out = tiered(Path(scratch), given) if area == COMPILED else interpreted(area, given)
             for planted in chosen(area, given.count, given.seed):
                 if time.monotonic() - begun > 60.0 * given.minutes:
                     break
@@ -188,21 +146,21 @@ def main() -> int:
     return report(tally, given.areas)
 
 
-def compiled(scratch: Path, area: str) -> Callable[[Planted], bool]:
-    """What tells whether a fault of the kernels is noticed."""
-    copy, tests = Copy(scratch / "project"), AREAS[area][1]
-    passed, seconds = copy.seconds(tests, None)
-    if not passed:
-        raise SystemExit(f"{area}: the tests fail without any fault")
-    print(f"{area}: {seconds:.0f} s without a fault", flush=True)
-    return lambda planted: copy.notices(planted, tests, max(LEAST, PATIENCE * seconds))
+def tiered(scratch: Path, given: argparse.Namespace) -> Callable[[Planted], bool]:
+    """What tells whether a fault of the kernels is noticed, by quick tests in plain Python or else by compiled ones."""
+    plain = interpreted(PLAIN, given)
+    copy = CompiledCopy(scratch / "project")
+    tests, seconds = copy.cheapest_first(AREAS[COMPILED][1])
+    print(f"{COMPILED}: {seconds:.0f} s without a fault", flush=True)
+    limit = max(LEAST, PATIENCE * seconds)
+    return lambda planted: plain(planted) or copy.notices(planted.file, planted.fault.source, tests, limit)
 
 
-def interpreted(area: str) -> Callable[[Planted], bool]:
+def interpreted(area: str, given: argparse.Namespace) -> Callable[[Planted], bool]:
     """What tells whether a fault of what Python runs is noticed."""
     os.environ["NUMBA_DISABLE_JIT"] = str(int(area == PLAIN))
     load()
-    reached = recorded(AREAS[area][1], LONGEST_PLAIN if area == PLAIN else math.inf)
+    reached = _reached(area, given)
     whole = sum(reached.seconds.values())
     print(f"{area}: {len(reached.seconds)} tests, {whole:.0f} s without a fault", flush=True)
 
@@ -212,12 +170,23 @@ def interpreted(area: str) -> Callable[[Planted], bool]:
         seconds = 0.0
         for name in reached.tests(planted.file, function_of(source, planted.fault.line)):
             seconds += reached.seconds[name]
-            if tests and seconds > LONGEST:
+            if tests and seconds > given.seconds:
                 break
             tests.append(name)
-        return bool(tests) and fails(tests, planted.file, planted.fault.source, max(LEAST, PATIENCE * LONGEST))
+        return bool(tests) and fails(tests, planted.file, planted.fault.source, max(LEAST, PATIENCE * given.seconds))
 
     return notices
+
+
+def _reached(area: str, given: argparse.Namespace) -> Reached:
+    """Which tests reach what, from the last time or by running them all."""
+    path = given.reached / f"{area}.json" if given.reached else None
+    if path is not None and path.is_file():
+        return Reached.of(path.read_text(encoding="utf-8"))
+    reached = recorded(AREAS[area][1], given.longest if area == PLAIN else math.inf)
+    if path is not None:
+        path.write_text(reached.text(), encoding="utf-8")
+    return reached
 
 
 def tell(planted: Planted, verdict: str, output: Path | None) -> None:

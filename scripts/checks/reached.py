@@ -45,27 +45,48 @@ class Reached:
     def tests(self, file: str, function: int) -> list[str]:
         """The tests that reach a function, quickest first; of what is done at import, those that reach anything of the file.
 
-        So they are for a function that no test reaches: it may be called while tests are collected.
-
-        Tests that import the file themselves come before these: they may look at its constants and call nothing.
+        Or of files that import from it: nothing of a table of constants is called. So they are for a function that no test reaches:
+        it may be called while tests are collected. Tests that import the file themselves come before these: they may look at its
+        constants and call nothing.
         """
         whole = function == MODULE
-        own = _importers(file) if whole else frozenset()
+        own, users = (_importers(file), _users(file)) if whole else (frozenset(), frozenset())
         hit = [
             name for name, called in self.called.items()
-            if (file, function) in called or (whole and (name.split("::")[0] in own or any(one == file for one, _ in called)))
+            if (file, function) in called
+            or (whole and (name.split("::")[0] in own or any(one == file or one in users for one, _ in called)))
         ]  # fmt: skip
         if not hit and not whole:
             return self.tests(file, MODULE)
         return sorted(hit, key=lambda name: (name.split("::")[0] not in own, self.seconds[name]))
 
+    def text(self) -> str:
+        """As JSON."""
+        return json.dumps({"seconds": self.seconds, "called": {name: sorted(hits) for name, hits in self.called.items()}})
+
+    @classmethod
+    def of(cls, text: str) -> Reached:
+        """What `text` has written."""
+        loaded = json.loads(text)
+        return cls(loaded["seconds"], {name: {(file, line) for file, line in hits} for name, hits in loaded["called"].items()})
+
 
 @cache
 def _importers(file: str) -> frozenset[str]:
     """The test files that name the module of a file."""
+    return _naming(file, ROOT / "tests", "test_*.py", ROOT)
+
+
+@cache
+def _users(file: str) -> frozenset[str]:
+    """The files of the package that import from a file."""
+    return _naming(file, Path(PACKAGE), "*.py", Path(PACKAGE))
+
+
+def _naming(file: str, folder: Path, pattern: str, base: Path) -> frozenset[str]:
     module = f"watchsim.{file.removesuffix('.py').replace('/', '.')} import"
-    found = (path for path in (ROOT / "tests").rglob("test_*.py") if module in path.read_text(encoding="utf-8"))
-    return frozenset(path.relative_to(ROOT).as_posix() for path in found)
+    found = (path for path in folder.rglob(pattern) if module in path.read_text(encoding="utf-8"))
+    return frozenset(path.relative_to(base).as_posix() for path in found)
 
 
 class _Recorder:
@@ -136,13 +157,12 @@ def recorded(tests: Sequence[str], longest: float = math.inf) -> Reached:
     def work() -> tuple[int, str]:
         status = _pytest(list(tests), [recorder])
         passed = status == 0 or (math.isfinite(longest) and status == pytest.ExitCode.TESTS_FAILED)
-        return 0 if passed else status, _dumped(recorder.reached)
+        return 0 if passed else status, recorder.reached.text()
 
     status, said = _in_a_copy(work, None)
     if status != 0:
         raise SystemExit(f"the tests fail without any fault: {said[-2000:]}")
-    loaded = json.loads(said)
-    return Reached(loaded["seconds"], {name: {(file, line) for file, line in hits} for name, hits in loaded["called"].items()})
+    return Reached.of(said)
 
 
 def fails(tests: Sequence[str], file: str, source: str, limit: float) -> bool:
@@ -190,10 +210,6 @@ class _Faulty(importlib.machinery.SourceFileLoader):
 def _pytest(tests: list[str], plugins: list[object]) -> int:
     os.chdir(ROOT)
     return int(pytest.main([*OPTIONS, *tests], plugins=plugins))
-
-
-def _dumped(reached: Reached) -> str:
-    return json.dumps({"seconds": reached.seconds, "called": {name: sorted(hits) for name, hits in reached.called.items()}})
 
 
 def _in_a_copy(work: Any, limit: float | None) -> tuple[int, str]:

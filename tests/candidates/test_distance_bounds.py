@@ -43,3 +43,13 @@ def test_the_true_distances_lie_between_the_bounds(seed: int, sag: float) -> Non
     assert np.all(span[1] - high <= 2.0 * coarse.sag + 1e-12) and np.all(low - span[0] <= 2.0 * coarse.sag + 1e-6)
     wider = _away(coarse, coarse.points, 0.05)
     assert wider[1] - span[1] == pytest.approx(0.05) and wider[0] == pytest.approx(np.maximum(0.0, span[0] - 0.05), abs=0.05)
+
+
+@pytest.mark.parametrize("room", [0.0, 1e-5])
+def test_what_passes_through_the_axis_comes_as_near_as_nothing(room: float) -> None:
+    """Lines a metre long and a micrometre short through or past the origin, up to what they are widened by."""
+    lines = [Line(-0.3, -0.4, 0.6, 0.8), Line(-3e-7, 0.0, 7e-7, 0.0), Line(-1.0, 1e-5, 1.0, 1e-5), Line(-1.0, 2e-5, 1.0, 2e-5)]
+    rows = np.concatenate([features(Loop((line,), closed=False), 0, 1.0) for line in lines]).view(np.recarray)
+    drawn = chords(rows, 1e-6)
+    low = _away(drawn, drawn.points, room).low[rows.length > 0.0]
+    assert low == pytest.approx([0.0, 0.0, 1e-5 - room, 2e-5 - room], abs=1e-16) and np.all(low >= 0.0)

@@ -186,3 +186,15 @@ def test_corner_on_corner_is_met_by_an_edge_first() -> None:
         real = rows[(rows["margin"] >= -1e-12)]
         if apart > 1e-10 and len(real) and real["g"].min() > 0.0:
             assert real["g"].min() >= apart - 1e-13
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.4, 1.9, -2.7])
+@pytest.mark.parametrize("far", [0.0, 30.0])
+def test_an_outline_that_lies_within_another_without_crossing_it_is_found_wherever_both_stand(angle: float, far: float) -> None:
+    """The depth is that of its edge deepest inside, which the placing of both together does not change."""
+    c, s = math.cos(angle), math.sin(angle)
+    # The small block lies 20 and 30 m from the origin of its own frame, which is turned by a quarter against the long one's.
+    x, y = 3.2 + 30.0, 0.5 - 20.0
+    there = (far + c * x - s * y, -far + s * x + c * y, angle + 0.5 * math.pi)
+    found = distance(block(8.0, 2.0), (far, -far, angle), block(0.5, 1.0).moved(0.0, (20.0, 30.0)), there)
+    assert found.value == pytest.approx(-0.75, abs=1e-9)  # of the edge at 0.25, below the long side at 1

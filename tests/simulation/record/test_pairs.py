@@ -81,3 +81,5 @@ def test_pairs_are_made_when_they_are_looked_at() -> None:
     assert len(pairs) == 2_000_000
     assert pairs[1_234_567] == Pair(0, *names[1234], *names[1567])
     assert list(islice(pairs, 2)) == [Pair(0, *names[0], *names[1000]), Pair(0, *names[0], *names[1001])]
+    several = list(islice(pairs, 10_000))  # more than are made at a time
+    assert [(pair.index_a, pair.index_b) for pair in several] == [(k // 1000, 1000 + k % 1000) for k in range(10_000)]

@@ -1,0 +1,92 @@
+"""Do compiled tests notice a fault, without everything being compiled anew?"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import time
+import xml.etree.ElementTree as ET
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+COPIED = ("watchsim", "profiles", "tests", "scripts", "pyproject.toml", "README.md")
+FIRST = "tests/simulation/recorded"  # many short runs
+
+
+class CompiledCopy:
+    """A copy of the project in which faults are planted and tests are run."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        for name in COPIED:
+            source = ROOT / name
+            if source.is_dir():
+                shutil.copytree(source, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
+            else:
+                shutil.copy(source, folder / name)
+
+    def seconds(self, tests: Sequence[str], limit: float | None, *options: str) -> tuple[bool, float]:
+        """Do the tests pass, and how long did they take? Too long is a failure."""
+        start = time.monotonic()
+        try:
+            command = ["-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *options, *tests]
+            passed = self._python(command, limit).returncode == 0
+        except subprocess.TimeoutExpired:
+            passed = False
+        return passed, time.monotonic() - start
+
+    def cheapest_first(self, tests: Sequence[str]) -> tuple[list[str], float]:
+        """The files of these tests, the recorded runs first and then by the time they take, which all are asked for once."""
+        report = self.folder / "times.xml"
+        passed, seconds = self.seconds(tests, None, f"--junitxml={report}")
+        if not passed:
+            raise SystemExit("the tests fail without any fault")
+        cost: Counter[str] = Counter()
+        for case in ET.parse(report).iter("testcase"):
+            cost[_file_of(self.folder, case.get("classname", ""))] += int(1e6 * float(case.get("time", 0.0)))
+        return sorted(cost, key=lambda file: (not file.startswith(FIRST), cost[file])), seconds
+
+    def notices(self, file: str, source: str, tests: Sequence[str], limit: float) -> bool:
+        """Does one of the tests fail with that text in place of the file? Machine code that does not depend on it is kept."""
+        path = self.folder / "watchsim" / file
+        whole, stat, key = path.read_bytes(), path.stat(), self.key()
+        kept = set(self._machine_code())
+        try:
+            path.write_text(source, encoding="utf-8")
+            self.key(key, file)
+            first, others = ([one for one in tests if one.startswith(FIRST) is so] for so in (True, False))
+            return not all(self.seconds(some, limit)[0] for some in (first, others) if some)
+        finally:
+            path.write_bytes(whole)
+            os.utime(path, ns=(stat.st_atime_ns, stat.st_mtime_ns))  # numba asks whether a file is as old as its machine code
+            for folder in set(self._machine_code()) - kept:
+                shutil.rmtree(folder, ignore_errors=True)
+
+    def key(self, before: str = "", changed: str = "") -> str:
+        """The key of the machine code of the package as it is, to which is handed on what a change has left as it was."""
+        command = [str(self.folder / "scripts" / "checks" / "kept_code.py"), *([before, changed] if before else [])]
+        return self._python(command, None).stdout.decode().strip()
+
+    def _python(self, command: list[str], limit: float | None) -> subprocess.CompletedProcess[bytes]:
+        environment = os.environ | {
+            **{"PYTHONPATH": str(self.folder), "PYTHONDONTWRITEBYTECODE": "1", "NUMBA_DISABLE_JIT": "0"},
+            "WATCHSIM_CACHE": str(self.folder / "cache"),
+        }
+        return subprocess.run(
+            [sys.executable, *command], cwd=self.folder, env=environment, capture_output=True, timeout=limit, check=False
+        )
+
+    def _machine_code(self) -> list[Path]:
+        return list(self.folder.glob("cache/**/kernels/*"))
+
+
+def _file_of(folder: Path, name: str) -> str:
+    """The test file of a dotted name, which may end with classes."""
+    parts = name.split(".")
+    while not (folder / "/".join(parts)).with_suffix(".py").is_file():
+        parts.pop()
+    return "/".join(parts) + ".py"
