@@ -45,9 +45,9 @@ class Reached:
     def tests(self, file: str, function: int) -> list[str]:
         """The tests that reach a function, quickest first; of what is done at import, those that reach anything of the file.
 
-        Or of files that import from it: nothing of a table of constants is called. So they are for a function that no test reaches:
-        it may be called while tests are collected. Tests that import the file themselves come before these: they may look at its
-        constants and call nothing.
+        Or of files that import from it: nothing of a table of constants is called. So they are for a function that no test
+        reaches: it may be called while tests are collected. Tests that import the file themselves come before these: they may
+        look at its constants and call nothing.
         """
         whole = function == MODULE
         own, users = (_importers(file), _users(file)) if whole else (frozenset(), frozenset())

@@ -36,10 +36,14 @@ def kept(place: float, speed: float, bend: float, carrier: bool = False) -> tupl
 @pytest.mark.parametrize("seed", range(40))
 @pytest.mark.parametrize("carrier", [False, True])
 @pytest.mark.parametrize("unit", [1.0, 1e-4])
-def test_turns_and_passages_are_those_of_the_parabola(seed: int, carrier: bool, unit: float) -> None:
-    """A passage counts where the ends lie on either side of the rest position, towards which the spring moves at first."""
+@pytest.mark.parametrize("towards", [True, False])
+def test_turns_and_passages_are_those_of_the_parabola(seed: int, carrier: bool, unit: float, towards: bool) -> None:
+    """A passage counts where the ends lie on either side of the rest position; away from it the spring turns before."""
     place, speed, bend = np.random.default_rng(seed).uniform([-0.5, 0.1, -9.0], [1.0, 2.0, 9.0])
-    place, speed, bend = REST + unit * (place - REST), -unit * speed * np.sign(place - REST), unit * bend
+    speed *= np.sign(REST - place) if towards else np.sign(place - REST)
+    if not towards:  # such that it comes back within the step
+        bend = -np.sign(speed) * (8.0 * (abs(place - REST) + abs(speed) * STEP) / STEP**2 + abs(bend))
+    place, speed, bend = REST + unit * (place - REST), unit * speed, unit * bend
     way = np.polynomial.Polynomial([place - REST, speed, 0.5 * bend])
     expected = []
     turn = -speed / bend

@@ -64,8 +64,10 @@ def _keep_of(model, state, h, spring, ends, record):
     way, side = before - rest, sign(after - rest)
     if side != 0 and side != state.side_q[i]:
         if state.side_q[i] != 0:
-            root = math.sqrt(max(0.0, fast * fast - 2.0 * bend * way))
-            tau = min(h, max(0.0, -2.0 * way / (fast + math.copysign(root, fast))))
+            doubled = fast + math.copysign(math.sqrt(max(0.0, fast * fast - 2.0 * bend * way)), fast)
+            # Towards the rest position it is passed at the first root; away from it, after the turn, at the second.
+            tau = -doubled / bend if way * fast > 0.0 else -2.0 * way / doubled
+            tau = min(h, max(0.0, tau))
             state.clock.time = start + tau
             keep_event(state, record, EventKind.CROSS, -1, body, fast + bend * tau)
         state.side_q[i] = side
