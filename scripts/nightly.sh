@@ -26,7 +26,7 @@ PATH=$PWD/$environment/bin:$PATH
 step "all tests" pytest -n auto --dist worksteal -m "slow or not slow" --hypothesis-profile=nightly --durations=20 -rs
 
 step "small faults planted in the code" \
-    python scripts/checks/plant_faults.py --count 60 --minutes 240 --output "$scratch/faults.jsonl"
+    python scripts/planted/plant_faults.py --count 60 --minutes 240 --output "$scratch/faults.jsonl"
 
 # numba reads past the end of an array without a word unless asked; machine code with the checks in it is kept apart.
 step "kernels with index checks" env NUMBA_BOUNDSCHECK=1 WATCHSIM_CACHE="$scratch/checked" \

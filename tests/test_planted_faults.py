@@ -11,7 +11,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 if not (ROOT / "scripts").is_dir():
     pytest.skip("the scripts are not here", allow_module_level=True)
-sys.path.insert(0, str(ROOT / "scripts" / "checks"))
+sys.path.insert(0, str(ROOT / "scripts" / "planted"))
 
 from faults import faults  # noqa: E402
 

@@ -4,7 +4,7 @@ Faults are planted one at a time at random places (a seed says which), and the t
 fails (see reached.py). In the area "plain" kernels run as the plain Python that they are, by those tests that are quick even
 so: nothing need be compiled. In the area "kernels" what these miss goes into a copy of the project, which compiles what depends
 on it: the recorded runs first, then all tests of that part, the cheapest files first. What none of the tests notices is listed;
-what was judged harmless stands in scripts/checks/faults_judged.csv with the reason.
+what was judged harmless stands in scripts/planted/faults_judged.csv with the reason.
 Ends with 1 where fewer than 95 % of all others were noticed.
 """
 
@@ -29,7 +29,7 @@ from faults import Fault, faults
 from reached import Reached, fails, function_of, load, recorded
 
 ROOT = Path(__file__).resolve().parents[2]
-JUDGED = ROOT / "scripts" / "checks" / "faults_judged.csv"
+JUDGED = ROOT / "scripts" / "planted" / "faults_judged.csv"
 ENOUGH = 0.95
 PATIENCE = 5.0  # times what the tests take without a fault; an endless loop is noticed, too
 LEAST = 120.0  # s

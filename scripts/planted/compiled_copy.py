@@ -68,7 +68,7 @@ class CompiledCopy:
 
     def key(self, before: str = "", changed: str = "") -> str:
         """The key of the machine code of the package as it is, to which is handed on what a change has left as it was."""
-        command = [str(self.folder / "scripts" / "checks" / "kept_code.py"), *([before, changed] if before else [])]
+        command = [str(self.folder / "scripts" / "planted" / "kept_code.py"), *([before, changed] if before else [])]
         return self._python(command, None).stdout.decode().strip()
 
     def _python(self, command: list[str], limit: float | None) -> subprocess.CompletedProcess[bytes]:

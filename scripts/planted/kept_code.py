@@ -8,9 +8,9 @@ are not handed on.
 
 from __future__ import annotations
 
+import argparse
 import ast
 import shutil
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -43,11 +43,17 @@ def hand_on(before: Path, after: Path, changed: Path) -> None:
             shutil.copy2(path, after / path.parent.name / path.name)
 
 
-if __name__ == "__main__":
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("key", nargs="?", help="of the sources before the change")
+    parser.add_argument("file", nargs="?", type=Path, help="what has changed, its path in the package")
+    given = parser.parse_args()
     now = cache_folder()
     assert now is not None
-    if sys.argv[1:]:
-        key, file = sys.argv[1:]
-        if now.name != key:
-            hand_on(now.parent / key, now, PACKAGE / file)
+    if given.key and given.file and now.name != given.key:
+        hand_on(now.parent / given.key, now, PACKAGE / given.file)
     print(now.name)
+
+
+if __name__ == "__main__":
+    main()
