@@ -86,6 +86,24 @@ def test_a_carrier_weighs_what_it_carries(tmp_path) -> None:
     assert row.weight_x[0] == row.weight_y[0] == 0.0
 
 
+def test_a_load_whose_weight_lies_off_its_origin_counts_about_its_centre_of_mass() -> None:
+    """Two points of mass, joined and turned in any way, against the sum over the points."""
+    points, masses = np.array([[1.2e-3, -0.4e-3], [0.3e-3, 2.0e-3]]), np.array([3e-6, 5e-6])
+    cx, cy = masses @ points / masses.sum()
+    about_own_origin = float(masses @ (points**2).sum(axis=1))
+    load_ = Body(
+        "load", "fixed", (4e-3, -1e-3), 0.7, mass=8e-6, inertia=about_own_origin, centre_of_mass=(cx, cy), on="carriage"
+    )
+    carriage = Body("carriage", "pivot", (1e-3, 2e-3), 0.5, mass=1e-6, inertia=2e-10)
+    c, s = math.cos(0.7), math.sin(0.7)
+    placed = points @ np.array([[c, s], [-s, c]]) + [4e-3, -1e-3]
+    bodies = (load_, carriage)
+    weighed = weigh(bodies, rides(bodies))[1]
+    assert weighed.mass == pytest.approx(9e-6)
+    assert weighed.moment == pytest.approx(tuple(masses @ placed))
+    assert weighed.inertia == pytest.approx(2e-10 + float(masses @ (placed**2).sum(axis=1)), rel=1e-12)
+
+
 def test_fixed_carriers_only_move_the_start(tmp_path) -> None:
     """On a plate that cannot move, nothing is a joint; rests and angles are told against the plate all the same."""
     text = CARRIAGE.replace('velocity = "10 °/s"\ninertia = "30 mg·cm²"', 'motion = "fixed"')
