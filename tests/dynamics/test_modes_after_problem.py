@@ -1,4 +1,4 @@
-"""What does a contact do next, from the acceleration of its slip and the end of the friction cone at which the problem has it?"""
+"""What does a contact do next, from the acceleration of its slip and the end of the cone at which its friction is?"""
 
 from __future__ import annotations
 
