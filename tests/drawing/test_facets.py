@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from itertools import pairwise
 
 import dxf_text as d
 import numpy as np
@@ -126,3 +127,25 @@ def test_a_piece_without_length_hides_the_curvature_at_its_two_ends_only() -> No
     found = curvatures(ways)
     assert np.flatnonzero(np.isnan(found)).tolist() == [9, 10]
     assert np.delete(found, [9, 10]) == pytest.approx(500.0, rel=1e-9)
+
+
+def row_of_radii(radii: list[float]) -> Loop:
+    """Pieces of 0.1 rad each, open: at corner k they lie on a circle of radius k (m), which turns left."""
+    points = [0.0j, complex(0.1 * radii[0])]
+    for radius in radii:
+        way = points[-1] - points[-2]
+        half = 0.5 * abs(way)
+        centre = points[-2] + 0.5 * way + 1j * way / abs(way) * math.sqrt(radius * radius - half * half)
+        points.append(centre + (points[-1] - centre) * complex(math.cos(0.1), math.sin(0.1)))
+    edges = [Line(a.real, a.imag, b.real, b.imag) for a, b in pairwise(points)]
+    return Loop(tuple(edges), "0", closed=False)
+
+
+@pytest.mark.parametrize(("difference", "is_arc"), [(0.0, True), (0.019, True), (0.022, False)])
+@pytest.mark.parametrize("order", [1, -1])
+def test_radii_within_two_percent_make_an_arc(difference: float, is_arc: bool, order: int) -> None:
+    radii = [2e-3 * (1.0 - difference * k / 10) for k in range(11)][::order]
+    (finding,) = facets([row_of_radii(radii)])
+    curve = "an arc of radius" if is_arc else "a curve"
+    assert f"12 straight pieces stand for {curve} " in finding.message
+    assert ("SPLINE" in finding.fix) != is_arc

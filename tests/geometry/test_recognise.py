@@ -40,7 +40,7 @@ def test_full_circle_of_any_number_of_spans(spans: int, decimals: int) -> None:
     )
 
 
-@pytest.mark.parametrize("sweep", [0.3, 1.0, 3.5, 6.0])
+@pytest.mark.parametrize("sweep", [0.3, 1.0, 3.5, 6.0, -0.3, -3.5])
 def test_rational_arcs(sweep: float) -> None:
     (part,) = parts(rational_arc(2e-3, sweep, 3), 1e-7)
     assert isinstance(part.edge, Arc) and part.edge.sweep == pytest.approx(sweep, rel=1e-9)

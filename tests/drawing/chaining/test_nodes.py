@@ -46,3 +46,32 @@ def test_a_join_names_the_strokes_whose_ends_it_joins() -> None:
     assert sorted(join.strokes) == [3, 4]
     assert join.gap == pytest.approx(2e-6, rel=1e-6)
     assert join.at == pytest.approx((4e-3, 1e-3), abs=3e-6)
+
+
+NM = 1e-9
+
+
+def nodes_of(*lines: Line) -> Nodes:
+    return Nodes([Stroke(line, "A", "LINE", k) for k, line in enumerate(lines)])
+
+
+@pytest.mark.parametrize(("gap", "one"), [(0.9, True), (1.1, False), (2.5, False)])
+def test_ends_are_one_node_up_to_a_nanometre(gap: float, one: bool) -> None:
+    """Two lines that begin close to each other, in one cell of the grid, and end far apart."""
+    nodes = nodes_of(Line(0.5 * NM, 0.5 * NM, -1e-3, 0.0), Line((0.5 + gap) * NM, 0.5 * NM, 1e-3, 0.0))
+    assert (nodes.of(0)[0] == nodes.of(1)[0]) == one
+
+
+@pytest.mark.parametrize(("x", "nearest"), [(0.9, 0), (1.4, 1)])
+def test_an_end_goes_to_the_nearest_of_two_nodes(x: float, nearest: int) -> None:
+    """Nodes at 0.4 and 1.8 nm, and an end between them, within a nanometre of both."""
+    beginnings = [Line(u * NM, 0.5 * NM, way * 1e-3, 1e-3) for u, way in ((0.4, -1.0), (1.8, 1.0), (x, 2.0))]
+    nodes = nodes_of(*beginnings)
+    assert nodes.of(0)[0] != nodes.of(1)[0]
+    assert nodes.of(2)[0] == nodes.of(nearest)[0]
+
+
+@pytest.mark.parametrize("length", [0.2, 0.5, 0.9])
+def test_an_edge_shorter_than_a_nanometre_keeps_its_two_ends(length: float) -> None:
+    nodes = nodes_of(Line(0.5 * NM, 0.5 * NM, (0.5 + length) * NM, 0.5 * NM))
+    assert nodes.of(0) == (0, 1)
