@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scene.made_gears import read
 
 import watchsim as ws
+from watchsim.analysis.mesh_forces import Loads, mesh_forces
 from watchsim.scene.errors import SceneError
 
 LEAN = math.tan(math.radians(20.0))
@@ -56,6 +58,26 @@ def test_an_idler_round_a_corner(tmp_path: Path) -> None:
     # The first turns counter-clockwise: it pushes the idler up, and away to the right; the last, above, to the left, and down.
     on_idler = np.array([push * lean, push]) + np.array([-push, -push * lean])
     assert found["idler"] == pytest.approx(-on_idler, abs=1e-9)
+
+
+@pytest.mark.parametrize("noted_on", ["rack of the first", "rack of the second"])
+def test_what_the_racks_press_is_what_the_teeth_press(tmp_path: Path, noted_on: str) -> None:
+    """Pitch radii 6 and 4 mm, so P is at (6 mm, 0). The first's rack goes by -6 mm per radian: f along it is the torque -6 mm f
+    on the first. The second's goes by 4 mm and feels -f: -4 mm f. Both are moments of f upwards on the second's teeth at P and
+    of -f on the first's; the radial force parts them. On which of the racks the force is noted does not matter."""
+    scene = scene_of(tmp_path, {"a": at(0), "b": at(10)}, [("a", "b", -1.5, 'backlash = "0.2°"')], {})
+    f = np.array([0.3, -0.3, 0.7])
+    first = noted_on == "rack of the first"
+    contacts = SimpleNamespace(group=np.array([0]), a=np.array([0 if first else 1]))
+    racks = SimpleNamespace(body=np.array([2, 3]))  # numbers 2 and 3, after the scene's two bodies
+    compiled = SimpleNamespace(model=SimpleNamespace(contacts=contacts, primitives=racks, bodies=[None] * 4), size=1.0)
+    pressed = np.stack((f if first else -f, np.zeros(3)), axis=1)[:, None]
+    loads = Loads(np.array([0]), np.zeros((3, 1, 2)), pressed)
+    found = {one.body: one.force for one in mesh_forces(scene, compiled, None, loads)}
+    on_second = np.stack((LEAN * np.abs(f), f), axis=1)
+    assert sorted(found) == [0, 1]
+    assert found[1] == pytest.approx(on_second, rel=1e-12)
+    assert found[0] == pytest.approx(-on_second, rel=1e-12)
 
 
 @pytest.mark.parametrize("ratio", [-0.5, -3.0, 3.0, 0.25])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from dataclasses import replace
 
@@ -9,6 +10,7 @@ import pytest
 from analysis.made_beats import lever_scene, polygon, star
 from analysis.made_faults import swiss, turned_over
 
+from watchsim.analysis.timing.teeth import pitch
 from watchsim.analysis.verdicts.tooth_lean import teeth
 from watchsim.profiles_path import profiles_dir
 from watchsim.scene.file.load import load
@@ -52,6 +54,14 @@ def test_wheels_of_the_profiles_turn_as_their_teeth_lean():
 
 def test_a_plain_disc_has_no_teeth():
     assert teeth(with_rim(polygon([1e-3 * complex(math.cos(t), math.sin(t)) for t in (0.0, 2.0, 4.5)])), "wheel") is None
+
+
+def test_teeth_too_shallow_for_an_inner_half_lean_neither_way():
+    """Those of a polygon, its corners, are 1 - cos 12° = 0.022 of its rim deep; the inner half begins at 0.4 · 24° / 2 = 0.084."""
+    corners = [2e-3 * cmath.rect(1.0, k * math.tau / 15) for k in range(15)]
+    scene = with_rim(polygon(corners))
+    assert pitch(scene, "wheel") == pytest.approx(math.tau / 15, rel=1e-12)
+    assert teeth(scene, "wheel") is None
 
 
 def test_teeth_are_counted_anticlockwise_from_the_x_axis():

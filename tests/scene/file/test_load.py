@@ -172,6 +172,16 @@ def test_free_bodies_are_about_their_centre_of_mass(desk, good):
     assert wheel.centre_of_mass == pytest.approx((0.0, 0.0), abs=1e-15)
 
 
+def test_a_free_line_is_about_the_origin_it_is_drawn_from(desk):
+    """A line has no area, and so no centre: with mass and inertia written, nothing moves it from where its points are."""
+    disc = INCLINE[INCLINE.index('circle = "50 mm"') : INCLINE.index("[bodies.plane]")]
+    line = 'line = [["-2 mm", "5 mm"], ["7 mm", "3 mm"]]\nmotion = "free"\nmass = "1 g"\ninertia = "1 g·cm²"\n'
+    rod = load(desk.scene(INCLINE.replace(disc, line))).body("disc")
+    (edge,) = rod.loops[0].edges
+    assert (edge.x0, edge.y0, edge.x1, edge.y1) == pytest.approx((-2e-3, 5e-3, 7e-3, 3e-3), rel=1e-12)
+    assert (rod.position, rod.centre_of_mass) == ((0.0, 0.0), (0.0, 0.0))
+
+
 def test_layer_names_may_hold_points(desk, good):
     desk.put(drawing("lever.dxf", [square(0.002, layer="LEVER_z-1.20")]))
     text = good.replace('polygon = [["-1 mm", "0 mm"], ["1 mm", "0 mm"], ["0 mm", "3 mm"]]', 'drawing = "lever.dxf"')
