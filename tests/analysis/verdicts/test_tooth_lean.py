@@ -57,7 +57,7 @@ def test_a_plain_disc_has_no_teeth():
 
 
 def test_teeth_too_shallow_for_an_inner_half_lean_neither_way():
-    """Those of a polygon, its corners, are 1 - cos 12° = 0.022 of its rim deep; the inner half begins at 0.4 · 24° / 2."""
+    """Corners of a polygon are teeth, 1 - cos 12° = 0.022 of its rim deep; the inner half begins at 0.4 · 24° / 2 = 0.084."""
     corners = [2e-3 * cmath.rect(1.0, k * math.tau / 15) for k in range(15)]
     scene = with_rim(polygon(corners))
     assert pitch(scene, "wheel") == pytest.approx(math.tau / 15, rel=1e-12)
