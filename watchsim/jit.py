@@ -25,11 +25,11 @@ def kernel(function: Function) -> Function:
     Division by zero gives inf or nan as in numpy; no fast-math, which would make isnan(nan) False. Parts own no memory and
     count no references: the entry's caller holds all arrays.
     """
-    part: Any = Part(function)
-    return part if is_compiled() else function
+    lazy: Any = LazyKernel(function)
+    return lazy if is_compiled() else function
 
 
-class Part:
+class LazyKernel:
     """A kernel whose dispatcher is made when a compiler asks for its type: hardly ever, since entries are in the cache."""
 
     def __init__(self, function: Callable[..., Any]) -> None:
