@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import functools
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -23,11 +22,13 @@ from watchsim.commands.common.console import (
 )
 from watchsim.commands.common.output_place import secured_folder, swept_run
 from watchsim.commands.common.record_size import room_for
-from watchsim.commands.common.second_core import Begun, Meanwhile
+from watchsim.commands.common.second_core import Meanwhile
+from watchsim.commands.common.second_process import SecondProcess, second_process
 from watchsim.commands.common.write_run import Extras, goal_of, report_text, write
 from watchsim.simulation.methods import EVENT_DRIVEN, METHODS
 
 if TYPE_CHECKING:
+    from watchsim.results.tables import EventLines
     from watchsim.scene.scene import Scene
     from watchsim.simulation.record.trajectory import Trajectory
 
@@ -67,6 +68,11 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    with second_process(not args.no_plots) as second:
+        return _run(args, second)
+
+
+def _run(args: argparse.Namespace, second: SecondProcess | None) -> int:
     from watchsim.commands.common.inputs import load_scene
     from watchsim.mechanism.notes import notes
     from watchsim.results.write_results import check_folder
@@ -83,6 +89,8 @@ def run(args: argparse.Namespace) -> int:
     check_tolerance(args.tol)
     method, start = args.method or EVENT_DRIVEN, None
     folder = Path(args.output or args.resume or Path("results") / _name(scene))
+    if second is not None:
+        second.prepare(scene, folder, method, args.tol or scene.tolerance)
     # What is resumed is written whole, with what follows it: nothing is lost where it takes the old one's place.
     replace = args.force or (args.resume is not None and folder.resolve() == Path(args.resume).resolve())
     if args.resume:
@@ -109,10 +117,10 @@ def run(args: argparse.Namespace) -> int:
         say(f"Note: {note.message}. {note.fix}")
     extras = Extras(not args.no_plots, args.movie, args.gif, args.error_bars, args.profile, args.report)
     with stopping.keeping():
-        trajectory, begun = simulate_with_progress(
-            scene, duration, args.tol, folder, method=method, step=step, start=start, plots=extras.plots
+        trajectory, lines = simulate_with_progress(
+            scene, duration, args.tol, folder, method=method, step=step, start=start, second=second
         )
-        summary = write(trajectory, goal, extras, changed, begun)
+        summary = write(trajectory, goal, extras, changed, lines, second)
     if args.json:
         print_json(summary)
         for warning in summary["warnings"]:
@@ -131,37 +139,32 @@ def simulate_with_progress(
     method: str = EVENT_DRIVEN,
     step: float | None = None,
     start: Trajectory | None = None,
-    plots: bool = False,
-) -> tuple[Trajectory, Begun]:
+    second: SecondProcess | None = None,
+) -> tuple[Trajectory, EventLines | None]:
     """Simulate for results in `folder`, with a progress line on a terminal; a first run says that it compiles.
 
-    Also gives what was made ready meanwhile, of `plots` too where they are wanted.
+    Also gives its events as far as they were made into text meanwhile, if not by a `second` process, which is to be prepared.
     """
-    from watchsim.commands.common.run_pictures import empty_panels
     from watchsim.simulation.simulate import simulate
     from watchsim.storage.write import real
 
     announce_compile()
     beside = real(folder).parent
-    progress, meanwhile = (
-        Progress("simulated s:"),
-        Meanwhile(scene, beside, functools.partial(empty_panels, scene) if plots else None),
-    )
+    progress, meanwhile = Progress("simulated s:"), Meanwhile(scene, beside)
 
     def stepped(time: float, end: float) -> None:
         meanwhile.progress()
         progress(time, end)
 
-    follow = meanwhile.follow if start is None else None
-    begun = Begun()
+    follow = (second or meanwhile).follow if start is None else None
     try:
         run = simulate(
             scene, duration, tolerance, progress=stepped, method=method, step=step, start=start, stream=beside, follow=follow
         )
     finally:
-        begun = meanwhile.end()
+        lines = meanwhile.end()
         progress.close()
-    return run, begun
+    return run, lines
 
 
 def _earlier(folder: str, scene: Scene) -> Trajectory:

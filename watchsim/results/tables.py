@@ -13,7 +13,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from enum import Enum
 from itertools import chain, repeat
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -105,10 +105,14 @@ class EventLines:
         thread.shutdown(wait=False)
 
     def _finish(self, run: Trajectory) -> None:
+        os.fsync(self.rest(run).fileno())
+
+    def rest(self, run: Trajectory) -> IO[bytes]:
+        """Add what is missing of a run; the file that then holds all."""
         assert self._begun
         self.add(run.events[self.rows :])
         self._begun.flush()
-        os.fsync(self._begun.fileno())
+        return self._begun
 
     def write(self, run: Trajectory, path: Path) -> None:
         """Write the table of a run: what was begun, once it is settled, or anew where that failed."""

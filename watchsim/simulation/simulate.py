@@ -23,7 +23,7 @@ from watchsim.simulation.runner import Progress, Run, load_for
 from watchsim.tolerances import COARSEST_TOLERANCE, FINEST_TOLERANCE
 from watchsim.units import TIME, UnitError, parse
 
-Follow = Callable[[Sequence[Pair], NDArray[Any]], object]
+Follow = Callable[[Sequence[Pair], NDArray[Any], Sequence[NDArray[Any]]], object]
 
 
 def simulate(  # noqa: PLR0913 - options, by name
@@ -55,8 +55,8 @@ def simulate(  # noqa: PLR0913 - options, by name
     stream     a folder in whose file system rows and events are held where they would take more than some 50 MB of memory: in
                files without a name, which vanish with the last array of the trajectory that looks into them
 
-    follow     called as follow(pairs, events) with the events that are settled, in order, while the run goes on; the last ones
-               and what goes before `start` are in the trajectory only
+    follow     called as follow(pairs, events, rows) with the events and rows (t, q, u, a) that are settled, in order, while the
+               run goes on; the last ones and what goes before `start` are in the trajectory only
 
     KeyboardInterrupt ends the run and keeps what was simulated. A solver that cannot go on does not raise: see
     `Trajectory.stop`. ValueError for a bad argument, and for a `start` of another scene or other settings; SceneError where

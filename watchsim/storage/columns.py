@@ -90,8 +90,25 @@ def mapped(file: IO[bytes], rows: int, like: NDArray[Any]) -> NDArray[Any]:
     length = math.prod(shape) * like.dtype.itemsize
     if not length:
         return np.zeros(shape, like.dtype)
-    content = mmap.mmap(file.fileno(), length, access=mmap.ACCESS_READ)
-    return np.frombuffer(content, like.dtype).reshape(shape)
+    return np.frombuffer(Mapping.of(file, length), like.dtype).reshape(shape)
+
+
+class Mapping(mmap.mmap):
+    """The first bytes of a file, to be read."""
+
+    file: IO[bytes]
+
+    @classmethod
+    def of(cls, file: IO[bytes], length: int) -> Mapping:
+        """Of a file that is open as long as it is looked into."""
+        made = cls(file.fileno(), length, access=mmap.ACCESS_READ)
+        made.file = file
+        return made
+
+    def begins(self, array: NDArray[Any]) -> bool:
+        """True for an array that is the beginning of the file, row by row."""
+        start = np.frombuffer(self, np.uint8).__array_interface__["data"][0]
+        return bool(array.flags.c_contiguous and array.__array_interface__["data"][0] == start and array.nbytes <= len(self))
 
 
 def mapping(array: NDArray[Any]) -> mmap.mmap | None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -115,22 +116,34 @@ def each_stage(run: Trajectory, found: Beats | None = None, window: Sequence[flo
 
 def stages(run: Trajectory, found: Beats | None = None, window: Sequence[float] | None = None) -> Iterator[Stages]:
     """The same in columns: the rows of a long run are read a few beats at a time."""
-    parts, compiled = with_anchor(run.scene), compile_scene(run.scene)
-    if not (parts.wheel and parts.lever):
-        return
-    stones = StonesUnlocked(run, compiled, parts)
+    staged = Staging(run)
     for some in phase_columns(run, found, window):
-        if not len(some):
-            continue
-        told = some.rows
+        if len(some):
+            yield staged.of(some)
+
+
+class Staging:
+    """What makes stages of the phases of a run, in an escapement with a lever or an anchor."""
+
+    def __init__(self, run: Trajectory) -> None:
+        self._run, self._parts, self._compiled = run, with_anchor(run.scene), compile_scene(run.scene)
+
+    @cached_property
+    def _stones(self) -> StonesUnlocked:
+        return StonesUnlocked(self._run, self._compiled, self._parts)
+
+    def of(self, some: Phases) -> Stages:
+        """The stages of some beats in a row, at least one."""
+        run, told = self._run, some.rows
         first = max(0, int(np.searchsorted(run.t, told.start[0], side="left")) - 1)
         last = int(np.searchsorted(run.t, told.end[-1], side="right")) + 1
-        made = flows(run, compiled, slice(first, last))
+        made = flows(run, self._compiled, slice(first, last))
         begins = told.first
-        rested = np.array(stones.at(told.start[begins]), object)
+        rested = np.array(self._stones.at(told.start[begins]), object)
         pallets = np.repeat(rested, np.diff(np.append(begins, len(told)))).tolist()
-        yield _columns(run, parts, compiled, made, some, pallets)
+        columns = _columns(run, self._parts, self._compiled, made, some, pallets)
         let_go(run.t, run.q, run.u, run.a, run.events)
+        return columns
 
 
 def _columns(run: Trajectory, parts: Roles, compiled: Compiled, made: Flows, told: Phases, pallets: list[str]) -> Stages:

@@ -105,6 +105,13 @@ def each_phase(run: Trajectory, found: Beats | None = None) -> Iterator[Phase]:
 
 def phase_columns(run: Trajectory, found: Beats | None = None, window: Sequence[float] | None = None) -> Iterator[Phases]:
     """The same in columns, of a few hundred beats at a time; only of beats that begin within a window (s)."""
+    for rows in stretches(run, found, window):
+        some = with_angles(run, rows)
+        yield some if window is None else _beginning(some, window)
+
+
+def stretches(run: Trajectory, found: Beats | None = None, window: Sequence[float] | None = None) -> Iterator[Stretches]:
+    """The same without angles; of beats that lie at least in part within the window."""
     parts = with_anchor(run.scene)
     if parts.wheel is None or parts.lever is None or parts.oscillator is None or len(run.t) == 0:
         return
@@ -112,13 +119,11 @@ def phase_columns(run: Trajectory, found: Beats | None = None, window: Sequence[
     within = np.ones(len(found), bool)
     if window is not None:
         within = (found.end >= window[0]) & (found.start <= window[1])
-    for rows in _stretches(run, parts, found, within):
-        some = _with_angles(run, parts, rows)
-        yield some if window is None else _beginning(some, window)
+    yield from _stretches(run, parts, found, within)
 
 
 def _stretches(run: Trajectory, parts: Roles, found: Beats, within: NDArray[np.bool_]) -> Iterator[Stretches]:
-    """Without angles."""
+    """Of the beats within."""
     assert parts.wheel
     if pallets := hinged_pallets(run.scene):
         return hinged_phases(run, parts.wheel, pallets, found, within, AT_ONCE)
@@ -136,8 +141,9 @@ def _told(run: Trajectory, found: Beats) -> NDArray[np.bool_]:
     return heard & is_recorded(run, np.where(heard, found.tick, 0.0)) & is_recorded(run, found.end)
 
 
-def _with_angles(run: Trajectory, parts: Roles, rows: Stretches) -> Phases:
+def with_angles(run: Trajectory, rows: Stretches) -> Phases:
     """The rows with the angles of wheel, lever and oscillator, without those that end outside what was recorded."""
+    parts = with_anchor(run.scene)
     rows = rows[is_recorded(run, rows.start) & is_recorded(run, rows.end)]
     columns = [run.slices[name].start for name in (parts.wheel, parts.lever, parts.oscillator) if name]
     first, last = run.sample(rows.start)[0][:, columns], run.sample(rows.end)[0][:, columns]

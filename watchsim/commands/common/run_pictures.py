@@ -5,16 +5,18 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any
 
 from watchsim import stopping
 from watchsim.commands.common.console import Progress, say
-from watchsim.commands.common.second_core import Draw, drawn_apart
 
 if TYPE_CHECKING:
+    from watchsim.commands.common.second_process import SecondProcess
     from watchsim.render.figures.kinematics_plot import Kinematics
     from watchsim.scene.scene import Scene
     from watchsim.simulation.record.trajectory import Trajectory
+
+Draw = Callable[[Path | IO[bytes]], object]
 
 
 class LeftOut(Exception):
@@ -26,13 +28,10 @@ WHOLE_RUN = 10.0  # s that the movie of a whole run takes
 
 
 def pictures(
-    run: Trajectory, plots: bool, movie: bool, gif: bool, panels: Kinematics | None = None
+    run: Trajectory, plotted: bool, movie: bool, gif: bool, second: SecondProcess | None = None
 ) -> dict[str, Callable[[Path], object]]:
-    """Name in the results folder -> what draws it into the file it is given; plots are begun at once (see `drawn_apart`).
-
-    `panels` are those of `empty_panels`, where there are any.
-    """
-    found: dict[str, Any] = dict(drawn_apart(_plots(run, panels))) if plots else {}
+    """Name in the results folder -> what draws it into the file it is given; plots by the `second` process, if any."""
+    found: dict[str, Any] = _plots_of(run, second) if plotted else {}
     if movie:
         found["movie.mp4"] = lambda path: _movie(run, path, slow=1 / 20)
     if gif:
@@ -68,6 +67,15 @@ def _drawn(draw: Callable[[Path], object]) -> Callable[[Path], None]:
     return attempt
 
 
+def _plots_of(run: Trajectory, second: SecondProcess | None) -> dict[str, Draw]:
+    """What draws the plots, or waits for them where they are being drawn elsewhere."""
+    draws = plots(run)
+    moving = sum(body.motion != "fixed" for body in run.scene.bodies)
+    if draws and moving > MOST_PLOTTED:
+        say(f"Plots of {MOST_PLOTTED} of {moving} moving bodies; watchsim plot RUN --bodies NAMES draws others.")
+    return draws if second is None else second.drawn(draws)
+
+
 def empty_panels(scene: Scene) -> Kinematics:
     """The panels of the plots that come with a run, drawn once, which is half the work: made while the run goes on."""
     from watchsim.analysis.promised import not_begun
@@ -82,22 +90,26 @@ def _shown(scene: Scene) -> list[str]:
     return [body.name for body in scene.bodies if body.motion != "fixed"][:MOST_PLOTTED]
 
 
-def _plots(run: Trajectory, panels: Kinematics | None) -> dict[str, Draw]:
-    """Kinematic plots: all that was recorded, and the last beats."""
-    from watchsim.render.figures.kinematics_plot import Kinematics, write_png
-
+def plots(run: Trajectory, panels: Kinematics | None = None) -> dict[str, Draw]:
+    """Kinematic plots: all that was recorded, and the last beats; in the `panels` of `empty_panels`, where there are any."""
     if len(run.t) < 2:
         return {}
-    moving = sum(body.motion != "fixed" for body in run.scene.bodies)
-    if moving > MOST_PLOTTED:
-        say(f"Plots of {MOST_PLOTTED} of {moving} moving bodies; watchsim plot RUN --bodies NAMES draws others.")
-    windows = {"plots/kinematics.png": None, "plots/last_beats.png": last_beats(run)}
-    shown = functools.cache(lambda: panels.of(run) if panels else Kinematics(run, _shown(run.scene)))
 
-    def plot(window: tuple[float, float] | None) -> Any:
-        return lambda path: write_png(shown().show(window, dots=True), path)
+    @functools.cache
+    def shown() -> Kinematics:
+        from watchsim.render.figures.kinematics_plot import Kinematics
 
-    return {name: plot(window) for name, window in windows.items()}
+        return panels.of(run) if panels else Kinematics(run, _shown(run.scene))
+
+    def plot(window: Callable[[], tuple[float, float] | None]) -> Draw:
+        def draw(target: Path | IO[bytes]) -> None:
+            from watchsim.render.figures.kinematics_plot import write_png
+
+            write_png(shown().show(window(), dots=True), target)
+
+        return draw
+
+    return {"plots/kinematics.png": plot(lambda: None), "plots/last_beats.png": plot(lambda: last_beats(run))}
 
 
 def last_beats(run: Trajectory, share: float = 1.5) -> tuple[float, float]:

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any
 
 from watchsim import stopping
 from watchsim.commands.common.console import InputError, Progress, say
-from watchsim.commands.common.second_core import Begun
 
 if TYPE_CHECKING:
+    from watchsim.commands.common.second_process import SecondProcess
     from watchsim.results.tables import EventLines
     from watchsim.scene.scene import Scene
     from watchsim.simulation.record.trajectory import Trajectory
@@ -51,12 +51,17 @@ def goal_of(scene: Scene, folder: Path, replace: bool) -> Goal:
 
 
 def write(
-    run: Trajectory, goal: Goal, extras: Extras, changed: Sequence[str] = (), begun: Begun | None = None
+    run: Trajectory,
+    goal: Goal,
+    extras: Extras,
+    changed: Sequence[str] = (),
+    lines: EventLines | None = None,
+    second: SecondProcess | None = None,
 ) -> dict[str, Any]:
     """Write the results folder; returns the summary as written.
 
     `changed` holds the options by which the run is another than the scene's own: its expectations are then not judged;
-    `begun` what was made ready while it went on.
+    `lines` are its events as far as they were made into text while it went on, by the `second` process where there is one.
     InputError where the results had to go elsewhere.
     """
     from watchsim.analysis.summary import tables
@@ -67,13 +72,14 @@ def write(
     if run.stop == Stop.INTERRUPTED:
         say("Interrupted: writing what was simulated; a second Ctrl-C abandons it ...")
     try:
-        begun = begun or Begun()
-        # A copy of the process is made before there are threads.
-        drawn = pictures(run, extras.plots, extras.movie, extras.gif, begun.panels)
-        packed = _begun(run, goal.folder, begun.lines)
+        if second is not None:
+            second.finish(run)
+        drawn = pictures(run, extras.plots, extras.movie, extras.gif, second)
+        packed = _begun(run, goal.folder, lines, second)
         numbers = _numbers(run, extras, changed, goal.folder)
         said = [*(f"Note: {note}" for note in numbers["notes"]), report_text(run, numbers)]
-        told = {name: text.write for name, text in tables(run, real(goal.folder).parent).items()}
+        ready = second.phases() if second is not None else None
+        told = {name: text.write for name, text in tables(run, real(goal.folder).parent, ready).items()}
         report = "\n".join([*said, *_timeline(run)]) + "\n"
         beside: dict[str, Any] = {**goal.scene, **packed, **told, "report.txt": report}
     except Exception:
@@ -84,16 +90,30 @@ def write(
     return numbers
 
 
-def _begun(run: Trajectory, folder: Path, lines: EventLines | None) -> dict[str, Any]:
+def _begun(run: Trajectory, folder: Path, lines: EventLines | None, second: SecondProcess | None) -> dict[str, Any]:
     """What writes the motion, which is being packed from now on, and the events."""
     from watchsim.results.write_results import EVENTS, TRAJECTORY, Packed
     from watchsim.storage.write import real
 
     begun: dict[str, Any] = {TRAJECTORY: Packed(run, real(folder).parent).write}
-    if lines is not None:
+    if second is not None:
+        begun[EVENTS] = functools.partial(_events, run, second)
+    elif lines is not None:
         lines.settle(run)
         begun[EVENTS] = functools.partial(lines.write, run)
     return begun
+
+
+def _events(run: Trajectory, second: SecondProcess, path: Path) -> None:
+    """Write events.csv as the second process has made it."""
+    from watchsim.results.tables import write_events
+    from watchsim.storage.nameless import give_name
+
+    made = second.events()
+    if made is None:
+        write_events(run, path)
+    else:
+        give_name(made, path)
 
 
 def report_text(run: Trajectory, summary: dict[str, Any]) -> str:

@@ -50,7 +50,8 @@ class Kept:
         self._rows: list[tuple[Array, Bits]] = []  # of later parts, with those that stay for good
         self._events: list[tuple[Events, Bits]] = []
         self._met = 0  # rows met within the windows
-        self.follow: Callable[[Events], object] | None = None  # is given events as soon as they are settled, in order
+        # Is given events and t, q, u, a of rows as soon as they are settled, in order.
+        self.follow: Callable[[Events, Sequence[Array]], object] | None = None
         self._last = (0, np.nan, True)  # the last row met: part, time (s), whether within a window
 
     def stream(self, folder: Path) -> None:
@@ -143,13 +144,14 @@ class Kept:
         """Leave only what stays for good of the earliest open part."""
         rows, row_stays = self._rows.pop(0)
         events, event_stays = self._events.pop(0)
+        told = self._told(rows if row_stays.all() else rows[row_stays])
+        settled = self._events_told(events[event_stays])
         if row_stays.any():
-            self._done.append(self._told(rows if row_stays.all() else rows[row_stays]))
+            self._done.append(told)
         if event_stays.any():
-            settled = self._events_told(events[event_stays])
             self._done_events.append([settled])
-            if self.follow is not None:
-                self.follow(settled)
+        if self.follow is not None and (row_stays.any() or event_stays.any()):
+            self.follow(settled, told)
         self._ends.append((self._done.rows, self._done_events.rows))
 
     def for_good(self, end: float, parts: int) -> Bits:
