@@ -55,7 +55,8 @@ class LazyKernel:
 def entry(function: Function) -> Function:
     """Compile `function`, for Python or for kernels to call, at its first call; later processes find the machine code.
 
-    Other threads may run Python meanwhile.
+    Other threads may run Python meanwhile. Like their parts, entries own no memory: numba's counter of references, which it
+    compiles anew in every process, is not needed.
     """
     if not is_compiled():
         return function
@@ -65,13 +66,13 @@ def entry(function: Function) -> Function:
     before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(folder or "")
     compiled: Function
     try:
-        compiled = numba.njit(cache=folder is not None, error_model="numpy", fastmath=False, nogil=True)(function)
+        compiled = numba.njit(cache=folder is not None, error_model="numpy", fastmath=False, nogil=True, _nrt=False)(function)
         if folder is not None:
             checked_files(compiled, complain)
             _load_lightly(compiled)
     except (OSError, RuntimeError) as error:  # the disk has become full, or the folder has been taken away
         complain(f"The machine code cannot be kept in {folder} ({error}): it is compiled each time. {MOVE}")
-        compiled = numba.njit(error_model="numpy", fastmath=False, nogil=True)(function)
+        compiled = numba.njit(error_model="numpy", fastmath=False, nogil=True, _nrt=False)(function)
     finally:
         numba.config.CACHE_DIR = before
     return compiled
@@ -84,15 +85,10 @@ def _load_lightly(compiled: Any) -> None:
     A function that is not in the cache is compiled as ever: the compiler asks for all this itself.
     """
     cache = getattr(compiled, "_cache", None)
-    try:
-        from numba.core.runtime import rtsys
-    except ImportError:
-        return
     if not all(hasattr(cache, name) for name in ("_load_overload", "_index_key", "_cache_file", "_impl")):
         return
 
     def load_overload(signature: Any, target: Any) -> Any:
-        rtsys.initialize(target)  # the counter of references, which wrappers for calls from Python use
         try:
             data = cache._cache_file.load(cache._index_key(signature, target.codegen()))  # type: ignore[union-attr]
             return None if data is None else _rebuilt(cache, target, data)

@@ -6,18 +6,19 @@ phases.csv; when the run is over, its plots. (See `second_process`.)
 
 from __future__ import annotations
 
+import functools
 import math
 import os
 import socket
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.analysis.beat_tables import finished_phases, time_of_a_part
-from watchsim.commands.common.run_pictures import empty_panels, plots
+from watchsim.commands.common.run_pictures import Draw, empty_panels, plots
 from watchsim.mechanism.compile import compile_scene
 from watchsim.results.tables import EventLines
 from watchsim.scene.recording import EVERYTHING
@@ -50,11 +51,37 @@ def work(line: socket.socket) -> None:
     hand_over(line, table)
     with ThreadPoolExecutor(1) as disk:
         disk.submit(os.fsync, table.fileno())  # as it must be in the end; the disk needs no processor
-        files = {name: memory_file() for name in plots(run)}
-        for name, draw in plots(run, panels).items():
-            draw(files[name])
-            files[name].flush()
-        hand_over(line, files)
+        hand_over(line, _drawn(plots(run, panels)))
+
+
+def _drawn(draws: Mapping[str, Draw]) -> dict[str, IO[bytes]]:
+    """The pictures: the first drawn here, every other one in a copy of this process, at the same time."""
+    files = {name: memory_file() for name in draws}
+    copies = {name: _copy_that(functools.partial(_draw, draws[name], files[name])) for name in list(draws)[1:]}
+    for name in draws:
+        if name not in copies or os.waitpid(copies[name], 0)[1]:
+            _draw(draws[name], files[name])
+    return files
+
+
+def _draw(draw: Draw, file: IO[bytes]) -> None:
+    file.seek(0)
+    draw(file)
+    file.flush()
+    file.truncate()
+
+
+def _copy_that(work: Callable[[], object]) -> int:
+    """The number of a copy of this process that does some work and ends, with status 0 where all went well."""
+    child = os.fork()
+    if child:
+        return child
+    status = 1
+    try:
+        work()
+        status = 0
+    finally:
+        os._exit(status)
 
 
 class PhasesMeanwhile:

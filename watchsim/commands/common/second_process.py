@@ -21,6 +21,8 @@ from typing import IO, TYPE_CHECKING, Any, NoReturn
 from watchsim import stopping
 
 if TYPE_CHECKING:
+    from concurrent.futures import ThreadPoolExecutor
+
     from numpy.typing import NDArray
 
     from watchsim.commands.common.run_pictures import Draw
@@ -37,6 +39,7 @@ class SecondProcess:
         self._child, self._line = child, line
         self._lost, self._knows_pairs = False, False
         self._answers: list[Any] = []
+        self._thread: ThreadPoolExecutor | None = None
 
     def prepare(self, scene: Scene, folder: Path, method: str, tolerance: float) -> None:
         """What is to be run, for results in `folder`."""
@@ -81,6 +84,8 @@ class SecondProcess:
 
     def end(self) -> None:
         """Have it go, done or not."""
+        if self._thread is not None:
+            self._thread.shutdown(cancel_futures=True)
         self._line.close()
         with contextlib.suppress(ProcessLookupError):
             os.kill(self._child, signal.SIGKILL)
@@ -88,6 +93,13 @@ class SecondProcess:
             os.waitpid(self._child, os.WNOHANG)
 
     def _send(self, *values: object) -> None:
+        """In a thread, since it is mostly writing, for which nobody need wait."""
+        from concurrent.futures import ThreadPoolExecutor
+
+        self._thread = self._thread or ThreadPoolExecutor(1, thread_name_prefix="second process")
+        self._thread.submit(self._hand_over, values)
+
+    def _hand_over(self, values: object) -> None:
         from watchsim.storage.handed_over import hand_over
 
         if self._lost:
@@ -101,6 +113,9 @@ class SecondProcess:
         """One of the things that it gives back, in their order; waits for it. None where it has gone."""
         from watchsim.storage.handed_over import take_over
 
+        if self._thread is not None:
+            self._thread.shutdown()  # once all was said
+            self._thread = None
         while not self._lost and len(self._answers) <= number:
             try:
                 self._answers.append(take_over(self._line))

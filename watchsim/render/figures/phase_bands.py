@@ -38,10 +38,14 @@ def strong(name: str) -> str:
 
 
 def shade(axes: Axes, phases: Iterable[Phase], zero: float = 0.0, factor: float = 1e3, grey: bool = False) -> None:
-    """A band for each phase of one beat, at (time - zero)·factor."""
+    """A band for each phase of one beat, at (time - zero)·factor; the limits of the axes stay as they are."""
+    from matplotlib.patches import Rectangle
+
+    place = axes.get_xaxis_transform(which="grid")
     for phase, colour in bands(phases):
         start, end = factor * (phase.start - zero), factor * (phase.end - zero)
-        axes.axvspan(start, end, color="#dddddd" if grey else colour, linewidth=0.0, zorder=0)
+        look: dict[str, Any] = {"color": "#dddddd" if grey else colour, "linewidth": 0.0, "zorder": 0, "transform": place}
+        axes.add_artist(Rectangle((start, 0.0), end - start, 1.0, **look))
 
 
 def name_above(axes: Axes, stages: Sequence[Stage], zero: float, factor: float = 1e3) -> None:
