@@ -25,31 +25,8 @@ def kernel(function: Function) -> Function:
     Division by zero gives inf or nan as in numpy; no fast-math, which would make isnan(nan) False. Parts own no memory and
     count no references: the entry's caller holds all arrays.
     """
-    lazy: Any = LazyKernel(function)
+    lazy: Any = LazyKernel(function, _part)
     return lazy if is_compiled() else function
-
-
-class LazyKernel:
-    """A kernel whose dispatcher is made when a compiler asks for its type: hardly ever, since entries are in the cache."""
-
-    def __init__(self, function: Callable[..., Any]) -> None:
-        self.py_func = function
-        self.__name__, self.__doc__, self.__module__ = function.__name__, function.__doc__, function.__module__
-
-    @functools.cached_property
-    def dispatcher(self) -> Any:
-        """What numba compiles."""
-        import numba
-
-        # No wrapper for calls from Python: unpacking records there would take longer to compile than the kernels themselves.
-        options = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True, "_nrt": False}
-        if (compiler := _part_compiler()) is not None:
-            options["pipeline_class"] = compiler
-        return numba.njit(**options)(self.py_func)
-
-    @property
-    def _numba_type_(self) -> Any:
-        return self.dispatcher._numba_type_
 
 
 def entry(function: Function) -> Function:
@@ -58,13 +35,72 @@ def entry(function: Function) -> Function:
     Other threads may run Python meanwhile. Like their parts, entries own no memory: numba's counter of references, which it
     compiles anew in every process, is not needed.
     """
-    if not is_compiled():
-        return function
+    lazy: Any = LazyEntry(function, _entry)
+    return lazy if is_compiled() else function
+
+
+def inlined(function: Function) -> Function:
+    """Compile `function` into the body of whoever calls it: what it makes by reference lives as long as its caller runs."""
+    lazy: Any = LazyKernel(function, _inlined)
+    return lazy if is_compiled() else function
+
+
+class LazyKernel:
+    """A kernel whose dispatcher is made when a compiler asks for its type: hardly ever, since entries are in the cache.
+
+    Numba is not loaded before: that takes longer than all else that has to be loaded to read a scene.
+    """
+
+    def __init__(self, function: Callable[..., Any], compiled: Callable[..., Any]) -> None:
+        self.py_func, self._compiled = function, compiled
+        self.__name__, self.__doc__, self.__module__ = function.__name__, function.__doc__, function.__module__
+        self.__wrapped__ = function
+
+    @functools.cached_property
+    def dispatcher(self) -> Any:
+        """What numba compiles."""
+        _define_references()
+        return self._compiled(self.py_func)
+
+    @property
+    def _numba_type_(self) -> Any:
+        return self.dispatcher._numba_type_
+
+    def __getattr__(self, name: str) -> Any:
+        """What numba asks of a dispatcher, such as whether to inline it."""
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return getattr(self.dispatcher, name)
+
+
+class LazyEntry(LazyKernel):
+    """The same, for Python to call."""
+
+    def __call__(self, *values: Any) -> Any:
+        return self.dispatcher(*values)
+
+
+def _part(function: Callable[..., Any]) -> Any:
+    import numba
+
+    # No wrapper for calls from Python: unpacking records there would take longer to compile than the kernels themselves.
+    options = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True, "_nrt": False}
+    if (compiler := _part_compiler()) is not None:
+        options["pipeline_class"] = compiler
+    return numba.njit(**options)(function)
+
+
+def _inlined(function: Callable[..., Any]) -> Any:
+    import numba
+
+    return numba.njit(inline="always", error_model="numpy")(function)
+
+
+def _entry(function: Callable[..., Any]) -> Any:
     import numba
 
     folder = cache_folder()
     before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(folder or "")
-    compiled: Function
     try:
         compiled = numba.njit(cache=folder is not None, error_model="numpy", fastmath=False, nogil=True, _nrt=False)(function)
         if folder is not None:
@@ -207,16 +243,6 @@ def _part_compiler() -> type | None:
     return PartCompiler
 
 
-def inlined(function: Function) -> Function:
-    """Compile `function` into the body of whoever calls it: what it makes by reference lives as long as its caller runs."""
-    if not is_compiled():
-        return function
-    import numba
-
-    compiled: Function = numba.njit(inline="always", error_model="numpy")(function)
-    return compiled
-
-
 def by_reference(record: type, module: str) -> Any:
     """For kernels: a constructor of a struct with the fields of the NamedTuple class `record`, defined in `module`.
 
@@ -227,6 +253,22 @@ def by_reference(record: type, module: str) -> Any:
     """
     if not is_compiled():
         return record
+    constructor = type(f"{record.__name__}Ref", (), {"__module__": module})
+    _references.append(functools.partial(_define_reference, record, module, constructor))
+    return constructor
+
+
+_references: list[Callable[[], None]] = []  # of which numba does not know yet
+
+
+def _define_references() -> None:
+    """Teach numba the references that modules have asked for so far."""
+    while _references:
+        _references.pop()()
+
+
+def _reference_type(record: type, module: str) -> Any:
+    """The type of references to what has the fields of `record`."""
     from numba.core import types
 
     def __init__(self: Any, held: tuple[Any, ...]) -> None:
@@ -239,18 +281,18 @@ def by_reference(record: type, module: str) -> Any:
     struct = type(f"{record.__name__}Type", (types.Type,), body)
     # Numba pickles the type into its cache by name.
     setattr(sys.modules[module], struct.__name__, struct)
-    constructor = type(f"{record.__name__}Ref", (), {"__module__": module})
-    _define_reference(struct, constructor)
-    return constructor
+    return struct
 
 
-def _define_reference(struct: Any, constructor: type) -> None:
-    """Teach numba the type `struct`: how it is laid out, how `constructor` makes one, and how its fields are read."""
+def _define_reference(record: type, module: str, constructor: type) -> None:
+    """Teach numba a type of references: how they are laid out, how `constructor` makes one, and how fields are read."""
     from llvmlite import ir
     from numba.core import cgutils, types
     from numba.core.imputils import impl_ret_borrowed, lower_builtin, lower_getattr_generic
     from numba.core.typing.templates import AttributeTemplate, infer_getattr
     from numba.extending import models, register_model, type_callable
+
+    struct = _reference_type(record, module)
 
     @register_model(struct)
     class Pointer(models.PrimitiveModel):

@@ -58,7 +58,7 @@ def _run(args: argparse.Namespace, second: SecondProcess | None) -> int:
     print(f"\n2. A Swiss lever, read from DXF drawings, ticks for {DURATION:g} s", flush=True)
     scene = load_scene(str(profiles_dir() / "swiss_lever"))
     if second is not None:
-        second.prepare(scene, folder, EVENT_DRIVEN, scene.tolerance)
+        second.prepare(scene, folder, DURATION, EVENT_DRIVEN, scene.tolerance)
     goal = goal_of(scene, folder, args.force)
     with stopping.keeping():
         trajectory, lines = simulate_with_progress(scene, DURATION, None, folder, second=second)

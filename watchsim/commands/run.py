@@ -90,7 +90,7 @@ def _run(args: argparse.Namespace, second: SecondProcess | None) -> int:
     method, start = args.method or EVENT_DRIVEN, None
     folder = Path(args.output or args.resume or Path("results") / _name(scene))
     if second is not None:
-        second.prepare(scene, folder, method, args.tol or scene.tolerance)
+        second.prepare(scene, folder, duration or scene.duration, method, args.tol or scene.tolerance)
     # What is resumed is written whole, with what follows it: nothing is lost where it takes the old one's place.
     replace = args.force or (args.resume is not None and folder.resolve() == Path(args.resume).resolve())
     if args.resume:

@@ -41,11 +41,11 @@ class SecondProcess:
         self._answers: list[Any] = []
         self._thread: ThreadPoolExecutor | None = None
 
-    def prepare(self, scene: Scene, folder: Path, method: str, tolerance: float) -> None:
-        """What is to be run, for results in `folder`."""
+    def prepare(self, scene: Scene, folder: Path, duration: float, method: str, tolerance: float) -> None:
+        """What is to be run, until when (s) and how, for results in `folder`."""
         from watchsim.storage.write import real
 
-        self._send(scene, real(folder).parent, method, tolerance)
+        self._send(scene, real(folder).parent, duration, method, tolerance)
 
     def follow(self, pairs: Sequence[Pair], events: NDArray[Any], rows: Sequence[NDArray[Any]]) -> None:
         """The next events and rows of the run, as `simulate` gives them."""
