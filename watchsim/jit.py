@@ -32,8 +32,7 @@ def kernel(function: Function) -> Function:
 def entry(function: Function) -> Function:
     """Compile `function`, for Python or for kernels to call, at its first call; later processes find the machine code.
 
-    Other threads may run Python meanwhile. Like their parts, entries own no memory: numba's counter of references, which it
-    compiles anew in every process, is not needed.
+    Other threads may run Python meanwhile.
     """
     lazy: Any = LazyEntry(function, _entry)
     return lazy if is_compiled() else function
@@ -102,13 +101,13 @@ def _entry(function: Callable[..., Any]) -> Any:
     folder = cache_folder()
     before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(folder or "")
     try:
-        compiled = numba.njit(cache=folder is not None, error_model="numpy", fastmath=False, nogil=True, _nrt=False)(function)
+        compiled = numba.njit(cache=folder is not None, error_model="numpy", fastmath=False, nogil=True)(function)
         if folder is not None:
             checked_files(compiled, complain)
             _load_lightly(compiled)
     except (OSError, RuntimeError) as error:  # the disk has become full, or the folder has been taken away
         complain(f"The machine code cannot be kept in {folder} ({error}): it is compiled each time. {MOVE}")
-        compiled = numba.njit(error_model="numpy", fastmath=False, nogil=True, _nrt=False)(function)
+        compiled = numba.njit(error_model="numpy", fastmath=False, nogil=True)(function)
     finally:
         numba.config.CACHE_DIR = before
     return compiled
@@ -121,10 +120,21 @@ def _load_lightly(compiled: Any) -> None:
     A function that is not in the cache is compiled as ever: the compiler asks for all this itself.
     """
     cache = getattr(compiled, "_cache", None)
+    try:
+        from llvmlite import binding
+        from numba.core.runtime import _nrt_python, rtsys
+
+        helpers = {name if name.startswith("_") else f"NRT_{name}": place for name, place in _nrt_python.c_helpers.items()}
+    except (ImportError, AttributeError):
+        return
     if not all(hasattr(cache, name) for name in ("_load_overload", "_index_key", "_cache_file", "_impl")):
         return
 
     def load_overload(signature: Any, target: Any) -> Any:
+        # What wrappers for calls from Python use of the counter of references. Numba also compiles the rest of it, which every
+        # piece of machine code carries with it.
+        for name in () if rtsys._init else helpers:
+            binding.add_symbol(name, helpers[name])
         try:
             data = cache._cache_file.load(cache._index_key(signature, target.codegen()))  # type: ignore[union-attr]
             return None if data is None else _rebuilt(cache, target, data)
