@@ -30,7 +30,7 @@ from watchsim.storage.handed_over import hand_over, memory_file, take_over
 
 Arrays = Sequence[NDArray[Any]]
 SURE = 1.02  # of the time of a part of the beats: by then it is over, and what follows it has begun
-LATE = 0.5  # of that time before the end of the run: then plots are waited for, and the first process can do it as well
+LATE = 1.0  # of that time before the end of the run: plots come first then, and the first process can do the rest as well
 
 
 def work(line: socket.socket) -> None:
