@@ -1,57 +1,18 @@
-"""Is what another core has done the same as if it had been done here, and done here where it could not?"""
+"""Is what a thread has done meanwhile the same as if it had been done later, and done then where it could not?"""
 
 from __future__ import annotations
 
-import os
 import sys
 from pathlib import Path
-from typing import IO
 
 import numpy as np
 import pytest
 
-from watchsim import stopping
-from watchsim.commands.common import second_core
-from watchsim.commands.common.second_core import Meanwhile, drawn_apart
+from watchsim.commands.common.second_core import Meanwhile
 from watchsim.profiles_path import profiles_dir
 from watchsim.results.tables import EventLines, write_events
 from watchsim.scene.file.load import load
 from watchsim.simulation.simulate import simulate
-
-forks = pytest.mark.skipif(sys.platform != "linux", reason="copies of a process are made on Linux only")
-
-
-def into(target: Path | IO[bytes], text: bytes) -> None:
-    target.write_bytes(text) if isinstance(target, Path) else target.write(text)
-
-
-@forks
-def test_a_copy_draws(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(stopping, "installed", lambda: True)
-    own = os.getpid()
-    drawn = drawn_apart({"who": lambda target: into(target, str(os.getpid()).encode())})
-    drawn["who"](tmp_path / "who")
-    assert int((tmp_path / "who").read_bytes()) != own
-
-
-@forks
-def test_what_the_copy_cannot_draw_is_drawn_here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(stopping, "installed", lambda: True)
-    own = os.getpid()
-
-    def draw(target: Path | IO[bytes]) -> None:
-        if os.getpid() != own:
-            raise MemoryError
-        into(target, b"here")
-
-    drawn_apart({"one": draw})["one"](tmp_path / "one")
-    assert (tmp_path / "one").read_bytes() == b"here"
-
-
-def test_other_peoples_processes_are_not_copied(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(second_core.os, "fork", lambda: pytest.fail("forked"))
-    drawn_apart({"one": lambda target: into(target, b"here")})["one"](tmp_path / "one")
-    assert (tmp_path / "one").read_bytes() == b"here"
 
 
 def test_events_made_into_text_meanwhile_are_the_same_table(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -61,7 +22,7 @@ def test_events_made_into_text_meanwhile_are_the_same_table(tmp_path: Path, monk
     scene = load(profiles_dir() / "bench_lever")
     meanwhile = Meanwhile(scene, tmp_path)
     run = simulate(scene, 0.3, progress=meanwhile.progress, follow=meanwhile.follow)
-    lines, _ = meanwhile.end()
+    lines = meanwhile.end()
     assert lines is not None and 50 < lines.rows <= len(run.events)
     lines.settle(run)
     write_events(run, tmp_path / "whole.csv")
@@ -92,4 +53,4 @@ def test_what_fails_meanwhile_is_left_to_others(tmp_path: Path, monkeypatch: pyt
     scene, before = load(profiles_dir() / "bench_lever"), sys.getswitchinterval()
     meanwhile = Meanwhile(scene, tmp_path)
     meanwhile.follow([], np.zeros(0))
-    assert meanwhile.end() == (None, None) and sys.getswitchinterval() == before
+    assert meanwhile.end() is None and sys.getswitchinterval() == before
