@@ -48,8 +48,8 @@ ANCHORS = ("graham", "recoil_anchor", "pin_wheel", "cylinder", "duplex", "grassh
 
 @pytest.mark.parametrize("profile", [*LEVERS, *ANCHORS])
 def test_texts_of_finished_phases_fit(profile: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    scene = load(profiles_dir() / profile)
-    run, meanwhile = run_and_texts(scene, 24.0 / frequency(scene), monkeypatch)
+    scene = load(profiles_dir() / profile).set("run.record", ["all"])
+    run, meanwhile = run_and_texts(scene, 16.0 / frequency(scene), monkeypatch)
     parts = [part.content for part in phases.stretches(run, beats(run))]
     ready = [part in meanwhile.texts for part in parts]
     assert sum(ready) >= 2
