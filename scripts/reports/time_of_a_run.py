@@ -118,7 +118,10 @@ def main() -> None:
         sys.stderr.flush()
         leave(status)
 
-    os.kill = lambda process, _: os.waitpid(process, 0)  # the second process is to end by itself
+    def wait(process: int, _: int) -> None:
+        os.waitpid(process, 0)
+
+    os.kill = wait  # the second process is to end by itself
     os._exit = told
     builtins.__import__ = Imports()
     from watchsim.process import process

@@ -10,6 +10,7 @@ import io
 import os
 import pickle
 import socket
+from array import array
 from typing import IO, Any, NamedTuple
 
 import numpy as np
@@ -33,7 +34,9 @@ def hand_over(line: socket.socket, value: object) -> None:
         files = [file]
         _Packer(file, files).dump(value)
         file.flush()
-        socket.send_fds(line, [GIVEN], [one.fileno() for one in files], socket.MSG_DONTWAIT)
+        numbers = array("i", [one.fileno() for one in files])
+        # Not by `socket.send_fds`, which waits whatever it is told.
+        line.sendmsg([GIVEN], [(socket.SOL_SOCKET, socket.SCM_RIGHTS, numbers)], socket.MSG_DONTWAIT)
 
 
 def take_over(line: socket.socket) -> Any:
