@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from watchsim.drawing.curves.curves_to_arcs import follow
+from watchsim.drawing.curves.curves_to_arcs import _count, follow
 from watchsim.drawing.curves.plane_projection import (
     MOST_STROKES,
     UNFOLDED,
@@ -18,6 +18,8 @@ from watchsim.drawing.curves.plane_projection import (
     tilted,
 )
 from watchsim.drawing.curves.plane_shapes import Conic, Dot, Shape, Spline, Straight, circle
+from watchsim.drawing.curves.spline_copies import SAME
+from watchsim.geometry.fitting.fit import Fit
 from watchsim.geometry.primitives import TURN, Arc, Line
 
 MM = 1e-3
@@ -51,6 +53,7 @@ def test_each_shape_is_counted_as_what_it_is() -> None:
 def test_what_has_no_length_is_kept_to_be_told_but_not_counted() -> None:
     found = gathered(Straight((1.0, 1.0, 0.0), (1.0, 1.0, 0.0)), circle((0.0, 0.0, 0.0), 0.0))
     assert not found.kinds and len(found.strokes) == 2
+    assert gathered(Straight((1.0, 1.0, 0.0), (1.0, 1.001, 0.0))).kinds["line"] == 1  # a micrometre
 
 
 def test_curves_wait_at_their_place_and_are_followed_in_order() -> None:
@@ -124,6 +127,22 @@ def test_what_leaves_its_height_by_a_millionth_is_tilted(slope: float, is_so: bo
         assert tilted(bezier(a, (7.0 - far[0], -2.0, 40.0), b)) is is_so and tilted(bezier(a, b, a)) is is_so
         u, v = (*far, rise), (-far[1], far[0], 0.0)
         assert tilted(Conic(a, u, v, 0.0, TURN)) is is_so and tilted(Conic(a, v, u, 0.0, TURN)) is is_so
+
+
+def test_a_narrow_ellipse_is_tilted_as_its_long_axis_is() -> None:
+    for rise, is_so in ((1e-8, False), (4e-6, True)):
+        for u, v in (((3.0, 0.0, 0.0), (0.0, 1e-3, rise)), ((0.0, 1e-3, rise), (3.0, 0.0, 0.0))):
+            assert tilted(Conic((0.0, 0.0, 0.0), u, v, 0.0, TURN)) is is_so
+
+
+@pytest.mark.parametrize(("share", "told"), [(0.5, False), (1.0 + 0.9 * SAME, False), (1.0 + 1.1 * SAME, True), (2.0, True)])
+def test_a_curve_that_is_not_followed_within_its_tolerance_is_told(share: float, told: bool) -> None:
+    """A copy of another curve may miss by its share more."""
+    found = gathered(CURVE)
+    (curve,) = found.waiting
+    _count(found, curve, Fit((Arc(0.0, 0.0, 1.0, 0.0, 1.0), Line(0.0, 0.0, 1.0, 1.0)), share * curve.limit))
+    assert [finding.code for finding in found.findings] == ["fit"] * told
+    assert (found.curves, found.arcs) == (1, 1) and found.deviation == share * curve.limit
 
 
 def test_the_first_point_and_the_reach_of_a_shape() -> None:
