@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -76,12 +77,16 @@ def ring(
         (0.0, 1.0, 2.0, 9.0),
         (-1.0, 2.0, 2.0, -1.0, 3.0),
         (0.0, 9.0, -9.0, 9.0, -9.0, 0.0),
+        (0.0, 2.0, 2.0, 0.0),
+        (0.0, 11.0, 12.0),
+        (0.0, 1.0, -1998.0),
     ],
     ids=str,
 )
-@pytest.mark.parametrize("far", [0.0, 1e6])
-def test_a_straight_curve_is_the_lines_to_where_it_turns(along: tuple[float, ...], far: float) -> None:
+@pytest.mark.parametrize(("far", "size"), [(0.0, 1.0), (1e6, 1.0), (0.0, 1e-3)])
+def test_a_straight_curve_is_the_lines_to_where_it_turns(along: tuple[float, ...], far: float, size: float) -> None:
     """As long as the way there and back is; on the line, from the first control point to the last."""
+    along = tuple(size * x for x in along)
     for angle in (0.0, 0.9, 2.2):
         way = np.array([math.cos(angle), math.sin(angle)])
         base = far * np.array([-way[1], way[0]])
@@ -91,7 +96,7 @@ def test_a_straight_curve_is_the_lines_to_where_it_turns(along: tuple[float, ...
         ends = np.array([lines[0].a, *(line.b for line in lines)])[:, :2]  # type: ignore[union-attr]
         dense = (curve_of(bezier(np.outer(along, [1.0, 0.0])))(np.linspace(0.0, 1.0, 20001)))[:, 0]
         assert np.sum(np.hypot(*np.diff(ends, axis=0).T)) == pytest.approx(np.sum(np.abs(np.diff(dense))), rel=1e-6)
-        assert len(lines) == 1 + np.count_nonzero(np.diff(np.sign(np.diff(dense)[np.abs(np.diff(dense)) > 1e-9])))
+        assert len(lines) == 1 + np.count_nonzero(np.diff(np.sign(np.diff(dense)[np.abs(np.diff(dense)) > 1e-9 * size])))
         assert np.allclose((ends - base) @ [-way[1], way[0]], 0.0, atol=1e-9 + 1e-15 * far)
         assert np.array_equal(ends[0], np.array(curve.points[0])[:2]) and np.array_equal(
             ends[-1], np.array(curve.points[-1])[:2]
@@ -170,6 +175,10 @@ def test_handles_of_no_length_or_of_very_unlike_length_end_a_spline() -> None:
     assert len(joined(meeting_curves(1.0, 0.0), 1.0)) == len(joined(meeting_curves(0.0, 1.0), 1.0)) == 2
 
 
+def test_short_handles_are_handles() -> None:
+    assert len(joined(meeting_curves(1e-3, 1.0), 1e-9)) == len(joined(meeting_curves(1.0, 1e-3), 1e-9)) == 1
+
+
 def test_splines_grow_only_so_long() -> None:
     row = cut(np.array([(0.0, 0.0), (1.0, 2.0), (3.0, 2.0), (4.0, 0.0)]), [k / (LONGEST + 2) for k in range(1, LONGEST + 2)])
     assert [chain.curves for chain in joined(row, 1e-6)] == [LONGEST, 2]
@@ -184,8 +193,29 @@ def test_a_hundredth_of_the_tolerance_is_the_slack_in_any_unit(off: float, waiti
         assert max(curve.moved for curve in found.waiting) == (pytest.approx(off * scale) if waiting == 1 else 0.0)
 
 
+def round_by(angles: Sequence[float], radius: float) -> list[Spline]:
+    """Cubics on a circle about (2, -1) from angle to angle (degrees), forward and back."""
+    made = []
+    for a, b in pairwise(np.radians(angles).tolist()):
+        pull = 4.0 / 3.0 * math.tan(0.25 * (b - a))
+        p, q = np.array([math.cos(a), math.sin(a)]), np.array([math.cos(b), math.sin(b)])
+        row = np.array([p, p + pull * np.array([-p[1], p[0]]), q - pull * np.array([-q[1], q[0]]), q])
+        made.append(bezier((2.0, -1.0) + radius * row))
+    return made
+
+
+def test_joints_may_crowd_on_one_side_but_not_turn_back() -> None:
+    crowded = [0.0, 5.0, 10.0, 20.0, 40.0, 120.0, 200.0, 280.0, 360.0]
+    for angles in (crowded, crowded[::-1], np.linspace(0.0, 360.0, 421).tolist()):
+        found = circle_of(round_by(angles, 3.0), MM)
+        assert found is not None and math.copysign(1.0, found.arc.sweep) == math.copysign(1.0, angles[1] - angles[0])
+        assert (found.arc.x, found.arc.y, found.arc.radius) == pytest.approx((2e-3, -1e-3, 3e-3), rel=1e-6)
+    back = [0.0, 45.0, 90.0, 70.0, 135.0, 180.0, 225.0, 270.0, 315.0, 360.0]
+    assert circle_of(round_by(back, 3.0), MM) is None and circle_of(round_by(back[::-1], 3.0), MM) is None
+
+
 @pytest.mark.parametrize("count", [4, 5, 8])
-@pytest.mark.parametrize("stretch", [1.0, 1.001])
+@pytest.mark.parametrize("stretch", [1.0, 1.001, 0.999])
 def test_a_ring_is_the_circle_through_its_joints(count: int, stretch: float) -> None:
     row = ring(count, 3.0, stretch)
     found = circle_of(row, MM)
@@ -225,6 +255,25 @@ def test_a_ring_within_the_tolerance_is_a_circle_and_else_nearly_one(radius: flo
     assert (finding.x_mm, finding.y_mm) == pytest.approx((2.0, -1.0)) and f"radius {radius:g} mm" in finding.message
     leaves = float(finding.message.split(" by ")[1].split(" µm")[0])
     assert leaves == pytest.approx(0.273 * radius, rel=0.02)
+
+
+def test_what_does_not_close_is_no_circle_and_far_away_rounding_counts() -> None:
+    found = Gathering(MM, 1e-6)
+    emit_row(found, ring(8, 1.0)[:7], "L", "it")
+    assert not found.strokes and len(found.waiting) == 1
+    for count, kept in ((4, False), (30, True)):  # leaves the circle by 0.3 µm, by 1.5 pm; 100 m away a nanometre is rounding
+        found = Gathering(MM, 1e-12)
+        emit_row(found, ring(count, 1.0, shift=(1e5, 0.0)), "L", "it")
+        assert len(found.strokes) == kept
+    near = Gathering(MM, 1e-12)
+    emit_row(near, ring(30, 1.0), "L", "it")
+    assert not near.strokes
+
+
+def test_parabolas_in_the_plane_stay_in_it() -> None:
+    found = Gathering(MM, 1e-6)
+    emit_row(found, cut(np.array([(0.0, 0.0), (1.0, 2.0), (3.0, 0.0)]), (0.4,)), "L", "it")
+    assert found.tilted == 0 and len(found.waiting) == 1
 
 
 def test_lines_among_curves_keep_their_place() -> None:
