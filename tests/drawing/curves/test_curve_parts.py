@@ -105,6 +105,8 @@ def test_a_spline_round_through_points_is_the_periodic_one(count: int) -> None:
     t = np.linspace(0.0, s[-1], 50)
     assert spline(t) == pytest.approx(truth(t), abs=1e-9)
     assert len(cubic.knots) == len(cubic.points) + 4 and around(once) == cubic
+    twice = [*once, once[0], (9.0, 9.0, 0.0)]  # comes by its first point once more before it ends
+    assert through(twice, (), True) == around(twice)
 
 
 def test_what_is_not_round_runs_from_end_to_end() -> None:

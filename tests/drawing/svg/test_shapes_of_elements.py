@@ -121,6 +121,7 @@ def test_one_radius_alone_counts_for_both_and_none_is_longer_than_half_its_side(
             ({"rx": "4"}, (4, 3)),
             ({"ry": "4"}, (4, 3)),
             ({"rx": "7", "ry": "1"}, (5, 1)),
+            ({"rx": "4.5", "ry": "2.6"}, (4.5, 2.6)),
         ),
         *(({"rx": "2", "ry": "9"}, (2, 3)), ({"rx": "auto", "ry": "1"}, (1, 1)), ({"rx": "1e-4", "ry": "1e-4"}, (1e-4, 1e-4))),
     ):
