@@ -90,24 +90,34 @@ def test_what_comes_within_the_reach_meets(gap: float, touches: bool) -> None:
     ]
     for a, b in pairs:
         for one, other in ((a, b), (b, a)):
-            assert bool(len(meetings(table_of([one, other]), ONE, OTHER, REACH).point)) is touches, (a, b)
+            for unit in (1.0, 1e-5):
+                table = table_of([scaled(one, unit), scaled(other, unit)])
+                assert bool(len(meetings(table, ONE, OTHER, unit * REACH).point)) is touches, (a, b)
 
 
+@pytest.mark.parametrize("unit", [1.0, 1e-5])
 @pytest.mark.parametrize(
     "edge",
     [Line(1, 2, 5, 5), Arc(1, 2, 3, 0.4, 2.0), Arc(1, 2, 3, 0.4, -2.0), Arc(0, 0, 2, 3.0, 5.5)],
     ids=repr,
 )
-def test_a_point_is_near_an_edge_within_the_reach_of_any_of_its_points(edge: Edge) -> None:
+def test_a_point_is_near_an_edge_within_the_reach_of_any_of_its_points(edge: Edge, unit: float) -> None:
     dense = np.array([edge.point(share) for share in np.linspace(0.0, 1.0, 2001).tolist()])
     rng = np.random.default_rng(1)
     points = np.vstack((rng.uniform(-4.0, 7.0, (300, 2)), dense[::50], dense[::50] + rng.normal(0.0, 0.5, (41, 2))))
     gaps = np.array([np.hypot(*(dense - p).T).min() for p in points])
+    table = table_of([scaled(edge, unit)])
     for reach in (0.01, 0.3, 1.0):
-        found = within(table_of([edge]), np.zeros(len(points), np.int64), points, reach)
+        found = within(table, np.zeros(len(points), np.int64), unit * points, unit * reach)
         sure = np.abs(gaps - reach) > 5e-3
         beyond = found != (gaps <= reach)
         assert not np.any(beyond & sure)
+
+
+def scaled(edge: Edge, unit: float) -> Edge:
+    if isinstance(edge, Line):
+        return Line(unit * edge.x0, unit * edge.y0, unit * edge.x1, unit * edge.y1)
+    return Arc(unit * edge.x, unit * edge.y, unit * edge.radius, edge.start_angle, edge.sweep)
 
 
 @pytest.mark.parametrize("way", [1, -1])
