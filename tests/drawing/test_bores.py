@@ -45,8 +45,27 @@ def test_a_bore_where_nothing_is_is_clear_but_not_taken(bore: Loop, holes: int) 
 @pytest.mark.parametrize("shift", [0.0, 5e-6, -5e-6], ids=lambda shift: f"{shift:g} mm")
 @pytest.mark.parametrize("wider", [0.0, 5e-7, -5e-7, 2e-6, -2e-6], ids=lambda wider: f"by {wider:g} mm")
 def test_a_bore_in_the_place_of_a_hole_lies_in_it_whatever_rounding_did(shift: float, wider: float) -> None:
-    (lie,) = lies([disc(shift, 0, 2 + wider)], RING)
-    assert lie.clear and (lie.outlines, lie.holes) == (1, 1)
+    for hole in (False, True):
+        (lie,) = lies([disc(shift, 0, 2 + wider, hole)], RING)
+        assert lie.clear and (lie.outlines, lie.holes) == (1, 1)
+
+
+@pytest.mark.parametrize(("inside", "taken"), [(-2e-5, False), (0.0, False), (0.5e-5, False), (1.5e-5, True), (0.01, True)])
+def test_a_bore_as_large_as_the_outline_around_it_leaves_nothing(inside: float, taken: bool) -> None:
+    """Ten nanometres of material are rounding; a hundredth of a millimetre is a ring."""
+    (lie,) = lies([disc(0, 0, 5 - inside)], [disc(0, 0, 5)])
+    assert lie.taken is taken and (lie.around is None) is taken and lie.crosses is None
+
+
+def test_what_crosses_among_the_outlines_or_within_a_bore_is_no_matter_of_bores() -> None:
+    (lie,) = lies([disc(-2, 0, 1)], [disc(0, 0, 5), disc(8, 0, 5)])
+    assert lie.taken
+    corners = [(0.0, 0.0), (2.0, 2.0), (2.0, 0.0), (0.0, 1.5)]
+    tie = Loop(
+        tuple(Line(MM * a, MM * b, MM * c, MM * d) for (a, b), (c, d) in zip(corners, corners[1:] + corners[:1], strict=True))
+    )
+    (lie,) = lies([tie], [disc(0, 0, 5)])
+    assert lie.clear
 
 
 def test_touching_is_no_crossing() -> None:

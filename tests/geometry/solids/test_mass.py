@@ -231,3 +231,15 @@ def test_mirror_images_have_the_same_moments(loop: Loop, angle: float, x: float)
     assert other.about(other.centroid).polar == pytest.approx(one.about(one.centroid).polar, rel=1e-10, abs=0.0)
     for edge, back in zip(loop.edges, image.reflected(*line).edges, strict=True):
         assert back.start == pytest.approx(edge.start, abs=1e-15) and back.end == pytest.approx(edge.end, abs=1e-15)
+
+
+def test_a_gap_between_two_edges_is_bridged_by_a_straight_bit() -> None:
+    """The same as with the bit drawn; also between the last edge and the first."""
+    p = [(0.0, 0.0), (4e-3, 0.0), (4e-3, 1e-3), (3e-3, 3e-3), (1e-3, 3e-3), (0.0, 2e-3)]
+    whole = Loop(tuple(Line(*a, *b) for a, b in zip(p, [*p[1:], p[0]], strict=True)))
+    for missing in range(6):
+        torn = Loop(tuple(edge for k, edge in enumerate(whole.edges) if k != missing))
+        assert area(torn) == pytest.approx(area(whole), rel=1e-13)
+        one, other = (mass_properties([loop], 1e-3, 7850.0) for loop in (torn, whole))
+        assert one.centre == pytest.approx(other.centre, rel=1e-12)
+        assert one.inertia_about((1.0, 2.0)) == pytest.approx(other.inertia_about((1.0, 2.0)), rel=1e-12)

@@ -78,7 +78,7 @@ def circle(centre: Vector, radius: float, start: float = 0.0, sweep: float = TUR
 def bulge(a: Vector, b: Vector, amount: float) -> Straight | Conic:
     """The polyline segment from a to b with that bulge, the tangent of a quarter of its angle (positive: to the left)."""
     dx, dy = b[0] - a[0], b[1] - a[1]
-    if amount == 0.0 or abs(amount) < 1e-8 or (dx == 0.0 and dy == 0.0):
+    if abs(amount) < 1e-8 or (dx == 0.0 and dy == 0.0):
         return Straight(a, b)  # at 1e-8 the rise is below the rounding of the centre
     k = (1.0 - amount * amount) / (4.0 * amount)
     x, y = 0.5 * (a[0] + b[0]) - k * dy, 0.5 * (a[1] + b[1]) + k * dx

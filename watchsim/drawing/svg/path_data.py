@@ -168,7 +168,7 @@ def elliptic_arc(p: Point, q: Point, rx: float, ry: float, turn: float, large: b
     if min(rx, ry) < NARROWEST * big:
         raise SvgError(f"an arc has radii as different as {rx:g} and {ry:g}")
     if big < NARROWEST * chord:  # they grow in any case: only their ratio counts
-        rx, ry = rx / big * chord, ry / big * chord
+        rx, ry = (radius / big * NARROWEST * chord for radius in (rx, ry))
     c, s = (1.0, 0.0) if rx == ry else (math.cos(turn), math.sin(turn))
     # Half the chord and, from its middle, the centre, both on the unit circle that the ellipse is the image of.
     hx, hy = 0.5 * (q[0] - p[0]), 0.5 * (q[1] - p[1])

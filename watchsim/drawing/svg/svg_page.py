@@ -59,7 +59,7 @@ def read_page(values: Mapping[str, str], stated: tuple[str, float] | None) -> Pa
     width = _asked(lambda: _side(values.get("width")), findings)
     height = _asked(lambda: _side(values.get("height")), findings)
     empty = any(side is not None and side.value <= 0.0 for side in (width, height))
-    unit = next((side.unit for side in (width, height) if side is not None and side.unit), "")
+    unit = next((side.unit for side in (width, height) if side is not None and side.unit not in ("", "%")), "")
     if empty:
         width = height = None
     w, h = _in_unit(width, unit), _in_unit(height, unit)

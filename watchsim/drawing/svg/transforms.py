@@ -107,7 +107,7 @@ def placed(values: Mapping[str, str], width: float, height: float) -> Affine:
     if len(origin) > 3:
         raise SvgError("its transform-origin cannot be read")
     sides = [KEYWORDS.get(word, word) for word in (*origin, "50%")]
-    if origin[0] in ("top", "bottom") or sides[1] in ("left", "right"):
+    if origin[0] in ("top", "bottom") or {"left", "right"}.intersection(origin[1:2]):
         sides[:2] = sides[1::-1]
     x, y = length(sides[0], width), length(sides[1], height)
     return shifted((x, y, 0.0)).after(inner).after(shifted((-x, -y, 0.0)))
