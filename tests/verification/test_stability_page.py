@@ -1,0 +1,55 @@
+"""Does `watchsim verify` still ask what its published page says, case by case, with the errors that the page allows?
+
+The page is docs/reports/stability.md. Nothing is simulated: the expected numbers stand in the benchmarks.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from watchsim.verification.benchmarks import Benchmark, Check, inclines, swings
+from watchsim.verification.edge_cases import edge_cases
+from watchsim.verification.hard_cases import hard_cases
+from watchsim.verification.repeated_impacts import repeated_impacts
+
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "reports" / "stability.md"
+CASES = [*inclines(), *swings(), *hard_cases(), *repeated_impacts(), *edge_cases()]
+Published = dict[str, tuple[float, float]]  # quantity -> (expected, allowed)
+
+
+def published() -> dict[str, Published]:
+    """By case, as the page names it."""
+    found: dict[str, Published] = {}
+    for part in re.split(r"^### ", PAGE.read_text(encoding="utf-8"), flags=re.MULTILINE)[1:]:
+        rows = [line.strip("| ").split(" | ") for line in part.splitlines() if line.startswith("| ")][1:]
+        found[part.splitlines()[0]] = {row[0]: (float(row[1]), float(row[4])) for row in rows}
+    return found
+
+
+PUBLISHED = published()
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+def test_the_case_is_the_published_one(case: Benchmark) -> None:
+    rows = PUBLISHED[case.name[0].upper() + case.name[1:]]
+    assert list(rows) == [check.quantity for check in case.checks]
+    for check in case.checks:
+        expected, allowed = rows[check.quantity]
+        digits = 1e-9 if abs(expected) >= 1e-6 else 0.05  # as the page prints numbers
+        assert check.expected == pytest.approx(expected, rel=digits, abs=0.0)
+        assert allowed_of(check, case) == pytest.approx(allowed, rel=0.06, abs=0.0)
+
+
+def allowed_of(check: Check, case: Benchmark) -> float:
+    """What the page can say: one digit."""
+    return float(f"{check.tolerance:.0e}") if case.name.startswith("tooth at a corner") else check.tolerance
+
+
+def test_every_case_of_the_page_is_still_asked() -> None:
+    asked = {case.name[0].upper() + case.name[1:] for case in CASES}
+    others = {name for name in PUBLISHED if name not in asked}
+    assert all(name.startswith(("Woodpecker", "Impact of one contact", "Complementarity problems")) for name in others)
+    assert len(others) == 6
