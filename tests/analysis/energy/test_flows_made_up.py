@@ -176,16 +176,17 @@ def test_tables_over_time(over: int, on: int) -> None:
         assert got.driven[:, 1] == pytest.approx(integrals(lambda t: -value(t) * u(1, t)), rel=1e-10)
 
 
-def test_what_holds_a_prescribed_motion_up() -> None:
+@pytest.mark.parametrize("k", [1, 3])
+def test_what_holds_a_prescribed_motion_up(k: int) -> None:
     """Against the spring and the damping that it carries: the work of both is what its drive has done."""
-    joint = {"coordinate": 1, "on": 2, "stiffness": 0.8, "rest": 0.3, "viscous": 0.2, "quadratic": 0.1}
-    beside = {"coordinate": 3, "on": 0, "stiffness": 0.8, "viscous": 0.2}  # on what is not prescribed: nothing drives it
+    joint = {"coordinate": k, "on": 2, "stiffness": 0.8, "rest": 0.3, "viscous": 0.2, "quadratic": 0.1}
+    beside = {"coordinate": 4, "on": 0, "stiffness": 0.8, "viscous": 0.2}  # on what is not prescribed: nothing drives it
     model = model_of(coordinates=PLAIN | {"driven": [0, 0, 1, 0, 0]}, joints=[joint, beside])
     got = found(model, MOTIONS)
 
     def held(t: float) -> float:
-        w = u(1, t) - u(2, t)
-        return 0.8 * (q(1, t) - q(2, t) - 0.3) + 0.2 * w + 0.1 * w * abs(w)
+        w = u(k, t) - u(2, t)
+        return 0.8 * (q(k, t) - q(2, t) - 0.3) + 0.2 * w + 0.1 * w * abs(w)
 
     assert got.driven[:, 2] == pytest.approx(integrals(lambda t: -held(t) * u(2, t)), rel=1e-10)
     assert not np.delete(got.driven, 2, axis=1).any()
