@@ -99,7 +99,7 @@ def test_mass_and_inertia_follow(tmp_path):
     body, other = plain.body("wheel"), moved.body("wheel")
     (x, y), m = body.centre_of_mass, body.mass
     assert other.centre_of_mass == pytest.approx((x + 1e-4, y))
-    assert other.inertia == pytest.approx(body.inertia + m * ((x + 1e-4) ** 2 - x**2))
+    assert other.inertia == pytest.approx(body.inertia + m * ((x + 1e-4) ** 2 - x**2), rel=1e-6, abs=0.0)
 
 
 def test_overlaps_are_found(scene):
