@@ -117,6 +117,7 @@ def test_every_line(monkeypatch: pytest.MonkeyPatch) -> None:
         ({"counts": {"lcp": 1}, "lcp_failures": 0}, "1 contact problem, the worst left"),
         ({"realtime_factor": 0.0}, "speed        not measured"),
         ({"compile": 0.9}, "20 × real time, 0.5 s\n"),
+        ({"compile": 1.1}, "20 × real time, 0.5 s (and 1.1 s to compile or load the solver)\n"),
         ({"overlap": {"looks": 1, "between": None, "resolution_m": 2e-6}}, "1 check of the outlines themselves found no"),
         ({"error_bars": {"complete": False}}, "none: the more exact run did not finish"),
         ({"error_bars": NUMBERS["error_bars"] | {"differences": {"amplitude_deg": 0.0}}}, "amplitude ± 0.000000°"),
@@ -141,3 +142,10 @@ def test_otherwise(monkeypatch: pytest.MonkeyPatch, changes: dict[str, object], 
 )
 def test_scatter_of_what_is_negative_or_next_to_nothing(value: float, error: float | None, expected: str) -> None:
     assert told.with_scatter(value, error, " s/d") == expected
+
+
+def test_scatter_is_explained_where_there_is_any(monkeypatch: pytest.MonkeyPatch) -> None:
+    names = [f"{name}_error" for name, _, _ in told.AVERAGED]
+    for known in names:
+        assert told.SCATTER in "\n".join(lines(monkeypatch, **{name: 0.1 if name == known else None for name in names}))
+    assert told.SCATTER not in "\n".join(lines(monkeypatch, **dict.fromkeys(names)))
