@@ -139,7 +139,7 @@ MISUSES = [
     ('layer = "ROLLER"\n' + PLATE + 'width = "1 mm"\n', "width", "belongs to a hairspring: write hairspring = true as well"),
     ('layer = "ROLLER"\n' + PLATE + "turns = 3\n", "turns", "belongs to a hairspring"),
     ('layer = "ROLLER"\n' + PLATE + "lying = true\n", "lying", "belongs to a turned solid"),
-    ('layer = "ROLLER"\n' + PLATE + "count = 3\n", "count", "nothing could touch the copies"),
+    ('layer = "ROLLER"\n' + PLATE + "count = 2\n", "count", "nothing could touch the copies"),
     ('layer = "WEIGHT"\n' + PLATE + "count = 0\n", "count", "a whole number from 1 to 1000"),
     ('layer = "WEIGHT"\n' + PLATE + "count = 1e30\n", "count", "a whole number from 1 to 1000"),  # took all memory
     ('layer = "WEIGHT"\n' + PLATE + "count = 2.5\n", "count", "a whole number from 1 to 1000"),
