@@ -5,28 +5,10 @@ The page is docs/reports/stability.md. Nothing is simulated: the expected number
 
 from __future__ import annotations
 
-import re
-from pathlib import Path
-
 import pytest
-from benchmark_names import NAMES, benchmark_of
+from benchmark_names import NAMES, PUBLISHED, benchmark_of
 
 from watchsim.verification.benchmarks import Benchmark, Check
-
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "reports" / "stability.md"
-Published = dict[str, tuple[float, float]]  # quantity -> (expected, allowed)
-
-
-def published() -> dict[str, Published]:
-    """By case, as the page names it."""
-    found: dict[str, Published] = {}
-    for part in re.split(r"^### ", PAGE.read_text(encoding="utf-8"), flags=re.MULTILINE)[1:]:
-        rows = [line.strip("| ").split(" | ") for line in part.splitlines() if line.startswith("| ")][1:]
-        found[part.splitlines()[0]] = {row[0]: (float(row[1]), float(row[4])) for row in rows}
-    return found
-
-
-PUBLISHED = published()
 
 
 @pytest.mark.parametrize("name", NAMES)
