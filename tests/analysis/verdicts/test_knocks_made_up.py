@@ -84,7 +84,7 @@ def test_a_stop_is_struck_at_any_angle_and_a_dart_on_its_roller_knocks_nobody() 
     assert list(knocks(watch(blows))["contact"]) == [STOP, HORN]
     assert list(knocks(watch(blows, arms=(0.04, 0.06, 0.04)))["contact"]) == [STOP]
     assert list(knocks(watch(blows, arms=(-0.06, -0.04, -0.06)))["contact"]) == [DART, HORN]
-    unseen = {"recorded": lambda times: np.zeros(len(times), bool)}
+    unseen: Any = {"recorded": lambda times: np.zeros(len(times), bool)}
     assert list(knocks(watch(blows, **unseen))["contact"]) == [STOP, DART, HORN]
     assert list(knocks(watch(blows, has_shapes=False))["contact"]) == [STOP, DART, HORN]
     assert list(knocks(watch(blows, lever=None))["contact"]) == [STOP]

@@ -49,7 +49,7 @@ def test_a_five_hundredth_of_the_amplitude_may_be_missing(share: float, settled:
 @pytest.mark.parametrize(("ratio", "foretold"), [(0.5, True), (0.9, True), (0.97, True), (0.99, False), (1.1, False)])
 def test_beyond_a_slow_approach_no_end_is_foretold(ratio: float, foretold: bool) -> None:
     """Of steps of which each is nearly as large as the one before, or larger."""
-    amplitudes = 200.0 + 20.0 * ratio ** (np.arange(120) / 40.0) * (-1.0 if ratio < 1.0 else 1.0)
+    amplitudes = 200.0 + 100.0 * ratio ** (np.arange(120) / 40.0) * (-1.0 if ratio < 1.0 else 1.0)
     message = told(amplitudes).message
     assert ("on its way to about 200" in message) is foretold and "rises by" in message
 
