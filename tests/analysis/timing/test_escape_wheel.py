@@ -153,3 +153,8 @@ def test_a_balance_that_has_not_moved_for_half_a_period_is_held(share, word):
     q[:, 0] = np.where(still, -0.5 * math.pi, 0.0)
     held = replace(run, q=q)
     assert word in standstill(held, beats(held)).message
+
+
+def test_of_no_instant_there_is_no_progress():
+    run = lever_run(4)
+    assert progress(run, "wheel", np.zeros(0)).shape == (0,)
