@@ -22,7 +22,7 @@ def benchmark_of(name: str) -> Benchmark:
 
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "reports" / "stability.md"
-Published = dict[str, tuple[float, float]]  # quantity -> (expected, allowed)
+Published = dict[str, tuple[float, float, float]]  # quantity -> (expected, got, allowed)
 
 
 def published() -> dict[str, Published]:
@@ -30,7 +30,7 @@ def published() -> dict[str, Published]:
     found: dict[str, Published] = {}
     for part in re.split(r"^### ", PAGE.read_text(encoding="utf-8"), flags=re.MULTILINE)[1:]:
         rows = [line.strip("| ").split(" | ") for line in part.splitlines() if line.startswith("| ")][1:]
-        found[part.splitlines()[0]] = {row[0]: (float(row[1]), float(row[4])) for row in rows}
+        found[part.splitlines()[0]] = {row[0]: (float(row[1]), float(row[2]), float(row[4])) for row in rows}
     return found
 
 
