@@ -149,3 +149,10 @@ def test_scatter_is_explained_where_there_is_any(monkeypatch: pytest.MonkeyPatch
     for known in names:
         assert told.SCATTER in "\n".join(lines(monkeypatch, **{name: 0.1 if name == known else None for name in names}))
     assert told.SCATTER not in "\n".join(lines(monkeypatch, **dict.fromkeys(names)))
+
+
+@pytest.mark.parametrize(("share", "listed"), [(-0.2, True), (6e-4, True), (-6e-4, True), (4e-4, False), (-4e-4, False)])
+def test_shares_of_the_energy_that_show_are_listed(monkeypatch: pytest.MonkeyPatch, share: float, listed: bool) -> None:
+    """From a twentieth of a per cent on, of either sign."""
+    said = "\n".join(lines(monkeypatch, went_to={"damping": 0.7, "friction": share}))
+    assert (f"friction {100.0 * share:.1f} %" in said) is listed and "damping 70.0 %" in said

@@ -23,7 +23,7 @@ from watchsim.render.frame.marks.readouts import (
     speed_text,
     turn_text,
 )
-from watchsim.render.frame.pose_history import dense, sampled, stretch, swept
+from watchsim.render.frame.pose_history import dense, poses, sampled, stretch, swept
 from watchsim.render.keyframes import keyframes
 from watchsim.render.movies.busy_stretches import busy
 from watchsim.scene.body import Body
@@ -201,6 +201,17 @@ def test_keys_lie_on_the_motion_to_what_an_eye_sees(speed: float) -> None:
         assert np.abs(np.interp(fine / speed, t, turned) - truth).max() <= 0.0215 * DEGREE
 
 
+def test_places_are_off_by_a_share_of_the_travel() -> None:
+    """Of 2 mm to and fro, along an oblique axis; not by much less either, or there would be more keys than it takes."""
+    run = slide_run()
+    (track,) = keyframes(run, (0.0, 1.0), 1.0)
+    fine = np.linspace(0.0, 1.0, 4001)
+    truth = poses(run, fine)["slider"][:, :2]
+    off = np.abs(np.column_stack([np.interp(fine, track.t, track.places[:, k]) for k in (0, 1)]) - truth).max()
+    travel = np.ptp(truth, axis=0).max()
+    assert 0.5e-4 * travel < off <= 2.1e-4 * travel
+
+
 @pytest.mark.parametrize("speed", [0.0, -1.0, math.nan, math.inf])
 def test_speeds_that_are_none(speed: float) -> None:
     with pytest.raises(ValueError, match="seconds of the watch per second"):
@@ -232,6 +243,11 @@ def test_stretches_around_events() -> None:
     assert lively([]) == [] and lively([5.0]) == [(4.96, 5.04)] and lively([-1.0, 11.0]) == []
     assert lively([5.0, 5.159]) == [(4.96, 5.199)] and lively([5.0, 5.161]) == [(4.96, 5.04), (5.121, 5.201)]
     assert lively([0.0, 10.0]) == [(0.0, 0.04), (9.96, 10.0)] and lively([0.01, 0.02]) == [(0.0, 0.06)]
+
+
+def test_a_tenth_of_the_longest_phase_is_shown_beside_it() -> None:
+    assert lively([], [("drop", 4.0, 4.5), ("locked", 4.5, 9.0)]) == [(3.95, 4.55)]
+    assert lively([], [("drop", 4.0, 7.0)]) == [(3.7, 7.3)]
 
 
 def test_stretches_of_phases() -> None:
