@@ -48,7 +48,7 @@ def test_the_words_follow() -> None:
 def test_the_second_run_is_a_hundred_times_as_exact(monkeypatch: pytest.MonkeyPatch, tolerance: float, tighter: float) -> None:
     """But no more so than numbers of 16 digits allow; it is as long as the first one was."""
     (asked, how) = second_run(monkeypatch, method=EVENT_DRIVEN, tolerance=tolerance, step=None)
-    assert asked == ("the scene", 7.0, pytest.approx(tighter, rel=1e-12)) and "step" not in how
+    assert asked == ("the scene", 7.0, pytest.approx(tighter, rel=1e-12, abs=0.0)) and "step" not in how
 
 
 def test_the_second_run_takes_half_the_steps(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -67,3 +67,17 @@ def test_half_the_step_leaves_half_the_error_of_the_first_order() -> None:
     """What is still to come after halving is as much again."""
     first, second = ({**numbers(rate, 0.0), "method": MOREAU} for rate in (5.0, 5.25))
     assert with_error_bars(first, second)["rate_s_per_d_error"] == 0.5
+
+
+def test_what_only_one_of_the_runs_gives_has_no_error() -> None:
+    known, unknown = numbers(5.0, 0.5), {**numbers(5.0, 0.5), "rate_s_per_d": None}
+    for first, second in ((known, unknown), (unknown, known)):
+        out = with_error_bars(first, second)
+        assert out["error_bars"]["differences"] == {} and out["rate_s_per_d_error"] == 0.5
+
+
+def test_only_moreaus_run_goes_by_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A run by events that was asked for a step all the same, and one by steps that does not say which."""
+    for method, step in ((EVENT_DRIVEN, 1e-5), (MOREAU, None)):
+        asked, how = second_run(monkeypatch, method=method, tolerance=1e-6, step=step)
+        assert asked[2] == pytest.approx(1e-8, abs=0.0, rel=1e-12) and "step" not in how

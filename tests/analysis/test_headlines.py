@@ -117,6 +117,7 @@ def test_every_line(monkeypatch: pytest.MonkeyPatch) -> None:
         ({"counts": {"lcp": 1}, "lcp_failures": 0}, "1 contact problem, the worst left"),
         ({"realtime_factor": 0.0}, "speed        not measured"),
         ({"compile": 0.9}, "20 × real time, 0.5 s\n"),
+        ({"compile": 1.1}, "20 × real time, 0.5 s (and 1.1 s to compile or load the solver)\n"),
         ({"overlap": {"looks": 1, "between": None, "resolution_m": 2e-6}}, "1 check of the outlines themselves found no"),
         ({"error_bars": {"complete": False}}, "none: the more exact run did not finish"),
         ({"error_bars": NUMBERS["error_bars"] | {"differences": {"amplitude_deg": 0.0}}}, "amplitude ± 0.000000°"),
@@ -141,3 +142,17 @@ def test_otherwise(monkeypatch: pytest.MonkeyPatch, changes: dict[str, object], 
 )
 def test_scatter_of_what_is_negative_or_next_to_nothing(value: float, error: float | None, expected: str) -> None:
     assert told.with_scatter(value, error, " s/d") == expected
+
+
+def test_scatter_is_explained_where_there_is_any(monkeypatch: pytest.MonkeyPatch) -> None:
+    names = [f"{name}_error" for name, _, _ in told.AVERAGED]
+    for known in names:
+        assert told.SCATTER in "\n".join(lines(monkeypatch, **{name: 0.1 if name == known else None for name in names}))
+    assert told.SCATTER not in "\n".join(lines(monkeypatch, **dict.fromkeys(names)))
+
+
+@pytest.mark.parametrize(("share", "listed"), [(-0.2, True), (6e-4, True), (-6e-4, True), (4e-4, False), (-4e-4, False)])
+def test_shares_of_the_energy_that_show_are_listed(monkeypatch: pytest.MonkeyPatch, share: float, listed: bool) -> None:
+    """From a twentieth of a per cent on, of either sign."""
+    said = "\n".join(lines(monkeypatch, went_to={"damping": 0.7, "friction": share}))
+    assert (f"friction {100.0 * share:.1f} %" in said) is listed and "damping 70.0 %" in said

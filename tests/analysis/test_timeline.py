@@ -9,6 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from analysis.made_beats import lever_run
 
 from watchsim.analysis.beat_tables import phases_csv
 from watchsim.analysis.timeline.rows import timeline
@@ -20,6 +21,7 @@ from watchsim.commands.common.console import BAD_INPUT, FINE
 from watchsim.profiles_path import profiles_dir
 from watchsim.render.figures.phase_plot import plot_phases
 from watchsim.scene.file.load import load
+from watchsim.scene.force import Damping, Spring, Torque
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.simulation.simulate import simulate
@@ -223,3 +225,27 @@ def test_what_did_not_rub_or_strike_is_a_dash(swiss):
     stage = next(stage for stage in timeline(swiss) if not stage.energy.impacts)
     assert _values(stage, {}, ["lever-balance"], ["wheel-lever"])[-2:] == [0.0, 0.0]
     assert _nano(0.0) == "-" and _nano(2.5e-9) == "2.5000"
+
+
+def test_what_a_torque_on_the_balance_does_is_not_done_by_the_lever() -> None:
+    """The same motion under other forces: the difference in every phase is their own work and their own impulse."""
+    run, push, stiffer, off, slow = lever_run(6), 2e-8, 3e-8, 0.3, 5e-11
+    scene = run.scene
+    alone = timeline(run)
+    pushed = timeline(replace(run, scene=replace(scene, torques=(*scene.torques, Torque("balance", push)))))
+    slowed = timeline(replace(run, scene=replace(scene, damping=(Damping("balance", slow),))))
+    sprung = timeline(replace(run, scene=replace(scene, springs=(*scene.springs, Spring("balance", stiffer, off)))))
+    column = run.slices["balance"].start
+    assert len(alone) > 20
+    for before, a, b, c in zip(alone, pushed, slowed, sprung, strict=True):
+        start, end = before.phase.start, before.phase.end
+        q, _ = run.sample(np.linspace(start, end, 2001))
+        way, far, took = q[-1, column] - q[0, column], np.trapezoid(q[:, column] - off, dx=(end - start) / 2000), end - start
+        assert a.energy.to_balance - before.energy.to_balance == pytest.approx(-push * way, rel=1e-7, abs=1e-18)
+        assert a.impulse - before.impulse == pytest.approx(-push * took, rel=1e-6, abs=1e-18)
+        assert b.impulse - before.impulse == pytest.approx(slow * way, rel=1e-6, abs=1e-18)
+        lost = b.energy.damping - before.energy.damping
+        assert lost > 0.0 and b.energy.to_balance - before.energy.to_balance == pytest.approx(lost, rel=1e-6, abs=1e-18)
+        wound = 0.5 * stiffer * ((q[-1, column] - off) ** 2 - (q[0, column] - off) ** 2)
+        assert c.energy.to_balance - before.energy.to_balance == pytest.approx(wound, rel=1e-6, abs=1e-16)
+        assert c.impulse - before.impulse == pytest.approx(stiffer * far, rel=1e-4, abs=1e-15)

@@ -63,13 +63,15 @@ def test_one_stone_turns_about_its_own_centre(scene):
     assert turned[1] - turned[0] == pytest.approx(math.radians(1.0))
 
 
-def test_along_a_face(scene):
+@pytest.mark.parametrize(("fraction", "way"), [(0.9, 1.0), (0.51, 1.0), (0.49, -1.0), (0.1, -1.0)])
+def test_along_a_face(scene, fraction, way):
+    """Towards the end that is nearer."""
     face = stones(scene)[0].edges[-1]  # the locking face, which ends at the corner
-    end = [f"{1e3 * value!r} mm" for value in face.point(0.9)]
+    end = [f"{1e3 * value!r} mm" for value in face.point(fraction)]
     got = scene.set(KEY, [{"near": ENTRY, "along": "5 µm", "face": end}])
     shift = [b - a for a, b in zip(corners(stones(scene))[0], corners(stones(got))[0], strict=True)]
     assert math.hypot(*shift) == pytest.approx(5e-6)
-    assert shift == pytest.approx([5e-6 * part for part in face.tangent(0.0)])
+    assert shift == pytest.approx([way * 5e-6 * part for part in face.tangent(0.0)])
 
 
 def test_each_outline_moves_on_its_own_radius(scene):
@@ -99,7 +101,7 @@ def test_mass_and_inertia_follow(tmp_path):
     body, other = plain.body("wheel"), moved.body("wheel")
     (x, y), m = body.centre_of_mass, body.mass
     assert other.centre_of_mass == pytest.approx((x + 1e-4, y))
-    assert other.inertia == pytest.approx(body.inertia + m * ((x + 1e-4) ** 2 - x**2))
+    assert other.inertia == pytest.approx(body.inertia + m * ((x + 1e-4) ** 2 - x**2), rel=1e-6, abs=0.0)
 
 
 def test_overlaps_are_found(scene):

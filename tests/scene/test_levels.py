@@ -88,7 +88,7 @@ def test_a_solid_without_a_layer_is_called_after_the_only_one_if_it_is_a_plate(
     assert slabs(Scene("one", (body,)), 0.2e-3)[0].layer == name
 
 
-@pytest.mark.parametrize(("apart", "together"), [(0.0, True), (1.0, False)])
+@pytest.mark.parametrize(("apart", "together"), [(0.0, True), (0.019, True), (0.021, False), (1.0, False)])
 def test_layers_of_one_body_that_meet_lie_at_one_height(apart: float, together: bool) -> None:
     """A wide plate covers the one layer, so that it lies higher; the other goes with it where they are side by side."""
 
@@ -103,3 +103,18 @@ def test_layers_of_one_body_that_meet_lie_at_one_height(apart: float, together: 
     assert found["LEFT"] > found["PLATE"] == pytest.approx(0.1e-3)
     assert (found["RIGHT"] == found["LEFT"]) == together
     assert together or found["RIGHT"] == found["PLATE"]
+
+
+@pytest.mark.parametrize(("share", "above"), [(0.9e-3, False), (1.1e-3, True)])
+@pytest.mark.parametrize("larger", [1.0, 3.0])
+def test_what_covers_no_thousandth_of_the_smaller_stands_beside_it(share: float, above: bool, larger: float) -> None:
+    def square(name: str, x: float, size: float) -> Body:
+        corners = [(x, 0.0), (x + size, 0.0), (x + size, size), (x, size)]
+        ends = corners[1:] + corners[:1]
+        lines = tuple(Line(*(1e-3 * c for c in (*a, *b))) for a, b in zip(corners, ends, strict=True))
+        return Body(name, "fixed", loops=(Loop(lines, name),))
+
+    scene = Scene("two", (square("first", 0.0, larger), square("second", larger - share, 1.0)))
+    first, second = slabs(scene, 0.4e-3)
+    assert first.middle == pytest.approx(0.2e-3)
+    assert second.middle == pytest.approx(0.2e-3 + (0.44e-3 if above else 0.0))

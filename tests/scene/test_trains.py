@@ -117,6 +117,7 @@ def test_what_makes_no_train_is_refused(tmp_path, key, value, why):
         ("ratio      = -100.0\n", "", "missing: ratio"),
         ("{ ratio = 10, inertia", "{ ratoi = 10, inertia", "ratio"),
         ('train      = [{ ratio = 10, inertia = "2 mg·cm²" }, { ratio = -50, inertia = "30 mg·cm²" }]', "train = 3", "a list"),
+        ('{ ratio = -50, inertia = "30 mg·cm²" }', "-50", "an entry for each wheel"),
     ],
 )
 def test_a_slip_in_a_train_is_reported(tmp_path, old, new, why):

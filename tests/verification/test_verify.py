@@ -7,25 +7,21 @@ import math
 from dataclasses import replace
 
 import pytest
+from benchmark_names import NAMES, benchmark_of
 
 from watchsim.profiles_path import profiles_dir
 from watchsim.verification.all_checks import rows_of, verify_text
-from watchsim.verification.benchmarks import Check, inclines, swings
+from watchsim.verification.benchmarks import Check, swings
 from watchsim.verification.compared import compared
-from watchsim.verification.edge_cases import edge_cases
-from watchsim.verification.hard_cases import hard_cases, wedges
+from watchsim.verification.hard_cases import wedges
 from watchsim.verification.random_problems import random_rows
-from watchsim.verification.repeated_impacts import repeated_impacts
 
 FIELDS = ["name", "quantity", "expected", "got", "error", "tolerance", "ok", "source"]
 
 
-@pytest.mark.parametrize(
-    "benchmark",
-    [*inclines(), *swings(), *hard_cases(), *repeated_impacts(), *edge_cases()],
-    ids=lambda benchmark: benchmark.name,
-)
-def test_benchmark(benchmark) -> None:
+@pytest.mark.parametrize("name", NAMES)
+def test_benchmark(name: str) -> None:
+    benchmark = benchmark_of(name)
     rows = rows_of([benchmark])
     wrong = [row for row in rows if not row["ok"]]
     assert not wrong, verify_text(wrong)

@@ -153,3 +153,20 @@ def test_a_balance_that_has_not_moved_for_half_a_period_is_held(share, word):
     q[:, 0] = np.where(still, -0.5 * math.pi, 0.0)
     held = replace(run, q=q)
     assert word in standstill(held, beats(held)).message
+
+
+def test_of_no_instant_there_is_no_progress():
+    run = lever_run(4)
+    assert progress(run, "wheel", np.zeros(0)).shape == (0,)
+
+
+@pytest.mark.parametrize("gap", range(4))
+def test_wherever_rows_lie_far_apart_nothing_is_recorded_between(gap):
+    """Also between the first two of them, and the last two."""
+    run = lever_run(4)
+    t = np.cumsum([0.0, *(0.9 if k == gap else 0.01 for k in range(4))])
+    zeros = np.zeros((5, run.q.shape[1]))
+    run = replace(run, t=t, q=zeros, u=zeros, a=zeros)
+    middles = 0.5 * (t[:-1] + t[1:])
+    assert is_recorded(run, middles).tolist() == [k != gap for k in range(4)] and is_recorded(run, t).all()
+    assert not is_recorded(run, np.array([-1e-9, t[-1] + 1e-9])).any()

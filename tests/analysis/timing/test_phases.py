@@ -96,3 +96,17 @@ def test_tables():
     drop = table[3]
     assert drop["phase"] == "drop" and float(drop["wheel_turn_deg"]) == pytest.approx(-2.0, abs=1e-6)
     assert float(drop["duration_ms"]) == pytest.approx(1e3 * (time_of(LOCK, 0.0) - time_of(DROP, 0.0)), rel=1e-9)
+
+
+def test_a_table_of_beats_goes_on_from_those_before_and_knows_what_slides() -> None:
+    """Metres instead of degrees."""
+    found = beats(lever_run(6))
+    turning, sliding = (
+        list(csv.DictReader("".join(beats_csv(replace(found, angular=angular, before=41))).splitlines()))
+        for angular in (True, False)
+    )
+    assert [row["beat"] for row in turning] == [str(k) for k in range(42, 42 + len(found))]
+    for row, other in zip(turning, sliding, strict=True):
+        for name in ("turn_at", "amplitude"):
+            assert float(row[f"{name}_deg"]) == pytest.approx(math.degrees(float(other[f"{name}_m"])), rel=1e-12)
+    assert [float(row["amplitude_m"]) for row in sliding] == found.amplitude.tolist()

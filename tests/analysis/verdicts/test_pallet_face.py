@@ -35,5 +35,5 @@ def test_wherever_it_stands(shift: complex, turned: float, angle: float, pallet:
     point = 2.5e-3 * cmath.exp(1j * math.radians(angle))
     tooth = round(angle / 24.0) % 15 + 1
     reach = abs(point - 4e-3j)
-    for arm, impulse in ((0.0, False), (-way * reach, False), (way * reach, True)):
-        assert told(point, arm, shift, turned) == Face(tooth, pallet, impulse, way)
+    for share, impulse in ((0.0, False), (-1.0, False), (0.045, False), (0.055, True), (1.0, True)):
+        assert told(point, share * way * reach, shift, turned) == Face(tooth, pallet, impulse, way)

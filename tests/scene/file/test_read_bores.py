@@ -71,7 +71,7 @@ def test_a_disc_with_eccentric_bores_is_as_heavy_as_the_handbook_says(lever, piv
     mass, x, y, inertia = (2 * column[0] - math.fsum(column) for column in zip(*parts, strict=True))
     scene = scene_of(lever, PLATE + 'bores = ["BORE"]\n')
     body = scene.set("bodies.lever.pivot", [f"{value!r} m" for value in pivot]).body("lever")
-    assert (body.mass, body.inertia) == pytest.approx((mass, inertia), rel=1e-12)
+    assert (body.mass, body.inertia) == pytest.approx((mass, inertia), rel=1e-12, abs=0.0)
     assert body.centre_of_mass == pytest.approx((x / mass, y / mass), rel=1e-12)
 
 
@@ -98,7 +98,7 @@ def test_copies_have_their_bores(lever) -> None:
     ring = 3980.0 * 0.3e-3 * math.pi * (0.16e-6 - 0.04e-6)
     assert body.mass == pytest.approx(3 * ring, rel=1e-12)
     own, square_of_distance = 0.5 * (0.16e-6 + 0.04e-6), 1e-6 + 1.44e-6
-    assert body.inertia == pytest.approx(3 * ring * (own + square_of_distance), rel=1e-12)
+    assert body.inertia == pytest.approx(3 * ring * (own + square_of_distance), rel=1e-12, abs=0.0)
     assert len([loop for loop in body.decoration if loop.layer == "PIN" and loop.hole]) == 3
 
 

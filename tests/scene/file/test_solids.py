@@ -61,7 +61,7 @@ def test_layers_of_different_materials_add_up(balance):
     body = weights(balance, 'layer = "ROLLER"\n' + PLATE, 'layer = "WEIGHT"\nthickness = "0.5 mm"\ndensity = "19.3 g/cm³"\n')
     roller, weight = math.pi * 2.25e-6 * HEIGHT * RHO, math.pi * 0.09e-6 * 0.5e-3 * 19300
     assert body.mass == pytest.approx(roller + weight, rel=1e-12)
-    assert body.inertia == pytest.approx(roller * 2.25e-6 / 2 + weight * (0.09e-6 / 2 + 16e-6), rel=1e-12)
+    assert body.inertia == pytest.approx(roller * 2.25e-6 / 2 + weight * (0.09e-6 / 2 + 16e-6), rel=1e-12, abs=0.0)
     assert body.centre_of_mass == pytest.approx((weight * 4e-3 / (roller + weight), 0.0), rel=1e-12, abs=1e-17)
     assert [solid.kind for solid in body.solids] == ["plate", "plate"]
 
@@ -70,7 +70,7 @@ def test_counted_layers_are_spread_about_the_pivot(balance):
     body = weights(balance, 'layer = "WEIGHT"\ncount = 4\n' + PLATE)
     one = math.pi * 0.09e-6 * HEIGHT * RHO
     assert body.mass == pytest.approx(4 * one, rel=1e-12)
-    assert body.inertia == pytest.approx(4 * one * (0.09e-6 / 2 + 16e-6), rel=1e-12)
+    assert body.inertia == pytest.approx(4 * one * (0.09e-6 / 2 + 16e-6), rel=1e-12, abs=0.0)
     assert body.centre_of_mass == pytest.approx((0.0, 0.0), abs=1e-17)
     copies = [loop.edges[0] for loop in body.decoration if loop.layer == "WEIGHT"]
     places = {(round(arc.x * 1e3, 9) + 0.0, round(arc.y * 1e3, 9) + 0.0) for arc in copies}
@@ -92,7 +92,7 @@ def test_a_staff_stands_on_the_pivot_wherever_it_is_drawn(balance):
     body = weights(balance, staff)
     mass = math.pi * 0.16e-6 * 4e-3 * 7800
     assert body.mass == pytest.approx(mass, rel=1e-12)
-    assert body.inertia == pytest.approx(mass * 0.16e-6 / 2, rel=1e-12)
+    assert body.inertia == pytest.approx(mass * 0.16e-6 / 2, rel=1e-12, abs=0.0)
     assert body.centre_of_mass == pytest.approx((0.0, 0.0), abs=1e-17)
     assert "STAFF" not in {loop.layer for loop in (*body.loops, *body.decoration)}
 
@@ -102,10 +102,10 @@ def test_one_third_of_a_hairspring_counts(balance):
     inner, outer = 0.6e-3, 2.6e-3
     mass = RHO * HEIGHT * 0.03e-3 * math.pi * 12 * (inner + outer)  # the hand formula takes the coils as circles
     assert body.mass == pytest.approx(mass / 3, rel=1e-3)
-    assert body.inertia == pytest.approx(mass / 3 * (inner**2 + outer**2) / 2, rel=1e-3)
+    assert body.inertia == pytest.approx(mass / 3 * (inner**2 + outer**2) / 2, rel=1e-3, abs=0.0)
     length = body.solids[0].spiral.length
     same = weights(balance, f'length = "{length!r} m"\n' + HAIRSPRING)
-    assert (same.mass, same.inertia) == pytest.approx((body.mass, body.inertia), rel=1e-12)
+    assert (same.mass, same.inertia) == pytest.approx((body.mass, body.inertia), rel=1e-12, abs=0.0)
 
 
 def test_a_drawn_strip_counts_one_third_too(balance):
@@ -113,7 +113,7 @@ def test_a_drawn_strip_counts_one_third_too(balance):
     bar = RHO * HEIGHT * 1e-4 * 1e-3
     own = bar * (1e-8 + 1e-6) / 12
     assert body.mass == pytest.approx(2 * bar / 3, rel=1e-12)
-    assert body.inertia == pytest.approx((2 * own + bar * 1.5e-3**2 + bar * (4e-6 + 0.25e-6)) / 3, rel=1e-12)
+    assert body.inertia == pytest.approx((2 * own + bar * 1.5e-3**2 + bar * (4e-6 + 0.25e-6)) / 3, rel=1e-12, abs=0.0)
 
 
 def test_layers_of_sections_cannot_touch_by_default(balance):
@@ -139,7 +139,7 @@ MISUSES = [
     ('layer = "ROLLER"\n' + PLATE + 'width = "1 mm"\n', "width", "belongs to a hairspring: write hairspring = true as well"),
     ('layer = "ROLLER"\n' + PLATE + "turns = 3\n", "turns", "belongs to a hairspring"),
     ('layer = "ROLLER"\n' + PLATE + "lying = true\n", "lying", "belongs to a turned solid"),
-    ('layer = "ROLLER"\n' + PLATE + "count = 3\n", "count", "nothing could touch the copies"),
+    ('layer = "ROLLER"\n' + PLATE + "count = 2\n", "count", "nothing could touch the copies"),
     ('layer = "WEIGHT"\n' + PLATE + "count = 0\n", "count", "a whole number from 1 to 1000"),
     ('layer = "WEIGHT"\n' + PLATE + "count = 1e30\n", "count", "a whole number from 1 to 1000"),  # took all memory
     ('layer = "WEIGHT"\n' + PLATE + "count = 2.5\n", "count", "a whole number from 1 to 1000"),
@@ -228,7 +228,7 @@ def test_holes_are_taken_out_of_a_plate(balance):
     balance.put(drawing("balance.dxf", [square(4e-3, layer="ROLLER"), square(2e-3, layer="ROLLER", hole=True)]))
     body = loaded(balance, PLATE, body=BODY.replace('pivot = "PIVOT"\n', "")).body("balance")
     assert body.mass == pytest.approx(12e-6 * HEIGHT * RHO, rel=1e-12)
-    assert body.inertia == pytest.approx(HEIGHT * RHO * (4e-3**4 - 2e-3**4) / 6, rel=1e-12)
+    assert body.inertia == pytest.approx(HEIGHT * RHO * (4e-3**4 - 2e-3**4) / 6, rel=1e-12, abs=0.0)
 
 
 @pytest.mark.parametrize("count", [1, 2, 3])

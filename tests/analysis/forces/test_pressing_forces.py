@@ -1,0 +1,76 @@
+"""Which forces are chosen where contacts are redundant? Against scipy, and by what they must keep."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.optimize import nnls
+
+from watchsim.analysis.balanced_forces import _least, _pressing, _within_cones
+
+RNG = np.random.default_rng(77)
+
+
+def redundant(contacts: int, coordinates: int) -> tuple[np.ndarray, np.ndarray]:
+    """Directions of contacts by coordinate, more of them than coordinates."""
+    return RNG.normal(size=(contacts, coordinates)), RNG.uniform(0.5, 2.0, coordinates)
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e-3, 1e4])
+@pytest.mark.parametrize("contacts", [1, 2, 3, 5])
+def test_the_smallest_of_all_solutions(contacts: int, unit: float) -> None:
+    """Measured so that the diagonal is one: no other solution is smaller; in other units of a contact it is the same."""
+    directions, mobility = redundant(contacts, 3)
+    system = np.array([directions * mobility @ directions.T for _ in range(2)])
+    units = np.where(np.arange(contacts) == 0, unit, 1.0)
+    right = (system @ RNG.normal(size=(2, contacts, 1)))[:, :, 0]
+    found = _least(system * units[:, None] * units, right * units)
+    assert (system @ (found * units)[:, :, None])[:, :, 0] == pytest.approx(right, rel=1e-8, abs=1e-9)
+    scale = np.sqrt(np.diagonal(system, axis1=1, axis2=2))
+    for k in range(2):
+        scaled = system[k] / np.outer(scale[k], scale[k])
+        smallest = np.linalg.lstsq(scaled, right[k] / scale[k], rcond=1e-12)[0] / scale[k]
+        assert found[k] * units == pytest.approx(smallest, rel=1e-6, abs=1e-9)
+
+
+def test_a_contact_that_moves_nothing_has_no_force() -> None:
+    system = np.array([[[2.0, 0.0], [0.0, 0.0]], [[0.0, 0.0], [0.0, 8.0]]])
+    assert _least(system, np.array([[4.0, 0.0], [0.0, 4.0]])) == pytest.approx(np.array([[2.0, 0.0], [0.0, 0.5]]), abs=1e-12)
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e-6, 1e5])
+@pytest.mark.parametrize("shares", [1, 3, 6, 9])
+def test_shares_press_and_balance(shares: int, unit: float) -> None:
+    """None is negative, those in use are told, what is asked for comes out, and no other such choice is much smaller."""
+    for _ in range(10):
+        system = RNG.normal(size=(3, shares)) * unit
+        there = np.where(RNG.random(shares) < 0.6, RNG.uniform(0.5, 2.0, shares), 0.0)
+        right = system @ there
+        found, used = _pressing(system, right, None)
+        assert (found >= -1e-12 * max(1.0, found.max())).all() and not found[~used].any()
+        assert used[found > 1e-6 * found.max(initial=0.0)].all()
+        assert system @ found == pytest.approx(right, rel=1e-9, abs=1e-9 * unit)
+        high = 1.0 / np.abs(system).max(axis=1)
+        near, _ = nnls(np.vstack((system * high[:, None], 1e-4 * np.eye(shares))), np.append(right * high, np.zeros(shares)))
+        assert found == pytest.approx(near, abs=1e-5 * max(1.0, near.max()))
+        again, _ = _pressing(system, right, used)
+        assert again == pytest.approx(found, rel=1e-9, abs=1e-9)
+
+
+@pytest.mark.parametrize("sticking", [[], [0], [1, 2], [0, 1, 2, 3]])
+def test_forces_stay_in_their_cones(sticking: list[int]) -> None:
+    """What sticks within friction, what slides on its edge; together they do what is asked."""
+    for _ in range(10):
+        w_n, w_t = RNG.normal(size=(2, 4, 3))
+        friction, sticks = RNG.uniform(0.1, 0.6, 4), np.array(sticking, np.int64)
+        slide = np.where(np.isin(np.arange(4), sticks), 0.0, friction * RNG.choice([-1.0, 1.0], 4))
+        normal = RNG.uniform(0.5, 2.0, 4)
+        tangential = np.where(slide == 0.0, normal * friction * RNG.uniform(-0.9, 0.9, 4), slide * normal)
+        system = RNG.normal(size=(5, 3))
+        right = system @ (normal @ w_n + tangential @ w_t)
+        force, used = _within_cones(system, right, (w_n, w_t), (sticks, slide, friction), None)
+        assert len(used) == 4 + len(sticks)
+        assert system @ (force[:, 0] @ w_n + force[:, 1] @ w_t) == pytest.approx(right, rel=1e-8, abs=1e-9)
+        assert (force[:, 0] >= -1e-9).all() and (np.abs(force[:, 1]) <= friction * force[:, 0] + 1e-9).all()
+        sliding = slide != 0.0
+        assert force[sliding, 1] == pytest.approx(slide[sliding] * force[sliding, 0], abs=1e-12)

@@ -1,0 +1,259 @@
+"""On which side of each limit do pictures choose which words, times and rows?"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from render.fake_runs import slide_run, watch_run
+
+from watchsim.render import keyframes as keys
+from watchsim.render.fewest_rows import kept_rows
+from watchsim.render.frame.marks.readouts import (
+    changing_speed_text,
+    clock,
+    decimals_for,
+    goes_round,
+    reading,
+    scale_bar,
+    speed_text,
+    turn_text,
+)
+from watchsim.render.frame.pose_history import dense, poses, sampled, stretch, swept
+from watchsim.render.keyframes import keyframes
+from watchsim.render.movies.busy_stretches import busy
+from watchsim.scene.body import Body
+from watchsim.simulation.event_kinds import EventKind
+
+DEGREE = math.pi / 180.0
+
+
+def test_from_which_length_on_times_are_in_seconds() -> None:
+    """A second, or a millisecond; near zero milliseconds need no start, and a start is a round number before the window."""
+    seconds, milli, micro = (1.0, "s"), (1e3, "ms"), (1e6, "µs")
+    told = {
+        **{(2.0, 3.0): (0.0, *seconds), (2.0, 2.999): (2.0, *milli), (0.0, 1.5): (0.0, *seconds), (0.25, 0.99): (0.0, *milli)},
+        **{
+            (0.25, 1.01): (0.25, *milli),
+            (0.0, 0.0009): (0.0, *micro),
+            (0.0, 0.0011): (0.0, *milli),
+            (-0.3, 0.2): (0.0, *milli),
+        },
+        **{(19.4567, 19.4569): (19.4567, *micro), (19.45678, 19.4589): (19.4567, *milli), (19.49, 19.89): (19.49, *milli)},
+        **{(19.4567, 19.89): (19.45, *milli), (3.99999999, 4.5): (4.0, *milli)},
+    }
+    for window, wanted in told.items():
+        found = clock(window)
+        assert (pytest.approx(found.base, abs=1e-12), found.factor, found.unit) == wanted, window
+    assert clock((2.0, 3.0)).label == "time (s)" and clock((3.4, 3.6)).label == "time after 3.4 s (ms)"
+
+
+def test_digits_that_show_a_step() -> None:
+    steps = {0.1: 1, 0.11: 1, 0.099: 2, 1e-3: 3, 1e-9: 9, 1e-12: 9, 1.0: 0, 0.9999999999: 0, 50.0: 0, -1.0: 3}
+    assert {step: decimals_for(step) for step in steps} == steps
+
+
+def test_words_for_speeds() -> None:
+    assert [
+        speed_text(speed) for speed in (1.0 + 0.9e-9, 1.0 + 1.1e-8, 9 / 10, 10 / 13, 1 / 99_999, 0.3 + 1e-7, 0.3 + 1e-6)
+    ] == [
+        *("true speed", "1 × true speed", "9/10 of true speed", "0.7692 of true speed", "1/99999 of true speed"),
+        *("3/10 of true speed", "0.3 of true speed"),
+    ]
+    speeds = {
+        0.671: "0.7",
+        0.669: "1/1.5",
+        0.994: "1",
+        1.006: "1",
+        9.94: "9.9",
+        9.96: "10",
+        99.4: "99",
+        123.0: "120",
+        0.1: "1/10",
+    }
+    for speed, number in speeds.items():
+        way = "of" if number.startswith("1/") else "×"
+        assert changing_speed_text(speed) == f"{number} {way} true speed"
+    assert changing_speed_text(0.9951) == changing_speed_text(1.0049) == "true speed"
+
+
+def test_words_for_turns() -> None:
+    turns = {0.004: "", 0.006: "0.01° counter-clockwise", -0.006: "0.01° clockwise", 450.0: "90° counter-clockwise"}
+    turns |= {179.0: "179° counter-clockwise", 181.0: "179° clockwise"}
+    for degrees, words in turns.items():
+        assert turn_text(degrees * DEGREE) == (f"picture turned by {words}" if words else "")
+
+
+@pytest.mark.parametrize(("largest", "so"), [(math.tau * 0.999, False), (math.tau, True), (-math.tau, True), (-6.0, False)])
+def test_turns_that_have_gone_by(largest: float, so: bool) -> None:
+    assert goes_round(np.array([0.1, largest, -0.2])) is so and not goes_round(np.zeros(0))
+
+
+def angles(*degrees: float) -> np.ndarray:
+    return np.column_stack((np.zeros((len(degrees), 2)), np.radians(degrees)))
+
+
+@pytest.mark.parametrize(("span", "text"), [(29.9, "12.35°"), (30.1, "12.3°")])
+def test_small_ranges_of_angles_have_two_decimals(span: float, text: str) -> None:
+    body = Body("arm")
+    tell, ends = reading(body, angles(0.0, span))
+    assert tell(angles(12.345)[0]).replace("12.35", "12.34") == text.replace("12.35", "12.34")
+    assert ends[0] in ("0.00°", "0.0°") and len(ends[0]) == len(text) - 1
+    within, room = reading(body, angles(0.0, span), within_turn=True)
+    shown = [within(angles(value)[0]) for value in (370.25, -10.25, 359.9999, 720.0)]
+    digits = 2 if span < 30.0 else 1
+    assert shown == [f"{10.25:.{digits}f}°", f"{349.75:.{digits}f}°", f"{0.0:.{digits}f}°", f"{0.0:.{digits}f}°"]
+    assert room == (f"{0.0:.{digits}f}°", f"{300.0:.{digits}f}°")
+
+
+@pytest.mark.parametrize(("travel", "decimals"), [(2e-3, 2), (0.9e-3, 3), (2e-6, 5), (0.0, 6), (0.5, 2)])
+def test_travels_have_two_digits_more_than_their_range(travel: float, decimals: int) -> None:
+    """Along an oblique axis from a place off the origin."""
+    body = Body("slide", "slide", (1e-3, -2e-3), axis=(0.6, -0.8))
+    ways = np.array([-0.25, 0.75]) * travel
+    frames = np.column_stack((1e-3 + 0.6 * ways, -2e-3 - 0.8 * ways, [0.0, 0.0]))
+    tell, ends = reading(body, frames)
+    for frame, way, end in zip(frames, ways, ends, strict=True):
+        text = f"{1e3 * way:.{decimals}f} mm".replace("-", "−")
+        assert tell(frame) == end == (text if float(text.split()[0].replace("−", "-")) else text.lstrip("−"))
+
+
+@pytest.mark.parametrize(("width", "name"), [(0.99, "500 mm"), (1.0, "1 m"), (1.99, "1 m"), (9.0, "5 m"), (1e-5, "0.01 mm")])
+def test_names_of_scale_bars(width: float, name: str) -> None:
+    assert scale_bar(width)[1] == name
+
+
+@pytest.mark.parametrize(("over", "fits"), [(0.9e-9, True), (1.1e-9, False)])
+def test_a_window_may_miss_the_record_by_a_billionth_of_itself(over: float, fits: bool) -> None:
+    """At either end; what is drawn was recorded."""
+    run = watch_run()
+    for window in ((1.5, 2.0 + 0.5 * over), (-0.5 * over, 0.5)):
+        if fits:
+            low, high = stretch(run, window)
+            assert low >= 0.0 and high <= 2.0 and high - low == pytest.approx(0.5, abs=1e-8)
+        else:
+            with pytest.raises(ValueError, match="was recorded"):
+                stretch(run, window)
+
+
+def test_samples_and_room() -> None:
+    """Some hundred instants; a body that turns by less than a turn fills just that room, evenly, by three degrees."""
+    run = watch_run()
+    lever, balance = run.scene.body("lever"), run.scene.body("balance")
+    assert 400 <= len(sampled(run, lever, (0.0, 0.9))) <= 1250
+    for body in (lever, balance):
+        room = swept(run, body, (0.0, 0.9))
+        steps = np.diff(room[:, 2])
+        assert steps == pytest.approx(steps[0]) and 0.0 < steps[0] < 3.0 * DEGREE * 1.001
+        assert np.ptp(room[:, 2]) <= math.tau * (1.0 + 1e-12) and (room[:, :2] == body.position).all()
+    assert swept(run, replace(balance, on="lever"), (0.0, 0.9)).shape == sampled(run, balance, (0.0, 0.9)).shape
+    slider = slide_run()
+    body = slider.scene.body("slider")
+    assert np.array_equal(swept(slider, body, (0.0, 1.0)), sampled(slider, body, (0.0, 1.0)))
+
+
+@pytest.mark.parametrize("accelerations", [True, False])
+def test_rows_and_points_between(accelerations: bool) -> None:
+    """Between rows far apart as many as it takes, evenly."""
+    run = watch_run()
+    t, q, u, a = dense(run, (0.2, 0.7), least=37, accelerations=accelerations)
+    rows = run.t[(run.t > 0.2) & (run.t < 0.7)]
+    assert set(rows) <= set(t) and np.diff(t).max() <= 0.5 / 37 * (1.0 + 1e-9)
+    at_q, at_u = run.sample(t)
+    assert q == pytest.approx(at_q, abs=1e-12) and u == pytest.approx(at_u, abs=1e-9)
+    assert a.shape == ((len(t) if accelerations else 0), q.shape[1])
+    if accelerations:
+        assert a[1:-1] == pytest.approx(run.acceleration(t)[1:-1], rel=1e-6, abs=1e-6)
+
+
+def test_kept_rows_are_the_fewest_halvings() -> None:
+    """Where three in a row fit; where all do; what must be kept is."""
+    assert kept_rows(9, lambda i, j: j - i <= 2).tolist() == [0, 2, 4, 6, 8]
+    assert kept_rows(9, lambda i, j: j - i <= 4).tolist() == [0, 4, 8] and kept_rows(9, lambda i, j: True).tolist() == [0, 8]
+    assert kept_rows(9, lambda i, j: True, (3, 5)).tolist() == [0, 3, 5, 8]
+    assert kept_rows(7, lambda i, j: False).tolist() == list(range(7))
+    assert kept_rows(0, lambda i, j: True).tolist() == [] and kept_rows(1, lambda i, j: True).tolist() == [0]
+    asked: set[tuple[int, int]] = set()
+
+    def fits(i: int, j: int) -> bool:
+        asked.add((i, j))
+        return True
+
+    kept_rows(12, fits, (4, 5))
+    assert asked == {(0, 4), (5, 11)}
+
+
+@pytest.mark.parametrize("speed", [1.0, 0.05, 3.0])
+def test_keys_lie_on_the_motion_to_what_an_eye_sees(speed: float) -> None:
+    """Straight lines between them are off by no more than 0.02° and 0.02 % of the travel; times begin with the window."""
+    run = watch_run()
+    tracks = {track.name: track for track in keyframes(run, (0.25, 0.75), speed)}
+    assert sorted(tracks) == ["balance", "lever", "wheel"]
+    for name, track in tracks.items():
+        t, turned = track.t, track.angles
+        assert t[0] == 0.0 and t[-1] == pytest.approx(0.5 / speed, rel=1e-12) and (np.diff(t) > 0.0).all()
+        fine = np.linspace(0.0, 0.5, 4001)
+        truth = run.sample(0.25 + fine)[0][:, run.slices[name].start]
+        assert np.abs(np.interp(fine / speed, t, turned) - truth).max() <= 0.0215 * DEGREE
+
+
+def test_places_are_off_by_a_share_of_the_travel() -> None:
+    """Of 2 mm to and fro, along an oblique axis; not by much less either, or there would be more keys than it takes."""
+    run = slide_run()
+    (track,) = keyframes(run, (0.0, 1.0), 1.0)
+    fine = np.linspace(0.0, 1.0, 4001)
+    truth = poses(run, fine)["slider"][:, :2]
+    off = np.abs(np.column_stack([np.interp(fine, track.t, track.places[:, k]) for k in (0, 1)]) - truth).max()
+    travel = np.ptp(truth, axis=0).max()
+    assert 0.5e-4 * travel < off <= 2.1e-4 * travel
+
+
+@pytest.mark.parametrize("speed", [0.0, -1.0, math.nan, math.inf])
+def test_speeds_that_are_none(speed: float) -> None:
+    with pytest.raises(ValueError, match="seconds of the watch per second"):
+        keyframes(watch_run(), None, speed)
+
+
+def test_instants_too_close_to_tell_apart() -> None:
+    """Of those within the same microsecond of the screen the first; both ends of the window always."""
+    t = np.array([0.1, 0.2, 0.2 + 4e-7, 0.2 + 2.6e-6, 0.3])
+    run: Any = SimpleNamespace(t=t)
+    found = keys._instants(run, (0.1, 0.3), 1e-6)
+    assert found[0] == 0.1 and found[-1] == 0.3 and np.diff(found).min() > 1e-7
+    near = found[(found > 0.2 - 1e-9) & (found < 0.2 + 1e-5)]
+    assert len(near) == 2 and near[1] == pytest.approx(0.2 + 2.6e-6, abs=1e-12)
+
+
+def lively(
+    times: list[float], found: list[tuple[str, float, float]] | None = None, window: tuple[float, float] = (0.0, 10.0)
+) -> Any:
+    events = np.zeros(2 * len(times), [("kind", np.int8), ("t", float)])
+    events["t"], events["kind"] = np.repeat(times, 2), np.tile([int(EventKind.IMPACT), int(EventKind.CROSS)], len(times))
+    phases: Any = [SimpleNamespace(name=name, start=start, end=end) for name, start, end in found or []]
+    run: Any = SimpleNamespace(events=events)
+    return [pytest.approx(span) for span in busy(run, phases, window)]
+
+
+def test_stretches_around_events() -> None:
+    """0.4 % of the window to each side, united where no more than 0.8 % lies between them, cut to the window."""
+    assert lively([]) == [] and lively([5.0]) == [(4.96, 5.04)] and lively([-1.0, 11.0]) == []
+    assert lively([5.0, 5.159]) == [(4.96, 5.199)] and lively([5.0, 5.161]) == [(4.96, 5.04), (5.121, 5.201)]
+    assert lively([0.0, 10.0]) == [(0.0, 0.04), (9.96, 10.0)] and lively([0.01, 0.02]) == [(0.0, 0.06)]
+
+
+def test_a_tenth_of_the_longest_phase_is_shown_beside_it() -> None:
+    assert lively([], [("drop", 4.0, 4.5), ("locked", 4.5, 9.0)]) == [(3.95, 4.55)]
+    assert lively([], [("drop", 4.0, 7.0)]) == [(3.7, 7.3)]
+
+
+def test_stretches_of_phases() -> None:
+    """All but those in which nothing happens, a tenth of the longest to each side."""
+    phases = [("unlocking", 1.0, 1.5), ("impulse", 1.5, 2.5), ("locked", 2.5, 6.0), ("drop", 6.0, 6.1), ("run", 12.0, 13.0)]
+    assert lively([9.0], phases) == [(0.9, 2.6), (5.9, 6.2)]
+    assert lively([9.0], [*phases, ("draw", 7.19, 7.2)]) == [(0.9, 2.6), (5.9, 7.3)]
+    assert lively([9.0], [*phases, ("draw", 7.31, 7.32)]) == [(0.9, 2.6), (5.9, 6.2), (7.21, 7.42)]
+    assert lively([9.0], phases[2:3]) == [(8.96, 9.04)] and lively([], phases, (2.4, 6.05)) == [(2.4, 2.6), (5.9, 6.05)]
