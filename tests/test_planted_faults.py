@@ -66,3 +66,29 @@ def test_the_tests_that_reach_a_function_are_found_in_the_project() -> None:
     for files, tests in plant_faults.AREAS.values():
         assert all(any((ROOT / "watchsim").glob(pattern)) for pattern in files), files
         assert all((ROOT / name).exists() for name in tests), tests
+
+
+def test_faults_are_planted_in_the_files_asked_for_in_order_or_at_random() -> None:
+    import plant_faults
+
+    every = plant_faults.chosen("reader", 0, 1, ["drawing/bores.py", "drawing/svg/*.py", "units.py"])
+    assert {one.file.rpartition("/")[0] for one in every} == {"drawing", "drawing/svg"}  # units.py is no part of the area
+    alone = plant_faults.chosen("reader", 0, 1, ["drawing/bores.py"])
+    text = (ROOT / "watchsim" / "drawing" / "bores.py").read_text(encoding="utf-8")
+    assert sorted((one.fault.line, one.fault.column, one.fault.after) for one in alone) == sorted(
+        (one.line, one.column, one.after) for one in faults(text)
+    )
+    assert plant_faults.chosen("reader", 0, 1, ["drawing/bores.py"], 7) == alone[::7]
+    sample = plant_faults.chosen("reader", 9, 1, ["drawing/bores.py"])
+    assert len(sample) == 9 and all(one in alone for one in sample)
+
+
+def test_the_rest_begins_with_what_reaches_the_place_and_stops_at_the_limit() -> None:
+    import reached
+
+    seconds = {"a.py::one": 1.0, "a.py::two": 0.5, "a.py::three": 4.0, "b.py::four": 0.1}
+    known = reached.Reached(seconds, {"a.py::one": {("x.py", 3)}, "b.py::four": set()})
+    names = known.with_neighbours(known.tests("x.py", 3))
+    assert names == ["a.py::one", "a.py::two", "a.py::three"]
+    assert known.within(names, 1.5) == names[:2] and known.within(names, 9.0) == names
+    assert known.within(names, 0.2) == names[:1] and known.within([], 1.0) == []

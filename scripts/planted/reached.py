@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import ast
 import contextlib
+import hashlib
 import importlib.machinery
 import importlib.util
 import io
@@ -22,6 +23,7 @@ import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cache
+from itertools import accumulate
 from pathlib import Path
 from types import CodeType, FrameType
 from typing import Any
@@ -59,6 +61,17 @@ class Reached:
         if not hit and not whole:
             return self.tests(file, MODULE)
         return sorted(hit, key=lambda name: (name.split("::")[0] not in own, self.seconds[name]))
+
+    def within(self, tests: Sequence[str], seconds: float) -> list[str]:
+        """As many of the tests as take no longer together, the first in any case."""
+        ends = accumulate(self.seconds[name] for name in tests)
+        return [name for place, (name, end) in enumerate(zip(tests, ends, strict=True)) if not place or end <= seconds]
+
+    def with_neighbours(self, tests: Sequence[str]) -> list[str]:
+        """The tests, and then the others of their files, quickest first: what all use may be recorded for one only."""
+        files, known = {name.split("::")[0] for name in tests}, set(tests)
+        others = [name for name in self.seconds if name.split("::")[0] in files and name not in known]
+        return [*tests, *sorted(others, key=self.seconds.__getitem__)]
 
     def text(self) -> str:
         """As JSON."""
@@ -163,6 +176,24 @@ def recorded(tests: Sequence[str], longest: float = math.inf) -> Reached:
     if status != 0:
         raise SystemExit(f"the tests fail without any fault: {said[-2000:]}")
     return Reached.of(said)
+
+
+def kept(path: Path, tests: Sequence[str], longest: float = math.inf) -> Reached:
+    """What was recorded in a file, and the test files that have changed since recorded anew."""
+    files = sorted(
+        {file for one in tests for file in ([ROOT / one] if one.endswith(".py") else (ROOT / one).rglob("test_*.py"))}
+    )
+    digests = {file.relative_to(ROOT).as_posix(): hashlib.sha256(file.read_bytes()).hexdigest() for file in files}
+    before = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {"digests": {}, "seconds": {}, "called": {}}
+    changed = [file for file, digest in digests.items() if before["digests"].get(file) != digest]
+    old = Reached.of(json.dumps(before))
+    new = recorded(tests if len(changed) == len(digests) else changed, longest) if changed else Reached()
+    for name in [name for name in old.seconds if name.split("::")[0] in digests and name.split("::")[0] not in changed]:
+        new.seconds[name], new.called[name] = old.seconds[name], old.called[name]
+    if changed:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(json.dumps(json.loads(new.text()) | {"digests": digests}), encoding="utf-8")
+    return new
 
 
 def fails(tests: Sequence[str], file: str, source: str, limit: float) -> bool:

@@ -1,0 +1,50 @@
+"""Where can faults be planted, and which tests are asked first about them?"""
+
+from __future__ import annotations
+
+RECORDS = "tests/records"
+COMPILED = "kernels"
+PLAIN = "plain"
+AREAS = {  # name -> (files, tests)
+    "reader": (("drawing/**/*.py",), ("tests/drawing", "tests/construction", RECORDS)),
+    "geometry": (
+        ("geometry/**/*.py",),
+        (
+            "tests/geometry",
+            RECORDS,
+            "tests/drawing/chaining/test_chain.py",
+            "tests/drawing/curves/test_splines.py",
+            "tests/drawing/test_profile.py",
+            "tests/render/test_glb_motion.py",
+        ),
+    ),
+    "scene": (
+        ("scene/**/*.py", "mechanism/*.py", "units.py"),
+        ("tests/scene", "tests/mechanism", "tests/designs", "tests/test_units.py", "tests/simulation/bound", RECORDS),
+    ),
+    "analysis": (
+        ("analysis/**/*.py", "results/*.py", "verification/**/*.py"),
+        ("tests/analysis", "tests/results", "tests/verification", "tests/render/figures/test_tape_plot.py", RECORDS),
+    ),
+    "pictures": (
+        (
+            "render/movies/run_movie.py",
+            "render/frame/pose_history.py",
+            "render/figures/speed_plot.py",
+            "render/frame/marks/readouts.py",
+            "render/movies/encoder.py",
+            "render/movies/busy_stretches.py",
+            "render/keyframes.py",
+            "render/fewest_rows.py",
+        ),
+        ("tests/render", RECORDS),
+    ),
+    "plain": (
+        ("dynamics/**/*.py", "candidates/*.py", "contact/*.py", "simulation/**/*.py", "tolerances.py"),
+        ("tests/dynamics", "tests/candidates", "tests/contact", "tests/simulation"),
+    ),
+    "kernels": (
+        ("dynamics/**/*.py", "candidates/*.py", "contact/*.py", "simulation/**/*.py", "tolerances.py"),
+        ("tests/dynamics", "tests/candidates", "tests/contact", "tests/simulation"),
+    ),
+}
