@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import itertools
 import math
 
@@ -11,8 +12,10 @@ from moving_scenes import box, circle
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Line
-from watchsim.scene.force import Side
-from watchsim.simulation.record.overlap_instants import Layers, PairOfLayers
+from watchsim.scene.body import Body
+from watchsim.scene.force import Contact, Side
+from watchsim.scene.scene import Scene
+from watchsim.simulation.record.overlap_instants import Layers, PairOfLayers, declared_pairs
 from watchsim.simulation.record.trajectory import place_between
 from watchsim.simulation.record.watched_instants import MOST_STEPS, STRIDE, instants_within
 
@@ -141,3 +144,23 @@ def test_where_time_is_stepped_only_the_rows_are_looked_at() -> None:
     assert found.ends.tolist() == [0, 1, 2]
     nothing = instants_within(before[:0], after[:0], np.ones(2), False)
     assert len(nothing.times) == len(nothing.q) == 0 and nothing.ends.tolist() == [0]
+
+
+def test_a_scene_is_drawn_once_for_each_closeness_of_chords() -> None:
+    """Bodies that cannot meet are left out; contacts keep their numbers; layers are told apart."""
+    ring = dataclasses.replace(circle(3 * MM), layer="RING")
+    bodies = (
+        Body("a", "fixed", loops=(ring, SQUARE)),
+        Body("b", "pivot", inertia=1.0, loops=(DISC,)),
+        Body("c", "pivot", inertia=1.0),
+    )
+    contacts = Contact((Side("b"), Side("c"))), Contact((Side("a", "RING"), Side("b"))), Contact((Side("a"), Side("b")))
+    scene = Scene("drawn", bodies, contacts=contacts)
+    coarse = declared_pairs(scene, 1e-5)
+    assert declared_pairs(scene, 1e-5) is coarse
+    assert [pair.contact for pair in coarse.pairs] == [1, 2]
+    assert [len(pair.still.rings) for pair in coarse.pairs] == [1, 2]
+    fine = declared_pairs(scene, 1e-7)
+    assert fine.pairs[0].still.points > 5 * coarse.pairs[0].still.points
+    other = dataclasses.replace(scene, contacts=contacts[1:])
+    assert [pair.contact for pair in declared_pairs(other, 1e-7).pairs] == [0, 1]

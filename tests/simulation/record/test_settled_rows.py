@@ -136,6 +136,8 @@ def test_a_run_in_pieces_keeps_what_a_whole_one_does(name: str, seed: int) -> No
             assert (len(unfinished["row"]) > 0) <= np.array_equal(unfinished["row"], rows[-1])
             piece = Kept(recording, TAIL)
             piece.go_on(unfinished)
+            for at_once in [piece.closed(end)] if len(unfinished["row"]) else []:
+                assert at_once is not None and [len(column) for column in (*at_once[0], at_once[1])] == [0] * 5
     times = np.concatenate(found)[:, 0]
     assert times.tolist() == closed(whole, end)[0][:, 0].tolist()
 

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 import pytest
-from moving_scenes import box
+from moving_scenes import box, circle
 
 from watchsim.mechanism.compile import compile_scene
 from watchsim.scene.body import Body
@@ -25,10 +25,11 @@ SQUARE = (box(2 * MM, 2 * MM),)
 SCENE = Scene(
     "squares",
     (
+        Body("post", "fixed", (-50 * MM, 0.0), loops=SQUARE),
         Body("still", "fixed", (5 * MM, 1 * MM), loops=SQUARE),
         Body("slider", "slide", (2 * MM, 1.5 * MM), axis=(1.0, 0.0), mass=1e-3, loops=SQUARE),
     ),
-    contacts=(Contact((Side("slider"), Side("still"))),),
+    contacts=(Contact((Side("slider"), Side("post"))), Contact((Side("slider"), Side("still")))),
     duration=8.0,
 )
 COMPILED = compile_scene(SCENE)
@@ -86,6 +87,19 @@ def test_what_is_shallower_than_the_resolution_is_not_seen(share: float) -> None
     looker = seen(watch(MOREAU), rows([0.0, 1.0 + share * 5e-5 * SIZE / MM, 0.0]))
     assert (looker.found.depth > 0.0) == (share > 1.0)
     assert looker.resolution == pytest.approx(5e-5 * SIZE)
+
+
+@pytest.mark.parametrize("share", [0.6, 1.6])
+def test_chords_are_close_to_their_arcs(share: float) -> None:
+    """An overlap of two discs is seen in every direction, and none where there is none."""
+    discs = [dataclasses.replace(body, loops=(circle(1 * MM),), position=(x, 0.0)) for body, x in
+             zip(SCENE.bodies, (-50 * MM, 5 * MM, 2 * MM), strict=True)]  # fmt: skip
+    for angle in np.linspace(0.0, 3.0, 9):
+        turned = tuple(dataclasses.replace(body, angle=float(angle) * i) for i, body in enumerate(discs))
+        scene = dataclasses.replace(SCENE, bodies=turned)
+        looker = OverlapWatch(scene, compile_scene(scene), MOREAU, WHOLE_RUN)
+        seen(looker, rows([0.0, 1.0 + share * looker.resolution / MM]))
+        assert (looker.found.depth > 0.0) == (share > 1.0)
 
 
 def test_how_deep_bodies_may_overlap() -> None:
