@@ -30,7 +30,7 @@ def movers(case: tuple[str | bool | float, ...]) -> list[int]:
 @each_case
 def test_a_cell_is_a_fiftieth_of_the_reach_however_a_body_is_geared(case: tuple[str | bool | float, ...]) -> None:
     """One cell further no point has moved more, and the outermost one nearly as far; so many cells are one turn."""
-    scene, compiled = made(*case)
+    scene, compiled = made.__wrapped__(*case)
     pair, rng, primitives = compiled.model.pairs[0], np.random.default_rng(4), compiled.model.primitives
     curves = [np.concatenate([curve(row) for row in primitives[primitives.body == b]]) for b in (pair.a, pair.b)]
     step = COARSE * max(float(np.abs(curves[i]).max()) for i in movers(case))

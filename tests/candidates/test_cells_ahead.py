@@ -83,3 +83,10 @@ def test_beyond_the_range_of_keys_no_lengths_are_asked_about() -> None:
     far = turning.known_around(np.array([1e5]))
     assert len(far) == 2 * AROUND[1] + 1 and all(0 <= cell < turning.axes[0].wrap for (cell,) in far)
     assert (math.floor(1e5 / size[0]) % turning.axes[0].wrap,) in far
+
+
+def test_where_no_cell_is_left_there_is_nothing_to_ask() -> None:
+    cells, sizes = cells_of(("slide", "slide"))
+    beyond = 2.0 * REACH * sizes
+    assert cells.known_around(beyond) == []
+    assert [part.tolist() for part in cells.around(beyond)] == [[], [], []]
