@@ -12,7 +12,9 @@ from watchsim.dynamics.delassus import fill_bearings
 from watchsim.dynamics.lcp import basis, lemke_pivoting
 from watchsim.dynamics.lcp.outcome import LcpOutcome
 from watchsim.dynamics.solver_fallbacks import _solve_copositive, fill_copositive
-from watchsim.tolerances import LCP_RESIDUAL, LCP_ROUNDING
+
+LCP_RESIDUAL = 1e-9  # of its terms
+LCP_ROUNDING = 1e-13  # of the largest unknown, or of one
 
 
 def judged(trial: list[float], y: list[float], rough: float = 0.0, driver: float = 0.0) -> tuple[bool, float]:
@@ -32,8 +34,8 @@ def judged(trial: list[float], y: list[float], rough: float = 0.0, driver: float
         ([1e-5, 1.0], [1e-6, 0.0], False),  # however small: where it is positive, y is zero
         ([1e-5, 1.0], [1e-13, 0.0], True),
         ([1.0, 0.0], [0.0, -1e-6], False),
-        ([1.0, 0.0], [0.0, -0.5 * LCP_ROUNDING], True),
-        ([1.0, 0.0], [0.0, -4.0 * LCP_ROUNDING], False),
+        ([1.0, 0.0], [0.0, -0.9 * LCP_ROUNDING], True),
+        ([1.0, 0.0], [0.0, -1.1 * LCP_ROUNDING], False),
         ([1.0, np.nan], [0.0, 0.0], False),
     ],
 )

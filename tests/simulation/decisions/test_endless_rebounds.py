@@ -9,8 +9,8 @@ import pytest
 from plain_kernels import in_python
 
 from watchsim.simulation.events.shrinking_play import end_endless
-from watchsim.tolerances import ENDLESS_REBOUNDS
 
+ENDLESS_REBOUNDS = 1000  # within one accumulation time of each other
 LONGEST = 1e-6  # s, between hits
 CONTACT = 3
 

@@ -11,8 +11,8 @@ from plain_kernels import in_python
 
 from watchsim.model.records import ARC, FIXED, LINE, PIVOT, SLIDE
 from watchsim.simulation.first_closing import safe_times
-from watchsim.tolerances import IMMOVABLE
 
+IMMOVABLE = 1e-12  # sine² of the angle
 OPTIONS = SimpleNamespace(gap_zero=1e-13, behind=1e-8, speed_zero=1e-8, extent=1e-9)
 
 
