@@ -1,0 +1,136 @@
+"""When are pivots zero, ratios equal and forces not unique? Each threshold from either side, as tolerances.py gives it."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from plain_kernels import in_python
+
+from watchsim.dynamics import acceleration, solver_fallbacks
+from watchsim.dynamics.lcp import basis, lemke_pivoting, scaling
+from watchsim.dynamics.lcp.outcome import LcpOutcome
+from watchsim.mechanism.compile import compile_scene
+from watchsim.scene.body import Body
+from watchsim.scene.force import Spring
+from watchsim.scene.scene import Scene
+
+BOTH_SIDES = pytest.mark.parametrize("share", [0.9, 1.1])
+
+
+@BOTH_SIDES
+@pytest.mark.parametrize("lenience", [1.0, 1e3])
+def test_forces_are_unique_where_a_second_pivot_is_a_hundred_billionth_of_the_first(share: float, lenience: float) -> None:
+    """Two contacts without friction whose directions differ by so little; in any unit of mass."""
+    for unit in (1.0, 1e-9):
+        c = math.sqrt(1.0 - share * 1e-11 * lenience)
+        G = np.zeros((4, 4))
+        G[::2, ::2] = unit * np.array([[1.0, c], [c, 1.0]])
+        room = {name: np.zeros(4) for name in ("b", "size", "worth", "width", "drag", "scale", "rhs", "x", "force")}
+        work = SimpleNamespace(G=G, A=np.zeros((4, 4)), tangent=np.zeros(2, int), order=np.zeros(4, int), **room)
+        model = SimpleNamespace(contacts=[SimpleNamespace(group=0)] * 2, laws=[SimpleNamespace(friction=0.0)])
+        instead = {"fill_delassus": lambda *_: None, "gap_accelerations": lambda *_: None, "smallest_forces": lambda *_: None}
+        asked = in_python(acceleration.solve_mode, **instead)
+        unique = asked(model, SimpleNamespace(ids=[0, 1]), 2, np.zeros(2, int), lenience, work)
+        assert unique == (share > 1.0)
+
+
+@BOTH_SIDES
+def test_a_last_pivot_of_a_hundred_billionth_is_rounding(share: float) -> None:
+    square = np.array([[1.0, 1.0, 0.0], [1.0, 1.0 + share * 1e-11, 0.0]])
+    work = SimpleNamespace(square=square, order=np.arange(2))
+    eliminate = in_python(basis._eliminate)
+    assert eliminate(2, 0, work)
+    left = abs(float(work.square[1, 1]))
+    assert eliminate(2, 1, work) == (left > 1e-11) == (share > 1.0)
+
+
+def tableau(rows: list[list[float]], driver: float = 0.5) -> SimpleNamespace:
+    """Rows of two unknowns: two columns of the inverse basis, two of the problem, z0, loads."""
+    return SimpleNamespace(tableau=np.array(rows), basis=np.array([0, 1]), worst=SimpleNamespace(driver=driver))
+
+
+@BOTH_SIDES
+@pytest.mark.parametrize("largest", [0.5, 30.0])
+def test_a_column_has_pivots_above_a_hundred_billionth_of_its_largest_or_of_one(share: float, largest: float) -> None:
+    work = tableau([[0.0, 0.0, largest, 0.0, 0.0, 1.0], [0.0, 0.0, share * 1e-11 * max(1.0, largest), 0.0, 0.0, 0.0]])
+    assert in_python(lemke_pivoting._leaving_row)(2, 2, work) == (True, 1 if share > 1.0 else 0)
+    work.tableau[0, 2] = -largest
+    work.tableau[1, 2] = share * 1e-11
+    assert in_python(lemke_pivoting._leaving_row)(2, 2, work)[0] == (share > 1.0)
+
+
+@BOTH_SIDES
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize(("driver", "ratio"), [(0.5, 0.1), (1e-9, 1e-12), (1e-9, 0.3)])
+def test_ratios_are_equal_within_a_ten_billionth_of_the_load_that_drives_or_of_themselves(
+    share: float, sign: float, driver: float, ratio: float
+) -> None:
+    """And within rounding of the largest load. Equal ones are parted by the inverse basis."""
+    apart = share * (1e-10 * max(driver, ratio) + 1e-15)
+    row, other = [1.0, 0.0, 2.0, 0.0, 0.0, 2.0 * ratio], [2.0, 0.0, 2.0, 0.0, 0.0, 2.0 * (ratio - sign * apart)]
+    less = in_python(lemke_pivoting._is_smaller)(2, 0, 1, 2, tableau([row, other], driver))
+    assert less == (True if share < 1.0 else sign < 0.0)
+
+
+@BOTH_SIDES
+@pytest.mark.parametrize("size", [0.2, 40.0])
+def test_columns_of_the_inverse_basis_are_equal_within_a_ten_billionth_too(share: float, size: float) -> None:
+    apart = share * 1e-10 * max(1.0, size)
+    rows = [[2.0 * size, 0.0, 2.0, 0.0, 0.0, 1.0], [2.0 * (size - apart), 4.0, 2.0, 0.0, 0.0, 1.0]]
+    assert in_python(lemke_pivoting._is_smaller)(2, 0, 1, 2, tableau(rows)) == (share < 1.0)
+    work = tableau(rows)
+    work.basis[1] = 4  # z0 leaves before all others
+    assert not in_python(lemke_pivoting._is_smaller)(2, 0, 1, 2, work)
+    work.basis[:] = 4, 1
+    assert in_python(lemke_pivoting._is_smaller)(2, 0, 1, 2, work)
+
+
+def test_other_paths_have_loads_changed_by_ever_less() -> None:
+    """By up to a ten thousandth of the load that drives the problem, then a tenth of that; all unlike."""
+    n, driver = 60, 0.25
+    load = np.linspace(-0.25, 1.0, n)
+    for path in range(9):
+        room = {"tableau": np.zeros((n, 2 * n + 2)), "basis": np.zeros(n, int), "matrix": np.zeros((n, n))}
+        work = SimpleNamespace(load=load, worst=SimpleNamespace(driver=driver), **room)
+        in_python(lemke_pivoting._start)(n, path, work)
+        more = work.tableau[:, -1] - load
+        most = driver * 1e-4 * 0.1 ** ((path - 1) % 4) if path else 0.0
+        assert np.all(more >= 0.0) and np.all(more <= most)
+        if path:
+            assert more.max() > 0.95 * most and more.min() < 0.1 * most and len(np.unique(np.round(more / most, 6))) == n
+
+
+@BOTH_SIDES
+def test_as_a_last_resort_a_billionth_of_what_drives_the_problem_may_be_missed(share: float) -> None:
+    lcp = SimpleNamespace(
+        worst=SimpleNamespace(driver=0.5, violation=0.0), trial=np.array([1e-3, 0.0]), matrix=np.eye(2),
+        load=np.array([-1e-3, -share * 1e-9 * 0.5]),
+    )  # fmt: skip
+    work = SimpleNamespace(A=None, rhs=None, lcp=lcp, x=None)
+    instead = {"lemke_on_path": lambda *_: LcpOutcome.INEXACT}
+    detour = in_python(solver_fallbacks._detour, **instead)
+    assert detour(work, 2, True) == (share < 1.0)
+    assert not detour(work, 2, False)
+
+
+@BOTH_SIDES
+def test_mutual_coefficients_that_rounding_leaves_say_nothing_about_units(share: float) -> None:
+    """Of unit diagonals a hundred trillionth, each way the root of it squared; zeros on one side say something."""
+    tiny = share * 1e-14
+    A = np.array([[1.0, 64.0 * tiny], [tiny / 64.0, 1.0]])
+    work = SimpleNamespace(row_scale=np.ones(2), column_scale=np.ones(2), trial=np.ones(2))
+    found = in_python(scaling._unbalance)(A, 2, 0, work)
+    assert (found == 1.0) == (share < 1.0)
+
+
+def test_a_spring_has_the_rounding_of_a_place_a_thousandth_of_the_size_from_rest() -> None:
+    """Beside the constant force: so much of its stiffness times the size, or times a radian."""
+    bodies = Body("wheel", "pivot", inertia=1.0), Body("slide", "slide", mass=1.0)
+    scene = Scene("springs", bodies, springs=(Spring("wheel", 5.0), Spring("slide", 7.0)))
+    compiled = compile_scene(scene)
+    loads = compiled.model.coordinates.load
+    assert loads[0] == pytest.approx(5.0 * 1e-3)
+    assert loads[1] == pytest.approx(7.0 * 1e-3 * compiled.size)
