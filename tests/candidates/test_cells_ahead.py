@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import itertools
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from plain_kernels import in_python
 from test_cell_travel import made
 
 from watchsim.candidates.cell_lookup import REACH, cell_key
 from watchsim.candidates.cell_table import AHEAD, AROUND, BESIDE, PairCells
 from watchsim.jit import callable_kernel
+from watchsim.model.records import NO_KEY
 
 CASES = [("pivot", "fixed"), ("pivot", "pivot"), ("slide", "slide"), ("free", "fixed"), ("pivot", "fixed", False)]
 _key = callable_kernel(cell_key)
@@ -90,3 +93,18 @@ def test_where_no_cell_is_left_there_is_nothing_to_ask() -> None:
     beyond = 2.0 * REACH * sizes
     assert cells.known_around(beyond) == []
     assert [part.tolist() for part in cells.around(beyond)] == [[], [], []]
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_a_key_has_room_for_so_many_cells_to_either_side_along_each_axis(axis: int, sign: int) -> None:
+    pair = SimpleNamespace(axes=3, frame=-1)
+    for i in range(3):
+        for name, value in ((f"c{i}", i), (f"on{i}", -1), (f"size{i}", 0.5), (f"wrap{i}", 0)):
+            setattr(pair, name, value)
+    model, keys = SimpleNamespace(pairs=[pair]), []
+    for index in (0, 1, REACH - 1, REACH):
+        q = np.full(3, 0.25)
+        q[axis] += 0.5 * sign * index
+        keys.append(in_python(cell_key)(model, 0, q))
+    assert len(set(keys)) == 4 and min(keys[:3]) >= 0 and keys[3] == NO_KEY

@@ -26,10 +26,14 @@ Span = tuple[float, float]
 AXIS = (math.cos(0.7), math.sin(0.7))
 
 
-def two(motion_a: str, motion_b: str, away: float, size: float, axis: tuple[float, float] = AXIS) -> tuple[Scene, Compiled]:
-    """Bodies whose outlines lie beside their origins."""
-    a = Body("a", motion_a, (0.3, -0.2), 0.4, axis=AXIS, mass=1.0, inertia=1.0, loops=(outline(1.0, (0.6, 0.3)),))
-    b = Body("b", motion_b, (0.3 + away, 0.1), 0.5, axis=axis, mass=1.0, inertia=1.0, loops=(outline(size, (0.1, -0.2)),))
+def two(
+    motion_a: str, motion_b: str, away: float, size: float, axis: tuple[float, float] = AXIS, unit: float = 1.0
+) -> tuple[Scene, Compiled]:
+    """Bodies whose outlines lie beside their origins; lengths in `unit` m."""
+    one, other = outline(unit, (0.6 * unit, 0.3 * unit)), outline(size * unit, (0.1 * unit, -0.2 * unit))
+    at = (0.3 * unit, -0.2 * unit), ((0.3 + away) * unit, 0.1 * unit)
+    a = Body("a", motion_a, at[0], 0.4, axis=AXIS, mass=1.0, inertia=1.0, loops=(one,))
+    b = Body("b", motion_b, at[1], 0.5, axis=axis, mass=1.0, inertia=1.0, loops=(other,))
     scene = Scene("reach", (a, b), contacts=(Contact((Side("a"), Side("b"))),))
     return scene, compile_scene(scene)
 
@@ -79,9 +83,10 @@ def sides(compiled: Compiled, names: tuple[str, str] = ("a", "b")) -> list[tuple
 
 @pytest.mark.parametrize(("away", "size"), [(1.05, 0.35), (0.1, 0.35), (0.8, 1.6), (0.15, 2.4)])
 @pytest.mark.parametrize("first", ["pivot", "fixed"])
-def test_bodies_that_turn_in_the_movement(first: str, away: float, size: float) -> None:
+@pytest.mark.parametrize("unit", [1.0, 1e-3])
+def test_bodies_that_turn_in_the_movement(unit: float, first: str, away: float, size: float) -> None:
     """Circles about pivots: beside each other, one within the other either way; or one about its pivot, and points at rest."""
-    scene, compiled = two(first, "pivot", away, size)
+    scene, compiled = two(first, "pivot", away, size, AXIS, unit)
     points = dense(compiled)
     a, b = (complex(*body.position) for body in scene.bodies)
     apart = {}
@@ -97,8 +102,10 @@ def test_bodies_that_turn_in_the_movement(first: str, away: float, size: float) 
 
 @pytest.mark.parametrize("away", [0.7, 0.9])
 @pytest.mark.parametrize("swapped", [False, True])
-def test_a_body_that_turns_and_one_that_slides_past(away: float, swapped: bool) -> None:
-    scene, compiled = two("slide", "pivot", away, 0.5) if swapped else two("pivot", "slide", away, 0.5, (0.0, 1.0))
+@pytest.mark.parametrize("unit", [1.0, 1e-3])
+def test_a_body_that_turns_and_one_that_slides_past(unit: float, away: float, swapped: bool) -> None:
+    given = ("slide", "pivot", away, 0.5, AXIS) if swapped else ("pivot", "slide", away, 0.5, (0.0, 1.0))
+    scene, compiled = two(*given, unit)
     points = dense(compiled)
     slider, turner = scene.bodies if swapped else scene.bodies[::-1]
     across = 1j * complex(*slider.axis)
@@ -112,8 +119,9 @@ def test_a_body_that_turns_and_one_that_slides_past(away: float, swapped: bool) 
 
 
 @pytest.mark.parametrize(("first", "second"), [("slide", "slide"), ("slide", "fixed"), ("fixed", "slide")])
-def test_bodies_that_slide_side_by_side(first: str, second: str) -> None:
-    scene, compiled = two(first, second, 0.5, 0.8)
+@pytest.mark.parametrize("unit", [1.0, 1e-3])
+def test_bodies_that_slide_side_by_side(unit: float, first: str, second: str) -> None:
+    scene, compiled = two(first, second, 0.5, 0.8, AXIS, unit)
     points, across = dense(compiled), 1j * complex(*AXIS)
     offsets = [
         span((world(scene.body(owner), own) * across.conjugate()).real)
