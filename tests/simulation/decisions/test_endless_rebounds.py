@@ -60,12 +60,13 @@ def test_a_play_that_stays_goes_on(share: float) -> None:
 
 
 @pytest.mark.parametrize("way", [1.0, -1.0])
-def test_hits_that_change_their_rate_begin_anew(way: float) -> None:
+@pytest.mark.parametrize("rate", [-1.0, -0.02, -30.0])
+def test_hits_that_change_their_rate_by_a_tenth_begin_anew(rate: float, way: float) -> None:
     hits = begun()
     waits = closing(0.4, ENDLESS_REBOUNDS + 50)
-    assert not any(hits.row(waits[:500])) and not any(hits.row(waits[500:], rate=-1.0 - 0.11 * way))
+    assert not any(hits.row(waits[:500], rate=rate)) and not any(hits.row(waits[500:], rate=rate * (1.0 + 0.11 * way)))
     hits = begun()
-    assert not any(hits.row(waits[:500])) and any(hits.row(waits[500:], rate=-1.0 - 0.09 * way))
+    assert not any(hits.row(waits[:500], rate=rate)) and any(hits.row(waits[500:], rate=rate * (1.0 + 0.09 * way)))
 
 
 def test_a_long_wait_begins_anew() -> None:
