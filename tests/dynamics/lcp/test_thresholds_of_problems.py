@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from plain_kernels import in_python
 
-from watchsim.dynamics import acceleration, solver_fallbacks
+from watchsim.dynamics import acceleration, impact, solver_fallbacks
 from watchsim.dynamics.lcp import basis, lemke_pivoting, scaling
 from watchsim.dynamics.lcp.outcome import LcpOutcome
 from watchsim.mechanism.compile import compile_scene
@@ -134,3 +134,34 @@ def test_a_spring_has_the_rounding_of_a_place_a_thousandth_of_the_size_from_rest
     loads = compiled.model.coordinates.load
     assert loads[0] == pytest.approx(5.0 * 1e-3)
     assert loads[1] == pytest.approx(7.0 * 1e-3 * compiled.size)
+
+
+@BOTH_SIDES
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_directions_are_parallel_to_a_trillionth_of_the_square_of_their_sine(share: float, sign: float) -> None:
+    """In any units of both; what does not move at all has no directions."""
+    parallel, both = in_python(impact.is_parallel), sign * math.sqrt((1.0 - share * 1e-12) * 6.0)
+    G = np.array([[9.0, 0.0, 0.0, 0.0], [0.0, 9.0, 0.0, 0.0], [0.0, 0.0, 2.0, both], [0.0, 0.0, both, 3.0]])
+    assert parallel(SimpleNamespace(G=G), 1) == (share < 1.0)
+    assert not parallel(SimpleNamespace(G=np.zeros((4, 4))), 1)
+
+
+def test_where_slip_and_approach_stop_together_a_millionth_of_the_slip_is_left() -> None:
+    """Of contacts that may stick and whose directions are parallel; in the row of their element."""
+    for is_parallel, rows in (([True, True, True], [0, 2]), ([False, True, True], [2]), ([False, True, False], [])):
+        work = SimpleNamespace(tangent=[1, -1, 0], b=np.arange(1.0, 7.0), unit=[0.5, 9.0, 4.0], rhs=np.zeros(5))
+        slides = in_python(impact._keep_sliding, is_parallel=lambda work, i, which=tuple(is_parallel): which[i])
+        assert slides(3, work) == bool(rows)
+        expected = np.zeros(5)
+        for i in rows:
+            expected[3 + work.tangent[i]] = 1e-6 * work.b[2 * i + 1] * work.unit[i]
+        assert work.rhs == pytest.approx(expected)
+
+
+@pytest.mark.parametrize(("jam", "nudged"), [(0.0, []), (0.25, [0]), (3.0, []), (0.05, [])])
+def test_contacts_that_slide_at_a_standstill_approach_a_millionth_of_their_slip(jam: float, nudged: list[int]) -> None:
+    """Where the gap stands still and the slip does not, of contacts that may stick."""
+    b = np.array([-0.2, -2.0, 0.1, 3.0, 0.1, 0.1, -0.5, 2.0])
+    work = SimpleNamespace(tangent=[0, -1, 1, 2], b=b, unit=[0.5, 1.0, 1.0, 2.0], rhs=np.zeros(4))
+    assert in_python(impact._nudge)(4, jam, work) == bool(nudged)
+    assert work.rhs == pytest.approx([-1e-6 * 2.0 * 0.5 if 0 in nudged else 0.0, 0.0, 0.0, 0.0])
