@@ -144,3 +144,44 @@ def test_a_fifth_of_what_is_deeper_than_half_the_closing_gap_is_taken_back(deep:
         assert room.b == pytest.approx([0.0, 0.0, -0.2 * 4e-3, 0.0])
         assert room.low.tolist() == [0.0, 0.0] and not room.ends[:2].any()
         assert np.diag(room.G) == pytest.approx([5.0 * 1.001, 6.0, 7.0 * 1.001, 8.0])
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_books_of_a_step_without_contacts_close(seed: int) -> None:
+    """Energy gained is work put in less damping less the error of the method; two sprung coordinates with a spring between."""
+    rng = np.random.default_rng(seed)
+    given = {"driven": 0, "weight_x": 0.0, "weight_y": 0.0, "coulomb": 0.0}
+    names = ("mass", "stiffness", "viscous", "quadratic", "rest", "force")
+    rows = [SimpleNamespace(**dict(zip(names, rng.uniform(0.2, 2.0, 6), strict=True)), **given) for _ in range(2)]
+    joint_names = ("stiffness", "viscous", "quadratic", "rest", "force")
+    joint = SimpleNamespace(coordinate=1, on=0, **dict(zip(joint_names, rng.uniform(0.2, 2.0, 5), strict=True)))
+    model = SimpleNamespace(coordinates=rows, joints=[joint], tables=[], lines=[])
+    q, u = rng.normal(size=2), rng.normal(size=2)
+    sums = SimpleNamespace(drive=0.0, damping=0.0, correction=0.0, friction=0.0)
+    state = SimpleNamespace(
+        clock=SimpleNamespace(time=0.0), q=q.copy(), a=rng.normal(size=2), sums=sums, mode=np.zeros(0, int),
+        worst=SimpleNamespace(penetration=0.0),
+    )  # fmt: skip
+    arrays = ("force", "damping", "mass", "inverse", "free", "foreseen", "wound")
+    work = SimpleNamespace(
+        q=q + 0.5 * STEP * u, u=u, start=q.copy(), joint=np.zeros(1), dry=[], laws=laws(0, 0), memory=np.zeros((0, 2)),
+        kept=SimpleNamespace(depth=0.0), **{name: np.zeros(2) for name in arrays},
+    )  # fmt: skip
+
+    def energy(place: np.ndarray, speed: np.ndarray) -> float:
+        own = sum(
+            0.5 * c.mass * v * v + 0.5 * c.stiffness * (x - c.rest) ** 2 for c, x, v in zip(rows, place, speed, strict=True)
+        )
+        return float(own + 0.5 * joint.stiffness * (place[1] - place[0] - joint.rest) ** 2)
+
+    after = np.zeros(2)
+    in_python(one_step.act)(model, state, 0, STEP, work, after)
+    in_python(one_step.move)(model, state, SimpleNamespace(gap_close=1e-3), 0, STEP, work, after)
+    assert state.q == pytest.approx(q + 0.5 * STEP * (u + after))
+    assert state.a == pytest.approx((after - u) / STEP)
+    gained = energy(state.q, after) - energy(q, u)
+    mean = 0.5 * (u + after)
+    put_in = STEP * (sum(c.force * v for c, v in zip(rows, mean, strict=True)) + joint.force * (mean[1] - mean[0]))
+    assert sums.drive == pytest.approx(put_in)
+    assert sums.drive - sums.damping - sums.correction == pytest.approx(gained, abs=1e-12)
+    assert sums.damping > 0.0
