@@ -165,3 +165,32 @@ def test_contacts_that_slide_at_a_standstill_approach_a_millionth_of_their_slip(
     work = SimpleNamespace(tangent=[0, -1, 1, 2], b=b, unit=[0.5, 1.0, 1.0, 2.0], rhs=np.zeros(4))
     assert in_python(impact._nudge)(4, jam, work) == bool(nudged)
     assert work.rhs == pytest.approx([-1e-6 * 2.0 * 0.5 if 0 in nudged else 0.0, 0.0, 0.0, 0.0])
+
+
+def scaled(A: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Matrix and loads as the solver sees them, and x in units of its own for one in each of its unknowns."""
+    n = len(b)
+    rows = {name: np.zeros(n) for name in ("row_scale", "column_scale", "load")}
+    work = SimpleNamespace(matrix=np.zeros((n, n)), trial=np.ones(n), worst=SimpleNamespace(driver=0.0), **rows)
+    magnitude, x = in_python(scaling.scale)(A, b, n, work), np.zeros(n)
+    work.trial[:] = 1.0
+    in_python(scaling.unscale)(n, magnitude, work, x)
+    return work.matrix, work.load, x
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("unit", [2.0**-40, 2.0**-12, 2.0**24])
+def test_problems_look_alike_in_any_units_of_forces_and_masses(seed: int, unit: float) -> None:
+    """To the bit where units are powers of two; unknowns without a diagonal are scaled by what couples them to others."""
+    rng = np.random.default_rng(seed)
+    n, base = 5, rng.normal(size=(5, 5))
+    A = base @ base.T + np.diag(rng.uniform(0.1, 1.0, n))
+    A[3:, 3:] = 0.0  # as in the rows of friction's intervals
+    A[3:, :3] *= -1.0
+    b = rng.normal(size=n)
+    matrix, load, x = scaled(A, b)
+    assert 0.1 < np.abs(matrix).max() < 10.0 and 0.5 <= np.abs(load).max() <= 2.0
+    own = np.array([unit, 1.0, unit**0.5, unit, 2.0])  # of each unknown, and the inverse of each row's
+    again, loads, units = scaled(A * own[:, None] * own, b * own * unit)
+    assert np.array_equal(again, matrix) and np.array_equal(loads, load)
+    assert units == pytest.approx(x * unit / own, rel=1e-14)
