@@ -75,7 +75,7 @@ def test_kinetic_energy_is_that_of_what_moves_by_itself() -> None:
 def test_corrections_may_change_a_share_of_the_energy_and_what_is_as_slow_as_may_be_stopped(
     before: float, highest: float, speed_zero: float, share: float, sign: float
 ) -> None:
-    """A millionth of it, a trillionth of the highest, and thirty times the speed that is zero of each coordinate, in its scale."""
+    """A millionth of it, a trillionth of the highest, and each coordinate at thirty times the speed that is zero."""
     coordinates = [SimpleNamespace(mass=2.0, driven=0, scale=0.5), SimpleNamespace(mass=3.0, driven=0, scale=0.25)]
     options = SimpleNamespace(speed_zero=speed_zero, size=0.5)
     slow = sum(0.5 * c.mass * (30.0 * speed_zero / options.size * c.scale) ** 2 for c in coordinates)

@@ -13,6 +13,7 @@ from watchsim.contact.edge_distance import edge_records
 from watchsim.contact.index_sets import BACKWARD, FORWARD, OPEN, STICK
 from watchsim.geometry.primitives import Arc, Line
 from watchsim.model.records import OVER_ANGLE, OVER_TIME, REPEATED
+from watchsim.simulation.events import released_contacts
 from watchsim.simulation.loop_state.scratch import MONITORS
 from watchsim.simulation.motion import coupled_motion, drift_projection, sleeping
 
@@ -152,3 +153,57 @@ def test_edges_are_written_with_their_middle_outward_normal_curvature_and_half_l
     assert middle == pytest.approx(
         np.array([[2.5, 3.0], [1.0 + 2.0 * root, 2.0 + 2.0 * root], [-root, -root], [0.0, 0.0]]), abs=1e-9
     )
+
+
+def weakest(forces: list[float], modes: list[int], friction: tuple[float, ...] = (0.5, 0.5, 0.0)) -> tuple[bool, int, bool]:
+    """Of three contacts without slack, each in a group of its own."""
+    model = SimpleNamespace(
+        contacts=[SimpleNamespace(group=i) for i in range(3)], laws=[SimpleNamespace(friction=mu) for mu in friction]
+    )
+    work = SimpleNamespace(force=forces, size=[1e-3] * 6, G=np.eye(6))
+    state, options = SimpleNamespace(mode=modes, now=SimpleNamespace(lenience=2.0)), SimpleNamespace(force_zero=1e-3)
+    found, row, pulls = in_python(released_contacts._weakest)(model, state, 3, options, work, SimpleNamespace(ids=[0, 1, 2]))
+    return bool(found), int(row), bool(pulls)
+
+
+@pytest.mark.parametrize(("forces", "modes", "expected"), [
+    ([1.0, 0.4, 1.0, -0.4, 1.0, 9.0], [STICK] * 3, (False, 0, False)),
+    ([-0.1, 0.0, -0.2, 0.0, 1.0, 0.0], [FORWARD] * 3, (True, 1, True)),
+    ([1.0, 0.6, 1.0, -0.7, 1.0, 9.0], [STICK] * 3, (True, 1, False)),
+    ([1.0, 0.6, 1.0, -0.7, 1.0, 9.0], [STICK, FORWARD, STICK], (True, 0, False)),
+    ([1.0, 0.6, 1.0, 0.0, -0.05, 9.0], [STICK] * 3, (True, 0, False)),
+    ([1.0, 0.6, 1.0, 0.0, -0.15, 9.0], [STICK] * 3, (True, 2, True)),
+    ([-0.9e-6, 0.0, 0.0, 0.0, 0.0, 0.0], [FORWARD] * 3, (False, 0, False)),
+    ([-1.1e-6, 0.0, 0.0, 0.0, 0.0, 0.0], [FORWARD] * 3, (True, 0, True)),
+    ([-0.9e-6, 0.0, 1e9, 0.0, 0.0, 0.0], [FORWARD] * 3, (True, 0, True)),  # far less than the largest has no sign
+])  # fmt: skip
+def test_the_contact_furthest_from_its_law_is_let_go_first(
+    forces: list[float], modes: list[int], expected: tuple[bool, int, bool]
+) -> None:
+    """One that pulls, or one that sticks beyond its cone; with half the slack with which modes end, and that is lenient."""
+    assert weakest(forces, modes) == expected
+
+
+def test_contacts_are_let_go_one_by_one_until_all_hold() -> None:
+    """What pulls opens and leaves the list, what cannot stick slides against its friction; each change is written down."""
+    answers = iter([(True, 1, True), (True, 0, False), (True, 1, False), (False, 0, False)])
+    friction, changes, asked = {0: -0.3, 1: 0.2}, [], []
+    state = SimpleNamespace(mode=[STICK] * 9, now=SimpleNamespace(lenience=1.0))
+    rest = SimpleNamespace(ids=[7, 5, 3, 99])
+    work = SimpleNamespace(force=[1.0, friction[0], 1.0, friction[1], 1.0, 0.0])
+
+    def solve_mode(model, rest, m, mode, lenience, work) -> bool:
+        asked.append((m, rest.ids[:m]))
+        return len(asked) == 4
+
+    instead = {
+        "solve_mode": solve_mode,
+        "_weakest": lambda *_: next(answers),
+        "refresh": lambda model, m, rest, pose: None,
+        "keep_change": lambda state, record, k, old: changes.append((k, old, state.mode[k])),
+    }
+    event = SimpleNamespace(rest=rest, pose=None)
+    found = in_python(released_contacts.let_go, **instead)(None, state, 3, None, work, event, None)
+    assert found == (2, True)
+    assert asked == [(3, [7, 5, 3]), (2, [7, 3]), (2, [7, 3]), (2, [7, 3])]
+    assert changes == [(5, STICK, OPEN), (7, STICK, FORWARD), (3, STICK, BACKWARD)]
