@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from plain_kernels import in_python
 
+from watchsim.dynamics.impact import energy_change
 from watchsim.simulation.events import collision
 from watchsim.simulation.events.impulse_check import is_explained, kinetic_energy
 
@@ -83,3 +84,15 @@ def test_corrections_may_change_a_share_of_the_energy_and_what_is_as_slow_as_may
     after = before + sign * share * allowed
     explained = in_python(is_explained)(SimpleNamespace(coordinates=coordinates), options, before, after, highest)
     assert bool(explained) == (share < 1.0)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_an_impact_changes_the_energy_by_its_impulses_times_the_mean_of_the_rates(seed: int) -> None:
+    """Of each row the terms count without their signs; a third contact does not take part."""
+    rng = np.random.default_rng(seed)
+    G, impulses, rates = rng.normal(size=(6, 6)), rng.normal(size=6), rng.normal(size=6)
+    G = G @ G.T
+    jumps = G[:4, :4] @ impulses[:4]
+    change, terms = in_python(energy_change)(2, SimpleNamespace(G=G, force=impulses, b=rates))
+    assert change == pytest.approx(float(impulses[:4] @ (rates[:4] + 0.5 * jumps)))
+    assert terms == pytest.approx(float(np.abs(impulses[:4]) @ (np.abs(rates[:4]) + 0.5 * np.abs(jumps))))
