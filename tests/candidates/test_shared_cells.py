@@ -89,6 +89,21 @@ def test_arcs_that_turn_reach_as_far_as_their_true_curves(coarse: float) -> None
     assert np.all(loose._reach <= np.array(true) + 2.0 * loose._drawn.sag + 1e-12)
 
 
+def test_what_is_searched_reaches_as_far_as_its_true_curves() -> None:
+    """Of every primitive that is moved: the farthest point from its origin, plus at most two sags."""
+    model = model_of(wheel("a", 0.0), wheel("b", 0.6), meet=(("a", "b"),))
+    model = model._replace(pairs=model.pairs.copy())
+    model.pairs.clearance = 0.2
+    search, pair = PairSearch(model, 0, NONE), model.pairs[0]
+    near = model.near[pair.near_start : pair.near_stop]
+    used = np.unique([model.contacts.a[near], model.contacts.b[near]])
+    rows = model.primitives[used[model.primitives.body[used] == search._bodies[0]]]
+    fine = chords(rows, 1e-7, 4000)
+    true = np.array([float(np.hypot(*points.T).max()) for points in np.split(fine.points, fine.first[1:-1])])
+    sag = search._drawn.sag
+    assert np.all(search._reach >= true - 1e-12) and np.all(search._reach <= true + 2.0 * sag + 1e-12)
+
+
 @pytest.mark.parametrize("motions", [("pivot", "pivot"), ("free", "fixed")])
 def test_candidates_are_the_same_in_any_unit_of_length(motions: tuple[str, str]) -> None:
     """A power of two smaller: to the bit the same picture, a thousandth in size."""

@@ -9,8 +9,9 @@ import pytest
 from plain_kernels import in_python
 
 from watchsim.dynamics import acceleration, redundant_contacts
-from watchsim.tolerances import FORCE_ZERO, LAW_SHARE
 
+FORCE_ZERO = 1e-10  # of a contact's force terms
+LAW_SHARE = 0.25  # of that
 M, UNKNOWNS = 3, 5
 TANGENT = [3, -1, 4]  # contacts 0 and 2 stick, 1 slides
 WIDTH, DRAG = np.array([0.4, 0.0, 0.7]), np.array([0.0, 0.3, 0.0])

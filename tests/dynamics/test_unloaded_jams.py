@@ -9,8 +9,10 @@ import pytest
 from plain_kernels import in_python
 
 from watchsim.dynamics import impact, jamming
-from watchsim.tolerances import ACCELERATION_ROUNDING, NUDGE, PAINLEVE
 
+ACCELERATION_ROUNDING = 1e-11  # of its terms
+NUDGE = 1e-6  # of the slip
+PAINLEVE = 1e-9  # of G_N
 UNIT, LOAD = 4.0, 0.3
 OWN, BOTH = 3.0, 4.0  # G_N and G_NT: the bound of friction is 0.75
 BOUND = OWN / BOTH

@@ -9,8 +9,8 @@ import pytest
 from plain_kernels import in_python
 
 from watchsim.simulation.events.shrinking_play import end_endless
-from watchsim.tolerances import ENDLESS_REBOUNDS
 
+ENDLESS_REBOUNDS = 1000  # within one accumulation time of each other
 LONGEST = 1e-6  # s, between hits
 CONTACT = 3
 
@@ -60,12 +60,13 @@ def test_a_play_that_stays_goes_on(share: float) -> None:
 
 
 @pytest.mark.parametrize("way", [1.0, -1.0])
-def test_hits_that_change_their_rate_begin_anew(way: float) -> None:
+@pytest.mark.parametrize("rate", [-1.0, -0.02, -30.0])
+def test_hits_that_change_their_rate_by_a_tenth_begin_anew(rate: float, way: float) -> None:
     hits = begun()
     waits = closing(0.4, ENDLESS_REBOUNDS + 50)
-    assert not any(hits.row(waits[:500])) and not any(hits.row(waits[500:], rate=-1.0 - 0.11 * way))
+    assert not any(hits.row(waits[:500], rate=rate)) and not any(hits.row(waits[500:], rate=rate * (1.0 + 0.11 * way)))
     hits = begun()
-    assert not any(hits.row(waits[:500])) and any(hits.row(waits[500:], rate=-1.0 - 0.09 * way))
+    assert not any(hits.row(waits[:500], rate=rate)) and any(hits.row(waits[500:], rate=rate * (1.0 + 0.09 * way)))
 
 
 def test_a_long_wait_begins_anew() -> None:

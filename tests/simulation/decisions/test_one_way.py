@@ -9,8 +9,8 @@ import pytest
 from plain_kernels import in_python
 
 from watchsim.simulation.events.immovable import has_one_way, is_immovable
-from watchsim.tolerances import IMMOVABLE
 
+IMMOVABLE = 1e-12  # sine² of the angle
 MASS = np.array([2.0, 0.3, 1.1, 0.7])
 COORDINATES = [2, 0]  # of the two directions' parts
 

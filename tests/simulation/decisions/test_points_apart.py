@@ -143,3 +143,27 @@ def test_no_wait_is_shorter_than_the_rounding_of_time(tau: float) -> None:
     assert held(-1.0, 0.0, wait=0.25, tau=tau) == 0.25
     assert held(-1.0, 0.0, wait=1e-30, tau=tau) == pytest.approx(4e-16 * tau, abs=0.0)
     assert held(-1.0, 0.0, wait=0.0, tau=tau) == 0.0
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_two_points_move_against_each_other_as_their_difference(seed: int) -> None:
+    """The circle's centre and the point of the other body that lies there now; bounds add up."""
+    rng = np.random.default_rng(seed)
+    poses = [SimpleNamespace(x=x, y=y) for x, y in rng.normal(size=(2, 2)).tolist()]
+    told = {5: rng.normal(size=5), 6: rng.normal(size=5)}
+    asked = {}
+
+    def material_point(model, state, step, body, rx, ry, left, tau, path):
+        asked[body] = (rx, ry, left, tau)
+        return tuple(told[body + 5])
+
+    primitives = [SimpleNamespace(body=0, x=0.3, y=-0.7), SimpleNamespace(body=1, x=9.0, y=9.0)]
+    model = SimpleNamespace(contacts=[None, SimpleNamespace(a=0, b=1)], primitives=primitives)
+    instead = {"_material_point": material_point, "point_of": lambda pose, x, y: (2.0 * x, 3.0 * y)}
+    path = SimpleNamespace(pose=poses)
+    found = in_python(lasting_gap._points_apart, **instead)(model, None, 1, LEFT, 0.1, None, path)
+    one, two = told[5], told[6]
+    assert found == pytest.approx([*(one[:4] - two[:4]), one[4] + two[4]])
+    assert asked[0] == (0.6, pytest.approx(-2.1), LEFT, 0.1)
+    centre = np.array([poses[0].x + 0.6, poses[0].y - 2.1])
+    assert asked[1] == (pytest.approx(centre[0] - poses[1].x), pytest.approx(centre[1] - poses[1].y), LEFT, 0.1)

@@ -11,8 +11,12 @@ from plain_kernels import in_python
 
 from watchsim.contact.index_sets import FORWARD, OPEN
 from watchsim.simulation.events import parallel_contacts, zero_rates
-from watchsim.tolerances import CONTRADICTING_RATE, HIDDEN_REBOUND, RATE_FLOOR, RATE_ROUNDING, TILT_ROUNDING
 
+CONTRADICTING_RATE = 100.0  # times what counts as zero
+HIDDEN_REBOUND = 20.0  # times the gap that is zero
+RATE_FLOOR = 1e-15  # of the size per second
+RATE_ROUNDING = 1e-12  # of the terms
+TILT_ROUNDING = 1e-13  # rad
 OPTIONS = SimpleNamespace(gap_zero=1e-13, speed_zero=1e-8, size=0.5)
 W_N, W_T = np.array([[0.3, -2.0], [1.0, 0.0]]), np.array([[-4.0, 0.5], [0.0, 0.0]])
 PACE = np.array([0.7, 3.0, 0.1])

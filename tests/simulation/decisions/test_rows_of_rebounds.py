@@ -10,8 +10,8 @@ import pytest
 from plain_kernels import in_python
 
 from watchsim.simulation.events import chatter, jammed_contacts
-from watchsim.tolerances import VELOCITY_ROUNDING
 
+VELOCITY_ROUNDING = 4e-15  # of its terms
 FASTEST, CLOSE = 0.1, 1e-9
 
 

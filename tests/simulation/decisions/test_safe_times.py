@@ -11,8 +11,8 @@ from plain_kernels import in_python
 
 from watchsim.model.records import ARC, FIXED, LINE, PIVOT, SLIDE
 from watchsim.simulation.first_closing import safe_times
-from watchsim.tolerances import IMMOVABLE
 
+IMMOVABLE = 1e-12  # sine² of the angle
 OPTIONS = SimpleNamespace(gap_zero=1e-13, behind=1e-8, speed_zero=1e-8, extent=1e-9)
 
 
@@ -105,6 +105,8 @@ def test_a_gap_that_is_behind_is_due_when_it_has_come_back_or_gone_deeper() -> N
     back = ask("safe_time", 3e-9, 0.5, 2.0, 5.0, math.inf)
     deeper = ask("safe_time", 7e-9, -0.5, 2.0, 5.0, math.inf)
     assert ask("time_to_zero", -3e-9, 0.5, False, bounds, OPTIONS) == min(back, deeper)
+    back, deeper = (ask("safe_time", way, sign * 0.5, 2.0, 5.0, math.inf) for way, sign in ((3e-9, -1.0), (7e-9, 1.0)))
+    assert back > deeper == ask("time_to_zero", -3e-9, -0.5, False, bounds, OPTIONS)
     assert ask("time_to_zero", -3e-8, 0.5, False, bounds, OPTIONS) == ask("safe_time", 3e-8, 0.5, 2.0, 5.0, math.inf)
     assert ask("time_to_zero", 1e-6, -0.5, True, bounds, OPTIONS) == ask("safe_time", 1e-6, 0.5, 2.0, 5.0, math.inf)
 

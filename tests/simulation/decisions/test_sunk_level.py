@@ -9,8 +9,8 @@ from plain_kernels import in_python
 
 from watchsim.model.records import ARC, LINE
 from watchsim.simulation.first_closing import sunk_level as module
-from watchsim.tolerances import NEAR_POINTS
 
+NEAR_POINTS = 100.0  # extents
 OPTIONS = SimpleNamespace(behind=1e-8, sunk=1e-6, extent=1e-9)
 CONVEX, CONCAVE = 1, -1  # joints: the number of a corner, or none
 

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from plain_kernels import in_python
 
+from watchsim.contact.index_sets import FORWARD, OPEN, STICK
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Line
 from watchsim.scene.body import Body
 from watchsim.scene.force import Contact, Side, Torque
 from watchsim.scene.scene import Scene
+from watchsim.simulation.events import dead_centre
 from watchsim.simulation.record.trajectory import EventKind
 from watchsim.simulation.simulate import simulate
 from watchsim.simulation.stops import Stop
@@ -111,3 +115,79 @@ def test_a_disc_about_its_own_pivot_lets_a_bar_pass() -> None:
     done = simulate(Scene("disc", bodies, contacts=(Contact((Side("disc"), Side("bar")), 0.3, 0.2),), duration=0.2))
     assert done.stop == Stop.DURATION
     np.testing.assert_allclose(done.end_q, [0.0, 0.02], atol=1e-12)
+
+
+def locks(**changed: object) -> bool:
+    """Of the second of two contacts, between two free coordinates, whose directions are parallel."""
+    given = {"N": 4.0, "T": 9.0, "both": 6.0, "inverse": [0.0, 1.0, 0.0, 2.0], "slots": 2, "friction": 0.8, **changed}
+    G = np.full((4, 4), 99.0)
+    G[2, 2], G[3, 3], G[2, 3] = given["N"], given["T"], given["both"]
+    rest = SimpleNamespace(ids=[0, 1], slots=[9, given["slots"]], coord=np.array([[0, 2], [1, 3]]))
+    laws = [SimpleNamespace(friction=99.0), SimpleNamespace(friction=given["friction"])]
+    model = SimpleNamespace(laws=laws, contacts=[SimpleNamespace(group=0), SimpleNamespace(group=1)])
+    work = SimpleNamespace(G=G, inverse=given["inverse"])
+    return bool(in_python(dead_centre._locks)(model, rest, 1, work))
+
+
+def test_parallel_directions_within_the_cone_lock_two_coordinates() -> None:
+    """Forces without effect, T to N as N is to what both share, must lie within the cone."""
+    assert locks() and locks(both=-6.0)
+    assert locks(friction=0.667) and not locks(friction=0.666)
+    assert not locks(N=0.0, both=0.0)
+    assert not locks(slots=3) and not locks(slots=1)
+    assert not locks(inverse=[1.0, 0.0, 1.0, 2.0]) and not locks(inverse=[1.0, 1.0, 1.0, 0.0])
+    assert locks(inverse=[0.0, 1e-3, 0.0, 1e-3])
+
+
+@pytest.mark.parametrize("share", [0.5, 2.0])
+def test_directions_that_lock_are_parallel_but_for_rounding(share: float) -> None:
+    assert locks(both=6.0 * math.sqrt(1.0 - share * 1e-10)) == (share < 1.0)
+
+
+def dead(**changed: object) -> tuple[bool, list[int]]:
+    """(is the island locked?, modes decided) of one contact between coordinates 1 and 3; 0 and 2 belong to other islands."""
+    given = {
+        "r": 1,
+        "solved": False,
+        "decided": OPEN,
+        "locked": True,
+        "u": [9.0, 0.0, 9.0, 0.0],
+        "label": [2, 5, 2, 5],
+        **changed,
+    }
+    rest = SimpleNamespace(ids=[2], coord=np.array([[1, 3]]))
+    event = SimpleNamespace(rest=rest, decided=[9, 9, given["decided"]], label=given["label"])
+    asked = in_python(dead_centre.stands_at_dead_centre, _locks=lambda *_: given["locked"])
+    return bool(asked(None, SimpleNamespace(u=given["u"]), 5, given["r"], given["solved"], None, event)), event.decided
+
+
+def test_an_island_stands_where_its_only_contact_locks_its_two_bodies() -> None:
+    assert dead() == (True, [9, 9, STICK])
+    assert dead(solved=True, decided=FORWARD)[0] and not dead(solved=True, decided=OPEN)[0]
+    assert dead(solved=False, decided=OPEN)[0]
+    unlike = ({"r": 2}, {"locked": False}, {"u": [0.0, 1e-9, 0.0, 0.0]}, {"u": [0.0, 0.0, 0.0, -1e-9]}, {"label": [2, 5, 5, 5]})
+    for one in unlike:
+        assert dead(**one, decided=FORWARD) == (False, [9, 9, FORWARD])
+
+
+@pytest.mark.parametrize(
+    ("mode", "force", "speeds", "locked", "stopped"),
+    [
+        (STICK, 1.0, (0.0, 0.0), True, True),
+        (FORWARD, 1.0, (0.0, 0.0), True, False),
+        (STICK, 0.0, (0.0, 0.0), True, False),
+        (STICK, 1.0, (1e-9, 0.0), True, False),
+        (STICK, 1.0, (0.0, -1e-9), True, False),
+        (STICK, 1.0, (0.0, 0.0), False, False),
+    ],
+)
+def test_what_is_locked_and_stands_is_not_accelerated(
+    mode: int, force: float, speeds: tuple[float, float], locked: bool, stopped: bool
+) -> None:
+    """By the second of two contacts, which is pressed and sticks."""
+    rest = SimpleNamespace(ids=[4, 6], coord=np.array([[0, 2], [1, 3]]))
+    state = SimpleNamespace(mode={4: FORWARD, 6: mode}, u=[0.0, speeds[0], 0.0, speeds[1]], a=[1.0, 2.0, 3.0, 4.0])
+    work = SimpleNamespace(force=[1.0, 9.0, force, 9.0])
+    hold = in_python(dead_centre.hold_at_dead_centre, _locks=lambda model, rest, i, work: locked)
+    hold(None, state, 2, work, rest)
+    assert state.a == ([1.0, 0.0, 3.0, 0.0] if stopped else [1.0, 2.0, 3.0, 4.0])

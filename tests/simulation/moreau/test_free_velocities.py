@@ -9,8 +9,8 @@ import pytest
 from plain_kernels import in_python
 
 from watchsim.simulation.moreau import one_step, percussions
-from watchsim.tolerances import NUDGE
 
+NUDGE = 1e-6  # of the slip
 STEP = 0.1
 MASS, STIFFNESS, VISCOUS, QUADRATIC = np.array([2.0, 0.5]), np.array([30.0, 4.0]), np.array([0.3, 0.0]), np.array([0.1, 0.7])
 REST, FORCE = np.array([0.2, -0.4]), np.array([1.5, -0.25])
@@ -56,7 +56,7 @@ def test_what_is_driven_feels_no_percussion() -> None:
 
 
 @pytest.mark.parametrize("size", [1e-6, 1.0, 1e6])
-@pytest.mark.parametrize("share", [0.5e-10, 2e-10])
+@pytest.mark.parametrize("share", [0.9e-10, 1.1e-10])
 def test_a_tangential_percussion_that_small_in_its_cone_has_no_sign(size: float, share: float) -> None:
     """In any unit of impulse: then the expansion has a whole cone, else what is given back ends it on one side."""
     from watchsim.model.records import TANGENTIAL_CODE
@@ -76,7 +76,7 @@ def test_a_tangential_percussion_that_small_in_its_cone_has_no_sign(size: float,
 
 
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
-@pytest.mark.parametrize("beside", [-2.0, -0.5, 0.0, 0.5, 2.0])
+@pytest.mark.parametrize("beside", [-1.1, -0.9, 0.0, 0.9, 1.1])
 def test_friction_goes_one_way_where_slip_and_approach_stop_together(sign: float, beside: float) -> None:
     """By `NUDGE` of the slip at most may they miss each other; the second contact's directions are not parallel."""
     slip = sign * 0.3

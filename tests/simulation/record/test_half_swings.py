@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from watchsim.simulation.event_kinds import EVENT_DTYPE
-from watchsim.simulation.record.half_swings import FEWEST_TURNS, QUIET, first_noises, half_swings, since_two_before, unevenness
+from watchsim.simulation.record.half_swings import FEWEST_TURNS, first_noises, half_swings, since_two_before, unevenness
 
 
 def events(times: list[int], values: list[float]) -> np.ndarray:
@@ -54,7 +54,7 @@ def test_too_few_events_make_none() -> None:
 def test_the_first_noise_after_a_silence(seed: int) -> None:
     """Times in tenths of the silence: noises at its very end, at the start of a half swing and at its end occur."""
     rng = np.random.default_rng(seed)
-    step = 0.25 * QUIET * 4.0  # a quarter of the silence of a half period of 4
+    step = 0.1  # a quarter of the silence, which is a tenth of a half period of 4
     noises, starts = step * np.unique(rng.integers(0, 80, 25)), step * np.arange(0.0, 80.0, 10.0)
     ends = starts + 10.0 * step
     expected = []

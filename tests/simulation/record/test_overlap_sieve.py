@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import shapely
 from moving_scenes import circle
+from plain_kernels import in_python
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Line
 from watchsim.scene.force import Side
+from watchsim.simulation.record import overlap_sieve
 from watchsim.simulation.record.layer_outlines import shrunk_material, stretches_of
 from watchsim.simulation.record.overlap_instants import MARGIN, Layers, PairOfLayers
 from watchsim.simulation.record.overlap_sieve import sieve
@@ -117,3 +120,29 @@ def test_the_longest_moves_are_those_of_numpy() -> None:
     expected = np.abs(np.diff(rows[100:401, [1, 3, 6]], axis=0))
     assert found.tolist() == (100 + expected.argmax(axis=0)).tolist()
     assert ways.tolist() == expected.max(axis=0).tolist()
+
+
+@pytest.mark.parametrize("share", [0.99, 1.01])
+@pytest.mark.parametrize("length", [0.01, 0.5, 3.0])
+@pytest.mark.parametrize("way", [0.0, 0.7, 1.6, 4.0])
+def test_chords_come_near_however_short_they_are(share: float, length: float, way: float) -> None:
+    """Two chords side by side, one after another or in between, circles around them no larger than they: by true distances."""
+    margin, half = 1.0, 0.5 * length
+    turn = np.exp(1j * way)
+    one = np.array([-half, half]) * np.exp(0.4j)
+    normal = (1j * turn) if way < 3.0 else turn
+    apart = shapely.LineString([(z.real, z.imag) for z in one])
+    far = 4.0 * (length + margin)
+    low, high = 0.0, far
+    for _ in range(60):  # where the other one is as far as the margin
+        middle = 0.5 * (low + high)
+        there = [(z.real, z.imag) for z in one * turn + middle * normal]
+        low, high = (low, middle) if apart.distance(shapely.LineString(there)) > share * margin else (middle, high)
+    points = np.array([[z.real, z.imag] for z in (*one, *(np.array([-half, half]) * np.exp(0.4j)))])
+    stretch = {"x": 0.0, "y": 0.0, "radius": half, "half": half, "begins": 1}
+    stretches = [SimpleNamespace(first=0, last=1, **stretch), SimpleNamespace(first=2, last=3, **stretch)]
+    pair = SimpleNamespace(still_x=0.0, still_y=0.0, still_radius=half, still_first=0, still_stop=1)
+    x, y = float((low * normal).real), float((low * normal).imag)
+    frame = (x, y, math.cos(way), math.sin(way))
+    near = in_python(overlap_sieve._comes_near)(stretches[1], pair, stretches, points, frame, margin, np.zeros((2, 2)))
+    assert bool(near) == (share < 1.0)

@@ -9,10 +9,12 @@ import pytest
 from plain_kernels import in_python
 
 from watchsim.dynamics.delassus import fill_bearings
-from watchsim.dynamics.lcp import basis
+from watchsim.dynamics.lcp import basis, lemke_pivoting
 from watchsim.dynamics.lcp.outcome import LcpOutcome
 from watchsim.dynamics.solver_fallbacks import _solve_copositive, fill_copositive
-from watchsim.tolerances import LCP_RESIDUAL, LCP_ROUNDING
+
+LCP_RESIDUAL = 1e-9  # of its terms
+LCP_ROUNDING = 1e-13  # of the largest unknown, or of one
 
 
 def judged(trial: list[float], y: list[float], rough: float = 0.0, driver: float = 0.0) -> tuple[bool, float]:
@@ -32,8 +34,8 @@ def judged(trial: list[float], y: list[float], rough: float = 0.0, driver: float
         ([1e-5, 1.0], [1e-6, 0.0], False),  # however small: where it is positive, y is zero
         ([1e-5, 1.0], [1e-13, 0.0], True),
         ([1.0, 0.0], [0.0, -1e-6], False),
-        ([1.0, 0.0], [0.0, -0.5 * LCP_ROUNDING], True),
-        ([1.0, 0.0], [0.0, -4.0 * LCP_ROUNDING], False),
+        ([1.0, 0.0], [0.0, -0.9 * LCP_ROUNDING], True),
+        ([1.0, 0.0], [0.0, -1.1 * LCP_ROUNDING], False),
         ([1.0, np.nan], [0.0, 0.0], False),
     ],
 )
@@ -119,3 +121,17 @@ def test_an_answer_of_the_copositive_form_is_checked_as_one_of_the_first_form() 
     friction = [half[0] + 0.1 - 0.2, half[1] + 0.3]
     slip = work.rhs[2:4] + work.A[2:4] @ [0.5, 0.25, *friction]
     assert work.x == pytest.approx([0.5, 0.25, *friction, *np.maximum(0.0, -slip)])
+
+
+@pytest.mark.parametrize(("path", "solved", "good"), [(0, True, True), (0, True, False), (1, True, False), (0, False, True)])
+def test_where_a_basis_cannot_be_solved_afresh_its_loads_are_read_off_the_tableau(path: int, solved: bool, good: bool) -> None:
+    """Only of the first path is the fresh solution checked; the tableau's last column holds the loads, in the order of rows."""
+    n, rng = 3, np.random.default_rng(1)
+    tableau = rng.uniform(1.0, 2.0, (n, 2 * n + 2))
+    tableau[1, -1] = -0.5
+    work = SimpleNamespace(is_active=np.full(n, 7), basis=np.array([n + 2, n + 0, 1]), tableau=tableau, trial=np.zeros(n))
+    fresh = {"solve_active": lambda n, work: solved, "is_solution": lambda n, work: good}
+    in_python(lemke_pivoting._solve_basis, **fresh)(n, path, work)
+    assert work.is_active.tolist() == [1, 0, 1]
+    kept = solved and (path > 0 or good)
+    assert work.trial.tolist() == ([0.0] * 3 if kept else [0.0, 0.0, tableau[0, -1]])

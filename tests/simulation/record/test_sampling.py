@@ -1,0 +1,148 @@
+"""Are places, velocities and accelerations between rows those of the polynomials that the manual names? Against scipy's."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.interpolate import BPoly
+
+from watchsim.scene.body import Body
+from watchsim.scene.scene import Scene
+from watchsim.simulation.record.trajectory import EVENT_DTYPE, Trajectory, between, place_between
+from watchsim.simulation.stops import Stop
+from watchsim.storage.columns import Columns, is_mapped
+
+BODIES = (Body("one", "pivot"), Body("two", "pivot"))
+SLICES = {"one": slice(0, 1), "two": slice(1, 2)}
+NONE = np.zeros((0, 2))
+
+
+def made(t: np.ndarray, q: np.ndarray, u: np.ndarray, a: np.ndarray, **more: object) -> Trajectory:
+    return Trajectory(Scene("made", BODIES), t, q, u, a, SLICES, np.zeros(0, EVENT_DTYPE), (), Stop.DURATION, **more)
+
+
+def random_run(count: int, seed: int = 1) -> Trajectory:
+    """Rows that fit no motion, unevenly spaced."""
+    rng = np.random.default_rng(seed)
+    t = np.cumsum(rng.uniform(0.1, 2.0, count))
+    return made(t, *rng.normal(size=(3, count, 2)), tolerance=1e-15)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_between_two_rows_places_are_quintics_and_velocities_their_slopes(seed: int) -> None:
+    """Through q, u and a at both ends; where the way says no more than its noise, velocities are the cubic through u and a."""
+    rng = np.random.default_rng(seed)
+    h, left, right = rng.uniform(0.1, 3.0), *(tuple(rng.normal(size=3)) for _ in range(2))
+    quintic = BPoly.from_derivatives([0.0, h], [left, right])
+    cubic = BPoly.from_derivatives([0.0, h], [left[1:], right[1:]])
+    s, length = np.linspace(0.0, 1.0, 7)[:, None], np.array([h])
+    ends = tuple(np.array([x]) for x in left), tuple(np.array([x]) for x in right)
+    assert place_between(s, length, *ends) == pytest.approx(quintic(h * s), abs=1e-12)
+    missed = abs(right[0] - left[0] - float(cubic.integrate(0.0, h)))
+    for share, velocity in ((0.99, quintic.derivative()), (1.01, cubic)):
+        q, u = between(s, length, *ends, np.array([share * missed]))
+        assert q == pytest.approx(quintic(h * s), abs=1e-12)
+        assert u == pytest.approx(velocity(h * s), rel=1e-11, abs=1e-11)
+
+
+def test_samples_are_of_the_two_rows_beside_each_time() -> None:
+    run = random_run(6)
+    times = np.concatenate([np.random.default_rng(2).uniform(run.t[0], run.t[-1], 40), run.t])
+    q, u = run.sample(times)
+    accelerations = run.acceleration(times)
+    for time, place, velocity, bend in zip(times, q, u, accelerations, strict=True):
+        k = min(int((run.t <= time).sum()) - 1, len(run.t) - 2)
+        for column in range(2):
+            ends = [[run.q[i, column], run.u[i, column], run.a[i, column]] for i in (k, k + 1)]
+            quintic = BPoly.from_derivatives(run.t[k : k + 2], ends)
+            cubic = BPoly.from_derivatives(run.t[k : k + 2], [end[1:] for end in ends])
+            assert place[column] == pytest.approx(float(quintic(time)), abs=1e-9)
+            assert velocity[column] == pytest.approx(float(quintic.derivative()(time)), abs=1e-9)
+            assert bend[column] == pytest.approx(float(cubic.derivative()(time)), abs=1e-9)
+
+
+def test_beyond_the_rows_everything_is_as_in_the_nearest() -> None:
+    run = random_run(4)
+    for time, row in ((run.t[0] - 1.0, 0), (run.t[-1] + 1.0, -1)):
+        q, u = run.at(time)
+        assert (q, u) == (pytest.approx(run.q[row]), pytest.approx(run.u[row]))
+        assert run.acceleration(np.array([time]))[0] == pytest.approx(run.a[row])
+
+
+def test_of_one_row_or_of_two_at_one_instant_the_last_one_counts() -> None:
+    single = random_run(1)
+    for run in (single, made(np.repeat(single.t, 2), *(np.stack([x[0] - 7.0, x[0]]) for x in (single.q, single.u, single.a)))):
+        for time in (run.t[0] - 1.0, run.t[0], run.t[0] + 1.0):
+            q, u = run.at(time)
+            assert np.array_equal(q, run.q[-1]) and np.array_equal(u, run.u[-1])
+            assert np.array_equal(run.acceleration(np.array([time]))[0], run.a[-1])
+
+
+def test_at_a_jump_the_row_after_it_counts() -> None:
+    rng = np.random.default_rng(4)
+    run = made(np.array([0.0, 1.0, 1.0, 3.0]), *rng.normal(size=(3, 4, 2)), tolerance=1e-15)
+    assert run.at(1.0) == (pytest.approx(run.q[2]), pytest.approx(run.u[2]))
+    assert run.acceleration(np.array([1.0]))[0] == pytest.approx(run.a[2])
+    assert run.at(np.nextafter(1.0, 0.0))[1] == pytest.approx(run.u[1])
+
+
+def test_without_rows_nothing_is_known_of_the_motion() -> None:
+    run = made(np.zeros(0), NONE, NONE, NONE)
+    assert run.end is None
+    for ask in (run.sample, run.acceleration):
+        with pytest.raises(ValueError, match="no row of this run was kept"):
+            ask(np.zeros(1))
+
+
+def test_the_end_is_told_by_itself_or_is_the_last_row() -> None:
+    run = random_run(3)
+    assert run.end is not None and [x.tolist() for x in run.end] == [run.q[-1].tolist(), run.u[-1].tolist()]
+    told = made(run.t, run.q, run.u, run.a, end_q=np.ones(2), end_u=np.zeros(2))
+    assert told.end is not None and [x.tolist() for x in told.end] == [[1.0, 1.0], [0.0, 0.0]]
+
+
+@pytest.mark.parametrize("column", [0, 1])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_way_shorter_than_half_a_tolerance_of_the_largest_value_makes_no_velocity(column: int, sign: float) -> None:
+    """Of each coordinate by itself, over all its rows and either way; above it 30/16 of it over the time, at the middle."""
+    largest = np.array([4.0, 100.0])
+    for share in (0.9, 1.1):
+        q = np.zeros((3, 2))
+        q[2] = -largest
+        q[1, column] = sign * share * 0.5e-6 * largest[column]
+        run = made(np.array([0.0, 0.5, 9.0]), q, np.zeros((3, 2)), np.zeros((3, 2)), tolerance=1e-6)
+        expected = np.zeros(2)
+        expected[column] = 30.0 / 16.0 * q[1, column] / 0.5 if share > 1.0 else 0.0
+        assert run.at(0.25)[1] == pytest.approx(expected, rel=1e-12)
+
+
+def test_rows_in_files_say_the_same(tmp_path: Path) -> None:
+    run, columns = random_run(2500), Columns()
+    columns.folder, columns.most = tmp_path, 1
+    columns.append((run.t, run.q, run.u, run.a))
+    filed = made(*columns.all(), tolerance=1e-15)
+    assert is_mapped(filed.q) and not is_mapped(run.q)
+    for count in (1, 999, 1000, 1001, 2345):
+        times = np.sort(np.random.default_rng(count).uniform(run.t[0], run.t[-1], count))
+        for one, other in zip(filed.sample(times), run.sample(times), strict=True):
+            assert np.array_equal(one, other)
+
+
+def test_nothing_in_a_run_can_be_written_over() -> None:
+    run = random_run(3)
+    for array in (run.t, run.q, run.u, run.a, run.events, run.end_q, run.end_u):
+        assert not array.flags.writeable
+
+
+@pytest.mark.parametrize(("overlap", "worst"), [({}, 0.0), ({"worst_m": 2e-6}, 2e-6)])
+def test_the_worst_overlap(overlap: dict[str, float], worst: float) -> None:
+    run = random_run(3)
+    assert made(run.t, run.q, run.u, run.a, overlap=overlap).worst_overlap == worst
+
+
+def test_a_body_stands_where_it_is_though_nothing_moves() -> None:
+    still = Scene("still", (Body("post", "fixed", (3.0, 4.0), 0.5),))
+    run = Trajectory(still, np.zeros(1), *(np.zeros((1, 0)),) * 3, {}, np.zeros(0, EVENT_DTYPE), (), Stop.DURATION)
+    assert run.pose("post", 7.0) == (3.0, 4.0, 0.5)
