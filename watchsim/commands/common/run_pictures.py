@@ -11,12 +11,12 @@ from watchsim import stopping
 from watchsim.commands.common.console import Progress, say
 
 if TYPE_CHECKING:
-    from watchsim.commands.common.second_process import SecondProcess
     from watchsim.render.figures.kinematics_plot import Kinematics
     from watchsim.scene.scene import Scene
     from watchsim.simulation.record.trajectory import Trajectory
 
 Draw = Callable[[Path | IO[bytes]], object]
+Draws = Mapping[str, Draw]  # by the name of the picture in the results folder
 
 
 class LeftOut(Exception):
@@ -28,10 +28,10 @@ WHOLE_RUN = 10.0  # s that the movie of a whole run takes
 
 
 def pictures(
-    run: Trajectory, plotted: bool, movie: bool, gif: bool, second: SecondProcess | None = None
+    run: Trajectory, plotted: bool, movie: bool, gif: bool, elsewhere: Callable[[Draws], Draws] | None = None
 ) -> dict[str, Callable[[Path], object]]:
-    """Name in the results folder -> what draws it into the file it is given; plots by the `second` process, if any."""
-    found: dict[str, Any] = _plots_of(run, second) if plotted else {}
+    """Name in the results folder -> what draws it into the file it is given; `elsewhere` gives what waits for plots that are drawn there."""
+    found: dict[str, Any] = dict(_plots_of(run, elsewhere)) if plotted else {}
     if movie:
         found["movie.mp4"] = lambda path: _movie(run, path, slow=1 / 20)
     if gif:
@@ -67,13 +67,13 @@ def _drawn(draw: Callable[[Path], object]) -> Callable[[Path], None]:
     return attempt
 
 
-def _plots_of(run: Trajectory, second: SecondProcess | None) -> dict[str, Draw]:
+def _plots_of(run: Trajectory, elsewhere: Callable[[Draws], Draws] | None) -> Draws:
     """What draws the plots, or waits for them where they are being drawn elsewhere."""
     draws = plots(run)
     moving = sum(body.motion != "fixed" for body in run.scene.bodies)
     if draws and moving > MOST_PLOTTED:
         say(f"Plots of {MOST_PLOTTED} of {moving} moving bodies; watchsim plot RUN --bodies NAMES draws others.")
-    return draws if second is None else second.drawn(draws)
+    return elsewhere(draws) if elsewhere else draws
 
 
 def empty_panels(scene: Scene) -> Kinematics:

@@ -14,7 +14,7 @@ import shutil
 import signal
 import socket
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, NoReturn
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from watchsim.commands.common.run_pictures import Draw
+    from watchsim.commands.common.run_pictures import Draws
     from watchsim.scene.scene import Scene
     from watchsim.simulation.record.trajectory import Pair, Trajectory
 
@@ -68,7 +68,7 @@ class SecondProcess:
         found: IO[bytes] | None = self._answer(1)
         return found
 
-    def drawn(self, draws: Mapping[str, Draw]) -> dict[str, Draw]:
+    def drawn(self, draws: Draws) -> Draws:
         """The same plots as it draws them; by `draws` those that it could not."""
 
         def written(name: str, target: Path | IO[bytes]) -> None:

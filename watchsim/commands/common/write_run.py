@@ -74,7 +74,8 @@ def write(
     try:
         if second is not None:
             second.finish(run)
-        drawn = pictures(run, extras.plots, extras.movie, extras.gif, second)
+        elsewhere = second.drawn if second is not None else None
+        drawn = pictures(run, extras.plots, extras.movie, extras.gif, elsewhere)
         packed = _begun(run, goal.folder, lines, second)
         numbers = _numbers(run, extras, changed, goal.folder)
         said = [*(f"Note: {note}" for note in numbers["notes"]), report_text(run, numbers)]
