@@ -117,3 +117,20 @@ def test_candidates_are_the_same_in_any_unit_of_length(motions: tuple[str, str])
         cells = np.random.default_rng(3).integers(-9, 9, (30, int(model.pairs[0].axes)))
         lists.append([part.tolist() for part in PairSearch(model, 0, NONE).candidates(cells)])
     assert lists[0] == lists[1] and lists[0][1]
+
+
+@pytest.mark.parametrize("groups", [2, 3])
+def test_where_several_groups_name_the_same_primitives_each_has_its_candidates(groups: int) -> None:
+    model = model_of(wheel("a", 0.0), wheel("b", 0.6), meet=(("a", "b"),) * groups)
+    alone = model_of(wheel("a", 0.0), wheel("b", 0.6), meet=(("a", "b"),))
+    cells = np.random.default_rng(3).integers(-9, 9, (30, 2))
+    count, found = PairSearch(model, 0, NONE).candidates(cells)
+    once, each = PairSearch(alone, 0, NONE).candidates(cells)
+    assert len(model.pairs) == 1 and count.tolist() == (groups * once).tolist()
+    here, there = np.cumsum(count) - count, np.cumsum(once) - once
+    for k in range(30):
+        rows = model.contacts[model.pairs[0].start + found[here[k] : here[k] + count[k]]]
+        expected = alone.contacts[each[there[k] : there[k] + once[k]]]
+        pairs = {(int(a), int(b)) for a, b in zip(expected.a, expected.b, strict=True)}
+        named = {(int(a), int(b), int(group)) for a, b, group in zip(rows.a, rows.b, rows.group, strict=True)}
+        assert named == {(a, b, group) for a, b in pairs for group in range(groups)}
