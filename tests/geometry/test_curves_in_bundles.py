@@ -298,3 +298,12 @@ def test_a_straight_span_may_pause_at_its_ends_but_not_turn_back() -> None:
         control[0, :, :2] = 1e-3 * np.array([(0.0, 0.0), inner, (4.0, 3.0)])
         ((part,),) = parts_of([Curve(control, np.array([0.0, 1.0]))], [1e-7])
         assert isinstance(part.edge, Line) is bool(lines)
+
+
+@pytest.mark.parametrize(("share", "is_one"), [(0.9, False), (1.1, True)])
+def test_spans_shorter_than_twenty_tolerances_are_no_edges_of_their_own(share: float, is_one: bool) -> None:
+    length = share * 20.0 * 1e-7
+    ((bow,),) = parts_of([ring(1e-4, length / (1e-4 * TURN), 1)], [1e-7])
+    ((line,),) = parts_of([polyline((0.0, 0.0), (600.0 * length, 800.0 * length))], [1e-7])
+    assert (isinstance(bow.edge, Arc), isinstance(line.edge, Line)) == (is_one, is_one)
+    assert is_one or bow.edge is line.edge is None
