@@ -290,3 +290,20 @@ def test_round_spans_go_on_in_one_arc(turns: float) -> None:
     (part,) = parts
     assert isinstance(part.edge, Arc) and part.edge.sweep == pytest.approx(turns * TURN, rel=1e-9)
     assert (part.edge.x, part.edge.y, part.edge.radius) == pytest.approx((1e-3, 2e-3, 2e-3), rel=1e-9) and CLOSED < 1e-6
+
+
+def test_a_straight_span_may_pause_at_its_ends_but_not_turn_back() -> None:
+    for inner, lines in (((0.0, 0.0), 1), ((4.0, 3.0), 1), ((2.0, 1.5), 1), ((-0.4, -0.3), 0), ((4.4, 3.3), 0)):
+        control = np.ones((1, 3, 3))
+        control[0, :, :2] = 1e-3 * np.array([(0.0, 0.0), inner, (4.0, 3.0)])
+        ((part,),) = parts_of([Curve(control, np.array([0.0, 1.0]))], [1e-7])
+        assert isinstance(part.edge, Line) is bool(lines)
+
+
+@pytest.mark.parametrize(("share", "is_one"), [(0.9, False), (1.1, True)])
+def test_spans_shorter_than_twenty_tolerances_are_no_edges_of_their_own(share: float, is_one: bool) -> None:
+    length = share * 20.0 * 1e-7
+    ((bow,),) = parts_of([ring(1e-4, length / (1e-4 * TURN), 1)], [1e-7])
+    ((line,),) = parts_of([polyline((0.0, 0.0), (600.0 * length, 800.0 * length))], [1e-7])
+    assert (isinstance(bow.edge, Arc), isinstance(line.edge, Line)) == (is_one, is_one)
+    assert is_one or bow.edge is line.edge is None

@@ -276,3 +276,11 @@ def test_far_cells_hold_nothing_of_what_lies_here() -> None:
         for k in range(0, 200, 7):
             near = grid.around((0.5 * k * reach, -0.25 * k * reach))
             assert k in near and len(near) <= 17 and len(set(near)) == len(near)
+
+
+@pytest.mark.parametrize("short", [1.5 * NM, 2.5 * NM, 4.0 * NM])
+def test_the_shortest_edges_hang_together_with_their_neighbours(short: float) -> None:
+    """By both ends, which stay two nodes."""
+    row = [Line(0.0, 0.0, MM, 0.0), Line(MM, 0.0, MM, short), Line(MM, short, 2 * MM, MM)]
+    nodes = Nodes(strokes(row))
+    assert nodes.node[1] == nodes.node[2] != nodes.node[3] == nodes.node[4] and len(nodes.at) == 4

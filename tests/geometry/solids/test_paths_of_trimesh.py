@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from trimesh.path import Path2D, entities
 
+from watchsim.drawing.profile import Profile
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line
 from watchsim.geometry.solids.meshes import _arc, _pose, edges_of, path2d
@@ -74,3 +75,12 @@ def test_a_pose_turns_and_then_shifts(angle: float) -> None:
     c, s = math.cos(angle), math.sin(angle)
     assert pose @ [1.0, 0.0, 5.0, 1.0] == pytest.approx([2.0 + c, -3.0 + s, 5.0, 1.0])
     assert pose @ [0.0, 1.0, 0.0, 1.0] == pytest.approx([2.0 - s, -3.0 + c, 0.0, 1.0])
+
+
+@pytest.mark.parametrize(("gap", "closes"), [(0.9, True), (9.5, True), (10.5, False), (50.0, False)])
+def test_ends_of_a_path_are_joined_as_those_of_a_drawing_are(gap: float, closes: bool) -> None:
+    """A micrometre is the same point; loose ends are joined up to ten."""
+    corners = [(0.0, 0.0), (4.0, 0.0), (4.0, 3.0), (0.0, 3.0), (0.0, 1e-3 * gap)]
+    path = Path2D(entities=[entities.Line([k, k + 1]) for k in range(4)], vertices=np.array(corners), process=False)
+    found = Profile.from_path2d(path, units="mm")
+    assert (len(found.loops), len(found.chains)) == ((1, 0) if closes else (0, 1))
