@@ -30,7 +30,10 @@ WHOLE_RUN = 10.0  # s that the movie of a whole run takes
 def pictures(
     run: Trajectory, plotted: bool, movie: bool, gif: bool, elsewhere: Callable[[Draws], Draws] | None = None
 ) -> dict[str, Callable[[Path], object]]:
-    """Name in the results folder -> what draws it into the file it is given; `elsewhere` gives what waits for plots that are drawn there."""
+    """Name in the results folder -> what draws it into the file it is given.
+
+    `elsewhere` makes of what draws plots here what waits for them where they are being drawn.
+    """
     found: dict[str, Any] = dict(_plots_of(run, elsewhere)) if plotted else {}
     if movie:
         found["movie.mp4"] = lambda path: _movie(run, path, slow=1 / 20)
