@@ -52,5 +52,5 @@ def test_what_fails_meanwhile_is_left_to_others(tmp_path: Path, monkeypatch: pyt
     monkeypatch.setattr(EventLines, "add", fails)
     scene, before = load(profiles_dir() / "bench_lever"), sys.getswitchinterval()
     meanwhile = Meanwhile(scene, tmp_path)
-    meanwhile.follow([], np.zeros(0))
+    meanwhile.follow([], np.zeros(1))
     assert meanwhile.end() is None and sys.getswitchinterval() == before

@@ -45,6 +45,8 @@ class Meanwhile:
 
     def follow(self, pairs: Sequence[Pair], events: NDArray[Any], _: Sequence[NDArray[Any]] = ()) -> None:
         """The next events of the run."""
+        if not len(events):
+            return
         from watchsim.results.tables import EventLines
 
         lines = self._lines = self._lines or EventLines(self._scene, pairs, self._folder)
