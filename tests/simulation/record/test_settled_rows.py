@@ -73,7 +73,7 @@ def test_events_are_told_once_as_soon_as_they_are_settled(name: str, seed: int) 
     recording, parts = RECORDINGS[name], parts_of_a_run(np.random.default_rng(seed))
     told: list[float] = []
     kept = Kept(recording, TAIL)
-    kept.follow = lambda events: told.extend(events["value"])
+    kept.follow = lambda events, _: told.extend(events["value"])
     chosen: list[float] = []
     for count, (rows, events) in enumerate(parts, 1):
         kept.flush(rows, events)
