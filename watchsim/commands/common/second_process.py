@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from watchsim.scene.scene import Scene
     from watchsim.simulation.record.trajectory import Pair, Trajectory
 
-QUEUE = 1 << 14  # bytes of the socket, in which some dozen messages wait; who is further behind is left behind
+QUEUE = 1 << 14  # bytes of the socket, in which some forty messages wait; who is further behind is left behind
 
 
 class SecondProcess:
