@@ -78,6 +78,7 @@ FAULTS = [
     ("M1 2 L3", 0, "it ends where L needs a number"),
     ("M1 2 L3 7 8", 1, "it ends where L needs a number"),
     ("M1 2 L3 7 8L9 1", 1, 'character 12 is "L" where L needs a number'),
+    ("M1 2 L3 7 8  ?9", 1, 'character 14 is "?9" where L needs a number'),
     ("M1 2 L3 7?8", 1, 'character 10 is "?8" where L needs a number'),
     ("M1 2 L,3 7", 0, 'character 7 is ",3 7" where L needs a number'),
     ("M1 2 L3 7,", 1, 'character 10 is "," where L needs a number'),

@@ -74,6 +74,8 @@ def test_rules_for_what_lies_within(read_svg: Reader, style: str, around: str, i
     [
         ("@media print{.a{display:none}}", True),
         ("@media print{.a{stroke:red}}", False),
+        ("@media print{.a{color:red;cursor:help}}", False),
+        ("@media print{.a{r : 2px}}", True),
         ("@supports (x:y){.a{visibility:hidden}}", True),
         ("@font-face{display:none}", False),
         ('@import "other.css";', True),

@@ -17,6 +17,7 @@ from watchsim.drawing.svg.xml_elements import Node
 SEEN = ("display", "visibility", "clip-path", "mask")
 PLACED = ("transform", "transform-origin", "transform-box", "x", "y", "width", "height", "cx", "cy", "r", "rx", "ry", "d")
 RELEVANT = frozenset((*SEEN, *PLACED))
+_DECLARED = re.compile(rf"(?<![\w-])(?:{'|'.join(map(re.escape, sorted(RELEVANT)))})\s*:")
 MOST_RULES = 500
 MOST_COMPOUNDS = 16
 _COMMENT = re.compile(r"/\*.*?\*/|<!--|-->", re.DOTALL)
@@ -129,7 +130,7 @@ def _blocks(text: str, styles: Styles) -> Iterator[tuple[str, str]]:
         body, at = text[at:end], end + 1
         if not prelude.startswith("@"):
             yield prelude, body
-        elif prelude.startswith(("@media", "@supports", "@layer")) and any(f"{name}:" in body for name in RELEVANT):
+        elif prelude.startswith(("@media", "@supports", "@layer")) and _DECLARED.search(body):
             styles.findings.append(Finding("css", "warning", f"{prelude[:60]}: rules under a condition were not read"))
 
 

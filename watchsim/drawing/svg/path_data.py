@@ -59,8 +59,9 @@ def _follow(pen: _Pen, letter: str, text: str, at: int, end: int) -> None:
     while first or _MORE.match(text, at, end):
         arguments, after = _arguments(kind, text, at, end, not first)
         if len(arguments) < NUMBERS[kind] or (kind == "Z" and not first):
-            seen = text[after:end].strip()[:20] or text[end : end + 1]
-            where = f'character {after + 1} is "{seen}"' if seen else "it ends"
+            left = text[after:end].lstrip()
+            seen = left.rstrip()[:20] or text[end : end + 1]
+            where = f'character {end - len(left) + 1} is "{seen}"' if seen else "it ends"
             raise SvgError(f"{where} where {letter} needs a number" if kind != "Z" else f"{where}, after a closed outline")
         pen.draw(kind, letter.islower(), arguments)
         kind = "L" if kind == "M" else kind  # further pairs after a move are lines
