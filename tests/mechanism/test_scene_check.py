@@ -1,11 +1,12 @@
 """Does the check echo what the scene amounts to, in the fixed names?"""
 
+import dataclasses
 import json
 
 import pytest
 
 from watchsim.mechanism.pair_table import PairCount
-from watchsim.mechanism.static_check import check_report, check_text
+from watchsim.mechanism.static_check import _poise_lines, check_report, check_text
 from watchsim.scene.file.load import load
 
 PAIRS = (PairCount(("wheel", "lever"), 120, 17, 3, 5, 2),)
@@ -93,3 +94,11 @@ def test_what_is_carried_is_weighed_with_its_carrier_however_light(desk):
     scene = load(desk.scene(text))
     words = check_text(check_report(scene, ()), scene)
     assert "with balance: mass 140 mg, inertia 40 mg·cm²" in words
+
+
+@pytest.mark.parametrize(("metres", "told"), [(4e-12, False), (6e-12, True), (1e-8, True)])
+def test_a_centre_of_mass_off_the_pivot_by_rounding_is_not_told(desk, metres, told):
+    """A thousand millionth of half of 10 mm."""
+    scene = load(desk.scene())
+    wheel = dataclasses.replace(scene.body("wheel"), mass=1e-6, centre_of_mass=(0.0, metres))
+    assert any("beside the pivot" in line for line in _poise_lines(scene, wheel)) is told

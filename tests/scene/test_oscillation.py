@@ -92,6 +92,8 @@ def test_the_rate_is_measured_against_what_the_scene_says(tmp_path: Path) -> Non
     assert nominal_frequency(scene) == 0.5 and frequency(scene) != 0.5
     with pytest.raises(SceneError, match=r"small swings at 0\.498.* Hz .* more than 10 % off"):
         scene_of(tmp_path, PENDULUM + '[timegrapher]\nfrequency = "28800 vph"\n')
+    with pytest.raises(SceneError, match="more than 10 % off"):
+        scene_of(tmp_path, PENDULUM + '[timegrapher]\nfrequency = "3200 vph"\n')
     # A vertical watch whose balance is not poised: the spring's own frequency, so that the poise error shows in the rate.
     sprung = scene_of(tmp_path, PENDULUM + '[[springs]]\nbody = "pendulum"\nfrequency = "4 Hz"\n')
     assert nominal_frequency(sprung) == pytest.approx(4.0, rel=1e-12) and frequency(sprung) > 4.01

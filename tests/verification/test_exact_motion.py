@@ -218,4 +218,4 @@ def test_moments_are_in_order_and_say_what_was_before() -> None:
     model = modal(Toy())
     seen = list(exact_motion.moments(model, *touching(model, LOWER, 0.05, -0.3), 0.05))
     assert seen[0].t == 0.0 and seen[-1].t == 0.05 and all(a.t <= b.t for a, b in pairwise(seen))
-    assert seen[-1].cause == "end" and seen[-1].contact == -1
+    assert seen[0].contact == seen[-1].contact == -1 and seen[-1].cause == "end"

@@ -75,10 +75,9 @@ def curvatures(ways: Array) -> Array:
     It is that of the circle through three corners, whatever the lengths of the two pieces.
     """
     after = np.roll(ways, -1, axis=0)
-    length = np.hypot(*ways.T)
     span = np.hypot(*(ways + after).T)
     turn = np.arctan2(ways[:, 0] * after[:, 1] - ways[:, 1] * after[:, 0], np.sum(ways * after, axis=1))
-    smooth = (length > 0.0) & (np.roll(length, -1) > 0.0) & (turn != 0.0) & (np.abs(turn) < SHARPEST)
+    smooth = (turn != 0.0) & (np.abs(turn) < SHARPEST)  # a piece of no length has no turn
     return np.where(smooth, 2.0 * np.sin(turn) / np.where(smooth, span, 1.0), np.nan)
 
 

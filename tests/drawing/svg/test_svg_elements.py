@@ -258,6 +258,8 @@ def test_a_symbol_alone_is_not_drawn_and_percentages_follow_the_viewport(read_sv
     assert "empty" in s.errors(read_svg(s.svg(f"<symbol>{TOOTH}</symbol>")))
     inner = '<svg x="10" y="10" width="40" height="20"><rect x="25%" y="50%" width="50%" height="50%"/></svg>'
     assert box_mm(read_svg(s.svg(inner))) == pytest.approx([20, 20, 40, 30])
+    tiny = '<svg width="5e-4" height="5e-4" viewBox="0 0 1e-6 1e-6"><rect width="0.02" height="0.02"/></svg>'
+    assert box_mm(read_svg(s.svg(tiny))) == pytest.approx([0, 0, 10, 10])
     circle = read_svg(s.svg('<svg width="30" height="40" viewBox="0 0 30 40"><circle r="10%"/></svg>'))
     assert s.edges(circle)[0].radius == pytest.approx(1e-4 * math.sqrt((30**2 + 40**2) / 2))
 
