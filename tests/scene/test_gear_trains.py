@@ -10,6 +10,7 @@ from scene.made_gears import wheels
 from watchsim.mechanism.compile import compile_scene
 from watchsim.mechanism.static_check import check_report, check_text
 from watchsim.scene.errors import SceneError
+from watchsim.scene.gear_trains import goes_with
 from watchsim.scene.gearing import Gear, Geared
 
 THIRD = '[bodies.third]\nposition = ["20 mm", "0 mm"]\ninertia = "1 g·cm²"\n'
@@ -19,6 +20,12 @@ def faults(folder, **parts) -> dict[str, str]:
     with pytest.raises(SceneError) as caught:
         wheels(folder, **parts)
     return {fault.key: fault.message for fault in caught.value.faults}
+
+
+def test_what_goes_with_a_body_either_way(tmp_path) -> None:
+    scene = wheels(tmp_path)
+    assert goes_with(scene, "wheel") == {"wheel": 1.0, "pinion": -8.0}
+    assert goes_with(scene, "pinion") == {"pinion": 1.0, "wheel": -0.125}
 
 
 def test_gears_without_play_bind_the_second_body_to_the_first(tmp_path) -> None:

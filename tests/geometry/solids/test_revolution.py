@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import mpmath
 import numpy as np
@@ -13,7 +14,7 @@ from hypothesis import strategies as st
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import TURN, Arc, Line, Point
-from watchsim.geometry.solids.revolution import Turned, turned
+from watchsim.geometry.solids.revolution import Turned, reach, turned, upright
 
 X_AXIS = ((0.0, 0.0), (1.0, 0.0))
 TINY = 1e-12
@@ -56,6 +57,14 @@ def test_torus() -> None:
     expected = (volume, 3e-3, volume * (a * a + 0.75 * b * b), volume * (a * a / 2 + 5 / 8 * b * b))
     ring = Loop((Arc(3e-3, a, b, 0.3, TURN),))
     assert numbers(turned([ring], *X_AXIS)) == pytest.approx(expected, rel=TINY, abs=0.0)
+
+
+def test_open_lines_are_no_part_of_the_profile() -> None:
+    """Not even where they cross the axis."""
+    box = Loop(tuple(Line(*a, *b) for a, b in pairwise([(1.0, 0.0), (2.0, 0.0), (2.0, 3.0), (1.0, 3.0), (1.0, 0.0)])))
+    stray = Loop((Line(0.0, -9.0, 0.0, 9.0),), closed=False)
+    assert upright([stray, box], (0.0, 0.0), (1.0, 0.0)) == upright([box], (0.0, 0.0), (1.0, 0.0))
+    assert reach([stray, box], (0.0, 0.0), (1.0, 0.0)) == 3.0
 
 
 def test_a_bore_is_taken_out() -> None:
