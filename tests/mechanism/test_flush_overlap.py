@@ -26,3 +26,10 @@ def test_flush_squares_touch(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_squares_that_overlap_do() -> None:
     depth, _ = regions_depth(WHOLE, shapely.affinity.translate(shapely.from_wkt(SECOND), 1e-4, 0.0), 2e-9)
     assert depth == pytest.approx(1e-4 * 0.9421 / 1.0, rel=0.02)
+
+
+def test_regions_apart_have_a_depth_below_zero_and_those_that_touch_none() -> None:
+    one = shapely.box(0.0, 0.0, 1e-3, 1e-3)
+    assert regions_depth(one, shapely.box(2e-3, 0.0, 3e-3, 1e-3), 2e-9)[0] < 0.0
+    assert regions_depth(one, shapely.box(1e-3, 0.0, 3e-3, 1e-3), 2e-9)[0] == 0.0
+    assert regions_depth(one, shapely.box(0.9e-3, 0.0, 3e-3, 1e-3), 2e-9)[0] == pytest.approx(1e-4, rel=1e-9)
