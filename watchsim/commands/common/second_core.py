@@ -1,7 +1,7 @@
 """What does a second core do for the process itself while a run is stepped?
 
 The loop is machine code that leaves Python to others: meanwhile a thread makes text of events. Plots are drawn elsewhere, see
-`plots_apart`.
+`second_process`.
 """
 
 from __future__ import annotations
