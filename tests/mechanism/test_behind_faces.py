@@ -6,9 +6,10 @@ import math
 
 import numpy as np
 import pytest
+import shapely
 
 from watchsim.geometry.primitives import Line
-from watchsim.mechanism.overlap_depth import _behind_line
+from watchsim.mechanism.overlap_depth import _behind_line, corner_depth
 
 
 @pytest.mark.parametrize("turned", [0.0, 0.8, 2.0, -2.5])
@@ -22,3 +23,22 @@ def test_behind_a_line(turned: float) -> None:
     beside, behind = _behind_line(face, points)
     assert beside.tolist() == [True, True, False, False, True]
     assert behind == pytest.approx(left, abs=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("box", "depth", "place"),
+    [
+        ((-1.0, 0.3, 2.0, 5.0), 0.2, (0.0, 0.5)),  # xmin, ymin, xmax, ymax
+        ((-0.1, 0.3, 2.0, 5.0), 0.1, (0.0, 0.5)),
+        ((-1.5, 0.1, 0.5, 5.0), 0.4, (0.0, 0.5)),
+        ((-1.0, 0.5, 1.0, 2.0), -1.0, (0.0, 0.0)),  # on the ridge
+        ((-1.0, 2.0, 1.0, 3.0), -1.0, (0.0, 0.0)),
+        ((-1.0, -1.0, 2.5, 5.0), -1.0, (0.0, 0.0)),  # round one end
+        ((-2.5, -1.0, 1.0, 5.0), -1.0, (0.0, 0.0)),
+    ],
+)
+def test_depth_of_a_corner_in_a_box(box: tuple[float, ...], depth: float, place: tuple[float, float]) -> None:
+    roof = np.array([(2.0, 0.0), (1.0, 0.25), (0.0, 0.5), (-1.0, 0.25), (-2.0, 0.0)])
+    found, where = corner_depth(roof, shapely.box(*box))
+    assert found == pytest.approx(depth)
+    assert where == place

@@ -79,6 +79,25 @@ def test_open_faces(angle):
     assert depth(DISC, FACE, (0.0, -0.9 * MM)) == pytest.approx(0.1 * MM, rel=1e-3), "in either order"
 
 
+ROOF = (Loop((Line(2 * MM, 0.0, 0.0, 0.5 * MM), Line(0.0, 0.5 * MM, -2 * MM, 0.0)), "roof", closed=False),)  # material below
+HIGH = (Loop((Arc(0.0, 0.0, MM, 0.2, math.pi - 0.4),), "arch", closed=False),)
+SQUARE = (box(-1 * MM, -1 * MM, 1 * MM, 1 * MM),)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.7])
+@pytest.mark.parametrize(("face", "top"), [(ROOF, 0.5), (HIGH, 1.0)])
+def test_a_corner_of_an_open_face_that_a_body_covers(face: tuple[Loop, ...], top: float, angle: float) -> None:
+    """No corner of the body is behind the face: how deep the ridge stands in the body counts."""
+    c, s = math.cos(angle), math.sin(angle)
+    turned = (face[0].moved(angle, (0.0, 0.0)),)
+
+    def at(x: float, y: float) -> float:
+        return depth(turned, SQUARE, (MM * (x * c - y * s), MM * (x * s + y * c)), angle)
+
+    assert at(0.0, top + 1.0) == 0.0
+    assert at(0.0, top + 0.9) == pytest.approx(0.1 * MM, rel=1e-3)
+
+
 OVERLAPPING = 'position = ["0 mm", "9 mm"]\nangle = "10°"'
 
 

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Edge, Point
 from watchsim.mechanism.material_polygons import chord_points, material, placed, refined_points
-from watchsim.mechanism.overlap_depth import COARSE, face_depth, face_line, regions_depth
+from watchsim.mechanism.overlap_depth import COARSE, corner_depth, face_depth, face_line, regions_depth
 from watchsim.scene.carriers import start_poses
 from watchsim.scene.errors import Fault
 from watchsim.scene.file.keys.locate import key_lines
@@ -146,6 +146,8 @@ class _Layer:
 
 def _meeting(contact: int, a: _Layer, b: _Layer) -> Overlap | None:
     """The deepest point at which two layers touch or overlap; None where they are apart."""
+    import shapely
+
     if not (len(a.boxes) and len(b.boxes)) or not _meet(a.box[None], b.box[None] + DRAWING_ROUNDING * SIDES)[0]:
         return None
     (region_a, faces_a, error_a), (region_b, faces_b, error_b) = (
@@ -158,6 +160,7 @@ def _meeting(contact: int, a: _Layer, b: _Layer) -> Overlap | None:
             found += [
                 face_depth(points, edges, shape, allowed) for shape in (region, *(face_line(other) for other, _ in others))
             ]
+            found += [corner_depth(points, part) for part in shapely.get_parts(region)]
     depth, place = max(found)
     return Overlap(contact, (a.side, b.side), depth, place, allowed) if depth >= 0.0 else None
 

@@ -102,6 +102,22 @@ def face_depth(face: Floats, edges: tuple[Edge, ...], shape: Any, allowed: float
     return best, place
 
 
+def corner_depth(face: Floats, part: Any) -> tuple[float, Point]:
+    """How deep a corner of an open face lies in a part of some material, and where.
+
+    Negative where none lies in it, or an end does: the part has come round it.
+    """
+    import shapely
+
+    corners = shapely.points(face)
+    inside = shapely.contains(part, corners)
+    if inside[[0, -1]].any() or not inside.any():
+        return -1.0, (0.0, 0.0)
+    depths = np.where(inside, shapely.distance(corners, part.boundary), -1.0)
+    worst = int(depths.argmax())
+    return float(depths[worst]), (float(face[worst, 0]), float(face[worst, 1]))
+
+
 def _behind_line(face: Line, points: Floats) -> tuple[NDArray[np.bool_], Floats]:
     """Which points lie beside the line, and how far each is behind it (m)."""
     (tx, ty), (x, y) = face.tangent(0.0), points.T - np.array([[face.x0], [face.y0]])

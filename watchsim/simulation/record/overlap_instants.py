@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Point
 from watchsim.mechanism.material_polygons import material, placed
-from watchsim.mechanism.overlap_depth import face_depth, regions_depth
+from watchsim.mechanism.overlap_depth import corner_depth, face_depth, regions_depth
 from watchsim.model.records import Records, records
 from watchsim.scene.force import Side
 from watchsim.simulation.record.layer_outlines import CHORDS, Outlines, outlines_of, shrunk_material, stretches_of
@@ -89,7 +89,7 @@ class PairOfLayers:
         for one, other in ((0, 1), (1, 0)):
             shapes = [regions[other], *(shapely.LineString(points) for points, _ in faces[other])]
             found += [face_depth(points, edges, shape, 0.0) for points, edges in faces[one] for shape in shapes]
-            found += [_corner_depth(points, part) for points, _ in faces[one] for part in shapely.get_parts(regions[other])]
+            found += [corner_depth(points, part) for points, _ in faces[one] for part in shapely.get_parts(regions[other])]
         return max(found)
 
 
@@ -135,19 +135,6 @@ class Layers:
                 stretches.append(moved)
                 points.append(joined)
         return rows, np.concatenate(stretches).view(np.recarray), np.concatenate(points)
-
-
-def _corner_depth(face: Array, part: Any) -> tuple[float, Point]:
-    """How deep a corner of an open face lies in a part of some material, and where; 0 where that came round an end."""
-    import shapely
-
-    corners = shapely.points(face)
-    inside = shapely.contains(part, corners)
-    if inside[[0, -1]].any():
-        return 0.0, (0.0, 0.0)
-    depths = np.where(inside, shapely.distance(corners, part.boundary), 0.0)
-    worst = int(depths.argmax())
-    return float(depths[worst]), (float(face[worst, 0]), float(face[worst, 1]))
 
 
 def _reaches_into(outlines: Outlines, shrunk: Any, seen: Poses) -> Bits:
