@@ -87,8 +87,41 @@ def test_the_rest_begins_with_what_reaches_the_place_and_stops_at_the_limit() ->
     import reached
 
     seconds = {"a.py::one": 1.0, "a.py::two": 0.5, "a.py::three": 4.0, "b.py::four": 0.1}
-    known = reached.Reached(seconds, {"a.py::one": {("x.py", 3)}, "b.py::four": set()})
-    names = known.with_neighbours(known.tests("x.py", 3))
+    known = reached.Reached(seconds, {"a.py::one": {("x.py", "f")}, "b.py::four": set()})
+    names = known.with_neighbours(known.tests("x.py", "f"))
     assert names == ["a.py::one", "a.py::two", "a.py::three"]
     assert known.within(names, 1.5) == names[:2] and known.within(names, 9.0) == names
     assert known.within(names, 0.2) == names[:1] and known.within([], 1.0) == []
+
+
+NESTED = """
+LIMIT = 3
+@cache
+def f(x,
+      y=1):
+    def g():
+        return 1
+    return g
+class C:
+    size = 4
+    @property
+    def f(self):
+        return 5
+    @f.setter
+    def f(self, value):
+        self.x = value
+h = lambda x: x + 1
+"""
+
+
+def test_functions_are_known_by_their_names_wherever_they_stand() -> None:
+    """Not by lines, which move: inner ones, methods, a setter of its property's name."""
+    import reached
+
+    for text, shift in ((NESTED, 0), ("\n# Something above.\n" + NESTED, 2)):
+        lines = {line: reached.function_of(text, line + shift) for line in range(2, 18)}
+        assert lines == {
+            **{2: "", 3: "", 4: "", 5: "", 6: "f", 7: "f.g", 8: "f", 9: "", 10: "", 11: "", 12: "", 13: "C.f"},
+            **{14: "", 15: "", 16: "C.f 2", 17: "lambda"},
+        }
+        assert [one.first - shift for one in reached.functions(text)] == [3, 6, 11, 14, 17]

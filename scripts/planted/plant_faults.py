@@ -10,8 +10,9 @@ compiled. In the area "kernels" what these miss goes into a copy of the project,
 runs first, then all tests of that part, the cheapest files first.
 
 Which tests reach what takes minutes to record. With --reached it is kept: test files that have changed since are recorded
-anew, but where a file of the package has changed, delete the folder. Where a test starts watchsim in another process, that
-process runs without the fault, and what it calls is not recorded: such a test notices only what it calls itself.
+anew, and functions are known by their names; where a change of the package lets tests reach others, delete the folder. Where a
+test starts watchsim in another process, that process runs without the fault, and what it calls is not recorded: such a test
+notices only what it calls itself.
 
 What no test notices is listed; what was judged harmless stands in scripts/planted/faults_judged.csv with the reason.
 Ends with 1 where fewer than 95 % of all others were noticed.

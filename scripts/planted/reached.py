@@ -20,31 +20,33 @@ import resource
 import signal
 import sys
 import time
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from itertools import accumulate
 from pathlib import Path
 from types import CodeType, FrameType
-from typing import Any
+from typing import Any, NamedTuple
 
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = str(ROOT / "watchsim") + os.sep
-MODULE = 0  # the "line" of what is done while a file is imported
+MODULE = ""  # the "function" of what is done while a file is imported
+MEMORY = 8 * 2**30  # B, that a process with a fault may take
 OPTIONS = ["-q", "-p", "no:cacheprovider", "--no-header", "-W", "ignore"]
 LIBRARIES = ("numba", "scipy.spatial", "scipy.interpolate", "scipy.optimize", "shapely", "ezdxf", "hypothesis", "mpmath")
 
 
 @dataclass
 class Reached:
-    """For each test: the seconds it took, and (file, first line) of the functions it called."""
+    """For each test: the seconds it took, and (file, name) of the functions it called."""
 
     seconds: dict[str, float] = field(default_factory=dict)
-    called: dict[str, set[tuple[str, int]]] = field(default_factory=dict)
+    called: dict[str, set[tuple[str, str]]] = field(default_factory=dict)
 
-    def tests(self, file: str, function: int) -> list[str]:
+    def tests(self, file: str, function: str) -> list[str]:
         """The tests that reach a function, quickest first; of what is done at import, those that reach anything of the file.
 
         Or of files that import from it: nothing of a table of constants is called. So they are for a function that no test
@@ -81,7 +83,9 @@ class Reached:
     def of(cls, text: str) -> Reached:
         """What `text` has written."""
         loaded = json.loads(text)
-        return cls(loaded["seconds"], {name: {(file, line) for file, line in hits} for name, hits in loaded["called"].items()})
+        return cls(
+            loaded["seconds"], {name: {(file, function) for file, function in hits} for name, hits in loaded["called"].items()}
+        )
 
 
 @cache
@@ -121,9 +125,11 @@ class _Recorder:
         if self._left_out:
             return
         self.reached.seconds[item.nodeid] = time.process_time() - begun
-        files = ((code.co_filename, code.co_firstlineno) for code in self._codes)
+        codes = [code for code in self._codes if code.co_filename.startswith(PACKAGE)]
         self.reached.called[item.nodeid] = {
-            (file.removeprefix(PACKAGE), line) for file, line in files if file.startswith(PACKAGE)
+            (code.co_filename.removeprefix(PACKAGE), function)
+            for code in codes
+            for function in _names(code.co_filename).get(code.co_firstlineno, ())
         }
 
     @pytest.hookimpl(hookwrapper=True)
@@ -207,21 +213,51 @@ def fails(tests: Sequence[str], file: str, source: str, limit: float) -> bool:
     return _in_a_copy(work, limit)[0] != 0
 
 
-def function_lines(source: str) -> list[tuple[int, int, int]]:
-    """(first line with its decorators, of its body, last line) of every function, inner ones last."""
-    found = []
-    for node in ast.walk(ast.parse(source)):
-        if isinstance(node, (ast.FunctionDef, ast.Lambda)):
-            decorators = getattr(node, "decorator_list", [])
-            first = min([node.lineno, *(one.lineno for one in decorators)])
-            body = node.body[0].lineno if isinstance(node, ast.FunctionDef) else node.lineno
-            found.append((first, body, node.end_lineno or node.lineno))
-    return sorted(found)
+class Function(NamedTuple):
+    """Where a function stands: its first line with decorators, that of its body, and its last one."""
+
+    first: int
+    body: int
+    last: int
+    name: str
 
 
-def function_of(source: str, line: int) -> int:
-    """The first line of the innermost function in whose body a line is; MODULE where it is in none (defaults, constants)."""
-    return max((first for first, body, last in function_lines(source) if body <= line <= last), default=MODULE)
+def functions(source: str) -> list[Function]:
+    """Every function, inner ones after what they stand in. Those of one name are told apart by their order."""
+    found: list[Function] = []
+    seen: Counter[str] = Counter()
+
+    def look(node: ast.AST, prefix: str) -> None:
+        for child in ast.iter_child_nodes(node):
+            inner = prefix
+            if isinstance(child, (ast.FunctionDef, ast.ClassDef, ast.Lambda)):
+                name = prefix + getattr(child, "name", "lambda")
+                inner = name + "."
+            if isinstance(child, (ast.FunctionDef, ast.Lambda)):
+                seen[name] += 1
+                first = min([child.lineno, *(one.lineno for one in getattr(child, "decorator_list", []))])
+                body = child.body[0].lineno if isinstance(child, ast.FunctionDef) else child.lineno
+                own = name if seen[name] == 1 else f"{name} {seen[name]}"
+                found.append(Function(first, body, child.end_lineno or child.lineno, own))
+            look(child, inner)
+
+    look(ast.parse(source), "")
+    return found
+
+
+def function_of(source: str, line: int) -> str:
+    """The name of the innermost function in whose body a line is; MODULE where it is in none (defaults, constants)."""
+    holding = [one for one in functions(source) if one.body <= line <= one.last]
+    return max(holding, default=Function(0, 0, 0, MODULE)).name
+
+
+@cache
+def _names(path: str) -> dict[int, list[str]]:
+    """The names of the functions that begin in a line of a file."""
+    found: dict[int, list[str]] = {}
+    for one in functions(Path(path).read_text(encoding="utf-8")):
+        found.setdefault(one.first, []).append(one.name)
+    return found
 
 
 class _Faulty(importlib.machinery.SourceFileLoader):
@@ -256,6 +292,7 @@ def _in_a_copy(work: Any, limit: float | None) -> tuple[int, str]:
             os.dup2(nowhere, 2)
             if limit is not None:
                 resource.setrlimit(resource.RLIMIT_CPU, (int(limit) + 1, int(limit) + 1))
+                resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
                 signal.alarm(int(60.0 * limit))  # on the clock: something waits for ever
             with contextlib.redirect_stdout(io.StringIO()) as said:
                 status, text = work()
