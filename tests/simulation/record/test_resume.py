@@ -6,7 +6,7 @@ import dataclasses
 import os
 import signal
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -133,22 +133,28 @@ def test_interrupted_and_taken_up_again() -> None:
     assert_same(simulate(scene, 0.5, start=stopped), simulate(scene, 0.5))
 
 
-def ctrl_c(after: float) -> None:
-    """As from the keyboard, while the loop runs."""
-    threading.Timer(after, os.kill, (os.getpid(), signal.SIGINT)).start()
-
-
 @pytest.fixture
-def heard() -> Iterator[None]:
-    """Ctrl-C reaches Python; a shell that starts the tests in the background has it ignored."""
+def ctrl_c() -> Iterator[Callable[[float], None]]:
+    """As from the keyboard after so many seconds, while the loop runs; never after the test.
+
+    It reaches Python also where the tests run in the background of a shell, which has it ignored.
+    """
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    yield
+    presses: list[threading.Timer] = []
+
+    def press(after: float) -> None:
+        presses.append(threading.Timer(after, os.kill, (os.getpid(), signal.SIGINT)))
+        presses[-1].start()
+
+    yield press
+    for one in presses:
+        one.cancel()
+        one.join()
     signal.signal(signal.SIGINT, before)
 
 
-@pytest.mark.usefixtures("heard")
 @pytest.mark.parametrize("options", [{}, {"method": "moreau", "step": 1e-4}], ids=["events", "fixed steps"])
-def test_ctrl_c_at_any_moment_loses_nothing(options: dict[str, Any]) -> None:
+def test_ctrl_c_at_any_moment_loses_nothing(ctrl_c: Callable[[float], None], options: dict[str, Any]) -> None:
     """Wherever it comes: what was kept is whole, and going on gives the bits of a run that was never stopped."""
     scene = profile("bench_lever")
     simulate(scene, 0.01, **options)
