@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,7 @@ def by_loops(times: Any, held: Any, at_events: Any, rows: Any, at_rows: Any, sta
     earlier_ones = [k for k, t in enumerate(times) if t < start]
     own = earlier_ones[-1:] + [k for k, t in enumerate(times) if start <= t < end]
     runs = {}
-    for k, after in zip(own, own[1:], strict=False):
+    for k, after in pairwise(own):
         free = held[k] == 0 and times[after] > times[k]
         runs[k] = at_events[after] - at_events[k] if free else 0.0
     before, behind = (float(np.interp(t, rows, at_rows)) for t in (start, end))
