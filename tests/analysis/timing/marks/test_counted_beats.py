@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import statistics
+from itertools import pairwise
 from types import SimpleNamespace
 from typing import Any
 
@@ -38,10 +39,10 @@ def test_missed_beats_one_by_one(monkeypatch: pytest.MonkeyPatch, seed: int, giv
     rng = np.random.default_rng(seed)
     count = 40
     steps = steps_of(rng, giving, count)
-    came = np.concatenate(([0.0], np.cumsum(steps))) + 0.1 * giving if giving else np.concatenate(([0.0], np.cumsum(steps)))
+    came = np.concatenate(([0.0], np.cumsum(steps)))
     kept = sorted({0, *np.flatnonzero(rng.random(count + 1) < 0.9).tolist()})
     wrong, one = 0, 1 if giving is None else 2
-    for low, high in zip(kept, kept[1:], strict=False):
+    for low, high in pairwise(kept):
         due = sum(1 if giving is None else 2 * (k % 2 == giving) for k in range(low, high))
         wrong += abs(round(came[high] - came[low]) - due)
     assert missed(monkeypatch, kept, came[kept].tolist()) == wrong // one
@@ -67,9 +68,10 @@ def test_which_half_swings_give_a_step(seed: int) -> None:
     usual = [(0, 2), (2, 0), (1, 1), (2, 2), (0, 1), (1, 3)][seed % 6]
     steps = np.array([usual[h % 2] for h in half_swings]) + rng.choice([0, 0, 0, 1, -2], len(half_swings))
     came = Advance(HALF, half_swings.astype(float), HALF * (7.0 + np.cumsum(steps)))
-    by = {
-        k: [steps[i + 1] for i, h in enumerate(half_swings[:-1]) if half_swings[i + 1] == h + 1 and h % 2 == k] for k in (0, 1)
-    }
+    by: dict[int, list[int]] = {0: [], 1: []}
+    for i, (h, after) in enumerate(pairwise(half_swings.tolist())):
+        if after == h + 1:
+            by[h % 2].append(int(steps[i + 1]))
     found = [statistics.median(by[k]) if by[k] else math.nan for k in (0, 1)]
     wanted = {(2.0, 0.0): 0, (0.0, 2.0): 1}.get((float(found[0]), float(found[1])))
     assert _giving(came) == wanted
@@ -85,7 +87,7 @@ def test_how_many_of_a_parity_came_before(parity: int) -> None:
 def test_the_wheel_at_turning_points(monkeypatch: pytest.MonkeyPatch, kept: str) -> None:
     """From the first beat's beginning on, counted from the run's first turning point, at those that were recorded."""
     turns = np.array([1.0, 1.7, 2.9, 3.1])
-    unknown = {"all": (), "some": (1.7,), "none": turns}[kept]
+    unknown = {"all": [], "some": [1.7], "none": turns.tolist()}[kept]
     monkeypatch.setattr(module, "pitch", lambda scene, wheel: {"wheel": 2.0 * HALF}[wheel])
     monkeypatch.setattr(module, "is_recorded", lambda run, times: ~np.isin(times, unknown))
     monkeypatch.setattr(module, "progress", lambda run, wheel, times: {"wheel": times**2}[wheel])
