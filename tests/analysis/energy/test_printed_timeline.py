@@ -97,7 +97,7 @@ def test_an_anchor_has_one_column(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize(("supplied", "shared"), [(1e-3, True), (0.0, False), (-1e-3, False)])
 def test_shares_only_of_what_is_supplied(monkeypatch: pytest.MonkeyPatch, supplied: float, shared: bool) -> None:
     """Times count from each beat's own start; one that begins on no stone names none."""
-    first = SimpleNamespace(**vars(IMPULSE) | {"pallet": "", "energy": SimpleNamespace(**vars(IMPULSE.energy))})
+    first: Any = SimpleNamespace(**vars(IMPULSE) | {"pallet": "", "energy": SimpleNamespace(**vars(IMPULSE.energy))})
     first.energy.supplied = 1e-9 * supplied
     lines = printed(monkeypatch, [BEAT, Beat((first,), ({},))])
     assert lines[0] == "Timeline, t = 1.250000 s to 1.260000 s" and lines[8] == "beat 7, t = 1.252500 s"
