@@ -79,9 +79,14 @@ def test_wheels_that_share_an_outline_have_their_own_teeth() -> None:
 
 @pytest.mark.parametrize(("share", "count"), [(0.0475, 15), (0.0525, 5)])
 def test_inaccuracies_are_less_than_a_twentieth_of_the_largest_moment(share: float, count: int) -> None:
-    """Short pieces of length w at radius r on a circle: every moment is the sum of w r^2 over them, every third one heavier."""
-    lengths = [1.0 + 3.0 * share / (1.0 - share) * (k % 3 == 0) for k in range(15)]
+    """Fifteen short pieces, and five at half the radius: moments go with their length and the square of that."""
     turns = [complex(math.cos(k * math.tau / 15), math.sin(k * math.tau / 15)) for k in range(15)]
-    pieces = [(1e3 * z - 5e-7 * 1j * z * w, 1e3 * z + 5e-7 * 1j * z * w) for z, w in zip(turns, lengths, strict=True)]
-    edges = tuple(Line(a.real, a.imag, b.real, b.imag) for a, b in pieces)
+    pieces = [(1e-3 * z, 1e-6) for z in turns] + [(5e-4 * z, 4e-6 * 3.0 * share / (1.0 - share)) for z in turns[::3]]
+    ends = [(z - 0.5j * w * z / abs(z), z + 0.5j * w * z / abs(z)) for z, w in pieces]
+    edges = tuple(Line(a.real, a.imag, b.real, b.imag) for a, b in ends)
     assert tooth_count([Loop(edges, "TEETH", True)]) == count
+
+
+@pytest.mark.parametrize(("teeth", "count"), [(240, 240), (241, 0)])
+def test_a_wheel_has_up_to_240_teeth(teeth: int, count: int) -> None:
+    assert tooth_count([star(teeth)]) == count
