@@ -31,7 +31,7 @@ def rows_of(parts: Iterator[Stretches], size: int) -> list[Stretch]:
 def made(rng: np.random.Generator) -> tuple[Any, Any, np.ndarray, set[float]]:
     """A run with the wheel's progress at its rows, half swings from 3 s on, which are asked for, and times not recorded."""
     t = np.sort(rng.uniform(2.5, 15.5, 60))
-    run = SimpleNamespace(t=t, way=np.round(np.cumsum(rng.choice([-0.1, -1e-4, 0.0, 0.1, 0.7], len(t))), 4))
+    run = SimpleNamespace(t=t, way=np.round(np.cumsum(rng.choice([-0.9, -0.1, -1e-4, 0.0, 0.1, 0.7], len(t))), 4))
     turns = 3.0 + np.arange(BEATS + 1.0)
     found = SimpleNamespace(start=turns[:-1], end=turns[1:], before=5)
     unknown = set(rng.choice(turns, 2).tolist()) if rng.random() < 0.7 else set()
