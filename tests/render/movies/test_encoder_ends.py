@@ -44,6 +44,12 @@ def test_however_it_fails(lines: tuple[str, ...], said: str) -> None:
         _run(program(*lines), [frame.data for frame in FRAMES] * 12)  # more than a pipe holds
 
 
+def test_small_frames_do_not_linger_on_the_way() -> None:
+    """They would fail once more when the pipe is closed, and hide what the encoder has said."""
+    with pytest.raises(OSError, match="had enough"):
+        _run(program("sys.stdin.buffer.read(9)", "print('had enough', file=sys.stderr)"), [bytes(1000)] * 1500)
+
+
 def test_words_alone_are_no_failure() -> None:
     _run(program("sys.stdin.buffer.read()", "print('a warning', file=sys.stderr)"), [FRAMES[0].data])
 
