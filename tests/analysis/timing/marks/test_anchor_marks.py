@@ -90,10 +90,12 @@ def test_one_beat_by_hand() -> None:
     assert beat() == (2.2, 2.2, 2.3, 2.6, 2.7)
 
 
+@pytest.mark.parametrize("scale", [1.0, 1e-4])
 @pytest.mark.parametrize(("catch", "caught"), [(0.049, None), (0.051, 2.3)])
-def test_a_twentieth_of_the_way_is_a_catching_up(catch: float, caught: float | None) -> None:
-    places = [0.0, 0.0, 10.0 * catch, 4.0, 10.0]
-    marks = beat(at_events=places, at_rows=[0.0, 0.0, *places[1:], 10.0])
+def test_a_twentieth_of_the_way_is_a_catching_up(catch: float, caught: float | None, scale: float) -> None:
+    """However small the wheel's steps are."""
+    places = [scale * place for place in (0.0, 0.0, 10.0 * catch, 4.0, 10.0)]
+    marks = beat(at_events=places, at_rows=[0.0, 0.0, *places[1:], 10.0 * scale])
     assert marks is not None and (marks.caught, marks.freed) == (caught, None if caught is None else 2.2)
 
 

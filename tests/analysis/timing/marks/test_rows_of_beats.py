@@ -13,6 +13,8 @@ import pytest
 from watchsim.analysis.timing.marks import anchor_phases as anchored
 from watchsim.analysis.timing.marks import hinged_phases as hinged
 from watchsim.analysis.timing.marks.anchor_marks import Marks
+from watchsim.analysis.timing.marks.anchor_phases import anchor_phases
+from watchsim.analysis.timing.marks.hinged_phases import hinged_phases
 from watchsim.analysis.timing.marks.stretches import Stretch, Stretches
 
 BEATS = 12
@@ -90,7 +92,7 @@ def test_beats_of_an_anchor(seed: int, size: int, monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(anchored, "anchor_marks", told)
     contacts: Any = SimpleNamespace(times="times", held="held", angle="angle")
     parts: Any = SimpleNamespace(wheel="wheel")
-    got = rows_of(anchored.anchor_phases(run, parts, found, contacts, within, size), size)
+    got = rows_of(anchor_phases(run, parts, found, contacts, within, size), size)
     assert got == anchor_rows(run, found, within, unknown, marks)
     near = {i + k for i in np.flatnonzero(within).tolist() for k in range(3)}
     known = {i for i in range(BEATS) if not {found.start[i], found.end[i]} & unknown}
@@ -108,7 +110,7 @@ def test_a_thousandth_of_the_advance_is_a_recoil(back: float, name: str, monkeyp
     monkeypatch.setattr(anchored, "anchor_marks", lambda *_: next(marks))
     contacts: Any = SimpleNamespace(times=None, held=None, angle=None)
     parts: Any = SimpleNamespace(wheel="wheel")
-    rows = rows_of(anchored.anchor_phases(run, parts, found, contacts, np.ones(2, bool), 9), 9)
+    rows = rows_of(anchor_phases(run, parts, found, contacts, np.ones(2, bool), 9), 9)
     assert [row.name for row in rows] == ["impulse", "drop", name, "impulse", "drop"]
 
 
@@ -148,5 +150,5 @@ def test_beats_of_hinged_pallets(seed: int, size: int, monkeypatch: pytest.Monke
     monkeypatch.setattr(hinged, "between", lambda wheel, names: (wheel, *names))
     monkeypatch.setattr(hinged, "contact_columns", lambda run, pair, names, *kinds: [np.array(columns[pair[1]])])
     wanted = hinged_rows(run, found, within, unknown, touches)
-    assert rows_of(hinged.hinged_phases(run, "wheel", PALLETS, found, within, size), size) == wanted
+    assert rows_of(hinged_phases(run, "wheel", PALLETS, found, within, size), size) == wanted
     assert all(one.end == after.start for one, after in pairwise(wanted) if one.beat == after.beat)
