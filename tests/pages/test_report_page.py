@@ -274,15 +274,15 @@ def test_every_script_is_in_the_page() -> None:
 
 
 def test_an_impulse_on_the_stone_and_one_on_the_tooth_are_told_apart_beat_by_beat() -> None:
-    turns = (0.1, 0.2, 0.3)
+    angles, turns = (0.0, 0.0, 0.0), (0.1, 0.2, 0.3)
     told = []
     for beat in (1, 3):
         t = float(beat)
         told += [
-            Phase(beat, "unlock", t, t + 0.001),
-            Phase(beat, "impulse", t + 0.001, t + 0.003, turns=turns, on="stone"),
-            Phase(beat, "impulse", t + 0.003, t + 0.004, turns=turns, on="tooth"),
-            Phase(beat, "impulse", t + 0.005, t + 0.007, turns=turns, on="stone"),  # it let go for a moment
+            Phase(beat, "unlock", t, t + 0.001, angles, angles),
+            Phase(beat, "impulse", t + 0.001, t + 0.003, angles, turns, on="stone"),
+            Phase(beat, "impulse", t + 0.003, t + 0.004, angles, turns, on="tooth"),
+            Phase(beat, "impulse", t + 0.005, t + 0.007, angles, turns, on="stone"),  # it let go for a moment
         ]
     (section,) = phase_tables(told)
     cells = {}

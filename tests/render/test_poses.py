@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from render.fake_runs import MM, disc_run, slide_run, watch_run
 
-from watchsim.render.frame.pose_history import choose, dense, moving, placed, poses, recorded, stretch, swept
+from watchsim.render.frame.pose_history import choose, dense, moving, placed, poses, recorded, sampled, stretch, swept
 
 TIMES = np.array([0.0, 0.1234, 0.777, 1.9, 2.0])
 
@@ -127,3 +127,14 @@ def test_a_record_of_one_row_is_known_at_that_instant_and_one_of_none_nowhere():
     assert recorded(replace(full, spans=(), **one)) == ((0.0, 0.0),)
     with pytest.raises(ValueError, match="no row"):
         recorded(replace(full, spans=(), **none))
+
+
+def test_rows_of_the_window_are_among_its_samples() -> None:
+    """Both ends, too; of very many rows so few that the evenly spread instants outnumber them."""
+    run = watch_run(rows=3001)
+    times = -0.5 * sampled(run, run.scene.body("wheel"), (0.5, 0.75))[:, 2]
+    rows = run.t[(run.t >= 0.5) & (run.t <= 0.75)]
+    assert np.abs(times[:, None] - rows).min(axis=0).max() < 1e-12 and len(times) > len(rows)
+    assert times[0] == pytest.approx(0.5, rel=1e-12) and times[-1] == pytest.approx(0.75, rel=1e-12)
+    whole = sampled(run, run.scene.body("wheel"), (0.0, 2.0))
+    assert 700 < len(whole) <= 400 + math.ceil(3002 / (3002 // 400)) + 1

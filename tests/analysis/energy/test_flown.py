@@ -99,3 +99,17 @@ def test_over_no_time_nothing_is_lost() -> None:
     compiled: Any = SimpleNamespace(model=model_of(coordinates=fields), q=np.zeros(1), against=[])
     got = flows(run, compiled)
     assert not got.damped.any() and got.own[0, 0] != got.own[1, 0]
+
+
+def test_a_flight_may_begin_at_rest() -> None:
+    """Let go, without dry friction."""
+    t = np.array([0.0, 0.9])
+    z = complex(-VISCOUS / 4.0, np.sqrt(STIFFNESS / 2.0 - (VISCOUS / 4.0) ** 2))
+    far = 2.5j / z * np.exp(z * t)
+    q, u, a = REST + far.real, (z * far).real, (z * z * far).real
+    u[0] = 0.0
+    fields = {"viscous": [VISCOUS], "rest": [REST], "linear": [1], "stiffness": [STIFFNESS], "mass": [2.0]}
+    run: Any = SimpleNamespace(t=t, q=q[:, None], u=u[:, None], a=a[:, None])
+    compiled: Any = SimpleNamespace(model=model_of(coordinates=fields), q=np.zeros(1), against=[])
+    lost = quad(lambda s: VISCOUS * (2.5j * np.exp(z * s)).real ** 2, 0.0, 0.9, epsabs=1e-14)[0]
+    assert flows(run, compiled).damped[1, 0] == pytest.approx(lost, rel=1e-11)

@@ -23,6 +23,7 @@ from reference.oscillator import Oscillator, motion
 from render.fake_runs import disc_run
 
 from watchsim.analysis.timing.beats import beats
+from watchsim.scene.recording import STATISTICS
 from watchsim.simulation.event_kinds import EventKind
 
 
@@ -168,3 +169,19 @@ def test_a_sliding_oscillator_has_no_degrees():
     found = beats(balance_only(steady_swings(6, 1e-3), 1.0, replace(scene, bodies=(balance, *scene.bodies[1:]))))
     assert not found.angular and found.amplitude == pytest.approx(1e-3) and np.isnan(found.amplitude_deg).all()
     assert found.period_s[-1] == pytest.approx(1.0 / HERTZ)
+
+
+@pytest.mark.parametrize(("counted", "before"), [(70, 61), (5, 0)])
+def test_where_not_all_was_kept_only_the_last_stretch_is_told(counted: int, before: int) -> None:
+    """Half swings of an eighth of a second; those before the last stretch, from 2 s on, are known by their number."""
+    run = balance_only(steady_swings(25, 4.7), 4.0)
+    kept = replace(run, keep=STATISTICS, spans=((0.3, 1.1), (2.0, 3.4)), sums={"half_swings": counted})
+    found = beats(kept)
+    assert found.start[0] == 2.0 and len(found) == 9 and found.before == before
+    assert len(beats(run)) == 24 and beats(replace(run, sums=kept.sums)).before == 0
+    assert beats(kept, "balance").before == 0 and beats(replace(kept, spans=())).start[0] == pytest.approx(0.125)
+
+
+@pytest.mark.parametrize(("amplitude", "count"), [(0.95e-13, 0), (1.05e-13, 7)])
+def test_what_moves_by_rounding_does_not_swing(amplitude: float, count: int) -> None:
+    assert len(beats(balance_only(steady_swings(8, amplitude), 1.0))) == count

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 from watchsim.analysis.timing.beats import Beats
-from watchsim.analysis.timing.marks.anchor_marks import NEAR_REST, STANDING
 from watchsim.analysis.timing.marks.lever_phases import lever_phases
 from watchsim.analysis.timing.marks.stretches import FACES, Stretch, in_columns
 from watchsim.analysis.timing.marks.wheel_contacts import WheelContacts
@@ -48,13 +47,13 @@ def one_by_one(
         runs = {
             k: angle[k + 1] - angle[k]
             for k in own[:-1]
-            if contacts.held[k] == 0 and t[k + 1] > t[k] and angle[k + 1] >= at_end - NEAR_REST * way
+            if contacts.held[k] == 0 and t[k + 1] > t[k] and angle[k + 1] >= at_end - 0.1 * way
         }
         if not runs:
             continue
         drop = max(runs, key=lambda k: runs[k])
         until = [k for k in own if k <= drop]
-        back = min(angle[k] for k in until) + STANDING * way
+        back = min(angle[k] for k in until) + 1e-6 * way
         released = max(k for k in until if angle[k] <= back)
         caught = next((k for k in until if k > released and contacts.touching[k]), None)
         if caught is None:
@@ -93,6 +92,18 @@ def test_together_as_one_by_one(seed: int, size: int, monkeypatch: pytest.Monkey
     assert all(len(part.first) <= size for part in parts)
 
 
-def test_without_phases_every_column_is_empty():
+def test_without_phases_every_column_is_empty() -> None:
     empty = in_columns([])
     assert len(empty) == 0 and empty.names == [] and empty.faces == [] and empty.first.tolist() == []
+
+
+@pytest.mark.parametrize(("off", "released"), [(-0.9e-5, 0.3), (0.9e-5, 0.3), (1.1e-5, 0.2)])
+def test_a_wheel_that_has_moved_by_a_millionth_of_its_way_is_let_go(off: float, released: float) -> None:
+    """It goes on by ten: from where it stood furthest back to within a tenth of where it comes to rest."""
+    t, angle = np.array([0.1, 0.2, 0.3, 0.4, 0.5, 0.6]), np.array([5.1, 5.0, 5.0 + off, 7.0, 12.0, 14.9])
+    nothing, kinds = np.zeros(1), np.array([False, False, False, True, False, True])
+    found = Beats("balance", True, 2.0, np.array([0.35]), nothing, np.ones(1), nothing, nothing, np.array([0.05]), nothing)
+    contacts = WheelContacts(t, angle, np.array([1, 1, 1, 1, 0, 1], np.int32), kinds, np.zeros(6, np.int8), np.zeros(0))
+    (rows,) = lever_phases(found, contacts, np.zeros(1, np.int64), (np.array([5.0]), np.array([15.0])), 3)
+    assert rows.names == ["unlock", "catch-up", "impulse", "drop"]
+    assert rows.end.tolist() == [released, 0.4, 0.5, 0.6]

@@ -141,6 +141,7 @@ def test_half_swings_of_a_window_and_one_beside_it(window: tuple[float, float], 
     found = replace(made(20), before=5)
     part = beats_within(found, window)
     assert part.t.tolist() == found.t[slice(*kept)].tolist() and part.before == 5 + kept[0]
+    assert beats_within(made(20), window).before == kept[0]
 
 
 def heard(monkeypatch: pytest.MonkeyPatch, found: Beats, after: list[float], **changed: Any) -> Any:

@@ -14,8 +14,11 @@ from watchsim.simulation.event_kinds import EventKind
 UNKNOWN = {"amplitude_deg": None, "rate_s_per_d": None}
 
 
-def turned(count: int, crossed: bool) -> Events:
+def turned(count: int, crossed: bool, more: int = 0) -> Events:
+    """`more`: passages without a turning point after them."""
     events = Events()
+    for k in range(more):
+        events.passage(9.0 + 0.1 * k, EventKind.CROSS, 1.0)
     for k in range(count):
         if crossed:
             events.passage((k + 0.5) * 0.5 * PERIOD, EventKind.CROSS, 1.0 - 2.0 * (k % 2))
@@ -28,7 +31,11 @@ def turned(count: int, crossed: bool) -> Events:
     [
         (turned(0, False), 10.0, "balance never passed its rest position"),
         (turned(5, False), 10.0, "balance never passed its rest position"),
+        (turned(0, True, 1), 10.0, "balance turned back not once in 10 s"),
+        (turned(0, True, 4), 10.0, "balance turned back not once in 10 s"),
         (turned(1, True), 10.0, "balance turned back only once in 10 s"),
+        (turned(1, True, 3), 10.0, "balance turned back only once in 10 s"),
+        (turned(2, True, 2), 0.51, "balance turned back only twice in 0.51 s"),
         (turned(2, True), 10.0, "balance turned back only twice in 10 s"),
         (turned(2, True), 0.45, "the run of 0.45 s is too short: balance needs 0.5 s for two oscillations"),
         (turned(0, False), 0.2, "the run of 0.2 s is too short: balance needs 0.5 s for two oscillations"),

@@ -36,7 +36,9 @@ def told(monkeypatch: pytest.MonkeyPatch, wheel: Any, balance: Any = None, **cha
     events["kind"][1::2], events["t"][1::2] = EventKind.TURN, END
     q = np.column_stack([np.zeros(len(t)), [0.0 if balance is None else balance(one) for one in t]])
     slices = {"wheel": slice(0, 1), "balance": slice(1, 2)}
-    run: Any = SimpleNamespace(scene=None, simulated=float(t[-1]), t=t, q=q, slices=slices, events=events)
+    run: Any = SimpleNamespace(
+        scene=None, simulated=changed.get("simulated", float(t[-1])), t=t, q=q, slices=slices, events=events
+    )
     beats = type("Found", (SimpleNamespace,), {"__len__": lambda self: len(self.amplitude_deg)})
     found: Any = beats(angular=changed.get("angular", True), nominal_period=PERIOD, amplitude_deg=changed.get("amplitudes", []))
     return standstill(run, found)
@@ -75,6 +77,7 @@ def test_it_stands_since_the_wheel_was_last_elsewhere(monkeypatch: pytest.Monkey
 @pytest.mark.parametrize(("end", "said"), [(0.74, False), (0.75, False), (0.76, True)])
 def test_less_than_three_half_swings_say_nothing(monkeypatch: pytest.MonkeyPatch, end: float, said: bool) -> None:
     assert (told(monkeypatch, lambda t: 0.0, end=end) is not None) is said
+    assert told(monkeypatch, lambda t: 0.0, end=end, simulated=0.7501) is not None
 
 
 @pytest.mark.parametrize("missing", ["oscillator", "wheel"])

@@ -10,7 +10,7 @@ from analysis.made_beats import lever_scene, polygon, star
 
 from watchsim.analysis.timing.teeth import pitch, tooth_count
 from watchsim.geometry.loop import Loop
-from watchsim.geometry.primitives import Arc
+from watchsim.geometry.primitives import Arc, Line
 
 
 def circle(x: float, y: float, radius: float, hole: bool = False) -> Loop:
@@ -66,3 +66,27 @@ def test_what_has_no_teeth():
     assert tooth_count([regular(3).moved(0.0, (1e-3, 0.0))]) == 1
     scene = lever_scene()
     assert pitch(scene, "lever") is None and pitch(scene, "banking") is None
+
+
+def test_wheels_that_share_an_outline_have_their_own_teeth() -> None:
+    """Asked one after the other, and again: what is known of one is not taken for another."""
+    rim, scene = star(12), lever_scene()
+    for teeth, known in ((8, 4), (6, 6), (2, 2), (9, 3), (8, 4), (5, None), (6, 6)):
+        wheel = replace(scene.body("wheel"), loops=(rim, star(teeth, 1.6e-3, 1.1e-3)))
+        found = pitch(replace(scene, bodies=(wheel, *scene.bodies[:2])), "wheel")
+        assert found is None if known is None else found == pytest.approx(math.tau / known, rel=1e-12)
+
+
+@pytest.mark.parametrize(("share", "count"), [(0.0475, 15), (0.0525, 5)])
+def test_inaccuracies_are_less_than_a_twentieth_of_the_largest_moment(share: float, count: int) -> None:
+    """Fifteen short pieces, and five at half the radius: moments go with their length and the square of that."""
+    turns = [complex(math.cos(k * math.tau / 15), math.sin(k * math.tau / 15)) for k in range(15)]
+    pieces = [(1e-3 * z, 1e-6) for z in turns] + [(5e-4 * z, 4e-6 * 3.0 * share / (1.0 - share)) for z in turns[::3]]
+    ends = [(z - 0.5j * w * z / abs(z), z + 0.5j * w * z / abs(z)) for z, w in pieces]
+    edges = tuple(Line(a.real, a.imag, b.real, b.imag) for a, b in ends)
+    assert tooth_count([Loop(edges, "TEETH", True)]) == count
+
+
+@pytest.mark.parametrize(("teeth", "count"), [(240, 240), (241, 0)])
+def test_a_wheel_has_up_to_240_teeth(teeth: int, count: int) -> None:
+    assert tooth_count([star(teeth)]) == count

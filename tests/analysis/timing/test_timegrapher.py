@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -108,3 +109,15 @@ def test_a_last_noise_that_wanders_gives_no_amplitude():
     assert "so it reads high" in timegrapher(steady, beats(steady))["message"]
     exact = heard_run(270.0, 26.0)
     assert timegrapher(exact, beats(exact))["message"] is None
+
+
+def test_intervals_of_chosen_beats_need_no_others() -> None:
+    """Also where a chosen one was not heard."""
+    run = heard_run(270.0, 20.8)
+    found = beats(run)
+    tick = found.tick.copy()
+    tick[[3, 11]] = np.nan
+    chosen = np.isin(np.arange(len(found)), [2, 3, 5, 6])
+    every = intervals(run, replace(found, tick=tick))
+    assert np.flatnonzero(np.isnan(every)).tolist() == [3, 11]
+    assert np.array_equal(intervals(run, replace(found, tick=tick), chosen), every[chosen], equal_nan=True)

@@ -149,7 +149,8 @@ def test_arrows_are_as_long_as_their_forces():
 def test_phases_are_told_by_name_only_while_they_last():
     from watchsim.analysis.timing.phases import Phase
 
-    told = Extras(phases=(Phase(1, "unlock", 0.1, 0.2), Phase(1, "drop", 0.3, 0.4)))
+    still = (0.0, 0.0, 0.0)
+    told = Extras(phases=(Phase(1, "unlock", 0.1, 0.2, still, still), Phase(1, "drop", 0.3, 0.4, still, still)))
     assert [told.phase_at(t) for t in (0.0, 0.1, 0.2, 0.35, 0.4)] == ["", "unlock", "", "drop", ""]
 
 

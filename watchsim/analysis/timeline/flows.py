@@ -118,15 +118,15 @@ Row = dict[int, Array]  # coordinate -> its values over all steps
 
 
 def _changing(model: Model) -> tuple[list[int], list[int]]:
-    """The coordinates on which a force changes with place or time, and those with damping: their powers are integrated."""
+    """The coordinates on which a force changes with place or time, and those with damping or a joint, whose powers are
+    integrated."""
     c = model.coordinates
     moved = {int(k) for joint in model.joints if c.driven[joint.on] for k in (joint.coordinate, joint.on)}
     slowed = {int(k) for k in np.flatnonzero((c.coulomb != 0.0) | (c.viscous != 0.0) | (c.quadratic != 0.0))}
     for table in model.tables:
         moved |= {int(table.coordinate), *([int(table.on)] if table.on >= 0 else [])}
     for joint in model.joints:
-        if joint.viscous != 0.0 or joint.quadratic != 0.0:
-            slowed |= {int(joint.coordinate), int(joint.on)}
+        slowed |= {int(joint.coordinate), int(joint.on)}
     return sorted(moved | held_by_lines(model)), sorted(slowed)
 
 
@@ -200,7 +200,6 @@ def _damping_power(model: Model, u: Row) -> Array:
         speed = np.abs(value)
         power[:, k] = speed * (c.coulomb[k] + speed * (c.viscous[k] + c.quadratic[k] * speed))
     for joint in model.joints:
-        if joint.viscous != 0.0 or joint.quadratic != 0.0:
-            w = np.abs(u[int(joint.coordinate)] - u[int(joint.on)])
-            power[:, joint.coordinate] += w * w * (joint.viscous + joint.quadratic * w)
+        w = np.abs(u[int(joint.coordinate)] - u[int(joint.on)])
+        power[:, joint.coordinate] += w * w * (joint.viscous + joint.quadratic * w)
     return power

@@ -135,7 +135,7 @@ class Staging:
     def of(self, some: Phases) -> Stages:
         """The stages of some beats in a row, at least one."""
         run, told = self._run, some.rows
-        first = max(0, int(np.searchsorted(run.t, told.start[0], side="left")) - 1)
+        first = int(np.searchsorted(run.t, told.start[0], side="left"))
         last = int(np.searchsorted(run.t, told.end[-1], side="right")) + 1
         made = flows(run, self._compiled, slice(first, last))
         begins = told.first

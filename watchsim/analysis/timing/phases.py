@@ -50,8 +50,8 @@ class Phase:
     name: str
     start: float
     end: float
-    angles: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    turns: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    angles: tuple[float, float, float]
+    turns: tuple[float, float, float]
     on: str = ""
 
 
@@ -137,8 +137,7 @@ def _stretches(run: Trajectory, parts: Roles, found: Beats, within: NDArray[np.b
 
 def _told(run: Trajectory, found: Beats) -> NDArray[np.bool_]:
     """The beats that have a tick and were recorded from there to their end."""
-    heard = np.isfinite(found.tick)
-    return heard & is_recorded(run, np.where(heard, found.tick, 0.0)) & is_recorded(run, found.end)
+    return is_recorded(run, found.tick) & is_recorded(run, found.end)
 
 
 def with_angles(run: Trajectory, rows: Stretches) -> Phases:

@@ -48,7 +48,7 @@ def wheel_contacts(run: Trajectory, parts: Roles, found: Beats, within: NDArray[
 def _near(times: Array, found: Beats, within: NDArray[np.int64]) -> slice:
     """The events that tell the phases of these beats; of the run's first beat those from its start on."""
     if not len(within):
-        return slice(0, 0)
+        return slice(0)
     last = min(int(within[-1]) + 2, len(found) - 1)
     earliest, first, end = np.searchsorted(times, (found.start[0], found.start[within[0]], found.end[last])).tolist()
     return slice(max(first - 1, earliest), end)
