@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from types import SimpleNamespace
 from typing import Any
 
@@ -36,7 +37,7 @@ def told(
     monkeypatch: pytest.MonkeyPatch,
     holding: list[int],
     face: Face = LOCKING,
-    torques: dict[int, float | None] | None = None,
+    torques: Mapping[int, float | None] | None = None,
     moved: float = 0.0,
     **changed: Any,
 ) -> Any:

@@ -131,7 +131,7 @@ def test_events_and_contacts_of_a_body_with_some_others() -> None:
 
 
 def test_half_swings_of_different_lengths_are_halves_of_sines() -> None:
-    """From 0.9 rad below rest to 1.3 above, 0.4 s before and 0.7 s after the passage; the next has no length, and comes later."""
+    """From 0.9 rad below rest to 1.3 above, 0.4 s before and 0.7 s after the passage; a later one of no length."""
     found: Any = SimpleNamespace(t=np.array([1.4, 3.0]), start=np.array([1.0, 2.5]), end=np.array([2.1, 3.0]))
     found.start_at, found.end_at = 0.25 + np.array([-0.9, 1.7]), 0.25 + np.array([1.3, -0.6])
     watch: Any = SimpleNamespace(found=found, rest=0.25)
