@@ -72,8 +72,8 @@ def test_a_wheel_and_a_rack(degrees: float, reach: float, rack_first: bool) -> N
 def test_where_there_is_no_pitch_point_nothing_is_told() -> None:
     slides = Body("rack", "slide"), Body("other rack", "slide")
     assert told(*slides, 2.0) is None
-    here = Body("first", position=(1e-3, 2e-3)), Body("second", position=(1e-3, 2e-3))
-    there = Body("third", position=(1e-3, 3e-3))
+    here = Body("first", position=(1e-3, 0.0)), Body("second", position=(1e-3, 0.0))
+    there = Body("third", position=(1e-3, 1e-3))
     assert told(*here, 2.0) is None and told(here[0], there, 1.0) is None
     assert told(here[0], there, 1.25) is not None and told(here[0], there, -1.0) is not None
 
