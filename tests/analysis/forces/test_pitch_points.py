@@ -34,7 +34,7 @@ def cross(a: Any, b: Any) -> float:
 
 
 @pytest.mark.parametrize("places", [((1e-3, 2e-3), (7e-3, -6e-3)), ((0.0, 0.0), (-3e-3, 4e-3)), ((0.0, 5e-3), (0.0, 1e-3))])
-@pytest.mark.parametrize("ratio", [-0.5, -3.0, 3.0, 0.25, 1.5])
+@pytest.mark.parametrize("ratio", [-0.5, -3.0, 3.0, 0.25, 1.5, 5e-4])
 def test_two_wheels(places: Any, ratio: float) -> None:
     """What both feel along the tangent is averaged; outside teeth press apart, those of a ring press the pinion inwards."""
     a, b = (np.array(place) for place in places)
