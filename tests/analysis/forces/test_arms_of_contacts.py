@@ -12,6 +12,7 @@ import pytest
 from analysis.made_beats import polygon
 from scipy.optimize import brentq
 
+from watchsim.analysis.balanced_forces import Mechanism
 from watchsim.analysis.promised import not_begun
 from watchsim.analysis.verdicts.equilibrium.lever_arms import arms
 from watchsim.geometry.loop import Loop
@@ -103,3 +104,39 @@ def test_without_contacts_there_are_still_loads() -> None:
     found, _ = told(0.2, [], top=True)
     assert found.normal.shape == found.across.shape == (0, 2) and found.point.shape == found.way.shape == (0, 2)
     assert found.loads[0] == pytest.approx(3e-6, rel=1e-9, abs=0.0)
+
+
+@pytest.mark.parametrize("contacts", [[TOP], [0, TOP, CORNER], []])
+def test_many_instants_are_seen_one_by_one(contacts: list[int]) -> None:
+    """With velocities: how the gap bends as both turn on evenly, and what damping does to them."""
+    compiled = compile_scene(scene())
+    poses = [(bar, told(bar, [TOP], top=True)) for bar in (0.2, -0.35, 0.5)]
+    q = np.array([(disc, bar) for bar, (_, disc) in poses])
+    u = np.array([(1.5, -2.0), (-0.5, 3.0), (2.5, 0.25)])
+    seen = Mechanism(compiled).seen(np.zeros(3), q, u, np.array(contacts, np.int64))
+    count = len(contacts)
+    assert seen.w_N.shape == seen.w_T.shape == (3, count, 2) == seen.normal.shape == seen.point.shape
+    assert seen.bar.shape == (3, 2, count) and seen.h.shape == (3, 2)
+    assert seen.h[:, 1] == pytest.approx(-2e-6 * (q[:, 1] - 0.1) - 1e-7 * u[:, 1], rel=1e-9, abs=0.0)
+    if not contacts:
+        return
+    row = contacts.index(TOP)
+    for k, (_, (one, _)) in enumerate(poses):
+        assert seen.w_N[k, row] == pytest.approx(one.normal[0], rel=1e-9, abs=1e-15)
+        assert seen.w_T[k, row] == pytest.approx(one.across[0], rel=1e-9, abs=1e-15)
+        assert seen.point[k, row] == pytest.approx(one.point[0], abs=1e-12) and seen.normal[k, row] == pytest.approx(one.way[0])
+
+        def gap(t: float, k: int = k) -> float:
+            disc, bar = q[k] + t * u[k]
+            return float(((DISC + CENTRE * np.exp(1j * disc) - BAR) * np.exp(-1j * bar)).imag)
+
+        h = 1e-4
+        assert seen.w_N[k, row] @ u[k] == pytest.approx((gap(h) - gap(-h)) / (2.0 * h), rel=1e-6, abs=0.0)
+        assert seen.bar[k, 0, row] == pytest.approx((gap(h) - 2.0 * gap(0.0) + gap(-h)) / h**2, rel=1e-5, abs=0.0)
+
+
+def test_what_a_mechanism_knows_of_its_contacts() -> None:
+    """Friction by the contact declared, mobilities and dry friction by coordinate."""
+    made = Mechanism(compile_scene(scene()))
+    assert made.friction.tolist() == [0.13] * 8 and made.mobility == pytest.approx([1 / 2e-9, 1 / 3e-9], rel=1e-12)
+    assert made.dry.tolist() == [0.0, 5e-8] and made.prescribed.tolist() == [False, False]
