@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from watchsim.analysis import headlines as told
+from watchsim.analysis.headlines import expected_text, with_scatter
 from watchsim.scene.body import Body
 from watchsim.scene.scene import Scene
 from watchsim.simulation.methods import MOREAU
@@ -156,7 +157,7 @@ def test_otherwise(monkeypatch: pytest.MonkeyPatch, changes: dict[str, object], 
     ],
 )
 def test_scatter_of_what_is_negative_or_next_to_nothing(value: float, error: float | None, expected: str) -> None:
-    assert told.with_scatter(value, error, " s/d") == expected
+    assert with_scatter(value, error, " s/d") == expected
 
 
 def test_scatter_is_explained_where_there_is_any(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -212,4 +213,4 @@ def test_how_far_bodies_are_off(monkeypatch: pytest.MonkeyPatch, place: str | No
 )
 def test_what_was_got_has_two_digits_more_than_the_tolerance(expected: float, tolerance: float, got: float, text: str) -> None:
     entry = {"key": "k", "expected": expected, "tolerance": tolerance, "unit": "", "ok": True, "got": got}
-    assert told.expected_text(entry) == f"k = {expected:.12g} ± {tolerance:.4g}, got {text}"
+    assert expected_text(entry) == f"k = {expected:.12g} ± {tolerance:.4g}, got {text}"

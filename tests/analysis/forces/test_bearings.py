@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
@@ -125,14 +124,16 @@ def test_coordinates_in_the_movement_and_back(rates: bool) -> None:
         Body("third", angle=-0.4, on="second"),
         Body("wheel", geared=Geared("other", -2.5)),
         Body("other"),
+        Body("base", "fixed", angle=0.8),
+        Body("last", angle=0.1, on="base"),
     )
     bodies = tuple(replace(body, inertia=2e-7) for body in plain)
     compiled = compile_scene(Scene("Carried", bodies))
     values = np.random.default_rng(8).normal(size=(4, len(compiled.q)))
     given = compiled.relative(values, rates)
-    assert given.shape[1] == values.shape[1] + 1 == 5
+    assert given.shape[1] == values.shape[1] + 1 == 6
     before = given.copy()
     assert absolute(compiled, given, rates) == pytest.approx(values, rel=1e-12, abs=1e-12)
     assert np.array_equal(given, before)
-    turned = np.zeros(4) if rates else np.array([0.0, 0.7, 0.0, 0.0])
-    assert math.isclose(float(absolute(compiled, np.zeros((1, 5)), rates)[0, 1]), turned[1], abs_tol=1e-15)
+    at_zero = absolute(compiled, np.zeros((1, 6)), rates)[0]
+    assert at_zero == pytest.approx(np.zeros(5) if rates else np.array([0.0, 0.7, 0.7, 0.0, 0.8]), abs=1e-15)
