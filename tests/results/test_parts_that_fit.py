@@ -41,6 +41,12 @@ def test_the_run_itself_is_whole() -> None:
     _check(dataclasses.replace(RUN, end_q=np.zeros(WIDTH), end_u=np.zeros(WIDTH)))
 
 
+def test_where_nothing_moves_there_are_no_columns() -> None:
+    empty, one = np.zeros((ROWS, 0)), np.zeros((ROWS, 1))
+    _check(dataclasses.replace(RUN, slices={}, q=empty, u=empty, a=empty))
+    refused(dataclasses.replace(RUN, slices={}, q=one, u=one, a=one), "columns are of different lengths")
+
+
 @pytest.mark.parametrize("name", ["t", "q", "u", "a"])
 def test_rows_and_columns(name: str) -> None:
     values = getattr(RUN, name)
