@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from watchsim.analysis.expectations import judge, unit_of
+from watchsim.analysis.expectations import KNOWN, judge, judged, mistake, mistakes, not_judged, unit_of
 from watchsim.scene.scene import Expectation
 
 NUMBERS = {
@@ -85,3 +85,47 @@ def test_units_at_the_ends_of_names():
     assert [
         unit_of(name) for name in ("rate_s_per_d", "wall_s", "beat_error_ms", "a.x_m_per_s", "impacts", "counts.steps")
     ] == [*("s/d", "s", "ms", "m/s", "", "")]
+
+
+@pytest.mark.parametrize(("value", "kept"), [(4.5, True), (5.5, True), (4.499, False), (5.501, False)])
+def test_the_tolerance_itself_is_still_kept(value: float, kept: bool) -> None:
+    assert judge(Expectation("impacts", value, 0.5, ""), {"impacts": 5})["ok"] is kept
+
+
+@pytest.mark.parametrize(("name", "known"), [("a.b", False), ("a.b.c", False), ("x.b.c", True), ("y.b", True), ("x.c", False)])
+def test_below_what_is_null_anything_may_be_promised(name: str, known: bool) -> None:
+    """Another run may give it; below a number there is nothing."""
+    numbers = {"a": 3.5, "x": {"b": None, "a": 4.5}, "y": None}
+    assert (mistake(Expectation(name, 0.0, 1.0, ""), numbers) == "") is known
+    said = judge(Expectation(name, 0.0, 1.0, ""), numbers)
+    assert said["ok"] is False and said["got"] is None
+    assert (said["message"] == f'this run gives no "{name}"') is known
+
+
+def test_units_are_those_of_the_number_even_where_it_is_not_known_yet() -> None:
+    numbers = {"timegrapher": None}
+    assert mistake(Expectation("timegrapher.rate_s_per_d", 0.0, 1.0, "ppm"), numbers) == ""
+    said = mistake(Expectation("timegrapher.rate_s_per_d", 0.0, 1.0, "mm"), numbers)
+    assert said == '"timegrapher.rate_s_per_d" is in s/d, which cannot be compared with mm'
+
+
+def test_of_many_slips_the_first_twenty_are_advised() -> None:
+    """Right keys between them do not count."""
+    right, slip = Expectation("missed_beats", 0.0, 1.0, ""), Expectation("missed_beat", 0.0, 1.0, "")
+    found = [said for said in mistakes([right, right, *[slip, right] * 22], NUMBERS) if said]
+    assert len(found) == 22
+    assert ['Did you mean "missed_beats"?' in said for said in found] == [True] * 20 + [False] * 2
+    assert found[20].endswith(KNOWN) and found[21] == found[20]
+    assert mistakes([right, right], NUMBERS) == ["", ""]
+
+
+def test_each_of_many_is_judged_as_it_is_alone() -> None:
+    promised = [Expectation("amplitude", 290.0, 1.0, "°"), Expectation("rate", 5.0, 1.0, "s/d"), Expectation("x", 0.0, 1.0, "")]
+    found = judged(promised, NUMBERS)
+    assert found == [judge(one, NUMBERS) for one in promised] and [one["ok"] for one in found] == [True, False, False]
+
+
+def test_what_was_changed_is_not_judged() -> None:
+    entry = judge(Expectation("amplitude", 290.0, 1.0, "°"), NUMBERS)
+    told = not_judged(entry, ["--set", "--step"])
+    assert told == entry | {"ok": None, "message": "not checked: changed by --set and --step"}

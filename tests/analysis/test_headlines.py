@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from watchsim.analysis import headlines as told
+from watchsim.analysis.headlines import expected_text, with_scatter
 from watchsim.scene.body import Body
 from watchsim.scene.scene import Scene
 from watchsim.simulation.methods import MOREAU
@@ -111,6 +112,8 @@ def test_every_line(monkeypatch: pytest.MonkeyPatch) -> None:
         ({"energy": {"in_J": 1.0, "stored_J": -1.0}}, "15 µJ put in or taken from what was stored, 1.5 µW: "),
         ({"energy": {}}, "the account closes to 0 of it"),
         ({"worst_penetration_m": 0.9e-12}, "bodies overlapped by less than 0.001 nm"),
+        ({"worst_penetration_m": 1.1e-12}, "bodies overlapped by up to 1.1 pm"),
+        ({"efficiency": None}, "wheel fell short or ran ahead\n  disc "),
         ({"missed_beats": 0}, "none in 80 half swings"),
         ({"worst_residual": 0.9e-6}, "5 contact problems, each solved to 9e-07 or better; 2 from another start"),
         ({"counts": {}, "lcp_failures": 0}, "there was no contact problem to solve"),
@@ -122,6 +125,11 @@ def test_every_line(monkeypatch: pytest.MonkeyPatch) -> None:
         ({"error_bars": {"complete": False}}, "none: the more exact run did not finish"),
         ({"error_bars": NUMBERS["error_bars"] | {"differences": {"amplitude_deg": 0.0}}}, "amplitude ± 0.000000°"),
         ({"simulated_s": 0.0}, "impacts      1234; 4321 events"),
+        ({"simulated_s": 5e-4}, "impacts      1234, 2468000 per second; 4321 events"),
+        ({"simulated": 0.0}, "15 µJ put in: damping 75.0 %"),
+        ({"simulated": 5e-4}, "15 µJ put in, 30 mW: damping 75.0 %"),
+        ({"energy": {"in_J": 5e-4, "stored_J": 5e-4}}, "15 µJ put in, 1.5 µW: "),
+        ({"energy": {"in_J": -5e-4, "stored_J": -5e-4}}, "15 µJ taken from what was stored at the start"),
         ({"stop_message": ""}, "end          " + Stop.DURATION.sentence),
         ({"timegrapher": SILENT}, "timegrapher  nothing is heard"),
     ],
@@ -138,10 +146,18 @@ def test_otherwise(monkeypatch: pytest.MonkeyPatch, changes: dict[str, object], 
         (0.0, 0.0, "0 s/d"),
         (-0.04, 0.3, "0.0 s/d, scatter 0.3 s/d"),
         (-12.3456, None, "−12.346 s/d"),
+        (5e-7, 1e-9, "below 0.000001 s/d"),
+        (0.0, 1e-9, "below 0.000001 s/d"),
+        (1e-9, 0.0, "below 0.000001 s/d"),
+        (1.1e-6, 1e-9, "0.000001 s/d, scatter 0.000001 s/d"),
+        (0.0, 1.1e-6, "0.000000 s/d, scatter 0.000001 s/d"),
+        (3.0, 0.0101, "3.00 s/d, scatter 0.01 s/d"),
+        (3.0, 0.0099, "3.000 s/d, scatter 0.010 s/d"),
+        (31.0, 12.0, "31 s/d, scatter 12 s/d"),
     ],
 )
 def test_scatter_of_what_is_negative_or_next_to_nothing(value: float, error: float | None, expected: str) -> None:
-    assert told.with_scatter(value, error, " s/d") == expected
+    assert with_scatter(value, error, " s/d") == expected
 
 
 def test_scatter_is_explained_where_there_is_any(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -156,3 +172,45 @@ def test_shares_of_the_energy_that_show_are_listed(monkeypatch: pytest.MonkeyPat
     """From a twentieth of a per cent on, of either sign."""
     said = "\n".join(lines(monkeypatch, went_to={"damping": 0.7, "friction": share}))
     assert (f"friction {100.0 * share:.1f} %" in said) is listed and "damping 70.0 %" in said
+
+
+@pytest.mark.parametrize(
+    ("error", "unit", "text"),
+    [
+        (0.9e-6, "°", "9e-07°"),
+        (1.1e-6, "°", "0.000001°"),
+        (0.0, "°", "0.000000°"),
+        (0.034, " s/d", "0.03 s/d"),
+        (2.4e-9, "m", "2 nm"),
+        (0.9e-12, "m", "1 pm"),
+        (3.1e-12, "m", "3 pm"),
+    ],
+)
+def test_errors_have_one_digit(error: float, unit: str, text: str) -> None:
+    assert told._error(error, unit) == text
+
+
+@pytest.mark.parametrize("place", ["x_m_error", "y_m_error", "angle_rad_error", None])
+def test_how_far_bodies_are_off(monkeypatch: pytest.MonkeyPatch, place: str | None) -> None:
+    """The larger of both coordinates, and the angle, where they are not zero."""
+    state = {"x_m": 0.0, "y_m": 0.0, "angle_rad": 0.0, **STATE}
+    said = lines(monkeypatch, bodies={"rack": state | ({place: 3e-4} if place else {})})
+    here = [line.strip() for line in said if line.strip().startswith("rack at the end")]
+    assert here == ([f"rack at the end ± {'0.02°' if place == 'angle_rad_error' else '300 µm'}"] if place else [])
+
+
+@pytest.mark.parametrize(
+    ("expected", "tolerance", "got", "text"),
+    [
+        (12.0, 1.0, 12.3456, "12.35"),
+        (123.0, 1.0, -123.456, "-123.46"),
+        (1234.0, 1.0, 1234.567, "1234.57"),
+        (12345.0, 1.0, 12345.678, "12345.68"),
+        (0.0, 1.0, 0.0, "0"),
+        (0.0, 1.0, 0.123456, "0.1235"),
+        (0.1, 1e-16, 0.1, "0.10000000000000001"),
+    ],
+)
+def test_what_was_got_has_two_digits_more_than_the_tolerance(expected: float, tolerance: float, got: float, text: str) -> None:
+    entry = {"key": "k", "expected": expected, "tolerance": tolerance, "unit": "", "ok": True, "got": got}
+    assert expected_text(entry) == f"k = {expected:.12g} ± {tolerance:.4g}, got {text}"

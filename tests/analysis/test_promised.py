@@ -14,6 +14,7 @@ from watchsim.analysis.summary import summary
 from watchsim.cli import main
 from watchsim.commands.common.console import BAD_INPUT
 from watchsim.profiles_path import profiles_dir
+from watchsim.scene.body import Body
 from watchsim.scene.file.load import load
 from watchsim.scene.scene import Expectation, Scene
 from watchsim.simulation.simulate import simulate
@@ -101,3 +102,18 @@ NO_SPRING, NO_LIFT, ALONE, NO_DRIVE = (
 def test_what_no_run_can_give_is_refused(key: str, change: Callable[[Scene], Scene], why: str) -> None:
     said = impossible(Expectation(key, 0.0, 1.0, ""), change(lever_scene()))
     assert said == (f'no run of this scene gives "{key}": {why}. Leave it out' if why else "")
+
+
+def test_a_run_that_has_not_begun_stands_where_its_bodies_start() -> None:
+    """As the scene gives it: carried bodies against their carriers."""
+    bodies = (
+        Body("arm", angle=0.4, inertia=1e-9),
+        Body("planet", angle=-0.7, inertia=1e-9, on="arm", position=(1e-3, 0.0)),
+        Body("stone", "free", position=(3e-3, 5e-3), angle=0.9, mass=1e-3, inertia=1e-9),
+    )
+    run = not_begun(Scene("Carried", bodies))
+    at = {name: run.q[0, columns].tolist() for name, columns in run.slices.items()}
+    assert at["arm"] == pytest.approx([0.4]) and at["planet"] == pytest.approx([-0.7])
+    assert at["stone"] == pytest.approx([3e-3, 5e-3, 0.9])
+    assert run.t.tolist() == [0.0] and run.q.shape == run.u.shape == run.a.shape == (1, 5)
+    assert not run.u.any() and not run.a.any() and len(run.events) == 0

@@ -5,7 +5,10 @@ from __future__ import annotations
 from types import SimpleNamespace
 from typing import Any
 
-from watchsim.results.scene_copy import kept_names
+import pytest
+
+from watchsim.results import scene_copy as module
+from watchsim.results.scene_copy import kept_names, travelling
 
 
 def kept(**drawings: bytes) -> dict[str, str]:
@@ -28,3 +31,18 @@ def test_different_drawings_get_different_names() -> None:
     assert kept(**{"wheel.dxf": b"1", "x__wheel.dxf": b"1"}) == dict.fromkeys(
         ("wheel.dxf", "x/wheel.dxf"), "drawings/wheel.dxf"
     )
+
+
+def test_the_scene_and_its_drawings_by_their_new_names(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "lock_text", lambda scene, kept: f"locked with {sorted(kept.values())}")
+    scene: Any = SimpleNamespace(source={"scene": {}}, drawings={"a/wheel.dxf": b"1", "b/wheel.dxf": b"2"})
+    assert travelling(scene) == {
+        "scene.lock.toml": "locked with ['drawings/wheel.dxf', 'drawings/wheel_2.dxf']",
+        "drawings/wheel.dxf": b"1",
+        "drawings/wheel_2.dxf": b"2",
+    }
+
+
+def test_of_bodies_made_by_hand_nothing_can_be_said() -> None:
+    scene: Any = SimpleNamespace(source={}, drawings={"a/wheel.dxf": b"1"})
+    assert travelling(scene) == {"scene.lock.toml": ""}

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import dataclasses
+from functools import partial
 from typing import Any
 
 import numpy as np
 import pytest
 from analysis.made_beats import lever_run
 
+from watchsim.results import archive
 from watchsim.results.archive import _check, _check_pairs, _groups, _in_order, _within
 from watchsim.scene.force import Spring
 from watchsim.scene.gearing import Gear
 from watchsim.simulation.record.contact_names import Pairs, as_pairs
 from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.storage.columns import blocks
 
 RUN = lever_run(4)
 ROWS, WIDTH = RUN.q.shape
@@ -39,6 +42,12 @@ def refused(run: Trajectory, words: str) -> None:
 def test_the_run_itself_is_whole() -> None:
     _check(RUN)
     _check(dataclasses.replace(RUN, end_q=np.zeros(WIDTH), end_u=np.zeros(WIDTH)))
+
+
+def test_where_nothing_moves_there_are_no_columns() -> None:
+    empty, one = np.zeros((ROWS, 0)), np.zeros((ROWS, 1))
+    _check(dataclasses.replace(RUN, slices={}, q=empty, u=empty, a=empty))
+    refused(dataclasses.replace(RUN, slices={}, q=one, u=one, a=one), "columns are of different lengths")
 
 
 @pytest.mark.parametrize("name", ["t", "q", "u", "a"])
@@ -73,6 +82,16 @@ def test_times_in_order() -> None:
     t[3] = np.nextafter(t[2], 0.0)
     refused(changed("t", t), ORDER)
     assert _in_order(np.zeros(0)) and _in_order(np.array([-5.0, -5.0, 3.0])) and not _in_order(np.array([1.0, 0.0]))
+
+
+@pytest.mark.parametrize("at_once", [1, 2, 3, 100])
+def test_times_in_order_however_many_are_looked_at_together(at_once: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(archive, "blocks", partial(blocks, length=at_once))
+    assert _in_order(np.array([-1.5, 0.25, 0.25, 3.0, 3.0, 4.5, 7.0]))
+    for place in range(1, 7):
+        times = np.arange(7.0)
+        times[place:] -= 1.5
+        assert not _in_order(times)
 
 
 @pytest.mark.parametrize(

@@ -65,7 +65,7 @@ def _summary_at_rest(scene: Scene) -> dict[str, Any]:
 def impossible(expectation: Expectation, scene: Scene) -> str:
     """Why no run of this scene gives the number, whatever happens in it; "" where one can."""
     name = WATCH_KEYS.get(expectation.key, expectation.key)
-    whole = name.split(".", 1)[0]
+    whole = name.split(".")[0]
     if whole not in (*TIMED, *BY_WHEEL):
         return ""
     parts = roles(scene)

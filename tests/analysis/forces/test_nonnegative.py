@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import nnls
 
-from watchsim.analysis.nonnegative import nonnegative
+from watchsim.analysis.nonnegative import _begun, _within, nonnegative
 
 
 @pytest.mark.parametrize("seed", range(40))
@@ -63,3 +63,41 @@ def test_in_other_units_it_is_the_same_to_the_bit(seed: int) -> None:
     assert np.array_equal(nonnegative(alike, right * unit, likely), unit * nonnegative(alike, right, likely))
     assert np.array_equal(nonnegative(alike, right * unit), unit * nonnegative(alike, right))
     assert np.array_equal(nonnegative(alike * unit, right), nonnegative(alike, right) / unit)
+
+
+@pytest.mark.parametrize("seed", range(25))
+def test_a_step_leaves_what_would_pull_and_comes_nearer(seed: int) -> None:
+    """From any place without negative entries to the best with some of those in use; the way there goes only downhill."""
+    rng = np.random.default_rng(seed)
+    columns = int(rng.integers(3, 10))
+    system, right = rng.normal(size=(columns + 2, columns)), rng.normal(size=columns + 2)
+    used = rng.random(columns) < 0.8
+    start = np.where(used, rng.uniform(0.0, 2.0, columns) * (rng.random(columns) < 0.8), 0.0)
+    before = used.copy()
+    found = _within(system, right, start, used)
+    assert not (used & ~before).any() and np.array_equal(found > 0.0, used) and np.array_equal(found != 0.0, used)
+    assert np.linalg.norm(system @ found - right) <= np.linalg.norm(system @ start - right) + 1e-12
+    assert system[:, used].T @ (system @ found - right) == pytest.approx(np.zeros(used.sum()), abs=1e-10)
+
+
+@pytest.mark.parametrize("unit", [1.0, 2.0**-30, 2.0**20])
+def test_of_several_that_would_pull_the_first_met_leaves(unit: float) -> None:
+    """From (3, 2, 1) towards (-1, -8, 7) the second is zero after a fifth of the way. With the others the best is (0.5, 0, 4),
+    so that the first need not leave."""
+    best, rest = np.array([-1.0, -8.0, 7.0]), np.array([0.5, 0.0, 4.0])
+    # Of the normal equations G x = c, the first and the third have both solutions.
+    first, third = 8.0 * (rest[0] - best[0]) / best[1], 4.0 * (rest[2] - best[2]) / best[1]
+    gram = np.array([[8.0, first, 0.0], [first, 6.0, third], [0.0, third, 4.0]])
+    system, used = np.linalg.cholesky(gram).T, np.ones(3, bool)
+    found = _within(system, system @ best * unit, np.array([3.0, 2.0, 1.0]) * unit, used)
+    assert found == pytest.approx(rest * unit, rel=1e-9, abs=0.0) and used.tolist() == [True, False, True]
+
+
+def test_where_it_begins() -> None:
+    """With the likely ones, unless one of them would pull: then with none."""
+    system, right = np.diag([2.0, 4.0, 5.0]), np.array([1.0, 3.0, -10.0])
+    x, used = _begun(system, right, np.array([True, False, False]))
+    assert x == pytest.approx([0.5, 0.0, 0.0]) and used.tolist() == [True, False, False]
+    for likely in (None, np.zeros(3, bool), np.array([True, False, True])):
+        x, used = _begun(system, right, likely)
+        assert not x.any() and not used.any()

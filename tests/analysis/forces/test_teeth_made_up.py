@@ -58,7 +58,7 @@ def test_racks_are_told_from_other_contacts(k: int, efficiency: float) -> None:
     bodies = (Body("a"), Body("b", position=(10e-3, 0.0)), Body("c", position=(0.0, 6e-3)), Body("arm"))
     gears = (Gear(("a", "b"), -1.5, 3e-3, efficiency=efficiency), Gear(("a", "c"), -2.0, 3e-3, efficiency=efficiency))
     contacts = (Contact((Side("a"), Side("arm"))), Contact((Side("b"), Side("arm"))))
-    springs = (Spring("arm", 1.0), Spring("arm", 1.0, stop=0.5))
+    springs = (Spring("arm", 1.0), Spring("arm", 1.0, stop=0.5), Spring("arm", 1.0))
     scene = Scene("gears", bodies, springs, contacts=contacts, gears=gears)
     # Contacts by their groups: two declared, a stop, the first pair of racks, the second twice, on either rack.
     group, first = np.array([0, 1, 2, 3, 4, 4]), np.array([0, 1, 2, 3, 4, 5])

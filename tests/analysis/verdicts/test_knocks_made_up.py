@@ -28,7 +28,7 @@ class Pair:
 
 
 def watch(
-    blows: list[tuple[float, int]], reach: float = 300.0, arms: tuple[float, ...] = (0.06, 0.06, 0.04), **changed: Any
+    blows: list[tuple[float, int]], reach: float = 300.0, arms: tuple[float, ...] = (0.051, 0.051, 0.049), **changed: Any
 ) -> Any:
     """Twenty half swings of `reach` degrees about the rest position, from 1 s on, passing it at 1.1, 1.3, ... s."""
     ends = 1.0 + 0.5 * PERIOD * np.arange(21)
@@ -48,10 +48,11 @@ def watch(
         return events[np.array(own, bool)]
 
     def told(run: Any, compiled: Any, t: float, numbers: list[int]) -> Any:
-        """5 mm from the staff, which stands at (1 mm, -4 mm)."""
+        """5 mm from the staff, which stands at (7 mm, -1 mm). Asked when this contact was struck first."""
+        assert t == min(at for at, number in blows if number == numbers[0])
         arm = arms[numbers[0]] * 5e-3
         return SimpleNamespace(
-            places={"balance": (1e-3, -4e-3, 0.0)}, point=np.array([[4e-3, 0.0]]), of=lambda row, body: (arm, 0.0)
+            places={"balance": (7e-3, -1e-3, 0.0)}, point=np.array([[10e-3, 3e-3]]), of=lambda row, body: (arm, 0.0)
         )
 
     module.arms = told  # type: ignore[assignment]
@@ -82,8 +83,8 @@ def test_beyond_half_a_turn_the_pin_cannot_be_in_the_slot(angle: float, counts: 
 def test_a_stop_is_struck_at_any_angle_and_a_dart_on_its_roller_knocks_nobody() -> None:
     blows = [(when(10.0), STOP), (when(250.0), DART), (when(251.0), HORN), (when(252.0), CARRIER)]
     assert list(knocks(watch(blows))["contact"]) == [STOP, HORN]
-    assert list(knocks(watch(blows, arms=(0.04, 0.06, 0.04)))["contact"]) == [STOP]
-    assert list(knocks(watch(blows, arms=(-0.06, -0.04, -0.06)))["contact"]) == [DART, HORN]
+    assert list(knocks(watch(blows, arms=(0.049, 0.051, 0.049)))["contact"]) == [STOP]
+    assert list(knocks(watch(blows, arms=(-0.051, -0.049, -0.051)))["contact"]) == [DART, HORN]
     unseen: Any = {"recorded": lambda times: np.zeros(len(times), bool)}
     assert list(knocks(watch(blows, **unseen))["contact"]) == [STOP, DART, HORN]
     assert list(knocks(watch(blows, has_shapes=False))["contact"]) == [STOP, DART, HORN]
@@ -114,7 +115,7 @@ def test_what_is_said_of_knocks(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "balance strikes lever from outside at 240°, 3 times (lever on balance), under " in told.message
     assert "2 µN·m at wheel" in told.message and "gallops" not in told.message
     assert told.message.startswith(module.when(first))
-    for rate, words in ((12.3, "; the watch gallops, +12.3 s/d"), (-12.3, None), (0.0, None)):
+    for rate, words in ((12.3, "; the watch gallops, +12.3 s/d"), (8e-4, "gallops, +0.0008 s/d"), (-12.3, None), (0.0, None)):
         monkeypatch.setattr(module, "averages", lambda found, window, rate=rate: SimpleNamespace(rate_s_per_d=rate))
         said: Any = knocking(watch(blows))
         assert said.message.endswith(words) if words else "gallops" not in said.message

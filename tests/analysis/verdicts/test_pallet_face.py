@@ -37,3 +37,13 @@ def test_wherever_it_stands(shift: complex, turned: float, angle: float, pallet:
     reach = abs(point - 4e-3j)
     for share, impulse in ((0.0, False), (-1.0, False), (0.045, False), (0.055, True), (1.0, True)):
         assert told(point, share * way * reach, shift, turned) == Face(tooth, pallet, impulse, way)
+
+
+def test_on_the_line_of_centres_a_tooth_has_passed_the_entry_pallet() -> None:
+    assert told(2.5e-3j, 0.0, 0j, 0.0).pallet == "exit"
+
+
+@pytest.mark.parametrize(("tooth", "which"), [(7, "tooth 7"), (None, "a tooth")])
+@pytest.mark.parametrize(("impulse", "kind"), [(True, "impulse"), (False, "locking")])
+def test_in_words(tooth: int | None, which: str, impulse: bool, kind: str) -> None:
+    assert str(Face(tooth, "exit", impulse, 1.0)) == f"{which} rests on the exit {kind} face"

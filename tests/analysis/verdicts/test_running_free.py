@@ -8,21 +8,22 @@ from typing import Any
 import numpy as np
 import pytest
 
-from watchsim.analysis.verdicts import running_free
+from watchsim.analysis.verdicts import running_free as module
+from watchsim.analysis.verdicts.running_free import running_free
 
 PERIOD, PITCH, WINDOW = 0.25, 0.4, (10.0, 20.0)
 LET_GO = 41.0  # teeth: one in each period of the window, and one at its border
 
 
 def found(monkeypatch: pytest.MonkeyPatch, teeth: float, **changes: object) -> tuple[float, str] | None:
-    monkeypatch.setattr(running_free, "last_window", lambda _, period: WINDOW if period == PERIOD else None)
+    monkeypatch.setattr(module, "last_window", lambda _, period: WINDOW if period == PERIOD else None)
     values: dict[str, object] = {
         **{"run": None, "found": SimpleNamespace(nominal_period=PERIOD), "wheel": "wheel", "pitch": PITCH},
         "recorded": lambda ends: np.isin(ends, WINDOW),
         "progress": lambda ends: 3.0 + (ends - WINDOW[0]) / np.ptp(WINDOW) * teeth * PITCH,
     }
     watch: Any = SimpleNamespace(**(values | changes))
-    return running_free.running_free(watch)
+    return running_free(watch)
 
 
 def test_twice_what_the_oscillator_lets_go(monkeypatch: pytest.MonkeyPatch) -> None:

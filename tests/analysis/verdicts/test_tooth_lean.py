@@ -4,21 +4,24 @@ from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
 from analysis.made_beats import lever_scene, polygon, star
 from analysis.made_faults import swiss, turned_over
+from scipy.integrate import quad
+from scipy.optimize import brentq
 
 from watchsim.analysis.timing.teeth import pitch
-from watchsim.analysis.verdicts.tooth_lean import teeth
+from watchsim.analysis.verdicts.tooth_lean import Teeth, teeth
 from watchsim.profiles_path import profiles_dir
 from watchsim.scene.file.load import load
 
 
-def with_rim(loop):
+def with_rim(*loops):
     scene = lever_scene()
-    return replace(scene, bodies=tuple(replace(one, loops=(loop,)) if one.name == "wheel" else one for one in scene.bodies))
+    return replace(scene, bodies=tuple(replace(one, loops=loops) if one.name == "wheel" else one for one in scene.bodies))
 
 
 def leaning(lean: float, count: int = 15, turned: float = 0.0):
@@ -70,3 +73,51 @@ def test_teeth_are_counted_anticlockwise_from_the_x_axis():
     assert numbers == [15, *range(1, 16), 1]
     swiss_teeth = teeth(swiss(), "wheel")
     assert [swiss_teeth.number(math.radians(angle)) for angle in (0.0, 4.0, 24.1, -24.0, 360.0)] == [1, 1, 2, 15, 1]
+
+
+def phase(lean: float, low: float, high: float) -> float:
+    """Of ∫∫ exp(i Z φ) dφ dr over the tooth of `leaning` at angle 0, between two radii (m)."""
+    pitch = math.tau / 15
+
+    def flank(at: float, radius: float) -> float:
+        foot, tip = cmath.rect(1.9e-3, at * pitch), cmath.rect(2.4e-3, lean * pitch)
+        share = brentq(lambda part: abs(foot + part * (tip - foot)) - radius, 0.0, 1.0, xtol=1e-15) if radius < 2.4e-3 else 1.0
+        return cmath.phase(foot + share * (tip - foot))
+
+    def across(radius: float, part: Callable[[float], float]) -> float:
+        mean = quad(lambda angle: part(15 * angle), flank(-0.4, radius), flank(0.4, radius))
+        return float(mean[0])
+
+    real, imag = (quad(across, low, high, args=(part,))[0] for part in (math.cos, math.sin))
+    return math.atan2(imag, real)
+
+
+@pytest.mark.parametrize("lean", [-0.3, 0.12])
+@pytest.mark.parametrize("turned", [0.0, 0.05])
+@pytest.mark.parametrize("further", [False, True])
+def test_the_middle_of_two_halves_of_a_tooth(lean, turned, further):
+    """Down to 0.4 of the pitch at the rim. A smaller toothed outline beside it lies below that."""
+    outlines = [leaning(lean, turned=turned), *([star(15, 1.1e-3, 0.9e-3)] if further else [])]
+    found = teeth(with_rim(*outlines), "wheel")
+    depth = 0.4 * math.tau / 15 * 2.4e-3
+    outer, inner = phase(lean, 2.4e-3 - 0.5 * depth, 2.4e-3), phase(lean, 2.4e-3 - depth, 2.4e-3 - 0.5 * depth)
+    assert found.pitch == pytest.approx(math.tau / 15, rel=1e-12)
+    assert found.lean == pytest.approx((outer - inner) / 15, rel=2e-4)
+    assert found.first == pytest.approx(outer / 15 + turned, rel=2e-4)
+
+
+@pytest.mark.parametrize(("lean", "way"), [(0.019, 0.0), (-0.019, 0.0), (0.021, 1.0), (-0.021, -1.0)])
+def test_a_fiftieth_of_the_pitch_is_a_lean(lean, way):
+    assert Teeth(0.4, lean * 0.4, 0.1).direction == way
+
+
+@pytest.mark.parametrize("count", [7, 15])
+@pytest.mark.parametrize("first", [0.01, -0.11, 0.9, 3.0])
+def test_each_tooth_has_a_number(count, first):
+    """The one nearest to the x axis is the first, whichever of them was looked at; up to half a pitch off it is still that."""
+    pitch = math.tau / count
+    middles = sorted((first + k * pitch for k in range(count)), key=lambda angle: abs(math.remainder(angle, math.tau)))
+    for k in range(-3, 2 * count):
+        for off in (-0.49, 0.2, 0.49):
+            assert Teeth(pitch, 0.1, first).number(middles[0] + (k + off) * pitch) == k % count + 1
+    assert Teeth(pitch, 0.1, first).count == count

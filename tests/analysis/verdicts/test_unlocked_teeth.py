@@ -64,7 +64,7 @@ def test_a_tooth_that_drives_the_lever_off_is_named(monkeypatch: pytest.MonkeyPa
     assert both == [(5.5, "contact 0"), (6.0, "contact 1"), (6.5, "contact 0"), (6.5, "contact 1")]
 
 
-@pytest.mark.parametrize(("times", "seen"), [([4.9, 5.0, 5.1], [5.0, 5.1]), ([4.8, 4.9], [4.8, 4.9])])
+@pytest.mark.parametrize(("times", "seen"), [([4.9, 5.0, 5.1], [5.0, 5.1]), ([4.8, 4.9], [4.8, 4.9]), ([4.5, 5.5], [5.5])])
 def test_the_last_window_is_looked_at(monkeypatch: pytest.MonkeyPatch, times: list[float], seen: list[float]) -> None:
     """Its start counts with it; where no swing turned in it, the last eight."""
     assert [t for t, _ in told(monkeypatch, {t: [TOOTH] for t in times})] == seen
@@ -105,3 +105,11 @@ def test_small_swings_count_where_all_of_eight_are_so(monkeypatch: pytest.Monkey
 def test_one_that_is_locked_among_small_swings_is_enough(monkeypatch: pytest.MonkeyPatch) -> None:
     holding = {5.0 + 0.5 * k: [TOOTH, PIN] for k in range(9)} | {12.0: [TOOTH, BANKING], 13.0: [TOOTH]}
     assert [t for t, _ in told(monkeypatch, holding)] == [13.0]
+
+
+def test_a_contact_counts_that_drives_though_another_of_the_same_teeth_does_not(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Rows of teeth come first, then those of pins."""
+    got = told(monkeypatch, {6.0: [PIN, OTHER_TOOTH, TOOTH]}, arms={PIN: 0.04})
+    assert got == [(6.0, "contact 0")]
+    both = told(monkeypatch, {6.0: [DART, OTHER_TOOTH, TOOTH]}, driving=(TOOTH, OTHER_TOOTH))
+    assert both == [(6.0, "contact 1"), (6.0, "contact 0")]

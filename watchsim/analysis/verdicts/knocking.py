@@ -72,11 +72,11 @@ def _turns_back(watch: Watch, blows: Events, number: int) -> bool:
 
 
 def _angles(watch: Watch, times: Array) -> Array:
-    """How far the oscillator is from rest, rad: its half swings taken for sines."""
+    """How far the oscillator is from rest at times within its half swings, rad: these taken for sines."""
     found = watch.found
-    i = np.clip(np.searchsorted(found.end, times), 0, len(found) - 1)
+    i = np.searchsorted(found.end, times)
     late = times >= found.t[i]
     reach, turn = np.where(late, found.end_at[i], found.start_at[i]), np.where(late, found.end[i], found.start[i])
-    share = np.clip((times - found.t[i]) / np.where(turn == found.t[i], np.inf, turn - found.t[i]), 0.0, 1.0)
+    share = np.minimum((times - found.t[i]) / np.where(turn == found.t[i], np.inf, turn - found.t[i]), 1.0)
     angles: Array = (reach - watch.rest) * np.sin(0.5 * math.pi * share)
     return angles

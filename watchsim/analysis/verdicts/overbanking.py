@@ -24,7 +24,7 @@ def overbanking(watch: Watch) -> Verdict | None:
         return None
     met = watch.events(watch.lever, {watch.oscillator}, EventKind.IMPACT, EventKind.CLOSE, EventKind.HANDOVER)
     met = met[met["t"] > since]
-    if not len(met) or not watch.recorded(met["t"][-1:]).all():
+    if not len(met) or not watch.recorded(met["t"][-1:])[0]:
         return None
     t, contact = float(met["t"][-1]), int(met["contact"][-1])
     bankings = watch.contacts(watch.lever, watch.fixed)

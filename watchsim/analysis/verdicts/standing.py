@@ -21,7 +21,7 @@ def standing(watch: Watch) -> Verdict | None:
     if stands is None:
         return None
     why, pair = "", None
-    if watch.lever is not None and watch.has_shapes and watch.recorded(np.array([watch.run.simulated])).all():
+    if watch.lever is not None and watch.has_shapes and watch.recorded(np.array([watch.run.simulated]))[0]:
         why, pair = _why(watch, watch.lever)
     last = f". Last amplitude {watch.found.amplitude_deg[-1]:.3g}°" if len(watch.found) else ""
     words = f"{when(stands.since)}  the watch stands: " + (why + last if why else stands.message)

@@ -71,6 +71,6 @@ def _middle(outlines: list[np.ndarray], whole: float, low: float, high: float) -
     total = 0j
     for points in outlines:
         radius = np.clip(np.abs(points), low, high)
-        middle = np.angle(0.5 * (points[1:] + points[:-1]))
+        middle = np.angle(points[1:] + points[:-1])
         total += complex(1j * np.sum(np.diff(radius) * np.exp(1j * math.tau / whole * middle)))
     return total

@@ -36,7 +36,7 @@ def _run_past(watch: Watch) -> Verdict | None:
     moved = advance(watch.run, watch.wheel, watch.found)
     if moved is None or len(moved.angle) < 2:
         return None
-    gained = np.rint((moved.angle - moved.angle[0]) / moved.half_pitch) - (moved.half_swings - moved.half_swings[0])
+    gained = np.rint((moved.angle - moved.angle[0]) / moved.half_pitch) - moved.half_swings
     before = np.maximum(gained[1:-1], gained[:-2])
     tripped = np.flatnonzero(gained[2:] - before >= AHEAD) + 2
     if gained[1] - gained[0] >= 2 * AHEAD:

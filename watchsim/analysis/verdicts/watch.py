@@ -112,7 +112,7 @@ class Watch:
                 value = torque.value
             elif torque.over == "time":
                 value = torque.over_time(t)
-            elif self.recorded(np.array([t])).all():
+            elif self.recorded(np.array([t]))[0]:
                 value = float(np.interp(self.angle(torque.body, np.array([t]))[0], *np.array(torque.table).T))
             total += ratios[torque.body] * value
         return total
