@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -41,7 +42,7 @@ def test_more_than_half_must_share_a_symmetry(single: int, fold: int) -> None:
 
 @pytest.mark.parametrize(("pairs", "fold", "loose"), [(0, 6, 0), (1, 6, 2), (2, 6, 4), (3, 2, 0), (4, 2, 0)])
 def test_the_symmetry_that_saves_most_counts(pairs: int, fold: int, loose: int) -> None:
-    """Six holes need one of their six alike: five are saved. Of each pair one is saved, and three of the six: the more counts."""
+    """Of six holes five are saved by their own symmetry; by that of the pairs three, and one of each pair."""
     others = [crown(2, 1.4 + 0.2 * k, turn=0.3 * k) for k in range(pairs)]
     found = turn_symmetry(joined(crown(6, 0.8), *others), TOLERANCE)
     assert (found.fold, np.count_nonzero(found.loose)) == (fold, loose)
@@ -74,8 +75,8 @@ def test_values_are_parted_where_a_gap_is_wider_than_the_tolerance(seed: int) ->
     got = _split(label, value, 1.0)
     for one in range(3):
         rows = sorted(np.flatnonzero(label == one), key=lambda i: value[i])
-        alike = [got[a] == got[b] for a, b in zip(rows, rows[1:], strict=False)]
-        assert alike == [value[b] - value[a] <= 1.0 for a, b in zip(rows, rows[1:], strict=False)]
+        alike = [got[a] == got[b] for a, b in pairwise(rows)]
+        assert alike == [value[b] - value[a] <= 1.0 for a, b in pairwise(rows)]
     names = [{int(got[i]) for i in np.flatnonzero(label == one)} for one in range(3)]
     assert sum(map(len, names)) == len(set.union(*names))
 
