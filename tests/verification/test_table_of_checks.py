@@ -17,8 +17,12 @@ from watchsim.verification.compared import Row, compared
 SCENE: Any = SimpleNamespace()
 
 
+def measure(k: int) -> Any:
+    return lambda run: run.numbers[k]
+
+
 def benchmark(name: str, *numbers: float) -> Benchmark:
-    checks = tuple(Check(f"{name} {k}", value, lambda run, k=k: run.numbers[k], 0.01) for k, value in enumerate(numbers))
+    checks = tuple(Check(f"{name} {k}", value, measure(k), 0.01) for k, value in enumerate(numbers))
     return Benchmark(name, SCENE, checks, f"source of {name}")
 
 
