@@ -44,6 +44,14 @@ def test_times(mu: str) -> None:
         assert near(case.rolling_begins, begins)
 
 
+@pytest.mark.parametrize(("mu", "rolls"), [("0.12132", False), ("0.12133", True)])
+def test_it_rolls_in_the_end_where_friction_is_a_third_of_the_slope(mu: str, rolls: bool) -> None:
+    """tan(20°)/3 is 0.1213234: from either side of it."""
+    begins = rolling_begins(settled(mpf(mu)), mpf(mu))
+    assert (Incline(float(mu)).rolling_begins < math.inf) is rolls is (begins < math.inf)
+    assert not rolls or Incline(float(mu)).rolling_begins == pytest.approx(float(begins), rel=1e-9)
+
+
 def test_published_digits() -> None:
     state = incline_state(Incline(0.3), 3.0)
     assert state.x == pytest.approx(10.0939616140729, rel=1e-14)
