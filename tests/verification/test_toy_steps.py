@@ -109,7 +109,7 @@ def test_masses_and_weights_are_those_of_its_parts(toy: Toy) -> None:
 
 
 def test_data_of_the_toy() -> None:
-    """As printed by Glocker and Studer 2005, table 1: kg, m, N; stiffness per radian."""
+    """As in Glocker and Studer 2005, in SI."""
     toy = Toy()
     printed = {
         **{"sleeve_mass": 0.0003, "sleeve_inertia": 5.0e-9, "bird_mass": 0.0045, "bird_inertia": 7.0e-7, "stiffness": 0.0056},
