@@ -74,6 +74,22 @@ def test_height_bounces_between_impacts() -> None:
     assert incline_state(case, 0.0).y == case.radius + case.drop
 
 
+@pytest.mark.parametrize("restitution", [0.1, 0.3, 0.77, 0.97])
+def test_impacts_are_counted_up_to_their_end(restitution: float) -> None:
+    """The height after each of the first ones, and a rounding before they accumulate."""
+    case = Incline(0.3, restitution)
+    t, speed = case.first_impact, case.press * case.first_impact
+    for _ in range(6):
+        speed *= restitution
+        rise = speed / case.press
+        assert incline_state(case, t + rise).y - case.radius == pytest.approx(0.5 * speed * rise, rel=1e-8)
+        assert incline_state(case, t + 0.7 * rise).v_y == pytest.approx(0.3 * speed, rel=1e-8)
+        t += 2.0 * rise
+    assert case.accumulation == pytest.approx(case.first_impact * (1.0 + restitution) / (1.0 - restitution), rel=1e-14)
+    last = incline_state(case, math.nextafter(case.accumulation, 0.0))
+    assert last.y == pytest.approx(case.radius, abs=1e-14)
+
+
 def test_without_restitution_one_impact_is_all() -> None:
     case = Incline(0.3, restitution=0.0)
     assert case.accumulation == case.first_impact

@@ -12,7 +12,8 @@ from scipy.linalg import eigh
 
 from watchsim.verification.woodpecker import woodpecker_rows as module
 from watchsim.verification.woodpecker.published import FASTEST
-from watchsim.verification.woodpecker.toy import Toy, modal, start
+from watchsim.verification.woodpecker.toy import BEAK, LOWER, UPPER, Modal, Toy, modal, start
+from watchsim.verification.woodpecker.toy_stepping import step_to
 from watchsim.verification.woodpecker.woodpecker_cycle import Cycle
 from watchsim.verification.woodpecker.woodpecker_rows import woodpecker_rows
 
@@ -128,3 +129,55 @@ def test_gaps_are_those_of_beak_and_edges() -> None:
     assert gaps == pytest.approx([0.025 - 0.0201 - 0.0025 - 0.02 * bird, 6e-4 + 5.8e-3 * sleeve, 6e-4 - 5.8e-3 * sleeve])
     slips = [y + 0.010 * sleeve + (0.015 - 0.0201) * bird, *[y + 3.1e-3 * sleeve] * 2]
     assert T @ (y, sleeve, bird) == pytest.approx(slips)
+
+
+NEAR = ((BEAK, LOWER), (BEAK, UPPER))  # both edges of the sleeve at once would be on either side of the pole
+
+
+def without_friction(closed: tuple[int, ...], restitution: tuple[float, float, float]) -> Modal:
+    """The toy with only these contacts within reach, and without weight."""
+    model = modal(Toy(friction=0.0, restitution=restitution))
+    gaps = np.where([k in closed for k in range(3)], model.gaps, 1.0)
+    return Modal(model.basis, model.spring, np.zeros(3), model.contacts, gaps)
+
+
+@pytest.mark.parametrize("closed", NEAR)
+@pytest.mark.parametrize("rates", [(-0.3, -0.7), (-0.7, -0.01), (0.05, -0.7), (-0.7, 0.05), (0.3, 0.7)])
+def test_two_contacts_at_once(closed: tuple[int, int], rates: tuple[float, float]) -> None:
+    """Those that approach are stopped, each gets its share of its own impulse back, and none is pulled: all ways are tried."""
+    model = without_friction(closed, (0.5, 0.2, 0.8))
+    N = model.contacts.W[[2 * k for k in closed]]
+    e = -np.linalg.pinv(N) @ model.gaps[list(closed)]
+    v, h = np.linalg.pinv(N) @ rates, 1e-7
+    G, back = N @ N.T, np.array([(0.5, 0.2, 0.8)[k] for k in closed])
+    stop = pressed(G, np.array(rates), np.zeros(2))
+    thrown = stop + pressed(G, np.array(rates) + G @ stop, back * stop)
+    e_new, v_new = step_to(model, e - 1e-9 * N.sum(axis=0), v, h, h)
+    assert v_new == pytest.approx(v + N.T @ thrown, abs=1e-4 * np.abs(v).max())
+    assert e_new == pytest.approx(e, abs=1e-5)
+
+
+def pressed(G: np.ndarray, rates: np.ndarray, low: np.ndarray) -> np.ndarray:
+    """Impulses of at least `low`, more only where a contact then stands still."""
+    for held in ((False, False), (True, False), (False, True), (True, True)):
+        rows = np.flatnonzero(held)
+        P = low.copy()
+        others = np.flatnonzero(np.logical_not(held))
+        P[rows] = np.linalg.solve(G[np.ix_(rows, rows)], -rates[rows] - G[np.ix_(rows, others)] @ low[others])
+        if np.all(low - 1e-12 <= P) and np.all(rates + G @ P >= -1e-12):
+            return P
+    raise AssertionError("no way")
+
+
+@pytest.mark.parametrize(("at_middle", "hit"), [(-1e-9, True), (1e-9, False), (5e-4, False)])
+def test_contacts_count_that_are_closed_at_the_middle_of_the_step(at_middle: float, hit: bool) -> None:
+    """The gap that is left after half a step, seen from either side."""
+    model, h = without_friction((LOWER,), (0.5, 0.5, 0.5)), 1e-3
+    N = model.contacts.W[2 * LOWER]
+    v = -0.2 * N / (N @ N)
+    e = (at_middle + 0.5 * h * 0.2 - model.gaps[LOWER]) * N / (N @ N)
+    held = Modal(model.basis, np.zeros(3), model.load, model.contacts, model.gaps)
+    e_new, v_new = step_to(held, e, v, h, h)
+    rate = 0.1 if hit else -0.2
+    assert N @ v_new == pytest.approx(rate, rel=1e-9)
+    assert N @ (e_new - e) == pytest.approx(0.5 * h * 2.0 * rate, rel=1e-9)
