@@ -8,6 +8,7 @@ import pytest
 from mpmath import mpf
 from reference.incline_closed_form import accumulation, first_impact, reference, rolling_begins, settled
 
+from watchsim.verification.benchmarks import _energy_lost
 from watchsim.verification.closed_forms import Incline, incline_state
 
 FRICTIONS = ("0.3", "0.13", "0.10", "0.02", "0")
@@ -88,6 +89,20 @@ def test_impacts_are_counted_up_to_their_end(restitution: float) -> None:
     assert case.accumulation == pytest.approx(case.first_impact * (1.0 + restitution) / (1.0 - restitution), rel=1e-14)
     last = incline_state(case, math.nextafter(case.accumulation, 0.0))
     assert last.y == pytest.approx(case.radius, abs=1e-14)
+
+
+@pytest.mark.parametrize("kappa", [0.4, 0.9])
+def test_energy_goes_at_impacts_alone_while_it_bounces(kappa: float) -> None:
+    """Nothing before the first; then, without friction, what is not given back; with it, what gripping takes from the slip."""
+    for friction in (0.0, 5.0):
+        case = Incline(friction, restitution=0.6, radius=0.07, kappa=kappa)
+        fall, touch = case.press * case.first_impact, case.first_impact
+        assert _energy_lost(case, 0.7 * touch) == pytest.approx(0.0, abs=1e-15)
+        lost = 0.5 * (1.0 - 0.36) * fall**2
+        if friction:
+            lost += 0.5 * (case.pull * touch) ** 2 * kappa / (1.0 + kappa)
+        for later in (1.1, 1.9):
+            assert _energy_lost(case, later * touch) == pytest.approx(lost, rel=1e-12)
 
 
 def test_without_restitution_one_impact_is_all() -> None:
