@@ -10,11 +10,11 @@ from pathlib import Path
 from types import ModuleType
 
 import pytest
-from records import drawing_records, run_records, scene_records
+from records import benchmark_records, drawing_records, run_records, scene_records
 from records.wording import agree, moved, said, sections, without_unsure, written
 
 KEPT = Path(__file__).parent / "kept"
-TOPICS = {"drawings": drawing_records, "scenes": scene_records, "runs": run_records}
+TOPICS = {"drawings": drawing_records, "scenes": scene_records, "runs": run_records, "benchmarks": benchmark_records}
 RECORDS = [(topic, name) for topic, module in TOPICS.items() for name in module.records()]
 
 

@@ -26,6 +26,11 @@ def test_turning_points(rate: float) -> None:
     assert 0.0 < turning_time(case, 1) < turning_time(case, 2) - turning_time(case, 1) + 1e-9
 
 
+def test_what_is_let_go_has_no_rate() -> None:
+    case = Damped(inertia=2.0, stiffness=9.0, viscous=0.3, torque=0.7, angle=1.5)
+    assert damped_state(case, 0.0) == (pytest.approx(1.5, rel=1e-15), 0.0)
+
+
 @pytest.mark.parametrize("t", [0.0, 0.05, 0.08, 0.2, 0.31, 0.5, 1.0, 3.0])
 def test_pendulum_against_a_stop(t: float) -> None:
     truth = pendulum.against_stop(t, PENDULUM.angle, PENDULUM.w, PENDULUM.restitution)

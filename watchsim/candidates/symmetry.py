@@ -86,7 +86,7 @@ def _mismatch(primitives: Records, ends: tuple[Array, Array], image: NDArray[np.
     """How far each primitive, turned, may be from its image (an upper bound)."""
     c, s = math.cos(angle), math.sin(angle)
     turn = np.array([[c, s], [-s, c]])
-    apart = [np.hypot(*(points @ turn - points[image]).T) for points in ends]
+    apart = [np.hypot(*(points @ turn - points[image]).T) * (primitives.extent == 0) for points in ends]
     middle = np.stack([primitives.px, primitives.py], axis=1)
     normal = np.stack([primitives.nx, primitives.ny], axis=1)
     other = primitives[image]

@@ -75,12 +75,11 @@ def _incline_checks(case: Incline) -> tuple[Check, ...]:
     return (*checks, Check("energy lost [J]", _energy_lost(case, INCLINE_TIMES[-1]), _dissipated), *soundness())
 
 
-def _energy_lost(case: Incline, t: float, mass: float = 1.0) -> float:
-    """What gravity gave and motion does not have."""
+def _energy_lost(case: Incline, t: float) -> float:
+    """What gravity gave a disc of 1 kg and motion does not have."""
     state = incline_state(case, t)
-    inertia = case.kappa * mass * case.radius**2
-    given = mass * (case.pull * state.x + case.press * (case.drop + case.radius - state.y))
-    return given - 0.5 * mass * (state.v_x**2 + state.v_y**2) - 0.5 * inertia * state.spin**2
+    given = case.pull * state.x + case.press * (case.drop + case.radius - state.y)
+    return given - 0.5 * (state.v_x**2 + state.v_y**2) - 0.5 * case.kappa * (case.radius * state.spin) ** 2
 
 
 def _damped_balance() -> Benchmark:

@@ -42,16 +42,15 @@ class Incline:
     @property
     def accumulation(self) -> float:
         """Time at which the bouncing has died out, s."""
-        return self.first_impact * (1.0 + self.restitution) / (1.0 - self.restitution)
+        return _impact_time(self, math.inf)
 
     @property
     def rolling_begins(self) -> float:
         """Time from which the disc rolls, s; inf where it never does."""
         decay = self.friction * self.press * (1.0 + 1.0 / self.kappa) - self.pull
-        slip = _slip_left(self)
-        if decay < 0.0:
+        if decay <= 0.0:
             return math.inf
-        return self.accumulation + (slip / decay if slip > 0.0 else 0.0)
+        return self.accumulation + _slip_left(self) / decay
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,21 +84,15 @@ def incline_state(case: Incline, t: float) -> DiscState:
     )
 
 
-def _impact_time(case: Incline, k: int) -> float:
+def _impact_time(case: Incline, k: float) -> float:
+    """Of the k-th impact, counted from 1; inf: where they accumulate."""
     e = case.restitution
     return case.first_impact * (1.0 + 2.0 * e * (1.0 - e ** (k - 1)) / (1.0 - e))
 
 
 def _impacts_before(case: Incline, t: float) -> int:
     """Number of impacts up to and including time t < accumulation."""
-    if t < case.first_impact:
-        return 0
-    if case.restitution == 0.0:
-        return 1
-    left = (case.accumulation - t) * (1.0 - case.restitution) / (2.0 * case.first_impact)
-    count = max(1, round(math.log(left) / math.log(case.restitution)))
-    while count > 1 and _impact_time(case, count) > t:
-        count -= 1
+    count = 0
     while _impact_time(case, count + 1) <= t:
         count += 1
     return count

@@ -104,15 +104,8 @@ class Modal:
 
 def modal(toy: Toy) -> Modal:
     """M and K are diagonal together: the spring feels only the difference of the tilts, so two modes are exactly free."""
-    M = toy.mass
-    columns: list[Array] = []
-    for start in (np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 1.0]), np.array([0.0, 1.0, 0.0])):
-        v = start.copy()
-        for _ in range(2):  # once more takes back the rounding of the first time
-            for other in columns:
-                v -= other * (other @ M @ v)
-        columns.append(v / np.sqrt(v @ M @ v))
-    basis = np.column_stack(columns)
+    free = np.tri(3)  # its first two columns tilt both alike
+    basis = free @ np.linalg.inv(np.linalg.cholesky(free.T @ toy.mass @ free).T)
     twist = basis[1, 2] - basis[2, 2]
     spring = np.array([0.0, 0.0, toy.stiffness * twist * twist])
     contacts = BareContacts(np.ones(3), toy.directions @ basis, np.full(3, toy.friction), np.array(toy.restitution))

@@ -20,7 +20,7 @@ def percussions(G: Array, rates: Array, low: Array, friction: Array) -> Array:
     """(2m,) that keep the normal rates from being negative, at least `low` along the normals."""
     m = len(low)
     obeyed = laws(m, 0)
-    obeyed.G[:], obeyed.b[:], obeyed.low[:], obeyed.P[::2] = G, rates, low, low
+    obeyed.G[:], obeyed.b[:], obeyed.low[:] = G, rates, low
     obeyed.ends[:] = np.outer(friction, (0.0, -1.0, 0.0, 1.0))  # Coulomb's law, see percussion_laws
     _, settled = _relax(obeyed, m, 0)
     if not settled:
@@ -37,10 +37,8 @@ def step_to(model: Modal, e: Array, v: Array, until: float, h: float) -> tuple[A
     for _ in range(count):
         middle = e + 0.5 * h * v
         closed = [i for i in range(3) if model.gaps[i] + W[2 * i] @ middle <= 0.0]
-        w = v
-        rows = W[[2 * i + k for i in closed for k in (0, 1)]] if closed else np.zeros((0, 3))
-        if closed and (rows[::2] @ v).min() < 0.0:
-            w = _impact(rows, v, mu[closed], restitution[closed])
+        rows = W[[2 * i + k for i in closed for k in (0, 1)]]
+        w = _impact(rows, v, mu[closed], restitution[closed]) if closed else v
         free = ((2.0 - stiff) * w + h * (model.load - model.spring * e)) / stiff
         new = free
         if closed:
