@@ -105,10 +105,10 @@ def test_what_is_said_anew_stands_and_the_rest_stays(
             )
 
 
-def test_value_replaces_a_mainspring_of_the_base_altogether() -> None:
+def test_a_value_replaces_all_that_belongs_to_a_table() -> None:
     base = {"torques": [{"body": "a", "over": "time", "run_down": 4, "period": 2}, {"body": "b", "table": [5]}]}
     found = merged(base, {"torques": [{"body": "b", "value": 3}, {"body": "a", "value": 2}]})
-    assert found == {"torques": [{"body": "a", "value": 2, "period": 2}, {"body": "b", "value": 3}]}
+    assert found == {"torques": [{"body": "a", "value": 2}, {"body": "b", "value": 3}]}
 
 
 def test_a_table_replaces_a_constant_value() -> None:
