@@ -169,6 +169,8 @@ REFUSED = [
     ("bodies.wheel.adjust.STONES.trun", 'Did you mean "turn"?'),
     ("bodies.wheel.adjust.PINS.0.trun", 'Did you mean "turn"?'),
     ("bodies.wheel.matreial", 'Did you mean "material"?'),
+    ("bodies.wheel.matreial.0.1", 'Did you mean "material"?'),
+    ("springs.0.rost.1.2", 'Did you mean "rest"?'),
     ("run.duraton", 'Did you mean "duration"?'),
     ("scene", "Known here: title, schema, gravity, tangential_law, nu."),
     ("springs.0", "Write springs.NUMBER.KEY, the number counted from 0."),
