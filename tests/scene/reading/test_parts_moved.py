@@ -85,7 +85,7 @@ def test_a_part_moves_with_its_hole_away_from_a_place() -> None:
     """Each part along the line from that place to its own centre."""
     found, said = moved({"radial": "9 µm", "about": ["1 mm", "-4 mm"]})
     right = (4.0 * complex(*RIGHT) - 0.16 * (5.2e-3 - 1.1e-3j)) / 3.84
-    ways = {}
+    ways: dict[int, tuple[complex, float, complex]] = {}
     for numbers, centre in (((0,), complex(*LEFT)), ((2, 3), right), ((5,), 3.5e-3 + 8e-3j)):
         away = centre - (1e-3 - 4e-3j)
         ways |= dict.fromkeys(numbers, (0j, 0.0, 9e-6 * away / abs(away)))
