@@ -16,10 +16,9 @@ DOWN = (2.0, -9.0)
 
 def test_a_carried_body_is_poised_to_the_last_digit() -> None:
     """On the first body of the scene or on another: what rounding leaves of its moment pulls at nothing."""
-    for bodies in (
-        (Body("c", inertia=3.0, mass=1.0), Body("b", inertia=1.0, mass=2.0, centre_of_mass=(1e-12, 0.0), position=(0.5, 0.0), on="c")),
-        (Body("x", inertia=1.0), Body("c", inertia=3.0), Body("b", inertia=1.0, mass=2.0, centre_of_mass=(1e-12, 0.0), position=(0.5, 0.0), on="c")),
-    ):  # fmt: skip
+    carrier = Body("c", inertia=3.0, mass=1.0)
+    load = Body("b", inertia=1.0, mass=2.0, centre_of_mass=(1e-12, 0.0), position=(0.5, 0.0), on="c")
+    for bodies in ((carrier, load), (Body("x", inertia=1.0), carrier, load)):
         rows = compile_scene(Scene("poised", bodies, gravity=DOWN)).model.coordinates
         assert rows.weight_x[-1] == rows.weight_y[-1] == 0.0 and rows.weight_x[-2] == pytest.approx(2.0 * 0.5 * 2.0)
         assert rows.weight_y[-2] == pytest.approx(2.0 * 0.5 * -9.0) and rows.linear[-1] == 1
