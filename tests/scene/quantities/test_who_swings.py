@@ -110,7 +110,7 @@ LEVER = {"springs": (Spring("b", 8.0),), "torques": (Torque("w", -2.0),), "conta
 def test_roles_of_a_lever_escapement() -> None:
     scene = Scene("t", bodies("xwlb"), **LEVER)  # type: ignore[arg-type]
     assert roles(scene) == with_anchor(scene) == Roles("b", "w", "l") and keeps_time(scene) and not only_presses(scene)
-    slid = replace(scene, bodies=bodies("xlb", l={"motion": "fixed"}) + (Body("w", "pivot", inertia=2.0),))
+    slid = replace(scene, bodies=(*bodies("xlb", l={"motion": "fixed"}), Body("w", "pivot", inertia=2.0)))
     assert roles(slid) == Roles("b", "w", None)
     geared = replace(
         scene, bodies=(*bodies("xlb"), Body("w", inertia=2.0, geared=Geared("x", 3.0))), torques=(Torque("x", 2.0),)
@@ -118,7 +118,7 @@ def test_roles_of_a_lever_escapement() -> None:
     assert roles(geared) == Roles("b", "w", "l")
     loose = replace(scene, torques=(Torque("x", 2.0),), gears=(Gear(("x", "w"), 3.0, 0.1),))
     assert roles(loose) == Roles("b", "w", "l")
-    pushed = replace(scene, bodies=bodies("xlb") + (Body("w", "slide", mass=2.0),))
+    pushed = replace(scene, bodies=(*bodies("xlb"), Body("w", "slide", mass=2.0)))
     assert roles(pushed) == Roles("b", None, None)
     assert roles(replace(scene, torques=(Torque("b", 2.0),))) == Roles("b", None, None)
 

@@ -153,6 +153,7 @@ REFUSED = [
     ("bodies.wheel.adjust.PINS.2.turn", "no such table under adjust: it has 2 entries, counted from 0"),
     ("bodies.wheel.adjust.PINS.turn", "no such table under adjust: it has 2 entries"),
     ("bodies.wheel.polygon.3.1", "there is no element 3.1 in it"),
+    ("bodies.wheel.polygon.2.x", "there is no element 2.x in it"),
     ("bodies.wheel.polygon.2.2", "there is no element 2.2 in it"),
     ("bodies.wheel.polygon.x.1", "there is no element x.1 in it"),
     ("bodies.lever.angle", 'there is no "lever" in bodies. Known here: wheel, rack, cam, arm, stone.'),
