@@ -20,7 +20,7 @@ INSTEAD_OF = {
     "preload": ("rest",),
     "q_factor": ("viscous",),
     "viscous": ("q_factor",),
-    "value": ("table", "over", "ratio", "efficiency", "run_down", "train"),
+    "value": ("table", "over", "period", "ratio", "efficiency", "run_down", "train"),
 }
 
 
@@ -57,7 +57,7 @@ def _enter(mapping: dict[str, Any], path: tuple[str, ...], faults: Faults) -> tu
         if rest[0] == "adjust" and len(rest) > 1:
             return _enter_adjust(holder, rest, key, faults)
         if rest[0] != "solids" or len(rest) == 1:
-            return holder, rest
+            return _entered(section, holder, rest)
         section, path = f"{section}.{path[1]}.solids", ("solids", *rest[1:])
         elements = holder.get("solids", [])
     else:
@@ -66,12 +66,17 @@ def _enter(mapping: dict[str, Any], path: tuple[str, ...], faults: Faults) -> tu
         faults.add(key, f"{section} has no entry {path[1]}: there are {len(elements)}, counted from 0")
         return None, ()
     holder, rest = elements[int(path[1])], path[2:]
-    if (section, rest[0]) in WITHIN and len(rest) > 1:
-        inner = holder.setdefault(rest[0], {})
-        return (inner, rest[1:]) if isinstance(inner, dict) else (None, ())
     if rest[0] == "train" and len(rest) > 2:
         return _enter_train(holder, rest, key, faults)
-    return holder, rest
+    return _entered(section, holder, rest)
+
+
+def _entered(section: str, holder: dict[str, Any], rest: tuple[str, ...]) -> tuple[dict[str, Any] | None, tuple[str, ...]]:
+    """The table within an entry where the path goes on into one; what is none there is refused when the scene is read."""
+    if (section, rest[0]) not in WITHIN or len(rest) == 1:
+        return holder, rest
+    inner = holder.setdefault(rest[0], {})
+    return (inner, rest[1:]) if isinstance(inner, dict) else (None, ())
 
 
 def _enter_train(
@@ -96,12 +101,12 @@ def _enter_adjust(
         return layers, rest[1:]
     entry = layers.setdefault(rest[1], {}) if isinstance(layers, dict) else None
     after = rest[2:] or ("",)
+    many = f": it has {len(entry)} entries, counted from 0" if isinstance(entry, list) else ""
     if after[0].isdigit() and len(after) > 1:
         inside = isinstance(entry, list) and int(after[0]) < len(entry)
         entry, after = (entry[int(after[0])] if isinstance(entry, list) and inside else None), after[1:]
     if isinstance(entry, dict):
         return entry, after
-    many = f": it has {len(entry)} entries, counted from 0" if isinstance(entry, list) else ""
     faults.add(key, f"there is no such table under adjust{many}")
     return None, ()
 

@@ -113,7 +113,10 @@ LISTED = {
     "gears": GEAR,
     "line_springs": LINE_SPRING,
 }  # [[name]]
-WITHIN = {("springs", "draw"): COIL, ("springs", "leaf"): LEAF, ("line_springs", "leaf"): LEAF}  # name = { … } in a list
+WITHIN = {  # name = { … }
+    ("bodies", "swing"): SWING,
+    **{("springs", "draw"): COIL, ("springs", "leaf"): LEAF, ("line_springs", "leaf"): LEAF},
+}
 DESIGN = "design"  # [design], whose keys are the dimensions of the design it names
 SECTIONS = (*TABLES, DESIGN, *NAMED, *LISTED)
 
@@ -127,17 +130,15 @@ def key_at(path: tuple[str, ...]) -> Key | None:
         return TABLES[section].get(rest[0]) if rest else None
     if len(rest) < 2 or section not in SECTIONS:
         return None
+    if (section, rest[1]) in WITHIN and len(rest) >= 3:
+        return WITHIN[section, rest[1]].get(rest[2])
     if section in NAMED:
         if rest[1] == "solids" and len(rest) >= 4:
             return SOLID.get(rest[3])
         if rest[1] == "adjust" and len(rest) >= 4:
             inner = rest[4:] if rest[3].isdigit() else rest[3:]
             return ADJUST.get(inner[0]) if inner else PLAIN
-        if rest[1] == "swing" and len(rest) == 3:
-            return SWING.get(rest[2])
         return NAMED[section].get(rest[1])
-    if (section, rest[1]) in WITHIN and len(rest) >= 3:
-        return WITHIN[section, rest[1]].get(rest[2])
     if section == "torques" and rest[1] == "train" and len(rest) >= 4:
         return TRAIN.get(rest[3])
     return LISTED[section].get(rest[1])
@@ -148,12 +149,12 @@ def siblings(path: tuple[str, ...]) -> tuple[str, ...]:
     section = path[0] if path else ""
     if section in TABLES:
         return tuple(TABLES[section])
+    if (section, *path[2:3]) in WITHIN and len(path) > 3:
+        return tuple(WITHIN[section, path[2]])
     if section in NAMED:
         if path[2:3] == ("adjust",) and len(path) > 4:
             return tuple(ADJUST)
         return tuple(SOLID if path[2:3] == ("solids",) and len(path) > 4 else NAMED[section])
-    if (section, *path[2:3]) in WITHIN and len(path) > 3:
-        return tuple(WITHIN[section, path[2]])
     return tuple(LISTED[section]) if section in LISTED else SECTIONS
 
 
