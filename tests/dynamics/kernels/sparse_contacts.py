@@ -8,7 +8,7 @@ import numpy as np
 
 from watchsim.contact.kinematics import Closed, closed_contacts
 from watchsim.dynamics.delassus import ContactWork, contact_work
-from watchsim.model.records import CONTACT, COORDINATE, LAW, records
+from watchsim.model.records import CONTACT, COORDINATE, LAW, Records, records
 
 SPARE = 2  # rows of contacts that nobody may read
 
@@ -53,6 +53,11 @@ class Sparse:
         self.closed.w_N[i, :count], self.closed.w_T[i, :count] = rng.normal(size=(2, count))
         self.W[2 * i : 2 * i + 2] = 0.0
         self.W[2 * i, coords], self.W[2 * i + 1, coords] = self.closed.w_N[i, :count], self.closed.w_T[i, :count]
+
+    @property
+    def laws(self) -> Records:
+        """The law of each contact."""
+        return self.model.laws[self.model.contacts[self.closed.ids[: self.m]].group]
 
     @property
     def G(self) -> np.ndarray:
