@@ -26,8 +26,9 @@ class Sparse:
         self.m, self.n = m, n
         self.closed: Closed = closed_contacts(m + SPARE)
         self.work: ContactWork = contact_work(m + SPARE, n)
-        for values in (self.closed.w_N, self.closed.w_T, self.closed.kin.bar_N, self.closed.kin.bar_T):
-            values[:] = np.nan
+        for values in (self.closed.w_N, self.closed.w_T, self.closed.kin.bar_N, self.closed.kin.bar_T, *self.work):
+            if isinstance(values, np.ndarray) and values.dtype == float:
+                values[:] = np.nan
         self.closed.slots[m:] = 1
         self.W = np.zeros((2 * m, n))
         numbers = rng.permutation(2 * m)[:m]
