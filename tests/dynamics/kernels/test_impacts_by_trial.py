@@ -38,6 +38,9 @@ def test_two_contacts_rebound_by_their_laws(seed: int, kind: int) -> None:
     assert case.work.force[: 2 * M] == pytest.approx(total, abs=1e-10)
     assert after == pytest.approx(u + (case.W / mass).T @ total, abs=1e-10)
     assert case.work.b[: 2 * M] == pytest.approx(rates)
+    rough, posed = int(np.count_nonzero(case.friction)), case.work.posed
+    level = Level.EXPANSION if np.any((eps > 0.0) & (first[::2] > 0.0)) else Level.COMPRESSION
+    assert (posed.contacts, posed.elements, posed.bearings, posed.level) == (M, rough, 0, level)
     gained, terms = in_python(impact.energy_change)(M, case.work)
     assert gained == pytest.approx(0.5 * float(mass @ (after**2 - u**2)), abs=1e-12)
     by_hand = np.abs(total) @ np.abs(rates) + 0.5 * np.abs(total) @ np.abs(G @ total)

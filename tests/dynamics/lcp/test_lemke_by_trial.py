@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,7 +9,7 @@ import pytest
 from naive.lcp_oracle import residual, solutions
 from plain_kernels import in_python
 
-from watchsim.dynamics.lcp import basis, lemke_pivoting, scaling
+from watchsim.dynamics.lcp import basis, lemke_pivoting
 from watchsim.dynamics.lcp.lemke_pivoting import LcpWork, lcp_work
 from watchsim.dynamics.lcp.outcome import LcpOutcome
 
@@ -103,6 +102,14 @@ def test_what_is_no_solution_is_inexact_but_nothing_to_do_is_no_question() -> No
     assert in_python(lemke_pivoting.lemke_on_path, **instead)(None, np.array([1.0, -1.0]), 2, 0, None, None) == LcpOutcome.RAY
 
 
+def test_the_usual_path_is_the_first_one() -> None:
+    """Whose loads are as they are given."""
+    asked = in_python(lemke_pivoting.lemke_checked, lemke_on_path=lambda A, b, n, path, work, x: (n, path))
+    assert asked(None, None, 3, None, None) == (3, 0)
+    asked = in_python(lemke_pivoting.lemke, _follow=lambda A, b, n, path, work, x: (n, path))
+    assert asked(None, None, 3, None, None) == (3, 0)
+
+
 @pytest.mark.parametrize("path", range(9))
 def test_a_path_begins_in_the_row_of_the_most_negative_load_over_its_multiple_of_z0(path: int) -> None:
     """The last of equal ones. Paths up to the fourth have equal multiples, the others unlike ones."""
@@ -158,21 +165,34 @@ def test_where_active_rows_depend_on_others_the_free_unknown_is_zero() -> None:
     assert work.matrix[1:] @ work.trial == pytest.approx([5.0, 13.0, 18.0])
 
 
+def test_there_is_room_for_the_elimination_of_all_unknowns() -> None:
+    """Dependent rows among them."""
+    work = lcp_work(3)
+    work.matrix[:], work.load[:], work.is_active[:] = [[2, 1, 3], [4, 5, 9], [6, 6, 12]], [-5, -13, -18], 1
+    assert not in_python(basis.solve_active)(3, work)
+    assert work.matrix @ work.trial == pytest.approx([5.0, 13.0, 18.0])
+
+
+def test_a_solution_misses_nothing_and_its_worst_condition_is_kept() -> None:
+    """Where an unknown is positive, however small, both ways; else only below zero."""
+    ask = in_python(basis.is_solution)
+
+    def judged(trial: list[float], y: list[float]) -> tuple[bool, float]:
+        x = np.array(trial)
+        worst = SimpleNamespace(driver=1.0, violation=0.0)
+        work = SimpleNamespace(trial=x, load=np.array(y) - x, matrix=np.eye(2), worst=worst)
+        return bool(ask(2, work)), worst.violation
+
+    assert judged([1.0, 0.0], [0.0, -1e-6]) == (False, 0.0)
+    assert judged([1.0, 0.0], [0.0, 0.5]) == (True, 0.0)
+    assert judged([2.0**-12, 0.0], [2.0**-46, 0.5]) == (True, 2.0**-46)
+    assert judged([2.0**-12, 0.0], [-(2.0**-46), 0.5]) == (True, 2.0**-46)
+    assert judged([0.0, 0.0], [-(2.0**-46), 0.5]) == (True, 2.0**-46)
+
+
 @pytest.mark.parametrize(("left", "found"), [(-0.9e-9, 0.0), (-1.1e-9, -1.1e-9), (1e-12, 1e-12), (0.0, 0.0)])
 def test_unknowns_negative_by_rounding_are_zero(left: float, found: float) -> None:
     work = lcp_work(1)
     work.matrix[0, 0], work.load[0], work.is_active[0] = 2.0, -2.0 * left, 1
     in_python(basis.solve_active)(1, work)
     assert work.trial[0] == pytest.approx(found, rel=1e-12, abs=0.0)
-
-
-@pytest.mark.parametrize("sign", [1.0, -1.0])
-@pytest.mark.parametrize("power", [-70, -3, 0, 1, 12])
-@pytest.mark.parametrize(("mantissa", "up"), [(1.0, 0), (1.01, 0), (1.499, 0), (1.501, 1), (1.99, 1)])
-def test_units_are_the_nearest_powers_of_two(mantissa: float, up: int, power: int, sign: float) -> None:
-    assert in_python(scaling._power_of_two)(sign * mantissa * 2.0**power) == 2.0 ** (power + up)
-
-
-@pytest.mark.parametrize("value", [0.0, math.nan, math.inf, -math.inf])
-def test_what_has_no_size_has_the_unit_one(value: float) -> None:
-    assert in_python(scaling._power_of_two)(value) == 1.0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from types import SimpleNamespace
 
 import numpy as np
@@ -59,6 +60,14 @@ def test_rows_and_columns_are_balanced_by_the_fourth_root_of_what_they_differ_by
     assert unbalance(A.T, 0, [4.0, 8.0, 1.0], [2.0, 2.0, 1.0]) == 2.0**-3
 
 
+@pytest.mark.parametrize(("share", "counts"), [(0.9, False), (1.1, True)])
+def test_mutual_coefficients_are_judged_in_units_of_unit_diagonals(share: float, counts: bool) -> None:
+    """The root of their product, here 16 times as large as in units of 2^3 and 2^-7."""
+    A = np.array([[1.0, share * 1e-14 * 16.0 * 64.0], [share * 1e-14 * 16.0 / 64.0, 1.0]])
+    work = SimpleNamespace(row_scale=np.ones(2), column_scale=np.ones(2), trial=np.array([2.0**3, 2.0**-7]))
+    assert (float(in_python(scaling._unbalance)(A, 2, 0, work)) != 1.0) == counts
+
+
 @pytest.mark.parametrize("A", [np.diag([1.0, 2.0]), np.array([[1.0, 0.0], [3.0, 1.0]]), np.array([[1.0, 3.0], [0.0, 1.0]])])
 def test_what_is_coupled_one_way_or_not_at_all_is_balanced(A: np.ndarray) -> None:
     assert unbalance(A, 0, [1.0, 1.0], [1.0, 1.0]) == unbalance(A, 1, [1.0, 1.0], [1.0, 1.0]) == 1.0
@@ -105,3 +114,15 @@ def test_a_scaled_problem_is_the_same_in_its_units(seed: int) -> None:
     x = np.full(n, np.nan)
     in_python(scaling.unscale)(n, magnitude, work, x)
     assert (A @ x + b) * work.row_scale / magnitude == pytest.approx(work.matrix @ work.trial + work.load)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize("power", [-70, -3, 0, 1, 12])
+@pytest.mark.parametrize(("mantissa", "up"), [(1.0, 0), (1.01, 0), (1.499, 0), (1.501, 1), (1.99, 1)])
+def test_units_are_the_nearest_powers_of_two(mantissa: float, up: int, power: int, sign: float) -> None:
+    assert in_python(scaling._power_of_two)(sign * mantissa * 2.0**power) == 2.0 ** (power + up)
+
+
+@pytest.mark.parametrize("value", [0.0, math.nan, math.inf, -math.inf])
+def test_what_has_no_size_has_the_unit_one(value: float) -> None:
+    assert in_python(scaling._power_of_two)(value) == 1.0
