@@ -14,7 +14,7 @@ from sparse_contacts import Sparse
 from watchsim.dynamics import coulomb, solver_fallbacks
 from watchsim.dynamics.delassus import ContactWork, contact_work
 from watchsim.dynamics.lcp.outcome import LcpOutcome
-from watchsim.dynamics.problem_kinds import Rung
+from watchsim.dynamics.problem_kinds import Level, Rung
 
 M, BEARINGS = 2, 1
 ELEMENTS, SIZE = M + BEARINGS, M + 2 * (M + BEARINGS)
@@ -65,6 +65,16 @@ def test_rung_after_rung_is_tried_and_counted(works: str, rung: Rung) -> None:
 def test_where_lemke_solves_it_nothing_else_is_tried_and_without_friction_there_is_no_other_form() -> None:
     assert tried(LcpOutcome.SOLVED)[:2] == (Rung.LEMKE, [])
     assert tried(LcpOutcome.INEXACT, "detour", elements=0)[:2] == (Rung.DETOUR, ["detour"])
+
+
+def test_kinds_are_numbered_one_after_another() -> None:
+    """They are places in arrays, and numbers in what is kept of a failure."""
+    for kind, words in (
+        (Rung, "LEMKE COPOSITIVE DETOUR ENUMERATED INEXACT FAILED"),
+        (Level, "NONE ACCELERATION COMPRESSION EXPANSION"),
+        (LcpOutcome, "SOLVED RAY TOO_MANY_PIVOTS INEXACT"),
+    ):
+        assert [(one.name, one.value) for one in kind] == [(word, place) for place, word in enumerate(words.split())]
 
 
 @pytest.mark.parametrize("rough", [False, True])
