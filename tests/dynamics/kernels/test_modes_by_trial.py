@@ -99,6 +99,8 @@ def test_contacts_and_bearings_move_in_the_only_way_there_is(seed: int) -> None:
         inverse[j] *= grip != STICK
         h[j] -= SIGN[grip] * case.model.coordinates[j].coulomb
     assert work.h == pytest.approx(h) and work.inverse == pytest.approx(inverse)
+    for values in (work.b, work.size, work.loaded):
+        assert not np.isnan(values[: 2 * m + bearings]).any() and np.isnan(values[2 * m + bearings :]).all()
     speeding = np.zeros(n)
     in_python(acceleration.accelerate)(case.model, case.closed, m, work, speeding)
     assert speeding == pytest.approx(a, abs=1e-12)
@@ -113,6 +115,7 @@ def test_forces_in_decided_modes_solve_one_linear_system(seed: int, light: float
     for i, first in ((0, 0), (1, 4), (2, 0)):
         case.moves(i, first + rng.permutation(4), rng)
     modes = tuple(int(mode) for mode in rng.choice([STICK, FORWARD, BACKWARD], 3))
+    case.model.laws.friction[case.model.contacts[case.closed.ids[seed % 3]].group] = case.friction[seed % 3] = 5e-4
     _, force, _ = accelerations(case, [], modes, ())
     for values in (case.model.coordinates.mass, case.work.h):
         values[4:] *= light
