@@ -43,6 +43,7 @@ def test_bearings_have_rows_of_their_own_behind_those_of_contacts(seed: int) -> 
     in_python(delassus.fill_bearings)(case.closed, m, 2, work)
     both = np.vstack([case.W, np.eye(6)[dry]])
     assert work.G[: 2 * m + 2, : 2 * m + 2] == pytest.approx(both * work.inverse @ both.T)
+    assert np.isnan(work.G[2 * m + 2 :]).all() and np.isnan(work.G[:, 2 * m + 2 :]).all()
 
 
 @SEEDS

@@ -9,6 +9,7 @@ import pytest
 from plain_kernels import in_python
 
 from watchsim.dynamics import redundant_contacts
+from watchsim.dynamics.delassus import contact_work
 
 
 @pytest.mark.parametrize(("share", "kept"), [(0.9, 1), (1.1, 2)])
@@ -45,3 +46,11 @@ def test_laws_may_be_missed_by_a_billionth_of_the_largest_force(share: float) ->
         work.rhs, work.other_x, work.A, work.lcp, work.dual = np.zeros(2), np.zeros(2), np.zeros((2, 2)), None, None
         in_python(redundant_contacts._keep_laws, lemke_checked=lemke)(2, 2, 1, work)
     assert len(asked) == (0 if share < 1.0 else 4)
+
+
+def test_a_law_at_its_edge_is_not_broken_to_obey_another() -> None:
+    """x >= 0 and 0.8 y >= 0.6 x from (0, -1): what would obey the second alone breaks the first; the corner obeys both."""
+    work = contact_work(2, 2)
+    work.x[:2], work.B[:2, :2], work.free[:2, :2] = [0.0, -1.0], [[1.0, 0.0], [-0.6, 0.8]], np.eye(2)
+    in_python(redundant_contacts._keep_laws)(2, 2, 2, work)
+    assert work.x[:2] == pytest.approx([0.0, 0.0], abs=1e-14)

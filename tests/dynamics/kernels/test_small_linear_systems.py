@@ -8,7 +8,7 @@ from plain_kernels import in_python
 
 from watchsim.dynamics import small_systems
 
-ROOM = 7
+ROOM = 6
 SOLVE, NULL, INDEPENDENT = (
     in_python(getattr(small_systems, name)) for name in ("solve_small", "null_vectors", "keep_independent")
 )
