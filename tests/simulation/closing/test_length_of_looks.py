@@ -59,3 +59,12 @@ def test_a_finer_bound_is_asked_for_where_a_look_is_shorter_than_a_64th_of_what_
         search.found()
         assert search.looks[1] == pytest.approx(1.25 if asked and helps else START + room / speed)
         assert rooms[:1] == ([(room, END - START)] if asked and helps else [])
+
+
+def test_a_look_beside_a_primitive_is_no_shorter_than_a_gap_takes_to_pass_through_its_rounding() -> None:
+    """However little it lies beside: here by a millionth of what counts as touching."""
+    beside = iter([-OPTIONS.extent * (1.0 + 1e-6)])
+    search = Search(Polynomial([0.0]), (None, lambda t: next(beside, 1.0)))
+    search.next_stretch = lambda model, options, k, left, step, path: (left, 2.0, 0.0, 50.0)  # type: ignore[method-assign]
+    assert search.found() == (END, False)
+    assert search.looks[1] - START == pytest.approx(OPTIONS.gap_zero / 2.0, rel=0.01, abs=0.0)
