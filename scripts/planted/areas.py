@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 RECORDS = "tests/records"
+QUOTED = "tests/docs/test_quoted_constants.py"
 COMPILED = "kernels"
 PLAIN = "plain"
 AREAS = {  # name -> (files, tests)
@@ -41,10 +42,10 @@ AREAS = {  # name -> (files, tests)
     ),
     "plain": (
         ("dynamics/**/*.py", "candidates/*.py", "contact/*.py", "simulation/**/*.py", "tolerances.py"),
-        ("tests/dynamics", "tests/candidates", "tests/contact", "tests/simulation"),
+        ("tests/dynamics", "tests/candidates", "tests/contact", "tests/simulation", QUOTED),
     ),
     "kernels": (
         ("dynamics/**/*.py", "candidates/*.py", "contact/*.py", "simulation/**/*.py", "tolerances.py"),
-        ("tests/dynamics", "tests/candidates", "tests/contact", "tests/simulation"),
+        ("tests/dynamics", "tests/candidates", "tests/contact", "tests/simulation", QUOTED),
     ),
 }

@@ -1,0 +1,170 @@
+"""Are times in which a gap cannot close those of the worst motion that the bounds allow?"""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from plain_kernels import in_python
+
+from watchsim.model.records import ARC, FIXED, FREE, LINE, PIVOT, SLIDE
+from watchsim.simulation.first_closing import lasting_gap, safe_times, sunk_level
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_the_longer_of_the_straight_and_the_curved_way(seed: int) -> None:
+    """With centres that stay half as far apart as they are, over the time in which they do; roots by numpy."""
+    rng = np.random.default_rng(seed)
+    room, approach, closing, bend = 10.0 ** rng.uniform(-2.0, 1.0, 4) * [1.0, rng.choice([-1.0, 1.0]), 1.0, 1.0]
+    distance = math.inf if seed % 3 == 0 else float(10.0 ** rng.uniform(-2.0, 1.0))
+    limit, curve = 0.5 * distance / closing, bend + (0.0 if distance == math.inf else closing**2 / (0.5 * distance))
+    roots = np.roots([-0.5 * curve, -approach, room])
+    expected = max(room / closing, min(float(roots[roots > 0.0][0]), limit))
+    assert in_python(safe_times.safe_time)(room, approach, closing, bend, distance) == pytest.approx(expected)
+
+
+def test_without_bend_a_gap_that_does_not_fall_stays_open() -> None:
+    ask = in_python(safe_times.safe_time)
+    assert ask(0.3, -0.2, 2.0, 0.0, math.inf) == math.inf and ask(0.3, 0.0, 2.0, 0.0, math.inf) == math.inf
+    assert ask(0.3, 0.2, 2.0, 0.0, math.inf) == pytest.approx(1.5)
+    assert ask(0.3, -0.2, 2.0, 0.1, 0.0) == 0.15  # concentric: nothing is known of the curve
+
+
+@pytest.mark.parametrize("kind", [LINE, ARC])
+@pytest.mark.parametrize("seed", range(12))
+def test_outside_until_the_normal_or_the_point_could_have_come_in(seed: int, kind: int) -> None:
+    rng = np.random.default_rng(seed)
+    a = SimpleNamespace(radius=rng.uniform(0.1, 0.5), length=rng.uniform(0.1, 0.5))
+    b = SimpleNamespace(radius=rng.uniform(0.1, 0.5), kind=kind)
+    model = SimpleNamespace(contacts=[SimpleNamespace(a=0, b=1)], primitives=[a, b])
+    inside_a, inside_b = rng.uniform(-1e-3, 5e-4, 2)
+    closing, swing, distance = rng.uniform(0.2, 2.0, 3)
+    turn = swing + closing / (0.5 * distance)
+    times = [0.0]
+    if inside_a < 0.0:
+        times.append(-inside_a / (turn * max(a.radius, a.length)))
+    if inside_b < 0.0:
+        times.append(-inside_b / closing if kind == LINE else -inside_b / (turn * b.radius))
+    ask = in_python(safe_times.time_outside)
+    assert ask(model, 0, inside_a, inside_b, (closing, swing), distance) == pytest.approx(max(times))
+    assert ask(model, 0, -9.0, inside_b, (closing, swing), distance) == pytest.approx(0.5 * distance / closing)
+
+
+@pytest.mark.parametrize(
+    ("motion", "time"),
+    [
+        ((0.2, 0.0, 0.0), 0.1),
+        ((0.0, 0.5, 0.0), 0.08**0.5),
+        ((0.0, 0.0, 0.7), (0.12 / 0.7) ** (1 / 3)),
+        ((0.01, 0.02, 0.03), 0.9),
+    ],
+)
+def test_a_third_of_the_room_for_speed_acceleration_and_jerk_each(motion: tuple[float, float, float], time: float) -> None:
+    """0.06 m: 0.02 = v t = a t² / 2 = j t³ / 6. Just below that much of each it is all the time there is."""
+    ask, room = in_python(lasting_gap._time_for), 0.06
+    assert ask(room, *motion, 0.9) == pytest.approx(time)
+    for place, limit in enumerate((0.02 / 0.9, 0.04 / 0.81, 0.12 / 0.729)):
+        for share in (0.999, 1.001):
+            one = [0.0, 0.0, 0.0]
+            one[place] = share * limit
+            found = ask(room, *one, 0.9)
+            assert found == 0.9 if share < 1.0 else found == pytest.approx(0.9 * share ** (-1.0 / (place + 1)))
+
+
+def asked(kernel: str, *, side: float = 1.0, carried: tuple[int, int] = (-1, -1), rate: float = -0.3) -> object:
+    """What is asked of `_time_for`, or 0, about points whose velocity is (0.3, -0.4) and acceleration (-1.2, 0.5)."""
+    primitives = [SimpleNamespace(body=0, side=-1.0), SimpleNamespace(body=1, side=side)]
+    bodies = [SimpleNamespace(carrier=one) for one in carried]
+    model = SimpleNamespace(contacts=[SimpleNamespace(a=0, b=1)], primitives=primitives, bodies=bodies)
+    instead = {
+        "_points_apart": lambda model, state, k, left, tau, step, path: (0.3, -0.4, -1.2, 0.5, 7.0 * left + tau),
+        "_fastest_turn": lambda model, b, left, step, path: 2.0 * b + left,
+        "normal_gap": lambda model, k, pose: SimpleNamespace(nx=0.8, ny=0.6, rate=rate),
+        "_time_for": lambda *given: given,
+    }
+    found: object = in_python(getattr(lasting_gap, kernel), **instead)(
+        model, None, 0, 0.06, 0.9, 0.2, None, SimpleNamespace(pose=None)
+    )
+    return found
+
+
+def test_a_place_moves_by_the_motion_of_its_points() -> None:
+    assert asked("time_still") == pytest.approx((0.06, 0.5, 1.3, 6.5, 0.9))
+
+
+@pytest.mark.parametrize(("rate", "falls"), [(-0.3, 0.3), (0.3, 0.0)])
+def test_a_gap_falls_by_what_goes_against_a_normal_that_turns(rate: float, falls: float) -> None:
+    """(e·x)'' has e·a, twice e'·v; its change e·j, three times e'·a, and what the turning makes of these."""
+    turn, push = 2.9, 0.8 * 1.2 - 0.6 * 0.5
+    expected = (0.06, falls, push + 2.0 * turn * 0.5, 6.5 * (1.0 + turn * 0.9) + 3.0 * turn * 1.3, 0.9)
+    assert asked("time_apart", rate=rate) == pytest.approx(expected)
+
+
+def test_nothing_is_said_of_carried_bodies_and_of_the_gap_of_hollow_arcs() -> None:
+    for carried in ((0, -1), (-1, 0), (2, 3)):
+        assert asked("time_still", carried=carried) == asked("time_apart", carried=carried) == 0.0
+    assert asked("time_apart", side=-1.0) == 0.0 != asked("time_still", side=-1.0)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_joint_is_that_at_the_nearer_end_of_the_line(seed: int) -> None:
+    """Wherever the two bodies stand."""
+    rng = np.random.default_rng(seed)
+    poses = []
+    for _ in range(2):
+        turn = np.exp(1j * rng.uniform(-3.0, 3.0))
+        poses.append(SimpleNamespace(x=rng.normal(), y=rng.normal(), c=turn.real, s=turn.imag))
+    way = np.exp(1j * rng.uniform(-3.0, 3.0))
+    line = SimpleNamespace(body=1, kind=LINE, x=rng.normal(), y=rng.normal(), tx=way.real, ty=way.imag, length=0.5)
+    line.before, line.after = (-1, 4) if seed % 2 else (4, -1)
+
+    def world(pose: SimpleNamespace, at: complex) -> complex:
+        return complex(pose.x, pose.y) + at * complex(pose.c, pose.s)
+
+    point = SimpleNamespace(body=0, x=rng.normal(), y=rng.normal())
+    centre, start = world(poses[0], complex(point.x, point.y)), world(poses[1], complex(line.x, line.y))
+    end = world(poses[1], complex(line.x, line.y) + 0.5 * way)
+    nearer = line.after if abs(centre - end) < abs(centre - start) else line.before
+    model = SimpleNamespace(contacts=[SimpleNamespace(a=0, b=1)], primitives=[point, line])
+    assert bool(in_python(sunk_level._by_concave_joint)(model, 0, poses)) == (nearer < 0)
+
+
+@pytest.mark.parametrize(("motion", "turn"), [(FIXED, 9), (SLIDE, 9), (PIVOT, 2), (FREE, 4)])
+def test_a_material_point_has_the_jerk_of_its_body_and_of_its_turning(motion: int, turn: int) -> None:
+    """Translation by the sum of both axes; turning by twist', three times turn·twist and turn³ at the arm."""
+    body = SimpleNamespace(motion=motion, first=2, ratio=1.0 if motion == FREE else -0.5, axis_x=0.6, axis_y=-0.8)
+    jerks, bounds = [9.0, 9.0, 0.3, 0.7, 1.1, 9.0], np.array([9.0, 9.0, 0.2, 9.0, 0.4, 9.0])
+    speeds = [9.0, 9.0, 0.5, -0.7, 1.3, 9.0]
+    instead = {
+        "acceleration_on_path": lambda model, state, step, i, tau, path: speeds[i] * tau,
+        "jerk_bound": lambda model, state, step, i: jerks[i],
+    }
+    pose = SimpleNamespace(vx=0.2, vy=-0.3, w=-0.6)
+    ask = in_python(lasting_gap._material_point, **instead)
+    found = ask(SimpleNamespace(bodies=[None, body]), None, SimpleNamespace(bound=bounds), 1, 0.3, -0.4, 1.5, 2.0,
+                SimpleNamespace(pose=[None, pose]))  # fmt: skip
+    if motion == FIXED:
+        assert found == (0.0,) * 5
+        return
+    if motion == SLIDE:
+        assert found == pytest.approx((0.2, -0.3, -0.5 * 1.0 * 0.6, 0.5 * 1.0 * 0.8, 0.5 * 0.3))
+        return
+    ratio, own = abs(body.ratio), 0.3 + 0.7 if motion == FREE else 0.0
+    fastest = 0.6 + ratio * bounds[turn] * 1.5
+    jerk = own + 0.5 * (ratio * jerks[turn] + 3.0 * ratio * bounds[turn] * fastest + fastest**3)
+    twist, point = body.ratio * speeds[turn] * 2.0, complex(0.3, -0.4)
+    a = 1j * twist * point - 0.36 * point + (complex(speeds[2], speeds[3]) * 2.0 if motion == FREE else 0.0)
+    v = complex(0.2, -0.3) - 0.6j * point
+    assert found == pytest.approx((v.real, v.imag, a.real, a.imag, jerk))
+    fast = in_python(lasting_gap._fastest_turn)
+    path = SimpleNamespace(pose=[None, pose])
+    assert fast(SimpleNamespace(bodies=[None, body]), 1, 1.5, SimpleNamespace(bound=bounds), path) == pytest.approx(fastest)
+
+
+@pytest.mark.parametrize("motion", [FIXED, SLIDE])
+def test_what_does_not_turn_has_no_turning_rate(motion: int) -> None:
+    body = SimpleNamespace(motion=motion, first=2, ratio=1.0)
+    path, step = SimpleNamespace(pose=[SimpleNamespace(w=0.5)]), SimpleNamespace(bound=np.ones(5))
+    assert in_python(lasting_gap._fastest_turn)(SimpleNamespace(bodies=[body]), 0, 1.5, step, path) == 0.0
