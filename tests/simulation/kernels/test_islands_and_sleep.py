@@ -20,16 +20,16 @@ def body(motion: int, first: int, carrier: int = -1) -> SimpleNamespace:
     return named(motion=motion, first=first, carrier=carrier)
 
 
-# Coordinates: 0 pivot, 1 to 3 free, 4 slide, 5 pivot on body 0, 6 to 8 free, 9 pivot, 10 and 11 pivots.
+# Coordinates: 0 pivot on the body of 5, 1 to 3 free, 4 slide, 6 to 8 free, 9, 10 and 11 pivots.
 BODIES = [
-    body(PIVOT, 0),
+    body(PIVOT, 5),
     body(FREE, 1),
     body(SLIDE, 4),
-    body(PIVOT, 5, 0),
+    body(PIVOT, 0, 0),
     body(FIXED, -1),
     body(FREE, 6),
     body(PIVOT, 9),
-    body(FIXED, -1, 6),
+    body(FIXED, -1, 0),
     body(PIVOT, 10),
     body(PIVOT, 11),
 ]
@@ -55,7 +55,7 @@ def test_contacts_carriers_free_bodies_joints_and_springs_make_islands(seed: int
     ends = rng.permuted(np.tile(np.arange(len(BODIES)), (6, 1)), axis=1)[:, :2].tolist()
     joints = [named(coordinate=int(i), on=int(j)) for i, j in rng.choice(N, (seed % 2, 2), replace=False)]
     lines = [named(a=int(a), b=int(b)) for a, b in rng.choice(len(BODIES), (seed % 3, 2), replace=False)]
-    lines += [named(a=2, b=-1), named(a=4, b=8), named(a=9, b=4)]
+    lines += [named(a=2, b=-1), named(a=4, b=8), named(a=9, b=4), named(a=3, b=8)]
     model = named(
         bodies=BODIES,
         joints=joints,
@@ -75,6 +75,12 @@ def test_contacts_carriers_free_bodies_joints_and_springs_make_islands(seed: int
         movers = [moved_by(b) for b in ends[k] if moved_by(b) >= 0]
         if k in ids and movers:
             assert in_python(contact_islands.island_of)(model, label, k) == wanted[movers[0]]
+
+
+def test_a_contact_belongs_to_the_island_of_whatever_of_it_moves() -> None:
+    model = named(bodies=BODIES, contacts=[named(a=0, b=1), named(a=1, b=0), named(a=0, b=2)], primitives=[named(body=b) for b in (3, 4, 2)])
+    label = [40 + i for i in range(N)]
+    assert [in_python(contact_islands.island_of)(model, label, k) for k in range(3)] == [40, 40, 40]
 
 
 def test_contacts_of_one_island_stand_side_by_side_in_the_order_found() -> None:
