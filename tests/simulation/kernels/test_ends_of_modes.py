@@ -139,7 +139,7 @@ def test_a_root_is_found_as_closely_as_time_is_known() -> None:
 
 
 def test_what_is_still_positive_or_zero_at_the_end() -> None:
-    assert root(lambda t: 1.0, 0.1, 0.6) == (0.6, 0)
+    assert root(lambda t: 1.0, 0.1, 0.6) == root(lambda t: 1e-9, 0.1, 0.6) == (0.6, 0)
     assert root(lambda t: 0.6 - t, 0.1, 0.6)[0] == pytest.approx(0.6)
 
 
