@@ -66,6 +66,7 @@ def test_rebounds_slower_than_zero_are_seen_where_they_are_more_than_rounding() 
     assert rounded([0.0, 3.1e-9], [0.5, 0.5], [3.0, 5.0]) == fine
     assert rounded([0.0, 1e-8], [0.5, 0.5], [3.0, 5.0]) == fine
     assert rounded([0.0, 1.1e-8], [0.5, 0.5], [3.0, 5.0]) == [1e-8, 1e-8]  # seen without that
+    assert rounded([5e-9, 0.0], [1e-4, 0.5], [1e-4, 0.0])[1] == pytest.approx(2e-9)
     assert rounded([5e-9, 0.0], [0.0, 0.5], [3.0, 5.0]) == [1e-8, 1e-8]
     assert rounded([5e-9, 0.0], [0.5, 0.5], [0.0, 5.0]) == [1e-8, 1e-8]
 
