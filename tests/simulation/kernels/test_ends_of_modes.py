@@ -25,7 +25,7 @@ OPTIONS = named(speed_zero=1e-2, size=4.0, extent=1e-4)
 Monitor = Callable[[float], float]
 
 
-def first(monitors: dict[int, Monitor], smallest: float = -1.0, slack: float = 0.0) -> tuple[float, int, int]:
+def first(monitors: dict[int, Monitor], smallest: float = -1.0, slack: float = 0.0, contacts: int = 2) -> tuple[float, int, int]:
     """(time, code, evaluations) of the first leave in a step; what is not named stays at 1."""
     every = [monitors.get(code, lambda t: 1.0) for code in range(CODES)]
     looks = [0]
@@ -39,7 +39,8 @@ def first(monitors: dict[int, Monitor], smallest: float = -1.0, slack: float = 0
         monitors=np.full(CODES, 77.0), before=np.array([monitor(0.0) for monitor in every]), fired=np.zeros(CODES, int)
     )
     scratch = named(step=named(span=named(length=LENGTH, start=0.0)), smooth=smooth)
-    model, state = named(coordinates=[None] * COORDINATES), named(now=named(awake_contacts=CONTACTS))
+    model = named(coordinates=[None] * (CODES - MONITORS * contacts))
+    state = named(now=named(awake_contacts=contacts))
     kernel = in_python(contact_mode_end.first_leave, _evaluate=evaluate, _slack=lambda *_: slack)
     time, code = kernel(model, state, OPTIONS, smallest, scratch)
     return float(time), int(code), looks[0]
@@ -58,6 +59,9 @@ def test_what_is_not_positive_at_the_start_ends_the_mode_at_once(value: float) -
 
 def test_what_dips_between_samples_and_is_back_is_not_seen() -> None:
     assert first({2: lambda t: 1e-6 + (t - 0.15) ** 2})[:2] == (math.inf, NONE_FIRED)
+    assert first({2: lambda t: -1e-6 + (t - 0.15) ** 2})[:2] == (math.inf, NONE_FIRED)
+    assert first({2: lambda t: 1e-6 + (t - 0.2) ** 2})[:2] == (math.inf, NONE_FIRED)
+    assert first({2: lambda t: -1e-6 + (t - 0.2) ** 2})[:2] == (pytest.approx(0.199), 2)
     assert first({2: lambda t: 1.0 - t})[2] == 8  # samples
 
 
@@ -84,16 +88,28 @@ def test_of_a_slip_the_reversal_is_where_it_vanishes() -> None:
     assert first({1: lambda t: 0.35 - t}, slack=0.06)[0] == pytest.approx(0.35)  # at the last look it was below that already
 
 
-def leaving(pull: float, out: float) -> dict[int, Monitor]:
-    """Contact 0 leaves its primitive at `out`; contact 1 pulls before that, or would behind it."""
-    return {EXTENT: lambda t: 3.0 * (out - t), MONITORS + NORMAL: lambda t: pull - t if t < out else -1.0}
+def dip(t: float) -> float:
+    """Below zero from 0.22 to 0.27: no sample sees it."""
+    return (t - 0.22) * (t - 0.27)
 
 
 def test_monitors_are_read_again_just_before_a_contact_leaves() -> None:
-    """What forces do beyond the end of a primitive means nothing."""
-    assert first(leaving(0.6, 0.25))[:2] == (pytest.approx(0.25), EXTENT)
-    assert first(leaving(0.23, 0.25))[:2] == (pytest.approx(0.23), MONITORS + NORMAL)
-    assert first({EXTENT: lambda t: 0.25 - t})[:2] == (pytest.approx(0.25), EXTENT)
+    """What forces do beyond the end of a primitive means nothing; two contacts may change places there."""
+    out = {EXTENT: lambda t: 3.0 * (0.25 - t)}
+    assert first(out)[:2] == (pytest.approx(0.25), EXTENT)
+    assert first({**out, MONITORS + NORMAL: dip})[:2] == (pytest.approx(0.22), MONITORS + NORMAL)
+    assert first({**out, NORMAL: dip}, contacts=1)[:2] == (pytest.approx(0.25), EXTENT)
+    assert first({MONITORS + EXTENT: out[EXTENT], NORMAL: dip})[:2] == (pytest.approx(0.22), NORMAL)
+
+
+@pytest.mark.parametrize("code", [NORMAL, TANGENTIAL, PARADOX, 2 * MONITORS + EXTENT])
+def test_they_are_not_where_something_else_ends_a_mode(code: int) -> None:
+    assert first({code: lambda t: 3.0 * (0.25 - t), MONITORS + NORMAL: dip})[:2] == (pytest.approx(0.25), code)
+
+
+def test_what_ends_at_the_very_sample_is_told_by_its_own_code() -> None:
+    assert first({1: lambda t: 5e-4, 5: lambda t: 0.4 - t})[:2] == (0.4, 5)
+    assert first({EXTENT: lambda t: 5e-4, 5: lambda t: 0.35 - t, 7: lambda t: (t - 0.31) * (t - 0.36)})[0] == pytest.approx(0.35)
 
 
 @pytest.mark.parametrize(("margin", "share"), [(0.05, 8.0 * 1e-4 / 0.05), (8e-4, 0.5), (3e-4, 0.5)])
@@ -177,7 +193,7 @@ def test_a_motion_is_evaluated_at_places_of_the_extension() -> None:
 def turn(**changed: object) -> float:
     """Of a flight of three coordinates, the second without dry friction."""
     given = {"awake": [1, 1, 1], "grip": [1, 0, -1], "u": [2.0, -3.0, -4.0], "times": [0.7, 0.1, 0.5], **changed}
-    coordinates = [named(coulomb=0.3, number=0), named(coulomb=0.0, number=1), named(coulomb=0.2, number=2)]
+    coordinates = [named(coulomb=0.3, number=0), named(coulomb=0.0, number=1), named(coulomb=5e-4, number=2)]
     state = named(awake=given["awake"], grip=given["grip"], u=given["u"], q=[5.0, 6.0, 7.0])
 
     def turning_time(coordinate: SimpleNamespace, grip: int, q: float, u: float) -> float:

@@ -189,7 +189,7 @@ def test_what_presses_at_the_end_of_a_chatter_gets_its_impulse_less_what_forces_
 
 
 @pytest.mark.parametrize(("tangential", "slip", "mode"), [
-    (1.0 - 1.1e-9, 1.0, STICK), (1.0 - 0.9e-9, -1.0, BACKWARD), (-1.0 + 0.9e-9, 1.0, FORWARD), (-1.0 + 1.1e-9, 1.0, STICK),
+    (1.0 - 1.1e-9, 1.0, STICK), (1.0 - 0.9e-9, 1.0, BACKWARD), (-1.0 + 0.9e-9, -1.0, FORWARD), (-1.0 + 1.1e-9, 1.0, STICK),
 ])  # fmt: skip
 def test_what_sticks_is_within_half_of_its_normal_impulse(tangential: float, slip: float, mode: int) -> None:
     plastic = [2e-11, 1e-11 * tangential, 0.0, 0.0, 0.0, 0.0]
