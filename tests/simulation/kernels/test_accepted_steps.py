@@ -32,7 +32,8 @@ def accepted(end: float, *, driven: tuple[int, int] = (0, 0), turns: bool = Fals
     coordinates = [named(mass=m, driven=0, linear=0, number=i) for i, m in enumerate(MASS)]
     coordinates[3].driven, coordinates[3].linear = driven
     state = named(
-        q=np.full(4, 77.0), u=np.full(4, 77.0), a=np.full(4, 77.0), active=[0, 1, 2, 9], upto=[2, 2, 3], mode=[STICK, FORWARD, OPEN],
+        q=np.full(4, 77.0), u=np.full(4, 77.0), a=np.full(4, 77.0),
+        active=[0, 1, 2, 9], upto=[2, 2, 3], mode=[STICK, FORWARD, OPEN],
         now=named(awake_contacts=3), worst=named(penetration=1e-10, kinetic_energy=3.0),
         sums=named(drive=0.5, damping=0.25, friction=0.125),
     )  # fmt: skip
@@ -102,9 +103,7 @@ def test_a_prescribed_motion_in_closed_form_is_exact(driven: tuple[int, int], ex
 def finished(touched: int, explained: bool = True) -> tuple[tuple[float, bool], SimpleNamespace, list[Any]]:
     """What `accept_coupled` answers, the state, and what it asked."""
     asked: list[Any] = []
-    state = named(
-        u="u", a=np.zeros(2), sums=named(drive=0.5, damping=0.25, friction=0.125), worst=named(kinetic_energy=3.0)
-    )
+    state = named(u="u", a=np.zeros(2), sums=named(drive=0.5, damping=0.25, friction=0.125), worst=named(kinetic_energy=3.0))
     smooth = named(y=np.arange(7.0), dy=np.arange(10.0, 17.0))
     instead = {
         "_follow_step": lambda model, state, options, end, scratch: asked.append(end) or 2.0,

@@ -67,7 +67,7 @@ def test_an_impact_is_solved_placed_and_written_down() -> None:
 
 def test_rebounds_are_ended_one_after_the_other_and_the_latest_end_is_written_down() -> None:
     """At most as many as there are contacts, and once without."""
-    found, calls, _ = collided(ends=[(True, 2.75), (True, 2.625), (False, 9.0)])
+    _, calls, _ = collided(ends=[(True, 2.75), (True, 2.625), (False, 9.0)])
     assert calls == ["laws", "endless", *ONCE, *ONCE, *ONCE, ("write", 0.0, True, 2.75), "may"]
     assert collided(ends=[(True, 2.0)])[1].count(("solve", 0.0)) == 3
     assert collided(m=3, ends=[(True, 2.0)])[1].count(("solve", 0.0)) == 4
@@ -81,7 +81,14 @@ def test_where_nothing_solves_it_velocities_stay() -> None:
 
 
 def test_a_jam_has_no_rebounds_without_end_and_no_chatter() -> None:
-    assert collided(jam=1e-8, may=True)[1] == ["laws", ("solve", 1e-8), "place", ("refresh", 2), "pace", ("write", 1e-8, False, TIME)]
+    assert collided(jam=1e-8, may=True)[1] == [
+        "laws",
+        ("solve", 1e-8),
+        "place",
+        ("refresh", 2),
+        "pace",
+        ("write", 1e-8, False, TIME),
+    ]
 
 
 @pytest.mark.parametrize(("chatter", "pressed", "ended"), [

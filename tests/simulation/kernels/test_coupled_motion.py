@@ -103,7 +103,7 @@ def test_what_friction_in_a_bearing_must_hold_is_all_that_acts_there() -> None:
     held = both(NORMAL, TANGENTIAL)[:, 2] * FORCE
     drag = np.array([-0.3, 0.0, 0.0, 0.4])
     assert smooth.load == pytest.approx(H + drag + [0.0, 0.0, held.sum(), 0.0])
-    assert smooth.terms == pytest.approx(np.abs(H + drag) + [0.0, 0.0, np.abs(held).sum(), 0.0])
+    assert smooth.terms == pytest.approx(np.abs(H + drag) + np.array([0.0, 0.0, np.abs(held).sum(), 0.0]))
 
 
 def test_sums_are_work_put_in_and_what_damping_bearings_and_slips_take() -> None:

@@ -35,12 +35,16 @@ def room(step: float, **changed: object) -> tuple[SimpleNamespace, ...]:
     state = named(clock=named(time=TIME, step=step), q=START[:N].copy(), u=START[N:].copy(), counts=counts)
     options = named(**{"tolerance": 1e-3, "max_step": 4.0, **changed})
     blank = {name: np.full(N, 77.0) for name in ("q", "u", "bound")} | {name: np.full(WIDTH, 77.0) for name in ("y0", "y1")}
-    taken = named(span=named(kind=-1, start=0.0, length=0.0), stages=np.full((16, WIDTH), 77.0), dense=np.full((7, WIDTH), 77.0), **blank)
+    taken = named(
+        span=named(kind=-1, start=0.0, length=0.0), stages=np.full((16, WIDTH), 77.0), dense=np.full((7, WIDTH), 77.0), **blank
+    )
     smooth = named(y=np.full(WIDTH, 77.0), dy=np.full(WIDTH, 77.0), monitors=np.zeros(3), before=np.zeros(3))
     return model, state, options, named(step=taken, smooth=smooth, work="work")
 
 
-def stepped(h: float, monitors: Sequence[float] = (1.0,), **changed: object) -> tuple[tuple[bool, float], SimpleNamespace, SimpleNamespace]:
+def stepped(
+    h: float, monitors: Sequence[float] = (1.0,), **changed: object
+) -> tuple[tuple[bool, float], SimpleNamespace, SimpleNamespace]:
     """((made?, smallest monitor), state, scratch) of one step of at most h seconds along `rates`; monitors in turn."""
     model, state, options, scratch = room(h)
     calls: list[int] = []

@@ -25,7 +25,7 @@ def directions(seed: int, m: int = 3, n: int = 7) -> tuple[np.ndarray, np.ndarra
 
 
 def least(ways: np.ndarray, wanted: np.ndarray, inverse: np.ndarray) -> np.ndarray:
-    """Of all changes x with ways x = wanted the one with the smallest x M x: by the pseudo-inverse of what roots of masses scale."""
+    """Of all changes x with ways x = wanted the one with the smallest x M x: by the pseudo-inverse."""
     root = np.sqrt(inverse)
     return np.asarray(root * (np.linalg.pinv(ways * root) @ wanted))
 

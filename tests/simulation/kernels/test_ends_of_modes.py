@@ -25,7 +25,9 @@ OPTIONS = named(speed_zero=1e-2, size=4.0, extent=1e-4)
 Monitor = Callable[[float], float]
 
 
-def first(monitors: dict[int, Monitor], smallest: float = -1.0, slack: float = 0.0, contacts: int = 2) -> tuple[float, int, int]:
+def first(
+    monitors: dict[int, Monitor], smallest: float = -1.0, slack: float = 0.0, contacts: int = 2
+) -> tuple[float, int, int]:
     """(time, code, evaluations) of the first leave in a step; what is not named stays at 1."""
     every = [monitors.get(code, lambda t: 1.0) for code in range(CODES)]
     looks = [0]
@@ -109,7 +111,9 @@ def test_they_are_not_where_something_else_ends_a_mode(code: int) -> None:
 
 def test_what_ends_at_the_very_sample_is_told_by_its_own_code() -> None:
     assert first({1: lambda t: 5e-4, 5: lambda t: 0.4 - t})[:2] == (0.4, 5)
-    assert first({EXTENT: lambda t: 5e-4, 5: lambda t: 0.35 - t, 7: lambda t: (t - 0.31) * (t - 0.36)})[0] == pytest.approx(0.35)
+    assert first({EXTENT: lambda t: 5e-4, 5: lambda t: 0.35 - t, 7: lambda t: (t - 0.31) * (t - 0.36)})[0] == pytest.approx(
+        0.35
+    )
 
 
 @pytest.mark.parametrize(("margin", "share"), [(0.05, 8.0 * 1e-4 / 0.05), (8e-4, 0.5), (3e-4, 0.5)])
@@ -173,7 +177,10 @@ def test_what_is_still_positive_or_zero_at_the_end() -> None:
 )
 def test_by_how_much_slips_and_bearings_may_go_on(code: int, expected: float) -> None:
     state = named(
-        now=named(awake_contacts=CONTACTS, lenience=3.0), active=[4, 6], mode={4: FORWARD, 6: STICK}, grip=[FORWARD, STICK, OPEN]
+        now=named(awake_contacts=CONTACTS, lenience=3.0),
+        active=[4, 6],
+        mode={4: FORWARD, 6: STICK},
+        grip=[FORWARD, STICK, OPEN],
     )
     model = named(coordinates=[named(scale=0.7), named(scale=9.0), named(scale=0.2)])
     assert in_python(contact_mode_end._slack)(model, state, OPTIONS, code) == pytest.approx(expected)

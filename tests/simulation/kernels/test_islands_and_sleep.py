@@ -78,7 +78,11 @@ def test_contacts_carriers_free_bodies_joints_and_springs_make_islands(seed: int
 
 
 def test_a_contact_belongs_to_the_island_of_whatever_of_it_moves() -> None:
-    model = named(bodies=BODIES, contacts=[named(a=0, b=1), named(a=1, b=0), named(a=0, b=2)], primitives=[named(body=b) for b in (3, 4, 2)])
+    model = named(
+        bodies=BODIES,
+        contacts=[named(a=0, b=1), named(a=1, b=0), named(a=0, b=2)],
+        primitives=[named(body=b) for b in (3, 4, 2)],
+    )
     label = [40 + i for i in range(N)]
     assert [in_python(contact_islands.island_of)(model, label, k) for k in range(3)] == [40, 40, 40]
 
@@ -115,11 +119,13 @@ def awake(**changed: object) -> tuple[list[int], list[float], list[float]]:
         clock=named(time=0.5),
     )
     event = named(label=LABEL, touched=np.full(6, 9), terms=[0.1, 0.2, 0.3, 0.4, 0.5, 0.6])
-    model = named(coordinates=[named(driven=one) for one in given["driven"]], tables=given["tables"], knots=np.array([[0.4], [0.6]]))
+    model = named(
+        coordinates=[named(driven=one) for one in given["driven"]], tables=given["tables"], knots=np.array([[0.4], [0.6]])
+    )
     shared = []
     instead = {
         "_share_terms": lambda model, terms: shared.append(terms),
-        "island_of": lambda model, label, k: (given["in_force"][k] if label is LABEL else None),
+        "island_of": lambda model, label, k: given["in_force"][k] if label is LABEL else None,
         "_is_still": lambda model, state, options, i, terms: given["still"][i] and terms == event.terms[i],
     }
     in_python(sleeping.find_sleepers, **instead)(model, state, None, event, len(given["in_force"]))

@@ -58,7 +58,9 @@ def test_modes_decided_take_the_place_of_the_old_ones() -> None:
     """What is not in I_N is open; each change is written down."""
     modes, changes = {4: STICK, 6: FORWARD, 2: STICK, 9: OPEN}, []
     state = named(mode=modes)
-    event = named(closed=named(ids=[4, 6, 2, 9, 77]), rest=named(ids=[9, 2, 4, 6]), decided={9: FORWARD, 2: STICK, 6: 99, 4: 99})
+    event = named(
+        closed=named(ids=[4, 6, 2, 9, 77]), rest=named(ids=[9, 2, 4, 6]), decided={9: FORWARD, 2: STICK, 6: 99, 4: 99}
+    )
     kernel = in_python(after_event._take, keep_change=lambda state, record, k, old: changes.append((k, old, state.mode[k])))
     kernel(state, 4, 2, event, None)
     assert changes == [(4, STICK, OPEN), (6, FORWARD, OPEN), (2, STICK, STICK), (9, OPEN, FORWARD)]
@@ -107,9 +109,7 @@ def test_what_slips_against_its_mode_is_stopped_as_gaps_and_rates_are_closed(mod
 def landed(touched: int = 8, margins=(0.0, -1.6), room: int = 3) -> list[object]:
     """What is done where contact 8 has just closed beside 3 and 9 in force, which are that many extents within."""
     calls: list[object] = []
-    state = named(
-        active=[9, 3, 77], now=named(awake_contacts=2, touched=touched), q="q", u="u", grip="grip"
-    )
+    state = named(active=[9, 3, 77], now=named(awake_contacts=2, touched=touched), q="q", u="u", grip="grip")
     event = named(closed=named(ids=[0] * room), listed=[77] * 4, pose="pose")
     instead = {
         "extent_margin": lambda model, k, pose: dict(zip((9, 3), margins, strict=True))[k] * EXTENT,
@@ -132,7 +132,7 @@ def test_where_something_lands_while_another_seems_to_leave_drift_of_both_is_tak
 
 
 def settled(**changed: object) -> tuple[int, list[object], SimpleNamespace]:
-    """(code, calls, now) of an instant with contacts 9, 4, 7 in islands 0, 0 and 2 of coordinates 0 to 3 (labels 0, 0, 2, 3)."""
+    """(code, calls, now) of an instant with contacts 9, 4, 7 in islands 0, 0, 2 of four coordinates."""
     given: dict[str, Any] = {"handed": True, "gathered": Stop.RUNNING, "stops": {}, **changed}
     calls: list[object] = []
     now = named(event_waits=1, touched=4)
@@ -272,7 +272,18 @@ def test_where_no_forces_exist_what_slides_is_jammed_and_stopped_by_impulses() -
     """Not before rounding of an impact has been taken away; what does not slide is a failure."""
     found, calls, failures = resolved(decide=[(2, False), (2, True)])
     assert found == (Stop.RUNNING, 2) and failures == 0
-    assert calls == ["approaching", *ASKED, "slides", "hold gaps", "refresh", ("collide", 1e-8), "approaching", *ASKED, "contradicts", "held"]
+    assert calls == [
+        "approaching",
+        *ASKED,
+        "slides",
+        "hold gaps",
+        "refresh",
+        ("collide", 1e-8),
+        "approaching",
+        *ASKED,
+        "contradicts",
+        "held",
+    ]
     assert resolved(decide=[(2, False)], slides=[False])[::2] == ((Stop.LCP_FAILED, 0), 1)
     found, calls, _ = resolved(approaching=[True, False], decide=[(2, False), (2, False), (2, True)])
     assert calls[:7] == ["approaching", ("collide", 0.0), "approaching", *ASKED, "stop_rounding"]
