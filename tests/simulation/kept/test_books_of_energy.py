@@ -48,7 +48,8 @@ def test_the_residual_is_seen_against_the_largest_of_all(
 def test_a_swing_under_a_constant_force_turns_over_its_energy() -> None:
     """From rest at rest of the spring it goes to 2 f/k and back: 2 f²/k; without a spring or driven it counts nothing."""
     swinging = model(
-        (0.6, 4.0, 1.0, 1.0, 1.0, 0.0), (0.3, 0.2, 1.0, 1.0, 1.0, 0.0), (90.0, 0.0, 1.0, 1.0, 1.0, 0.0), (90.0, 2.0, 1.0, 1.0, 1.0, 1.0)
+        (0.6, 4.0, 1.0, 1.0, 1.0, 0.0), (0.3, 0.2, 1.0, 1.0, 1.0, 0.0),
+        (90.0, 0.0, 1.0, 1.0, 1.0, 0.0), (90.0, 2.0, 1.0, 1.0, 1.0, 1.0),
     )  # fmt: skip
     made = ledger(1e-3, {"friction": 0.0}, (0.0, 0.0), swinging)
     assert made["residual_relative"] == pytest.approx(1e-3 / (2.0 * 0.09 / 0.2))

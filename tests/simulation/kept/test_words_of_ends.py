@@ -43,7 +43,9 @@ def test_kinds_of_events_have_the_numbers_of_saved_runs() -> None:
 
 
 def test_what_is_missing_in_the_ledger_is_told_with_what_came_in() -> None:
-    assert unaccounted({"residual_J": 1.2345e-9, "in_J": 0.98765}).startswith("1.23e-09 J are unaccounted for, of 0.988 J put in. ")
+    assert unaccounted({"residual_J": 1.2345e-9, "in_J": 0.98765}).startswith(
+        "1.23e-09 J are unaccounted for, of 0.988 J put in. "
+    )
 
 
 def test_six_contacts_in_force_are_named() -> None:
@@ -105,8 +107,9 @@ def failure(level: Level) -> dict[str, Any]:
     )
     G, A = (base + np.arange(100.0).reshape(10, 10) for base in (1000.0, 2000.0))
     work = SimpleNamespace(
-        posed=SimpleNamespace(contacts=2, elements=1, bearings=1, level=int(level), lemke=int(LcpOutcome.RAY)), dry=np.array([4, 77]),
-        G=G, A=A, b=np.arange(10.0), rhs=20.0 + np.arange(10.0), hand=np.array([1.0, -1.0, 1.0, 1.0, -1.0, -1.0]),
+        posed=SimpleNamespace(contacts=2, elements=1, bearings=1, level=int(level), lemke=int(LcpOutcome.RAY)),
+        dry=np.array([4, 77]), G=G, A=A, b=np.arange(10.0), rhs=20.0 + np.arange(10.0),
+        hand=np.array([1.0, -1.0, 1.0, 1.0, -1.0, -1.0]),
     )  # fmt: skip
     scratch: Any = SimpleNamespace(work=work, event=SimpleNamespace(closed=closed, rest=rest))
     state: Any = SimpleNamespace(
@@ -135,14 +138,14 @@ def test_a_driven_body_that_jams_another_is_the_cause() -> None:
     problem = {"contacts": [{"number": 2}, {"number": 4}, {"number": 2}]}
     assert driven_into(problem, PAIRS, {"wheel"}) == "" == driven_into(None, PAIRS, {"body2"})
     told = driven_into(problem, PAIRS, {"body2", "other4"})
-    one, two = (
-        f"{own}, which is driven, leaves {other} no way out at {PAIRS[k]}" for own, other, k in (("body2", "other2", 2), ("other4", "body4", 4))
-    )
+    ways = (("body2", "other2", 2), ("other4", "body4", 4))
+    one, two = (f"{own}, which is driven, leaves {other} no way out at {PAIRS[k]}" for own, other, k in ways)
     assert told.startswith(f"{one}; {two}. This is a jam") and told.count("driven, leaves") == 2
 
 
 @pytest.mark.parametrize(("stop", "words"), [
-    (Stop.OVERLAP, "of overlap"), (Stop.LEDGER, "1 J are unaccounted for, of 2 J put in"), (Stop.UNEXPLAINED, "in contact: body3"),
+    (Stop.OVERLAP, "of overlap"), (Stop.LEDGER, "1 J are unaccounted for, of 2 J put in"),
+    (Stop.UNEXPLAINED, "in contact: body3"),
     (Stop.TOO_MANY_EVENTS, "what alternates: dry friction in the bearing of lever"), (Stop.FAR_AWAY, "wheel is at 9 rad"),
 ])  # fmt: skip
 def test_the_sentence_of_an_end_is_followed_by_what_is_known_of_it(stop: Stop, words: str) -> None:
