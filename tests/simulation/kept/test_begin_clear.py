@@ -35,9 +35,10 @@ COMPILED: Any = SimpleNamespace(owners=("one", "two", "three", "one"), layers=("
 
 
 @pytest.mark.parametrize(("gap", "margin", "group", "ends", "known"), [
-    (1e-9, 0.0, 0, (0, 1), True), (1e-9, 0.0, 0, (1, 0), True), (-0.9 * NEAR, 0.0, 0, (0, 1), True), (0.9 * NEAR, 0.0, 0, (0, 1), True),
-    (1.1 * NEAR, 0.0, 0, (0, 1), False), (-1.1 * NEAR, 0.0, 0, (0, 1), False), (0.0, -0.9 * NEAR, 0, (0, 1), True),
-    (0.0, -1.1 * NEAR, 0, (0, 1), False), (0.0, 0.0, 1, (0, 1), False), (0.0, 0.0, 0, (0, 2), False), (0.0, 0.0, 0, (3, 1), False),
+    (1e-9, 0.0, 0, (0, 1), True), (1e-9, 0.0, 0, (1, 0), True), (-0.9 * NEAR, 0.0, 0, (0, 1), True),
+    (0.9 * NEAR, 0.0, 0, (0, 1), True), (1.1 * NEAR, 0.0, 0, (0, 1), False), (-1.1 * NEAR, 0.0, 0, (0, 1), False),
+    (0.0, -0.9 * NEAR, 0, (0, 1), True), (0.0, -1.1 * NEAR, 0, (0, 1), False), (0.0, 0.0, 1, (0, 1), False),
+    (0.0, 0.0, 0, (0, 2), False), (0.0, 0.0, 0, (3, 1), False),
 ])  # fmt: skip
 def test_a_touch_is_known_where_a_contact_of_its_layers_is_about_zero(gap, margin, group, ends, known: bool) -> None:
     """To within what is near, in its gap and beyond the ends of its primitives; the second contact is asked."""
