@@ -113,6 +113,27 @@ def test_a_tally_goes_on_from_what_was_saved() -> None:
         assert two.finished()[name] == (pytest.approx(sums, rel=1e-12) if isinstance(sums, dict) else sums)
 
 
+def test_a_turning_point_further_out_may_still_come_before_the_next_passage() -> None:
+    """It knocks at 1 rad, goes on to 1.5: handed over between the two, the half swing waits for the next passage."""
+    rows = [(0.0, EventKind.TURN, -2.0), (0.5, EventKind.CROSS, 5.0), (0.8, EventKind.TURN, 1.0), (0.9, EventKind.TURN, 0.9),
+            (1.0, EventKind.TURN, 1.5), (1.5, EventKind.CROSS, -5.0), (2.0, EventKind.TURN, -2.5)]  # fmt: skip
+    events = np.zeros(len(rows), EVENT_DTYPE)
+    for name, column in zip(("t", "kind", "value"), zip(*rows, strict=True), strict=True):
+        events[name] = column
+    events["contact"], events["body"] = -1, 1
+    for cut in range(8):
+        tally = Tally(SCENE, PAIRS)
+        for part in (events[:cut], events[cut:]):
+            tally.fold(part)
+        amplitude = tally.finished()["amplitude"]
+        assert (amplitude["number"], amplitude["least"], amplitude["largest"]) == (2, 1.75, 2.0)
+
+
+def test_sums_have_the_shapes_of_saved_states() -> None:
+    shapes = {name: array.shape for name, array in Tally(SCENE, PAIRS).arrays().items()}
+    assert shapes == {"kinds": (11,), "beats": (2,), "moments": (4, 5), "last": (1,), "carried": (0,)}
+
+
 def test_without_an_oscillator_only_kinds_are_counted() -> None:
     tally = Tally(Scene("none", SCENE.bodies[:1]), ())
     tally.fold(swung(4, 1))
