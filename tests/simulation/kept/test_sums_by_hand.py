@@ -122,7 +122,7 @@ def test_a_turning_point_further_out_may_still_come_before_the_next_passage() ->
         events[name] = column
     events["contact"], events["body"] = -1, 1
     for cut in range(8):
-        tally = Tally(SCENE, PAIRS)
+        tally = Tally(SCENE, ())
         for part in (events[:cut], events[cut:]):
             tally.fold(part)
         amplitude = tally.finished()["amplitude"]
