@@ -48,6 +48,8 @@ def test_how_much_of_a_force_is_left() -> None:
     assert press(solved(-0.2, 0.0), 1, 0.1) == pytest.approx(-0.2 + 0.1 * 0.5 / 4.0)
     assert press(solved(0.0, 0.0), 1, 0.1) == pytest.approx(0.1 * 0.5 / 4.0)
     assert press(solved(0.0, 0.0, 0.0), 1, 0.1) == 1.0 == grip(0.3, solved(0.0, 0.0, 0.0), 1, 0.1)
+    assert grip(0.3, solved(0.0, 0.0), 1, 0.1) == pytest.approx(0.1 * 0.5 / 4.0)
+    assert grip(0.3, solved(2.0, 0.0, 0.0), 1, 0.1) == pytest.approx(0.3 * 2.0)
     for sign in (1.0, -1.0):
         assert grip(0.3, solved(2.0, sign * 0.5), 1, 0.1) == pytest.approx(0.3 * 2.0 - 0.5 + 0.1 * 0.5 / 4.0)
 
