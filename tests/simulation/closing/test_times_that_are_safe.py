@@ -18,7 +18,7 @@ def test_the_longer_of_the_straight_and_the_curved_way(seed: int) -> None:
     """With centres that stay half as far apart as they are, over the time in which they do; roots by numpy."""
     rng = np.random.default_rng(seed)
     room, approach, closing, bend = 10.0 ** rng.uniform(-2.0, 1.0, 4) * [1.0, rng.choice([-1.0, 1.0]), 1.0, 1.0]
-    distance = math.inf if seed % 3 == 0 else float(10.0 ** rng.uniform(-2.0, 1.0))
+    distance = math.inf if seed % 3 == 0 else float(10.0 ** rng.uniform(-5.0, 1.0))
     limit, curve = 0.5 * distance / closing, bend + (0.0 if distance == math.inf else closing**2 / (0.5 * distance))
     roots = np.roots([-0.5 * curve, -approach, room])
     expected = max(room / closing, min(float(roots[roots > 0.0][0]), limit))
@@ -29,6 +29,8 @@ def test_without_bend_a_gap_that_does_not_fall_stays_open() -> None:
     ask = in_python(safe_times.safe_time)
     assert ask(0.3, -0.2, 2.0, 0.0, math.inf) == math.inf and ask(0.3, 0.0, 2.0, 0.0, math.inf) == math.inf
     assert ask(0.3, 0.2, 2.0, 0.0, math.inf) == pytest.approx(1.5)
+    assert ask(0.3, 1e-4, 2.0, 0.0, math.inf) == pytest.approx(3e3)
+    assert ask(0.3, -0.2, 2.0, 1e-4, math.inf) == pytest.approx((0.2 + (0.04 + 0.6e-4) ** 0.5) / 1e-4)
     assert ask(0.3, -0.2, 2.0, 0.1, 0.0) == 0.15  # concentric: nothing is known of the curve
 
 
@@ -50,6 +52,8 @@ def test_outside_until_the_normal_or_the_point_could_have_come_in(seed: int, kin
     ask = in_python(safe_times.time_outside)
     assert ask(model, 0, inside_a, inside_b, (closing, swing), distance) == pytest.approx(max(times))
     assert ask(model, 0, -9.0, inside_b, (closing, swing), distance) == pytest.approx(0.5 * distance / closing)
+    slowly = ask(model, 0, -1e-3, 1.0, (closing, 1e-4), math.inf)
+    assert slowly == pytest.approx(10.0 / max(a.radius, a.length))
 
 
 @pytest.mark.parametrize(
@@ -117,7 +121,9 @@ def test_the_joint_is_that_at_the_nearer_end_of_the_line(seed: int) -> None:
         turn = np.exp(1j * rng.uniform(-3.0, 3.0))
         poses.append(SimpleNamespace(x=rng.normal(), y=rng.normal(), c=turn.real, s=turn.imag))
     way = np.exp(1j * rng.uniform(-3.0, 3.0))
-    line = SimpleNamespace(body=1, kind=LINE, x=rng.normal(), y=rng.normal(), tx=way.real, ty=way.imag, length=0.5)
+    line = SimpleNamespace(
+        body=1, kind=LINE, x=rng.normal(), y=rng.normal(), tx=way.real, ty=way.imag, length=0.5 if seed < 10 else 1e-3
+    )
     line.before, line.after = (-1, 4) if seed % 2 else (4, -1)
 
     def world(pose: SimpleNamespace, at: complex) -> complex:
@@ -125,7 +131,7 @@ def test_the_joint_is_that_at_the_nearer_end_of_the_line(seed: int) -> None:
 
     point = SimpleNamespace(body=0, x=rng.normal(), y=rng.normal())
     centre, start = world(poses[0], complex(point.x, point.y)), world(poses[1], complex(line.x, line.y))
-    end = world(poses[1], complex(line.x, line.y) + 0.5 * way)
+    end = world(poses[1], complex(line.x, line.y) + line.length * way)
     nearer = line.after if abs(centre - end) < abs(centre - start) else line.before
     model = SimpleNamespace(contacts=[SimpleNamespace(a=0, b=1)], primitives=[point, line])
     assert bool(in_python(sunk_level._by_concave_joint)(model, 0, poses)) == (nearer < 0)

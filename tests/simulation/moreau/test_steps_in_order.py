@@ -203,3 +203,9 @@ def test_there_is_room_for_all_contacts_and_for_the_bearings_with_dry_friction()
     assert work.laws.G.shape == work.laws.J.shape == (rows, rows)
     assert work.laws.low.shape == work.restitution.shape == work.closed.ids.shape == (7,) and work.laws.ends.shape == (9, 4)
     assert work.memory.shape == (9, 2) and work.joint.shape == (3,) and len(work.pose) == 4
+
+
+def test_no_part_of_the_room_is_forgotten_when_it_is_passed_by_reference() -> None:
+    work = step_work.MoreauWork(*[(name,) for name in step_work.MoreauWork._fields])
+    instead = {name: lambda *parts: parts for name in ("ClosedRef", "LawsRef", "AskedRef", "MoreauWorkRef")}
+    assert in_python(steps._by_reference, **instead)(work) == tuple(work)
