@@ -174,3 +174,41 @@ def test_what_does_not_turn_has_no_turning_rate(motion: int) -> None:
     body = SimpleNamespace(motion=motion, first=2, ratio=1.0)
     path, step = SimpleNamespace(pose=[SimpleNamespace(w=0.5)]), SimpleNamespace(bound=np.ones(5))
     assert in_python(lasting_gap._fastest_turn)(SimpleNamespace(bodies=[body]), 0, 1.5, step, path) == 0.0
+
+
+@pytest.mark.parametrize("share", [0.9, 1.1])
+def test_a_tangent_is_followed_where_the_gap_could_not_be_deeper_than_rounding_then(share: float) -> None:
+    """B t² / 2 with t = g / v; else the safe time counts."""
+    gap, rate, gap_zero = 3e-13, -6e-7, 1e-13
+    bend = share * 2.0 * gap_zero / (gap / rate) ** 2
+    asked = in_python(safe_times.time_to_touch, safe_time=lambda *given: given)
+    found = asked(gap, rate, (2.0, bend, 0.4), SimpleNamespace(gap_zero=gap_zero))
+    assert found == (pytest.approx(5e-7) if share < 1.0 else (gap, -rate, 2.0, bend, 0.4))
+
+
+@pytest.mark.parametrize(("swing", "time"), [(0.0, 0.5 * 1e-3 / 5e-5), (1e-4, 0.5 * 1e-3 / 1.5e-4)])
+def test_what_turns_slowly_is_the_same_contact_for_long(swing: float, time: float) -> None:
+    asked = in_python(safe_times.time_held, room_beside_active=lambda *_: (1.0, 1e-3))
+    found = asked(None, None, SimpleNamespace(extent=1e-9), 0, 2.0, -1.0, (1e-4, 5.0, swing, 4.0), SimpleNamespace(pose=None))
+    assert found == pytest.approx(time)
+
+
+def test_kinematics_are_asked_where_they_are_put() -> None:
+    """In the room for one contact."""
+    rows: list[int] = []
+
+    def put(model: object, k: int, pose: object, row: int, out: object) -> None:
+        rows.append(row)
+
+    def asked(model: object, out: object, row: int, depth: float = 0.0) -> bool:
+        rows.append(row)
+        return True
+
+    path, line = SimpleNamespace(pose=None, probe=None), SimpleNamespace(kind=ARC, body=0)
+    model = SimpleNamespace(contacts=[SimpleNamespace(b=0)], primitives=[line], bodies=[SimpleNamespace(motion=PIVOT)])
+    options = SimpleNamespace(behind=1e-8, sunk=1e-6, extent=1e-9)
+    waits = in_python(safe_times.time_immovable, contact_kinematics=put, is_immovable=asked)
+    assert waits(model, options, 0, -1.0, 1.0, path) > 0.0
+    instead = {"contact_kinematics": put, "has_one_way": asked, "_by_concave_joint": lambda *_: True}
+    assert in_python(sunk_level.sunk_level, **instead)(model, options, 0, -5e-7, 0.0, path) == -5e-7
+    assert rows == [0, 0, 0, 0]
