@@ -109,3 +109,11 @@ def test_rows_are_as_exact_as_half_the_tolerance_of_the_largest_place() -> None:
     object.__setattr__(run, "q", np.array([[0.5, -3.0], [-2.0, 1.0]]))
     object.__setattr__(run, "tolerance", 1e-6)
     assert run._noise.tolist() == pytest.approx([1e-6, 1.5e-6], rel=1e-12)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize(("off", "left"), [(0.9e-13, False), (1.1e-13, True)])
+def test_of_a_direction_across_an_axis_rounding_is_left(off: float, left: bool, sign: float) -> None:
+    """By which no force may hold or move a body: as much as normals of outlines turn by it."""
+    share = in_python(kinematics._share)((0.6, 0.8), (-0.8 + sign * 0.6 * off, 0.6 + sign * 0.8 * off))
+    assert share == (pytest.approx(sign * off, rel=2e-3, abs=0.0) if left else 0.0)
