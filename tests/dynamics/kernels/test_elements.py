@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from plain_kernels import in_python
 
-from watchsim.dynamics import acceleration
+from watchsim.dynamics import acceleration, jamming
 
 SLOWEST = 1e-5  # m/s
 
@@ -43,3 +43,20 @@ def test_loads_are_accelerations_with_bearings_at_the_lower_ends_of_their_fricti
     in_python(acceleration._load)(work, m, elements, bearings)
     expected = b[:rows] + G[:rows, 4:rows] @ shift[1 : 1 + bearings]
     assert work.loaded[:rows] == pytest.approx(expected) and np.isnan(work.loaded[rows:]).all()
+
+
+@pytest.mark.parametrize("i", [0, 1, 2])
+@pytest.mark.parametrize(("drag", "jams"), [(0.74, False), (0.76, True)])
+def test_any_contact_may_jam_by_itself(i: int, drag: float, jams: bool) -> None:
+    """G_N = 3, G_NT = 4; another contact that has a say on it prevents that."""
+    G = np.diag([3.0, 5.0] * 3)
+    G[2 * i, 2 * i + 1] = G[2 * i + 1, 2 * i] = 4.0
+    work = SimpleNamespace(G=G, drag=np.array([0.1, 0.2, 0.3]), tangent=[-1] * 3)
+    work.drag[i] = drag
+    asked = in_python(jamming.is_paradox)
+    assert bool(asked(work, 3, i)) == jams
+    other = 2 * ((i + 1) % 3)
+    for place in ((2 * i, other), (2 * i, other + 1), (2 * i + 1, other)):
+        G[place] = 1e-6
+        assert not asked(work, 3, i)
+        G[place] = 0.0

@@ -24,7 +24,7 @@ def test_the_joint_is_that_at_the_nearer_end_of_the_line(seed: int) -> None:
     line = SimpleNamespace(
         body=1, kind=LINE, x=rng.normal(), y=rng.normal(), tx=way.real, ty=way.imag, length=0.5 if seed < 10 else 1e-3
     )
-    line.before, line.after = (-1, 4) if seed % 2 else (4, -1)
+    line.before, line.after = (-1, 0) if seed % 2 else (0, -1)
 
     def world(pose: SimpleNamespace, at: complex) -> complex:
         return complex(pose.x, pose.y) + at * complex(pose.c, pose.s)
