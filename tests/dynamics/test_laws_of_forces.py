@@ -56,6 +56,15 @@ def test_each_row_is_what_is_left_of_a_law(load: float) -> None:
 @pytest.mark.parametrize("bearing", [{"coulomb": 0.0}, {"driven": 1}])
 def test_a_bearing_without_dry_friction_or_choice_has_no_law(bearing: dict[str, float]) -> None:
     assert laws(1.0, **bearing).count == 7
+    assert laws(1.0, dry=1e-6).count == 9
+
+
+def test_a_bearing_that_no_contact_acts_on_has_no_law() -> None:
+    closed = SimpleNamespace(slots=[1, 1], coord=np.zeros((2, 1), int), w_N=np.ones((2, 1)), w_T=np.ones((2, 1)))
+    work = SimpleNamespace(h=np.array([9.0, 0.5]), B=np.full((4, 3), np.nan), other_rhs=np.zeros(4), other_x=np.zeros(4))
+    work.tangent, work.drag = [2, -1], np.array([0.0, 0.3])
+    model = SimpleNamespace(coordinates=[None, SimpleNamespace(coulomb=2.0)])
+    assert in_python(redundant_contacts._hold_bearing)(model, closed, 2, 3, 1, 1, 1.0, work) == 1
 
 
 def test_a_contact_that_moves_nothing_has_no_slack() -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from plain_kernels import in_python
 
-from watchsim.dynamics import applied_forces
+from watchsim.dynamics import applied_forces, equations_of_motion
 from watchsim.model.records import COORDINATE, JOINT, OVER_ANGLE, OVER_TIME, REPEATED, TABLE, records
 
 N, DRIVEN, T = 5, 3, 1.7
@@ -104,6 +104,25 @@ def test_stored_is_kinetic_energy_and_that_of_springs() -> None:
     expected = 0.5 * (c.mass * u**2 + c.stiffness * (q - c.rest) ** 2)[free].sum() + 0.5 * STIFFNESS * (ARMS @ q - LENGTH) ** 2
     expected += 0.5 * (j.stiffness * (q[j.coordinate] - q[j.on] - j.rest) ** 2).sum()
     assert STORED(made, q, u) == pytest.approx(expected)
+
+
+def test_at_an_instant_there_are_kinematics_and_normals_row_by_row_and_all_other_forces() -> None:
+    """Of contacts 2 and 0, which are of primitives (4, 1) and (3, 2)."""
+    contacts = [SimpleNamespace(a=3, b=2), None, SimpleNamespace(a=4, b=1)]
+    made = SimpleNamespace(contacts=contacts, primitives=[SimpleNamespace(body=10 * k) for k in range(5)])
+    rows: dict[int, int] = {}
+    forced: list[object] = []
+    poses = {10 * k: f"pose {k}" for k in range(5)}
+    instead = {
+        "place": lambda model, q, u, out: forced.append(("placed", q, u)),
+        "contact_kinematics": lambda model, k, pose, row, out: rows.update({row: k}),
+        "shape_of_contact": lambda contact, a, b, pa, pb: SimpleNamespace(nx=(pa, pb), ny=a.body),
+        "forces": lambda model, t, q, u, out: forced.append((t, q, u, out)),
+    }
+    normal = np.full((3, 2), None)
+    in_python(equations_of_motion.balance, **instead)(made, T, "q", "u", [2, 0], poses, None, normal, "h")
+    assert forced == [("placed", "q", "u"), (T, "q", "u", "h")] and rows == {0: 2, 1: 0}
+    assert normal.tolist() == [[("pose 4", "pose 1"), 40], [("pose 3", "pose 2"), 30], [None, None]]
 
 
 @pytest.mark.parametrize("count", [2, 3, 4])

@@ -109,4 +109,5 @@ def test_what_hardly_slips_has_the_direction_that_a_normal_force_gives_it(
 
 def test_what_nothing_can_stop_does_not_count_as_the_fastest() -> None:
     assert reversed_rows([1.0, 5e9, 1.0, -0.2, 1.0], own=(0.0, 3.0)) == [1, 1, 1, -1, 1]
-    assert reversed_rows([1.0, 5e9, 1.0, -0.2, 1.0], own=(1.0, 3.0)) == [1, 1, 1, 1, 1]
+    for own in (1.0, 1e-6):
+        assert reversed_rows([1.0, 5e9, 1.0, -0.2, 1.0], own=(own, 3.0)) == [1, 1, 1, 1, 1]

@@ -54,7 +54,9 @@ def test_over_a_time_what_forces_would_do_is_stopped_too(seed: int) -> None:
     case = Sparse(rng, M, N, friction=0.25, slots=(5, 7))
     u, time = rng.normal(size=N), float(rng.uniform(0.3, 0.9))
     rates = case.W @ (u + time * case.work.h * case.work.inverse) + time * case.bars
+    case.work.b[2 * M :] = 5.0
     assert in_python(impact.plastic_impact)(case.model, case.closed, M, time, u, case.work)
+    assert np.all(case.work.b[2 * M :] == 5.0)
     assert case.work.force[: 2 * M] == pytest.approx(compressed(case.G, rates, case.friction), abs=1e-10)
     posed = case.work.posed
     assert (posed.contacts, posed.elements, posed.bearings, posed.level) == (M, M, 0, Level.COMPRESSION)

@@ -38,6 +38,12 @@ def test_what_was_not_pressed_has_half_a_cone_to_either_side(T: float) -> None:
     assert interval(PG1996, T, normal=0.0) == pytest.approx((0.5 * MU, MU, 0.0, 0.0, SHARE * BACK * T))
 
 
+def test_what_was_hardly_pressed_is_pressed() -> None:
+    press, T = 1e-4, 2e-5
+    returned = SHARE * BACK * T
+    assert interval(PG1996, T, press) == pytest.approx((0.0, MU, MU * SHARE * press - returned, returned, returned), rel=1e-12)
+
+
 def test_no_interval_is_of_negative_length() -> None:
     """Where rounding has left friction outside its cone."""
     law = SimpleNamespace(kind=PG1996, friction=MU, tangential=1.0)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from plain_kernels import in_python
 
-from watchsim.dynamics import redundant_contacts
+from watchsim.dynamics import acceleration, impact, redundant_contacts
 from watchsim.dynamics.delassus import contact_work
 
 
@@ -20,6 +20,23 @@ def test_what_is_left_of_a_direction_counts_from_a_hundred_trillionth_of_a_milli
     rest = (share * 1e-20) ** 0.5
     vectors = np.array([[1.0, 0.0], [length, length * rest]])
     assert in_python(redundant_contacts._orthonormalize)(vectors, 2, 2, np.ones(2)) == kept
+
+
+def test_what_moves_with_difficulty_has_its_worth_and_its_slack() -> None:
+    """However small its mobility; what does not move at all has none."""
+    work = SimpleNamespace(G=np.diag([1e-6, 9.0, 0.0, 9.0, -1.0, 9.0]), size=np.array([3.0, 9.0, 4.0, 9.0, 5.0, 9.0]))
+    work.worth = np.full(3, np.nan)
+    in_python(acceleration._fill_worth)(work, 3)
+    assert work.worth.tolist() == pytest.approx([3e6, 0.0, 0.0])
+    slacks = [in_python(redundant_contacts._slack)(work, i, 2.0) for i in range(3)]
+    assert slacks == pytest.approx([0.25 * 2.0 * 1e-10 * 3e6, 0.0, 0.0], rel=1e-12, abs=0.0)
+
+
+def test_small_arms_are_parallel_too() -> None:
+    asked = in_python(impact.is_parallel)
+    for unit in (1.0, 1e-6):
+        assert asked(SimpleNamespace(G=unit * np.array([[4.0, 6.0], [6.0, 9.0]])), 0)
+        assert not asked(SimpleNamespace(G=unit * np.array([[4.0, 5.9], [5.9, 9.0]])), 0)
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])

@@ -46,7 +46,7 @@ def test_it_opens_where_nothing_presses_and_its_gap_accelerates(share: float) ->
 
 
 def test_one_that_slides_goes_on_as_it_does_unless_it_jams_without_a_load() -> None:
-    for rate, expected in ((-1e-3, BACKWARD), (1e-3, FORWARD), (0.0, FORWARD)):
+    for rate, expected in ((-1e-6, BACKWARD), (1e-6, FORWARD), (0.0, FORWARD)):
         assert mode(rate=rate, may_stick=0) == expected
         assert mode(rate=rate, may_stick=0, press=0.0) == expected
         assert mode(rate=rate, may_stick=0, press=0.0, paradox=1) == OPEN

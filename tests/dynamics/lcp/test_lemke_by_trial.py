@@ -184,10 +184,21 @@ def test_a_solution_misses_nothing_and_its_worst_condition_is_kept() -> None:
         return bool(ask(2, work)), worst.violation
 
     assert judged([1.0, 0.0], [0.0, -1e-6]) == (False, 0.0)
+    assert judged([100.0, 0.0], [0.0, -0.9e-11])[0] and not judged([100.0, 0.0], [0.0, -1.1e-11])[0]
     assert judged([1.0, 0.0], [0.0, 0.5]) == (True, 0.0)
     assert judged([2.0**-12, 0.0], [2.0**-46, 0.5]) == (True, 2.0**-46)
     assert judged([2.0**-12, 0.0], [-(2.0**-46), 0.5]) == (True, 2.0**-46)
     assert judged([0.0, 0.0], [-(2.0**-46), 0.5]) == (True, 2.0**-46)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize(("off", "solves"), [(0.9, True), (1.1, False)])
+def test_terms_that_cancel_count_without_their_sign(off: float, solves: bool, sign: float) -> None:
+    """3 - 3 and a load: a residual of a billionth of six."""
+    worst = SimpleNamespace(driver=0.0, violation=0.0)
+    work = SimpleNamespace(trial=np.array([1.0, 1.0]), matrix=np.array([[3.0, -3.0], [0.0, 1.0]]), worst=worst)
+    work.load = np.array([sign * off * 6e-9, -1.0])
+    assert bool(in_python(basis.is_solution)(2, work)) == solves
 
 
 @pytest.mark.parametrize(("left", "found"), [(-0.9e-9, 0.0), (-1.1e-9, -1.1e-9), (1e-12, 1e-12), (0.0, 0.0)])

@@ -38,6 +38,7 @@ class Search:
         return self.gap(self.now), self.gap.deriv()(self.now), self.inside[0](self.now), self.inside[1](self.now)
 
     def next_stretch(self, model, options, k, left, step, path) -> tuple[float, float, float, float]:
+        assert left == self.end - self.now
         length = min(left, self.longest)
         times = np.linspace(self.now, self.now + length, 200)
         closing, bend = (1.001 * float(np.abs(self.gap.deriv(order)(times)).max()) + 1e-9 for order in (1, 2))
@@ -59,11 +60,12 @@ class Search:
             **self.instead,
         }
         search = in_python(time_of_impact.crossing, **instead)
-        self.turns = 0
+        self.turns, self.end = 0, end
         while True:
             before = len(self.looks)
             time, closes = search(model, state, OPTIONS, 1, start, end, None, SimpleNamespace(pose=None))
             self.turns += 1
+            assert self.turns < 100
             assert len(self.looks) - before <= 16 and state.counts.gap_evaluations == 5 + len(self.looks)
             if closes or time >= end:
                 return float(time), bool(closes)

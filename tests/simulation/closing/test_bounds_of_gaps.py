@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from plain_kernels import in_python
 
-from watchsim.model.records import ARC, LINE
+from watchsim.model.records import ARC, FIXED, FREE, LINE, PIVOT, SLIDE
 from watchsim.simulation.first_closing import gap_bounds
 from watchsim.simulation.first_closing.gap_bounds import Bounds
 
@@ -137,3 +137,21 @@ def test_a_stretch_is_no_longer_than_bodies_travel_by_the_size_of_the_scene(left
     options = SimpleNamespace(size=4.0)
     found = in_python(gap_bounds.next_stretch, **instead)(model, options, 1, left, None, None)
     assert found == (length, Bounds(1.5, 3, length, 0.0), Bounds(2.5, 5, length, 0.0), length)
+
+
+@pytest.mark.parametrize(
+    ("motion", "expected"),
+    [
+        (FIXED, (0.0, 0.0, 0.0, 0.0)),
+        (PIVOT, (0.0, 0.4 * (3.0 + 1.2 * 0.3), 0.0, 0.4 * 1.2)),
+        (SLIDE, (0.4 * (3.0 + 1.2 * 0.3), 0.0, 0.4 * 1.2, 0.0)),
+        (FREE, (5.0 + 1.3 * 0.3, 0.7 + 0.9 * 0.3, 1.3, 0.9)),
+    ],
+)
+def test_a_frame_is_no_faster_than_it_is_now_and_its_accelerations_make_it(motion: int, expected: tuple[float, ...]) -> None:
+    """Speeds of 3 and 4 m/s, accelerations of up to 1.2 and 0.5 m/s²; a ratio of -0.4 of what has one coordinate."""
+    body = SimpleNamespace(first=1, motion=motion, ratio=-0.4, carrier=-1)
+    path = SimpleNamespace(u=np.array([99.0, -3.0, 4.0, -0.7]))
+    step = SimpleNamespace(bound=np.array([99.0, 1.2, 0.5, 0.9]))
+    found = in_python(gap_bounds.body_bounds)(SimpleNamespace(bodies=[None, body]), 1, LENGTH, step, path)
+    assert found == pytest.approx(expected)

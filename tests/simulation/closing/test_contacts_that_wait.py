@@ -36,7 +36,7 @@ def stays(gap: float, rate: float = -0.3, *, body: int = 5, sunk: float = 0.0, s
 
     instead = {
         "normal_gap": lambda model, k, pose: SimpleNamespace(gap=gap, rate=rate),
-        "sunk_level": lambda *_: sunk,
+        "sunk_level": lambda model, options, k, gap, inside, path: sunk if inside == 0.0 else 9.0,
         "gap_bounds": bounds_of,
         "centre_distance": lambda *_: 0.4,
         "safe_time": safe_time,
@@ -56,6 +56,7 @@ def test_a_contact_stays_open_as_long_as_its_bounds_say(body: int) -> None:
     """Whichever of the two bodies the circle is on; what is behind must come out first."""
     for sign in (1.0, -1.0):
         assert stays(2.01 * sign, body=body) == (math.inf, None)
+        assert stays(1e-4 * sign, body=body, safe=0.9)[1] == (1e-4, 0.3 * sign, 2.0, 5.0, 0.4)
         asked = (1.99, 0.3 * sign, 2.0, 5.0, 0.4)
         assert stays(1.99 * sign, body=body, safe=0.9) == (0.9, asked)
         assert stays(1.99 * sign, body=body, safe=1.0) == (math.inf, asked)

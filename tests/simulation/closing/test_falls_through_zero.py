@@ -8,9 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.polynomial import Chebyshev, Polynomial
+from plain_kernels import in_python
 from scripted_gaps import END, OPTIONS, START, Search
 
 from watchsim.model.records import ARC, LINE
+from watchsim.simulation.first_closing import time_of_impact
 
 
 def falls(gap: Any, start: float, end: float) -> list[float]:
@@ -49,7 +51,28 @@ def test_a_contact_that_has_just_rebounded_closes_when_it_comes_back(off: float)
 
 def test_a_gap_of_zero_that_falls_all_the_time_closes_when_it_is_no_longer_rounding() -> None:
     time, closes = Search(Polynomial([1.0, -2.0])).found(start=START)
-    assert closes and time == pytest.approx(0.5, abs=2e-13)
+    assert closes and 0.5 + 0.49e-13 < time < 0.5 + 2e-13
+
+
+@pytest.mark.parametrize(("end", "at_root"), [(END, True), (START + 5e-6, False)])
+def test_one_that_falls_as_it_comes_within_its_primitives_closes_there(end: float, at_root: bool) -> None:
+    """It has not been in contact, so that it need not leave zero before; where that is beyond the end, it closes at once."""
+    beside = iter([-1e-6])
+    search = Search(Polynomial([0.9e-13 + 1e-8 * START, -1e-8]), (None, lambda t: next(beside, 1.0)))
+    search.next_stretch = lambda model, options, k, left, step, path: (left, 2.0, 0.0, 50.0)  # type: ignore[method-assign]
+    time, closes = search.found(end=end)
+    assert closes and search.looks[1] - START == pytest.approx(0.5e-6, rel=1e-2)
+    assert abs(search.gap(time)) < 1e-18 if at_root else time == search.looks[1]
+
+
+def test_both_bodies_are_brought_to_the_time() -> None:
+    placed = []
+
+    def body_on_path(model: object, state: object, step: object, body: int, tau: float, path: object) -> None:
+        placed.append((body, tau))
+
+    in_python(time_of_impact._place, body_on_path=body_on_path)(None, None, (7, 8), 1.5, None, None)
+    assert placed == [(7, 1.5), (8, 1.5)]
 
 
 @pytest.mark.parametrize(("gap", "due"), [(-0.9e-8, True), (-1.1e-8, False)])

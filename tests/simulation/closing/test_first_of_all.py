@@ -21,10 +21,10 @@ END = 2.0
 def first_touch(closing: dict[int, float], **given: Any) -> tuple[tuple[bool, float, int], dict[str, Any]]:
     """((known, time, contact), what was done), where contact k closes at closing[k]; 0.3 s are searched in a turn of looks.
 
-    It is certain to stay open for nine tenths of the time.
+    It is certain to stay open for nine tenths of the time, or for as much as `certain` says.
     """
     done: dict[str, Any] = {"searched": [], "listed": [], "asked": []}
-    unknown, at_rest = given.get("unknown", ()), given.get("at_rest", ())
+    unknown, at_rest, certain = given.get("unknown", ()), given.get("at_rest", ()), given.get("certain", {})
 
     def list_pair(model, cells, state, options, p, span, count, step, path):
         done["listed"].append((p, span))
@@ -32,7 +32,7 @@ def first_touch(closing: dict[int, float], **given: Any) -> tuple[tuple[bool, fl
             return False, count
         tau, until = span[0], min(span[1], span[0] + CELL)
         for k in range(p * CONTACTS, (p + 1) * CONTACTS):
-            stays = max(tau, 0.9 * closing.get(k, math.inf))
+            stays = max(tau, certain.get(k, 0.9) * closing.get(k, math.inf))
             if stays < until:
                 count = put(path.waiting, count, k, p, (tau, until, stays))
         if until < span[1]:
@@ -62,13 +62,14 @@ def first_touch(closing: dict[int, float], **given: Any) -> tuple[tuple[bool, fl
 def test_the_first_of_all_closings_is_found(seed: int) -> None:
     rng = np.random.default_rng(seed)
     closing = {int(k): float(t) for k, t in zip(rng.permutation(12)[:5], rng.uniform(0.1, 3.5, 5), strict=True)}
-    (known, time, contact), done = first_touch(closing)
+    certain = {k: float(rng.uniform(0.1, 0.95)) for k in closing}
+    (known, time, contact), done = first_touch(closing, certain=certain)
     first = min(closing, key=closing.__getitem__)
     if closing[first] < END:
         assert (known, time, contact) == (True, closing[first], first)
     else:
         assert (known, time, contact) == (True, END, NO_CONTACT)
-    begun = [0.9 * closing[k] for k, _, _ in done["searched"]]
+    begun = [certain[k] * closing[k] for k, _, _ in done["searched"]]
     assert all(start < time for start in begun)  # what is sure to stay open longer is not looked at
     assert all(
         start < end <= min(END, CELL * (1 + math.floor(start / CELL + 1e-9)) + 1e-9) for _, start, end in done["searched"]
@@ -99,3 +100,7 @@ def test_an_unknown_cell_ends_the_search_and_is_asked_about(unknown: tuple[tuple
 def test_cells_beyond_the_first_closing_are_not_looked_up() -> None:
     found, done = first_touch({3: 0.6}, unknown=((2, 2),))
     assert found == (True, 0.6, 3) and done["asked"] == []
+
+
+def test_the_last_one_that_waits_is_searched_too() -> None:
+    assert first_touch({3: 0.4}, end=0.5)[0] == (True, 0.4, 3)

@@ -68,3 +68,12 @@ def test_a_look_beside_a_primitive_is_no_shorter_than_a_gap_takes_to_pass_throug
     search.next_stretch = lambda model, options, k, left, step, path: (left, 2.0, 0.0, 50.0)  # type: ignore[method-assign]
     assert search.found() == (END, False)
     assert search.looks[1] - START == pytest.approx(OPTIONS.gap_zero / 2.0, rel=0.01, abs=0.0)
+
+
+@pytest.mark.parametrize("start", [8.0, 0.015625])
+def test_no_look_is_shorter_than_the_rounding_of_time(start: float) -> None:
+    beside = iter([-OPTIONS.extent * (1.0 + 1e-9)])
+    search = Search(Polynomial([0.0]), (None, lambda t: next(beside, 1.0)))
+    search.next_stretch = lambda model, options, k, left, step, path: (left, 1e5, 0.0, 50.0)  # type: ignore[method-assign]
+    assert search.found(start, start + 1.0) == (start + 1.0, False)
+    assert search.looks[1] == start + 4e-16 * start

@@ -12,7 +12,7 @@ from watchsim.simulation.first_closing import sunk_level as module
 
 NEAR_POINTS = 100.0  # extents
 OPTIONS = SimpleNamespace(behind=1e-8, sunk=1e-6, extent=1e-9)
-CONVEX, CONCAVE = 1, -1  # joints: the number of a corner, or none
+CONVEX, CONCAVE = 0, -1  # joints: the number of a corner, the first one, or none
 
 
 def level(gap: float, inside: float = 0.0, *, one_way: bool = True, joints=(CONCAVE, CONCAVE), kind=LINE, at: float = 0.9):

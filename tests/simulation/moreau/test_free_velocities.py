@@ -76,15 +76,19 @@ def test_a_tangential_percussion_that_small_in_its_cone_has_no_sign(size: float,
 
 
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
+@pytest.mark.parametrize("unit", [1.0, 1e-6])
 @pytest.mark.parametrize("beside", [-1.1, -0.9, 0.0, 0.9, 1.1])
-def test_friction_goes_one_way_where_slip_and_approach_stop_together(sign: float, beside: float) -> None:
+def test_friction_goes_one_way_where_slip_and_approach_stop_together(sign: float, beside: float, unit: float) -> None:
     """By `NUDGE` of the slip at most may they miss each other; the second contact's directions are not parallel."""
-    slip = sign * 0.3
+    slip = sign * 0.3 * unit
     G = np.array([[4.0, 2.0, 0.0, 0.0], [2.0, 1.0, 0.0, 0.0], [0.0, 0.0, 4.0, 2.0], [0.0, 0.0, 2.0, 1.1]])
     normal = (slip - beside * NUDGE * abs(slip)) / 0.5
     laws = SimpleNamespace(G=G, ends=np.full((2, 4), 9.0))
-    work = SimpleNamespace(laws=laws, rates=np.array([normal, slip, normal, slip]))
+    work = SimpleNamespace(laws=laws, rates=np.array([normal, slip, 0.7 * normal, 0.7 * slip]))
     instead = {"_law": lambda model, work, i: SimpleNamespace(friction=0.4)}
     in_python(percussions._keep_sliding, **instead)(None, 2, work)
+    still = SimpleNamespace(laws=SimpleNamespace(G=G, ends=np.full((2, 4), 9.0)), rates=np.zeros(4))
+    in_python(percussions._keep_sliding, **instead)(None, 2, still)
+    assert still.laws.ends.tolist() == [[9.0] * 4] * 2
     one_way = [9.0, -0.4 * sign, 9.0, -0.4 * sign]
     assert laws.ends.tolist() == [one_way if abs(beside) < 1.0 else [9.0] * 4, [9.0] * 4]

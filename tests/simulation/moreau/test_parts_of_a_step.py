@@ -123,9 +123,9 @@ def test_more_contacts_than_there_is_room_for_or_unknown_cells_stop_the_loop() -
 @pytest.mark.parametrize("deep", [False, True])
 def test_a_fifth_of_what_is_deeper_than_half_the_closing_gap_is_taken_back(deep: bool) -> None:
     """By normal percussions alone, of contacts that yield a little; modes, memories and the deepest are kept."""
-    room, pushed = laws(2, 0), []
-    room.P[:] = 1.0, 2.0, 3.0, 4.0
-    room.G[:] = np.diag([5.0, 6.0, 7.0, 8.0])
+    room, pushed = laws(2, 1), []
+    room.P[:] = 1.0, 2.0, 3.0, 4.0, 9.0
+    room.G[:] = np.diag([5.0, 6.0, 7.0, 8.0, 9.0])
     room.low[:], room.ends[:] = 9.0, 9.0
     gaps = [-0.4e-3, -4.5e-3 if deep else 0.3e-3]
     kin = [SimpleNamespace(g=gap) for gap in gaps]
@@ -140,10 +140,10 @@ def test_a_fifth_of_what_is_deeper_than_half_the_closing_gap_is_taken_back(deep:
     assert work.kept.depth == max(0.4e-3, -gaps[1]) and state.worst.penetration == max(1e-3, work.kept.depth)
     assert len(pushed) == deep
     if deep:
-        assert pushed[0].tolist() == [0.0] * 4
-        assert room.b == pytest.approx([0.0, 0.0, -0.2 * 4e-3, 0.0])
+        assert pushed[0].tolist() == [0.0] * 4 + [9.0]
+        assert room.b == pytest.approx([0.0, 0.0, -0.2 * 4e-3, 0.0, 0.0])
         assert room.low.tolist() == [0.0, 0.0] and not room.ends[:2].any()
-        assert np.diag(room.G) == pytest.approx([5.0 * 1.001, 6.0, 7.0 * 1.001, 8.0])
+        assert np.diag(room.G) == pytest.approx([5.0 * 1.001, 6.0, 7.0 * 1.001, 8.0, 9.0])
 
 
 @pytest.mark.parametrize("seed", range(6))

@@ -14,14 +14,19 @@ from watchsim.simulation.moreau.steps import _keep_of
 START, STEP, REST = 2.0, 0.5, 0.3
 
 
-def kept(place: float, speed: float, bend: float, carrier: bool = False) -> tuple[list[tuple[int, float, float]], list[int]]:
-    """(kind, time, value) of the events of a parabola that begins there, and the signs of speed and way left behind."""
+def kept(
+    place: float, speed: float, bend: float, carrier: bool = False, before: int | None = None
+) -> tuple[list[tuple[int, float, float]], list[int]]:
+    """(kind, time, value) of the events of a parabola that begins there, and the signs of speed and way left behind.
+
+    `before`: the sign of the speed before an impact at the start of the step.
+    """
     end, last = place + speed * STEP + 0.5 * bend * STEP**2, speed + bend * STEP
     ends = [np.array([9.0, x, 0.25]) for x in (place, speed, end, last)]
     if carrier:
         for array in ends:
             array[1] += array[2]
-    sides = (np.sign(speed), np.sign(place - REST))
+    sides = (np.sign(speed) if before is None else before, np.sign(place - REST))
     state = SimpleNamespace(clock=SimpleNamespace(time=START), counts=SimpleNamespace(events=0))
     state.side_u, state.side_q = (np.array([5, int(side)]) for side in sides)
     record = SimpleNamespace(events=np.zeros(4, EVENT_DTYPE).view(np.recarray), used=SimpleNamespace(events=0))
@@ -63,3 +68,8 @@ def test_what_begins_at_rest_or_in_its_rest_position_neither_turns_nor_passes() 
     assert kept(REST, 0.0, 4.0) == ([], [1, 1])
     assert kept(REST, 1.0, 0.0) == ([], [1, 1])
     assert kept(REST + 1.0, 0.0, 0.0) == ([], [0, 1])
+
+
+def test_what_an_impact_has_turned_round_turns_at_the_start_of_the_step() -> None:
+    found, sides = kept(REST + 0.4, 1.0, 0.5, before=-1)
+    assert found == [(int(EventKind.TURN), START, pytest.approx(REST + 0.4))] and sides == [1, 1]

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from plain_kernels import in_python
 
+from watchsim.model.records import COULOMB, PG1996, SHIFTED
 from watchsim.simulation.moreau import percussions, projected_newton, prox_relaxation
 
 SIZE, SETTLED = 7.0, 1e-13
@@ -58,7 +59,7 @@ def test_where_it_goes_round_in_circles_smaller_paces_are_taken_four_in_all() ->
 @pytest.mark.parametrize("pace", [1.0, 0.4])
 def test_a_sweep_improves_one_percussion_after_another(pace: float) -> None:
     """The change that is told is that of a full pace; rows that nothing moves are left alone."""
-    G = np.diag([4.0, 0.0, 9.0, 1.0])
+    G = np.diag([4.0, 0.0, 9.0, 1e-6])
     laws = SimpleNamespace(G=G, P=np.array([1.0, 2.0, 3.0, 4.0]))
 
     def improved(laws: Any, m: int, rows: int, row: int, P: np.ndarray) -> float:
@@ -84,6 +85,41 @@ def test_newton_s_method_guesses_twenty_modes(shorts: list[float], found: bool) 
     assert in_python(projected_newton.finish, **instead)(laws, 1, 1, SETTLED) == found
     assert next(left, None) is None
     assert laws.P[0] == (3.0 + 0.5 * (len(shorts) - 1) if found else 3.0)
+
+
+@pytest.mark.parametrize("settled", [True, False])
+def test_what_relaxation_takes_is_counted(settled: bool) -> None:
+    """Two contacts and three bearings; the worst residual is kept."""
+    counts = SimpleNamespace(lcp=5, lcp_sizes=[0] * 6, lcp_failures=1)
+    work = SimpleNamespace(laws="laws", kept=SimpleNamespace(sweeps=100, violation=1e-3))
+    for violation in (0.25, 0.125):
+        instead = {
+            "relax": lambda laws, m, bearings: (17, settled) if (m, bearings) == (2, 3) else None,
+            "residual": lambda laws, m, rows, violation=violation: violation if (m, rows) == (2, 7) else None,
+        }
+        in_python(percussions.solve_percussions, **instead)(SimpleNamespace(counts=counts), 2, 3, work)
+    assert (counts.lcp, counts.lcp_sizes, counts.lcp_failures) == (7, [0, 0, 0, 2, 0, 0], 1 if settled else 3)
+    assert (work.kept.sweeps, work.kept.violation) == (134, 0.25)
+
+
+def test_losses_are_impulses_times_the_mean_of_rates() -> None:
+    laws = SimpleNamespace(P=np.array([2.0, -3.0, 5.0, 0.7, 9.0]), b=np.array([0.3, 0.2, -0.6, 1.1, 9.0]))
+    work = SimpleNamespace(laws=laws, rates=np.array([-1.0, 0.5, 0.0, 0.4, 9.0]))
+    assert in_python(percussions._loss)(2, work) == pytest.approx(-0.5 * (2.0 * -0.7 - 3.0 * 0.7 + 5.0 * -0.6 + 0.7 * 1.5))
+
+
+@pytest.mark.parametrize("T", [0.25, -0.25])
+def test_ends_of_friction_in_the_expansion_are_those_of_the_laws(T: float) -> None:
+    """Beside and per normal percussion, after N = 2 in the compression; restitution 0.6, or 0.2 below the tangential one."""
+    for kind, share, expected, back in (
+        (COULOMB, 0.6, (0.0, -0.4, 0.0, 0.4), 0.0),
+        (SHIFTED, 0.6, (0.3 * (T + 0.8), -0.4, 0.3 * (T - 0.8), 0.4), 0.0),
+        (SHIFTED, 0.2, (0.2 * (T + 0.8), -0.4, 0.2 * (T - 0.8), 0.4), 0.0),
+        (PG1996, 0.6, (0.18 * T, 0.0, 0.0, 0.4) if T > 0.0 else (0.0, -0.4, 0.18 * T, 0.0), 0.18 * T),
+    ):
+        ends, law = np.full((3, 4), np.nan), SimpleNamespace(kind=kind, friction=0.4, tangential=0.3, nu=9.0)
+        assert in_python(percussions._expansion_ends)(law, share, 2.0, T, ends, 1) == pytest.approx(back)
+        assert ends[1] == pytest.approx(expected) and np.isnan(ends[[0, 2]]).all()
 
 
 @pytest.mark.parametrize(
