@@ -121,6 +121,20 @@ def test_a_heavy_spot_is_told_with_what_gravity_does(gravity: tuple[float, float
         assert not list(_poise_lines(Scene("t", (other,), gravity=gravity), other))
 
 
+@pytest.mark.parametrize(
+    ("x", "y", "width", "height", "far"), [(1e-3, -7e-3, 2e-3, 8e-3, 4e-3), (-5e-3, 3e-3, 9e-3, 2e-3, 4.5e-3)]
+)
+def test_rounding_of_a_centre_of_mass_is_a_share_of_what_is_drawn(
+    x: float, y: float, width: float, height: float, far: float
+) -> None:
+    """A thousand-millionth of half the larger side, wherever it lies and whether it touches or not."""
+    drawn = (box(width, height).moved(0.0, (x, y)),)
+    for kind in ("loops", "decoration"):
+        for share, told in ((0.95e-9, False), (1.05e-9, True)):
+            body = replace(Body("b", mass=2e-3, centre_of_mass=(0.6 * share * far, 0.8 * share * far)), **{kind: drawn})  # type: ignore[arg-type]
+            assert bool(list(_poise_lines(Scene("t", (body,)), body))) is told
+
+
 A, B = Body("a", inertia=2e-9), Body("b", inertia=8e-9)
 S, T = Body("s", "slide", mass=2e-3), Body("t", "slide", mass=8e-3)
 DRIVEN = Body("d", prescribed=Prescribed())

@@ -158,6 +158,12 @@ def test_gravity_turns_what_is_not_poised(off: float, held: bool) -> None:
     assert ("a" in bound(read(DOWN + wheels("ab", b=at) + gear("a", "b", 2)))) is held
 
 
+def test_a_mass_that_cannot_be_is_one_fault_under_gravity_too() -> None:
+    text = DOWN + wheels("ab", b='mass = "-2 g"\ncentre_of_mass = ["1 mm", "0 mm"]\n')
+    for more in (gear("a", "b", 2), SPRING.format("b") + '[[damping]]\nbody = "b"\nq_factor = 200\n'):
+        assert "bodies.b.mass: must not be negative" in faults(text + more)
+
+
 def test_bodies_that_do_not_turn_or_slide_have_no_gears() -> None:
     text = wheels("a") + '[bodies.f]\nmotion = "free"\nmass = "1 g"\ninertia = "1 g·cm²"\n'
     assert faults(text + gear("a", "f", 2)) == [
