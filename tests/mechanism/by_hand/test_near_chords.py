@@ -29,9 +29,10 @@ def zigzag(rng: np.random.Generator, count: int) -> Loop:
     return Loop(tuple(Line(*a, *b) for a, b in zip(places[:-1].tolist(), places[1:].tolist(), strict=True)), closed=False)
 
 
-def apart(a: np.ndarray, b: np.ndarray) -> float:
-    """How far two boxes are from meeting, in the direction in which they are farther."""
-    return float(max(*(a[:2] - b[2:]), *(b[:2] - a[2:])))
+def apart(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """How far each of the boxes a is from meeting each of b, in the direction in which they are farther."""
+    between = np.maximum(a[:, None, :2] - b[None, :, 2:], b[None, :, :2] - a[:, None, 2:])
+    return np.asarray(between.max(axis=2))
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -39,7 +40,7 @@ def test_near_is_what_is_near_to_any(seed: int) -> None:
     rng = np.random.default_rng(seed)
     a = layer("a", zigzag(rng, 9), disc(2e-3, 1e-3, 0.5e-3), pose=POSE)
     b = layer("b", zigzag(rng, 7), disc(-1e-3, 2e-3, 0.8e-3))
-    gaps = np.array([[apart(one, other) for other in b.boxes] for one in a.boxes])
+    gaps = apart(a.boxes, b.boxes)
     assert np.all(abs(gaps - CLOSE) > 1e-12)
     near = _near(a, b)
     assert near[0].tolist() == (gaps <= CLOSE).any(axis=1).tolist() and near[1].tolist() == (gaps <= CLOSE).any(axis=0).tolist()
