@@ -100,12 +100,12 @@ def test_a_driven_body_has_one_law(laws: tuple[str, ...], key: str) -> None:
     one = table({"motion": "driven", **{law: LAWS[law] for law in laws}})
     read_prescribed(one, 0.25)
     assert [fault.key for fault in one.faults.found] == [key]
-    for law in LAWS:
-        alone = table({"motion": "driven", law: LAWS[law]})
+    for law, value in LAWS.items():
+        alone = table({"motion": "driven", law: value})
         found = read_prescribed(alone, 0.25)
         assert not alone.faults.found and found is not None
         assert found.velocity == pytest.approx({"velocity": 3.0, "swing": 2.0 * math.pi, "path": 0.0}[law])
-        idle = table({law: LAWS[law]})
+        idle = table({law: value})
         assert read_prescribed(idle, 0.25) is None and len(idle.faults.found) == (law != "velocity")
 
 
