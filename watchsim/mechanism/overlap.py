@@ -148,7 +148,7 @@ def _meeting(contact: int, a: _Layer, b: _Layer) -> Overlap | None:
     """The deepest point at which two layers touch or overlap; None where they are apart."""
     import shapely
 
-    if not (len(a.boxes) and len(b.boxes)) or not _meet(a.box[None], b.box[None] + DRAWING_ROUNDING * SIDES)[0]:
+    if not _meet(a.box[None], b.box[None] + DRAWING_ROUNDING * SIDES)[0]:  # of nothing at all it is empty
         return None
     (region_a, faces_a, error_a), (region_b, faces_b, error_b) = (
         layer.finely(near) for layer, near in zip((a, b), _near(a, b), strict=True)

@@ -36,10 +36,7 @@ def regions_depth(a: Any, b: Any, allowed: float) -> tuple[float, Point]:
         return -1.0, (0.0, 0.0)
     parts = common_parts(a, b, allowed)
     if not parts:
-        line = shapely.shortest_line(a, b)
-        if line is None or line.is_empty or line.length > allowed:
-            return -1.0, (0.0, 0.0)
-        return 0.0, line.coords[0]
+        return 0.0, shapely.shortest_line(a, b).coords[0]
     points = np.concatenate([shapely.get_coordinates(part) for part in parts])
     vertices = shapely.points(points)
     depths = np.maximum(_from_boundary(vertices, a), _from_boundary(vertices, b))

@@ -190,7 +190,7 @@ def _own(body: Body, ride: Ride) -> Weighed:
 def _is_poised(bodies: tuple[Body, ...], hung: tuple[Ride, ...], i: int, weighed: Weighed) -> bool:
     parts = [body for body, ride in zip(bodies, hung, strict=True) if ride.part_of == i]
     reach = max((math.hypot(*edge.point(0.5)) for body in parts for loop in body.loops for edge in loop.edges), default=0.0)
-    reach = max(reach, *(math.hypot(*ride.place) for ride in hung if i in (ride.part_of, ride.host)), 0.0)
+    reach = max(reach, *(math.hypot(*ride.place) for ride in hung if i in (ride.part_of, ride.host)))
     # What could not be read is not a number, and no reason for a second complaint.
     return not math.hypot(*weighed.moment) > POISED * weighed.mass * reach
 
@@ -216,10 +216,11 @@ def start_poses(scene: Scene) -> dict[str, tuple[float, float, float]]:
     found: dict[str, tuple[float, float, float]] = {}
     for i in carriers_first(scene.bodies, _refuse):
         body = scene.bodies[i]
-        x, y, angle = found.get(str(body.on), (0.0, 0.0, 0.0)) if body.on else (0.0, 0.0, 0.0)
-        found[body.name] = (
-            (*_moved(body.position, (x, y), angle), angle + body.angle) if body.on else (*body.position, body.angle)
-        )
+        if body.on is None:
+            found[body.name] = (*body.position, body.angle)
+            continue
+        x, y, angle = found.get(body.on, (0.0, 0.0, 0.0))
+        found[body.name] = (*_moved(body.position, (x, y), angle), angle + body.angle)
     return found
 
 

@@ -95,7 +95,7 @@ def oscillator(bodies: tuple[Body, ...], springs: Iterable[Spring], gravity: Poi
     if body.motion == "slide":
         if middle is None:
             return None
-        pull = load.mass * (gravity[0] * body.axis[0] + gravity[1] * body.axis[1]) if ride.host < 0 else 0.0
+        pull = load.mass * (gravity[0] * body.axis[0] + gravity[1] * body.axis[1])
         return Oscillator(name, mass, stiffness, 0.0, middle + pull / stiffness)
     weight, hanging = _weight(load, ride, gravity)
     if weight == 0.0:

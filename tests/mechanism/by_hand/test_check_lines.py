@@ -121,13 +121,33 @@ def test_a_heavy_spot_is_told_with_what_gravity_does(gravity: tuple[float, float
         assert not list(_poise_lines(Scene("t", (other,), gravity=gravity), other))
 
 
+@pytest.mark.parametrize(
+    ("x", "y", "width", "height", "far"), [(1e-3, -7e-3, 2e-3, 8e-3, 4e-3), (-5e-3, 3e-3, 9e-3, 2e-3, 4.5e-3)]
+)
+def test_rounding_of_a_centre_of_mass_is_a_share_of_what_is_drawn(
+    x: float, y: float, width: float, height: float, far: float
+) -> None:
+    """A thousand-millionth of half the larger side, wherever it lies and whether it touches or not."""
+    drawn = (box(width, height).moved(0.0, (x, y)),)
+    for kind in ("loops", "decoration"):
+        for share, told in ((0.95e-9, False), (1.05e-9, True)):
+            body = replace(Body("b", mass=2e-3, centre_of_mass=(0.6 * share * far, 0.8 * share * far)), **{kind: drawn})  # type: ignore[arg-type]
+            assert bool(list(_poise_lines(Scene("t", (body,)), body))) is told
+
+
 A, B = Body("a", inertia=2e-9), Body("b", inertia=8e-9)
 S, T = Body("s", "slide", mass=2e-3), Body("t", "slide", mass=8e-3)
 DRIVEN = Body("d", prescribed=Prescribed())
 
 
 def test_gears_in_words() -> None:
-    bodies = (A, replace(B, geared=Geared("a", -3.0)), S, replace(T, geared=Geared("a", 2e-3)), Body("c", inertia=1.0))
+    bodies = (
+        replace(A, inertia=2.3456789e-9),
+        replace(B, geared=Geared("a", -3.0)),
+        S,
+        replace(T, geared=Geared("a", 2e-3)),
+        Body("c", inertia=1.0),
+    )
     gears = (
         Gear(("a", "c"), 5.0, 0.5, 0.25, 0.875),
         Gear(("c", "s"), 3e-3, 4e-5),
@@ -135,7 +155,7 @@ def test_gears_in_words() -> None:
         Gear(("s", "t"), -2.0, 1e-5),
     )
     scene = Scene("t", bodies, gears=gears)
-    felt = 2e-9 + 9.0 * 8e-9 + 4e-6 * 8e-3
+    felt = 2.3456789e-9 + 9.0 * 8e-9 + 4e-6 * 8e-3
     assert [line.replace("−", "-") for line in gear_lines(scene)] == [
         "  b is geared to a: -3 turns for one turn of it",
         "  t is geared to a: 12.5664 mm for one turn of it",
@@ -146,8 +166,10 @@ def test_gears_in_words() -> None:
         "  gears s - t: -2 mm for one mm, play 10 µm, restitution 0, efficiency 100 %",
     ]
     assert ratio_words(scene, "a", "b", 1.5) == "1.5 turns for one turn"
-    held = Scene("t", (DRIVEN, replace(B, geared=Geared("d", -3.0)), S, replace(T, geared=Geared("s", -2.0))))
-    assert [line for line in gear_lines(held) if "felt" in line] == ["  felt at s with all that is geared to it: 34 g"]
+    held = Scene(
+        "t", (DRIVEN, replace(B, geared=Geared("d", -3.0)), replace(S, mass=2.3456789e-3), replace(T, geared=Geared("s", -2.0)))
+    )
+    assert [line for line in gear_lines(held) if "felt" in line] == ["  felt at s with all that is geared to it: 34.346 g"]
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ import pytest
 from watchsim.mechanism.compile import compile_scene
 from watchsim.scene.body import Body
 from watchsim.scene.force import Damping, Spring, Torque
+from watchsim.scene.prescribed import Prescribed
 from watchsim.scene.scene import Scene
 
 DOWN = (2.0, -9.0)
@@ -83,6 +84,15 @@ def test_between_two_bodies_a_joint_takes_the_difference() -> None:
     (joint,) = compiled.model.joints
     assert (joint.coordinate, joint.on, joint.stiffness, joint.rest, joint.viscous) == (1, 0, 8.0, 0.25, 3.0)
     assert compiled.fastest == pytest.approx(math.sqrt(8.0 * (1.0 / 3.0 + 1.0 / 6.0)))
+
+
+def test_a_driven_body_gives_way_to_nothing() -> None:
+    """A spring between it and another swings that one alone; so does a torque, without springs."""
+    bodies = (Body("c", inertia=3.0, prescribed=Prescribed()), Body("e", inertia=6.0))
+    sprung = compile_scene(Scene("two", bodies, springs=(Spring("e", 8.0, against="c"),)))
+    assert sprung.fastest == pytest.approx(math.sqrt(8.0 / 6.0), rel=1e-12)
+    pushed = compile_scene(Scene("two", bodies, torques=(Torque("e", 12.0, against="c"),)))
+    assert pushed.fastest == 0.0 and pushed.model.coordinates.rate.tolist() == [pytest.approx(math.sqrt(2.0))] * 2
 
 
 @pytest.mark.parametrize("over", ["angle", "time"])

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,7 +13,7 @@ import shapely
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Line
 from watchsim.mechanism.material_polygons import chord_points
-from watchsim.mechanism.overlap import DEVIATION, meetings, overlaps
+from watchsim.mechanism.overlap import DEVIATION, meetings, overlap_faults, overlaps
 from watchsim.mechanism.overlap_depth import COARSE, _behind_arc, common_parts, face_depth, regions_depth
 from watchsim.scene.body import Body
 from watchsim.scene.force import Contact, Side
@@ -142,3 +144,24 @@ def test_the_deepest_of_several_layers_is_told() -> None:
     assert found.place == pytest.approx((1.3e-3, 27e-3), abs=2e-5)
     words = "rings and wall overlap by 0.4 mm at the start, at (1.3, 27) mm (layers R3 and W)"
     assert str(found) == words
+
+
+@pytest.mark.parametrize(
+    ("motions", "named"),
+    [(("fixed", "pivot"), "b"), (("pivot", "fixed"), "a"), (("pivot", "slide"), "a"), (("fixed", "fixed"), "a")],
+)
+def test_an_overlap_is_a_fault_of_the_body_that_can_be_moved(tmp_path: Path, motions: tuple[str, str], named: str) -> None:
+    """At its position, else at its table, else of the scene."""
+    ring = (Loop((Arc(0.0, 0.0, 1e-3, 0.0, math.tau),), "R"),)
+    bodies = tuple(
+        Body(name, motion, (k * 1.5e-3, 0.0), inertia=1.0, mass=1.0, loops=ring)
+        for k, (name, motion) in enumerate(zip("ab", motions, strict=True))
+    )
+    path = tmp_path / "scene.toml"
+    path.write_text('[bodies.a]\nposition = ["0 mm", "0 mm"]\n[bodies.b]\ncircle = "1 mm"\n', encoding="utf-8")
+    scene = Scene("t", bodies, contacts=(Contact((Side("a"), Side("b"))),), path=path)
+    (fault,) = overlap_faults(scene)
+    assert fault.key == f"bodies.{named}.position" and fault.place == f"{path}:{2 if named == 'a' else 3}"
+    assert f"`watchsim check {path} --png FILE` shows where" in fault.message
+    (bare,) = overlap_faults(replace(scene, path=None))
+    assert bare.place == "scene" and "`watchsim check` shows where" in bare.message

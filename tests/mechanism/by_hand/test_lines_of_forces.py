@@ -95,6 +95,14 @@ def test_forces_one_by_one(forces: dict[str, Any], last: str) -> None:
     assert [line.replace("−", "-") for line in force_lines(Scene("t", (A, B, S, T, DRIVEN), **forces))][-1] == last
 
 
+def test_a_spring_that_presses_has_no_beats() -> None:
+    """Its body rests on a driven wheel; of a spring without stiffness there is no frequency."""
+    pressed = Scene("t", (A, B), (Spring("a", 8e-7),), (Torque("b", 1.0),), contacts=(Contact((Side("a"), Side("b"))),))
+    (line,) = (line for line in force_lines(pressed) if "spring" in line)
+    assert line == "  spring on a: 800 nN·m/rad, 3.1831 Hz while it touches nothing, at rest at 0°"
+    assert "nan Hz" in next(iter(force_lines(Scene("t", (A,), (Spring("a", 0.0),)))))
+
+
 def test_centre_distances_are_those_of_pivots_that_may_touch_once_each() -> None:
     a, b, s = replace(A, position=(1e-3, 2e-3)), replace(B, position=(4e-3, 6e-3)), replace(S, position=(9e-3, 0.0))
     contacts = tuple(Contact((Side(x), Side(y))) for x, y in (("a", "b"), ("b", "a"), ("a", "s"), ("s", "b")))
@@ -116,6 +124,7 @@ def test_what_swings_by_its_weight() -> None:
         " by its springs and gravity together, 9 N·m/rad of it from gravity"
     )
     assert list(force_lines(both))[1] == expected
+    assert "0.477465 Hz" in next(iter(force_lines(both)))  # of the spring alone
     weak = replace(up, springs=(Spring("p", 9.0 - 1e-9, 0.0),), gravity=(0.0, -9.0))
     assert "p " in list(force_lines(weak))[1]
 

@@ -15,7 +15,7 @@ from watchsim.mechanism.line_springs_of import coordinates_of_lines, line_spring
 from watchsim.model.records import ARC, CORNER, LINE
 from watchsim.scene.body import Body
 from watchsim.scene.carriers import rides
-from watchsim.scene.force import LineSpring
+from watchsim.scene.force import Contact, LineSpring, Side
 from watchsim.scene.gear_trains import bonds
 from watchsim.scene.gearing import Geared
 from watchsim.scene.scene import Scene
@@ -97,6 +97,23 @@ def test_the_size_is_the_farthest_of_what_moves() -> None:
     assert scene_size(Scene("t", (still, moving))) == pytest.approx(5e-3)
     assert scene_size(Scene("t", (still, Body("c", inertia=1.0, loops=(arc,))))) == pytest.approx(3e-3)
     assert scene_size(Scene("t", (still,))) == scene_size(Scene("t", (Body("d", inertia=1.0),))) == 1e-3
+
+
+def test_sides_of_a_contact_are_the_layers_that_it_names() -> None:
+    """All of a body, or one; of a body without outlines none."""
+    loops = tuple(Loop(bent(turn).edges, name, closed=False) for turn, name in ((0.5, "L"), (-0.5, "X")))
+    wide, other = Body("a", inertia=1.0, loops=loops), Body("b", "fixed", (9e-3, 0.0), loops=(bent(1.0),))
+    bare = Body("c", inertia=1.0, position=(0.0, 9e-3))
+    # Corners of the one with lines of the other: all of a has one corner and four lines, b one and two.
+    for side, primitives, pairs in (
+        (Side("a"), 5, 1 * 2 + 1 * 4),
+        (Side("a", "L"), 3, 1 * 2 + 1 * 2),
+        (Side("a", "X"), 2, 1 * 2),
+    ):
+        model = compile_scene(Scene("t", (wide, other, bare), contacts=(Contact((side, Side("b"))),))).model
+        assert (len(model.primitives), len(model.contacts)) == (primitives + 3, pairs)
+    none = compile_scene(Scene("t", (wide, other, bare), contacts=(Contact((Side("a"), Side("c"))),))).model
+    assert len(none.contacts) == 0 and len(none.primitives) == 5
 
 
 BODIES = (

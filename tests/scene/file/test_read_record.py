@@ -52,6 +52,7 @@ def test_words_and_windows(value: object, expected: Recording) -> None:
         (["all", "statistics"], "run.record", "all and statistics exclude each other"),
         (["every 2", "every 3"], "run.record", "only one of every 2, every 3 can hold"),
         (["179", "180 s"], "run.record.0", "needs a unit"),
+        ("x1", "run.record", "no window, none of all"),
         (7, "run.record", "a window is two times"),
         ("0.5 s", "run.record", "a window is two times"),
     ],

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from watchsim.geometry.loop import Loop
+from watchsim.geometry.primitives import Line
 from watchsim.scene.body import Body
 from watchsim.scene.carriers import rides, start_poses, weigh
 from watchsim.scene.gear_trains import bonds, felt, goes_with, note_gears, reached, ungeared
@@ -105,6 +107,20 @@ def test_what_nobody_carries_stands_in_the_movement() -> None:
     poses = start_poses(scene)
     assert poses["a"] == pytest.approx((3.0, -2.0, 0.4), abs=1e-15)
     assert poses["b"] == pytest.approx((3.0 + 0.921060994, -2.0 + 0.389418342, 0.9))
+
+
+@pytest.mark.parametrize(("off", "refused"), [(1.9e-9, False), (2.1e-9, True)])
+@pytest.mark.parametrize("order", [1, -1])
+def test_a_load_is_poised_by_the_farthest_of_its_edges(off: float, refused: bool, order: int) -> None:
+    """The middles of its edges lie 0.1 mm and 2 mm from its pivot; that of its carrier's count for nothing."""
+    near, far, wide = (Loop((Line(x, -1e-3, x, 1e-3),), closed=False) for x in (0.1e-3, -2e-3, 50e-3))
+    load = Body(
+        "b", inertia=1.0, mass=3.0, centre_of_mass=(0.0, off), position=(0.2e-3, 0.0), on="c", loops=(near, far)[::order]
+    )
+    bodies = (Body("c", inertia=1.0, loops=(wide,)), load)
+    found: list[str] = []
+    weigh(bodies, rides(bodies), lambda name, _: found.append(name))
+    assert found == (["b"] if refused else [])
 
 
 @pytest.mark.parametrize(("off", "refused"), [(0.19e-9, False), (0.21e-9, True), (0.5e-9, True)])

@@ -76,6 +76,7 @@ def test_a_solid_is_seen_from_above() -> None:
     coil = solid(HAIRSPRING, "", spiral=Spiral(1e-3, 3e-3, 5.0), width=0.1e-3, pivot=(7e-3, 2e-3), thick=0.2e-3)
     (spring,) = found(Body("b", inertia=1.0, solids=(coil,)))
     far = [math.dist(edge.start, (7e-3, 2e-3)) for loop in spring.loops for edge in loop.edges]
+    assert spring.loops[0].edges[0].start == pytest.approx((7e-3 + 1.05e-3, 2e-3), rel=1e-9)
     assert min(far) == pytest.approx(0.95e-3) and max(far) == pytest.approx(3.05e-3) and spring.thickness == 0.2e-3
     staff = solid(UPRIGHT, "", half)
     assert found(Body("b", inertia=1.0, solids=(staff,)))[0].loops == (half,)

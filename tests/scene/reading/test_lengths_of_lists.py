@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import pytest
@@ -76,6 +77,64 @@ def test_times_of_a_path_ascend_from_the_start(points: Any, faults: list[str]) -
     found = read_prescribed(one, 0.25)
     assert [fault.key for fault in one.faults.found] == [f"here.{key}" for key in faults]
     assert found is not None and found.law.table == () and found.velocity == 0.0
+
+
+LAWS: dict[str, Any] = {
+    "velocity": "3 rad/s",
+    "swing": {"amplitude": "0.5 rad", "frequency": "2 Hz"},
+    "path": [["1 s", "2 rad"]],
+}
+
+
+@pytest.mark.parametrize(
+    ("laws", "key"),
+    [
+        ((), "here"),
+        (("velocity", "swing"), "here.swing"),
+        (("path", "velocity"), "here.path"),
+        (("swing", "path"), "here.path"),
+        (("velocity", "swing", "path"), "here.swing"),
+    ],
+)
+def test_a_driven_body_has_one_law(laws: tuple[str, ...], key: str) -> None:
+    one = table({"motion": "driven", **{law: LAWS[law] for law in laws}})
+    read_prescribed(one, 0.25)
+    assert [fault.key for fault in one.faults.found] == [key]
+    for law, value in LAWS.items():
+        alone = table({"motion": "driven", law: value})
+        found = read_prescribed(alone, 0.25)
+        assert not alone.faults.found and found is not None
+        assert found.velocity == pytest.approx({"velocity": 3.0, "swing": 2.0 * math.pi, "path": 0.0}[law])
+        idle = table({law: value})
+        assert read_prescribed(idle, 0.25) is None and len(idle.faults.found) == (law != "velocity")
+
+
+@pytest.mark.parametrize(
+    ("inner", "faults"),
+    [
+        ({"amplitude": "0.5 rad"}, ["swing"]),
+        ({"frequency": "2 Hz"}, ["swing"]),
+        ({}, ["swing", "swing"]),
+        (3, ["swing"]),
+        ({"amplitude": "0.5 rad", "frequency": "0 Hz"}, ["swing.frequency"]),
+        ({"amplitude": "0.5 mm", "frequency": "2 Hz"}, ["swing.amplitude"]),
+        ({"amplitude": "0.5 rad", "frequency": "2 Hz", "phase": "1 s"}, ["swing.phase"]),
+    ],
+)
+def test_a_swing_says_how_far_and_how_often(inner: Any, faults: list[str]) -> None:
+    """After a fault it stands."""
+    one = table({"motion": "driven", "swing": inner})
+    found = read_prescribed(one, 0.25)
+    assert [fault.key for fault in one.faults.found] == [f"here.{key}" for key in faults]
+    assert found is not None and (found.law.square, found.velocity) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize(("phase", "middle", "speed"), [("0 rad", 0.25, 2.0 * math.pi), ("30°", 0.0, math.sqrt(3.0) * math.pi)])
+def test_a_swing_begins_where_the_body_stands(phase: str, middle: float, speed: float) -> None:
+    one = table({"motion": "driven", "swing": {"amplitude": "0.5 rad", "frequency": "2 Hz", "phase": phase}})
+    found = read_prescribed(one, 0.25)
+    assert found is not None and found.law.middle == pytest.approx(middle, abs=1e-15)
+    assert (found.law.square, found.velocity) == pytest.approx((16.0 * math.pi**2, speed))
 
 
 @pytest.mark.parametrize(

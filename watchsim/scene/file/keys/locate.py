@@ -32,7 +32,7 @@ class _Scanner:
         prefix: tuple[str, ...] = ()
         while self.at < len(self.tokens):
             word, line = self.tokens[self.at]
-            if word == "\n":
+            if word in ("\n", "]"):  # an end of a header
                 self.at += 1
             elif word == "[":
                 prefix = self._header(line)
@@ -44,7 +44,6 @@ class _Scanner:
         is_array = self._word(1) == "["
         self.at += 2 if is_array else 1
         path = self._path("]")
-        self.at += 2 if is_array else 1
         path = self._numbered(path[:-1]) + path[-1:]
         if is_array:
             key = ".".join(path)

@@ -29,7 +29,7 @@ def bore_notices(table: Table, outlines: Outlines, solids: Sequence[Solid], else
     `elsewhere` are the layers that other bodies of the same drawing name as bores: these are theirs.
     """
     entries = table.mapping.get("solids", ())
-    if not (outlines.sound and solids) or len(entries) != len(solids):  # what is wrong is reported as a fault
+    if not solids or len(entries) != len(solids):  # what is wrong is reported as a fault
         return ()
     plates = [(solid, entry) for solid, entry in zip(solids, entries, strict=True) if solid.kind == PLATE]
     unasked = [solid for solid, entry in plates if entry.get("bores") != []]
