@@ -63,6 +63,7 @@ def test_slightly_inaccurate_drawings():
 def test_what_has_no_teeth():
     assert tooth_count([circle(0.0, 0.0, 2e-3)]) == 0
     assert tooth_count([]) == 0
+    assert tooth_count([Loop((Line(1e-3, 0.0, 1e-3, 0.0), Line(0.0, 0.0, 0.0, 0.0)), "TEETH", True)]) == 0
     assert tooth_count([regular(3).moved(0.0, (1e-3, 0.0))]) == 1
     scene = lever_scene()
     assert pitch(scene, "lever") is None and pitch(scene, "banking") is None
