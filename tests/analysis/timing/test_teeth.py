@@ -78,6 +78,14 @@ def test_wheels_that_share_an_outline_have_their_own_teeth() -> None:
         assert found is None if known is None else found == pytest.approx(math.tau / known, rel=1e-12)
 
 
+def test_wheels_of_other_outlines_have_their_own_teeth() -> None:
+    scene = lever_scene()
+    for teeth in (12, 8, 9, 12):
+        wheel = replace(scene.body("wheel"), loops=(star(teeth),))
+        found = pitch(replace(scene, bodies=(wheel, *scene.bodies[:2])), "wheel")
+        assert found == pytest.approx(math.tau / teeth, rel=1e-12)
+
+
 @pytest.mark.parametrize(("share", "count"), [(0.0475, 15), (0.0525, 5)])
 def test_inaccuracies_are_less_than_a_twentieth_of_the_largest_moment(share: float, count: int) -> None:
     """Fifteen short pieces, and five at half the radius: moments go with their length and the square of that."""
