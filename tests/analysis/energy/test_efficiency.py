@@ -49,6 +49,7 @@ def test_where_it_cannot_be_told(scene: Scene) -> None:
 @pytest.mark.parametrize("work", [0.0, -1e-9])
 def test_without_work_there_is_no_share(work: float) -> None:
     assert share(damped("balance"), ENERGY | {"in_J": work}) is None
+    assert share(damped("balance"), {"stored_J": 1e-6, "dissipated": {"damping": 2e-6}}) is None
 
 
 def test_what_weights_have_fallen_is_only_lent() -> None:
