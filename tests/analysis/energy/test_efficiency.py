@@ -49,6 +49,7 @@ def test_where_it_cannot_be_told(scene: Scene) -> None:
 @pytest.mark.parametrize("work", [0.0, -1e-9])
 def test_without_work_there_is_no_share(work: float) -> None:
     assert share(damped("balance"), ENERGY | {"in_J": work}) is None
+    assert share(damped("balance"), {"stored_J": 1e-6, "dissipated": {"damping": 2e-6}}) is None
 
 
 def test_what_weights_have_fallen_is_only_lent() -> None:
@@ -60,3 +61,12 @@ def test_what_weights_have_fallen_is_only_lent() -> None:
     fallen = 0.01 * 10.0 * 4e-6
     found = share(scene, end_q=end, end_u=np.zeros(3))
     assert found == pytest.approx((3e-6 - fallen) / (8e-6 - fallen), rel=1e-12)
+
+
+def test_where_no_motion_is_known_nothing_has_fallen() -> None:
+    """Without rows, or without an end."""
+    scene = replace(damped("balance"), gravity=(0.0, -10.0))
+    run = balance_only(Events(), 1.0, scene)
+    nothing = {name: getattr(run, name)[:0] for name in ("t", "q", "u", "a")}
+    assert share(scene, **nothing) == pytest.approx(3.0 / 8.0, rel=1e-15)
+    assert share(scene, **nothing, end_q=np.ones(3), end_u=np.ones(3)) == pytest.approx(3.0 / 8.0, rel=1e-15)

@@ -177,6 +177,10 @@ def test_of_statistics_only_the_last_stretch_is_heard(monkeypatch: pytest.Monkey
     spans = ((0.0, 1.0), (1.5, 2.25), (3.0, 4.0))
     heard = score(made(monkeypatch, BEATS, keep=STATISTICS, spans=spans))
     assert heard.times == pytest.approx([0.1 * k for k in (1, 2, 3, 4, 6, 7, 8, 9)], abs=1e-9) and heard.known == 1.0
+    loop = score(made(monkeypatch, BEATS[-4:], keep=STATISTICS, spans=spans), 60.0).loop
+    assert loop == Loop(pytest.approx(0.496, abs=1e-12), pytest.approx(0.896, abs=1e-12), 1)
+    with pytest.raises(ValueError, match="the run holds 1 s of sound, too few beats"):
+        score(made(monkeypatch, BEATS[-2:], keep=STATISTICS, spans=spans), 60.0)
     assert score(made(monkeypatch, BEATS, spans=spans)).known == 4.0
     assert score(made(monkeypatch, BEATS, keep=STATISTICS)).known == 4.0
 

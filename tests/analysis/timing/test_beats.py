@@ -175,7 +175,7 @@ def test_a_sliding_oscillator_has_no_degrees():
 def test_where_not_all_was_kept_only_the_last_stretch_is_told(counted: int, before: int) -> None:
     """Half swings of an eighth of a second; those before the last stretch, from 2 s on, are known by their number."""
     run = balance_only(steady_swings(25, 4.7), 4.0)
-    kept = replace(run, keep=STATISTICS, spans=((0.3, 1.1), (2.0, 3.4)), sums={"half_swings": counted})
+    kept = replace(run, keep=STATISTICS, spans=((0.3, 1.1), (1.2, 1.6), (2.0, 3.4)), sums={"half_swings": counted})
     found = beats(kept)
     assert found.start[0] == 2.0 and len(found) == 9 and found.before == before
     assert len(beats(run)) == 24 and beats(replace(run, sums=kept.sums)).before == 0

@@ -242,3 +242,4 @@ def test_noises_are_impacts_by_their_instants() -> None:
     ):
         got = noises(run, start, end)
         assert got[0].tolist() == times and got[1].tolist() == energies
+    assert noises(run)[0].tolist() == [0.1, 0.3, 0.4, 0.5] and noises(run, 0.35)[0].tolist() == [0.4, 0.5]

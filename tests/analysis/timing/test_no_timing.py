@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 from analysis.made_beats import DEGREE, PERIOD, Events, balance_only, lever_scene, steady_swings
@@ -65,3 +66,32 @@ def test_what_never_swings() -> None:
     assert said is not None and said.endswith("and none that is not driven hangs beside its pivot")
     fixed = replace(still, bodies=(still.body("banking"),))
     assert why_no_timing(replace(run, scene=fixed), None, UNKNOWN) is None
+
+
+@pytest.mark.parametrize("toppling", ["balance", "lever"])
+def test_gravity_topples_the_oscillator_or_another_body(toppling: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    hertz = {"lever": 3.0, "balance": 4.0} | {toppling: None}
+    known = [SimpleNamespace(body=name, hertz=value) for name, value in hertz.items()]
+    run = balance_only(turned(1, True), 10.0, replace(lever_scene(), torques=(), contacts=()))
+    found = beats(run)
+    monkeypatch.setattr("watchsim.analysis.timing.no_timing.oscillators", lambda scene: known)
+    topples = "gravity topples balance from its rest position"
+    said = topples if toppling == "balance" else "balance turned back only once in 10 s"
+    assert why_no_timing(run, found, UNKNOWN) == f"no amplitude and rate: {said}"
+
+
+def test_a_spring_that_only_presses_is_not_asked_for_a_rate() -> None:
+    """A click on its driven wheel; but where it passes its rest position it may be meant to swing."""
+    ratchet = replace(lever_scene(), contacts=lever_scene().contacts[1:], lift_angle=None)
+    still, passing = (balance_only(turned(count, True), 10.0, ratchet) for count in (0, 1))
+    assert why_no_timing(still, beats(still), UNKNOWN) is None
+    assert why_no_timing(passing, beats(passing), UNKNOWN) == "no amplitude and rate: balance turned back only once in 10 s"
+
+
+def test_what_slides_has_a_rate_alone() -> None:
+    run = balance_only(steady_swings(8, 1e-3), 10.0)
+    slides = replace(beats(run), angular=False)
+    said = why_no_timing(run, slides, UNKNOWN)
+    assert said is not None and said.startswith("no rate: ")
+    known = why_no_timing(run, slides, {"amplitude_deg": None, "rate_s_per_d": 3.0})
+    assert known == "no amplitude in degrees: balance slides"

@@ -108,6 +108,8 @@ def test_an_oscillator_that_is_held_is_told_from_one_that_swings(monkeypatch: py
     assert "balance held at 20° since t = 0 s" in still.message
     below = told(monkeypatch, lambda t: 0.0, lambda t: 20.0 * DEGREE - 1.1e-4 * (t < 3.9))
     assert "balance swinging, now at 20°" in below.message
+    ends = told(monkeypatch, lambda t: 0.0, lambda t: 20.0 * DEGREE + 0.9e-4 * np.sign(t - 3.985) * (t < 3.995))
+    assert "balance held at 20° since t = 0 s" in ends.message  # from where it is at the very end
 
 
 def test_what_else_is_said(monkeypatch: pytest.MonkeyPatch) -> None:

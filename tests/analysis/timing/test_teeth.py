@@ -63,6 +63,7 @@ def test_slightly_inaccurate_drawings():
 def test_what_has_no_teeth():
     assert tooth_count([circle(0.0, 0.0, 2e-3)]) == 0
     assert tooth_count([]) == 0
+    assert tooth_count([Loop((Line(1e-3, 0.0, 1e-3, 0.0), Line(0.0, 0.0, 0.0, 0.0)), "TEETH", True)]) == 0
     assert tooth_count([regular(3).moved(0.0, (1e-3, 0.0))]) == 1
     scene = lever_scene()
     assert pitch(scene, "lever") is None and pitch(scene, "banking") is None
@@ -75,6 +76,14 @@ def test_wheels_that_share_an_outline_have_their_own_teeth() -> None:
         wheel = replace(scene.body("wheel"), loops=(rim, star(teeth, 1.6e-3, 1.1e-3)))
         found = pitch(replace(scene, bodies=(wheel, *scene.bodies[:2])), "wheel")
         assert found is None if known is None else found == pytest.approx(math.tau / known, rel=1e-12)
+
+
+def test_wheels_of_other_outlines_have_their_own_teeth() -> None:
+    scene = lever_scene()
+    for teeth in (12, 8, 9, 12):
+        wheel = replace(scene.body("wheel"), loops=(star(teeth),))
+        found = pitch(replace(scene, bodies=(wheel, *scene.bodies[:2])), "wheel")
+        assert found == pytest.approx(math.tau / teeth, rel=1e-12)
 
 
 @pytest.mark.parametrize(("share", "count"), [(0.0475, 15), (0.0525, 5)])

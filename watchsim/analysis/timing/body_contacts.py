@@ -71,7 +71,7 @@ def held(times: Column, kinds: Column, spans: Sequence[tuple[float, float]] = ()
     change = (kinds == EventKind.CLOSE).astype(np.int8) - (kinds == EventKind.OPEN)
     begins = np.searchsorted(times, [start for start, _ in spans[1:]])
     counts = [np.cumsum(own, dtype=np.int32) for own in np.split(change, begins)]
-    return np.concatenate([own - min(0, int(own.min(initial=0))) for own in counts], dtype=np.int32)
+    return np.concatenate([own - own.min(initial=0) for own in counts], dtype=np.int32)
 
 
 def holding_at_end(run: Trajectory) -> list[Pair]:

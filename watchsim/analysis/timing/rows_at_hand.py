@@ -48,8 +48,8 @@ def is_recorded(run: Trajectory, times: Array) -> NDArray[np.bool_]:
 
 
 def _between_rows(t: Array, times: Array, longest: float) -> NDArray[np.bool_]:
-    after = np.clip(np.searchsorted(t, times, side="left"), 0, len(t) - 1)
-    before = np.clip(np.searchsorted(t, times, side="right") - 1, 0, len(t) - 1)
+    after = np.minimum(np.searchsorted(t, times, side="left"), len(t) - 1)
+    before = np.maximum(np.searchsorted(t, times, side="right") - 1, 0)
     found: NDArray[np.bool_] = (times >= t[0]) & (times <= t[-1]) & (t[after] - t[before] <= longest)
     let_go(t)
     return found

@@ -49,8 +49,6 @@ def tooth_count(loops: list[Loop]) -> int:
     """The order of the outlines' rotational symmetry about the origin; 1 without any, 0 where all is round or nothing there."""
     points, lengths = _sampled(loops)
     weights = lengths * np.abs(points) ** 2
-    if weights.sum() == 0.0:
-        return 0
     direction = points / np.maximum(np.abs(points), 1e-300)
     turned, moments = weights.astype(complex), np.zeros(MOST_TEETH)
     for n in range(MOST_TEETH):

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from watchsim.analysis.timing import escape_wheel as module
-from watchsim.analysis.timing.escape_wheel import Advance, _giving, _of_parity, advance, missed_beats
+from watchsim.analysis.timing.escape_wheel import Advance, _giving, _of_parity, advance, missed_beats, progress
 
 HALF = 0.3  # rad, half a pitch
 
@@ -49,7 +49,7 @@ def test_missed_beats_one_by_one(monkeypatch: pytest.MonkeyPatch, seed: int, giv
 
 
 @pytest.mark.parametrize("giving", [0, 1])
-@pytest.mark.parametrize("first", [4, 7])
+@pytest.mark.parametrize("first", [1, 4, 7])
 @pytest.mark.parametrize("ahead", range(-9, 10))
 def test_before_the_first_window_of_a_detent(monkeypatch: pytest.MonkeyPatch, giving: int, first: int, ahead: int) -> None:
     """At turning point h the wheel has come h + 1 half pitches: a step (of two) more or less is no matter, the next one is."""
@@ -108,3 +108,25 @@ def test_the_wheel_at_turning_points(monkeypatch: pytest.MonkeyPatch, kept: str)
     assert got.steps == pytest.approx(np.diff(turns[places] ** 2) / HALF, rel=1e-14)
     monkeypatch.setattr(module, "pitch", lambda scene, wheel: None)
     assert advance(run, "wheel", found) is None
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_how_far_the_wheel_has_come(monkeypatch: pytest.MonkeyPatch, way: float) -> None:
+    """From where the scene puts it, in the sense of its drive."""
+    monkeypatch.setattr(module, "drive_direction", lambda scene, wheel: way)
+    scene = SimpleNamespace(body=lambda name: SimpleNamespace(angle={"wheel": 0.7}[name]))
+    run: Any = SimpleNamespace(scene=scene, slices={"wheel": slice(2, 3)})
+    run.sample = lambda times: (np.column_stack([times, 3.0 * times, 0.7 + way * 0.25 * times]), None)
+    times = np.array([2.0, 0.5, 8.0])
+    assert progress(run, "wheel", times) == pytest.approx(0.25 * times, rel=1e-12)
+
+
+def test_a_single_half_swing_has_an_advance(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "pitch", lambda scene, wheel: 2.0 * HALF)
+    monkeypatch.setattr(module, "is_recorded", lambda run, times: np.ones(len(times), bool))
+    monkeypatch.setattr(module, "progress", lambda run, wheel, times: 4.0 * times)
+    run: Any = SimpleNamespace(scene=None)
+    found: Any = type("Found", (SimpleNamespace,), {"__len__": lambda self: len(self.end)})
+    got = advance(run, "wheel", found(start=np.array([1.0]), end=np.array([1.5]), before=3))
+    assert got is not None and got.half_swings.tolist() == [3.0, 4.0] and got.angle.tolist() == [4.0, 6.0]
+    assert advance(run, "wheel", found(start=np.zeros(0), end=np.zeros(0), before=3)) is None

@@ -91,3 +91,9 @@ def test_of_a_window_the_beats_and_one_on_either_side() -> None:
         (one.beat, one.name, one.start) for one in every if (one.beat, one.name) != (9, "locked")
     ]
     assert {one.beat for one in phases_within(run, (9.0, 9.5))} == {15} and phases_within(disc_run(), (0.8, 1.1)) == []
+
+
+def test_without_rows_there_are_no_phases() -> None:
+    run = lever_run(6)
+    nothing = {name: getattr(run, name)[:0] for name in ("t", "q", "u", "a")}
+    assert list(stretches(replace(run, **nothing))) == []
