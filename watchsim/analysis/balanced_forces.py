@@ -64,7 +64,7 @@ class Mechanism:
         seen = self.seen(t, q, u, ids)
         held = (self.dry > 0.0) & (u == 0.0)
         mobility = np.where(held | self.prescribed, 0.0, self.mobility)
-        h = seen.h - np.where(held, 0.0, self.dry * np.sign(u))
+        h = seen.h - self.dry * np.sign(u)
         free = np.where(self.prescribed, h, mobility * h)
         force = self._forces(seen, mobility, free, ids, np.array([modes[k] for k in ids.tolist()]))
         load = (force[:, :, :1] * seen.w_N + force[:, :, 1:] * seen.w_T).sum(axis=1)
@@ -123,9 +123,9 @@ def _spread(closed: Closed, rows: int, out_N: Array, out_T: Array) -> None:
 def _least(system: Array, right: Array) -> Array:
     """The smallest solutions (n, m), of systems scaled to a unit diagonal: contacts have lever arms of millimetres."""
     scale = np.sqrt(np.abs(np.diagonal(system, axis1=1, axis2=2)))
-    scale = np.where(scale > 0.0, 1.0 / np.where(scale > 0.0, scale, 1.0), 1.0)
-    inverse = np.linalg.pinv(system * scale[:, :, None] * scale[:, None, :], rcond=SMALLEST)
-    solved: Array = (inverse @ (right * scale)[:, :, None])[:, :, 0] * scale
+    scale = np.where(scale > 0.0, scale, 1.0)
+    inverse = np.linalg.pinv(system / scale[:, :, None] / scale[:, None, :], rcond=SMALLEST)
+    solved: Array = (inverse @ (right / scale)[:, :, None])[:, :, 0] / scale
     return solved
 
 

@@ -38,6 +38,12 @@ def test_a_contact_that_moves_nothing_has_no_force() -> None:
     assert _least(system, np.array([[4.0, 0.0], [0.0, 4.0]])) == pytest.approx(np.array([[2.0, 0.0], [0.0, 0.5]]), abs=1e-12)
 
 
+def test_friction_may_turn_the_sign_of_a_diagonal() -> None:
+    system = np.array([[[-4.0, 0.5], [0.25, 9.0]]])
+    found = _least(system, np.array([[8.0, -3.0]]))
+    assert (system @ found[:, :, None])[:, :, 0] == pytest.approx(np.array([[8.0, -3.0]]), rel=1e-12)
+
+
 @pytest.mark.parametrize("unit", [1.0, 1e-6, 1e5])
 @pytest.mark.parametrize("shares", [1, 3, 6, 9])
 def test_shares_press_and_balance(shares: int, unit: float) -> None:

@@ -85,8 +85,8 @@ def test_half_swings_that_are_still_going_on_say_nothing(monkeypatch: pytest.Mon
 
 def test_without_any_passage_the_start_counts(monkeypatch: pytest.MonkeyPatch) -> None:
     assert told(monkeypatch, USUAL[-2:]) is not None
-    assert told(monkeypatch, USUAL[-2:], found=SimpleNamespace(nominal_period=5.01)) is None
-    assert told(monkeypatch, USUAL[-2:], found=SimpleNamespace(nominal_period=4.99)) is not None
+    assert told(monkeypatch, USUAL[-2:], found=SimpleNamespace(nominal_period=5.0005)) is None
+    assert told(monkeypatch, USUAL[-2:], found=SimpleNamespace(nominal_period=4.9995)) is not None
 
 
 @pytest.mark.parametrize("kind", [EventKind.IMPACT, EventKind.CLOSE, EventKind.HANDOVER, EventKind.OPEN])

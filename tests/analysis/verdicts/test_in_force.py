@@ -36,3 +36,18 @@ def test_contacts_in_force_are_those_of_a_replay(monkeypatch: pytest.MonkeyPatch
         times = sorted(rng.uniform(-5.0, 65.0, 12).tolist() + rng.integers(0, 60, 6).tolist())
         found = in_force(SimpleNamespace(events=events), times)
         assert found == [replayed(events, t) for t in times]
+
+
+@pytest.mark.parametrize("at_once", [1, 2, 3, 100])
+def test_of_a_few_events(monkeypatch: pytest.MonkeyPatch, at_once: int) -> None:
+    """3 and 5 close, 3 hands over to 7, 5 opens and closes again, 7 opens; impacts change nothing. In the order they came."""
+    monkeypatch.setattr(module, "AT_ONCE", at_once)
+    events = np.zeros(8, EVENT_DTYPE)
+    events["t"] = [1.0, 1.5, 1.5, 2.0, 2.5, 3.0, 3.0, 4.0]
+    kinds = [EventKind.CLOSE, EventKind.IMPACT, EventKind.CLOSE, EventKind.HANDOVER, EventKind.IMPACT]
+    events["kind"] = [*kinds, EventKind.OPEN, EventKind.CLOSE, EventKind.OPEN]
+    events["contact"], events["value"] = [3, 5, 5, 7, 3, 5, 5, 7], [0.0, 0.0, 0.0, 3.0, 0.0, 0.0, 0.0, 0.0]
+    times = [0.5, 1.0, 1.5, 1.9, 2.0, 2.7, 3.5, 4.0, 9.0]
+    found = in_force(SimpleNamespace(events=events), times)
+    assert found == [[], [3], [3, 5], [3, 5], [5, 7], [5, 7], [7, 5], [5], [5]]
+    assert in_force(SimpleNamespace(events=events[:0]), [1.0, 2.0]) == [[], []]

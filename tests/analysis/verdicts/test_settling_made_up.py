@@ -38,7 +38,7 @@ def test_fewer_than_twelve_half_swings_say_nothing_else() -> None:
     assert told(np.full(12, 200.0)) is None
 
 
-@pytest.mark.parametrize(("share", "settled"), [(1.9e-3, True), (2.1e-3, False), (-1.9e-3, True), (-2.1e-3, False)])
+@pytest.mark.parametrize(("share", "settled"), [(1.98e-3, True), (2.01e-3, False), (-1.99e-3, True), (-2.02e-3, False)])
 def test_a_five_hundredth_of_the_amplitude_may_be_missing(share: float, settled: bool) -> None:
     """Of an exponential: what is still to come after the last half swing."""
     ratio, goal = 0.5, 250.0
@@ -82,6 +82,21 @@ def test_a_drift_beyond_three_standard_errors(share: float, drifts: bool) -> Non
     scatter = np.repeat(share / (3.0 * error) * (pattern - pattern.mean()), 2)
     amplitudes = 200.0 + np.concatenate([level + scatter for level in (0.0, 1.0, 2.0)])
     assert (told(amplitudes) is not None) is drifts
+
+
+@pytest.mark.parametrize(("share", "drifts"), [(0.97, True), (1.03, False)])
+def test_of_stretches_of_three_oscillations_the_scatter_is_known(share: float, drifts: bool) -> None:
+    """Off a straight line by 1, -2, 1: the mean square is 2."""
+    scatter = np.repeat(share / (3.0 * math.sqrt(2.0 * 2.0 / 3.0)) * np.array([1.0, -2.0, 1.0]), 2)
+    amplitudes = 200.0 + np.concatenate([level + scatter for level in (0.0, 1.0, 2.0)])
+    assert (told(amplitudes) is not None) is drifts
+
+
+def test_what_begins_to_drift_has_no_end_foretold() -> None:
+    """The first two thirds are alike; nothing is divided by zero."""
+    with np.errstate(all="raise"):
+        said = told(200.0 + np.repeat([0.0, 0.0, 2.0], 40))
+    assert "on its way" not in said.message and "rises by" in said.message
 
 
 def test_of_stretches_of_two_oscillations_no_scatter_is_known() -> None:

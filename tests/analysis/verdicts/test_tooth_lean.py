@@ -7,6 +7,7 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from analysis.made_beats import lever_scene, polygon, star
 from analysis.made_faults import swiss, turned_over
@@ -14,7 +15,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 from watchsim.analysis.timing.teeth import pitch
-from watchsim.analysis.verdicts.tooth_lean import Teeth, teeth
+from watchsim.analysis.verdicts.tooth_lean import Teeth, _points, teeth
 from watchsim.profiles_path import profiles_dir
 from watchsim.scene.file.load import load
 
@@ -121,3 +122,11 @@ def test_each_tooth_has_a_number(count, first):
         for off in (-0.49, 0.2, 0.49):
             assert Teeth(pitch, 0.1, first).number(middles[0] + (k + off) * pitch) == k % count + 1
     assert Teeth(pitch, 0.1, first).count == count
+
+
+def test_points_go_round_an_outline_once():
+    corners = [3e-3 + 1e-3j, 2e-3 + 5e-3j, -4e-3 - 2e-3j]
+    found = _points(polygon(corners))
+    assert found[0] == found[-1] == corners[0] and abs(found[1] - found[0]) > 0.0
+    length = sum(abs(b - a) for a, b in zip(corners, [*corners[1:], corners[0]], strict=True))
+    assert abs(np.diff(found)).sum() == pytest.approx(length, rel=1e-12)

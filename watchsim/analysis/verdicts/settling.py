@@ -49,7 +49,7 @@ def unsettled(watch: Watch) -> Verdict | None:
 
 def _decimals(way: float) -> int:
     """So many that what is still to come can be seen."""
-    return max(0, -math.floor(math.log10(way))) if way > 0.0 else 0
+    return max(0, -math.floor(math.log10(way)))
 
 
 def _error(parts: Array) -> float:
