@@ -54,7 +54,8 @@ def test_contacts_that_have_left_their_primitives_open(margins, active, awake: i
 
 
 @pytest.mark.parametrize(("fixed", "left", "opened"), [
-    ((), [4, 6, 2, 9], []), ((4,), [6, 2, 9], [4]), ((6, 9), [4, 2], [9]), ((2,), [4, 6, 9], [2]), ((4, 6, 2, 9), [], [4, 2, 9]),
+    ((), [4, 6, 2, 9], []), ((4,), [6, 2, 9], [4]), ((6, 9), [4, 2], [9]), ((2,), [4, 6, 9], [2]),
+    ((4, 6, 2, 9), [], [4, 2, 9]),
 ])  # fmt: skip
 def test_contacts_whose_gap_nothing_moves_are_left_out_and_open(
     fixed: tuple[int, ...], left: list[int], opened: list[int]
