@@ -91,3 +91,10 @@ def test_a_root_is_as_close_as_the_time_itself_is_known(start: float) -> None:
     kernel = in_python(turning_points._root, _value=lambda model, state, step, spring, turn, tau: math.cos(1e7 * tau))
     found = kernel(None, None, step, None, True, 3e-7)
     assert found == pytest.approx(0.5e-7 * math.pi, rel=1e-14, abs=2e-16 * start)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_what_is_zero_at_the_very_end_turns_there(side: float) -> None:
+    step = SimpleNamespace(span=SimpleNamespace(start=5.0))
+    kernel = in_python(turning_points._root, _value=lambda model, state, step, spring, turn, tau: side * (0.25 - tau))
+    assert kernel(None, None, step, None, True, 0.25) == pytest.approx(0.25, rel=1e-14)
