@@ -41,6 +41,7 @@ def kept(
     in_python(keep_passages, **instead)(model, state, step, end, record)
     assert state.clock.time == START + end
     events = record.events[: record.used.events]
+    assert (events["contact"] == -1).all()
     found = [(int(e["kind"]), int(e["body"]), float(e["t"]), float(e["value"])) for e in events]
     return found, state.side_u.tolist(), state.side_q.tolist()
 
