@@ -150,3 +150,13 @@ def test_what_is_pushed_the_way_it_goes_never_turns(case: str) -> None:
     assert ask("turning_time", one, 0.0, 0.0, 0.0) == math.inf
     one.force = 0.0
     assert ask("turning_time", one, 0.0, 0.0, 2.0) == math.inf  # damping alone never stops it
+
+
+@pytest.mark.parametrize("q", [0.9, -0.4])
+@pytest.mark.parametrize("case", ["spring", "spring and damping"])
+def test_what_is_let_go_at_rest_turns_after_half_a_period(case: str, q: float) -> None:
+    """Of the damped swing."""
+    one = coordinate(case)
+    rate = math.sqrt(one.stiffness / one.mass - (0.5 * one.viscous / one.mass) ** 2)
+    assert ask("turning_time", one, 0.0, q, 0.0) == pytest.approx(math.pi / rate, rel=1e-14)
+    assert ask("turning_time", one, 0.0, q, 1e-300) in (pytest.approx(0.0, abs=1e-200), pytest.approx(math.pi / rate))

@@ -41,7 +41,7 @@ def rounding(i: int) -> float:
 def test_rates_are_zero_below_tolerance_or_below_the_rounding_of_their_terms(exactly: bool) -> None:
     zero = np.zeros(2)
     in_python(zero_rates.set_rate_zeros)(rows(), 2, exactly, OPTIONS, PACE, zero)
-    assert zero == pytest.approx([rounding(0), rounding(1)] if exactly else [OPTIONS.speed_zero] * 2, rel=1e-12)
+    assert zero == pytest.approx([rounding(0), rounding(1)] if exactly else [OPTIONS.speed_zero] * 2, rel=1e-12, abs=0.0)
 
 
 def test_the_fastest_of_an_instant_is_kept() -> None:

@@ -141,3 +141,28 @@ def test_what_hardly_moves_across_is_left_as_it_is(share: float) -> None:
     """A millionth of how it moves along the face."""
     found = removed(-1e-12 - 1e-7, share * 1e-6, 1e-2, tangent=1.0)
     assert (found == 0.0) == (share < 1.0)
+
+
+@pytest.mark.parametrize(("gap", "margin", "heeded"), [
+    (0.0, 0.0, True), (0.9e-3, 0.0, True), (1.1e-3, 0.0, False), (0.0, -0.9e-3, True), (0.0, -1.1e-3, False),
+    (0.5e-3, 0.9e-3, True),
+])  # fmt: skip
+def test_what_touches_from_outside_is_not_pushed_into(gap: float, margin: float, heeded: bool) -> None:
+    """Near, and within its primitives: 2 x + y takes the overlap back, x closes the other gap."""
+
+    def at(model, q):
+        x, y = q
+        kin = SimpleNamespace(g=np.array([-1e-3 + 2.0 * x + y, gap - x]), margin=np.array([0.0, margin]))
+        ways = np.array([[2.0, 1.0], [-1.0, 0.0]])
+        return SimpleNamespace(ids=[0, 1], kin=kin, w_N=ways, w_T=0.0 * ways, slots=[2, 2], coord=np.array([[0, 1], [0, 1]]))
+
+    coordinates = SimpleNamespace(mass=np.ones(2), scale=np.full(2, 2.0))
+    model = SimpleNamespace(
+        contacts=np.rec.fromarrays([[30, 31], [5, 9]], names="a,b"), primitives=outline(20, ()), coordinates=coordinates
+    )
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(overlap_removal, "kinematics_at", at)
+        found = taken_back_from(model, np.zeros(2), OPTIONS, 1e-3)
+    assert found is not None
+    most = min(gap, 0.4e-3) if heeded else 0.4e-3  # alone, x is twice y
+    assert found == pytest.approx([most, 1e-3 - 2.0 * most], abs=1e-9)

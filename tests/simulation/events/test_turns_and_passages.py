@@ -10,6 +10,7 @@ import pytest
 from plain_kernels import in_python
 
 from watchsim.simulation.event_kinds import EVENT_DTYPE, EventKind
+from watchsim.simulation.motion import turning_points
 from watchsim.simulation.motion.turning_points import keep_passages
 
 START, LENGTH = 5.0, 0.6
@@ -40,6 +41,7 @@ def kept(
     in_python(keep_passages, **instead)(model, state, step, end, record)
     assert state.clock.time == START + end
     events = record.events[: record.used.events]
+    assert (events["contact"] == -1).all()
     found = [(int(e["kind"]), int(e["body"]), float(e["t"]), float(e["value"])) for e in events]
     return found, state.side_u.tolist(), state.side_q.tolist()
 
@@ -81,3 +83,19 @@ def test_at_a_jump_the_turn_is_now_and_no_rest_is_passed() -> None:
 def test_what_begins_has_no_side_before_and_writes_nothing_down() -> None:
     assert kept([-0.6, 1.0], [-9.0, 0.4], LENGTH, ([0] * 3, [0] * 3)) == ([], [-1, -1, 0], [1, -1, 0])
     assert kept([-0.6, 1.0], [-9.0, 0.4], LENGTH, ([-1, -1, 0], [1, -1, 0])) == ([], [-1, -1, 0], [1, -1, 0])
+
+
+@pytest.mark.parametrize("start", [0.0, 3e-6, 1e3])
+def test_a_root_is_as_close_as_the_time_itself_is_known(start: float) -> None:
+    """Also a microsecond after the start of a run."""
+    step = SimpleNamespace(span=SimpleNamespace(start=start))
+    kernel = in_python(turning_points._root, _value=lambda model, state, step, spring, turn, tau: math.cos(1e7 * tau))
+    found = kernel(None, None, step, None, True, 3e-7)
+    assert found == pytest.approx(0.5e-7 * math.pi, rel=1e-14, abs=2e-16 * start)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_what_is_zero_at_the_very_end_turns_there(side: float) -> None:
+    step = SimpleNamespace(span=SimpleNamespace(start=5.0))
+    kernel = in_python(turning_points._root, _value=lambda model, state, step, spring, turn, tau: side * (0.25 - tau))
+    assert kernel(None, None, step, None, True, 0.25) == pytest.approx(0.25, rel=1e-14)

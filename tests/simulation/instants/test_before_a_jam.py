@@ -9,7 +9,7 @@ from plain_kernels import in_python
 
 from watchsim.contact.index_sets import FORWARD, OPEN, STICK
 from watchsim.simulation.event_kinds import EVENT_DTYPE, EventKind
-from watchsim.simulation.events import dead_centre, jammed_contacts
+from watchsim.simulation.events import dead_centre, jammed_contacts, released_contacts
 
 MASS = np.array([1.5, 0.4, 2.0])
 
@@ -114,3 +114,15 @@ def test_slips_that_are_rounding_of_the_friction_impulse_are_stopped(sign: float
     assert stop(sign * 1.1 * rounding) == (False, [OPEN, OPEN], [])
     assert stop(sign * 0.9e-18) == (False, [OPEN, OPEN], []) and stop(sign * 1.1e-18)[0]
     assert stop(sign * 1.1 * rounding, bodies=True) == (True, [OPEN, OPEN], changed)
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e-18])
+def test_no_force_is_small_but_beside_larger_ones(unit: float) -> None:
+    """Forces that press hold in any unit; what presses by a share of rounding beside another one does not."""
+    model = named(contacts=[named(group=0)] * 2, laws=[named(friction=0.0)])
+    state = named(mode=[FORWARD] * 2, now=named(lenience=1.0))
+    kernel = in_python(released_contacts._weakest)
+    for normal, found in (([5.0, 3.0], (False, 0, False)), ([3e14, 2.9], (True, 1, True)), ([3e14, 3.1], (False, 0, False))):
+        force = [unit * normal[0], 77.0 * unit, unit * normal[1], 77.0 * unit]
+        work = named(force=force, size=[1e-3 * unit] * 4, G=np.eye(4))
+        assert kernel(model, state, 2, named(force_zero=1e-9), work, named(ids=[0, 1])) == found

@@ -11,7 +11,7 @@ from plain_kernels import in_python
 
 from watchsim.contact.index_sets import BACKWARD, FORWARD, OPEN, STICK
 from watchsim.simulation.event_kinds import EVENT_DTYPE, EventKind
-from watchsim.simulation.events import after_event
+from watchsim.simulation.events import after_event, immovable
 from watchsim.simulation.loop_state.state import NO_CONTACT
 
 EXTENT = 1e-9
@@ -23,6 +23,8 @@ def written() -> SimpleNamespace:
 
 
 def kinds(record: SimpleNamespace) -> list[tuple[int, int]]:
+    """Of what happened to contacts: no body is named, and there is no value."""
+    assert {(int(e.body), float(e.value)) for e in record.events[: record.used.events]} <= {(-1, 0.0)}
     return [(int(e.kind), int(e.contact)) for e in record.events[: record.used.events]]
 
 
@@ -49,6 +51,27 @@ def test_contacts_that_have_left_their_primitives_open(margins, active, awake: i
     assert state.active[: len(active)] == active and (now.awake_contacts, now.sleeping_contacts) == (awake, asleep)
     assert kinds(record) == [(EventKind.OPEN, k) for k in opened]
     assert [k for k, mode in modes.items() if mode == OPEN] == opened
+
+
+@pytest.mark.parametrize(("fixed", "left", "opened"), [
+    ((), [4, 6, 2, 9], []), ((4,), [6, 2, 9], [4]), ((6, 9), [4, 2], [9]), ((2,), [4, 6, 9], [2]),
+    ((4, 6, 2, 9), [], [4, 2, 9]),
+])  # fmt: skip
+def test_contacts_whose_gap_nothing_moves_are_left_out_and_open(
+    fixed: tuple[int, ...], left: list[int], opened: list[int]
+) -> None:
+    """Contact 6 is open already."""
+    modes, record = {4: STICK, 6: OPEN, 2: FORWARD, 9: BACKWARD}, written()
+    closed = named(ids=[4, 6, 2, 9])
+
+    def move(model, k, pose, row, out) -> None:
+        out.ids[row] = k
+
+    state = named(mode=modes, clock=named(time=2.5), counts=named(events=0))
+    instead = {"is_immovable": lambda model, closed, i: closed.ids[i] in fixed, "contact_kinematics": move}
+    kept = in_python(immovable.drop_immovable, **instead)(None, state, 4, named(closed=closed, pose=None), record)
+    assert closed.ids[:kept] == left and kinds(record) == [(EventKind.OPEN, k) for k in opened]
+    assert all(modes[k] == OPEN for k in opened) and all(modes[k] != OPEN for k in left if k != 6)
 
 
 def test_modes_decided_take_the_place_of_the_old_ones() -> None:

@@ -54,7 +54,7 @@ def test_a_swing_under_a_constant_force_turns_over_its_energy() -> None:
     made = ledger(1e-3, {"friction": 0.0}, (0.0, 0.0), swinging)
     assert made["residual_relative"] == pytest.approx(1e-3 / (2.0 * 0.09 / 0.2))
     assert ledger(0.0, {"friction": 0.0}, (0.0, 0.0), NOTHING)["residual_relative"] == 0.0
-    assert ledger(1e-3, {}, (0.0, 0.0), model())["residual_relative"] == 1.0
+    assert ledger(1e-12, {}, (0.0, 0.0), model())["residual_relative"] == 1.0
 
 
 def test_the_usual_energy_is_that_of_usual_speeds() -> None:

@@ -13,6 +13,7 @@ from watchsim.simulation.loop_state.buffers import new_record, new_until
 from watchsim.simulation.loop_state.scratch import new_scratch
 from watchsim.simulation.loop_state.state import COUNT_NAMES, NO_CONTACT, new_state, room_for
 from watchsim.simulation.loop_state.state_arrays import arrays_of, copy_of_state, write_state
+from watchsim.simulation.methods import METHODS, MOREAU, USUAL_STEP
 from watchsim.simulation.options import natural_step, options_for
 
 
@@ -37,6 +38,11 @@ def test_lengths_and_speeds_that_are_zero_scale_with_the_size(
 ])  # fmt: skip
 def test_rows_lie_closer_by_the_fifth_root_of_the_tolerance(tolerance: float, phase: float) -> None:
     assert options_for(1.0, tolerance, 0.125).row_phase == pytest.approx(phase, rel=1e-12)
+
+
+def test_ways_of_stepping_have_names_and_a_usual_step() -> None:
+    """Ten microseconds, as the manual says."""
+    assert (METHODS, MOREAU, USUAL_STEP) == (("pfeiffer-glocker", "moreau"), "moreau", 1e-5)
 
 
 def test_no_step_is_longer_than_a_quarter_of_the_fastest_period() -> None:

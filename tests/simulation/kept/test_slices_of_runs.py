@@ -9,6 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from watchsim.mechanism.compile import compile_scene
+from watchsim.scene.body import Body
+from watchsim.scene.force import Spring
+from watchsim.scene.recording import Recording
+from watchsim.scene.scene import Scene
 from watchsim.simulation import runner, simulate
 from watchsim.simulation.record.saved_state import SavedState
 from watchsim.simulation.runner import Run
@@ -174,3 +179,40 @@ def test_a_run_goes_on_from_a_state_that_lies_before_its_end() -> None:
     for duration in (1.5, 1.0):
         with pytest.raises(ValueError, match=r"reached 1.5 s already; the duration"):
             simulate._take_up(run, saved, duration)
+
+
+def test_a_run_begins_with_room_for_what_it_keeps() -> None:
+    """Windows reach a longest step further, a quarter of the period; the first step is a thousandth of that; 20000 and more."""
+    balance = Body("balance", "pivot", angle=0.75, velocity=(0.5,), inertia=2e-9)
+    scene = Scene("one", (balance,), springs=(Spring("balance", 8e-9, rest=0.25),), duration=3.0)
+    run = Run(scene, compile_scene(scene), 1e-8, Recording(((4.0, 5.0), (7.0, 8.0))))
+    quarter = 0.5 * math.pi / 2.0
+    assert run.options.max_step == pytest.approx(quarter) and run.state.clock.step == pytest.approx(1e-3 * quarter)
+    assert run.record.windows == pytest.approx(np.array([[4.0, 5.0], [7.0, 8.0]]) + quarter * np.array([-1.0, 1.0]))
+    assert run.record.rows.shape == (20000 + 136, 4) and run.record.events.shape == (20000 + 20 * 48,)
+    assert (run.method, run.step, run.parts_before, run.saved, run.tolerance) == ("pfeiffer-glocker", None, 0, None, 1e-8)
+    assert run.stored_at_start == pytest.approx(0.5 * 2e-9 * 0.25 + 0.5 * 8e-9 * 0.25)
+    assert run.kept.tail == pytest.approx((8.0 + 4.0) * math.pi) and run.settings()["gap_zero"] == run.options.gap_zero
+    assert run.counts()["declared_pairs"] == 0 == run.counts()["cells"]
+
+
+def test_buffers_are_emptied_into_sums_watch_and_what_is_kept() -> None:
+    run, told = MadeUp([]), []
+    run.record = SimpleNamespace(rows=np.arange(5), events=10 + np.arange(5), used=SimpleNamespace(rows=3, events=2))
+    run.tally = SimpleNamespace(fold=lambda events: told.append(events.tolist()))  # type: ignore[assignment]
+    run.watch = SimpleNamespace(see_rows=lambda rows: told.append(rows.tolist()))  # type: ignore[assignment]
+    run.kept = SimpleNamespace(flush=lambda rows, events: told.append((rows.tolist(), events.tolist())))  # type: ignore[assignment]
+    Run.flush(run)
+    assert told == [[10, 11], [0, 1, 2], ([0, 1, 2], [10, 11])] and vars(run.record.used) == {"rows": 0, "events": 0}
+
+
+@pytest.mark.parametrize("taken_back", [0.0, 1e-12])
+def test_what_is_taken_back_at_the_start_moves_it(taken_back: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    run = MadeUp([])
+    run.scene = run.finder = run.options = None  # type: ignore[assignment]
+    run.compiled = SimpleNamespace(model="model")  # type: ignore[assignment]
+    monkeypatch.setattr(runner, "clear_start", lambda *_: (np.array([0.75]), taken_back))
+    monkeypatch.setattr(runner, "stored_energy", lambda model, q, u: 10.0 * q[0] + u[0])
+    run.begin()
+    found = (run.state.q[0], run.state.worst.penetration, run.stored_at_start)
+    assert found == ((0.75, 1e-12, 8.0) if taken_back else (0.25, 1e-9, 2.0))

@@ -20,6 +20,7 @@ from watchsim.simulation.record.body_frames import frames, speeds
 from watchsim.simulation.record.contact_names import Pair, Pairs, as_pairs, pairs_of
 from watchsim.simulation.record.saved_state import SavedState
 from watchsim.simulation.record.scene_coordinates import events_of_scene, rows_of_scene
+from watchsim.simulation.stops import Stop
 
 BODIES = (
     Body("disc", "free"),
@@ -137,6 +138,36 @@ def test_of_a_run_that_kept_nothing_there_are_columns_without_rows() -> None:
     (t, q, u, a), events = frozen_run._all_kept(ended(None))
     assert t.shape == (0,) and q.shape == u.shape == a.shape == (0, 4) and events.shape == (0,)
     assert frozen_run._all_kept(ended(None, "everything")) == "everything"
+
+
+def test_a_trajectory_has_all_that_is_known_of_its_run() -> None:
+    """What is at its end in the coordinates of the scene, as copies; the problem that failed only where one did."""
+    run = ended(SavedState({}, "", {}, 0.0, recorded={}), (np.arange(8.0).reshape(4, 2), np.zeros(0, EVENT_DTYPE)))
+    t, q = np.arange(2.0), np.arange(8.0).reshape(2, 4)
+    run.kept.closed = lambda end: ((t, q, 10.0 * q, 100.0 * q), np.zeros(0, EVENT_DTYPE))
+    run.kept.recording, run.kept.spans = SimpleNamespace(keep="events"), lambda end: ((0.5, end),)
+    run.state.q, run.state.u = np.array([1.0, 2.0, 3.0, 4.0]), np.array([5.0, 6.0, 7.0, 8.0])
+    run.state.worst = SimpleNamespace(penetration=3e-9)
+    run.compiled = SimpleNamespace(slices=SLICES, relative=lambda q, rates=False: q + (100.0 if rates else 200.0))
+    run.watch = SimpleNamespace(result=lambda admitted: {"worst_m": 2.0 * admitted})
+    run.worst_residual, run.energy, run.counts = lambda: np.array([4e-9]), lambda: {"in_J": 5.0}, lambda: {"steps": 6}
+    run.tally, run.scene, run.pairs = SimpleNamespace(finished=lambda: {"half_swings": 7}), SCENE, "pairs"
+    run.method, run.tolerance, run.step = "moreau", 1e-7, 1e-5
+    made = frozen_run.trajectory_of(run, Stop.DURATION, 8.0, 9.0)
+    assert (made.scene, made.slices, made.pairs, made.stop) == (SCENE, SLICES, "pairs", Stop.DURATION)
+    assert made.stop_message == f"t = 2.5 s: {Stop.DURATION.sentence}" and (made.simulated, made.wall, made.compile) == (
+        2.5,
+        8.0,
+        9.0,
+    )
+    assert (made.method, made.tolerance, made.step) == ("moreau", 1e-7, 1e-5)
+    assert (made.worst_penetration, made.worst_residual, made.overlap) == (3e-9, 4e-9, {"worst_m": 6e-9})
+    assert (made.energy, made.counts, made.keep, made.spans, made.sums) == (
+        {"in_J": 5.0}, {"steps": 6}, "events", ((0.5, 2.5),), {"half_swings": 7},
+    )  # fmt: skip
+    assert (made.end_q.tolist(), made.end_u.tolist()) == ([201.0, 202.0, 203.0, 204.0], [105.0, 106.0, 107.0, 108.0])
+    assert (made.t.tolist(), made.a.tolist(), made.failure) == ([0.0, 1.0], (100.0 * q).tolist(), None)
+    assert made.end_state is not None and (made.end_state.rows, made.end_state.events) == (7, 9)
 
 
 def test_the_first_interrupt_is_remembered_and_the_second_one_raises() -> None:

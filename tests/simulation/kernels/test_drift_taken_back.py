@@ -105,7 +105,7 @@ def test_what_next_to_no_impulse_moves_is_left_as_it_is(row: int, share: float) 
 
 @pytest.mark.parametrize("share", [0.9, 1.1])
 def test_two_directions_count_as_one_below_an_angle(share: float) -> None:
-    """Sine² times four (a pivot of complete elimination leaves sine²): what is one is taken back by one impulse only."""
+    """By its sine²: what is one is taken back by one impulse only."""
     angle = (share * INDEPENDENT) ** 0.5
     normal = np.array([[1.0, 0.0], [np.cos(angle), np.sin(angle)]])
     closed = closed_of(normal, 1e-9 * normal, gN_dot=[0.3, -0.2])

@@ -138,8 +138,8 @@ class Trajectory:
         j = np.minimum(i + 1, len(self.t) - 1)
         h = (self.t[j] - self.t[i])[:, None]
         last = h <= 0.0  # two rows of one instant at the very end: take the one after the impact
-        s = np.where(last, 1.0, np.clip((times - self.t[i])[:, None] / np.where(last, 1.0, h), 0.0, 1.0))
         h = np.where(last, 1.0, h)
+        s = np.clip((times - self.t[i])[:, None] / h, 0.0, 1.0)
         q, u = between(s, h, (self.q[i], self.u[i], self.a[i]), (self.q[j], self.u[j], self.a[j]), self._noise)
         q, u = np.where(last, self.q[j], q), np.where(last, self.u[j], u)
         let_go(self.t, self.q, self.u, self.a)
@@ -154,7 +154,7 @@ class Trajectory:
         h = (self.t[j] - self.t[i])[:, None]
         last = h <= 0.0
         h = np.where(last, 1.0, h)
-        s = np.where(last, 1.0, np.clip((times - self.t[i])[:, None] / h, 0.0, 1.0))
+        s = np.clip((times - self.t[i])[:, None] / h, 0.0, 1.0)
         way = (self.u[j] - self.u[i]) / h
         left, right = self.a[i], self.a[j]
         cubic = left + s * (6.0 * way - 4.0 * left - 2.0 * right + s * (3.0 * (left + right) - 6.0 * way))
