@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from mpmath import mp
 from plain_kernels import in_python
 
 from watchsim.contact import edge_distance as kernels
@@ -94,6 +95,29 @@ def test_no_point_of_either_is_nearer(k: int) -> None:
     assert crossing is again is (truth < 1e-9)
 
 
+def in_millimetres(edge: Edge) -> Edge:
+    if isinstance(edge, Line):
+        return Line(1e-3 * edge.x0, 1e-3 * edge.y0, 1e-3 * edge.x1, 1e-3 * edge.y1)
+    return Arc(1e-3 * edge.x, 1e-3 * edge.y, 1e-3 * edge.radius, edge.start_angle, edge.sweep)
+
+
+@pytest.mark.parametrize("k", range(0, len(PAIRS), 3))
+def test_small_edges_too(k: int) -> None:
+    small, (a, b) = [in_millimetres(edge) for edge in PAIRS[k]], PAIRS[k]
+    (distance, crossing), (whole, meets) = checked(small[0], small[1]), checked(a, b)
+    assert distance == pytest.approx(1e-3 * whole, abs=1e-15) and crossing is meets
+
+
+def test_of_flat_arcs_nothing_is_lost() -> None:
+    """A millimetre of a circle a kilometre wide: its middle to the last digit."""
+    arc = Arc(0.0, -500.0, 500.0, 0.5 * math.pi - 1.3e-6, 2e-6)
+    (row,) = edge_records([arc])
+    with mp.workdps(40):
+        turn = mp.mpf(arc.start_angle) + mp.mpf(arc.sweep) / 2
+        assert abs(mp.mpf(float(row.x)) - 500 * mp.cos(turn)) < 1e-18
+        assert abs(mp.mpf(float(row.y)) - (500 * mp.sin(turn) - 500)) < 1e-18
+
+
 def test_the_pairs_are_of_all_kinds() -> None:
     kinds = {(type(a).__name__, type(b).__name__, searched(a, b) < 1e-9) for a, b in PAIRS}
     assert len(kinds) == 8
@@ -143,8 +167,10 @@ def test_records_and_points_by_their_way_from_the_middle(edge: Edge) -> None:
 
 
 def test_what_has_no_length_is_left_out_and_no_circle_is_longer_than_itself() -> None:
-    rows = edge_records([Line(1.0, 2.0, 1.0, 2.0), Arc(0.0, 0.0, 0.4, 0.0, 9.0), Line(0.0, 0.0, 3.0, 4.0)])
-    assert [2.0 * row.half for row in rows] == pytest.approx([TURN * 0.4, 5.0], rel=1e-14)
+    rows = edge_records(
+        [Line(1.0, 2.0, 1.0, 2.0), Arc(0.0, 0.0, 0.4, 0.0, 9.0), Line(0.0, 0.0, 3.0, 4.0), Line(0.0, 0.0, 3e-4, 4e-4)]
+    )
+    assert [2.0 * row.half for row in rows] == pytest.approx([TURN * 0.4, 5.0, 5e-4], rel=1e-14)
 
 
 @pytest.mark.parametrize("seed", range(6))
