@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
-from test_edge_distance import along, apart, checked, drawn
+from test_edge_distance import _to_edge, along, apart, checked, drawn, in_millimetres, one
 
-from watchsim.geometry.primitives import Edge, Line
+from watchsim.geometry.primitives import Arc, Edge, Line
 
 
 def crossings(a: Edge, b: Edge) -> int:
@@ -33,3 +35,14 @@ def crossing_twice(count: int) -> list[tuple[Edge, Edge]]:
 @pytest.mark.parametrize(("a", "b"), crossing_twice(40))
 def test_those_that_cross_twice_are_found(a: Edge, b: Edge) -> None:
     assert checked(a, b) == checked(b, a) == (0.0, True)
+    small = in_millimetres(a), in_millimetres(b)
+    assert checked(*small) == checked(*small[::-1]) == (0.0, True)
+
+
+def test_so_are_very_flat_arcs() -> None:
+    """A metre of a circle four kilometres wide, a sixth of its rise below its top."""
+    arc = Arc(0.0, -2000.0, 2000.0, 0.5 * math.pi - 2.5e-4, 5e-4)
+    for line in (Line(-0.7, -1e-5, 0.9, -1e-5), Line(0.9, -1e-5, -0.7, -1e-5)):
+        for a, b in ((arc, line), (line, arc)):
+            distance, _, _, crossing = _to_edge(one(a), one(b))
+            assert (distance, crossing) == (0.0, True)
