@@ -63,6 +63,14 @@ def test_the_misses_of_a_whole_turn_count(wrong: float, fold: int) -> None:
     assert turn_symmetry(rows, TOLERANCE).fold == fold
 
 
+def test_holes_are_counted_round_by_their_middles_and_arcs_by_their_own() -> None:
+    """Holes that all hold the axis; arcs about the axis in any order."""
+    assert turn_symmetry(crown(5, 0.2, radius=0.5), TOLERANCE).fold == 5
+    arcs = [Arc(0.0, 0.0, 1.1, TURN * k / 5.0, 0.7) for k in (3, 1, 4, 0, 2)]
+    found = turn_symmetry(joined(*(features(Loop((arc,), closed=False), 0, 1.0) for arc in arcs)), TOLERANCE)
+    assert found.fold == 5 and not found.loose.any()
+
+
 def test_divisors() -> None:
     assert [_divisors(n) for n in (1, 2, 12, 15, 17)] == [[], [2], [12, 6, 4, 3, 2], [15, 5, 3], [17]]
 

@@ -39,9 +39,10 @@ def turn_symmetry(primitives: Records, tolerance: float) -> Symmetry:
     for fold in sorted({d for members, _ in classes for d in _divisors(len(members))}, reverse=True):
         image, loose = np.arange(len(primitives)), np.zeros(len(primitives), bool)
         for members, on_axis in classes:
-            if not on_axis and len(members) % fold == 0:
+            if len(members) % fold == 0:
                 image[members] = np.roll(members, -(len(members) // fold))
-            loose[members] = not on_axis and len(members) % fold != 0
+            else:
+                loose[members] = not on_axis
         miss = fold * _mismatch(primitives, ends, image, 2.0 * math.pi / fold) > tolerance
         for members, _ in classes:
             loose[members] |= miss[members].any()
