@@ -12,9 +12,10 @@ from moving_scenes import box, circle
 
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Line
+from watchsim.mechanism.overlap_depth import corner_depth
 from watchsim.scene.force import Side
 from watchsim.simulation.record import overlap_instants
-from watchsim.simulation.record.overlap_instants import Layers, PairOfLayers, _corner_depth, _inverse
+from watchsim.simulation.record.overlap_instants import Layers, PairOfLayers, _inverse
 
 MM, DEPTH, CHORD = 1e-3, 4e-6, 1e-6
 PLATE, BLOCK = (box(6 * MM, 4 * MM),), (box(2 * MM, 1 * MM),)
@@ -123,11 +124,11 @@ def test_the_first_frame_seen_from_the_second_is_the_inverse(seed: int) -> None:
 
 
 def test_a_corner_of_a_face_is_as_deep_as_its_way_to_the_border() -> None:
-    """The deepest of several; none where the material came round an end."""
+    """The deepest of several; below zero where none lies in it or the material came round an end."""
     plate = shapely.box(0.0, 0.0, 4.0, 3.0)
     face = np.array([[-1.0, 1.0], [0.5, 1.5], [2.0, 1.25], [5.0, 2.0]])
-    assert _corner_depth(face, plate) == (1.25, (2.0, 1.25))
-    assert _corner_depth(face[:3], plate) == _corner_depth(face[1:], plate) == (0.0, (0.0, 0.0))
-    assert _corner_depth(face[[1, 0, 2, 3]], plate) == _corner_depth(face[[0, 2, 3, 1]], plate) == (0.0, (0.0, 0.0))
-    depth, _ = _corner_depth(np.array([[-1.0, 1.0], [-0.5, 1.0], [-1.0, 2.0]]), plate)
-    assert depth == 0.0
+    assert corner_depth(face, plate) == (1.25, (2.0, 1.25))
+    assert corner_depth(face[:3], plate) == corner_depth(face[1:], plate) == (-1.0, (0.0, 0.0))
+    assert corner_depth(face[[1, 0, 2, 3]], plate) == corner_depth(face[[0, 2, 3, 1]], plate) == (-1.0, (0.0, 0.0))
+    depth, _ = corner_depth(np.array([[-1.0, 1.0], [-0.5, 1.0], [-1.0, 2.0]]), plate)
+    assert depth == -1.0
