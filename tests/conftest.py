@@ -11,11 +11,13 @@ import os
 import signal
 import sys
 import time
+import zlib
 from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import HealthCheck, settings
 
@@ -65,6 +67,7 @@ def is_plain(item: pytest.Item) -> bool:
 
 def pytest_runtest_setup(item: pytest.Item) -> None:
     """The first worker compiles what is largest before its first test that may need it; the others wait for that."""
+    draw_anew(item)
     workerinput = getattr(item.config, "workerinput", None)
     if workerinput is None or is_plain(item) or item.config.stash.get(COMPILED, False):
         return
@@ -75,6 +78,14 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
         until = time.monotonic() + PATIENCE
         while not all(map(is_cached, LARGEST)) and cache_folder() is not None and time.monotonic() < until:
             time.sleep(0.2)
+
+
+def draw_anew(item: pytest.Item) -> None:
+    """The random numbers of a file (RNG) do not depend on which of its tests ran before."""
+    module = item.getparent(pytest.Module)
+    rng = getattr(module.obj, "RNG", None) if module else None
+    if isinstance(rng, np.random.Generator):
+        rng.bit_generator.state = np.random.default_rng(zlib.crc32(item.name.encode())).bit_generator.state
 
 
 def compile_largest() -> None:

@@ -1,10 +1,11 @@
-"""Which forces are chosen where contacts are redundant? Against scipy, and by what they must keep."""
+"""Which forces are chosen where contacts are redundant? Against every choice that there is, and by what they must keep."""
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pytest
-from scipy.optimize import nnls
 
 from watchsim.analysis.balanced_forces import _least, _pressing, _within_cones
 
@@ -44,10 +45,23 @@ def test_friction_may_turn_the_sign_of_a_diagonal() -> None:
     assert (system @ found[:, :, None])[:, :, 0] == pytest.approx(np.array([[8.0, -3.0]]), rel=1e-12)
 
 
+def smallest(system: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """The smallest of all solutions without negative entries: every choice of entries in use is tried."""
+    shares = system.shape[1]
+    found = []
+    for mask in itertools.product([False, True], repeat=shares):
+        used, x = np.array(mask), np.zeros(shares)
+        if used.any():
+            x[used] = np.linalg.pinv(system[:, used]) @ right
+        if x.min() >= -1e-9 and np.abs(system @ x - right).max() <= 1e-9 * np.abs(right).max():
+            found.append(x)
+    return min(found, key=lambda x: float(x @ x))
+
+
 @pytest.mark.parametrize("unit", [1.0, 1e-6, 1e5])
-@pytest.mark.parametrize("shares", [1, 3, 6, 9])
+@pytest.mark.parametrize("shares", [1, 3, 6, 8])
 def test_shares_press_and_balance(shares: int, unit: float) -> None:
-    """None is negative, those in use are told, what is asked for comes out, and no other such choice is much smaller."""
+    """None is negative, those in use are told, what is asked for comes out, and no other such choice is smaller."""
     for _ in range(10):
         system = RNG.normal(size=(3, shares)) * unit
         there = np.where(RNG.random(shares) < 0.6, RNG.uniform(0.5, 2.0, shares), 0.0)
@@ -56,9 +70,7 @@ def test_shares_press_and_balance(shares: int, unit: float) -> None:
         assert (found >= -1e-12 * max(1.0, found.max())).all() and not found[~used].any()
         assert used[found > 1e-6 * found.max(initial=0.0)].all()
         assert system @ found == pytest.approx(right, rel=1e-9, abs=1e-9 * unit)
-        high = 1.0 / np.abs(system).max(axis=1)
-        near, _ = nnls(np.vstack((system * high[:, None], 1e-4 * np.eye(shares))), np.append(right * high, np.zeros(shares)))
-        assert found == pytest.approx(near, abs=1e-5 * max(1.0, near.max()))
+        assert found == pytest.approx(smallest(system, right), abs=1e-9)
         again, _ = _pressing(system, right, used)
         assert again == pytest.approx(found, rel=1e-9, abs=1e-9)
 

@@ -44,7 +44,7 @@ ROUND = Loop((Line(0.0, 0.0, 2e-3, 0.0), Arc(2e-3, 1e-3, 1e-3, -0.5 * math.pi, m
     ids=repr,
 )
 def test_no_point_of_an_edge_is_nearer_than_that_at_the_nearest_fraction(edge: Edge) -> None:
-    shares = np.linspace(0.0, 1.0, 501).tolist()
+    shares = np.linspace(0.0, 1.0, 5001).tolist()
     dense = np.array([edge.point(share) for share in shares])
     for p in [(x, y) for x, y in RNG.uniform(-5.0, 5.0, (40, 2)).tolist()]:
         f = nearest_fraction(edge, p)
