@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-COPIED = ("watchsim", "profiles", "tests", "scripts", "pyproject.toml", "README.md")
+COPIED = ("watchsim", "profiles", "tests", "scripts", "docs", "pyproject.toml", "README.md")
 FIRST = "tests/simulation/recorded"  # many short runs
 
 
@@ -25,7 +25,7 @@ class CompiledCopy:
         for name in COPIED:
             source = ROOT / name
             if source.is_dir():
-                shutil.copytree(source, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
+                shutil.copytree(source, folder / name, ignore=shutil.ignore_patterns("__pycache__", "images"))
             else:
                 shutil.copy(source, folder / name)
 
@@ -43,10 +43,12 @@ class CompiledCopy:
         """The files of these tests, the recorded runs first and then by the time they take, which all are asked for once."""
         report = self.folder / "times.xml"
         passed, seconds = self.seconds(tests, None, f"--junitxml={report}")
+        cases = list(ET.parse(report).iter("testcase"))
         if not passed:
-            raise SystemExit("the tests fail without any fault")
+            failed = [case.get("name") for case in cases if case.find("failure") is not None or case.find("error") is not None]
+            raise SystemExit(f"the tests fail without any fault: {', '.join(map(str, failed))}")
         cost: Counter[str] = Counter()
-        for case in ET.parse(report).iter("testcase"):
+        for case in cases:
             cost[_file_of(self.folder, case.get("classname", ""))] += int(1e6 * float(case.get("time", 0.0)))
         return sorted(cost, key=lambda file: (not file.startswith(FIRST), cost[file])), seconds
 
