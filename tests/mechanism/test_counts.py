@@ -79,3 +79,13 @@ def test_sums_for_json():
     assert (entry["declared"], entry["reachable"], entry["typical"]) == (30, 15, 4)
     assert entry["between"][0] == {"bodies": ["a", "b"], "declared": 10, "reachable": 7, "typical": 3, "most": 4, "start": 2}
     assert np.all([set(row) == set(PairCount._fields) for row in entry["between"]])
+
+
+def test_without_the_prefilter_every_contact_is_near():
+    scene = ws.load(PROFILES / "bench_lever" / "scene.toml")
+    sifted, whole = compile_scene(scene).model, compile_scene(scene, prefilter=False).model
+    assert sifted.pairs.listed.any() and len(sifted.near) < len(sifted.contacts)
+    assert not whole.pairs.listed.any()
+    assert whole.near.tolist() == list(range(len(whole.contacts)))
+    assert whole.pairs.near_start.tolist() == whole.pairs.start.tolist()
+    assert whole.pairs.near_stop.tolist() == whole.pairs.stop.tolist()

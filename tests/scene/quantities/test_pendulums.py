@@ -10,9 +10,10 @@ import pytest
 from scipy.optimize import brentq
 
 from watchsim.scene.body import Body
+from watchsim.scene.carriers import Ride, Weighed
 from watchsim.scene.file.outlines.adjust import _about, _moved
 from watchsim.scene.force import Spring, Torque
-from watchsim.scene.oscillation import frequency, nominal_frequency, oscillator, oscillators
+from watchsim.scene.oscillation import _weight, frequency, nominal_frequency, oscillator, oscillators
 from watchsim.scene.scene import Scene
 
 GRAVITY = (3.0, -9.0)
@@ -125,3 +126,18 @@ def test_adjusted_parts_are_turned_about_a_point_and_shifted(turn: float) -> Non
     wanted = cmath.exp(1j * turn) * (point - about) + about + shift
     found = _moved((1.0, 2.0), turn, _about((-0.5, 0.25), turn, (0.125, -0.375)))
     assert complex(*found) == pytest.approx(wanted, abs=1e-15)
+
+
+@pytest.mark.parametrize("share", [0.8, 1.25])
+def test_a_centre_of_mass_on_the_pivot_makes_no_torque(share: float) -> None:
+    """Nearer than a thousand millionth of the radius of gyration; nor does what rides on a moving body."""
+    mass, inertia = 2e-3, 5e-9
+    moment = share * 1e-9 * math.sqrt(mass * inertia) * 0.6, -share * 1e-9 * math.sqrt(mass * inertia) * 0.8
+    torque, angle = _weight(Weighed(mass, moment, inertia), Ride(0, angle=0.4), GRAVITY)
+    if share < 1.0:
+        assert (torque, angle) == (0.0, 0.0)
+    else:
+        assert torque == pytest.approx(math.hypot(*moment) * G, rel=1e-12, abs=0.0)
+        hanging = angle + 0.4 + math.atan2(moment[1], moment[0])
+        assert math.remainder(hanging - DOWN, math.tau) == pytest.approx(0.0, abs=1e-12)
+    assert _weight(Weighed(mass, (1e-3, 2e-3), inertia), Ride(0, host=1), GRAVITY) == (0.0, 0.0)
