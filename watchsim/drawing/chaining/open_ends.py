@@ -106,7 +106,7 @@ def paired(
             pairs.append((free.pop(i), free.pop(j)))
     left: dict[int, int] = {}
     for i, end in sorted(free.items()):
-        chain = owners.get(end // 2, (-1 - i, 0.0))[0]
+        chain = owners[end // 2][0] if end // 2 in owners else -1 - i
         if chain in left:
             other = left.pop(chain)
             pairs.append((loose[other], end))

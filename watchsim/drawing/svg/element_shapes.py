@@ -126,7 +126,7 @@ def full_circle(m: Measures) -> PathData:
 def ellipse(m: Measures) -> PathData:
     if not m.given("rx") and not m.given("ry"):
         raise SvgError("it has neither rx nor ry")
-    rx, ry = m.along("rx", -1.0), m.up("ry", -1.0)
+    rx, ry = m.along("rx"), m.up("ry")
     rx, ry = (ry if not m.given("rx") else m.size("rx", rx)), (rx if not m.given("ry") else m.size("ry", ry))
     if rx == 0.0 or ry == 0.0:
         return PathData([], "")
