@@ -199,6 +199,16 @@ def test_a_block_that_is_there_twice_is_said(read_bytes: Reader) -> None:
     assert 'block "b" is defined twice' in errors(read_bytes(d.dxf(d.insert("B", (0, 0)), blocks=blocks)))["damaged"]
 
 
+def test_a_last_block_without_its_end_is_used_and_said(read_bytes: Reader) -> None:
+    whole = d.block("Wheel", d.circle(0, 0, 1))
+    blocks = whole.replace("0\nENDBLK\n8\n0\n", "")
+    assert blocks != whole
+    drawing = read_bytes(d.dxf(d.insert("wheel", (3, 4)), blocks=blocks))
+    assert 'block "Wheel" has no ENDBLK' in errors(drawing)["damaged"]
+    (loop,) = drawing.loops
+    assert loop.edges[0].point(0.5) == pytest.approx((2e-3, 4e-3))
+
+
 def test_entities_after_the_end_are_an_error(read_bytes: Reader) -> None:
     """Two files in one, or an EOF gone astray: what is drawn behind it must not get lost in silence."""
     drawing = read_bytes(d.dxf(d.circle(0, 0, 1)) + d.line((0, 0), (1, 0)).encode() + d.circle(5, 0, 1).encode())

@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 import threading
 from types import SimpleNamespace
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -170,8 +171,16 @@ def test_a_trajectory_has_all_that_is_known_of_its_run() -> None:
     assert made.end_state is not None and (made.end_state.rows, made.end_state.events) == (7, 9)
 
 
+@pytest.fixture
+def heard() -> Iterator[None]:
+    """Ctrl-C reaches Python, also where the tests run in the background of a shell, which has it ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("heard")
 def test_the_first_interrupt_is_remembered_and_the_second_one_raises() -> None:
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
     with held_interrupts() as came:
         assert not came()
         signal.raise_signal(signal.SIGINT)

@@ -97,7 +97,7 @@ class _Pen:
         if kind == "M":
             self.lift()
             self.here = self.start = (x + a[0], y + a[1])
-            self.size = max(abs(self.here[0]), abs(self.here[1]))
+            self.size = 0.0
         elif kind == "Z":
             self.close()
         elif kind == "H":
