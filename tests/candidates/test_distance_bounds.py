@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from watchsim.candidates.asymmetric_contacts import _range
 from watchsim.candidates.chords import chords
-from watchsim.candidates.reachable_pairs import _away
+from watchsim.candidates.reachable_pairs import _across, _away, _centre, _parallel, _ring, _Span, _world
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Line
 from watchsim.mechanism.contact_features import features
@@ -53,3 +56,61 @@ def test_what_passes_through_the_axis_comes_as_near_as_nothing(room: float) -> N
     drawn = chords(rows, 1e-6)
     low = _away(drawn, drawn.points, room).low[rows.length > 0.0]
     assert low == pytest.approx([0.0, 0.0, 1e-5 - room, 2e-5 - room], abs=1e-16) and np.all(low >= 0.0)
+
+
+@pytest.mark.parametrize(("arm", "low", "high"), [(0.5, 0.0, 1.4), (0.02, 0.18, 0.92), (1.3, 0.4, 2.2)])
+def test_what_is_carried_covers_a_ring_about_its_carrier(arm: float, low: float, high: float) -> None:
+    """A line from 0.2 to 0.9 m from its pivot, which runs round; nothing is added, then 0.03 m to either side."""
+    drawn = chords(features(Loop((Line(0.12, -0.16, 0.54, -0.72),), closed=False), 0, 1.0), 1e-6)
+    for room in (0.0, 0.03):
+        body = SimpleNamespace(carrier=0, x=0.6 * arm, y=-0.8 * arm)
+        found = _ring(body, drawn, room)
+        assert (found.low[0], found.high[0]) == pytest.approx((max(0.0, low - room), high + room), rel=1e-12)
+        alone = _ring(SimpleNamespace(carrier=-1, x=0.6, y=-0.8), drawn, room)
+        assert (alone.low[0], alone.high[0]) == pytest.approx((0.2 - room, 0.9 + room), rel=1e-12)
+
+
+@pytest.mark.parametrize("carrier", [-1, 0, 1])
+def test_about_which_point_a_body_turns(carrier: int) -> None:
+    bodies = np.rec.fromrecords([(0.3, -0.4), (1.1, 2.3)], names="x,y")
+    centre = {-1: (0.7, 0.9), 0: (0.3, -0.4), 1: (1.1, 2.3)}[carrier]
+    assert _centre(bodies, SimpleNamespace(carrier=carrier, x=0.7, y=0.9)) == centre
+
+
+@pytest.mark.parametrize("room", [0.0, 0.07])
+@pytest.mark.parametrize("sag", [0.3, 1e-3])
+def test_offsets_across_the_way_of_a_slide(sag: float, room: float) -> None:
+    """To the left of its axis they count positive; chords allow for what arcs may be off, and no more."""
+    rows, turn = made_up(4), np.exp(-0.9j)
+    fine, coarse = chords(rows, 1e-9, 4000), chords(rows, sag)
+    slider = SimpleNamespace(axis_x=math.cos(0.9), axis_y=math.sin(0.9))
+    true = [(dense(points) @ (1.0, 1.0j) * turn).imag for points in np.split(fine.points, fine.first[1:-1])]
+    low, high = np.array([one.min() for one in true]), np.array([one.max() for one in true])
+    span = _across(coarse, coarse.points, slider, room)
+    for beyond in (low - room - span.low, span.high - high - room):
+        assert np.all(beyond >= -1e-12) and np.all(beyond <= coarse.sag + 1e-6) and np.all(beyond[coarse.sag == 0.0] < 1e-8)
+    assert coarse.sag.max() > 0.3 * sag
+
+
+def test_points_of_a_body_in_the_world() -> None:
+    body = SimpleNamespace(x=0.3, y=-1.7, angle=0.6)
+    points = np.array([[0.4, 0.9], [-1.1, 0.2]])
+    world = (points @ (1.0, 1.0j)) * np.exp(0.6j) + complex(0.3, -1.7)
+    assert _world(body, points) @ (1.0, 1.0j) == pytest.approx(world, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("other", "wanted"), [((0.6, 0.8), True), ((-0.6, -0.8), True), ((0.8, 0.6), False), ((0.6, -0.8), False)]
+)
+def test_parallel_axes(other: tuple[float, float], wanted: bool) -> None:
+    one, two = (SimpleNamespace(axis_x=x, axis_y=y) for x, y in ((0.6, 0.8), other))
+    assert _parallel(one, two) is wanted
+
+
+def test_spans_that_meet() -> None:
+    """Also where they end where the other begins."""
+    low, high = np.array([0.1, 0.3, 0.5, 0.7, 0.2]), np.array([0.3, 0.4, 0.5, 0.9, 0.9])
+    span = _Span(np.full(5, 0.3), np.full(5, 0.6))
+    for one, other in ((span, _Span(low, high)), (_Span(low, high), span)):
+        assert one.meets(other).tolist() == [True, True, True, False, True]
+    assert not _Span(low, high).meets(_Span(low - 0.9, np.minimum(low - 0.01, 0.09))).any()

@@ -7,8 +7,11 @@ from typing import Any
 
 import pytest
 
+import watchsim as ws
 from watchsim.candidates.cell_frame import MOVEMENT, TRAVEL, TURN, axes_of, choose_frames, seen_from
+from watchsim.mechanism.compile import compile_scene
 from watchsim.model.records import BODY, BODY_PAIR, FIXED, FREE, PIVOT, SLIDE, Records, records
+from watchsim.profiles_path import profiles_dir
 
 HUB, SECOND, CART, PLATE = "hub", "second", "cart", "plate"  # pivots, slides, is free
 MADE: dict[str, dict[str, Any]] = {
@@ -135,3 +138,18 @@ def test_on_what_the_place_of_a_body_depends(case: tuple[str, str | None]) -> No
 
 def test_turns_and_travels_are_told_apart() -> None:
     assert TURN != TRAVEL and MOVEMENT < 0
+
+
+def carried() -> list[tuple[object, int, int]]:
+    """Bodies, the number of one that is carried, and of what carries it."""
+    bodies = compile_scene(ws.load(profiles_dir() / "carriage")).model.bodies
+    return [(bodies, b, int(bodies[b].carrier)) for b in range(len(bodies)) if bodies[b].carrier >= 0]
+
+
+@pytest.mark.parametrize("k", range(len(carried())))
+def test_a_carried_body_stands_where_it_hangs(k: int) -> None:
+    bodies, b, frame = carried()[k]
+    seen, itself = seen_from(bodies, b, frame), seen_from(bodies, frame, frame)
+    assert (seen.x, seen.y, seen.carrier) == (bodies[b].x, bodies[b].y, -1)
+    assert (itself.motion, itself.x, itself.y, itself.angle, itself.c, itself.s) == (FIXED, 0.0, 0.0, 0.0, 1.0, 0.0)
+    assert seen_from(bodies, b, MOVEMENT).x == bodies[b].x
