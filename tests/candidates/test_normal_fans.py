@@ -157,10 +157,11 @@ def test_fans() -> None:
             (ARC, FULL, 0.25, 0.0, 0.3, 0.4),
             (ARC, PART, 0.4, 0.8, math.cos(2.2), math.sin(2.2)),
             (CORNER, PART, 0.0, 0.0, math.cos(0.3), math.sin(0.3)),
+            (ARC, PART, 5e-4, 0.0, math.cos(0.3), math.sin(0.3)),
         ],
         names="kind,extent,radius,length,half_cos,half_sin",
     )
-    wanted = [0.7 + 0.03 / 0.4, 1.9 + 0.03 / 2.5, math.pi + 0.03 / 0.25, 2.2 + 0.03 / 0.8, 0.3 + math.pi]
+    wanted = [0.7 + 0.03 / 0.4, 1.9 + 0.03 / 2.5, math.pi + 0.03 / 0.25, 2.2 + 0.03 / 0.8, 0.3 + math.pi, 0.3 + 60.0]
     assert _fan(rows, 0.03) == pytest.approx(wanted, rel=1e-14)
 
 
