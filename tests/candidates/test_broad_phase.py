@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import cmath
-import itertools
 import math
 from dataclasses import replace
 from typing import Any
@@ -14,9 +13,10 @@ import shapely
 from pair_scenes import body_pose, outline
 from test_cell_travel import curve, seen
 
-from watchsim.candidates import cell_grid
+from watchsim.candidates import broad_phase, cell_grid
 from watchsim.candidates.asymmetric_contacts import LooseContacts
-from watchsim.candidates.broad_phase import PairSearch, _circles, _largest, _shapes
+from watchsim.candidates.broad_phase import PairSearch
+from watchsim.candidates.normal_fans import Regions
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Line
 from watchsim.mechanism.compile import Compiled, compile_scene
@@ -30,6 +30,13 @@ NONE = np.zeros(0, np.int64)
 @pytest.fixture(autouse=True)
 def _cells_however_few(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(cell_grid, "FEW_CONTACTS", 0)
+
+
+@pytest.fixture
+def any_normals(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No pair is left out because of its normals; cells are points, their middles."""
+    monkeypatch.setattr(broad_phase, "MARGIN", -0.5)
+    monkeypatch.setattr(Regions, "possible", lambda _, place, *__: np.ones(len(place), bool))
 
 
 def polygon(corners: int, size: float, at: complex) -> Loop:
@@ -63,12 +70,11 @@ def shape(points: np.ndarray) -> Any:
     "loops", [POLYGONS, POLYGONS[::-1], ROUND, ROUND[::-1]], ids=["lines", "swapped", "arcs", "swapped arcs"]
 )
 @pytest.mark.parametrize("clearance", [0.02, 0.12])
-def test_what_comes_within_the_clearance_is_found(loops: tuple[Loop, Loop], clearance: float) -> None:
+def test_what_comes_within_the_clearance_is_found(loops: tuple[Loop, Loop], clearance: float, any_normals: None) -> None:
     """Whatever the normals; where there are lines alone nothing else, of arcs what their chords may be off, twice."""
     scene, compiled = scene_of(loops, clearance)
     model, pair, places = compiled.model, compiled.model.pairs[0], np.random.default_rng(6).uniform(-3.0, 3.0, (40, 2))
     search: Any = PairSearch(model, 0, NONE)
-    search._regions.possible = lambda place, *_: np.ones(len(place), bool)
     assert max(search._drawn.sag.max(), search._still_sag.max()) <= 0.5 * clearance * (1.0 + 1e-12)
     beyond = 2.0 * float(search._drawn.sag.max() + search._still_sag.max())
     assert (beyond == 0.0) is (loops[0] in POLYGONS)
@@ -93,21 +99,23 @@ def test_what_comes_within_the_clearance_is_found(loops: tuple[Loop, Loop], clea
     assert hits > 10
 
 
-def test_loose_primitives_are_found_once_wherever_they_are() -> None:
+def test_loose_primitives_are_found_once_wherever_they_are(any_normals: None) -> None:
     """Contacts of two of them always, of one of them at least where they are found otherwise, the others as ever."""
     model = scene_of(POLYGONS, 0.02)[1].model
     loose = np.array([1, 4, 12, 20, 25])
-    start, cells = int(model.pairs[0].start), np.random.default_rng(3).integers(-90, 90, (12, 2))
+    start, cells = int(model.pairs[0].start), np.random.default_rng(3).integers(-160, 160, (150, 2))
     is_loose = np.isin(np.stack([model.contacts.a, model.contacts.b]), loose).sum(axis=0)
     assert {0, 1, 2} <= set(is_loose.tolist()) and {model.primitives.body[k] for k in loose} == {0, 1}
     usual, more = (PairSearch(model, 0, some).candidates(cells) for some in (NONE, loose))
+    near, met = model.near[model.pairs[0].near_start : model.pairs[0].near_stop] - start, 0
     for before, after in zip(*(np.split(found, np.cumsum(count)[:-1]) for count, found in (usual, more)), strict=True):
         assert np.all(np.diff(after) > 0)
         number = is_loose[after + start]
         assert set(before.tolist()) <= set(after.tolist())
         assert after[number == 0].tolist() == [k for k in before if is_loose[k + start] == 0]
-        near = model.near[model.pairs[0].near_start : model.pairs[0].near_stop] - start
+        met += int(np.count_nonzero(is_loose[before + start] == 1))
         assert after[number == 2].tolist() == [k for k in near if is_loose[k + start] == 2]
+    assert met > 5
 
 
 @pytest.mark.parametrize("turning", [0, 1])
@@ -141,6 +149,9 @@ def test_what_turns_freely_is_met_on_its_ring(motions: tuple[str, str], turning:
                 room_left = min(far - low, high - near) + travel
                 assert abs(room_left) < 1e-9 or ((c, k) in hit) is bool(room_left > 0.0)
     assert 0 < len(hit) < len(at) * len(ids)
+    for k in (3, 17):
+        only = LooseContacts(model, 0, ids[k : k + 1], mine[k : k + 1], partner[k : k + 1])
+        assert only.candidates(at, room)[0].tolist() == [c for c, one in sorted(hit) if one == k]
 
 
 def span(distance: np.ndarray, points: np.ndarray) -> tuple[float, float]:
@@ -148,24 +159,41 @@ def span(distance: np.ndarray, points: np.ndarray) -> tuple[float, float]:
     return max(float(low), 0.0), float(distance.max())
 
 
-def test_circles_hold_their_points() -> None:
-    """About the middle of the least and largest coordinates, as far as the corner of their frame."""
-    points = np.array([[[0.3, 0.1], [0.9, -0.7], [0.5, 0.4], [-2.0, 3.0]], [[1.3, 0.2], [1.1, 0.5], [0.6, 0.9], [4.0, -5.0]]])
-    centre, radius = _circles(points, np.array([0, 3, 4]))
-    assert centre == pytest.approx(np.array([[0.6 - 0.15j, -2.0 + 3.0j], [0.95 + 0.55j, 4.0 - 5.0j]]), rel=1e-14)
-    assert radius == pytest.approx(np.array([[math.hypot(0.3, 0.55), 0.0], [0.35 * math.sqrt(2.0), 0.0]]), rel=1e-14)
+def test_how_near_circles_come() -> None:
+    """Of a mover in the second row to a still one in the third: up to what is asked beside both radii."""
+    search: Any = object.__new__(PairSearch)
+    search._still_centre, search._still_radius = np.array([9.0, 9.0j, -0.7 + 1.1j]), np.array([0.0, 0.0, 0.2])
+    mover = np.array([[[5.0, 5.0], [0.3, -0.5], [0.3, 0.1]]])
+    apart = abs(complex(0.3, -0.2) - search._still_centre[2])
+    for share, wanted in ((1.001, True), (0.999, False)):
+        within = np.array([[share * (apart - 0.3 - 0.2)]])
+        assert search._circles_near(mover, np.array([0, 1, 3]), np.array([1]), np.array([2]), within).tolist() == [[wanted]]
 
 
-@pytest.mark.parametrize("first", [[0, 3, 4, 6], [0, 6]])
-def test_the_largest_of_each_primitive(first: list[int]) -> None:
-    values = np.array([[0.3, 0.9, 0.1, 0.4, 0.2, 0.7], [0.8, 0.1, 0.2, 0.6, 0.5, 0.3]])
-    wanted = [[max(row[a:b]) for a, b in itertools.pairwise(first)] for row in values.tolist()]
-    assert _largest(values, np.array(first)).tolist() == wanted
+def test_one_contact_alone_is_found_where_it_is_among_others(any_normals: None) -> None:
+    model = scene_of(POLYGONS, 0.02)[1].model
+    cells = np.random.default_rng(3).integers(-160, 160, (150, 2))
+    count, found = PairSearch(model, 0, NONE).candidates(cells)
+    cell = np.repeat(np.arange(len(cells)), count)
+    none, nothing = PairSearch(model, 0, NONE).candidates(cells[count == 0][:1])
+    assert none.tolist() == [0] and len(nothing) == 0
+    assert len(np.unique(found)) > 10
+    for k in np.unique(found)[::6]:
+        pairs = model.pairs.copy()
+        pairs.near_start, pairs.near_stop = 1, 2
+        one = model._replace(pairs=pairs, near=np.array([0, k + pairs.start[0]]))
+        alone, same = PairSearch(one, 0, NONE).candidates(cells)
+        assert np.flatnonzero(alone).tolist() == cell[found == k].tolist() and set(same.tolist()) == {k}
 
 
-def test_points_and_lines_through_several() -> None:
-    points = np.array([[0.3, 0.1], [0.9, -0.7], [0.5, 0.4], [-2.0, 3.0], [1.5, 2.5], [1.0, 7.0]])
-    made = _shapes(points, np.array([0, 1, 4, 6]))
-    assert [shapely.get_coordinates(one).tolist() for one in made] == [p.tolist() for p in np.split(points, [1, 4])]
-    assert [one.geom_type for one in made] == ["Point", "LineString", "LineString"]
-    assert [one.geom_type for one in _shapes(points[:2], np.array([0, 1, 2]))] == ["Point", "Point"]
+def test_contacts_are_counted_from_the_first_of_their_pair(any_normals: None) -> None:
+    """Behind another pair of bodies, with and without loose primitives."""
+    alone = scene_of(POLYGONS, 0.02)[0]
+    before = [replace(body, name=body.name + "0", position=(body.position[0], 5.0)) for body in alone.bodies]
+    contacts = (Contact((Side("a0"), Side("b0"))), *alone.contacts)
+    one, other = compile_scene(alone).model, compile_scene(Scene("behind", (*before, *alone.bodies), contacts=contacts)).model
+    assert other.pairs.start[1] > 0
+    cells, more = np.random.default_rng(3).integers(-160, 160, (150, 2)), int(np.flatnonzero(other.primitives.body == 2)[0])
+    for loose in (NONE, np.array([1, 4, 20])):
+        lists = [PairSearch(model, p, loose + p * more).candidates(cells) for p, model in enumerate((one, other))]
+        assert lists[0][1].tolist() == lists[1][1].tolist() and len(lists[0][1]) > 5

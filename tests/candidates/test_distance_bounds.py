@@ -5,14 +5,17 @@ And do bounds of the distance from an axis hold for the true curves, of which on
 
 from __future__ import annotations
 
+import itertools
 import math
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import shapely
 from pair_scenes import two_bodies
 
 from watchsim.candidates.asymmetric_contacts import _range
+from watchsim.candidates.broad_phase import _circles, _largest, _shapes
 from watchsim.candidates.chords import chords
 from watchsim.candidates.reachable_pairs import _across, _away, _centre, _parallel, _ring, _Span, _world
 from watchsim.geometry.loop import Loop
@@ -60,6 +63,8 @@ def test_what_passes_through_the_axis_comes_as_near_as_nothing(room: float) -> N
     drawn = chords(rows, 1e-6)
     low = _away(drawn, drawn.points, room).low[rows.length > 0.0]
     assert low == pytest.approx([0.0, 0.0, 1e-5 - room, 2e-5 - room], abs=1e-16) and np.all(low >= 0.0)
+    least = _range(np.hypot(*drawn.points.T), drawn.points, drawn.first, drawn.sag)[0][rows.length > 0.0]
+    assert np.all(least >= 0.0) and least[:2] == pytest.approx([0.0, 0.0], abs=1e-15)
 
 
 @pytest.mark.parametrize(("arm", "low", "high"), [(0.5, 0.0, 1.4), (0.02, 0.18, 0.92), (1.3, 0.4, 2.2)])
@@ -148,3 +153,26 @@ def test_points_lie_on_the_primitives_and_chords_near_them(sag: float) -> None:
         assert made.sag[i] <= sag * (1.0 + 1e-12) or pieces == MOST
         assert pieces == 1 or 2.0 * row.radius * math.sin(0.5 * half / (pieces - 1)) ** 2 > sag
     assert {CORNER, LINE, ARC} <= set(np.asarray(ROWS.kind).tolist())
+
+
+def test_circles_hold_their_points() -> None:
+    """About the middle of the least and largest coordinates, as far as the corner of their frame."""
+    points = np.array([[[0.3, 0.1], [0.9, -0.7], [0.5, 0.4], [-2.0, 3.0]], [[1.3, 0.2], [1.1, 0.5], [0.6, 0.9], [4.0, -5.0]]])
+    centre, radius = _circles(points, np.array([0, 3, 4]))
+    assert centre == pytest.approx(np.array([[0.6 - 0.15j, -2.0 + 3.0j], [0.95 + 0.55j, 4.0 - 5.0j]]), rel=1e-14)
+    assert radius == pytest.approx(np.array([[math.hypot(0.3, 0.55), 0.0], [0.35 * math.sqrt(2.0), 0.0]]), rel=1e-14)
+
+
+@pytest.mark.parametrize("first", [[0, 3, 4, 6], [0, 6]])
+def test_the_largest_of_each_primitive(first: list[int]) -> None:
+    values = np.array([[0.3, 0.9, 0.1, 0.4, 0.2, 0.7], [0.8, 0.1, 0.2, 0.6, 0.5, 0.3]])
+    wanted = [[max(row[a:b]) for a, b in itertools.pairwise(first)] for row in values.tolist()]
+    assert _largest(values, np.array(first)).tolist() == wanted
+
+
+def test_points_and_lines_through_several() -> None:
+    points = np.array([[0.3, 0.1], [0.9, -0.7], [0.5, 0.4], [-2.0, 3.0], [1.5, 2.5], [1.0, 7.0]])
+    made = _shapes(points, np.array([0, 1, 4, 6]))
+    assert [shapely.get_coordinates(one).tolist() for one in made] == [p.tolist() for p in np.split(points, [1, 4])]
+    assert [one.geom_type for one in made] == ["Point", "LineString", "LineString"]
+    assert [one.geom_type for one in _shapes(points[:2], np.array([0, 1, 2]))] == ["Point", "Point"]
