@@ -118,3 +118,64 @@ def test_where_a_body_is_and_how_it_moves(motion: int) -> None:
     found = [complex(pose.x, pose.y), complex(pose.c, pose.s), complex(pose.vx, pose.vy), complex(pose.w)]
     assert found == pytest.approx([at, turned, v, complex(w)], rel=1e-14)
     assert (pose.rx, pose.ry, pose.ax, pose.ay) == (0.0, 0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("motion", [PIVOT, SLIDE, FREE])
+def test_what_is_carried_rides_along(motion: int) -> None:
+    """The carrier is the first body of all; its own ratio is one, that of the body it carries is not."""
+    first = 0 if motion == FREE else 1
+    carrier = SimpleNamespace(motion=motion, first=first, x=0.7, y=1.6, c=0.28, s=0.96, axis_x=AXIS.real, axis_y=AXIS.imag)
+    body = SimpleNamespace(motion=PIVOT, first=3, x=0.3, y=-0.9, c=0.6, s=0.8, carrier=0, ratio=-2.5, phase=0.4)
+    room = poses.poses(2)
+    in_python(poses.place_body)(SimpleNamespace(bodies=[carrier, body]), 1, Q, U, room)
+    origin, turned, moving, w = {
+        PIVOT: (0.7 + 1.6j, cmath.rect(1.0, -1.3), 0.0j, -0.6),
+        SLIDE: (0.7 + 1.6j - 1.3 * AXIS, 0.28 + 0.96j, -0.6 * AXIS, 0.0),
+        FREE: (0.7 - 1.3j, cmath.rect(1.0, 0.45), 2.1 - 0.6j, 0.35),
+    }[motion]
+    arm, pose = (0.3 - 0.9j) * turned, room[1]
+    found = [complex(pose[x], pose[y]) for x, y in (("rx", "ry"), ("x", "y"), ("vx", "vy"), ("ax", "ay"), ("c", "s"))]
+    wanted = [arm, origin + arm, moving + 1j * w * arm, -(w**2) * arm, cmath.rect(1.0, -2.5 * 1.9 + 0.4)]
+    assert found == pytest.approx(wanted, rel=1e-14) and pose.w == pytest.approx(-2.5 * -1.2, rel=1e-14)
+
+
+def two(radius: float, bend: float) -> Any:
+    """A convex circle on one body by an arc on another; the contact of both is number 0."""
+    out = cmath.rect(1.0, 0.6)
+    point = 0.2 - 0.1j + radius * out
+    half = {"extent": PART, "half_cos": math.cos(1.4), "half_sin": math.sin(1.4), "length": 0.0}
+    a = SimpleNamespace(body=0, px=point.real, py=point.imag, nx=out.real, ny=out.imag, radius=radius, kind=ARC, **half)
+    b = SimpleNamespace(body=1, px=0.5, py=-0.7, nx=-0.8, ny=0.6, radius=bend, kind=ARC, **half)
+    contact = SimpleNamespace(a=0, b=1, curvature=1.0 / (bend + radius), reduced=0.1)
+    return SimpleNamespace(contacts=[contact], primitives=[a, b])
+
+
+@pytest.mark.parametrize("turn", [0.4, 1.1, 2.0])
+def test_where_two_arcs_meet(turn: float) -> None:
+    """On the line of their centres; how far inside they are is the less of what either says."""
+    model, pose = two(0.3, 0.9), [placed(-0.9, 0.6, turn + 2.9), placed(0.4, -0.2, turn)]
+    a, b = model.primitives
+    centre = complex(pose[0].x, pose[0].y) + (0.2 - 0.1j) * complex(pose[0].c, pose[0].s)
+    middle = complex(pose[1].x, pose[1].y) + (0.5 - 0.7j + 0.9 * (0.8 - 0.6j)) * complex(pose[1].c, pose[1].s)
+    n = (centre - middle) / abs(centre - middle)
+    assert complex(*in_python(gaps.contact_point)(model, 0, pose)) == pytest.approx(centre - 0.3 * n, rel=1e-12)
+    shape = in_python(gaps.shape_of_contact)(model.contacts[0], a, b, *pose)
+    own = complex(b.nx, b.ny) * complex(pose[1].c, pose[1].s)
+    assert shape.gap == pytest.approx(abs(centre - middle) - 1.2, rel=1e-12)
+    assert shape.foot == pytest.approx((n / own).imag, rel=1e-9)
+    both = in_python(gaps.extent_margins)(model, 0, pose)
+    assert both[0] != both[1] and in_python(gaps.extent_margin)(model, 0, pose) == min(both)
+
+
+@pytest.mark.parametrize(("off", "known"), [(0.0, False), (1e-4, True)])
+def test_in_the_middle_of_a_bite_there_is_no_normal(off: float, known: bool) -> None:
+    """A tenth of a millimetre beside it there is."""
+    a = SimpleNamespace(px=0.25, py=0.0, nx=1.0, ny=0.0, radius=0.25)
+    b = SimpleNamespace(px=-0.75, py=0.0, nx=1.0, ny=0.0)
+    shape = in_python(gaps.shape_of_contact)(
+        SimpleNamespace(curvature=-2.0), a, b, placed(off, 0.0, 0.0), placed(0.0, 0.0, 0.0)
+    )
+    assert shape.gap == pytest.approx(0.5 - off, rel=1e-12)
+    assert (shape.nx, shape.ny) == pytest.approx((-1.0, 0.0) if known else (0.0, 0.0), abs=1e-12)
+    if not known:
+        assert shape == (0.5, 0.0, 0.0, 0.0, 0.0, 0.25, 0.0)
