@@ -17,7 +17,9 @@ from watchsim.model.records import ARC, FIXED, FREE, FULL, LINE, PART, PIVOT, SL
 from watchsim.tolerances import TILT_ROUNDING
 
 _inside_fan, _gap_rate, _margins = (in_python(getattr(gaps, name)) for name in ("_inside_fan", "_gap_rate", "margins_of"))
-_share, _gap_acceleration = in_python(kinematics._share), in_python(kinematics.gap_acceleration)
+_share, _gap_acceleration, _directions = (
+    in_python(kernel) for kernel in (kinematics._share, kinematics.gap_acceleration, kinematics._directions)
+)
 
 
 @pytest.mark.parametrize("half", [0.3, 1.2, 2.0, 2.9])
@@ -96,7 +98,7 @@ def test_the_acceleration_of_a_gap() -> None:
     assert _gap_acceleration(closed, 1, [50.0, 0.6, 70.0, 80.0, 2.5]) == pytest.approx(-0.7 + 0.3 * 2.5 - 1.1 * 0.6, rel=1e-14)
 
 
-Q, U = np.array([0.7, -1.3, 0.45, 1.9]), np.array([2.1, -0.6, 0.35, -1.2])
+Q, U = np.array([0.7, -1.3, 0.45, 1.9, 5.1]), np.array([2.1, -0.6, 0.35, -1.2, 8.3])
 AXIS = cmath.rect(1.0, 0.8)
 
 
@@ -179,3 +181,19 @@ def test_in_the_middle_of_a_bite_there_is_no_normal(off: float, known: bool) -> 
     assert (shape.nx, shape.ny) == pytest.approx((-1.0, 0.0) if known else (0.0, 0.0), abs=1e-12)
     if not known:
         assert shape == (0.5, 0.0, 0.0, 0.0, 0.0, 0.25, 0.0)
+
+
+@pytest.mark.parametrize("motion", [FIXED, PIVOT, SLIDE, FREE])
+def test_how_a_contact_feels_the_coordinates_of_a_body(motion: int) -> None:
+    """Behind the two entries that the row has: what each coordinate alone moves the contact along normal and tangent."""
+    closed, n, arm, sign = kinematics.closed_contacts(2), cmath.rect(1.0, 0.7), 0.4 - 0.9j, -1.5
+    closed.slots[:] = 2
+    body = SimpleNamespace(motion=motion, first=3, axis_x=AXIS.real, axis_y=AXIS.imag, ratio=-2.5)
+    _directions(SimpleNamespace(bodies=[None, body]), 1, 1, sign, (n.real, n.imag, arm.real, arm.imag), closed)
+    ways = {FIXED: {}, PIVOT: {3: 1j * arm}, SLIDE: {3: AXIS}, FREE: {3: 1.0, 4: 1j, 5: 1j * arm}}[motion]
+    assert closed.slots.tolist() == [2, 2 + len(ways)] and not closed.w_N[0].any()
+    assert closed.coord[1, 2 : 2 + len(ways)].tolist() == list(ways)
+    for j, way in enumerate(ways.values()):
+        felt = sign * -2.5 * way / n
+        assert (closed.w_N[1, 2 + j], closed.w_T[1, 2 + j]) == pytest.approx((felt.real, felt.imag), rel=1e-13)
+    assert not closed.w_N[1, 2 + len(ways) :].any() and not closed.w_T[1, :2].any()
