@@ -1,4 +1,4 @@
-"""What do the carriers of two bodies add to a contact? Accelerations of both origins and entries of both coordinates, by hand."""
+"""What do the carriers of two bodies add to a contact? Accelerations of both origins, entries of both coordinates, by hand."""
 
 from __future__ import annotations
 
