@@ -146,3 +146,26 @@ def test_shown_for_people():
 
 def test_a_number_that_is_rounded_up_to_a_thousand_takes_the_next_prefix() -> None:
     assert [metric(value, "m") for value in (0.9999999, -999.9999999, 0.99999)] == ["1 m", "-1 km", "999.99 mm"]
+
+
+@pytest.mark.parametrize("power", range(-14, 14))
+@pytest.mark.parametrize("digits", [1.0, -3.7, 9.96])
+def test_the_prefix_leaves_one_to_three_digits_before_the_point(power: int, digits: float) -> None:
+    """In every decade that has a prefix; beyond the last ones there are more, or none."""
+    text, unit = metric(float(f"{digits}e{power}"), "m").split()
+    prefix = unit.removesuffix("m")
+    worth = {"p": -12, "n": -9, "µ": -6, "m": -3, "": 0, "k": 3, "M": 6, "G": 9}[prefix]
+    assert float(text) * 10.0**worth == pytest.approx(digits * 10.0**power, rel=1e-5, abs=0.0)
+    assert 1.0 <= abs(float(text)) < 1000.0 or power < -12 or power > 11
+
+
+@pytest.mark.parametrize("value", [True, False, [3.5], {}, None])
+def test_what_is_no_plain_number_is_called_so(value: object) -> None:
+    with pytest.raises(UnitError, match="a plain number is needed here, not"):
+        parse(value, units.NUMBER)
+
+
+@pytest.mark.parametrize("text", ["-1e308 km", "1e308 km", "-1.1e300 m"])
+def test_what_doubles_cannot_hold_is_refused_of_either_sign(text: str) -> None:
+    with pytest.raises(UnitError, match="is not a finite number in m"):
+        parse(text, units.LENGTH)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from itertools import pairwise
 
@@ -9,6 +10,8 @@ import numpy as np
 import pytest
 from test_cell_travel import coordinates, curve, each_case, made, poses, seen
 
+from watchsim.candidates import cell_grid
+from watchsim.candidates.cell_frame import TRAVEL, TURN, Axis
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line
 from watchsim.mechanism.compile import compile_scene
@@ -117,3 +120,46 @@ def test_few_contacts_are_not_worth_cells() -> None:
     """Three corners and three lines of one body meet those of another in 18 ways; a search costs more than it saves."""
     assert turning(wedge(1.0), wedge(1.0)).pairs[0].listed == 0
     assert turning(wedge(1.0), spiral(0.3, 1.0)).pairs[0].listed == 1
+
+
+def cornered(corners: int, size: float) -> Loop:
+    """Corners evenly round the origin."""
+    points = [cmath.rect(size, 2.0 * math.pi * k / corners) for k in range(corners)]
+    return Loop(tuple(Line(a.real, a.imag, b.real, b.imag) for a, b in zip(points, points[1:] + points[:1], strict=True)))
+
+
+@pytest.mark.parametrize(("most", "folds"), [(20, (5, 4)), (19, (5, 1)), (5, (5, 1)), (4, (1, 4)), (3, (1, 1))])
+def test_both_bodies_share_the_most_parts(most: int, folds: tuple[int, int], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cell_grid, "MOST_PARTS", most)
+    pair = turning(cornered(5, 1.0), cornered(4, 0.9), "pivot").pairs[0]
+    assert (pair.fold0, pair.fold1) == folds and pair.wrap0 % folds[0] == pair.wrap1 % folds[1] == 0
+
+
+@pytest.mark.parametrize("carried", [False, True])
+@pytest.mark.parametrize("motion", ["slide", "free", "pivot", "fixed"])
+def test_how_far_apart_bodies_that_travel_cannot_touch(motion: str, carried: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Both outermost points and the clearance of each; of what hangs on the first body of all nothing is known."""
+    monkeypatch.setattr(cell_grid, "FEW_CONTACTS", 0)
+    rail = Body("rail", "slide", (0.0, 0.0), mass=1.0)
+    on = "rail" if carried else None
+    a = Body("a", "pivot" if carried else "fixed", (0.1, 0.2), mass=1.0, inertia=1.0, loops=(cornered(5, 0.7),), on=on)
+    b = Body("b", motion, (0.5, 0.1), mass=1.0, inertia=1.0, loops=(cornered(7, 0.3),))
+    pair = compile_scene(Scene("far", (rail, a, b), contacts=(Contact((Side("a"), Side("b"))),))).model.pairs[0]
+    assert pair.axes == {"slide": 1, "free": 3, "pivot": 1, "fixed": 0}[motion] + 2 * carried or pair.axes == 0
+    if carried or motion in ("pivot", "fixed"):
+        assert pair.reach == 0.0
+    else:
+        assert pair.reach - 2.0 * pair.clearance == pytest.approx(0.7 + 0.3, rel=1e-9) and pair.clearance > 1e-4
+
+
+@pytest.mark.parametrize("kind", [TURN, TRAVEL])
+@pytest.mark.parametrize("ratio", [1.0, -0.4, 2.5])
+def test_cells_of_what_is_geared(kind: int, ratio: float) -> None:
+    """So much smaller as the body goes faster; of a turn as many as before, and eight at least."""
+    for travel, arm, reach, fold in ((0.03, 0.4, 0.7, 5), (0.9, 0.1, 0.2, 3), (0.9, 0.1, 0.2, 1)):
+        found = cell_grid._cells(Axis(0, 4, 2, kind, arm), travel, reach, fold, ratio)
+        cells = fold * math.ceil(max(8.0, math.tau * (arm + reach) / travel) / fold)
+        wanted = (4, 2, math.tau / cells / abs(ratio), cells, fold) if kind == TURN else (4, 2, travel / abs(ratio), 0, 1)
+        assert tuple(found) == pytest.approx(wanted, rel=1e-14)
+    usual = cell_grid._cells(Axis(0, 4, -1, kind, 0.3), 0.02, 0.6)
+    assert tuple(usual) == tuple(cell_grid._cells(Axis(0, 4, -1, kind, 0.3), 0.02, 0.6, 1, 1.0))

@@ -11,11 +11,11 @@ import pytest
 from plain_kernels import in_python
 from test_times_in_cells import COORDINATES, SIZES, Q, model, pair
 
-from watchsim.candidates.cell_lookup import REACH, cell_key, find_slot, insert_cells
+from watchsim.candidates.cell_lookup import REACH, along, cell_key, find_slot, insert_cells
 from watchsim.candidates.cell_table import PairCells
 from watchsim.model.records import NO_KEY
 
-_key, _slot, _insert = (in_python(kernel) for kernel in (cell_key, find_slot, insert_cells))
+_key, _slot, _insert, _along = (in_python(kernel) for kernel in (cell_key, find_slot, insert_cells, along))
 
 
 @pytest.mark.parametrize("axis", range(3))
@@ -102,3 +102,18 @@ def test_what_is_known_is_left_as_it_is() -> None:
     for key in full:
         crowded[_slot(crowded, key)] = key
     assert sorted(crowded.tolist()) == full.tolist() and all(crowded[_slot(crowded, key)] == key for key in full)
+
+
+@pytest.mark.parametrize("key", [5, 1 << 40, 987654321])
+def test_the_only_free_place_is_found_wherever_it_is(key: int) -> None:
+    for place in range(8):
+        keys = np.arange(1000, 1008)
+        keys[place] = NO_KEY
+        assert _slot(keys, key) == place
+        keys[place] = key
+        assert _slot(keys, key) == place
+
+
+def test_what_is_taken_away_may_be_the_first_coordinate() -> None:
+    q = [0.3, 1.1, 2.4]
+    assert [_along(q, 2, on) for on in (-1, 0, 1)] == [2.4, 2.4 - 0.3, 2.4 - 1.1]

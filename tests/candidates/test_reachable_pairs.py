@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -178,3 +179,16 @@ def test_what_is_carried_round_a_pivot_covers_a_ring(partner: str, arm: tuple[fl
 def test_what_a_slide_or_a_free_body_carries_can_get_anywhere(carrier: str, partner: str) -> None:
     compiled = carried_scene(carrier, partner, False, lambda _: (outline(0.1),), (9.0, 0.4))[1]
     assert len(found(compiled)) == len(compiled.model.contacts)
+
+
+@pytest.mark.parametrize("partner", ["fixed", "pivot", "slide", "other"])
+@pytest.mark.parametrize("carrier", ["pivot", "slide", "free"])
+def test_the_order_of_bodies_does_not_matter(carrier: str, partner: str) -> None:
+    """The carriage may be the first of all or the last."""
+    scene, _ = carried_scene(carrier, partner, False, lambda name: (outline(0.3 if name == "a" else 0.1),), (0.2, 0.1))
+    found = set()
+    for first in (0, 1, 2):
+        model = compile_scene(replace(scene, bodies=(*scene.bodies[first:], *scene.bodies[:first]))).model
+        at = model.primitives.px + 1j * model.primitives.py
+        found.add(frozenset(frozenset(at[[model.contacts.a[k], model.contacts.b[k]]].tolist()) for k in model.near))
+    assert len(found) == 1

@@ -11,8 +11,10 @@ from pair_scenes import outline
 from watchsim.candidates.asymmetric_contacts import LooseContacts
 from watchsim.candidates.broad_phase import PairSearch
 from watchsim.candidates.chords import chords
-from watchsim.candidates.equivalent_contacts import _numbers_later
+from watchsim.candidates.equivalent_contacts import AlikeContacts, _numbers_later
 from watchsim.candidates.pair_cache import forget, known_cells
+from watchsim.geometry.loop import Loop
+from watchsim.geometry.primitives import Line
 from watchsim.mechanism.compile import compile_scene
 from watchsim.model.records import Model
 from watchsim.scene.body import Body
@@ -134,3 +136,46 @@ def test_where_several_groups_name_the_same_primitives_each_has_its_candidates(g
         pairs = {(int(a), int(b)) for a, b in zip(expected.a, expected.b, strict=True)}
         named = {(int(a), int(b), int(group)) for a, b, group in zip(rows.a, rows.b, rows.group, strict=True)}
         assert named == {(a, b, group) for a, b in pairs for group in range(groups)}
+
+
+def toothed(teeth: int) -> Model:
+    """A body with so many corners evenly round it, beside a wedge."""
+    corners = 0.8 * np.exp(2j * np.pi * np.arange(teeth) / teeth)
+    pairs = zip(corners, np.roll(corners, -1), strict=True)
+    round_ = Loop(tuple(Line(a.real, a.imag, b.real, b.imag) for a, b in pairs))
+    wedge = Loop((Line(-0.3, 0.0, 0.3, 0.0), Line(0.3, 0.0, 0.0, 0.4), Line(0.0, 0.4, -0.3, 0.0)))
+    a = Body("a", "pivot", (0.0, 0.0), inertia=1.0, loops=(round_,))
+    b = Body("b", "pivot", (1.0, 0.0), inertia=1.0, loops=(wedge,))
+    return model_of(a, b, meet=(("a", "b"),))
+
+
+@pytest.mark.parametrize("teeth", [3, 5, 8])
+def test_what_comes_next_where_contacts_are_now(teeth: int) -> None:
+    """The same part of the other body meets what a turn by one tooth brings to the same place."""
+    model = toothed(teeth)
+    pair, rows, contacts = model.pairs[0], model.primitives, model.contacts
+    every = np.arange(len(contacts))
+    alike = AlikeContacts(rows, contacts, pair, every, 0)
+    assert alike.fold == teeth and len(alike.loose) == 0
+    for k, after in enumerate(alike.later(every).tolist()):
+        for now, later in ((contacts.a[k], contacts.a[after]), (contacts.b[k], contacts.b[after])):
+            middle, there = (complex(p.px, p.py) + 0.5 * p.length * complex(p.tx, p.ty) for p in (rows[now], rows[later]))
+            turn = np.exp(2j * np.pi / teeth) if rows.body[now] == 0 else 1.0
+            assert there * turn == pytest.approx(middle, abs=1e-12) and rows.kind[now] == rows.kind[later]
+
+
+def test_what_is_drawn_alike_but_not_declared_alike_is_not_shared() -> None:
+    """One of many contacts is missing: nothing comes where it would be."""
+    model = toothed(5)
+    pair = model.pairs[0].copy()
+    some = np.delete(model.contacts, 7).view(np.recarray)
+    pair.stop -= 1
+    assert AlikeContacts(model.primitives, some, pair, np.arange(len(some)), 0).fold == 1
+
+
+def test_without_symmetry_nothing_comes_next() -> None:
+    model = model_of(wheel("a", 0.0), wheel("b", 0.6), meet=(("a", "b"),))
+    alike = AlikeContacts(model.primitives, model.contacts, model.pairs[0], np.arange(len(model.contacts)), 1)
+    assert alike.fold == 1
+    with pytest.raises(AttributeError):
+        alike.later(np.arange(3))

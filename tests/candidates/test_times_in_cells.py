@@ -81,7 +81,7 @@ def test_without_cells_nothing_ends() -> None:
     assert _in_cell(model(pair(0)), 0, Q, U, BOUND) == _through(model(pair(0)), 0, Q, U, BOUND, 3.0) == math.inf
 
 
-@pytest.mark.parametrize("on", [(4, -1), (-1, 4), (2, 4)])
+@pytest.mark.parametrize("on", [(4, -1), (-1, 4), (2, 4), (0, -1)])
 @pytest.mark.parametrize("fastest", [0, 1])
 def test_seen_from_a_carrier_differences_count(on: tuple[int, int], fastest: int) -> None:
     u = U.copy()
@@ -100,9 +100,9 @@ def test_seen_from_a_carrier_differences_count(on: tuple[int, int], fastest: int
 
 @pytest.mark.parametrize("axes", [1, 2, 3])
 @pytest.mark.parametrize("frame", [-1, 0])
-def test_the_time_through_some_cells(axes: int, frame: int) -> None:
+@pytest.mark.parametrize("on", [(4, 2, 4), (0, 4, 2)])
+def test_the_time_through_some_cells(axes: int, frame: int, on: tuple[int, int, int]) -> None:
     """Along each coordinate as many; what is taken away counts only as seen from a carrier."""
-    on = (4, 2, 4)
     for fastest in range(axes):
         u, times = U.copy(), []
         u[COORDINATES[fastest]] *= 1e3

@@ -115,6 +115,13 @@ def test_each_speed_counts_by_its_size() -> None:
     assert found.bar_size == pytest.approx((SPIN_ROUNDING * 18.7) ** 2 / arms, rel=1e-12, abs=0.0)
 
 
+def test_short_arms_count_as_long_ones_do() -> None:
+    """The contact lies a tenth of a millimetre from one origin and three from the other."""
+    line, rates = Loop((Line(9.0, 0.0, -9.0, 0.0),), closed=False), (-5.0, 0.6, 0.0)
+    found = row(round_loop(SMALL, 1e-4 + 0.3j), (0.0, 0.0, 0.0), rates, line, (-2e-4, 0.0, 0.0), rates)
+    assert found.bar_size == pytest.approx((SPIN_ROUNDING * 11.2) ** 2 / 4e-4, rel=1e-9, abs=0.0)
+
+
 def test_without_an_arm_nothing_turns() -> None:
     """A corner at its body's origin, on a line through the origin of the other."""
     line = Loop((Line(9.0, 0.0, -9.0, 0.0),), closed=False)

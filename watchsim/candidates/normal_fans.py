@@ -88,10 +88,10 @@ class Regions:
         distance = np.hypot(dx, dy)
         gap = np.where(straight, dx * met.nx + dy * met.ny, met.side * (distance - met.radius)) - circle.radius
         onto = ~straight | ((along >= -travel) & (along <= met.length + travel))
-        # The outward normal of what is met, and by how much its direction may change.
-        safe = np.where(distance > 0.0, distance, 1.0)
-        nx, ny = (np.where(straight, n, met.side * d / safe) for n, d in ((met.nx, dx), (met.ny, dy)))
-        swing = np.where(straight, 0.0, np.where(travel < distance, np.arcsin(np.minimum(travel / safe, 1.0)), np.pi))
+        # Along the outward normal of what is met; by how much its direction may change.
+        nx, ny = (np.where(straight, n, met.side * d) for n, d in ((met.nx, dx), (met.ny, dy)))
+        turn = np.arcsin(travel / np.maximum(travel, distance))
+        swing = np.where(straight, 0.0, np.where(travel < distance, turn, np.pi))
         onto &= straight | (_angle(nx, ny, met.nx, met.ny) <= met.fan + swing)
         mx, my = _turned(-nx, -ny, turn_b - turn_a)
         inside = _angle(mx, my, circle.nx, circle.ny) <= circle.fan + swing + swing_a + swing_b

@@ -95,7 +95,8 @@ def _digest(model: Model, p: int) -> bytes:
         for part in (body, model.bodies[body.carrier]) if body.carrier >= 0 else (body,):
             where = [float(part[name]) for name in (*place.get(int(part.motion), ()), "ratio", "phase")]
             first = used.index(int(part.first)) if part.first in used else -1
-            digest.update(repr((int(part.motion), first, bool(part.carrier >= 0), where)).encode())
+            digest.update(repr((int(part.motion), first, where)).encode())
+        digest.update(b"|")
     cells = [float(pair[f"{name}{i}"]) for i in range(pair.axes) for name in ("size", "wrap", "fold")]
     digest.update(repr((cells, [used.index(axis) if axis >= 0 else -1 for axis in axes], float(pair.clearance))).encode())
     contacts = model.contacts[pair.start : pair.stop]
