@@ -6,9 +6,13 @@ import math
 
 import numpy as np
 import pytest
+from plain_kernels import in_python
 from test_edge_distance import _to_edge, along, apart, checked, drawn, in_millimetres, one
 
+from watchsim.contact import edge_distance
 from watchsim.geometry.primitives import Arc, Edge, Line
+
+_crossing = in_python(edge_distance._crossing)
 
 
 def crossings(a: Edge, b: Edge) -> int:
@@ -46,3 +50,10 @@ def test_so_are_very_flat_arcs() -> None:
         for a, b in ((arc, line), (line, arc)):
             distance, _, _, crossing = _to_edge(one(a), one(b))
             assert (distance, crossing) == (0.0, True)
+
+
+@pytest.mark.parametrize("end", [0.0, 1e-9])
+def test_an_end_that_lies_on_the_other_is_no_crossing(end: float) -> None:
+    """The distance of the ends is asked for itself; what goes over by a billionth crosses."""
+    line, slope = one(Line(-2.0, 0.0, 2.0, 0.0)), one(Line(-1.0, -1.0, end, end))
+    assert _crossing(slope, line, math.inf)[0] is (end > 0.0)

@@ -23,7 +23,8 @@ def safe_time(room, approach, closing, bend, distance):
     if distance < math.inf:
         # Over this time the centres stay at least half as far apart as now.
         limit = 0.5 * distance / closing
-        bend += closing * closing / (0.5 * distance) if distance > 0.0 else 0.0
+        if distance > 0.0:
+            bend += closing * closing / (0.5 * distance)
     else:
         limit = math.inf
     root = math.sqrt(approach * approach + 2.0 * bend * room)
