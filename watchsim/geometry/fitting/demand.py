@@ -53,7 +53,7 @@ def corrected(demand: Demand, nodes: Array, work: Array) -> Demand:
     """The demand corrected piece by piece: between neighbouring nodes it is now `work`; nan between two chains."""
     places = np.union1d(demand.places, nodes)
     steps = np.diff(np.interp(places, *demand))
-    piece = np.minimum(np.searchsorted(nodes, places[:-1], "right") - 1, len(work) - 1)
+    piece = np.searchsorted(nodes, places[:-1], "right") - 1
     before = np.bincount(piece, steps, len(work))
     known = (before > 0.0) & ~np.isnan(work)
     factor = (np.where(known, np.maximum(work, LEAST_WORK), 1.0) / np.where(known, before, 1.0)) ** DAMPING
