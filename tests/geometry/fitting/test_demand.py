@@ -18,7 +18,7 @@ def cubics(*corners: tuple[float, float]) -> Curve:
     p = np.ones((len(corners), 3))
     p[:, :2] = 1e-3 * np.array(corners)
     control = np.stack([p[k : k + 4] for k in range(0, len(p) - 1, 3)])
-    return Curve(control, np.arange(len(control) + 1) ** 1.5)
+    return Curve(control, np.arange(len(control) + 1.0) ** 1.5)
 
 
 BOW = cubics((0, 0), (1, 3), (4, 3), (5, -1))
