@@ -57,7 +57,8 @@ def trial() -> Trial:
     errors = np.array([1.0, 3.0, 2.0, 8.0, 1e-3, 70.0, 5.0, 0.5, 6.0, 0.0, 9.0])
     chain = np.array([0, 0, 1, 1, 1, 1, 1, 2, 2, 2, 2])
     nothing = np.zeros(len(chain))
-    arcs = ArcChain(*[np.zeros((len(chain), 2))] * 4, nothing)
+    four = np.zeros((4, len(chain), 2))
+    arcs = ArcChain(four[0], four[1], four[2], four[3], nothing)
     legs = Legs(np.arange(7.0) + 0.5, np.array([0.1, 0.2, 0.3, 0.4, 0.6, 0.7, 0.8]))
     return Trial(
         nothing, nothing, arcs, chain, errors, laid_out(np.array([2, 5, 4])), nothing, legs, np.array([0, 2, 3, 5, 7, 8, 10])
