@@ -39,7 +39,7 @@ def described(file: bytes) -> dict[str, Any]:
 def matrix_of(file: bytes, name: str) -> list[float]:
     """By rows; a node without one stands at the origin."""
     (node,) = (node for node in described(file)["nodes"] if node["name"] == name)
-    return np.reshape(node.get("matrix", np.eye(4)), (4, 4)).T.ravel().tolist()  # type: ignore[no-any-return]
+    return np.reshape(node.get("matrix", np.eye(4)), (4, 4)).T.ravel().tolist()
 
 
 def test_the_file_says_where_a_body_stands_in_metres() -> None:
