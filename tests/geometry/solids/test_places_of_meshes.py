@@ -130,3 +130,13 @@ def test_edges_share_a_point_where_they_meet_within_a_millionth_of_a_micrometre(
     edges = (Line(0.0, 0.0, 0.0, 3e-3), Line(apart, 3e-3, 2e-3, 0.0), Line(2e-3, 0.0, apart, 0.0))
     one, two, three = path2d([Loop(edges, "A")]).entities
     assert bool(one.points[1] == two.points[0]) is shared and bool(three.points[1] == one.points[0]) is shared
+
+
+def test_the_widest_loop_of_a_profile_says_how_many_chords_there_are() -> None:
+    """Rings of 1 mm and 2 mm of radius; none wider than nothing is turned, however thin one is."""
+    found = revolved([box(0, 0.5, 3, 1), box(4, 1.5, 5, 2)], 1e-5)
+    assert found is not None
+    top = found.vertices[found.vertices[:, 2] < 3.5]
+    angles = np.unique(np.round(np.arctan2(top[:, 1], top[:, 0]) % TURN, 6))
+    assert len(angles) == math.ceil(math.pi / math.acos(1.0 - 1e-5 / 2e-3))
+    assert revolved([Loop(tuple(box(0, 0.5, 3, 1).edges), closed=False)], 1e-5) is None
