@@ -146,6 +146,8 @@ def test_where_a_curve_is_abreast_of_a_joint() -> None:
     # 0.6 t + 0.8 t² = 0.98; 0.6 · 3 t + 0.8 · (1 + 4 t) = 0.54 + 2.
     assert found == pytest.approx([0.7936, 2.348, 2.695, 2.205], abs=1e-4)
     assert found[1:] == pytest.approx([2.348, 2.695, 2.205], rel=1e-12)
+    still = Bundle([curve_of([(1.0, 2.0)] * 3)])  # no better place is known than the guess
+    assert _abreast(still, joints[:1], along[:1], np.array([0.1]), np.array([0.65]), np.array([0.9])).tolist() == [0.65]
 
 
 def test_chains_run_from_end_to_end_and_meet_the_curve_at_their_nodes() -> None:

@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 
 from watchsim.geometry.fitting import fit as fitting
+from watchsim.geometry.fitting.biarc import ArcChain
 from watchsim.geometry.fitting.bundle import GLANCE, PAUSE, Bundle
 from watchsim.geometry.fitting.curve import Curve
+from watchsim.geometry.fitting.deviation import _interval_bounds
 from watchsim.geometry.fitting.fewest import BRISK, THOROUGH, Effort
 from watchsim.geometry.fitting.fit import Fit, _end_to_end, _extent, _follow, _one_arc_each, batches, fit_all
 from watchsim.geometry.primitives import Line
@@ -137,3 +139,17 @@ def test_a_curve_is_open_by_its_gap_over_its_control_polygon_whatever_its_weight
     first, rest = curve.split(0.25)
     assert first.breaks.tolist() == [0.0, 0.5] and rest.breaks.tolist() == [0.5, 2.0, 7.0]
     assert np.array_equal(rest.control[1], control[1]) and len(first.control) == 1
+
+
+@pytest.mark.parametrize(("weights", "times"), [((1.0, 1.0, 1.0), 1.0), ((1.0, 1.5, 2.0), 4.0)])
+def test_a_bound_may_be_too_large_by_what_unequal_weights_add(weights: tuple[float, ...], times: float) -> None:
+    """A line 1 µm beside an arc that is straight; weights from 1 to 2 are only known to be so."""
+    w = np.array(weights)
+    x = np.array([1.0, 2.0, 4.0])
+    control = np.column_stack((x * w, 1e-6 * w, w))[None]
+    bundle = Bundle([Curve(control, np.array([0.0, 1.0]))])
+    way = np.array([(1.0, 0.0)])
+    arcs = ArcChain(np.array([(1.0, 0.0)]), way, np.array([(4.0, 0.0)]), way, np.zeros(1))
+    bound, slack = _interval_bounds(bundle, np.array([0.0]), np.array([1.0]), np.array([0]), arcs)
+    assert bound == pytest.approx([times * 1e-6], rel=1e-6, abs=0.0)
+    assert slack == pytest.approx([(times - 1.0) * 1e-6], rel=1e-6, abs=1e-13)

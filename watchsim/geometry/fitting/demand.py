@@ -41,7 +41,7 @@ def first_demand(bundle: Bundle, tolerance: Array) -> Demand:
     turn = np.arctan2(crosses(tangents[:-1], tangents[1:]), dots(tangents[:-1], tangents[1:]))
     curvature = turn / length
     change = np.abs(np.diff(curvature)) / (0.5 * (length[:-1] + length[1:]))
-    change[gap[gap > 0] - 1] = change[gap[gap < len(change)]] = 0.0
+    change[gap - 1] = change[gap] = 0.0
     rate = np.cbrt(BEST * np.maximum(np.append(0.0, change), np.append(change, 0.0)) / limit) * length
     rate[gap] = 0.0
     rate = np.maximum(rate, EVEN * np.bincount(owner, rate)[owner] * length / np.maximum(total, SHORT * limit)) + 1e-12
