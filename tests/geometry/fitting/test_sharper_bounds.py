@@ -16,7 +16,7 @@ def bounds(heaviest: float, *beside: float, group: list[int]) -> list[float]:
     w, n = np.array([1.0, 0.5 + 0.5 * heaviest, heaviest]), len(beside)
     x = np.array([1.0, 2.0, 4.0])
     curves = [Curve(np.column_stack((x * w, off * w, w))[None], np.array([0.0, 1.0])) for off in beside]
-    way, places = np.array([(1.0, 0.0)] * n), 2.0 * np.arange(n)
+    way, places = np.array([(1.0, 0.0)] * n), np.arange(0.0, 2.0 * n, 2.0)
     arcs = ArcChain(np.array([(1.0, 0.0)] * n), way, np.array([(4.0, 0.0)] * n), way, np.zeros(n))
     found: list[float] = deviations(Bundle(curves), places, places + 1.0, arcs, np.array(group)).tolist()
     return found
