@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
+from curves import spline
 
 from watchsim.geometry.fitting.biarc import ArcChain
-from watchsim.geometry.fitting.fewest import BRISK, MOST, THOROUGH, Found, Search
+from watchsim.geometry.fitting.bundle import Bundle
+from watchsim.geometry.fitting.curve import Curve
+from watchsim.geometry.fitting.fewest import BRISK, MOST, THOROUGH, Found, Search, fewest
 
+BOW = [(0, 0), (1, 3), (4, 3), (5, -1)]
 FOUND = Found(ArcChain(*[None] * 5), 1e-9)  # type: ignore[arg-type]
 
 
@@ -70,3 +75,16 @@ def test_between_a_failure_and_a_success_nothing_is_left_to_try() -> None:
     assert again.learn(90, None) and again.count == 91  # tried twice: one more
     better = Found(FOUND.arcs, 2e-9)
     assert not again.learn(90, better) and again.best is better and again.fewest == 91
+
+
+def test_each_curve_is_searched_as_long_as_it_needs_whatever_the_others_do() -> None:
+    easy, hard = (
+        spline(3, [0] * 4 + [1] * 4, [(1e-3 * x, 1e-3 * y) for x, y in p]) for p in (BOW, [(0, 0), (3, 0), (2, 4), (5, 4)])
+    )
+
+    def counts(*curves: Curve) -> list[int]:
+        found = fewest(Bundle(curves), np.array([1e-5, 1e-7][-len(curves) :]), 20)
+        return [len(one.arcs.curvatures) for one in found if one is not None]
+
+    one, other = counts(easy, hard)
+    assert 2 <= one < 10 < other and [other] == counts(hard)

@@ -25,7 +25,7 @@ def length(points: np.ndarray) -> float:
 
 def test_at_rest_it_is_the_spiral_that_has_mass() -> None:
     line = COIL.line(0.0, FINE)
-    assert length(line) == pytest.approx(Spiral(COIL.inner, COIL.outer, COIL.turns).length, rel=1e-6)
+    assert length(line) == pytest.approx(Spiral(COIL.inner, COIL.outer, COIL.turns).length, rel=1e-6, abs=0.0)
     radius, angle = np.hypot(*line.T), np.unwrap(np.arctan2(line[:, 1], line[:, 0]))
     pitch = (COIL.outer - COIL.inner) / COIL.turns
     assert np.allclose(radius, COIL.inner + pitch * (angle - angle[0]) / math.tau, atol=1e-12)
@@ -43,7 +43,7 @@ def test_the_collet_turns_and_the_stud_stays(angle: float) -> None:
 @given(turned)
 def test_its_length_stays_and_its_coils_never_cross(angle: float) -> None:
     line = COIL.line(angle, FINE)
-    assert length(line) == pytest.approx(length(COIL.line(0.0, FINE)), rel=1e-4)
+    assert length(line) == pytest.approx(length(COIL.line(0.0, FINE)), rel=1e-4, abs=0.0)
     assert np.all(np.diff(np.hypot(*line.T)) > 0.0)
 
 
@@ -73,4 +73,4 @@ def test_even_a_spring_turned_too_far_is_drawn() -> None:
 def test_chords_of_a_turn_are_neither_too_few_nor_too_many() -> None:
     assert [COIL.chords(deviation) for deviation in (1e-2, 1e-12)] == [24 * 13, 180 * 13]
     half = COIL.outer * (1.0 - math.cos(math.pi / 60.0))  # how far a sixtieth of a turn lies from its chord
-    assert COIL.chords(half) == pytest.approx(60 * 13, rel=2e-3)
+    assert COIL.chords(half) == pytest.approx(60 * 13, rel=2e-3, abs=0.0)

@@ -22,8 +22,8 @@ def test_length_and_second_moment_against_quadrature_of_high_precision() -> None
         ends = mpmath.linspace(0, end, 13)
         length = mpmath.quad(lambda p: mpmath.sqrt((inner + a * p) ** 2 + a * a), ends)
         second = mpmath.quad(lambda p: (inner + a * p) ** 2 * mpmath.sqrt((inner + a * p) ** 2 + a * a), ends)
-    assert SPRING.length == pytest.approx(float(length), rel=1e-13)
-    assert SPRING.second == pytest.approx(float(second), rel=1e-13)
+    assert SPRING.length == pytest.approx(float(length), rel=1e-13, abs=0.0)
+    assert SPRING.second == pytest.approx(float(second), rel=1e-13, abs=0.0)
 
 
 def test_strip_against_a_fine_grid_of_its_area() -> None:
@@ -45,15 +45,15 @@ def test_strip_against_a_fine_grid_of_its_area() -> None:
         area += float(jacobian.sum())
         polar += float((jacobian * square).sum())
     strip = spiral.strip(width)
-    assert strip.area == pytest.approx(area, rel=1e-12)
-    assert strip.polar == pytest.approx(polar, rel=1e-8)
+    assert strip.area == pytest.approx(area, rel=1e-12, abs=0.0)
+    assert strip.polar == pytest.approx(polar, rel=1e-8, abs=0.0)
 
 
 def test_spiral_of_a_given_length() -> None:
     found = spiral_of_length(SPRING.inner, SPRING.outer, SPRING.length)
-    assert found.turns == pytest.approx(SPRING.turns, rel=1e-12)
+    assert found.turns == pytest.approx(SPRING.turns, rel=1e-12, abs=0.0)
     straight = spiral_of_length(1e-3, 2e-3, 1.0001e-3)
-    assert straight.length == pytest.approx(1.0001e-3, rel=1e-9)
+    assert straight.length == pytest.approx(1.0001e-3, rel=1e-9, abs=0.0)
     with pytest.raises(ValueError, match="does not even reach"):
         spiral_of_length(1e-3, 2e-3, 1e-3)
 
@@ -67,8 +67,8 @@ def test_drawn_strip_of_half_circles_is_a_ring_section() -> None:
     found = drawn_strip(chain, b).about((0.0, 0.0))
     ring = math.pi / 2 * ((r + b / 2) ** 4 - (r - b / 2) ** 4)
     bar = b * length * ((b * b + length * length) / 12 + r * r + length * length / 4)
-    assert found.area == pytest.approx(b * (math.tau * r + length), rel=1e-12)
-    assert found.polar == pytest.approx(ring + bar, rel=1e-12)
+    assert found.area == pytest.approx(b * (math.tau * r + length), rel=1e-12, abs=0.0)
+    assert found.polar == pytest.approx(ring + bar, rel=1e-12, abs=0.0)
 
 
 def test_drawn_arcs_come_near_the_spiral_they_follow() -> None:
@@ -83,8 +83,8 @@ def test_drawn_arcs_come_near_the_spiral_they_follow() -> None:
     ends = [math.dist(a.end, b.start) for a, b in pairwise(arcs)]
     assert max(ends) < 1e-15
     strip, spiral = drawn_strip(Loop(tuple(arcs), closed=False), 0.03e-3), SPRING.strip(0.03e-3)
-    assert strip.area == pytest.approx(spiral.area, rel=0.02)
-    assert strip.about((0.0, 0.0)).polar == pytest.approx(spiral.polar, rel=0.04)
+    assert strip.area == pytest.approx(spiral.area, rel=0.02, abs=0.0)
+    assert strip.about((0.0, 0.0)).polar == pytest.approx(spiral.polar, rel=0.04, abs=0.0)
 
 
 def test_a_strip_wider_than_its_bend_is_refused() -> None:
@@ -98,9 +98,9 @@ def test_the_picture_is_a_strip_of_the_spiral() -> None:
     strip = spiral.outline(5e-5)
     x, y = np.array([edge.start for edge in strip.edges]).T
     area = 0.5 * abs(float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1))))
-    assert area == pytest.approx(5e-5 * spiral.length, rel=2e-2)
+    assert area == pytest.approx(5e-5 * spiral.length, rel=2e-2, abs=0.0)
     turned = np.abs(np.diff(np.unwrap(np.arctan2(y, x)))).sum() / math.tau
-    assert turned == pytest.approx(2.0 * spiral.turns, rel=1e-6)
+    assert turned == pytest.approx(2.0 * spiral.turns, rel=1e-6, abs=0.0)
     r = np.hypot(x, y)
     assert (r.min(), r.max()) == pytest.approx((1e-3 - 2.5e-5, 3e-3 + 2.5e-5))
 

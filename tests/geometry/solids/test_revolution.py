@@ -120,7 +120,7 @@ def test_trimesh_solid_converges_to_it_with_the_square_of_the_step() -> None:
         whole = np.array([exact.volume * 1e9, exact.axial * 1e15, exact.transverse * 1e15])
         errors.append(found / whole - 1.0)
         assert solid.is_watertight
-        assert solid.center_mass[2] == pytest.approx(exact.centre * 1e3, rel=1e-9)
+        assert solid.center_mass[2] == pytest.approx(exact.centre * 1e3, rel=1e-9, abs=0.0)
     orders = np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
     assert orders == pytest.approx(2.0, abs=0.01)
 
@@ -131,7 +131,9 @@ def test_the_solid_does_not_depend_on_where_it_is_drawn(angle: float, dx: float,
     drum = drum.reflected((0.0, 0.0), (1.0, 0.0)) if below else drum
     there = turned([drum.moved(angle, (dx, dy))], (dx, dy), (math.cos(angle), math.sin(angle)))
     here = turned([drum], *X_AXIS)
-    assert [there.volume, there.axial, there.transverse] == pytest.approx([here.volume, here.axial, here.transverse], rel=1e-10)
+    assert [there.volume, there.axial, there.transverse] == pytest.approx(
+        [here.volume, here.axial, here.transverse], rel=1e-10, abs=0.0
+    )
     assert abs(there.centre) < 1e-14
 
 

@@ -41,7 +41,7 @@ def first_demand(bundle: Bundle, tolerance: Array) -> Demand:
     turn = np.arctan2(crosses(tangents[:-1], tangents[1:]), dots(tangents[:-1], tangents[1:]))
     curvature = turn / length
     change = np.abs(np.diff(curvature)) / (0.5 * (length[:-1] + length[1:]))
-    change[gap[gap > 0] - 1] = change[gap[gap < len(change)]] = 0.0
+    change[gap - 1] = change[gap] = 0.0
     rate = np.cbrt(BEST * np.maximum(np.append(0.0, change), np.append(change, 0.0)) / limit) * length
     rate[gap] = 0.0
     rate = np.maximum(rate, EVEN * np.bincount(owner, rate)[owner] * length / np.maximum(total, SHORT * limit)) + 1e-12
@@ -53,7 +53,7 @@ def corrected(demand: Demand, nodes: Array, work: Array) -> Demand:
     """The demand corrected piece by piece: between neighbouring nodes it is now `work`; nan between two chains."""
     places = np.union1d(demand.places, nodes)
     steps = np.diff(np.interp(places, *demand))
-    piece = np.minimum(np.searchsorted(nodes, places[:-1], "right") - 1, len(work) - 1)
+    piece = np.searchsorted(nodes, places[:-1], "right") - 1
     before = np.bincount(piece, steps, len(work))
     known = (before > 0.0) & ~np.isnan(work)
     factor = (np.where(known, np.maximum(work, LEAST_WORK), 1.0) / np.where(known, before, 1.0)) ** DAMPING

@@ -33,7 +33,10 @@ def smooth_parts(curves: Sequence[Curve], tolerance: Array) -> list[list[Curve]]
     number = bundle.owner[bundle.locate(places)[0]]
     for k in np.unique(number):
         cuts = [0.0]
-        for cut in (places[number == k] - bundle.begin[k]).tolist():
+        for place in (places[number == k] - bundle.begin[k]).tolist():
+            cut = (
+                float(round(place)) if abs(place - round(place)) <= SLIVER else place
+            )  # what is beside a break is taken for it
             if cut - cuts[-1] > SLIVER and len(curves[k].control) - cut > SLIVER:
                 cuts.append(cut)
         result[k] = cut_at(curves[k], cuts[1:])
@@ -41,11 +44,13 @@ def smooth_parts(curves: Sequence[Curve], tolerance: Array) -> list[list[Curve]]
 
 
 def cut_at(curve: Curve, places: Sequence[float]) -> list[Curve]:
-    """The parts between ascending places inside; places beside a break are taken for it."""
-    parts = []
+    """The parts between ascending places inside."""
+    parts, last = [], float(len(curve.control))
     for place in reversed(places):
-        curve, rest = curve.split(float(round(place)) if abs(place - round(place)) <= SLIVER else place)
+        span = int(place)
+        curve, rest = curve.split(span + (place - span) / min(1.0, last - span))  # the last cut may have shortened the span
         parts.append(rest)
+        last = place
     return [curve, *reversed(parts)]
 
 

@@ -88,7 +88,8 @@ def revolved(profile: Iterable[Loop], deviation: float) -> trimesh.Trimesh | Non
 def laid(mesh: trimesh.Trimesh, foot: Point, direction: Point, height: float) -> trimesh.Trimesh:
     """The turned mesh with its axis in the plane through `foot` (metres) along `direction`, at the height `height` (metres)."""
     (x, y), (ux, uy) = foot, direction
-    matrix = np.array([[0.0, uy, ux, MM * x], [0.0, -ux, uy, MM * y], [1.0, 0.0, 0.0, MM * height], [0.0, 0.0, 0.0, 1.0]])
+    matrix = np.eye(4)
+    matrix[:3] = [0.0, uy, ux, MM * x], [0.0, -ux, uy, MM * y], [1.0, 0.0, 0.0, MM * height]
     return mesh.copy().apply_transform(matrix)
 
 
