@@ -5,6 +5,8 @@ from __future__ import annotations
 import dataclasses
 import json
 
+import pytest
+
 from watchsim.bench.compare import compare, missing_engines
 from watchsim.bench.comparison_table import table
 from watchsim.bench.engines.world import is_installed
@@ -29,6 +31,7 @@ def test_the_incline_is_told_as_json(tmp_path, capsys) -> None:
     assert {path.name for path in tmp_path.iterdir()} == {"bench.json", "bench.md", "bench.png"}
 
 
+@pytest.mark.slow
 def test_the_reference_of_a_lever_is_confirmed_by_another_method() -> None:
     whole = next(one for one in scenarios() if one.name == "bench_lever")
     few = dataclasses.replace(

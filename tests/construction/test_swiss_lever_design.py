@@ -62,6 +62,7 @@ def checked(chosen, folder):
     assert safety.beat_clearance_mm > 0.0
 
 
+@pytest.mark.slow
 def test_dimensions_are_those_measured_from_the_drawing(tmp_path):
     checked(OTHERS[0], tmp_path)
 

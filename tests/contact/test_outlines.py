@@ -61,6 +61,7 @@ def test_distances_known_in_advance(a: object, b: Loop, pose: tuple[float, float
     assert swapped.value == pytest.approx(found.value, abs=1e-12)
 
 
+@pytest.mark.slow
 def test_distances_against_dense_sampling() -> None:
     """Apart to the sampling's error; overlapping never shallower than the deepest sample, and hardly deeper."""
     rng = np.random.default_rng(4)

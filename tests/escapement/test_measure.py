@@ -109,6 +109,7 @@ def test_draw_and_recoil_follow_from_the_construction(name):
         assert degrees(one.recoil) == pytest.approx(recoil, abs=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scene", [SWISS, pytest.param(BENCH, marks=pytest.mark.slow)], ids=lambda path: path.parent.name)
 def test_turning_polygons_by_small_steps_gives_the_same(scene):
     """scripts/checks/measure_lever.py turns shapely polygons and shares nothing with the package."""

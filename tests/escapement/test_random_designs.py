@@ -28,6 +28,7 @@ def judge(found: dict[str, float]) -> None:
             assert off < 1e-5, name
 
 
+@pytest.mark.slow
 def test_a_few_designs():
     judge(worst(4, 3))
 

@@ -90,6 +90,7 @@ def test_number_of_arcs_grows_with_the_cube_root(name: str) -> None:
     assert 0.99 * least <= counts[-1] <= 1.12 * least
 
 
+@pytest.mark.slow
 def test_many_curves_at_once_are_followed_like_each_alone() -> None:
     """Of several degrees, with and without weights and cusps, with different tolerances."""
     rng = np.random.default_rng(3)
@@ -108,6 +109,7 @@ def test_many_curves_at_once_are_followed_like_each_alone() -> None:
         assert measured <= fit.deviation * (1.0 + 1e-6) + 1e-15 and fit.deviation <= tolerance
 
 
+@pytest.mark.slow
 def test_very_many_curves_are_followed_with_a_few_more_arcs(monkeypatch: pytest.MonkeyPatch) -> None:
     """The shorter search keeps the tolerance just as well."""
     rng = np.random.default_rng(4)

@@ -104,6 +104,7 @@ def test_worker_that_dies_does_not_end_the_hunt():
     assert dict(answers(range(5), work, 2)) == {0: 0, 1: 10, 2: None, 3: 30, 4: 40}
 
 
+@pytest.mark.slow
 def test_worker_that_hangs_is_killed(monkeypatch):
     monkeypatch.setattr(pool, "PATIENCE", 0.1)
     found = dict(answers(range(3), lambda number: time.sleep(1000.0) if number == 1 else number, 1))

@@ -62,6 +62,7 @@ def test_the_profile_turns_in_the_ratio_of_its_teeth() -> None:
     assert (pinion[-1] - pinion[0]) / (0.7 * run.t[-1]) == pytest.approx(5.0, rel=1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("chosen", "ripple"),
     [

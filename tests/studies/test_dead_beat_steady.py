@@ -78,6 +78,7 @@ def test_rate_of_a_short_impulse_that_comes_late(tmp_path, lock, quality):
     assert late == pytest.approx(airy, rel=1.5 / quality)
 
 
+@pytest.mark.slow
 def test_the_same_rate_by_a_run(tmp_path):
     """0.15° of more delay, from 0.3° of more lock, in two runs of 150 s."""
     rates, amplitude = [], 0.0

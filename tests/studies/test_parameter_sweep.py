@@ -216,7 +216,7 @@ def stopped(folder: Path, count: int, number: int) -> tuple[list[str], int]:
 
 @pytest.mark.skipif(os.name == "nt", reason="signals to groups of processes")
 @pytest.mark.usefixtures("heard")
-@pytest.mark.parametrize("number, status", [(signal.SIGINT, 130), (signal.SIGKILL, -9)])
+@pytest.mark.parametrize("number, status", [(signal.SIGINT, 130), pytest.param(signal.SIGKILL, -9, marks=pytest.mark.slow)])
 def test_stopped_from_outside(tmp_path, number, status):
     """Finished rows are kept, no worker stays behind, and --resume gives the rows of a sweep that nobody has stopped."""
     for count in (20, 80, 320):  # where this process has to wait for its turn, a short sweep is done before it is stopped

@@ -217,6 +217,7 @@ def test_report_is_json_and_tells_every_happening(coaxial):
     assert all(one["distance_um"] > 0.0 for one in report["passings"])
 
 
+@pytest.mark.slow
 def test_the_command_tells_draws_and_films(tmp_path, capsys, monkeypatch):
     for way in ("LEAP", "LED", "AFAR"):  # of the bodies from one picture to the next: few pictures do
         monkeypatch.setattr(f"watchsim.render.movies.turn_movie.{way}", math.radians(20.0))

@@ -304,6 +304,7 @@ def calls(work: Callable[[], object]) -> int:
     return count
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("make", [ring, star])
 def test_work_grows_with_the_number_of_edges(make: Callable[[int], list[Stroke]]) -> None:
     few, many = make(500), make(4000)

@@ -181,6 +181,7 @@ def test_random_polygons_cross_where_every_pair_of_sides_says(seed: int) -> None
         assert p == pytest.approx(q, abs=2e-6)
 
 
+@pytest.mark.slow
 def test_many_edges_through_one_point_are_said_where_not_all_are_looked_at() -> None:
     petals = []
     for k in range(400):

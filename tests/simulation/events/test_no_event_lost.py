@@ -120,6 +120,7 @@ def test_the_first_touch_is_the_one_that_brute_force_sees(motions: tuple[str, st
         met, missed = met + (told < math.inf), missed + (told == math.inf)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("wanted", [1, pytest.param(20, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("motions", CELLED)
 def test_cells_change_no_bit_of_random_collisions(
