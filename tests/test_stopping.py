@@ -68,7 +68,7 @@ KEPT = [
 ]
 
 
-NEIGHBOURS = {KEPT[1], KEPT[4]}  # stopped as what comes after them is
+NEIGHBOURS = {KEPT[1], KEPT[2], KEPT[4]}  # stopped as what comes after them is
 
 
 # All three signals have one handler; that each of them reaches it is tried once in short, at night in the loop and while files

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely
+from every_time import few
 from pair_scenes import body_pose, outline
 from test_cell_travel import curve, seen
 
@@ -69,7 +70,7 @@ def shape(points: np.ndarray) -> Any:
 @pytest.mark.parametrize(
     "loops", [POLYGONS, POLYGONS[::-1], ROUND, ROUND[::-1]], ids=["lines", "swapped", "arcs", "swapped arcs"]
 )
-@pytest.mark.parametrize("clearance", [0.02, 0.12])
+@pytest.mark.parametrize("clearance", few([0.02, 0.12], 1))
 def test_what_comes_within_the_clearance_is_found(loops: tuple[Loop, Loop], clearance: float, any_normals: None) -> None:
     """Whatever the normals; where there are lines alone nothing else, of arcs what their chords may be off, twice."""
     scene, compiled = scene_of(loops, clearance)

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from every_time import few
 from pair_scenes import DEGREES, outline
 from true_contacts import touches
 
@@ -92,7 +93,7 @@ def random_q(scene: Scene, rng: np.random.Generator) -> np.ndarray:
 
 
 @pytest.mark.parametrize("poses", [15, pytest.param(300, marks=pytest.mark.slow)])
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", few(CASES, 4))
 def test_no_touching_pair_is_lost(name: str, poses: int) -> None:
     scene, compiled = pair(*CASES[name])
     finder, rng = CellFinder(compiled.model), np.random.default_rng(7)

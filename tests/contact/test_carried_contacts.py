@@ -9,6 +9,7 @@ import math
 import numpy as np
 import pytest
 from carried_scenes import ARRANGEMENTS, carried_scene, places
+from every_time import few
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from pair_scenes import outline
@@ -129,7 +130,10 @@ def toothed_scene(arrangement: tuple[str, str, bool], at: tuple[float, float]) -
     return carried_scene(*arrangement, toothed, at)
 
 
-@pytest.mark.parametrize("arrangement", ARRANGEMENTS, ids=str)
+FEW = few(ARRANGEMENTS, lambda one: one == ("pivot", "beside", False) or ARRANGEMENTS.index(one) % 3 == 0)
+
+
+@pytest.mark.parametrize("arrangement", FEW, ids=str)
 def test_no_touching_pair_is_lost(arrangement: tuple[str, str, bool]) -> None:
     """At poses where primitives really touch, and before them, as long as the answer there is said to hold."""
     scene, compiled = toothed_scene(arrangement, (0.25, 0.1))

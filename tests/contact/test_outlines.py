@@ -175,10 +175,11 @@ def test_flat_on_flat_is_two_corners_on_a_line() -> None:
     assert set(near["kind_a"]) == {"corner"} and set(near["kind_b"]) == {"line"}
 
 
-def test_corner_on_corner_is_met_by_an_edge_first() -> None:
+@pytest.mark.parametrize("count", [60, pytest.param(600, marks=pytest.mark.slow)])
+def test_corner_on_corner_is_met_by_an_edge_first(count: int) -> None:
     """Wherever two corners come together, the smallest gap inside primitives is their distance, or that of an edge."""
     rng = np.random.default_rng(4)
-    for _ in range(200):
+    for _ in range(count):
         turn, off = rng.uniform(-math.pi, math.pi), rng.normal(size=2) * 10.0 ** rng.uniform(-12, -2)
         corner = np.array([0.5, 0.5]) @ np.array([[math.cos(turn), math.sin(turn)], [-math.sin(turn), math.cos(turn)]])
         pose = (0.5 + off[0] - corner[0], 0.5 + off[1] - corner[1], turn)

@@ -11,12 +11,14 @@ from collections import Counter
 from typing import Any
 
 import pytest
+from every_time import few
 from real_cases import FOLDER, case, cells, facts
 
 from watchsim.drawing.read import read
 
 FACTS = facts()
-NAMES = sorted(name for name in FACTS if FACTS[name].get("length"))
+LONG = ("dxf/dxf__issue53.dxf", "dxf/dxf__supported_entities.dxf", "svg/openMEMSdesign__Schrittschaltwerke.svg")  # to read
+NAMES = few(sorted(name for name in FACTS if FACTS[name].get("length")), lambda name: name not in LONG)
 EMPTY = sorted(name for name in FACTS if not FACTS[name].get("length"))
 HEADER_UNITS = {None: None, "0": None, "1": "inch", "4": "mm", "5": "cm", "6": "m"}
 PAGE_UNITS = {

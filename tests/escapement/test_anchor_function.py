@@ -11,6 +11,7 @@ import math
 import pytest
 import shapely
 from escapement.made import mirrored_scene, turned_scene
+from every_time import few
 from shapely import affinity
 
 from watchsim import designs
@@ -72,13 +73,13 @@ def check(function: Function, values: object) -> None:
     assert [math.degrees(end) for end in function.swung] == pytest.approx([2.0 * released, -2.0 * released], abs=CLOSE)
 
 
-@pytest.mark.parametrize("name", DRAWN)
+@pytest.mark.parametrize("name", few(DRAWN, 2))
 def test_anchor_has_the_lift_and_lock_it_was_drawn_with(name):
     scene, values = drawn(name)
     check(measure(scene), values)
 
 
-@pytest.mark.parametrize("name", ["dead-beat", "wide", "20 teeth"])
+@pytest.mark.parametrize("name", few(["dead-beat", "wide", "20 teeth"], 1))
 def test_dead_beat_anchor_drops_as_drawn_and_drives_nothing_back(name):
     """The dimension counts the drop from the heel of the tooth, the measure the whole free way of the wheel."""
     scene, values = drawn(name)
@@ -87,7 +88,7 @@ def test_dead_beat_anchor_drops_as_drawn_and_drives_nothing_back(name):
         assert abs(math.degrees(one.recoil.value)) < CLOSE
 
 
-@pytest.mark.parametrize("name", ["recoil", "little recoil"])
+@pytest.mark.parametrize("name", few(["recoil", "little recoil"], 1))
 def test_recoil_is_what_polygons_say(name):
     scene, values = drawn(name)
     function = measure(scene)

@@ -7,6 +7,7 @@ from dataclasses import fields, replace
 
 import pytest
 from escapement.made import mirrored_scene, renamed_scene, turned_scene
+from every_time import few
 
 from watchsim.construction import known
 from watchsim.construction.coaxial.coaxial_points import Points
@@ -54,7 +55,7 @@ def numbers(function: Function) -> dict[str, float]:
     return found
 
 
-@pytest.mark.parametrize("name", DESIGNS)
+@pytest.mark.parametrize("name", few(DESIGNS, 1))
 def test_measured_is_what_was_constructed(name):
     drawn = Maker(known.design("coaxial"))(**DESIGNS[name])
     points, function = Points(drawn.values), measure(drawn.scene())
@@ -75,6 +76,7 @@ def test_measured_is_what_was_constructed(name):
         assert -got[f"{stone} begins"] == pytest.approx(got[f"{stone} lift_angle"] / 2.0 - got[f"{stone} unlocking"], abs=1e-6)
 
 
+@pytest.mark.slow
 def test_turning_by_hand_shows_the_same(coaxial):
     """`check --turn` leads the balance by small steps and knows nothing of gap functions."""
     scene = load(PROFILE)
@@ -104,7 +106,7 @@ def test_turning_by_hand_shows_the_same(coaxial):
     assert recoils == pytest.approx(sorted((got["entry recoil"], got["exit recoil"])), abs=2e-3)
 
 
-@pytest.mark.parametrize("angle", [0.7, -3.0])
+@pytest.mark.parametrize("angle", few([0.7, -3.0], 1))
 def test_any_orientation(coaxial, angle):
     function = measure(turned_scene(load(PROFILE), angle, (3e-3, -5e-3)))
     assert numbers(function) == pytest.approx(numbers(coaxial), abs=1e-6, nan_ok=True)

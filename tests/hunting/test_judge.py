@@ -82,6 +82,7 @@ def test_impacts_in_turn_that_a_coarse_run_takes_for_one():
     assert not judged(cradle(), 1).reasons
 
 
+@pytest.mark.slow
 def test_sensitive_motion_is_not_wrong():
     """A ball between round posts forgets its start: one part in 10⁷ decides after a dozen impacts."""
     ball = mechanism(7, 2, "boxed").bodies[-1]

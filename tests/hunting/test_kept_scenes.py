@@ -9,8 +9,9 @@ import hunt_path
 import pytest
 from hunt.hunt_mechanisms import judged_file
 
-# One to ten seconds of processor time each.
+# Half a second of processor time to ten each.
 SLOW = ("gears-3-7", "levers-2001-15091", "blocks-801-12218", "levers-801-17734", "wave-801-16576", "kink-801-11924")
+SLOW += ("blocks-2001-16485", "levers-801-2838", "row-801-10639", "pendulums-801-2071")
 SCENES = [
     pytest.param(path, id=path.stem, marks=[pytest.mark.slow] if path.stem in SLOW else [])
     for path in sorted((hunt_path.ROOT / "tests" / "data" / "hunt").glob("*.toml"))

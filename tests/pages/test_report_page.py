@@ -34,6 +34,7 @@ from watchsim.pages.player.stretch_shown import shown
 from watchsim.pages.report_page import page_text, report
 from watchsim.pages.self_contained_page import SCRIPTS
 from watchsim.pages.timing_sheet.phase_tables import phase_tables
+from watchsim.pages.timing_sheet.timing_sheet import verdict
 from watchsim.profiles_path import profiles_dir
 from watchsim.render.fewest_rows import kept_rows
 from watchsim.scene.file.load import load
@@ -170,9 +171,15 @@ def test_the_sheet_holds_the_geometry_of_function_as_check_has_it(lever: Traject
         ({"verdict": None, "stopped": True, "stopped_message": "it stands"}, "<strong>The watch stops</strong> it stands"),
     ],
 )
-def test_the_verdict_is_shown_where_there_is_one(lever: Trajectory, numbers: dict, shown_text: str | None) -> None:
-    text = page_text(lever, numbers={**summary(lever), **numbers})
-    assert shown_text in text if shown_text else 'class="verdict' not in text
+def test_the_verdict_is_that_of_the_numbers(numbers: dict, shown_text: str | None) -> None:
+    text = verdict(numbers) or ""
+    assert shown_text in text if shown_text else not text
+
+
+def test_the_verdict_is_shown_where_there_is_one(lever: Trajectory) -> None:
+    text = page_text(lever, numbers={**summary(lever), "verdict": "knocks", "verdict_message": "at 3 s"})
+    assert '<p class="verdict bad"><strong>The watch knocks</strong> at 3 s</p>' in text
+    assert 'class="verdict' not in page_text(disc_run())
 
 
 def test_rows_that_are_kept_tell_the_motion(lever: Trajectory) -> None:

@@ -81,6 +81,7 @@ def test_the_pinion_is_where_exact_curves_lead_it(chosen: dict[str, float], ripp
     assert np.ptp(pinion - values.wheel_teeth / values.pinion_teeth * wheel) == pytest.approx(ripple, rel=0.05)
 
 
+@pytest.mark.slow
 def test_the_error_falls_with_the_arcs() -> None:
     """An arc through three points departs from the curve with the third power of its length."""
     few, many = (
@@ -89,6 +90,7 @@ def test_the_error_falls_with_the_arcs() -> None:
     assert few / many > 5.0
 
 
+@pytest.mark.slow
 def test_the_other_method_agrees_at_its_order() -> None:
     scene = designs.cycloidal_pair().scene()
     end = ws.simulate(scene, duration=0.1).end_q

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
+from every_time import few
 from render.fake_runs import watch_run
 from scipy.spatial.transform import Rotation, Slerp
 
@@ -99,7 +100,7 @@ def test_without_motion_nothing_is_animated() -> None:
     assert "animations" not in tree
 
 
-@pytest.mark.parametrize("profile", ["swiss_lever", "bench_lever", "balance", "coaxial", "geneva", "graham"])
+@pytest.mark.parametrize("profile", few(["swiss_lever", "coaxial", "bench_lever", "balance", "geneva", "graham"], 3))
 def test_stl_files_are_closed(profile: str, tmp_path: Path) -> None:
     scene = load(PROFILES / profile / "scene.toml")
     assert main(["export", str(PROFILES / profile), "-o", str(tmp_path / "out"), "--format", "stl"]) == 0

@@ -16,7 +16,6 @@ from watchsim.storage import scratch_folder as scratch
 from watchsim.storage.write import write_file, write_folder
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="forks")
-ROUNDS = 30
 
 
 def left_by(root: Path, work: Callable[[Path], object], after: float) -> None:
@@ -46,12 +45,13 @@ def many(place: Path) -> None:
     ],
     ids=["probe", "file", "folder"],
 )
-def test_nothing_is_left_and_nothing_lost(tmp_path: Path, work: Callable[[Path], object]) -> None:
-    for number in range(ROUNDS):
+@pytest.mark.parametrize("rounds", [9, pytest.param(30, marks=pytest.mark.slow)])
+def test_nothing_is_left_and_nothing_lost(tmp_path: Path, work: Callable[[Path], object], rounds: int) -> None:
+    for number in range(rounds):
         root = tmp_path / str(number)
         (root / "out").mkdir(parents=True)
         many(root / "out")
-        left_by(root, work, 0.002 + 0.0007 * number)
+        left_by(root, work, 0.002 + 0.021 * number / rounds)
         assert not list(root.glob(f"{scratch.PREFIX}*")), number
         assert len(list((root / "out").iterdir())) == 20
 

@@ -37,6 +37,7 @@ def by_hand(toy: Toy, tilt: float, h: float, until: float) -> np.ndarray:
     return np.array(passed)
 
 
+@pytest.mark.slow
 def test_the_published_animation_is_understood() -> None:
     """Its scheme, written down again, sticks where the animation does, within what its relaxation leaves."""
     toy = Toy()

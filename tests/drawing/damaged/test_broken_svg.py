@@ -11,6 +11,7 @@ import judge_mutation
 import mutate_svg
 import pytest
 import svg_text as s
+from every_time import few
 
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.inspection import inspect_report, inspect_text
@@ -131,7 +132,7 @@ def test_trees_of_use_that_explode_are_refused(read_svg: Reader) -> None:
     assert not bomb.loops
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", few(range(3), 1))
 @pytest.mark.parametrize("sample", range(3))
 def test_damage_never_raises_and_never_goes_unnoticed(read_svg: Reader, sample: int, seed: int, damages: int = 25) -> None:
     rng = random.Random(f"{sample} {seed}")

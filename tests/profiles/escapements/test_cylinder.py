@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from every_time import few
 from profiles.led_wheel import DAY, Led, work_and_rate
 from profiles.running import check_running, of_profile, stepping_errors
 
@@ -39,7 +40,7 @@ def led(made: Shell, scene: ws.Scene) -> list[tuple[np.ndarray, np.ndarray]]:
     ]
 
 
-@pytest.mark.parametrize("chosen", [{}, {"tooth_width": 9.5, "drop": 1.6, "lift": 34.0}])
+@pytest.mark.parametrize("chosen", few([{}, {"tooth_width": 9.5, "drop": 1.6, "lift": 34.0}], 1))
 def test_led_by_hand_the_drops_are_those_chosen(chosen):
     """What two impulses leave of a pitch are the two drops."""
     values = design("cylinder").chosen(chosen)

@@ -78,6 +78,7 @@ def test_work_of_the_drive_and_amplitude() -> None:
     assert lost["impacts"] < 0.01 * run.energy["in_J"]
 
 
+@pytest.mark.slow
 def test_time_stepping_agrees() -> None:
     off = stepping_errors(designs.grasshopper().scene(), 2.2, (1e-4, 5e-5))
     assert off[1] < 1e-5

@@ -11,6 +11,7 @@ import matplotlib
 import matplotlib.image
 import numpy as np
 import pytest
+from every_time import few
 from matplotlib.colors import rgb_to_hsv, to_rgb
 from render.fake_runs import disc_run, slide_run, watch_run
 
@@ -79,7 +80,7 @@ def test_axes_say_which_time_they_show():
     assert clock((1.4, 1.4005)).label == "time after 1.4 s (µs)"
 
 
-@pytest.mark.parametrize("window", [(0.0, 2.0), (0.0, 0.9), (0.3, 0.31), (0.5, 0.5001)])
+@pytest.mark.parametrize("window", few([(0.0, 0.9), (0.0, 2.0), (0.5, 0.5001), (0.3, 0.31)], 2))
 def test_tick_labels_tell_the_value_at_the_tick(window):
     run = watch_run()
     for scale in (1.0, 0.01, 0.9, 30.0):  # the lever then swings by ±5.7°, ±0.06°, ±5.2°, ±172°

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from every_time import few
 from matplotlib.colors import to_rgb
 from render.fake_runs import disc_run, slide_run, watch_run
 from shapely import LineString, Point
@@ -117,7 +118,7 @@ def test_insets_lie_apart_beside_the_mechanism(size, count):
             assert apart or a.bottom + a.height <= b.bottom or b.bottom + b.height <= a.bottom
 
 
-@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize("size", few(SIZES, 1))
 def test_the_cursor_stands_at_its_share_of_the_strip(size):
     run, found = watch_run(), []
     for t in (0.0, 0.05, 0.1):

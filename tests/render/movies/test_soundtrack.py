@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from every_time import few
 from imageio_ffmpeg import get_ffmpeg_exe
 from render.fake_runs import watch_run
 
@@ -43,7 +44,7 @@ def onsets(path: Path) -> np.ndarray:
     return loud[np.diff(loud, prepend=-SAMPLES) > RING * SAMPLES] / SAMPLES
 
 
-@pytest.mark.parametrize("speed", ["1", "1/2", "1/10", "2"])
+@pytest.mark.parametrize("speed", few(["1", "1/2", "1/10", "2"], lambda speed: speed in ("1/2", "2")))
 def test_at_an_even_speed_blows_are_heard_when_they_are_shown(speed: str, tmp_path: Path) -> None:
     rate = parse_speed(speed)
     window = (0.2, 0.95)

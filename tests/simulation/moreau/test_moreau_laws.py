@@ -7,6 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 import short_runs
+from every_time import few
 from moving_scenes import box, circle, ground, profile, touching
 from test_dry_bearings import driven, rotor
 
@@ -94,7 +95,7 @@ def thrown(rng: np.random.Generator, law: str, tangential: float, nu: float) -> 
     return Scene("thrown", (block, left, right), contacts=contacts, tangential_law=law, nu=nu)
 
 
-@pytest.mark.parametrize("law, tangential, nu", LAWS)
+@pytest.mark.parametrize("law, tangential, nu", few(LAWS, 2, several=True))
 def test_impacts_with_two_contacts_are_those_of_the_complementarity_problems(law: str, tangential: float, nu: float) -> None:
     """Two algorithms without a common line: relaxation and pivoting give the same velocities."""
     rng = np.random.default_rng(11)

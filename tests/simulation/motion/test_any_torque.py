@@ -6,6 +6,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from every_time import few
 
 from watchsim.profiles_path import profiles_dir
 from watchsim.scene.file.load import load
@@ -16,7 +17,7 @@ from watchsim.simulation.stops import Stop
 TORQUES = [0.0, *np.geomspace(1e-3, 10.0, 20).tolist(), -0.5]
 
 
-@pytest.mark.parametrize("name", ["bench_lever", "swiss_lever"])
+@pytest.mark.parametrize("name", few(["bench_lever", "swiss_lever"], 1))
 def test_every_torque_runs_to_the_end(name: str) -> None:
     scene = load(profiles_dir() / name / "scene.toml")
     given_up = []

@@ -193,6 +193,7 @@ def test_a_light_carriage_turns_back_what_the_escapement_turns() -> None:
     assert done.counts["lcp_failures"] == 0
 
 
+@pytest.mark.slow
 def test_a_light_carriage_as_moreau_steps_it() -> None:
     """Another algorithm, at its order: all bodies after three beats."""
     scene = escapement(Body("carriage", "pivot", (1e-3, -2e-3), 0.7, (2.0,), inertia=2e-8))

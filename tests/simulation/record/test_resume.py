@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 import short_runs
+from every_time import few
 from moving_scenes import profile
 
 from watchsim.candidates import cell_table
@@ -71,7 +72,7 @@ RECORDINGS = [
 ]
 
 
-@pytest.mark.parametrize("recording", RECORDINGS, ids=str)
+@pytest.mark.parametrize("recording", few(RECORDINGS, 4), ids=str)
 def test_with_every_recording(recording: Recording) -> None:
     """Wherever it is cut: within windows, between them, just before the row next to one, and within the tail of the first."""
     scene = profile("bench_lever")
