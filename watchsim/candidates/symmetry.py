@@ -6,6 +6,7 @@ it fails, by the rounding of the drawing, is measured and has to be allowed for.
 
 from __future__ import annotations
 
+import functools
 import math
 from typing import NamedTuple
 
@@ -13,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.candidates.chords import chords
-from watchsim.model.records import CORNER, Records
+from watchsim.model.records import CORNER, PRIMITIVE, Records, frozen
 
 Array = NDArray[np.float64]
 
@@ -31,6 +32,13 @@ def turn_symmetry(primitives: Records, tolerance: float) -> Symmetry:
 
     Spokes do not share the symmetry of the teeth: they are loose. Fold 1 where less than half of the primitives share one.
     """
+    return _symmetry_of(primitives.tobytes(), tolerance)
+
+
+@functools.lru_cache(maxsize=32)
+def _symmetry_of(rows: bytes, tolerance: float) -> Symmetry:
+    """Of primitives as bytes: every run of a geometry asks for the same, several times."""
+    primitives = np.frombuffer(rows, PRIMITIVE).view(np.recarray)
     drawn = chords(primitives, math.inf)  # corner: its point; line or arc: its two ends
     ends = drawn.points[drawn.first[:-1]], drawn.points[drawn.first[1:] - 1]
     classes = _classes(primitives, tolerance)
@@ -49,6 +57,7 @@ def turn_symmetry(primitives: Records, tolerance: float) -> Symmetry:
         shared = np.count_nonzero(~loose) * (1.0 - 1.0 / fold)
         if shared > gain:
             gain, best = shared, Symmetry(fold, np.where(loose, np.arange(len(image)), image), loose)
+    frozen(best.image), frozen(best.loose)  # shared by all who ask
     return best
 
 
