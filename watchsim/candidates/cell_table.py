@@ -9,7 +9,6 @@ from __future__ import annotations
 import itertools
 import math
 import time
-from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -186,24 +185,22 @@ class PairCells:
         index = np.array(cells, np.int64)
         # Within each cell ascending: sorted together with the number of the cell.
         first = np.repeat(np.arange(len(cells)) * int(self.pair.stop - self.pair.start), count)
-        keys, lists = [], []
-        for turns, moved in self._turned(found):
-            each = zip(turns, self._sense, self.axes, strict=True)
-            shift = np.array([(sense * turn) % axis.fold * axis.part for turn, sense, axis in each])
-            keys.append(self._keys(index + shift))
-            lists.append(np.sort(first + moved) - first + self.start)
-        return np.concatenate(keys), np.tile(count, len(keys)), np.concatenate(lists)
+        shift, moved = self._turned(found)
+        keys = self._keys((index + shift[:, None]).reshape(-1, len(self.axes)))
+        lists = np.sort(first + moved) - first + self.start
+        return keys, np.tile(count, len(shift)), lists.ravel()
 
-    def _turned(self, found: Integers, level: int = 0) -> Iterator[tuple[Cell, Integers]]:
-        """For each alike part of a turn about the axes from `level` on: its numbers, and what is there for `found`."""
-        if level == len(self.axes):
-            yield (), found
-            return
-        for turn in range(self.axes[level].fold):
-            alike = self._alike[level]
-            found = alike.later(found) if alike is not None and turn else found
-            for others, moved in self._turned(found, level + 1):
-                yield (turn, *others), moved
+    def _turned(self, found: Integers) -> tuple[Integers, Integers]:
+        """All alike parts of turns: how many cells away they are, (parts, axes); what is there for `found`, (parts, found)."""
+        shift, moved = np.zeros((1, 0), np.int64), found[None]
+        for axis, alike, sense in zip(self.axes, self._alike, self._sense, strict=True):
+            turns = [moved]
+            while alike is not None and len(turns) < axis.fold:
+                turns.append(alike.later(turns[-1]))
+            steps = sense * np.arange(axis.fold) % axis.fold * axis.part
+            shift = np.column_stack([np.repeat(shift, axis.fold, axis=0), np.tile(steps, len(shift))])
+            moved = np.stack(turns, axis=1).reshape(len(shift), len(found))
+        return shift, moved
 
     def _keys(self, index: Integers) -> Integers:
         """The keys of cells, as `cell_lookup.cell_key` makes them."""
