@@ -11,6 +11,7 @@ from hunt.hunt_mechanisms import judged_file
 
 # One to ten seconds of processor time each.
 SLOW = ("gears-3-7", "levers-2001-15091", "blocks-801-12218", "levers-801-17734", "wave-801-16576", "kink-801-11924")
+SLOW += ("cam-20261124-500",)
 SCENES = [
     pytest.param(path, id=path.stem, marks=[pytest.mark.slow] if path.stem in SLOW else [])
     for path in sorted((hunt_path.ROOT / "tests" / "data" / "hunt").glob("*.toml"))
