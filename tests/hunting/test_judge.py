@@ -49,11 +49,12 @@ class Spoilt(Judge):
 
     def __init__(self, scene: Scene, share: float, tolerance: float | None) -> None:
         super().__init__(scene, 1)
+        self.times = self.times[4::5]
         self.share, self.only = share, tolerance
 
-    def motion(self, run, view=None):
+    def motion(self, run, view=None, times=None):
         spoils = (run.tolerance == self.only) if self.only else (view is not None and view.mirrored)
-        return super().motion(run, view) * (1.0 + self.share * spoils)
+        return super().motion(run, view, times) * (1.0 + self.share * spoils)
 
 
 @pytest.mark.parametrize("tolerance", [None, 1e-11])

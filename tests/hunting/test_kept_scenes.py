@@ -10,8 +10,10 @@ import pytest
 from hunt.hunt_mechanisms import judged_file
 
 # Half a second of processor time to ten each.
-SLOW = ("gears-3-7", "levers-2001-15091", "blocks-801-12218", "levers-801-17734", "wave-801-16576", "kink-801-11924")
-SLOW += ("blocks-2001-16485", "levers-801-2838", "row-801-10639", "pendulums-801-2071")
+SLOW = (
+    *("gears-3-7", "levers-2001-15091", "blocks-801-12218", "levers-801-17734", "wave-801-16576", "kink-801-11924"),
+    *("blocks-2001-16485", "levers-801-2838", "row-801-10639", "pendulums-801-2071", "cam-20261124-500"),
+)
 SCENES = [
     pytest.param(path, id=path.stem, marks=[pytest.mark.slow] if path.stem in SLOW else [])
     for path in sorted((hunt_path.ROOT / "tests" / "data" / "hunt").glob("*.toml"))
