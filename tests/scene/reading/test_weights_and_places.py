@@ -128,6 +128,11 @@ def test_solids_and_what_says_the_same_exclude_each_other() -> None:
     assert faults(given)[0].startswith("bodies.b.centre_of_mass: the solids already give the centre of mass")
 
 
+@pytest.mark.parametrize("solids", ["[3]", "[[]]", "3", "false", "{}"])
+def test_what_are_no_solids_is_one_fault(solids: str) -> None:
+    assert len(faults(f"[bodies.b]\n{SHAPE}solids = {solids}\n")) == 1
+
+
 def test_the_smallest_weights_are_taken() -> None:
     assert bodies('[bodies.b]\ninertia = "1e-100 kg·m²"\nmass = "1e-100 kg"\n')["b"].inertia == 1e-100
 
