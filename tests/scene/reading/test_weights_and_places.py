@@ -5,13 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-import tomllib
 from made_scenes import circle, drawing, square
+from scene_texts import faults, read
 
 from watchsim.scene.body import Body
 from watchsim.scene.errors import SceneError
 from watchsim.scene.file.load import load
-from watchsim.scene.file.read_scene import from_mapping
 
 SHAPE = 'polygon = [["1 mm", "-2 mm"], ["3 mm", "-2 mm"], ["3 mm", "4 mm"], ["1 mm", "4 mm"]]\n'  # 2 mm by 6 mm about (2, 1)
 OWN, OFF = 5e-3 * 40e-6 / 12.0, 5e-3 * 5e-6  # kg·m² of 5 g about its middle, and of the way from there to the origin
@@ -21,13 +20,7 @@ MIDDLE = 'pivot = ["2 mm", "1 mm"]\n'
 
 
 def bodies(text: str) -> dict[str, Body]:
-    return {body.name: body for body in from_mapping(tomllib.loads(text), None).bodies}
-
-
-def faults(text: str) -> list[str]:
-    with pytest.raises(SceneError) as caught:
-        bodies(text)
-    return [f"{fault.key}: {fault.message}" for fault in caught.value.faults]
+    return {body.name: body for body in read(text).bodies}
 
 
 WEIGHED = [  # what is written, then mass (kg), inertia (kg·m²) and centre of mass (mm, from the body's origin)
@@ -138,7 +131,7 @@ def test_the_smallest_weights_are_taken() -> None:
 
 
 def test_what_is_left_out_of_a_run_and_of_a_body() -> None:
-    scene = from_mapping(tomllib.loads(f"[bodies.b]\n{INERTIA}"), None)
+    scene = read(f"[bodies.b]\n{INERTIA}")
     assert (scene.duration, scene.tolerance, scene.record.stride, scene.record.keep) == (1.0, 1e-9, 1, "all")
     assert (scene.lift_angle, scene.nominal, scene.gravity, scene.nu, scene.title) == (None, None, (0.0, 0.0), 0.0, "")
     body = scene.bodies[0]
