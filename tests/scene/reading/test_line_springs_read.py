@@ -42,7 +42,7 @@ FREE = apart(0j, 1 + 0j)
 def test_a_line_spring_between_two_points(text: str, expected: tuple[tuple[str, str | None], float, float, float]) -> None:
     (found,) = read(WITH_CARRIED + text).line_springs
     assert isinstance(found, LineSpring) and found.between == expected[0]
-    assert (found.stiffness, found.length, found.viscous) == pytest.approx(expected[1:], rel=1e-12)
+    assert (found.stiffness, found.length, found.viscous) == pytest.approx(expected[1:], rel=1e-12, abs=0.0)
     assert found.points == ((4e-3, 1e-3), (-2e-3, 5e-3))
 
 

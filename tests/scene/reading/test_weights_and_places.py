@@ -112,7 +112,7 @@ def test_solids_and_what_says_the_same_exclude_each_other() -> None:
     assert bodies(f"{free}{solid}")["b"].mass == pytest.approx(12e-9 * 8000.0)
     assert bodies(f"{free}{MIDDLE}{MASS}")["b"].mass == 5e-3
     plate = bodies(f"[bodies.b]\n{SHAPE}{solid}")["b"]
-    assert (plate.mass, plate.inertia) == pytest.approx((9.6e-5, 9.6e-5 * (40e-6 / 12.0 + 5e-6)), rel=1e-12)
+    assert (plate.mass, plate.inertia) == pytest.approx((9.6e-5, 9.6e-5 * (40e-6 / 12.0 + 5e-6)), rel=1e-12, abs=0.0)
     assert plate.centre_of_mass == pytest.approx((2e-3, 1e-3))
     assert faults(f'[bodies.b]\n{SHAPE}{solid}centre_of_mass = ["1 mm", "2 mm"]\n')[0].startswith(
         "bodies.b.solids.0.centre_of_mass"
@@ -173,7 +173,7 @@ PLACES = [  # what is written, and where the body a stands (mm)
 @pytest.mark.parametrize(("text", "place"), PLACES)
 def test_a_body_stands_as_drawn_where_several_share_a_drawing(drawn: Any, text: str, place: tuple[float, float]) -> None:
     found = load(drawn.scene(text)).body("a")
-    assert found.position == pytest.approx((1e-3 * place[0], 1e-3 * place[1]), rel=1e-12)
+    assert found.position == pytest.approx((1e-3 * place[0], 1e-3 * place[1]), rel=1e-12, abs=0.0)
 
 
 def test_as_drawn_means_nothing_on_a_carrier_of_another_drawing(drawn: Any) -> None:

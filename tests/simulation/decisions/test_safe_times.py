@@ -97,7 +97,7 @@ def test_a_gap_may_fall_to_zero_or_a_little_below_where_it_does_not_leave() -> N
     assert ask("room_outside", 1e-6, -1.0, OPTIONS) == 1e-6
     assert ask("room_outside", 1e-13, 1e-7, OPTIONS) == 1e-13
     assert ask("room_outside", -1e-9, 1e-7, OPTIONS) == 0.0
-    assert ask("room_outside", 5e-14, 1e-9, OPTIONS) == pytest.approx(2.5e-13, rel=1e-12)
+    assert ask("room_outside", 5e-14, 1e-9, OPTIONS) == pytest.approx(2.5e-13, rel=1e-12, abs=0.0)
 
 
 def test_a_gap_that_is_behind_is_due_when_it_has_come_back_or_gone_deeper() -> None:
