@@ -239,11 +239,12 @@ def _named(name: str) -> Unit:
 
 
 def _bare(number: str, dimension: Dimension) -> str:
-    first, second = dimension.usual
-    ratio = known_unit(first).factor / known_unit(second).factor
-    factor = f"{max(ratio, 1.0 / ratio):.4g}"
-    pair = f"{_joined(number, first)} and {_joined(number, second)}"
-    return f'a bare number needs a unit here: {pair} differ by a factor of {factor}. Write "{_example(dimension, number)}"'
+    (first, second), why = dimension.usual, ""
+    if first != second:
+        ratio = known_unit(first).factor / known_unit(second).factor
+        pair = f"{_joined(number, first)} and {_joined(number, second)}"
+        why = f": {pair} differ by a factor of {max(ratio, 1.0 / ratio):.4g}"
+    return f'a bare number needs a unit here{why}. Write "{_example(dimension, number)}"'
 
 
 def _unfitting(value: object, unit: Unit, dimension: Dimension) -> str:

@@ -38,7 +38,9 @@ from pathlib import Path
 from areas import AREAS, COMPILED, PLAIN
 from compiled_copy import CompiledCopy
 from faults import Fault, faults
-from reached import Reached, fails, function_of, kept, load, recorded
+from named_functions import function_of
+from reached import Reached, kept, recorded
+from run_in_a_copy import fails, load
 
 ROOT = Path(__file__).resolve().parents[2]
 JUDGED = ROOT / "scripts" / "planted" / "faults_judged.csv"

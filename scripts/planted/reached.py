@@ -1,42 +1,28 @@
-"""Which tests reach which functions, how long does each take, and how is one run with a fault in the code?
+"""Which tests reach which functions, and how long does each take?
 
 Every test is run once while the functions of the package that it calls are written down. With a fault in one of them only these
-tests are run, the quickest first, in a copy of a process that has loaded everything but the package; the faulty text stands in
-for the file as it is imported.
+tests need be run, the quickest first (see run_in_a_copy.py).
 """
 
 from __future__ import annotations
 
-import ast
-import contextlib
 import hashlib
-import importlib.machinery
-import importlib.util
-import io
 import json
 import math
-import os
-import resource
 import signal
 import sys
 import time
-from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from itertools import accumulate
 from pathlib import Path
 from types import CodeType, FrameType
-from typing import Any, NamedTuple
+from typing import Any
 
 import pytest
-
-ROOT = Path(__file__).resolve().parents[2]
-PACKAGE = str(ROOT / "watchsim") + os.sep
-MODULE = ""  # the "function" of what is done while a file is imported
-MEMORY = 8 * 2**30  # B, that a process with a fault may take
-OPTIONS = ["-q", "-p", "no:cacheprovider", "--no-header", "-W", "ignore"]
-LIBRARIES = ("numba", "scipy.spatial", "scipy.interpolate", "scipy.optimize", "shapely", "ezdxf", "hypothesis", "mpmath")
+from named_functions import MODULE, names_at
+from run_in_a_copy import PACKAGE, ROOT, in_a_copy, run_tests
 
 
 @dataclass
@@ -129,7 +115,7 @@ class _Recorder:
         self.reached.called[item.nodeid] = {
             (code.co_filename.removeprefix(PACKAGE), function)
             for code in codes
-            for function in _names(code.co_filename).get(code.co_firstlineno, ())
+            for function in names_at(code.co_filename).get(code.co_firstlineno, ())
         }
 
     @pytest.hookimpl(hookwrapper=True)
@@ -158,14 +144,6 @@ class _Recorder:
             self._codes.add(frame.f_code)
 
 
-def load() -> None:
-    """Load what the tests need, but not the package."""
-    for name in LIBRARIES:
-        with contextlib.suppress(ImportError):
-            importlib.import_module(name)
-    sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
-
-
 def recorded(tests: Sequence[str], longest: float = math.inf) -> Reached:
     """Run the tests once; SystemExit where one fails without any fault.
 
@@ -174,11 +152,11 @@ def recorded(tests: Sequence[str], longest: float = math.inf) -> Reached:
     recorder = _Recorder(longest)
 
     def work() -> tuple[int, str]:
-        status = _pytest(list(tests), [recorder])
+        status = run_tests(list(tests), [recorder])
         passed = status == 0 or (math.isfinite(longest) and status == pytest.ExitCode.TESTS_FAILED)
         return 0 if passed else status, recorder.reached.text()
 
-    status, said = _in_a_copy(work, None)
+    status, said = in_a_copy(work, None)
     if status != 0:
         raise SystemExit(f"the tests fail without any fault: {said[-2000:]}")
     return Reached.of(said)
@@ -200,110 +178,3 @@ def kept(path: Path, tests: Sequence[str], longest: float = math.inf) -> Reached
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(json.dumps(json.loads(new.text()) | {"digests": digests}), encoding="utf-8")
     return new
-
-
-def fails(tests: Sequence[str], file: str, source: str, limit: float) -> bool:
-    """Does one of the tests fail, or take more than so many seconds of processor time, with that text in place of the file?"""
-
-    def work() -> tuple[int, str]:
-        faulty: Any = _Faulty(f"watchsim.{file.removesuffix('.py').replace('/', '.')}", PACKAGE + file, source)
-        sys.meta_path.insert(0, faulty)
-        return _pytest(["-x", *tests], []), ""
-
-    return _in_a_copy(work, limit)[0] != 0
-
-
-class Function(NamedTuple):
-    """Where a function stands: its first line with decorators, that of its body, and its last one."""
-
-    first: int
-    body: int
-    last: int
-    name: str
-
-
-def functions(source: str) -> list[Function]:
-    """Every function, inner ones after what they stand in. Those of one name are told apart by their order."""
-    found: list[Function] = []
-    seen: Counter[str] = Counter()
-
-    def look(node: ast.AST, prefix: str) -> None:
-        for child in ast.iter_child_nodes(node):
-            inner = prefix
-            if isinstance(child, (ast.FunctionDef, ast.ClassDef, ast.Lambda)):
-                name = prefix + getattr(child, "name", "lambda")
-                inner = name + "."
-            if isinstance(child, (ast.FunctionDef, ast.Lambda)):
-                seen[name] += 1
-                first = min([child.lineno, *(one.lineno for one in getattr(child, "decorator_list", []))])
-                body = child.body[0].lineno if isinstance(child, ast.FunctionDef) else child.lineno
-                own = name if seen[name] == 1 else f"{name} {seen[name]}"
-                found.append(Function(first, body, child.end_lineno or child.lineno, own))
-            look(child, inner)
-
-    look(ast.parse(source), "")
-    return found
-
-
-def function_of(source: str, line: int) -> str:
-    """The name of the innermost function in whose body a line is; MODULE where it is in none (defaults, constants)."""
-    holding = [one for one in functions(source) if one.body <= line <= one.last]
-    return max(holding, default=Function(0, 0, 0, MODULE)).name
-
-
-@cache
-def _names(path: str) -> dict[int, list[str]]:
-    """The names of the functions that begin in a line of a file."""
-    found: dict[int, list[str]] = {}
-    for one in functions(Path(path).read_text(encoding="utf-8")):
-        found.setdefault(one.first, []).append(one.name)
-    return found
-
-
-class _Faulty(importlib.machinery.SourceFileLoader):
-    """Imports one module from another text than that of its file."""
-
-    def __init__(self, name: str, path: str, source: str) -> None:
-        super().__init__(name, path)
-        self._text = source
-
-    def find_spec(self, fullname: str, path: object = None, target: object = None) -> Any:
-        return importlib.util.spec_from_file_location(fullname, self.path, loader=self) if fullname == self.name else None
-
-    def get_code(self, fullname: str) -> CodeType:
-        return compile(self._text, self.path, "exec")
-
-
-def _pytest(tests: list[str], plugins: list[object]) -> int:
-    os.chdir(ROOT)
-    return int(pytest.main([*OPTIONS, *tests], plugins=plugins))
-
-
-def _in_a_copy(work: Any, limit: float | None) -> tuple[int, str]:
-    """(status, text) that `work` gives in a copy of this process, which ends after so many seconds of processor time."""
-    reading, writing = os.pipe()
-    child = os.fork()
-    if child == 0:
-        status = 70
-        try:
-            os.setpgid(0, 0)
-            nowhere = os.open(os.devnull, os.O_RDWR)
-            os.dup2(nowhere, 1)
-            os.dup2(nowhere, 2)
-            if limit is not None:
-                resource.setrlimit(resource.RLIMIT_CPU, (int(limit) + 1, int(limit) + 1))
-                resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-                signal.alarm(int(60.0 * limit))  # on the clock: something waits for ever
-            with contextlib.redirect_stdout(io.StringIO()) as said:
-                status, text = work()
-            with os.fdopen(writing, "w") as pipe:
-                pipe.write(text if status == 0 else said.getvalue())
-        finally:
-            os._exit(status)
-    os.close(writing)
-    with os.fdopen(reading) as pipe:
-        text = pipe.read()
-    status = os.waitpid(child, 0)[1]
-    with contextlib.suppress(OSError):
-        os.killpg(child, signal.SIGKILL)  # what a test has started
-    return status, text

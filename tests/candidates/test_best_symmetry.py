@@ -145,7 +145,7 @@ def test_no_point_of_a_turned_primitive_is_farther_from_its_image_than_is_told(s
         one, other = rows[i], rows[i + count]
         if one.extent == FULL:  # whichever points of the two are opposite each other
             apart = abs(complex(one.x, one.y) * np.exp(1j * angle) - complex(other.x, other.y))
-            assert told[i] == pytest.approx(apart + 2.0 * abs(one.radius - other.radius), rel=1e-12)
+            assert told[i] == pytest.approx(apart + 2.0 * abs(one.radius - other.radius), rel=1e-12, abs=0.0)
             continue
         apart = np.abs(curve(one) * np.exp(1j * angle) - curve(other)).max()
         assert apart <= told[i] + 1e-14
@@ -169,6 +169,6 @@ def test_of_corners_the_normals_count_too() -> None:
     ends = drawn.points[drawn.first[:-1]], drawn.points[drawn.first[1:] - 1]
     assert len(drawn.points) == 2
     told = _mismatch(both, ends, np.array([1, 0]), 0.4)
-    assert told[0] == pytest.approx(0.7 * (2.0 * math.sin(0.05) + 0.2), rel=1e-12)
+    assert told[0] == pytest.approx(0.7 * (2.0 * math.sin(0.05) + 0.2), rel=1e-12, abs=0.0)
     back = 0.7 * (2.0 * math.sin(0.45) + 0.2) + 3.0 * abs(place) * 2.0 * math.sin(0.4)
     assert told[1] == pytest.approx(back, rel=1e-12)

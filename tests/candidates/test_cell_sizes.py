@@ -95,7 +95,7 @@ def test_outlines_of_short_pieces_have_finer_cells(piece: float, step: float, si
     pair = turning(spiral(piece * size, size, round_), wedge(0.5 * size), away=0.5 * size).pairs[0]
     assert pair.fold0 == 1
     assert pair.wrap0 == math.ceil(2.0 * math.pi / step)
-    assert pair.size0 * pair.wrap0 == pytest.approx(2.0 * math.pi, rel=1e-14)
+    assert pair.size0 * pair.wrap0 == pytest.approx(2.0 * math.pi, rel=1e-14, abs=0.0)
     assert (pair.size1, pair.wrap1, pair.fold1) == (pytest.approx(step * size, rel=1e-6), 0, 1)
 
 
@@ -160,6 +160,6 @@ def test_cells_of_what_is_geared(kind: int, ratio: float) -> None:
         found = cell_grid._cells(Axis(0, 4, 2, kind, arm), travel, reach, fold, ratio)
         cells = fold * math.ceil(max(8.0, math.tau * (arm + reach) / travel) / fold)
         wanted = (4, 2, math.tau / cells / abs(ratio), cells, fold) if kind == TURN else (4, 2, travel / abs(ratio), 0, 1)
-        assert tuple(found) == pytest.approx(wanted, rel=1e-14)
+        assert tuple(found) == pytest.approx(wanted, rel=1e-14, abs=0.0)
     usual = cell_grid._cells(Axis(0, 4, -1, kind, 0.3), 0.02, 0.6)
     assert tuple(usual) == tuple(cell_grid._cells(Axis(0, 4, -1, kind, 0.3), 0.02, 0.6, 1, 1.0))

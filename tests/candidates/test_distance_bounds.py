@@ -74,7 +74,7 @@ def test_what_is_carried_covers_a_ring_about_its_carrier(arm: float, low: float,
     for room in (0.0, 0.03):
         body = SimpleNamespace(carrier=0, x=0.6 * arm, y=-0.8 * arm)
         found = _ring(body, drawn, room)
-        assert (found.low[0], found.high[0]) == pytest.approx((max(0.0, low - room), high + room), rel=1e-12)
+        assert (found.low[0], found.high[0]) == pytest.approx((max(0.0, low - room), high + room), rel=1e-12, abs=0.0)
         alone = _ring(SimpleNamespace(carrier=-1, x=0.6, y=-0.8), drawn, room)
         assert (alone.low[0], alone.high[0]) == pytest.approx((0.2 - room, 0.9 + room), rel=1e-12)
 
@@ -105,7 +105,7 @@ def test_points_of_a_body_in_the_world() -> None:
     body = SimpleNamespace(x=0.3, y=-1.7, angle=0.6)
     points = np.array([[0.4, 0.9], [-1.1, 0.2]])
     world = (points @ (1.0, 1.0j)) * np.exp(0.6j) + complex(0.3, -1.7)
-    assert _world(body, points) @ (1.0, 1.0j) == pytest.approx(world, rel=1e-14)
+    assert _world(body, points) @ (1.0, 1.0j) == pytest.approx(world, rel=1e-14, abs=0.0)
 
 
 @pytest.mark.parametrize(
@@ -143,7 +143,7 @@ def test_points_lie_on_the_primitives_and_chords_near_them(sag: float) -> None:
             assert points == pytest.approx(np.array(ends), abs=1e-15) and made.sag[i] == 0.0
             continue
         pieces, half = len(points) - 1, math.pi if row.extent == FULL else math.atan2(row.half_sin, row.half_cos)
-        assert np.hypot(*(points - (row.x, row.y)).T) == pytest.approx(row.radius, rel=1e-14)
+        assert np.hypot(*(points - (row.x, row.y)).T) == pytest.approx(row.radius, rel=1e-14, abs=0.0)
         middle = math.atan2(row.side * row.ny, row.side * row.nx)
         angles = np.arctan2(*(points - (row.x, row.y)).T[::-1]) - middle
         assert np.cos(angles) == pytest.approx(np.cos(half * np.linspace(-1.0, 1.0, pieces + 1)), abs=1e-13)
@@ -159,7 +159,7 @@ def test_circles_hold_their_points() -> None:
     """About the middle of the least and largest coordinates, as far as the corner of their frame."""
     points = np.array([[[0.3, 0.1], [0.9, -0.7], [0.5, 0.4], [-2.0, 3.0]], [[1.3, 0.2], [1.1, 0.5], [0.6, 0.9], [4.0, -5.0]]])
     centre, radius = _circles(points, np.array([0, 3, 4]))
-    assert centre == pytest.approx(np.array([[0.6 - 0.15j, -2.0 + 3.0j], [0.95 + 0.55j, 4.0 - 5.0j]]), rel=1e-14)
+    assert centre == pytest.approx(np.array([[0.6 - 0.15j, -2.0 + 3.0j], [0.95 + 0.55j, 4.0 - 5.0j]]), rel=1e-14, abs=0.0)
     assert radius == pytest.approx(np.array([[math.hypot(0.3, 0.55), 0.0], [0.35 * math.sqrt(2.0), 0.0]]), rel=1e-14)
 
 

@@ -169,6 +169,6 @@ def test_fans() -> None:
 def test_angles_between_directions_and_turned_ones(angle: float) -> None:
     one, other = cmath.rect(1.7, 0.4), cmath.rect(0.6, 0.4 + angle)
     args = [np.array([v]) for v in (one.real, one.imag, other.real, other.imag)]
-    assert _angle(*args)[0] == pytest.approx(abs(angle), rel=1e-12)
+    assert _angle(*args)[0] == pytest.approx(abs(angle), rel=1e-12, abs=0.0)
     x, y = _turned(args[0], args[1], np.array([angle]))
-    assert complex(x[0], y[0]) == pytest.approx(cmath.rect(1.7, 0.4 + angle), rel=1e-14)
+    assert complex(x[0], y[0]) == pytest.approx(cmath.rect(1.7, 0.4 + angle), rel=1e-14, abs=0.0)

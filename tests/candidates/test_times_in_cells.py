@@ -74,7 +74,7 @@ def test_the_first_coordinate_that_leaves_its_cell_ends_it(axes: int) -> None:
         u[COORDINATES[fastest]] *= 1e3
         times = [leaves(_room(Q[i], SIZES[k]), abs(u[i]), BOUND[i]) for k, i in enumerate(COORDINATES[:axes])]
         assert np.argmin(times) == fastest
-        assert _in_cell(model(pair(axes)), 0, Q, u, BOUND) == pytest.approx(times[fastest], rel=1e-9)
+        assert _in_cell(model(pair(axes)), 0, Q, u, BOUND) == pytest.approx(times[fastest], rel=1e-9, abs=0.0)
 
 
 def test_without_cells_nothing_ends() -> None:
@@ -94,8 +94,8 @@ def test_seen_from_a_carrier_differences_count(on: tuple[int, int], fastest: int
             place, rate, bound = place - Q[other], rate - u[other], bound + BOUND[other]
         times.append(leaves(_room(place, SIZES[k]), abs(rate), bound))
     assert np.argmin(times) == fastest
-    assert _in_cell(model(pair(2, 0, (*on, -1))), 0, Q, u, BOUND) == pytest.approx(times[fastest], rel=1e-9)
-    assert _in_cell(model(pair(1, 0, (*on, -1))), 0, Q, u, BOUND) == pytest.approx(times[0], rel=1e-9)
+    assert _in_cell(model(pair(2, 0, (*on, -1))), 0, Q, u, BOUND) == pytest.approx(times[fastest], rel=1e-9, abs=0.0)
+    assert _in_cell(model(pair(1, 0, (*on, -1))), 0, Q, u, BOUND) == pytest.approx(times[0], rel=1e-9, abs=0.0)
 
 
 @pytest.mark.parametrize("axes", [1, 2, 3])
@@ -110,7 +110,7 @@ def test_the_time_through_some_cells(axes: int, frame: int, on: tuple[int, int, 
             rate, bound = (u[i], BOUND[i]) if frame < 0 else (u[i] - u[on[k]], BOUND[i] + BOUND[on[k]])
             times.append(leaves(2.5 * SIZES[k], abs(rate), bound))
         assert np.argmin(times) == fastest
-        assert _through(model(pair(axes, frame, on)), 0, Q, u, BOUND, 2.5) == pytest.approx(times[fastest], rel=1e-9)
+        assert _through(model(pair(axes, frame, on)), 0, Q, u, BOUND, 2.5) == pytest.approx(times[fastest], rel=1e-9, abs=0.0)
 
 
 def body(motion: int, first: int, ratio: float = 1.0, phase: float = 0.0) -> SimpleNamespace:

@@ -43,7 +43,7 @@ def test_the_rate_of_a_gap_is_that_of_both_materials(carried: float) -> None:
     b = SimpleNamespace(x=-0.4, y=0.8, vx=2.3, vy=0.35, w=-1.4)
     point = complex(a.x, a.y) + arm
     moving = [complex(one.vx, one.vy) + 1j * one.w * (point - complex(one.x, one.y)) for one in (a, b)]
-    assert _gap_rate(shape, a, b) == pytest.approx(((moving[0] - moving[1]) * n.conjugate()).real, rel=1e-13)
+    assert _gap_rate(shape, a, b) == pytest.approx(((moving[0] - moving[1]) * n.conjugate()).real, rel=1e-13, abs=0.0)
 
 
 def placed(x: float, y: float, turn: float) -> Any:
@@ -65,7 +65,7 @@ def test_how_far_inside_both_a_contact_lies(way: float, angle: float) -> None:
     b = SimpleNamespace(kind=LINE, x=start.real, y=start.imag, tx=along.real, ty=along.imag, length=length)
     shape = Shape(0.0, n.real, n.imag, 1.0, 0.0, arm.real, arm.imag)
     wanted = (max(a.radius, a.length) * math.sin(half - abs(angle)), min(way, length - way))
-    assert _margins(None, a, b, pa, pb, shape) == pytest.approx(wanted, rel=1e-12)
+    assert _margins(None, a, b, pa, pb, shape) == pytest.approx(wanted, rel=1e-12, abs=0.0)
 
 
 @pytest.mark.parametrize("angle", [0.25, -0.5, 0.9])
@@ -77,7 +77,9 @@ def test_how_far_inside_an_arc_a_contact_lies(angle: float) -> None:
     whole = SimpleNamespace(extent=FULL, nx=0.6, ny=0.8, radius=0.3, length=0.0)
     b = SimpleNamespace(kind=ARC, nx=middle.real, ny=middle.imag, radius=1.7, **ends)
     shape = Shape(0.0, n.real, n.imag, 1.0, math.sin(angle), 0.2, 0.1)
-    assert _margins(None, whole, b, pa, pb, shape) == pytest.approx((0.3, 1.7 * math.sin(half - abs(angle))), rel=1e-12)
+    assert _margins(None, whole, b, pa, pb, shape) == pytest.approx(
+        (0.3, 1.7 * math.sin(half - abs(angle))), rel=1e-12, abs=0.0
+    )
     concentric = shape._replace(nx=0.0, ny=0.0, Q=0.0)
     assert _margins(None, whole, b, pa, pb, concentric) == (0.0, -1.7)
 
@@ -160,7 +162,7 @@ def test_where_two_arcs_meet(turn: float) -> None:
     centre = complex(pose[0].x, pose[0].y) + (0.2 - 0.1j) * complex(pose[0].c, pose[0].s)
     middle = complex(pose[1].x, pose[1].y) + (0.5 - 0.7j + 0.9 * (0.8 - 0.6j)) * complex(pose[1].c, pose[1].s)
     n = (centre - middle) / abs(centre - middle)
-    assert complex(*in_python(gaps.contact_point)(model, 0, pose)) == pytest.approx(centre - 0.3 * n, rel=1e-12)
+    assert complex(*in_python(gaps.contact_point)(model, 0, pose)) == pytest.approx(centre - 0.3 * n, rel=1e-12, abs=0.0)
     shape = in_python(gaps.shape_of_contact)(model.contacts[0], a, b, *pose)
     own = complex(b.nx, b.ny) * complex(pose[1].c, pose[1].s)
     assert shape.gap == pytest.approx(abs(centre - middle) - 1.2, rel=1e-12)
@@ -195,5 +197,5 @@ def test_how_a_contact_feels_the_coordinates_of_a_body(motion: int) -> None:
     assert closed.coord[1, 2 : 2 + len(ways)].tolist() == list(ways)
     for j, way in enumerate(ways.values()):
         felt = sign * -2.5 * way / n
-        assert (closed.w_N[1, 2 + j], closed.w_T[1, 2 + j]) == pytest.approx((felt.real, felt.imag), rel=1e-13)
+        assert (closed.w_N[1, 2 + j], closed.w_T[1, 2 + j]) == pytest.approx((felt.real, felt.imag), rel=1e-13, abs=0.0)
     assert not closed.w_N[1, 2 + len(ways) :].any() and not closed.w_T[1, :2].any()

@@ -73,8 +73,8 @@ def test_of_two_circles(hollow: bool, seed: int) -> None:
     w_a, w_b = rates_a[2], rates_b[2]
     size = (abs(turning) + abs(w_b)) * taxi(slip) + abs(w_a - w_b) * SMALL * abs(turning - w_a)
     size += w_a**2 * taxi(point - complex(*pose_a[:2])) + w_b**2 * taxi(point - complex(*pose_b[:2]))
-    assert found.bar_size == pytest.approx(size, rel=1e-12)
-    assert (found.x, found.y) == pytest.approx((point.real, point.imag), rel=1e-12)
+    assert found.bar_size == pytest.approx(size, rel=1e-12, abs=0.0)
+    assert (found.x, found.y) == pytest.approx((point.real, point.imag), rel=1e-12, abs=0.0)
 
 
 @pytest.mark.parametrize(("y", "turn"), [(0.9, 0.4), (-0.2, 2.5)])

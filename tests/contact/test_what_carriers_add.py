@@ -31,8 +31,8 @@ def test_each_side_adds_its_own(carried: tuple[bool, bool]) -> None:
         if carried[k]:
             bar += sign * PULLS[k] / n
             entries.append((5 + k, sign * 1j * ARMS[k] / n))
-    assert complex(closed.kin[1].bar_N, closed.kin[1].bar_T) == pytest.approx(bar, rel=1e-13)
+    assert complex(closed.kin[1].bar_N, closed.kin[1].bar_T) == pytest.approx(bar, rel=1e-13, abs=0.0)
     assert closed.slots.tolist() == [0, len(entries)]
     for j, (coordinate, felt) in enumerate(entries):
         assert closed.coord[1, j] == coordinate
-        assert complex(closed.w_N[1, j], closed.w_T[1, j]) == pytest.approx(felt, rel=1e-13)
+        assert complex(closed.w_N[1, j], closed.w_T[1, j]) == pytest.approx(felt, rel=1e-13, abs=0.0)

@@ -68,7 +68,7 @@ def test_arcs_of_trimesh_in_both_directions_and_inches() -> None:
     path = Path2D(entities=[entities.Arc([0, 1, 2]), entities.Line([2, 3, 0])], vertices=vertices, process=False)
     path.units = "inches"
     (loop,) = ws.Profile.from_path2d(path).loops
-    assert ws.Profile((loop,)).section().area == pytest.approx(25.4e-3**2 * (math.pi / 2 + 1.0), rel=1e-12)
+    assert ws.Profile((loop,)).section().area == pytest.approx(25.4e-3**2 * (math.pi / 2 + 1.0), rel=1e-12, abs=0.0)
     (arc,) = (edge for edge in loop.edges if isinstance(edge, Arc))
     assert (arc.x, arc.y, arc.radius) == pytest.approx((0.0, 0.0, 25.4e-3), abs=1e-17)
     backward = Path2D(entities=[entities.Arc([2, 1, 0])], vertices=vertices, process=False)
@@ -81,7 +81,7 @@ def test_more_than_a_half_turn() -> None:
     (chain,) = ws.Profile.from_path2d(ws.Profile(chains=(Loop((arc,), closed=False),)).to_path2d()).chains
     found = chain.edges[0]
     assert isinstance(found, Arc)
-    assert (found.x, found.y, found.radius, found.sweep) == pytest.approx((1e-3, 2e-3, 3e-3, 5.9), rel=1e-12)
+    assert (found.x, found.y, found.radius, found.sweep) == pytest.approx((1e-3, 2e-3, 3e-3, 5.9), rel=1e-12, abs=0.0)
 
 
 def test_mass_of_a_profile_and_of_one_layer() -> None:

@@ -98,7 +98,7 @@ def gripped(share: float, jam: float = 1e-9, tangent: int = 1) -> tuple[float, f
 def test_near_the_bound_friction_is_taken_past_it(off: float) -> None:
     """By `PAINLEVE` of it, from either side: a normal force then pulls the bodies together."""
     drag, width = gripped(1.0 + off * PAINLEVE)
-    assert OWN - drag * BOTH == pytest.approx(-PAINLEVE * OWN, rel=1e-6)
+    assert OWN - drag * BOTH == pytest.approx(-PAINLEVE * OWN, rel=1e-6, abs=0.0)
     assert width == 2.0 * drag
 
 

@@ -238,7 +238,7 @@ def test_arcs_are_joined_where_their_circles_are_nearly_one() -> None:
             Arc(1e-3 + d / 2, 2e-3, 5e-3 + d / 2, 1.3, 2.0),
         ):
             edges, moved = joined([first, other], spare)
-            assert len(edges) == count and moved == (pytest.approx(d, rel=1e-6) if count == 1 else 0.0)
+            assert len(edges) == count and moved == (pytest.approx(d, rel=1e-6, abs=0.0) if count == 1 else 0.0)
             assert edges[0].start == pytest.approx(first.start) and edges[-1].end == pytest.approx(other.end, abs=1e-12)
     for sweep, count in ((-1.0, 2), (TURN - 1.0, 1), (TURN - 0.9, 2), (3.0, 1)):
         edges, _ = joined([first, Arc(1e-3, 2e-3, 5e-3, 1.3, sweep)], spare)

@@ -32,4 +32,4 @@ def test_regions_apart_have_a_depth_below_zero_and_those_that_touch_none() -> No
     one = shapely.box(0.0, 0.0, 1e-3, 1e-3)
     assert regions_depth(one, shapely.box(2e-3, 0.0, 3e-3, 1e-3), 2e-9)[0] < 0.0
     assert regions_depth(one, shapely.box(1e-3, 0.0, 3e-3, 1e-3), 2e-9)[0] == 0.0
-    assert regions_depth(one, shapely.box(0.9e-3, -1e-3, 3e-3, 2e-3), 2e-9)[0] == pytest.approx(1e-4, rel=1e-9)
+    assert regions_depth(one, shapely.box(0.9e-3, -1e-3, 3e-3, 2e-3), 2e-9)[0] == pytest.approx(1e-4, rel=1e-9, abs=0.0)

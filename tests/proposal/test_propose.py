@@ -134,7 +134,10 @@ def test_blocks_are_bodies(tmp_path: Path) -> None:
     document.modelspace().add_blockref("SMALL", (9.3, 0.0))
     document.saveas(tmp_path / "gears.dxf")
     scene = written([tmp_path / "gears.dxf"], tmp_path / "out")
-    assert sorted(body.position for body in scene.bodies) == [pytest.approx((0.0, 0.0), abs=1e-9), pytest.approx((9.3e-3, 0.0))]
+    assert sorted(body.position for body in scene.bodies) == [
+        pytest.approx((0.0, 0.0), abs=1e-9),
+        pytest.approx((9.3e-3, 0.0), abs=1e-12),
+    ]
     assert len(scene.contacts) == 1 and not overlaps(scene)
 
 

@@ -38,7 +38,7 @@ def test_gravity_points_down():
     run = watch_run(gravity=(9.81, 0.0))
     shown = view(run, (0.0, 2.0), FRAME, None, None)
     down = shown.matrix(shown.centre)[:2, :2] @ np.array([1.0, 0.0])
-    assert down / np.hypot(*down) == pytest.approx((0.0, -1.0))
+    assert down / np.hypot(*down) == pytest.approx((0.0, -1.0), rel=1e-12, abs=1e-15)
 
 
 def test_everything_stays_inside_at_equal_scales():

@@ -37,7 +37,7 @@ def loaded(tmp_path, text):
 def test_it_stands_instead_of_that_of_the_outline(tmp_path):
     scene = loaded(tmp_path, BALANCE)
     body = scene.body("balance")
-    assert body.centre_of_mass == pytest.approx((0.3e-6, 0.4e-6))
+    assert body.centre_of_mass == pytest.approx((0.3e-6, 0.4e-6), rel=1e-6, abs=0.0)
     assert (body.mass, body.inertia) == pytest.approx((50e-6, 12e-10))
     assert not any(note.code == "centre-of-mass" for note in notes(scene))
 
@@ -51,7 +51,7 @@ def test_without_it_the_outline_says_where(tmp_path):
 
 def test_it_is_a_path_like_any_other(tmp_path):
     scene = loaded(tmp_path, BALANCE).set("bodies.balance.centre_of_mass.1", "5 µm")
-    assert scene.body("balance").centre_of_mass == pytest.approx((0.3e-6, 5e-6))
+    assert scene.body("balance").centre_of_mass == pytest.approx((0.3e-6, 5e-6), rel=1e-6, abs=0.0)
 
 
 @pytest.mark.parametrize(

@@ -78,7 +78,7 @@ def test_a_triangle_from_the_file_to_its_inertia(tmp_path):
     (tmp_path / "scene.toml").write_text(SCENE, encoding="utf-8")
     (plate,) = load(tmp_path / "scene.toml").bodies
     mass = 6e-6
-    assert plate.mass == pytest.approx(mass, rel=1e-9)
+    assert plate.mass == pytest.approx(mass, rel=1e-9, abs=0.0)
     assert plate.centre_of_mass == pytest.approx((0.0, 1e-3 / 3), abs=1e-9)
     about_centroid = mass * (3.0**2 + 4.0**2) / 18 * 1e-6
     assert plate.inertia == pytest.approx(about_centroid + mass * (1e-3 / 3) ** 2, rel=1e-6, abs=0.0)

@@ -46,7 +46,7 @@ def test_the_next_slice(
 ) -> None:
     pace = Pace(100.0)
     slice_of(monkeypatch, pace, wall, simulated, left)
-    assert (pace.length, pace.steps) == pytest.approx((length, steps), rel=1e-6)
+    assert (pace.length, pace.steps) == pytest.approx((length, steps), rel=1e-6, abs=0.0)
 
 
 def test_steps_have_a_limit(monkeypatch: pytest.MonkeyPatch) -> None:

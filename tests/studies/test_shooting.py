@@ -30,7 +30,7 @@ def test_constant_work_per_beat(rest, quality, start):
     found = fixed_point(returning(lambda a: math.sqrt(a * a * kept + rest * rest * (1.0 - kept))), start)
     assert isinstance(found, Fixed)
     # What the search leaves of one return, a share of where it began, over as many returns as a disturbance lives.
-    assert found.amplitude == pytest.approx(rest, rel=1e-14 * quality * max(1.0, start / rest) + 1e-12)
+    assert found.amplitude == pytest.approx(rest, rel=1e-14 * quality * max(1.0, start / rest) + 1e-12, abs=0.0)
     if abs(start - rest) > 1e-3:
         assert found.slope == pytest.approx(kept, abs=0.05)
 

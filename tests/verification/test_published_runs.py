@@ -91,4 +91,4 @@ def test_the_farthest_outside_counts(monkeypatch: pytest.MonkeyPatch) -> None:
     first = [moment(*one) for one in SEEN]
     first[2].t -= 0.8 * FRAME
     first[5].t += 0.6 * FRAME
-    assert told(monkeypatch, first)[1] == pytest.approx(0.3 * FRAME, rel=1e-9)
+    assert told(monkeypatch, first)[1] == pytest.approx(0.3 * FRAME, rel=1e-9, abs=0.0)

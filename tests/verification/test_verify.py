@@ -62,7 +62,7 @@ def test_a_wrong_number_is_noticed() -> None:
 def test_a_row_as_promised() -> None:
     row = compared("a", "b", 2.0, 2.0 + 1e-8, 1e-9, "c")
     assert list(row) == FIELDS
-    assert row["error"] == pytest.approx(5e-9)
+    assert row["error"] == pytest.approx(5e-9, rel=1e-6, abs=0.0)
     assert row["ok"] is False
     assert compared("a", "b", 0.0, 1e-10, 1e-9, "c")["ok"] is True
     assert compared("a", "b", 1.0, math.nan, 1e-9, "c")["ok"] is False

@@ -12,6 +12,8 @@ from pathlib import Path
 
 import swiss_clock
 import swiss_drive
+import swiss_positions
+import swiss_run_down
 from swiss_studies import over_torque, watch
 
 PAGE = Path(__file__).resolve().parents[3] / "docs" / "guide" / "swiss_lever.md"
@@ -53,9 +55,9 @@ def page() -> str:
         *swiss_drive.isochronism(scene, driven),
         *swiss_drive.friction(scene),
         *swiss_drive.best(scene, driven),
-        *swiss_clock.positions(scene),
+        *swiss_positions.positions(scene),
         *swiss_clock.temperature(scene),
-        *swiss_clock.run_down(),
+        *swiss_run_down.run_down(),
         *swiss_clock.what_matters(scene),
     ]
     return minus("\n".join([*HEAD, *chapters, *TAIL]))

@@ -1,5 +1,4 @@
-"""Chapters on what drives and brakes the Swiss lever: torque, the best possible amplitude, friction"
-" and restitution."""
+"""Chapters on what drives and brakes the Swiss lever: torque, the best possible amplitude, friction and restitution."""
 
 from __future__ import annotations
 
@@ -12,6 +11,7 @@ from swiss_studies import (
     DAY,
     JEWEL,
     STONES,
+    Floats,
     Series,
     amplitude_of_work,
     both,
@@ -31,27 +31,12 @@ LOSSLESS_RUN = 120.0  # s: without damping a cycle takes so long to settle
 
 
 def torque(scene: ws.Scene, series: Series) -> list[str]:
-    """Amplitude over torque, beside the square-root law twice: drawn through one point, and of the"
-    " measured work."""
+    """Amplitude over torque, beside the square-root law twice: drawn through one point, and of the measured work."""
     at, amplitude = series.at / MICRO, series.of("amplitude_deg")
     here = int(np.argmin(abs(at - 1.0)))
     law = amplitude[here] * np.sqrt(at / at[here])
-    works, predicted = np.full(len(at), math.nan), np.full(len(at), math.nan)
-    for i, cycle in enumerate(series.cycles):
-        if cycle.found:
-            changed = scene.set("torques.0.value", -float(series.at[i]))
-            works[i] = work_per_beat(changed, cycle)
-            predicted[i] = amplitude_of_work(changed, cycle, works[i])
-    figure, (above, below) = panels(2, height=58.0)
-    dots(above, at, series, "amplitude_deg", "limit cycles", BLUE)
-    line(above, at, law, "A ∝ √torque, through 1 µN·m")
-    named(above, "", "amplitude (°)")
-    below.plot(at, 100.0 * (amplitude / law - 1.0), color=BLUE, **MARKED, label="against A ∝ √torque")
-    below.plot(
-        at, 100.0 * (amplitude / predicted - 1.0), color=RED, **{**MARKED, "marker": "s"}, label="against √(measured work)"
-    )
-    named(below, "torque at the escape wheel (µN·m)", "amplitude beyond the law (%)")
-    picture = saved(figure, "torque")
+    works, predicted = _by_work(scene, series)
+    picture = _torque_picture(series, law, predicted)
     pitch = math.pi / 15.0  # rad of the wheel in a beat
     rows = []
     for one in LISTED:
@@ -93,6 +78,31 @@ def torque(scene: ws.Scene, series: Series) -> list[str]:
     ]
 
 
+def _by_work(scene: ws.Scene, series: Series) -> tuple[Floats, Floats]:
+    """The work per beat (J) at each torque, and the amplitude (°) that it keeps up; nan where there is no limit cycle."""
+    works, predicted = np.full(len(series.at), math.nan), np.full(len(series.at), math.nan)
+    for i, cycle in enumerate(series.cycles):
+        if cycle.found:
+            changed = scene.set("torques.0.value", -float(series.at[i]))
+            works[i] = work_per_beat(changed, cycle)
+            predicted[i] = amplitude_of_work(changed, cycle, works[i])
+    return works, predicted
+
+
+def _torque_picture(series: Series, law: Floats, predicted: Floats) -> str:
+    at, amplitude = series.at / MICRO, series.of("amplitude_deg")
+    figure, (above, below) = panels(2, height=58.0)
+    dots(above, at, series, "amplitude_deg", "limit cycles", BLUE)
+    line(above, at, law, "A ∝ √torque, through 1 µN·m")
+    named(above, "", "amplitude (°)")
+    below.plot(at, 100.0 * (amplitude / law - 1.0), color=BLUE, **MARKED, label="against A ∝ √torque")
+    below.plot(
+        at, 100.0 * (amplitude / predicted - 1.0), color=RED, **{**MARKED, "marker": "s"}, label="against √(measured work)"
+    )
+    named(below, "torque at the escape wheel (µN·m)", "amplitude beyond the law (%)")
+    return saved(figure, "torque")
+
+
 def best(scene: ws.Scene, drawn: Series) -> list[str]:
     """The best amplitude: without friction, then without any loss but impacts."""
     smooth = everywhere(scene, "friction", 0.0)
@@ -100,32 +110,12 @@ def best(scene: ws.Scene, drawn: Series) -> list[str]:
     bare = smooth.set("damping.0.viscous", 0.0).set("run.duration", f"{LOSSLESS_RUN:g} s")
     small = np.array([0.02, 0.04, 0.06, 0.08, 0.1, 0.12]) * MICRO
     impacts = {e: over_torque(everywhere(bare, "restitution", e), small) for e in (0.0, 0.2)}
-    figure, (axes,) = panels(1, height=75.0)
-    dots(axes, drawn.at / MICRO, drawn, "amplitude_deg", "as drawn: friction 0.12, air", BLUE)
-    dots(axes, without.at / MICRO, without, "amplitude_deg", "no friction, air", GREEN, "s")
-    dots(axes, small / MICRO, impacts[0.2], "amplitude_deg", "no friction, no air: impacts alone", RED, "^")
-    for cycle in drawn.cycles:
-        if seen := re.search(r"from outside at (\d+)°", cycle.message):
-            knock = f"the jewel reaches the back of the fork ({seen[1]}°)"
-            axes.axhline(float(seen[1]), color=GOLD, linestyle=":", linewidth=CURVE, label=knock)
-            break
-    named(axes, "torque at the escape wheel (µN·m)", "amplitude (°)")
-    picture = saved(figure, "best")
+    picture = _best_picture(drawn, without, impacts[0.2])
     rows = []
     for one in (0.2, 0.4, 0.6, 0.8):
         i, j = (int(np.argmin(abs(s.at / MICRO - one))) for s in (drawn, without))
         a, b = drawn.of("amplitude_deg")[i], without.of("amplitude_deg")[j]
         rows.append(f"| {one:.1f} | {a:.2f} | {b:.2f} | {100.0 * (b / a - 1.0):.1f} % |")
-    lossless = [
-        f"| {1e6 * t:.2f} | {a:.2f} ± {ea:.0e} | {b:.2f} ± {eb:.0e} |"
-        for t, a, ea, b, eb in zip(
-            small,
-            *(impacts[0.0].of(n) for n in ("amplitude_deg", "amplitude_deg_error")),
-            *(impacts[0.2].of(n) for n in ("amplitude_deg", "amplitude_deg_error")),
-            strict=True,
-        )
-        if np.isfinite(a + b)
-    ]
     last = without.of("amplitude_deg")
     hit = [1e6 * t for t, cycle in zip(small, impacts[0.0].cycles, strict=True) if cycle.verdict == "knocks"]
     knocks = f" At {hit[0]:.2f} µN·m it knocks." if hit else ""
@@ -150,7 +140,7 @@ def best(scene: ws.Scene, drawn: Series) -> list[str]:
         "",
         "| torque, µN·m | restitution 0, ° | restitution 0.2, ° |",
         "|---|---|---|",
-        *lossless,
+        *_lossless(impacts[0.0], impacts[0.2]),
         "",
         f"These are ends of runs of {LOSSLESS_RUN:.0f} s, for such a watch settles slowly.{knocks}",
         "",
@@ -158,6 +148,30 @@ def best(scene: ws.Scene, drawn: Series) -> list[str]:
         " beyond it belongs to the air,",
         "to the pivots and to the mass of wheel and lever.",
         "",
+    ]
+
+
+def _best_picture(drawn: Series, without: Series, impacts: Series) -> str:
+    figure, (axes,) = panels(1, height=75.0)
+    dots(axes, drawn.at / MICRO, drawn, "amplitude_deg", "as drawn: friction 0.12, air", BLUE)
+    dots(axes, without.at / MICRO, without, "amplitude_deg", "no friction, air", GREEN, "s")
+    dots(axes, impacts.at / MICRO, impacts, "amplitude_deg", "no friction, no air: impacts alone", RED, "^")
+    for cycle in drawn.cycles:
+        if seen := re.search(r"from outside at (\d+)°", cycle.message):
+            knock = f"the jewel reaches the back of the fork ({seen[1]}°)"
+            axes.axhline(float(seen[1]), color=GOLD, linestyle=":", linewidth=CURVE, label=knock)
+            break
+    named(axes, "torque at the escape wheel (µN·m)", "amplitude (°)")
+    return saved(figure, "best")
+
+
+def _lossless(dead: Series, lively: Series) -> list[str]:
+    """Rows of the table: the amplitudes where impacts alone take energy, at two restitutions."""
+    columns = (one.of(name) for one in (dead, lively) for name in ("amplitude_deg", "amplitude_deg_error"))
+    return [
+        f"| {1e6 * t:.2f} | {a:.2f} ± {ea:.0e} | {b:.2f} ± {eb:.0e} |"
+        for t, a, ea, b, eb in zip(dead.at, *columns, strict=True)
+        if np.isfinite(a + b)
     ]
 
 

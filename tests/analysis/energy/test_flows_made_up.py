@@ -73,7 +73,7 @@ def test_energies_of_coordinates() -> None:
 def test_what_is_swept() -> None:
     got = found(model_of(coordinates=PLAIN), MOTIONS)
     for k in range(N):
-        assert got.swept[:, k] == pytest.approx(integrals(lambda t, k=k: q(k, t)), rel=1e-11)
+        assert got.swept[:, k] == pytest.approx(integrals(lambda t, k=k: q(k, t)), rel=1e-11, abs=0.0)
     assert not got.damped.any() and not got.driven.any() and not got.drive.any()
 
 

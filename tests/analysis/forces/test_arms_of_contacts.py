@@ -75,8 +75,8 @@ def test_arms_of_a_contact(bar: float, others: list[int]) -> None:
     point = DISC + CENTRE * np.exp(1j * disc) - RADIUS * normal
     assert complex(*found.way[row]) == pytest.approx(normal, rel=1e-9) and found.t == 0.0
     assert complex(*found.point[row]) == pytest.approx(point, abs=1e-12)
-    assert found.of(row, "disc") == pytest.approx((cross(point - DISC, normal), cross(point - DISC, across)), rel=1e-9)
-    assert found.of(row, "bar") == pytest.approx((-cross(point - BAR, normal), -cross(point - BAR, across)), rel=1e-9)
+    assert found.of(row, "disc") == pytest.approx((cross(point - DISC, normal), cross(point - DISC, across)), rel=1e-9, abs=0.0)
+    assert found.of(row, "bar") == pytest.approx((-cross(point - BAR, normal), -cross(point - BAR, across)), rel=1e-9, abs=0.0)
     assert [pair.name for pair in found.pairs] == [*others, TOP] and found.friction[row] == 0.13
     assert found.places["disc"] == pytest.approx((DISC.real, DISC.imag, disc), rel=1e-12)
     assert found.places["bar"] == pytest.approx((BAR.real, BAR.imag, bar), rel=1e-12) and found.columns == {"disc": 0, "bar": 1}

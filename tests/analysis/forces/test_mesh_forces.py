@@ -97,8 +97,8 @@ def test_a_pair_that_speeds_up(tmp_path: Path, ratio: float) -> None:
     P = line * ratio / (ratio - 1.0) * 10e-3
     on_b = -found["b"]
     arm = P - line * 10e-3
-    assert arm[0] * on_b[1] - arm[1] * on_b[0] == pytest.approx(J * alpha, rel=1e-9)
-    assert -(P[0] * on_b[1] - P[1] * on_b[0]) == pytest.approx(J * alpha / ratio - M, rel=1e-9)
+    assert arm[0] * on_b[1] - arm[1] * on_b[0] == pytest.approx(J * alpha, rel=1e-9, abs=0.0)
+    assert -(P[0] * on_b[1] - P[1] * on_b[0]) == pytest.approx(J * alpha / ratio - M, rel=1e-9, abs=0.0)
 
 
 def test_a_rack_presses_its_pinion_away(tmp_path: Path) -> None:
@@ -122,7 +122,7 @@ def test_a_planet_loads_the_bearing_of_its_carrier(tmp_path: Path, ratio: float)
     alpha = M / (J + m * d * d + J * (1.0 + ratio) ** 2)
     radius = d / (1.0 + ratio)
     along = -J * (1.0 + ratio) * alpha / radius  # on the planet, across the arm
-    assert (J + m * d * d) * alpha == pytest.approx(M + along * d, rel=1e-12)
+    assert (J + m * d * d) * alpha == pytest.approx(M + along * d, rel=1e-12, abs=0.0)
     # Bearing: momentum of the planet less the tooth. The carrier turns by next to nothing in a microsecond.
     away = math.copysign(LEAN, radius) * abs(along)
     assert found == pytest.approx([-away, m * d * alpha - along], rel=1e-6, abs=1e-6)

@@ -41,14 +41,14 @@ def test_two_wheels(places: Any, ratio: float) -> None:
     found = told(Body("first", position=places[0]), Body("second", position=places[1]), ratio)
     # ω_b = ratio ω_a, and at A + s (B - A) both go alike: s = ratio (s - 1).
     point = a + ratio / (ratio - 1.0) * (b - a)
-    assert np.linalg.norm(point - a) == pytest.approx(abs(ratio) * np.linalg.norm(point - b), rel=1e-12)
+    assert np.linalg.norm(point - a) == pytest.approx(abs(ratio) * np.linalg.norm(point - b), rel=1e-12, abs=0.0)
     along = (b - a) / np.linalg.norm(b - a)
     tangent = np.array((-along[1], along[0]))
     for mine, other, force in zip(ON_SECOND, ON_FIRST, found, strict=True):
         share = 0.5 * (mine / cross(point - b, tangent) - other / cross(point - a, tangent))
-        assert force @ tangent == pytest.approx(share, rel=1e-12)
+        assert force @ tangent == pytest.approx(share, rel=1e-12, abs=0.0)
         apart = math.tan(LEAN) * abs(share) * (1.0 if ratio < 0.0 else -1.0)
-        assert force @ along == pytest.approx(apart, rel=1e-12)
+        assert force @ along == pytest.approx(apart, rel=1e-12, abs=0.0)
 
 
 @pytest.mark.parametrize("degrees", [0.0, 35.0, 160.0, -110.0])
@@ -65,8 +65,8 @@ def test_a_wheel_and_a_rack(degrees: float, reach: float, rack_first: bool) -> N
     for push, torque, force in zip(on_rack, on_wheel, found, strict=True):
         of_rack = -force if rack_first else force
         share = 0.5 * (push - torque / cross(point, axis))
-        assert of_rack @ axis == pytest.approx(share, rel=1e-12)
-        assert of_rack @ point / abs(reach) == pytest.approx(math.tan(LEAN) * abs(share), rel=1e-12)
+        assert of_rack @ axis == pytest.approx(share, rel=1e-12, abs=0.0)
+        assert of_rack @ point / abs(reach) == pytest.approx(math.tan(LEAN) * abs(share), rel=1e-12, abs=0.0)
 
 
 def test_where_there_is_no_pitch_point_nothing_is_told() -> None:
@@ -84,7 +84,7 @@ def test_a_body_that_rides_on_the_other() -> None:
     for ratio in (-3.0, 0.4, 2.5):
         assert _in_the_movement(ratio, hung, 0, 1) == pytest.approx(1.0 + ratio, rel=1e-12)
         # The first, carried by the second, goes 1 / ratio against it.
-        assert _in_the_movement(ratio, hung, 1, 0) == pytest.approx(1.0 / (1.0 / ratio + 1.0), rel=1e-12)
+        assert _in_the_movement(ratio, hung, 1, 0) == pytest.approx(1.0 / (1.0 / ratio + 1.0), rel=1e-12, abs=0.0)
         assert _in_the_movement(ratio, hung, 0, 2) == ratio == _in_the_movement(ratio, hung, 2, 1)
 
 

@@ -40,10 +40,10 @@ def test_teeth_of_a_fixed_wheel_turn_a_planet_and_press_it_away(ratio: float, pl
         arm = complex(*place) * np.exp(1j * turned)
         away, pushed = arm / abs(arm), complex(*force)
         lever = -away * abs(arm) / (1.0 + ratio)  # from the planet's centre to the pitch point
-        assert (lever.conjugate() * pushed).imag == pytest.approx(torque, rel=1e-9)
+        assert (lever.conjugate() * pushed).imag == pytest.approx(torque, rel=1e-9, abs=0.0)
         radial, across = (away.conjugate() * pushed).real, (away.conjugate() * pushed).imag
         outside = math.copysign(1.0, 1.0 + ratio)
-        assert radial == pytest.approx(outside * math.tan(0.35) * abs(across), rel=1e-9)
+        assert radial == pytest.approx(outside * math.tan(0.35) * abs(across), rel=1e-9, abs=0.0)
 
 
 def test_where_teeth_have_no_pitch_point_no_force_is_told() -> None:

@@ -19,7 +19,7 @@ def test_a_steady_watch():
     means = headline(balance_only(steady_swings(80, 290.0 * DEGREE, period=period), 10.0))
     assert (means.start_s, means.end_s, means.beats) == (8.0, 10.0, 16)
     assert means.amplitude_deg == pytest.approx(290.0, rel=1e-12) and means.amplitude_deg_error < 1e-9
-    assert means.period_s == pytest.approx(period, rel=1e-12) and means.period_s_error < 1e-13
+    assert means.period_s == pytest.approx(period, rel=1e-12, abs=0.0) and means.period_s_error < 1e-13
     assert means.rate_s_per_d == pytest.approx(-10.0, abs=2e-3) and means.beat_error_ms == pytest.approx(0.0, abs=1e-9)
 
 

@@ -77,9 +77,9 @@ def test_what_drives_a_wheel(monkeypatch: pytest.MonkeyPatch, kept: bool) -> Non
         Torque("wheel", over="angle", table=((0.0, 1e-4), (1.0, 3e-4))),
         Torque("balance", 7.0),
     )
-    assert watch(torques=torques).drive(4.0) == pytest.approx(-1e-6 + 2e-6 + (2e-4 if kept else 0.0), rel=1e-12)
-    assert watch(torques=torques[1:2]).drive(2.0) == pytest.approx(1e-6, rel=1e-12)
-    assert watch(torques=torques[2:3]).drive(2.0) == (pytest.approx(2e-4, rel=1e-12) if kept else 0.0)
+    assert watch(torques=torques).drive(4.0) == pytest.approx(-1e-6 + 2e-6 + (2e-4 if kept else 0.0), rel=1e-12, abs=0.0)
+    assert watch(torques=torques[1:2]).drive(2.0) == pytest.approx(1e-6, rel=1e-12, abs=0.0)
+    assert watch(torques=torques[2:3]).drive(2.0) == (pytest.approx(2e-4, rel=1e-12, abs=0.0) if kept else 0.0)
 
 
 def test_what_a_watch_knows_of_itself() -> None:

@@ -129,4 +129,4 @@ def test_points_go_round_an_outline_once():
     found = _points(polygon(corners))
     assert found[0] == found[-1] == corners[0] and abs(found[1] - found[0]) > 0.0
     length = sum(abs(b - a) for a, b in zip(corners, [*corners[1:], corners[0]], strict=True))
-    assert abs(np.diff(found)).sum() == pytest.approx(length, rel=1e-12)
+    assert abs(np.diff(found)).sum() == pytest.approx(length, rel=1e-12, abs=0.0)

@@ -137,4 +137,4 @@ def test_half_swings_of_different_lengths_are_halves_of_sines() -> None:
     watch: Any = SimpleNamespace(found=found, rest=0.25)
     got = _angles(watch, np.array([1.0, 1.3, 1.4, 1.6, 2.1, 2.3, 2.5, 2.9, 3.0]))
     first = [-0.9, -0.9 * math.sin(0.125 * math.pi), 0.0, 1.3 * math.sin(math.pi / 7.0), 1.3]
-    assert got == pytest.approx([*first, 1.7, 1.7, 1.7 * math.sin(0.1 * math.pi), 0.0], rel=1e-12)
+    assert got == pytest.approx([*first, 1.7, 1.7, 1.7 * math.sin(0.1 * math.pi), 0.0], rel=1e-12, abs=0.0)

@@ -132,7 +132,7 @@ def test_lines_meet_half_way_and_at_the_ends_of_arcs(closed: bool) -> None:
     loop = assembled(strokes([a, b, bow, back]), "L", closed).loop
     assert isinstance(loop, Loop) and loop.closed is closed and loop.layer == "L"
     middle = (1.0 + 0.5 * gap, gap)
-    assert loop.edges[0].end == loop.edges[1].start == pytest.approx(middle, rel=1e-15)
+    assert loop.edges[0].end == loop.edges[1].start == pytest.approx(middle, rel=1e-15, abs=0.0)
     assert loop.edges[1].end == bow.start and loop.edges[2] == bow and loop.edges[3].start == bow.end
     joint = (0.0, 2.0 * gap)
     assert loop.edges[3].end == (pytest.approx(joint) if closed else back.end)

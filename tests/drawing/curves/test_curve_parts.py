@@ -59,8 +59,10 @@ def test_a_part_of_an_ellipse_is_a_rational_parabola(low: float, high: float) ->
     (p0, p1, p2), t = curve.control[0], np.linspace(0.0, 1.0, 11)[:, None]
     whole = (1 - t) ** 2 * p0 + 2 * t * (1 - t) * p1 + t**2 * p2
     inner = np.linalg.solve(np.column_stack((a, b)), (whole[:, :2] / whole[:, 2:]).T)
-    assert np.hypot(*inner) == pytest.approx(np.ones(11), rel=1e-13)
-    assert np.arctan2(inner[1], inner[0])[[0, -1]] == pytest.approx([math.remainder(low, TURN), math.remainder(high, TURN)])
+    assert np.hypot(*inner) == pytest.approx(np.ones(11), rel=1e-13, abs=0.0)
+    assert np.arctan2(inner[1], inner[0])[[0, -1]] == pytest.approx(
+        [math.remainder(low, TURN), math.remainder(high, TURN)], rel=1e-12, abs=1e-15
+    )
     assert curve.breaks.tolist() == [0.0, 1.0]
 
 
@@ -113,7 +115,8 @@ def test_what_is_not_round_runs_from_end_to_end() -> None:
     p = [(0.0, 0.0, 0.0), (1.0, 2.0, 0.0), (3.0, 1.0, 0.0)]
     for points, closed in ((p, False), ([*p, p[0]], True), (p[:2], True)):
         cubic = through(points, (), closed)
-        assert cubic.points[0] == pytest.approx(points[0]) and cubic.points[-1] == pytest.approx(points[-1])
+        ends = [*points[0], *points[-1]]
+        assert [*cubic.points[0], *cubic.points[-1]] == pytest.approx(ends, rel=1e-12, abs=1e-15)
     assert (
         through(p, (), True).points[-1] == pytest.approx(p[0])
         or through(p, (), True).points[0] == through(p, (), True).points[-1]

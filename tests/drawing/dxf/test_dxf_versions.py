@@ -185,7 +185,7 @@ def test_every_code_of_insunits(read_bytes: Reader, code: int) -> None:
         return
     ((edge,),) = [loop.edges for loop in drawing.loops]
     assert drawing.units == INSUNITS[code][0]
-    assert edge.radius == pytest.approx(metres[code], rel=1e-12)
+    assert edge.radius == pytest.approx(metres[code], rel=1e-12, abs=0.0)
 
 
 def stripped(data: bytes, *codes: int) -> bytes:

@@ -40,7 +40,7 @@ def test_it_runs_from_end_to_end_on_an_ellipse_of_those_radii(
         assert at(found, 0.0) == pytest.approx(np.array(p), abs=1e-12) and at(found, 1.0) == pytest.approx(
             np.array(q), abs=1e-12
         )
-        assert (math.hypot(*found.u), math.hypot(*found.v)) == pytest.approx((rx, ry), rel=1e-14)
+        assert (math.hypot(*found.u), math.hypot(*found.v)) == pytest.approx((rx, ry), rel=1e-14, abs=0.0)
         axis = turn if rx != ry else 0.0
         assert abs(found.u[0] * math.sin(axis) - found.u[1] * math.cos(axis)) < 1e-13 * rx
         assert abs(found.u[0] * found.v[0] + found.u[1] * found.v[1]) < 1e-12 * rx * ry

@@ -88,4 +88,4 @@ def test_empty_and_mixed_pages_are_told() -> None:
     ("name", "metres"), [("px", PX), (" PT ", INCH / 72), ("pc", INCH / 6), ("Q", 0.25e-3), ("mm", 1e-3), ("inch", INCH)]
 )
 def test_units_of_pages_are_known_by_name(name: str, metres: float) -> None:
-    assert page_unit(name)[1] == pytest.approx(metres, rel=1e-15)
+    assert page_unit(name)[1] == pytest.approx(metres, rel=1e-15, abs=0.0)

@@ -45,7 +45,7 @@ def across(drawing: Drawing) -> float:
 )
 def test_a_page_with_a_size_says_the_unit(read_svg: Reader, page: str, units: str, size: float) -> None:
     drawing = read_svg(s.svg(SQUARE, page))
-    assert across(drawing) == pytest.approx(size, rel=1e-14)
+    assert across(drawing) == pytest.approx(size, rel=1e-14, abs=0.0)
     assert inspect_report(drawing)["units"] == units
     assert inspect_report(drawing)["units_from"] == "page"
     assert not drawing.findings
@@ -109,7 +109,7 @@ def test_a_page_without_a_unit_has_none_until_it_is_said(read_svg: Reader, page:
     for unit, metres in (("mm", 1e-3), ("inch", 0.0254), ("px", 0.0254 / 96)):
         said = read_svg(s.svg(SQUARE, page), units=unit)
         assert (said.units, said.units_from) == (unit, "option")
-        assert across(said) == pytest.approx(4.3 * metres, rel=1e-14)
+        assert across(said) == pytest.approx(4.3 * metres, rel=1e-14, abs=0.0)
         assert not said.findings
 
 

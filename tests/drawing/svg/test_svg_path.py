@@ -144,13 +144,13 @@ def test_semicircles_are_as_exact_as_their_numbers(read_svg: Reader) -> None:
     (loop,) = read_svg(s.svg(s.path("M 2.85 5 A 2.15 2.15 0 1 0 7.15 5 A 2.15 2.15 0 1 0 2.85 5 Z"))).loops
     for edge in loop.edges:
         assert isinstance(edge, Arc)
-        assert (edge.x, edge.y, edge.radius) == pytest.approx((5e-3, -5e-3, 2.15e-3), rel=1e-14)
+        assert (edge.x, edge.y, edge.radius) == pytest.approx((5e-3, -5e-3, 2.15e-3), rel=1e-14, abs=0.0)
 
 
 def test_radii_grow_where_they_are_too_small(read_svg: Reader) -> None:
     (edge,) = s.edges(read_svg(s.svg(s.path("M 10 10 A 1 1 0 0 1 16 18"))))
     assert isinstance(edge, Arc)
-    assert (edge.x, edge.y, edge.radius) == pytest.approx((13e-3, -14e-3, 5e-3), rel=1e-14)
+    assert (edge.x, edge.y, edge.radius) == pytest.approx((13e-3, -14e-3, 5e-3), rel=1e-14, abs=0.0)
 
 
 @pytest.mark.parametrize("arc", ["A0 3 0 0 0 9 9", "A3 0 0 1 1 9 9", "a0 0 0 0 0 8 8"])

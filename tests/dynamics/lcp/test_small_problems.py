@@ -48,7 +48,7 @@ def test_a_residual_is_judged_by_its_terms_and_kept_as_a_share_of_the_largest_un
     """The terms of y are x and the load, of size `size` both."""
     allowed = 2.0 * LCP_RESIDUAL * size + LCP_ROUNDING * max(1.0, size)
     good, violation = judged([size, 0.0], [0.9 * allowed, 0.0])
-    assert good and violation == pytest.approx(0.9 * allowed / max(1.0, size), rel=1e-5)
+    assert good and violation == pytest.approx(0.9 * allowed / max(1.0, size), rel=1e-5, abs=0.0)
     assert judged([size, 0.0], [1.1 * allowed, 0.0]) == (False, 0.0)
 
 

@@ -49,7 +49,7 @@ def test_pieces_share_the_load_by_what_they_can_do() -> None:
     assert load == pytest.approx(expected, rel=1e-12)
     places = [0.5, 0.25 * expected[1], 1.0 + (expected[2] - 4.0) / 6.0, 1.5]
     places += [3.0, 4.0 + (expected[5] - 12.0) / 7.0, 4.0 + (expected[6] - 12.0) / 7.0, 5.0]
-    assert nodes == pytest.approx(places, rel=1e-12)
+    assert nodes == pytest.approx(places, rel=1e-12, abs=0.0)
 
 
 def trial() -> Trial:
@@ -83,7 +83,7 @@ def test_legs_move_towards_equal_deviations_and_single_arcs_take_their_neighbour
     assert logarithms == pytest.approx([0.1 - 0.1 * math.log(3.0), two, two, three, five, five, five], rel=1e-12)
     other = trial()._replace(errors=np.array([1.0, 3.0, 2.0, 1e-3, 8.0, 70.0, 5.0, 0.5, 0.0, 6.0, 9.0]))
     assert other.balanced().logarithms == pytest.approx(
-        [0.1 - 0.1 * math.log(3.0), -0.2, -0.2, three, 0.2, 0.2, 0.2], rel=1e-12
+        [0.1 - 0.1 * math.log(3.0), -0.2, -0.2, three, 0.2, 0.2, 0.2], rel=1e-12, abs=0.0
     )
 
 
@@ -103,7 +103,7 @@ def test_a_tangent_is_mirrored_in_the_chord() -> None:
         np.array([(math.cos(1.0), math.sin(1.0)), (math.cos(2.5), math.sin(2.5))]),
     )
     across = 2.0 * np.arctan2(chord[:, 1], chord[:, 0]) - np.array([1.0, 2.5])
-    assert _mirrored(chord, tangent) == pytest.approx(np.column_stack((np.cos(across), np.sin(across))), rel=1e-12)
+    assert _mirrored(chord, tangent) == pytest.approx(np.column_stack((np.cos(across), np.sin(across))), rel=1e-12, abs=0.0)
 
 
 @pytest.mark.parametrize(
@@ -133,7 +133,7 @@ def test_inner_tangents_are_tilted_against_the_rate_of_curvature(
     expected[3] = way(0.8 + tilt)
     layout = laid_out(np.array([2, 4]))._replace(chain=np.array([0, 1, 1]), first=np.array([0, 1]))
     _tilt(tangents, at, halfway, np.array([way(2.0), way(0.8 - turn_back), way(0.8 + turn_ahead)]), layout)
-    assert tangents == pytest.approx(expected, rel=1e-12)
+    assert tangents == pytest.approx(expected, rel=1e-12, abs=0.0)
 
 
 def test_where_a_curve_is_abreast_of_a_joint() -> None:

@@ -91,7 +91,7 @@ def test_the_mean_curvature_is_the_turn_over_the_chord() -> None:
     # x = t, y = t²: slopes (1, 2t).
     turn = math.atan(1.0) - math.atan(0.4), math.atan(1.2) - math.atan(1.8)
     chords = math.hypot(0.3, 0.21), math.hypot(0.3, 0.45)
-    assert found == pytest.approx([turn[0] / chords[0], turn[1] / chords[1], 0.0], rel=1e-12)
+    assert found == pytest.approx([turn[0] / chords[0], turn[1] / chords[1], 0.0], rel=1e-12, abs=0.0)
 
 
 def cusp(at: float, slowest_speed: float = 0.0) -> Curve:

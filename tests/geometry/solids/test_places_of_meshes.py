@@ -79,7 +79,7 @@ def test_a_copy_is_turned_about_its_pivot() -> None:
     found = turned_about(mesh, (2e-3, -3e-3), 0.7)
     c, s = math.cos(0.7), math.sin(0.7)
     expected = [(2.0 + c * (x - 2.0) - s * (y + 3.0), -3.0 + s * (x - 2.0) + c * (y + 3.0), z) for x, y, z in CORNERS.tolist()]
-    assert found.vertices == pytest.approx(np.array(expected), rel=1e-12) and np.array_equal(mesh.vertices, CORNERS)
+    assert found.vertices == pytest.approx(np.array(expected), rel=1e-12, abs=0.0) and np.array_equal(mesh.vertices, CORNERS)
 
 
 def test_layers_make_one_plate_each_with_its_own_holes() -> None:

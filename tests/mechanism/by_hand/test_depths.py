@@ -79,7 +79,7 @@ def test_of_bars_that_cross_the_width_counts() -> None:
     """A slot of 0.2 mm by 6 mm through a plate: no corner lies in the other, and the disc that fits is 0.2 mm wide, nearly."""
     plate, bar = shapely.box(0.0, 0.0, 5e-3, 4e-3), shapely.box(1e-3, -1e-3, 1.2e-3, 5e-3)
     depth, (x, y) = regions_depth(plate, bar, 2e-9)
-    assert depth == pytest.approx(2.0 * (0.2e-3 * 4e-3) / (8.4e-3), rel=1e-9)
+    assert depth == pytest.approx(2.0 * (0.2e-3 * 4e-3) / (8.4e-3), rel=1e-9, abs=0.0)
     assert 1e-3 < x < 1.2e-3 and 0.0 < y < 4e-3
 
 

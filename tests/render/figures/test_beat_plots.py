@@ -126,7 +126,8 @@ def test_bars_are_the_shares_of_the_account(run: ws.Trajectory) -> None:
         parts = ("stored", "damping", "friction", "impacts")
         widths = {name: next(b for b in axes.patches if b.get_gid() == f"energy {title(stage)} {name}") for name in parts}
         assert sum(bar.get_width() for bar in widths.values()) == pytest.approx(1e9 * stage.energy.supplied, abs=1e-3)
-        assert widths["friction"].get_width() == pytest.approx(1e9 * stage.energy.friction)
+        # What is left of the account where nothing rubs is rounding: nJ.
+        assert widths["friction"].get_width() == pytest.approx(1e9 * stage.energy.friction, rel=1e-6, abs=1e-12)
         assert widths["impacts"].get_width() == pytest.approx(1e9 * sum(stage.energy.impacts.values()))
 
 

@@ -184,7 +184,7 @@ def test_frames_lie_as_far_apart_as_speed_and_rate_say(speed, fps, window, tmp_p
     monkeypatch.setattr(Stage, "draw", lambda self, t, *_, **__: shown.append(t) or np.zeros((180, 320, 4), np.uint8))
     movie(watch_run(), tmp_path / "a.mp4", window=window, speed=speed, fps=fps, size=(320, 180))
     assert len(shown) == round((window[1] - window[0]) * fps / speed) + 1
-    assert shown == pytest.approx([window[0] + k * speed / fps for k in range(len(shown))], rel=1e-12)
+    assert shown == pytest.approx([window[0] + k * speed / fps for k in range(len(shown))], rel=1e-12, abs=0.0)
     assert iio.immeta(tmp_path / "a.mp4", plugin="FFMPEG")["fps"] == fps
 
 

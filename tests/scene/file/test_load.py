@@ -95,7 +95,7 @@ def test_free_body_and_open_line(desk):
     scene = load(desk.scene(INCLINE))
     disc, plane = scene.bodies
     assert disc.velocity == (1.0, -2.0, 3.0)
-    assert disc.inertia == pytest.approx(0.5 * 0.05**2, rel=1e-12), "a uniform disc where nothing else is said"
+    assert disc.inertia == pytest.approx(0.5 * 0.05**2, rel=1e-12, abs=0.0), "a uniform disc where nothing else is said"
     assert scene.gravity == (3.3552176060248105, -9.21838460990976)
     (loop,) = plane.loops
     assert not loop.closed and loop.edges[0].end == (-1.0, 0.0)
@@ -142,8 +142,8 @@ SOLID = '[[bodies.wheel.solids]]\nlayer = "TEETH"\nthickness = "0.12 mm"\ndensit
 def test_mass_and_inertia_from_solids(desk, good):
     wheel = load(desk.scene(good.replace('inertia = "0.05 mg·cm²"\n', "", 1) + SOLID)).body("wheel")
     mass = 0.01**2 * 0.00012 * 7850
-    assert wheel.mass == pytest.approx(mass, rel=1e-12)
-    assert wheel.inertia == pytest.approx(mass * 0.01**2 / 6, rel=1e-12)
+    assert wheel.mass == pytest.approx(mass, rel=1e-12, abs=0.0)
+    assert wheel.inertia == pytest.approx(mass * 0.01**2 / 6, rel=1e-12, abs=0.0)
     assert wheel.centre_of_mass == pytest.approx((0.0, 0.0), abs=1e-15)
 
 
@@ -151,10 +151,10 @@ def test_solids_away_from_the_pivot_follow_steiner(desk, good):
     text = good.replace('inertia = "0.05 mg·cm²"\n', "", 1).replace('pivot = "PIVOT"', 'pivot = ["0 mm", "0 mm"]')
     wheel = load(desk.scene(text + SOLID + SOLID.replace("TEETH", "BORE"))).body("wheel")
     plate, disc = 0.01**2 * 0.00012 * 7850, math.pi * 1e-6 * 0.00012 * 7850
-    assert wheel.mass == pytest.approx(plate + disc, rel=1e-12)
+    assert wheel.mass == pytest.approx(plate + disc, rel=1e-12, abs=0.0)
     expected = plate * 0.01**2 / 6 + disc * 1e-6 / 2 + (plate + disc) * 0.005**2
-    assert wheel.inertia == pytest.approx(expected, rel=1e-12)
-    assert wheel.centre_of_mass == pytest.approx((0.003, 0.004), rel=1e-12)
+    assert wheel.inertia == pytest.approx(expected, rel=1e-12, abs=0.0)
+    assert wheel.centre_of_mass == pytest.approx((0.003, 0.004), rel=1e-12, abs=0.0)
 
 
 def test_a_stated_inertia_wins_over_solids(desk, good):

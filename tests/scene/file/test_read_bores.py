@@ -72,12 +72,12 @@ def test_a_disc_with_eccentric_bores_is_as_heavy_as_the_handbook_says(lever, piv
     scene = scene_of(lever, PLATE + 'bores = ["BORE"]\n')
     body = scene.set("bodies.lever.pivot", [f"{value!r} m" for value in pivot]).body("lever")
     assert (body.mass, body.inertia) == pytest.approx((mass, inertia), rel=1e-12, abs=0.0)
-    assert body.centre_of_mass == pytest.approx((x / mass, y / mass), rel=1e-12)
+    assert body.centre_of_mass == pytest.approx((x / mass, y / mass), rel=1e-12, abs=0.0)
 
 
 def test_without_the_key_nothing_is_taken_out(lever) -> None:
     plain, none = (scene_of(lever, PLATE + text).body("lever") for text in ("", "bores = []\n"))
-    assert plain.mass == pytest.approx(disc(2e-3, (0, 0), (0, 0))[0] - disc(0.3e-3, (0, 0), (0, 0))[0], rel=1e-12)
+    assert plain.mass == pytest.approx(disc(2e-3, (0, 0), (0, 0))[0] - disc(0.3e-3, (0, 0), (0, 0))[0], rel=1e-12, abs=0.0)
     assert plain == none
 
 
@@ -86,7 +86,7 @@ def test_a_stone_in_its_bore_has_its_own_mass_and_is_seen(lever, touching) -> No
     more = 'layers = ["LEVER", "STONE"]\n' if touching else 'layers = ["LEVER"]\n'
     body = scene_of(lever, PLATE + 'bores = ["STONE"]\n', STONE, more=more).body("lever")
     plate, stone = body.solids
-    assert plate.weight.mass == pytest.approx(RHO * HEIGHT * math.pi * (4 - 0.09 - 0.16) * 1e-6, rel=1e-12)
+    assert plate.weight.mass == pytest.approx(RHO * HEIGHT * math.pi * (4 - 0.09 - 0.16) * 1e-6, rel=1e-12, abs=0.0)
     assert stone.weight.mass == pytest.approx(3980.0 * 0.3e-3 * math.pi * 0.16e-6, rel=1e-12)
     seen = [loop for loop in (body.loops if touching else body.decoration) if loop.layer == "STONE"]
     assert [loop.hole for loop in seen] == [False]
@@ -96,7 +96,7 @@ def test_a_stone_in_its_bore_has_its_own_mass_and_is_seen(lever, touching) -> No
 def test_copies_have_their_bores(lever) -> None:
     body = scene_of(lever, STONE + 'count = 3\nbores = ["PIN"]\n').body("lever")
     ring = 3980.0 * 0.3e-3 * math.pi * (0.16e-6 - 0.04e-6)
-    assert body.mass == pytest.approx(3 * ring, rel=1e-12)
+    assert body.mass == pytest.approx(3 * ring, rel=1e-12, abs=0.0)
     own, square_of_distance = 0.5 * (0.16e-6 + 0.04e-6), 1e-6 + 1.44e-6
     assert body.inertia == pytest.approx(3 * ring * (own + square_of_distance), rel=1e-12, abs=0.0)
     assert len([loop for loop in body.decoration if loop.layer == "PIN" and loop.hole]) == 3

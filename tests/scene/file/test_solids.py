@@ -69,7 +69,7 @@ def test_layers_of_different_materials_add_up(balance):
 def test_counted_layers_are_spread_about_the_pivot(balance):
     body = weights(balance, 'layer = "WEIGHT"\ncount = 4\n' + PLATE)
     one = math.pi * 0.09e-6 * HEIGHT * RHO
-    assert body.mass == pytest.approx(4 * one, rel=1e-12)
+    assert body.mass == pytest.approx(4 * one, rel=1e-12, abs=0.0)
     assert body.inertia == pytest.approx(4 * one * (0.09e-6 / 2 + 16e-6), rel=1e-12, abs=0.0)
     assert body.centre_of_mass == pytest.approx((0.0, 0.0), abs=1e-17)
     copies = [loop.edges[0] for loop in body.decoration if loop.layer == "WEIGHT"]
@@ -82,8 +82,8 @@ def test_a_lying_screw_is_a_cylinder_on_its_side(balance):
     body = weights(balance, screw)
     r, length, place = 0.25e-3, 0.4e-3, 5.2e-3
     mass = math.pi * r * r * length * 15500
-    assert body.mass == pytest.approx(8 * mass, rel=1e-12)
-    assert body.inertia == pytest.approx(8 * mass * ((3 * r * r + length * length) / 12 + place * place), rel=1e-12)
+    assert body.mass == pytest.approx(8 * mass, rel=1e-12, abs=0.0)
+    assert body.inertia == pytest.approx(8 * mass * ((3 * r * r + length * length) / 12 + place * place), rel=1e-12, abs=0.0)
     assert len([loop for loop in body.decoration if loop.layer == "SCREW"]) == 16  # both halves
 
 
@@ -91,7 +91,7 @@ def test_a_staff_stands_on_the_pivot_wherever_it_is_drawn(balance):
     staff = 'layer = "STAFF"\nturned = "AXIS"\ndensity = "7.8 g/cm³"\n'
     body = weights(balance, staff)
     mass = math.pi * 0.16e-6 * 4e-3 * 7800
-    assert body.mass == pytest.approx(mass, rel=1e-12)
+    assert body.mass == pytest.approx(mass, rel=1e-12, abs=0.0)
     assert body.inertia == pytest.approx(mass * 0.16e-6 / 2, rel=1e-12, abs=0.0)
     assert body.centre_of_mass == pytest.approx((0.0, 0.0), abs=1e-17)
     assert "STAFF" not in {loop.layer for loop in (*body.loops, *body.decoration)}
@@ -112,7 +112,7 @@ def test_a_drawn_strip_counts_one_third_too(balance):
     body = weights(balance, 'hairspring = true\nlayer = "STRIP"\nwidth = "0.1 mm"\n' + PLATE)
     bar = RHO * HEIGHT * 1e-4 * 1e-3
     own = bar * (1e-8 + 1e-6) / 12
-    assert body.mass == pytest.approx(2 * bar / 3, rel=1e-12)
+    assert body.mass == pytest.approx(2 * bar / 3, rel=1e-12, abs=0.0)
     assert body.inertia == pytest.approx((2 * own + bar * 1.5e-3**2 + bar * (4e-6 + 0.25e-6)) / 3, rel=1e-12, abs=0.0)
 
 
@@ -220,14 +220,14 @@ def test_check_says_what_a_heavy_spot_does(balance, gravity, words):
     scene = loaded(balance, 'layer = "WEIGHT"\n' + PLATE)
     scene = scene.set("scene.gravity", ["0 m/s²", f"{-gravity} m/s²"])
     text = check_text(check_report(scene, ()), scene)
-    assert math.pi * 0.09e-6 * HEIGHT * RHO * 4e-3 * 9.81 == pytest.approx(17.7518e-9, rel=1e-5)
+    assert math.pi * 0.09e-6 * HEIGHT * RHO * 4e-3 * 9.81 == pytest.approx(17.7518e-9, rel=1e-5, abs=0.0)
     assert words in text and "lies 4 mm beside the pivot" in text
 
 
 def test_holes_are_taken_out_of_a_plate(balance):
     balance.put(drawing("balance.dxf", [square(4e-3, layer="ROLLER"), square(2e-3, layer="ROLLER", hole=True)]))
     body = loaded(balance, PLATE, body=BODY.replace('pivot = "PIVOT"\n', "")).body("balance")
-    assert body.mass == pytest.approx(12e-6 * HEIGHT * RHO, rel=1e-12)
+    assert body.mass == pytest.approx(12e-6 * HEIGHT * RHO, rel=1e-12, abs=0.0)
     assert body.inertia == pytest.approx(HEIGHT * RHO * (4e-3**4 - 2e-3**4) / 6, rel=1e-12, abs=0.0)
 
 

@@ -91,7 +91,7 @@ def test_what_a_unit_is_worth(kind: Dimension) -> None:
                 parse(f"3 {unit}", kind)
             continue
         assert parse(f"3 {unit}", kind) == pytest.approx(3.0 * worth, rel=1e-15, abs=0.0)
-        assert to(3.0 * worth, unit) == pytest.approx(3.0, rel=1e-15)
+        assert to(3.0 * worth, unit) == pytest.approx(3.0, rel=1e-15, abs=0.0)
 
 
 def test_every_kind_of_quantity_is_listed() -> None:

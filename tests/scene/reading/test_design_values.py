@@ -54,7 +54,7 @@ def test_a_text_in_any_unit_is_a_number_in_the_dimension_s_own(name: str, text: 
     """To the last of fifteen digits."""
     assert number_of(DESIGN.dimension(name), text) == float(f"{number:.15g}")
     values = chosen(DESIGN, {name: text})
-    assert getattr(values, name) == pytest.approx(number, rel=1e-14)
+    assert getattr(values, name) == pytest.approx(number, rel=1e-14, abs=0.0)
     assert [getattr(values, one) == getattr(Values(), one) for one in ("lock", "length", "teeth", "beat") if one != name] == [
         True
     ] * 3

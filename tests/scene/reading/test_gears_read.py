@@ -5,10 +5,8 @@ from __future__ import annotations
 import math
 
 import pytest
-import tomllib
+from scene_texts import faults, read
 
-from watchsim.scene.errors import SceneError
-from watchsim.scene.file.read_scene import from_mapping
 from watchsim.scene.gearing import Gear, Geared
 from watchsim.scene.scene import Scene
 
@@ -25,16 +23,6 @@ def wheels(names: str = "abcd", **more: str) -> str:
 def gear(first: str, second: str, ratio: object, more: str = "") -> str:
     shown = f'"{ratio}"' if isinstance(ratio, str) else ratio
     return f'[[gears]]\nbetween = ["{first}", "{second}"]\nratio = {shown}\n{more}'
-
-
-def read(text: str) -> Scene:
-    return from_mapping(tomllib.loads(text), None)
-
-
-def faults(text: str) -> list[str]:
-    with pytest.raises(SceneError) as caught:
-        read(text)
-    return [f"{fault.key}: {fault.message}" for fault in caught.value.faults]
 
 
 def bound(scene: Scene) -> dict[str, tuple[str, float]]:

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import pytest
-import tomllib
+from scene_texts import read
 
 from watchsim.scene.errors import SceneError
-from watchsim.scene.file.read_scene import from_mapping
-from watchsim.scene.scene import Scene
 
 BODIES = """
 [bodies.wheel]
@@ -40,10 +38,6 @@ LEAF = """[[springs]]
 body = "wheel"
 leaf = {{ modulus = "200 GPa", length = "5 mm", width = "2 mm", thickness = "{}", arm = "3 mm" }}
 """
-
-
-def read(text: str) -> Scene:
-    return from_mapping(tomllib.loads(text), None)
 
 
 LIMITS = [  # (text with a place for the value, the last that is taken, the first that is not, what is said of it)

@@ -5,51 +5,11 @@ from __future__ import annotations
 import math
 
 import pytest
-import tomllib
+from scene_texts import BODIES, faults, read, spring
 
-from watchsim.scene.errors import SceneError
-from watchsim.scene.file.read_scene import from_mapping
 from watchsim.scene.force import Spring
-from watchsim.scene.scene import Scene
 
-BODIES = """
-[bodies.a]
-position = ["3 mm", "-2 mm"]
-angle = "30°"
-inertia = "5 g·cm²"
-[bodies.b]
-motion = "fixed"
-position = ["11 mm", "6 mm"]
-angle = "-50°"
-[bodies.s]
-motion = "slide"
-axis = [3, 4]
-mass = "2 g"
-position = ["0 mm", "30 mm"]
-[bodies.t]
-motion = "slide"
-axis = [3, 4]
-mass = "7 g"
-[bodies.d]
-motion = "driven"
-velocity = "2 rad/s"
-position = ["50 mm", "0 mm"]
-"""
 TURN = math.radians
-
-
-def read(text: str) -> Scene:
-    return from_mapping(tomllib.loads(BODIES + text), None)
-
-
-def faults(text: str) -> list[str]:
-    with pytest.raises(SceneError) as caught:
-        read(text)
-    return [f"{fault.key}: {fault.message}" for fault in caught.value.faults]
-
-
-def spring(body: str, more: str) -> str:
-    return f'[[springs]]\nbody = "{body}"\n{more}'
 
 
 LEAF = 'leaf = { modulus = "200 GPa", length = "5 mm", width = "2 mm", thickness = "0.1 mm"%s }\n'
@@ -83,9 +43,9 @@ SPRINGS = [
 @pytest.mark.parametrize(("text", "expected"), SPRINGS)
 def test_a_spring_on_a_coordinate(text: str, expected: Spring | None) -> None:
     if expected is None:
-        assert len(faults(text)) == 1
+        assert len(faults(BODIES + text)) == 1
         return
-    (found,) = read(text).springs
+    (found,) = read(BODIES + text).springs
     for name in ("body", "against", "coil"):
         assert getattr(found, name) == getattr(expected, name)
     for name in ("stiffness", "rest", "frequency", "stop", "restitution"):

@@ -5,55 +5,15 @@ from __future__ import annotations
 import math
 
 import pytest
-import tomllib
+from scene_texts import BODIES, faults, read, spring
 
-from watchsim.scene.errors import SceneError
-from watchsim.scene.file.read_scene import from_mapping
 from watchsim.scene.force import Damping, Mainspring, Torque
-from watchsim.scene.scene import Scene
 
-BODIES = """
-[bodies.a]
-position = ["3 mm", "-2 mm"]
-angle = "30°"
-inertia = "5 g·cm²"
-[bodies.b]
-motion = "fixed"
-position = ["11 mm", "6 mm"]
-angle = "-50°"
-[bodies.s]
-motion = "slide"
-axis = [3, 4]
-mass = "2 g"
-position = ["0 mm", "30 mm"]
-[bodies.t]
-motion = "slide"
-axis = [3, 4]
-mass = "7 g"
-[bodies.d]
-motion = "driven"
-velocity = "2 rad/s"
-position = ["50 mm", "0 mm"]
-"""
 TURN = math.radians
-
-
-def read(text: str) -> Scene:
-    return from_mapping(tomllib.loads(BODIES + text), None)
-
-
-def faults(text: str) -> list[str]:
-    with pytest.raises(SceneError) as caught:
-        read(text)
-    return [f"{fault.key}: {fault.message}" for fault in caught.value.faults]
 
 
 def torque(body: str, more: str) -> str:
     return f'[[torques]]\nbody = "{body}"\n{more}'
-
-
-def spring(body: str, more: str) -> str:
-    return f'[[springs]]\nbody = "{body}"\n{more}'
 
 
 ROWS = 'table = [["1 rev", "8 mN·m"], ["3 rev", "6 mN·m"], ["7 rev", "-2 mN·m"]]\n'
@@ -62,7 +22,7 @@ TRAIN = 'train = [{ ratio = 10, inertia = "3 g·cm²" }, { ratio = -4, inertia =
 
 def test_a_mainspring_drives_through_a_train() -> None:
     """Half of the work is lost; 4 turns run down; a turn of the barrel is five of the body the other way."""
-    scene = read(torque("a", f'over = "barrel"\nratio = -5\nefficiency = 0.5\nrun_down = "4 rev"\n{ROWS}{TRAIN}'))
+    scene = read(BODIES + torque("a", f'over = "barrel"\nratio = -5\nefficiency = 0.5\nrun_down = "4 rev"\n{ROWS}{TRAIN}'))
     (found,) = scene.torques
     train = 3e-7 / 100.0 + 5e-7 / 16.0
     assert scene.body("a").inertia == pytest.approx(5e-7 + train, rel=1e-12)
@@ -79,7 +39,7 @@ def test_a_mainspring_drives_through_a_train() -> None:
     ("turns", "torque_at"), [(0.5, 8.0), (1.0, 8.0), (2.0, 7.0), (3.0, 6.0), (6.0, 0.0), (7.0, -2.0), (9.0, -2.0)]
 )
 def test_beyond_its_table_a_mainspring_stays_as_strong(turns: float, torque_at: float) -> None:
-    (found,) = read(torque("a", f'over = "barrel"\nratio = 2\nrun_down = "{turns} rev"\n{ROWS}')).torques
+    (found,) = read(BODIES + torque("a", f'over = "barrel"\nratio = 2\nrun_down = "{turns} rev"\n{ROWS}')).torques
     assert found.mainspring is not None and found.mainspring.efficiency == 1.0 and found.mainspring.inertia == 0.0
     assert found.mainspring.torque == pytest.approx(1e-3 * torque_at, abs=1e-18)
     assert found.value == pytest.approx(0.5e-3 * torque_at, abs=1e-18)
@@ -109,7 +69,7 @@ def test_beyond_its_table_a_mainspring_stays_as_strong(turns: float, torque_at: 
     ],
 )
 def test_a_torque_or_a_force(text: str, expected: Torque) -> None:
-    assert read(text).torques == (expected,)
+    assert read(BODIES + text).torques == (expected,)
 
 
 def damping(body: str, more: str) -> str:
@@ -133,7 +93,7 @@ def damping(body: str, more: str) -> str:
     ],
 )
 def test_a_damper(text: str, expected: Damping) -> None:
-    (found,) = read(text).damping
+    (found,) = read(BODIES + text).damping
     assert (found.body, found.against) == (expected.body, expected.against)
     assert (found.viscous, found.quadratic, found.coulomb) == pytest.approx(
         (expected.viscous, expected.quadratic, expected.coulomb), rel=1e-12, abs=0.0
@@ -171,5 +131,5 @@ REFUSED = [
 
 @pytest.mark.parametrize(("text", "expected"), REFUSED)
 def test_what_cannot_be_is_said_once(text: str, expected: list[str]) -> None:
-    said = faults(text)
+    said = faults(BODIES + text)
     assert len(said) == len(expected) and all(one.startswith(words) for one, words in zip(said, expected, strict=True)), said

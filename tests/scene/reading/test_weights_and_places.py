@@ -5,13 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-import tomllib
 from made_scenes import circle, drawing, square
+from scene_texts import faults, read
 
 from watchsim.scene.body import Body
 from watchsim.scene.errors import SceneError
 from watchsim.scene.file.load import load
-from watchsim.scene.file.read_scene import from_mapping
 
 SHAPE = 'polygon = [["1 mm", "-2 mm"], ["3 mm", "-2 mm"], ["3 mm", "4 mm"], ["1 mm", "4 mm"]]\n'  # 2 mm by 6 mm about (2, 1)
 OWN, OFF = 5e-3 * 40e-6 / 12.0, 5e-3 * 5e-6  # kg·m² of 5 g about its middle, and of the way from there to the origin
@@ -21,13 +20,7 @@ MIDDLE = 'pivot = ["2 mm", "1 mm"]\n'
 
 
 def bodies(text: str) -> dict[str, Body]:
-    return {body.name: body for body in from_mapping(tomllib.loads(text), None).bodies}
-
-
-def faults(text: str) -> list[str]:
-    with pytest.raises(SceneError) as caught:
-        bodies(text)
-    return [f"{fault.key}: {fault.message}" for fault in caught.value.faults]
+    return {body.name: body for body in read(text).bodies}
 
 
 WEIGHED = [  # what is written, then mass (kg), inertia (kg·m²) and centre of mass (mm, from the body's origin)
@@ -119,7 +112,7 @@ def test_solids_and_what_says_the_same_exclude_each_other() -> None:
     assert bodies(f"{free}{solid}")["b"].mass == pytest.approx(12e-9 * 8000.0)
     assert bodies(f"{free}{MIDDLE}{MASS}")["b"].mass == 5e-3
     plate = bodies(f"[bodies.b]\n{SHAPE}{solid}")["b"]
-    assert (plate.mass, plate.inertia) == pytest.approx((9.6e-5, 9.6e-5 * (40e-6 / 12.0 + 5e-6)), rel=1e-12)
+    assert (plate.mass, plate.inertia) == pytest.approx((9.6e-5, 9.6e-5 * (40e-6 / 12.0 + 5e-6)), rel=1e-12, abs=0.0)
     assert plate.centre_of_mass == pytest.approx((2e-3, 1e-3))
     assert faults(f'[bodies.b]\n{SHAPE}{solid}centre_of_mass = ["1 mm", "2 mm"]\n')[0].startswith(
         "bodies.b.solids.0.centre_of_mass"
@@ -128,12 +121,17 @@ def test_solids_and_what_says_the_same_exclude_each_other() -> None:
     assert faults(given)[0].startswith("bodies.b.centre_of_mass: the solids already give the centre of mass")
 
 
+@pytest.mark.parametrize("solids", ["[3]", "[[]]", "3", "false", "{}"])
+def test_what_are_no_solids_is_one_fault(solids: str) -> None:
+    assert len(faults(f"[bodies.b]\n{SHAPE}solids = {solids}\n")) == 1
+
+
 def test_the_smallest_weights_are_taken() -> None:
     assert bodies('[bodies.b]\ninertia = "1e-100 kg·m²"\nmass = "1e-100 kg"\n')["b"].inertia == 1e-100
 
 
 def test_what_is_left_out_of_a_run_and_of_a_body() -> None:
-    scene = from_mapping(tomllib.loads(f"[bodies.b]\n{INERTIA}"), None)
+    scene = read(f"[bodies.b]\n{INERTIA}")
     assert (scene.duration, scene.tolerance, scene.record.stride, scene.record.keep) == (1.0, 1e-9, 1, "all")
     assert (scene.lift_angle, scene.nominal, scene.gravity, scene.nu, scene.title) == (None, None, (0.0, 0.0), 0.0, "")
     body = scene.bodies[0]
@@ -175,7 +173,7 @@ PLACES = [  # what is written, and where the body a stands (mm)
 @pytest.mark.parametrize(("text", "place"), PLACES)
 def test_a_body_stands_as_drawn_where_several_share_a_drawing(drawn: Any, text: str, place: tuple[float, float]) -> None:
     found = load(drawn.scene(text)).body("a")
-    assert found.position == pytest.approx((1e-3 * place[0], 1e-3 * place[1]), rel=1e-12)
+    assert found.position == pytest.approx((1e-3 * place[0], 1e-3 * place[1]), rel=1e-12, abs=0.0)
 
 
 def test_as_drawn_means_nothing_on_a_carrier_of_another_drawing(drawn: Any) -> None:

@@ -127,9 +127,9 @@ def test_two_racks_run_against_each_other_on_one_rotation(tmp_path) -> None:
     where = {name: part.start for name, part in run.slices.items()}
     hit = math.sqrt(2.0 * 1e-3 / (R * bend))  # the disc of 1 mm is 1 mm from the wall
     found = run.events[run.events["kind"] == EventKind.IMPACT][0]
-    assert found["t"] == pytest.approx(hit, rel=1e-12)
+    assert found["t"] == pytest.approx(hit, rel=1e-12, abs=0.0)
     q, u = run.at(found["t"])
-    assert q[where["near"]] == pytest.approx(-q[where["far"]], rel=1e-12)
+    assert q[where["near"]] == pytest.approx(-q[where["far"]], rel=1e-12, abs=0.0)
     assert u == pytest.approx(-0.5 * bend * hit * np.array([1.0, R, -R]), rel=1e-9)
     assert run.energy["residual_relative"] < 1e-12
 
@@ -173,7 +173,7 @@ def test_a_planet_rolls_round_a_fixed_wheel(tmp_path) -> None:
     assert run.end_q == pytest.approx([math.radians(30.0) + turned, math.radians(20.0) + r * turned], rel=1e-12)
     x, y, angle = run.pose("planet", t)
     assert angle == pytest.approx(math.radians(50.0) + (1.0 + r) * turned, rel=1e-12)
-    assert (x, y) == pytest.approx((1e-3 + 5e-3 * math.cos(run.end_q[0]), 5e-3 * math.sin(run.end_q[0])), rel=1e-12)
+    assert (x, y) == pytest.approx((1e-3 + 5e-3 * math.cos(run.end_q[0]), 5e-3 * math.sin(run.end_q[0])), rel=1e-12, abs=0.0)
 
 
 def _train_before(ratio: float, holds: bool) -> tuple[Scene, Scene]:
@@ -235,8 +235,8 @@ def test_gears_with_play_rebound_by_their_restitution(tmp_path) -> None:
     assert relative[-1] == pytest.approx(start * (-e) ** len(closes), rel=1e-9)
     # An impulse on the pinion is r times as large, and opposite, on the wheel: J_A u_A + r J_B u_B is kept.
     u = {name: run.end_u[part][0] for name, part in run.slices.items()}
-    assert J_A * u["wheel"] + r * J_B * u["pinion"] == pytest.approx(J_A * math.radians(-100.0), rel=1e-12)
-    assert run.energy["dissipated"]["impacts"] == pytest.approx(-run.energy["stored_J"], rel=1e-12)
+    assert J_A * u["wheel"] + r * J_B * u["pinion"] == pytest.approx(J_A * math.radians(-100.0), rel=1e-12, abs=0.0)
+    assert run.energy["dissipated"]["impacts"] == pytest.approx(-run.energy["stored_J"], rel=1e-12, abs=0.0)
 
 
 @pytest.mark.parametrize("efficiency", [0.9, 0.35])

@@ -72,12 +72,12 @@ def test_accelerations_stay_below_their_bound_which_is_met_without_damping(case:
         q, u = starts(seed)
         y = np.array([q, u, 1.0])
         a, jerk = (A @ y)[1], (A @ A @ y)[1]
-        assert ask("acceleration", one, grip, q, u) == pytest.approx(a, rel=1e-12)
+        assert ask("acceleration", one, grip, q, u) == pytest.approx(a, rel=1e-12, abs=0.0)
         bound = ask("acceleration_bound", one, grip, q, u)
         met = [abs((A @ state(one, grip, q, u, t))[1]) for t in np.linspace(0.0, 1.2, 60)]
         assert max(met) <= bound * (1.0 + 1e-12)
         wanted = abs(a) if one.stiffness == 0.0 else math.hypot(a, jerk * math.sqrt(one.mass / one.stiffness))
-        assert bound == pytest.approx(wanted, rel=1e-12)
+        assert bound == pytest.approx(wanted, rel=1e-12, abs=0.0)
         if one.viscous == 0.0:
             assert max(met) > 0.99 * bound
 

@@ -46,7 +46,7 @@ def test_two_directions_are_one_where_the_angle_between_them_is_small(depth: flo
     root = np.sqrt(MASS[COORDINATES])
     angle = np.arcsin(np.sqrt(share * bound))
     normal, tangential = (root * np.array([np.cos(turn), np.sin(turn)]) for turn in (0.7, 0.7 + angle))
-    assert sine_squared(normal, tangential) == pytest.approx(share * bound, rel=1e-3)
+    assert sine_squared(normal, tangential) == pytest.approx(share * bound, rel=1e-3, abs=0.0)
     assert asked(has_one_way, depth, w_N=normal, w_T=tangential, reduced=-radius) == (share < 1.0)
 
 

@@ -33,11 +33,11 @@ def test_a_gap_closes_no_earlier_than_both_bounds_allow(seed: int) -> None:
     room, bend, closing = 10.0 ** rng.uniform(-6.0, -2.0), 10.0 ** rng.uniform(-2.0, 3.0), 10.0 ** rng.uniform(-2.0, 0.0)
     approach, distance = closing * rng.uniform(-1.0, 1.0), 10.0 ** rng.uniform(-3.0, -1.0)
     found = ask("safe_time", room, approach, closing, bend, math.inf)
-    assert found == pytest.approx(max(room / closing, parabola(room, approach, bend)), rel=1e-9)
+    assert found == pytest.approx(max(room / closing, parabola(room, approach, bend)), rel=1e-9, abs=0.0)
     more = bend + 2.0 * closing**2 / distance
     limit = 0.5 * distance / closing
     found = ask("safe_time", room, approach, closing, bend, distance)
-    assert found == pytest.approx(max(room / closing, min(parabola(room, approach, more), limit)), rel=1e-9)
+    assert found == pytest.approx(max(room / closing, min(parabola(room, approach, more), limit)), rel=1e-9, abs=0.0)
 
 
 def test_without_bend_a_receding_gap_is_safe_as_long_as_its_bounds_hold() -> None:
@@ -97,7 +97,7 @@ def test_a_gap_may_fall_to_zero_or_a_little_below_where_it_does_not_leave() -> N
     assert ask("room_outside", 1e-6, -1.0, OPTIONS) == 1e-6
     assert ask("room_outside", 1e-13, 1e-7, OPTIONS) == 1e-13
     assert ask("room_outside", -1e-9, 1e-7, OPTIONS) == 0.0
-    assert ask("room_outside", 5e-14, 1e-9, OPTIONS) == pytest.approx(2.5e-13, rel=1e-12)
+    assert ask("room_outside", 5e-14, 1e-9, OPTIONS) == pytest.approx(2.5e-13, rel=1e-12, abs=0.0)
 
 
 def test_a_gap_that_is_behind_is_due_when_it_has_come_back_or_gone_deeper() -> None:
@@ -114,7 +114,7 @@ def test_a_gap_that_is_behind_is_due_when_it_has_come_back_or_gone_deeper() -> N
 def test_a_gap_that_is_zero_and_falls_closes_where_its_tangent_vanishes() -> None:
     bounds = (2.0, 5.0, math.inf)
     assert ask("time_to_touch", 0.0, -1.0, bounds, OPTIONS) == 0.0
-    assert ask("time_to_touch", 1e-13, -1e-6, bounds, OPTIONS) == pytest.approx(1e-7)
+    assert ask("time_to_touch", 1e-13, -1e-6, bounds, OPTIONS) == pytest.approx(1e-7, rel=1e-6, abs=0.0)
     slow = ask("time_to_touch", 1e-13, -1e-9, bounds, OPTIONS)  # by then 2.5e-8 m deeper it could be
     assert slow == ask("safe_time", 1e-13, 1e-9, 2.0, 5.0, math.inf)
 
@@ -136,5 +136,5 @@ def test_an_immovable_contact_is_looked_at_before_it_could_be_behind(kind: int, 
 
     share = math.sqrt(IMMOVABLE) if kind == LINE and motion in (FIXED, SLIDE) else 1.0
     assert time(-1e-3, 1e-30) == pytest.approx(0.25 * OPTIONS.behind / 1e-3)
-    assert 0.5 * share * 40.0 * time(0.0, 40.0) ** 2 == pytest.approx(0.25 * OPTIONS.behind)
+    assert 0.5 * share * 40.0 * time(0.0, 40.0) ** 2 == pytest.approx(0.25 * OPTIONS.behind, rel=1e-6, abs=0.0)
     assert time(-1e-3, 40.0, immovable=False) == 0.0

@@ -112,7 +112,7 @@ def test_sums_are_work_put_in_and_what_damping_bearings_and_slips_take() -> None
     driven = -float((whole[:, 1] * FORCE).sum()) * U[1]
     slips = (whole @ U)[1::2]
     assert smooth.dy[2 * N :] == pytest.approx(
-        [25.0 + driven, U.sum() + 0.3 * U[0] - 0.4 * U[3], -float(FORCE[1::2] @ slips)], rel=1e-13
+        [25.0 + driven, U.sum() + 0.3 * U[0] - 0.4 * U[3], -float(FORCE[1::2] @ slips)], rel=1e-13, abs=0.0
     )
 
 

@@ -71,7 +71,10 @@ def test_a_step_ends_nine_tenths_of_the_way_to_a_jam() -> None:
     for i, (press, grip, end, jam) in enumerate(((1.5, 5.0, 0.8, 1.0), (3.0, 6.0, 0.1, -1.0))):
         own = values[kinds.MONITORS * i :]
         assert own[[kinds.NORMAL, kinds.TANGENTIAL, kinds.EXTENT, kinds.PARADOX]] == pytest.approx([press, grip, end, jam])
-    assert smallest == -1.0 and asked == [(0, pytest.approx(0.9e-9, abs=0.0, rel=1e-9)), (1, pytest.approx(0.9e-9, rel=1e-9))]
+    assert smallest == -1.0 and asked == [
+        (0, pytest.approx(0.9e-9, abs=0.0, rel=1e-9)),
+        (1, pytest.approx(0.9e-9, rel=1e-9, abs=0.0)),
+    ]
 
 
 @pytest.mark.parametrize(("nearest", "share"), [(3e-8, 8.0 / 30.0), (0.9e-8, 0.5)])

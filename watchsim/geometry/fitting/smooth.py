@@ -34,9 +34,8 @@ def smooth_parts(curves: Sequence[Curve], tolerance: Array) -> list[list[Curve]]
     for k in np.unique(number):
         cuts = [0.0]
         for place in (places[number == k] - bundle.begin[k]).tolist():
-            cut = (
-                float(round(place)) if abs(place - round(place)) <= SLIVER else place
-            )  # what is beside a break is taken for it
+            nearest = float(round(place))
+            cut = nearest if abs(place - nearest) <= SLIVER else place  # what is beside a break is taken for it
             if cut - cuts[-1] > SLIVER and len(curves[k].control) - cut > SLIVER:
                 cuts.append(cut)
         result[k] = cut_at(curves[k], cuts[1:])
@@ -84,19 +83,19 @@ def bend(bundle: Bundle, t: Array, later: Array) -> Array:
 
 def pauses(bundle: Bundle) -> Array:
     """The places inside where the speed falls to nothing: cusps, and corners at coincident control points."""
-    ends = bundle.end.astype(float)
-    t = np.sort(np.append((bundle.start_of[:, None] + np.arange(LOOKS) / LOOKS).ravel(), ends))
-    speeds = bundle.speeds(t)
-    usual = bundle.usual_speed[bundle.owner[bundle.locate(t)[0]]]
-    inside = np.flatnonzero(
-        (speeds[1:-1] <= SLOW * usual[1:-1])
-        & (speeds[1:-1] <= np.minimum(speeds[:-2], speeds[2:]))
-        & (t[2:] - t[:-2] <= 2.5 / LOOKS)  # not across the gap between two curves
-    )
-    at, least = t[inside + 1], PAUSE * usual[inside + 1]
-    moving = speeds[inside + 1] > least
-    at[moving] = slowest(bundle, t[inside][moving], t[inside + 2][moving])
-    return at[bundle.speeds(at) <= least]
+    t = np.sort(np.append((bundle.start_of[:, None] + np.arange(LOOKS) / LOOKS).ravel(), bundle.end))
+    apart = np.diff(t) > 1.5 / LOOKS  # one curve ends, the next one begins
+    first, last = np.append(True, apart), np.append(apart, True)
+    speeds, usual = bundle.speeds(t), bundle.usual_speed[bundle.owner[bundle.locate(t)[0]]]
+    here = np.arange(len(t))
+    before, after = here - ~first, here + ~last  # an end has a neighbour on one side alone
+    slow = (speeds <= SLOW * usual) & (speeds <= np.minimum(speeds[before], speeds[after]))
+    still = speeds <= PAUSE * usual
+    moving = slow & ~still
+    chosen = slow & ~(still & (first | last))  # not where the curve pauses at its very end
+    at = t.copy()
+    at[moving] = slowest(bundle, t[before[moving]], t[after[moving]])
+    return at[chosen][bundle.speeds(at[chosen]) <= PAUSE * usual[chosen]]
 
 
 def slowest(bundle: Bundle, low: Array, high: Array) -> Array:

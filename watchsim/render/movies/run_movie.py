@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from pathlib import Path
 
@@ -26,7 +26,7 @@ from watchsim.render.frame.stage import Stage
 from watchsim.render.movies.busy_stretches import busy
 from watchsim.render.movies.encoder import check_path, encode
 from watchsim.render.movies.film import Film
-from watchsim.render.movies.gif_colours import shared_palette
+from watchsim.render.movies.gif_colours import Palette, shared_palette
 from watchsim.render.movies.pace import Plan, adaptive, even
 from watchsim.render.movies.picture_size import AUTO, GIF_SIZE, MP4_SIZE, checked, even_sides, fitting
 from watchsim.render.movies.soundtrack import soundtrack, write_soundtrack
@@ -100,12 +100,7 @@ def movie(  # noqa: PLR0913 - options, by name
     style = DARK if dark else LIGHT
     stage = Stage(run, pixels, span, zoom=zoom, turn=turn, speed=told, step=step, extras=extras, style=style)
     film = Film(stage, run, plan, ContactMarks(run) if contacts else None, arrows, speed == ADAPTIVE)
-    palette = None
-    if gif:
-        sampled = np.unique(np.linspace(0, len(plan.times) - 1, SAMPLES).astype(int))
-        palette = shared_palette(
-            [picture.copy() for picture in film.pictures(sampled)], style.phases.values() if phases else ()
-        )
+    palette = _palette(film, plan, style.phases.values() if phases else ()) if gif else None
     write = None if heard is None else partial(write_soundtrack, heard=heard)
     encode(film.pictures(np.arange(len(plan.times)), progress), target, pixels, plan.fps, palette, write)
     return target
@@ -173,6 +168,12 @@ def _size(
     if isinstance(size, str):
         raise ValueError(f'size = "{size}": give (width, height) in pixels, or "{AUTO}"')
     return even_sides(size if size is not None else (GIF_SIZE if gif else MP4_SIZE)), turn
+
+
+def _palette(film: Film, plan: Plan, named: Iterable[str]) -> Palette:
+    """The colours of some frames, and these `named` ones exactly."""
+    sampled = np.unique(np.linspace(0, len(plan.times) - 1, SAMPLES).astype(int))
+    return shared_palette([picture.copy() for picture in film.pictures(sampled)], named)
 
 
 def _extras(run: Trajectory, insets: Sequence[str], strip: str | bool, phases: bool, arrows: ForceArrows | None) -> Extras:

@@ -25,11 +25,10 @@ def project_positions(closed, m, both, behind, work, out_q):
 
     What is no drift but what flat faces have let bodies sink in (events/immovable.py) stays. `behind`: see `_has_drifted`.
     """
-    deepest, furthest = 0.0, 0.0
+    deepest = 0.0
     for i in range(m):
         deepest = max(deepest, -closed.kin[i].g)
-        furthest = max(furthest, abs(closed.kin[i].g))
-    if furthest == 0.0 or (deepest == 0.0 and not both):
+    if deepest == 0.0 and not both:
         return deepest
     fill_delassus(closed, m, work)
     for i in range(m):

@@ -140,7 +140,7 @@ def coupled_step(model, state, options, longest, scratch):
             return False, smallest
         state.counts.rejected_steps += 1
         shrunk = True
-        h *= min(1.0, factor) if error < math.inf else SHRINK
+        h *= factor if error < math.inf else SHRINK
     proposed = h * (min(1.0, factor) if shrunk else factor)
     if not shrunk:  # a step cut short by `longest` says nothing against a longer next one
         proposed = max(proposed, min(state.clock.step, h * GROW))

@@ -28,7 +28,7 @@ Events = NDArray[Any]
 # (s, with the sign of the direction of swing, so that chance does not add up to a beat error).
 QUANTITIES = ("amplitude", "period", "uneven_ticks", "uneven_passages")
 MOMENTS = ("number", "mean", "squares", "least", "largest")  # squares: of the distances from the mean, summed
-CARRIED = 8  # passages whose events are carried on; a half swing needs three
+CARRIED = 8  # passages whose events are carried on; a half swing needs four: its beat is compared with those of the two before
 MOST_CARRIED = 20000  # events, of an oscillator that makes noises but never passes its rest position
 
 

@@ -108,7 +108,7 @@ def _note_massless(table: Table, motion: str, inertias: Inertias, outlines: Outl
     driven = table.mapping.get("motion") == "driven"  # needs no mass: it moves as prescribed
     needs = () if driven else {"pivot": ("inertia",), "slide": ("mass",), "free": ("mass", "inertia")}.get(motion, ())
     slips = {nearest(name, table.keys) for name in table.mapping if name not in table.keys}
-    promised = bool(table.mapping.get("solids")) or ("mass" in table and (outlines.loops or not outlines.sound))
+    promised = table.mapping.get("solids", []) not in ([], ()) or ("mass" in table and (outlines.loops or not outlines.sound))
     for key, value, example in (("mass", inertias.mass, "1 mg"), ("inertia", inertias.inertia, "0.05 mg·cm²")):
         if key in table and 0.0 < value < SMALLEST:
             table.fault(key, TOO_SMALL, with_value=True)

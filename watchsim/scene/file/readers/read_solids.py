@@ -39,7 +39,7 @@ def read_solids(table: Table, outlines: Outlines) -> tuple[Solid, ...]:
     found = []
     for i, mapping in enumerate(table.tables("solids")):
         entry = Table(mapping, f"{table.path}.solids.{i}", SOLID, table.faults)
-        solid = _Reader(entry, outlines).solid()
+        solid = _Reader(entry, outlines).solid() if entry.is_table else None
         found += [solid] if solid else []
     return tuple(found)
 
