@@ -280,6 +280,6 @@ def test_eight_fine_facets_are_a_curve(facets: int, fitted: bool) -> None:
             points[-1], abs=1e-9
         )
         sagitta = 5e-3 * (1.0 - math.cos(0.001))
-        assert fit.deviation == (pytest.approx(sagitta, abs=1e-6) if fitted else 0.0) and fit.deviation <= 1e-6
+        assert fit.deviation == (pytest.approx(sagitta, rel=1e-4, abs=0.0) if fitted else 0.0) and fit.deviation <= 1e-6
     swing = smooth(points, 1e-6)
     assert swing is not None and swing.deviation >= 0.9 * sagitta
