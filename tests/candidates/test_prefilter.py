@@ -67,6 +67,7 @@ def listed(compiled: Compiled, q: np.ndarray) -> set[int]:
 BARS = st.tuples(st.floats(0.1, 0.8), st.floats(0.01, 0.2), st.floats(-0.3, 0.3))
 
 
+@pytest.mark.slow
 @settings(max_examples=20)
 @given(
     st.sampled_from([3, 12, 15, 30]),

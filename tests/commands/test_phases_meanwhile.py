@@ -47,7 +47,7 @@ LEVERS = ("swiss_lever", "bench_lever", "pin_pallet", "detent", "remontoir", "to
 ANCHORS = ("graham", "recoil_anchor", "pin_wheel", "cylinder", "duplex", "grasshopper")
 
 
-@pytest.mark.parametrize("profile", few([*LEVERS, *ANCHORS], 4))
+@pytest.mark.parametrize("profile", few([*LEVERS, *ANCHORS], 3))
 def test_texts_of_finished_phases_fit(profile: str, monkeypatch: pytest.MonkeyPatch) -> None:
     scene = load(profiles_dir() / profile).set("run.record", ["all"])
     run, meanwhile = run_and_texts(scene, 16.0 / frequency(scene), monkeypatch)

@@ -14,7 +14,7 @@ from watchsim.contact.distance import distance, gap, kinematics
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line
 
-FEW, MANY = 400, 20000
+FEW, MANY = 150, 20000
 EXACT = 1e-14  # of the size
 STEP = mp.mpf(10) ** -12  # of a central quotient in fifty digits: its error is of order STEP²
 

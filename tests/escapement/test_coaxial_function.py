@@ -119,6 +119,7 @@ def test_the_other_direction_of_rotation(coaxial):
     assert numbers(function) == pytest.approx(numbers(coaxial), abs=1e-6, nan_ok=True)
 
 
+@pytest.mark.slow
 def test_names_do_not_matter(coaxial):
     names = {"wheel": "balance", "lever": "wheel", "balance": "Unruh 1", "banking": "lever"}
     layers = {"LOCKING_STONES": "PIN", "SMALL_TEETH": "1", "IMPULSE_STONE": "FORK", "FORK": "a", "PIN": "b"}

@@ -166,7 +166,7 @@ def test_the_largest_freedom_is_found_between_the_steps(swiss):
     assert near == sorted(near) and near[-1] == pytest.approx(degrees(one.worst), abs=2e-3)
 
 
-@pytest.mark.parametrize("angle", [0.7, pytest.param(2.5, marks=pytest.mark.slow), -3.0])
+@pytest.mark.parametrize("angle", few([0.7, 2.5, -3.0], 1))
 def test_any_orientation(swiss, angle):
     function = measure(turned_scene(load(SWISS), angle, (3e-3, -5e-3)))
     assert numbers(function) == pytest.approx(numbers(swiss), abs=1e-6)

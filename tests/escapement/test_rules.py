@@ -104,7 +104,7 @@ def test_the_command_says_what_does_not_apply(capsys):
     assert "freedoms of guard pin and horns: not measured" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("ending", ["pdf", "svg"])
+@pytest.mark.parametrize("ending", few(["pdf", "svg"], 1))
 def test_the_sheet(ending, tmp_path, capsys):
     path = tmp_path / f"sheet.{ending}"
     assert main(["check", str(SWISS), "--sheet", str(path), "--width", "85 mm"]) == FINE

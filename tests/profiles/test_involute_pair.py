@@ -36,6 +36,7 @@ def test_the_profile_turns_evenly():
     assert run.worst_penetration < 1e-9
 
 
+@pytest.mark.slow
 def test_the_error_falls_with_the_arcs():
     """An arc through three points departs from the curve with the third power of its length."""
     few, many = (error(ws.simulate(designs.involute_pair(arcs=arcs).scene(), duration=1.0), 2.0) for arcs in (3, 6))

@@ -121,6 +121,7 @@ def test_a_picture_takes_the_shape_of_its_mechanism() -> None:
     assert picture.shape == (1280, 720, 3)
 
 
+@pytest.mark.slow
 def test_a_movie_takes_it_too_and_no_other_word(tmp_path) -> None:
     import imageio.v3 as iio
 

@@ -79,7 +79,7 @@ def test_beside_solids_it_is_refused(tmp_path):
         loaded(tmp_path, text + solids)
 
 
-@pytest.mark.parametrize("down", few([(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)], 2))
+@pytest.mark.parametrize("down", few([(0.0, 1.0), (1.0, 0.0), (-1.0, 0.0), (0.0, -1.0)], 1))
 def test_poise_error_in_four_positions(down):
     """(m g r / k) J₁(A)/A, times the cosine between the heavy place at rest and down; a harmonic swing about rest, in s/d."""
     watch = ws.load(ws.profiles_dir() / "bench_lever")

@@ -134,6 +134,7 @@ def written(target: Path) -> None:
     write_file(target, lambda path: path.write_text("new"), "a text")
 
 
+@pytest.mark.slow
 def test_files_fail_and_die_alike(tmp_path: Path) -> None:
     root = tmp_path / "disk"
     for number in range(1, MOST):

@@ -11,6 +11,7 @@ import math
 
 import numpy as np
 import pytest
+from every_time import few
 
 import watchsim as ws
 
@@ -38,7 +39,7 @@ def work_per_beat(scene, run):
     return np.mean(works)
 
 
-@pytest.mark.parametrize("torque", [-0.3e-6, -1.0e-6, -1.3e-6])
+@pytest.mark.parametrize("torque", few([-1.3e-6, -0.3e-6, -1.0e-6], 1))
 def test_amplitude_is_the_root_of_the_measured_work(swiss, torque):
     scene = swiss.set("torques.0.value", torque)
     cycle = ws.steady(scene)

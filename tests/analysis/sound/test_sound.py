@@ -105,6 +105,7 @@ def test_out_of_beat_is_heard_as_beat_error(tmp_path):
     assert timegrapher(run, own, (0.0, 20.0))["beat_error_ms"] == pytest.approx(expected, abs=0.01)
 
 
+@pytest.mark.slow
 def test_a_chipped_tooth_is_heard_every_fifteenth_oscillation(tmp_path):
     """Worn back, the tooth locks late: once by the entry pallet and once by the exit pallet, five half swings later."""
     _, found = heard(chipped(swiss(), 7, 0.0, back=0.15), 20.0, tmp_path)
@@ -115,6 +116,7 @@ def test_a_chipped_tooth_is_heard_every_fifteenth_oscillation(tmp_path):
     assert pattern[late[1]] > 0.8e-4 and np.abs(pattern[late[2:]]).max() < 3e-5
 
 
+@pytest.mark.slow
 def test_an_eccentric_wheel_is_heard_as_a_sine_of_fifteen_oscillations(tmp_path):
     scene = swiss(bodies_wheel_angle="-0.1°")
     run, found = heard(eccentric(scene, 5e-6), 30.0, tmp_path)

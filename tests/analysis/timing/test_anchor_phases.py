@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from every_time import few
 
 from watchsim.analysis.timeline.shown_beats import shown_beats
 from watchsim.analysis.timeline.timeline_table import timeline_text
@@ -112,7 +113,7 @@ def test_the_pallets_of_an_anchor_take_turns(sprung):
     assert set(told[:2]) == {"entry", "exit"} and told[2:] == told[:-2]
 
 
-@pytest.mark.parametrize(("name", "duration"), [("cylinder", 2.0), ("duplex", 2.0), ("pin_wheel", 6.0)])
+@pytest.mark.parametrize(("name", "duration"), few([("cylinder", 2.0), ("pin_wheel", 6.0), ("duplex", 2.0)], 2, several=True))
 def test_without_stones_on_either_side_none_is_named(name, duration):
     told = [beat.stages[0].pallet for beat in shown_beats(run_of(name, duration))]
     assert len(told) > 1 and not any(told)

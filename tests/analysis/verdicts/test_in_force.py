@@ -25,7 +25,7 @@ def replayed(events: np.ndarray, t: float) -> list[int]:
     return list(holding)
 
 
-@pytest.mark.parametrize("at_once", few([1, 7, 64, 4096], 2))
+@pytest.mark.parametrize("at_once", few([7, 1, 64, 4096], 1))
 def test_contacts_in_force_are_those_of_a_replay(monkeypatch: pytest.MonkeyPatch, at_once: int) -> None:
     monkeypatch.setattr(module, "AT_ONCE", at_once)
     rng = np.random.default_rng(at_once)

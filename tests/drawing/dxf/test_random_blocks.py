@@ -16,7 +16,7 @@ from watchsim.geometry.extent import extents
 FIT = 2e-9
 
 
-@pytest.mark.parametrize("seed", few(range(40), 12))
+@pytest.mark.parametrize("seed", few(range(40), lambda seed: seed % 4 == 1))
 def test_length_and_extents_are_those_of_the_points_drawn(read_bytes: Callable[..., Drawing], seed: int) -> None:
     data, rows = drawing(random.Random(seed))
     found = read_bytes(data, fit=FIT)

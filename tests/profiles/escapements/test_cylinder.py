@@ -53,6 +53,7 @@ def test_led_by_hand_the_drops_are_those_chosen(chosen):
     assert min(made.locks) == pytest.approx(values.lock, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_amplitude_and_rate_as_airy_says():
     """A light wheel without friction: the drive's work is what damping takes; impulse after the middle loses.
 

@@ -71,6 +71,7 @@ def test_on_the_way_back_the_leaf_gives_way_alone(ticking):
     assert math.degrees(q[~back, leaf].max()) < 1.0
 
 
+@pytest.mark.slow
 def test_nearly_isochronous_and_set_by_where_the_tooth_is_let_go():
     """Airy: an impulse whose middle is θ̄ behind the middle of the swing loses 86400 θ̄ / (2 Q A) seconds a day."""
     cycles = [ws.steady(designs.detent(torque=f"{torque} µN·m").scene()) for torque in (20.0, 45.0, 60.0)]

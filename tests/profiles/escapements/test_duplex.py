@@ -60,6 +60,7 @@ def test_the_tooth_is_let_go_where_the_notch_says(ticking):
     assert math.degrees(q[last, balance]) == pytest.approx(Duplex().letting_go, abs=0.3)
 
 
+@pytest.mark.slow
 def test_its_rate_is_set_by_where_the_tooth_is_let_go():
     """Airy: what is given near the middle of a swing, and what is taken there on the way back, loses where it comes later.
 

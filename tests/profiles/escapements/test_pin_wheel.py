@@ -43,6 +43,7 @@ def led(anchor: PinAnchor, scene: ws.Scene) -> list[tuple[np.ndarray, np.ndarray
     return found
 
 
+@pytest.mark.slow
 def test_the_outlines_drive_as_far_as_they_are_drawn_to():
     anchor = PinAnchor(PinWheel())
     for swung, gone in led(anchor, designs.pin_wheel().scene()):

@@ -45,6 +45,7 @@ def test_it_ticks_for_five_minutes_a_tooth_for_each_oscillation() -> None:
     assert run.worst_overlap == 0.0
 
 
+@pytest.mark.slow
 def test_the_other_method_agrees_at_its_order() -> None:
     """Its error comes from events found within a step: of first order, and scattered."""
     scene = designs.verge().scene()

@@ -60,7 +60,7 @@ def test_every_plot_is_as_wide_as_asked_and_cuts_no_word(run: ws.Trajectory, kin
     assert faults(figure) == []
 
 
-@pytest.mark.parametrize("kind", few(PLOTS, lambda kind: kind in ("phases", "timeline", "energy")))
+@pytest.mark.parametrize("kind", few(PLOTS, lambda kind: kind in ("timeline", "energy")))
 def test_every_plot_fills_a_page_and_is_written_as_vectors(run: ws.Trajectory, kind: str, tmp_path) -> None:
     from watchsim.render.figures.figure_style import save
 

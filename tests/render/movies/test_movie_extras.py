@@ -81,6 +81,7 @@ def test_an_outline_is_counted_from_one():
             insets(run, (0.0, 2.0), [f"lever.{layer}.{number}"], [BOX], 0.0)
 
 
+@pytest.mark.slow
 def test_the_wheel_presses_on_the_stone_of_the_beat():
     run = ws.simulate(ws.load(ws.profiles_dir() / "swiss_lever"), duration=0.6, record="all")
     beats = shown_beats(run, rubbed=False)
