@@ -190,9 +190,8 @@ def most_memory(duration: float) -> tuple[int, int]:
     return most, done.t.nbytes + done.q.nbytes + done.events.nbytes
 
 
-@pytest.mark.parametrize(
-    ("short", "long"), [pytest.param(20.0, 60.0, marks=pytest.mark.slow), pytest.param(600.0, 3600.0, marks=pytest.mark.slow)]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize(("short", "long"), [(20.0, 60.0), (600.0, 3600.0)])
 def test_statistics_of_a_long_run_need_no_more_memory(short: float, long: float) -> None:
     simulate(profile("swiss_lever"), short, record="statistics")  # loads, and asks about the cells
     before, after = most_memory(short), most_memory(long)
