@@ -2,6 +2,7 @@
 # What is too slow for every change: all tests, whether they notice small faults, the kernels with their index checks on, and the
 # demo from a fresh environment. Every step is run, whatever became of those before; the exit status is 1 if one failed.
 set -euo pipefail
+[[ ${1:-} != -h && ${1:-} != --help ]] || { sed -n '2,/^set/s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; exit; }
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 environment=.venv-nightly

@@ -6,6 +6,7 @@
 # Lowest: the versions that pyproject.toml names, or the oldest that have wheels for that Python. A combination without wheels is
 # reported as left out, not as failed.
 set -euo pipefail
+[[ ${1:-} != -h && ${1:-} != --help ]] || { sed -n '2,/^set/s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; exit; }
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 scratch=$(mktemp -d)

@@ -63,3 +63,11 @@ def test_the_scripts_it_runs_are_there() -> None:
     named = re.findall(r"scripts/\S+\.py", SCRIPT.read_text(encoding="utf-8"))
     assert named
     assert [name for name in named if not (ROOT / name).is_file()] == []
+
+
+@pytest.mark.parametrize("name", ["scripts/nightly.sh", "scripts/try_versions.sh", ".ci/run"])
+def test_asked_for_help_they_say_what_they_do_and_do_nothing(name: str) -> None:
+    script = ROOT / name
+    told = subprocess.run(["bash", str(script), "--help"], capture_output=True, text=True, timeout=10, check=True).stdout
+    said = script.read_text(encoding="utf-8").splitlines()[1].removeprefix("# ")
+    assert told.splitlines()[0] == said and "set -" not in told

@@ -87,8 +87,13 @@ Made up
   expected     2 numbers not checked: changed by --set"""
 
 
-def lines(monkeypatch: pytest.MonkeyPatch, went_to: dict[str, float] | None = None, **changes: object) -> list[str]:
-    shares = SimpleNamespace(supplied=1.5e-5, went_to=went_to or {"damping": 0.75, "friction": 0.249, "impacts": 4e-4})
+WENT = {"damping": 0.75, "friction": 0.249, "impacts": 4e-4}
+
+
+def lines(
+    monkeypatch: pytest.MonkeyPatch, went_to: dict[str, float] | None = None, ran_down: float = 0.0, **changes: object
+) -> list[str]:
+    shares = SimpleNamespace(supplied=1.5e-5, went_to=went_to or WENT, ran_down=ran_down)
     monkeypatch.setattr(told, "energy_shares", lambda _: shares)
     run: Any = SimpleNamespace(
         **{"scene": SCENE, "method": MOREAU, "step": 20e-6, "compile": 2.5, "wall": 0.5, "simulated": 10.0},
@@ -108,8 +113,8 @@ def test_every_line(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize(
     ("changes", "line"),
     [
-        ({"energy": {"in_J": 0.0, "stored_J": -1.0}}, "15 µJ taken from what was stored at the start, 1.5 µW: "),
-        ({"energy": {"in_J": 1.0, "stored_J": -1.0}}, "15 µJ put in or taken from what was stored, 1.5 µW: "),
+        ({"ran_down": 1.5e-5}, "15 µJ taken from what was stored at the start, 1.5 µW: "),
+        ({"ran_down": 1e-5}, "15 µJ put in or taken from what was stored, 1.5 µW: "),
         ({"energy": {}}, "the account closes to 0 of it"),
         ({"worst_penetration_m": 0.9e-12}, "bodies overlapped by less than 0.001 nm"),
         ({"worst_penetration_m": 1.1e-12}, "bodies overlapped by up to 1.1 pm"),
@@ -132,8 +137,9 @@ def test_every_line(monkeypatch: pytest.MonkeyPatch) -> None:
         ({"simulated_s": 5e-4}, "impacts      1234, 2468000 per second; 4321 events"),
         ({"simulated": 0.0}, "15 µJ put in: damping 75.0 %"),
         ({"simulated": 5e-4}, "15 µJ put in, 30 mW: damping 75.0 %"),
-        ({"energy": {"in_J": 5e-4, "stored_J": 5e-4}}, "15 µJ put in, 1.5 µW: "),
-        ({"energy": {"in_J": -5e-4, "stored_J": -5e-4}}, "15 µJ taken from what was stored at the start"),
+        ({"efficiency": -0.25}, "none of the drive's work reached the oscillator, which gave away 25.0 % as much"),
+        ({"realtime_factor": 1514.9}, "1,510 × real time"),
+        ({"realtime_factor": 999.4}, "speed        999 × real time"),
         ({"stop_message": ""}, "end          " + Stop.DURATION.sentence),
         ({"timegrapher": SILENT}, "timegrapher  nothing is heard"),
     ],

@@ -185,6 +185,7 @@ def test_doubtful_runs_say_so():
 
 def test_energy_shares_sum_to_one():
     run = promising(disc_run())
+    run = replace(run, scene=replace(run.scene, gravity=(0.0, 0.0)))
     assert sum(energy_shares(run).went_to.values()) == pytest.approx(1.0)
     running_down = replace(run, energy={**LEDGER, "in_J": 0.0, "stored_J": -1.9e-6})
     shares = energy_shares(running_down)

@@ -172,3 +172,13 @@ def test_a_drawing_hardly_larger_than_one_point_is_told(apart: tuple[float, floa
     found = smallness(loops, 1e-6)
     assert [finding.code for finding in found] == (["tiny"] if tiny else [])
     assert not tiny or "0.2 µm across, and ends within 1 µm" in found[0].message
+
+
+@pytest.mark.parametrize(("scale", "huge"), [(0.99, None), (1.01, "10.1 m"), (1e3, "10 km")])
+def test_a_drawing_larger_than_any_clock_is_told(read_bytes: Reader, scale: float, huge: str | None) -> None:
+    """Two circles, 10 m across together in a file that says metres; one that says nothing is asked for its units."""
+    circles = d.circle(0, 0, scale) + d.circle(8 * scale, 0, scale)
+    found, unsaid = (read_bytes(d.dxf(circles, units)) for units in (6, 0))
+    assert [(one.code, one.message) for one in found.findings] == [("huge", f"the whole drawing is {huge} across")] * bool(huge)
+    assert [one.code for one in unsaid.findings] == ["units-missing"]
+    assert ("mm across" in inspect_text(found)) is not bool(huge)

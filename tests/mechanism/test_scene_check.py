@@ -8,6 +8,7 @@ import pytest
 from watchsim.mechanism.pair_table import PairCount
 from watchsim.mechanism.static_check import _poise_lines, check_report, check_text
 from watchsim.scene.file.load import load
+from watchsim.scene.oscillation import loads
 
 PAIRS = (PairCount(("wheel", "lever"), 120, 17, 3, 5, 2),)
 
@@ -101,4 +102,4 @@ def test_a_centre_of_mass_off_the_pivot_by_rounding_is_not_told(desk, metres, to
     """A thousand millionth of half of 10 mm."""
     scene = load(desk.scene())
     wheel = dataclasses.replace(scene.body("wheel"), mass=1e-6, centre_of_mass=(0.0, metres))
-    assert any("beside the pivot" in line for line in _poise_lines(scene, wheel)) is told
+    assert any("beside the pivot" in line for line in _poise_lines(scene, wheel, loads((wheel,))[1][0])) is told

@@ -61,6 +61,13 @@ def test_small_parts_lie_on_top_and_decoration_is_drawn():
     assert len(found) == 3
 
 
+def test_what_can_touch_lies_on_the_same_shape_of_another_section() -> None:
+    one, again = circle(0, 0, 1, "PALLET"), circle(1e-9, 0, 1.00000001, "SECTION")
+    for loops, decoration in (((one,), (again,)), ((again,), (one,))):
+        body = Body("lever", loops=loops, decoration=decoration)
+        assert [part.layer for part in parts(Scene("t", (body,)), 1e-6, 1e-3)] == [decoration[0].layer, loops[0].layer]
+
+
 def test_open_outlines_are_ground_hatched_on_the_left():
     (part,) = shapes(polygon([(10, 0), (0, 0)], "line", closed=False), motion="fixed")
     assert part.ground

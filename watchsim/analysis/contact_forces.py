@@ -50,8 +50,8 @@ class Forces:
         return f"<Forces at {len(self.t)} instants: {most}; pivots of {', '.join(self.pivots) or 'nothing'}>"
 
 
-def forces(run: Trajectory, times: Iterable[float] | None = None) -> Forces:
-    """Forces at these times (s), by default at all rows; after an impact where one happens at that time.
+def forces(run: Trajectory, times: Iterable[float] | float | None = None) -> Forces:
+    """Forces at these times (s) or this one, by default at all rows; after an impact where one happens at that time.
 
     Where contacts are redundant the smallest forces are given. ValueError for a run by fixed steps, whose contacts have
     impulses only, and where events were not kept.
@@ -60,7 +60,7 @@ def forces(run: Trajectory, times: Iterable[float] | None = None) -> Forces:
         raise ValueError(f"forces need a run by events; {run.method} knows impulses over its steps only")
     if run.keep == STATISTICS:
         raise ValueError('forces need all events of a run: simulate with record = "events", "all" or windows')
-    t = np.array(run.t if times is None else list(times), float)
+    t = np.array(run.t if times is None else list(times) if isinstance(times, Iterable) else [times], float)
     q, u = run.sample(t)
     compiled = compile_scene(run.scene)
     where, speed = absolute(compiled, q, False), absolute(compiled, u, True)

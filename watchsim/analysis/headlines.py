@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from watchsim.analysis.doubts import UNSOLVED
-from watchsim.analysis.energy import energy_shares
+from watchsim.analysis.energy import Shares, energy_shares
 from watchsim.analysis.verdicts.verdict_kinds import BESIDE
 from watchsim.scene.roles import keeps_time
 from watchsim.simulation.methods import MOREAU
@@ -101,7 +101,13 @@ def _timing(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         where = f"in {numbers['beats']} half swings"
         yield "missed beats", f"{missed} {where}: half pitches the wheel fell short or ran ahead" if missed else f"none {where}"
     if numbers["efficiency"] is not None:
-        yield "efficiency", f"{100.0 * numbers['efficiency']:.1f} % of the drive's work reached the oscillator"
+        yield "efficiency", _reached(100.0 * numbers["efficiency"])
+
+
+def _reached(percent: float) -> str:
+    if percent < 0.0:
+        return f"none of the drive's work reached the oscillator, which gave away {-percent:.1f} % as much"
+    return f"{percent:.1f} % of the drive's work reached the oscillator"
 
 
 def _heard(numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
@@ -162,16 +168,15 @@ def _energy(run: Trajectory) -> Iterator[tuple[str, str]]:
         return
     power = f", {metric(shares.supplied / run.simulated, 'W', 4)}" if run.simulated > 0.0 else ""
     listed = ", ".join(f"{cause} {100.0 * share:.1f} %" for cause, share in shares.went_to.items() if abs(share) >= 5e-4)
-    yield "energy", f"{metric(shares.supplied, 'J', 4)} {_source(run)}{power}: {listed}"
+    yield "energy", f"{metric(shares.supplied, 'J', 4)} {_source(shares)}{power}: {listed}"
     yield "", f"the account closes to {run.energy.get('residual_relative', 0.0):.1g} of it"
 
 
-def _source(run: Trajectory) -> str:
-    """Where the energy came from: a drive or weight, or what springs and moving bodies held."""
-    driven, drained = run.energy.get("in_J", 0.0) > 0.0, run.energy.get("stored_J", 0.0) < 0.0
-    if driven and drained:
-        return "put in or taken from what was stored"
-    return "put in" if driven else "taken from what was stored at the start"
+def _source(shares: Shares) -> str:
+    """Where the energy came from: a drive, or what springs, weights and moving bodies held."""
+    if shares.ran_down >= shares.supplied:
+        return "taken from what was stored at the start"
+    return "put in or taken from what was stored" if shares.ran_down > 0.0 else "put in"
 
 
 def _error(value: float, unit: str) -> str:
@@ -184,7 +189,7 @@ def _error(value: float, unit: str) -> str:
 def _solver(run: Trajectory, numbers: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     factor = numbers["realtime_factor"]
     compiling = f" (and {run.compile:.1f} s to compile or load the solver)" if run.compile > 1.0 else ""
-    yield "speed", f"{factor:.3g} × real time, {run.wall:.2g} s{compiling}" if factor else "not measured"
+    yield "speed", f"{_times(factor)} × real time, {run.wall:.2g} s{compiling}" if factor else "not measured"
     if run.method == MOREAU and run.step is not None:
         yield "method", f"Moreau's time stepping, steps of {metric(run.step, 's', 4)}"
     yield "solver", _solved(run, numbers)
@@ -193,6 +198,11 @@ def _solver(run: Trajectory, numbers: Mapping[str, Any]) -> Iterator[tuple[str, 
             yield "", words.format(count)
     yield from _compared(numbers)
     yield "end", run.stop_message or run.stop.sentence
+
+
+def _times(factor: float) -> str:
+    """Three digits, without an exponent."""
+    return f"{factor:.3g}" if factor < 999.5 else f"{float(f'{factor:.3g}'):,.0f}"
 
 
 def _solved(run: Trajectory, numbers: Mapping[str, Any]) -> str:

@@ -45,6 +45,9 @@ class Drawing:
     findings: tuple[Finding, ...] = ()
     data: bytes = field(default=b"", repr=False, compare=False)
 
+    def __repr__(self) -> str:
+        return f"<Drawing {self.path.name!r}, {len(self.findings)} findings: {self.profile!r}>"
+
     @property
     def profile(self) -> Profile:
         """All outlines, apart from the file; `drawing.profile.only("TEETH")` is that of one layer."""

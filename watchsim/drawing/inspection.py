@@ -23,6 +23,7 @@ TOLD = re.compile(r"\([-−]?\d[^()]*, [-−]?\d[^()]*\)")  # coordinates in a m
 FEW = 8  # points of a layer written out
 SHOWN = 12  # findings of one code written out in the text
 SAID = {"material": "", "bore": " taken out", "mark": ", no material"}
+LARGEST, SMALL = 10.0, 1e-5  # m: told in millimetres below and from there on
 NOTHING = 1e-12  # m; deviations below are those of floating point
 
 
@@ -121,16 +122,22 @@ def units_lines(drawing: Drawing) -> list[str]:
 def size_lines(drawing: Drawing, box: Box | None) -> list[str]:
     if box is None:
         return ["  nothing to measure"]
-    width, height = 1e3 * (box[2] - box[0]), 1e3 * (box[3] - box[1])
-    x, y = (f"{placed(1e3 * box[k], width, height)} to {placed(1e3 * box[k + 2], width, height)}" for k in (0, 1))
+    name, unit = _unit_for(max(box[2] - box[0], box[3] - box[1]))
+    width, height = (box[2] - box[0]) / unit, (box[3] - box[1]) / unit
+    x, y = (f"{placed(box[k] / unit, width, height)} to {placed(box[k + 2] / unit, width, height)}" for k in (0, 1))
     everything = (*drawing.loops, *drawing.open_chains)
     lines, arcs = counts(everything)
     return [
-        f"  the part is {three_digits(max(width, height))} mm across ({width:.4g} × {height:.4g} mm; x {x}, y {y})",
+        f"  the part is {three_digits(max(width, height))} {name} across ({width:.4g} × {height:.4g} {name}; x {x}, y {y})",
         f"  {plural(len(drawing.loops), 'closed outline')}, {plural(len(drawing.open_chains), 'open chain')}: "
-        f"{plural(lines, 'line')} and {plural(arcs, 'arc')}, {1e3 * total_length(everything):.5g} mm long, "
-        f"{1e6 * material_area(drawing.loops):.5g} mm² {_covered(drawing.loops)}",
+        f"{plural(lines, 'line')} and {plural(arcs, 'arc')}, {total_length(everything) / unit:.5g} {name} long, "
+        f"{material_area(drawing.loops) / unit**2:.5g} {name}² {_covered(drawing.loops)}",
     ]
+
+
+def _unit_for(size: float) -> tuple[str, float]:
+    """Millimetres, but for what is far too large or too small for them."""
+    return ("m", 1.0) if size >= LARGEST else ("µm", 1e-6) if size < SMALL else ("mm", 1e-3)
 
 
 def _covered(loops: Iterable[Loop]) -> str:

@@ -23,6 +23,10 @@ class Profile:
     loops: tuple[Loop, ...] = ()
     chains: tuple[Loop, ...] = ()
 
+    def __repr__(self) -> str:
+        layers = ", ".join(self.layers) or "no layer"
+        return f"<Profile: {len(self.loops)} closed outlines, {len(self.chains)} open chains on {layers}>"
+
     @property
     def layers(self) -> tuple[str, ...]:
         """The layers that hold an outline, in the order of the drawing."""

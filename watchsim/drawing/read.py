@@ -21,11 +21,13 @@ from watchsim.drawing.facets import facets
 from watchsim.drawing.findings import Finding
 from watchsim.geometry.extent import extents
 from watchsim.geometry.loop import Loop
+from watchsim.units import metric
 
 SNAP = 1e-6
 FIT = 1e-7
 LARGEST_FILE = 75_000_000  # bytes; to take it apart needs thirteen times as much memory
 SMALLEST = 20.0  # times the snap: the smallest drawing that is believed
+LARGEST = 10.0  # m: the largest
 
 
 def read(path: Path | str, units: str | None = None, snap: float = SNAP, fit: float = FIT) -> Drawing:
@@ -57,6 +59,7 @@ def assembled(path: Path, ending: str, reader: Callable[[], Content], snap: floa
     if content.units is None and content.strokes:
         findings.insert(0, units_missing((*chains.loops, *chains.open_chains)))
     findings += smallness((*chains.loops, *chains.open_chains), snap)
+    findings += largeness((*chains.loops, *chains.open_chains)) if content.units is not None else ()
     return Drawing(
         path=path,
         format=content.format or ending,
@@ -168,6 +171,17 @@ def smallness(loops: tuple[Loop, ...], snap: float) -> list[Finding]:
         return []
     message = f"the whole drawing is {1e6 * across:.3g} µm across, and ends within {1e6 * snap:.3g} µm are taken for one point"
     return [Finding("tiny", "warning", message, "Check the units of the drawing.")]
+
+
+def largeness(loops: tuple[Loop, ...]) -> list[Finding]:
+    """A warning where the drawing is larger than any clock: millimetres in a file that says metres."""
+    box = extents(loops)
+    across = max(box[2] - box[0], box[3] - box[1]) if box else 0.0
+    if across <= LARGEST:
+        return []
+    return [
+        Finding("huge", "warning", f"the whole drawing is {metric(across, 'm', 4)} across", "Check the units of the drawing.")
+    ]
 
 
 def units_missing(loops: tuple[Loop, ...]) -> Finding:

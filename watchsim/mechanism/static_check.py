@@ -98,7 +98,7 @@ def _body_lines(scene: Scene) -> Iterator[str]:
         yield f"  {body.name:{width}}  {body.motion:5}  " + ", ".join((_place(body), _size(body), *_weights(body)))
         yield from _load_lines(scene, body, load)
         yield from _solid_lines(body)
-        yield from _poise_lines(scene, body)
+        yield from _poise_lines(scene, body, load)
 
 
 def _solid_lines(body: Body) -> Iterator[str]:
@@ -138,15 +138,17 @@ def _less(bores: int) -> str:
     return f" less {bores} bore{'' if bores == 1 else 's'}" if bores else ""
 
 
-def _poise_lines(scene: Scene, body: Body) -> Iterator[str]:
+def _poise_lines(scene: Scene, body: Body, load: Weighed) -> Iterator[str]:
     """What a centre of mass beside the pivot does: gravity turns the body; the pull on the pivot itself moves nothing."""
-    distance = math.hypot(*body.centre_of_mass)
-    if body.motion != "pivot" or body.mass == 0.0 or distance <= POISED * (_reach(body) or distance):
+    moment = math.hypot(*load.moment)
+    distance = moment / load.mass if load.mass > 0.0 else 0.0
+    if body.motion != "pivot" or body.prescribed is not None or distance <= POISED * (_reach(body) or distance):
         return
     pull = math.hypot(*scene.gravity)
-    what = f"its centre of mass lies {length(distance)} beside the pivot"
+    whose = "the common" if load.mass > body.mass else "its"
+    what = f"{whose} centre of mass lies {length(distance)} beside the pivot"
     if pull > 0.0:
-        yield f"      {what}: gravity turns it with up to {metric(body.mass * distance * pull, 'N·m')}"
+        yield f"      {what}: gravity turns it with up to {metric(moment * pull, 'N·m')}"
     else:
         yield f"      {what}; the scene has no gravity, so this does nothing"
 

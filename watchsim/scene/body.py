@@ -47,6 +47,10 @@ class Body:
     prescribed: Prescribed | None = None
     geared: Geared | None = None
 
+    def __repr__(self) -> str:
+        layers = ", ".join(self.layers) or "no outline that can touch"
+        return f"<Body {self.name!r}, {'driven' if self.prescribed else self.motion}: {layers}>"
+
     @property
     def layers(self) -> tuple[str, ...]:
         """The layers of its outlines that can touch, in the order of the drawing."""

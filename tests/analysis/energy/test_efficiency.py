@@ -61,6 +61,8 @@ def test_what_weights_have_fallen_is_only_lent() -> None:
     fallen = 0.01 * 10.0 * 4e-6
     found = share(scene, end_q=end, end_u=np.zeros(3))
     assert found == pytest.approx((3e-6 - fallen) / (8e-6 - fallen), rel=1e-12)
+    # Of a window the rows begin elsewhere.
+    assert share(scene, end_q=end, end_u=np.zeros(3), t=np.ones(1), q=np.ones((1, 3))) == found
 
 
 def test_where_no_motion_is_known_nothing_has_fallen() -> None:

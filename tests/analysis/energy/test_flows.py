@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from watchsim.analysis.efficiency import _work_of_gravity
 from watchsim.analysis.timeline.flows import _position, _velocity, flows
+from watchsim.analysis.weights_fallen import work_of_gravity
 from watchsim.mechanism.compile import compile_scene
 from watchsim.scene.file.load import load
 from watchsim.simulation.simulate import simulate
@@ -70,7 +70,7 @@ def test_work_and_losses_are_those_of_the_ledger(tmp_path: Path) -> None:
     run = simulate(scene, 1.0)
     found = flows(run, compile_scene(scene))
     assert run.energy["in_J"] != 0.0 and run.energy["dissipated"]["damping"] > 1e-6
-    fallen = _work_of_gravity(run)
+    fallen = work_of_gravity(run)
     assert abs(fallen) > 1e-4
     assert found.drive[-1] + fallen == pytest.approx(run.energy["in_J"], rel=1e-7)
     assert found.damped[-1].sum() == pytest.approx(run.energy["dissipated"]["damping"], rel=1e-7)
@@ -85,7 +85,7 @@ def test_gravity_lends_what_the_centre_of_mass_has_fallen(tmp_path: Path) -> Non
     assert turned is not None
     centre = np.array([15e-3 + 10e-3j]) * np.exp(1j * np.array([run.q[0, 0], turned]))
     fallen = 10e-3 * (1.5 * np.diff(centre.real)[0] - 9.81 * np.diff(centre.imag)[0])
-    assert _work_of_gravity(run) == pytest.approx(fallen, rel=1e-12)
+    assert work_of_gravity(run) == pytest.approx(fallen, rel=1e-12)
     assert run.energy["in_J"] == pytest.approx(fallen, rel=1e-7)
 
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from analysis.made_beats import DEGREE, PERIOD, Events, balance_only, lever_scene, steady_swings
 
@@ -47,6 +49,18 @@ def test_what_is_too_little(events: Events, duration: float, why: str) -> None:
     scene = replace(lever_scene(), torques=(), contacts=())
     run = balance_only(events, duration, scene)
     assert why_no_timing(run, beats(run), UNKNOWN, 2.5) == f"no amplitude and rate: {why}"
+
+
+@pytest.mark.parametrize(("turns", "passages"), [(-0.9, 0), (1.1, 0), (-1.1, 1), (7.5, 1)])
+def test_a_pendulum_may_go_round_instead_of_swinging(turns: float, passages: int) -> None:
+    """The next time it hangs at rest it has gone a whole turn further."""
+    scene = replace(lever_scene(), torques=(), contacts=())
+    column = list(balance_only(Events(), 10.0, scene).slices).index("balance")
+    end = np.zeros(3)
+    end[column] = scene.body("balance").angle + turns * math.tau
+    run = replace(balance_only(turned(0, True, passages), 10.0, scene), end_q=end, end_u=np.zeros(3))
+    said = "never passed its rest position" if abs(turns) < 1.0 else "goes round instead of swinging"
+    assert why_no_timing(run, beats(run), UNKNOWN) == f"no amplitude and rate: balance {said}"
 
 
 def test_only_what_is_missing_is_named() -> None:

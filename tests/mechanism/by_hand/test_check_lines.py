@@ -15,6 +15,7 @@ from watchsim.mechanism.static_check import _body_lines, _overlap_findings, _poi
 from watchsim.scene.body import Body
 from watchsim.scene.force import Contact, Side, Spring
 from watchsim.scene.gearing import Gear, Geared
+from watchsim.scene.oscillation import loads
 from watchsim.scene.prescribed import Prescribed
 from watchsim.scene.scene import Scene
 from watchsim.scene.solid import Solid, Weight
@@ -40,6 +41,7 @@ def test_bodies_one_by_one() -> None:
     assert list(_body_lines(scene)) == [
         "  a       pivot  at (1 mm, -2 mm), turned by 28.6479°, 5 mm × 3 mm, mass 2 mg, inertia 3 mg·cm²",
         "      with load: mass 5 mg, inertia 3.48 mg·cm²",
+        "      the common centre of mass lies 2.4 mm beside the pivot; the scene has no gravity, so this does nothing",
         "  far     slide  at (0 mm, 0 mm), turned by 0°, 30 m × 2 mm, mass 20 kg",
         "  f       free   at (0 mm, 0 mm), turned by 0°, no outline, mass 9.99 kg, inertia 9990 g·cm²",
         "  still   fixed  at (0 mm, 0 mm), turned by 0°, no outline",
@@ -110,15 +112,25 @@ def test_an_overlap_is_told_in_millimetres() -> None:
     assert [entry["code"] for entry in check_report(scene, ())["findings"]] == ["overlap"]
 
 
+def heavy_spot(*bodies: Body, gravity: tuple[float, float] = (0.0, 0.0)) -> list[str]:
+    """What is told of the first of them."""
+    return list(_poise_lines(Scene("t", bodies, gravity=gravity), bodies[0], loads(bodies)[1][0]))
+
+
 @pytest.mark.parametrize(("gravity", "pull"), [((0.0, 0.0), None), ((3.0, -4.0), 5.0)])
 def test_a_heavy_spot_is_told_with_what_gravity_does(gravity: tuple[float, float], pull: float | None) -> None:
     body = Body("b", mass=2e-3, inertia=1e-6, centre_of_mass=(3e-3, -4e-3))
-    (line,) = _poise_lines(Scene("t", (body,), gravity=gravity), body)
+    (line,) = heavy_spot(body, gravity=gravity)
     assert line == "      its centre of mass lies 5 mm beside the pivot" + (
         ": gravity turns it with up to 50 µN·m" if pull else "; the scene has no gravity, so this does nothing"
     )
-    for other in (replace(body, motion="free"), replace(body, mass=0.0), replace(body, centre_of_mass=(0.0, 0.0))):
-        assert not list(_poise_lines(Scene("t", (other,), gravity=gravity), other))
+    driven = replace(body, prescribed=Prescribed())
+    for other in (replace(body, motion="free"), replace(body, mass=0.0), replace(body, centre_of_mass=(0.0, 0.0)), driven):
+        assert not heavy_spot(other, gravity=gravity)
+    bob = Body("c", "fixed", position=(-9e-3, 12e-3), mass=1e-3, on="b")  # together (-1, 4/3) mm, 3 g
+    assert heavy_spot(body, bob, gravity=gravity)[0].startswith(
+        "      the common centre of mass lies 1.667 mm beside the pivot"
+    )
 
 
 @pytest.mark.parametrize(
@@ -132,7 +144,7 @@ def test_rounding_of_a_centre_of_mass_is_a_share_of_what_is_drawn(
     for kind in ("loops", "decoration"):
         for share, told in ((0.95e-9, False), (1.05e-9, True)):
             body = replace(Body("b", mass=2e-3, centre_of_mass=(0.6 * share * far, 0.8 * share * far)), **{kind: drawn})  # type: ignore[arg-type]
-            assert bool(list(_poise_lines(Scene("t", (body,)), body))) is told
+            assert bool(heavy_spot(body)) is told
 
 
 A, B = Body("a", inertia=2e-9), Body("b", inertia=8e-9)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from made_scenes import drawing, square
 
 from watchsim.scene.errors import SceneError
 from watchsim.scene.file.load import load
@@ -54,6 +55,21 @@ def test_keys_that_were_left_out_can_be_set(scene):
     assert scene.set("springs.0.rest", "2°").springs[0].rest == pytest.approx(np.radians(2))
     assert scene.set("scene.gravity.1", "-9.81 m/s²").gravity == (0.0, -9.81)
     assert scene.set("bodies.wheel.position.0", "-40 mm").body("wheel").position == (-0.04, 0.0)
+
+
+def test_one_coordinate_of_a_place_that_the_drawing_gives_leaves_the_other(desk):
+    """Both bodies stand where they are drawn, their pivots at (3, 4) and (5, -7) mm: moving one along x keeps its y."""
+    marks = (("P", 3e-3, 4e-3), ("Q", 5e-3, -7e-3))
+    desk.put(drawing("plate.dxf", (square(1e-3, (3e-3, 4e-3), "A"), square(2e-3, (5e-3, -7e-3), "B")), points=marks))
+    body = '[bodies.{}]\ndrawing = "plate.dxf"\nlayers = ["{}"]\npivot = "{}"\nmass = "2 g"\n'
+    scene = load(desk.scene(body.format("a", "A", "P") + body.format("b", "B", "Q")))
+    assert scene.set("bodies.b.position.0", "6 mm").body("b").position == pytest.approx((6e-3, -7e-3))
+    assert scene.set("bodies.b.position.0", 6e-3).set("bodies.b.position.1", 0.0).body("b").position == (6e-3, 0.0)
+    both = changed(scene, {"bodies.b.position.0": "6 mm", "bodies.b.pivot": ["5 mm", "-8 mm"]})
+    assert both.body("b").position == pytest.approx((6e-3, -8e-3))
+    heavy = changed(scene, {"bodies.b.pivot": ["4 mm", "-8 mm"], "bodies.b.inertia": "1 g·cm²"})
+    assert heavy.set("bodies.b.centre_of_mass.0", "2 mm").body("b").centre_of_mass == pytest.approx((2e-3, 1e-3))
+    assert scene.set("bodies.a.position.1", "1 mm").body("b").position == pytest.approx((5e-3, -7e-3))
 
 
 def test_what_follows_from_a_value_follows_it(scene):

@@ -63,6 +63,15 @@ def test_samples_are_of_the_two_rows_beside_each_time() -> None:
             assert bend[column] == pytest.approx(float(cubic.derivative()(time)), abs=1e-9)
 
 
+def test_a_single_time_and_a_list_do_as_well() -> None:
+    run = random_run(6)
+    time = float(0.3 * run.t[0] + 0.7 * run.t[-1])
+    for one, listed in zip(
+        (*run.sample(time), run.acceleration(time)), (*run.sample([time]), run.acceleration([time])), strict=True
+    ):
+        assert one.shape == (2,) and listed.tolist() == [one.tolist()]
+
+
 def test_beyond_the_rows_everything_is_as_in_the_nearest() -> None:
     run = random_run(4)
     for time, row in ((run.t[0] - 1.0, 0), (run.t[-1] + 1.0, -1)):

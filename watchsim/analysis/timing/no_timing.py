@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -55,6 +56,8 @@ def _missing(run: Trajectory, found: Beats, start: float) -> str:
     if one is not None and one.hertz is None:
         return f"gravity topples {found.body} from its rest position"
     passages, turns = _passages(run, found), int((_own_events(run, found)["kind"] == EventKind.TURN).sum())
+    if found.angular and not turns and _went(run, found.body) > math.tau:
+        return f"{found.body} goes round instead of swinging"
     if not passages and run.simulated > found.nominal_period:
         return f"{found.body} never passed its rest position"
     if turns < FEWEST_TURNS and run.simulated > 2.0 * found.nominal_period:
@@ -65,6 +68,11 @@ def _missing(run: Trajectory, found: Beats, start: float) -> str:
     if run.simulated < need:
         return f"the run of {run.simulated:.4g} s is too short: {found.body} needs {need:.4g} s for two oscillations"
     return f"the last {run.simulated - start:.4g} s hold too few whole swings of {found.body}"
+
+
+def _went(run: Trajectory, body: str) -> float:
+    """How far it has turned from the start to the end, rad."""
+    return 0.0 if run.end is None else abs(float(run.end[0][run.slices[body]][0]) - run.scene.body(body).angle)
 
 
 def _times(count: int) -> str:

@@ -118,7 +118,7 @@ class Walker:
                 if item is not None:
                     result.append(item)
         if paper:
-            message = f"{paper} entities in paper space were left out: only model space is read"
+            message = f"{paper} {'entity' if paper == 1 else 'entities'} in paper space left out: only model space is read"
             self.found.findings.append(Finding("paper-space", "warning", message))
         return result
 

@@ -25,6 +25,7 @@ from watchsim.scene.scene import Scene
 Array = NDArray[np.float64]
 
 LARGER = 1.0 + 1e-6  # in area: an outline in the very place of a hole fills it and is not around it
+ALIKE = 6  # digits of two areas that are the same
 HATCH_SLANT = 0.7  # tangential lean of a hatch stroke per unit of depth
 
 
@@ -52,7 +53,8 @@ def parts(scene: Scene, deviation: float, spacing: float) -> tuple[Part, ...]:
     """
     worn = looks(scene)
     found = [part for body in scene.bodies for part in _of_body(body, worn[body.name], deviation, spacing)]
-    return tuple(sorted(found, key=lambda part: -part.area))
+    # The same shape may be drawn of another section, too: what can touch is to be seen.
+    return tuple(sorted(found, key=lambda part: (-float(f"{part.area:.{ALIKE}g}"), not part.finish.pale)))
 
 
 def backdrop(shapes: Sequence[Part]) -> Sequence[Part]:

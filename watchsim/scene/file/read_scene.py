@@ -99,12 +99,29 @@ def changed(scene: Scene, changes: Mapping[str, object]) -> Scene:
         later = {**scene.written.changes, **changes}
         faults = Faults(str(scene.path) if scene.path else "scene", changed=frozenset(later))
         return from_mapping(scene.written.mapping, scene.path, faults, later)
+    implied = {key: value for key, value in changes.items() if _implied(scene, key) is not None}
+    if 0 < len(implied) < len(changes):  # the others may move what the drawing implies, as a new pivot does
+        scene = changed(scene, {key: value for key, value in changes.items() if key not in implied})
+        changes = implied
     mapping = copy.deepcopy(scene.source)
     faults = Faults(str(scene.path) if scene.path else "scene", changed=frozenset(changes))
     for key, value in changes.items():
+        if (pair := _implied(scene, key)) is not None:
+            name, what, _ = key.split(".")[1:]
+            mapping["bodies"][name][what] = [f"{one!r} m" for one in pair]
         assign(mapping, key, value, faults)
     faults.raise_any()
     return from_mapping(mapping, scene.path, faults)
+
+
+def _implied(scene: Scene, key: str) -> tuple[float, float] | None:
+    """The pair (m) of which that key names one value, where the drawing gives it and the scene does not write it."""
+    path = key.split(".")
+    entry = scene.source.get("bodies", {}).get(path[1]) if path[0] == "bodies" and len(path) == 4 else None
+    if entry is None or isinstance(entry.get(path[2]), list):
+        return None
+    body = scene.body(path[1])
+    return {"position": body.position, "centre_of_mass": body.centre_of_mass}.get(path[2])
 
 
 def _note_sections(mapping: Mapping[str, Any], faults: Faults) -> None:

@@ -12,7 +12,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from watchsim.displays import notebook_html, player
 from watchsim.scene.recording import ALL, Window
@@ -127,8 +127,14 @@ class Trajectory:
         q, u = self.sample(np.array([t]))
         return q[0], u[0]
 
-    def sample(self, times: Array) -> tuple[Array, Array]:
-        """q and u, each (len(times), n), at all those times; as `at`. ValueError where no row was kept."""
+    def sample(self, times: ArrayLike) -> tuple[Array, Array]:
+        """q and u, each (len(times), n), at all those times, or (n,) at a single one; as `at`.
+
+        ValueError where no row was kept.
+        """
+        times = np.asarray(times, float)
+        if times.ndim == 0:
+            return self.at(float(times))
         if len(self.t) == 0:
             raise ValueError("no row of this run was kept, so where its bodies were is not known")
         if len(times) > AT_ONCE and is_mapped(self.q):
@@ -145,8 +151,11 @@ class Trajectory:
         let_go(self.t, self.q, self.u, self.a)
         return q, u
 
-    def acceleration(self, times: Array) -> Array:
+    def acceleration(self, times: ArrayLike) -> Array:
         """(len(times), n): accelerations, of the cubics through u and a of two rows; as `sample`."""
+        times = np.asarray(times, float)
+        if times.ndim == 0:
+            return self.acceleration(times[None])[0]
         if len(self.t) == 0:
             raise ValueError("no row of this run was kept, so where its bodies were is not known")
         i = np.clip(np.searchsorted(self.t, times, side="right") - 1, 0, max(len(self.t) - 2, 0))
