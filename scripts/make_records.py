@@ -14,7 +14,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT / "tests"), *(str(ROOT / "tests" / name) for name in ("drawing", "drawing/damaged", "scene"))]
 
-from records.test_records import KEPT, TOPICS, said_of  # noqa: E402
+from records.test_records import KEPT, MAKERS, TOPICS, said_of  # noqa: E402
 from records.wording import moved, sections, written  # noqa: E402
 
 ABOUT = ("Made by scripts/make_records.py: what the program said. See tests/records/test_records.py.", "")
@@ -28,9 +28,9 @@ def main() -> int:
     for topic in given.topics or TOPICS:
         path, module = KEPT / f"{topic}.txt", TOPICS[topic]
         before, now = sections(path), {}
-        for name in module.records():
+        for name in MAKERS[topic]:
             with tempfile.TemporaryDirectory() as folder:
-                text = said_of(module, name, Path(folder))
+                text = said_of(topic, name, Path(folder))
             if name not in before or moved(before[name], text):
                 print(f"{topic}: {name}", *moved(before.get(name, ""), text), sep="\n  ")
                 now[name] = module.kept(name, text) if hasattr(module, "kept") else text

@@ -69,23 +69,22 @@ def touches(scene: Scene, compiled: Compiled, rng: np.random.Generator, poses: I
 
 
 def _closed(scene: Scene, compiled: Compiled, k: int, q: Array, i: int) -> Array | None:
-    """The pose at which contact k touches when coordinate i alone is changed; None where Newton's method finds none."""
+    """The pose at which contact k touches when coordinate i alone is changed; None where the secant method finds none."""
     q, alone = q.copy(), slice(k, k + 1)
 
     def gap_at(q: Array) -> float:
         return float(looks(scene, compiled, q, alone).gap[0])
 
+    change, before = 1e-6, gap_at(q)
     for _ in range(STEPS):
+        q[i] += change
         gap = gap_at(q)
+        slope = (gap - before) / change
         if abs(gap) < 1e-12:
             break
-        h = 1e-6
-        step = np.zeros(len(q))
-        step[i] = h
-        slope = (gap_at(q + step) - gap_at(q - step)) / (2.0 * h)
         if abs(slope) < 1e-3:
             return None
-        q[i] -= np.clip(gap / slope, -0.3, 0.3)
+        change, before = -float(np.clip(gap / slope, -0.3, 0.3)), gap
     last = looks(scene, compiled, q, alone)
     return q if abs(last.gap[0]) < 1e-9 and last.inside[0] >= 0.0 else None
 

@@ -6,8 +6,9 @@ writes the records anew. That a number is right is for other tests to say.
 
 from __future__ import annotations
 
+import functools
+from collections.abc import Callable
 from pathlib import Path
-from types import ModuleType
 
 import pytest
 from every_time import few
@@ -17,28 +18,32 @@ from records.wording import agree, moved, said, sections, without_unsure, writte
 KEPT = Path(__file__).parent / "kept"
 TOPICS = {"drawings": drawing_records, "scenes": scene_records, "runs": run_records, "benchmarks": benchmark_records}
 LONG = {("runs", "tourbillon"), ("runs", "grasshopper"), ("runs", "remontoir")}  # about a second each
-KNOWN = [(topic, name) for topic, module in TOPICS.items() for name in module.records()]
+MAKERS: dict[str, dict[str, Callable[[Path], str]]] = {topic: module.records() for topic, module in TOPICS.items()}
+KNOWN = [(topic, name) for topic, makers in MAKERS.items() for name in makers]
 RECORDS = few(KNOWN, lambda one: one not in LONG, several=True)
 
 
-def said_of(module: ModuleType, name: str, scratch: Path) -> str:
+def said_of(topic: str, name: str, scratch: Path) -> str:
     """What is said now; names of folders are left out."""
     folder = scratch / "made"
     folder.mkdir()
-    text: str = module.records()[name](folder)
-    return text.replace(f"{folder}/", "")
+    return MAKERS[topic][name](folder).replace(f"{folder}/", "")
+
+
+@functools.cache
+def kept_of(topic: str) -> dict[str, str]:
+    return sections(KEPT / f"{topic}.txt")
 
 
 @pytest.mark.parametrize(("topic", "name"), RECORDS, ids=lambda text: text.replace(" ", "_"))
 def test_what_is_said_is_what_was_said(topic: str, name: str, tmp_path: Path) -> None:
-    kept = sections(KEPT / f"{topic}.txt")[name]
-    now = said_of(TOPICS[topic], name, tmp_path)
+    kept, now = kept_of(topic)[name], said_of(topic, name, tmp_path)
     assert not moved(kept, now), "\n".join(moved(kept, now))
 
 
 @pytest.mark.parametrize("topic", TOPICS)
 def test_nothing_is_kept_of_what_is_gone(topic: str) -> None:
-    assert set(sections(KEPT / f"{topic}.txt")) == set(TOPICS[topic].records())
+    assert set(kept_of(topic)) == set(MAKERS[topic])
 
 
 def test_what_moves_is_noticed() -> None:
