@@ -124,6 +124,7 @@ def test_a_second_one_stops_at_once(tmp_path: Path) -> None:
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
 
 
+@pytest.mark.slow
 def test_a_movie_under_way_is_given_up(tmp_path: Path) -> None:
     folder = tmp_path / "out"
     home = ("watchsim.render.frame.stage", "Stage.draw")

@@ -33,6 +33,7 @@ process()
 """
 
 
+@pytest.mark.slow
 @linux
 def test_the_results_are_the_same_with_one_core_and_with_more(tmp_path: Path) -> None:
     """Long enough that some phases are over long before the run is."""

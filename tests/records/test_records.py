@@ -17,7 +17,13 @@ from records.wording import agree, moved, said, sections, without_unsure, writte
 
 KEPT = Path(__file__).parent / "kept"
 TOPICS = {"drawings": drawing_records, "scenes": scene_records, "runs": run_records, "benchmarks": benchmark_records}
-LONG = {("runs", "tourbillon"), ("runs", "grasshopper"), ("runs", "remontoir")}  # about a second each
+LONG = {
+    ("runs", "tourbillon"),
+    ("runs", "grasshopper"),
+    ("runs", "remontoir"),
+    ("runs", "duplex"),
+    ("runs", "cylinder"),
+}  # half a second and more
 MAKERS: dict[str, dict[str, Callable[[Path], str]]] = {topic: module.records() for topic, module in TOPICS.items()}
 KNOWN = [(topic, name) for topic, makers in MAKERS.items() for name in makers]
 RECORDS = few(KNOWN, lambda one: one not in LONG, several=True)

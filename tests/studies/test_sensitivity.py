@@ -16,20 +16,33 @@ BENCH = ws.profiles_dir() / "bench_lever"
 
 
 @pytest.fixture(scope="module")
-def found():
+def everything():
     return ws.sensitivity(BENCH)
+
+
+FORCES = [
+    *("torques.0.value", "springs.0.stiffness", "damping.0.viscous"),
+    *(f"bodies.{name}.inertia" for name in ("wheel", "lever", "balance")),
+]
+
+
+@pytest.fixture(scope="module")
+def found():
+    return ws.sensitivity(BENCH, FORCES)
 
 
 def effects(found, column):
     return {effect.quantity.key: effect.by[column] for effect in found.effects}
 
 
-def test_all_numbers_of_the_scene(found):
-    keys = {effect.quantity.key for effect in found.effects}
+@pytest.mark.slow
+def test_all_numbers_of_the_scene(everything):
+    assert all(one.agrees for effect in everything.effects for one in effect.by.values())
+    keys = {effect.quantity.key for effect in everything.effects}
     assert {"torques.0.value", "springs.0.stiffness", "damping.0.viscous", "bodies.balance.inertia"} <= keys
     assert {"contacts.0.friction", "contacts.2.restitution", "bodies.lever.position.0", "bodies.banking.position.1"} <= keys
     assert not [key for key in keys if "velocity" in key or "run." in key or key == "bodies.balance.angle"]
-    sizes = [abs(row["amplitude_deg_per_change"]) for row in found.rows()]
+    sizes = [abs(row["amplitude_deg_per_change"]) for row in everything.rows()]
     assert sizes == sorted(sizes, reverse=True)
 
 
@@ -60,11 +73,12 @@ def test_two_steps_agree(found):
     assert all(one.agrees for effect in found.effects for one in effect.by.values())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("axis", ["0", "1"])
 @pytest.mark.parametrize("column", ["amplitude_deg", "rate_s_per_d", "beat_error_ms"])
-def test_a_watch_may_be_put_elsewhere(found, column, axis):
+def test_a_watch_may_be_put_elsewhere(everything, column, axis):
     """Shifting all bodies alike changes nothing: the derivatives by their positions add up to zero."""
-    by = effects(found, column)
+    by = effects(everything, column)
     each = [by[f"bodies.{name}.position.{axis}"].value for name in ("wheel", "lever", "balance", "banking")]
     assert abs(sum(each)) < 1e-5 * max(map(abs, each))
 
@@ -77,12 +91,8 @@ def elasticities(found, column, keys):
 
 def test_forces_have_no_unit_of_their_own(found):
     """All masses, stiffnesses, torques and dampings times a factor is the same motion."""
-    keys = [
-        *("torques.0.value", "springs.0.stiffness", "damping.0.viscous"),
-        *(f"bodies.{name}.inertia" for name in ("wheel", "lever", "balance")),
-    ]
-    assert abs(elasticities(found, "amplitude_deg", keys)) < 1e-4 * found.cycle.amplitude_deg
-    assert abs(elasticities(found, "rate_s_per_d", keys)) < 1e-4 * 86400.0
+    assert abs(elasticities(found, "amplitude_deg", FORCES)) < 1e-4 * found.cycle.amplitude_deg
+    assert abs(elasticities(found, "rate_s_per_d", FORCES)) < 1e-4 * 86400.0
 
 
 def test_time_has_no_unit_of_its_own(found):

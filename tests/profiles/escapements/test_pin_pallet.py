@@ -17,7 +17,7 @@ from watchsim.escapement.rules import judgements
 
 @pytest.mark.parametrize(
     "chosen",
-    few([{}, {"lock": 2.5, "lift": 8.5, "drop": 3.4, "draw": 14.0}, {"teeth": 18, "pallet_pin": 0.2, "lift_angle": 46.0}], 2),
+    few([{}, {"lock": 2.5, "lift": 8.5, "drop": 3.4, "draw": 14.0}, {"teeth": 18, "pallet_pin": 0.2, "lift_angle": 46.0}], 1),
 )
 def test_led_by_hand_it_has_the_angles_chosen(chosen):
     """Lever and wheel are turned against each other along the drawn outlines, which knows nothing of the construction."""
