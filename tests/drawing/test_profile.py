@@ -19,6 +19,12 @@ from watchsim.geometry.primitives import TURN, Arc, Line
 ROOT = Path(__file__).resolve().parents[2]
 
 
+def test_its_short_form_names_what_it_holds() -> None:
+    half = Loop((Line(0, 0, 1, 0), Line(1, 0, 1, 1), Line(1, 1, 0, 0)), "RIM")
+    assert repr(ws.Profile()) == "<Profile: 0 closed outlines, 0 open chains on no layer>"
+    assert repr(ws.Profile((half,))) == "<Profile: 1 closed outlines, 0 open chains on RIM>"
+
+
 @given(parts())
 def test_random_outlines_come_back(loops: tuple[Loop, ...]) -> None:
     """Centres come from three points: a flat arc has its ends to 1e-12, its centre as well as they fix it."""

@@ -169,3 +169,10 @@ def test_no_pair_of_near_edges_is_lost_and_few_far_ones_come_along(reach: float)
     boxes = table_of(edges).box
     for a, b in found:
         assert np.all(boxes[a, :2] <= boxes[b, 2:] + reach) and np.all(boxes[b, :2] <= boxes[a, 2:] + reach)
+
+
+def test_two_edges_are_a_pair_and_one_is_none() -> None:
+    crossing = [Line(0, 0, 4, 0), Line(1, -1, 1, 3)]
+    found = near_pairs(table_of(crossing), REACH)
+    assert (found.first.tolist(), found.second.tolist(), found.crowds) == ([0], [1], ())
+    assert len(near_pairs(table_of(crossing[:1]), REACH).first) == 0

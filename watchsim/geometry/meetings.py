@@ -53,9 +53,8 @@ def within(table: Table, edge: Ints, point: Floats, reach: float) -> Flags:
     near_end = np.minimum(np.hypot(*(point - start).T), np.hypot(*(point - end).T)) <= reach
     along, to = end - start, point - start
     length = np.hypot(*along.T)
-    safe = np.where(length > 0.0, length, 1.0)
     s = np.sum(along * to, axis=1)
-    beside = np.abs(along[:, 0] * to[:, 1] - along[:, 1] * to[:, 0]) <= reach * safe
+    beside = np.abs(along[:, 0] * to[:, 1] - along[:, 1] * to[:, 0]) <= reach * length
     on_line = (s >= 0.0) & (s <= length * length) & beside
     off = point - table.centre[edge]
     on_arc = (np.abs(np.hypot(*off.T) - table.radius[edge]) <= reach) & _in_sweep(table, edge, off)
