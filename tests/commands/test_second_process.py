@@ -46,8 +46,9 @@ def test_the_results_are_the_same_with_one_core_and_with_more(tmp_path: Path) ->
 
 @pytest.fixture
 def second(monkeypatch: pytest.MonkeyPatch) -> SecondProcess:
-    """One that is told at once what it is made for."""
+    """One that is told at once what it is made for, and is waited for where the machine has something else to do."""
     monkeypatch.setattr(stopping, "installed", lambda: True)
+    monkeypatch.setattr(module, "QUEUE", 1 << 22)
     monkeypatch.setattr(module, "_cores", lambda: 2)
     made = module._made()
     assert made is not None
