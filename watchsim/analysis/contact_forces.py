@@ -60,7 +60,9 @@ def forces(run: Trajectory, times: Iterable[float] | float | None = None) -> For
         raise ValueError(f"forces need a run by events; {run.method} knows impulses over its steps only")
     if run.keep == STATISTICS:
         raise ValueError('forces need all events of a run: simulate with record = "events", "all" or windows')
-    t = np.array(run.t if times is None else list(times) if isinstance(times, Iterable) else [times], float)
+    if isinstance(times, Iterable) and not isinstance(times, np.ndarray):
+        times = list(times)
+    t = np.atleast_1d(np.array(run.t if times is None else times, float))
     q, u = run.sample(t)
     compiled = compile_scene(run.scene)
     where, speed = absolute(compiled, q, False), absolute(compiled, u, True)

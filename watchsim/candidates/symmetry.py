@@ -57,7 +57,8 @@ def _symmetry_of(rows: bytes, tolerance: float) -> Symmetry:
         shared = np.count_nonzero(~loose) * (1.0 - 1.0 / fold)
         if shared > gain:
             gain, best = shared, Symmetry(fold, np.where(loose, np.arange(len(image)), image), loose)
-    frozen(best.image), frozen(best.loose)  # shared by all who ask
+    for shared_by_all in (best.image, best.loose):
+        frozen(shared_by_all)
     return best
 
 

@@ -147,7 +147,8 @@ def test_short_representations_and_paths() -> None:
     run = ws.simulate(str(profiles_dir() / "bench_lever"), 0.05)
     assert repr(run).startswith("<Trajectory of 'Bench lever") and len(repr(run)) < 200 and "0.05 s" in repr(run)
     assert repr(run.scene).startswith("<Scene 'Bench lever") and len(repr(run.scene)) < 200
-    assert ws.forces(run, 0.02).normal.tolist() == ws.forces(run, iter([0.02])).normal.tolist()
+    for one in (0.02, np.float64(0.02), np.array(0.02), np.array([0.02]), iter([0.02]), (0.02,)):
+        assert ws.forces(run, one).normal.tolist() == ws.forces(run, [0.02]).normal.tolist()
     assert repr(run.scene.body("lever")).startswith("<Body 'lever', pivot: ")
     assert repr(run.scene.body("lever").profile).startswith("<Profile: ")
     assert ws.load(profiles_dir() / "bench_lever") == run.scene
