@@ -25,7 +25,7 @@ MOVE = f"The environment variable {VARIABLE} names another folder."
 DIGESTS_KEPT = 3
 IN_USE_SECONDS = 3600.0  # another process may be compiling into a folder it has just made
 _JIT = b"from watchsim.jit import "  # quicker to look for
-_KERNELS = re.compile(r"^from watchsim\.jit import .*\b(?:kernel|entry)\b", re.MULTILINE)
+_KERNELS = re.compile(r"^from watchsim\.jit import .*\b(?:kernel|hot_kernel|entry)\b", re.MULTILINE)
 # At the top of a file: what a function imports for itself, no kernel reaches.
 _IMPORT = re.compile(r"^from (watchsim(?:\.\w+)*) import \(?([\w, ]*)", re.MULTILINE)
 

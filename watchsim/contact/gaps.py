@@ -13,7 +13,7 @@ import math
 from typing import NamedTuple
 
 from watchsim.contact.poses import point_of
-from watchsim.jit import kernel
+from watchsim.jit import hot_kernel, kernel
 from watchsim.model.records import FULL, LINE
 
 
@@ -47,7 +47,7 @@ class PlacedGap(NamedTuple):
     inside_b: float
 
 
-@kernel
+@hot_kernel
 def shape_of_contact(contact, a, b, pa, pb):
     """The `Shape` of a contact between primitives a and b at poses pa and pb."""
     curvature, radius = contact.curvature, a.radius
@@ -78,7 +78,7 @@ def _gap_rate(shape, pa, pb):
     return shape.nx * vx + shape.ny * vy
 
 
-@kernel
+@hot_kernel
 def normal_gap(model, k, pose):
     """The `Gap` of contact `k`."""
     contact = model.contacts[k]
@@ -88,7 +88,7 @@ def normal_gap(model, k, pose):
     return Gap(shape.gap, _gap_rate(shape, pa, pb), shape.nx, shape.ny)
 
 
-@kernel
+@hot_kernel
 def placed_gap(model, k, pose):
     """The `PlacedGap` of contact `k`."""
     contact = model.contacts[k]
@@ -124,7 +124,7 @@ def _inside_fan(p, along, across, reach):
     return reach * sine
 
 
-@kernel
+@hot_kernel
 def margins_of(contact, a, b, pa, pb, shape):
     """How far inside primitive a and inside b the contact lies, metres; negative outside."""
     nx, ny, x, y = shape.nx, shape.ny, shape.arm_x, shape.arm_y

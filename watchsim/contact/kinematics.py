@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.contact.gaps import margins_of, shape_of_contact
-from watchsim.jit import by_reference, kernel
+from watchsim.jit import by_reference, hot_kernel, kernel
 from watchsim.model.records import FREE, PIVOT, SLIDE, Records, records
 from watchsim.tolerances import SPIN_ROUNDING, TILT_ROUNDING
 
@@ -68,7 +68,7 @@ def _share(direction, axis):
     return share if abs(share) > TILT_ROUNDING else 0.0
 
 
-@kernel
+@hot_kernel
 def _directions(model, b, row, sign, frame, out_closed):
     """Append body b's entries of w_N, w_T; frame = (nx, ny, arm_x, arm_y), the arm from the body's origin to the contact.
 
@@ -101,7 +101,7 @@ def _directions(model, b, row, sign, frame, out_closed):
     out_closed.slots[row] = j
 
 
-@kernel
+@hot_kernel
 def _add_carriers(model, body_a, body_b, row, normal, pose, out_closed):
     """What the carriers of the two bodies add: their coordinates, and how they make the bodies' origins accelerate."""
     nx, ny = normal

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from watchsim.jit import kernel
+from watchsim.jit import hot_kernel, kernel
 from watchsim.model.records import FIXED, PIVOT, SLIDE, records
 
 POSE = np.dtype(
@@ -31,7 +31,7 @@ def poses(bodies: int) -> np.recarray:
     return records(POSE, bodies)
 
 
-@kernel
+@hot_kernel
 def _ride(carrier, body, q, u, pose):
     """Origin of a carried body: the point (body.x, body.y) of its carrier's frame. A carrier owns its coordinate."""
     i = carrier.first
@@ -51,7 +51,7 @@ def _ride(carrier, body, q, u, pose):
         pose.vx, pose.vy = pose.vx + u[i], pose.vy + u[i + 1]
 
 
-@kernel
+@hot_kernel
 def place_body(model, b, q, u, out_pose):
     """Pose and velocity of body `b` from coordinates q and velocities u."""
     body = model.bodies[b]

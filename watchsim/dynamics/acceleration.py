@@ -15,7 +15,7 @@ from watchsim.dynamics.problem_kinds import Level, Rung
 from watchsim.dynamics.redundant_contacts import smallest_forces
 from watchsim.dynamics.small_systems import solve_small, unit_scale
 from watchsim.dynamics.solver_fallbacks import keep_basis, solve_contacts
-from watchsim.jit import kernel
+from watchsim.jit import hot_kernel, kernel
 from watchsim.tolerances import ACCELERATION_ROUNDING, RANK
 
 
@@ -49,7 +49,7 @@ def _fill_worth(work, m):
         work.worth[i] = work.size[2 * i] / own if own > 0.0 else 0.0
 
 
-@kernel
+@hot_kernel
 def row_terms(work, m, rows, row):
     """The sum of the magnitudes of its terms: the scale of its rounding.
 

@@ -6,7 +6,7 @@ import math
 
 from watchsim.candidates.cell_lookup import along
 from watchsim.dynamics.line_springs import add_line_springs, line_spring_damping, line_spring_drive, line_spring_energy
-from watchsim.jit import entry, kernel
+from watchsim.jit import entry, hot_kernel, kernel
 from watchsim.model.records import OVER_TIME, REPEATED
 from watchsim.tolerances import KNOT_ROUNDING
 
@@ -94,7 +94,7 @@ def _whole_periods(model, table, t):
     return period * math.floor((t - model.knots[table.start, 0]) / period)
 
 
-@kernel
+@hot_kernel
 def forces(model, t, q, u, out_h):
     """h for all coordinates: drive, springs, damping. What acts at the pivot of a carried body acts back on its carrier."""
     for i in range(len(model.coordinates)):
@@ -115,7 +115,7 @@ def forces(model, t, q, u, out_h):
             push_back(model, table.on, force, out_h)
 
 
-@kernel
+@hot_kernel
 def drive_power(model, t, q, u):
     """Power of everything that is neither a spring nor damping (motor torques, gravity), W.
 
@@ -141,7 +141,7 @@ def drive_power(model, t, q, u):
     return power + line_spring_drive(model, q, u)
 
 
-@kernel
+@hot_kernel
 def damping_power(model, q, u):
     """Power taken by viscous and quadratic damping, W; never negative."""
     power = 0.0

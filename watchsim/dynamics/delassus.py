@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from watchsim.contact.index_sets import STICK
 from watchsim.dynamics.lcp.lemke_pivoting import LcpWork, lcp_work
 from watchsim.dynamics.problem_kinds import Rung
-from watchsim.jit import by_reference, kernel
+from watchsim.jit import by_reference, hot_kernel, kernel
 from watchsim.model.named_fields import blank
 
 Array = NDArray[np.float64]
@@ -161,7 +161,7 @@ def fill_inverse(model, grip, out_inverse):
         out_inverse[i] = 0.0 if grip[i] == STICK else inverse_mass(model.coordinates[i])
 
 
-@kernel
+@hot_kernel
 def fill_delassus(closed, m, work):
     """G of the first m closed contacts."""
     for i in range(m):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from watchsim.jit import kernel
+from watchsim.jit import hot_kernel, kernel
 
 
 @kernel
@@ -29,7 +29,7 @@ def _largest(A, k, n):
     return row, column, best
 
 
-@kernel
+@hot_kernel
 def solve_small(A, b, n, scale, order, out_x, smallest):
     """Solve A x = b (leading n × n block, both overwritten) by complete pivoting; returns the rank.
 

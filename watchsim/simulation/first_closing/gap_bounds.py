@@ -10,7 +10,7 @@ import math
 from typing import NamedTuple
 
 from watchsim.contact.poses import point_of
-from watchsim.jit import kernel
+from watchsim.jit import hot_kernel, kernel
 from watchsim.model.records import FREE, LINE, PIVOT, SLIDE
 from watchsim.tolerances import SLOWEST_CLOSING
 
@@ -24,7 +24,7 @@ class Bounds(NamedTuple):
     twist: float  # rad/s²
 
 
-@kernel
+@hot_kernel
 def body_bounds(model, b, length, step, path):
     """`Bounds` of the frame over the next `length` seconds."""
     body = model.bodies[b]
@@ -37,7 +37,7 @@ def body_bounds(model, b, length, step, path):
     return Bounds(speed, own.turn, carrier.push + carrier.twist * arm + carrier.turn * carrier.turn * arm, own.twist)
 
 
-@kernel
+@hot_kernel
 def _own_bounds(body, length, step, path):
     """The same from the body's own coordinates alone."""
     i = body.first
@@ -54,7 +54,7 @@ def _own_bounds(body, length, step, path):
     return Bounds(0.0, 0.0, 0.0, 0.0)
 
 
-@kernel
+@hot_kernel
 def gap_bounds(model, k, length, bounds_a, bounds_b, path):
     """Bounds over the next `length` seconds: |g'|, |g''| but for B's curvature, and the bodies' relative turning.
 

@@ -12,7 +12,7 @@ import math
 from watchsim.candidates.cell_lookup import LISTED, UNKNOWN, candidate, candidates, time_in_cell
 from watchsim.contact.gaps import normal_gap, placed_gap
 from watchsim.contact.index_sets import OPEN
-from watchsim.jit import kernel
+from watchsim.jit import hot_kernel, kernel
 from watchsim.model.records import LINE
 from watchsim.simulation.events.handover import is_beside_active
 from watchsim.simulation.first_closing.gap_bounds import body_bounds, centre_distance, gap_bounds, next_stretch
@@ -119,7 +119,7 @@ def crossing(model, state, options, k, start, end, step, path):
     return min(tau, end), False
 
 
-@kernel
+@hot_kernel
 def _stays_open_for(model, state, options, k, length, first, bounds, path):
     """A time in which contact k cannot close, from one look at the current poses; infinity if it is `length` or more.
 

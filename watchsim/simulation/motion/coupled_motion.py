@@ -16,7 +16,7 @@ from watchsim.dynamics.applied_forces import damping_power, drive_power, forces
 from watchsim.dynamics.bearing_friction import add_drag, add_loads, drag_power
 from watchsim.dynamics.delassus import apply, drive_through_contacts, own_acceleration
 from watchsim.dynamics.jamming import is_paradox
-from watchsim.jit import kernel
+from watchsim.jit import hot_kernel, kernel
 from watchsim.simulation.loop_state.scratch import MONITORS
 from watchsim.simulation.motion.contact_islands import place_contacts
 from watchsim.tolerances import PAINLEVE, PAINLEVE_WATCHED, SLIP_SLACK
@@ -67,7 +67,7 @@ def _tangential_monitor(model, state, options, i, work, closed):
     return state.mode[k] * closed.kin[i].gT_dot + state.now.lenience * SLIP_SLACK * options.speed_zero
 
 
-@kernel
+@hot_kernel
 def _watch(model, state, options, first, m, work, smooth):
     """Set the monitors of an island's m contacts, the first of them at place `first` of `state.active`; returns the smallest.
 

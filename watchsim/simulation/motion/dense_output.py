@@ -6,7 +6,7 @@ Noersett & Wanner 1993, II.6). In a flight: the closed form.
 
 from __future__ import annotations
 
-from watchsim.jit import kernel
+from watchsim.jit import hot_kernel, kernel
 from watchsim.simulation.loop_state.scratch import FLIGHT
 from watchsim.simulation.motion.free_motion import acceleration, flow
 
@@ -45,7 +45,7 @@ def dense_value(step, i, tau):
     return dense(step, i, tau)[0]
 
 
-@kernel
+@hot_kernel
 def coordinate_within(model, state, step, i, tau):
     """Coordinate i and its velocity at time tau after the start of the step."""
     if step.span.kind == FLIGHT:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from watchsim.jit import kernel
+from watchsim.jit import hot_kernel, kernel
 
 SERIES = 1e-2  # below it the exponential differences are summed as series: no cancellation
 
@@ -30,7 +30,7 @@ def steady_force(coordinate, grip):
     return coordinate.force - grip * coordinate.coulomb
 
 
-@kernel
+@hot_kernel
 def flow(coordinate, grip, q, u, t):
     """Coordinate and velocity after time t from (q, u)."""
     k, m, force = coordinate.stiffness, coordinate.mass, steady_force(coordinate, grip)

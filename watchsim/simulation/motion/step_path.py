@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.contact.poses import place_body
-from watchsim.jit import kernel
+from watchsim.jit import hot_kernel, kernel
 from watchsim.model.records import FREE
 from watchsim.simulation.loop_state.scratch import FLIGHT
 from watchsim.simulation.motion.dense_output import dense, dense_bend, flight_acceleration
@@ -78,7 +78,7 @@ def acceleration_on_path(model, state, step, i, tau, path):
     return dense_bend(step, i, tau)
 
 
-@kernel
+@hot_kernel
 def body_on_path(model, state, step, b, tau, path):
     """Bring body b's coordinates (in `path.q`, `path.u`) and pose to time tau of the step; u is exactly q'."""
     part = b
