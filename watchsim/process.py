@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import NoReturn
 
 GARBAGE = 500_000  # objects that may pile up, some 50 MB
+PROMPT = 5e-4  # s that a thread may keep Python from another: 5 ms, as usual, would hold up whoever has only little to do
 
 
 def process() -> NoReturn:
@@ -31,6 +32,7 @@ def process() -> NoReturn:
     # Nearly all objects of a short run are imported modules, which stay to the end: looking for garbage among them every few
     # hundred objects, and once more at the end, would take a sixth of its time.
     gc.set_threshold(GARBAGE)
+    sys.setswitchinterval(PROMPT)
     from watchsim.commands.common.streams import open_streams
 
     open_streams()

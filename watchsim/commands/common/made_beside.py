@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.analysis.beat_tables import finished_phases, time_of_a_part
+from watchsim.commands.common.drawn_in_two import drawn
 from watchsim.commands.common.run_pictures import empty_panels, plots
 from watchsim.mechanism.compile import compile_scene
 from watchsim.results.tables import EventLines
@@ -26,15 +27,16 @@ from watchsim.scene.scene import Scene
 from watchsim.simulation.record.trajectory import Pair, Trajectory
 from watchsim.simulation.stops import Stop
 from watchsim.storage.columns import MOST
-from watchsim.storage.handed_over import hand_over, memory_file, take_over
+from watchsim.storage.handed_over import hand_over, take_over
 
 Arrays = Sequence[NDArray[Any]]
 SURE = 1.02  # of the time of a part of the beats: by then it is over, and what follows it has begun
-LATE = 1.0  # of that time before the end of the run: plots come first then, and the first process can do the rest as well
+LATE = 0.5  # of that time before the end of the run: plots come first then, and the first process can do the rest as well
 
 
 def work(line: socket.socket) -> None:
     """Serve the first process until it has all, or has gone."""
+    _load()
     scene, folder, *how = take_over(line)
     panels = empty_panels(scene)
     phases = PhasesMeanwhile(scene, *how)
@@ -54,11 +56,13 @@ def work(line: socket.socket) -> None:
     hand_over(line, table)
     with ThreadPoolExecutor(1) as disk:
         disk.submit(os.fsync, table.fileno())  # as it must be in the end; the disk needs no processor
-        files = {name: memory_file() for name in plots(run)}
-        for name, draw in plots(run, panels).items():
-            draw(files[name])
-            files[name].flush()
-        hand_over(line, files)
+        hand_over(line, drawn(plots(run, panels)))
+
+
+def _load() -> None:
+    """Load what draws plots, while the first process reads the scene."""
+    import watchsim.render.figures.kinematics_plot
+    import watchsim.render.figures.shown_figure  # noqa: F401
 
 
 class PhasesMeanwhile:

@@ -6,7 +6,6 @@ The loop is machine code that leaves Python to others: meanwhile a thread makes 
 
 from __future__ import annotations
 
-import sys
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -20,7 +19,6 @@ if TYPE_CHECKING:
     from watchsim.scene.scene import Scene
     from watchsim.simulation.record.trajectory import Pair
 
-PROMPT = 5e-4  # s that a thread may keep Python from another; the usual 5 ms would hold up every slice of the loop
 BUSY = 0.2  # s: at first the loop comes back to Python again and again, for cells that it meets for the first time
 
 
@@ -35,7 +33,7 @@ class Meanwhile:
         self._lines: EventLines | None = None
         self._work: list[Future[object]] = []
         self._thread = ThreadPoolExecutor(1, thread_name_prefix="meanwhile")
-        self._before, self._begun, self._loads = sys.getswitchinterval(), time.perf_counter(), False
+        self._begun, self._loads = time.perf_counter(), False
 
     def progress(self, *_: float) -> None:
         """To be called while the run goes on: the loop is running, so that a thread may."""
@@ -53,13 +51,11 @@ class Meanwhile:
         self._do(lambda: lines.add(events))
 
     def _do(self, work: Callable[[], object]) -> None:
-        sys.setswitchinterval(PROMPT)
         self._work.append(self._thread.submit(work))
 
     def end(self) -> EventLines | None:
         """Wait until it is done; the events as far as they were made into text, nothing of them where something failed."""
         self._thread.shutdown()
-        sys.setswitchinterval(self._before)
         return None if any(one.exception() for one in self._work) else self._lines
 
 
