@@ -34,11 +34,12 @@ class SceneError(ValueError):
 
 @dataclass
 class Faults:
-    """Collects faults; `lines` maps dotted keys to line numbers, `changed` holds keys set from outside the file."""
+    """Collects faults; `lines` maps dotted keys to line numbers, `changed` holds keys set from outside the file, `by` what."""
 
     file: str = ""
     lines: Mapping[str, int] = field(default_factory=dict)
     changed: frozenset[str] = frozenset()
+    by: str = "changed value"
     found: list[Fault] = field(default_factory=list)
     _known: set[Fault] = field(default_factory=set, repr=False)
 
@@ -56,7 +57,7 @@ class Faults:
 
     def _place(self, key: str) -> str:
         if any(key == changed or key.startswith(changed + ".") for changed in self.changed):
-            return "changed value"
+            return self.by
         line = self._line(key)
         return f"{self.file}:{line}" if line else self.file
 

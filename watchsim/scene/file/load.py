@@ -6,12 +6,13 @@ Everything is read before anything is refused: one SceneError lists all faults w
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from pathlib import Path
 
 from watchsim.scene.errors import Fault, Faults, SceneError
 from watchsim.scene.file.keys.locate import key_lines
 from watchsim.scene.file.parsed import parsed
-from watchsim.scene.file.read_scene import from_mapping
+from watchsim.scene.file.read_scene import changed, from_mapping, unwritten
 from watchsim.scene.scene import Scene
 
 SCENE_FILES = ("scene.toml", "scene.lock.toml")  # in a folder, the first that is there
@@ -22,13 +23,21 @@ def load(path: str | Path) -> Scene:
 
     Of a folder it is `scene.toml`, else `scene.lock.toml`, the scene of a results folder.
     """
+    return load_set(path, {})
+
+
+def load_set(path: str | Path, changes: Mapping[str, object]) -> Scene:
+    """The same with the keys and values of --set in it, put there before anything is judged: they can replace a faulty value."""
     path = _scene_file(Path(path))
     text = _text(path)
     try:
         mapping = parsed(text)
     except ValueError as error:
         raise SceneError([_syntax_fault(path, text, str(error))]) from error
-    return from_mapping(mapping, path, Faults(str(path), key_lines(text)))
+    faults = Faults(str(path), key_lines(text), changed=frozenset(changes), by="--set")
+    later = {key: value for key, value in changes.items() if unwritten(mapping, key)}
+    scene = from_mapping(mapping, path, faults, {key: value for key, value in changes.items() if key not in later})
+    return changed(scene, later, faults) if later else scene
 
 
 def _scene_file(path: Path) -> Path:

@@ -36,15 +36,18 @@ def from_mapping(
 ) -> Scene:
     """The scene of a TOML mapping; `path` is the file it stands for, drawings are looked for beside it.
 
-    `changes` are keys of a scene with a design that are changed after it has been put together.
+    `changes` are made first, in the mapping itself; of a scene with a design after it has been put together.
     """
     faults = faults or Faults(str(path) if path else "scene")
     folder = path.parent if path else Path()
-    written, made = None, None
+    written, made, changes = None, None, changes or {}
     if "design" in mapping:
-        written = Written(mapping, dict(changes or {}))
+        written = Written(mapping, dict(changes))
         mapping, made = with_design(written, faults)
         written = replace(written, made=frozenset(made))
+    else:
+        for key, value in changes.items():
+            assign(mapping, key, value, faults)
     _note_sections(mapping, faults)
     heading = read_heading(mapping, faults)
     read = read_bodies(mapping.get("bodies", {}), folder, faults, made)
@@ -93,35 +96,31 @@ def from_mapping(
     return scene
 
 
-def changed(scene: Scene, changes: Mapping[str, object]) -> Scene:
+def changed(scene: Scene, changes: Mapping[str, object], faults: Faults | None = None) -> Scene:
     """The scene with those dotted keys changed and everything checked again; SceneError lists what does not fit."""
+    name = str(scene.path) if scene.path else "scene"
     if scene.written is not None:
         later = {**scene.written.changes, **changes}
-        faults = Faults(str(scene.path) if scene.path else "scene", changed=frozenset(later))
-        return from_mapping(scene.written.mapping, scene.path, faults, later)
-    implied = {key: value for key, value in changes.items() if _implied(scene, key) is not None}
+        return from_mapping(scene.written.mapping, scene.path, Faults(name, changed=frozenset(later)), later)
+    implied = {key: value for key, value in changes.items() if unwritten(scene.source, key)}
     if 0 < len(implied) < len(changes):  # the others may move what the drawing implies, as a new pivot does
         scene = changed(scene, {key: value for key, value in changes.items() if key not in implied})
         changes = implied
     mapping = copy.deepcopy(scene.source)
-    faults = Faults(str(scene.path) if scene.path else "scene", changed=frozenset(changes))
-    for key, value in changes.items():
-        if (pair := _implied(scene, key)) is not None:
-            name, what, _ = key.split(".")[1:]
-            mapping["bodies"][name][what] = [f"{one!r} m" for one in pair]
-        assign(mapping, key, value, faults)
-    faults.raise_any()
-    return from_mapping(mapping, scene.path, faults)
+    for key in implied:
+        body, what, _ = key.split(".")[1:]
+        pair = {"position": scene.body(body).position, "centre_of_mass": scene.body(body).centre_of_mass}[what]
+        mapping["bodies"][body][what] = [f"{one!r} m" for one in pair]
+    return from_mapping(mapping, scene.path, faults or Faults(name, changed=frozenset(changes)), changes)
 
 
-def _implied(scene: Scene, key: str) -> tuple[float, float] | None:
-    """The pair (m) of which that key names one value, where the drawing gives it and the scene does not write it."""
-    path = key.split(".")
-    entry = scene.source.get("bodies", {}).get(path[1]) if path[0] == "bodies" and len(path) == 4 else None
-    if entry is None or isinstance(entry.get(path[2]), list):
-        return None
-    body = scene.body(path[1])
-    return {"position": body.position, "centre_of_mass": body.centre_of_mass}.get(path[2])
+def unwritten(mapping: Mapping[str, Any], key: str) -> bool:
+    """Does that key name one value of a pair that the drawing gives and the scene does not write?"""
+    path, bodies = key.split("."), mapping.get("bodies")
+    if len(path) != 4 or path[0] != "bodies" or path[2] not in ("position", "centre_of_mass") or "design" in mapping:
+        return False
+    entry = bodies.get(path[1]) if isinstance(bodies, dict) else None
+    return isinstance(entry, dict) and not isinstance(entry.get(path[2]), list)
 
 
 def _note_sections(mapping: Mapping[str, Any], faults: Faults) -> None:
