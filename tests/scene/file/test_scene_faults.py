@@ -38,7 +38,7 @@ ONE_FAULT = [
         'there is no such file. Did you mean "wheel.dxf"?',
     ),
     ('drawing = "wheel.dxf"', 'drawing = "nope.dxf"', "bodies.wheel.drawing", "there is no such file. Known here: "),
-    ('drawing = "wheel.dxf"', 'drawing = ""', "bodies.wheel.drawing", "the name of a file is needed"),
+    ('drawing = "wheel.dxf"', 'drawing = ""', "bodies.wheel.drawing", "the name of a drawing is needed here: wheel.dxf."),
     ('drawing = "wheel.dxf"', "drawing = 3", "bodies.wheel.drawing", "a text in quotes"),
     (
         'layers = ["TEETH"]',

@@ -27,7 +27,7 @@ def load(path: str | Path) -> Scene:
 
 
 def load_set(path: str | Path, changes: Mapping[str, object]) -> Scene:
-    """The same with the keys and values of --set in it, put there before anything is judged: they can replace a faulty value."""
+    """The same with the keys and values of --set in it, put there before anything is judged: they may replace faulty ones."""
     path = _scene_file(Path(path))
     text = _text(path)
     try:

@@ -13,7 +13,7 @@ from typing import Any
 from watchsim import units
 from watchsim.geometry.primitives import Point
 from watchsim.scene.errors import Faults
-from watchsim.scene.file.keys.schema import Keys, nearest
+from watchsim.scene.file.keys.schema import Keys, closest, nearest
 from watchsim.scene.file.keys.write_toml import value_text
 from watchsim.units import NUMBER, Dimension, UnitError, parse
 
@@ -67,11 +67,16 @@ class Table:
         return self.text(key)
 
     def one_of(self, key: str, choices: Sequence[str], default: str) -> str:
-        value = self.text(key, default)
+        """One of the words; after a fault the one that was probably meant, so that all else is read by it, or "" where none is
+        near."""
+        value = self.mapping.get(key, default)
         if value in choices:
-            return value
-        self.fault(key, f"not one of {', '.join(choices)}. {nearest(value, choices)}", with_value=True)
-        return default
+            return str(value)
+        meant = closest(value, choices) if isinstance(value, str) else None
+        hint = f' Did you mean "{meant}"?' if meant else ""
+        quoted = "" if isinstance(value, str) else ": a text in quotes is needed here"
+        self.fault(key, f"not one of {', '.join(choices)}{quoted}.{hint}", with_value=True)
+        return meant or ""
 
     def texts(self, key: str, example: str = "TEETH") -> tuple[str, ...]:
         value = self.mapping.get(key, [])

@@ -158,11 +158,16 @@ def siblings(path: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(LISTED[section]) if section in LISTED else SECTIONS
 
 
+def closest(word: str, known: Iterable[str]) -> str | None:
+    """The known word that was probably meant."""
+    words = list(known)
+    folded = [one for one in words if one.casefold() == word.casefold()]
+    return next(iter(folded or difflib.get_close_matches(word, words, n=1, cutoff=ALIKE)), None)
+
+
 def nearest(word: str, known: Iterable[str]) -> str:
     """' Did you mean "drawing"?', or the list of what exists when nothing is near."""
     words = list(known)
-    match = difflib.get_close_matches(word, words, n=1, cutoff=ALIKE)
-    folded = [one for one in words if one.casefold() == word.casefold()]
-    if folded or match:
-        return f'Did you mean "{(folded or match)[0]}"?'
+    if meant := closest(word, words):
+        return f'Did you mean "{meant}"?'
     return f"Known here: {', '.join(words)}." if words else ""

@@ -25,6 +25,12 @@ from watchsim.scene.solid import more_seen
 from watchsim.units import SPEED
 
 AS_DRAWN = "as drawn"
+LIKELY = {  # the motion of a body with such a key, where it cannot be read; the first that is there
+    **dict.fromkeys(("swing", "path"), DRIVEN),
+    **{"spin": "free", "axis": "slide"},
+    **dict.fromkeys(("inertia", "solids", "mass"), "pivot"),
+    "velocity": DRIVEN,
+}
 
 
 @dataclass(frozen=True)
@@ -60,7 +66,7 @@ def read_bodies(mapping: object, folder: Path, faults: Faults, made: Made | None
         if not isinstance(entry, dict):
             where = f"bodies.{name}"
             faults.add(where, "a body is expected here: a table with its name, such as [bodies.wheel]", shown(entry))
-    mapping = {name: entry for name, entry in mapping.items() if isinstance(entry, dict)}
+    mapping = {name: _with_motion(name, entry, faults) for name, entry in mapping.items() if isinstance(entry, dict)}
     users = Counter(_drawing_path(entry, folder) for entry in mapping.values())
     bores: dict[Path | None, Counter[str]] = {path: Counter() for path in users}  # drawing -> layers, by how many bodies
     for entry in mapping.values():
@@ -72,6 +78,13 @@ def read_bodies(mapping: object, folder: Path, faults: Faults, made: Made | None
     sound = {one.name for one in read if one.outlines.sound}
     drawings = {one.table.text("drawing"): one.outlines.data for one in read if one.outlines.data is not None}
     return ReadBodies(tuple(bodies), tuple(dict.fromkeys(findings)), frozenset(sound), drawings)
+
+
+def _with_motion(name: str, entry: dict[str, Any], faults: Faults) -> dict[str, Any]:
+    """The entry with a motion that there is: after a fault the one that was probably meant, so that all else is read by it."""
+    motion = Table(entry, f"bodies.{name}", BODY, faults).one_of("motion", (*MOTIONS, DRIVEN), "pivot")
+    guessed = next((likely for key, likely in LIKELY.items() if key in entry), "fixed")
+    return {**entry, "motion": motion or guessed} if "motion" in entry else entry
 
 
 def motion_of(bodies: Mapping[str, Any], name: object) -> str:
@@ -138,7 +151,6 @@ def _position(one: _Read, read: Mapping[str, _Read]) -> Point:
 
 def _body(one: _Read, position: Point, on: str | None) -> Body:
     table, motion, outlines, inertias = one.table, one.motion, one.outlines, one.inertias
-    table.one_of("motion", (*MOTIONS, DRIVEN), "pivot")
     angle = table.quantity("angle")
     prescribed = read_prescribed(table, angle if motion == "pivot" else 0.0)
     shift = (-inertias.origin[0], -inertias.origin[1])

@@ -149,6 +149,8 @@ def _torque(entry: Entry) -> Torque:
     if "over" not in table:
         table.fault("", f'a table needs over = "{choices[0]}" or over = "time"')
     over = table.one_of("over", choices, choices[0])
+    if not over:  # columns of what?
+        return Torque(entry.name, against=entry.against)
     if "period" in table and over != "time":
         table.fault("period", 'belongs to a table with over = "time"')
     if over == BARREL and entry.body is not None:

@@ -43,12 +43,15 @@ class Heading:
 def read_heading(mapping: Mapping[str, Any], faults: Faults) -> Heading:
     table = Table(mapping.get("scene", {}), "scene", SCENE, faults)
     schema = table.mapping.get("schema", SCHEMA)
-    if schema != SCHEMA:
-        table.fault("schema", f"this version of watchsim reads schema {SCHEMA}", with_value=True)
+    if isinstance(schema, bool) or not isinstance(schema, (int, float)):
+        table.fault("schema", f"a plain number is needed here, without quotes: schema = {SCHEMA}", with_value=True)
+    elif schema != SCHEMA:
+        cure = "Install the watchsim that this scene was written for" if schema > SCHEMA else f"Write schema = {SCHEMA}"
+        table.fault("schema", f"this version of watchsim reads schema {SCHEMA}. {cure}", with_value=True)
     law, nu = table.one_of("tangential_law", tuple(TANGENTIAL_CODE), "coulomb"), table.quantity("nu")
     if nu < 0.0 or nu > 1.0:
         table.fault("nu", "must lie between 0 and 1", with_value=True)
-    elif nu > 0.0 and law != "pg1996":
+    elif nu > 0.0 and law not in ("pg1996", ""):
         table.fault("nu", f'belongs to tangential_law = "pg1996"; the law here is {law}. Leave it out', with_value=True)
     return Heading(table.text("title"), table.pair("gravity"), law, nu)
 
