@@ -85,6 +85,16 @@ class Table:
         self.fault(key, f'a list of texts is needed here, such as {key} = ["{example}"]', with_value=True)
         return ()
 
+    def names(self, key: str, numbers: Sequence[int], needed: str, twice: bool = False) -> tuple[str, ...]:
+        """So many texts in a list, different ones unless one may stand there `twice`; none after a fault."""
+        value = self.mapping.get(key)
+        texts = value if isinstance(value, (list, tuple)) and all(isinstance(item, str) for item in value) else ()
+        if len(texts) in numbers and (twice or len(set(texts)) == len(texts)):
+            return tuple(texts)
+        if self.is_table:
+            self.fault(key if key in self else "", needed, with_value=key in self)
+        return ()
+
     def tables(self, key: str) -> list[Any]:
         value = self.mapping.get(key, [])
         if isinstance(value, (list, tuple)):

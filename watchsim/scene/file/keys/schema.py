@@ -15,13 +15,20 @@ ALIKE = 0.7  # share of letters two words have in common; "bodys" is "bodies", "
 
 @dataclass(frozen=True, slots=True)
 class Key:
-    """What stands behind a key: numbers of a `dimension` (`linear` where the body slides or is free), or none."""
+    """What stands behind a key: numbers of a `dimension` (`linear` where the body slides or is free; either where it is not
+    known what the body does, motion ""), or none."""
 
     dimension: Dimension | None = None
     linear: Dimension | None = None
 
     def dimension_for(self, motion: str) -> Dimension | None:
+        if self.linear and self.dimension and not motion:
+            return _either(self.dimension, self.linear)
         return self.linear if self.linear and motion in ("slide", "free") else self.dimension
+
+
+def _either(one: Dimension, other: Dimension) -> Dimension:
+    return Dimension(f"{one.name} or {other.name}", one.powers + other.powers, one.si, one.usual)
 
 
 Keys = dict[str, Key]

@@ -66,12 +66,8 @@ def _note_law(table: Table, contact: Contact, law: str) -> None:
 
 
 def _sides(table: Table, known: Known) -> tuple[Side, Side]:
-    names = table.texts("between")
-    if len(names) != 2:
-        if table.is_table:
-            table.fault(
-                "between" if "between" in table else "", 'two sides are needed: between = ["wheel.TEETH", "lever.STONES"]'
-            )
+    names = table.names("between", (2,), 'two sides are needed: between = ["wheel.TEETH", "lever.STONES"]', twice=True)
+    if not names:
         return NOWHERE, NOWHERE
     first, second = (_side(table, i, name, known) for i, name in enumerate(names))
     if first.body and first.body == second.body:

@@ -61,7 +61,7 @@ def read_run(mapping: Mapping[str, Any], faults: Faults) -> tuple[float, Recordi
     table = Table(mapping.get("run", {}), "run", RUN, faults)
     duration = table.positive("duration", "it is how long to simulate") if "duration" in table else DURATION
     tolerance = table.quantity("tolerance", TOLERANCE)
-    if not FINEST_TOLERANCE <= tolerance <= COARSEST_TOLERANCE:
+    if tolerance < FINEST_TOLERANCE or tolerance > COARSEST_TOLERANCE:
         limits = f"{FINEST_TOLERANCE:g} and {COARSEST_TOLERANCE:g}"
         table.fault("tolerance", f"must lie between {limits}; {TOLERANCE:g} is usual", with_value=True)
     return duration, read_record(table), tolerance

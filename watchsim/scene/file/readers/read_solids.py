@@ -53,7 +53,8 @@ class _Reader:
 
     def solid(self) -> Solid | None:
         known = len(self.entry.faults.found)
-        spring, lying = self._flag("hairspring"), self._flag("lying")
+        spring = self._flag("hairspring", any(key in self.entry for key in SPRING_KEYS))
+        lying = self._flag("lying", "turned" in self.entry)
         self._note_strangers(spring)
         density = self._positive("density")
         if spring and "turned" not in self.entry:
@@ -224,12 +225,14 @@ class _Reader:
     def _closed(self) -> tuple[Loop, ...]:
         """The closed outlines of the layer, by default those that can touch."""
         closed = tuple(loop for loop in self.outlines.all if loop.closed)
+        layer = self._layer()
+        if not isinstance(self.entry.mapping.get("layer", ""), str):  # that has been noted
+            return ()
         if "layer" not in self.entry:
             loops = tuple(loop for loop in self.outlines.loops if loop.closed)
             if not loops and self.outlines.sound:
                 self.entry.fault("", 'the body has no closed outline to be a plate. Write layer = "..." or draw one')
             return loops
-        layer = self._layer()
         broken = [finding for finding in self.outlines.errors if finding.layer == layer]
         for finding in broken:
             self.entry.fault("layer", f"{finding.message.rstrip('.')}. {finding.fix}".strip(), with_value=True)
@@ -244,11 +247,13 @@ class _Reader:
     def _layer(self) -> str:
         return self.entry.text("layer")
 
-    def _flag(self, key: str) -> bool:
+    def _flag(self, key: str, likely: bool) -> bool:
+        """True or false; after a fault what is `likely`, by which all else is read."""
         value = self.entry.mapping.get(key, False)
-        if not isinstance(value, bool):
-            self.entry.fault(key, "true or false is needed here, without quotes", with_value=True)
-        return value is True
+        if isinstance(value, bool):
+            return value
+        self.entry.fault(key, "true or false is needed here, without quotes", with_value=True)
+        return likely
 
     def _positive(self, key: str) -> float:
         """A quantity that must be there and above zero; not-a-number after a fault."""
