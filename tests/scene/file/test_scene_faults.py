@@ -152,7 +152,7 @@ ONE_FAULT = [
     ('["179 s", "180 s"]', '[["1 s", "2 s"], ["4 s", "3 s"]]', "run.record.1", "from an earlier to a later time"),
     ("tolerance = 1e-8", "tolerance = 0", "run.tolerance", "must lie between 1e-13 and 0.01"),
     ('lift_angle = "52°"', 'lift_angle = "400°"', "timegrapher.lift_angle", "below a full turn"),
-    ('value = "275°", ', "", "expect.amplitude", "value is missing"),
+    ('value = "275°", ', "", "expect.amplitude", "missing: value. Write e.g."),
     ('value = "275°"', 'value = "275 s"', "expect.amplitude.value", "is a time; here an angle is needed"),
     ('tolerance = "0.02 rad"', 'tolerance = "0°"', "expect.amplitude.tolerance", "must be above zero"),
     ("value = 500", 'value = "500 m"', "expect.impacts.tolerance", "a bare number needs a unit"),

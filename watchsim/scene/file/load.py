@@ -10,11 +10,22 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from watchsim.scene.errors import Fault, Faults, SceneError
+from watchsim.scene.file.keys.key_values import shortened
 from watchsim.scene.file.keys.locate import key_lines
 from watchsim.scene.file.parsed import parsed
 from watchsim.scene.file.read_scene import changed, from_mapping, unwritten
 from watchsim.scene.scene import Scene
 
+QUOTES = "Texts and quantities stand in quotes; plain numbers (0.15), true, false and lists do not"
+CURES = {  # what the TOML reader complains of -> what is mostly amiss
+    "Cannot declare": "This table is there already: give it another name, or make one of both",
+    "Cannot overwrite": "This key has a value already: leave one of them out",
+    "Illegal character '\\n'": "A quotation mark is missing at the end of the line",
+    "Unclosed array": "Between the entries of a list stand commas, and ] ends it",
+    "Expected newline": QUOTES,
+    "Invalid value": QUOTES,
+    "Expected '='": "A line is KEY = VALUE, or a [table]",
+}
 SCENE_FILES = ("scene.toml", "scene.lock.toml")  # in a folder, the first that is there
 
 
@@ -67,5 +78,6 @@ def _syntax_fault(path: Path, text: str, complaint: str) -> Fault:
     found = re.search(r" \(at line (\d+), column \d+\)", complaint)
     line = int(found[1]) if found else len(text.splitlines())
     what = re.sub(r" \(at .*\)", "", complaint)
-    message = f"not valid TOML: {what}. Texts and quantities stand in quotes; plain numbers, true, false and lists do not"
-    return Fault("", message, place=f"{path}:{line}")
+    cure = next((advice for words, advice in CURES.items() if words in complaint), "")
+    seen = [*text.splitlines(), ""][line - 1].strip() if line else ""
+    return Fault("", f"not valid TOML: {what}. {cure}".strip(), shown=shortened(seen), place=f"{path}:{line}")

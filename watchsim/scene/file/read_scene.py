@@ -15,8 +15,8 @@ from watchsim.scene.errors import Faults
 from watchsim.scene.file.assign import assign
 from watchsim.scene.file.designed import with_design
 from watchsim.scene.file.digests import file_digest
-from watchsim.scene.file.keys.key_values import Table
-from watchsim.scene.file.keys.schema import LOCK, SECTIONS, nearest
+from watchsim.scene.file.keys.key_values import Table, understood
+from watchsim.scene.file.keys.schema import LISTED, LOCK, SECTIONS
 from watchsim.scene.file.readers.read_bodies import read_bodies
 from watchsim.scene.file.readers.read_carriers import note_carriers
 from watchsim.scene.file.readers.read_contacts import read_contacts
@@ -41,6 +41,7 @@ def from_mapping(
     faults = faults or Faults(str(path) if path else "scene")
     folder = path.parent if path else Path()
     written, made, changes = None, None, changes or {}
+    mapping = understood(mapping, SECTIONS, "section", "", faults)
     if "design" in mapping:
         written = Written(mapping, dict(changes))
         mapping, made = with_design(written, faults)
@@ -48,9 +49,10 @@ def from_mapping(
     else:
         for key, value in changes.items():
             assign(mapping, key, value, faults)
-    _note_sections(mapping, faults)
     heading = read_heading(mapping, faults)
     read = read_bodies(mapping.get("bodies", {}), folder, faults, made)
+    if not read.bodies:  # all that names one would be wrong
+        mapping = {section: value for section, value in mapping.items() if section not in LISTED}
     bodies, sound = with_trains(mapping, read.bodies, faults), read.sound
     geared = read_gears(mapping, bodies, heading.gravity, faults)
     bodies = geared.bodies
@@ -121,14 +123,6 @@ def unwritten(mapping: Mapping[str, Any], key: str) -> bool:
         return False
     entry = bodies.get(path[1]) if isinstance(bodies, dict) else None
     return isinstance(entry, dict) and not isinstance(entry.get(path[2]), list)
-
-
-def _note_sections(mapping: Mapping[str, Any], faults: Faults) -> None:
-    for section in mapping:
-        if section not in SECTIONS:
-            faults.add(section, f"unknown section. {nearest(section, SECTIONS)}")
-    if not mapping.get("bodies") and "design" not in mapping:
-        faults.add("bodies", "a scene needs at least one body, such as [bodies.wheel]")
 
 
 def _check_nominal(scene: Scene, faults: Faults) -> None:

@@ -127,7 +127,8 @@ def _open(table: Table, folder: Path, made: Made) -> Drawing | None:
         table.fault("drawing", f"{what} name of a drawing is needed here: {there}", with_value=True)
         return None
     snap = table.positive("snap", "it is the gap that may be closed") if "snap" in table else SNAP
-    units = table.text("units") or None
+    told = table.text("units")
+    units = told if isinstance(table.mapping.get("units"), str) else None
     if name in made and not math.isnan(snap):
         return drawing_of(made[name], name, snap)
     if not path.is_file() or math.isnan(snap):

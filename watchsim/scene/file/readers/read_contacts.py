@@ -108,9 +108,8 @@ def _side(table: Table, i: int, name: str, known: Known) -> Side:
 
 def _note_bare(faults: Faults, body: Body) -> None:
     """Once, however many contacts name the body."""
-    there = ", ".join(f'"{layer}"' for layer in dict.fromkeys(loop.layer for loop in body.decoration))
     why = "nothing of the drawing can touch, though a contact names this body"
-    cure = f"Name the layers that touch, of [{there}], or leave layers out: then all can"
+    cure = 'Name the layers that touch, such as ["TEETH"], or leave layers out: then all with closed outlines can'
     faults.add(f"bodies.{body.name}.layers", f"{why}. {cure}", " = []")
 
 

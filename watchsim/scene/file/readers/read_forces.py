@@ -57,7 +57,9 @@ def read_damping(
     mapping: Mapping[str, Any], bodies: tuple[Body, ...], springs: tuple[Spring, ...], gravity: Point, faults: Faults
 ) -> tuple[Damping, ...]:
     found = []
-    lost = any(not spring.body for spring in springs) or (not springs and bool(mapping.get("springs")))  # noted: whose is it?
+    lost = any(not spring.body for spring in springs) or (
+        not springs and mapping.get("springs", []) != []
+    )  # noted: whose is it?
     for entry in _entries(mapping, "damping", DAMPING, bodies, faults):
         swinging = oscillator(bodies, springs, gravity, entry.name) if "q_factor" in entry.table else None
         found.append(_damping(entry, swinging, lost))
@@ -69,7 +71,11 @@ def listed(mapping: Mapping[str, Any], section: str, faults: Faults) -> list[Any
     value = mapping.get(section, [])
     if isinstance(value, (list, tuple)):
         return list(value)
-    faults.add(section, f"write [[{section}]] with double brackets: there can be several", shown(value) if value else "")
+    faults.add(
+        section,
+        f"write [[{section}]] with double brackets: there can be several",
+        "" if isinstance(value, dict) else shown(value),
+    )
     return []
 
 
@@ -78,9 +84,10 @@ def _entries(mapping: Mapping[str, Any], section: str, keys: Keys, bodies: tuple
     elements = listed(mapping, section, faults)
     masses = _masses(bodies) if elements else {}
     for i, element in enumerate(elements):
-        name = element.get("body") if isinstance(element, dict) else None
+        table = Table(element, f"{section}.{i}", keys, faults)
+        name = table.mapping.get("body")
         body = known.get(name) if isinstance(name, str) else None
-        table = Table(element, f"{section}.{i}", keys, faults, body.motion if body else "")
+        table.motion = body.motion if body else ""
         _note_body(table, known)
         other = known.get(read_against(table, body, known) or "")
         yield Entry(table, body, other, masses.get(body.name, NAN) if body else NAN)
@@ -139,8 +146,8 @@ def _torque(entry: Entry) -> Torque:
         return _tabulated(entry)
     of_table = [key for key in ("over", "period", *KEYS) if key in table]
     if "value" not in table and table.is_table:
-        needed = f"missing: table, to which {of_table[0]} belongs" if of_table else 'missing: value = "-1.0 µN·m", or a table'
-        table.fault("", needed + " over angle or time")
+        needed = 'missing: value = "-1.0 µN·m", or a table over angle or time'
+        table.fault("", f"missing: the table to which {of_table[0]} belongs" if of_table else needed)
         return Torque(entry.name, against=entry.against)
     for key in of_table:
         owner = f' with over = "{BARREL}"' if key in KEYS else "; a value is constant"

@@ -132,7 +132,8 @@ def _ranks(
     """By name, ascending: the smallest of those geared to each other holds the coordinate."""
     carrying = {number for ride in hung for number in (ride.host, ride.turns_with)}
     springs = mapping.get("springs", ())
-    sprung = {one.get("body") for one in springs if isinstance(one, Mapping)} if isinstance(springs, (list, tuple)) else set()
+    entries = [one for one in springs if isinstance(one, Mapping)] if isinstance(springs, (list, tuple)) else []
+    sprung = {str(one.get("body")) for one in entries}
     return {
         body.name: (
             body.prescribed is None,

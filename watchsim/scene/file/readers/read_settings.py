@@ -28,6 +28,13 @@ WATCH_QUANTITIES = {
     "beat_error": units.TIME,
     "frequency": units.FREQUENCY,
 }
+EXAMPLES = {  # of what is expected, with its tolerance
+    "amplitude": ('"275°"', '"1°"'),
+    "rate": ('"4 s/d"', '"1 s/d"'),
+    "period": ('"0.25 s"', '"1 µs"'),
+    "beat_error": ('"0 ms"', '"0.1 ms"'),
+    "frequency": ('"4 Hz"', '"0.01 Hz"'),
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +60,7 @@ def read_heading(mapping: Mapping[str, Any], faults: Faults) -> Heading:
         table.fault("nu", "must lie between 0 and 1", with_value=True)
     elif nu > 0.0 and law not in ("pg1996", ""):
         table.fault("nu", f'belongs to tangential_law = "pg1996"; the law here is {law}. Leave it out', with_value=True)
-    return Heading(table.text("title"), table.pair("gravity"), law, nu)
+    return Heading(table.text("title"), table.pair("gravity"), law if table.is_table else "", nu)
 
 
 def read_run(mapping: Mapping[str, Any], faults: Faults) -> tuple[float, Recording, float]:
@@ -94,10 +101,8 @@ def read_expectations(mapping: Mapping[str, Any], faults: Faults) -> tuple[Expec
 
 def _expectation(key: str, table: Table) -> Expectation | None:
     """In the unit of its value; the tolerance may have another unit of the same kind."""
-    missing = [name for name in ("value", "tolerance") if name not in table]
-    for name in missing if table.is_table else ():
-        table.fault("", f'{name} is missing. Write e.g. {{ value = "275°", tolerance = "1°" }}')
-    if missing:
+    value, tolerance = EXAMPLES.get(key, ("500", "3"))
+    if table.lacks(("value", "tolerance"), f"{{ value = {value}, tolerance = {tolerance} }}") or not table.is_table:
         return None
     try:
         number, unit = split(table.mapping["value"])

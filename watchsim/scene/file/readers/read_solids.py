@@ -62,15 +62,16 @@ class _Reader:
         elif "turned" in self.entry:
             made = self._turned(density, lying)
         else:
-            made = self._plate(density)
+            made = self._plate(density) if "lying" not in self.entry else None
         return made if len(self.entry.faults.found) == known else None
 
     def _note_strangers(self, spring: bool) -> None:
         """Keys that do not go together."""
         entry = self.entry
-        for key in SPRING_KEYS:
-            if key in entry and not spring:
-                entry.fault(key, "belongs to a hairspring: write hairspring = true as well, or leave it out", with_value=True)
+        if not spring and (idle := [key for key in SPRING_KEYS if key in entry]):
+            what = f"{', '.join(idle)} belong" if len(idle) > 1 else "belongs"
+            cure = f"write hairspring = true as well, or leave {'them' if len(idle) > 1 else 'it'} out"
+            entry.fault(idle[0], f"{what} to a hairspring: {cure}", with_value=True)
         if "lying" in entry and "turned" not in entry:
             entry.fault("lying", "belongs to a turned solid: write turned as well, or leave it out", with_value=True)
         if "bores" in entry and (spring or "turned" in entry):

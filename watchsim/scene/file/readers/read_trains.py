@@ -46,10 +46,8 @@ def _felt(train: object, path: str, faults: Faults | None) -> float:
 
 
 def _felt_wheel(table: Table) -> float:
-    for key in ("ratio", "inertia"):
-        if key not in table:
-            table.fault("", f'missing: {key}. Write {{ ratio = 10, inertia = "0.5 mg·cm²" }}, ratio as turns of the body')
-            return NAN
+    if table.lacks(("ratio", "inertia"), '{ ratio = 10, inertia = "0.5 mg·cm²" }, ratio as turns of the body'):
+        return NAN
     return table.positive("inertia", "it is the wheel's moment of inertia") / ratio_of(table) ** 2
 
 
