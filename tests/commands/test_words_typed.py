@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import importlib
+from pathlib import Path
 
 import pytest
 
@@ -45,6 +46,20 @@ def test_every_option_is_known_whole_and_shortened(name: str) -> None:
     for option in options:
         for word in (option, f"{option}=1", option[:4] if option.startswith("--") else f"{option}x"):
             parser._check(word)
+
+
+@pytest.mark.parametrize("value", ["-5s", "-30°", "−.5 mm", "-1 s:2 s", "-1.5"])
+def test_a_negative_quantity_is_the_value_of_its_option(value: str) -> None:
+    parser = CommandParser()
+    parser.add_argument("--duration")
+    parser.add_argument("place")
+    assert vars(parser.parse_args(["--duration", value, "here"])) == {"duration": value, "place": "here"}
+
+
+def test_a_folder_with_a_scene_is_told_from_results(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "scene.toml").write_text("")
+    assert main(["plot", str(tmp_path)]) == 2
+    assert f"missing. It holds a scene: watchsim run {tmp_path} makes results of it" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("value", ["-1.5", "-30°", "- 3", "-1 s:2 s", "a=-b", "-", "--", "-.5 mm"])

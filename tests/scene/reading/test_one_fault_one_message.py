@@ -46,6 +46,11 @@ frequency = "28800 vph" | frequency = "4 Hz"; draw = { stud = "1°" } | springs.
 missing: inner, outer, turns. Write e.g. draw = { inner = "0.5 mm", outer = "2.8 mm", turns = 13, stud = "90°" }.
 [[springs]] | [springs] | springs | write [[springs]] with double brackets: there can be several.
 [[springs]] | [[sprngs]] | sprngs | unknown section. Did you mean "springs"?
+friction = 0.12 | lift_angle = "50°" | contacts.0.lift_angle | unknown key. It belongs under [timegrapher].
+motion = "fixed" | motion = "fixed"; friction = 0.1 | bodies.banking.friction | unknown key. It belongs under [[contacts]].
+[scene] | title = "x"; [scene] | title | unknown section. It belongs under [scene].
+[timegrapher] | [timegrapher]; frequency = "7 Hz" | timegrapher.frequency = "7 Hz" | \
+the oscillator makes small swings at 4 Hz (28800 vph), more than 10 % off: look at mass, inertia and spring.
 [scene] | [scen] | scen | unknown section. Did you mean "scene"?
 motion = "fixed" | moton = "fixed" | bodies.banking.moton | unknown key. Did you mean "motion"?
 motion = "fixed" | axis = [1, 0]; mass = "1 g"; velocity = "1 mm/s" | bodies.banking.axis | \

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import difflib
+import re
 from collections.abc import Iterable, Sequence
 from typing import Any
 
@@ -13,7 +14,7 @@ class CommandParser(argparse.ArgumentParser):
 
     def parse_known_args(self, args: Sequence[str] | None = None, namespace: Any = None) -> tuple[Any, list[str]]:  # type: ignore[override]
         """Unknown options come first: that something is missing may only follow from them."""
-        words = list(args or ())
+        words = _joined(args or ())
         takes_all = any(action.nargs == argparse.REMAINDER for action in self._actions)
         for word in () if takes_all else words:
             self._check(word)
@@ -31,6 +32,17 @@ class CommandParser(argparse.ArgumentParser):
             return
         if not any(option.startswith(begun) for option in self._option_string_actions):
             self.error(f"there is no option {name}.{meant(name, self._option_string_actions)}")
+
+
+def _joined(words: Sequence[str]) -> list[str]:
+    """The words, a negative quantity such as "-5 µm" or "-30°" as the value of the option before it."""
+    found: list[str] = []
+    for word in words:
+        if re.match(r"[-−][.\d]", word) and found and found[-1].startswith("--") and "=" not in found[-1]:
+            found[-1] += f"={word}"
+        else:
+            found.append(word)
+    return found
 
 
 def meant(word: str, known: Iterable[str]) -> str:

@@ -155,7 +155,8 @@ def with_unit(value: object, dimension: Dimension | None) -> object:
 
 def _advice(path: tuple[str, ...]) -> str:
     if path[0] not in SECTIONS:
-        return nearest(path[0], SECTIONS)
+        home = next((name for name, keys in TABLES.items() if path[0] in keys), None)
+        return f'Did you mean "{home}.{path[0]}"?' if home else nearest(path[0], SECTIONS)
     if path[0] == "lock":
         return "watchsim writes this table; it cannot be changed."
     if path[0] == "design":

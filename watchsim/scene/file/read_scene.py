@@ -15,7 +15,7 @@ from watchsim.scene.errors import Faults
 from watchsim.scene.file.assign import assign
 from watchsim.scene.file.designed import with_design
 from watchsim.scene.file.digests import file_digest
-from watchsim.scene.file.keys.key_values import Table, understood
+from watchsim.scene.file.keys.key_values import Table, shown, understood
 from watchsim.scene.file.keys.schema import LISTED, LOCK, SECTIONS
 from watchsim.scene.file.readers.read_bodies import read_bodies
 from watchsim.scene.file.readers.read_carriers import note_carriers
@@ -129,12 +129,13 @@ def _check_nominal(scene: Scene, faults: Faults) -> None:
     """A rate is measured against a frequency near that of the oscillator; anything else is a slip."""
     if scene.nominal is None:
         return
-    natural = frequency(scene)
+    natural, given = frequency(scene), shown(scene.source["timegrapher"]["frequency"])
     if natural is None:
-        faults.add("timegrapher.frequency", "nothing in this scene swings on a spring or by gravity, so it has no rate")
+        faults.add("timegrapher.frequency", "nothing in this scene swings on a spring or by gravity, so it has no rate", given)
     elif abs(scene.nominal / natural - 1.0) > FAR_OFF:
         seen = f"the oscillator makes small swings at {natural:.6g} Hz ({7200.0 * natural:.6g} vph)"
-        faults.add("timegrapher.frequency", f"{seen}, more than {100 * FAR_OFF:.0f} % off: look at mass, inertia and spring")
+        why = f"{seen}, more than {100 * FAR_OFF:.0f} % off: look at mass, inertia and spring"
+        faults.add("timegrapher.frequency", why, given)
 
 
 def _check_lock(mapping: Mapping[str, Any], folder: Path, faults: Faults) -> None:

@@ -13,7 +13,7 @@ from typing import Any
 from watchsim import units
 from watchsim.geometry.primitives import Point
 from watchsim.scene.errors import Faults
-from watchsim.scene.file.keys.schema import Keys, closest, nearest
+from watchsim.scene.file.keys.schema import Keys, belongs, closest, nearest
 from watchsim.scene.file.keys.write_toml import value_text
 from watchsim.units import NUMBER, Dimension, UnitError, parse
 
@@ -43,7 +43,8 @@ def understood(mapping: Mapping[str, Any], keys: Iterable[str], what: str, path:
     for key, value in mapping.items():
         meant = key if key in keys else closest(key, [one for one in keys if one not in mapping and one not in found])
         if key not in keys:
-            faults.add(f"{path}{key}", f"unknown {what}. {nearest(key, keys)}")
+            homes = "" if meant else belongs(key)
+            faults.add(f"{path}{key}", f"unknown {what}. {homes or nearest(key, keys)}")
             faults.spelt |= {f"{path}{meant}": f"{path}{key}"} if meant else {}
         found[meant or key] = value
     return found

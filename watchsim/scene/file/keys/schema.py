@@ -165,6 +165,14 @@ def siblings(path: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(LISTED[section]) if section in LISTED else SECTIONS
 
 
+def belongs(key: str) -> str:
+    """'It belongs under [run].' of a key that has one place, or a few; else nothing."""
+    homes = [f"[{name}]" for name, keys in TABLES.items() if key in keys]
+    homes += ["[bodies.NAME]"] if key in BODY else []
+    homes += [f"[[{name}]]" for name, keys in LISTED.items() if key in keys]
+    return f"It belongs under {' or '.join(homes)}." if 1 <= len(homes) <= 3 else ""
+
+
 def closest(word: str, known: Iterable[str]) -> str | None:
     """The known word that was probably meant."""
     words = list(known)
