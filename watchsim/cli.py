@@ -11,6 +11,7 @@ import importlib
 import sys
 
 from watchsim import __version__, stopping
+from watchsim.commands.common.command_parser import CommandParser, meant
 from watchsim.commands.common.console import BAD_INPUT, FAULT, INTERRUPTED, InputError, say
 
 COMMANDS = (
@@ -39,7 +40,7 @@ def parser() -> argparse.ArgumentParser:
         epilog="watchsim COMMAND --help shows its options.",
     )
     top.add_argument("--version", action="version", version=f"watchsim {__version__}")
-    commands = top.add_subparsers(dest="command", metavar="COMMAND", required=True)
+    commands = top.add_subparsers(dest="command", metavar="COMMAND", required=True, parser_class=CommandParser)
     for name in COMMANDS:
         module = importlib.import_module(f"watchsim.commands.{name}")
         sub = commands.add_parser(name, help=module.HELP, description=module.__doc__)
@@ -54,7 +55,8 @@ def main(argv: list[str] | None = None) -> int:
         # µ, ° and · must reach a file or pipe whatever the locale says.
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(encoding="utf-8", errors="replace")
-    args = parser().parse_args(argv)
+    argv = sys.argv[1:] if argv is None else argv
+    args = _parsed(argv)
     try:
         status = int(args.run(args))
     except KeyboardInterrupt:
@@ -64,8 +66,17 @@ def main(argv: list[str] | None = None) -> int:
         say("There is not enough memory for this. A shorter run, a coarser picture, or --record statistics needs less.")
         status = BAD_INPUT
     except Exception as error:
-        status = _failed(error, sys.argv[1:] if argv is None else argv)
+        status = _failed(error, argv)
     return stopping.status() if stopping.requested() else status
+
+
+def _parsed(argv: list[str]) -> argparse.Namespace:
+    """What was typed; ends the program where it cannot be parsed."""
+    top, first = parser(), next((word for word in argv if not word.startswith("-")), "")
+    if first and first not in COMMANDS:
+        hint = meant(first, COMMANDS) or f" Commands: {', '.join(COMMANDS)}."
+        top.error(f'there is no command "{first}".{hint}')
+    return top.parse_args(argv)
 
 
 def _failed(error: Exception, argv: list[str]) -> int:

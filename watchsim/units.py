@@ -106,6 +106,7 @@ _PLAIN: dict[str, Unit] = {
     "vph": Unit(Fraction(1, 7200), 0, (0, 0, -1, 0)),  # a vibration is half an oscillation
     "gf": Unit(Fraction(980665, 10**8), 0, (1, 1, -2, 0)),
 }
+PLAIN = "here a plain number is needed, without a unit"
 DIGITS = 1000  # of a number as text
 _ALIASES = {"deg": "°", "degree": "°", "degrees": "°", "in": "inch", "day": "d", "bph": "vph", "turn": "rev", "sec": "s"}
 _SPELLINGS = {"μ": "µ", "−": "-", "**": "^", "⋅": "·", "*": "·", ".": "·", "\u00a0": " ", "\u202f": " "}
@@ -162,6 +163,7 @@ def known_unit(text: str, dimension: Dimension | None = None) -> Unit:
         return _unit(text)
     except KeyError:
         hint = f'. Write e.g. "{_example(dimension, "1")}"' if dimension else ""
+        hint = f"; {PLAIN}" if dimension is NUMBER else hint
         raise UnitError(f'"{text}" is not a unit known here{hint}') from None
 
 
@@ -250,13 +252,15 @@ def _bare(number: str, dimension: Dimension) -> str:
 def _unfitting(value: object, unit: Unit, dimension: Dimension) -> str:
     seen = next((d.name for d in DIMENSIONS if unit.powers in d.powers), None)
     what = f"is {_article(seen)}" if seen else "has a unit that does not fit"
+    if dimension is NUMBER:
+        return f'"{value}" {what}; {PLAIN}'
     return f'"{value}" {what}; here {_article(dimension.name)} is needed. Write e.g. "{_example(dimension, "1")}"'
 
 
 def _example(dimension: Dimension, number: str) -> str:
     # Nobody builds a watch of 4 vph or of 28800 Hz.
     unit = "Hz" if dimension is FREQUENCY and abs(float(number)) < 1000.0 else dimension.usual[1]
-    return "0.12" if dimension is NUMBER else _joined(number, unit)
+    return _joined(number, unit)
 
 
 def _joined(number: str, unit: str) -> str:

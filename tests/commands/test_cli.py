@@ -165,7 +165,7 @@ def test_unknown_command_is_exit_2(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as stopped:
         main(["tock"])
     assert stopped.value.code == 2
-    assert "invalid choice" in capsys.readouterr().err
+    assert 'there is no command "tock"' in capsys.readouterr().err
 
 
 def test_interrupt_keeps_what_was_simulated(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

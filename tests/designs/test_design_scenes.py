@@ -110,7 +110,7 @@ FAULTS = [
     ("design = 3\n", ":1  design", "a table is needed"),
     ('[design]\nof = "swiss_lever"\nteeth = 30\n', "design.drop_inside = 1.2° (default)", "leave 0.3° for the stone"),
     ('[design]\nof = "swiss_lever"\n[[torques]]\nbody = "weel"\nvalue = "1 µN·m"\n', "torques.1.body", "wheel"),
-    (DESIGN + '[[contacts]]\nbetween = ["lever.STONES", ["wheel.TEETH"]]\n', "contacts.4.between", "text"),
+    (DESIGN + '[[contacts]]\nbetween = ["lever.STONES", ["wheel.TEETH"]]\n', "contacts.4.between", "two sides are needed"),
     (DESIGN + "bodies = 3\n", "design.bodies", "unknown dimension"),
 ]
 

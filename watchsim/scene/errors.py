@@ -6,7 +6,7 @@ Faults are collected, never thrown one at a time: a designer mends a scene once,
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,17 +34,25 @@ class SceneError(ValueError):
 
 @dataclass
 class Faults:
-    """Collects faults; `lines` maps dotted keys to line numbers, `changed` holds keys set from outside the file."""
+    """Collects faults.
+
+    lines    line numbers of dotted keys
+    changed  keys set from outside the file; `by` what
+    spelt    dotted keys that are misspelt in the file -> how they stand there
+    """
 
     file: str = ""
     lines: Mapping[str, int] = field(default_factory=dict)
     changed: frozenset[str] = frozenset()
+    by: str = "changed value"
+    spelt: dict[str, str] = field(default_factory=dict)
     found: list[Fault] = field(default_factory=list)
     _known: set[Fault] = field(default_factory=set, repr=False)
 
     def add(self, key: str, message: str, shown: str = "") -> None:
         """Notes one fault at a dotted key such as "bodies.lever.position.1"; the same fault twice counts once."""
-        fault = replace(Fault(key, message, shown), place=self._place(key))
+        place, key = self._place(key), self._written(key)
+        fault = Fault(key, message, shown, place)
         if fault not in self._known:
             self._known.add(fault)
             self.found.append(fault)
@@ -56,9 +64,16 @@ class Faults:
 
     def _place(self, key: str) -> str:
         if any(key == changed or key.startswith(changed + ".") for changed in self.changed):
-            return "changed value"
-        line = self._line(key)
+            return self.by
+        line = self._line(self._written(key))
         return f"{self.file}:{line}" if line else self.file
+
+    def _written(self, key: str) -> str:
+        """The key as it stands in the file."""
+        for meant in sorted(self.spelt, key=len, reverse=True):
+            if key == meant or key.startswith(meant + "."):
+                key = self.spelt[meant] + key.removeprefix(meant)
+        return key
 
     def _line(self, key: str) -> int | None:
         """The line of the key itself, else of the nearest table or array that holds it."""

@@ -118,3 +118,9 @@ def test_a_point_counts_as_on_the_chain_by_a_share_of_its_length(
             load(tmp_path / "scene.toml")
     else:
         assert load(tmp_path / "scene.toml").body("ground").loops[0].edges[0].tangent(0.0) == pytest.approx((1.0, 0.0))
+
+
+def test_a_misspelt_layer_of_material_is_one_fault(tmp_path: Path) -> None:
+    """That the side of the layer that was meant is not known only follows from it."""
+    text = faults(tmp_path, 'layers = ["GROUND"]\nmaterial = { GROND = "left" }\n')
+    assert 'Did you mean "GROUND"?' in text and "the outline is open" not in text and "no closed outline" not in text

@@ -38,7 +38,7 @@ ONE_FAULT = [
         'there is no such file. Did you mean "wheel.dxf"?',
     ),
     ('drawing = "wheel.dxf"', 'drawing = "nope.dxf"', "bodies.wheel.drawing", "there is no such file. Known here: "),
-    ('drawing = "wheel.dxf"', 'drawing = ""', "bodies.wheel.drawing", "the name of a file is needed"),
+    ('drawing = "wheel.dxf"', 'drawing = ""', "bodies.wheel.drawing", "the name of a drawing is needed here: wheel.dxf."),
     ('drawing = "wheel.dxf"', "drawing = 3", "bodies.wheel.drawing", "a text in quotes"),
     (
         'layers = ["TEETH"]',
@@ -152,7 +152,7 @@ ONE_FAULT = [
     ('["179 s", "180 s"]', '[["1 s", "2 s"], ["4 s", "3 s"]]', "run.record.1", "from an earlier to a later time"),
     ("tolerance = 1e-8", "tolerance = 0", "run.tolerance", "must lie between 1e-13 and 0.01"),
     ('lift_angle = "52°"', 'lift_angle = "400°"', "timegrapher.lift_angle", "below a full turn"),
-    ('value = "275°", ', "", "expect.amplitude", "value is missing"),
+    ('value = "275°", ', "", "expect.amplitude", "missing: value. Write e.g."),
     ('value = "275°"', 'value = "275 s"', "expect.amplitude.value", "is a time; here an angle is needed"),
     ('tolerance = "0.02 rad"', 'tolerance = "0°"', "expect.amplitude.tolerance", "must be above zero"),
     ("value = 500", 'value = "500 m"', "expect.impacts.tolerance", "a bare number needs a unit"),
@@ -197,7 +197,7 @@ def test_unknown_key_hides_nothing_else(desk, good):
 
 def test_spring_on_an_unknown_body(desk, good):
     keys = [fault.key for fault in faults_of(desk, good.replace('body = "balance"\nfreq', 'body = "balnce"\nfreq'))]
-    assert keys == ["springs.0.body", "damping.0.q_factor"], "without its spring the balance has no quality factor"
+    assert keys == ["springs.0.body"], "that the balance has no spring for its quality factor follows from it"
 
 
 def test_a_misspelt_inertia_is_one_fault(desk, good):

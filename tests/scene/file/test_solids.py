@@ -144,7 +144,7 @@ MISUSES = [
     ('layer = "WEIGHT"\n' + PLATE + "count = 1e30\n", "count", "a whole number from 1 to 1000"),  # took all memory
     ('layer = "WEIGHT"\n' + PLATE + "count = 2.5\n", "count", "a whole number from 1 to 1000"),
     ('layer = "WEIGHT"\n' + PLATE + 'count = "two"\n', "count", "does not begin with a number"),
-    ('layer = "WEIGHT"\n' + PLATE + "turnd = 1\n", "turnd", 'Did you mean "turned"?'),
+    ('layer = "WEIGHT"\n' + PLATE + "coutn = 2\n", "coutn", 'Did you mean "count"?'),
     (STAFF + 'thickness = "1 mm"\n', "thickness", "has its size from its profile"),
     (STAFF + "count = 2\n", "count", "room for one"),
     (STAFF + "hairspring = true\n", "turned", "not both"),

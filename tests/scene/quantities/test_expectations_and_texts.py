@@ -60,8 +60,8 @@ REFUSED = [
     ),
     ({"any": {"value": "3 mm", "tolerance": "0 mm"}}, 'expect.any.tolerance = "0 mm": must be above zero'),
     ({"any": {"value": "3 mm", "tolerance": "-1 mm"}}, 'expect.any.tolerance = "-1 mm": must be above zero'),
-    ({"any": {"value": "3 mm"}}, "expect.any: tolerance is missing"),
-    ({"any": {"tolerance": "3 mm"}}, "expect.any: value is missing"),
+    ({"any": {"value": "3 mm"}}, "expect.any: missing: tolerance. Write e.g. { value = 500, tolerance = 3 }"),
+    ({"any": {"tolerance": "3 mm"}}, "expect.any: missing: value. Write e.g. { value = 500"),
     ({"any": 3}, "expect.any = 3: a table of keys is needed here"),
     (3, "expect = 3: write e.g."),
 ]

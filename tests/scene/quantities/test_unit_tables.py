@@ -229,5 +229,5 @@ def test_by_how_much_two_units_differ(kind: Dimension, words: str) -> None:
 def test_what_was_given_is_named(unit: str, word: str) -> None:
     with pytest.raises(UnitError, match=f'"2 {unit}" {word}; here a length is needed. Write e.g. "1 mm"'):
         parse(f"2 {unit}", units.LENGTH)
-    with pytest.raises(UnitError, match=r'is a length; here a plain number is needed\. Write e\.g\. "0\.12"'):
+    with pytest.raises(UnitError, match=r"is a length; here a plain number is needed, without a unit$"):
         parse("1 mm", NUMBER)

@@ -159,6 +159,7 @@ REFUSED = [
     ("bodies.lever.angle", 'there is no "lever" in bodies. Known here: wheel, rack, cam, arm, stone.'),
     ("bodies.whel.angle", 'Did you mean "wheel"?'),
     ("expect.beats.value", 'there is no "beats" in expect. Known here: rate.'),
+    ("duration", 'Did you mean "run.duration"?'),
     ("sprongs.0.rest", 'Did you mean "springs"?'),
     ("springs.0.rost", 'Did you mean "rest"?'),
     ("bodies.cam.swing.amplitud", 'Did you mean "amplitude"?'),

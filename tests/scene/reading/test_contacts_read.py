@@ -98,8 +98,8 @@ def test_sides_are_bodies_or_layers(plate: Any) -> None:
 
 
 ONE = [
-    ('"b"', "contacts.0.between: two sides are needed"),
-    ('"b", "c", "f"', "contacts.0.between: two sides are needed"),
+    ('"b"', 'contacts.0.between = ["b"]: two sides are needed'),
+    ('"b", "c", "f"', 'contacts.0.between = ["b", "c", "f"]: two sides are needed'),
     ('"b", "d"', 'contacts.0.between.1 = "d": there is no body "d". '),
     ('"d.X", "b"', 'contacts.0.between.0 = "d.X": there is no body "d". '),
     ('"b", "none"', 'contacts.0.between.1 = "none": none has no outline that could touch'),

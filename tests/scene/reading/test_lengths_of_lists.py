@@ -46,7 +46,7 @@ def test_of_a_long_value_the_beginning_is_shown(length: int, cut: bool) -> None:
 
 
 def test_what_toml_cannot_hold_is_shown_as_python_does() -> None:
-    assert shown({"a": 1.5}) == " = {'a': 1.5}"
+    assert shown({"a": None}) == " = {'a': None}"
 
 
 @pytest.mark.parametrize(("points", "taken"), [(0, False), (1, True), (2000, True), (2001, False)])
@@ -114,7 +114,7 @@ def test_a_driven_body_has_one_law(laws: tuple[str, ...], key: str) -> None:
     [
         ({"amplitude": "0.5 rad"}, ["swing"]),
         ({"frequency": "2 Hz"}, ["swing"]),
-        ({}, ["swing", "swing"]),
+        ({}, ["swing"]),
         (3, ["swing"]),
         ({"amplitude": "0.5 rad", "frequency": "0 Hz"}, ["swing.frequency"]),
         ({"amplitude": "0.5 mm", "frequency": "2 Hz"}, ["swing.amplitude"]),

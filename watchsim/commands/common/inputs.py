@@ -12,19 +12,16 @@ if TYPE_CHECKING:
 
 
 def load_scene(name: str, changes: list[str] | None = None, overlap: bool = True) -> Scene:
-    """The scene of a file or folder with KEY=VALUE changes; SceneError lists all that is wrong, expectations that no run can
-    answer and overlaps included.
+    """The scene of a file or folder with the KEY=VALUE of --set in it; SceneError lists all that is wrong, expectations that no
+    run can answer and overlaps included.
     """
     from watchsim.analysis.promised import expectation_faults
     from watchsim.mechanism.overlap import overlap_faults
     from watchsim.scene.errors import SceneError
-    from watchsim.scene.file.load import load
+    from watchsim.scene.file.load import load_set
     from watchsim.scene.file.override import assignments
-    from watchsim.scene.file.read_scene import changed
 
-    scene = load(name)
-    if changes:
-        scene = changed(scene, assignments(changes))
+    scene = load_set(name, assignments(changes or ()))
     faults = [*(overlap_faults(scene) if overlap else ()), *expectation_faults(scene)]
     if faults:
         raise SceneError(faults)

@@ -7,7 +7,7 @@ from typing import Any
 
 from watchsim.scene.errors import Faults
 from watchsim.scene.file.keys.key_values import shown
-from watchsim.scene.file.keys.schema import LISTED, NAMED, SECTIONS, TABLES, WITHIN, key_at, nearest, siblings
+from watchsim.scene.file.keys.schema import LISTED, SECTIONS, TABLES, WITHIN, key_at, nearest, siblings
 from watchsim.scene.file.readers.read_bodies import motion_of
 from watchsim.units import NUMBER, Dimension
 
@@ -23,6 +23,8 @@ INSTEAD_OF = {
     "value": ("table", "over", "period", "ratio", "efficiency", "run_down", "train"),
 }
 
+Entered = tuple[dict[str, Any] | None, tuple[str, ...]]  # a table of the mapping, and the path within it
+
 
 def assign(mapping: dict[str, Any], key: str, value: object, faults: Faults) -> None:
     path = tuple(key.split("."))
@@ -31,7 +33,7 @@ def assign(mapping: dict[str, Any], key: str, value: object, faults: Faults) -> 
         faults.add(key, f"unknown key. {_advice(path)}", shown(value))
         return
     holder, rest = _enter(mapping, path, faults)
-    if holder is None:
+    if not isinstance(holder, dict):
         return
     dimension = described.dimension_for(motion_of(mapping.get("bodies", {}), _body_name(path, holder)))
     in_si = with_unit(value, dimension)
@@ -43,45 +45,52 @@ def assign(mapping: dict[str, Any], key: str, value: object, faults: Faults) -> 
         _assign_element(holder, rest, in_si, (key, dimension, faults))
 
 
-def _enter(mapping: dict[str, Any], path: tuple[str, ...], faults: Faults) -> tuple[dict[str, Any] | None, tuple[str, ...]]:
-    """The table that holds the key, and the rest of the path from the key on; None after a fault."""
-    section = path[0]
+def _enter(mapping: dict[str, Any], path: tuple[str, ...], faults: Faults) -> Entered:
+    """The table that holds the key, and the rest of the path from the key on.
+
+    None after a fault, and where something else stands in the table's place: that is refused when the scene is read.
+    """
+    section, key = path[0], ".".join(path)
     if section in TABLES:
         return mapping.setdefault(section, {}), path[1:]
-    key = ".".join(path)
-    if section in NAMED:
-        if path[1] not in mapping.get(section, {}):
-            faults.add(key, f'there is no "{path[1]}" in {section}. {nearest(path[1], mapping.get(section, {}))}')
-            return None, ()
-        holder, rest = mapping[section][path[1]], path[2:]
-        if rest[0] == "adjust" and len(rest) > 1:
-            return _enter_adjust(holder, rest, key, faults)
-        if rest[0] != "solids" or len(rest) == 1:
-            return _entered(section, holder, rest)
-        section, path = f"{section}.{path[1]}.solids", ("solids", *rest[1:])
-        elements = holder.get("solids", [])
-    else:
-        elements = mapping.get(section, [])
-    if not path[1].isdigit() or int(path[1]) >= len(elements):
-        faults.add(key, f"{section} has no entry {path[1]}: there are {len(elements)}, counted from 0")
+    if section in LISTED:
+        return _enter_element(section, mapping.get(section, []), path[1:], key, faults)
+    named = mapping.get(section, {})
+    if not isinstance(named, dict):
         return None, ()
-    holder, rest = elements[int(path[1])], path[2:]
+    if path[1] not in named:
+        faults.add(key, f'there is no "{path[1]}" in {section}. {nearest(path[1], named)}')
+        return None, ()
+    holder, rest = named[path[1]], path[2:]
+    if isinstance(holder, dict) and rest[0] == "solids" and len(rest) > 1:
+        return _enter_element(f"bodies.{path[1]}.solids", holder.get("solids", []), rest[1:], key, faults)
+    return _enter_within(section, holder, rest, key, faults)
+
+
+def _enter_element(name: str, elements: object, rest: tuple[str, ...], key: str, faults: Faults) -> Entered:
+    """The table for one element of a list of tables."""
+    if not isinstance(elements, list):
+        return None, ()
+    if not rest[0].isdigit() or int(rest[0]) >= len(elements):
+        faults.add(key, f"{name} has no entry {rest[0]}: there are {len(elements)}, counted from 0")
+        return None, ()
+    return _enter_within(name, elements[int(rest[0])], rest[1:], key, faults)
+
+
+def _enter_within(section: str, holder: object, rest: tuple[str, ...], key: str, faults: Faults) -> Entered:
+    """The table within an entry where the path goes on into one."""
+    if not isinstance(holder, dict):
+        return None, ()
+    if rest[0] == "adjust" and len(rest) > 1:
+        return _enter_adjust(holder, rest, key, faults)
     if rest[0] == "train" and len(rest) > 2:
         return _enter_train(holder, rest, key, faults)
-    return _entered(section, holder, rest)
-
-
-def _entered(section: str, holder: dict[str, Any], rest: tuple[str, ...]) -> tuple[dict[str, Any] | None, tuple[str, ...]]:
-    """The table within an entry where the path goes on into one; what is none there is refused when the scene is read."""
     if (section, rest[0]) not in WITHIN or len(rest) == 1:
         return holder, rest
-    inner = holder.setdefault(rest[0], {})
-    return (inner, rest[1:]) if isinstance(inner, dict) else (None, ())
+    return holder.setdefault(rest[0], {}), rest[1:]
 
 
-def _enter_train(
-    holder: dict[str, Any], rest: tuple[str, ...], key: str, faults: Faults
-) -> tuple[dict[str, Any] | None, tuple[str, ...]]:
+def _enter_train(holder: dict[str, Any], rest: tuple[str, ...], key: str, faults: Faults) -> Entered:
     """The table for one wheel of a train."""
     wheels = holder.get("train")
     inside = isinstance(wheels, list) and rest[1].isdigit() and int(rest[1]) < len(wheels)
@@ -92,9 +101,7 @@ def _enter_train(
     return None, ()
 
 
-def _enter_adjust(
-    holder: dict[str, Any], rest: tuple[str, ...], key: str, faults: Faults
-) -> tuple[dict[str, Any] | None, tuple[str, ...]]:
+def _enter_adjust(holder: dict[str, Any], rest: tuple[str, ...], key: str, faults: Faults) -> Entered:
     """The table for one layer of a drawing, or for one outline of it; a layer that has none yet gets an empty one."""
     layers = holder.setdefault("adjust", {})
     if len(rest) == 2 and isinstance(layers, dict):
@@ -148,7 +155,8 @@ def with_unit(value: object, dimension: Dimension | None) -> object:
 
 def _advice(path: tuple[str, ...]) -> str:
     if path[0] not in SECTIONS:
-        return nearest(path[0], SECTIONS)
+        home = next((name for name, keys in TABLES.items() if path[0] in keys), None)
+        return f'Did you mean "{home}.{path[0]}"?' if home else nearest(path[0], SECTIONS)
     if path[0] == "lock":
         return "watchsim writes this table; it cannot be changed."
     if path[0] == "design":

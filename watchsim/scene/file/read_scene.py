@@ -15,8 +15,8 @@ from watchsim.scene.errors import Faults
 from watchsim.scene.file.assign import assign
 from watchsim.scene.file.designed import with_design
 from watchsim.scene.file.digests import file_digest
-from watchsim.scene.file.keys.key_values import Table
-from watchsim.scene.file.keys.schema import LOCK, SECTIONS, nearest
+from watchsim.scene.file.keys.key_values import Table, shown, understood
+from watchsim.scene.file.keys.schema import LISTED, LOCK, SECTIONS
 from watchsim.scene.file.readers.read_bodies import read_bodies
 from watchsim.scene.file.readers.read_carriers import note_carriers
 from watchsim.scene.file.readers.read_contacts import read_contacts
@@ -36,18 +36,23 @@ def from_mapping(
 ) -> Scene:
     """The scene of a TOML mapping; `path` is the file it stands for, drawings are looked for beside it.
 
-    `changes` are keys of a scene with a design that are changed after it has been put together.
+    `changes` are made first, in the mapping itself; of a scene with a design after it has been put together.
     """
     faults = faults or Faults(str(path) if path else "scene")
     folder = path.parent if path else Path()
-    written, made = None, None
+    written, made, changes = None, None, changes or {}
+    mapping = understood(mapping, SECTIONS, "section", "", faults)
     if "design" in mapping:
-        written = Written(mapping, dict(changes or {}))
+        written = Written(mapping, dict(changes))
         mapping, made = with_design(written, faults)
         written = replace(written, made=frozenset(made))
-    _note_sections(mapping, faults)
+    else:
+        for key, value in changes.items():
+            assign(mapping, key, value, faults)
     heading = read_heading(mapping, faults)
     read = read_bodies(mapping.get("bodies", {}), folder, faults, made)
+    if not read.bodies:  # all that names one would be wrong
+        mapping = {section: value for section, value in mapping.items() if section not in LISTED}
     bodies, sound = with_trains(mapping, read.bodies, faults), read.sound
     geared = read_gears(mapping, bodies, heading.gravity, faults)
     bodies = geared.bodies
@@ -93,55 +98,44 @@ def from_mapping(
     return scene
 
 
-def changed(scene: Scene, changes: Mapping[str, object]) -> Scene:
+def changed(scene: Scene, changes: Mapping[str, object], faults: Faults | None = None) -> Scene:
     """The scene with those dotted keys changed and everything checked again; SceneError lists what does not fit."""
+    name = str(scene.path) if scene.path else "scene"
     if scene.written is not None:
         later = {**scene.written.changes, **changes}
-        faults = Faults(str(scene.path) if scene.path else "scene", changed=frozenset(later))
-        return from_mapping(scene.written.mapping, scene.path, faults, later)
-    implied = {key: value for key, value in changes.items() if _implied(scene, key) is not None}
+        return from_mapping(scene.written.mapping, scene.path, Faults(name, changed=frozenset(later)), later)
+    implied = {key: value for key, value in changes.items() if unwritten(scene.source, key)}
     if 0 < len(implied) < len(changes):  # the others may move what the drawing implies, as a new pivot does
         scene = changed(scene, {key: value for key, value in changes.items() if key not in implied})
         changes = implied
     mapping = copy.deepcopy(scene.source)
-    faults = Faults(str(scene.path) if scene.path else "scene", changed=frozenset(changes))
-    for key, value in changes.items():
-        if (pair := _implied(scene, key)) is not None:
-            name, what, _ = key.split(".")[1:]
-            mapping["bodies"][name][what] = [f"{one!r} m" for one in pair]
-        assign(mapping, key, value, faults)
-    faults.raise_any()
-    return from_mapping(mapping, scene.path, faults)
+    for key in implied:
+        body, what, _ = key.split(".")[1:]
+        pair = {"position": scene.body(body).position, "centre_of_mass": scene.body(body).centre_of_mass}[what]
+        mapping["bodies"][body][what] = [f"{one!r} m" for one in pair]
+    return from_mapping(mapping, scene.path, faults or Faults(name, changed=frozenset(changes)), changes)
 
 
-def _implied(scene: Scene, key: str) -> tuple[float, float] | None:
-    """The pair (m) of which that key names one value, where the drawing gives it and the scene does not write it."""
-    path = key.split(".")
-    entry = scene.source.get("bodies", {}).get(path[1]) if path[0] == "bodies" and len(path) == 4 else None
-    if entry is None or isinstance(entry.get(path[2]), list):
-        return None
-    body = scene.body(path[1])
-    return {"position": body.position, "centre_of_mass": body.centre_of_mass}.get(path[2])
-
-
-def _note_sections(mapping: Mapping[str, Any], faults: Faults) -> None:
-    for section in mapping:
-        if section not in SECTIONS:
-            faults.add(section, f"unknown section. {nearest(section, SECTIONS)}")
-    if not mapping.get("bodies") and "design" not in mapping:
-        faults.add("bodies", "a scene needs at least one body, such as [bodies.wheel]")
+def unwritten(mapping: Mapping[str, Any], key: str) -> bool:
+    """Does that key name one value of a pair that the drawing gives and the scene does not write?"""
+    path, bodies = key.split("."), mapping.get("bodies")
+    if len(path) != 4 or path[0] != "bodies" or path[2] not in ("position", "centre_of_mass") or "design" in mapping:
+        return False
+    entry = bodies.get(path[1]) if isinstance(bodies, dict) else None
+    return isinstance(entry, dict) and not isinstance(entry.get(path[2]), list)
 
 
 def _check_nominal(scene: Scene, faults: Faults) -> None:
     """A rate is measured against a frequency near that of the oscillator; anything else is a slip."""
     if scene.nominal is None:
         return
-    natural = frequency(scene)
+    natural, given = frequency(scene), shown(scene.source["timegrapher"]["frequency"])
     if natural is None:
-        faults.add("timegrapher.frequency", "nothing in this scene swings on a spring or by gravity, so it has no rate")
+        faults.add("timegrapher.frequency", "nothing in this scene swings on a spring or by gravity, so it has no rate", given)
     elif abs(scene.nominal / natural - 1.0) > FAR_OFF:
         seen = f"the oscillator makes small swings at {natural:.6g} Hz ({7200.0 * natural:.6g} vph)"
-        faults.add("timegrapher.frequency", f"{seen}, more than {100 * FAR_OFF:.0f} % off: look at mass, inertia and spring")
+        why = f"{seen}, more than {100 * FAR_OFF:.0f} % off: look at mass, inertia and spring"
+        faults.add("timegrapher.frequency", why, given)
 
 
 def _check_lock(mapping: Mapping[str, Any], folder: Path, faults: Faults) -> None:

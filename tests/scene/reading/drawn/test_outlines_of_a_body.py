@@ -132,7 +132,7 @@ MISTAKES: list[tuple[dict[str, Any], list[str]]] = [
     ({"drawing": "b.dxf"}, ['drawing = "b.dxf": there is no such file. Did you mean "a.dxf"? (looked for']),
     ({"drawing": "x/b.dxf"}, ['drawing = "x/b.dxf": there is no such file, nor the folder']),
     ({"drawing": "zzzzzz"}, ['drawing = "zzzzzz": there is no such file. Known here: a.dxf, wheel.dxf (looked for']),
-    ({"drawing": ""}, ['drawing = "": the name of a file is needed here']),
+    ({"drawing": ""}, ['drawing = "": the name of a drawing is needed here: a.dxf, wheel.dxf']),
     ({"drawing": 3}, ["drawing = 3: a text in quotes is needed here"]),
     ({"snap": "0 mm"}, ['snap = "0 mm": must be above zero: it is the gap that may be closed']),
     ({"circle": "1 mm"}, ["circle: a body has one outline: leave out circle or drawing"]),

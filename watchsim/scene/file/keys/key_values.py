@@ -7,13 +7,13 @@ be read comes back as NaN, which fails no comparison made afterwards: one mistak
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from watchsim import units
 from watchsim.geometry.primitives import Point
 from watchsim.scene.errors import Faults
-from watchsim.scene.file.keys.schema import Keys, nearest
+from watchsim.scene.file.keys.schema import Keys, belongs, closest, nearest
 from watchsim.scene.file.keys.write_toml import value_text
 from watchsim.units import NUMBER, Dimension, UnitError, parse
 
@@ -30,21 +30,35 @@ def shown(value: object) -> str:
         text = value_text(value)
     except (TypeError, ValueError):  # a number of thousands of digits
         text = repr(value)
-    return f" = {text if len(text) <= 60 else text[:57] + '...'}"
+    return f" = {shortened(text)}"
+
+
+def shortened(text: str) -> str:
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def understood(mapping: Mapping[str, Any], keys: Iterable[str], what: str, path: str, faults: Faults) -> dict[str, Any]:
+    """The mapping with misspelt names put right: each is noted, and all else is read as it was meant."""
+    found: dict[str, Any] = {}
+    for key, value in mapping.items():
+        meant = key if key in keys else closest(key, [one for one in keys if one not in mapping and one not in found])
+        if key not in keys:
+            homes = "" if meant else belongs(key)
+            faults.add(f"{path}{key}", f"unknown {what}. {homes or nearest(key, keys)}")
+            faults.spelt |= {f"{path}{meant}": f"{path}{key}"} if meant else {}
+        found[meant or key] = value
+    return found
 
 
 class Table:
     """One table of the scene at the dotted `path`; unknown keys are noted as soon as it is made."""
 
     def __init__(self, mapping: object, path: str, keys: Keys, faults: Faults, motion: str = "pivot") -> None:
-        self.mapping: dict[str, Any] = mapping if isinstance(mapping, dict) else {}
+        self.mapping = understood(mapping, keys, "key", f"{path}.", faults) if isinstance(mapping, dict) else {}
         self.is_table = isinstance(mapping, dict)  # otherwise that has been noted, and is enough
         self.path, self.keys, self.faults, self.motion = path, keys, faults, motion
         if not self.is_table:
             faults.add(path, "a table of keys is needed here", shown(mapping))
-        for key in self.mapping:
-            if key not in keys:
-                faults.add(f"{path}.{key}", f"unknown key. {nearest(key, keys)}")
 
     def __contains__(self, key: str) -> bool:
         return key in self.mapping
@@ -66,18 +80,40 @@ class Table:
             self.fault(key, f'missing. Write e.g. {key} = "{example}"')
         return self.text(key)
 
+    def lacks(self, keys: Iterable[str], example: str) -> bool:
+        """Notes the keys that are not there, all in one fault."""
+        missing = [key for key in keys if key not in self]
+        if missing and self.is_table:
+            self.fault("", f"missing: {', '.join(missing)}. Write e.g. {example}")
+        return bool(missing)
+
     def one_of(self, key: str, choices: Sequence[str], default: str) -> str:
-        value = self.text(key, default)
+        """One of the words; after a fault the one that was probably meant, so that all else is read by it, or "" where none is
+        near."""
+        value = self.mapping.get(key, default)
         if value in choices:
-            return value
-        self.fault(key, f"not one of {', '.join(choices)}. {nearest(value, choices)}", with_value=True)
-        return default
+            return str(value)
+        meant = closest(value, choices) if isinstance(value, str) else None
+        hint = f' Did you mean "{meant}"?' if meant else ""
+        quoted = "" if isinstance(value, str) else ": a text in quotes is needed here"
+        self.fault(key, f"not one of {', '.join(choices)}{quoted}.{hint}", with_value=True)
+        return meant or ""
 
     def texts(self, key: str, example: str = "TEETH") -> tuple[str, ...]:
         value = self.mapping.get(key, [])
         if isinstance(value, (list, tuple)) and all(isinstance(item, str) for item in value):
             return tuple(value)
         self.fault(key, f'a list of texts is needed here, such as {key} = ["{example}"]', with_value=True)
+        return ()
+
+    def names(self, key: str, numbers: Sequence[int], needed: str, twice: bool = False) -> tuple[str, ...]:
+        """So many texts in a list, different ones unless one may stand there `twice`; none after a fault."""
+        value = self.mapping.get(key)
+        texts = value if isinstance(value, (list, tuple)) and all(isinstance(item, str) for item in value) else ()
+        if len(texts) in numbers and (twice or len(set(texts)) == len(texts)):
+            return tuple(texts)
+        if self.is_table:
+            self.fault(key if key in self else "", needed, with_value=key in self)
         return ()
 
     def tables(self, key: str) -> list[Any]:

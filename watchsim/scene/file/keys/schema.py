@@ -15,13 +15,20 @@ ALIKE = 0.7  # share of letters two words have in common; "bodys" is "bodies", "
 
 @dataclass(frozen=True, slots=True)
 class Key:
-    """What stands behind a key: numbers of a `dimension` (`linear` where the body slides or is free), or none."""
+    """What stands behind a key: numbers of a `dimension` (`linear` where the body slides or is free; either where it is not
+    known what the body does, motion ""), or none."""
 
     dimension: Dimension | None = None
     linear: Dimension | None = None
 
     def dimension_for(self, motion: str) -> Dimension | None:
+        if self.linear and self.dimension and not motion:
+            return _either(self.dimension, self.linear)
         return self.linear if self.linear and motion in ("slide", "free") else self.dimension
+
+
+def _either(one: Dimension, other: Dimension) -> Dimension:
+    return Dimension(f"{one.name} or {other.name}", one.powers + other.powers, one.si, one.usual)
 
 
 Keys = dict[str, Key]
@@ -158,11 +165,24 @@ def siblings(path: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(LISTED[section]) if section in LISTED else SECTIONS
 
 
+def belongs(key: str) -> str:
+    """'It belongs under [run].' of a key that has one place, or a few; else nothing."""
+    homes = [f"[{name}]" for name, keys in TABLES.items() if key in keys]
+    homes += ["[bodies.NAME]"] if key in BODY else []
+    homes += [f"[[{name}]]" for name, keys in LISTED.items() if key in keys]
+    return f"It belongs under {' or '.join(homes)}." if 1 <= len(homes) <= 3 else ""
+
+
+def closest(word: str, known: Iterable[str]) -> str | None:
+    """The known word that was probably meant."""
+    words = list(known)
+    folded = [one for one in words if one.casefold() == word.casefold()]
+    return next(iter(folded or difflib.get_close_matches(word, words, n=1, cutoff=ALIKE)), None)
+
+
 def nearest(word: str, known: Iterable[str]) -> str:
     """' Did you mean "drawing"?', or the list of what exists when nothing is near."""
     words = list(known)
-    match = difflib.get_close_matches(word, words, n=1, cutoff=ALIKE)
-    folded = [one for one in words if one.casefold() == word.casefold()]
-    if folded or match:
-        return f'Did you mean "{(folded or match)[0]}"?'
+    if meant := closest(word, words):
+        return f'Did you mean "{meant}"?'
     return f"Known here: {', '.join(words)}." if words else ""

@@ -49,6 +49,8 @@ def value_text(value: object) -> str:
         return repr(value)
     if isinstance(value, (list, tuple)):
         return f"[{', '.join(value_text(item) for item in value)}]"
+    if isinstance(value, Mapping):
+        return f"{{ {', '.join(f'{_key(key)} = {value_text(item)}' for key, item in value.items())} }}" if value else "{}"
     raise TypeError(f"TOML cannot hold {type(value).__name__}")
 
 

@@ -118,13 +118,17 @@ def _drawn(table: Table, drawing: Drawing, layers: tuple[str, ...]) -> tuple[Loo
 
 def _open(table: Table, folder: Path, made: Made) -> Drawing | None:
     name = table.text("drawing")
-    if not name:
-        if table.mapping["drawing"] == "":
-            table.fault("drawing", "the name of a file is needed here", with_value=True)
+    if not name and table.mapping["drawing"] != "":  # no text: noted
         return None
     path = folder / name
+    if path.is_dir() and name not in made:
+        there = ", ".join((Path(name) / file).as_posix() for file in _drawings(path)) or "a DXF or SVG file"
+        what = "this is a folder; the" if name else "the"
+        table.fault("drawing", f"{what} name of a drawing is needed here: {there}", with_value=True)
+        return None
     snap = table.positive("snap", "it is the gap that may be closed") if "snap" in table else SNAP
-    units = table.text("units") or None
+    told = table.text("units")
+    units = told if isinstance(table.mapping.get("units"), str) else None
     if name in made and not math.isnan(snap):
         return drawing_of(made[name], name, snap)
     if not path.is_file() or math.isnan(snap):
@@ -153,8 +157,12 @@ def _similar(path: Path) -> str:
     """' Did you mean ...?' with the drawings that lie in the folder."""
     if not path.parent.is_dir():
         return f", nor the folder {path.parent}"
-    there = sorted(file.name for file in path.parent.iterdir() if file.suffix.lower() in (".dxf", ".svg", ".svgz"))
+    there = _drawings(path.parent)
     return f". {nearest(path.name, there)}".removesuffix(".") if there else ""
+
+
+def _drawings(folder: Path) -> list[str]:
+    return sorted(file.name for file in folder.iterdir() if file.suffix.lower() in (".dxf", ".svg", ".svgz"))
 
 
 def _layers(table: Table, drawing: Drawing, sides: Mapping[str, Side], apart: frozenset[str]) -> tuple[str, ...]:

@@ -14,7 +14,7 @@ from watchsim.drawing.drawing import Drawing
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Point
 from watchsim.scene.file.keys.key_values import Table, shown
-from watchsim.scene.file.keys.schema import nearest
+from watchsim.scene.file.keys.schema import closest, nearest
 
 SIDES = ("left", "right")
 ADVICE = 'material = "left" (or "right", seen along the drawn direction; or a point behind it, ["0 mm", "-1 mm"])'
@@ -39,12 +39,14 @@ def face_layers(table: Table, drawing: Drawing, asked: tuple[str, ...]) -> dict[
             table.fault("material", "there is no open chain it could apply to: closed outlines have their material inside")
         return dict.fromkeys(chosen, side)
     result = {}
+    sure = table.mapping.get("layers") == [*asked] and set(asked) <= set(drawing.layers)  # else that is the fault
     for layer, entry in value.items():
-        result[layer] = _side(table, f"material.{layer}", entry)
+        meant = layer if layer in there else closest(layer, [one for one in there if one not in value])
+        result[meant or layer] = _side(table, f"material.{layer}", entry)
         if layer not in there:
             hint = nearest(layer, there) if there else "There are none in this drawing."
             table.fault(f"material.{layer}", f"there is no open chain on this layer. {hint}")
-        elif "layers" in table and layer not in asked:
+        elif sure and layer not in asked:
             table.fault(f"material.{layer}", f'this layer cannot touch: add "{layer}" to layers')
     return result
 

@@ -9,7 +9,6 @@ from watchsim.drawing.findings import Finding
 from watchsim.geometry.primitives import Point
 from watchsim.geometry.solids.mass import mass_properties
 from watchsim.scene.file.keys.key_values import SMALLEST, TOO_SMALL, Table
-from watchsim.scene.file.keys.schema import nearest
 from watchsim.scene.file.outlines.body_outlines import Outlines
 from watchsim.scene.file.readers.bore_notices import bore_notices, uniform_notices
 from watchsim.scene.file.readers.read_solids import read_solids
@@ -103,18 +102,16 @@ def _note_conflicts(table: Table, motion: str, outlines: Outlines) -> None:
 
 
 def _note_massless(table: Table, motion: str, inertias: Inertias, outlines: Outlines) -> None:
-    """A moving body that nothing holds back has no acceleration; a fault only where no other fault, such as a slip in the key,
-    is the reason."""
+    """A moving body that nothing holds back has no acceleration; a fault only where no other fault is the reason."""
     driven = table.mapping.get("motion") == "driven"  # needs no mass: it moves as prescribed
     needs = () if driven else {"pivot": ("inertia",), "slide": ("mass",), "free": ("mass", "inertia")}.get(motion, ())
-    slips = {nearest(name, table.keys) for name in table.mapping if name not in table.keys}
     promised = table.mapping.get("solids", []) not in ([], ()) or ("mass" in table and (outlines.loops or not outlines.sound))
     for key, value, example in (("mass", inertias.mass, "1 mg"), ("inertia", inertias.inertia, "0.05 mg·cm²")):
         if key in table and 0.0 < value < SMALLEST:
             table.fault(key, TOO_SMALL, with_value=True)
         elif key in table and value < 0.0:
             table.fault(key, "must not be negative", with_value=True)
-        elif key in needs and value == 0.0 and (key in table or not promised) and nearest(key, (key,)) not in slips:
+        elif key in needs and value == 0.0 and (key in table or not promised):
             why = f"the body can move ({motion}) but has no {key}"
             advice = f'Write {key} = "{example}" or give thickness and density in [[{table.path}.solids]]'
             table.fault(key if key in table else "", f"{why}. {advice}", with_value=key in table)

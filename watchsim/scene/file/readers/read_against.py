@@ -22,6 +22,8 @@ def read_against(table: Table, body: Body | None, known: Mapping[str, Body]) -> 
     if "against" not in table:
         return None
     name = table.text("against")
+    if not isinstance(table.mapping["against"], str):
+        return None
     if name not in known:
         table.fault("against", f"there is no such body. {nearest(name, known)}", with_value=True)
         return None

@@ -25,6 +25,18 @@ from watchsim.scene.solid import more_seen
 from watchsim.units import SPEED
 
 AS_DRAWN = "as drawn"
+LIKELY = {  # the motion of a body with such a key, where it cannot be read; the first that is there
+    **dict.fromkeys(("swing", "path"), DRIVEN),
+    **{"spin": "free", "axis": "slide"},
+    **dict.fromkeys(("inertia", "solids", "mass"), "pivot"),
+    "velocity": DRIVEN,
+}
+FORGOTTEN = (  # key, the motion that it belongs to, a key that must be there as well, one that must not
+    ("swing", DRIVEN, "swing", "inertia"),
+    ("path", DRIVEN, "path", "inertia"),
+    ("spin", "free", "mass", "axis"),
+    ("axis", "slide", "mass", "inertia"),
+)
 
 
 @dataclass(frozen=True)
@@ -56,11 +68,13 @@ def read_bodies(mapping: object, folder: Path, faults: Faults, made: Made | None
     if not isinstance(mapping, dict):
         faults.add("bodies", "write one table per body, such as [bodies.wheel]", shown(mapping))
         return ReadBodies()
+    if not mapping:
+        faults.add("bodies", "a scene needs at least one body, such as [bodies.wheel]")
     for name, entry in mapping.items():
         if not isinstance(entry, dict):
             where = f"bodies.{name}"
             faults.add(where, "a body is expected here: a table with its name, such as [bodies.wheel]", shown(entry))
-    mapping = {name: entry for name, entry in mapping.items() if isinstance(entry, dict)}
+    mapping = {name: _with_motion(name, entry, faults) for name, entry in mapping.items() if isinstance(entry, dict)}
     users = Counter(_drawing_path(entry, folder) for entry in mapping.values())
     bores: dict[Path | None, Counter[str]] = {path: Counter() for path in users}  # drawing -> layers, by how many bodies
     for entry in mapping.values():
@@ -72,6 +86,25 @@ def read_bodies(mapping: object, folder: Path, faults: Faults, made: Made | None
     sound = {one.name for one in read if one.outlines.sound}
     drawings = {one.table.text("drawing"): one.outlines.data for one in read if one.outlines.data is not None}
     return ReadBodies(tuple(bodies), tuple(dict.fromkeys(findings)), frozenset(sound), drawings)
+
+
+def _with_motion(name: str, entry: dict[str, Any], faults: Faults) -> dict[str, Any]:
+    """The entry with a motion that there is: after a fault the one that was probably meant, so that all else is read by it."""
+    table = Table(entry, f"bodies.{name}", BODY, faults)
+    motion = table.one_of("motion", (*MOTIONS, DRIVEN), "pivot")
+    guessed = next((likely for key, likely in LIKELY.items() if key in table), "fixed")
+    if "motion" not in table:
+        return {**table.mapping, **_forgotten(table)}
+    return {**table.mapping, "motion": motion or guessed}
+
+
+def _forgotten(table: Table) -> dict[str, str]:
+    """The motion of a body that does not give it and would make no sense without; it is noted."""
+    for key, motion, beside, excluding in FORGOTTEN:
+        if key in table and beside in table and excluding not in table:
+            table.fault(key, f'belongs to motion = "{motion}", which is not written; a body turns unless motion says otherwise')
+            return {"motion": motion}
+    return {}
 
 
 def motion_of(bodies: Mapping[str, Any], name: object) -> str:
@@ -138,7 +171,6 @@ def _position(one: _Read, read: Mapping[str, _Read]) -> Point:
 
 def _body(one: _Read, position: Point, on: str | None) -> Body:
     table, motion, outlines, inertias = one.table, one.motion, one.outlines, one.inertias
-    table.one_of("motion", (*MOTIONS, DRIVEN), "pivot")
     angle = table.quantity("angle")
     prescribed = read_prescribed(table, angle if motion == "pivot" else 0.0)
     shift = (-inertias.origin[0], -inertias.origin[1])
@@ -150,7 +182,7 @@ def _body(one: _Read, position: Point, on: str | None) -> Body:
         angle=angle,
         velocity=(prescribed.velocity,) if prescribed else _velocity(table, motion),
         axis=_axis(table, motion),
-        mass=inertias.mass,
+        mass=inertias.mass if inertias.mass >= 0.0 else NAN,  # that it is negative has been noted
         inertia=inertias.inertia,
         centre_of_mass=inertias.centre,
         loops=_shifted(outlines.loops, shift),
@@ -168,7 +200,7 @@ def _carrier(table: Table, name: str, bodies: Mapping[str, Any]) -> str | None:
     on = table.text("on")
     if on in bodies and on != name:
         return on
-    if on:
+    if isinstance(table.mapping["on"], str):
         others = [other for other in bodies if other != name]
         complaint = "a body cannot carry itself" if on == name else f"there is no such body. {nearest(on, others)}"
         table.fault("on", complaint, with_value=True)

@@ -18,10 +18,12 @@ NOWHERE = Side("")
 
 @dataclass(frozen=True, slots=True)
 class Known:
-    """The bodies that may be named, those whose outlines were read without a fault, and the tangential law of the scene."""
+    """The bodies that may be named, those whose outlines were read without a fault, those that say `layers = []`, and the
+    tangential law of the scene."""
 
     bodies: Mapping[str, Body]
     sound: frozenset[str]
+    bare: frozenset[str]
     law: str
 
 
@@ -29,7 +31,8 @@ def read_contacts(
     mapping: Mapping[str, Any], bodies: tuple[Body, ...], sound: frozenset[str], law: str, faults: Faults
 ) -> tuple[Contact, ...]:
     """All declared contacts; unknown bodies and layers, a body with itself and pairs declared twice are faults."""
-    known = Known({body.name: body for body in bodies}, sound, law)
+    bare = frozenset(body.name for body in bodies if mapping["bodies"][body.name].get("layers") == [])
+    known = Known({body.name: body for body in bodies}, sound, bare, law)
     tables = [Table(one, f"contacts.{i}", CONTACT, faults) for i, one in enumerate(listed(mapping, "contacts", faults))]
     contacts = tuple(_contact(table, known) for table in tables)
     _note_repeated(tables, contacts, known)
@@ -63,12 +66,8 @@ def _note_law(table: Table, contact: Contact, law: str) -> None:
 
 
 def _sides(table: Table, known: Known) -> tuple[Side, Side]:
-    names = table.texts("between")
-    if len(names) != 2:
-        if table.is_table:
-            table.fault(
-                "between" if "between" in table else "", 'two sides are needed: between = ["wheel.TEETH", "lever.STONES"]'
-            )
+    names = table.names("between", (2,), 'two sides are needed: between = ["wheel.TEETH", "lever.STONES"]', twice=True)
+    if not names:
         return NOWHERE, NOWHERE
     first, second = (_side(table, i, name, known) for i, name in enumerate(names))
     if first.body and first.body == second.body:
@@ -98,11 +97,20 @@ def _side(table: Table, i: int, name: str, known: Known) -> Side:
         table.faults.add(key, f'there is no body "{body_name}". {nearest(body_name, known.bodies)}', f' = "{name}"')
         return NOWHERE
     if body_name in known.sound:
-        if not body.loops:
+        if not body.loops and body_name in known.bare:
+            _note_bare(table.faults, body)
+        elif not body.loops:
             table.faults.add(key, f"{body_name} has no outline that could touch: give it a drawing or a shape", f' = "{name}"')
         elif layer and layer not in body.layers:
             _note_layer(table, key, body, layer)
     return Side(body_name, layer or None)
+
+
+def _note_bare(faults: Faults, body: Body) -> None:
+    """Once, however many contacts name the body."""
+    why = "nothing of the drawing can touch, though a contact names this body"
+    cure = 'Name the layers that touch, such as ["TEETH"], or leave layers out: then all with closed outlines can'
+    faults.add(f"bodies.{body.name}.layers", f"{why}. {cure}", " = []")
 
 
 def _note_layer(table: Table, key: str, body: Body, layer: str) -> None:

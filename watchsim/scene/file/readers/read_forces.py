@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from watchsim import units
@@ -21,6 +21,8 @@ from watchsim.scene.file.readers.springs.read_leaf import leaf_stiffness, read_r
 from watchsim.scene.force import Damping, Spring, Torque
 from watchsim.scene.oscillation import Oscillator, loads, oscillator
 
+OVER = {"pivot": ("angle", "time", BARREL), "slide": ("travel", "time")}
+ABSCISSA = {"angle": units.ANGLE, "travel": units.LENGTH, "time": units.TIME, BARREL: units.ANGLE}
 COORDINATE = {"pivot": "inertia", "slide": "mass"}
 
 
@@ -55,9 +57,12 @@ def read_damping(
     mapping: Mapping[str, Any], bodies: tuple[Body, ...], springs: tuple[Spring, ...], gravity: Point, faults: Faults
 ) -> tuple[Damping, ...]:
     found = []
+    lost = any(not spring.body for spring in springs) or (
+        not springs and mapping.get("springs", []) != []
+    )  # noted: whose is it?
     for entry in _entries(mapping, "damping", DAMPING, bodies, faults):
         swinging = oscillator(bodies, springs, gravity, entry.name) if "q_factor" in entry.table else None
-        found.append(_damping(entry, swinging))
+        found.append(_damping(entry, swinging, lost))
     return tuple(found)
 
 
@@ -66,7 +71,11 @@ def listed(mapping: Mapping[str, Any], section: str, faults: Faults) -> list[Any
     value = mapping.get(section, [])
     if isinstance(value, (list, tuple)):
         return list(value)
-    faults.add(section, f"write [[{section}]] with double brackets: there can be several", shown(value) if value else "")
+    faults.add(
+        section,
+        f"write [[{section}]] with double brackets: there can be several",
+        "" if isinstance(value, dict) else shown(value),
+    )
     return []
 
 
@@ -75,9 +84,10 @@ def _entries(mapping: Mapping[str, Any], section: str, keys: Keys, bodies: tuple
     elements = listed(mapping, section, faults)
     masses = _masses(bodies) if elements else {}
     for i, element in enumerate(elements):
-        name = element.get("body") if isinstance(element, dict) else None
+        table = Table(element, f"{section}.{i}", keys, faults)
+        name = table.mapping.get("body")
         body = known.get(name) if isinstance(name, str) else None
-        table = Table(element, f"{section}.{i}", keys, faults, body.motion if body else "pivot")
+        table.motion = body.motion if body else ""
         _note_body(table, known)
         other = known.get(read_against(table, body, known) or "")
         yield Entry(table, body, other, masses.get(body.name, NAN) if body else NAN)
@@ -121,7 +131,7 @@ def _stiffness(entry: Entry) -> float:
         table.fault(given[1], f"{' and '.join(given)} say the same thing: leave one out")
         return NAN
     if "leaf" in table:
-        return leaf_stiffness(table, table.motion == "pivot")
+        return leaf_stiffness(table, table.motion)
     if "frequency" in table:
         frequency = table.positive("frequency", "it is the frequency of the free oscillation")
         return entry.mass * (math.tau * frequency) ** 2
@@ -132,36 +142,42 @@ def _stiffness(entry: Entry) -> float:
 
 def _torque(entry: Entry) -> Torque:
     table = entry.table
-    for key in KEYS if table.mapping.get("over") != BARREL else ():
-        if key in table:
-            table.fault(key, f'belongs to a table with over = "{BARREL}"')
-    if "table" not in table:
-        if "value" not in table and table.is_table:
-            table.fault("", 'missing: value = "-1.0 µN·m", or a table over angle or time')
-        for key in ("over", "period"):
-            if key in table:
-                table.fault(key, "belongs to a table; a value is constant")
-        return Torque(entry.name, table.quantity("value"), against=entry.against)
+    if "table" in table:
+        return _tabulated(entry)
+    of_table = [key for key in ("over", "period", *KEYS) if key in table]
+    if "value" not in table and table.is_table:
+        needed = 'missing: value = "-1.0 µN·m", or a table over angle or time'
+        table.fault("", f"missing: the table to which {of_table[0]} belongs" if of_table else needed)
+        return Torque(entry.name, against=entry.against)
+    for key in of_table:
+        owner = f' with over = "{BARREL}"' if key in KEYS else "; a value is constant"
+        table.fault(key, f"belongs to a table{owner}")
+    return Torque(entry.name, table.quantity("value"), against=entry.against)
+
+
+def _tabulated(entry: Entry) -> Torque:
+    table, nothing = entry.table, Torque(entry.name, against=entry.against)
     if "value" in table:
         table.fault("value", "a torque is either a value or a table: leave one out")
-    sliding = table.motion == "slide"
-    choices = ("travel", "time") if sliding else ("angle", "time", BARREL)
+    choices = OVER.get(table.motion, tuple(dict.fromkeys(OVER["pivot"] + OVER["slide"])))
     if "over" not in table:
         table.fault("", f'a table needs over = "{choices[0]}" or over = "time"')
+        return nothing
     over = table.one_of("over", choices, choices[0])
-    if "period" in table and over != "time":
-        table.fault("period", 'belongs to a table with over = "time"')
+    if not over:  # columns of what?
+        return nothing
+    for key, owner in {"period": "time", **dict.fromkeys(KEYS, BARREL)}.items():
+        if key in table and over != owner:
+            table.fault(key, f'belongs to a table with over = "{owner}"')
     if over == BARREL and entry.body is not None:
         return mainspring_torque(table, entry.body, rows_of(table, units.ANGLE))
-    abscissa = units.TIME if over == "time" else units.LENGTH if sliding else units.ANGLE
-    over = "time" if over == "time" else "angle"
-    rows, period = rows_of(table, abscissa), None
+    rows, period = rows_of(table, ABSCISSA[over]), None
     if "period" in table and over == "time":
         rows, period = repeated(table, rows)
-    return Torque(entry.name, over=over, table=rows, against=entry.against, period=period)
+    return replace(nothing, over="time" if over == "time" else "angle", table=rows, period=period)
 
 
-def _damping(entry: Entry, swinging: Oscillator | None) -> Damping:
+def _damping(entry: Entry, swinging: Oscillator | None, spring_lost: bool) -> Damping:
     table = entry.table
     if table.is_table and not any(key in table for key in ("q_factor", "viscous", "quadratic", "coulomb")):
         choices = 'q_factor = 250, viscous = "0.6 nN·m·s/rad", quadratic = "1 nN·m·s²/rad²" or coulomb = "10 nN·m"'
@@ -169,17 +185,17 @@ def _damping(entry: Entry, swinging: Oscillator | None) -> Damping:
     for key in ("viscous", "quadratic", "coulomb"):
         if table.quantity(key) < 0.0:
             table.fault(key, "negative damping would drive the body", with_value=True)
-    viscous = _from_quality(entry, swinging) if "q_factor" in table else table.quantity("viscous")
+    viscous = _from_quality(entry, swinging, spring_lost) if "q_factor" in table else table.quantity("viscous")
     return Damping(entry.name, viscous, table.quantity("quadratic"), table.quantity("coulomb"), entry.against)
 
 
-def _from_quality(entry: Entry, swinging: Oscillator | None) -> float:
+def _from_quality(entry: Entry, swinging: Oscillator | None, spring_lost: bool) -> float:
     """Viscous damping c = sqrt(k J) / Q of a body that a spring or gravity pulls back."""
     table = entry.table
     if "viscous" in table:
         table.fault("q_factor", "q_factor and viscous say the same thing: leave one out")
     quality = table.positive("q_factor", "it is the quality factor of the oscillation, about 250 for a balance")
-    if entry.body and swinging is None:
+    if entry.body and swinging is None and not spring_lost:
         seen = f"neither a spring nor gravity pulls {entry.name} back, so it has no quality factor"
         table.fault("q_factor", f"{seen}. Add a spring under [[springs]], or gravity and mass; or write viscous")
     product = swinging.stiffness * swinging.inertia if swinging else NAN

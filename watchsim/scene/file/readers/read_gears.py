@@ -68,10 +68,8 @@ def _in_silence(_name: str, _message: str) -> None:
 
 
 def _gear(table: Table, known: Mapping[str, Body]) -> Gear | None:
-    names = table.texts("between", "wheel")
-    if len(names) != 2 or len(set(names)) != 2:
-        if table.is_table:
-            table.fault("between" if "between" in table else "", 'two bodies are needed: between = ["wheel", "pinion"]')
+    names = table.names("between", (2,), 'two bodies are needed: between = ["wheel", "pinion"]')
+    if not names:
         return None
     for i, name in enumerate(names):
         if name not in known:
@@ -86,16 +84,16 @@ def _gear(table: Table, known: Mapping[str, Body]) -> Gear | None:
     backlash = table.quantity("backlash")
     if backlash < 0.0:
         table.fault("backlash", "play cannot be negative: leave it out for none", with_value=True)
-    for key in PLAY if backlash == 0.0 else ():
-        if key in table:
-            table.fault(key, 'needs play: give backlash = "0.5°", how far the second body can go while the first is held')
+    if backlash == 0.0 and (idle := [key for key in PLAY if key in table]):
+        need = "needs play" if len(idle) == 1 else f"{' and '.join(idle)} need play"
+        table.fault(idle[0], f'{need}: give backlash = "0.5°", how far the second body can go while the first is held')
     restitution, efficiency = table.quantity("restitution"), table.quantity("efficiency", 1.0)
-    if not 0.0 <= restitution <= 1.0:
+    if restitution < 0.0 or restitution > 1.0:
         table.fault("restitution", "must lie between 0 (no rebound) and 1 (nothing lost)", with_value=True)
-    if not 0.0 < efficiency <= 1.0:
+    if efficiency <= 0.0 or efficiency > 1.0:
         table.fault("efficiency", "is a share of the work: above 0, at most 1", with_value=True)
     pressure = table.quantity("pressure_angle", PRESSURE_ANGLE)
-    if not 0.0 <= pressure < MOST_PRESSURE:
+    if pressure < 0.0 or pressure >= MOST_PRESSURE:
         table.fault(
             "pressure_angle", f"must lie between 0° and {math.degrees(MOST_PRESSURE):g}°; usual is 20°", with_value=True
         )
@@ -134,7 +132,8 @@ def _ranks(
     """By name, ascending: the smallest of those geared to each other holds the coordinate."""
     carrying = {number for ride in hung for number in (ride.host, ride.turns_with)}
     springs = mapping.get("springs", ())
-    sprung = {one.get("body") for one in springs if isinstance(one, Mapping)} if isinstance(springs, (list, tuple)) else set()
+    entries = [one for one in springs if isinstance(one, Mapping)] if isinstance(springs, (list, tuple)) else []
+    sprung = {str(one.get("body")) for one in entries}
     return {
         body.name: (
             body.prescribed is None,
@@ -202,6 +201,8 @@ def _with_velocities(
         if holder not in holders or "velocity" not in tables.get(body.name, {}) or not body.velocity:
             continue
         speed = body.velocity[0] / (geared.ratio if geared else 1.0)
+        if math.isnan(speed):  # that has been noted
+            continue
         if not math.isclose(start.setdefault(holder, speed), speed, rel_tol=SAME):
             why = f"contradicts the velocity of another body that is geared to {holder}: give one of them"
             faults.add(f"bodies.{body.name}.velocity", why)

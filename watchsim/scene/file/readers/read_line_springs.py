@@ -55,7 +55,7 @@ def _stiffness(table: Table) -> float:
     if "leaf" in table:
         if "stiffness" in table:
             table.fault("leaf", "stiffness and leaf say the same thing: leave one out")
-        return leaf_stiffness(table, turns=False)
+        return leaf_stiffness(table, "slide")
     if "stiffness" not in table and table.is_table:
         table.fault("", 'missing: stiffness = "20 N/m", or leaf = { … }')
     return table.positive("stiffness", "a spring pulls back")
@@ -72,11 +72,9 @@ def at_start(body: Body | None, point: Point) -> Point:
 
 def _ends(table: Table, known: Mapping[str, Body]) -> tuple[Body | None, Body | None] | None:
     """The two bodies, the second None for the movement; None altogether after a fault."""
-    names = table.texts("between", "lever")
-    if len(names) not in (1, 2) or len(set(names)) != len(names):
-        if table.is_table:
-            example = 'between = ["lever", "wheel"], or ["lever"] for a spring from the movement'
-            table.fault("between" if "between" in table else "", f"one or two bodies are needed: {example}")
+    example = 'between = ["lever", "wheel"], or ["lever"] for a spring from the movement'
+    names = table.names("between", (1, 2), f"one or two bodies are needed: {example}")
+    if not names:
         return None
     for i, name in enumerate(names):
         if name not in known:

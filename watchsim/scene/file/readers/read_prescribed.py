@@ -46,12 +46,10 @@ def read_prescribed(table: Table, start: float) -> Read | None:
 
 def _swing(table: Table, start: float) -> Read:
     inner = Table(table.mapping["swing"], f"{table.path}.swing", SWING, table.faults, table.motion)
+    first = "1 mm" if table.motion == "slide" else "10°"
     amplitude, phase = inner.quantity("amplitude", NAN), inner.quantity("phase")
-    if inner.is_table and "amplitude" not in inner:
-        inner.fault("", 'missing: amplitude = "10°"')
+    inner.lacks(("amplitude", "frequency"), f'swing = {{ amplitude = "{first}", frequency = "2 Hz" }}')
     frequency = inner.positive("frequency", "it says how often the body swings") if "frequency" in inner else NAN
-    if inner.is_table and "frequency" not in inner:
-        inner.fault("", 'missing: frequency = "2 Hz"')
     if not math.isfinite(amplitude + phase + frequency):
         return Read(Prescribed(), 0.0)
     law, _, velocity = swing(start - amplitude * math.sin(phase), amplitude, frequency, phase)

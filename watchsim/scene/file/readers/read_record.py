@@ -9,9 +9,10 @@ from typing import Any
 
 from watchsim import units
 from watchsim.scene.file.keys.key_values import Table, shown
-from watchsim.scene.file.keys.schema import nearest
+from watchsim.scene.file.keys.schema import closest
 from watchsim.scene.recording import ALL, EVERY, KEPT, Recording, Window
 
+CHOICES = f'write {", ".join(KEPT)}, "{EVERY} 10" for every tenth row, or a window: two times, such as ["179 s", "180 s"]'
 DIGITS = 9  # of the number after "every"
 
 
@@ -51,7 +52,7 @@ def _is_word(item: object) -> bool:
 
 def _window(table: Table, path: str, item: object) -> list[Window]:
     if not isinstance(item, (list, tuple)) or len(item) != 2:
-        table.faults.add(f"{table.path}.{path}", 'a window is two times, such as ["179 s", "180 s"]', shown(item))
+        table.faults.add(f"{table.path}.{path}", CHOICES, shown(item))
         return []
     start, end = table.point(path, item, units.TIME)
     if start >= end or start < 0.0:
@@ -69,8 +70,7 @@ def _stride(table: Table, path: str, item: str) -> int:
     word, _, number = item.partition(" ")
     if word == EVERY and is_stride(number):
         return int(number)
-    advice = f'write "{EVERY} 10" for every tenth row' if word == EVERY else nearest(item, KEPT)
-    table.faults.add(
-        f"{table.path}.{path}", f'no window, none of {", ".join(KEPT)} and not "{EVERY} 10": {advice}', shown(item)
-    )
+    meant = closest(item, (*KEPT, f"{EVERY} 10"))
+    hint = f'. Did you mean "{meant}"?' if meant and word != EVERY else ""
+    table.faults.add(f"{table.path}.{path}", f"{CHOICES}{hint}", shown(item))
     return 1

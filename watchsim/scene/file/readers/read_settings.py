@@ -28,6 +28,13 @@ WATCH_QUANTITIES = {
     "beat_error": units.TIME,
     "frequency": units.FREQUENCY,
 }
+EXAMPLES = {  # of what is expected, with its tolerance
+    "amplitude": ('"275°"', '"1°"'),
+    "rate": ('"4 s/d"', '"1 s/d"'),
+    "period": ('"0.25 s"', '"1 µs"'),
+    "beat_error": ('"0 ms"', '"0.1 ms"'),
+    "frequency": ('"4 Hz"', '"0.01 Hz"'),
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,14 +50,17 @@ class Heading:
 def read_heading(mapping: Mapping[str, Any], faults: Faults) -> Heading:
     table = Table(mapping.get("scene", {}), "scene", SCENE, faults)
     schema = table.mapping.get("schema", SCHEMA)
-    if schema != SCHEMA:
-        table.fault("schema", f"this version of watchsim reads schema {SCHEMA}", with_value=True)
+    if isinstance(schema, bool) or not isinstance(schema, (int, float)):
+        table.fault("schema", f"a plain number is needed here, without quotes: schema = {SCHEMA}", with_value=True)
+    elif schema != SCHEMA:
+        cure = "Install the watchsim that this scene was written for" if schema > SCHEMA else f"Write schema = {SCHEMA}"
+        table.fault("schema", f"this version of watchsim reads schema {SCHEMA}. {cure}", with_value=True)
     law, nu = table.one_of("tangential_law", tuple(TANGENTIAL_CODE), "coulomb"), table.quantity("nu")
     if nu < 0.0 or nu > 1.0:
         table.fault("nu", "must lie between 0 and 1", with_value=True)
-    elif nu > 0.0 and law != "pg1996":
+    elif nu > 0.0 and law not in ("pg1996", ""):
         table.fault("nu", f'belongs to tangential_law = "pg1996"; the law here is {law}. Leave it out', with_value=True)
-    return Heading(table.text("title"), table.pair("gravity"), law, nu)
+    return Heading(table.text("title"), table.pair("gravity"), law if table.is_table else "", nu)
 
 
 def read_run(mapping: Mapping[str, Any], faults: Faults) -> tuple[float, Recording, float]:
@@ -58,7 +68,7 @@ def read_run(mapping: Mapping[str, Any], faults: Faults) -> tuple[float, Recordi
     table = Table(mapping.get("run", {}), "run", RUN, faults)
     duration = table.positive("duration", "it is how long to simulate") if "duration" in table else DURATION
     tolerance = table.quantity("tolerance", TOLERANCE)
-    if not FINEST_TOLERANCE <= tolerance <= COARSEST_TOLERANCE:
+    if tolerance < FINEST_TOLERANCE or tolerance > COARSEST_TOLERANCE:
         limits = f"{FINEST_TOLERANCE:g} and {COARSEST_TOLERANCE:g}"
         table.fault("tolerance", f"must lie between {limits}; {TOLERANCE:g} is usual", with_value=True)
     return duration, read_record(table), tolerance
@@ -91,10 +101,8 @@ def read_expectations(mapping: Mapping[str, Any], faults: Faults) -> tuple[Expec
 
 def _expectation(key: str, table: Table) -> Expectation | None:
     """In the unit of its value; the tolerance may have another unit of the same kind."""
-    missing = [name for name in ("value", "tolerance") if name not in table]
-    for name in missing if table.is_table else ():
-        table.fault("", f'{name} is missing. Write e.g. {{ value = "275°", tolerance = "1°" }}')
-    if missing:
+    value, tolerance = EXAMPLES.get(key, ("500", "3"))
+    if table.lacks(("value", "tolerance"), f"{{ value = {value}, tolerance = {tolerance} }}") or not table.is_table:
         return None
     try:
         number, unit = split(table.mapping["value"])

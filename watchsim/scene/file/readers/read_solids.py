@@ -53,7 +53,8 @@ class _Reader:
 
     def solid(self) -> Solid | None:
         known = len(self.entry.faults.found)
-        spring, lying = self._flag("hairspring"), self._flag("lying")
+        spring = self._flag("hairspring", any(key in self.entry for key in SPRING_KEYS))
+        lying = self._flag("lying", "turned" in self.entry)
         self._note_strangers(spring)
         density = self._positive("density")
         if spring and "turned" not in self.entry:
@@ -61,15 +62,16 @@ class _Reader:
         elif "turned" in self.entry:
             made = self._turned(density, lying)
         else:
-            made = self._plate(density)
+            made = self._plate(density) if "lying" not in self.entry else None
         return made if len(self.entry.faults.found) == known else None
 
     def _note_strangers(self, spring: bool) -> None:
         """Keys that do not go together."""
         entry = self.entry
-        for key in SPRING_KEYS:
-            if key in entry and not spring:
-                entry.fault(key, "belongs to a hairspring: write hairspring = true as well, or leave it out", with_value=True)
+        if not spring and (idle := [key for key in SPRING_KEYS if key in entry]):
+            what = f"{', '.join(idle)} belong" if len(idle) > 1 else "belongs"
+            cure = f"write hairspring = true as well, or leave {'them' if len(idle) > 1 else 'it'} out"
+            entry.fault(idle[0], f"{what} to a hairspring: {cure}", with_value=True)
         if "lying" in entry and "turned" not in entry:
             entry.fault("lying", "belongs to a turned solid: write turned as well, or leave it out", with_value=True)
         if "bores" in entry and (spring or "turned" in entry):
@@ -224,12 +226,14 @@ class _Reader:
     def _closed(self) -> tuple[Loop, ...]:
         """The closed outlines of the layer, by default those that can touch."""
         closed = tuple(loop for loop in self.outlines.all if loop.closed)
+        layer = self._layer()
+        if not isinstance(self.entry.mapping.get("layer", ""), str):  # that has been noted
+            return ()
         if "layer" not in self.entry:
             loops = tuple(loop for loop in self.outlines.loops if loop.closed)
             if not loops and self.outlines.sound:
                 self.entry.fault("", 'the body has no closed outline to be a plate. Write layer = "..." or draw one')
             return loops
-        layer = self._layer()
         broken = [finding for finding in self.outlines.errors if finding.layer == layer]
         for finding in broken:
             self.entry.fault("layer", f"{finding.message.rstrip('.')}. {finding.fix}".strip(), with_value=True)
@@ -244,11 +248,13 @@ class _Reader:
     def _layer(self) -> str:
         return self.entry.text("layer")
 
-    def _flag(self, key: str) -> bool:
+    def _flag(self, key: str, likely: bool) -> bool:
+        """True or false; after a fault what is `likely`, by which all else is read."""
         value = self.entry.mapping.get(key, False)
-        if not isinstance(value, bool):
-            self.entry.fault(key, "true or false is needed here, without quotes", with_value=True)
-        return value is True
+        if isinstance(value, bool):
+            return value
+        self.entry.fault(key, "true or false is needed here, without quotes", with_value=True)
+        return likely
 
     def _positive(self, key: str) -> float:
         """A quantity that must be there and above zero; not-a-number after a fault."""

@@ -46,10 +46,8 @@ def _felt(train: object, path: str, faults: Faults | None) -> float:
 
 
 def _felt_wheel(table: Table) -> float:
-    for key in ("ratio", "inertia"):
-        if key not in table:
-            table.fault("", f'missing: {key}. Write {{ ratio = 10, inertia = "0.5 mg·cm²" }}, ratio as turns of the body')
-            return NAN
+    if table.lacks(("ratio", "inertia"), '{ ratio = 10, inertia = "0.5 mg·cm²" }, ratio as turns of the body'):
+        return NAN
     return table.positive("inertia", "it is the wheel's moment of inertia") / ratio_of(table) ** 2
 
 
@@ -67,7 +65,7 @@ def mainspring_torque(table: Table, body: Body, rows: Rows) -> Torque:
     if "ratio" not in table:
         table.fault("", "missing: ratio, turns of the body for one of the barrel, negative where the body turns clockwise")
     ratio, efficiency, run_down = ratio_of(table), table.quantity("efficiency", 1.0), table.quantity("run_down")
-    if not 0.0 < efficiency <= 1.0:
+    if efficiency <= 0.0 or efficiency > 1.0:
         table.fault("efficiency", "is a share of the work: above 0, at most 1", with_value=True)
     if math.isnan(ratio) or not rows:
         return Torque(body.name)

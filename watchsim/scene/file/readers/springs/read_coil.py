@@ -27,9 +27,7 @@ def read_coil(table: Table, body: Body | None) -> Coil | None:
         return None
     keys = Table(table.mapping["draw"], f"{table.path}.draw", COIL, table.faults)
     known = len(table.faults.found)
-    for key in ("inner", "outer", "turns"):
-        if key not in keys:
-            keys.fault("", f"missing: {key}. Write e.g. {EXAMPLE}")
+    keys.lacks(("inner", "outer", "turns"), EXAMPLE)
     inner = keys.positive("inner", "it is the radius of the collet") if "inner" in keys else math.nan
     outer = keys.positive("outer", "it is the stud's distance from the pivot") if "outer" in keys else math.nan
     turns = keys.quantity("turns", math.nan)

@@ -22,16 +22,15 @@ SIZES = {
 }
 
 
-def leaf_stiffness(table: Table, turns: bool) -> float:
-    """3 E I / L³ of the leaf of a spring, N/m; times arm², N·m/rad, where its body `turns`. NaN after a fault."""
+def leaf_stiffness(table: Table, motion: str) -> float:
+    """3 E I / L³ of the leaf of a spring, N/m; times arm², N·m/rad, on a body with motion "pivot". NaN after a fault."""
     if not isinstance(table.mapping["leaf"], dict):
         table.fault("leaf", f"a table is needed here, such as {EXAMPLE}", with_value=True)
         return NAN
     keys = Table(table.mapping["leaf"], f"{table.path}.leaf", LEAF, table.faults)
+    turns = motion == "pivot" or (not motion and "arm" in keys)
     needed = {**SIZES, **({"arm": "it is the distance of the leaf's force from the pivot"} if turns else {})}
-    for key in needed:
-        if key not in keys:
-            keys.fault("", f"missing: {key}. Write e.g. {EXAMPLE}" + (' with arm = "2 mm", on a pivoted body' if turns else ""))
+    keys.lacks(needed, EXAMPLE + (' with arm = "2 mm", on a pivoted body' if turns else ""))
     if "arm" in keys and not turns:
         keys.fault("arm", "belongs to a leaf on a pivoted body: leave it out")
     sizes = {key: keys.positive(key, why) if key in keys else NAN for key, why in needed.items()}

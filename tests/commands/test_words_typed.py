@@ -1,0 +1,67 @@
+"""What is answered to a command or an option that there is not?"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+from pathlib import Path
+
+import pytest
+
+from watchsim.cli import COMMANDS, main
+from watchsim.commands.common.command_parser import CommandParser
+
+ANSWERS = [  # what was typed, whose usage is shown, what is said
+    ("run --foo", "run", "there is no option --foo."),
+    ("run here --frce", "run", "there is no option --frce. Did you mean --force?"),
+    ("run here --fource=1", "run", "there is no option --fource. Did you mean --force?"),
+    ("plot --dak", "plot", "there is no option --dak. Did you mean --dark?"),
+    ("check -json", "check", "there is no option -json. Did you mean --json?"),
+    ("check -q", "check", "there is no option -q."),
+    ("new --lst", "new", "there is no option --lst. Did you mean --list?"),
+    ("plot here there", "plot", '"there" is one word too many. A text with blanks stands in quotes.'),
+    ("rnu here", "", 'there is no command "rnu". Did you mean run?'),
+    ("scene.toml", "", f'there is no command "scene.toml". Commands: {", ".join(COMMANDS)}.'),
+]
+
+
+@pytest.mark.parametrize(("typed", "command", "said"), ANSWERS)
+def test_what_is_not_known(typed: str, command: str, said: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as left:
+        main(typed.split(" "))
+    told, name = capsys.readouterr().err, f"watchsim {command}".strip()
+    assert left.value.code == 2
+    assert told.startswith(f"usage: {name} ") and told.endswith(f"\n{name}: error: {said}\n")
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_option_is_known_whole_and_shortened(name: str) -> None:
+    """Each alone is either taken, or something else is amiss."""
+    parser = CommandParser(prog=name, exit_on_error=False)
+    importlib.import_module(f"watchsim.commands.{name}").options(parser)
+    listed = argparse.ArgumentParser(add_help=False)
+    importlib.import_module(f"watchsim.commands.{name}").options(listed)
+    options = [option for action in listed._actions for option in action.option_strings]
+    assert options
+    for option in options:
+        for word in (option, f"{option}=1", option[:4] if option.startswith("--") else f"{option}x"):
+            parser._check(word)
+
+
+@pytest.mark.parametrize("value", ["-5s", "-30°", "−.5 mm", "-1 s:2 s", "-1.5"])
+def test_a_negative_quantity_is_the_value_of_its_option(value: str) -> None:
+    parser = CommandParser()
+    parser.add_argument("--duration")
+    parser.add_argument("place")
+    assert vars(parser.parse_args(["--duration", value, "here"])) == {"duration": value, "place": "here"}
+
+
+def test_a_folder_with_a_scene_is_told_from_results(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "scene.toml").write_text("")
+    assert main(["plot", str(tmp_path)]) == 2
+    assert f"missing. It holds a scene: watchsim run {tmp_path} makes results of it" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("value", ["-1.5", "-30°", "- 3", "-1 s:2 s", "a=-b", "-", "--", "-.5 mm"])
+def test_values_are_no_options(value: str) -> None:
+    CommandParser()._check(value)
