@@ -10,8 +10,8 @@ from typing import IO
 
 import pytest
 
-from watchsim.commands.common import drawn_in_two
-from watchsim.commands.common.drawn_in_two import drawn
+from watchsim.commands.second import drawn_in_two
+from watchsim.commands.second.drawn_in_two import drawn
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="processes are copied on Linux only")
 pytestmark = linux

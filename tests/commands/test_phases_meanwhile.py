@@ -12,7 +12,7 @@ from watchsim.analysis import beat_tables
 from watchsim.analysis.beat_tables import phases_csv
 from watchsim.analysis.timing import phases
 from watchsim.analysis.timing.beats import beats
-from watchsim.commands.common.made_beside import PhasesMeanwhile
+from watchsim.commands.second.made_beside import PhasesMeanwhile
 from watchsim.profiles_path import profiles_dir
 from watchsim.scene.file.load import load
 from watchsim.scene.oscillation import frequency
@@ -82,7 +82,7 @@ def test_what_is_not_kept_whole_is_left_alone(record: object, monkeypatch: pytes
 
 
 def test_more_than_memory_should_hold_is_let_go(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("watchsim.commands.common.made_beside.MOST", 3e5)
+    monkeypatch.setattr("watchsim.commands.second.made_beside.MOST", 3e5)
     run, meanwhile = run_and_texts(load(profiles_dir() / "bench_lever"), 3.0, monkeypatch)
     assert meanwhile.texts and not meanwhile._rows and not meanwhile._events
     assert whole(run, meanwhile.texts) == whole(run)

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from watchsim.commands.common.second_core import Meanwhile
+from watchsim.commands.second.second_core import Meanwhile
 from watchsim.profiles_path import profiles_dir
 from watchsim.results.tables import EventLines, write_events
 from watchsim.scene.file.load import load

@@ -15,8 +15,8 @@ import pytest
 from interpreter import python
 
 from watchsim import stopping
-from watchsim.commands.common import second_process as module
-from watchsim.commands.common.second_process import SecondProcess, second_process
+from watchsim.commands.second import second_process as module
+from watchsim.commands.second.second_process import SecondProcess, second_process
 from watchsim.profiles_path import profiles_dir
 from watchsim.scene.file.load import load
 from watchsim.simulation.simulate import simulate

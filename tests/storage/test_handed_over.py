@@ -11,6 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from watchsim.profiles_path import profiles_dir
+from watchsim.scene.file.load import load
 from watchsim.storage.columns import Columns, Mapping, mapping
 from watchsim.storage.handed_over import Lost, hand_over, memory_file, take_over
 
@@ -33,6 +35,16 @@ def test_messages_arrive_in_order_and_whole(line: Line) -> None:
         hand_over(line[0], value)
     for value in values:
         assert np.array_equal(take_over(line[1]), value) if isinstance(value, np.ndarray) else take_over(line[1]) == value
+
+
+def test_what_a_scene_has_only_remembered_is_not_passed(line: Line) -> None:
+    """Another thread may be adding to it meanwhile."""
+    scene = load(profiles_dir() / "incline")
+    assert scene.body(scene.bodies[0].name) is scene.bodies[0]
+    hand_over(line[0], scene)
+    passed = take_over(line[1])
+    assert passed == scene and passed.source == scene.source and passed.set("run.duration", "1 s").duration == 1.0
+    assert vars(scene).keys() - vars(passed).keys() == {"_by_name"}
 
 
 def test_files_are_passed_as_they_are(line: Line) -> None:

@@ -10,7 +10,7 @@ from typing import Any
 
 from watchsim import stopping
 from watchsim.commands.common.console import FINE, MISSED, announce_compile
-from watchsim.commands.common.second_process import SecondProcess, second_process
+from watchsim.commands.second.second_process import SecondProcess, second_process
 from watchsim.simulation.methods import EVENT_DRIVEN
 
 HELP = "the incline check and a ticking Swiss lever: numbers, plots, MP4 and GIF"

@@ -22,9 +22,9 @@ from watchsim.commands.common.console import (
 )
 from watchsim.commands.common.output_place import secured_folder, swept_run
 from watchsim.commands.common.record_size import room_for
-from watchsim.commands.common.second_core import Meanwhile
-from watchsim.commands.common.second_process import SecondProcess, second_process
 from watchsim.commands.common.write_run import Extras, goal_of, report_text, write
+from watchsim.commands.second.second_core import Meanwhile
+from watchsim.commands.second.second_process import SecondProcess, second_process
 from watchsim.simulation.methods import EVENT_DRIVEN, METHODS
 
 if TYPE_CHECKING:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -92,6 +92,10 @@ class Scene:
     def body(self, name: str) -> Body:
         """The body of that name; KeyError if there is none."""
         return self._by_name[name]
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Without `_by_name`, which one thread may be adding while another one pickles the scene."""
+        return {one.name: getattr(self, one.name) for one in fields(self)}
 
     @cached_property
     def _by_name(self) -> dict[str, Body]:

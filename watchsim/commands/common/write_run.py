@@ -10,13 +10,13 @@ import functools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import IO, TYPE_CHECKING, Any, Protocol
 
 from watchsim import stopping
 from watchsim.commands.common.console import InputError, Progress, say
 
 if TYPE_CHECKING:
-    from watchsim.commands.common.second_process import SecondProcess
+    from watchsim.commands.common.run_pictures import Draws
     from watchsim.results.tables import EventLines
     from watchsim.scene.scene import Scene
     from watchsim.simulation.record.trajectory import Trajectory
@@ -43,6 +43,22 @@ class Goal:
     scene: Mapping[str, str | bytes]  # name in the results folder -> content
 
 
+class Elsewhere(Protocol):
+    """What made a part of the results while the run went on, in another process."""
+
+    def finish(self, run: Trajectory) -> None:
+        """It is over."""
+
+    def phases(self) -> dict[bytes, str]:
+        """Rows of phases.csv, see `beat_tables.phases_csv`."""
+
+    def events(self) -> IO[bytes] | None:
+        """events.csv, in a file without a name; None where it has to be written here."""
+
+    def drawn(self, draws: Draws) -> Draws:
+        """What waits for plots that are being drawn there."""
+
+
 def goal_of(scene: Scene, folder: Path, replace: bool) -> Goal:
     """To be made before the run: its scene and drawings may be gone when it ends."""
     from watchsim.results.scene_copy import travelling
@@ -56,7 +72,7 @@ def write(
     extras: Extras,
     changed: Sequence[str] = (),
     lines: EventLines | None = None,
-    second: SecondProcess | None = None,
+    second: Elsewhere | None = None,
 ) -> dict[str, Any]:
     """Write the results folder; returns the summary as written.
 
@@ -91,7 +107,7 @@ def write(
     return numbers
 
 
-def _begun(run: Trajectory, folder: Path, lines: EventLines | None, second: SecondProcess | None) -> dict[str, Any]:
+def _begun(run: Trajectory, folder: Path, lines: EventLines | None, second: Elsewhere | None) -> dict[str, Any]:
     """What writes the motion, which is being packed from now on, and the events."""
     from watchsim.results.write_results import EVENTS, TRAJECTORY, Packed
     from watchsim.storage.write import real
@@ -105,7 +121,7 @@ def _begun(run: Trajectory, folder: Path, lines: EventLines | None, second: Seco
     return begun
 
 
-def _events(run: Trajectory, second: SecondProcess, path: Path) -> None:
+def _events(run: Trajectory, second: Elsewhere, path: Path) -> None:
     """Write events.csv as the second process has made it."""
     from watchsim.results.tables import write_events
     from watchsim.storage.nameless import give_name

@@ -176,7 +176,7 @@ def _work(line: socket.socket) -> NoReturn:
         nowhere = os.open(os.devnull, os.O_RDWR)
         for number in range(3):
             os.dup2(nowhere, number)
-        from watchsim.commands.common.made_beside import work
+        from watchsim.commands.second.made_beside import work
 
         work(line)
         status = 0

@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.analysis.beat_tables import finished_phases, time_of_a_part
-from watchsim.commands.common.drawn_in_two import drawn
 from watchsim.commands.common.run_pictures import empty_panels, plots
+from watchsim.commands.second.drawn_in_two import drawn
 from watchsim.mechanism.compile import compile_scene
 from watchsim.results.tables import EventLines
 from watchsim.scene.recording import EVERYTHING
