@@ -12,11 +12,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.analysis.nonnegative import nonnegative
+from watchsim.analysis.nonnegative import nonnegative_of_many
 from watchsim.contact.index_sets import STICK
-from watchsim.contact.kinematics import Closed, closed_contacts
+from watchsim.contact.kinematics import closed_contacts
 from watchsim.contact.poses import poses
-from watchsim.dynamics.equations_of_motion import balance
+from watchsim.dynamics.equations_of_motion import Seen, balance, room
 from watchsim.mechanism.compile import Compiled
 
 Array = NDArray[np.float64]
@@ -36,17 +36,6 @@ class Balanced(NamedTuple):
     point: Array
     load: Array
     acceleration: Array
-
-
-class Seen(NamedTuple):
-    """Kinematics of m contacts at n instants, and the forces h of all else."""
-
-    w_N: Array  # (n, m, coordinates)
-    w_T: Array
-    bar: Array  # (n, 2, m): bar terms along normals and tangents
-    normal: Array  # (n, m, 2)
-    point: Array
-    h: Array  # (n, coordinates)
 
 
 class Mechanism:
@@ -72,18 +61,9 @@ class Mechanism:
 
     def seen(self, t: Array, q: Array, u: Array, ids: NDArray[np.int64]) -> Seen:
         """Kinematics of these contacts, and all other forces."""
-        times, contacts, width = len(t), len(ids), q.shape[1]
-        shape = (times, contacts, width)
-        points = np.zeros((times, contacts, 2))
-        seen = Seen(np.zeros(shape), np.zeros(shape), np.zeros((times, 2, contacts)), points, points.copy(), np.zeros(q.shape))
-        pose, closed = poses(len(self.model.bodies)), closed_contacts(max(contacts, 1))
-        kin = closed.kin[:contacts].view(np.ndarray)
-        for row, time in enumerate(t.tolist()):
-            balance(self.model, time, q[row], u[row], ids, pose, closed, seen.normal[row], seen.h[row])
-            if contacts:
-                _spread(closed, contacts, seen.w_N[row], seen.w_T[row])
-                seen.bar[row, 0], seen.bar[row, 1] = kin["bar_N"], kin["bar_T"]
-                seen.point[row, :, 0], seen.point[row, :, 1] = kin["x"], kin["y"]
+        seen = room(len(t), len(ids), q.shape[1])
+        t, q, u = (np.ascontiguousarray(values) for values in (t, q, u))  # else the kernel is compiled once more
+        balance(self.model, t, q, u, ids, poses(len(self.model.bodies)), closed_contacts(1), seen)
         return seen
 
     def _forces(self, seen: Seen, mobility: Array, free: Array, ids: NDArray[np.int64], modes: NDArray[np.int64]) -> Array:
@@ -104,20 +84,10 @@ class Mechanism:
         force[:, sticks, 1] = unknown[:, rows:]
         most = np.abs(force).max(axis=(1, 2))
         beyond = (np.abs(force[:, :, 1]) > friction * force[:, :, 0] + SLACK * most[:, None]).any(axis=1)
-        pressing = None  # what presses at one instant most likely does at the next
-        for k in np.flatnonzero(beyond):
-            ways = (seen.w_N[k], seen.w_T[k])
-            force[k], pressing = _within_cones(system[k], right[k], ways, (sticks, slide, friction), pressing)
+        if beyond.any():
+            directions = (seen.w_N[beyond], seen.w_T[beyond])
+            force[beyond] = _within_cones(system[beyond], right[beyond], directions, (sticks, slide, friction))
         return force
-
-
-def _spread(closed: Closed, rows: int, out_N: Array, out_T: Array) -> None:
-    """The force directions of the first contacts, by coordinate."""
-    for row, slots in enumerate(closed.slots[:rows].tolist()):
-        for slot in range(slots):
-            j = closed.coord[row, slot]
-            out_N[row, j] += closed.w_N[row, slot]
-            out_T[row, j] += closed.w_T[row, slot]
 
 
 def _least(system: Array, right: Array) -> Array:
@@ -130,35 +100,34 @@ def _least(system: Array, right: Array) -> Array:
 
 
 def _within_cones(
-    system: Array,
-    right: Array,
-    directions: tuple[Array, Array],
-    laws: tuple[NDArray[np.int64], Array, Array],
-    likely: NDArray[np.bool_] | None,
-) -> tuple[Array, NDArray[np.bool_]]:
-    """Forces (m, 2) of redundant contacts: among all that balance, those that press and stay within their cones of friction;
-    and which edges of the cones they lie along, `likely` ones to begin with."""
+    system: Array, right: Array, directions: tuple[Array, Array], laws: tuple[NDArray[np.int64], Array, Array]
+) -> Array:
+    """Forces (n, m, 2) of redundant contacts: of all that balance, those that press and stay within their cones of friction."""
     (w_n, w_t), (sticks, slide, friction) = directions, laws
     rows = len(slide)
-    tangents = slide.copy()
-    tangents[sticks] = friction[sticks]
+    # Along the edges of the cones: one of a contact that slides; of one that sticks two, the second behind all others.
     owner = np.concatenate((np.arange(rows), sticks))
-    corners = np.column_stack((np.ones(len(owner)), np.concatenate((tangents, -friction[sticks]))))
-    ways = corners[:, :1] * w_n[owner] + corners[:, 1:] * w_t[owner]
-    share, used = _pressing(system @ ways.T, right, likely)
-    force = np.zeros((rows, 2))
-    np.add.at(force, owner, share[:, None] * corners)
-    return force, used
+    lean = np.concatenate((slide, -friction[sticks]))
+    lean[sticks] = friction[sticks]
+    ways = w_n[:, owner] + lean[:, None] * w_t[:, owner]
+    shares = _pressing(system @ ways.transpose(0, 2, 1), right)
+    force = np.stack((shares, lean * shares), axis=2)
+    force[:, sticks] += force[:, rows:]
+    return force[:, :rows]
 
 
-def _pressing(system: Array, right: Array, likely: NDArray[np.bool_] | None) -> tuple[Array, NDArray[np.bool_]]:
-    """A solution without negative shares, near the smallest; as near to one as can be where rounding leaves none. And which
-    shares it has."""
-    high = 1.0 / np.maximum(np.abs(system).max(axis=1), np.finfo(float).tiny)
-    scaled, target = system * high[:, None], right * high
-    count = scaled.shape[1]
-    near = nonnegative(np.vstack((scaled, GENTLE * np.eye(count))), np.append(target, np.zeros(count)), likely)
-    used = near > SMALLEST * near.max(initial=0.0)
+def _pressing(system: Array, right: Array) -> Array:
+    """Solutions (n, edges) without negative shares, near the smallest; as near to one as can be where rounding leaves none."""
+    high = 1.0 / np.maximum(np.abs(system).max(axis=2), np.finfo(float).tiny)
+    scaled, target = system * high[:, :, None], right * high
+    times, _, count = scaled.shape
+    small = np.broadcast_to(GENTLE * np.eye(count), (times, count, count))
+    near = nonnegative_of_many(np.concatenate((scaled, small), axis=1), np.hstack((target, np.zeros((times, count)))))
     # The push towards small forces leaves the balance off by its square; among those in use the rest is put right.
-    near[used] += np.linalg.lstsq(scaled[:, used], target - scaled @ near, rcond=SMALLEST)[0]
-    return near, used
+    off = target - (scaled @ near[:, :, None])[:, :, 0]
+    used = near > SMALLEST * near.max(axis=1, keepdims=True)
+    for alike in np.unique(used, axis=0):
+        of = (used == alike).all(axis=1)
+        inverse = np.linalg.pinv(scaled[of][:, :, alike], rcond=SMALLEST)
+        near[np.ix_(of, alike)] += (inverse @ off[of, :, None])[:, :, 0]
+    return near

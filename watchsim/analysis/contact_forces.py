@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.analysis.balanced_forces import Mechanism
+from watchsim.analysis.balanced_forces import Balanced, Mechanism
 from watchsim.analysis.mesh_forces import Loads, Motion, Pressed, mesh_forces
 from watchsim.analysis.modes_in_force import modes_in_force
 from watchsim.mechanism.compile import Compiled, compile_scene
@@ -67,21 +67,19 @@ def forces(run: Trajectory, times: Iterable[float] | float | None = None) -> For
     compiled = compile_scene(run.scene)
     where, speed = absolute(compiled, q, False), absolute(compiled, u, True)
     mechanism = Mechanism(compiled)
-    alike: dict[tuple[tuple[int, int], ...], list[int]] = {}  # instants by what is in force
-    for row, modes in enumerate(modes_in_force(run, t)):
-        alike.setdefault(tuple(sorted(modes.items())), []).append(row)
+    alike = modes_in_force(run, t)
     pairs = np.array(sorted({k for in_force in alike for k, _ in in_force}), np.int64)
-    shape = (len(t), len(pairs))
-    out = Forces(t, pairs, np.zeros(shape), np.zeros(shape), np.full((*shape, 2), np.nan), np.full((*shape, 2), np.nan), {}, {})
-    load, turning = np.zeros(where.shape), np.zeros(where.shape)
+    shape = (len(t), len(pairs), 2)
+    force, pressed, load, turning = np.zeros((2, *shape[:2])), np.zeros(shape), np.zeros(where.shape), np.zeros(where.shape)
+    out = Forces(t, pairs, force[0], force[1], np.full(shape, np.nan), np.full(shape, np.nan), {}, {})
     for in_force, rows in alike.items():
         found = mechanism.balanced(t[rows], where[rows], speed[rows], dict(in_force))
         place = np.ix_(np.array(rows), np.searchsorted(pairs, found.ids))
         out.normal[place], out.tangential[place] = found.force[:, :, 0], found.force[:, :, 1]
-        out.direction[place], out.point[place] = found.normal, found.point
+        out.direction[place], out.point[place], pressed[place] = found.normal, found.point, _pressed(found)
         load[rows], turning[rows] = found.load, found.acceleration
     motion = Motion(t, where, speed, turning)
-    both = Loads(pairs, np.stack((out.normal, out.tangential), axis=2), _pressed(out))
+    both = Loads(pairs, np.moveaxis(force, 0, 2), pressed)
     meshed = list(mesh_forces(run.scene, compiled, motion, both))
     out.pivots.update(_pivots(run, compiled, motion, both, meshed))
     out.drives.update(_drives(run, compiled, load, turning))
@@ -97,10 +95,10 @@ def absolute(compiled: Compiled, values: Array, rates: bool) -> Array:
     return out
 
 
-def _pressed(found: Forces) -> Array:
-    """Force on body A of each contact, N (n, k, 2)."""
-    across = np.stack((-found.direction[:, :, 1], found.direction[:, :, 0]), axis=2)
-    return np.asarray(np.nan_to_num(found.normal[:, :, None] * found.direction + found.tangential[:, :, None] * across))
+def _pressed(found: Balanced) -> Array:
+    """Force on body A of each contact, N (n, m, 2)."""
+    across = np.stack((-found.normal[:, :, 1], found.normal[:, :, 0]), axis=2)
+    return np.asarray(found.force[:, :, :1] * found.normal + found.force[:, :, 1:] * across)
 
 
 def _pivots(

@@ -118,7 +118,7 @@ def _lacking(scene: Scene, compiled: Compiled, free: Compiled, motion: Motion, l
     mechanism = Mechanism(free)
     seen = mechanism.seen(motion.t, q, u, ids)
     force = loads.force[:, here]
-    load = (force[:, :, :1] * seen.w_N + force[:, :, 1:] * seen.w_T).sum(axis=1)
+    load = (force[:, None, :, 0] @ seen.w_N + force[:, None, :, 1] @ seen.w_T)[:, 0]
     lacking = np.asarray(free.model.coordinates.mass) * a - seen.h + mechanism.dry * np.sign(u) - load
     return lacking, ~(mechanism.prescribed | ((mechanism.dry > 0.0) & (u == 0.0)))
 

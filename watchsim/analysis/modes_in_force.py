@@ -18,32 +18,37 @@ from watchsim.storage.columns import blocks
 
 MODES = (EventKind.CLOSE, EventKind.OPEN, EventKind.STICK, EventKind.SLIDE, EventKind.HANDOVER)
 
+InForce = tuple[tuple[int, int], ...]  # contacts with their modes, by number of the contact
 
-def modes_in_force(run: Trajectory, times: Array) -> list[dict[int, int]]:
-    """Contact -> mode of what is in force, at each of the times."""
+
+def modes_in_force(run: Trajectory, times: Array) -> dict[InForce, list[int]]:
+    """What is in force -> at which of the times it is: their places among `times`, the earliest first."""
     order = np.argsort(times, kind="stable")
     sorted_times, places = times[order], order.tolist()
     modes: dict[int, int] = {}
-    found: list[dict[int, int]] = [{} for _ in places]
+    found: dict[InForce, list[int]] = {}
     asked = 0  # how many of the times are done
     for (part,) in blocks(run.events):
         if asked == len(places):
             break
-        told = part[np.isin(part["kind"], MODES)]
+        told = np.compress(np.isin(part["kind"], MODES), part)  # a third of the time of indexing
         t = np.ascontiguousarray(told["t"])
         done = int(np.searchsorted(t, sorted_times[0], side="right"))
         modes = _Changes(told[:done], modes).modes()
-        for stop in np.searchsorted(t, sorted_times[asked : _before(sorted_times, part["t"][-1])], side="right").tolist():
-            if stop > done:
-                _follow(modes, told[done:stop])
-                done = stop
-            found[places[asked]] = dict(modes)
-            asked += 1
+        here = sorted_times[asked : _before(sorted_times, part["t"][-1])]
+        for stop, times_there in zip(*np.unique(np.searchsorted(t, here, side="right"), return_counts=True), strict=True):
+            _follow(modes, told[done:stop])
+            found.setdefault(_in_order(modes), []).extend(places[asked : asked + times_there])
+            done, asked = stop, asked + times_there
         if asked < len(places):
             _follow(modes, told[done:])
-    for place in places[asked:]:
-        found[place] = dict(modes)
+    if asked < len(places):
+        found.setdefault(_in_order(modes), []).extend(places[asked:])
     return found
+
+
+def _in_order(modes: dict[int, int]) -> InForce:
+    return tuple(sorted(modes.items()))
 
 
 def _before(times: Array, end: float) -> int:
@@ -59,14 +64,15 @@ class _Changes:
         gained, lost = events["contact"].astype(np.int64), events["value"].astype(np.int64)
         handed = events["kind"] == EventKind.HANDOVER
         self._events, self._earlier = events, earlier
-        self._of = np.concatenate((gained, lost[handed]))
-        self._at = np.concatenate((np.arange(len(events)), np.flatnonzero(handed)))
-        order = np.lexsort((self._at, self._of))
-        self._of, self._at = self._of[order], self._at[order]
+        of = np.concatenate((gained, lost[handed]))
+        at = np.concatenate((np.arange(len(events)), np.flatnonzero(handed)))
+        order = np.lexsort((at, of))
+        contacts, first = np.unique(of[order], return_index=True)
+        self._numbers = dict(zip(contacts.tolist(), np.split(at[order], first[1:]), strict=False))  # of each contact's events
 
     def modes(self) -> dict[int, int]:
         """Contact -> mode of what is in force after all of the events."""
-        found = {contact: self._mode(contact) for contact in {*np.unique(self._of).tolist(), *self._earlier}}
+        found = {contact: self._mode(contact) for contact in {*self._numbers, *self._earlier}}
         return {contact: mode for contact, mode in found.items() if mode is not None}
 
     def _mode(self, contact: int) -> int | None:
@@ -85,9 +91,9 @@ class _Changes:
 
     def _last_of(self, contact: int, before: int) -> int | None:
         """The number of the last event before another that says something about a contact."""
-        first, end = np.searchsorted(self._of, (contact, contact + 1))
-        k = int(np.searchsorted(self._at[first:end], before))
-        return int(self._at[first + k - 1]) if k else None
+        own = self._numbers.get(contact, ())
+        k = int(np.searchsorted(own, before))
+        return int(own[k - 1]) if k else None
 
 
 def _follow(modes: dict[int, int], events: NDArray[Any]) -> None:

@@ -35,6 +35,33 @@ def nonnegative(system: Array, right: Array, likely: NDArray[np.bool_] | None = 
     return x
 
 
+def nonnegative_of_many(systems: Array, rights: Array) -> Array:
+    """x (k, n): of each of k systems (k, m, n) with b (k, m) what `nonnegative` gives.
+
+    Of systems that are much alike most have the same entries above zero: found for one, they are tried on all that are left.
+    """
+    x = np.zeros((len(systems), systems.shape[2]))
+    left, likely = np.arange(len(systems)), None
+    while len(left):
+        first, left = left[0], left[1:]
+        x[first] = nonnegative(systems[first], rights[first], likely)
+        likely = x[first] > 0.0
+        found, best = _of_alike(systems[left], rights[left], likely)
+        x[left[best]] = found[best]
+        left = left[~best]
+    return x
+
+
+def _of_alike(systems: Array, rights: Array, used: NDArray[np.bool_]) -> tuple[Array, NDArray[np.bool_]]:
+    """The best x with only the `used` entries; and where it is the best of all: none is negative, and no other would help."""
+    q, r = np.linalg.qr(systems[:, :, used])
+    x = np.zeros((len(systems), len(used)))
+    x[:, used] = np.linalg.solve(r, q.transpose(0, 2, 1) @ rights[:, :, None])[:, :, 0]
+    slope = (systems.transpose(0, 2, 1) @ (rights[:, :, None] - systems @ x[:, :, None]))[:, :, 0]
+    least = LEAST * np.abs(systems).max(axis=(1, 2)) * np.abs(rights).max(axis=1)
+    return x, (x[:, used] > 0.0).all(axis=1) & (slope[:, ~used] <= least[:, None]).all(axis=1)
+
+
 def _begun(system: Array, right: Array, likely: NDArray[np.bool_] | None) -> tuple[Array, NDArray[np.bool_]]:
     """Where to begin, and which entries are in use there: the best with the likely ones, if none of them is negative."""
     x = np.zeros(system.shape[1])

@@ -65,18 +65,25 @@ def told(bar: float, contacts: list[int], top: bool, u: float = 0.0) -> tuple[An
     return arms(run, compiled, 0.0, contacts), disc
 
 
+def on_paper(disc: float, bar: float) -> tuple[complex, complex, tuple[float, float], tuple[float, float]]:
+    """Of the contact on the bar's upper edge: where, its normal, and the arms about both pivots along the normal and across."""
+    normal = 1j * np.exp(1j * bar)
+    point = DISC + CENTRE * np.exp(1j * disc) - RADIUS * normal
+    along, across = ((cross(point - DISC, way), -cross(point - BAR, way)) for way in (normal, 1j * normal))
+    return point, normal, along, across
+
+
 @pytest.mark.parametrize("bar", [0.2, -0.35, 0.5])
 @pytest.mark.parametrize("others", [[], [0]])
 def test_arms_of_a_contact(bar: float, others: list[int]) -> None:
     """On body A along the normal out of B, and along that turned by +90°; on body B the other way."""
     found, disc = told(bar, [*others, TOP], top=True)
-    row, turn = len(others), np.exp(1j * bar)
-    normal, across = 1j * turn, -turn
-    point = DISC + CENTRE * np.exp(1j * disc) - RADIUS * normal
+    row = len(others)
+    point, normal, along, across = on_paper(disc, bar)
     assert complex(*found.way[row]) == pytest.approx(normal, rel=1e-9) and found.t == 0.0
     assert complex(*found.point[row]) == pytest.approx(point, abs=1e-12)
-    assert found.of(row, "disc") == pytest.approx((cross(point - DISC, normal), cross(point - DISC, across)), rel=1e-9, abs=0.0)
-    assert found.of(row, "bar") == pytest.approx((-cross(point - BAR, normal), -cross(point - BAR, across)), rel=1e-9, abs=0.0)
+    assert found.of(row, "disc") == pytest.approx((along[0], across[0]), rel=1e-9, abs=0.0)
+    assert found.of(row, "bar") == pytest.approx((along[1], across[1]), rel=1e-9, abs=0.0)
     assert [pair.name for pair in found.pairs] == [*others, TOP] and found.friction[row] == 0.13
     assert found.places["disc"] == pytest.approx((DISC.real, DISC.imag, disc), rel=1e-12)
     assert found.places["bar"] == pytest.approx((BAR.real, BAR.imag, bar), rel=1e-12) and found.columns == {"disc": 0, "bar": 1}
@@ -110,8 +117,7 @@ def test_without_contacts_there_are_still_loads() -> None:
 def test_many_instants_are_seen_one_by_one(contacts: list[int]) -> None:
     """With velocities: how the gap bends as both turn on evenly, and what damping does to them."""
     compiled = compile_scene(scene())
-    poses = [(bar, told(bar, [TOP], top=True)) for bar in (0.2, -0.35, 0.5)]
-    q = np.array([(disc, bar) for bar, (_, disc) in poses])
+    q = np.array([(told(bar, [TOP], top=True)[1], bar) for bar in (0.2, -0.35, 0.5)])
     u = np.array([(1.5, -2.0), (-0.5, 3.0), (2.5, 0.25)])
     seen = Mechanism(compiled).seen(np.zeros(3), q, u, np.array(contacts, np.int64))
     count = len(contacts)
@@ -121,10 +127,12 @@ def test_many_instants_are_seen_one_by_one(contacts: list[int]) -> None:
     if not contacts:
         return
     row = contacts.index(TOP)
-    for k, (_, (one, _)) in enumerate(poses):
-        assert seen.w_N[k, row] == pytest.approx(one.normal[0], rel=1e-9, abs=1e-15)
-        assert seen.w_T[k, row] == pytest.approx(one.across[0], rel=1e-9, abs=1e-15)
-        assert seen.point[k, row] == pytest.approx(one.point[0], abs=1e-12) and seen.normal[k, row] == pytest.approx(one.way[0])
+    for k, (disc, bar) in enumerate(q):
+        point, normal, along, across = on_paper(disc, bar)
+        assert seen.w_N[k, row] == pytest.approx(along, rel=1e-9, abs=1e-15)
+        assert seen.w_T[k, row] == pytest.approx(across, rel=1e-9, abs=1e-15)
+        assert complex(*seen.point[k, row]) == pytest.approx(point, abs=1e-12)
+        assert complex(*seen.normal[k, row]) == pytest.approx(normal, rel=1e-9)
 
         def gap(t: float, k: int = k) -> float:
             disc, bar = q[k] + t * u[k]

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from watchsim.analysis.balanced_forces import Mechanism, Seen, _spread
+from watchsim.analysis.balanced_forces import Mechanism
 from watchsim.contact.index_sets import STICK
+from watchsim.dynamics.equations_of_motion import Seen
 
 TIMES, WIDTH = 3, 7
 RNG = np.random.default_rng(21)
@@ -86,40 +86,27 @@ def test_bearings_with_dry_friction_and_driven_bodies(monkeypatch: pytest.Monkey
     ("share", "beyond"), [(0.3 * (1.0 + 3e-9), False), (0.3 * (1.0 + 4e-9), True), (-0.31, True), (-0.29, False)]
 )
 def test_what_lies_beyond_a_cone_is_shared_anew(monkeypatch: pytest.MonkeyPatch, share: float, beyond: bool) -> None:
-    """Contact 1 sticks with µ = 0.3. Only at instants at which a force is beyond its cone; from one such to the next it is said
-    which shares were in use."""
+    """Contact 1 sticks with µ = 0.3. Only at the instants at which a force is beyond its cone, together."""
     w_n, w_t = np.zeros((2, TIMES, 1, WIDTH))
     w_n[:, 0, 0] = w_t[:, 0, 1] = 1.0
+    w_n[:, 0, 2], w_t[:, 0, 2] = (1.0, 2.0, 3.0), (4.0, 5.0, 6.0)  # of a coordinate that nothing moves
     bar = np.array([[[-2.0], [-2.0 * share]], [[-2.0], [0.0]], [[-3.0], [-3.0 * share]]])
     places = np.zeros((TIMES, 1, 2))
     seen = Seen(w_n, w_t, bar, places, places, np.zeros((TIMES, WIDTH)))
-    made = mechanism(monkeypatch, seen, mobility=np.ones(WIDTH))
+    made = mechanism(monkeypatch, seen, mobility=np.where(np.arange(WIDTH) == 2, 0.0, 1.0))
     asked: list[Any] = []
 
-    def shared(system: Any, right: Any, ways: Any, laws: Any, likely: Any) -> Any:
-        asked.append((right.tolist(), likely))
+    def shared(system: Any, right: Any, ways: Any, laws: Any) -> Any:
+        asked.append(right.tolist())
         sticks, slide, friction = laws
         assert sticks.tolist() == [0] and slide.tolist() == [0.0] and friction.tolist() == [0.3]
-        return np.array([[7.0, 8.0]]), f"used {len(asked)}"
+        assert system.shape == (2, 2, WIDTH) and [way[:, 0, 2].tolist() for way in ways] == [[1.0, 3.0], [4.0, 6.0]]
+        return np.array([[[7.0, 8.0]], [[5.0, 6.0]]])
 
     monkeypatch.setattr("watchsim.analysis.balanced_forces._within_cones", shared)
     found = made.balanced(np.zeros(TIMES), np.zeros((TIMES, WIDTH)), np.ones((TIMES, WIDTH)), {1: STICK})
     kept = np.array([[[2.0, 2.0 * share]], [[2.0, 0.0]], [[3.0, 3.0 * share]]])
     if beyond:
-        kept[[0, 2]] = 7.0, 8.0
-        assert asked == [([2.0, 2.0 * share], None), ([3.0, 3.0 * share], "used 1")]
+        kept[0], kept[2] = (7.0, 8.0), (5.0, 6.0)
+        assert asked == [[[2.0, 2.0 * share], [3.0, 3.0 * share]]]
     assert found.force == pytest.approx(kept, rel=1e-12) and bool(asked) is beyond
-
-
-def test_directions_by_coordinate() -> None:
-    """Each contact has some coordinates, and may have one twice; those of earlier contacts in the same places do not count."""
-    closed: Any = SimpleNamespace(
-        slots=np.array([2, 3, 1]),
-        coord=np.array([[1, 3, 0], [2, 0, 2], [4, 4, 4]]),
-        w_N=np.array([[1.5, 2.5, 9.0], [3.5, 4.5, 5.5], [6.5, 9.0, 9.0]]),
-        w_T=np.array([[-1.5, 0.5, 9.0], [7.5, -4.5, 2.0], [9.5, 9.0, 9.0]]),
-    )
-    normal, across = np.zeros((2, 2, 5))
-    _spread(closed, 2, normal, across)
-    assert normal.tolist() == [[0.0, 1.5, 0.0, 2.5, 0.0], [4.5, 0.0, 9.0, 0.0, 0.0]]
-    assert across.tolist() == [[0.0, -1.5, 0.0, 0.5, 0.0], [-4.5, 0.0, 9.5, 0.0, 0.0]]

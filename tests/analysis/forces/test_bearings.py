@@ -94,14 +94,12 @@ def test_contacts_and_teeth_of_all_that_is_carried() -> None:
 
 
 def test_what_presses_on_body_a_along_and_across_the_normal() -> None:
-    """Across is the normal turned by +90°; an open contact presses nowhere."""
-    angle = np.array([[0.4, -2.0], [1.1, np.nan]])
-    direction = np.stack((np.cos(angle), np.sin(angle)), axis=2)
-    forces: Any = SimpleNamespace(direction=direction, normal=np.array([[3.0, 5.0], [7.0, 0.0]]))
-    forces.tangential = np.array([[-2.0, 0.5], [4.0, 0.0]])
-    wanted = (forces.normal + 1j * forces.tangential) * np.exp(1j * np.nan_to_num(angle))
-    found = _pressed(forces)
-    assert found[..., 0] + 1j * found[..., 1] == pytest.approx(np.where(np.isnan(angle), 0.0, wanted), rel=1e-12)
+    """Across is the normal turned by +90°."""
+    angle, force = np.array([[0.4, -2.0], [1.1, 3.0]]), np.array([[[3.0, -2.0], [5.0, 0.5]], [[7.0, 4.0], [0.0, -1.0]]])
+    balanced: Any = SimpleNamespace(normal=np.stack((np.cos(angle), np.sin(angle)), axis=2), force=force)
+    found = _pressed(balanced)
+    wanted = (force[..., 0] + 1j * force[..., 1]) * np.exp(1j * angle)
+    assert found[..., 0] + 1j * found[..., 1] == pytest.approx(wanted, rel=1e-12)
 
 
 def test_a_drive_moves_mass_and_holds_against_contacts() -> None:

@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 import math
-from functools import partial
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 import watchsim as ws
-from watchsim.analysis.modes_in_force import change, modes_in_force
 from watchsim.mechanism.compile import compile_scene
 from watchsim.profiles_path import profiles_dir
 from watchsim.scene.file.load import load
-from watchsim.simulation.event_kinds import EVENT_DTYPE, EventKind
+from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.simulate import simulate
-from watchsim.storage.columns import blocks
 
 G = 9.81
 
@@ -57,6 +53,23 @@ def test_a_block_slides_and_stops(tmp_path: Path) -> None:
     assert found.tangential[2] == pytest.approx(0.0, abs=1e-9)  # it has stopped after 0.12 s
     assert found.direction[0] == pytest.approx(np.tile([0.0, 1.0], (len(found.pairs), 1)), abs=1e-12)
     assert sorted(found.point[0, :, 0]) == pytest.approx([run.at(0.05)[0][0] + x for x in (-0.01, 0.01)], abs=1e-9)
+
+
+def test_teeth_are_told_what_contacts_do(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Along and across, and what presses on body A, the block or the floor."""
+    told = []
+
+    def no_teeth(scene: object, compiled: object, motion: object, loads: Any) -> list[Any]:
+        told.append(loads)
+        return []
+
+    monkeypatch.setattr("watchsim.analysis.contact_forces.mesh_forces", no_teeth)
+    found = ws.forces(simulate(scene_of(tmp_path, BLOCK.format(speed=300))), [0.05])
+    (loads,) = told
+    assert loads.ids.tolist() == found.pairs.tolist() and loads.pressed.shape == loads.force.shape == (1, 2, 2)
+    assert loads.force[0].sum(axis=0) == pytest.approx((found.normal.sum(), found.tangential.sum()), rel=1e-12)
+    assert np.abs(loads.force[0, :, 1] / loads.force[0, :, 0]) == pytest.approx([0.25, 0.25], rel=1e-9)
+    assert np.abs(loads.pressed[0].sum(axis=0)) == pytest.approx([0.25 * 0.2 * G, 0.2 * G], rel=1e-9)
 
 
 def test_the_bearing_of_a_pendulum(tmp_path: Path) -> None:
@@ -179,25 +192,3 @@ def test_all_modes_are_among_those_told() -> None:
     run = simulate(load(profiles_dir() / "bench_lever"), 0.1)
     assert {int(kind) for kind in run.events["kind"]} >= {EventKind.CLOSE, EventKind.OPEN, EventKind.SLIDE}
     assert len(compile_scene(run.scene).model.contacts) == len(run.pairs)
-
-
-@pytest.mark.parametrize("at_once", [7, 1000])
-def test_modes_from_the_last_events_are_those_of_all_events(at_once: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Whatever came before, handovers from one contact to the next included, however many events are looked at at once."""
-    monkeypatch.setattr("watchsim.analysis.modes_in_force.blocks", partial(blocks, length=at_once))
-    rng = np.random.default_rng(4)
-    kinds = [EventKind.CLOSE, EventKind.OPEN, EventKind.STICK, EventKind.SLIDE, EventKind.HANDOVER]
-    for _ in range(20):
-        events = np.zeros(120, EVENT_DTYPE)
-        events["t"] = np.sort(rng.integers(0, 40, 120))
-        events["kind"] = rng.choice(kinds, 120)
-        events["contact"] = rng.integers(0, 5, 120)
-        other = (events["contact"] + rng.integers(1, 5, 120)) % 5
-        events["value"] = np.where(events["kind"] == EventKind.HANDOVER, other, rng.choice([-1.0, 1.0], 120))
-        run: Any = SimpleNamespace(events=events)
-        times = rng.permutation(rng.choice(np.arange(-1.0, 42.0), 9))
-        for time, found in zip(times, modes_in_force(run, times), strict=True):
-            modes: dict[int, int] = {}
-            for event in events[events["t"] <= time]:
-                change(modes, int(event["kind"]), int(event["contact"]), event["value"])
-            assert found == modes

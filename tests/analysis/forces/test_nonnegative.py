@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import nnls
 
-from watchsim.analysis.nonnegative import _begun, _within, nonnegative
+from watchsim.analysis.nonnegative import _begun, _of_alike, _within, nonnegative, nonnegative_of_many
 
 
 @pytest.mark.parametrize("seed", range(40))
@@ -63,6 +63,44 @@ def test_in_other_units_it_is_the_same_to_the_bit(seed: int) -> None:
     assert np.array_equal(nonnegative(alike, right * unit, likely), unit * nonnegative(alike, right, likely))
     assert np.array_equal(nonnegative(alike, right * unit), unit * nonnegative(alike, right))
     assert np.array_equal(nonnegative(alike * unit, right), nonnegative(alike, right) / unit)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_of_many_each_is_the_same_as_scipy(seed: int) -> None:
+    """Of systems that change little by little or jump, in any order, and whichever of them are asked about together."""
+    rng = np.random.default_rng(seed)
+    count, rows, columns = 30, *rng.integers(1, 8, 2)
+    change = np.cumsum(rng.normal(size=(count, rows, columns + 1)) * rng.choice([0.0, 0.02, 1.0], (count, 1, 1)), axis=0)
+    gentle = 10.0 ** rng.uniform(-4.0, 0.0) * np.eye(columns)
+    systems = np.array([np.vstack((one[:, :-1], gentle)) for one in change])
+    rights = np.array([np.append(one[:, -1], np.zeros(columns)) for one in change])
+    expected = np.array([nnls(system, right)[0] for system, right in zip(systems, rights, strict=True)])
+    for chosen in (np.arange(count), rng.permutation(count), rng.permutation(count)[:7], np.arange(1), np.arange(0)):
+        got = nonnegative_of_many(systems[chosen], rights[chosen])
+        assert np.all(got >= 0.0)
+        assert np.allclose(got, expected[chosen], rtol=1e-9, atol=1e-9 * max(1.0, expected.max()))
+
+
+def test_of_alike_ones_the_first_is_looked_into(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of twenty systems two kinds take turns: one search for each kind."""
+    asked: list[float] = []
+
+    def searched(system: np.ndarray, right: np.ndarray, likely: object) -> np.ndarray:
+        asked.append(right[0])
+        return np.maximum(right, 0.0)
+
+    monkeypatch.setattr("watchsim.analysis.nonnegative.nonnegative", searched)
+    rights = np.array([(1.0 + k, -2.0) if k % 2 else (-1.0 - k, 3.0) for k in range(20)])
+    assert nonnegative_of_many(np.array([np.eye(2)] * 20), rights) == pytest.approx(np.maximum(rights, 0.0))
+    assert asked == [-1.0, 2.0]
+
+
+def test_what_is_tried_is_taken_only_where_it_is_the_best() -> None:
+    """With the first of two alone: the best; the second would help; it would pull; rounding is no help; it would be zero."""
+    right = np.array([[2.0, -1.0], [2.0, 1.0], [-2.0, -1.0], [2.0, 1e-15], [0.0, -1.0]])
+    x, best = _of_alike(np.array([np.diag([4.0, 1.0])] * 5), right, np.array([True, False]))
+    assert x.tolist() == [[0.5, 0.0], [0.5, 0.0], [-0.5, 0.0], [0.5, 0.0], [0.0, 0.0]]
+    assert best.tolist() == [True, False, False, True, False]
 
 
 @pytest.mark.parametrize("seed", range(25))

@@ -61,34 +61,39 @@ def smallest(system: np.ndarray, right: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize("unit", [1.0, 1e-6, 1e5])
 @pytest.mark.parametrize("shares", [1, 3, 6, 8])
 def test_shares_press_and_balance(shares: int, unit: float) -> None:
-    """None is negative, those in use are told, what is asked for comes out, and no other such choice is smaller."""
-    for _ in range(10):
-        system = RNG.normal(size=(3, shares)) * unit
-        there = np.where(RNG.random(shares) < 0.6, RNG.uniform(0.5, 2.0, shares), 0.0)
-        right = system @ there
-        found, used = _pressing(system, right, None)
-        assert (found >= -1e-12 * max(1.0, found.max())).all() and not found[~used].any()
-        assert used[found > 1e-6 * found.max(initial=0.0)].all()
-        assert system @ found == pytest.approx(right, rel=1e-9, abs=1e-9 * unit)
-        assert found == pytest.approx(smallest(system, right), abs=1e-9)
-        again, _ = _pressing(system, right, used)
-        assert again == pytest.approx(found, rel=1e-9, abs=1e-9)
+    """None is negative, what is asked for comes out, and no other such choice is smaller, of each of ten systems."""
+    system = RNG.normal(size=(10, 3, shares)) * unit
+    there = np.where(RNG.random((10, shares)) < 0.6, RNG.uniform(0.5, 2.0, (10, shares)), 0.0)
+    right = (system @ there[:, :, None])[:, :, 0]
+    found = _pressing(system, right)
+    for k in range(10):
+        assert (found[k] >= -1e-12 * max(1.0, found[k].max())).all()
+        assert system[k] @ found[k] == pytest.approx(right[k], rel=1e-9, abs=1e-9 * unit)
+        assert found[k] == pytest.approx(smallest(system[k], right[k]), abs=1e-9)
 
 
 @pytest.mark.parametrize("sticking", [[], [0], [1, 2], [0, 1, 2, 3]])
 def test_forces_stay_in_their_cones(sticking: list[int]) -> None:
-    """What sticks within friction, what slides on its edge; together they do what is asked."""
-    for _ in range(10):
-        w_n, w_t = RNG.normal(size=(2, 4, 3))
-        friction, sticks = RNG.uniform(0.1, 0.6, 4), np.array(sticking, np.int64)
-        slide = np.where(np.isin(np.arange(4), sticks), 0.0, friction * RNG.choice([-1.0, 1.0], 4))
-        normal = RNG.uniform(0.5, 2.0, 4)
-        tangential = np.where(slide == 0.0, normal * friction * RNG.uniform(-0.9, 0.9, 4), slide * normal)
-        system = RNG.normal(size=(5, 3))
-        right = system @ (normal @ w_n + tangential @ w_t)
-        force, used = _within_cones(system, right, (w_n, w_t), (sticks, slide, friction), None)
-        assert len(used) == 4 + len(sticks)
-        assert system @ (force[:, 0] @ w_n + force[:, 1] @ w_t) == pytest.approx(right, rel=1e-8, abs=1e-9)
+    """What sticks within friction, what slides on its edge; together they do what is asked, at each of ten instants."""
+    w_n, w_t = RNG.normal(size=(2, 10, 4, 3))
+    friction, sticks = RNG.uniform(0.1, 0.6, 4), np.array(sticking, np.int64)
+    slide = np.where(np.isin(np.arange(4), sticks), 0.0, friction * RNG.choice([-1.0, 1.0], 4))
+    normal = RNG.uniform(0.5, 2.0, (10, 4))
+    tangential = np.where(slide == 0.0, normal * friction * RNG.uniform(-0.9, 0.9, (10, 4)), slide * normal)
+    system = RNG.normal(size=(10, 5, 3))
+    right = np.array([system[k] @ (normal[k] @ w_n[k] + tangential[k] @ w_t[k]) for k in range(10)])
+    found = _within_cones(system, right, (w_n, w_t), (sticks, slide, friction))
+    for k, force in enumerate(found):
+        done = system[k] @ (force[:, 0] @ w_n[k] + force[:, 1] @ w_t[k])
+        assert done == pytest.approx(right[k], rel=1e-8, abs=1e-9)
         assert (force[:, 0] >= -1e-9).all() and (np.abs(force[:, 1]) <= friction * force[:, 0] + 1e-9).all()
         sliding = slide != 0.0
         assert force[sliding, 1] == pytest.approx(slide[sliding] * force[sliding, 0], abs=1e-12)
+
+
+@pytest.mark.parametrize("tangential", [0.9, -0.9, 0.0, 1.0, -1.0])
+def test_what_sticks_may_rub_both_ways(tangential: float) -> None:
+    """A single contact with µ = 0.5 that has to press with 2."""
+    laws, along, across = (np.array([0]), np.zeros(1), np.array([0.5])), np.array([[[1.0, 0.0]]]), np.array([[[0.0, 1.0]]])
+    found = _within_cones(np.eye(2)[None], np.array([[2.0, tangential]]), (along, across), laws)
+    assert found == pytest.approx(np.array([[[2.0, tangential]]]), rel=1e-9, abs=1e-9)

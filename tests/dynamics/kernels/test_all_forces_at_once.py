@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from plain_kernels import in_python
 
+from watchsim.contact.kinematics import Closed, closed_contacts
 from watchsim.dynamics import applied_forces, equations_of_motion
 from watchsim.model.records import COORDINATE, JOINT, OVER_ANGLE, OVER_TIME, REPEATED, TABLE, records
 
@@ -106,23 +107,34 @@ def test_stored_is_kinetic_energy_and_that_of_springs() -> None:
     assert STORED(made, q, u) == pytest.approx(expected)
 
 
-def test_at_an_instant_there_are_kinematics_and_normals_row_by_row_and_all_other_forces() -> None:
-    """Of contacts 2 and 0, which are of primitives (4, 1) and (3, 2)."""
+def test_at_each_instant_there_are_kinematics_and_normals_row_by_row_and_all_other_forces() -> None:
+    """Of contacts 2 and 0, which are of primitives (4, 1) and (3, 2). Contact k has coordinates 0, k and 0 again."""
     contacts = [SimpleNamespace(a=3, b=2), None, SimpleNamespace(a=4, b=1)]
-    made = SimpleNamespace(contacts=contacts, primitives=[SimpleNamespace(body=10 * k) for k in range(5)])
-    rows: dict[int, int] = {}
-    forced: list[object] = []
-    poses = {10 * k: f"pose {k}" for k in range(5)}
+    made = SimpleNamespace(contacts=contacts, primitives=[SimpleNamespace(body=k) for k in range(5)])
+    t, q, u = np.array([T, 2.0 * T]), np.array([[0.1, 0.2, 0.3], [0.4, 0.5, 0.6]]), np.array([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]])
+    pose, closed, seen = np.zeros(5), closed_contacts(1), equations_of_motion.room(2, 2, 3)
+
+    def contact_kinematics(model: object, k: int, pose: np.ndarray, row: int, out: Closed) -> None:
+        out.slots[row], out.coord[row, :3] = 3, [0, k, 0]
+        out.w_N[row, :3], out.w_T[row, :3] = (pose[k], 10.0, 5.0), (-pose[k], 20.0, 7.0)
+        kin = out.kin[row]
+        kin.bar_N, kin.bar_T, kin.x, kin.y = pose[k] + np.array([1.0, 2.0, 3.0, 4.0])
+
     instead = {
-        "place": lambda model, q, u, out: forced.append(("placed", q, u)),
-        "contact_kinematics": lambda model, k, pose, row, out: rows.update({row: k}),
-        "shape_of_contact": lambda contact, a, b, pa, pb: SimpleNamespace(nx=(pa, pb), ny=a.body),
-        "forces": lambda model, t, q, u, out: forced.append((t, q, u, out)),
+        "place": lambda model, q, u, out: np.copyto(out, np.arange(5.0) + q[1] + 100.0 * u[2]),
+        "contact_kinematics": contact_kinematics,
+        "shape_of_contact": lambda contact, a, b, pa, pb: SimpleNamespace(nx=pa - pb, ny=pa + a.body),
+        "forces": lambda model, t, q, u, out: np.copyto(out, t + q + 10.0 * u),
     }
-    normal = np.full((3, 2), None)
-    in_python(equations_of_motion.balance, **instead)(made, T, "q", "u", [2, 0], poses, None, normal, "h")
-    assert forced == [("placed", "q", "u"), (T, "q", "u", "h")] and rows == {0: 2, 1: 0}
-    assert normal.tolist() == [[("pose 4", "pose 1"), 40], [("pose 3", "pose 2"), 30], [None, None]]
+    in_python(equations_of_motion.balance, **instead)(made, t, q, u, [2, 0], pose, closed, seen)
+    assert seen.h == pytest.approx(t[:, None] + q + 10.0 * u)
+    for i, place in enumerate(q[:, 1] + 100.0 * u[:, 2]):
+        two, none = 2.0 + place, place
+        assert seen.w_N[i] == pytest.approx(np.array([[two + 5.0, 0.0, 10.0], [none + 15.0, 0.0, 0.0]]))
+        assert seen.w_T[i] == pytest.approx(np.array([[7.0 - two, 0.0, 20.0], [27.0 - none, 0.0, 0.0]]))
+        assert seen.bar[i] == pytest.approx(np.array([[two + 1.0, none + 1.0], [two + 2.0, none + 2.0]]))
+        assert seen.point[i] == pytest.approx(np.array([[two + 3.0, two + 4.0], [none + 3.0, none + 4.0]]))
+        assert seen.normal[i] == pytest.approx(np.array([[3.0, 8.0 + place], [1.0, 6.0 + place]]))
 
 
 @pytest.mark.parametrize("count", [2, 3, 4])

@@ -6,10 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from watchsim.analysis.balanced_forces import Mechanism
 from watchsim.analysis.contact_forces import absolute
-from watchsim.contact.kinematics import closed_contacts
-from watchsim.contact.poses import poses
-from watchsim.dynamics.equations_of_motion import balance
 from watchsim.mechanism.compile import Compiled
 from watchsim.simulation.record.trajectory import Array, Pair, Trajectory
 
@@ -46,28 +44,21 @@ class Arms:
 
 def arms(run: Trajectory, compiled: Compiled, t: float, contacts: list[int]) -> Arms:
     """Of the contacts with these numbers at a recorded time; loads are those of bodies that stand still."""
-    q, u = (np.array(row) for row in run.at(t))
+    q, _ = run.at(t)
     places = {body.name: run.pose_of(body.name, q) for body in run.scene.bodies}
-    q, u = absolute(compiled, q[None], False)[0], absolute(compiled, u[None], True)[0]
-    k, ids = len(contacts), np.array(contacts, np.int64)
-    closed, way, h = closed_contacts(max(1, k)), np.zeros((k, 2)), np.zeros(len(q))
-    balance(compiled.model, float(t), q, np.zeros(len(u)), ids, poses(len(compiled.model.bodies)), closed, way, h)
-    normal, across = np.zeros((2, k, len(q)))
-    for row in range(k):
-        for slot in range(closed.slots[row]):
-            normal[row, closed.coord[row, slot]] += closed.w_N[row, slot]
-            across[row, closed.coord[row, slot]] += closed.w_T[row, slot]
+    q = absolute(compiled, q[None], False)
+    seen = Mechanism(compiled).seen(np.array([float(t)]), q, np.zeros(q.shape), np.array(contacts, np.int64))
     pairs = tuple(run.pairs[number] for number in contacts)
     return Arms(
         float(t),
         pairs,
-        {name: columns.start for name, columns in run.slices.items() if columns.start < len(q)},
-        normal,
-        across,
-        np.column_stack((closed.kin.x, closed.kin.y))[:k],
-        way,
+        {name: columns.start for name, columns in run.slices.items() if columns.start < q.shape[1]},
+        seen.w_N[0],
+        seen.w_T[0],
+        seen.point[0],
+        seen.normal[0],
         places,
         np.array([compiled.model.laws[pair.group].friction for pair in pairs]),
-        h,
+        seen.h[0],
         np.array(compiled.model.coordinates.coulomb),
     )
