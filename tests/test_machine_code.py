@@ -24,9 +24,10 @@ def package(tmp_path: Path) -> Path:
     """A package of one kernel file, what it imports, and a file it does not reach."""
     folder = tmp_path / "watchsim"
     (folder / "deep").mkdir(parents=True)
+    (folder / "contact").mkdir()
     (folder / "__init__.py").write_text("")
     (folder / "jit.py").write_text("")
-    (folder / "outer.py").write_text(KERNEL)
+    (folder / "contact" / "outer.py").write_text(KERNEL)
     (folder / "inner.py").write_text("from watchsim.deep.names import K\n")
     (folder / "deep" / "names.py").write_text("K = 1\n")
     (folder / "plots.py").write_text("K = 2\n")
@@ -37,7 +38,7 @@ def package(tmp_path: Path) -> Path:
 @pytest.mark.parametrize(
     ("name", "matters"),
     [
-        ("outer.py", True),
+        ("contact/outer.py", True),
         ("inner.py", True),
         ("deep/names.py", True),
         ("whole.py", True),
@@ -50,6 +51,12 @@ def test_digest_follows_what_kernels_reach(package: Path, name: str, matters: bo
     assert machine_code.source_digest(package) == before
     (package / name).write_text((package / name).read_text() + "# edited\n")
     assert (machine_code.source_digest(package) != before) is matters
+
+
+def test_all_kernels_lie_where_they_are_looked_for() -> None:
+    package = machine_code.PACKAGE
+    defining = [path for path in package.rglob("*.py") if machine_code._defines_kernels(str(path))]
+    assert {path.relative_to(package).parts[0] for path in defining} == set(machine_code.WITH_KERNELS)
 
 
 def test_two_copies_of_the_package_do_not_share_machine_code(package: Path, tmp_path: Path) -> None:

@@ -24,6 +24,8 @@ VARIABLE = "WATCHSIM_CACHE"
 MOVE = f"The environment variable {VARIABLE} names another folder."
 DIGESTS_KEPT = 3
 IN_USE_SECONDS = 3600.0  # another process may be compiling into a folder it has just made
+# Packages in which kernels are defined: to look for them in all files would take longer than loading their machine code.
+WITH_KERNELS = ("candidates", "contact", "dynamics", "escapement", "simulation", "verification")
 _JIT = b"from watchsim.jit import "  # quicker to look for
 _KERNELS = re.compile(r"^from watchsim\.jit import .*\b(?:kernel|hot_kernel|entry)\b", re.MULTILINE)
 # At the top of a file: what a function imports for itself, no kernel reaches.
@@ -68,19 +70,30 @@ def source_digest(package: Path) -> str:
 def _reachable_sources(package: Path) -> dict[str, bytes]:
     """The files that define kernels and all they import from the package, sorted, with what they hold."""
     # Paths as text: objects of `pathlib` would take most of the time.
-    sources: dict[str, bytes] = {}
-    for folder, _, names in os.walk(package):
-        for path in (os.path.join(folder, name) for name in names if name.endswith(".py")):  # noqa: PTH118
-            with open(path, "rb") as file:  # noqa: PTH123
-                sources[path] = file.read()
-    waiting = [path for path, source in sources.items() if _JIT in source and _KERNELS.search(source.decode())]
-    reached: set[str] = set()
+    waiting = [path for name in WITH_KERNELS for path in _files(os.path.join(package, name)) if _defines_kernels(path)]  # noqa: PTH118
+    reached: dict[str, bytes] = {}
     while waiting:
         path = waiting.pop()
         if path not in reached:
-            reached.add(path)
-            waiting.extend(found for found in _imported(package, sources[path].decode()) if found in sources)
-    return {path: sources[path] for path in sorted(reached)}
+            reached[path] = _content(path)
+            waiting.extend(found for found in _imported(package, reached[path].decode()) if os.path.isfile(found))  # noqa: PTH113
+    return dict(sorted(reached.items()))
+
+
+def _files(folder: str) -> Iterable[str]:
+    """The sources in a folder and below."""
+    for place, _, names in os.walk(folder):
+        yield from (os.path.join(place, name) for name in names if name.endswith(".py"))  # noqa: PTH118
+
+
+def _content(path: str) -> bytes:
+    with open(path, "rb") as file:  # noqa: PTH123
+        return file.read()
+
+
+def _defines_kernels(path: str) -> bool:
+    source = _content(path)
+    return _JIT in source and _KERNELS.search(source.decode()) is not None
 
 
 def _imported(package: Path, text: str) -> Iterable[str]:

@@ -13,7 +13,7 @@ from watchsim.geometry.edge_table import table_of
 from watchsim.geometry.extent import edge_extents, extents, total_length
 from watchsim.geometry.inside import winding
 from watchsim.geometry.loop import Loop
-from watchsim.geometry.polyline import chords, polyline
+from watchsim.geometry.polyline import chords, points_along, polyline
 from watchsim.geometry.primitives import TURN, Arc, Line
 
 RING = Loop((Arc(1.0, 2.0, 3.0, 0.7, TURN),))
@@ -117,3 +117,10 @@ def test_a_turn_has_three_chords_at_least_whichever_way_it_runs(way: float) -> N
     assert chords(Arc(0.0, 0.0, 1e-3, 0.5, way * 1.0), 1e-3) == 1
     step = 2.0 * math.acos(1.0 - 1e-3)
     assert chords(Arc(0.0, 0.0, 1e-3, 0.5, way * 3.0), 1e-6) == math.ceil(3.0 / step)
+
+
+@pytest.mark.parametrize("edge", [Line(1.0, 2.0, -3.0, 0.5), Arc(0.3, -0.2, 1.5, 0.4, 2.0), Arc(0.3, -0.2, 1.5, 0.4, -6.0)])
+def test_points_along_an_edge(edge: Line | Arc) -> None:
+    fractions = np.array([0.0, 0.3, 1.0])
+    expected = [complex(*edge.point(fraction)) for fraction in fractions.tolist()]
+    assert points_along(edge, fractions) == pytest.approx(np.array(expected), abs=4e-15)

@@ -34,6 +34,14 @@ def edge_points(edge: Edge, deviation: float) -> NDArray[np.float64]:
     return np.column_stack((edge.x + edge.radius * np.cos(angles), edge.y + edge.radius * np.sin(angles)))
 
 
+def points_along(edge: Edge, fractions: NDArray[np.float64]) -> NDArray[np.complex128]:
+    """The points x + iy (m) at these fractions (0 to 1) of the way."""
+    if isinstance(edge, Arc):
+        return complex(edge.x, edge.y) + edge.radius * np.exp(1j * (edge.start_angle + fractions * edge.sweep))
+    start, end = complex(*edge.start), complex(*edge.end)
+    return np.asarray(start + fractions * (end - start))
+
+
 def polyline(loop: Loop, deviation: float) -> NDArray[np.float64]:
     """(n, 2) points along the loop in metres, arcs within `deviation` metres; a closed loop ends on its first point."""
     if not loop.edges:

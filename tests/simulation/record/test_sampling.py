@@ -63,6 +63,17 @@ def test_samples_are_of_the_two_rows_beside_each_time() -> None:
             assert bend[column] == pytest.approx(float(cubic.derivative()(time)), abs=1e-9)
 
 
+@pytest.mark.parametrize("columns", [[0], [1], [1, 0], []])
+def test_positions_of_some_coordinates(columns: list[int]) -> None:
+    """Beyond the rows, at the last of two of one instant, and in between."""
+    run = random_run(6)
+    ends = np.append(run.t, run.t[-1])
+    run = made(ends, *(np.vstack((array, 2.0 * array[-1:])) for array in (run.q, run.u, run.a)))
+    times = np.concatenate([np.linspace(run.t[0] - 1.0, run.t[-1] + 1.0, 50), run.t])
+    found = run.positions(times, columns)
+    assert found.shape == (len(times), len(columns)) and np.array_equal(found, run.sample(times)[0][:, columns])
+
+
 def test_a_single_time_and_a_list_do_as_well() -> None:
     run = random_run(6)
     time = float(0.3 * run.t[0] + 0.7 * run.t[-1])
@@ -137,6 +148,7 @@ def test_rows_in_files_say_the_same(tmp_path: Path) -> None:
         times = np.sort(np.random.default_rng(count).uniform(run.t[0], run.t[-1], count))
         for one, other in zip(filed.sample(times), run.sample(times), strict=True):
             assert np.array_equal(one, other)
+        assert np.array_equal(filed.positions(times, [1]), run.positions(times, [1]))
 
 
 def test_nothing_in_a_run_can_be_written_over() -> None:

@@ -31,7 +31,7 @@ class Advance:
 def progress(run: Trajectory, wheel: str, times: Array) -> Array:
     """Angle (rad) the wheel has turned since the start of the run in the sense of its drive, at recorded times (s)."""
     column = run.slices[wheel].start
-    angles = [run.sample(part)[0][:, column].copy() for (part,) in blocks(times)]  # of the others nothing is kept
+    angles = [run.positions(part, [column])[:, 0] for (part,) in blocks(times)]
     return drive_direction(run.scene, wheel) * (np.concatenate(angles or [np.zeros(0)]) - run.scene.body(wheel).angle)
 
 

@@ -145,7 +145,7 @@ def with_angles(run: Trajectory, rows: Stretches) -> Phases:
     parts = with_anchor(run.scene)
     rows = rows[is_recorded(run, rows.start) & is_recorded(run, rows.end)]
     columns = [run.slices[name].start for name in (parts.wheel, parts.lever, parts.oscillator) if name]
-    first, last = run.sample(rows.start)[0][:, columns], run.sample(rows.end)[0][:, columns]
+    first, last = run.positions(rows.start, columns), run.positions(rows.end, columns)
     return Phases(rows, first, last - first)
 
 

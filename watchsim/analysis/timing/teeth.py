@@ -12,6 +12,7 @@ from collections import deque
 import numpy as np
 
 from watchsim.geometry.loop import Loop
+from watchsim.geometry.polyline import points_along
 from watchsim.scene.scene import Scene
 from watchsim.simulation.record.trajectory import Array
 
@@ -63,9 +64,7 @@ def _sampled(loops: list[Loop]) -> tuple[Array, Array]:
     """Complex points in the middle of short pieces of all edges, and the lengths of these pieces."""
     edges = [edge for loop in loops for edge in loop.edges]
     reach = max((math.hypot(*edge.point(f)) for edge in edges for f in (0.0, 0.5)), default=0.0)
-    points, lengths = [], []
-    for edge in edges:
-        count = max(2, math.ceil(edge.length / (SPACING * reach)))
-        points += [complex(*edge.point((i + 0.5) / count)) for i in range(count)]
-        lengths += [edge.length / count] * count
-    return np.array(points, complex), np.array(lengths)
+    counts = [max(2, math.ceil(edge.length / (SPACING * reach))) for edge in edges]
+    points = [points_along(edge, (np.arange(count) + 0.5) / count) for edge, count in zip(edges, counts, strict=True)]
+    lengths = [edge.length / count for edge, count in zip(edges, counts, strict=True)]
+    return np.concatenate([np.zeros(0, complex), *points]), np.repeat(lengths, counts)

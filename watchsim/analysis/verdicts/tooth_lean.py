@@ -15,6 +15,7 @@ import numpy as np
 
 from watchsim.analysis.timing.teeth import pitch, toothed_loops
 from watchsim.geometry.loop import Loop
+from watchsim.geometry.polyline import points_along
 from watchsim.scene.scene import Scene
 
 HEIGHT = 0.4  # of the pitch at the rim: so deep a tooth is looked at
@@ -62,8 +63,8 @@ def teeth(scene: Scene, wheel: str) -> Teeth | None:
 @functools.lru_cache(maxsize=64)
 def _points(loop: Loop) -> np.ndarray:
     """Complex points along the outline, closed."""
-    ends = [complex(*edge.point(i / PIECES)) for edge in loop.edges for i in range(PIECES)]
-    return np.array([*ends, ends[0]])
+    begins = np.concatenate([points_along(edge, np.arange(PIECES) / PIECES) for edge in loop.edges])
+    return np.append(begins, begins[0])
 
 
 def _middle(outlines: list[np.ndarray], whole: float, low: float, high: float) -> complex:

@@ -80,8 +80,7 @@ class Watch:
 
     def angle(self, body: str, times: Array) -> Array:
         """Coordinate (rad) of a body at recorded times (s)."""
-        angles: Array = self.run.sample(times)[0][:, self.run.slices[body].start]
-        return angles
+        return self.run.positions(times, [self.run.slices[body].start])[:, 0]
 
     def progress(self, times: Array) -> Array:
         """How far (rad) the wheel has turned with its drive since the start, at recorded times (s)."""

@@ -1,8 +1,8 @@
 """How does a second process work beside the one that steps a run?
 
-It is a copy of that process, made before anything is loaded. On a core of its own it loads what the first need not wait for, is
-given the events and rows of the run as they settle, and gives back what it has made of them (see `made_beside`). A thread
-would keep the loop waiting for Python.
+It is a copy of that process, made when what both need is loaded. On a core of its own it loads what the first need not wait
+for, is given the events and rows of the run as they settle, and gives back what it has made of them (see `made_beside`). A
+thread would keep the loop waiting for Python.
 """
 
 from __future__ import annotations
@@ -145,6 +145,7 @@ def _cores() -> int:
 
 def _made() -> SecondProcess | None:
     """The copy; None where there is no room for another process."""
+    _load()
     try:
         ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     except OSError:
@@ -163,6 +164,13 @@ def _made() -> SecondProcess | None:
         theirs.close()
         signal.pthread_sigmask(signal.SIG_SETMASK, held)
     return SecondProcess(child, ours)
+
+
+def _load() -> None:
+    """Load what both processes need: twice at a time the same files take each of them half as long again."""
+    import watchsim.mechanism.compile
+    import watchsim.results.write_results
+    import watchsim.scene.file.load  # noqa: F401
 
 
 def _work(line: socket.socket) -> NoReturn:

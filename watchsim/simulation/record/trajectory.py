@@ -28,6 +28,7 @@ from watchsim.tolerances import ROW_NOISE
 
 Array = NDArray[np.float64]
 
+NO_ROW = "no row of this run was kept, so where its bodies were is not known"
 AT_ONCE = 1000  # times that are looked up together where rows lie in a file: those of a stretch of it, in order
 
 
@@ -136,20 +137,38 @@ class Trajectory:
         if times.ndim == 0:
             return self.at(float(times))
         if len(self.t) == 0:
-            raise ValueError("no row of this run was kept, so where its bodies were is not known")
+            raise ValueError(NO_ROW)
         if len(times) > AT_ONCE and is_mapped(self.q):
             found = [self.sample(part) for (part,) in blocks(times, length=AT_ONCE)]
             return np.concatenate([q for q, _ in found]), np.concatenate([u for _, u in found])
-        i = np.clip(np.searchsorted(self.t, times, side="right") - 1, 0, max(len(self.t) - 2, 0))
-        j = np.minimum(i + 1, len(self.t) - 1)
-        h = (self.t[j] - self.t[i])[:, None]
-        last = h <= 0.0  # two rows of one instant at the very end: take the one after the impact
-        h = np.where(last, 1.0, h)
-        s = np.clip((times - self.t[i])[:, None] / h, 0.0, 1.0)
+        i, j, h, s, last = self._intervals(times)
         q, u = between(s, h, (self.q[i], self.u[i], self.a[i]), (self.q[j], self.u[j], self.a[j]), self._noise)
         q, u = np.where(last, self.q[j], q), np.where(last, self.u[j], u)
         let_go(self.t, self.q, self.u, self.a)
         return q, u
+
+    def positions(self, times: ArrayLike, columns: Sequence[int]) -> Array:
+        """(len(times), len(columns)): these coordinates alone, as `sample`, which takes several times as long."""
+        times = np.asarray(times, float)
+        if len(self.t) == 0:
+            raise ValueError(NO_ROW)
+        if len(times) > AT_ONCE and is_mapped(self.q):
+            return np.concatenate([self.positions(part, columns) for (part,) in blocks(times, length=AT_ONCE)])
+        i, j, h, s, last = self._intervals(times)
+        left, right = (tuple(array[rows[:, None], columns] for array in (self.q, self.u, self.a)) for rows in (i, j))
+        q = np.where(last, right[0], place_between(s, h, left, right))
+        let_go(self.t, self.q, self.u, self.a)
+        return q
+
+    def _intervals(self, times: Array) -> tuple[NDArray[np.intp], NDArray[np.intp], Array, Array, NDArray[np.bool_]]:
+        """The rows before and after each of the times (clamped), and as columns: how far apart they are (s), at what fraction
+        between them the time lies, and whether both are of one instant."""
+        i = np.clip(np.searchsorted(self.t, times, side="right") - 1, 0, max(len(self.t) - 2, 0))
+        j = np.minimum(i + 1, len(self.t) - 1)
+        h = (self.t[j] - self.t[i])[:, None]
+        last = h <= 0.0  # two rows of one instant at the very end: the one after the impact counts
+        h = np.where(last, 1.0, h)
+        return i, j, h, np.clip((times - self.t[i])[:, None] / h, 0.0, 1.0), last
 
     def acceleration(self, times: ArrayLike) -> Array:
         """(len(times), n): accelerations, of the cubics through u and a of two rows; as `sample`."""
@@ -157,13 +176,8 @@ class Trajectory:
         if times.ndim == 0:
             return self.acceleration(times[None])[0]
         if len(self.t) == 0:
-            raise ValueError("no row of this run was kept, so where its bodies were is not known")
-        i = np.clip(np.searchsorted(self.t, times, side="right") - 1, 0, max(len(self.t) - 2, 0))
-        j = np.minimum(i + 1, len(self.t) - 1)
-        h = (self.t[j] - self.t[i])[:, None]
-        last = h <= 0.0
-        h = np.where(last, 1.0, h)
-        s = np.clip((times - self.t[i])[:, None] / h, 0.0, 1.0)
+            raise ValueError(NO_ROW)
+        i, j, h, s, last = self._intervals(times)
         way = (self.u[j] - self.u[i]) / h
         left, right = self.a[i], self.a[j]
         cubic = left + s * (6.0 * way - 4.0 * left - 2.0 * right + s * (3.0 * (left + right) - 6.0 * way))

@@ -57,7 +57,7 @@ def pushes(run: Trajectory, beats: Sequence[Beat]) -> list[list[Push]]:
 
 
 def _push(run: Trajectory, compiled: Compiled, name: str, stage: Stage, times: Array, torque: Array) -> Push:
-    angle = run.sample(times)[0][:, run.slices[name].start]
+    angle = run.positions(times, [run.slices[name].start])[:, 0]
     work = float(np.sum(0.5 * (torque[1:] + torque[:-1]) * np.diff(angle)))
     struck = _impacts(run, compiled, name, stage)
     way = 1.0 if angle[-1] >= angle[0] else -1.0
