@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import pytest
 from every_time import few
+from numpy.typing import NDArray
 
 from watchsim.analysis import beat_tables
 from watchsim.analysis.beat_tables import phases_csv
 from watchsim.analysis.timing import phases
 from watchsim.analysis.timing.beats import beats
 from watchsim.commands.second.made_beside import PhasesMeanwhile
+from watchsim.commands.second.settled import Settled
 from watchsim.profiles_path import profiles_dir
 from watchsim.scene.file.load import load
 from watchsim.scene.oscillation import frequency
 from watchsim.scene.scene import Scene
-from watchsim.simulation.record.trajectory import Trajectory
+from watchsim.simulation.record.trajectory import Pair, Trajectory
 from watchsim.simulation.simulate import simulate
 
 BEATS = 4  # that are made into text together, instead of hundreds
@@ -30,11 +34,11 @@ def run_and_texts(
         monkeypatch.setattr(module, "AT_ONCE", BEATS)
     monkeypatch.setattr("watchsim.simulation.runner.EVENTS", 10)
     monkeypatch.setattr("watchsim.simulation.runner.ROWS", 40)
-    meanwhile = PhasesMeanwhile(scene, until, "pfeiffer-glocker", scene.tolerance)
+    meanwhile, settled = PhasesMeanwhile(scene, until, "pfeiffer-glocker", scene.tolerance), Settled()
 
-    def follow(*settled: object) -> None:
-        meanwhile.add(*settled)  # type: ignore[arg-type]
-        meanwhile.work()
+    def follow(pairs: Sequence[Pair], events: NDArray[Any], rows: Sequence[NDArray[Any]]) -> None:
+        settled.add(events, rows)
+        meanwhile.work(pairs, settled)
 
     return simulate(scene, seconds, follow=follow), meanwhile
 
@@ -78,19 +82,21 @@ def test_near_the_end_nothing_is_begun(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_what_is_not_kept_whole_is_left_alone(record: object, monkeypatch: pytest.MonkeyPatch) -> None:
     scene = load(profiles_dir() / "bench_lever").set("run.record", [record])
     _, meanwhile = run_and_texts(scene, 1.5, monkeypatch)
-    assert not meanwhile.texts and not meanwhile._rows
+    assert not meanwhile.texts
 
 
-def test_more_than_memory_should_hold_is_let_go(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("watchsim.commands.second.made_beside.MOST", 3e5)
+def test_of_more_than_memory_should_hold_there_is_less(monkeypatch: pytest.MonkeyPatch) -> None:
+    _, all_along = run_and_texts(load(profiles_dir() / "bench_lever"), 3.0, monkeypatch)
+    monkeypatch.setattr("watchsim.commands.second.settled.MOST", 3e5)
     run, meanwhile = run_and_texts(load(profiles_dir() / "bench_lever"), 3.0, monkeypatch)
-    assert meanwhile.texts and not meanwhile._rows and not meanwhile._events
+    assert 0 < len(meanwhile.texts) < len(all_along.texts)
     assert whole(run, meanwhile.texts) == whole(run)
 
 
 def test_a_scene_without_beats_is_left_alone() -> None:
     scene = load(profiles_dir() / "incline")
     meanwhile = PhasesMeanwhile(scene, math.inf, "pfeiffer-glocker", scene.tolerance)
-    meanwhile.add((), np.zeros(0), [np.array([1e9])] * 4)
-    meanwhile.work()
-    assert not meanwhile.texts and not meanwhile._rows
+    settled = Settled()
+    settled.add(np.zeros(0), [np.array([1e9])] * 4)
+    meanwhile.work((), settled)
+    assert not meanwhile.texts

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, NoReturn
 
 from watchsim import stopping
+from watchsim.commands.second.settled import Passed
 
 if TYPE_CHECKING:
     from concurrent.futures import ThreadPoolExecutor
@@ -38,6 +39,7 @@ class SecondProcess:
     def __init__(self, child: int, line: socket.socket) -> None:
         self._child, self._line = child, line
         self._lost, self._knows_pairs = False, False
+        self._passed = Passed()
         self._answers: list[Any] = []
         self._thread: ThreadPoolExecutor | None = None
 
@@ -51,12 +53,13 @@ class SecondProcess:
         """The next events and rows of the run, as `simulate` gives them."""
         self._send(None if self._knows_pairs else pairs, events, rows)
         self._knows_pairs = True
+        self._passed.add(events, rows)
 
     def finish(self, run: Trajectory) -> None:
         """The whole run: from now on plots are drawn."""
         import dataclasses
 
-        self._send(dataclasses.replace(run, end_state=None, failure=None))
+        self._send(self._passed.rest(dataclasses.replace(run, end_state=None, failure=None)))
 
     def phases(self) -> dict[bytes, str]:
         """The rows of phases.csv that it has made, see `beat_tables.phases_csv`."""
