@@ -116,7 +116,8 @@ def test_how_far_the_wheel_has_come(monkeypatch: pytest.MonkeyPatch, way: float)
     monkeypatch.setattr(module, "drive_direction", lambda scene, wheel: way)
     scene = SimpleNamespace(body=lambda name: SimpleNamespace(angle={"wheel": 0.7}[name]))
     run: Any = SimpleNamespace(scene=scene, slices={"wheel": slice(2, 3)})
-    run.sample = lambda times: (np.column_stack([times, 3.0 * times, 0.7 + way * 0.25 * times]), None)
+    places = {0: 1.0, 1: 3.0, 2: way * 0.25}
+    run.positions = lambda times, columns: np.column_stack([0.7 + places[column] * times for column in columns])
     times = np.array([2.0, 0.5, 8.0])
     assert progress(run, "wheel", times) == pytest.approx(0.25 * times, rel=1e-12)
 
