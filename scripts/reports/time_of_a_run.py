@@ -35,7 +35,7 @@ PARTS = (  # module, name, what
     ("watchsim.results.archive", "write_trajectory", "trajectory.npz, written beside the rest"),
     ("watchsim.commands.common.write_run", "_timeline", "the timeline in report.txt"),
 )
-SECOND = "second process: "
+WHOSE = ("", "second process: ", "its copy: ")  # by how often it was copied
 
 spent: defaultdict[str, float] = defaultdict(float)  # s
 _import = builtins.__import__
@@ -104,16 +104,27 @@ def main() -> None:
     asked = parser.parse_args()
     scene, duration, folder = asked.scene, asked.duration, asked.folder
     sys.argv = ["watchsim", "run", scene, "--duration", duration, "-o", folder, "--force"]
-    leave, number = os._exit, os.getpid()
-    beside = tempfile.TemporaryFile()  # noqa: SIM115 - what the second process has spent
+    leave, copied = os._exit, os.fork
+    beside = tempfile.TemporaryFile("a+")  # noqa: SIM115 - what other processes have spent, a line each
+    whose = 0
+
+    def fork() -> int:
+        nonlocal whose
+        child = copied()
+        if child == 0:
+            whose += 1
+            spent.clear()
+        return child
 
     def told(status: int) -> NoReturn:
-        whole = time.process_time()
-        spent["the rest"] = whole - sum(spent.values())
-        if os.getpid() != number:
-            os.pwrite(beside.fileno(), json.dumps(spent).encode(), 0)
+        spent["the rest"] = time.process_time() - sum(spent.values())
+        if whose:
+            beside.write(json.dumps({WHOSE[whose] + what: seconds for what, seconds in spent.items()}) + "\n")
+            beside.flush()
             leave(status)
-        spent.update({SECOND + what: seconds for what, seconds in json.loads(beside.read() or "{}").items()})
+        beside.seek(0)
+        for line in sorted(beside, reverse=True):
+            spent.update(json.loads(line))
         sys.stderr.write(json.dumps({**spent, "together": sum(spent.values())}))
         sys.stderr.flush()
         leave(status)
@@ -122,7 +133,7 @@ def main() -> None:
         os.waitpid(process, 0)
 
     os.kill = wait  # the second process is to end by itself
-    os._exit = told
+    os.fork, os._exit = fork, told
     builtins.__import__ = Imports()
     from watchsim.process import process
 
