@@ -10,6 +10,8 @@ from typing import NoReturn
 
 GARBAGE = 500_000  # objects that may pile up, some 50 MB
 PROMPT = 5e-4  # s that a thread may keep Python from another: 5 ms, as usual, would hold up whoever has only little to do
+MMAP_THRESHOLD, TRIM_THRESHOLD = -3, -1  # of glibc's malloc.h
+HELD = {MMAP_THRESHOLD: 32 << 20, TRIM_THRESHOLD: 128 << 20}  # bytes
 
 
 def process() -> NoReturn:
@@ -33,6 +35,8 @@ def process() -> NoReturn:
     # hundred objects, and once more at the end, would take a sixth of its time.
     gc.set_threshold(GARBAGE)
     sys.setswitchinterval(PROMPT)
+    if sys.platform == "linux":
+        hold_memory()
     from watchsim.commands.common.streams import open_streams
 
     open_streams()
@@ -47,3 +51,14 @@ def process() -> NoReturn:
         stream.flush()
     number = stopping.last_word()
     os._exit(128 + number if number else status)
+
+
+def hold_memory() -> None:
+    """Have glibc keep what is freed for the next array; to give it back and get it again, page by page, takes a twentieth of a
+    run."""
+    import ctypes
+
+    library = ctypes.CDLL(None)
+    if hasattr(library, "mallopt"):
+        for name, size in HELD.items():
+            library.mallopt(name, size)
