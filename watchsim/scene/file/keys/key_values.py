@@ -168,3 +168,16 @@ class Table:
 def _pair_example(dimension: Dimension) -> str:
     unit = dimension.usual[1]
     return "[1.0, 0.0]" if dimension is NUMBER else f'["1 {unit}", "0 {unit}"]'
+
+
+def listed(mapping: Mapping[str, Any], section: str, faults: Faults) -> list[Any]:
+    """The elements of an array of tables; a single table in its place is a fault."""
+    value = mapping.get(section, [])
+    if isinstance(value, (list, tuple)):
+        return list(value)
+    faults.add(
+        section,
+        f"write [[{section}]] with double brackets: there can be several",
+        "" if isinstance(value, dict) else shown(value),
+    )
+    return []

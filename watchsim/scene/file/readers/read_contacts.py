@@ -8,9 +8,8 @@ from typing import Any
 
 from watchsim.scene.body import Body
 from watchsim.scene.errors import Faults
-from watchsim.scene.file.keys.key_values import Table
+from watchsim.scene.file.keys.key_values import Table, listed
 from watchsim.scene.file.keys.schema import CONTACT, nearest
-from watchsim.scene.file.readers.read_forces import listed
 from watchsim.scene.force import Contact, Side
 
 NOWHERE = Side("")

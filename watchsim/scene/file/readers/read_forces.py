@@ -11,7 +11,7 @@ from watchsim import units
 from watchsim.geometry.primitives import Point
 from watchsim.scene.body import Body
 from watchsim.scene.errors import Faults
-from watchsim.scene.file.keys.key_values import NAN, Table, shown
+from watchsim.scene.file.keys.key_values import NAN, Table, listed
 from watchsim.scene.file.keys.schema import DAMPING, SPRING, TORQUE, Keys, nearest
 from watchsim.scene.file.readers.force_table import repeated, rows_of
 from watchsim.scene.file.readers.read_against import read_against
@@ -64,19 +64,6 @@ def read_damping(
         swinging = oscillator(bodies, springs, gravity, entry.name) if "q_factor" in entry.table else None
         found.append(_damping(entry, swinging, lost))
     return tuple(found)
-
-
-def listed(mapping: Mapping[str, Any], section: str, faults: Faults) -> list[Any]:
-    """The elements of an array of tables; a single table in its place is a fault."""
-    value = mapping.get(section, [])
-    if isinstance(value, (list, tuple)):
-        return list(value)
-    faults.add(
-        section,
-        f"write [[{section}]] with double brackets: there can be several",
-        "" if isinstance(value, dict) else shown(value),
-    )
-    return []
 
 
 def _entries(mapping: Mapping[str, Any], section: str, keys: Keys, bodies: tuple[Body, ...], faults: Faults) -> Iterator[Entry]:

@@ -15,9 +15,8 @@ from watchsim.geometry.primitives import Point
 from watchsim.scene.body import Body
 from watchsim.scene.carriers import Ride, Weighed, rides, weigh
 from watchsim.scene.errors import Faults
-from watchsim.scene.file.keys.key_values import NAN, Table
+from watchsim.scene.file.keys.key_values import NAN, Table, listed
 from watchsim.scene.file.keys.schema import GEAR, nearest
-from watchsim.scene.file.readers.read_forces import listed
 from watchsim.scene.gear_trains import CARRIED, note_gears, reached
 from watchsim.scene.gearing import PRESSURE_ANGLE, Gear, Geared
 from watchsim.units import NUMBER, PER_LENGTH, TRAVEL_PER_TURN, Dimension

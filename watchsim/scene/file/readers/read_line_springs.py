@@ -9,9 +9,8 @@ from typing import Any
 from watchsim.geometry.primitives import Point
 from watchsim.scene.body import Body
 from watchsim.scene.errors import Faults
-from watchsim.scene.file.keys.key_values import NAN, UNREADABLE, Table
+from watchsim.scene.file.keys.key_values import NAN, UNREADABLE, Table, listed
 from watchsim.scene.file.keys.schema import LINE_SPRING, nearest
-from watchsim.scene.file.readers.read_forces import listed
 from watchsim.scene.file.readers.springs.read_leaf import leaf_stiffness
 from watchsim.scene.force import LineSpring
 from watchsim.units import LENGTH
