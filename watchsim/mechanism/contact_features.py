@@ -6,11 +6,10 @@ Every edge; and every convex corner, as an arc of radius 0 whose fan of normals 
 from __future__ import annotations
 
 import math
-from decimal import Decimal
 
 import numpy as np
 
-from watchsim.geometry.exact_angle import cos_sin
+from watchsim.geometry.exact_angle import middle
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Edge, Line, Point
 from watchsim.model.records import ARC, CORNER, FULL, LINE, PART, PRIMITIVE, Records
@@ -81,16 +80,6 @@ def _arc(edge: Arc, size: float) -> dict[str, float]:
         "extent": extent,
         **fan,
     }
-
-
-def middle(edge: Arc, exact: bool) -> tuple[float, float, float, float]:
-    """Middle of the arc and the direction to it from the centre; `exact`: rounded once, however far the centre is."""
-    if not exact:
-        c, s = _direction(edge.start_angle + 0.5 * edge.sweep)
-        return edge.x + edge.radius * c, edge.y + edge.radius * s, c, s
-    cosine, sine = cos_sin(Decimal(edge.start_angle) + Decimal(edge.sweep) / 2)
-    x, y, radius = Decimal(edge.x), Decimal(edge.y), Decimal(edge.radius)
-    return float(x + radius * cosine), float(y + radius * sine), float(cosine), float(sine)
 
 
 def _direction(angle: float) -> Point:
