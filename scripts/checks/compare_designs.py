@@ -18,7 +18,7 @@ from pathlib import Path
 from try_designs import numbers
 
 from watchsim.construction import known
-from watchsim.designs.drawn import Drawn
+from watchsim.designs import Drawn
 from watchsim.escapement.measure import Function, measure
 from watchsim.escapement.quantity import Quantity
 

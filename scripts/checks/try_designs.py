@@ -21,7 +21,7 @@ from watchsim.analysis.summary import summary
 from watchsim.construction import known
 from watchsim.construction.design import Design
 from watchsim.construction.dimension import Dimension
-from watchsim.designs.drawn import Drawn
+from watchsim.designs import Drawn
 from watchsim.mechanism.overlap import overlap_faults
 from watchsim.scene.errors import SceneError
 from watchsim.simulation.simulate import simulate

@@ -21,7 +21,7 @@ from watchsim.construction.swiss_lever.swiss_lever_derived import swiss
 from watchsim.construction.swiss_lever.swiss_lever_points import Swiss
 from watchsim.construction.swiss_lever.swiss_lever_recoil import drop_after_recoil
 from watchsim.construction.swiss_lever.swiss_lever_sheets import sheets
-from watchsim.designs.drawn import Drawn
+from watchsim.designs import Drawn
 from watchsim.mechanism.overlap import overlap_faults
 
 ROOT = Path(__file__).resolve().parents[2]

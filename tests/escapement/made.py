@@ -8,7 +8,7 @@ from dataclasses import replace
 from watchsim.construction import known
 from watchsim.construction.swiss_lever.swiss_lever_derived import swiss
 from watchsim.construction.swiss_lever.swiss_lever_points import Swiss
-from watchsim.designs.maker import Maker
+from watchsim.designs import Maker
 from watchsim.geometry.primitives import Point
 from watchsim.scene.body import Body
 from watchsim.scene.force import Side

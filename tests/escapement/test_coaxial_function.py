@@ -11,7 +11,7 @@ from every_time import few
 
 from watchsim.construction import known
 from watchsim.construction.coaxial.coaxial_points import Points
-from watchsim.designs.maker import Maker
+from watchsim.designs import Maker
 from watchsim.escapement.function_report import statics, text
 from watchsim.escapement.impulses import Impulse
 from watchsim.escapement.measure import Function, measure

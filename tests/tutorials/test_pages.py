@@ -16,7 +16,7 @@ from typing import Any
 import pytest
 
 from watchsim.cli import main
-from watchsim.designs.maker import Maker
+from watchsim.designs import Maker
 from watchsim.profiles_path import profiles_dir
 from watchsim.scene.file.load import load
 from watchsim.scene.oscillation import frequency

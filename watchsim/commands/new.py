@@ -145,7 +145,7 @@ def _range(one: Dimension) -> str:
 
 def _write(design: Design, given: dict[str, object], asked: dict[str, Any]) -> None:
     from watchsim.commands.common.output_place import secured_folder
-    from watchsim.designs.drawn import Drawn
+    from watchsim.designs import Drawn
     from watchsim.mechanism.overlap import overlap_faults
     from watchsim.scene.errors import SceneError
     from watchsim.scene.file.design_dimensions import chosen

@@ -1,14 +1,26 @@
-"""What can be done with a design once its dimensions are chosen?"""
+"""Which mechanisms can be drawn from dimensions, and what is one drawn to mine?
+
+    import watchsim as ws
+    mine = ws.designs.swiss_lever(lock="2°", teeth=20)
+    mine.write("my_lever")          # drawings (DXF) and scene.toml
+    run = ws.simulate(mine.scene())
+
+`ws.designs.names()` lists them; `help(ws.designs.swiss_lever)` lists the dimensions of one. In: dimensions. Out: drawings and a
+scene. Imports `construction`, `scene` and below.
+"""
 
 from __future__ import annotations
 
+import inspect
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from watchsim.construction import known
 from watchsim.construction.design import Design
 from watchsim.drawing.sheet import Sheet
+from watchsim.scene.file.design_dimensions import chosen
 from watchsim.scene.file.read_scene import from_mapping
 from watchsim.scene.scene import Scene
 from watchsim.storage.write import write_folder
@@ -58,3 +70,52 @@ class Drawn:
 
         write_folder(target, fill, files.__contains__, "the design")
         return target
+
+
+class Maker:
+    """A design waiting for dimensions: called with them it draws. `maker.dimensions` lists them."""
+
+    def __init__(self, design: Design) -> None:
+        self.design = design
+        self.dimensions = design.dimensions
+        self.__name__ = design.name
+        self.__doc__ = _doc(design)
+        self.__signature__ = inspect.Signature(
+            [
+                inspect.Parameter(one.name, inspect.Parameter.KEYWORD_ONLY, default=one.shown(one.default))
+                for one in design.dimensions
+            ]
+        )
+
+    def __call__(self, **dimensions: object) -> Drawn:
+        """The design drawn with these dimensions: texts with a unit ("2°"), plain numbers where none is needed.
+
+        SceneError lists all that is unknown, out of range or in conflict.
+        """
+        return Drawn(self.design, chosen(self.design, dimensions))
+
+    def __repr__(self) -> str:
+        return f"<design {self.design.name}: {self.design.title}, {len(self.dimensions)} dimensions>"
+
+
+def _doc(design: Design) -> str:
+    rows = []
+    for one in design.dimensions:
+        default, low, high = map(one.shortly, (one.default, one.low, one.high))
+        rows.append(f"{one.name} = {default}  ({low} to {high}): {one.meaning}. {one.source}")
+    return "\n".join([f"{design.title}. Dimensions, each optional:", "", *rows])
+
+
+def names() -> tuple[str, ...]:
+    """The names of all designs."""
+    return known.NAMES
+
+
+def __getattr__(name: str) -> Maker:
+    if name not in known.NAMES:
+        raise AttributeError(f"there is no design {name!r}; known are {', '.join(known.NAMES)}")
+    return Maker(known.design(name))
+
+
+def __dir__() -> list[str]:
+    return sorted(["names", *known.NAMES])
