@@ -9,6 +9,7 @@ from __future__ import annotations
 import multiprocessing
 import os
 import sys
+import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
@@ -41,6 +42,7 @@ class Processes:
                 attempts -= 1
                 if not attempts:
                     raise WorkersLost(LOST) from error
+                time.sleep(LOOK * (ATTEMPTS - attempts))  # a server that was killed is told from a living one a moment later
 
     def _by_one_set(self, question: Question, points: Points, interrupted: Callable[[], bool]) -> Iterator[tuple[int, Row]]:
         """The answers of one set of workers; BrokenProcessPool once one of them has been killed."""
