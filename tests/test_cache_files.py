@@ -122,3 +122,26 @@ def test_without_any_folder_it_still_runs(script: Path, tmp_path: Path) -> None:
     (tmp_path / "open").chmod(0o777)
     told, said = printed(tmp_path / "file" / "cache", script, TMPDIR=str(tmp_path / "open"))
     assert told == "42.0 0" and "compiled each time" in said and "WATCHSIM_CACHE" in said
+
+
+def test_one_compiles_and_nobody_waits_for_the_dead(script: Path, tmp_path: Path) -> None:
+    fcntl = pytest.importorskip("fcntl", reason="locks of files")
+    cache = tmp_path / "cache"
+    assert printed(cache, script) == ("42.0 0", "")
+    (lock,) = cache.rglob("*.lock")
+    for path in cache.rglob("*.nb?"):
+        path.unlink()
+    held = "import fcntl, sys, time; f = open(sys.argv[1]); fcntl.flock(f, fcntl.LOCK_EX); print(flush=True); time.sleep(600)"
+    holder = subprocess.Popen([sys.executable, "-c", held, str(lock)], stdout=subprocess.PIPE)
+    assert holder.stdout is not None and holder.stdout.readline()
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "WATCHSIM_CACHE": str(cache)}
+    pipe = subprocess.PIPE
+    waiting = subprocess.Popen([sys.executable, str(script)], env=environment, stdout=pipe, stderr=pipe, text=True)
+    assert waiting.stderr is not None and "waiting for it" in waiting.stderr.readline()
+    assert waiting.poll() is None and not list(cache.rglob("*.nbi"))
+    holder.kill()
+    assert waiting.communicate(timeout=60)[0].strip() == "42.0 0"
+    holder.wait()
+    with lock.open() as file:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)  # let go
+        assert printed(cache, script) == ("42.0 1", ""), "what is there needs no lock"

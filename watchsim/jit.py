@@ -13,7 +13,7 @@ import sys
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-from watchsim.cache_files import checked_files
+from watchsim.cache_files import checked_files, one_compiles
 from watchsim.machine_code import MOVE, cache_folder, complain
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -118,6 +118,7 @@ def _entry(function: Callable[..., Any]) -> Any:
         if folder is not None:
             checked_files(compiled, complain)
             _load_lightly(compiled)
+            one_compiles(compiled, complain)
     except (OSError, RuntimeError) as error:  # the disk has become full, or the folder has been taken away
         complain(f"The machine code cannot be kept in {folder} ({error}): it is compiled each time. {MOVE}")
         compiled = numba.njit(error_model="numpy", fastmath=False, nogil=True)(function)

@@ -7,6 +7,9 @@ that has loaded everything (see warm.py).
 
 KILL: no half file under a final name, no leftover after the next command's sweep, the user's own file is there; each fifth time
 the next command is run as well, and must be fine.
+--helpers pool: KILL goes to a helper of a sweep instead (a worker, the server they are forked from, the tracker of resources),
+each fourth time to the sweep itself. --helpers cluster: to a worker of a local dask cluster, which is replaced, or each fourth
+time to its scheduler. The sweep ends with status 0, or with 3 and is gone on with; all rows are there, no traceback, no orphan.
 INT and TERM: exit status 130 and 143, or 0 where the command had ended before; results readable where there are any, no
 traceback, no leftover.
 """
@@ -26,6 +29,7 @@ import time
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import NoReturn
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(Path(__file__).parent)]
@@ -156,6 +160,92 @@ def one(
     return name, str(process.returncode), wrong
 
 
+HELPED = ["sweep", str(ROOT / "profiles" / "bench_lever"), "contacts.0.friction=0.1:0.2:12", "--duration", "1 s", "--no-plots"]
+
+
+def helped(number: int, kind: str, place: Path, usual: float) -> tuple[str, str, list[str]]:  # noqa: PLR0915 - a story
+    """One round in which a helper is killed: who, how the sweep ended, what is wrong."""
+    rng = random.Random(f"{kind} {number}")
+    shutil.rmtree(place, ignore_errors=True)
+    place.mkdir()
+    arguments, cluster = [*HELPED, "-o", "study", "--workers", "2"], []
+    if kind == "cluster":
+        import socket
+
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            address = f"tcp://127.0.0.1:{free.getsockname()[1]}"
+        cluster = [_dask("scheduler", "--host", address, "--no-dashboard"), _dask_worker(address)]
+        arguments += ["--scheduler", address]
+        time.sleep(2.0)
+    process = start(arguments, place, fresh=True)
+    assert isinstance(process, subprocess.Popen)
+    helpers: set[int] = set()
+    until = time.monotonic() + rng.random() * usual
+    while process.poll() is None and time.monotonic() < until:
+        helpers |= _descendants(process.pid)
+        time.sleep(0.02)
+    last = number % 4 == 3
+    if kind == "cluster":
+        who = "scheduler" if last else "worker"
+        cluster[0 if last else 1].kill()
+        if not last:
+            cluster.append(_dask_worker(address))
+    else:
+        alive = sorted(_descendants(process.pid))
+        who = "sweep" if last or not alive else "helper"
+        target = process.pid if who == "sweep" else rng.choice(alive)
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(target, signal.SIGKILL)
+    wrong = []
+    while process.poll() is None:
+        helpers |= _descendants(process.pid)
+        time.sleep(0.05)
+    said = "".join(process.communicate())
+    for one in cluster:
+        one.kill()
+        one.wait()
+    fine = {"scheduler": (0, 2, 3), "sweep": (0, -9)}.get(who, (0,))
+    if process.returncode not in fine:
+        wrong.append(f"exit status {process.returncode}: {said}")
+    if "Traceback" in said or "Error" in said:
+        wrong.append(said)
+    time.sleep(0.5)
+    if left := [pid for pid in helpers if Path(f"/proc/{pid}").exists() and not _is_ending(pid)]:
+        wrong.append(f"orphans {left}")
+    rows = place / "study" / "rows.jsonl"
+    kept = rows.read_bytes().splitlines(keepends=True) if rows.is_file() else []
+    if process.returncode != 0:
+        again = subprocess.run(
+            [sys.executable, "-m", "watchsim", *HELPED, "-o", "study", "--workers", "1", "--resume"],
+            cwd=place, env=environment(), check=False, capture_output=True, text=True,
+        )  # fmt: skip
+        if again.returncode != 0:
+            wrong.append(f"gone on with: {again.returncode} {again.stderr}")
+    now = rows.read_bytes().splitlines(keepends=True)
+    if len(now) != 13 or now[: len(kept)] != [line for line in kept if line.endswith(b"\n")]:
+        wrong.append(f"{len(now) - 1} rows of 12; {len(kept) - 1} were there after the kill")
+    return who, f"{who} {process.returncode}", wrong
+
+
+def _dask(*arguments: str) -> subprocess.Popen[bytes]:
+    command = [sys.executable, "-m", "distributed.cli.dask_" + arguments[0], *arguments[1:]]
+    return subprocess.Popen(command, env=environment(), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
+def _dask_worker(address: str) -> subprocess.Popen[bytes]:
+    return _dask("worker", address, "--nthreads", "1", "--no-nanny", "--no-dashboard")
+
+
+def _descendants(number: int) -> set[int]:
+    """The processes below one, as Linux lists them."""
+    found: set[int] = set()
+    with contextlib.suppress(OSError):
+        for child in map(int, Path(f"/proc/{number}/task/{number}/children").read_text().split()):
+            found |= {child} | _descendants(child)
+    return found
+
+
 def _await_the_first_line(process: subprocess.Popen[str]) -> None:
     """Wait until the interpreter has started and the first line of the package has run: from then on SIGTERM is in hand."""
     bit = 1 << (signal.SIGTERM - 1)
@@ -192,6 +282,7 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=70)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--command", choices=list(COMMANDS), action="append", help="only this one; may be given several times")
+    parser.add_argument("--helpers", choices=("pool", "cluster"), help="kill helpers of a sweep instead of commands")
     args = parser.parse_args()
     which = getattr(signal, f"SIG{args.signal}")
     signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell may have switched it off for what runs behind
@@ -201,6 +292,22 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as parent:
         made, place = Path(parent) / "made", Path(parent) / "place"
         made.mkdir()
+        if args.helpers:
+            place.mkdir()
+            started = time.perf_counter()
+            subprocess.run(
+                [sys.executable, "-m", "watchsim", *HELPED, "-o", "study", "--workers", "2"],
+                cwd=place, env=environment(), check=True, capture_output=True,
+            )  # fmt: skip
+            usual_time = time.perf_counter() - started
+            print(f"usual: {usual_time:.1f} s", flush=True)
+            for number in range(args.first, args.first + args.count):
+                name, status, wrong = helped(number, args.helpers, place, usual_time)
+                ended[status] += 1
+                if wrong:
+                    wrong_rounds += 1
+                    print(f"{number} ({name}): {wrong}", flush=True)
+            _report(args, wrong_rounds, ended, begun)
         subprocess.run(
             [sys.executable, "-m", "watchsim", "run", LEVER, "--duration", "0.2 s", "-o", "old"],
             cwd=made, env=environment(), check=True, capture_output=True,
@@ -219,6 +326,10 @@ def main() -> None:
             if wrong:
                 wrong_rounds += 1
                 print(f"{number} ({name}): {wrong}", flush=True)
+    _report(args, wrong_rounds, ended, begun)
+
+
+def _report(args: argparse.Namespace, wrong_rounds: int, ended: Counter[str], begun: float) -> NoReturn:
     took = time.perf_counter() - begun
     print(
         f"{args.count} rounds of {args.signal} from number {args.first}: {wrong_rounds} wrong; "

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import errno
 import io
 import os
@@ -15,11 +16,14 @@ from interpreter import ROOT
 from storage.disk_faults import Disk, watched
 
 from watchsim.cli import main
+from watchsim.commands import run as run_command
 from watchsim.commands.common import write_run
+from watchsim.commands.common.output_place import claimed
 from watchsim.profiles_path import profiles_dir
 from watchsim.results import write_results
 from watchsim.results.read_results import read_results
 from watchsim.simulation.runner import Run
+from watchsim.simulation.stops import Stop
 
 LEVER = str(profiles_dir() / "bench_lever")
 SHORT = ["run", LEVER, "--duration", "0.05 s", "--no-plots"]
@@ -241,3 +245,50 @@ def test_a_study_whose_table_cannot_be_written_is_saved_elsewhere(
     found = re.search(r"saved, without plots, in (\S+)", capsys.readouterr().err)
     assert found and Path(found[1]).parent == elsewhere
     assert (Path(found[1]) / "sweep.csv").read_bytes() == before == (target / "sweep.csv").read_bytes()
+
+
+def test_what_was_made_of_a_run_outlives_its_resume(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = tmp_path / "out"
+    assert main([*SHORT, "-o", str(folder)]) == 0
+    (folder / "plots").mkdir()
+    for name in ("movie.mp4", "report.html", "plots/tape.png"):
+        (folder / name).write_text(name)
+    resume = ["run", LEVER, "--no-plots", "--resume", str(folder)]
+    assert main([*resume, "--duration", "0.1 s"]) == 0
+    assert "movie.mp4, plots/tape.png, report.html" in capsys.readouterr().err
+    assert (folder / "movie.mp4").read_text() == "movie.mp4" and (folder / "plots" / "tape.png").is_file()
+    assert read_results(folder).simulated == pytest.approx(0.1)
+    assert main([*resume, "--duration", "0.12 s", "--force"]) == 0
+    assert not (folder / "movie.mp4").exists() and not (folder / "report.html").exists()
+
+
+def test_two_do_not_write_into_one_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("fcntl", reason="locks of folders")
+    folder = tmp_path / "out"
+    assert main([*SHORT, "-o", str(folder)]) == 0
+    more = ["run", LEVER, "--no-plots", "--resume", str(folder), "--duration", "0.1 s"]
+    with claimed(folder):
+        assert main(more) == 2
+        assert "another process is writing" in capsys.readouterr().err
+    assert main(more) == 0
+
+
+def test_a_part_does_not_replace_the_whole(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "out"
+    assert main([*SHORT, "-o", str(folder)]) == 0
+    before = (folder / "summary.json").read_bytes()
+    simulated = run_command.simulate_with_progress
+
+    def interrupted(*args: object, **more: object) -> object:
+        trajectory, lines = simulated(*args, **more)  # type: ignore[arg-type]
+        return dataclasses.replace(trajectory, stop=Stop.INTERRUPTED), lines
+
+    monkeypatch.setattr(run_command, "simulate_with_progress", interrupted)
+    for name in ("out-interrupted", "out-interrupted-2"):
+        assert main([*SHORT, "-o", str(folder), "--force"]) == 130
+        assert (folder / "summary.json").read_bytes() == before
+        assert read_results(tmp_path / name).stop == Stop.INTERRUPTED
+        said = capsys.readouterr()
+        assert f"goes to {tmp_path / name}" in said.err and f"Results: {tmp_path / name}" in said.out

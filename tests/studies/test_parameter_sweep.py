@@ -6,6 +6,7 @@ import csv
 import json
 import os
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -236,3 +237,79 @@ def test_stopped_from_outside(tmp_path, number, status):
     assert amplitudes == sorted(amplitudes)
     alone = ws.steady(ws.load(BENCH).set("torques.0.value", told[3]["torques.0.value"]))
     assert told[3]["amplitude_deg"] == alone.amplitude_deg
+
+
+def test_no_earlier_picture_stands_beside_new_rows(bench, tmp_path):
+    """Whoever begins anew and is killed leaves its rows alone."""
+    for name in ("sweep.png", "sweep.json", "mine.png"):
+        (tmp_path / name).write_text("earlier")
+    axes = axes_from_values(bench, VALUES)
+    swept(Question(bench), axes, outputs_named(("rate",)), Stopping(1), folder=tmp_path)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["mine.png", NAME]
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform != "linux", reason="finds children in /proc")
+def test_a_killed_worker_costs_nothing(tmp_path):
+    asked = [
+        "sweep",
+        str(BENCH),
+        "torques.0.value=-5:-8:40 µN·m",
+        "--no-plots",
+        "--workers",
+        "2",
+        "-o",
+        str(tmp_path / "study"),
+    ]
+    command = [sys.executable, "-m", "watchsim", *asked]
+    started = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    journal, killed = tmp_path / "study" / NAME, 0
+    while started.poll() is None:
+        time.sleep(0.02)
+        if killed < 2 and journal.is_file() and journal.read_bytes().count(b"\n") > 4 * (killed + 1):
+            workers = [child for helper in children(started.pid) for child in children(helper)]
+            if workers:
+                os.kill(workers[-1], signal.SIGKILL)
+                killed += 1
+    assert killed == 2 and started.returncode == 0 and "Traceback" not in started.communicate()[1]
+    points = [json.loads(line)["point"] for line in journal.read_text().splitlines()[1:]]
+    assert sorted(points) == list(range(40))
+
+
+def children(number: int) -> list[int]:
+    path = Path(f"/proc/{number}/task/{number}/children")
+    return [int(child) for child in path.read_text().split()] if path.is_file() else []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("lost, status", [("worker", 0), ("scheduler", 3)])
+def test_a_cluster_that_loses_somebody(tmp_path, lost, status):
+    """Another worker takes over from one that was killed; without the scheduler the rows are kept, and a sentence says why."""
+    pytest.importorskip("distributed")
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        address = f"tcp://127.0.0.1:{free.getsockname()[1]}"
+
+    def dask(what: str, *options: str) -> subprocess.Popen[bytes]:
+        command = [sys.executable, "-m", f"distributed.cli.dask_{what}", *options, "--no-dashboard"]
+        return subprocess.Popen(command, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+    worker = ("worker", address, "--nthreads", "1", "--no-nanny")
+    cluster = {"scheduler": dask("scheduler", "--host", address), "worker": dask(*worker)}
+    journal = tmp_path / "study" / NAME
+    asked = ["sweep", str(BENCH), "torques.0.value=-5:-8:40 µN·m", "--no-plots", "-o", str(tmp_path / "study")]
+    try:
+        command = [sys.executable, "-m", "watchsim", *asked, "--scheduler", address]
+        started = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        while not (journal.is_file() and journal.read_bytes().count(b"\n") > 3) and started.poll() is None:
+            time.sleep(0.02)
+        cluster[lost].kill()
+        cluster["another"] = dask(*worker)
+        said = started.communicate(timeout=120)[1]
+    finally:
+        for one in cluster.values():
+            one.kill()
+            one.wait()
+    rows = len(journal.read_text().splitlines()) - 1
+    assert started.returncode == status, said
+    assert "Traceback" not in said and (rows == 40 if status == 0 else 3 <= rows < 40 and "was lost" in said), said

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
+import dataclasses
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,7 +22,7 @@ from watchsim.commands.common.console import (
     print_json,
     say,
 )
-from watchsim.commands.common.output_place import secured_folder, swept_run
+from watchsim.commands.common.output_place import claimed, interrupted_place, secured_folder, swept_run
 from watchsim.commands.common.record_size import room_for
 from watchsim.commands.common.write_run import Extras, goal_of, report_text, write
 from watchsim.commands.second.second_core import Meanwhile
@@ -68,14 +70,15 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    with second_process(not args.no_plots) as second:
-        return _run(args, second)
+    with second_process(not args.no_plots) as second, contextlib.ExitStack() as held:
+        return _run(args, second, held)
 
 
-def _run(args: argparse.Namespace, second: SecondProcess | None) -> int:
+def _run(args: argparse.Namespace, second: SecondProcess | None, held: contextlib.ExitStack) -> int:
     from watchsim.commands.common.inputs import load_scene
     from watchsim.mechanism.notes import notes
     from watchsim.results.write_results import check_folder
+    from watchsim.simulation.stops import Stop
     from watchsim.units import TIME
 
     if args.scene is None and args.resume is None:
@@ -92,7 +95,10 @@ def _run(args: argparse.Namespace, second: SecondProcess | None) -> int:
     if second is not None:
         second.prepare(scene, folder, duration or scene.duration, method, args.tol or scene.tolerance)
     # What is resumed is written whole, with what follows it: nothing is lost where it takes the old one's place.
-    replace = args.force or (args.resume is not None and folder.resolve() == Path(args.resume).resolve())
+    goes_on = args.resume is not None and folder.resolve() == Path(args.resume).resolve()
+    replace = args.force or goes_on
+    if replace:
+        held.enter_context(claimed(folder))
     if args.resume:
         swept_run(args.resume)
         start = _earlier(args.resume, scene)
@@ -103,7 +109,7 @@ def _run(args: argparse.Namespace, second: SecondProcess | None) -> int:
     room = room_for(scene, scene.duration if duration is None else duration, folder)
     secured_folder(folder, "results", room, default=not (args.output or args.resume))
     check_folder(folder, replace)
-    goal = goal_of(scene, folder, replace)
+    goal = goal_of(scene, folder, replace, keeps_later=goes_on and not args.force)
     # What a scene promises, it promises as it is written.
     given = {
         "--set": args.set,
@@ -120,6 +126,10 @@ def _run(args: argparse.Namespace, second: SecondProcess | None) -> int:
         trajectory, lines = simulate_with_progress(
             scene, duration, args.tol, folder, method=method, step=step, start=start, second=second
         )
+        if trajectory.stop == Stop.INTERRUPTED and folder.is_dir() and any(folder.iterdir()) and not goes_on:
+            kept, folder = folder, interrupted_place(folder)
+            goal = dataclasses.replace(goal, folder=folder, replace=False)
+            say(f"The earlier results in {kept} are kept; what was simulated of this run goes to {folder}.")
         summary = write(trajectory, goal, extras, changed, lines, second)
     if args.json:
         print_json(summary)
@@ -169,8 +179,6 @@ def simulate_with_progress(
 
 def _earlier(folder: str, scene: Scene) -> Trajectory:
     """The run to go on from, its scene replaced by the one given, which must be the same (see `simulate`)."""
-    import dataclasses
-
     from watchsim.results.read_results import read_results
 
     run = read_results(folder)

@@ -8,6 +8,7 @@ derivatives by every number of the scene, or by the KEYs that are named.
 from __future__ import annotations
 
 import argparse
+import contextlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -75,10 +76,11 @@ def run(args: argparse.Namespace) -> int:
         raise InputError("--sensitivity is taken on limit cycles; leave --duration out.")
     scene = load_scene(args.scene, args.set)
     study = _sensitivity if args.sensitivity else _sweep
-    return study(args, scene, outputs)
+    with contextlib.ExitStack() as held:
+        return study(args, scene, outputs, held)
 
 
-def _sweep(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...]) -> int:
+def _sweep(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...], held: contextlib.ExitStack) -> int:
     from watchsim.commands.common.write_study import write_study
     from watchsim.studies.axes import axes_from_texts
     from watchsim.studies.parameter_sweep import swept
@@ -96,7 +98,7 @@ def _sweep(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...]) 
     for axis in axes:
         points *= len(axis.values)
     question = Question(scene, args.duration is None, duration, args.tol)
-    folder = _folder(args, scene)
+    folder = _folder(args, scene, held)
     with stopping.keeping():
         done = _watched(
             lambda progress: swept(
@@ -119,12 +121,12 @@ def _sweep(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...]) 
     return _status(done.whole, folder, MISSED if without == len(done.rows) else FINE)
 
 
-def _sensitivity(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...]) -> int:
+def _sensitivity(args: argparse.Namespace, scene: Scene, outputs: tuple[Output, ...], held: contextlib.ExitStack) -> int:
     from watchsim.commands.common.write_study import write_study
     from watchsim.studies.sensitivity import found
     from watchsim.studies.study_table import sensitivity_table
 
-    folder = _folder(args, scene)
+    folder = _folder(args, scene, held)
     with stopping.keeping():
         done = _watched(
             lambda progress: found(
@@ -189,9 +191,9 @@ def _watched(compute: Callable[[Progress], Any]) -> Any:
         progress.close()
 
 
-def _folder(args: argparse.Namespace, scene: Scene) -> Path:
+def _folder(args: argparse.Namespace, scene: Scene, held: contextlib.ExitStack) -> Path:
     """The results folder, made if it is not there; refused where it holds something else."""
-    from watchsim.commands.common.output_place import secured_folder
+    from watchsim.commands.common.output_place import claimed, secured_folder
 
     name = scene.path.parent.name if scene.path else "scene"
     what = "sensitivity" if args.sensitivity else "sweep"
@@ -202,6 +204,7 @@ def _folder(args: argparse.Namespace, scene: Scene) -> Path:
             f"{folder} exists already. Go on with it (--resume), begin anew in it (--force), or choose another folder (-o)."
         )
     folder.mkdir(exist_ok=True)
+    held.enter_context(claimed(folder))
     return folder
 
 

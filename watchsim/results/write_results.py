@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import IO, Any
@@ -25,7 +25,8 @@ from watchsim.storage.write import real, write_folder
 SUMMARY, TRAJECTORY, EVENTS = "summary.json", "trajectory.npz", "events.csv"
 STATE = "state.npz"
 FAILURE = "lcp_failure.json"  # only where the solver gave up on a complementarity problem
-LATER = ("beats.csv", "phases.csv", "report.txt", "movie.mp4", "movie.gif", "tick.wav", "report.html", "import.png")
+PICTURES = ("movie.mp4", "movie.gif", "tick.wav", "report.html", "import.png")
+LATER = ("beats.csv", "phases.csv", "report.txt", *PICTURES)
 OURS = frozenset((SUMMARY, LOCK, TRAJECTORY, EVENTS, STATE, FAILURE, *LATER))
 PLOTS = re.compile(r"(plots|drawings|plots/(kinematics|last_beats|tape)\.(png|svg|pdf))")
 
@@ -55,6 +56,12 @@ def is_ours(name: str) -> bool:
     return name in OURS or PLOTS.fullmatch(name) is not None
 
 
+def pictures_in(folder: Path) -> Iterator[str]:
+    """What was made of the results in a folder for people to see or hear: movies, plots, pages, sound."""
+    plots = (f"plots/{path.name}" for path in sorted((folder / "plots").glob("*")))
+    yield from (name for name in (*PICTURES, *plots) if PLOTS.fullmatch(name) or (folder / name).is_file())
+
+
 def ours_in(folder: Path) -> Callable[[str], bool]:
     """`is_ours` for a folder as it stands: the drawings that its locked scene names are ours, too; others are somebody's."""
     drawings = locked_drawings(folder)
@@ -69,6 +76,7 @@ def write_results(
     *,
     extra: Extra | None = None,
     force: bool = False,
+    keep: Collection[str] = (),
 ) -> Path:
     """Write a results folder and return its path.
 
@@ -77,6 +85,7 @@ def write_results(
     extra       more files: relative path -> text, bytes, or a function that writes the file it is given; so for
                 trajectory.npz and events.csv where they were begun before (`Packed`, `tables.EventLines`)
     force       replace an existing results folder; files in it that are not ours are kept
+    keep        files of the existing folder that are ours, and are kept nevertheless where they are not written anew
 
     FileExistsError as from `check_folder`; OSError where the disk is full or the place not writable: what was there before
     is then still there, and nothing else.
@@ -84,7 +93,8 @@ def write_results(
     target = check_folder(folder, force)
     files: dict[str, Any] = {**(travelling(run.scene) if scene_lock is None else {LOCK: scene_lock}), **(extra or {})}
     real(target).parent.mkdir(parents=True, exist_ok=True)
-    write_folder(target, filler(run, summary or {}, files), ours_in(real(target)), "the results")
+    ours = ours_in(real(target))
+    write_folder(target, filler(run, summary or {}, files), lambda name: name not in keep and ours(name), "the results")
     return target
 
 

@@ -41,6 +41,7 @@ class Goal:
     folder: Path
     replace: bool
     scene: Mapping[str, str | bytes]  # name in the results folder -> content
+    keeps_later: bool = False  # movies, plots, pages made of the earlier results stay where they are not made anew
 
 
 class Elsewhere(Protocol):
@@ -59,11 +60,11 @@ class Elsewhere(Protocol):
         """What waits for plots that are being drawn there."""
 
 
-def goal_of(scene: Scene, folder: Path, replace: bool) -> Goal:
+def goal_of(scene: Scene, folder: Path, replace: bool, keeps_later: bool = False) -> Goal:
     """To be made before the run: its scene and drawings may be gone when it ends."""
     from watchsim.results.scene_copy import travelling
 
-    return Goal(folder, replace, travelling(scene))
+    return Goal(folder, replace, travelling(scene), keeps_later)
 
 
 def write(
@@ -186,11 +187,14 @@ def _with_error_bars(run: Trajectory, folder: Path) -> dict[str, Any]:
 
 
 def _save(run: Trajectory, goal: Goal, numbers: Mapping[str, Any], beside: dict[str, Any], drawn: dict[str, Any]) -> None:
-    from watchsim.results.write_results import LOCK, filler, write_results
+    from watchsim.results.write_results import LOCK, filler, pictures_in, write_results
     from watchsim.storage.rescue import write_elsewhere
 
+    keep = sorted(set(pictures_in(goal.folder)) - set(drawn)) if goal.keeps_later else []
+    if keep:
+        say(f"{', '.join(keep)} in {goal.folder}: kept, of the run's earlier end. --force removes what is not made anew.")
     try:
-        write_results(run, goal.folder, numbers, str(beside[LOCK]), extra={**beside, **drawn}, force=goal.replace)
+        write_results(run, goal.folder, numbers, str(beside[LOCK]), extra={**beside, **drawn}, force=goal.replace, keep=keep)
     except OSError as error:
         # Without pictures, which take most of the room, and which can be drawn later.
         place = write_elsewhere(goal.folder.name, filler(run, numbers, beside), "the results")

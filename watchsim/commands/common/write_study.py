@@ -8,9 +8,7 @@ from typing import Any
 
 from watchsim import stopping
 from watchsim.commands.common.console import InputError
-
-FIGURES = (".png", ".svg", ".pdf")
-FILES = ("sweep.json", "sweep.csv", "sweep.parquet", *(f"sweep{ending}" for ending in FIGURES))
+from watchsim.studies.workers.journal import FIGURES, FILES
 
 
 def write_study(folder: Path, numbers: dict[str, Any], table: dict[str, list[Any]], figure: Any) -> None:

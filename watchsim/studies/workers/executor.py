@@ -14,6 +14,7 @@ from watchsim.studies.point import Question, Row, answer
 
 Points = Sequence[tuple[int, Mapping[str, Value]]]
 LOOK = 0.2  # s between looks at whether somebody wants to stop
+AHEAD = 3  # points handed out per worker before one is finished
 
 
 class WorkersLost(RuntimeError):

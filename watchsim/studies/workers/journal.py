@@ -7,6 +7,7 @@ with the next one, and the study goes on.
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import os
@@ -21,6 +22,8 @@ from watchsim.storage.write import write_file
 from watchsim.studies.point import Row
 
 NAME = "rows.jsonl"
+FIGURES = (".png", ".svg", ".pdf")
+FILES = ("sweep.json", "sweep.csv", "sweep.parquet", *(f"sweep{ending}" for ending in FIGURES))  # made of the rows
 
 Study = dict[str, Any]
 
@@ -49,6 +52,9 @@ class Journal:
             first = _line(study)
             write_file(self.path, lambda place: place.write_bytes(first), "the rows")
             self._whole = len(first)
+            for name in FILES:  # of the earlier study; what cannot be removed now is replaced or named at the end
+                with contextlib.suppress(OSError):
+                    (folder / name).unlink()
         try:
             self._file: IO[bytes] = self.path.open("r+b", buffering=0)
         except OSError as error:
