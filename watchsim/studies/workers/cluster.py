@@ -16,7 +16,7 @@ TIMEOUT = 10.0  # s to reach the scheduler
 
 
 class Cluster:
-    """The workers of the scheduler at an address such as "tcp://192.168.0.5:8786"."""
+    """The workers of the scheduler at an address such as "tcp://127.0.0.1:8786"."""
 
     def __init__(self, address: str) -> None:
         try:
