@@ -18,7 +18,7 @@ HELD = {MMAP_THRESHOLD: 32 << 20, TRIM_THRESHOLD: 128 << 20}  # bytes
 
 def process() -> NoReturn:
     """Run the command line of this process, and end it."""
-    import _signal as signal  # built in, where `signal` has still to be loaded
+    import _signal as signal  # type: ignore[import-not-found]  # built in: nothing to load
 
     heard = (signal.SIGINT, signal.SIGTERM)
     if hasattr(signal, "pthread_sigmask"):  # what comes while nobody listens yet waits
