@@ -6,7 +6,9 @@ taken apart can change the exit status any more.
 
 from __future__ import annotations
 
-from typing import NoReturn
+TYPE_CHECKING = False  # as in typing, whose import would leave Ctrl-C unheard for some milliseconds
+if TYPE_CHECKING:
+    from typing import NoReturn
 
 GARBAGE = 500_000  # objects that may pile up, some 50 MB
 PROMPT = 5e-4  # s that a thread may keep Python from another: 5 ms, as usual, would hold up whoever has only little to do
@@ -16,7 +18,7 @@ HELD = {MMAP_THRESHOLD: 32 << 20, TRIM_THRESHOLD: 128 << 20}  # bytes
 
 def process() -> NoReturn:
     """Run the command line of this process, and end it."""
-    import signal
+    import _signal as signal  # type: ignore[import-not-found]  # built in: nothing to load
 
     heard = (signal.SIGINT, signal.SIGTERM)
     if hasattr(signal, "pthread_sigmask"):  # what comes while nobody listens yet waits
@@ -37,7 +39,7 @@ def process() -> NoReturn:
     sys.setswitchinterval(PROMPT)
     if sys.platform == "linux":
         hold_memory()
-    from watchsim.commands.common.streams import open_streams
+    from watchsim.commands.common.streams import lost_output, open_streams
 
     open_streams()
     from watchsim.cli import main
@@ -47,8 +49,12 @@ def process() -> NoReturn:
     except SystemExit as stop:  # argparse: --help, --version, what cannot be parsed
         status = stop.code if isinstance(stop.code, int) else int(stop.code is not None)
     atexit._run_exitfuncs()
-    for stream in (sys.stdout, sys.stderr):
-        stream.flush()
+    lost = lost_output()
+    if lost:
+        from watchsim.commands.common.console import BAD_INPUT, say
+
+        say(f"What was printed could not all be written: {lost}. Send it to another place.")
+        status = max(status, BAD_INPUT)
     number = stopping.last_word()
     os._exit(128 + number if number else status)
 

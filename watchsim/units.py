@@ -108,6 +108,7 @@ _PLAIN: dict[str, Unit] = {
 }
 PLAIN = "here a plain number is needed, without a unit"
 DIGITS = 1000  # of a number as text
+LONGEST = 200  # characters of a unit: "mg·cm²" has 6, and brackets cannot be nested without end
 _ALIASES = {"deg": "°", "degree": "°", "degrees": "°", "in": "inch", "day": "d", "bph": "vph", "turn": "rev", "sec": "s"}
 _SPELLINGS = {"μ": "µ", "−": "-", "**": "^", "⋅": "·", "*": "·", ".": "·", "\u00a0": " ", "\u202f": " "}
 _SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
@@ -139,6 +140,8 @@ def parse(value: object, dimension: Dimension) -> float:
 def split(value: object) -> tuple[str, str]:
     """The number (as text, finite) and the unit (as text, maybe empty) of a quantity; UnitError where there is no number."""
     if isinstance(value, Real) and not isinstance(value, bool):
+        if isinstance(value, int) and value.bit_length() > 3 * DIGITS:  # Python refuses to write many digits
+            raise UnitError(f"a whole number of {value.bit_length()} bits has more digits than any precision")
         value = repr(value) if isinstance(value, int) else repr(float(value))
         if value in ("inf", "-inf", "nan"):
             raise UnitError(f"{value} is not a finite number")
@@ -159,6 +162,8 @@ def split(value: object) -> tuple[str, str]:
 
 def known_unit(text: str, dimension: Dimension | None = None) -> Unit:
     """The unit of that spelling; UnitError (with an example of `dimension`) if it is not known."""
+    if len(text) > LONGEST:
+        raise UnitError(f'"{text[:20]}..." is not a unit known here: it has {len(text)} characters')
     try:
         return _unit(text)
     except KeyError:

@@ -5,6 +5,7 @@ What is drawn is measured with shapely, which shares nothing with the drawing.
 
 from __future__ import annotations
 
+import cmath
 import math
 import random
 import sys
@@ -18,6 +19,7 @@ from shapely.affinity import rotate, translate
 from watchsim.construction.known import design
 from watchsim.construction.outline_check import drawing_of
 from watchsim.construction.swiss_lever.swiss_lever_derived import swiss
+from watchsim.construction.swiss_lever.swiss_lever_guard import crescent_needed
 from watchsim.construction.swiss_lever.swiss_lever_points import Swiss
 from watchsim.construction.swiss_lever.swiss_lever_recoil import drop_after_recoil
 from watchsim.construction.swiss_lever.swiss_lever_sheets import sheets
@@ -71,6 +73,21 @@ def test_dimensions_are_those_measured_from_the_drawing(tmp_path):
 @pytest.mark.parametrize("chosen", [{}, *OTHERS[1:]], ids=["default", "20 teeth", "12 teeth"])
 def test_dimensions_of_other_designs_are_those_measured(chosen, tmp_path):
     checked(chosen, tmp_path)
+
+
+def test_the_crescent_needed_is_what_the_dart_sweeps_beside_the_jewel():
+    """Jewel and dart turned about the lever's staff as complex numbers; with play, breadth and rounding of the edge."""
+    lever = Swiss()
+    staff, farthest = lever.lever_to_balance, 0.0
+    for k in range(61):
+        a = math.radians(lever.bank * k / 60)
+        along = staff * math.cos(a) - math.sqrt(lever.pin_reach**2 - (staff * math.sin(a)) ** 2)
+        jewel, dart = (length * cmath.rect(1.0, a) - staff for length in (along, lever.dart_centre))
+        if abs(dart) < lever.safety_radius + lever.dart_tip:
+            beside = abs(math.degrees(cmath.phase(dart / jewel)))
+            farthest = max(farthest, beside + math.degrees((lever.dart_tip + 0.02 * lever.lever_scale) / abs(dart)))
+    play = math.degrees((lever.slot_width - 2.0 * lever.pin_radius) / lever.pin_reach)
+    assert crescent_needed(lever) == pytest.approx(farthest + play, rel=1e-9)
 
 
 REFUSED = [

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -170,6 +171,20 @@ def test_a_jump_is_told(jump, agrees):
     assert ("disagree" in effect.message) is not agrees
     if agrees:
         assert effect.by["amplitude_deg"].value == pytest.approx(-30.0, rel=1e-6)
+
+
+@pytest.mark.parametrize("near", ["low", "high", "neither"])
+def test_a_slope_beside_a_bound_has_its_sign(near):
+    """Of a parabola, which both kinds of quotients differentiate exactly."""
+    one = next(one for one in quantities(ws.load(BENCH)) if one.key == "contacts.0.friction")
+    bounds = {"low": {"low": one.value, "high": None}, "high": {"low": None, "high": one.value}}
+    friction = replace(one, **bounds.get(near, {"low": None, "high": None}))
+    values = [value for _, value in points_of(friction)]
+    assert {"low": min(values) > one.value, "high": max(values) < one.value, "neither": True}[near]
+    rows = {x: {"amplitude_deg": 290.0 - 30.0 * x + 50.0 * x * x, "message": "", "verdict": "ticks"} for x in values}
+    level = {"amplitude_deg": 290.0 - 30.0 * one.value + 50.0 * one.value**2}
+    effect = effect_of(friction, rows, level, outputs_named(["amplitude"]))
+    assert effect.by["amplitude_deg"].value == pytest.approx(-30.0 + 100.0 * one.value, rel=1e-6)
 
 
 def test_no_cycle_no_sensitivity():

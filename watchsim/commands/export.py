@@ -22,6 +22,7 @@ HELP = "outlines as DXF and SVG, bodies as GLB and STL"
 FORMATS = ("dxf", "svg", "glb", "stl")
 MANIFEST = "export.json"
 PIVOT = "PIVOT"
+THINNEST = 1e-9  # m, of a plate: a mesh of it would have no sides
 
 
 def options(parser: argparse.ArgumentParser) -> None:
@@ -158,6 +159,13 @@ def _contents(
             for name, text in _drawings(body, worn[body.name], formats):
                 found[f"{stems[body.name]}.{name}"] = text.encode()
     stacked = tuple(slab for slab in slabs(scene, thickness) if slab.body in stems)
+    thin = next((slab for slab in stacked if set(formats) & {"glb", "stl"} and 0.0 < slab.thickness < THINNEST), None)
+    if thin:
+        raise InputError(
+            f"{thin.layer} of {thin.body} is {1e3 * thin.thickness:g} mm thick: a solid of less than "
+            f"{1e9 * THINNEST:g} nm has no "
+            "sides. Mend the thickness in its solids or of --thickness, or leave solids out with --format dxf,svg."
+        )
     if "glb" in formats:
         from watchsim.render.placed_solids import placed_solids
 

@@ -37,6 +37,7 @@ EVENT_COLUMNS = (
 
 HEAD = (",".join(EVENT_COLUMNS) + "\r\n").encode()
 ROWS = 1 << 13  # of the table that are made into text together
+FORMULA = ("=", "+", "-", "@", "\t", "\r", "\n")  # what a text begins with that spreadsheets compute
 NO_IMPULSE = "0.0,0.0,0.0,"  # of an event that is no impact
 
 
@@ -154,10 +155,16 @@ def _runs(values: NDArray[Any]) -> tuple[NDArray[Any], NDArray[np.int64]]:
     return values[begins], np.cumsum(begins) - 1
 
 
+def cell(text: str) -> str:
+    """A text as a spreadsheet shall show it: one that begins like a formula would be computed, whoever wrote the scene."""
+    whole = text.replace("\r", " ").replace("\n", " ")  # csv.writer does not always put line breaks in quotes
+    return f"'{whole}" if text.startswith(FORMULA) else whole
+
+
 def _row(fields: Iterable[object]) -> str:
     """Fields with commas between them, in quotes where they must be."""
     out = io.StringIO()
-    csv.writer(out, lineterminator="").writerow(fields)
+    csv.writer(out, lineterminator="").writerow([cell(one) if isinstance(one, str) else one for one in fields])
     return out.getvalue()
 
 

@@ -51,10 +51,12 @@ def _looked_up(target: Path, what: str) -> Path:
     """Where a link leads, else the path itself."""
     _look(target.absolute(), target)
     if not target.is_symlink():
-        return target.absolute()
+        return real(target)
     try:
         place = real(target)
         exists = place.exists()
+    except PermissionError:
+        raise
     except (OSError, RuntimeError):  # links in a circle
         exists = False
     if not exists:

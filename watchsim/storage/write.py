@@ -19,10 +19,32 @@ from watchsim.storage.scratch_folder import Scratch, guard, leftovers, scratch_i
 Ours = Callable[[str], bool]  # of a path in the folder, with slashes: is it a file of ours, which may be replaced?
 
 
+MARKS = ("summary.json", "trajectory.npz", "rows.jsonl", "sweep.json")  # one of them is in every folder of results
+
+
 def real(path: Path) -> Path:
-    """Where to write: what a link points to, so that it stays a link."""
+    """Where to write: what a link points to, so that it stays a link.
+
+    PermissionError for a link that leads out of a folder of results: that may come from somebody else, who could have put it
+    there to have another file overwritten.
+    """
     path = path.absolute()
+    for folder in (path.parent, path.parent.parent):
+        if any(os.path.lexists(folder / name) for name in MARKS) and not _ends_in(folder, path):
+            link = path if path.is_symlink() else path.parent
+            raise PermissionError(
+                f"{link} is a link out of the results folder {folder}, which nothing is written through. "
+                "Remove the link, or choose another place"
+            )
     return path.resolve() if path.is_symlink() else path
+
+
+def _ends_in(folder: Path, path: Path) -> bool:
+    """Whether a path in a folder is in it, too, when links are followed."""
+    try:
+        return folder.resolve() in path.resolve().parents
+    except (OSError, RuntimeError):  # links in a circle
+        return False
 
 
 def write_file(target: Path, fill: Callable[[Path], object], what: str) -> None:

@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+from watchsim.results.tables import cell
 from watchsim.studies.parameter_sweep import Sweep
 from watchsim.studies.sensitivity import Sensitivity
 
@@ -25,10 +26,16 @@ def csv_text(table: Table) -> str:
     """Numbers with all their digits; an empty field where there is none."""
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(table)
+    writer.writerow(map(cell, table))
     for row in zip(*table.values(), strict=True):
-        writer.writerow(["" if value is None else repr(float(value)) if isinstance(value, float) else value for value in row])
+        writer.writerow(map(_field, row))
     return out.getvalue()
+
+
+def _field(value: Any) -> Any:
+    if isinstance(value, str):
+        return cell(value)
+    return "" if value is None else repr(float(value)) if isinstance(value, float) else value
 
 
 def parquet_writer(table: Table) -> Callable[[Path], None] | None:

@@ -195,6 +195,8 @@ def test_dots_of_timing_are_the_beats(run: ws.Trajectory) -> None:
     for name, values in (("amplitude", found.amplitude_deg), ("rate", found.rate_s_per_d), ("beat error", found.beat_error_ms)):
         dots = [named(figure, f"{name} {way}")[1].get_data() for way in ("forward", "back")]
         t, y = np.concatenate([one[0] for one in dots]), np.concatenate([one[1] for one in dots])
+        for (ours, _), forward in zip(dots, (True, False), strict=True):
+            assert ours == pytest.approx(found.t[(found.end_at > found.start_at) == forward])
         order = np.argsort(t)
         assert t[order] == pytest.approx(found.t) and y[order] == pytest.approx(values, nan_ok=True)
 

@@ -32,6 +32,21 @@ def test_a_spike_of_one_sample_in_a_million_survives(place: int, height: float) 
     assert np.all(np.diff(x) >= 0.0)
 
 
+@pytest.mark.parametrize("columns", [1, 7, 100])
+def test_every_column_keeps_its_first_last_least_and_largest(columns: int) -> None:
+    """Columns divide the whole width evenly: by plain counting, one column after the other."""
+    x = np.arange(40.0 * columns)
+    y = np.random.default_rng(3).standard_normal(len(x))
+    kept = set(reduced(x, y, columns)[0].tolist())
+    place = np.minimum(np.floor(columns * x / x[-1]), columns - 1)
+    expected = set()
+    for k in range(columns):
+        own = np.flatnonzero(place == k)
+        expected |= {float(i) for i in (own[0], own[-1], own[np.argmin(y[own])], own[np.argmax(y[own])])}
+    assert kept == expected
+    assert [len(low) for _, low, _ in bands(x, y, columns)] == [columns]
+
+
 def pixels(x: np.ndarray, y: np.ndarray, columns: int, areas: Areas = ()) -> np.ndarray:
     """A curve and areas over the whole width, edges one dot thick and without shades between ink and paper."""
     figure = Figure(figsize=(columns / 100.0, 3.0), dpi=100)

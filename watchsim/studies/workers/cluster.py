@@ -23,7 +23,7 @@ GONE = "cancelled", "lost"  # whoever had the point, or its row, has gone
 
 
 class Cluster:
-    """The workers of the scheduler at an address such as "tcp://192.168.0.5:8786"."""
+    """The workers of the scheduler at an address such as "tcp://127.0.0.1:8786"."""
 
     def __init__(self, address: str) -> None:
         try:

@@ -18,7 +18,7 @@ from typing import IO, Any
 from watchsim.results.tables import plain
 from watchsim.scene.scene import Scene
 from watchsim.storage.disk import reason
-from watchsim.storage.write import write_file
+from watchsim.storage.write import real, write_file
 from watchsim.studies.point import Row
 
 NAME = "rows.jsonl"
@@ -44,7 +44,7 @@ class Journal:
 
         OSError where it cannot be written; an earlier journal is then still there.
         """
-        self.path = folder / NAME
+        self.path = real(folder / NAME)
         self.rows: dict[int, Row] = {}
         self._owed = b""  # lines that are not on the disk yet
         self._whole = self._read(study) if resume else 0  # bytes of the file that are whole lines

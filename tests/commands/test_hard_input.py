@@ -1,0 +1,89 @@
+"""Does hostile or hopeless input end in a message, and what is received from others harm nothing?"""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from interpreter import ROOT
+
+from watchsim.cli import main
+from watchsim.profiles_path import profiles_dir
+from watchsim.results.tables import cell
+from watchsim.storage.destination import secure_file
+from watchsim.storage.write import write_file
+from watchsim.studies.study_table import csv_text
+from watchsim.studies.workers.journal import Journal
+
+LEVER = profiles_dir() / "bench_lever"
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")
+@pytest.mark.parametrize("arguments", [["new", "--list"], ["--help"], ["inspect", str(LEVER / "lever.dxf"), "--json"]])
+def test_a_full_disk_under_the_output_is_one_line_and_status_2(arguments: list[str]) -> None:
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "watchsim", *arguments],
+            env={**os.environ, "PYTHONPATH": str(ROOT)},
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+        )
+    assert done.returncode == 2 and "could not all be written: No space left on device" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize("value", ["12 " + "(" * 5000 + "mg" + ")" * 5000, "0x" + "f" * 5000, "[0x" + "f" * 5000 + "]"])
+def test_endless_values_are_refused(value: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", str(LEVER), "--set", f"bodies.balance.inertia={value}"]) == 2
+    assert "bodies.balance.inertia" in capsys.readouterr().err
+
+
+def test_whole_numbers_without_end_in_a_scene_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    scene = tmp_path / "scene.toml"
+    scene.write_text(f"[scene]\ntitle = 'x'\nschema = 0x{'f' * 5000}\n")
+    assert main(["check", str(scene)]) == 2
+    assert "a whole number of 20000 bits" in capsys.readouterr().err
+
+
+def test_a_plate_too_thin_for_a_solid_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    thin = ["export", str(LEVER), "--thickness", "2.5e-13 mm", "-o"]
+    assert main([*thin, str(tmp_path / "solids")]) == 2
+    assert "2.5e-13 mm thick" in capsys.readouterr().err
+    assert main([*thin, str(tmp_path / "flat"), "--format", "dxf,svg"]) == 0
+
+
+@pytest.mark.parametrize("text", ["=1+1", "+1", "-1", "@a", "\t=1", "\r=1"])
+def test_texts_in_tables_are_no_formulas_and_numbers_stay(text: str) -> None:
+    safe = "'" + text.replace("\r", " ")
+    assert cell(text) == safe and cell("lever") == "lever"
+    rows = list(csv.reader(io.StringIO(csv_text({"key": [text], "value": [-1.5]}), newline="")))
+    assert rows == [["key", "value"], [safe, "-1.5"]]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="links of Unix")
+@pytest.mark.parametrize("name", ["report.html", "movie.mp4", "tick.wav", "plots/kinematics.png", "rows.jsonl"])
+def test_nothing_is_written_through_a_link_out_of_a_received_folder(name: str, tmp_path: Path) -> None:
+    run, mine = tmp_path / "run", tmp_path / "mine"
+    for folder in (run, mine):
+        folder.mkdir()
+    (run / "summary.json").write_text("{}")
+    target = mine / Path(name).name
+    target.write_text("mine")
+    if "/" in name:
+        (run / "plots").symlink_to(mine)
+    else:
+        (run / name).symlink_to(target)
+    for write in (secure_file, lambda path, what: write_file(path, lambda place: place.write_text("theirs"), what)):
+        with pytest.raises(PermissionError, match="is a link out of the results folder"):
+            write(run / name, "the file")
+    if name == "rows.jsonl":
+        with pytest.raises(PermissionError, match="is a link out of"):
+            Journal(run, {}, resume=True)
+    assert target.read_text() == "mine" and [one.name for one in mine.iterdir()] == [target.name]
