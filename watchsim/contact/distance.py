@@ -16,12 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.contact.edge_distance import EDGE, depth_profile, edge_records, nearest_edges, place_edges, point_on
-from watchsim.contact.kinematics import closed_contacts, contact_kinematics
-from watchsim.contact.poses import place, poses
+from watchsim.contact.kinematics import closed_contacts, every_contact
+from watchsim.contact.poses import poses
 from watchsim.geometry.inside import winding
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Edge, Point
-from watchsim.jit import callable_kernel, entry
+from watchsim.jit import callable_kernel
 from watchsim.mechanism.compile import compile_scene
 from watchsim.model.records import KIND_WORD, Model, records
 from watchsim.scene.body import Body
@@ -121,14 +121,6 @@ def kinematics(a: Outline, pose_a: Vector, velocity_a: Vector, b: Outline, pose_
     # The entries of the two origins are n and t themselves.
     out["n"] = out["w_N"][:, :2]
     return out
-
-
-@entry
-def every_contact(model, q, u, pose, out_closed):
-    """Kinematics of all contacts, row by row."""
-    place(model, q, u, pose)
-    for k in range(len(model.contacts)):
-        contact_kinematics(model, k, pose, k, out_closed)
 
 
 def _loops(outline: Outline) -> tuple[Loop, ...]:

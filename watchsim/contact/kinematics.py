@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.contact.gaps import margins_of, shape_of_contact
-from watchsim.jit import by_reference, hot_kernel, kernel
+from watchsim.contact.poses import place
+from watchsim.jit import by_reference, entry, hot_kernel, kernel
 from watchsim.model.records import FREE, PIVOT, SLIDE, Records, records
 from watchsim.tolerances import SPIN_ROUNDING, TILT_ROUNDING
 
@@ -165,3 +166,11 @@ def gap_acceleration(closed, i, a):
     for k in range(closed.slots[i]):
         total += closed.w_N[i, k] * a[closed.coord[i, k]]
     return total
+
+
+@entry
+def every_contact(model, q, u, pose, out_closed):
+    """Kinematics of all contacts, row by row."""
+    place(model, q, u, pose)
+    for k in range(len(model.contacts)):
+        contact_kinematics(model, k, pose, k, out_closed)

@@ -6,10 +6,9 @@ All lengths scale with the scene's size, so that a tower clock and a wristwatch 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from watchsim.jit import by_reference
-from watchsim.mechanism.compile import Compiled
 from watchsim.tolerances import (
     ACCUMULATION_SPEED,
     ACCUMULATION_TIME,
@@ -27,6 +26,9 @@ from watchsim.tolerances import (
     SPEED_PER_TOLERANCE,
     SPEED_ZERO,
 )
+
+if TYPE_CHECKING:
+    from watchsim.mechanism.compile import Compiled
 
 
 class Options(NamedTuple):

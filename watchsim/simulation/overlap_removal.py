@@ -11,8 +11,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.contact.distance import every_contact
-from watchsim.contact.kinematics import Closed, closed_contacts
+from watchsim.contact.kinematics import Closed, closed_contacts, every_contact
 from watchsim.contact.poses import poses
 from watchsim.model.records import Model
 from watchsim.simulation.options import Options
