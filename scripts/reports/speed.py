@@ -56,9 +56,7 @@ time the details of the first beats dominate: the settled lever runs for 15 s an
 
 The reference is the closed form, or the event-driven solver at its tightest tolerance; another method confirms it. The levers
 of the other engines are polygons. They apply Newton's law of impact, watchsim Poisson's: with restitution above zero they
-need not reach the same amplitude. Each engine is set up as well as we know how: for pymunk the spring's torque is taken at the
-angle at the end of the step (at its start the step is explicit Euler's, which adds energy to the oscillation: 0.9° at 5 µs); for
-Box2D moving bodies are "bullets", with continuous collision detection (without, 0.5° at 20 µs); pivots are masses too heavy to move.
+need not reach the same amplitude. Each engine is set up as well as we know how.
 
 ## Compared with other engines
 
