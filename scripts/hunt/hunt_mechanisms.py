@@ -7,7 +7,6 @@ docs/reports/hunt.md.
 
     python scripts/hunt/hunt_mechanisms.py --count 20000 --jobs 2
     python scripts/hunt/hunt_mechanisms.py --only 17 --keep results/hunt --shrink
-    python scripts/hunt/hunt_mechanisms.py --scene tests/data/hunt/blade.toml
 
 Ctrl-C and SIGTERM end the hunt with the table of what it has judged so far.
 Exit status: 0 all fine, 1 something was wrong, hung or gave up.

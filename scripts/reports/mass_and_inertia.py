@@ -123,12 +123,8 @@ def filled(text: str, names: Iterable[str] = TABLES) -> str:
     return text
 
 
-def main() -> None:
-    DOCUMENT.write_text(filled(DOCUMENT.read_text(encoding="utf-8")), encoding="utf-8")
-
-
 if __name__ == "__main__":
     from usage import arguments
 
     arguments(__doc__)
-    main()
+    DOCUMENT.write_text(filled(DOCUMENT.read_text(encoding="utf-8")), encoding="utf-8")

@@ -114,7 +114,7 @@ def ratios(rows: list[dict[str, Any]]) -> str:
 def wholes(scenario: Scenario) -> str:
     """A table of whole runs, each engine at its most exact setting but watchsim at its usual one."""
     lines = ["| engine | first run: set-up | stepping | again: set-up | stepping |", "|---|---:|---:|---:|---:|"]
-    settings = {name: values[-1] for name, values in scenario.settings.items() if is_installed_or_own(name)}
+    settings = {name: values[-1] for name, values in scenario.settings.items() if name in (OWN, MOREAU) or is_installed(name)}
     settings[OWN] = 1e-9
     for method, setting in settings.items():
         one = whole(scenario, method, setting)
@@ -122,10 +122,6 @@ def wholes(scenario: Scenario) -> str:
         how = f"tolerance {setting:g}" if method == OWN else f"step {1e6 * setting:g} µs"
         lines.append(f"| {method}, {how} | " + " | ".join(f"{seconds:.3f} s" for seconds in times) + " |")
     return "\n".join(lines)
-
-
-def is_installed_or_own(method: str) -> bool:
-    return method in (OWN, MOREAU) or is_installed(method)
 
 
 def command() -> str:
