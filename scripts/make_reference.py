@@ -34,10 +34,7 @@ PAGES = {
             "watchsim.scene.recording:Recording",
         ],
     ),
-    "designs": (
-        "Designs",
-        ["watchsim.designs:names", "watchsim.designs.maker:Maker", "watchsim.designs.drawn:Drawn"],
-    ),
+    "designs": ("Designs", ["watchsim.designs:names", "watchsim.designs.maker:Maker", "watchsim.designs.drawn:Drawn"]),
     "drawings": ("Drawings and outlines", ["read", "Drawing", "watchsim.drawing.findings:Finding", "Profile"]),
     "contact": ("Distances and contact kinematics", ["distance", "watchsim.contact.distance:Distance", "gap", "kinematics"]),
     "simulation": ("Simulation", ["simulate", "Trajectory", "EventKind", "Stop"]),

@@ -34,10 +34,10 @@ step "kernels with index checks" env NUMBA_BOUNDSCHECK=1 WATCHSIM_CACHE="$scratc
     pytest tests/candidates tests/contact tests/dynamics tests/simulation
 
 mkdir -p "$scratch/images" "$scratch/reports"
-step "an hour of each lever, a locked day" python scripts/reports/measure_long_runs.py --page "$scratch/reports/long-runs.md"
-step "the other method" python scripts/reports/study_convergence.py --quick --page "$scratch/reports/convergence.md"
+step "an hour of each lever, a locked day" python scripts/reports/long_runs.py --page "$scratch/reports/long-runs.md"
+step "the other method" python scripts/reports/convergence.py --quick --page "$scratch/reports/convergence.md"
 step "kinks, orientations, curves of many arcs" \
-    python scripts/reports/ordinary/measure_ordinary_mechanisms.py --page "$scratch/reports/ordinary-mechanisms.md"
+    python scripts/reports/ordinary.py --page "$scratch/reports/ordinary-mechanisms.md"
 step "the pages of these" cat "$scratch"/reports/{long-runs,convergence,ordinary-mechanisms}.md
 
 step "random mechanisms, others every night" \
@@ -50,7 +50,7 @@ step "damaged scenes" python scripts/fuzz/scenes.py --count 2000
 step "damaged results" python scripts/fuzz/results.py --count 500
 
 step "benchmarks" watchsim verify --slow
-step "restitution and friction from 0 to 1" python scripts/checks/measure_grid.py "$scratch/grid.csv"
+step "restitution and friction from 0 to 1" python scripts/reports/stability.py grid "$scratch/grid.csv"
 step "demo" watchsim demo -o "$scratch/demo"
 
 [ ${#failed[@]} -eq 0 ] || { printf 'Failed: %s\n' "${failed[@]}"; exit 1; }

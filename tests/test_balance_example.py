@@ -13,8 +13,8 @@ from watchsim.mechanism.static_check import check_report, check_text
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "scripts" / "reports")]
 
-import tabulate_inertia  # noqa: E402
-from balance_sizes import Hand, by_hand  # noqa: E402
+import mass_and_inertia  # noqa: E402
+from draw_profiles import Hand, by_hand  # noqa: E402
 
 SCENE = ROOT / "profiles" / "balance" / "scene.toml"
 HAND = by_hand()
@@ -35,13 +35,13 @@ def test_every_part_is_as_heavy_as_the_handbook_says(balance, name: str) -> None
 
 
 def test_the_document_holds_the_tables_as_they_are_now() -> None:
-    text = tabulate_inertia.DOCUMENT.read_text(encoding="utf-8")
-    assert tabulate_inertia.filled(text, ("balance", "outlines")) == text
+    text = mass_and_inertia.DOCUMENT.read_text(encoding="utf-8")
+    assert mass_and_inertia.filled(text, ("balance", "outlines")) == text
     assert text.count("| yes |") == 7 and "| no:" not in text
 
 
 def test_the_mesh_of_the_wheel_converges_as_the_document_says() -> None:
-    rows = [row.split("|")[3:5] for row in tabulate_inertia.meshes().splitlines()[2:]]
+    rows = [row.split("|")[3:5] for row in mass_and_inertia.meshes().splitlines()[2:]]
     orders = [float(order) for _, order in rows[1:]]
     assert orders == pytest.approx([1.0] * len(orders), abs=0.06) and float(rows[-1][0]) < 1e-4
 

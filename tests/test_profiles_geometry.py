@@ -22,11 +22,8 @@ ROOT = Path(__file__).resolve().parents[1]
 PROFILES, SHARED = ROOT / "profiles", ROOT.parent / "shared"
 sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "scripts" / "checks")]
 
-import draw_balance  # noqa: E402
-import draw_bench_lever  # noqa: E402
-import draw_swiss_lever  # noqa: E402
-from measure_lever import measure  # noqa: E402
-from measure_shapes import placed, read_layout, tomllib  # noqa: E402
+import draw_profiles  # noqa: E402
+from measure_lever import measure, placed, read_layout, tomllib  # noqa: E402
 
 from watchsim.construction.swiss_lever.swiss_lever_points import Swiss  # noqa: E402
 
@@ -54,11 +51,9 @@ def entities(path: Path) -> list[tuple[str, str, list[float]]]:
     return found
 
 
-@pytest.mark.parametrize(
-    ("script", "name"), [(draw_bench_lever, "bench_lever"), (draw_swiss_lever, "swiss_lever"), (draw_balance, "balance")]
-)
-def test_drawings_in_the_profile_are_what_the_script_draws(script, name, tmp_path):
-    script.draw(tmp_path)
+@pytest.mark.parametrize("name", ["bench_lever", "swiss_lever", "balance"])
+def test_drawings_in_the_profile_are_what_the_script_draws(name, tmp_path):
+    draw_profiles.DRAWN[name](tmp_path)
     drawn = sorted(tmp_path.glob("*.dxf"))
     assert [path.name for path in drawn] == sorted(path.name for path in (PROFILES / name).glob("*.dxf"))
     for path in drawn:
@@ -178,12 +173,12 @@ def test_bench_lift_angle_is_twice_the_angle_at_which_the_pin_meets_the_fork(nam
     """The lever on its banking; pin and fork as drawn, turned by shapely."""
     layout = tomllib.loads((PROFILES / name / "scene.toml").read_text(encoding="utf-8"))
     turn = math.degrees(float(layout["bodies"]["lever"]["angle"].split()[0]))
-    fork = rotate(shapely.MultiPolygon([shapely.Polygon(half) for half in draw_bench_lever.FORK]), turn, (0.0, 0.0))
-    reach = -draw_bench_lever.PIN_CENTRE[1]
+    fork = rotate(shapely.MultiPolygon([shapely.Polygon(half) for half in draw_profiles.FORK]), turn, (0.0, 0.0))
+    reach = -draw_profiles.PIN_CENTRE[1]
 
     def gap(angle: float) -> float:
         pin = shapely.Point(reach * math.sin(angle), 4.6 - reach * math.cos(angle))
-        return pin.distance(fork) - draw_bench_lever.PIN_RADIUS
+        return pin.distance(fork) - draw_profiles.BENCH_PIN_RADIUS
 
     meets = brentq(gap, math.radians(-60.0), math.radians(-15.0))
     assert 2.0 * math.degrees(-meets) == pytest.approx(46.933, abs=1e-3)
@@ -194,10 +189,10 @@ def test_bench_lift_angle_is_twice_the_angle_at_which_the_pin_meets_the_fork(nam
 def test_bench_lever_is_the_published_scene():
     told = json.loads((SHARED / "scenes" / "bench_lever.json").read_text(encoding="utf-8"))
     as_tuples = [tuple(map(tuple, tooth)) for tooth in told["wheel"]["teeth_mm_in_wheel_frame"]]
-    assert as_tuples == list(draw_bench_lever.TEETH)
-    assert [tuple(map(tuple, p)) for p in told["lever"]["pallets_mm_in_lever_frame"]] == list(draw_bench_lever.PALLETS)
-    assert [tuple(map(tuple, p)) for p in told["lever"]["fork_mm_in_lever_frame"]] == list(draw_bench_lever.FORK)
-    assert tuple(map(tuple, told["lever"]["arm_mm_in_lever_frame"])) == draw_bench_lever.ARM
+    assert as_tuples == list(draw_profiles.TEETH)
+    assert [tuple(map(tuple, p)) for p in told["lever"]["pallets_mm_in_lever_frame"]] == list(draw_profiles.PALLETS)
+    assert [tuple(map(tuple, p)) for p in told["lever"]["fork_mm_in_lever_frame"]] == list(draw_profiles.FORK)
+    assert tuple(map(tuple, told["lever"]["arm_mm_in_lever_frame"])) == draw_profiles.ARM
     scene = tomllib.loads((PROFILES / "bench_lever" / "scene.toml").read_text(encoding="utf-8"))
     for name in ("wheel", "lever", "balance"):
         assert [float(value.split()[0]) for value in scene["bodies"][name]["position"]] == told["pivots_mm"][name]

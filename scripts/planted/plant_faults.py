@@ -14,7 +14,7 @@ anew, and functions are known by their names; where a change of the package lets
 test starts watchsim in another process, that process runs without the fault, and what it calls is not recorded: such a test
 notices only what it calls itself.
 
-What no test notices is listed; what was judged harmless stands in scripts/planted/faults_judged.csv with the reason.
+What no test notices is listed; what was judged harmless stands in docs/reports/planted-faults.csv with the reason.
 Ends with 1 where fewer than 95 % of all others were noticed.
 """
 
@@ -43,7 +43,7 @@ from reached import Reached, kept, recorded
 from run_in_a_copy import fails, load
 
 ROOT = Path(__file__).resolve().parents[2]
-JUDGED = ROOT / "scripts" / "planted" / "faults_judged.csv"
+JUDGED = ROOT / "docs" / "reports" / "planted-faults.csv"
 ENOUGH = 0.95
 PATIENCE = 5.0  # times what the tests take without a fault; an endless loop is noticed, too
 LEAST = 120.0  # s, where something is compiled

@@ -14,12 +14,7 @@ from watchsim.dynamics.coulomb import add_element, fill_matrix, fill_rhs
 from watchsim.dynamics.delassus import ContactWork, ContactWorkRef, contact_work
 from watchsim.dynamics.lcp.lemke_pivoting import LcpWorkRef
 from watchsim.dynamics.problem_kinds import Rung
-from watchsim.dynamics.solver_fallbacks import (
-    _detour,
-    _solve_copositive,
-    enumerate_modes,
-    solve_contacts,
-)
+from watchsim.dynamics.solver_fallbacks import _detour, _solve_copositive, enumerate_modes, solve_contacts
 from watchsim.jit import entry
 
 ADD, FILL, LOAD, SOLVE, COPOSITIVE, OTHER_PATHS, ENUMERATE = range(7)

@@ -11,12 +11,7 @@ from pair_scenes import body_pose
 from plain_kernels import in_python
 
 from watchsim.dynamics.applied_forces import forces
-from watchsim.dynamics.line_springs import (
-    add_line_springs,
-    line_spring_damping,
-    line_spring_energies,
-    line_spring_powers,
-)
+from watchsim.dynamics.line_springs import add_line_springs, line_spring_damping, line_spring_energies, line_spring_powers
 from watchsim.jit import callable_kernel
 from watchsim.mechanism.compile import compile_scene
 from watchsim.scene.body import Body

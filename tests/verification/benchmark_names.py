@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import re
+import csv
 from pathlib import Path
 
 from watchsim.verification.benchmarks import Benchmark, inclines, swings
@@ -21,16 +21,17 @@ def benchmark_of(name: str) -> Benchmark:
     return maker()[k]
 
 
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "reports" / "stability.md"
+TABLE = Path(__file__).resolve().parents[2] / "docs" / "reports" / "stability.csv"
 Published = dict[str, tuple[float, float, float]]  # quantity -> (expected, got, allowed)
 
 
 def published() -> dict[str, Published]:
-    """By case, as the page names it."""
+    """By case, with a capital."""
     found: dict[str, Published] = {}
-    for part in re.split(r"^### ", PAGE.read_text(encoding="utf-8"), flags=re.MULTILINE)[1:]:
-        rows = [line.strip("| ").split(" | ") for line in part.splitlines() if line.startswith("| ")][1:]
-        found[part.splitlines()[0]] = {row[0]: (float(row[1]), float(row[2]), float(row[4])) for row in rows}
+    with TABLE.open(encoding="utf-8", newline="") as file:
+        for row in csv.DictReader(file):
+            case = found.setdefault(row["name"][0].upper() + row["name"][1:], {})
+            case[row["quantity"]] = (float(row["expected"]), float(row["got"]), float(row["tolerance"]))
     return found
 
 

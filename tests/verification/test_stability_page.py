@@ -1,6 +1,6 @@
 """Does `watchsim verify` still ask what its published page says, case by case, with the errors that the page allows?
 
-The page is docs/reports/stability.md. Nothing is simulated: the expected numbers stand in the benchmarks.
+The numbers behind the page are docs/reports/stability.csv. Nothing is simulated: the expected numbers stand in the benchmarks.
 """
 
 from __future__ import annotations

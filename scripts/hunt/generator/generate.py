@@ -7,8 +7,8 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from hunt.generator import pivots, sliders
-from hunt.generator.dice import Dice
 from hunt.generator.material import apart
+from hunt.generator.parts import Dice
 from watchsim.scene.scene import Scene
 
 FAMILIES: dict[str, tuple[Callable[[Dice], Scene], int]] = {  # with their weights

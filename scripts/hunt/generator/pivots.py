@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 
-from hunt.generator.dice import Dice
-from hunt.generator.parts import MM, fixed, free, pivoted, scene
+from hunt.generator.parts import MM, Dice, fixed, free, pivoted, scene
 from hunt.generator.shapes import (
     box,
     cam_curve,

@@ -12,7 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from hunt.generator.dice import Dice
+from hunt.generator.parts import Dice
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import TURN, Arc, Edge, Line, Point
 

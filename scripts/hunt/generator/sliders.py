@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 
-from hunt.generator.dice import Dice
-from hunt.generator.parts import MM, fixed, free, pivoted, scene, sliding
+from hunt.generator.parts import MM, Dice, fixed, free, pivoted, scene, sliding
 from hunt.generator.shapes import box, circle, kinked_bar, polygon, ragged, wavy_bar
 from watchsim.geometry.loop import Loop
 from watchsim.scene.body import Body

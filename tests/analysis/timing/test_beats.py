@@ -7,18 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from analysis.made_beats import (
-    DEGREE,
-    HERTZ,
-    INERTIA,
-    OMEGA,
-    PERIOD,
-    PIN,
-    Events,
-    balance_only,
-    lever_scene,
-    steady_swings,
-)
+from analysis.made_beats import DEGREE, HERTZ, INERTIA, OMEGA, PERIOD, PIN, Events, balance_only, lever_scene, steady_swings
 from reference.oscillator import Oscillator, motion
 from render.fake_runs import disc_run
 

@@ -16,7 +16,7 @@ from watchsim.geometry.solids.mass import section
 ROOT = Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "scripts" / "checks"))
 
-from measure_inertia import moments  # noqa: E402
+from measure_lever import moments  # noqa: E402
 
 SHARED = ROOT.parent / "shared" / "drawings" / "pin_lever"
 WHEELS = {

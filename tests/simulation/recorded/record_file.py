@@ -73,7 +73,7 @@ def moved(told: Told, kept: Recorded) -> list[str]:
 
 
 def written(records: Mapping[str, Recorded]) -> str:
-    blocks = ["# Written by scripts/checks/record_runs.py; record_file.py says what stands here.\n"]
+    blocks = ["# Written by scripts/record_runs.py; record_file.py says what stands here.\n"]
     for run, kept in records.items():
         lines = [f"[{run}]"]
         lines += [

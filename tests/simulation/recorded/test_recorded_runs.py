@@ -1,6 +1,6 @@
 """Does the solver still do what it did when this was recorded?
 
-No oracle: tests elsewhere say what is right. A number that moves here was meant to, and then scripts/checks/record_runs.py
+No oracle: tests elsewhere say what is right. A number that moves here was meant to, and then scripts/record_runs.py
 writes the record anew and says what has moved, or is a fault.
 """
 

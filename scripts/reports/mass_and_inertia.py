@@ -1,8 +1,8 @@
 """Which numbers and which picture does docs/guide/mass-and-inertia.md show?
 
-    python scripts/reports/tabulate_inertia.py
+    python scripts/reports/mass_and_inertia.py
 
-Writes the tables into the document, between the comments that name them, and draws its picture.
+Writes the tables into the document, between the comments that name them.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ from pathlib import Path
 SCRIPTS = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(SCRIPTS), str(SCRIPTS / "checks")]
 
-from balance_sizes import by_hand  # noqa: E402
-from measure_inertia import moments  # noqa: E402
+from draw_profiles import by_hand  # noqa: E402
+from measure_lever import moments  # noqa: E402
 
 import watchsim as ws  # noqa: E402
 from watchsim.geometry.loop import Loop  # noqa: E402
@@ -26,7 +26,6 @@ from watchsim.geometry.solids.meshes import plate  # noqa: E402
 
 ROOT = SCRIPTS.parent
 DOCUMENT = ROOT / "docs" / "guide" / "mass-and-inertia.md"
-PICTURE = ROOT / "docs" / "images" / "balance_solids.png"
 SCENE = ROOT / "profiles" / "balance" / "scene.toml"
 WHEEL = ROOT / "profiles" / "swiss_lever" / "escape_wheel.dxf"
 EXACT = 1e-12
@@ -60,10 +59,7 @@ def _difference(value: float, hand: float) -> str:
 
 def outlines() -> str:
     """Polar moments of plain outlines and of real parts, by closed forms and by quadrature with 30 digits."""
-    rows = [
-        "| outline | polar moment about the origin, mm⁴ | compared with | agrees to 1e-12 |",
-        "|---|---|---|---|",
-    ]
+    rows = ["| outline | polar moment about the origin, mm⁴ | compared with | agrees to 1e-12 |", "|---|---|---|---|"]
     for name, loops, formula, exact in shapes():
         found = section(loops).about((0.0, 0.0)).polar
         rows.append(f"| {name} | {found / MM4:.12g} | {formula} | {_agrees(found, exact)} |")
@@ -127,15 +123,8 @@ def filled(text: str, names: Iterable[str] = TABLES) -> str:
     return text
 
 
-def main() -> None:
-    from draw_solids import draw
-
-    DOCUMENT.write_text(filled(DOCUMENT.read_text(encoding="utf-8")), encoding="utf-8")
-    draw(SCENE, PICTURE)
-
-
 if __name__ == "__main__":
     from usage import arguments
 
     arguments(__doc__)
-    main()
+    DOCUMENT.write_text(filled(DOCUMENT.read_text(encoding="utf-8")), encoding="utf-8")

@@ -1,6 +1,6 @@
 """How fast is the solver, how exact, and how does its time grow? Writes docs/reports/speed.md and docs/images/speed.png.
 
-    python scripts/reports/make_speed_page.py [--from FOLDER | --command]
+    python scripts/reports/speed.py [--from FOLDER | --command]
 
 Runs `watchsim bench`, whole runs and the studies of growth: about a quarter of an hour on a machine with nothing else to do; the
 page says if there was something else. `--from` takes the results of an earlier `watchsim bench`; `--command` renews only what
@@ -21,7 +21,6 @@ import time
 from pathlib import Path
 from typing import Any
 
-from watchsim.bench.comparison_table import table
 from watchsim.bench.engines.world import is_installed
 from watchsim.bench.growth import Study, studies
 from watchsim.bench.profile.run_profile import profile_of, profile_text
@@ -40,14 +39,14 @@ SETTLED = "bench_lever, settled"
 QUIET = 0.5  # processes that wait for the processor when the measuring begins
 ALONE = "Nothing else ran on the machine."
 BUSY = "Other programs ran on the machine meanwhile: compare within a table, not from one to the next."
-PROFILED = {"incline": 3.0, "bench_lever": 10.0, "swiss_lever": 10.0}  # s simulated
+PROFILED = {"swiss_lever": 10.0}  # s simulated
 
 PAGE_FILE = ROOT / "docs" / "reports" / "speed.md"
 PLOTTED, WHERE = "written and plotted: ", "\n\n## Where the time goes"  # before and behind what `command` says
 
 PAGE = """# Speed against error
 
-How long does a simulated second take, and how large is the error? Written by `scripts/reports/make_speed_page.py` from
+How long does a simulated second take, and how large is the error? Written by `scripts/reports/speed.py` from
 `watchsim bench`, on one core of one machine ({machine}), all in one run. Times are processor times of the stepping alone
 (without reading, compiling and set-up, for all engines): the median of several runs, with the smallest and the largest.
 Levers run for 3 s from the start, amplitude and rate are averaged from 1 s to 3 s; the disc's place is compared at 3 s. In this
@@ -57,17 +56,13 @@ time the details of the first beats dominate: the settled lever runs for 15 s an
 
 The reference is the closed form, or the event-driven solver at its tightest tolerance; another method confirms it. The levers
 of the other engines are polygons. They apply Newton's law of impact, watchsim Poisson's: with restitution above zero they
-need not reach the same amplitude. Each engine is set up as well as we know how: for pymunk the spring's torque is taken at the
-angle at the end of the step (at its start the step is explicit Euler's, which adds energy to the oscillation: 0.9° at 5 µs); for
-Box2D moving bodies are "bullets", with continuous collision detection (without, 0.5° at 20 µs); pivots are masses too heavy to move.
+need not reach the same amplitude. Each engine is set up as well as we know how.
 
 ## Compared with other engines
 
 {ratios}
 
-## All figures
-
-{table}
+All engines, settings and errors: `watchsim bench`, which writes its tables.
 
 ## Whole runs, wall-clock time
 
@@ -81,27 +76,16 @@ written and plotted: {command}
 
 ## Where the time goes
 
-Each count times the cost of one such piece of work, measured by itself in the middle of the run, beside the time of the
-stepping (`watchsim run --profile`). No work is counted twice:
-
-- a step is what it takes besides accelerations and gaps: Runge-Kutta sums, the estimate of the error, attempts that are
-  rejected, dense output, drift correction, recording; a flight is the same in closed form;
-- gaps are the whole search for the next contact, except for looking up cells;
-- an instant is the handling of an event, except for its impacts, complementarity problems and look-ups; an impact is counted
-  without its problems;
-- calls of the loop come from Python, which saves and counts between them;
-- the rest is what happens in between, and what the same work costs more when interleaved with other work.
-
-Cells are computed once for a geometry: the stepping shown here knows them all, the last line is a run that knows none. A test
-compares the shares with those of clocks within the loop (`tests/bench/test_where_time_goes.py`).
+Each count times the cost of one such piece of work, measured by itself in the middle of the run (`watchsim run --profile`).
+No work is counted twice: a step excludes its accelerations and gaps, an instant its impacts and complementarity problems, an
+impact its problems. Cells are computed once for a geometry; the last line is a run that knows none.
 
 {profiles}
 
 ## How the time grows
 
 {growth}
-
-Declared pairs of primitives: [complexity](complexity.md).
+Declared pairs of primitives cost what is within reach of each other, not their number.
 """
 
 
@@ -130,7 +114,7 @@ def ratios(rows: list[dict[str, Any]]) -> str:
 def wholes(scenario: Scenario) -> str:
     """A table of whole runs, each engine at its most exact setting but watchsim at its usual one."""
     lines = ["| engine | first run: set-up | stepping | again: set-up | stepping |", "|---|---:|---:|---:|---:|"]
-    settings = {name: values[-1] for name, values in scenario.settings.items() if is_installed_or_own(name)}
+    settings = {name: values[-1] for name, values in scenario.settings.items() if name in (OWN, MOREAU) or is_installed(name)}
     settings[OWN] = 1e-9
     for method, setting in settings.items():
         one = whole(scenario, method, setting)
@@ -140,12 +124,8 @@ def wholes(scenario: Scenario) -> str:
     return "\n".join(lines)
 
 
-def is_installed_or_own(method: str) -> bool:
-    return method in (OWN, MOREAU) or is_installed(method)
-
-
 def command() -> str:
-    """What the whole command takes, the best of five, and where the time goes."""
+    """What the whole command takes, the best of five."""
     scene = str(profiles_dir() / "swiss_lever")
     best, stepping = math.inf, 0.0
     with tempfile.TemporaryDirectory() as folder:
@@ -158,14 +138,7 @@ def command() -> str:
             if taken < best:
                 numbers = json.loads(Path(folder, str(k), "summary.json").read_text(encoding="utf-8"))
                 best, stepping = taken, numbers["wall_s"]
-        script = str(Path(__file__).with_name("time_of_a_run.py"))
-        told = subprocess.run(
-            [sys.executable, script, scene, "180 s", f"{folder}/0"], check=True, capture_output=True, text=True
-        )
-    parts = json.loads(told.stderr.splitlines()[-1])
-    lines = [f"{best:.2f} s wall-clock, {parts['together']:.2f} s processor time, of which stepping {stepping:.2f} s", ""]
-    lines += ["| part | processor |", "|---|---:|", *(f"| {what} | {seconds:.2f} s |" for what, seconds in parts.items())]
-    return "\n".join(lines)
+    return f"{best:.2f} s wall-clock, of which stepping {stepping:.2f} s"
 
 
 def profiled(name: str, duration: float) -> str:
@@ -212,7 +185,6 @@ def main() -> int:
         machine=f"{platform.machine()}, Python {platform.python_version()}",
         alone=ALONE if alone else BUSY,
         ratios=ratios(rows),
-        table=table(rows, references).rstrip(),
         simulated=settled.duration,
         wholes=wholes(settled),
         command=command(),

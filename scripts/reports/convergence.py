@@ -1,6 +1,6 @@
 """How fast does Moreau's time stepping come to the event-driven answer? Writes docs/reports/convergence.md and its picture.
 
-    python scripts/reports/study_convergence.py [--quick] [--page FILE]
+    python scripts/reports/convergence.py [--quick] [--page FILE]
 
 The incline is measured against its closed form, the others against the event-driven solver at its scene's tolerance.
 The exit status is 1 where an error hardly falls with the step.
@@ -170,7 +170,7 @@ Moreau's time stepping ([method](../theory/method.md) 6) shares the model and th
 but neither its search for events nor its complementarity solver. As its step shrinks it must come to the same motion, at first
 order. The incline is compared with its closed form after 1 s; a balance with dry bearings, a block on a moving belt and the
 levers against the event-driven solver: of the levers, the mean difference of angles over the first {levers:g} s, four
-beats. Written by `scripts/reports/study_convergence.py`.
+beats. Written by `scripts/reports/convergence.py`.
 
 ![errors over step](../images/{picture})
 
