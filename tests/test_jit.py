@@ -2,9 +2,18 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
-from interpreter import python
+import pytest
+from interpreter import ROOT, python
+
+from watchsim import jit
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
 
 
 def test_machine_code_is_kept_and_found(tmp_path: Path) -> None:
@@ -28,6 +37,64 @@ def test_kept_code_is_loaded_without_the_compiler_which_still_works_afterwards(t
     assert python(head + ask + unread, **cache) == "6.0 1 False\nNone"
     compiled = "print(tiny.total(x), tiny.both(x), tiny.square(x), tiny.total(x.astype(int)), tiny.total(x))"
     assert python(head + compiled, **cache) == "6.0 20.0 14.0 6 6.0"
+
+
+# Parts that call parts, a hot one, one that is inlined, and a struct by reference, as the kernels of a run have them.
+LIKE_A_RUN = """
+from typing import NamedTuple
+import numpy as np
+from watchsim.jit import by_reference, entry, hot_kernel, inlined, kernel
+class Room(NamedTuple):
+    values: np.ndarray
+    inverse: np.ndarray
+RoomRef = by_reference(Room, __name__)
+@hot_kernel
+def least(a, b):
+    return a if a < b else b
+@kernel
+def filled(room):
+    for i in range(room.values.size):
+        room.inverse[i] = least(1.0 / room.values[i], 5.0)
+@kernel
+def total(room):
+    filled(room)
+    return room.inverse.sum()
+@inlined
+def wrapped(room):
+    return RoomRef(room.values, room.inverse)
+@entry
+def run(room):
+    return total(wrapped(room))
+def answer():
+    room = Room(np.array([0.0, 0.25, 0.5, -3.0]), np.zeros(4))
+    return run(room), room.inverse.tolist(), sum(run.stats.cache_hits.values())
+"""
+
+
+@pytest.mark.parametrize("release", ["0.60.0", "0.59.1", "0.69.0", "1.0.0rc1"])
+def test_with_a_release_that_was_not_tried_plain_njit_gives_the_same(release: str, tmp_path: Path) -> None:
+    """Compiled, and found by a second process; with one that was tried, parts have a compiler of their own."""
+    (tmp_path / "like_a_run.py").write_text(LIKE_A_RUN)
+    code = f"import sys; sys.path.insert(0, {str(tmp_path)!r}); import numba; numba.__version__ = {release!r}; "
+    code += "import watchsim.jit; import like_a_run as r; print(watchsim.jit.as_tried(), *r.answer()); "
+    code += "print(r.total.dispatcher._compiler.pipeline_class.__name__)"
+    cache = {"WATCHSIM_CACHE": str(tmp_path / "new"), "NUMBA_DISABLE_JIT": "0"}
+    tried = release == "0.60.0"
+    for found in (0, 1):
+        assert python(code, **cache).splitlines() == [
+            f"{tried} {5.0 + 4.0 + 2.0 - 1 / 3!r} [5.0, 4.0, 2.0, {-1 / 3!r}] {found}",
+            "PartCompiler" if tried else "Compiler",
+        ]
+
+
+def test_pyproject_bounds_numba_to_the_releases_that_were_tried() -> None:
+    (needed,) = (
+        one
+        for one in tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["dependencies"]
+        if one.startswith("numba")
+    )
+    (first, last) = jit.TRIED
+    assert needed == f"numba>={first[0]}.{first[1]},<{last[0]}.{last[1] + 1}" and jit.as_tried()
 
 
 def test_plain_python_when_asked(tmp_path: Path) -> None:

@@ -23,17 +23,12 @@ except ImportError:  # Windows
 
 LOOK, UNMENTIONED = 0.1, 1.0  # s between looks at a lock; s that one waits without a word
 SEAL = hashlib.sha256().digest_size
-NEEDED = ("_load_index", "_save_index", "_load_data", "_save_data", "_open_for_write", "_dump", "_index_path", "_data_path")
 
 
 def checked_files(compiled: Any, complain: Callable[[str], None]) -> None:
-    """Have the cache of a compiled function seal its files and check them, unless this numba is built differently."""
-    cache = getattr(compiled, "_cache", None)
-    files = getattr(cache, "_cache_file", None)
-    if cache is None or not all(hasattr(files, name) for name in (*NEEDED, "_version", "_source_stamp")):
-        return
-    checked = _checked_class(type(files), complain)
-    files.__class__ = checked
+    """Have the cache of a compiled function seal its files and check them."""
+    cache = compiled._cache
+    cache._cache_file.__class__ = _checked_class(type(cache._cache_file), complain)
     save = cache.save_overload
 
     def save_overload(signature: Any, data: Any) -> None:

@@ -1,6 +1,8 @@
 """How is a kernel compiled?
 
-The only file that imports numba. `NUMBA_DISABLE_JIT=1` leaves kernels plain Python.
+The only file that imports numba. `NUMBA_DISABLE_JIT=1` leaves kernels plain Python. What each departure from plain `njit`
+saves stands in docs/develop/design.md; with a release of numba that was not tried, those that need its private classes are
+left out (`as_tried`).
 """
 
 from __future__ import annotations
@@ -18,6 +20,8 @@ from watchsim.machine_code import MOVE, cache_folder, complain
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
+TRIED = ((0, 60), (0, 68))  # first and last release of numba whose private classes were tried, as in pyproject.toml
+
 
 def kernel(function: Function) -> Function:
     """Compile `function` as a part of the entries that call it; from Python use `entry(function)` or `callable_kernel`.
@@ -34,7 +38,7 @@ def hot_kernel(function: Function) -> Function:
 
     Left to itself LLVM calls most of them, which makes a run of a lever a quarter longer.
     """
-    lazy: Any = LazyKernel(function, _hot_part)
+    lazy: Any = LazyKernel(function, functools.partial(_part, forceinline=True))
     return lazy if is_compiled() else function
 
 
@@ -92,14 +96,10 @@ def _part(function: Callable[..., Any], **more: Any) -> Any:
     import numba
 
     # No wrapper for calls from Python: unpacking records there would take longer to compile than the kernels themselves.
-    options = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True, "_nrt": False, **more}
-    if (compiler := _part_compiler()) is not None:
-        options["pipeline_class"] = compiler
+    options = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True, **more}
+    if as_tried():
+        options |= {"_nrt": False, "pipeline_class": _part_compiler()}
     return numba.njit(**options)(function)
-
-
-def _hot_part(function: Callable[..., Any]) -> Any:
-    return _part(function, forceinline=True)
 
 
 def _inlined(function: Callable[..., Any]) -> Any:
@@ -115,7 +115,7 @@ def _entry(function: Callable[..., Any]) -> Any:
     before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(folder or "")
     try:
         compiled = numba.njit(cache=folder is not None, error_model="numpy", fastmath=False, nogil=True)(function)
-        if folder is not None:
+        if folder is not None and as_tried():
             checked_files(compiled, complain)
             _load_lightly(compiled)
             one_compiles(compiled, complain)
@@ -127,36 +127,39 @@ def _entry(function: Callable[..., Any]) -> Any:
     return compiled
 
 
-def _load_lightly(compiled: Any) -> None:
-    """Load machine code from the cache without what only the compiler needs, unless this numba is built differently.
+@functools.lru_cache(maxsize=1)
+def as_tried() -> bool:
+    """Is this a release of numba whose private classes are known?"""
+    import numba
 
-    Numba first imports every function it could compile, half of scipy among it: four times the time that the loading takes.
+    major, minor = numba.__version__.split(".")[:2]
+    return TRIED[0] <= (int(major), int(minor)) <= TRIED[1]
+
+
+def _load_lightly(compiled: Any) -> None:
+    """Load machine code from the cache without what only the compiler needs.
+
+    Numba first imports every function it could compile, half of scipy among it: more than all else that a start takes.
     A function that is not in the cache is compiled as ever: the compiler asks for all this itself.
     """
-    cache = getattr(compiled, "_cache", None)
-    try:
-        from llvmlite import binding
-        from numba.core.runtime import _nrt_python, rtsys
+    from llvmlite import binding
+    from numba.core.runtime import _nrt_python, rtsys
 
-        helpers = {name if name.startswith("_") else f"NRT_{name}": place for name, place in _nrt_python.c_helpers.items()}
-    except (ImportError, AttributeError):
-        return
-    if not all(hasattr(cache, name) for name in ("_load_overload", "_index_key", "_cache_file", "_impl")):
-        return
+    cache = compiled._cache
 
     def load_overload(signature: Any, target: Any) -> Any:
         # What wrappers for calls from Python use of the counter of references. Numba also compiles the rest of it, which every
         # piece of machine code carries with it.
-        for name in () if rtsys._init else helpers:
-            binding.add_symbol(name, helpers[name])
+        for name, place in () if rtsys._init else _nrt_python.c_helpers.items():
+            binding.add_symbol(name if name.startswith("_") else f"NRT_{name}", place)
         try:
-            data = cache._cache_file.load(cache._index_key(signature, target.codegen()))  # type: ignore[union-attr]
+            data = cache._cache_file.load(cache._index_key(signature, target.codegen()))
             return None if data is None else _rebuilt(cache, target, data)
         except Exception as error:  # whatever it is, the function can be compiled
-            complain(f"Machine code in {cache.cache_path} cannot be used ({error}): compiled again. {MOVE}")  # type: ignore[union-attr]
+            complain(f"Machine code in {cache.cache_path} cannot be used ({error}): compiled again. {MOVE}")
             return None
 
-    cache.load_overload = load_overload  # type: ignore[union-attr]
+    cache.load_overload = load_overload
 
 
 def _rebuilt(cache: Any, target: Any, data: Any) -> Any:
@@ -166,8 +169,7 @@ def _rebuilt(cache: Any, target: Any, data: Any) -> Any:
     the time that loading takes, and hardly ever asked for.
     """
     (name, kind, code), about, *rest = data
-    library_class = _lazy_library()
-    if kind != "object" or library_class is None:
+    if kind != "object":
         return cache._impl.rebuild(target, data)
     from llvmlite import binding
 
@@ -176,24 +178,19 @@ def _rebuilt(cache: Any, target: Any, data: Any) -> Any:
     defined = "".join(f'define void @"{one}"() {{ ret void }}\n' for one in names)  # numba looks up what is named here only
     code = machine_code, binding.parse_assembly(defined).as_bitcode()
     made = cache._impl.rebuild(target, ((name, kind, code), about, *rest))
-    made.library.__class__ = library_class
+    made.library.__class__ = _lazy_library()
     made.library._shared_module, made.library._intermediate = None, intermediate
     return made
 
 
 @functools.lru_cache(maxsize=1)
-def _lazy_library() -> type | None:
-    """Machine code whose LLVM code is read when it is asked for, or None where this numba is built differently."""
-    try:
-        from llvmlite import binding
-        from numba.core.codegen import JITCodeLibrary, JITCPUCodegen
-    except ImportError:
-        return None
-    if JITCPUCodegen._library_class is not JITCodeLibrary or not hasattr(JITCodeLibrary, "_get_module_for_linking"):
-        return None
+def _lazy_library() -> type:
+    """Machine code whose LLVM code is read when somebody links it."""
+    from llvmlite import binding
+    from numba.core.codegen import JITCodeLibrary
 
     class LazyLibrary(JITCodeLibrary):
-        """As every library from the cache, whose `_shared_module` is None until somebody links it."""
+        """As every library from the cache, whose `_shared_module` is None until then."""
 
         _intermediate: bytes
         _shared_module: Any
@@ -212,21 +209,15 @@ def callable_kernel(function: Function) -> Function:
 
 
 @functools.lru_cache(maxsize=1)
-def _part_compiler() -> type | None:
-    """A compiler for kernels that only entries call, or None where this numba is built differently.
+def _part_compiler() -> type:
+    """A compiler for kernels that only entries call.
 
     Numba optimises every function together with all it calls and emits machine code for it: a function ten calls deep goes
     through that ten times and more, for code that nobody calls. Parts are typed and translated as ever, but optimised and
-    emitted once, with their entry. Halves the time to compile; the machine code of the entry runs as fast.
+    emitted once, with their entry. The first compile takes a quarter of the time.
     """
-    try:
-        from numba.core.codegen import JITCodeLibrary, JITCPUCodegen
-        from numba.core.compiler import Compiler
-    except ImportError:
-        return None
-    used = ("_raise_if_finalized", "_get_module_for_linking", "_finalize_dynamic_globals", "_ensure_finalized")
-    if JITCPUCodegen._library_class is not JITCodeLibrary or not all(hasattr(JITCodeLibrary, name) for name in used):
-        return None
+    from numba.core.codegen import JITCodeLibrary
+    from numba.core.compiler import Compiler
 
     class NoEnvironment:
         """Parts raise no exceptions and print nothing: they need no Python objects at run time."""

@@ -12,7 +12,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from watchsim.analysis.nonnegative import nonnegative_of_many
 from watchsim.contact.index_sets import STICK
 from watchsim.contact.kinematics import closed_contacts
 from watchsim.contact.poses import poses
@@ -118,11 +117,14 @@ def _within_cones(
 
 def _pressing(system: Array, right: Array) -> Array:
     """Solutions (n, edges) without negative shares, near the smallest; as near to one as can be where rounding leaves none."""
+    from scipy.optimize import nnls  # a fifth of a second to load, for runs with redundant contacts only
+
     high = 1.0 / np.maximum(np.abs(system).max(axis=2), np.finfo(float).tiny)
     scaled, target = system * high[:, :, None], right * high
-    times, _, count = scaled.shape
-    small = np.broadcast_to(GENTLE * np.eye(count), (times, count, count))
-    near = nonnegative_of_many(np.concatenate((scaled, small), axis=1), np.hstack((target, np.zeros((times, count)))))
+    count = scaled.shape[2]
+    small, none = GENTLE * np.eye(count), np.zeros(count)
+    both = zip(scaled, target, strict=True)
+    near = np.array([nnls(np.vstack((ways, small)), np.append(load, none))[0] for ways, load in both])
     # The push towards small forces leaves the balance off by its square; among those in use the rest is put right.
     off = target - (scaled @ near[:, :, None])[:, :, 0]
     used = near > SMALLEST * near.max(axis=1, keepdims=True)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Callable
 from pathlib import Path
 
 import dxf_text as d
 import pytest
+from ezdxf import recover
 
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.inspection import inspect_report, inspect_text
@@ -73,6 +75,16 @@ def test_truncated_files_name_the_last_whole_entity(read_bytes: Reader) -> None:
     for length in range(1, len(whole) - 4, 3):
         found = errors(read_bytes(whole[:length]))
         assert found, f"cut after {length} bytes and nothing said"
+
+
+def test_why_ezdxf_does_not_read_the_entities(read_bytes: Reader) -> None:
+    """It recovers a file that was cut short as an empty drawing and calls it sound. If this fails, look at it again."""
+    whole = d.dxf(d.line((0, 0), (1, 0)) + d.line((1, 0), (1, 1)) + d.line((1, 1), (0, 0)))
+    cut = whole[: whole.rindex(b"LINE")]
+    assert [len(recover.read(io.BytesIO(data))[0].modelspace()) for data in (whole, cut)] == [3, 0]
+    audit = recover.read(io.BytesIO(cut))[1]
+    assert not audit.errors and not audit.fixes
+    assert "truncated" in errors(read_bytes(cut))
 
 
 def test_missing_endsec_is_said(read_bytes: Reader) -> None:
