@@ -15,6 +15,7 @@ ROOT = Path(__file__).resolve().parents[3]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests"), str(ROOT / "tests" / "ordinary")]
 
 from gear_scenes import through  # noqa: E402
+from strangers import PIN_LEVER, pin_lever_scene  # noqa: E402
 
 from watchsim.geometry.loop import Loop  # noqa: E402
 from watchsim.geometry.primitives import Line  # noqa: E402
@@ -23,9 +24,6 @@ from watchsim.scene.scene import Scene  # noqa: E402
 from watchsim.simulation.record.trajectory import EventKind  # noqa: E402
 from watchsim.simulation.simulate import simulate  # noqa: E402
 
-SHARED = [
-    place for place in (ROOT.parent / "shared", ROOT.parents[1] / "shared") if (place / "drawings" / "pin_lever").exists()
-]
 ASSEMBLY = "siconos_pin_lever_assembly.dxf"
 PIN = "BALANCE_z-1.10_IMPULSE"
 WHEEL, LEVER = np.array([4.697017, -10.646001]), np.array([7.08439152, -7.80542761])  # mm, as drawn
@@ -49,7 +47,7 @@ measured here.
 
 def section(quick: bool) -> tuple[str, int]:
     """The section of the page, and how many runs did not go to their end."""
-    if not SHARED:
+    if not PIN_LEVER.exists():
         return "Not measured: the drawing is not here.", 0
     lines, wrong = [], 0
     for count, chords in [(n, False) for n in (COUNTS[:2] if quick else COUNTS)] + [(400, True)]:
@@ -72,11 +70,8 @@ def _amplitude(offset: float, count: int, chords: bool) -> tuple[float, str]:
 
 
 def _scene(offset: float, count: int, chords: bool) -> Scene:
-    text = (ROOT / "tests" / "pin_lever" / "scene.toml").read_text(encoding="utf-8")
     with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "scene.toml"
-        path.write_text(text.replace("../../../shared", SHARED[0].as_posix()), encoding="utf-8")
-        scene = load(path)
+        scene = load(pin_lever_scene("scene.toml", Path(folder)))
     away = (WHEEL - offset * (LEVER - WHEEL) / np.hypot(*(LEVER - WHEEL))) * 1e-3
     bodies = []
     for given in scene.bodies:
@@ -94,7 +89,7 @@ def _pin(fitted: Loop, count: int, chords: bool, pivot: tuple[float, float]) -> 
     """The pin's outline from its splines; it must enclose what the reader's own fit does."""
     import ezdxf
 
-    document = ezdxf.readfile(str(SHARED[0] / "drawings" / "pin_lever" / ASSEMBLY))
+    document = ezdxf.readfile(str(PIN_LEVER / ASSEMBLY))
     chains: list[NDArray[np.float64]] = []
     for entity in document.modelspace().query(f'SPLINE[layer=="{PIN}"]'):
         curve = entity.construction_tool()  # type: ignore[attr-defined]
