@@ -17,9 +17,11 @@ import shapely
 from reference import incline_closed_form as incline
 from scipy.optimize import brentq
 from shapely.affinity import rotate
+from strangers import PIN_LEVER, needs, pin_lever_scene
+from strangers import SCENES as SCENES_BESIDE
 
 ROOT = Path(__file__).resolve().parents[1]
-PROFILES, SHARED = ROOT / "profiles", ROOT.parent / "shared"
+PROFILES = ROOT / "profiles"
 sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "scripts" / "checks")]
 
 import draw_profiles  # noqa: E402
@@ -27,8 +29,7 @@ from measure_lever import measure, placed, read_layout, tomllib  # noqa: E402
 
 from watchsim.construction.swiss_lever.swiss_lever_points import Swiss  # noqa: E402
 
-needs_pin_lever = pytest.mark.skipif(not (SHARED / "drawings" / "pin_lever").exists(), reason="the drawing is not here")
-needs_bench = pytest.mark.skipif(not (SHARED / "scenes" / "bench_lever.json").exists(), reason="the scene is not here")
+BENCH = SCENES_BESIDE / "bench_lever.json"
 
 
 @pytest.fixture(scope="module")
@@ -81,14 +82,15 @@ def test_swiss_parts_have_lines_and_arcs_and_sound_outlines():
 
 
 SCENES = [PROFILES / "bench_lever" / "scene.toml", PROFILES / "swiss_lever" / "scene.toml"]
-REAL = [ROOT / "tests" / "pin_lever" / name for name in ("scene.toml", "scene_as_drawn.toml")]
 
 
-@pytest.mark.parametrize(
-    "scene",
-    [*SCENES, *[pytest.param(path, marks=needs_pin_lever) for path in REAL]],
-    ids=lambda path: f"{path.parent.name}/{path.stem}",
-)
+@needs(PIN_LEVER)
+@pytest.mark.parametrize("name", ["scene.toml", "scene_as_drawn.toml"])
+def test_nothing_overlaps_in_the_real_lever(name, tmp_path):
+    test_nothing_overlaps_at_the_start(pin_lever_scene(name, tmp_path))
+
+
+@pytest.mark.parametrize("scene", SCENES, ids=lambda path: f"{path.parent.name}/{path.stem}")
 def test_nothing_overlaps_at_the_start(scene):
     layout = read_layout(scene)
     for sides in layout.contacts:
@@ -185,9 +187,9 @@ def test_bench_lift_angle_is_twice_the_angle_at_which_the_pin_meets_the_fork(nam
     assert float(layout["timegrapher"]["lift_angle"].rstrip("°")) == pytest.approx(2.0 * math.degrees(-meets), abs=0.05)
 
 
-@needs_bench
+@needs(BENCH)
 def test_bench_lever_is_the_published_scene():
-    told = json.loads((SHARED / "scenes" / "bench_lever.json").read_text(encoding="utf-8"))
+    told = json.loads(BENCH.read_text(encoding="utf-8"))
     as_tuples = [tuple(map(tuple, tooth)) for tooth in told["wheel"]["teeth_mm_in_wheel_frame"]]
     assert as_tuples == list(draw_profiles.TEETH)
     assert [tuple(map(tuple, p)) for p in told["lever"]["pallets_mm_in_lever_frame"]] == list(draw_profiles.PALLETS)

@@ -7,7 +7,11 @@ from pathlib import Path
 
 import pytest
 
+import watchsim as ws
+from watchsim import jit
+from watchsim.bench.profile import run_profile
 from watchsim.cli import main
+from watchsim.commands.common import write_run
 from watchsim.commands.common.console import BAD_INPUT, FINE
 
 SCENE = str(Path(__file__).resolve().parents[2] / "profiles" / "incline" / "scene.toml")
@@ -25,6 +29,16 @@ def test_the_profile_is_printed_and_written(tmp_path: Path, capsys: pytest.Captu
     for name, words in WORDS.items():
         assert any(line.startswith(f"{words} {work[name]['count']} ×") for line in lines)
     assert "the rest" in told
+
+
+def test_the_first_profile_says_that_it_compiles(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    """What times the kernels is compiled apart from the solver, and as long."""
+    run = ws.simulate(SCENE, duration=0.01)
+    monkeypatch.setattr(run_profile, "profile_of", lambda run: {})
+    for known, told in ((False, 1), (True, 0)):
+        monkeypatch.setattr(jit, "is_cached", lambda kernel, known=known: known or kernel == "advance.advance")
+        write_run._numbers(run, write_run.Extras(profile=True), (), Path())
+        assert capsys.readouterr().err.count("Compiling what times the kernels") == told
 
 
 def test_fixed_steps_have_no_profile(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

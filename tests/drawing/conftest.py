@@ -10,8 +10,6 @@ import pytest
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.read import read
 
-SHARED = Path(__file__).resolve().parents[2].parent / "shared" / "drawings"
-
 
 @pytest.fixture
 def read_bytes(tmp_path: Path) -> Callable[..., Drawing]:
@@ -31,11 +29,3 @@ def reader_of(path: Path) -> Callable[..., Drawing]:
         return read(path, **options)  # type: ignore[arg-type]
 
     return reader
-
-
-@pytest.fixture
-def shared_drawings() -> Path:
-    """The folder of real drawings beside the project; tests that need it are skipped without it."""
-    if not SHARED.is_dir():
-        pytest.skip("the real drawings are not here")
-    return SHARED

@@ -24,10 +24,10 @@ from watchsim.geometry.extent import extents
 from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Edge
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "naive"))
-from chaining import Component, components
+sys.path[:0] = [str(Path(__file__).resolve().parents[1]), str(Path(__file__).resolve().parents[1] / "naive")]
+from chaining import Component, components  # noqa: E402
+from strangers import DRAWINGS as FOLDER  # noqa: E402
 
-FOLDER = Path(__file__).resolve().parents[2].parent / "shared" / "drawings"
 MM_PER_UNIT = {"inch": 25.4, "mm": 1.0, "cm": 10.0, "m": 1000.0, None: 1.0}
 CURVES = ("spline", "ellipse", "ellipse_arc", "bezier2", "bezier3")
 EXACT_FIT, CURVED_FIT = 1e-7, 2e-9  # metres: with curves lengths and areas are wanted to a millionth

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from strangers import PIN_LEVER, marks
 
 from watchsim.drawing.drawing import Drawing
 from watchsim.drawing.read import read
@@ -16,13 +17,12 @@ from watchsim.geometry.loop import Loop
 from watchsim.geometry.primitives import Arc, Line
 from watchsim.geometry.solids.mass import mass_properties
 
+pytestmark = marks(PIN_LEVER)
+
 
 @pytest.fixture(scope="module")
 def folder() -> Path:
-    path = Path(__file__).resolve().parents[2].parent / "shared" / "drawings" / "pin_lever"
-    if not path.is_dir():
-        pytest.skip("the real lever is not here")
-    return path
+    return PIN_LEVER
 
 
 @pytest.fixture(scope="module")

@@ -11,6 +11,7 @@ import shapely
 from shapely.affinity import rotate, translate
 
 import watchsim as ws
+from watchsim.cli import main
 from watchsim.geometry.polyline import polyline
 from watchsim.mechanism.compile import compile_scene
 from watchsim.mechanism.count_pairs import modelled_pairs
@@ -62,6 +63,30 @@ def test_a_ball_above_the_middle_of_a_floor_has_no_candidates_yet():
     scene = ws.load(PROFILES / "swiss_lever" / "scene.toml").set("bodies.lever.angle", "170 deg")
     wheel = next(count for count in counted(scene).counts if "wheel" in count.bodies)
     assert wheel.start == 0 < wheel.reachable
+
+
+@pytest.mark.parametrize(("radius", "away"), [("20 µm", "30 mm"), ("0.1 mm", "300 mm"), ("1 mm", "20 m")])
+def test_a_disc_far_from_a_drawn_lever_is_checked(radius, away, tmp_path, capsys):
+    """So many of its own sizes away there are no cells; everything that can touch is a candidate, as in a run."""
+    (tmp_path / "scene.toml").write_text(
+        f'''[bodies.lever]
+drawing = "{PROFILES / "swiss_lever" / "lever.dxf"}"
+motion = "fixed"
+[bodies.disc]
+circle = "{radius}"
+motion = "free"
+position = ["{away}", "0 mm"]
+mass = "1 mg"
+inertia = "1 mg·mm²"
+[[contacts]]
+between = ["disc", "lever"]
+''',
+        encoding="utf-8",
+    )
+    assert main(["check", str(tmp_path)]) == 0
+    (count,) = counted(ws.load(tmp_path)).counts
+    assert count.start == count.typical == count.most == count.reachable > 16
+    assert "disc" in capsys.readouterr().out
 
 
 def test_a_table_for_people():

@@ -1,28 +1,30 @@
 """Does a lever somebody else drew run, and does the tool say why it jams where it jams?
 
-The drawing is a section of a public CAD model; it is read from the folder of shared drawings beside the project.
+The drawing is a section of a public CAD model; it is no part of the project.
 """
 
 from __future__ import annotations
 
+import tempfile
 from pathlib import Path
 
 import numpy as np
 import pytest
+from strangers import PIN_LEVER, marks, pin_lever_scene
 
 import watchsim as ws
 from watchsim.analysis.summary import summary_text
 from watchsim.simulation.record.trajectory import EventKind, Trajectory
 
-HERE = Path(__file__).resolve().parent
-DRAWINGS = HERE.parents[2] / "shared" / "drawings" / "pin_lever"
 PITCH = 2.0 * np.pi / 15
 
-pytestmark = pytest.mark.skipif(not DRAWINGS.exists(), reason="the real lever's drawing is not here")
+pytestmark = marks(PIN_LEVER)
 
 
 def simulated(name: str, duration: float) -> Trajectory:
-    return ws.simulate(ws.load(HERE / name), duration=duration)
+    with tempfile.TemporaryDirectory() as folder:
+        scene = ws.load(pin_lever_scene(name, Path(folder)))
+    return ws.simulate(scene, duration=duration)
 
 
 def advance(run: Trajectory) -> float:

@@ -10,6 +10,7 @@ import ezdxf
 import pytest
 from every_time import few
 from proposal.assemblies import NAMES, assembly, scene_of
+from strangers import DRAWINGS, PIN_LEVER, needs
 
 from watchsim.cli import main
 from watchsim.mechanism.overlap import overlaps
@@ -18,7 +19,6 @@ from watchsim.scene.file.load import load
 from watchsim.scene.scene import Scene
 from watchsim.simulation.simulate import simulate
 
-SHARED = Path(__file__).resolve().parents[3] / "shared" / "drawings"
 EXTRA = {  # guessed and not so
     "coaxial": {
         frozenset((("lever", "FORK"), ("balance", "IMPULSE_STONE"))),
@@ -188,10 +188,10 @@ def test_an_outline_that_crosses_itself_is_refused(tmp_path: Path) -> None:
             propose([tmp_path / f"{name}.svg"])
 
 
-@pytest.mark.skipif(not SHARED.is_dir(), reason="the shared drawings are not here")
+@needs(PIN_LEVER)
 def test_a_real_assembly() -> None:
     """A Swiss lever from a public CAD model: three parts that turn, two stops, stones against teeth, pin against fork."""
-    proposal = propose([SHARED / "pin_lever" / "siconos_pin_lever_assembly.dxf"])
+    proposal = propose([PIN_LEVER / "siconos_pin_lever_assembly.dxf"])
     assert [role.name for role in proposal.roles] == ["escape_wheel", "lever", "balance", "stop"]
     wanted = {
         ("escape_wheel.ESCAPE_WHEEL_z-1.30", "lever.PALLET_A"),
@@ -204,10 +204,10 @@ def test_a_real_assembly() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(not SHARED.is_dir(), reason="the shared drawings are not here")
+@needs(DRAWINGS / "dxf")
 def test_no_drawing_brings_it_down() -> None:
     """Every shared drawing gives a scene that loads, or one clear refusal."""
-    for path in sorted([*SHARED.glob("dxf/*"), *SHARED.glob("svg/*")]):
+    for path in sorted([*DRAWINGS.glob("dxf/*"), *DRAWINGS.glob("svg/*")]):
         try:
             assert "scene.toml" in propose([path]).files
         except NothingToPropose as error:

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 from every_time import few
+from strangers import PIN_LEVER, needs, pin_lever_scene
+from strangers import SCENES as SCENES_BESIDE
 
 from watchsim.mechanism.overlap import overlaps
 from watchsim.results.provenance import lock_text
@@ -14,7 +16,7 @@ from watchsim.scene.errors import SceneError
 from watchsim.scene.file.load import load
 
 ROOT = Path(__file__).resolve().parents[2]
-SHARED = ROOT.parent / "shared"
+BENCH = SCENES_BESIDE / "bench_lever.json"
 SCENES = sorted(ROOT.glob("profiles/*/scene*.toml"))
 
 
@@ -27,9 +29,9 @@ def test_profiles_load_do_not_overlap_and_lock(path, tmp_path):
     assert load(locked) == scene
 
 
-@pytest.mark.skipif(not (SHARED / "scenes").is_dir(), reason="the shared scenes are not there")
+@needs(BENCH)
 def test_bench_lever_agrees_with_its_source():
-    source = json.loads((SHARED / "scenes" / "bench_lever.json").read_text())
+    source = json.loads(BENCH.read_text())
     scene = load(ROOT / "profiles/bench_lever/scene.toml")
     wheel, lever, balance, banking = scene.bodies
     assert wheel.inertia == source["wheel"]["inertia_kg_m2"]
@@ -47,10 +49,10 @@ def test_bench_lever_agrees_with_its_source():
     )
 
 
-@pytest.mark.skipif(not (SHARED / "drawings" / "pin_lever").is_dir(), reason="the shared drawings are not there")
+@needs(PIN_LEVER)
 @pytest.mark.parametrize("name", ["scene.toml", "scene_as_drawn.toml"])
-def test_the_real_lever_loads(name):
-    scene = load(ROOT / "tests" / "pin_lever" / name)
+def test_the_real_lever_loads(name, tmp_path):
+    scene = load(pin_lever_scene(name, tmp_path))
     assert overlaps(scene) == []
     assert len(scene.body("wheel").loops) >= 1
     assert not scene.body("wheel").decoration, "the drawing holds all parts"

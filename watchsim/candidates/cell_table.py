@@ -169,9 +169,11 @@ class PairCells:
         return list(dict.fromkeys(map(tuple, base.tolist())))
 
     def here(self, q: Array) -> Integers:
-        """The candidates in the cell of q alone."""
-        keys, count, found = self.around(q)
+        """The candidates in the cell of q alone: beyond the keys all that can touch, as in a run."""
         index = [axis.cell_of(q) for axis in self.axes]
+        if any(abs(i) >= REACH and not axis.wrap for i, axis in zip(index, self.axes, strict=True)):
+            return self.model.near[self.pair.near_start : self.pair.near_stop]
+        keys, count, found = self.around(q)
         key = self._keys(np.array([[i % axis.wrap if axis.wrap else i for i, axis in zip(index, self.axes, strict=True)]]))[0]
         place = int(np.flatnonzero(keys == key)[0])
         start = int(count[:place].sum())

@@ -33,8 +33,10 @@ def modelled_pairs(compiled: Compiled, names: Sequence[str]) -> ModelledPairs:
         around, at_start = np.array([len(near)]), near
         if pair.listed:
             cells = PairCells(model, p)
-            _, around, _ = cells.around(compiled.q)
             at_start = cells.here(compiled.q)
+            _, around, _ = cells.around(compiled.q)
+            if not len(around):  # beyond the cells
+                around = np.array([len(at_start)])
         here.append(at_start)
         bodies = (_named(compiled, pair, pair.a, names), _named(compiled, pair, pair.b, names))
         declared = int(pair.stop - pair.start)

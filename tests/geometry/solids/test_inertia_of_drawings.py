@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from strangers import PIN_LEVER, marks
 
 from watchsim.drawing.read import read
 from watchsim.geometry.loop import Loop
@@ -18,13 +19,12 @@ sys.path.insert(0, str(ROOT / "scripts" / "checks"))
 
 from measure_lever import moments  # noqa: E402
 
-SHARED = ROOT.parent / "shared" / "drawings" / "pin_lever"
 WHEELS = {
     "club teeth": ROOT / "profiles" / "swiss_lever" / "escape_wheel.dxf",
     "lever": ROOT / "profiles" / "swiss_lever" / "lever.dxf",
     "pointed teeth": ROOT / "profiles" / "bench_lever" / "wheel.dxf",
-    "pin lever wheel": SHARED / "siconos_pin_lever_wheel.dxf",
-    "pin lever": SHARED / "siconos_pin_lever_lever.dxf",
+    "pin lever wheel": PIN_LEVER / "siconos_pin_lever_wheel.dxf",
+    "pin lever": PIN_LEVER / "siconos_pin_lever_lever.dxf",
 }
 
 
@@ -41,10 +41,8 @@ def test_the_quadrature_knows_a_ring_and_a_sector() -> None:
     assert float(moments([sector])[1]) == pytest.approx(a * r**4 / 4, rel=1e-14, abs=0.0)
 
 
-@pytest.mark.parametrize("name", WHEELS)
+@pytest.mark.parametrize("name", [pytest.param(name, marks=marks(path)) for name, path in WHEELS.items()])
 def test_real_parts(name: str) -> None:
-    if not WHEELS[name].exists():
-        pytest.skip("the drawing is not here")
     loops = read(WHEELS[name], units="mm").loops
     found = section(loops).about((0.0, 0.0))
     area, polar = moments(loops)

@@ -72,12 +72,12 @@ def _clock(seconds: float) -> str:
     return f"{minutes // 60}:{minutes % 60:02d}:{rest:02d}" if minutes >= 60 else f"{minutes}:{rest:02d} min"
 
 
-def announce_compile() -> None:
+def announce_compile(kernel: str = "advance.advance", what: str = "the solver", wait: str = "half a minute") -> None:
     """Say so when the solver has to be compiled first: it is the longest wait a newcomer meets."""
     from watchsim.jit import is_cached
 
-    if not is_cached("advance.advance"):
-        say("Compiling the solver for this machine: once after installation, about half a minute ...")
+    if not is_cached(kernel):
+        say(f"Compiling {what} for this machine: once after installation, about {wait} ...")
 
 
 def parse_window(text: str | None, option: str = "--window") -> tuple[float, float] | None:

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, Protocol
 
 from watchsim import stopping
-from watchsim.commands.common.console import InputError, Progress, say
+from watchsim.commands.common.console import InputError, Progress, announce_compile, say
 
 if TYPE_CHECKING:
     from watchsim.commands.common.run_pictures import Draws
@@ -169,6 +169,7 @@ def _numbers(run: Trajectory, extras: Extras, changed: Sequence[str], folder: Pa
     if extras.profile:
         from watchsim.bench.profile.run_profile import profile_of
 
+        announce_compile("repeated_work.moments_again", "what times the kernels", "a minute")
         numbers["profile"] = plain(profile_of(run))
     return numbers
 
