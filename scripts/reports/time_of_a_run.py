@@ -2,8 +2,8 @@
 
     python scripts/reports/time_of_a_run.py profiles/swiss_lever "180 s" FOLDER
 
-Runs the command in this process with clocks around its parts. Some go on beside others, in threads and in a second process:
-they cost time of the processor, but little on the clock where there is a second core.
+Runs the command in this process with clocks around its parts. Some go on beside others, in threads and in a copy of the
+process: they cost time of the processor, but little on the clock where there is a second core.
 """
 
 from __future__ import annotations
@@ -28,14 +28,13 @@ PARTS = (  # module, name, what
     ("watchsim.analysis.summary", "summary", "summary.json"),
     ("watchsim.analysis.summary", "tables", "beats.csv, phases.csv"),
     ("watchsim.results.tables", "EventLines.add", "events.csv"),
-    ("watchsim.analysis.beat_tables", "finished_phases", "phases.csv"),
     ("watchsim.commands.common.run_pictures", "empty_panels", "panels of the plots"),
     ("watchsim.render.figures.kinematics_plot", "Kinematics.show", "plots"),
     ("watchsim.render.figures.kinematics_plot", "write_png", "plots"),
     ("watchsim.results.archive", "write_trajectory", "trajectory.npz, written beside the rest"),
     ("watchsim.commands.common.write_run", "_timeline", "the timeline in report.txt"),
 )
-WHOSE = ("", "second process: ", "its copy: ")  # by how often it was copied
+WHOSE = ("", "a copy: ")  # by how often it was copied
 
 spent: defaultdict[str, float] = defaultdict(float)  # s
 _import = builtins.__import__
@@ -129,10 +128,6 @@ def main() -> None:
         sys.stderr.flush()
         leave(status)
 
-    def wait(process: int, _: int) -> None:
-        os.waitpid(process, 0)
-
-    os.kill = wait  # the second process is to end by itself
     os.fork, os._exit = fork, told
     builtins.__import__ = Imports()
     from watchsim.process import process
