@@ -14,7 +14,7 @@ import os
 import signal
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, NoReturn
@@ -25,21 +25,21 @@ from watchsim.storage.nameless import give_name, nameless
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from watchsim.commands.common.run_pictures import Draws
     from watchsim.render.figures.kinematics_plot import Kinematics
     from watchsim.results.tables import EventLines
     from watchsim.scene.scene import Scene
     from watchsim.simulation.record.trajectory import Pair
 
+Draws = Mapping[str, Callable[[Path | IO[bytes]], object]]  # by the name of the picture in the results folder
 BUSY = 0.2  # s: at first the loop comes back to Python again and again, for cells that it meets for the first time
 DIES_WITH_PARENT = 1  # PR_SET_PDEATHSIG of Linux
 
 
 class Meanwhile:
-    """What a thread does while a run is stepped, for results in `folder`; it prepares plots where they are `plotted`."""
+    """What a thread does while a run is stepped, for results in `folder`; `panels` prepares plots."""
 
-    def __init__(self, scene: Scene, folder: Path, plotted: bool = False) -> None:
-        self._scene, self._folder, self._plotted = scene, folder, plotted and can_copy()
+    def __init__(self, scene: Scene, folder: Path, panels: Callable[[], Kinematics] | None = None) -> None:
+        self._scene, self._folder, self._prepare = scene, folder, panels if can_copy() else None
         self._lines: EventLines | None = None
         self._panels: Future[Kinematics] | None = None
         self._work: list[Future[None]] = []
@@ -51,10 +51,8 @@ class Meanwhile:
         if not self._loads and time.perf_counter() - self._begun > BUSY:
             self._loads = True
             self._thread.submit(_load)
-            if self._plotted:
-                from watchsim.commands.common.run_pictures import empty_panels
-
-                self._panels = self._thread.submit(empty_panels, self._scene)
+            if self._prepare:
+                self._panels = self._thread.submit(self._prepare)
 
     def follow(self, pairs: Sequence[Pair], events: NDArray[Any], _: Sequence[NDArray[Any]] = ()) -> None:
         """The next events of the run."""

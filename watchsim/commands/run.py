@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import functools
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -138,12 +139,14 @@ def simulate_with_progress(
 
     Also gives what was made meanwhile: its events as text, as far as they go, and panels for its plots.
     """
+    from watchsim.commands.common.run_pictures import empty_panels
     from watchsim.simulation.simulate import simulate
     from watchsim.storage.write import real
 
     announce_compile()
     beside = real(folder).parent
-    progress, meanwhile = Progress("simulated s:"), Meanwhile(scene, beside, plotted)
+    panels_of = functools.partial(empty_panels, scene) if plotted else None
+    progress, meanwhile = Progress("simulated s:"), Meanwhile(scene, beside, panels_of)
 
     def stepped(time: float, end: float) -> None:
         meanwhile.progress()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import sys
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
@@ -90,7 +89,7 @@ def empty_panels(scene: Scene) -> Kinematics:
     """The panels of the plots that come with a run, drawn once, which is half the work: made while the run goes on."""
     from watchsim.analysis.promised import not_begun
 
-    _load_plainly()
+    _load()
     from watchsim.render.figures.kinematics_plot import Kinematics
 
     panels = Kinematics(not_begun(scene), _shown(scene))
@@ -98,14 +97,12 @@ def empty_panels(scene: Scene) -> Kinematics:
     return panels
 
 
-def _load_plainly() -> None:
-    """Load matplotlib without help texts about properties, a third of its loading; for processes of the command line."""
-    if not stopping.installed() or "matplotlib.artist" in sys.modules:
-        return
-    from matplotlib.artist import Artist
+def _load() -> None:
+    """Load what draws, in a process of the command line without what nobody reads there."""
+    from watchsim.render.figures.figure_style import without_help
 
-    if hasattr(Artist, "_update_set_signature_and_docstring"):
-        Artist._update_set_signature_and_docstring = classmethod(lambda _: None)
+    if stopping.installed():
+        without_help()
 
 
 def _shown(scene: Scene) -> list[str]:
@@ -119,7 +116,7 @@ def plots(run: Trajectory, panels: Kinematics | None = None) -> dict[str, Draw]:
 
     @functools.cache
     def shown() -> Kinematics:
-        _load_plainly()
+        _load()
         from watchsim.render.figures.kinematics_plot import Kinematics
 
         return panels.of(run) if panels else Kinematics(run, _shown(run.scene))
