@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from watchsim.analysis.timeline.rows import Stages, Staging, can_be_told
-from watchsim.analysis.timing.beats import Beats, beats
-from watchsim.analysis.timing.marks.stretches import Stretches
-from watchsim.analysis.timing.phases import AT_ONCE, stretches, with_angles
-from watchsim.scene.oscillation import frequency
-from watchsim.scene.roles import keeps_time
-from watchsim.scene.scene import Scene
+from watchsim.analysis.timing.beats import Beats
+from watchsim.analysis.timing.phases import stretches, with_angles
 from watchsim.simulation.record.trajectory import Trajectory
 
 BEAT_COLUMNS = ("beat", "t_s", "tick_s", "turn_s", "turn_at", "amplitude", "period_s", "rate_s_per_d", "beat_error_ms")
@@ -47,42 +43,18 @@ def beats_csv(found: Beats) -> Iterator[str]:
         yield _lines([list(map(str, numbers)), *some])
 
 
-def phases_csv(run: Trajectory, found: Beats, ready: Mapping[bytes, str] | None = None) -> Iterator[str]:
+def phases_csv(run: Trajectory, found: Beats) -> Iterator[str]:
     """One row per phase: beat (as in beats.csv), name, start, duration, for wheel, lever and balance the angle at its start and
     the turn during it, on what an impulse acts, which stone is unlocked in the beat, angular velocities, the angular impulse of
     all contacts on the oscillator, and where the energy went (see analysis/timeline/rows.py).
 
-    Energies and impulse are empty for a run by fixed steps, whose contacts have no smooth forces. What is `ready` (see
-    `finished_phases`) is not worked out again.
+    Energies and impulse are empty for a run by fixed steps, whose contacts have no smooth forces.
     """
     yield _row(PHASE_COLUMNS)
-    made = _PhaseRows(run)
+    staging, known = Staging(run), can_be_told(run)
     for part in stretches(run, found):
-        yield (ready or {}).get(part.content) or made.text(part)
-
-
-def finished_phases(run: Trajectory, ready: Mapping[bytes, str]) -> dict[bytes, str]:
-    """Of a run under way the rows of beats that are over, some hundred beats at a time, by what they are known by."""
-    made = _PhaseRows(run)
-    finished = list(stretches(run, beats(run)))[:-1]  # what comes decides about the last part
-    return {part.content: ready.get(part.content) or made.text(part) for part in finished}
-
-
-def time_of_a_part(scene: Scene) -> float:
-    """How long as many beats take as are worked out at a time, s; infinite where there are none."""
-    hertz = frequency(scene) if keeps_time(scene) else None
-    return 0.5 * AT_ONCE / hertz if hertz else math.inf
-
-
-class _PhaseRows:
-    """What makes rows of phases.csv."""
-
-    def __init__(self, run: Trajectory) -> None:
-        self._run, self._staging, self._known = run, Staging(run), can_be_told(run)
-
-    def text(self, part: Stretches) -> str:
-        some = with_angles(self._run, part)
-        return _lines(_phase_columns(self._staging.of(some), self._known)) if len(some) else ""
+        some = with_angles(run, part)
+        yield _lines(_phase_columns(staging.of(some), known)) if len(some) else ""
 
 
 def _phase_columns(part: Stages, known: bool) -> list[list[str]]:

@@ -71,15 +71,12 @@ def summary_text(run: Trajectory, numbers: Mapping[str, Any] | None = None) -> s
     return headlines(run, summary(run) if numbers is None else numbers)
 
 
-def tables(run: Trajectory, folder: Path | None = None, ready: Mapping[bytes, str] | None = None) -> dict[str, LongText]:
-    """The tables of a results folder besides events.csv: name -> text, in files in `folder` where it is long.
-
-    `ready` are rows of phases.csv that were made before, see `beat_tables.finished_phases`.
-    """
+def tables(run: Trajectory, folder: Path | None = None) -> dict[str, LongText]:
+    """The tables of a results folder besides events.csv: name -> text, in files in `folder` where it is long."""
     if not swings(run.scene):
         return {}
     found = beats(run)
-    return {"beats.csv": LongText(beats_csv(found), folder), "phases.csv": LongText(phases_csv(run, found, ready), folder)}
+    return {"beats.csv": LongText(beats_csv(found), folder), "phases.csv": LongText(phases_csv(run, found), folder)}
 
 
 def _about(run: Trajectory) -> dict[str, Any]:

@@ -10,8 +10,6 @@ from typing import Any
 
 from watchsim import stopping
 from watchsim.commands.common.console import FINE, MISSED, announce_compile
-from watchsim.commands.second.second_process import SecondProcess, second_process
-from watchsim.simulation.methods import EVENT_DRIVEN
 
 HELP = "the incline check and a ticking Swiss lever: numbers, plots, MP4 and GIF"
 DURATION = 10.0
@@ -25,11 +23,6 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    with second_process() as second:
-        return _run(args, second)
-
-
-def _run(args: argparse.Namespace, second: SecondProcess | None) -> int:
     from watchsim.analysis.summary import summary_text
     from watchsim.commands.common.inputs import load_scene
     from watchsim.commands.common.output_place import secured_file, secured_folder
@@ -57,12 +50,10 @@ def _run(args: argparse.Namespace, second: SecondProcess | None) -> int:
         print(verify_text(rows), flush=True)
     print(f"\n2. A Swiss lever, read from DXF drawings, ticks for {DURATION:g} s", flush=True)
     scene = load_scene(str(profiles_dir() / "swiss_lever"))
-    if second is not None:
-        second.prepare(scene, folder, DURATION, EVENT_DRIVEN, scene.tolerance)
     goal = goal_of(scene, folder, args.force)
     with stopping.keeping():
-        trajectory, lines = simulate_with_progress(scene, DURATION, None, folder, second=second)
-        summary = write(trajectory, goal, Extras(movie=True, gif=True), ["--duration"], lines, second)
+        trajectory, lines, panels = simulate_with_progress(scene, DURATION, None, folder, plotted=True)
+        summary = write(trajectory, goal, Extras(movie=True, gif=True), ["--duration"], lines, panels)
     print(f"   {_ticking(summary)}")
     print(f"   Plots, movie.mp4, movie.gif and all numbers (report.txt): {args.output}/swiss_lever")
     if args.details:

@@ -5,10 +5,12 @@ from __future__ import annotations
 import argparse
 import contextlib
 import dataclasses
+import functools
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from watchsim import stopping
+from watchsim.commands.beside import Meanwhile
 from watchsim.commands.common.console import (
     FINE,
     GAVE_UP,
@@ -25,11 +27,10 @@ from watchsim.commands.common.console import (
 from watchsim.commands.common.output_place import claimed, interrupted_place, secured_folder, swept_run
 from watchsim.commands.common.record_size import room_for
 from watchsim.commands.common.write_run import Extras, goal_of, report_text, write
-from watchsim.commands.second.second_core import Meanwhile
-from watchsim.commands.second.second_process import SecondProcess, second_process
 from watchsim.simulation.methods import EVENT_DRIVEN, METHODS
 
 if TYPE_CHECKING:
+    from watchsim.render.figures.kinematics_plot import Kinematics
     from watchsim.results.tables import EventLines
     from watchsim.scene.scene import Scene
     from watchsim.simulation.record.trajectory import Trajectory
@@ -70,11 +71,11 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    with second_process(not args.no_plots) as second, contextlib.ExitStack() as held:
-        return _run(args, second, held)
+    with contextlib.ExitStack() as held:
+        return _run(args, held)
 
 
-def _run(args: argparse.Namespace, second: SecondProcess | None, held: contextlib.ExitStack) -> int:
+def _run(args: argparse.Namespace, held: contextlib.ExitStack) -> int:
     from watchsim.commands.common.inputs import load_scene
     from watchsim.mechanism.notes import notes
     from watchsim.results.write_results import check_folder
@@ -92,8 +93,6 @@ def _run(args: argparse.Namespace, second: SecondProcess | None, held: contextli
     check_tolerance(args.tol)
     method, start = args.method or EVENT_DRIVEN, None
     folder = Path(args.output or args.resume or Path("results") / _name(scene))
-    if second is not None:
-        second.prepare(scene, folder, duration or scene.duration, method, args.tol or scene.tolerance)
     # What is resumed is written whole, with what follows it: nothing is lost where it takes the old one's place.
     goes_on = args.resume is not None and folder.resolve() == Path(args.resume).resolve()
     replace = args.force or goes_on
@@ -123,14 +122,14 @@ def _run(args: argparse.Namespace, second: SecondProcess | None, held: contextli
         say(f"Note: {note.message}. {note.fix}")
     extras = Extras(not args.no_plots, args.movie, args.gif, args.error_bars, args.profile, args.report)
     with stopping.keeping():
-        trajectory, lines = simulate_with_progress(
-            scene, duration, args.tol, folder, method=method, step=step, start=start, second=second
+        trajectory, lines, panels = simulate_with_progress(
+            scene, duration, args.tol, folder, method=method, step=step, start=start, plotted=extras.plots
         )
         if trajectory.stop == Stop.INTERRUPTED and folder.is_dir() and any(folder.iterdir()) and not goes_on:
             kept, folder = folder, interrupted_place(folder)
             goal = dataclasses.replace(goal, folder=folder, replace=False)
             say(f"The earlier results in {kept} are kept; what was simulated of this run goes to {folder}.")
-        summary = write(trajectory, goal, extras, changed, lines, second)
+        summary = write(trajectory, goal, extras, changed, lines, panels)
     if args.json:
         print_json(summary)
         for warning in summary["warnings"]:
@@ -149,32 +148,34 @@ def simulate_with_progress(
     method: str = EVENT_DRIVEN,
     step: float | None = None,
     start: Trajectory | None = None,
-    second: SecondProcess | None = None,
-) -> tuple[Trajectory, EventLines | None]:
+    plotted: bool = False,
+) -> tuple[Trajectory, EventLines | None, Kinematics | None]:
     """Simulate for results in `folder`, with a progress line on a terminal; a first run says that it compiles.
 
-    Also gives its events as far as they were made into text meanwhile, if not by a `second` process, which is to be prepared.
+    Also gives what was made meanwhile: its events as text, as far as they go, and panels for its plots.
     """
+    from watchsim.commands.common.run_pictures import empty_panels
     from watchsim.simulation.simulate import simulate
     from watchsim.storage.write import real
 
     announce_compile()
     beside = real(folder).parent
-    progress, meanwhile = Progress("simulated s:"), Meanwhile(scene, beside)
+    panels_of = functools.partial(empty_panels, scene) if plotted else None
+    progress, meanwhile = Progress("simulated s:"), Meanwhile(scene, beside, panels_of)
 
     def stepped(time: float, end: float) -> None:
         meanwhile.progress()
         progress(time, end)
 
-    follow = (second or meanwhile).follow if start is None else None
+    follow = meanwhile.follow if start is None else None
     try:
         run = simulate(
             scene, duration, tolerance, progress=stepped, method=method, step=step, start=start, stream=beside, follow=follow
         )
     finally:
-        lines = meanwhile.end()
+        lines, panels = meanwhile.end()
         progress.close()
-    return run, lines
+    return run, lines, panels
 
 
 def _earlier(folder: str, scene: Scene) -> Trajectory:

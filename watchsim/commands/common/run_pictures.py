@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
 from watchsim import stopping
+from watchsim.commands.beside import drawn_beside
 from watchsim.commands.common.console import Progress, say
 
 if TYPE_CHECKING:
@@ -28,13 +29,18 @@ WHOLE_RUN = 10.0  # s that the movie of a whole run takes
 
 
 def pictures(
-    run: Trajectory, plotted: bool, movie: bool, gif: bool, elsewhere: Callable[[Draws], Draws] | None = None
+    run: Trajectory,
+    plotted: bool,
+    movie: bool,
+    gif: bool,
+    folder: Path | None = None,
+    panels: Kinematics | None = None,
 ) -> dict[str, Callable[[Path], object]]:
     """Name in the results folder -> what draws it into the file it is given.
 
-    `elsewhere` makes of what draws plots here what waits for them where they are being drawn.
+    Where there is a `folder`, plots may be drawn from now on by another process, and wait there in files without names.
     """
-    found: dict[str, Any] = dict(_plots_of(run, elsewhere)) if plotted else {}
+    found: dict[str, Any] = dict(_plots_of(run, folder, panels)) if plotted else {}
     if movie:
         found["movie.mp4"] = lambda path: _movie(run, path, slow=1 / 20)
     if gif:
@@ -70,23 +76,33 @@ def _drawn(draw: Callable[[Path], object]) -> Callable[[Path], None]:
     return attempt
 
 
-def _plots_of(run: Trajectory, elsewhere: Callable[[Draws], Draws] | None) -> Draws:
-    """What draws the plots, or waits for them where they are being drawn elsewhere."""
-    draws = plots(run)
+def _plots_of(run: Trajectory, folder: Path | None, panels: Kinematics | None) -> Draws:
+    """What draws the plots, or waits for them where they are being drawn."""
+    draws = plots(run, panels)
     moving = sum(body.motion != "fixed" for body in run.scene.bodies)
     if draws and moving > MOST_PLOTTED:
         say(f"Plots of {MOST_PLOTTED} of {moving} moving bodies; watchsim plot RUN --bodies NAMES draws others.")
-    return elsewhere(draws) if elsewhere else draws
+    return drawn_beside(draws, folder) if folder else draws
 
 
 def empty_panels(scene: Scene) -> Kinematics:
     """The panels of the plots that come with a run, drawn once, which is half the work: made while the run goes on."""
     from watchsim.analysis.promised import not_begun
+
+    _load()
     from watchsim.render.figures.kinematics_plot import Kinematics
 
     panels = Kinematics(not_begun(scene), _shown(scene))
     panels.figure.canvas.draw()
     return panels
+
+
+def _load() -> None:
+    """Load what draws, in a process of the command line without what nobody reads there."""
+    from watchsim.render.figures.figure_style import without_help
+
+    if stopping.installed():
+        without_help()
 
 
 def _shown(scene: Scene) -> list[str]:
@@ -100,6 +116,7 @@ def plots(run: Trajectory, panels: Kinematics | None = None) -> dict[str, Draw]:
 
     @functools.cache
     def shown() -> Kinematics:
+        _load()
         from watchsim.render.figures.kinematics_plot import Kinematics
 
         return panels.of(run) if panels else Kinematics(run, _shown(run.scene))

@@ -10,13 +10,13 @@ import functools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from watchsim import stopping
 from watchsim.commands.common.console import InputError, Progress, announce_compile, say
 
 if TYPE_CHECKING:
-    from watchsim.commands.common.run_pictures import Draws
+    from watchsim.render.figures.kinematics_plot import Kinematics
     from watchsim.results.tables import EventLines
     from watchsim.scene.scene import Scene
     from watchsim.simulation.record.trajectory import Trajectory
@@ -44,22 +44,6 @@ class Goal:
     keeps_later: bool = False  # movies, plots, pages made of the earlier results stay where they are not made anew
 
 
-class Elsewhere(Protocol):
-    """What made a part of the results while the run went on, in another process."""
-
-    def finish(self, run: Trajectory) -> None:
-        """It is over."""
-
-    def phases(self) -> dict[bytes, str]:
-        """Rows of phases.csv, see `beat_tables.phases_csv`."""
-
-    def events(self) -> IO[bytes] | None:
-        """events.csv, in a file without a name; None where it has to be written here."""
-
-    def drawn(self, draws: Draws) -> Draws:
-        """What waits for plots that are being drawn there."""
-
-
 def goal_of(scene: Scene, folder: Path, replace: bool, keeps_later: bool = False) -> Goal:
     """To be made before the run: its scene and drawings may be gone when it ends."""
     from watchsim.results.scene_copy import travelling
@@ -73,12 +57,12 @@ def write(
     extras: Extras,
     changed: Sequence[str] = (),
     lines: EventLines | None = None,
-    second: Elsewhere | None = None,
+    panels: Kinematics | None = None,
 ) -> dict[str, Any]:
     """Write the results folder; returns the summary as written.
 
     `changed` holds the options by which the run is another than the scene's own: its expectations are then not judged;
-    `lines` are its events as far as they were made into text while it went on, by the `second` process where there is one.
+    `lines` are its events as far as they were made into text while it went on, `panels` those of its plots, still empty.
     InputError where the results had to go elsewhere.
     """
     from watchsim.analysis.summary import tables
@@ -89,15 +73,12 @@ def write(
     if run.stop == Stop.INTERRUPTED:
         say("Interrupted: writing what was simulated; a second Ctrl-C abandons it ...")
     try:
-        if second is not None:
-            second.finish(run)
-        elsewhere = second.drawn if second is not None else None
-        drawn = pictures(run, extras.plots, extras.movie, extras.gif, elsewhere)
-        packed = _begun(run, goal.folder, lines, second)
+        beside_folder = real(goal.folder).parent
+        drawn = pictures(run, extras.plots, extras.movie, extras.gif, beside_folder, panels)
+        packed = _begun(run, beside_folder, lines)
         numbers = _numbers(run, extras, changed, goal.folder)
         said = [*(f"Note: {note}" for note in numbers["notes"]), report_text(run, numbers)]
-        ready = second.phases() if second is not None else None
-        told = {name: text.write for name, text in tables(run, real(goal.folder).parent, ready).items()}
+        told = {name: text.write for name, text in tables(run, beside_folder).items()}
         report = "\n".join([*said, *_timeline(run)]) + "\n"
         beside: dict[str, Any] = {**goal.scene, **packed, **told, "report.txt": report}
     except Exception:
@@ -108,30 +89,15 @@ def write(
     return numbers
 
 
-def _begun(run: Trajectory, folder: Path, lines: EventLines | None, second: Elsewhere | None) -> dict[str, Any]:
+def _begun(run: Trajectory, folder: Path, lines: EventLines | None) -> dict[str, Any]:
     """What writes the motion, which is being packed from now on, and the events."""
     from watchsim.results.write_results import EVENTS, TRAJECTORY, Packed
-    from watchsim.storage.write import real
 
-    begun: dict[str, Any] = {TRAJECTORY: Packed(run, real(folder).parent).write}
-    if second is not None:
-        begun[EVENTS] = functools.partial(_events, run, second)
-    elif lines is not None:
+    begun: dict[str, Any] = {TRAJECTORY: Packed(run, folder).write}
+    if lines is not None:
         lines.settle(run)
         begun[EVENTS] = functools.partial(lines.write, run)
     return begun
-
-
-def _events(run: Trajectory, second: Elsewhere, path: Path) -> None:
-    """Write events.csv as the second process has made it."""
-    from watchsim.results.tables import write_events
-    from watchsim.storage.nameless import give_name
-
-    made = second.events()
-    if made is None:
-        write_events(run, path)
-    else:
-        give_name(made, path)
 
 
 def report_text(run: Trajectory, summary: dict[str, Any]) -> str:

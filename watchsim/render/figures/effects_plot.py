@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from watchsim.render.figures.figure_style import BAD, FULL, GOOD, HAIR, LABEL, NARROW, SMALL, TITLE, dress, figure
+from watchsim.render.figures.figure_style import BAD, FULL, GOOD, HAIR, LABEL, NARROW, SMALL, TITLE, cut, dress, figure
 from watchsim.render.palette import FAINT, INK
 from watchsim.studies.sensitivity import Effect, Sensitivity
 
@@ -34,7 +34,7 @@ def plot_sensitivity(found: Sensitivity, width: float = FULL) -> Figure:
     rows = -(-len(found.outputs) // across)
     made = figure(width, rows * (ROW * max(len(shown), 2) + REST), layout="constrained")
     panels = made.subplots(rows, across, sharey=True, squeeze=False).flat
-    made.suptitle(f"{found.title}: what matters", x=0.01, ha="left", fontsize=TITLE, weight="bold", color=INK)
+    made.suptitle(f"{cut(found.title)}: what matters", x=0.01, ha="left", fontsize=TITLE, weight="bold", color=INK)
     names = [f"{effect.quantity.key}, {_signed(effect)}" for effect in shown]
     # A panel's width is known only when it is laid out; before, all are alike beside the names.
     wide = (width - LETTERS * max(map(len, names), default=0)) / across

@@ -27,6 +27,7 @@ EDGE = 2.0  # mm, that nothing comes closer to the figure's edge
 HEADING = 11.0  # mm, the title and a line below it
 CURVE, THIN, HAIR = 0.9, 0.6, 0.5  # pt, of curves, aids and frames
 LEAD = 1.3  # height of a line of text over its size
+MOST_LETTERS = 500  # of a title
 LETTER = 0.60  # mean width of a letter over its size, on the safe side
 
 # Okabe and Ito's colours for every kind of colour vision (jfly.uni-koeln.de/color, 2008), the yellow left out, and ink.
@@ -57,11 +58,24 @@ def heading(figure: Figure, title: str, words: str = "") -> None:
     """A title and a line below it, at the upper left; what does not fit is cut."""
     wide, high = (inches / MM for inches in figure.get_size_inches())
     look: dict[str, Any] = {"ha": "left", "va": "center", "color": INK}
-    made = [figure.suptitle(title, x=EDGE / wide, y=1.0 - 4.0 / high, fontsize=TITLE, weight="bold", **look)]
+    made = [figure.suptitle(cut(title), x=EDGE / wide, y=1.0 - 4.0 / high, fontsize=TITLE, weight="bold", **look)]
     if words:
-        made.append(figure.text(EDGE / wide, 1.0 - 8.5 / high, words, fontsize=LABEL, **look))
+        made.append(figure.text(EDGE / wide, 1.0 - 8.5 / high, cut(words), fontsize=LABEL, **look))
     for text in made:
         fit(text, wide - 2.0 * EDGE)
+
+
+def without_help() -> None:
+    """Have matplotlib make no help texts about properties when it is loaded: a third of its loading."""
+    from matplotlib.artist import Artist
+
+    if hasattr(Artist, "_update_set_signature_and_docstring"):
+        Artist._update_set_signature_and_docstring = classmethod(lambda _: None)
+
+
+def cut(words: str) -> str:
+    """The beginning of a text that no figure is wide enough for: to measure letters takes time."""
+    return words if len(words) <= MOST_LETTERS else f"{words[:MOST_LETTERS].rstrip()}…"
 
 
 def fit(text: Text, room: float) -> None:
@@ -94,7 +108,7 @@ def dress(axes: Axes, grid: Literal["both", "x", "y", "none"] = "both") -> None:
 
 def title(axes: Axes, words: str, colour: str = INK) -> None:
     """What a panel shows, at its upper left."""
-    axes.set_title(words, loc="left", fontsize=LABEL, weight="bold", color=colour, y=1.0, pad=3.0)  # y: not searched for
+    axes.set_title(cut(words), loc="left", fontsize=LABEL, weight="bold", color=colour, y=1.0, pad=3.0)  # y: not searched for
 
 
 def limits(axes: Axes, low: float, high: float, share: float = 0.08, flat: float = 1e-6, unit: float = 1e-300) -> None:

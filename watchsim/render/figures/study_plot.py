@@ -24,6 +24,7 @@ from watchsim.render.figures.figure_style import (
     SERIES,
     SMALL,
     TITLE,
+    cut,
     dress,
     figure,
 )
@@ -54,7 +55,7 @@ def plot_sweep(sweep: Sweep, width: float = FULL) -> Figure:
         raise ValueError("only sweeps over one or two keys with numbers can be drawn")
     made = figure(width, TALL * len(sweep.outputs) + REST, layout="constrained")
     panels = made.subplots(len(sweep.outputs), 1, sharex=True, squeeze=False)[:, 0]
-    made.suptitle(sweep.title, x=0.01, ha="left", fontsize=TITLE, weight="bold", color=INK)
+    made.suptitle(cut(sweep.title), x=0.01, ha="left", fontsize=TITLE, weight="bold", color=INK)
     along, other = _roles(sweep, numeric)
     field = other if other is not None and other.is_numeric and len(other.values) > FAMILY else None
     for axes, output in zip(panels, sweep.outputs, strict=True):

@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from analysis.made_beats import HERTZ, lever_run, lever_scene
+from analysis.made_beats import lever_run
 
 from watchsim.analysis import beat_tables
 from watchsim.analysis import tape as writing
-from watchsim.analysis.beat_tables import beats_csv, finished_phases, phases_csv, time_of_a_part
+from watchsim.analysis.beat_tables import beats_csv, phases_csv
 from watchsim.analysis.tape import tape
 from watchsim.analysis.timing import phases
 from watchsim.analysis.timing.beats import Beats, beats
@@ -82,24 +82,13 @@ def test_beats_are_written_piece_by_piece(monkeypatch: pytest.MonkeyPatch) -> No
             assert row[name] == "" if not math.isfinite(value) else float(row[name]) == pytest.approx(value, rel=1e-15)
 
 
-def test_finished_phases_are_all_but_the_last_part(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What is ready is taken as it is, in the table, too."""
-    monkeypatch.setattr(phases, "AT_ONCE", 3)
+def test_the_table_of_phases_comes_in_parts(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Which together are the table of all beats at once, but for rounding of sums."""
     run = lever_run(12)
     found = beats(run)
-    parts = list(phases.stretches(run, found))
-    assert [len(part.first) for part in parts] == [3, 3, 3, 2]
-    made = finished_phases(run, {})
-    assert list(made) == [part.content for part in parts[:-1]]
+    whole = list(csv.reader("".join(phases_csv(run, found)).splitlines()))
+    monkeypatch.setattr(phases, "AT_ONCE", 3)
     header, *pieces = phases_csv(run, found)
-    assert list(made.values()) == pieces[:-1] and header.startswith("beat,phase,")
-    ready = {parts[1].content: "ready\n"}
-    assert list(finished_phases(run, ready).values()) == [pieces[0], "ready\n", pieces[2]]
-    assert list(phases_csv(run, found, ready)) == [header, pieces[0], "ready\n", *pieces[2:]]
-
-
-def test_how_long_the_beats_of_a_part_take() -> None:
-    scene = lever_scene()
-    assert time_of_a_part(scene) == pytest.approx(0.5 * phases.AT_ONCE / HERTZ, rel=1e-12)
-    assert time_of_a_part(replace(scene, springs=())) == math.inf
-    assert time_of_a_part(replace(scene, contacts=scene.contacts[1:], lift_angle=None)) == math.inf
+    assert len(pieces) == 4 and header.startswith("beat,phase,")
+    rows = list(csv.reader("".join([header, *pieces]).splitlines()))
+    assert len(rows) > 40 and [row[:5] for row in rows] == [row[:5] for row in whole]

@@ -57,11 +57,6 @@ class Stretches:
         return [self.words[code] for code in self.on.tolist()]
 
     @property
-    def content(self) -> bytes:
-        """The same for the same rows only."""
-        return b"".join(getattr(self, name).tobytes() for name in COLUMNS) + "\n".join(self.words).encode()
-
-    @property
     def first(self) -> NDArray[np.int64]:
         """The first row of each beat."""
         return np.flatnonzero(np.append(True, self.beat[1:] != self.beat[:-1])[: len(self)])
