@@ -92,8 +92,7 @@ stepping (`watchsim run --profile`). No work is counted twice:
 - calls of the loop come from Python, which saves and counts between them;
 - the rest is what happens in between, and what the same work costs more when interleaved with other work.
 
-Cells are computed once for a geometry: the stepping shown here knows them all, the last line is a run that knows none. A test
-compares the shares with those of clocks within the loop (`tests/bench/test_where_time_goes.py`).
+Cells are computed once for a geometry: the stepping shown here knows them all, the last line is a run that knows none.
 
 {profiles}
 
