@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import math
 import wave
+from dataclasses import dataclass
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
 from analysis.made_beats import IMPULSE, LOCKING, PIN, balance_only, steady_swings
 from analysis.made_faults import chipped, eccentric, knocked, swiss, unguarded
-from analysis.sound.listening import listen, share_of_period
+from numpy.typing import NDArray
+from scipy.io import wavfile
 
 from watchsim.analysis.sound.bursts import SAMPLES, TONES, Ringing
 from watchsim.analysis.sound.score import score
@@ -24,6 +27,54 @@ from watchsim.scene.scene import Scene
 from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.record.trajectory import Trajectory
 from watchsim.simulation.simulate import simulate
+
+# What does somebody hear who has nothing but the WAV file?
+
+Array = NDArray[np.float64]
+QUIET = 0.02  # s of silence before a beat
+THRESHOLD = 0.01  # of full scale
+
+
+@dataclass(frozen=True)
+class Heard:
+    """First onsets (s) of the beats, and from each to the loudest sample of its beat (s)."""
+
+    onsets: Array
+    lasting: Array
+
+    def rate(self, nominal_period: float) -> float:
+        """s/d, from the mean of all differences of onsets two apart."""
+        return 86400.0 * (nominal_period / float(np.mean(self.onsets[2:] - self.onsets[:-2])) - 1.0)
+
+    def beat_error_ms(self) -> float:
+        """Half of what the halves differ by, with the sign of their order."""
+        halves = np.diff(self.onsets)
+        signs = (-1.0) ** np.arange(len(halves) - 1)
+        return abs(500.0 * float(np.mean(signs * np.diff(halves))))
+
+    def amplitude_deg(self, lift_deg: float, hertz: float) -> float:
+        return lift_deg / (2.0 * math.sin(math.pi * hertz * float(np.mean(self.lasting))))
+
+
+def listen(path: Path) -> Heard:
+    rate, samples = wavfile.read(path)
+    assert samples.dtype == np.int16 and samples.ndim == 1
+    loud = np.flatnonzero(np.abs(samples.astype(float)) > THRESHOLD * 32768.0)
+    first = loud[np.diff(loud, prepend=-rate) > QUIET * rate]
+    first = first[first > 0.001 * rate]  # what sounds as the file begins has begun before
+    window = int(0.02 * rate)
+    peaks = [int(np.argmax(np.abs(samples[k : k + window].astype(float)))) for k in first]
+    return Heard(first / rate, np.array(peaks) / rate)
+
+
+def share_of_period(values: Array, beats: int) -> float:
+    """How much of the variance of a series lies in the frequency of one turn in so many beats, from 0 to 1."""
+    values = values[: len(values) - len(values) % beats]
+    spectrum = np.abs(np.fft.rfft(values - values.mean())) ** 2
+    return float(spectrum[len(values) // beats] / spectrum.sum())
+
+
+# Does the WAV file sound as the watch ticks?
 
 PERIOD, LIFT = 0.25, 51.2
 
@@ -211,3 +262,48 @@ def test_louder_blows_are_louder(tmp_path):
 def test_the_file_is_as_long_as_asked_to_the_sample(length, tmp_path):
     with wave.open(str(sound(ticking(2.0), tmp_path / "tick.wav", duration=length))) as file:
         assert file.getnframes() == round(length * SAMPLES)
+
+
+# Does a blow ring on three tones that die away, from its instant on, also across the borders of blocks?
+
+RATE = 48000
+TONES_RINGING = [(3400.0, 0.0009, 0.45), (6100.0, 0.0006, 0.35), (11300.0, 0.0003, 0.2)]  # Hz, decay s, share
+BLOWS = [(3.0 / RATE, 2.0), (3.4 / RATE, 0.7), (17.9 / RATE, 1.3), (60.0 / RATE, 0.4), (60.0 / RATE, 0.9), (98.5 / RATE, 3.0)]
+
+
+def summed(count: int) -> list[float]:
+    """Every blow, over all samples that are not before it."""
+    out = []
+    for n in range(count):
+        ages = [(n / RATE - at, loud) for at, loud in BLOWS if n / RATE >= at - 1e-15]
+        tones = [
+            (loud * share, age / decay, math.tau * hertz * age) for age, loud in ages for hertz, decay, share in TONES_RINGING
+        ]
+        out.append(sum(size * math.exp(-gone) * math.cos(turned) for size, gone, turned in tones))
+    return out
+
+
+@pytest.mark.parametrize("blocks", [(150,), (20, 130), (18, 1, 41, 90), (61, 38, 51)])
+def test_blows_add_up_block_by_block(blocks: tuple[int, ...]) -> None:
+    """Between two samples, too: the next one hears how far it has rung already."""
+    ringing, parts, first = Ringing(), [], 0
+    for count in blocks:
+        own = [(at, loud) for at, loud in BLOWS if first <= math.ceil(at * RATE - 1e-9) < first + count]
+        times, loudness = np.array(own).reshape(-1, 2).T
+        parts.append(ringing.block(count, times, loudness))
+        first += count
+        assert ringing.sampled == first
+    assert np.concatenate(parts) == pytest.approx(summed(150), abs=1e-12)
+
+
+@pytest.mark.parametrize(("sample", "fits"), [(8.9, False), (9.1, True), (13.9, True), (14.1, False)])
+def test_a_blow_lies_in_its_block(sample: float, fits: bool) -> None:
+    """Of samples 10 to 14."""
+    ringing = Ringing()
+    ringing.block(10, np.zeros(0), np.zeros(0))
+    times = np.array([12.0, sample]) / RATE
+    if fits:
+        assert len(ringing.block(5, times, np.ones(2))) == 5
+    else:
+        with pytest.raises(ValueError, match="outside the block"):
+            ringing.block(5, times, np.ones(2))

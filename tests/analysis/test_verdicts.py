@@ -2,26 +2,29 @@
 
 from __future__ import annotations
 
+import cmath
 import math
+from collections.abc import Callable
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from analysis.made_beats import lever_run
+from analysis.made_beats import DEGREE, PERIOD, Events, balance_only, lever_run, lever_scene, polygon, star
 from analysis.made_faults import chipped, knocked, renamed, swiss, toothless, turned_over, unguarded
 from every_time import few
+from scipy.integrate import quad
+from scipy.optimize import brentq
 
-from watchsim.analysis.timing.beats import Beats, beats
-from watchsim.analysis.verdicts.backwards import _against_teeth
+from watchsim.analysis.timing.beats import beats
+from watchsim.analysis.timing.teeth import pitch
 from watchsim.analysis.verdicts.equilibrium.in_force import in_force
 from watchsim.analysis.verdicts.equilibrium.lever_arms import arms
 from watchsim.analysis.verdicts.equilibrium.statics import at_lever
 from watchsim.analysis.verdicts.faces import face
-from watchsim.analysis.verdicts.knocking import _angles, knocks
 from watchsim.analysis.verdicts.overbanking import overbanking
-from watchsim.analysis.verdicts.tripping import tripping
-from watchsim.analysis.verdicts.unlocked import _engaged, unlocked
+from watchsim.analysis.verdicts.settling import unsettled
+from watchsim.analysis.verdicts.tooth_lean import Teeth, teeth
+from watchsim.analysis.verdicts.unlocked import unlocked
 from watchsim.analysis.verdicts.verdict import verdict
 from watchsim.analysis.verdicts.verdict_kinds import Verdict
 from watchsim.analysis.verdicts.watch import watch_of
@@ -31,7 +34,10 @@ from watchsim.scene.file.load import load
 from watchsim.scene.force import Damping, Spring, Torque
 from watchsim.scene.roles import roles
 from watchsim.scene.scene import Scene
+from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.simulate import simulate
+
+# Is a watch that fails told from one that ticks, and is it said how it fails?
 
 STRONG = "-10 µN·m"
 
@@ -118,21 +124,6 @@ def test_the_first_strike_from_outside_shows_that_it_overbanks():
     assert overbanking(watch_of(before, beats(run))) is None
 
 
-@pytest.mark.parametrize("way", [0.0, 40.0, 90.0, 200.0, 270.0])
-@pytest.mark.parametrize(("slope", "engaged"), [(2.0, False), (-2.0, False), (4.0, True), (-4.0, True), (90.0, True)])
-def test_a_pin_in_the_fork_has_an_arm_a_dart_on_its_roller_has_none(way, slope, engaged):
-    """The arm about the staff of a force that leans from the radius by an angle is the radius times its sine, wherever."""
-    staff, radius = np.array([3e-3, -2e-3]), 0.5e-3
-    out = np.array([math.cos(math.radians(way)), math.sin(math.radians(way))])
-    arm = radius * math.sin(math.radians(slope))
-    told = SimpleNamespace(
-        places={"balance": (*staff, 1.0)},
-        point=np.array([(7.0, 7.0), staff + radius * out]),
-        of=lambda row, body: (arm, 9.0) if (row, body) == (1, "balance") else (9.0, 9.0),
-    )
-    assert _engaged(SimpleNamespace(oscillator="balance"), told, 1) == engaged
-
-
 def test_a_watch_that_ticks_and_one_that_will():
     run = simulate(swiss(), 40.0)
     early = simulate(swiss(), 3.0)
@@ -148,25 +139,6 @@ def test_knocks_of_the_past_are_mentioned_not_judged():
     scene = swiss(torques_0_value="-0.5 µN·m", bodies_balance_velocity="-7000 °/s")
     found = judged(scene.set("damping.0.q_factor", 60.0), 20.0)
     assert found.name == "ticks" and "after it knocked until t = " in found.message
-
-
-def test_the_angle_of_a_knock_is_that_of_the_balance_then():
-    run = simulate(swiss(torques_0_value=STRONG), 3.0)
-    watch = watch_of(run, beats(run))
-    times = knocks(watch)["t"]
-    true = run.sample(times)[0][:, run.slices["balance"].start]
-    assert len(times) > 10 and np.degrees(np.abs(_angles(watch, times) - true)).max() < 15.0
-    assert np.degrees(np.abs(true)).min() > 330.0
-
-
-def test_angles_are_those_from_rest_wherever_that_is():
-    """Half swings of 2 s that are true sines of 3 rad about 0.4 rad."""
-    passages = np.array([1.0, 3.0, 5.0])
-    ends = 0.4 + 3.0 * np.array([-1.0, 1.0, -1.0, 1.0])
-    found = Beats("balance", True, 4.0, passages, passages - 1.0, passages + 1.0, ends[:-1], ends[1:], passages, passages)
-    times = np.linspace(0.1, 5.9, 30)
-    got = _angles(SimpleNamespace(found=found, rest=0.4), times)
-    assert got == pytest.approx(-3.0 * np.cos(0.5 * math.pi * times), abs=1e-12)
 
 
 @pytest.mark.parametrize("share", [0.995, 1.005])
@@ -204,17 +176,6 @@ def test_a_lever_without_banking_need_not_lock():
     free = replace(run.scene, contacts=tuple(one for one in run.scene.contacts if all(s.body != "banking" for s in one.sides)))
     watch = watch_of(replace(run, scene=free), beats(run))
     assert unlocked(watch_of(run, beats(run))) and not unlocked(watch)
-
-
-def test_a_reversed_wheel_that_nothing_holds_runs_through():
-    bench = load(profiles_dir() / "bench_lever").set("torques.0.value", "1 µN·m")
-    run = simulate(bench, 2.0)
-    found = verdict(run)
-    assert found.name == "backwards" and "wheel runs through, " in found.message
-    # Teeth without a lean have no wrong way: then it is a lever that stops nothing.
-    upright = watch_of(run, beats(run))
-    upright.__dict__["teeth"] = None
-    assert _against_teeth(upright) is None and "nothing locks it" in tripping(upright).message
 
 
 def test_a_wheel_that_the_balance_drives_back_runs_backwards():
@@ -259,3 +220,178 @@ def test_what_is_no_watch_has_no_verdict(scene):
 @pytest.mark.parametrize("profile", ["bench_lever", "carriage"])
 def test_other_watches_tick(profile):
     assert judged(replace(load(profiles_dir() / profile), expect=()), 6.0).works
+
+
+# Is it foretold where the amplitude settles?
+
+
+def swung(amplitude, count=160):
+    return told(amplitude, count)[1]
+
+
+def told(amplitude, count=160):
+    """Half swings of amplitude(t) degrees, and what is said of them."""
+    events = Events()
+    for k in range(count):
+        way = 1.0 if k % 2 == 0 else -1.0
+        middle, end = (k + 0.5) * 0.5 * PERIOD, (k + 1) * 0.5 * PERIOD
+        events.passage(middle, EventKind.CROSS, way)
+        events.passage(end, EventKind.TURN, way * amplitude(end) * DEGREE)
+    run = balance_only(events, count * 0.5 * PERIOD)
+    return run, unsettled(watch_of(run, beats(run)))
+
+
+@pytest.mark.parametrize(("start", "goal", "constant"), [(200.0, 280.0, 8.0), (300.0, 260.0, 20.0), (100.0, 240.0, 5.0)])
+def test_an_exponential_is_followed_to_its_end(start, goal, constant):
+    said = swung(lambda t: goal + (start - goal) * math.exp(-t / constant))
+    word = "rises" if goal > start else "falls"
+    assert said.name == "unsettled" and said.works and word in said.message
+    told = float(said.message.split("about ")[1].split("°")[0])
+    assert told == pytest.approx(goal, abs=0.6)
+
+
+def test_what_has_settled_has_settled():
+    assert swung(lambda t: 280.0 + 80.0 * math.exp(-t / 2.0)) is None
+    assert swung(lambda t: 280.0) is None
+
+
+def test_a_wheel_out_of_round_is_no_drift():
+    """Fifteen oscillations to a turn: the amplitude goes up and down for ever."""
+    assert swung(lambda t: 280.0 + 2.0 * math.sin(math.tau * t / (15.0 * PERIOD)), 480) is None
+
+
+def test_chance_is_no_drift():
+    rng = np.random.default_rng(3)
+    assert sum(swung(lambda t: 280.0 + rng.normal(0.0, 1.0)) is not None for _ in range(40)) <= 2
+
+
+def test_a_steady_loss_has_no_end_foretold():
+    said = swung(lambda t: 280.0 - 3.0 * t)
+    assert "falls by 3° per second" in said.message and "on its way" not in said.message
+
+
+@pytest.mark.parametrize(("start", "goal", "said"), [(2.0, 2.12, "about 2.12°"), (200.0, 280.0, "about 280°")])
+def test_where_it_goes_is_said_as_exactly_as_it_differs(start, goal, said):
+    found = swung(lambda t: goal + (start - goal) * math.exp(-t / 8.0), 80)
+    assert said in found.message, found.message
+
+
+def test_a_drift_counts_beyond_three_standard_errors():
+    """Told by a regression of another make: of means over an oscillation about the straight line through each stretch."""
+    known, noise = {}, np.random.default_rng(5).normal(0.0, 1.0, 161)
+    for scatter in np.linspace(1.5, 5.0, 36):
+        run, said = told(lambda t, by=scatter: 280.0 - 0.02 * t * t + by * noise[round(2.0 * t / PERIOD)])
+        stretches = np.split(beats(run).amplitude_deg[-120:].reshape(-1, 2).mean(axis=1), 3)
+        off = np.concatenate([part - np.polyval(np.polyfit(range(20), part, 1), range(20)) for part in stretches])
+        error = math.sqrt(2.0 / 20.0 * np.mean(off**2))
+        known[abs(stretches[2].mean() - stretches[1].mean()) / error] = said is not None
+    assert [drifts for errors, drifts in known.items() if 2.4 < errors < 3.0].count(False) > 2
+    assert [drifts for errors, drifts in known.items() if 3.0 < errors < 3.6].count(True) > 2
+    assert all(drifts == (errors > 3.0) for errors, drifts in known.items())
+
+
+# Is it seen which way teeth are made to turn?
+
+
+def with_rim(*loops):
+    scene = lever_scene()
+    return replace(scene, bodies=tuple(replace(one, loops=loops) if one.name == "wheel" else one for one in scene.bodies))
+
+
+def leaning(lean: float, count: int = 15, turned: float = 0.0):
+    """Pointed teeth, rim 2.4 and root 1.9 mm, whose points stand `lean` (of the pitch) anticlockwise of their middle."""
+    pitch = math.tau / count
+    points = []
+    for k in range(count):
+        for radius, at in ((1.9e-3, -0.4), (2.4e-3, lean), (1.9e-3, 0.4)):
+            angle = turned + (k + at) * pitch
+            points.append(radius * complex(math.cos(angle), math.sin(angle)))
+    return polygon(points)
+
+
+@pytest.mark.parametrize("lean", [-0.35, -0.1, 0.1, 0.35])
+@pytest.mark.parametrize("turned", [0.0, 2.0])
+def test_pointed_teeth(lean, turned):
+    """At a share h of their height the middle of the teeth is at lean · h: half the lean lies between the halves, or less."""
+    found = teeth(with_rim(leaning(lean, turned=turned)), "wheel")
+    assert found.direction == math.copysign(1.0, lean)
+    assert 0.25 * abs(lean) < abs(found.lean) / found.pitch < 0.6 * abs(lean)
+
+
+def test_upright_teeth_are_made_for_no_direction():
+    assert teeth(with_rim(leaning(0.0)), "wheel").direction == 0.0
+
+
+def test_wheels_of_the_profiles_turn_as_their_teeth_lean():
+    for name in ("swiss_lever", "bench_lever"):
+        scene = load(profiles_dir() / name)
+        assert teeth(scene, "wheel").direction == -1.0
+        assert teeth(turned_over(scene), "wheel").direction == 1.0
+
+
+def test_a_plain_disc_has_no_teeth():
+    assert teeth(with_rim(polygon([1e-3 * complex(math.cos(t), math.sin(t)) for t in (0.0, 2.0, 4.5)])), "wheel") is None
+
+
+def test_teeth_too_shallow_for_an_inner_half_lean_neither_way():
+    """Corners of a polygon are teeth, 1 - cos 12° = 0.022 of its rim deep; the inner half begins at 0.4 · 24° / 2 = 0.084."""
+    corners = [2e-3 * cmath.rect(1.0, k * math.tau / 15) for k in range(15)]
+    scene = with_rim(polygon(corners))
+    assert pitch(scene, "wheel") == pytest.approx(math.tau / 15, rel=1e-12)
+    assert teeth(scene, "wheel") is None
+
+
+def test_teeth_are_counted_anticlockwise_from_the_x_axis():
+    found = teeth(with_rim(star(15)), "wheel")
+    numbers = [found.number(k * math.tau / 15 + 0.02) for k in range(-1, 16)]
+    assert numbers == [15, *range(1, 16), 1]
+    swiss_teeth = teeth(swiss(), "wheel")
+    assert [swiss_teeth.number(math.radians(angle)) for angle in (0.0, 4.0, 24.1, -24.0, 360.0)] == [1, 1, 2, 15, 1]
+
+
+def phase(lean: float, low: float, high: float) -> float:
+    """Of ∫∫ exp(i Z φ) dφ dr over the tooth of `leaning` at angle 0, between two radii (m)."""
+    pitch = math.tau / 15
+
+    def flank(at: float, radius: float) -> float:
+        foot, tip = cmath.rect(1.9e-3, at * pitch), cmath.rect(2.4e-3, lean * pitch)
+        share = brentq(lambda part: abs(foot + part * (tip - foot)) - radius, 0.0, 1.0, xtol=1e-15) if radius < 2.4e-3 else 1.0
+        return cmath.phase(foot + share * (tip - foot))
+
+    def across(radius: float, part: Callable[[float], float]) -> float:
+        mean = quad(lambda angle: part(15 * angle), flank(-0.4, radius), flank(0.4, radius))
+        return float(mean[0])
+
+    real, imag = (quad(across, low, high, args=(part,))[0] for part in (math.cos, math.sin))
+    return math.atan2(imag, real)
+
+
+@pytest.mark.parametrize("lean", [-0.3, 0.12])
+@pytest.mark.parametrize("turned", [0.0, 0.05])
+@pytest.mark.parametrize("further", [False, True])
+def test_the_middle_of_two_halves_of_a_tooth(lean, turned, further):
+    """Down to 0.4 of the pitch at the rim. A smaller toothed outline beside it lies below that."""
+    outlines = [leaning(lean, turned=turned), *([star(15, 1.1e-3, 0.9e-3)] if further else [])]
+    found = teeth(with_rim(*outlines), "wheel")
+    depth = 0.4 * math.tau / 15 * 2.4e-3
+    outer, inner = phase(lean, 2.4e-3 - 0.5 * depth, 2.4e-3), phase(lean, 2.4e-3 - depth, 2.4e-3 - 0.5 * depth)
+    assert found.pitch == pytest.approx(math.tau / 15, rel=1e-12)
+    assert found.lean == pytest.approx((outer - inner) / 15, rel=2e-4)
+    assert found.first == pytest.approx(outer / 15 + turned, rel=2e-4)
+
+
+@pytest.mark.parametrize(("lean", "way"), [(0.019, 0.0), (-0.019, 0.0), (0.021, 1.0), (-0.021, -1.0)])
+def test_a_fiftieth_of_the_pitch_is_a_lean(lean, way):
+    assert Teeth(0.4, lean * 0.4, 0.1).direction == way
+
+
+@pytest.mark.parametrize("count", [7, 15])
+@pytest.mark.parametrize("first", [0.01, -0.11, 0.9, 3.0])
+def test_each_tooth_has_a_number(count, first):
+    """The one nearest to the x axis is the first, whichever of them was looked at; up to half a pitch off it is still that."""
+    pitch = math.tau / count
+    middles = sorted((first + k * pitch for k in range(count)), key=lambda angle: abs(math.remainder(angle, math.tau)))
+    for k in range(-3, 2 * count):
+        for off in (-0.49, 0.2, 0.49):
+            assert Teeth(pitch, 0.1, first).number(middles[0] + (k + off) * pitch) == k % count + 1
+    assert Teeth(pitch, 0.1, first).count == count
