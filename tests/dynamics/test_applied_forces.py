@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from pair_scenes import body_pose
 from plain_kernels import in_python
 
-from watchsim.dynamics.applied_forces import forces, next_knot
+from watchsim.dynamics.applied_forces import damping_power, drive_power, forces, next_knot, stored_energy
 from watchsim.dynamics.line_springs import add_line_springs, line_spring_damping, line_spring_energies, line_spring_powers
 from watchsim.jit import callable_kernel
 from watchsim.mechanism.compile import compile_scene
+from watchsim.model.records import COORDINATE, JOINT, OVER_ANGLE, OVER_TIME, REPEATED, TABLE, records
 from watchsim.scene.body import Body
 from watchsim.scene.force import LineSpring, Torque
 from watchsim.scene.prescribed import swing
@@ -136,3 +138,79 @@ def test_the_next_knot_is_the_first_one_after_now(names: tuple[str, ...]) -> Non
     for t in times:
         for now in (t, float(np.nextafter(t, 0.0)), float(np.nextafter(t, 1e9))):
             assert after(model, now) == pytest.approx(following(now, *names), rel=1e-14)
+
+
+# Are forces, powers and energies those of the words of the model, with everything in it at once?
+
+N, DRIVEN, T = 5, 3, 1.7
+KNOTS = np.array([[0.5, 0.3], [1.1, -0.4], [2.3, 0.9], [3.4, 0.3]])
+FORCES, DRIVE, DAMPING, STORED = (in_python(one) for one in (forces, drive_power, damping_power, stored_energy))
+
+
+def everything(rng: np.random.Generator) -> SimpleNamespace:
+    """Sprung, damped and weighted coordinates, one of them driven; joints and tables that act back on others, driven or not."""
+    c, joints, tables = records(COORDINATE, N), records(JOINT, 2), records(TABLE, 4)
+    for name in ("mass", "force", "viscous", "quadratic", "stiffness", "rest", "weight_x", "weight_y"):
+        c[name][:] = rng.uniform(0.2, 2.0, N)
+    c.driven[DRIVEN], c.mass[DRIVEN] = 1, 1.0
+    for name in ("viscous", "quadratic", "stiffness", "weight_x", "weight_y"):
+        c[name][DRIVEN] = 0.0
+    c.weight_x[0], c.weight_y[1] = 0.0, 0.0
+    joints.coordinate, joints.on = [0, 2], [1, DRIVEN]
+    for name in ("force", "viscous", "quadratic", "stiffness", "rest"):
+        joints[name][:] = rng.uniform(0.2, 2.0, 2)
+    tables.coordinate, tables.on = [4, 1, 2, 0], [-1, 0, DRIVEN, -1]
+    tables.over, tables.start, tables.count = [OVER_TIME, OVER_ANGLE, REPEATED, OVER_ANGLE], 1, 4
+    return SimpleNamespace(
+        coordinates=c, joints=joints, tables=tables, lines=(), knots=np.vstack([[9.0, 9.0], KNOTS, [7.0, 7.0]])
+    )
+
+
+def told(made: SimpleNamespace, j: int, q: np.ndarray) -> float:
+    table = made.tables[j]
+    at = {OVER_TIME: T, REPEATED: 0.5 + (T - 0.5) % 2.9}.get(int(table.over))
+    if at is None:
+        at = q[table.coordinate] - (q[table.on] if table.on >= 0 else 0.0)
+    return float(np.interp(at, KNOTS[:, 0], KNOTS[:, 1]))
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_every_coordinate_feels_what_acts_on_it_and_back_on_it(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    made, q, u = everything(rng), 2.0 * rng.normal(size=N), rng.normal(size=N)
+    c, j, out = made.coordinates, made.joints, np.full(N, np.nan)
+    FORCES(made, T, q, u, out)
+    expected = c.force + np.cos(q) * c.weight_y - np.sin(q) * c.weight_x - c.stiffness * (q - c.rest)
+    expected -= c.viscous * u + c.quadratic * u * np.abs(u)
+    speed = u[j.coordinate] - u[j.on]
+    torque = (
+        j.force - j.stiffness * (q[j.coordinate] - q[j.on] - j.rest) - j.viscous * speed - j.quadratic * speed * np.abs(speed)
+    )
+    acts = [*zip(j.coordinate, j.on, torque, strict=True)]
+    acts += [(table.coordinate, table.on, told(made, k, q)) for k, table in enumerate(made.tables)]
+    for on_one, on_other, force in acts:
+        expected[on_one] += force
+        if on_other not in (-1, DRIVEN):
+            expected[on_other] -= force
+    assert out == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_power_put_in_less_what_damping_takes_is_what_the_stored_energy_gains(seed: int) -> None:
+    """Where free coordinates move as forces make them; by central quotients."""
+    rng = np.random.default_rng(seed)
+    made, q, u, out, h = everything(rng), rng.normal(size=N), rng.normal(size=N), np.zeros(N), 1e-5
+    FORCES(made, T, q, u, out)
+    a = out / made.coordinates.mass
+    after, before = (STORED(made, q + s * u + 0.5 * s * s * a, u + s * a) for s in (h, -h))
+    assert DRIVE(made, T, q, u) - DAMPING(made, q, u) == pytest.approx((after - before) / (2.0 * h), rel=1e-7)
+    assert DAMPING(made, q, u) > 0.0
+
+
+def test_stored_is_kinetic_energy_and_that_of_springs() -> None:
+    rng = np.random.default_rng(3)
+    made, q, u = everything(rng), rng.normal(size=N), rng.normal(size=N)
+    c, j, free = made.coordinates, made.joints, np.arange(N) != DRIVEN
+    expected = 0.5 * (c.mass * u**2 + c.stiffness * (q - c.rest) ** 2)[free].sum()
+    expected += 0.5 * (j.stiffness * (q[j.coordinate] - q[j.on] - j.rest) ** 2).sum()
+    assert STORED(made, q, u) == pytest.approx(expected)

@@ -8,6 +8,7 @@ import math
 import os
 import subprocess
 import sys
+import time
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -27,6 +28,7 @@ from watchsim.scene.scene import Scene
 from watchsim.simulation.energy_ledger import ledger, ledger_fails, usual_energy
 from watchsim.simulation.record.trajectory import EventKind, Trajectory
 from watchsim.simulation.simulate import simulate
+from watchsim.simulation.slice_pace import Pace
 from watchsim.simulation.stops import Stop
 from watchsim.tolerances import FLIGHT_SIZES, FURTHEST_SIZES
 
@@ -406,3 +408,28 @@ def test_a_ledger_fails_by_more_than_a_millionth_of_what_is_turned_over(
         "residual_J": sign * share * allowed * turned,
     }  # fmt: skip
     assert ledger_fails(energy, 5.0, tolerance) == (share > 1.0)
+
+
+# Do slices grow and shrink towards a tenth of a second on the clock?
+
+
+@pytest.mark.parametrize(
+    ("wall", "simulated", "left", "length", "steps"),
+    [
+        (0.05, 4e-4, 4.0, 8e-4, 24.0),  # twice as long
+        (0.2, 4e-4, 4.0, 2e-4, 6.0),  # half as long
+        (0.001, 1e-3, 1.0, 1e-2, 32.0),  # ten times and twice at most
+        (0.0, 1e-3, 1.0, 1e-2, 32.0),  # quicker than the clock can tell
+        (1000.0, 1e-4, 1.0, 1e-7, 1.0),  # never nothing
+        (0.05, 4e-4, 0.0, 1e-3, 32.0),  # ended by its steps: says nothing about the time
+    ],
+)
+def test_the_next_slice(
+    monkeypatch: pytest.MonkeyPatch, wall: float, simulated: float, left: float, length: float, steps: float
+) -> None:
+    pace, until = Pace(100.0), SimpleNamespace(slice_end=math.nan, steps=math.nan)
+    monkeypatch.setattr(time, "perf_counter", iter((100.0, 100.0 + wall)).__next__)
+    pace.begin(5.0, until, math.inf)
+    until.steps = left
+    pace.end(5.0 + simulated, until)
+    assert (pace.length, pace.steps) == pytest.approx((length, steps), rel=1e-6, abs=0.0)

@@ -12,8 +12,11 @@ from benchmark_names import NAMES, PUBLISHED, benchmark_of
 from mpmath import mpf
 from reference import oscillator, pendulum
 from reference.incline_closed_form import accumulation, first_impact, reference, rolling_begins, settled
+from reference.single_impact import single_impact as truth
+from scipy.optimize import linprog
 
 from watchsim.profiles_path import profiles_dir
+from watchsim.verification import random_problems as problems
 from watchsim.verification.all_checks import rows_of, verify_text
 from watchsim.verification.benchmarks import Benchmark, Check, swings
 from watchsim.verification.closed_forms import Incline, incline_state
@@ -253,3 +256,98 @@ def test_every_case_of_the_page_is_still_asked() -> None:
 # Would the checks of random impacts and complementarity problems notice a wrong answer, and what do they ask?
 
 RNG = np.random.default_rng(4711)
+
+
+def test_the_impact_of_one_contact_is_that_of_the_reference() -> None:
+    """In all its cases: it sticks, or slips either way, in the compression, and again in the expansion."""
+    regimes = set()
+    for _ in range(400):
+        W, mu, eps = RNG.normal(size=(2, 3)), RNG.uniform(0.0, 1.5), RNG.uniform()
+        G, rates = W @ W.T, np.array([-RNG.uniform(0.1, 2.0), RNG.normal()])
+        if mu * abs(G[0, 1]) >= 0.95 * G[0, 0]:
+            continue
+        found = truth((G[0, 0], G[0, 1], G[1, 1]), tuple(rates), mu, eps)
+        regimes.add((found.regime, math.copysign(1.0, found.tangential), abs(found.v_t) < 1e-12))
+        got = problems.single_impact(G, rates, mu, eps)
+        scale = np.abs((found.normal, found.tangential)).max()
+        assert got == pytest.approx([found.normal, found.tangential], abs=1e-11 * scale)
+    assert len(regimes) == 8
+
+
+@pytest.mark.parametrize("n", range(1, 6))
+def test_solutions_are_told_from_what_is_none(n: int) -> None:
+    """Conditions broken by 0.9 and 1.1 billionths of the largest term, in every row."""
+    for k in range(n):
+        x, slack = np.zeros(n), RNG.uniform(1.0, 2.0, n)
+        x[::2], slack[::2] = RNG.uniform(1.0, 2.0, len(x[::2])), 0.0
+        A = RNG.uniform(-0.5, 0.5, (n, n)) + np.eye(n)
+        b = slack - A @ x
+        largest = (np.abs(A) @ x + np.abs(b)).max()
+        assert problems.is_solution(A, b, x)
+        for shift in (1e-9 * largest * np.eye(n)[k], -1e-9 * largest * np.eye(n)[k]):
+            assert problems.is_solution(A, b + 0.9 * shift, x)
+            assert problems.is_solution(A, b + 1.1 * shift, x) is bool(slack[k] > 0.0)  # where x is zero slack may change
+    assert not problems.is_solution(np.eye(n), np.ones(n), np.full(n, np.nan))
+
+
+@pytest.mark.parametrize(
+    ("x", "b", "ok"), [(-0.9e-9, 0.5, True), (-1.1e-9, 0.5, False), (1e-3, 0.5, False), (0.0, -0.5, False)]
+)
+def test_of_small_terms_a_billionth_is_allowed(x: float, b: float, ok: bool) -> None:
+    """Below zero, or both members of the pair above it."""
+    assert problems.is_solution(np.eye(1), np.array([b]), np.array([x])) is ok
+
+
+def test_large_terms_of_either_sign_widen_what_counts_as_zero() -> None:
+    """Where terms of 700 cancel, a millionth is rounding: 7e-7 below zero, or of slack."""
+    assert problems.is_solution(np.array([[1e9]]), np.array([700.0]), np.array([-7e-7]))
+    for slack, ok in ((1.3e-6, True), (-1.3e-6, True), (1.5e-6, False), (-1.5e-6, False)):
+        assert problems.is_solution(np.array([[7.0]]), np.array([slack - 700.0]), np.array([100.0])) is ok
+        assert problems.is_solution(np.array([[-7.0]]), np.array([slack + 700.0]), np.array([100.0])) is ok
+
+
+@pytest.mark.parametrize("n", range(1, 6))
+def test_what_has_a_solution_is_found(n: int) -> None:
+    """Matrices with a positive definite symmetric part always have one; where no x >= 0 makes A x + b >= 0, there is none."""
+    for _ in range(8):
+        M, K = RNG.normal(size=(2, n, n))
+        assert problems.has_solution(M @ M.T + 0.1 * np.eye(n) + K - K.T, RNG.normal(size=n))
+        A, b = RNG.normal(size=(n, n)), RNG.normal(size=n)
+        feasible = linprog(np.zeros(n), A_ub=-A, b_ub=b, bounds=[(0.0, None)] * n).status == 0
+        assert feasible or not problems.has_solution(A, b)
+    assert not problems.has_solution(-np.eye(n), np.full(n, -1.0))
+    assert problems.has_solution(-np.eye(n), np.full(n, 1.0))
+    assert not problems.has_solution(np.zeros((n, n)), np.full(n, -1.0))  # no regular basis but the empty one
+
+
+@pytest.mark.parametrize(("entry", "there"), [(0.9e-9, False), (1.1e-9, True), (-1.1e-9, False)])
+def test_bases_whose_determinant_is_no_billionth_are_singular(entry: float, there: bool) -> None:
+    assert problems.has_solution(np.array([[entry]]), np.array([-1.0])) is there
+
+
+def test_a_regular_basis_with_a_negative_determinant_counts() -> None:
+    """x = (1, 1) solves it; no basis with one of them alone does."""
+    A, b = np.array([[0.0, 1.0], [1.0, 0.0]]), np.array([-1.0, -1.0])
+    assert np.linalg.det(A) < 0.0 and problems.has_solution(A, b)
+
+
+def test_badly_scaled_matrices_come_to_order_one() -> None:
+    """By powers of two, which round nothing; others are left as they are."""
+    A = np.diag([1e12, -3.0, 1e-12])
+    s = problems.scales(A)
+    assert np.all(np.log2(s) == np.round(np.log2(s)))
+    assert np.all((np.abs(np.diag(A)) * s * s >= 0.5) & (np.abs(np.diag(A)) * s * s <= 2.0))
+    assert list(problems.scales(np.diag([1.0, 1.1e3]))) == [1.0, 2.0**-5]
+    for well in (np.diag([2.0, 0.9 * 2e3]), np.diag([1e9, 0.0]), np.diag([1e9, 1e9])):
+        assert list(problems.scales(well)) == [1.0, 1.0]
+
+
+def test_a_solution_in_other_units_is_one_still() -> None:
+    unit = np.array([1e6, 1e-6])
+    A, x, slack = np.array([[2.0, 0.5], [-0.5, 2.0]]), np.array([0.5, 0.0]), np.array([0.0, 3.0])
+    for units in (np.ones(2), unit):
+        scaled, b = A * np.outer(units, units), (slack - A @ x) * units
+        assert problems.is_solution(scaled, b, x / units)
+        for k in (0, 1):
+            off = 2.0 * 4e-9 * np.eye(2)[k]
+            assert not problems.is_solution(scaled, b, (x - off) / units)
