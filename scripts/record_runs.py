@@ -1,4 +1,4 @@
-"""Records what the solver gives for many short runs, for tests/simulation/recorded, and says what has moved.
+"""Records what the solver gives for many short runs, for tests/simulation/recorded_runs.txt, and says what has moved.
 
 Of each run five copies are made, every speed, mass, force and law of which is changed by up to 1e-13 of itself: how far they
 come apart says how far another machine may be off. Runs that come apart altogether are left out, and those that take long.
@@ -14,7 +14,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 TESTS = ROOT / "tests"
-sys.path[:0] = [str(TESTS), str(TESTS / "simulation"), str(TESTS / "simulation" / "recorded")]
+sys.path[:0] = [str(TESTS), str(TESTS / "simulation")]
 
 from record_file import PLACE, Recorded, moved, read, recorded_of, written  # noqa: E402
 from recorded_scenes import all_names, nudged, run_of, scene_of, told  # noqa: E402

@@ -21,7 +21,14 @@ AREAS = {  # name -> (files, tests)
     ),
     "scene": (
         ("scene/**/*.py", "mechanism/*.py", "units.py"),
-        ("tests/scene", "tests/mechanism", "tests/designs", "tests/test_units.py", "tests/simulation/bound", RECORDS),
+        (
+            "tests/scene",
+            "tests/mechanism",
+            "tests/designs",
+            "tests/test_units.py",
+            "tests/simulation/test_bound_bodies.py",
+            RECORDS,
+        ),
     ),
     "analysis": (
         ("analysis/**/*.py", "results/*.py", "verification/**/*.py"),

@@ -14,7 +14,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 COPIED = ("watchsim", "profiles", "tests", "scripts", "docs", "pyproject.toml", "README.md")
-FIRST = "tests/simulation/recorded"  # many short runs
+FIRST = "tests/simulation/test_recorded_runs.py"  # many short runs
 
 
 class CompiledCopy:

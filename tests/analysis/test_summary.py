@@ -1,23 +1,30 @@
-"""Does the summary hold every promised number, and does its text read as a watchmaker expects?"""
+"""Does the summary hold every promised number, with its errors and doubts, in a watchmaker's words?"""
 
 from __future__ import annotations
 
 import json
 import math
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 from analysis.made_beats import lever_run
 from render.fake_runs import disc_run, slide_run
 
+import watchsim as ws
+from watchsim.analysis.doubts import doubts
 from watchsim.analysis.energy import energy_shares
+from watchsim.analysis.error_bars import NUMBERS, with_error_bars
 from watchsim.analysis.headlines import expected_text, with_scatter
 from watchsim.analysis.summary import summary, summary_text, tables
 from watchsim.mechanism.compile import scene_size
 from watchsim.scene.scene import Expectation
 from watchsim.simulation.methods import MOREAU
 from watchsim.simulation.stops import Stop
+
+# Does the summary hold every promised number, and does its text read as a watchmaker expects?
 
 PROMISED = (
     *("scene", "method", "tolerance", "simulated_s", "wall_s", "compile_s", "realtime_factor", "stop", "bodies", "impacts"),
@@ -199,3 +206,113 @@ def test_tables_of_a_results_folder():
     made = tables(lever_run(6))
     assert set(made) == {"beats.csv", "phases.csv"} and all(str(text).endswith("\n") for text in made.values())
     assert tables(disc_run()) == {}
+
+
+# Do the first lines that a watchmaker reads say what the numbers say, in his units?
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "expected"),
+    [
+        (-3.0, 1e-9, "−3.000000 s/d, scatter 0.000001 s/d"),
+        (-1e-9, 1e-9, "below 0.000001 s/d"),
+        (0.0, 0.0, "0 s/d"),
+        (-0.04, 0.3, "0.0 s/d, scatter 0.3 s/d"),
+        (-12.3456, None, "−12.346 s/d"),
+        (5e-7, 1e-9, "below 0.000001 s/d"),
+        (0.0, 1e-9, "below 0.000001 s/d"),
+        (1e-9, 0.0, "below 0.000001 s/d"),
+        (1.1e-6, 1e-9, "0.000001 s/d, scatter 0.000001 s/d"),
+        (0.0, 1.1e-6, "0.000000 s/d, scatter 0.000001 s/d"),
+        (3.0, 0.0101, "3.00 s/d, scatter 0.01 s/d"),
+        (3.0, 0.0099, "3.000 s/d, scatter 0.010 s/d"),
+        (31.0, 12.0, "31 s/d, scatter 12 s/d"),
+    ],
+)
+def test_scatter_of_what_is_negative_or_next_to_nothing(value: float, error: float | None, expected: str) -> None:
+    assert with_scatter(value, error, " s/d") == expected
+
+
+@pytest.mark.parametrize(
+    ("expected", "tolerance", "got", "text"),
+    [
+        (12.0, 1.0, 12.3456, "12.35"),
+        (123.0, 1.0, -123.456, "-123.46"),
+        (1234.0, 1.0, 1234.567, "1234.57"),
+        (12345.0, 1.0, 12345.678, "12345.68"),
+        (0.0, 1.0, 0.0, "0"),
+        (0.0, 1.0, 0.123456, "0.1235"),
+        (0.1, 1e-16, 0.1, "0.10000000000000001"),
+    ],
+)
+def test_what_was_got_has_two_digits_more_than_the_tolerance(expected: float, tolerance: float, got: float, text: str) -> None:
+    entry = {"key": "k", "expected": expected, "tolerance": tolerance, "unit": "", "ok": True, "got": got}
+    assert expected_text(entry) == f"k = {expected:.12g} ± {tolerance:.4g}, got {text}"
+
+
+# From which residual and which overlap on is a run doubted, and which step is proposed?
+
+SCENE = ws.load(ws.profiles_dir() / "incline")
+DEEP = 0.005 * scene_size(SCENE)
+
+
+def said(residual: float = 0.0, overlap: float = 0.0, step: float | None = 20e-6, method: str = MOREAU) -> list[str]:
+    values = {"worst_residual": residual, "worst_penetration": overlap, "step": step, "method": method}
+    run: Any = SimpleNamespace(scene=SCENE, **values)
+    return list(doubts(run))
+
+
+@pytest.mark.parametrize("overlap", [0.0, 0.99 * DEEP])
+def test_small_ones_are_passed_over(overlap: float) -> None:
+    assert said(0.99e-6, overlap) == []
+
+
+def test_each_is_said_with_its_number() -> None:
+    (unsolved,) = said(residual=1.01e-6)
+    assert unsolved.startswith("a contact problem was left with a residual of 1e-06 of its largest term")
+    (coarse,) = said(overlap=1.01 * DEEP)
+    assert coarse.startswith(f"the step of 20 µs is too coarse: bodies overlapped by {1.01e6 * DEEP:.2g} µm.")
+    assert '--step "4 µs"' in coarse
+    assert len(said(1.0, 1.0)) == 2
+
+
+def test_only_fixed_steps_are_too_coarse() -> None:
+    assert said(overlap=1.0, method="pfeiffer-glocker") == said(overlap=1.0, step=None) == []
+
+
+# What does a second, more exact run say of the numbers of the first?
+
+
+def numbers(rate: float, scatter: float | None, stop: str = "DURATION") -> dict[str, Any]:
+    empty = dict.fromkeys((*NUMBERS, *(f"{name}_error" for name in NUMBERS)))
+    said = {"method": "pfeiffer-glocker", "tolerance": 1e-9, "step_s": None, "stop": stop, "wall_s": 1.0}
+    return {**empty, **said, "rate_s_per_d": rate, "rate_s_per_d_error": scatter, "bodies": {"balance": {"angle_rad": rate}}}
+
+
+def test_the_larger_of_scatter_and_difference_is_given() -> None:
+    assert with_error_bars(numbers(5.0, 0.5), numbers(5.25, 0.0))["rate_s_per_d_error"] == 0.5
+    assert with_error_bars(numbers(5.0, 0.125), numbers(5.25, 0.0))["rate_s_per_d_error"] == 0.25
+
+
+def test_a_scatter_that_nobody_knows_is_not_called_small() -> None:
+    out = with_error_bars(numbers(5.0, None), numbers(5.25, None))
+    assert out["rate_s_per_d_error"] is None and out["error_bars"]["differences"] == {"rate_s_per_d": 0.25}
+    assert out["bodies"]["balance"]["angle_rad_error"] == 0.25
+
+
+def test_a_second_run_that_gave_up_says_nothing() -> None:
+    out = with_error_bars(numbers(5.0, 0.5), numbers(6.0, 0.5, stop="LCP_FAILED"))
+    assert out["rate_s_per_d_error"] == 0.5 and out["error_bars"]["complete"] is False
+
+
+def test_half_the_step_leaves_half_the_error_of_the_first_order() -> None:
+    """What is still to come after halving is as much again."""
+    first, second = ({**numbers(rate, 0.0), "method": MOREAU} for rate in (5.0, 5.25))
+    assert with_error_bars(first, second)["rate_s_per_d_error"] == 0.5
+
+
+def test_what_only_one_of_the_runs_gives_has_no_error() -> None:
+    known, unknown = numbers(5.0, 0.5), {**numbers(5.0, 0.5), "rate_s_per_d": None}
+    for first, second in ((known, unknown), (unknown, known)):
+        out = with_error_bars(first, second)
+        assert out["error_bars"]["differences"] == {} and out["rate_s_per_d_error"] == 0.5

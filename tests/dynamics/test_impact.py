@@ -1,11 +1,23 @@
-"""Is an impact what Poisson's and Coulomb's laws say? Closed forms for one contact; for several, the laws themselves."""
+"""Is an impact what the laws of Poisson and Coulomb and their tangential variants say?"""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
+from every_time import few
+from naive.impact_oracle import compressed, expanded
+from plain_kernels import in_python
 from random_contacts import Case, random_case
 from reference.single_impact import single_impact
+from sparse_contacts import Sparse
+
+from watchsim.contact.index_sets import BACKWARD, FORWARD
+from watchsim.dynamics import impact
+from watchsim.dynamics.problem_kinds import Level
+from watchsim.model.records import COULOMB, PG1996, SHIFTED
+from watchsim.verification.bare_contacts import BareContacts
+
+# Is an impact what Poisson's and Coulomb's laws say? Closed forms for one contact; for several, the laws themselves.
 
 SMALL = 1e-9  # share of the impulses or rates involved that counts as zero in a law checked afterwards
 
@@ -188,3 +200,206 @@ def test_a_disc_that_slides_down_a_wall_meets_the_floor() -> None:
     assert np.all(np.abs(force[1::2]) <= force[::2] * (1.0 + 1e-12))
     assert case.mass * (after - u) == pytest.approx(W.T @ force, abs=1e-12)
     assert case.energy_change() < 0.0
+
+
+# Do the three tangential laws say what they promise? One contact in closed form; several by the laws themselves.
+
+LAWS = ("coulomb", "pg1996", "shifted")
+
+
+def draws(law: str, count: int, seed: int) -> int:
+    """Compare `count` random single contacts with the closed form to 1e-12; returns how many stuck in the compression."""
+    rng = np.random.default_rng(seed)
+    done = stuck = 0
+    while done < count:
+        eps = rng.uniform(0.0, 1.0)
+        back = 0.0 if law == "coulomb" else rng.uniform(0.0, eps if law == "shifted" else 1.0)
+        nu = rng.uniform(0.0, 1.0) if law == "pg1996" and done % 2 else 0.0
+        case, u = random_case(rng, 1, 3, eps=eps, law=law, tangential=back, nu=nu), rng.normal(size=3)
+        before, G = case.W @ u, case.G
+        if before[0] >= 0.0 or case.friction[0] * abs(G[0, 1]) >= 0.95 * G[0, 0]:
+            continue
+        done += 1
+        truth = single_impact((G[0, 0], G[0, 1], G[1, 1]), tuple(before), case.friction[0], eps, law, back, nu)
+        stuck += truth.regime == "stick"
+        solved, after, force = case.impact(u)
+        size = max(truth.normal, abs(truth.tangential))
+        assert solved
+        # The rates before are sums whose terms cancel, and a nearly singular G costs digits in both computations.
+        size += 1e-2 * (np.abs(case.W) @ np.abs(u)).max() / min(G[0, 0], G[1, 1])
+        assert force == pytest.approx([truth.normal, truth.tangential], abs=1e-12 * size * max(1.0, 1e-2 * np.linalg.cond(G)))
+        assert after == pytest.approx(u + case.W.T @ force / case.mass, abs=1e-12 * (1.0 + np.abs(after).max()))
+        if nu == 0.0:
+            assert case.kinetic(after) <= case.kinetic(u) * (1.0 + 1e-12)
+    return stuck
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_one_contact_in_closed_form_tangential_laws(law: str) -> None:
+    assert 50 < draws(law, 700, 51) < 600
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("law", LAWS)
+def test_one_contact_in_closed_form_many_times(law: str) -> None:
+    assert 5_000 < draws(law, 100_000, 52) < 95_000
+
+
+def bounds(case: Case, N_C: np.ndarray, T_C: np.ndarray, N_E: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Least and greatest tangential impulse of the expansion, from the words of docs/theory/laws.md."""
+    cone, returned = case.friction * N_E, case.restitution * case.tangential * T_C
+    if case.law == "pg1996":
+        # A contact that took no part in the compression has half its cone.
+        low, high = np.where(T_C > 0.0, returned, -cone), np.where(T_C > 0.0, cone, returned)
+        return np.where(N_C == 0.0, -0.5 * cone, low), np.where(N_C == 0.0, 0.5 * cone, high)
+    if case.law == "shifted":
+        centre, radius = case.tangential * T_C, case.friction * (N_E - case.tangential * N_C)
+        return centre - radius, centre + radius
+    return -cone, cone
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize(("m", "n"), [(2, 3), (2, 6), (3, 6)])
+def test_several_contacts_obey_the_law_of_the_expansion(law: str, m: int, n: int) -> None:
+    """Within the interval; at its lower end where the slip is forward, at its upper end where it is backward."""
+    rng = np.random.default_rng(10 * m + n)
+    checked = 0
+    for _ in range(150):
+        eps = rng.uniform(0.2, 1.0)
+        back = 0.0 if law == "coulomb" else rng.uniform(0.0, eps)
+        case, u = random_case(rng, m, n, eps=eps, law=law, tangential=back), rng.normal(size=n)
+        if (case.W @ u)[::2].min() >= 0.0:
+            continue
+        _, _, compression = case.impact(u, np.zeros(m))
+        solved, after, total = case.impact(u)
+        if not solved:
+            continue
+        unit = np.abs(total).max()
+        N_C, T_C = compression[::2] / unit, compression[1::2] / unit
+        N_E, T_E = total[::2] / unit - N_C, total[1::2] / unit - T_C
+        low, high = bounds(case, N_C, T_C, N_E)
+        clear = (N_C == 0.0) | (np.abs(T_C) > 1e-6 * N_C)
+        if not clear.all():
+            continue
+        slip, scale = (case.W @ after)[1::2], np.abs(case.W @ u).max()
+        assert np.all(low - SMALL <= T_E)
+        assert np.all(high + SMALL >= T_E)
+        assert np.all(np.abs(T_E - low)[slip > SMALL * scale] <= SMALL)
+        assert np.all(np.abs(T_E - high)[slip < -SMALL * scale] <= SMALL)
+        assert case.kinetic(after) <= case.kinetic(u) * (1.0 + 1e-12)
+        checked += 1
+    assert checked > 80
+
+
+@pytest.mark.parametrize("law", ["pg1996", "shifted"])
+def test_a_sticking_superball_reverses_slip_and_loses_nothing(law: str) -> None:
+    rng = np.random.default_rng(61)
+    for _ in range(50):
+        case, u = random_case(rng, 1, 3, mu=1e3, eps=1.0, law=law, tangential=1.0), rng.normal(size=3)
+        if case.friction[0] * abs(case.G[0, 1]) >= case.G[0, 0] or (case.W @ u)[0] >= 0.0:
+            W = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.3]])
+            case = Case(case.mass, W, case.friction, case.restitution, law, tangential=1.0)
+            u[1] = -abs(u[1])
+        solved, after, _ = case.impact(u)
+        assert solved
+        lost = 1e-14 * case.friction[0] * np.linalg.cond(case.G)  # the problem that is solved holds mu times the friction terms
+        assert case.W @ after == pytest.approx(-(case.W @ u), abs=lost)
+        assert case.kinetic(after) == pytest.approx(case.kinetic(u), rel=lost, abs=0.0)
+
+
+# Are impacts of two contacts those of the published complementarity problems, whose bases are tried one by one?
+
+M, N = 2, 7
+
+
+@pytest.mark.parametrize("kind", [COULOMB, SHIFTED, PG1996])
+@pytest.mark.parametrize("seed", range(14))
+def test_two_contacts_rebound_by_their_laws(seed: int, kind: int) -> None:
+    """Each contact with its own friction and restitution; the energy is that of the velocities."""
+    rng = np.random.default_rng(seed)
+    case = Sparse(rng, M, N, friction=0.25, slots=(5, 7))
+    laws = case.model.laws
+    laws.kind, laws.tangential, laws.nu = kind, rng.uniform(0.1, 0.9, 2 * M), rng.uniform(0.1, 0.9, 2 * M)
+    mass, eps = case.model.coordinates.mass, rng.uniform(0.2, 0.9, M) * (1.0 if seed % 5 else np.array([0.0, 1.0]))
+    if seed % 3 == 0:
+        smooth = seed // 3 % 2
+        laws.friction[case.model.contacts[case.closed.ids[smooth]].group] = case.friction[smooth] = 0.0
+    u = rng.normal(size=N)
+    u -= (case.W / mass).T @ np.linalg.solve(case.G, case.W @ u - rng.normal(size=4) * [1.0, 0.5, 1.0, 0.5] + [1.2, 0, 0.4, 0])
+    rates, G = case.W @ u, case.G
+    first = compressed(G, rates, case.friction)
+    total = first.copy()
+    if np.any((eps > 0.0) & (first[::2] > 0.0)):
+        total += expanded(G, rates, first, eps, case.laws)
+    case.work.inverse[:], after = np.nan, u.copy()
+    assert in_python(impact.impact)(case.model, case.closed, M, eps, 0.0, case.work, after)
+    assert case.work.force[: 2 * M] == pytest.approx(total, abs=1e-10)
+    assert after == pytest.approx(u + (case.W / mass).T @ total, abs=1e-10)
+    assert case.work.b[: 2 * M] == pytest.approx(rates)
+    rough, posed = int(np.count_nonzero(case.friction)), case.work.posed
+    level = Level.EXPANSION if np.any((eps > 0.0) & (first[::2] > 0.0)) else Level.COMPRESSION
+    assert (posed.contacts, posed.elements, posed.bearings, posed.level) == (M, rough, 0, level)
+    gained, terms = in_python(impact.energy_change)(M, case.work)
+    assert gained == pytest.approx(0.5 * float(mass @ (after**2 - u**2)), abs=1e-12)
+    by_hand = np.abs(total) @ np.abs(rates) + 0.5 * np.abs(total) @ np.abs(G @ total)
+    assert terms == pytest.approx(by_hand)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_over_a_time_what_forces_would_do_is_stopped_too(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    case = Sparse(rng, M, N, friction=0.25, slots=(5, 7))
+    u, time = rng.normal(size=N), float(rng.uniform(0.3, 0.9))
+    rates = case.W @ (u + time * case.work.h * case.work.inverse) + time * case.bars
+    case.work.b[2 * M :] = 5.0
+    assert in_python(impact.plastic_impact)(case.model, case.closed, M, time, u, case.work)
+    assert np.all(case.work.b[2 * M :] == 5.0)
+    assert case.work.force[: 2 * M] == pytest.approx(compressed(case.G, rates, case.friction), abs=1e-10)
+    posed = case.work.posed
+    assert (posed.contacts, posed.elements, posed.bearings, posed.level) == (M, M, 0, Level.COMPRESSION)
+
+
+# Do contacts and their mirror image, with the contacts in any order, get the same impulses and modes?
+
+PROBLEMS = 300
+
+
+def problem(rng: np.random.Generator) -> tuple[BareContacts, BareContacts, np.ndarray, np.ndarray]:
+    """Contacts, their mirror image in another order, the signs of its tangents, and which of ours each of its contacts is."""
+    m = int(rng.integers(2, 4))
+    n = int(rng.integers(2, 4))
+    mass = rng.uniform(0.5, 2.0, n)
+    W = rng.normal(size=(2 * m, n))
+    mu, eps = rng.uniform(0.2, 1.2, m), rng.uniform(0.0, 0.9, m)
+    order = rng.permutation(m)
+    sign = rng.choice([-1.0, 1.0], m)
+    image = np.stack([row for i in order for row in (W[2 * i], sign[i] * W[2 * i + 1])])
+    return BareContacts(mass, W, mu, eps), BareContacts(mass, image, mu[order], eps[order]), sign, order
+
+
+@pytest.mark.parametrize("seed", few(range(4), 2))
+def test_impulses_do_not_depend_on_the_orientation(seed: int) -> None:
+    rng, solved = np.random.default_rng(seed), 0
+    for _ in range(PROBLEMS):
+        contacts, image, _, _ = problem(rng)
+        u = rng.normal(size=contacts.n)
+        found, after, _ = contacts.impact(u)
+        other_found, other, _ = image.impact(u)
+        assert found == other_found
+        if found:
+            solved += 1
+            np.testing.assert_allclose(other, after, rtol=0.0, atol=1e-9 * np.abs(u).max())
+    assert solved > 0.9 * PROBLEMS
+
+
+def test_modes_do_not_depend_on_the_orientation() -> None:
+    rng = np.random.default_rng(7)
+    for _ in range(PROBLEMS):
+        contacts, image, sign, order = problem(rng)
+        h = rng.normal(size=contacts.n)
+        solved, mode = contacts.modes(np.zeros(contacts.n), h, 1.0)
+        other_solved, other = image.modes(np.zeros(contacts.n), h, 1.0)
+        assert solved == other_solved
+        if solved:
+            expected = [mode[i] * (sign[i] if mode[i] in (FORWARD, BACKWARD) else 1) for i in order]
+            assert list(other) == expected

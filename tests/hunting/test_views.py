@@ -1,21 +1,25 @@
-"""Is a mechanism that is turned, mirrored and drawn otherwise the same one?"""
+"""Is a mechanism that is turned, mirrored and drawn otherwise the same one, and does it stop where friction locks it?"""
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
 
-import hunt_path  # noqa: F401
+import hunt_path
 import numpy as np
 import pytest
 from every_time import few
+from hunt.energies import masses
 from hunt.generator.generate import FAMILIES, mechanism
 from hunt.generator.material import Material, apart, start_pose
-from hunt.views import View, perturbed
+from hunt.views import View, perturbed, views
 from hunt.write import write_scene
 
 from watchsim.scene.file.load import load
+from watchsim.simulation.event_kinds import EventKind
 from watchsim.simulation.simulate import simulate
+
+# Is a mechanism that is turned, mirrored and drawn otherwise the same one?
 
 VIEW = View(2.1, True, {"b0": 0.7, "b1": 3.0, "s0": 1.0, "a": 2.0, "p0": 1.1, "bar": 0.4})
 
@@ -84,3 +88,49 @@ def test_number_names_the_mechanism():
     assert mechanism(1, 12) == mechanism(1, 12)
     assert mechanism(1, 12) != mechanism(1, 13)
     assert mechanism(1, 12) != mechanism(2, 12)
+
+
+# Do levers stop where friction locks them on their line of centres, and stay there?
+
+SCENES = hunt_path.ROOT / "tests" / "data" / "hunt"
+
+
+@pytest.fixture(scope="module", params=["levers-801-2130", "levers-801-2838"])
+def stopped(request):
+    """A run, its first jam, and the row before it."""
+    run = simulate(load(SCENES / f"{request.param}.toml"))
+    jam = run.events[run.events["kind"] == EventKind.JAM][0]
+    return run, jam, int(np.flatnonzero(run.t == jam["t"])[0])
+
+
+def test_they_lose_all_they_had_and_stay(stopped):
+    run, jam, row = stopped
+    after = np.flatnonzero(run.t == jam["t"])[-1]
+    locked = (run.u[row] != 0.0) & (run.u[after] == 0.0)
+    assert locked.sum() == 2
+    had = 0.5 * masses(run.scene)[locked] @ run.u[row][locked] ** 2
+    assert jam["energy_lost"] == pytest.approx(float(had), rel=1e-9)
+    touched = run.events[(run.events["t"] > jam["t"]) & (run.events["kind"] == EventKind.IMPACT)]
+    until = touched["t"].min() if len(touched) else run.t[-1]
+    rows = (run.t > jam["t"]) & (run.t < until)
+    assert not run.u[rows][:, locked].any()
+
+
+def test_forces_that_rounding_allows_do_not_carry_them_over():
+    """A disc a hundredth of a micrometre off its centre, and a bar: in one orientation 3e14 N seemed to let them go on."""
+    scene = load(SCENES / "kink_twin-801-11924.toml")
+    for seen in (scene, *(view.of(scene) for view in views(scene, 11924, 2))):
+        run = simulate(seen)
+        (jam,) = run.events[run.events["kind"] == EventKind.JAM]
+        assert run.simulated == seen.duration
+        assert not run.u[run.t > jam["t"]].any()
+        assert jam["t"] == pytest.approx(0.0748486, abs=2e-7)
+
+
+@pytest.mark.parametrize("twin", [0, 4])
+def test_what_an_impact_leaves_of_a_slip_is_no_slip(twin):
+    """It stops a disc and a bar with 1e6 N s across a face of 2e-6 rad; the rounding of mu times that counted as motion."""
+    scene = perturbed(load(SCENES / "kink-801-11924.toml"), 1e-5, 2 * 11924 + 1000 + twin, -1.0)
+    run = simulate(scene)
+    assert run.simulated == scene.duration
+    assert abs(run.u[-1]).max() < 1e-4

@@ -224,20 +224,6 @@ def test_report_is_json_and_tells_every_happening(swiss):
     assert all(one["distance_um"] > 0.0 for one in report["passings"])
 
 
-@pytest.mark.slow
-def test_the_command_tells_draws_and_films(tmp_path, capsys, monkeypatch):
-    for way in ("LEAP", "LED", "AFAR"):  # of the bodies from one picture to the next: few pictures do
-        monkeypatch.setattr(f"watchsim.render.movies.turn_movie.{way}", math.radians(20.0))
-    scene = str(PROFILES / "bench_lever")
-    picture, film = tmp_path / "turn.png", tmp_path / "turn.gif"
-    asked = ["check", scene, "--turn", "--swing", "30°", "--json", "--png", str(picture), "--movie", str(film)]
-    assert main(asked) == 0
-    told = json.loads(capsys.readouterr().out)["turn"]
-    assert told["verdict"] == "passes"
-    assert picture.stat().st_size > 50_000
-    assert film.read_bytes()[:4] == b"GIF8"
-
-
 @pytest.mark.parametrize(
     "asked", [["--movie", "a.mp4"], ["--swing", "30°"], ["--turn", "--swing", "30 mm"], ["--turn", "--movie", "a.avi"]]
 )

@@ -1,16 +1,24 @@
-"""Does the woodpecker toy come out?"""
+"""Does the woodpecker toy come out, and are its linear systems solved as closed forms say?"""
 
 from __future__ import annotations
+
+import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from benchmark_names import PUBLISHED
+from reference.single_impact import single_impact
 
-from watchsim.contact.index_sets import BACKWARD, OPEN
-from watchsim.verification.woodpecker.exact_motion import moments, phase_of
-from watchsim.verification.woodpecker.toy import LOWER, UPPER, Toy, modal, start
+from watchsim.contact.index_sets import BACKWARD, OPEN, STICK
+from watchsim.verification.woodpecker import exact_motion
+from watchsim.verification.woodpecker.exact_motion import Phase, moments, next_event, phase_of, settle
+from watchsim.verification.woodpecker.toy import BEAK, LOWER, UPPER, Modal, Toy, modal, start
+from watchsim.verification.woodpecker.toy_stepping import step_to
 from watchsim.verification.woodpecker.woodpecker_cycle import breaks_loose, find_cycle
 from watchsim.verification.woodpecker.woodpecker_rows import STEPS, woodpecker_rows
+
+# Does the woodpecker toy come out?
 
 STICKS = (10.496956, 30.073403, 49.633109)  # mm down the page: where the sleeve's lower edge sticks in the animation
 
@@ -128,3 +136,113 @@ def test_the_cycle_does_not_depend_on_where_it_is_looked_for(pecks: int) -> None
     later = [one for one in moments(model, model.into(q), model.into(u), (pecks + 0.5) * cycle.period) if breaks_loose(one)]
     left = [abs(one.u[2] - section) / abs(u[2] - section) for one in later]
     assert left[pecks - 1] == pytest.approx(abs(cycle.slope) ** pecks, rel=0.05 * pecks**0.5)
+
+
+# Are the events of the woodpecker's linear systems found where closed forms have them, and is one step what its law says?
+
+SWING = 100.0  # 1/s
+STILL_SWING = np.array([[0.0, 1.0, 0.0], [-(SWING**2), 0.0, 0.0], [0.0, 0.0, 0.0]])  # of (x, x', 1)
+START = np.array([1.0, 0.0, 1.0])
+SLACK = 1e-5
+
+
+def phase(flow: np.ndarray, *rows: tuple[list[float], str], slack: float = SLACK) -> Phase:
+    return Phase(
+        flow, np.array([row for row, _ in rows]), np.full(len(rows), slack), [(why, k) for k, (_, why) in enumerate(rows)]
+    )
+
+
+@pytest.mark.parametrize("cause", ["impact", "reverse"])
+@pytest.mark.parametrize("height", [0.999, 0.6, 0.0, -0.5, -0.999])
+def test_gaps_and_slips_end_a_mode_where_they_are_zero(cause: str, height: float) -> None:
+    """cos(w t) comes down to a height, after one stride or after hundreds."""
+    t, row = next_event(phase(STILL_SWING, ([1.0, 0.0, -height], cause)), START, 1.0)
+    assert row == 0 and t == pytest.approx(math.acos(height) / SWING, rel=1e-12, abs=0.0)
+
+
+@pytest.mark.parametrize("first", [0, 1, 2])
+def test_the_first_of_several_ends_it(first: int) -> None:
+    heights = [0.3, 0.2, 0.1]
+    heights[first] = 0.5
+    rows = [([1.0, 0.0, -height], "impact") for height in heights]
+    t, row = next_event(phase(STILL_SWING, *rows), START, 1.0)
+    assert row == first and t == pytest.approx(math.acos(0.5) / SWING, rel=1e-12)
+
+
+def alone(contact: int) -> Modal:
+    """The toy, of which only one contact is near."""
+    model = modal(Toy())
+    return Modal(model.basis, model.spring, model.load, model.contacts, np.where(np.arange(3) == contact, model.gaps, 1.0))
+
+
+def touching(model: Modal, contact: int, rate: float, slip: float) -> tuple[np.ndarray, np.ndarray]:
+    """A state with one contact closed, the others far open."""
+    N, T = model.contacts.W[2 * contact], model.contacts.W[2 * contact + 1]
+    e = -np.linalg.pinv(N[None]) @ model.gaps[[contact]]
+    return e, np.linalg.lstsq(np.vstack([N, T]), np.array([rate, slip]), rcond=None)[0]
+
+
+CONTACTS = [BEAK, LOWER, UPPER]
+
+
+@pytest.mark.parametrize("contact", CONTACTS)
+@pytest.mark.parametrize("slip", [0.3, -0.3, 1e-3])
+def test_what_approaches_is_thrown_back(contact: int, slip: float) -> None:
+    model = alone(contact)
+    e, v = touching(model, contact, -0.2, slip)
+    rows = model.contacts.W[2 * contact : 2 * contact + 2]
+    G = rows @ rows.T
+    found = single_impact((G[0, 0], G[0, 1], G[1, 1]), (-0.2, slip), 0.3, [0.5, 0.0, 0.0][contact])
+    after = settle(model, e, v)
+    assert after[4] is True
+    assert rows @ after[1] == pytest.approx([found.v_n, found.v_t], abs=1e-12)
+
+
+def force_of(model: Modal, contact: int, sign: float) -> Modal:
+    """With a load that presses one contact, or pulls it open."""
+    N = model.contacts.W[2 * contact]
+    return Modal(model.basis, np.zeros(3), -sign * N, model.contacts, model.gaps)
+
+
+@pytest.mark.parametrize("contact", CONTACTS)
+def test_what_rests_is_held_exactly_and_what_is_pulled_comes_off(contact: int) -> None:
+    model = alone(contact)
+    rows = model.contacts.W[2 * contact : 2 * contact + 2]
+    e, v = touching(model, contact, 0.9e-10, 0.0)
+    e_held, v_held, mode, taken, hit = settle(force_of(model, contact, 1.0), e + 0.9e-12 * rows[0] / (rows[0] @ rows[0]), v)
+    assert taken == [contact] and not hit and [k for k in range(3) if mode[k] != OPEN] == [contact]
+    assert abs(rows[0] @ e_held + model.gaps[contact]) < 1e-17
+    assert np.abs(rows @ v_held)[: 2 if mode[contact] == STICK else 1].max() < 1e-24
+    e_free, v_free, mode, taken, hit = settle(force_of(model, contact, -1.0), e, v)
+    assert taken == [] and not hit and list(mode) == [OPEN] * 3 and np.array_equal(e_free, e) and np.array_equal(v_free, v)
+
+
+@pytest.mark.parametrize("contact", CONTACTS)
+@pytest.mark.parametrize("h", [1e-3, 4e-3])
+@pytest.mark.parametrize("rate", [0.0, -0.2])
+def test_a_step_of_moreau_is_its_law(contact: int, h: float, rate: float) -> None:
+    """Long steps, in which the spring's part counts: what the midpoint rule lacks is an impulse within the cone of friction."""
+    model = alone(contact)
+    rows = model.contacts.W[2 * contact : 2 * contact + 2]
+    e, v = touching(model, contact, rate, 0.05)
+    e = e - (0.5 * h * (rows[0] @ v) + 1e-5) * rows[0] / (rows[0] @ rows[0])  # closed at the middle of the step
+    model = force_of(model, contact, 3.0)
+    model = Modal(model.basis, np.array([0.0, 0.0, 2e5]), model.load, model.contacts, model.gaps)
+    w = v
+    if rate < 0.0:
+        G = rows @ rows.T
+        hit = single_impact((G[0, 0], G[0, 1], G[1, 1]), tuple(rows @ v), 0.3, [0.5, 0.0, 0.0][contact])
+        w = v + rows.T @ np.array([hit.normal, hit.tangential])
+    new_e, new_v = step_to(model, e, v, h, h)
+    assert new_e == pytest.approx(e + 0.5 * h * (w + new_v), abs=1e-9)
+    lacking = new_v - w - h * (model.load - model.spring * (0.5 * (e + new_e)))
+    (normal, tangential), error = np.linalg.lstsq(rows.T, lacking, rcond=None)[:2]
+    assert error < 1e-16 and normal > -1e-10 and abs(tangential) <= 0.3 * normal + 1e-9
+    assert rows[0] @ new_v > -1e-9 and abs(normal * (rows[0] @ new_v)) < 1e-9
+
+
+def test_moments_are_in_order_and_say_what_was_before() -> None:
+    model = modal(Toy())
+    seen = list(exact_motion.moments(model, *touching(model, LOWER, 0.05, -0.3), 0.05))
+    assert seen[0].t == 0.0 and seen[-1].t == 0.05 and all(a.t <= b.t for a, b in pairwise(seen))
+    assert seen[0].contact == seen[-1].contact == -1 and seen[-1].cause == "end"

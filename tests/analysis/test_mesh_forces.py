@@ -1,0 +1,222 @@
+"""Are the loads of bearings between gears those of statics on paper, and the active sets those of scipy?"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from scene.made_gears import read
+from scipy.optimize import nnls
+
+import watchsim as ws
+from watchsim.analysis.mesh_forces import Loads, mesh_forces
+from watchsim.analysis.nonnegative import nonnegative, nonnegative_of_many
+from watchsim.scene.errors import SceneError
+
+# Are the loads of bearings between gears those that statics and dynamics give on paper?
+
+LEAN = math.tan(math.radians(20.0))
+M = 1e-3  # N·m
+Gears = list[tuple[str, str, object, str]]  # between, ratio, further keys
+
+
+def scene_of(folder: Path, bodies: dict[str, str], gears: Gears, torques: dict[str, str]) -> ws.Scene:
+    text = '[scene]\ntitle = "gears"\n'
+    text += "".join(f'[bodies.{name}]\ninertia = "1 g·cm²"\n{keys}\n' for name, keys in bodies.items())
+    text += "".join(f'[[gears]]\nbetween = ["{a}", "{b}"]\nratio = {ratio}\n{keys}\n' for a, b, ratio, keys in gears)
+    text += "".join(f'[[torques]]\nbody = "{name}"\nvalue = "{value}"\n' for name, value in torques.items())
+    return read(folder, text + '[run]\nduration = "0.2 s"\n')
+
+
+def at(x: float, y: float = 0.0) -> str:
+    return f'position = ["{x} mm", "{y} mm"]'
+
+
+def loads_at(scene: ws.Scene, t: float = 0.1) -> dict[str, np.ndarray]:
+    return {name: force[0] for name, force in ws.forces(ws.simulate(scene), [t]).pivots.items()}
+
+
+@pytest.mark.parametrize("play", ["", 'backlash = "0.2°"'])
+def test_an_idler_carries_twice_the_tangential_force(tmp_path: Path, play: str) -> None:
+    """In line the radial forces cancel; the outer bearings carry one tangential and one radial force each."""
+    bodies = {"first": at(0), "idler": at(10), "last": at(20)}
+    gears: Gears = [("first", "idler", -1, play), ("idler", "last", -1, play)]
+    scene = scene_of(tmp_path, bodies, gears, {"first": "1 mN·m", "last": "-1 mN·m"})
+    found = loads_at(scene)
+    push = M / 5e-3
+    assert found["idler"] == pytest.approx([0.0, -2.0 * push], abs=1e-9)
+    assert found["first"] == pytest.approx([push * LEAN, push], abs=1e-9)
+    assert found["last"] == pytest.approx([-push * LEAN, push], abs=1e-9)
+
+
+def test_an_idler_round_a_corner(tmp_path: Path) -> None:
+    """The second mesh at a right angle: tangential and radial forces add as vectors."""
+    bodies = {"first": at(0), "idler": at(10), "last": at(10, 10)}
+    gears: Gears = [("first", "idler", -1, 'pressure_angle = "15°"')]
+    gears.append(("idler", "last", -1, 'pressure_angle = "15°"'))
+    found = loads_at(scene_of(tmp_path, bodies, gears, {"first": "1 mN·m", "last": "-1 mN·m"}))
+    push, lean = M / 5e-3, math.tan(math.radians(15.0))
+    # The first turns counter-clockwise: it pushes the idler up, and away to the right; the last, above, to the left, and down.
+    on_idler = np.array([push * lean, push]) + np.array([-push, -push * lean])
+    assert found["idler"] == pytest.approx(-on_idler, abs=1e-9)
+
+
+@pytest.mark.parametrize("noted_on", ["rack of the first", "rack of the second"])
+def test_what_the_racks_press_is_what_the_teeth_press(tmp_path: Path, noted_on: str) -> None:
+    """Pitch radii 6 and 4 mm, so P is at (6 mm, 0). The first's rack goes by -6 mm per radian: f along it is the torque -6 mm f
+    on the first. The second's goes by 4 mm and feels -f: -4 mm f. Both are moments of f upwards on the second's teeth at P and
+    of -f on the first's; the radial force parts them. On which of the racks the force is noted does not matter."""
+    scene = scene_of(tmp_path, {"a": at(0), "b": at(10)}, [("a", "b", -1.5, 'backlash = "0.2°"')], {})
+    f = np.array([0.3, -0.3, 0.7])
+    first = noted_on == "rack of the first"
+    contacts = SimpleNamespace(group=np.array([0]), a=np.array([0 if first else 1]))
+    racks = SimpleNamespace(body=np.array([2, 3]))  # numbers 2 and 3, after the scene's two bodies
+    compiled = SimpleNamespace(model=SimpleNamespace(contacts=contacts, primitives=racks, bodies=[None] * 4), size=1.0)
+    pressed = np.stack((f if first else -f, np.zeros(3)), axis=1)[:, None]
+    loads = Loads(np.array([0]), np.zeros((3, 1, 2)), pressed)
+    found = {one.body: one.force for one in mesh_forces(scene, compiled, None, loads)}
+    on_second = np.stack((LEAN * np.abs(f), f), axis=1)
+    assert sorted(found) == [0, 1]
+    assert found[1] == pytest.approx(on_second, rel=1e-12)
+    assert found[0] == pytest.approx(-on_second, rel=1e-12)
+
+
+@pytest.mark.parametrize("ratio", [-0.5, -3.0, 3.0, 0.25])
+def test_a_pair_that_speeds_up(tmp_path: Path, ratio: float) -> None:
+    """F at the pitch point turns the second: J₂ α₂ = F ρ₂, outside (ratio < 0) and within a ring."""
+    scene = scene_of(tmp_path, {"a": at(0), "b": at(6, 8)}, [("a", "b", ratio, "")], {"a": "1 mN·m"})
+    found, J = loads_at(scene), 1e-7
+    alpha = M / (J * (1.0 + ratio**2)) * ratio
+    reach = 10e-3 / abs(1.0 - ratio)  # pitch radius of the second
+    push = abs(J * alpha / reach)
+    assert np.hypot(*found["b"]) == pytest.approx(push * math.hypot(1.0, LEAN), rel=1e-9)
+    assert found["a"] == pytest.approx(-found["b"], abs=1e-12)
+    line = np.array([0.6, 0.8])
+    apart = 1.0 if ratio < 0.0 else -1.0
+    assert -found["b"] @ line == pytest.approx(apart * push * LEAN, rel=1e-9)
+    # Moments about both axes by the pitch point P = A + s e.
+    P = line * ratio / (ratio - 1.0) * 10e-3
+    on_b = -found["b"]
+    arm = P - line * 10e-3
+    assert arm[0] * on_b[1] - arm[1] * on_b[0] == pytest.approx(J * alpha, rel=1e-9, abs=0.0)
+    assert -(P[0] * on_b[1] - P[1] * on_b[0]) == pytest.approx(J * alpha / ratio - M, rel=1e-9, abs=0.0)
+
+
+def test_a_rack_presses_its_pinion_away(tmp_path: Path) -> None:
+    rack = 'motion = "slide"\naxis = [1, 0]\nmass = "10 g"\nposition = ["0 mm", "-5 mm"]'
+    scene = scene_of(tmp_path, {"pinion": at(0), "rack": rack}, [("pinion", "rack", '"5 mm/rad"', "")], {"rack": "-0.2 N"})
+    found = loads_at(scene)
+    speeding = -0.2 / (10e-3 + 1e-7 / 5e-3**2)  # m/s², of the rack
+    push = 1e-7 * speeding / 5e-3 / 5e-3  # N on the pinion's teeth
+    # Turning counter-clockwise the pinion takes the rack below it to the right; the rack pushes it to the left, and up.
+    assert found["pinion"] == pytest.approx([-push, -abs(push) * LEAN], rel=1e-9)
+
+
+@pytest.mark.parametrize("ratio", [2.0, -3.0])
+def test_a_planet_loads_the_bearing_of_its_carrier(tmp_path: Path, ratio: float) -> None:
+    """Round a fixed wheel, or within a fixed ring: the carrier's bearing takes what the fixed teeth press, and what turns."""
+    planet = at(10) + '\non = "carrier"\nmass = "1 g"'
+    bodies = {"carrier": 'mass = "2 g"', "planet": planet}
+    scene = scene_of(tmp_path, bodies, [("carrier", "planet", ratio, "")], {"carrier": "1 mN·m"})
+    found = loads_at(scene, 1e-6)["carrier"]
+    J, m, d = 1e-7, 1e-3, 10e-3
+    alpha = M / (J + m * d * d + J * (1.0 + ratio) ** 2)
+    radius = d / (1.0 + ratio)
+    along = -J * (1.0 + ratio) * alpha / radius  # on the planet, across the arm
+    assert (J + m * d * d) * alpha == pytest.approx(M + along * d, rel=1e-12, abs=0.0)
+    # Bearing: momentum of the planet less the tooth. The carrier turns by next to nothing in a microsecond.
+    away = math.copysign(LEAN, radius) * abs(along)
+    assert found == pytest.approx([-away, m * d * alpha - along], rel=1e-6, abs=1e-6)
+
+
+def test_dry_friction_of_a_bearing_that_stands_hides_nothing(tmp_path: Path) -> None:
+    """The wheel at the end is held by its bearing's friction: its own equation says nothing, the others do."""
+    scene = scene_of(tmp_path, {"a": at(0), "b": at(10)}, [("a", "b", -1, "")], {"a": "1 mN·m"})
+    text = (tmp_path / "scene.toml").read_text(encoding="utf-8")
+    scene = read(tmp_path, text + '[[damping]]\nbody = "b"\ncoulomb = "2 mN·m"\n')
+    found = loads_at(scene)
+    push = M / 5e-3
+    assert found["b"] == pytest.approx([-push * LEAN, -push], abs=1e-9)
+
+
+def test_an_angle_of_pressure_that_cannot_be_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(SceneError, match="must lie between 0° and 45°"):
+        scene_of(tmp_path, {"a": at(0), "b": at(10)}, [("a", "b", -1, 'pressure_angle = "60°"')], {})
+
+
+# Does the active-set method give what scipy's gives, and what no other choice betters?
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_the_same_as_scipy(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    rows, columns = rng.integers(1, 9, 2)
+    system = np.vstack((rng.normal(size=(rows, columns)), 10.0 ** rng.uniform(-4.0, 0.0) * np.eye(columns)))
+    right = np.append(rng.normal(size=rows), np.zeros(columns))
+    expected, rest = nnls(system, right)
+    got = nonnegative(system, right)
+    assert np.all(got >= 0.0)
+    assert np.allclose(got, expected, rtol=1e-9, atol=1e-9 * max(1.0, expected.max()))
+    assert np.linalg.norm(system @ got - right) <= rest * (1.0 + 1e-9) + 1e-13
+
+
+def test_where_nothing_helps_all_is_zero() -> None:
+    assert np.array_equal(nonnegative(np.eye(3), -np.ones(3)), np.zeros(3))
+    assert np.array_equal(nonnegative(np.eye(2), np.array([3.0, -1.0])), [3.0, 0.0])
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_wherever_it_begins_the_same_comes_out(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    rows, columns = rng.integers(2, 9, 2)
+    system = np.vstack((rng.normal(size=(rows, columns)), 10.0 ** rng.uniform(-4.0, 0.0) * np.eye(columns)))
+    right = np.append(rng.normal(size=rows), np.zeros(columns))
+    expected, _ = nnls(system, right)
+    for likely in (expected > 0.0, expected == 0.0, rng.random(columns) < 0.5, np.ones(columns, bool)):
+        before = likely.copy()
+        got = nonnegative(system, right, likely)
+        assert np.allclose(got, expected, rtol=1e-9, atol=1e-9 * max(1.0, expected.max()))
+        assert np.array_equal(likely, before)
+
+
+@pytest.mark.parametrize("seed", [*range(20), 111, 187])
+def test_columns_that_are_nearly_alike(seed: int) -> None:
+    """Then entries come into use and leave it again and again."""
+    rng = np.random.default_rng(seed)
+    columns, rows = int(rng.integers(5, 25)), int(rng.integers(3, 15))
+    alike = rng.normal(size=(rows, 3)) @ rng.normal(size=(3, columns)) + 0.05 * rng.normal(size=(rows, columns))
+    system = np.vstack((alike, 10.0 ** rng.uniform(-3.0, 0.0) * np.eye(columns)))
+    right = np.append(rng.normal(size=rows), np.zeros(columns))
+    expected, _ = nnls(system, right)
+    assert np.allclose(nonnegative(system, right), expected, rtol=1e-8, atol=1e-8 * max(1.0, expected.max()))
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_in_other_units_it_is_the_same_to_the_bit(seed: int) -> None:
+    """Forces and lever arms of a watch are small numbers; a power of two changes no digit."""
+    rng = np.random.default_rng(seed)
+    alike = rng.normal(size=(6, 3)) @ rng.normal(size=(3, 9)) + 0.05 * rng.normal(size=(6, 9))
+    right, unit = rng.normal(size=6), 2.0**-60
+    likely = rng.random(9) < 0.5
+    assert np.array_equal(nonnegative(alike, right * unit, likely), unit * nonnegative(alike, right, likely))
+    assert np.array_equal(nonnegative(alike, right * unit), unit * nonnegative(alike, right))
+    assert np.array_equal(nonnegative(alike * unit, right), nonnegative(alike, right) / unit)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_of_many_each_is_the_same_as_scipy(seed: int) -> None:
+    """Of systems that change little by little or jump, in any order, and whichever of them are asked about together."""
+    rng = np.random.default_rng(seed)
+    count, rows, columns = 30, *rng.integers(1, 8, 2)
+    change = np.cumsum(rng.normal(size=(count, rows, columns + 1)) * rng.choice([0.0, 0.02, 1.0], (count, 1, 1)), axis=0)
+    gentle = 10.0 ** rng.uniform(-4.0, 0.0) * np.eye(columns)
+    systems = np.array([np.vstack((one[:, :-1], gentle)) for one in change])
+    rights = np.array([np.append(one[:, -1], np.zeros(columns)) for one in change])
+    expected = np.array([nnls(system, right)[0] for system, right in zip(systems, rights, strict=True)])
+    for chosen in (np.arange(count), rng.permutation(count), rng.permutation(count)[:7], np.arange(1), np.arange(0)):
+        got = nonnegative_of_many(systems[chosen], rights[chosen])
+        assert np.all(got >= 0.0)
+        assert np.allclose(got, expected[chosen], rtol=1e-9, atol=1e-9 * max(1.0, expected.max()))

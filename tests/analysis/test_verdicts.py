@@ -1,0 +1,397 @@
+"""Is a watch that fails told from one that ticks, and is it said how it fails?"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from analysis.made_beats import DEGREE, PERIOD, Events, balance_only, lever_run, lever_scene, polygon, star
+from analysis.made_faults import chipped, knocked, renamed, swiss, toothless, turned_over, unguarded
+from every_time import few
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+from watchsim.analysis.timing.beats import beats
+from watchsim.analysis.timing.teeth import pitch
+from watchsim.analysis.verdicts.equilibrium.in_force import in_force
+from watchsim.analysis.verdicts.equilibrium.lever_arms import arms
+from watchsim.analysis.verdicts.equilibrium.statics import at_lever
+from watchsim.analysis.verdicts.faces import face
+from watchsim.analysis.verdicts.overbanking import overbanking
+from watchsim.analysis.verdicts.settling import unsettled
+from watchsim.analysis.verdicts.tooth_lean import Teeth, teeth
+from watchsim.analysis.verdicts.unlocked import unlocked
+from watchsim.analysis.verdicts.verdict import verdict
+from watchsim.analysis.verdicts.verdict_kinds import Verdict
+from watchsim.analysis.verdicts.watch import watch_of
+from watchsim.profiles_path import profiles_dir
+from watchsim.scene.body import Body
+from watchsim.scene.file.load import load
+from watchsim.scene.force import Damping, Spring, Torque
+from watchsim.scene.roles import roles
+from watchsim.scene.scene import Scene
+from watchsim.simulation.event_kinds import EventKind
+from watchsim.simulation.simulate import simulate
+
+# Is a watch that fails told from one that ticks, and is it said how it fails?
+
+STRONG = "-10 µN·m"
+
+# What fails, how long it takes to show, and what is said: name, body, words of the pair, drive (N·m), words of the message.
+FAULTS = {
+    "too strong": (
+        *(swiss(torques_0_value=STRONG), 3.0, "knocks", "balance", ("PIN", "FORK"), 1e-5),
+        ("strikes lever from outside at 338°", "gallops"),
+    ),
+    "reversed": (
+        *(swiss(torques_0_value="1 µN·m"), 3.0, "backwards", "wheel", ("TEETH", "STONES"), 1e-6),
+        ("against the lean of its teeth",),
+    ),
+    "shallow lock": (
+        *(swiss(bodies_wheel_position_1="-0.04 mm"), 3.0, "trips", "wheel", ("TEETH", "STONES"), 1e-6),
+        ("impulse face", "while balance is away"),
+    ),
+    "a tooth gone": (
+        *(toothless(unguarded(swiss()), 7), 3.0, "trips", "wheel", ("TEETH", "STONES"), 1e-6),
+        ("ran past lever",),
+    ),
+    "a locking chipped": (
+        *(chipped(swiss(), 7, 1e-4), 6.0, "trips", "wheel", ("TEETH", "STONES"), 1e-6),
+        ("tooth 8 rests on",),
+    ),
+    "no guard pin": (
+        *(knocked(unguarded(swiss()), 2.05, -2e-6), 4.0, "overbanks", "lever", ("PIN", "FORK"), 1e-6),
+        ("t = 2.05", "from outside at −21.8°", "guard pin"),
+    ),
+    "set on lock": (
+        *(swiss(torques_0_value="-20 µN·m", bodies_balance_angle="-30°"), 2.0, "stops", "wheel", ("TEETH", "STONES"), 2e-5),
+        ("tooth 6 rests on the entry locking face", "1.6 µN·m, is below the 4.3 µN·m needed to unlock"),
+    ),
+}
+DRY = replace(swiss(contacts_0_friction="0.6"), damping=(*swiss().damping, Damping("balance", coulomb=5e-8)))
+FAULTS["set on impulse"] = (
+    *(DRY, 7.0, "stops", "wheel", ("TEETH", "STONES"), 1e-6),
+    ("on the exit impulse face", "is below the 2 µN·m needed to move balance (set on impulse). Last amplitude 24.5°"),
+)
+
+
+def judged(scene: Scene, duration: float) -> Verdict:
+    return verdict(simulate(scene, duration))
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_each_fault_is_recognised_and_named(fault):
+    scene, duration, name, body, layers, drive, words = FAULTS[fault]
+    found = judged(scene, duration)
+    assert (found.name, found.body) == (name, body) and not found.works
+    assert all(layer in found.pair for layer in layers) and abs(found.torque) == pytest.approx(drive)
+    assert 0.0 <= found.t <= duration
+    assert all(part in found.message for part in words), found.message
+
+
+@pytest.mark.parametrize("fault", few(FAULTS, 4))
+def test_in_a_mirror_and_under_other_names_it_is_the_same_fault(fault):
+    scene, duration, name, body, _, drive, _ = FAULTS[fault]
+    found = judged(renamed(turned_over(scene)), duration)
+    assert (found.name, found.body) == (name, {"wheel": "rad", "lever": "anker", "balance": "unruh"}[body])
+    assert abs(found.torque) == pytest.approx(drive) and "anker" in found.message
+
+
+def test_a_balance_at_rest_beside_the_fork_is_named():
+    """Its spring holds it at 90°, where its pin is far from the fork."""
+    scene = swiss(springs_0_rest="90°", bodies_balance_angle="90°", bodies_balance_velocity="0 °/s")
+    found = judged(scene, 3.0)
+    assert found.name == "stops" and "rests on" in found.message
+    assert "balance is at rest at 0° and does not touch lever" in found.message
+
+
+def test_a_guard_pin_keeps_the_lever_from_going_over():
+    """The same knock on the lever with the dart in place."""
+    assert judged(knocked(swiss(), 2.05, -2e-6), 4.0).name == "unsettled"
+
+
+def test_the_first_strike_from_outside_shows_that_it_overbanks():
+    """Before it the same half swing saw the pin inside the fork, with the lever on its way to the banking."""
+    run = simulate(knocked(unguarded(swiss()), 2.05, -2e-6), 4.0)
+    struck = replace(run, events=run.events[run.events["t"] < 2.1])
+    found = overbanking(watch_of(struck, beats(run)))
+    assert found is not None and found.t == pytest.approx(2.05, abs=1e-3) and "outside at −21.8°" in found.message
+    before = replace(run, events=run.events[run.events["t"] < 2.05])
+    assert overbanking(watch_of(before, beats(run))) is None
+
+
+def test_a_watch_that_ticks_and_one_that_will():
+    run = simulate(swiss(), 40.0)
+    early = simulate(swiss(), 3.0)
+    assert verdict(run).name == "ticks" and verdict(run).message == "the watch ticks"
+    told = verdict(early)
+    assert told.name == "unsettled" and told.works and "on its way to about 279°" in told.message
+    assert beats(run).amplitude_deg[-1] == pytest.approx(279.2, abs=0.3)
+    assert "too few" in judged(swiss(), 0.5).message
+
+
+def test_knocks_of_the_past_are_mentioned_not_judged():
+    """Started too far, a light drive: it knocks until its swing has died down."""
+    scene = swiss(torques_0_value="-0.5 µN·m", bodies_balance_velocity="-7000 °/s")
+    found = judged(scene.set("damping.0.q_factor", 60.0), 20.0)
+    assert found.name == "ticks" and "after it knocked until t = " in found.message
+
+
+@pytest.mark.parametrize("share", [0.995, 1.005])
+def test_the_torque_needed_to_unlock_is_where_it_unlocks(share):
+    """From rest on the lock, the simulation moves the lever just below the drive at which statics says that the torques are
+    equal, and leaves it alone just above."""
+    held = simulate(swiss(torques_0_value="-20 µN·m", bodies_balance_angle="-30°"), 2.0)
+    watch = watch_of(held, beats(held))
+    sides = {number: {held.pairs[number].body_a, held.pairs[number].body_b} for number in in_force(held, [2.0])[0]}
+    tooth, pin = (next(k for k, both in sides.items() if both == {other, "lever"}) for other in ("wheel", "balance"))
+    found = arms(held, watch.compiled, 2.0, [tooth, pin])
+    out = face(watch, found, 0).out
+    given, needed = at_lever(found, 1, "balance", "lever", out), at_lever(found, 0, "wheel", "lever", out)
+    assert given == pytest.approx(1.60e-6, rel=0.01) and needed == pytest.approx(-4.28e-6, rel=0.01)
+    equal = 20.0 * given / -needed
+    angles = {body: f"{float(held.end[0][held.slices[body].start])!r} rad" for body in ("wheel", "lever", "balance")}
+    start = {f"bodies_{body}_angle": angle for body, angle in angles.items()}
+    run = simulate(swiss(torques_0_value=f"{-share * equal} µN·m", **start), 0.05)
+    lever = np.degrees(run.q[:, run.slices["lever"].start])
+    assert (abs(lever - lever[0]).max() > 0.001) == (share < 1.0)
+
+
+def test_without_rows_events_alone_say_that_it_knocks():
+    run = simulate(swiss(torques_0_value=STRONG), 5.0, record="statistics")
+    assert verdict(run).name == "knocks"
+
+
+def test_the_last_rows_that_were_kept_say_that_nothing_locks():
+    scene = swiss(bodies_wheel_position_1="-0.04 mm")
+    assert verdict(simulate(scene, 4.0, record=[(1.0, 1.5)])).name == "trips"
+
+
+def test_a_lever_without_banking_need_not_lock():
+    run = simulate(swiss(bodies_wheel_position_1="-0.04 mm"), 3.0)
+    free = replace(run.scene, contacts=tuple(one for one in run.scene.contacts if all(s.body != "banking" for s in one.sides)))
+    watch = watch_of(replace(run, scene=free), beats(run))
+    assert unlocked(watch_of(run, beats(run))) and not unlocked(watch)
+
+
+def test_a_wheel_that_the_balance_drives_back_runs_backwards():
+    """A drive of next to nothing, a lever that pushes: made by hand, since real wheels are held by their lever."""
+    run = lever_run(40)
+    back = replace(run, q=run.q * np.array([1.0, 1.0, -1.0]))
+    found = verdict(back)
+    assert found.name == "backwards" and "against its drive of 1 µN·m" in found.message
+
+
+def test_the_wheel_is_the_body_whose_lever_meets_the_balance():
+    """Whatever torque is listed first."""
+    shaken = knocked(swiss(), 2.05, -2e-6)
+    assert roles(replace(shaken, torques=shaken.torques[::-1])) == roles(swiss())
+
+
+def test_made_runs_have_no_shapes_to_ask():
+    assert verdict(lever_run(40)).name == "ticks"
+    stands = verdict(lever_run(20, missed=range(10, 20)))
+    assert stands.name == "stops" and "the escape wheel has stood still since t = 1.19" in stands.message
+
+
+def pendulum() -> Scene:
+    bob = Body("bob", angle=0.1, mass=1.0, inertia=1.0, centre_of_mass=(0.0, -1.0))
+    return Scene("pendulum", (bob,), gravity=(0.0, -9.81))
+
+
+def driven_spring() -> Scene:
+    """A motor beside a flywheel on a spring: nothing lies between them."""
+    bodies = (Body("motor", inertia=1e-9), Body("fly", inertia=1e-9, angle=1.0))
+    return Scene("no escapement", bodies, (Spring("fly", 1e-6),), (Torque("motor", 1e-9),))
+
+
+@pytest.mark.parametrize(
+    "scene", [load(profiles_dir() / "balance"), load(profiles_dir() / "incline"), pendulum(), driven_spring()]
+)
+def test_what_is_no_watch_has_no_verdict(scene):
+    found = judged(scene, 1.0)
+    assert found.name is None and found.message is None and found.works
+
+
+@pytest.mark.parametrize("profile", ["bench_lever", "carriage"])
+def test_other_watches_tick(profile):
+    assert judged(replace(load(profiles_dir() / profile), expect=()), 6.0).works
+
+
+# Is it foretold where the amplitude settles?
+
+
+def swung(amplitude, count=160):
+    return told(amplitude, count)[1]
+
+
+def told(amplitude, count=160):
+    """Half swings of amplitude(t) degrees, and what is said of them."""
+    events = Events()
+    for k in range(count):
+        way = 1.0 if k % 2 == 0 else -1.0
+        middle, end = (k + 0.5) * 0.5 * PERIOD, (k + 1) * 0.5 * PERIOD
+        events.passage(middle, EventKind.CROSS, way)
+        events.passage(end, EventKind.TURN, way * amplitude(end) * DEGREE)
+    run = balance_only(events, count * 0.5 * PERIOD)
+    return run, unsettled(watch_of(run, beats(run)))
+
+
+@pytest.mark.parametrize(("start", "goal", "constant"), [(200.0, 280.0, 8.0), (300.0, 260.0, 20.0), (100.0, 240.0, 5.0)])
+def test_an_exponential_is_followed_to_its_end(start, goal, constant):
+    said = swung(lambda t: goal + (start - goal) * math.exp(-t / constant))
+    word = "rises" if goal > start else "falls"
+    assert said.name == "unsettled" and said.works and word in said.message
+    told = float(said.message.split("about ")[1].split("°")[0])
+    assert told == pytest.approx(goal, abs=0.6)
+
+
+def test_what_has_settled_has_settled():
+    assert swung(lambda t: 280.0 + 80.0 * math.exp(-t / 2.0)) is None
+    assert swung(lambda t: 280.0) is None
+
+
+def test_a_wheel_out_of_round_is_no_drift():
+    """Fifteen oscillations to a turn: the amplitude goes up and down for ever."""
+    assert swung(lambda t: 280.0 + 2.0 * math.sin(math.tau * t / (15.0 * PERIOD)), 480) is None
+
+
+def test_chance_is_no_drift():
+    rng = np.random.default_rng(3)
+    assert sum(swung(lambda t: 280.0 + rng.normal(0.0, 1.0)) is not None for _ in range(40)) <= 2
+
+
+def test_a_steady_loss_has_no_end_foretold():
+    said = swung(lambda t: 280.0 - 3.0 * t)
+    assert "falls by 3° per second" in said.message and "on its way" not in said.message
+
+
+@pytest.mark.parametrize(("start", "goal", "said"), [(2.0, 2.12, "about 2.12°"), (200.0, 280.0, "about 280°")])
+def test_where_it_goes_is_said_as_exactly_as_it_differs(start, goal, said):
+    found = swung(lambda t: goal + (start - goal) * math.exp(-t / 8.0), 80)
+    assert said in found.message, found.message
+
+
+def test_a_drift_counts_beyond_three_standard_errors():
+    """Told by a regression of another make: of means over an oscillation about the straight line through each stretch."""
+    known, noise = {}, np.random.default_rng(5).normal(0.0, 1.0, 161)
+    for scatter in np.linspace(1.5, 5.0, 36):
+        run, said = told(lambda t, by=scatter: 280.0 - 0.02 * t * t + by * noise[round(2.0 * t / PERIOD)])
+        stretches = np.split(beats(run).amplitude_deg[-120:].reshape(-1, 2).mean(axis=1), 3)
+        off = np.concatenate([part - np.polyval(np.polyfit(range(20), part, 1), range(20)) for part in stretches])
+        error = math.sqrt(2.0 / 20.0 * np.mean(off**2))
+        known[abs(stretches[2].mean() - stretches[1].mean()) / error] = said is not None
+    assert [drifts for errors, drifts in known.items() if 2.4 < errors < 3.0].count(False) > 2
+    assert [drifts for errors, drifts in known.items() if 3.0 < errors < 3.6].count(True) > 2
+    assert all(drifts == (errors > 3.0) for errors, drifts in known.items())
+
+
+# Is it seen which way teeth are made to turn?
+
+
+def with_rim(*loops):
+    scene = lever_scene()
+    return replace(scene, bodies=tuple(replace(one, loops=loops) if one.name == "wheel" else one for one in scene.bodies))
+
+
+def leaning(lean: float, count: int = 15, turned: float = 0.0):
+    """Pointed teeth, rim 2.4 and root 1.9 mm, whose points stand `lean` (of the pitch) anticlockwise of their middle."""
+    pitch = math.tau / count
+    points = []
+    for k in range(count):
+        for radius, at in ((1.9e-3, -0.4), (2.4e-3, lean), (1.9e-3, 0.4)):
+            angle = turned + (k + at) * pitch
+            points.append(radius * complex(math.cos(angle), math.sin(angle)))
+    return polygon(points)
+
+
+@pytest.mark.parametrize("lean", [-0.35, -0.1, 0.1, 0.35])
+@pytest.mark.parametrize("turned", [0.0, 2.0])
+def test_pointed_teeth(lean, turned):
+    """At a share h of their height the middle of the teeth is at lean · h: half the lean lies between the halves, or less."""
+    found = teeth(with_rim(leaning(lean, turned=turned)), "wheel")
+    assert found.direction == math.copysign(1.0, lean)
+    assert 0.25 * abs(lean) < abs(found.lean) / found.pitch < 0.6 * abs(lean)
+
+
+def test_upright_teeth_are_made_for_no_direction():
+    assert teeth(with_rim(leaning(0.0)), "wheel").direction == 0.0
+
+
+def test_wheels_of_the_profiles_turn_as_their_teeth_lean():
+    for name in ("swiss_lever", "bench_lever"):
+        scene = load(profiles_dir() / name)
+        assert teeth(scene, "wheel").direction == -1.0
+        assert teeth(turned_over(scene), "wheel").direction == 1.0
+
+
+def test_a_plain_disc_has_no_teeth():
+    assert teeth(with_rim(polygon([1e-3 * complex(math.cos(t), math.sin(t)) for t in (0.0, 2.0, 4.5)])), "wheel") is None
+
+
+def test_teeth_too_shallow_for_an_inner_half_lean_neither_way():
+    """Corners of a polygon are teeth, 1 - cos 12° = 0.022 of its rim deep; the inner half begins at 0.4 · 24° / 2 = 0.084."""
+    corners = [2e-3 * cmath.rect(1.0, k * math.tau / 15) for k in range(15)]
+    scene = with_rim(polygon(corners))
+    assert pitch(scene, "wheel") == pytest.approx(math.tau / 15, rel=1e-12)
+    assert teeth(scene, "wheel") is None
+
+
+def test_teeth_are_counted_anticlockwise_from_the_x_axis():
+    found = teeth(with_rim(star(15)), "wheel")
+    numbers = [found.number(k * math.tau / 15 + 0.02) for k in range(-1, 16)]
+    assert numbers == [15, *range(1, 16), 1]
+    swiss_teeth = teeth(swiss(), "wheel")
+    assert [swiss_teeth.number(math.radians(angle)) for angle in (0.0, 4.0, 24.1, -24.0, 360.0)] == [1, 1, 2, 15, 1]
+
+
+def phase(lean: float, low: float, high: float) -> float:
+    """Of ∫∫ exp(i Z φ) dφ dr over the tooth of `leaning` at angle 0, between two radii (m)."""
+    pitch = math.tau / 15
+
+    def flank(at: float, radius: float) -> float:
+        foot, tip = cmath.rect(1.9e-3, at * pitch), cmath.rect(2.4e-3, lean * pitch)
+        share = brentq(lambda part: abs(foot + part * (tip - foot)) - radius, 0.0, 1.0, xtol=1e-15) if radius < 2.4e-3 else 1.0
+        return cmath.phase(foot + share * (tip - foot))
+
+    def across(radius: float, part: Callable[[float], float]) -> float:
+        mean = quad(lambda angle: part(15 * angle), flank(-0.4, radius), flank(0.4, radius))
+        return float(mean[0])
+
+    real, imag = (quad(across, low, high, args=(part,))[0] for part in (math.cos, math.sin))
+    return math.atan2(imag, real)
+
+
+@pytest.mark.parametrize("lean", [-0.3, 0.12])
+@pytest.mark.parametrize("turned", [0.0, 0.05])
+@pytest.mark.parametrize("further", [False, True])
+def test_the_middle_of_two_halves_of_a_tooth(lean, turned, further):
+    """Down to 0.4 of the pitch at the rim. A smaller toothed outline beside it lies below that."""
+    outlines = [leaning(lean, turned=turned), *([star(15, 1.1e-3, 0.9e-3)] if further else [])]
+    found = teeth(with_rim(*outlines), "wheel")
+    depth = 0.4 * math.tau / 15 * 2.4e-3
+    outer, inner = phase(lean, 2.4e-3 - 0.5 * depth, 2.4e-3), phase(lean, 2.4e-3 - depth, 2.4e-3 - 0.5 * depth)
+    assert found.pitch == pytest.approx(math.tau / 15, rel=1e-12)
+    assert found.lean == pytest.approx((outer - inner) / 15, rel=2e-4)
+    assert found.first == pytest.approx(outer / 15 + turned, rel=2e-4)
+
+
+@pytest.mark.parametrize(("lean", "way"), [(0.019, 0.0), (-0.019, 0.0), (0.021, 1.0), (-0.021, -1.0)])
+def test_a_fiftieth_of_the_pitch_is_a_lean(lean, way):
+    assert Teeth(0.4, lean * 0.4, 0.1).direction == way
+
+
+@pytest.mark.parametrize("count", [7, 15])
+@pytest.mark.parametrize("first", [0.01, -0.11, 0.9, 3.0])
+def test_each_tooth_has_a_number(count, first):
+    """The one nearest to the x axis is the first, whichever of them was looked at; up to half a pitch off it is still that."""
+    pitch = math.tau / count
+    middles = sorted((first + k * pitch for k in range(count)), key=lambda angle: abs(math.remainder(angle, math.tau)))
+    for k in range(-3, 2 * count):
+        for off in (-0.49, 0.2, 0.49):
+            assert Teeth(pitch, 0.1, first).number(middles[0] + (k + off) * pitch) == k % count + 1
+    assert Teeth(pitch, 0.1, first).count == count
