@@ -13,7 +13,12 @@ from pathlib import Path
 import pytest
 from interpreter import ROOT, python
 
-from watchsim import machine_code
+from watchsim import jit, machine_code
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
 
 # Does the machine code follow the sources, and does it stay where the user wants it?
 
@@ -266,3 +271,84 @@ def test_without_any_folder_it_still_runs(script: Path, tmp_path: Path) -> None:
     (tmp_path / "open").chmod(0o777)
     told, said = printed(tmp_path / "file" / "cache", script, TMPDIR=str(tmp_path / "open"))
     assert told == "42.0 0" and "compiled each time" in said and "WATCHSIM_CACHE" in said
+
+
+# Parts that call parts, a hot one, one that is inlined, and a struct by reference, as the kernels of a run have them.
+LIKE_A_RUN = """
+from typing import NamedTuple
+import numpy as np
+from watchsim.jit import by_reference, entry, hot_kernel, inlined, kernel
+class Room(NamedTuple):
+    values: np.ndarray
+    inverse: np.ndarray
+RoomRef = by_reference(Room, __name__)
+@hot_kernel
+def least(a, b):
+    return a if a < b else b
+@kernel
+def filled(room):
+    for i in range(room.values.size):
+        room.inverse[i] = least(1.0 / room.values[i], 5.0)
+@kernel
+def total(room):
+    filled(room)
+    return room.inverse.sum()
+@inlined
+def wrapped(room):
+    return RoomRef(room.values, room.inverse)
+@entry
+def run(room):
+    return total(wrapped(room))
+def answer():
+    room = Room(np.array([0.0, 0.25, 0.5, -3.0]), np.zeros(4))
+    return run(room), room.inverse.tolist(), sum(run.stats.cache_hits.values())
+"""
+
+
+@pytest.mark.parametrize("release", ["0.60.0", "0.59.1", "0.69.0", "1.0.0rc1"])
+def test_with_a_release_that_was_not_tried_plain_njit_gives_the_same(release: str, tmp_path: Path) -> None:
+    """Compiled, and found by a second process; with one that was tried, parts have a compiler of their own."""
+    (tmp_path / "like_a_run.py").write_text(LIKE_A_RUN)
+    code = f"import sys; sys.path.insert(0, {str(tmp_path)!r}); import numba; numba.__version__ = {release!r}; "
+    code += "import watchsim.jit; import like_a_run as r; print(watchsim.jit.as_tried(), *r.answer()); "
+    code += "print(r.total.dispatcher._compiler.pipeline_class.__name__)"
+    cache = {"WATCHSIM_CACHE": str(tmp_path / "new"), "NUMBA_DISABLE_JIT": "0"}
+    tried = release == "0.60.0"
+    for found in (0, 1):
+        assert python(code, **cache).splitlines() == [
+            f"{tried} {5.0 + 4.0 + 2.0 - 1 / 3!r} [5.0, 4.0, 2.0, {-1 / 3!r}] {found}",
+            "PartCompiler" if tried else "Compiler",
+        ]
+
+
+def test_pyproject_bounds_numba_to_the_releases_that_were_tried() -> None:
+    (needed,) = (
+        one
+        for one in tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["dependencies"]
+        if one.startswith("numba")
+    )
+    (first, last) = jit.TRIED
+    assert needed == f"numba>={first[0]}.{first[1]},<{last[0]}.{last[1] + 1}" and jit.as_tried()
+
+
+def test_one_compiles_and_nobody_waits_for_the_dead(script: Path, tmp_path: Path) -> None:
+    fcntl = pytest.importorskip("fcntl", reason="locks of files")
+    cache = tmp_path / "cache"
+    assert printed(cache, script) == ("42.0 0", "")
+    (lock,) = cache.rglob("*.lock")
+    for path in cache.rglob("*.nb?"):
+        path.unlink()
+    held = "import fcntl, sys, time; f = open(sys.argv[1]); fcntl.flock(f, fcntl.LOCK_EX); print(flush=True); time.sleep(600)"
+    holder = subprocess.Popen([sys.executable, "-c", held, str(lock)], stdout=subprocess.PIPE)
+    assert holder.stdout is not None and holder.stdout.readline()
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "WATCHSIM_CACHE": str(cache)}
+    pipe = subprocess.PIPE
+    waiting = subprocess.Popen([sys.executable, str(script)], env=environment, stdout=pipe, stderr=pipe, text=True)
+    assert waiting.stderr is not None and "waiting for it" in waiting.stderr.readline()
+    assert waiting.poll() is None and not list(cache.rglob("*.nbi"))
+    holder.kill()
+    assert waiting.communicate(timeout=60)[0].strip() == "42.0 0"
+    holder.wait()
+    with lock.open() as file:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)  # let go
+        assert printed(cache, script) == ("42.0 1", ""), "what is there needs no lock"

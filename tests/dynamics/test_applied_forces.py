@@ -31,6 +31,7 @@ BODIES = (
 )
 ENDS = {"wheel": (0.7, 0.2), "slide": (-0.1, 0.3), "free": (0.2, 0.5), None: (2.0, 2.0)}
 STIFFNESS, LENGTH, VISCOUS = 3.0, 0.8, 0.4
+LINE = LineSpring(("wheel", "slide"), (ENDS["wheel"], ENDS["slide"]), STIFFNESS, LENGTH, VISCOUS)
 
 
 def length(scene: Scene, pair: tuple[str, str | None], q: np.ndarray) -> float:
@@ -53,7 +54,22 @@ def test_the_force_is_the_slope_of_the_length_times_pull_and_drag(pair: tuple[st
         steps = h * np.eye(5)
         slope = np.array([length(scene, pair, q + step) - length(scene, pair, q - step) for step in steps]) / (2.0 * h)
         _forces(model, 0.0, q, u, out)
-        pull = STIFFNESS * (length(scene, pair, q) - LENGTH) + VISCOUS * float(slope @ u)
+        pull = STIFFNESS * (length(scene, pair, q) - LE@pytest.mark.parametrize("body", [0, 1])
+@pytest.mark.parametrize("ratio", [1.0, -2.5, 0.4])
+def test_a_geared_body_feels_the_spring_by_its_ratio(body: int, ratio: float) -> None:
+    model = compile_scene(Scene("springs", BODIES, line_springs=(LINE,))).model
+    bodies = model.bodies.copy()
+    bodies["ratio"][body] = ratio
+    model = model._replace(bodies=bodies)
+    q, u, out, h = np.array([0.4, -0.3, 0.1, 0.2, 0.5]), np.zeros(5), np.zeros(5), 1e-5
+    in_python(add_line_springs)(model, q, u, out)
+    energies = np.zeros(10)
+    in_python(line_spring_energies)(model, q + h * np.concatenate((np.eye(5), -np.eye(5))), energies)
+    slope = (energies[:5] - energies[5:]) / (2.0 * h)
+    assert out == pytest.approx(-slope, abs=1e-8) and np.all(np.abs(out[:2]) > 0.01)
+
+
+NGTH) + VISCOUS * float(slope @ u)
         assert out == pytest.approx(-pull * slope, abs=1e-8)
 
 

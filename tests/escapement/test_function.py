@@ -13,13 +13,13 @@ import shapely
 from escapement.made import mirrored_scene, renamed_scene, swiss_scene, turned_scene
 from every_time import few
 from shapely import affinity
+from watchsim.designs.maker import Maker
 
 from watchsim import designs
 from watchsim.construction import known
 from watchsim.construction.coaxial.coaxial_points import Points
 from watchsim.construction.swiss_lever.swiss_lever_points import Swiss
 from watchsim.construction.swiss_lever.swiss_lever_roller import banking
-from watchsim.designs.maker import Maker
 from watchsim.escapement.function_report import statics, text
 from watchsim.escapement.impulses import Impulse
 from watchsim.escapement.measure import Function, measure

@@ -352,3 +352,27 @@ def test_without_the_prefilter_every_contact_is_near():
     assert whole.near.tolist() == list(range(len(whole.contacts)))
     assert whole.pairs.near_start.tolist() == whole.pairs.start.tolist()
     assert whole.pairs.near_stop.tolist() == whole.pairs.stop.tolist()
+
+
+@pytest.mark.parametrize(("radius", "away"), [("20 µm", "30 mm"), ("0.1 mm", "300 mm"), ("1 mm", "20 m")])
+def test_a_disc_far_from_a_drawn_lever_is_checked(radius, away, tmp_path, capsys):
+    """So many of its own sizes away there are no cells; everything that can touch is a candidate, as in a run."""
+    (tmp_path / "scene.toml").write_text(
+        f'''[bodies.lever]
+drawing = "{PROFILES / "swiss_lever" / "lever.dxf"}"
+motion = "fixed"
+[bodies.disc]
+circle = "{radius}"
+motion = "free"
+position = ["{away}", "0 mm"]
+mass = "1 mg"
+inertia = "1 mg·mm²"
+[[contacts]]
+between = ["disc", "lever"]
+''',
+        encoding="utf-8",
+    )
+    assert main(["check", str(tmp_path)]) == 0
+    (count,) = counted(ws.load(tmp_path)).counts
+    assert count.start == count.typical == count.most == count.reachable > 16
+    assert "disc" in capsys.readouterr().out
