@@ -54,7 +54,11 @@ def test_the_force_is_the_slope_of_the_length_times_pull_and_drag(pair: tuple[st
         steps = h * np.eye(5)
         slope = np.array([length(scene, pair, q + step) - length(scene, pair, q - step) for step in steps]) / (2.0 * h)
         _forces(model, 0.0, q, u, out)
-        pull = STIFFNESS * (length(scene, pair, q) - LE@pytest.mark.parametrize("body", [0, 1])
+        pull = STIFFNESS * (length(scene, pair, q) - LENGTH) + VISCOUS * float(slope @ u)
+        assert out == pytest.approx(-pull * slope, abs=1e-8)
+
+
+@pytest.mark.parametrize("body", [0, 1])
 @pytest.mark.parametrize("ratio", [1.0, -2.5, 0.4])
 def test_a_geared_body_feels_the_spring_by_its_ratio(body: int, ratio: float) -> None:
     model = compile_scene(Scene("springs", BODIES, line_springs=(LINE,))).model
@@ -67,10 +71,6 @@ def test_a_geared_body_feels_the_spring_by_its_ratio(body: int, ratio: float) ->
     in_python(line_spring_energies)(model, q + h * np.concatenate((np.eye(5), -np.eye(5))), energies)
     slope = (energies[:5] - energies[5:]) / (2.0 * h)
     assert out == pytest.approx(-slope, abs=1e-8) and np.all(np.abs(out[:2]) > 0.01)
-
-
-NGTH) + VISCOUS * float(slope @ u)
-        assert out == pytest.approx(-pull * slope, abs=1e-8)
 
 
 def test_power_taken_held_and_given_to_bodies_is_what_the_energy_of_all_springs_loses() -> None:

@@ -158,7 +158,7 @@ def test_the_largest_freedom_is_found_between_the_steps(swiss):
     """As a step of a degree misses it, so a finer one approaches it from below."""
     layout = measure_lever.read_layout(SWISS)
     bank = measure_lever.Escapement(layout).bank(1)
-    from measure_safety import Roller
+    from measure_lever import Roller
 
     roller = Roller(layout, bank)
     assert swiss.safety
