@@ -13,7 +13,7 @@ import shapely
 from escapement.made import mirrored_scene, renamed_scene, swiss_scene, turned_scene
 from every_time import few
 from shapely import affinity
-from watchsim.designs.maker import Maker
+from watchsim.designs import Maker
 
 from watchsim import designs
 from watchsim.construction import known
